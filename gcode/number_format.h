@@ -1,0 +1,33 @@
+// Numbers as controls read them: plain decimals, no exponent, no "-0".
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace batten::gcode {
+
+struct NumberFormat {
+  int decimals = 4;             // digits after the point at the most; 0..9
+  bool trailing_zeros = false;  // X1.5000 or X1.5
+  bool always_point = false;    // X5. rather than X5
+};
+
+// Rounded to format.decimals, half away from zero on the shortest decimal that the double
+// stands for; never "-0", never an exponent. Requires |value| < 1e9.
+void append_number(std::string& out, double value, const NumberFormat& format);
+[[nodiscard]] std::string to_text(double value, const NumberFormat& format);
+
+// The number that a control reads from what `append_number` wrote.
+[[nodiscard]] double rounded(double value, int decimals);
+
+// A G-code number: optional sign (+ too), digits, optional point; no exponent; at least one
+// digit. Nothing when `text` is anything else. Blanks inside are skipped, as RS-274 says.
+struct ReadNumber {
+  double value = 0;
+  int decimals = 0;
+  bool has_point = false;
+};
+[[nodiscard]] std::optional<ReadNumber> read_number(std::string_view text);
+
+}  // namespace batten::gcode

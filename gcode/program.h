@@ -1,0 +1,73 @@
+// A program as blocks of words, each a span of the source. No text is copied.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "gcode/source_text.h"
+
+namespace batten::gcode {
+
+// A letter and its value, as `X-.5`.
+struct Word {
+  char letter = 0;            // upper case, 'A' to 'Z'
+  std::uint8_t decimals = 0;  // digits after the point as written
+  bool has_point = false;     // a decimal point was written: X5. and X5 differ on old controls
+  bool is_number =
+      true;  // false: an expression, a parameter, or nothing; `value` means nothing then
+  double value = 0;
+  SourceSpan span;
+};
+
+enum class CommentKind {
+  kParenthesis,  // (text)
+  kSemicolon,    // ; text to the end of the line
+  kActive,       // (MSG,..) (DEBUG,..) (PRINT,..) (LOG..) (PROBE..): acts when it is reached
+};
+
+struct Comment {
+  CommentKind kind = CommentKind::kParenthesis;
+  SourceSpan span;  // with its brackets, or from the semicolon on
+};
+
+// Why a block was not split into plain words. Such blocks are copied as they are.
+enum class Opacity {
+  kNone,         // understood as words and comments
+  kUnreadable,   // no grammar that is known
+  kExpression,   // a word whose value is an expression or a parameter: X[#1+2], X#5
+  kAssignment,   // #1=.., #<name>=.., R1=..
+  kFlow,         // O-words, IF, WHILE, GOTO, DO, END, labels: the order of blocks changes
+  kForeign,      // strings, $, {, !, @ lines, and words of other languages (DEF, CALL, ..)
+  kProgramMark,  // a % line; or text outside the % marks
+};
+
+// One line of the source.
+struct Block {
+  SourceSpan span;         // the line without its line end
+  std::uint32_t end = 0;   // after the line end: next block's begin
+  std::uint32_t line = 0;  // from 1
+  std::uint32_t first_word = 0;
+  std::uint32_t word_count = 0;
+  std::uint32_t first_comment = 0;
+  std::uint32_t comment_count = 0;
+  Opacity opacity = Opacity::kNone;
+  bool block_delete = false;  // starts with /, or /2 ..
+};
+
+struct Program {
+  SourceText source;
+  std::vector<Block> blocks;  // every byte of the source belongs to exactly one block
+  std::vector<Word> words;
+  std::vector<Comment> comments;
+
+  [[nodiscard]] std::span<const Word> words_of(const Block& block) const {
+    return {words.data() + block.first_word, block.word_count};
+  }
+  [[nodiscard]] std::span<const Comment> comments_of(const Block& block) const {
+    return {comments.data() + block.first_comment, block.comment_count};
+  }
+};
+
+}  // namespace batten::gcode

@@ -1,0 +1,84 @@
+// Why blocks are kept as they are: stable ids, shown in reports, lifted by --allow where
+// that can be safe. Every id is explained in docs/diagnostics.md.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace batten::gcode::reason {
+
+// --- a block that cannot be part of a run -------------------------------------------------
+inline constexpr std::string_view kNotUnderstood = "not-understood";
+inline constexpr std::string_view kExpression = "expression";
+inline constexpr std::string_view kAssignment = "parameter-assignment";
+inline constexpr std::string_view kProgramFlow = "program-flow";
+inline constexpr std::string_view kForeignWords = "foreign-words";
+inline constexpr std::string_view kProgramMark = "program-mark";
+inline constexpr std::string_view kBlockDelete = "block-delete";
+inline constexpr std::string_view kActiveComment = "active-comment";
+inline constexpr std::string_view kReferencedLabel = "referenced-label";
+inline constexpr std::string_view kOtherAxis = "other-axis";    // A B C U V W, vectors
+inline constexpr std::string_view kExtruder = "extruder";       // E
+inline constexpr std::string_view kCornerWord = "corner-word";  // ,R ,C direct drawing
+inline constexpr std::string_view kRapid = "rapid";
+inline constexpr std::string_view kArc = "arc";
+inline constexpr std::string_view kDwell = "dwell";
+inline constexpr std::string_view kProbe = "probe";
+inline constexpr std::string_view kCannedCycle = "canned-cycle";
+inline constexpr std::string_view kThreading = "threading";
+inline constexpr std::string_view kSpline = "spline";  // G5, G5.1, G5.2, G6.x
+inline constexpr std::string_view kCoordinateChange =
+    "coordinate-change";                                            // G92 G52 G10 G54 G53 G28 G30
+inline constexpr std::string_view kToolChange = "tool-change";      // T, M6, D, H, G43, G49
+inline constexpr std::string_view kSpindle = "spindle";             // S, M3, M4, M5, M19
+inline constexpr std::string_view kCoolant = "coolant";             // M7, M8, M9
+inline constexpr std::string_view kMiscFunction = "misc-function";  // any other M word
+inline constexpr std::string_view kStateChange = "state-change";    // units, plane, distance, modes
+inline constexpr std::string_view kComment = "comment";  // only where comments must stand alone
+inline constexpr std::string_view kSubprogram = "subprogram";   // M98, M99, G65, O..
+inline constexpr std::string_view kProgramEnd = "program-end";  // M0 M1 M2 M30
+
+// --- a state in which nothing is rewritten ------------------------------------------------
+inline constexpr std::string_view kUnitsUnknown = "units-unknown";
+inline constexpr std::string_view kStateUnknown = "state-unknown";
+inline constexpr std::string_view kPositionUnknown = "position-unknown";
+inline constexpr std::string_view kCutterCompensation = "cutter-compensation";
+inline constexpr std::string_view kToolCenterPoint = "tool-center-point";
+inline constexpr std::string_view kTiltedPlane = "tilted-plane";
+inline constexpr std::string_view kIncremental = "incremental-distance";
+inline constexpr std::string_view kInverseTime = "inverse-time-feed";
+inline constexpr std::string_view kFeedPerRevolution = "feed-per-revolution";
+inline constexpr std::string_view kConstantSurfaceSpeed = "constant-surface-speed";
+inline constexpr std::string_view kPolar = "polar-coordinates";
+inline constexpr std::string_view kCylindrical = "cylindrical";
+inline constexpr std::string_view kScaling = "scaling";
+inline constexpr std::string_view kRotation = "rotation";
+inline constexpr std::string_view kMirror = "mirror";
+inline constexpr std::string_view kExactStop = "exact-stop";
+inline constexpr std::string_view kControlSmoothing = "control-smoothing";
+inline constexpr std::string_view kModalMacro = "modal-macro";
+inline constexpr std::string_view kLatheDiameter = "lathe-diameter";
+inline constexpr std::string_view kFeedUnknown = "feed-unknown";
+inline constexpr std::string_view kLoopBody =
+    "loop-body";  // between DO/WHILE and END, or a subprogram's body
+
+// --- a run that was tried and went back -----------------------------------------------------
+inline constexpr std::string_view kTooShort = "too-short";  // fewer motions than --min-points
+inline constexpr std::string_view kNoGain = "no-gain";      // not faster, smaller or nearer
+inline constexpr std::string_view kSlower = "slower";
+inline constexpr std::string_view kNotProved = "not-proved";
+inline constexpr std::string_view kNoFit = "no-fit";  // no curve in the band was found
+inline constexpr std::string_view kTargetCannot = "target-cannot";  // the target cannot say it
+inline constexpr std::string_view kMethodNone = "method-none";
+
+struct Explanation {
+  std::string_view id;
+  std::string_view text;    // what it means, one or two sentences
+  std::string_view advice;  // what a user can do about it
+  bool can_be_allowed;      // --allow ID lifts it
+};
+
+// Every id above, in this order.
+[[nodiscard]] std::span<const Explanation> explanations();
+
+}  // namespace batten::gcode::reason

@@ -1,0 +1,35 @@
+// Arcs for a curve: tangent-continuous chains of lines, circular arcs and helical arcs.
+// Method: docs/algorithms/arc_fit.md.
+#pragma once
+
+#include <optional>
+
+#include "geometry/bspline_curve.h"
+#include "geometry/path.h"
+
+namespace batten::geometry {
+
+struct ArcFitOptions {
+  double max_deviation = 0.005;     // mm, both ways, curve to arcs and arcs to curve; > 0
+  Vector3 axis = Vector3::UnitZ();  // the arcs' axis: normal of the plane that the target runs
+  bool helical = false;             // may arcs rise along the axis (linearly in the angle)
+  double min_radius = 0.1;          // mm; tighter places become short lines
+  double max_radius = 1e4;          // mm; flatter ones become lines
+  double max_sweep = 3.0;           // radians; below pi, so that no arc is ambiguous when rounded
+  double min_length = 0;            // mm; prefer a line to an arc shorter than this
+  // Places are rounded to multiples of this (mm) before the arcs are computed, so that the
+  // printed ends are the ends that the arcs were made for. 0: no rounding. The first and the
+  // last place are met exactly and are not rounded.
+  double grid = 0;
+};
+
+// Lines and arcs along `curve` between two parameters. The pieces chain exactly; where the
+// curve is smooth, neighbouring pieces share their tangent to within the rounding that
+// `grid` forces. Returns nothing when the curve leaves the planes across `axis` and
+// `helical` is false, or when its rise cannot be held by helices and lines.
+//
+// Each straight span of the curve that is longer than an arc could be held on stays a Line.
+[[nodiscard]] std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
+                                           const ArcFitOptions& options);
+
+}  // namespace batten::geometry

@@ -1,0 +1,49 @@
+// A program cut into runs, which may be rewritten, and the rest, which is copied.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "gcode/motion.h"
+#include "gcode/source_text.h"
+#include "geometry/path.h"
+#include "geometry/point.h"
+
+namespace batten::postproc {
+
+// From this vertex of the run on, the feed is this one. The first entry is vertex 0.
+struct FeedFrom {
+  std::size_t vertex = 0;
+  double feed = 0;  // mm/min
+};
+
+// A comment that stood on the block that leads to this vertex (1 ..).
+struct CommentAt {
+  std::size_t vertex = 0;
+  gcode::SourceSpan text;
+};
+
+// A chain of straight cutting moves with unchanged state that may be rewritten together.
+struct Run {
+  std::vector<geometry::Point3> points;  // start and the end of every motion, mm
+  std::vector<FeedFrom> feeds;
+  std::vector<CommentAt> comments;
+  int decimals = 3;  // most digits after the point that the run's coordinates were written with
+  std::uint32_t state = 0;  // Interpretation::states at the run's start
+  bool closed = false;      // first and last point are one place
+};
+
+// Copied byte for byte.
+struct Verbatim {
+  std::string_view reason;  // why (gcode::reason); for mixed blocks the first one
+};
+
+struct Section {
+  std::uint32_t first_block = 0;
+  std::uint32_t last_block = 0;  // inclusive
+  std::variant<Run, Verbatim> content;
+};
+
+}  // namespace batten::postproc

@@ -1,0 +1,66 @@
+// Does the new program do what the old one did, within the tolerance? Believes only text:
+// it takes two programs as they were read and knows nothing of how the new one was made.
+//
+// What is compared, in order: every block that acts (M, S, T words, coordinate systems,
+// dwells, opaque blocks ..) must stand in both, the same; rapids must have the same ends; and
+// between them each stretch of cutting moves at one feed must keep the tolerance, both ways
+// and in order (geometry/path_distance).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gcode/motion.h"
+#include "gcode/program.h"
+#include "geometry/path_distance.h"
+
+namespace batten::postproc {
+
+enum class BreachKind {
+  kDistance,   // a stretch leaves the tolerance
+  kNotProved,  // a stretch could neither be proved nor refuted
+  kFeed,       // another feed, or a feed that changes at another place
+  kRapid,      // a rapid with another start or end, lost or added
+  kEvent,      // an acting word or block lost, added, moved or changed
+  kState,      // plane, units, distance mode .. differ where a copied block depends on them
+};
+
+struct Breach {
+  BreachKind kind = BreachKind::kDistance;
+  std::string
+      id;  // stable: "distance", "not-proved", "feed-changed", "rapid-changed", "event-lost" ..
+  std::uint32_t old_line = 0;  // 0: none
+  std::uint32_t new_line = 0;
+  double deviation_mm = 0;  // kDistance: at least this much
+  std::string message;      // found and expected
+};
+
+// One stretch of cutting moves that was compared.
+struct Stretch {
+  std::uint32_t old_first_block = 0, old_last_block = 0;
+  std::uint32_t new_first_block = 0, new_last_block = 0;
+  geometry::PathComparison
+      comparison;  // verdict kProved at distance 0 where the motions are identical
+};
+
+struct Verification {
+  std::vector<Breach> breaches;      // empty: proved
+  std::vector<Stretch> stretches;    // in order; identical ones are not listed
+  double deviation_mm = 0;           // greatest proved bound
+  std::uint32_t deviation_line = 0;  // of the old program
+  std::size_t events_compared = 0;
+  [[nodiscard]] bool proved() const { return breaches.empty(); }
+};
+
+struct ReadProgram {
+  const gcode::Program* program = nullptr;
+  const gcode::Interpretation* interpretation = nullptr;
+};
+
+[[nodiscard]] Verification verify(const ReadProgram& before, const ReadProgram& after,
+                                  double tolerance_mm);
+
+}  // namespace batten::postproc
