@@ -1,8 +1,8 @@
 // What the user asks for, checked, with units.
 #pragma once
 
-#include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +16,25 @@ namespace batten::postproc {
 enum class Form { kAuto, kArcs, kLines };
 enum class Method { kBest, kFair, kNone };
 enum class Prefer { kTime, kAccuracy, kSize };
+
+// A value that the user chooses by name.
+template <typename Value>
+struct Choice {
+  Value value;
+  std::string_view name;
+  std::string_view text;  // one line for the user
+};
+
+[[nodiscard]] std::span<const Choice<Form>> forms();
+[[nodiscard]] std::span<const Choice<Method>> methods();
+[[nodiscard]] std::span<const Choice<Prefer>> preferences();
+
+[[nodiscard]] std::string_view name_of(Form form);
+[[nodiscard]] std::string_view name_of(Method method);
+[[nodiscard]] std::string_view name_of(Prefer prefer);
+[[nodiscard]] std::string_view name_of(gcode::Units units);  // "mm", "inch", "unknown"
+
+inline constexpr double kMillimetresPerInch = 25.4;
 
 // Decisions of `smooth`, without files and messages.
 struct SmoothOptions {
@@ -36,12 +55,28 @@ struct SmoothOptions {
 // Every problem of the options at once, as sentences; empty when they are fine.
 [[nodiscard]] std::vector<std::string> problems_of(const SmoothOptions& options);
 
-// How the user's tolerance is shared. smoothing + form + rounding <= tolerance.
+// How the user's tolerance is shared: smoothing + form + rounding <= tolerance.
+//
+//  1. The proof bounds a distance from above and may come out 2 % of the tolerance too large
+//     (geometry/path_distance.h), so 98 % of the tolerance are given out.
+//  2. `rounding` is what printing can move a place in space: half a step of the last decimal on
+//     each of three axes, sqrt(3) of it together. Where arcs may be written, their centre offsets
+//     are rounded too: half a step on two axes, sqrt(2) together, which moves no place of an arc
+//     that spans less than pi by more than itself.
+//  3. `form` is a third of the rest, `smoothing` the other two thirds: chords and arcs cost
+//     blocks by the square root of their share only, the curve gains by its share directly.
+//
+// When rounding alone uses up the tolerance, `smoothing` and `form` are 0: nothing can be
+// rewritten with these decimals.
 struct ToleranceShares {
   double smoothing = 0;  // mm, fair curve to old path
   double form = 0;       // mm, arcs or chords to fair curve
   double rounding = 0;   // mm, printed places to computed ones, in space
 };
-[[nodiscard]] ToleranceShares share_tolerance(const SmoothOptions& options, gcode::Units units);
+
+// `units` are those of the written program; unknown ones count as millimetres. `run_decimals`
+// is for runs that are written with more decimals than the target's usual ones.
+[[nodiscard]] ToleranceShares share_tolerance(const SmoothOptions& options, gcode::Units units,
+                                              int run_decimals = 0);
 
 }  // namespace batten::postproc

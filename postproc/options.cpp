@@ -1,0 +1,189 @@
+#include "postproc/options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "gcode/reason.h"
+
+namespace batten::postproc {
+
+namespace {
+
+// A tolerance above this (mm) is a slip of units: somebody meant micrometres.
+constexpr double kGreatestTolerance = 10;
+
+// More threads than this are a slip; no machine that runs a CAM has them.
+constexpr int kMostThreads = 1024;
+
+// path_distance.h: the proved bound is tight to within this part of the tolerance.
+constexpr double kProofLooseness = 0.02;
+
+// Part of the tolerance without rounding that arcs or chords may use; see options.h.
+constexpr double kFormPart = 1.0 / 3;
+
+constexpr std::array kForms = {
+    Choice<Form>{Form::kAuto, "auto", "arcs or lines, whichever serves --prefer on the machine"},
+    Choice<Form>{Form::kArcs, "arcs", "G02/G03 where a run lies in a plane of the target"},
+    Choice<Form>{Form::kLines, "lines", "G01 along the smoothed curve"},
+};
+
+constexpr std::array kMethods = {
+    Choice<Method>{Method::kBest, "best", "every method; the result that serves --prefer is taken"},
+    Choice<Method>{Method::kFair, "fair",
+                   "the path that was meant, as smooth as the machine needs it"},
+    Choice<Method>{Method::kNone, "none", "nothing is rewritten: checks and reports only"},
+};
+
+constexpr std::array kPreferences = {
+    Choice<Prefer>{Prefer::kTime, "time", "the least cutting time on the machine"},
+    Choice<Prefer>{Prefer::kAccuracy, "accuracy", "nearest to the path that was meant"},
+    Choice<Prefer>{Prefer::kSize, "size", "the fewest bytes inside the tolerance"},
+};
+
+template <typename Value, std::size_t count>
+std::string_view name_in(const std::array<Choice<Value>, count>& choices, Value value) {
+  for (const auto& choice : choices) {
+    if (choice.value == value) return choice.name;
+  }
+  return "unknown";
+}
+
+double step_of(int decimals, gcode::Units units) {
+  const double step = std::pow(10.0, -decimals);
+  return units == gcode::Units::kInch ? step * kMillimetresPerInch : step;
+}
+
+// See ToleranceShares, 2.
+double rounding_of(const SmoothOptions& options, gcode::Units units, int run_decimals) {
+  const int decimals = std::max(options.target->coordinates(units).decimals, run_decimals);
+  const double place = std::numbers::sqrt3 / 2 * step_of(decimals, units);
+  if (options.output == Form::kLines) return place;
+  const int offset_decimals = options.target->arc_offsets(units).decimals;
+  return place + std::numbers::sqrt2 / 2 * step_of(offset_decimals, units);
+}
+
+bool takes_any_arcs(const gcode::Dialect& target) {
+  return target.takes_arcs_in(gcode::Plane::kXY) || target.takes_arcs_in(gcode::Plane::kZX) ||
+         target.takes_arcs_in(gcode::Plane::kYZ);
+}
+
+void check_tolerance(const SmoothOptions& options, std::vector<std::string>& problems) {
+  const double tolerance = options.tolerance_mm;
+  if (!std::isfinite(tolerance) || tolerance <= 0) {
+    problems.push_back(
+        fmt::format("--tolerance: {:g} mm, expected a length above 0, such as 0.01", tolerance));
+    return;
+  }
+  if (tolerance > kGreatestTolerance) {
+    problems.push_back(
+        fmt::format("--tolerance: {:g} mm, expected {:g} mm or less (micrometres are written as "
+                    "0.010)",
+                    tolerance, kGreatestTolerance));
+    return;
+  }
+  if (options.target == nullptr) return;
+  // Units that are not known yet: millimetres are the finer ones of the two.
+  const gcode::Units units =
+      options.units == gcode::Units::kInch ? gcode::Units::kInch : gcode::Units::kMillimetre;
+  const ToleranceShares shares = share_tolerance(options, units);
+  if (shares.smoothing <= 0) {
+    problems.push_back(
+        fmt::format("--tolerance: {:g} mm, expected more than the {:.5f} mm that the decimals of "
+                    "target {} lose by rounding",
+                    tolerance, shares.rounding, options.target->name()));
+  }
+}
+
+void check_allowed(const SmoothOptions& options, std::vector<std::string>& problems) {
+  std::string possible;
+  for (const auto& explanation : gcode::reason::explanations()) {
+    if (!explanation.can_be_allowed) continue;
+    if (!possible.empty()) possible += ", ";
+    possible += explanation.id;
+  }
+  for (const std::string& id : options.allowed) {
+    const auto all = gcode::reason::explanations();
+    const auto found = std::ranges::find(all, id, &gcode::reason::Explanation::id);
+    if (found == all.end()) {
+      problems.push_back(fmt::format("--allow: there is no reason '{}', possible: {}", id,
+                                     possible.empty() ? "none" : possible));
+    } else if (!found->can_be_allowed) {
+      problems.push_back(
+          fmt::format("--allow: '{}' cannot be lifted, since no rewriting would be safe there; "
+                      "possible: {}",
+                      id, possible.empty() ? "none" : possible));
+    }
+  }
+}
+
+}  // namespace
+
+std::span<const Choice<Form>> forms() { return kForms; }
+std::span<const Choice<Method>> methods() { return kMethods; }
+std::span<const Choice<Prefer>> preferences() { return kPreferences; }
+
+std::string_view name_of(Form form) { return name_in(kForms, form); }
+std::string_view name_of(Method method) { return name_in(kMethods, method); }
+std::string_view name_of(Prefer prefer) { return name_in(kPreferences, prefer); }
+
+std::string_view name_of(gcode::Units units) {
+  switch (units) {
+    case gcode::Units::kMillimetre:
+      return "mm";
+    case gcode::Units::kInch:
+      return "inch";
+    case gcode::Units::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+std::vector<std::string> problems_of(const SmoothOptions& options) {
+  std::vector<std::string> problems;
+  if (options.target == nullptr) {
+    problems.emplace_back("--target: no target given; `batten targets` lists them");
+  }
+  if (options.machine == nullptr) {
+    problems.emplace_back("--machine: no machine given; `batten machines` lists them");
+  }
+  check_tolerance(options, problems);
+  if (options.target != nullptr && options.output == Form::kArcs &&
+      !takes_any_arcs(*options.target)) {
+    problems.push_back(fmt::format("--output: target {} takes no arcs; possible: auto, lines",
+                                   options.target->name()));
+  }
+  if (options.keep_corners_deg &&
+      !(*options.keep_corners_deg > 0 && *options.keep_corners_deg <= 180)) {
+    problems.push_back(
+        fmt::format("--keep-corners: {:g} degrees, expected more than 0 and at most 180",
+                    *options.keep_corners_deg));
+  }
+  check_allowed(options, problems);
+  if (options.min_motions < 2) {
+    problems.push_back(
+        fmt::format("min_motions: {}, expected 2 or more motions in a run", options.min_motions));
+  }
+  if (options.threads < 0 || options.threads > kMostThreads) {
+    problems.push_back(
+        fmt::format("--threads: {}, expected 0 (all cores) to {}", options.threads, kMostThreads));
+  }
+  return problems;
+}
+
+ToleranceShares share_tolerance(const SmoothOptions& options, gcode::Units units,
+                                int run_decimals) {
+  ToleranceShares shares;
+  shares.rounding = rounding_of(options, units, run_decimals);
+  const double rest = options.tolerance_mm * (1 - kProofLooseness) - shares.rounding;
+  if (rest > 0) {
+    shares.form = kFormPart * rest;
+    shares.smoothing = rest - shares.form;
+  }
+  return shares;
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,51 @@
+// Files are written whole or not at all.
+//
+// A file is written beside its target under a name of its own, flushed to the disk, and renamed
+// over the target. Whoever reads the target, and whenever the program is killed, finds the old
+// bytes or the new ones, never a part. Only a killed program (SIGKILL, power) leaves the other
+// file behind: `.NAME.PID.batten-part` in the same folder, safe to remove.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace batten::postproc {
+
+// "part.nc" -> "part.smooth.nc", "part" -> "part.smooth", ".nc" -> ".nc.smooth".
+[[nodiscard]] std::filesystem::path default_output_path(const std::filesystem::path& input);
+
+// One file, also under two names (links, "./"). False when either does not exist and the names
+// lead to different places.
+[[nodiscard]] bool same_file(const std::filesystem::path& one, const std::filesystem::path& other);
+
+enum class WriteStatus {
+  kWritten,
+  kExists,       // the target exists and may not be replaced; it stays as it was
+  kInterrupted,  // `stop` said so; the target stays as it was
+  kFailed,       // the system refused; the target stays as it was
+};
+
+struct WriteResult {
+  WriteStatus status = WriteStatus::kWritten;
+  std::string message;  // empty when written; else the file's name and the reason
+};
+
+struct WriteRequest {
+  std::filesystem::path target;  // links are followed: the file they lead to is replaced
+  std::string_view bytes;
+  bool replace_existing = false;
+  std::function<bool()> stop = {};  // asked between parts of the file; true: give up
+};
+
+// An existing target keeps its permissions (and its owner, where the system lets us). A target
+// that is no regular file (/dev/null, a pipe) is written in place.
+[[nodiscard]] WriteResult write_file(const WriteRequest& request);
+
+// Writes to an open descriptor, all or with an error. `name` stands in messages.
+[[nodiscard]] WriteResult write_to_descriptor(int descriptor, std::string_view name,
+                                              std::string_view bytes,
+                                              const std::function<bool()>& stop = {});
+
+}  // namespace batten::postproc

@@ -1,0 +1,89 @@
+#include "postproc/report/json_report.h"
+
+#include "postproc/report/json_values.h"
+#include "postproc/report/run_reasons.h"
+
+namespace batten::postproc {
+
+namespace {
+
+std::string_view name_of_form(OutputForm form) {
+  return form == OutputForm::kArcs ? "arcs" : "lines";
+}
+
+Json json_of(const SmoothOptions& options, bool strict) {
+  Json json = {{"target", options.target->name()},
+               {"machine", options.machine->name},
+               {"tolerance_mm", options.tolerance_mm}};
+  if (options.tolerance_inch) json["tolerance_inch"] = *options.tolerance_inch;
+  json["method"] = name_of(options.method);
+  json["output"] = name_of(options.output);
+  json["prefer"] = name_of(options.prefer);
+  json["units"] = name_of(options.units);
+  json["keep_corners_deg"] =
+      options.keep_corners_deg ? Json(*options.keep_corners_deg) : Json(nullptr);
+  json["allow"] = options.allowed;
+  json["strict"] = strict;
+  return json;
+}
+
+Json json_of(const RunReport& run) {
+  const bool rewritten = run.status == RunStatus::kRewritten;
+  return {{"first_line", run.first_line},
+          {"last_line", run.last_line},
+          {"points", run.points},
+          {"status", rewritten ? "rewritten" : "kept"},
+          {"reason", run.reason},
+          {"method", run.method},
+          {"form", rewritten ? name_of_form(run.form) : ""},
+          {"blocks_in", run.blocks_in},
+          {"blocks_out", run.blocks_out},
+          {"deviation_mm", run.deviation_mm},
+          {"proved", run.proved},
+          {"noise_mm", run.noise_mm},
+          {"max_curvature_before", run.max_curvature_before},
+          {"max_curvature_after", run.max_curvature_after},
+          {"time_before_s", run.time_before_s},
+          {"time_after_s", run.time_after_s}};
+}
+
+Json json_of(const ReasonCount& reason) {
+  return {{"id", reason.id},         {"runs", reason.runs},
+          {"blocks", reason.blocks}, {"text", reason.text},
+          {"advice", reason.advice}, {"can_be_allowed", reason.can_be_allowed}};
+}
+
+}  // namespace
+
+std::string json_report(const SmoothReport& report) {
+  const SmoothResult& result = report.result;
+  Json runs = Json::array();
+  for (const RunReport& run : result.runs) runs.push_back(json_of(run));
+  Json reasons = Json::array();
+  for (const ReasonCount& reason : count_reasons(result.runs)) reasons.push_back(json_of(reason));
+
+  const Json json = {{"batten", BATTEN_VERSION},
+                     {"options", json_of(report.options, report.strict)},
+                     {"input",
+                      {{"file", report.source.name()},
+                       {"bytes", report.source.text().size()},
+                       {"blocks", result.blocks_in},
+                       {"units", name_of(result.units)}}},
+                     {"output",
+                      {{"file", report.output_file},
+                       {"bytes", result.text.size()},
+                       {"blocks", result.blocks_out},
+                       {"target", report.options.target->name()}}},
+                     {"runs", std::move(runs)},
+                     {"reasons", std::move(reasons)},
+                     {"deviation_mm", result.deviation_mm},
+                     {"deviation_line", result.deviation_line},
+                     {"time_before_s", result.time_before_s},
+                     {"time_after_s", result.time_after_s},
+                     {"proved", result.proved},
+                     {"understood", result.understood},
+                     {"diagnostics", json_of(result.diagnostics, report.source)}};
+  return json_text(json);
+}
+
+}  // namespace batten::postproc

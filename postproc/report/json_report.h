@@ -1,0 +1,19 @@
+// The report of `batten smooth` for programs: one JSON object, its fields always in the same
+// order, the same bytes for the same input and options (threads do not show).
+//
+//   batten, options, input, output, runs[], reasons[], deviation_mm, deviation_line,
+//   time_before_s, time_after_s, proved, understood, diagnostics[]
+//
+// Bytes of names and messages that are not UTF-8 become U+FFFD; numbers that are not finite
+// become null.
+#pragma once
+
+#include <string>
+
+#include "postproc/report/smooth_report.h"
+
+namespace batten::postproc {
+
+[[nodiscard]] std::string json_report(const SmoothReport& report);
+
+}  // namespace batten::postproc

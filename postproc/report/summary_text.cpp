@@ -1,0 +1,126 @@
+#include "postproc/report/summary_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "postproc/report/run_reasons.h"
+
+namespace batten::postproc {
+
+namespace {
+
+// Reasons beyond these are rare ones; the JSON report has them all.
+constexpr std::size_t kMostReasons = 8;
+
+class Lines {
+ public:
+  void add(std::string_view title, const std::string& text) {
+    fmt::format_to(std::back_inserter(text_), "  {:<14}{}\n", title, text);
+  }
+  void add_more(const std::string& text) { add("", text); }
+  void add_head(const std::string& text) { text_ += text + "\n"; }
+  [[nodiscard]] std::string text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string plural(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string change(std::size_t before, std::size_t after) {
+  if (before == after) return fmt::format("{}, unchanged", before);
+  if (before == 0) return fmt::format("{} -> {}", before, after);
+  const double percent = 100 * (static_cast<double>(after) / static_cast<double>(before) - 1);
+  return fmt::format("{} -> {}  ({:+.0f} %)", before, after, percent);
+}
+
+std::string seconds(double time) {
+  if (time < 120) return fmt::format("{:.2f} s", time);
+  const auto whole = static_cast<long long>(std::llround(time));
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
+}
+
+std::string length(double mm, gcode::Units units) {
+  if (units != gcode::Units::kInch) return fmt::format("{:.4f} mm", mm);
+  return fmt::format("{:.4f} mm ({:.5f} in)", mm, mm / kMillimetresPerInch);
+}
+
+std::string times(const SmoothResult& result, const Machine& machine) {
+  if (result.time_before_s <= 0) return "no cutting moves";
+  std::string text = fmt::format("{} -> {}  (machine {}", seconds(result.time_before_s),
+                                 seconds(result.time_after_s), machine.name);
+  // Less than half a percent is not worth a claim: the model is not that good.
+  const double ratio = result.time_after_s > 0 ? result.time_before_s / result.time_after_s : 1;
+  if (ratio > 1.995) {
+    text += fmt::format(", {:.1f} times as fast", ratio);
+  } else if (std::abs(ratio - 1) > 0.005) {
+    text += fmt::format(", {:+.1f} %", 100 * (1 / ratio - 1));
+  }
+  return text + ")";
+}
+
+void add_runs(const SmoothResult& result, Lines& lines) {
+  const auto rewritten = static_cast<std::size_t>(
+      std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status));
+  lines.add("runs",
+            fmt::format("{} rewritten, {} kept", rewritten, result.runs.size() - rewritten));
+  const auto reasons = count_reasons(result.runs);
+  for (std::size_t i = 0; i < std::min(reasons.size(), kMostReasons); ++i) {
+    const ReasonCount& reason = reasons[i];
+    lines.add_more(fmt::format("kept: {}, {} ({}){}{}", plural(reason.runs, "run"),
+                               plural(reason.blocks, "block"), reason.id,
+                               reason.text.empty() ? "" : ": ", reason.text));
+    if (reason.can_be_allowed) {
+      lines.add_more(fmt::format("      --allow {} lifts this rule", reason.id));
+    }
+  }
+  if (reasons.size() > kMostReasons) {
+    lines.add_more(
+        fmt::format("kept: {} more, see --json", plural(reasons.size() - kMostReasons, "reason")));
+  }
+}
+
+void add_proof(const SmoothReport& report, bool rewritten, Lines& lines) {
+  const SmoothResult& result = report.result;
+  if (!rewritten) {
+    lines.add("deviation", "none: every block is as it was");
+    return;
+  }
+  lines.add(
+      "deviation",
+      fmt::format("at most {}, near line {}; allowed {}", length(result.deviation_mm, result.units),
+                  result.deviation_line, length(report.options.tolerance_mm, result.units)));
+  lines.add("proof", result.proved
+                         ? "the new text was read again: every rewritten run keeps the tolerance,"
+                         : "NOT PROVED: the new text could not be shown to keep the tolerance");
+  if (result.proved) {
+    lines.add_more("both ways and in order; everything else is the same, byte for byte");
+  }
+}
+
+}  // namespace
+
+std::string summary_text(const SmoothReport& report) {
+  const SmoothResult& result = report.result;
+  Lines lines;
+  lines.add_head(
+      fmt::format("{} -> {}, for {}", report.source.name(),
+                  report.output_file.empty() ? "nothing written (--dry-run)" : report.output_file,
+                  report.options.target->name()));
+  lines.add("blocks", change(result.blocks_in, result.blocks_out));
+  lines.add("bytes", change(report.source.text().size(), result.text.size()));
+  add_runs(result, lines);
+  lines.add("cutting time", times(result, *report.options.machine));
+  const bool rewritten =
+      std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status) > 0;
+  add_proof(report, rewritten, lines);
+  return lines.text();
+}
+
+}  // namespace batten::postproc

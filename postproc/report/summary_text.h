@@ -1,0 +1,21 @@
+// The report of `batten smooth` for people: some lines that a machinist understands.
+//
+//   part.nc -> part.smooth.nc, for linuxcnc
+//     blocks        1785 -> 158    (-91 %)
+//     bytes         41620 -> 4105  (-90 %)
+//     runs          1 rewritten, 2 kept
+//                   kept: 2 runs, 9 blocks: too-short: ...
+//     cutting time  3.56 s -> 2.09 s  (machine linuxcnc, 1.7 times as fast)
+//     deviation     at most 0.0098 mm, near line 120; allowed 0.0100 mm
+//     proof         the written text was read again: every rewritten run keeps the tolerance
+#pragma once
+
+#include <string>
+
+#include "postproc/report/smooth_report.h"
+
+namespace batten::postproc {
+
+[[nodiscard]] std::string summary_text(const SmoothReport& report);
+
+}  // namespace batten::postproc
