@@ -1,6 +1,7 @@
 // Numbers as controls read them: plain decimals, no exponent, no "-0".
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,5 +30,14 @@ struct ReadNumber {
   bool has_point = false;
 };
 [[nodiscard]] std::optional<ReadNumber> read_number(std::string_view text);
+
+// The number at the start of `text`, as far as it goes, and how many bytes it takes (blanks
+// after its last character are not its own). Nothing when `text` does not start with one, or
+// when it is greater than a double can be.
+struct ScannedNumber {
+  ReadNumber number;
+  std::size_t length = 0;
+};
+[[nodiscard]] std::optional<ScannedNumber> scan_number(std::string_view text);
 
 }  // namespace batten::gcode

@@ -1,0 +1,63 @@
+// Walks over the lines of a text. A line ends after LF, or after a CR that no LF follows.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace batten::gcode {
+
+struct LineBounds {
+  std::uint32_t begin = 0;
+  std::uint32_t text_end = 0;  // without the line end
+  std::uint32_t end = 0;       // after the line end: the next line's begin
+};
+
+// Linear in the text as a whole, whatever its line ends are.
+class LineCursor {
+ public:
+  explicit LineCursor(std::string_view text) : text_(text) {}
+
+  // The next line; nothing after the last one. An empty text has no line, and a line end at
+  // the end of the text starts no further line.
+  [[nodiscard]] std::optional<LineBounds> next() {
+    if (at_ >= text_.size()) {
+      return std::nullopt;
+    }
+    const std::size_t feed = find_from(at_, '\n', next_feed_);
+    const std::size_t carriage = find_from(at_, '\r', next_return_);
+    std::size_t text_end = text_.size();
+    std::size_t end = text_.size();
+    if (carriage < feed) {
+      text_end = carriage;
+      end = carriage + 1 == feed ? feed + 1 : carriage + 1;
+    } else if (feed < text_.size()) {
+      text_end = feed;
+      end = feed + 1;
+    }
+    const LineBounds line{static_cast<std::uint32_t>(at_), static_cast<std::uint32_t>(text_end),
+                          static_cast<std::uint32_t>(end)};
+    at_ = end;
+    return line;
+  }
+
+ private:
+  // The place of the next `c` at or after `from`. `known` keeps it from call to call: a text
+  // with one kind of line end is not searched for the other again for every line.
+  std::size_t find_from(std::size_t from, char c, std::size_t& known) const {
+    if (known < from || known == kNotSearched) {
+      const std::size_t found = text_.find(c, from);
+      known = found == std::string_view::npos ? text_.size() : found;
+    }
+    return known;
+  }
+
+  static constexpr std::size_t kNotSearched = std::string_view::npos;
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::size_t next_feed_ = kNotSearched;
+  std::size_t next_return_ = kNotSearched;
+};
+
+}  // namespace batten::gcode
