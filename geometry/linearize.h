@@ -20,7 +20,8 @@ struct ChordOptions {
 // samples. The chords of one call are balanced: the last one is not a short remainder.
 //
 // Where the curve has straight spans, a chord covers them whole.
-// Requires first() <= from < to <= last().
+// Requires degree 3 or less and first() <= from < to <= last(). A corner of the curve is
+// always a vertex.
 [[nodiscard]] std::vector<double> chord_vertices(const BsplineCurve& curve, double from, double to,
                                                  const ChordOptions& options);
 

@@ -1,0 +1,275 @@
+#include "geometry/linearize.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "geometry/curve_pieces.h"
+
+namespace batten::geometry {
+namespace {
+
+// How often a Bezier piece is halved to tighten the bound of its control points. Each
+// halving quarters what the bound has too much (a third of the deviation at first), so
+// seven leave 2e-5 of it.
+constexpr int kHalvings = 7;
+
+// A chord's end is searched to this part of its length: a thousand chords lose one tenth of
+// a chord.
+constexpr double kEndPrecision = 1e-4;
+
+// A chord this much longer than the greatest length (relative) has that length: rounding of
+// evenly divided lines.
+constexpr double kLengthNoise = 1e-9;
+
+// How often the limits are narrowed to let the last chord grow to the size of the others.
+constexpr int kBalancingRounds = 8;
+
+// The last chord is no remainder when it is this part of a full one.
+constexpr double kFullChord = 0.98;
+
+// Only so many chords at the end are narrowed: over these a remainder is spread thin, and
+// the cost of the rounds does not grow with the run.
+constexpr std::size_t kBalancedChords = 50;
+
+struct Limits {
+  double deviation;   // mm
+  double max_length;  // mm, infinite when there is none
+};
+
+Limits scaled(const Limits& limits, double chord_length) {
+  // A chord's deviation grows with the square of its length.
+  return {limits.deviation * chord_length * chord_length, limits.max_length * chord_length};
+}
+
+// De Casteljau at 1/2.
+std::pair<CubicBezier, CubicBezier> halves(const CubicBezier& piece) {
+  const auto& p = piece.control;
+  const Point3 first = (p[0] + p[1]) / 2;
+  const Point3 second = (p[1] + p[2]) / 2;
+  const Point3 third = (p[2] + p[3]) / 2;
+  const Point3 left = (first + second) / 2;
+  const Point3 right = (second + third) / 2;
+  const Point3 middle = (left + right) / 2;
+  return {CubicBezier{{p[0], first, left, middle}}, CubicBezier{{middle, right, third, p[3]}}};
+}
+
+// The proof that a stretch of curve stays near one chord: each control point is matched to
+// a place on the chord, never going back; curve and chord then are the same convex
+// combinations of near places, in order.
+class ChordProof {
+ public:
+  ChordProof(const Point3& start, const Point3& end, double deviation)
+      : start_(start), length_((end - start).norm()), allowed_(deviation * deviation) {
+    along_ = length_ > 0 ? Vector3((end - start) / length_) : Vector3(Vector3::Zero());
+  }
+
+  bool holds(const CubicBezier& piece) { return holds(piece, kHalvings); }
+
+ private:
+  bool holds(const CubicBezier& piece, int halvings) {
+    double at = reached_;
+    bool near = true;
+    for (const Point3& control : piece.control) {
+      at = std::max(at, std::clamp(along_.dot(control - start_), 0.0, length_));
+      if ((control - start_ - at * along_).squaredNorm() > allowed_) {
+        near = false;
+        break;
+      }
+    }
+    if (near) {
+      reached_ = at;
+      return true;
+    }
+    if (halvings == 0 || !near_end(piece.control[0]) || !near_end(piece.control[3])) return false;
+    const auto [left, right] = halves(piece);
+    return holds(left, halvings - 1) && holds(right, halvings - 1);
+  }
+
+  // A point of the curve itself: too far from the chord, and no halving will help.
+  bool near_end(const Point3& p) const {
+    const double at = std::clamp(along_.dot(p - start_), 0.0, length_);
+    return (p - start_ - at * along_).squaredNorm() <= allowed_;
+  }
+
+  Point3 start_;
+  Vector3 along_;
+  double length_;
+  double allowed_;
+  double reached_ = 0;  // mm along the chord, matched so far
+};
+
+bool chord_holds(const CurvePieces& pieces, double from, double to, const Limits& limits) {
+  const Point3 start = pieces.point_at(from);
+  const Point3 end = pieces.point_at(to);
+  if ((end - start).norm() > limits.max_length * (1 + kLengthNoise)) return false;
+  ChordProof proof(start, end, limits.deviation);
+  for (std::size_t i = pieces.index_of(from); i < pieces.size(); ++i) {
+    if (pieces.breaks()[i] >= to) break;
+    if (!proof.holds(pieces.part(i, from, to))) return false;
+  }
+  return true;
+}
+
+// Where the distance from `from` reaches `length`, between `good` (nearer) and `bad`.
+double end_at_length(const CurvePieces& pieces, double from, double good, double bad,
+                     double length) {
+  const Point3 start = pieces.point_at(from);
+  for (double middle = (good + bad) / 2; middle > good && middle < bad; middle = (good + bad) / 2) {
+    ((pieces.point_at(middle) - start).norm() <= length ? good : bad) = middle;
+  }
+  return good;
+}
+
+// The farthest end of a chord from `from` on, at most `limit`: doubling the number of
+// pieces under it, then halving the doubt.
+double farthest_end(const CurvePieces& pieces, double from, double limit, const Limits& limits) {
+  const auto& breaks = pieces.breaks();
+  const std::size_t first = pieces.index_of(from);
+  double good = from;
+  double bad = limit;
+  for (std::size_t step = 1;; step *= 2) {
+    const std::size_t at = std::min(first + step, breaks.size() - 1);
+    const double end = std::min(breaks[at], limit);
+    if (!chord_holds(pieces, from, end, limits)) {
+      bad = end;
+      break;
+    }
+    good = end;
+    if (end >= limit) return limit;
+  }
+  while (bad - good > kEndPrecision * (bad - from)) {
+    const double middle = (good + bad) / 2;
+    if (middle <= good || middle >= bad) break;  // the doubles are used up
+    (chord_holds(pieces, from, middle, limits) ? good : bad) = middle;
+  }
+  if (std::isfinite(limits.max_length)) {  // lengths divide evenly: meet them exactly
+    const double end = end_at_length(pieces, from, good, bad, limits.max_length);
+    if (end > good && chord_holds(pieces, from, end, limits)) good = end;
+  }
+  return good > from ? good : bad;  // a chord so short that rounding hides its proof
+}
+
+// Vertices after `from` up to `to`, greedily: no sequence of such chords gets farther with
+// as many, since a chord from farther on reaches farther. Stops after `at_most` chords.
+std::vector<double> greedy_ends(const CurvePieces& pieces, double from, double to,
+                                const Limits& limits, std::size_t at_most) {
+  std::vector<double> ends;
+  for (double at = from; at < to && ends.size() < at_most;) {
+    at = farthest_end(pieces, at, to, limits);
+    ends.push_back(at);
+  }
+  return ends;
+}
+
+// How much of a full chord the last one is, 0..1, by its deviation or its length.
+double part_of_full_chord(const CurvePieces& pieces, double from, double to, const Limits& limits) {
+  constexpr int kSamples = 16;
+  const Point3 start = pieces.point_at(from);
+  const Vector3 chord = pieces.point_at(to) - start;
+  const double length = chord.norm();
+  double away = 0;
+  for (int i = 1; i < kSamples; ++i) {
+    const Vector3 to_curve = pieces.point_at(from + (to - from) * i / kSamples) - start;
+    const double along = length > 0 ? to_curve.dot(chord) / length : 0;
+    away = std::max(away, to_curve.squaredNorm() - along * along);
+  }
+  const double by_deviation = std::sqrt(std::sqrt(std::max(away, 0.0)) / limits.deviation);
+  return std::min(std::max(by_deviation, length / limits.max_length), 1.0);
+}
+
+// As many chords as `ends` has, but with limits narrowed until the last is no remainder.
+std::vector<double> balanced(const CurvePieces& pieces, double from, std::vector<double> ends,
+                             const Limits& limits) {
+  const double to = ends.back();
+  const auto count = static_cast<double>(ends.size());
+  double good = 1;   // chord lengths relative to the greedy ones
+  double small = 0;  // too small: needs more chords
+  for (int round = 0; round < kBalancingRounds && ends.size() > 1; ++round) {
+    const double part = part_of_full_chord(pieces, ends[ends.size() - 2], to, scaled(limits, good));
+    if (part >= kFullChord) break;
+    const double wanted = good * (count - 1 + part) / count;
+    const double next = std::max(wanted, (good + small) / 2);
+    std::vector<double> narrower =
+        greedy_ends(pieces, from, to, scaled(limits, next), ends.size() + 1);
+    if (narrower.size() > ends.size()) {
+      small = next;
+    } else {
+      ends = std::move(narrower);
+      good = next;
+    }
+  }
+  return ends;
+}
+
+std::vector<double> balanced_ends(const CurvePieces& pieces, double from, double to,
+                                  const Limits& limits) {
+  std::vector<double> ends =
+      greedy_ends(pieces, from, to, limits, std::numeric_limits<std::size_t>::max());
+  const std::size_t kept = ends.size() > kBalancedChords ? ends.size() - kBalancedChords : 0;
+  const double start = kept > 0 ? ends[kept - 1] : from;
+  const auto cut = ends.begin() + static_cast<std::ptrdiff_t>(kept);
+  const std::vector<double> tail =
+      balanced(pieces, start, std::vector<double>(cut, ends.end()), limits);
+  std::copy(tail.begin(), tail.end(), cut);
+  return ends;
+}
+
+// Corners, and the ends of straight runs that are about as long as the chords over them:
+// shorter ones, such as the spans of a finely cut bend, are left to the chords.
+std::vector<double> kept_places(const CurvePieces& pieces, const ChordOptions& options,
+                                const Limits& limits) {
+  std::vector<double> kept = pieces.corners();
+  const std::vector<StraightRun> runs = pieces.straight_runs();
+  if (!runs.empty()) {
+    const std::vector<double> ends = greedy_ends(pieces, pieces.first(), pieces.last(), limits,
+                                                 std::numeric_limits<std::size_t>::max());
+    std::size_t chord = 0;
+    const auto chord_length = [&](std::size_t i) {
+      const double start = i == 0 ? pieces.first() : ends[i - 1];
+      return (pieces.point_at(ends[i]) - pieces.point_at(start)).norm();
+    };
+    for (const StraightRun& run : runs) {
+      const double length = (pieces.point_at(run.to) - pieces.point_at(run.from)).norm();
+      while (ends[chord] <= run.from) ++chord;
+      double longest = chord_length(chord);
+      for (std::size_t i = chord + 1; i < ends.size() && ends[i - 1] < run.to; ++i) {
+        longest = std::max(longest, chord_length(i));
+      }
+      if (2 * length < longest || length < options.min_length) continue;
+      kept.push_back(run.from);
+      kept.push_back(run.to);
+    }
+  }
+  kept.push_back(pieces.last());
+  std::sort(kept.begin(), kept.end());
+  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+  return kept;
+}
+
+}  // namespace
+
+std::vector<double> chord_vertices(const BsplineCurve& curve, double from, double to,
+                                   const ChordOptions& options) {
+  if (!(options.max_deviation > 0)) {
+    throw std::invalid_argument("chord_vertices: max_deviation " +
+                                std::to_string(options.max_deviation) + ", expected > 0");
+  }
+  const CurvePieces pieces(curve, from, to);
+  const Limits limits{options.max_deviation, options.max_length > 0
+                                                 ? options.max_length
+                                                 : std::numeric_limits<double>::infinity()};
+  std::vector<double> vertices = {from};
+  for (const double end : kept_places(pieces, options, limits)) {
+    if (end <= vertices.back()) continue;
+    const std::vector<double> ends = balanced_ends(pieces, vertices.back(), end, limits);
+    vertices.insert(vertices.end(), ends.begin(), ends.end());
+  }
+  vertices.back() = to;
+  return vertices;
+}
+
+}  // namespace batten::geometry
