@@ -26,7 +26,9 @@ struct Machine {
   double block_period = 0.001;       // s: no block is passed faster
   int look_ahead = 2000;             // blocks
   double junction_deviation = 0.01;  // mm (grbl's $11)
-  double blend_tolerance = 0.01;     // mm (LinuxCNC's G64 P when the program sets none)
+  double arc_tolerance = 0.002;      // mm: arcs become chords this near to them (grbl's $12)
+  double blend_tolerance = 0.01;     // mm (LinuxCNC's G64 P when the program sets none; 0: no P)
+  double naive_cam_tolerance = 0;    // mm (LinuxCNC's G64 Q, which is P where only P is given)
 };
 
 [[nodiscard]] std::span<const Machine> built_in_machines();

@@ -1,0 +1,228 @@
+// LinuxCNC 2.9: naive CAM, blend arcs, tangent joints, trapezoids per move.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "geometry/numeric.h"
+#include "postproc/machine/controller_models.h"
+#include "postproc/machine/linuxcnc_blend.h"
+#include "postproc/machine/linuxcnc_naive_cam.h"
+#include "postproc/machine/linuxcnc_segment.h"
+#include "postproc/machine/velocity_profile.h"
+
+namespace batten::postproc {
+namespace linuxcnc {
+namespace {
+
+using gcode::PathMode;
+
+// A line that a corner leaves shorter than this many periods joins the blend arc.
+constexpr double kGapPeriods = 4;
+
+// Moves shorter than this (s) run at one acceleration ([TRAJ]ARC_BLEND_RAMP_FREQ, 100 Hz).
+constexpr double kRampTime = 0.01;
+
+// A move that stops ends with a whole period: half a period is lost on average.
+constexpr double kStopPeriods = 0.5;
+
+// A program's Bezier pieces run as this many arcs.
+constexpr int kArcsPerBezier = 32;
+
+// Moves that turn back by more than 178 degrees stop.
+constexpr double kSharpTurn = 2.0 / 180 * std::numbers::pi;
+
+Joint joint_of(PathMode path) {
+  switch (path) {
+    case PathMode::kExactStop:
+      return Joint::kStop;
+    case PathMode::kExactPath:
+      return Joint::kExactPath;
+    case PathMode::kBlending:
+    case PathMode::kUnknown:
+      break;
+  }
+  return Joint::kParabolic;
+}
+
+class Queue {
+ public:
+  Queue(const Machine& machine, PathMode path) : machine_(machine), joint_(joint_of(path)) {}
+
+  void add(const TimedPiece& timed) {
+    Segment next = segment_of(timed, machine_, joint_);
+    if (!moves_.empty()) {
+      connect(next);
+      finish_segment(moves_.back(), machine_.block_period);
+    }
+    moves_.push_back(next);
+  }
+
+  [[nodiscard]] double time(ChainEnd end) {
+    if (moves_.empty()) return 0;
+    if (end == ChainEnd::kStop || joint_ != Joint::kParabolic) moves_.back().end = Joint::kStop;
+    ProfileRules rules;
+    rules.look_ahead = machine_.look_ahead;
+    rules.ramp_time = kRampTime;
+    rules.stop_time = kStopPeriods * machine_.block_period;
+    std::vector<Stretch> chain;
+    chain.reserve(moves_.size());
+    double at_start = 0;  // mm of the move that the overlap with the one before takes
+    for (std::size_t i = 0; i < moves_.size(); ++i) {
+      const bool overlaps = i + 1 < moves_.size() && moves_[i].end == Joint::kParabolic;
+      const double at_end = overlaps ? overlap(moves_[i], moves_[i + 1]) : 0;
+      Stretch own = stretch_of(moves_[i]);
+      own.length = std::max(own.length - at_start - at_end, geometry::kSamePlace);
+      chain.push_back(own);
+      if (overlaps) {
+        Stretch both = own;
+        both.length = 2 * at_end;
+        both.max_velocity = own.exit_velocity;
+        chain.push_back(both);
+      }
+      at_start = at_end;
+    }
+    return profile_time(chain, rules);
+  }
+
+ private:
+  // While one move slows down to rest and the next speeds up from rest, the path goes on at
+  // an even speed: neither move can go faster over this length (mm) next to the joint.
+  static double overlap(const Segment& before, const Segment& after) {
+    const double velocity = before.kink_velocity;
+    const double slower = std::min(tangential_acceleration(before), tangential_acceleration(after));
+    return std::min({velocity * velocity / slower / 2, before.length / 2, after.length / 2});
+  }
+
+  static Stretch stretch_of(const Segment& s) {
+    Stretch stretch;
+    stretch.length = s.length;
+    stretch.max_velocity = target_velocity(s);
+    stretch.acceleration = tangential_acceleration(s);
+    const bool stops = s.end == Joint::kStop || s.end == Joint::kExactPath;
+    stretch.exit_velocity = stops ? 0 : s.kink_velocity;
+    stretch.runs_on = s.end == Joint::kTangent;
+    return stretch;
+  }
+
+  void connect(Segment& next) {
+    Segment& last = moves_.back();
+    if (last.end == Joint::kStop) return;
+    if ((last.end_direction + next.start_direction).norm() < kSharpTurn) {
+      last.end = Joint::kStop;
+      return;
+    }
+    const double kink = kink_at_full_speed(last, next, machine_);
+    const double velocity = std::min(target_velocity(last), target_velocity(next));
+    if (kink < kKinkShare) {
+      set_kink(last, next, velocity, kink);
+      last.end = Joint::kTangent;
+      return;
+    }
+    set_kink(last, next, velocity * kKinkShare / kink, kKinkShare);
+    if (last.end == Joint::kParabolic) blend(next);
+  }
+
+  static void set_kink(Segment& last, Segment& next, double velocity, double share) {
+    last.kink_velocity = velocity;
+    last.kink_share_at_end = share;
+    next.kink_share_at_start = share;
+  }
+
+  static void clear_kink(Segment& last, Segment& next) { set_kink(last, next, kNoLimit, 0); }
+
+  // Of a blend arc, running over the kink slowly, and a parabolic blend, the control takes
+  // the one that passes fastest; a parabolic blend counts half, since it halves the
+  // acceleration on both sides.
+  void blend(Segment& next) {
+    Segment& last = moves_.back();
+    const double tolerance = machine_.blend_tolerance;
+    const double parabolic = parabolic_velocity(last, next, tolerance);
+    const double half_turn_cos =
+        std::sqrt(std::max(0.0, (1 + last.end_direction.dot(next.start_direction)) / 2));
+    const double parabolic_worth = half_turn_cos * parabolic / 2;
+    const auto arc = blend_arc(last, next, machine_, tolerance);
+    double arc_worth = 0;
+    if (arc) {
+      const double left = takes_rest_of_last(*arc) ? last.length - arc->trim : 0;
+      arc_worth = std::min(arc->velocity, (arc->radius * arc->turn + left) / machine_.block_period);
+    }
+    if (arc_worth > std::max(parabolic_worth, last.kink_velocity)) {
+      insert(*arc, next);
+    } else if (last.kink_velocity > parabolic_worth) {
+      last.end = Joint::kTangent;
+    } else {
+      clear_kink(last, next);
+      last.kink_velocity = parabolic;
+      next.after_parabolic = true;
+    }
+  }
+
+  // Whether what the arc leaves of the last line is so short that the arc takes that too.
+  [[nodiscard]] bool takes_rest_of_last(const BlendArc& arc) const {
+    const Segment& last = moves_.back();
+    if (last.shape != Shape::kLine || last.after_parabolic) return false;
+    return last.length - arc.trim < kGapPeriods * machine_.block_period * arc.velocity;
+  }
+
+  void insert(const BlendArc& arc, Segment& next) {
+    Segment& last = moves_.back();
+    clear_kink(last, next);
+    const bool takes_rest = takes_rest_of_last(arc);
+    Segment bend;
+    bend.shape = Shape::kBlendArc;
+    bend.length = arc.radius * arc.turn + (takes_rest ? std::max(0.0, last.length - arc.trim) : 0);
+    bend.nominal_length = bend.length;
+    bend.feed = std::max(last.feed, next.feed);
+    bend.max_velocity = arc.velocity;
+    bend.acceleration = arc.acceleration;
+    bend.end = Joint::kTangent;
+    shorten(next, arc.trim);
+    if (takes_rest) {
+      moves_.pop_back();
+    } else {
+      shorten(last, arc.trim);
+      last.end = Joint::kTangent;
+      finish_segment(last, machine_.block_period);
+    }
+    finish_segment(bend, machine_.block_period);
+    moves_.push_back(bend);
+  }
+
+  static void shorten(Segment& s, double by) {
+    // The corners take half of a line and two thirds and one third of an arc at most;
+    // rounding must not leave less than nothing.
+    const double left = std::max(s.length - by, geometry::kSamePlace);
+    s.sweep *= left / s.length;
+    s.length = left;
+  }
+
+  const Machine& machine_;
+  Joint joint_;
+  std::vector<Segment> moves_;
+};
+
+}  // namespace
+}  // namespace linuxcnc
+
+double linuxcnc_time(std::span<const TimedPiece> pieces, const Machine& machine,
+                     gcode::PathMode path, ChainEnd end) {
+  const bool blends = path == gcode::PathMode::kBlending || path == gcode::PathMode::kUnknown;
+  const std::vector<TimedPiece> joined =
+      linuxcnc::join_within(pieces, blends ? machine.naive_cam_tolerance : 0);
+  linuxcnc::Queue queue(machine, path);
+  for (const TimedPiece& timed : joined) {
+    if (!std::holds_alternative<geometry::CubicBezier>(timed.piece)) {
+      queue.add(timed);
+      continue;
+    }
+    for (int i = 0; i < linuxcnc::kArcsPerBezier; ++i) {
+      const auto part = geometry::sub_piece(timed.piece, double(i) / linuxcnc::kArcsPerBezier,
+                                            double(i + 1) / linuxcnc::kArcsPerBezier);
+      if (geometry::length_of(part) > 0) queue.add({part, timed.feed});
+    }
+  }
+  return queue.time(end);
+}
+
+}  // namespace batten::postproc

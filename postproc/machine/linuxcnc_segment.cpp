@@ -1,0 +1,112 @@
+#include "postproc/machine/linuxcnc_segment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "postproc/machine/junction_speed.h"
+
+namespace batten::postproc::linuxcnc {
+namespace {
+
+using geometry::Vector3;
+
+// Curvature below this (1/mm) bends a metre of path by less than 1e-4 mm: a line.
+constexpr double kStraight = 1e-9;
+
+double greatest_curvature(const geometry::PathPiece& piece) {
+  double most = 0;
+  for (const double t : {0.0, 0.5, 1.0}) most = std::max(most, geometry::curvature_at(piece, t));
+  return most;
+}
+
+// The speed of the peak when a move of this length starts and ends at rest.
+double triangle_velocity(double acceleration, double length) {
+  return std::sqrt(acceleration * length);
+}
+
+}  // namespace
+
+Segment segment_of(const TimedPiece& timed, const Machine& machine, Joint end) {
+  Segment s;
+  s.length = s.nominal_length = geometry::length_of(timed.piece);
+  s.feed = timed.feed / 60;
+  s.start_direction = geometry::direction_at(timed.piece, 0);
+  s.end_direction = geometry::direction_at(timed.piece, 1);
+  s.end = end;
+  const double curvature = greatest_curvature(timed.piece);
+  if (curvature <= kStraight) {
+    s.max_velocity = limit_along(s.start_direction, machine.max_velocity);
+    s.acceleration = limit_along(s.start_direction, machine.max_acceleration);
+  } else {
+    s.shape = Shape::kArc;
+    s.radius = 1 / curvature;
+    s.acceleration = machine.max_acceleration;
+    s.max_velocity =
+        std::min(machine.max_velocity, std::sqrt(kNormalShare * s.acceleration * s.radius));
+    s.sweep = s.length / s.radius;
+    if (const auto* arc = std::get_if<geometry::Arc>(&timed.piece)) {
+      s.axis = arc->sweep > 0 ? arc->axis : Vector3(-arc->axis);
+      s.sweep = std::abs(arc->sweep);
+    }
+  }
+  // The path as a whole has the limit of one axis too ([TRAJ]MAX_LINEAR_VELOCITY).
+  s.max_velocity =
+      std::min({s.max_velocity, machine.max_velocity, s.length / machine.block_period});
+  return s;
+}
+
+double usable_acceleration(const Segment& s) {
+  const double kink = std::max(s.kink_share_at_start, s.kink_share_at_end);
+  const bool shared = s.after_parabolic || s.end == Joint::kParabolic;
+  return s.acceleration * (1 - kink) * (shared ? 0.5 : 1.0);
+}
+
+double tangential_acceleration(const Segment& s) {
+  return usable_acceleration(s) * (s.shape == Shape::kLine ? 1.0 : s.tangential_share);
+}
+
+double target_velocity(const Segment& s) { return std::min(s.feed, s.max_velocity); }
+
+void finish_segment(Segment& s, double period) {
+  // The optimiser leaves 2 % for the rounding of whole periods.
+  constexpr double kLeastPeriods = 1.02;
+  s.max_velocity = std::min(s.max_velocity, s.length / (period * kLeastPeriods));
+  if (s.shape != Shape::kArc) return;
+  const double usable = usable_acceleration(s);
+  const double steepest = std::sqrt(kNormalShare * usable * s.radius);
+  if (s.max_velocity >= steepest) {
+    s.max_velocity = steepest;
+    s.tangential_share = kTangentialShare;
+  } else {
+    const double normal = s.max_velocity * s.max_velocity / s.radius / usable;
+    s.tangential_share = std::sqrt(1 - normal * normal);
+  }
+}
+
+double kink_at_full_speed(const Segment& before, const Segment& after, const Machine& machine) {
+  const double velocity = std::min(target_velocity(before), target_velocity(after));
+  const double step = velocity / machine.block_period + after.acceleration;
+  const Vector3 turn = after.start_direction - before.end_direction;
+  const double share = step * turn.cwiseAbs().maxCoeff() / machine.max_acceleration;
+  const bool bend = before.shape == Shape::kArc || after.shape == Shape::kArc;
+  return bend ? share / kTangentialShare : share;
+}
+
+double parabolic_velocity(const Segment& before, const Segment& after, double tolerance) {
+  const double a1 = tangential_acceleration(before);
+  const double a2 = tangential_acceleration(after);
+  const double v1 = std::min(triangle_velocity(a1, before.length / 2), target_velocity(before));
+  const double v2 = std::min(triangle_velocity(a2, after.length / 2), target_velocity(after));
+  const double longest = std::min(before.length / v1, after.length / v2);
+  const double blend_time = std::min(longest, std::max(v1 / a1, v2 / a2));
+  double velocity = std::min({v1, blend_time * a1, v2, blend_time * a2});
+  // Half the angle between the moves: 90 degrees where the path runs straight on.
+  const double cos_half =
+      std::sqrt(std::max(0.0, (1 - before.end_direction.dot(after.start_direction)) / 2));
+  if (tolerance > 0 && cos_half > 0) {
+    velocity = std::min(velocity, 2 * std::sqrt(a1 * tolerance / cos_half));
+  }
+  return velocity;
+}
+
+}  // namespace batten::postproc::linuxcnc
