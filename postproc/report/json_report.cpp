@@ -82,7 +82,7 @@ std::string json_report(const SmoothReport& report) {
                      {"time_after_s", result.time_after_s},
                      {"proved", result.proved},
                      {"understood", result.understood},
-                     {"diagnostics", json_of(result.diagnostics, report.source)}};
+                     {"diagnostics", diagnostics_json(result.diagnostics, report.source)}};
   return json_text(json);
 }
 

@@ -20,7 +20,7 @@ std::string_view name_of(gcode::Severity severity) {
 
 }  // namespace
 
-Json json_of(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source) {
+Json diagnostics_json(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source) {
   Json list = Json::array();
   for (const gcode::Diagnostic& diagnostic : diagnostics) {
     const gcode::SourcePlace place = source.place_of(diagnostic.where.begin);

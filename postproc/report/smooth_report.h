@@ -13,7 +13,7 @@ struct SmoothReport {
   const gcode::SourceText& source;  // its name stands for the input file
   const SmoothOptions& options;
   const SmoothResult& result;
-  std::string output_file;  // as the user knows it; empty: nothing is written (--dry-run)
+  std::string output_file;  // as the user knows it; empty: nothing is written
   bool strict = false;
 };
 

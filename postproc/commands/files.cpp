@@ -1,0 +1,86 @@
+#include "postproc/commands/files.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <limits>
+#include <system_error>
+
+#include "postproc/exit_code.h"
+#include "postproc/interrupt.h"
+#include "postproc/output_file.h"
+
+namespace batten::postproc {
+
+namespace {
+
+// More notes and warnings than this hide what matters; the JSON report has them all.
+constexpr std::size_t kMostRemarks = 20;
+
+// Positions in a source are 32 bits wide (gcode/source_text.h).
+constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
+
+std::optional<gcode::SourceText> read_standard_input() {
+  std::string text;
+  std::array<char, 1 << 16> part;
+  for (;;) {
+    const ssize_t count = ::read(STDIN_FILENO, part.data(), part.size());
+    if (count == 0) return gcode::SourceText("<stdin>", std::move(text));
+    if (count < 0 && errno == EINTR && !interrupted()) continue;
+    if (count < 0) {
+      say("<stdin>: cannot be read: " + std::generic_category().message(errno));
+      return std::nullopt;
+    }
+    text.append(part.data(), static_cast<std::size_t>(count));
+    if (text.size() > kMostBytes) {
+      say(fmt::format("<stdin>: more than {} bytes", kMostBytes));
+      return std::nullopt;
+    }
+  }
+}
+
+int exit_code_of(const WriteResult& result) {
+  if (result.status == WriteStatus::kWritten) return static_cast<int>(ExitCode::kDone);
+  say(result.message);
+  if (result.status == WriteStatus::kInterrupted) return interrupt_exit_code();
+  return static_cast<int>(ExitCode::kFileError);
+}
+
+}  // namespace
+
+std::optional<gcode::SourceText> read_program(const std::string& name) {
+  if (name == "-") return read_standard_input();
+  std::string error;
+  auto source = gcode::SourceText::map_file(name, error);
+  if (!source) say(error);
+  return source;
+}
+
+int write_result(const std::string& name, std::string_view bytes, bool replace_existing) {
+  if (name == "-") {
+    return exit_code_of(write_to_descriptor(STDOUT_FILENO, "<stdout>", bytes, interrupted));
+  }
+  return exit_code_of(write_file(
+      {.target = name, .bytes = bytes, .replace_existing = replace_existing, .stop = interrupted}));
+}
+
+void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source) {
+  std::size_t remarks = 0;
+  for (const gcode::Diagnostic& diagnostic : diagnostics) {
+    const bool remark = diagnostic.severity != gcode::Severity::kError;
+    if (remark && ++remarks > kMostRemarks) continue;
+    std::fputs((gcode::to_text(diagnostic, source) + "\n").c_str(), stderr);
+  }
+  if (remarks > kMostRemarks) {
+    say(fmt::format("{} more notes and warnings, see --json", remarks - kMostRemarks));
+  }
+}
+
+void say(std::string_view message) {
+  std::fputs(fmt::format("batten: {}\n", message).c_str(), stderr);
+}
+
+}  // namespace batten::postproc

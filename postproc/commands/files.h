@@ -1,0 +1,28 @@
+// Reading and writing as all commands do it: "-" for the standard streams, messages on standard
+// error.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "gcode/diagnostic.h"
+#include "gcode/source_text.h"
+
+namespace batten::postproc {
+
+// Reads a file, or standard input to its end. On failure says why and returns nothing.
+[[nodiscard]] std::optional<gcode::SourceText> read_program(const std::string& name);
+
+// 0 when written; else says why and returns the exit code.
+[[nodiscard]] int write_result(const std::string& name, std::string_view bytes,
+                               bool replace_existing);
+
+// file:line:column lines on standard error: errors all, notes and warnings up to a readable
+// number.
+void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source);
+
+// "batten: message" on standard error.
+void say(std::string_view message);
+
+}  // namespace batten::postproc

@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <map>
+
+#include "gcode/interpreter.h"
+#include "gcode/parser.h"
+#include "gcode/reason.h"
+#include "postproc/commands/commands.h"
+#include "postproc/commands/files.h"
+#include "postproc/exit_code.h"
+#include "postproc/inspect.h"
+#include "postproc/interrupt.h"
+#include "postproc/report/json_values.h"
+#include "postproc/run_grouping.h"
+
+namespace batten::postproc {
+
+namespace {
+
+// Rows that still are a readable table; --json has all of them.
+constexpr std::size_t kMostRows = 60;
+
+struct KeptTotal {
+  std::size_t sections = 0;
+  std::size_t blocks = 0;
+  std::size_t cutting_moves = 0;
+};
+
+std::string_view text_of(std::string_view reason) {
+  for (const auto& explanation : gcode::reason::explanations()) {
+    if (explanation.id == reason) return explanation.text;
+  }
+  return "";
+}
+
+std::string runs_table(const std::vector<InspectedSection>& sections) {
+  std::string text =
+      "     lines          moves   shortest   median  longest mm  greatest turn     feed mm/min\n";
+  std::size_t rows = 0;
+  std::size_t runs = 0;
+  for (const InspectedSection& section : sections) {
+    if (!section.reason.empty()) continue;
+    ++runs;
+    if (++rows > kMostRows) continue;
+    const SegmentStatistics& segments = section.segments;
+    const std::string feed =
+        section.least_feed == section.greatest_feed
+            ? fmt::format("{:g}", section.greatest_feed)
+            : fmt::format("{:g}-{:g}", section.least_feed, section.greatest_feed);
+    text += fmt::format("{:>8}-{:<8} {:>8} {:>10.4f} {:>8.4f} {:>10.4f}  {:>6.1f} deg{:<12} {}{}\n",
+                        section.first_line, section.last_line, segments.count, segments.shortest,
+                        segments.median, segments.longest, segments.greatest_turn_deg,
+                        segments.turn_line > 0 ? fmt::format(" (line {})", segments.turn_line) : "",
+                        feed, section.closed ? "  closed" : "");
+  }
+  if (runs == 0) return "no run that may be rewritten\n";
+  if (runs > kMostRows) text += fmt::format("     {} more runs, see --json\n", runs - kMostRows);
+  return fmt::format("{} that may be rewritten:\n",
+                     runs == 1 ? "1 run" : fmt::format("{} runs", runs)) +
+         text;
+}
+
+std::map<std::string_view, KeptTotal> kept_totals(const std::vector<InspectedSection>& sections) {
+  std::map<std::string_view, KeptTotal> totals;
+  for (const InspectedSection& section : sections) {
+    if (section.reason.empty()) continue;
+    KeptTotal& total = totals[section.reason];
+    ++total.sections;
+    total.blocks += section.blocks;
+    total.cutting_moves += section.cutting_moves;
+  }
+  return totals;
+}
+
+std::string kept_table(const std::vector<InspectedSection>& sections) {
+  std::string text = "kept as it is:\n";
+  for (const auto& [reason, total] : kept_totals(sections)) {
+    text += fmt::format("{:>8} blocks, {} of them cut: {}: {}\n", total.blocks, total.cutting_moves,
+                        reason, text_of(reason));
+  }
+  return text;
+}
+
+Json json_of(const InspectedSection& section) {
+  Json json = {{"first_line", section.first_line},
+               {"last_line", section.last_line},
+               {"blocks", section.blocks},
+               {"cutting_moves", section.cutting_moves},
+               {"status", section.reason.empty() ? "run" : "kept"},
+               {"reason", section.reason}};
+  if (!section.reason.empty()) return json;
+  const SegmentStatistics& segments = section.segments;
+  json["closed"] = section.closed;
+  json["decimals"] = section.decimals;
+  json["least_feed_mm_per_min"] = section.least_feed;
+  json["greatest_feed_mm_per_min"] = section.greatest_feed;
+  json["segments"] = {{"count", segments.count},
+                      {"shortest_mm", segments.shortest},
+                      {"median_mm", segments.median},
+                      {"longest_mm", segments.longest},
+                      {"length_mm", segments.length},
+                      {"greatest_turn_deg", segments.greatest_turn_deg},
+                      {"greatest_turn_line", segments.turn_line}};
+  return json;
+}
+
+std::string json_report(const std::vector<InspectedSection>& sections,
+                        const gcode::Diagnostics& diagnostics, const gcode::Program& program) {
+  Json list = Json::array();
+  for (const InspectedSection& section : sections) list.push_back(json_of(section));
+  Json kept = Json::array();
+  for (const auto& [reason, total] : kept_totals(sections)) {
+    kept.push_back({{"id", reason},
+                    {"sections", total.sections},
+                    {"blocks", total.blocks},
+                    {"cutting_moves", total.cutting_moves},
+                    {"text", text_of(reason)}});
+  }
+  const Json json = {{"batten", BATTEN_VERSION},
+                     {"input",
+                      {{"file", program.source.name()},
+                       {"bytes", program.source.text().size()},
+                       {"blocks", program.blocks.size()}}},
+                     {"sections", std::move(list)},
+                     {"kept", std::move(kept)},
+                     {"diagnostics", diagnostics_json(diagnostics, program.source)}};
+  return json_text(json);
+}
+
+}  // namespace
+
+int run(const InspectCommand& command) {
+  const auto source = read_program(command.input);
+  if (interrupted()) return interrupt_exit_code();
+  if (!source) return static_cast<int>(ExitCode::kFileError);
+
+  gcode::Diagnostics found;
+  const gcode::Program program = gcode::parse(*source, found);
+  const gcode::Interpretation interpretation =
+      gcode::interpret(program, {.units = command.units}, found);
+  GroupingOptions grouping;
+  grouping.allowed.assign(command.allowed.begin(), command.allowed.end());
+  const auto sections =
+      inspect(program, interpretation, group_runs(program, interpretation, grouping));
+
+  print(found, *source);
+  if (command.json_file != "-") {
+    const std::string text = fmt::format("{}: {} blocks\n", source->name(), program.blocks.size()) +
+                             runs_table(sections) + kept_table(sections);
+    if (const int code = write_result("-", text, false); code != 0) return code;
+  }
+  if (!command.json_file.empty()) {
+    const int code =
+        write_result(command.json_file, json_report(sections, found, program), command.force);
+    if (code != 0) return code;
+  }
+  if (!interpretation.unit_word_seen) {
+    say(source->name() +
+        ": no G20 or G21 tells whether its numbers are inches or millimetres; say --units mm or "
+        "--units inch");
+    return static_cast<int>(ExitCode::kNotUnderstood);
+  }
+  return static_cast<int>(gcode::has_error(found) ? ExitCode::kNotUnderstood : ExitCode::kDone);
+}
+
+}  // namespace batten::postproc

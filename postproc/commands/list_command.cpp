@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include "gcode/dialect.h"
+#include "postproc/commands/commands.h"
+#include "postproc/commands/files.h"
+#include "postproc/exit_code.h"
+#include "postproc/report/json_values.h"
+
+namespace batten::postproc {
+
+namespace {
+
+struct Listing {
+  std::string text;
+  Json json = Json::array();
+};
+
+std::string_view name_of(ControllerModel model) {
+  switch (model) {
+    case ControllerModel::kLinuxcnc:
+      return "linuxcnc";
+    case ControllerModel::kGrbl:
+      return "grbl";
+    case ControllerModel::kLookAhead:
+      break;
+  }
+  return "look-ahead";
+}
+
+std::string planes_of(const gcode::Dialect& target) {
+  std::string planes;
+  const auto add = [&](gcode::Plane plane, std::string_view name) {
+    if (!target.takes_arcs_in(plane)) return;
+    if (!planes.empty()) planes += " ";
+    planes += name;
+  };
+  add(gcode::Plane::kXY, "G17");
+  add(gcode::Plane::kZX, "G18");
+  add(gcode::Plane::kYZ, "G19");
+  return planes.empty() ? "none" : planes;
+}
+
+Listing list_targets() {
+  Listing listing;
+  listing.text = fmt::format("{:<12} {:>8} {:>8} {:>5}  {:<12} {:<8} {:<12} {}\n", "target",
+                             "mm places", "inch pl.", "line", "arcs in", "helices", "machine", "");
+  for (const gcode::Dialect* target : gcode::dialects()) {
+    const int mm = target->coordinates(gcode::Units::kMillimetre).decimals;
+    const int inch = target->coordinates(gcode::Units::kInch).decimals;
+    listing.text += fmt::format("{:<12} {:>8} {:>8} {:>5}  {:<12} {:<8} {:<12} {}\n",
+                                target->name(), mm, inch, target->max_line_length(),
+                                planes_of(*target), target->takes_helices() ? "yes" : "no",
+                                target->default_machine(), target->description());
+    listing.json.push_back({{"name", target->name()},
+                            {"description", target->description()},
+                            {"decimals_mm", mm},
+                            {"decimals_inch", inch},
+                            {"max_line_length", target->max_line_length()},
+                            {"arcs_in", planes_of(*target)},
+                            {"helices", target->takes_helices()},
+                            {"default_machine", target->default_machine()}});
+  }
+  return listing;
+}
+
+Listing list_machines() {
+  Listing listing;
+  listing.text = fmt::format("{:<12} {:<11} {:>6} {:>7} {:>9} {:>10}  {}\n", "machine", "control",
+                             "mm/s", "mm/s^2", "blocks/s", "look-ahead", "");
+  for (const Machine& machine : built_in_machines()) {
+    listing.text +=
+        fmt::format("{:<12} {:<11} {:>6g} {:>7g} {:>9.0f} {:>10}  {}\n", machine.name,
+                    name_of(machine.model), machine.max_velocity, machine.max_acceleration,
+                    1 / machine.block_period, machine.look_ahead, machine.description);
+    listing.json.push_back({{"name", machine.name},
+                            {"description", machine.description},
+                            {"model", name_of(machine.model)},
+                            {"max_velocity_mm_per_s", machine.max_velocity},
+                            {"max_acceleration_mm_per_s2", machine.max_acceleration},
+                            {"rapid_velocity_mm_per_s", machine.rapid_velocity},
+                            {"block_period_s", machine.block_period},
+                            {"look_ahead_blocks", machine.look_ahead},
+                            {"junction_deviation_mm", machine.junction_deviation},
+                            {"blend_tolerance_mm", machine.blend_tolerance}});
+  }
+  return listing;
+}
+
+Listing list_methods() {
+  Listing listing;
+  for (const auto& method : methods()) {
+    listing.text += fmt::format("{:<8} {}\n", method.name, method.text);
+    listing.json.push_back({{"name", method.name}, {"description", method.text}});
+  }
+  return listing;
+}
+
+Listing list(BuiltIn what) {
+  switch (what) {
+    case BuiltIn::kTargets:
+      return list_targets();
+    case BuiltIn::kMachines:
+      return list_machines();
+    case BuiltIn::kMethods:
+      break;
+  }
+  return list_methods();
+}
+
+}  // namespace
+
+int run(const ListCommand& command) {
+  const Listing listing = list(command.what);
+  if (command.json_file != "-") {
+    if (const int code = write_result("-", listing.text, false); code != 0) return code;
+  }
+  if (command.json_file.empty()) return static_cast<int>(ExitCode::kDone);
+  return write_result(command.json_file, json_text(listing.json), command.force);
+}
+
+}  // namespace batten::postproc

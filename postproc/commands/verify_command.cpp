@@ -1,0 +1,176 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "gcode/interpreter.h"
+#include "gcode/parser.h"
+#include "postproc/commands/commands.h"
+#include "postproc/commands/files.h"
+#include "postproc/exit_code.h"
+#include "postproc/interrupt.h"
+#include "postproc/report/json_values.h"
+#include "postproc/verification.h"
+
+namespace batten::postproc {
+
+namespace {
+
+// More breaches than this tell nothing new on a screen; the JSON report has them all.
+constexpr std::size_t kMostBreaches = 20;
+
+struct Read {
+  gcode::SourceText source;
+  gcode::Program program;
+  gcode::Interpretation interpretation;
+  gcode::Diagnostics diagnostics;
+};
+
+Read read(const gcode::SourceText& source, gcode::Units units) {
+  gcode::Diagnostics found;
+  gcode::Program program = gcode::parse(source, found);
+  gcode::Interpretation interpretation = gcode::interpret(program, {.units = units}, found);
+  return {source, std::move(program), std::move(interpretation), std::move(found)};
+}
+
+std::string_view name_of(BreachKind kind) {
+  switch (kind) {
+    case BreachKind::kDistance:
+      return "distance";
+    case BreachKind::kNotProved:
+      return "not-proved";
+    case BreachKind::kFeed:
+      return "feed";
+    case BreachKind::kRapid:
+      return "rapid";
+    case BreachKind::kEvent:
+      return "event";
+    case BreachKind::kState:
+      break;
+  }
+  return "state";
+}
+
+std::string text_of(const Breach& breach, const VerifyCommand& command) {
+  const std::string place = breach.new_line > 0
+                                ? fmt::format("{}:{}", command.new_program, breach.new_line)
+                                : fmt::format("{}:{}", command.old_program, breach.old_line);
+  const std::string old_place = breach.new_line > 0 && breach.old_line > 0
+                                    ? fmt::format(" (line {} of the old program)", breach.old_line)
+                                    : "";
+  return fmt::format("{}: {}: {}{}\n", place, breach.id, breach.message, old_place);
+}
+
+std::string summary_of(const Verification& verification, const VerifyCommand& command) {
+  if (!verification.proved()) {
+    return fmt::format("NOT PROVED: {} of the new program against the old one\n",
+                       verification.breaches.size() == 1
+                           ? "1 breach"
+                           : fmt::format("{} breaches", verification.breaches.size()));
+  }
+  return fmt::format(
+      "proved: {} keeps {:g} mm to {}, both ways and in order\n"
+      "  greatest deviation {:.4f} mm{}; {} changed stretches, {} acting words and blocks the "
+      "same\n",
+      command.new_program, command.tolerance_mm, command.old_program, verification.deviation_mm,
+      verification.deviation_line > 0 ? fmt::format(" near line {}", verification.deviation_line)
+                                      : "",
+      verification.stretches.size(), verification.events_compared);
+}
+
+Json json_of(const Stretch& stretch, const Read& before, const Read& after) {
+  const auto line = [](const Read& read, std::uint32_t block) {
+    return block < read.program.blocks.size() ? read.program.blocks[block].line : 0;
+  };
+  const geometry::PathComparison& comparison = stretch.comparison;
+  return {{"old_first_line", line(before, stretch.old_first_block)},
+          {"old_last_line", line(before, stretch.old_last_block)},
+          {"new_first_line", line(after, stretch.new_first_block)},
+          {"new_last_line", line(after, stretch.new_last_block)},
+          {"proved", comparison.verdict == geometry::Verdict::kProved},
+          {"at_least_mm", comparison.bounds.at_least},
+          {"at_most_mm", std::isfinite(comparison.bounds.at_most) ? Json(comparison.bounds.at_most)
+                                                                  : Json(nullptr)},
+          {"certificate_size", comparison.certificate_size}};
+}
+
+std::string json_report(const Verification& verification, const VerifyCommand& command,
+                        const Read& before, const Read& after) {
+  Json breaches = Json::array();
+  for (const Breach& breach : verification.breaches) {
+    breaches.push_back({{"kind", name_of(breach.kind)},
+                        {"id", breach.id},
+                        {"old_line", breach.old_line},
+                        {"new_line", breach.new_line},
+                        {"deviation_mm", breach.deviation_mm},
+                        {"message", breach.message}});
+  }
+  Json stretches = Json::array();
+  for (const Stretch& stretch : verification.stretches) {
+    stretches.push_back(json_of(stretch, before, after));
+  }
+  return json_text({{"batten", BATTEN_VERSION},
+                    {"old", command.old_program},
+                    {"new", command.new_program},
+                    {"tolerance_mm", command.tolerance_mm},
+                    {"proved", verification.proved()},
+                    {"deviation_mm", verification.deviation_mm},
+                    {"deviation_line", verification.deviation_line},
+                    {"events_compared", verification.events_compared},
+                    {"breaches", std::move(breaches)},
+                    {"stretches", std::move(stretches)},
+                    {"diagnostics", diagnostics_json(after.diagnostics, after.source)}});
+}
+
+// A tolerance in millimetres says nothing about a program whose numbers have no unit.
+bool is_understood(const Read& read) {
+  print(read.diagnostics, read.source);
+  if (!read.interpretation.unit_word_seen) {
+    say(read.source.name() +
+        ": no G20 or G21 tells whether its numbers are inches or millimetres; say --units mm or "
+        "--units inch");
+    return false;
+  }
+  return !gcode::has_error(read.diagnostics);
+}
+
+}  // namespace
+
+int run(const VerifyCommand& command) {
+  const auto old_source = read_program(command.old_program);
+  const auto new_source = read_program(command.new_program);
+  if (interrupted()) return interrupt_exit_code();
+  if (!old_source || !new_source) return static_cast<int>(ExitCode::kFileError);
+
+  const Read before = read(*old_source, command.units);
+  const Read after = read(*new_source, command.units);
+  if (!is_understood(before)) {
+    say("the old program is not understood, so nothing can be proved about the new one");
+    return static_cast<int>(ExitCode::kNotUnderstood);
+  }
+  if (!is_understood(after)) {
+    say("NOT PROVED: the new program is not understood, and the old one is");
+    return static_cast<int>(ExitCode::kNotProved);
+  }
+  const Verification verification = verify(
+      {.program = &before.program, .interpretation = &before.interpretation},
+      {.program = &after.program, .interpretation = &after.interpretation}, command.tolerance_mm);
+  if (interrupted()) return interrupt_exit_code();
+
+  for (std::size_t i = 0; i < verification.breaches.size() && i < kMostBreaches; ++i) {
+    std::fputs(text_of(verification.breaches[i], command).c_str(), stderr);
+  }
+  if (verification.breaches.size() > kMostBreaches) {
+    say(fmt::format("{} more breaches, see --json", verification.breaches.size() - kMostBreaches));
+  }
+  std::fputs(summary_of(verification, command).c_str(), stderr);
+  const ExitCode verdict = verification.proved() ? ExitCode::kDone : ExitCode::kNotProved;
+  if (!command.json_file.empty()) {
+    const int code = write_result(command.json_file,
+                                  json_report(verification, command, before, after), command.force);
+    if (verdict == ExitCode::kDone) return code;
+  }
+  return static_cast<int>(verdict);
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,48 @@
+// What a program is made of, before anything is rewritten: its runs with the statistics of their
+// segments, and why the rest would be kept.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "gcode/motion.h"
+#include "gcode/program.h"
+#include "postproc/section.h"
+
+namespace batten::postproc {
+
+struct SegmentStatistics {
+  std::size_t count = 0;
+  double shortest = 0;           // mm
+  double median = 0;             // mm
+  double longest = 0;            // mm
+  double length = 0;             // mm, of the whole run
+  double greatest_turn_deg = 0;  // at the vertices between the segments
+  std::uint32_t turn_line = 0;   // line of the block that ends at that vertex; 0: no turn
+};
+
+// One section of the program; a run when `reason` is empty.
+struct InspectedSection {
+  std::uint32_t first_line = 0;
+  std::uint32_t last_line = 0;
+  std::size_t blocks = 0;
+  std::size_t cutting_moves = 0;  // G1, G2, G3 in it
+  std::string_view reason;        // why it would be kept
+  bool closed = false;
+  int decimals = 0;
+  double least_feed = 0;     // mm/min
+  double greatest_feed = 0;  // mm/min
+  SegmentStatistics segments;
+};
+
+[[nodiscard]] std::vector<InspectedSection> inspect(const gcode::Program& program,
+                                                    const gcode::Interpretation& interpretation,
+                                                    const std::vector<Section>& sections);
+
+// Segments of length 0 count and have no direction. `lines[i]` is the line of the block that
+// leads to points[i + 1]; may be empty when no line is wanted.
+[[nodiscard]] SegmentStatistics segment_statistics(const std::vector<geometry::Point3>& points,
+                                                   const std::vector<std::uint32_t>& lines);
+
+}  // namespace batten::postproc

@@ -1,0 +1,74 @@
+#include "postproc/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+
+#include "postproc/interrupt.h"
+
+namespace batten::postproc {
+
+namespace {
+
+constexpr std::array kStyles = {
+    Choice<ProgressStyle>{ProgressStyle::kAuto, "auto", "on a terminal and under LinuxCNC"},
+    Choice<ProgressStyle>{ProgressStyle::kOn, "on", "one line with the percentage"},
+    Choice<ProgressStyle>{ProgressStyle::kOff, "off", "nothing"},
+    Choice<ProgressStyle>{ProgressStyle::kLinuxcnc, "linuxcnc", "lines FILTER_PROGRESS=nn"},
+};
+
+ProgressStyle resolved(ProgressStyle style) {
+  if (style != ProgressStyle::kAuto) return style;
+  const char* axis = std::getenv("AXIS_PROGRESS_BAR");
+  if (axis != nullptr && std::string_view(axis) == "1") return ProgressStyle::kLinuxcnc;
+  return ::isatty(STDERR_FILENO) == 1 ? ProgressStyle::kOn : ProgressStyle::kOff;
+}
+
+// Writes each whole percentage once, never a smaller one after a greater one.
+class Display {
+ public:
+  explicit Display(ProgressStyle style) : style_(style) {}
+  Display(const Display&) = delete;
+  Display& operator=(const Display&) = delete;
+  ~Display() {
+    if (style_ == ProgressStyle::kOn && shown_ >= 0) std::fputs("\r        \r", stderr);
+  }
+
+  void show(double part) {
+    const int percent = static_cast<int>(100 * std::clamp(part, 0.0, 1.0));
+    const std::lock_guard lock(mutex_);
+    if (percent <= shown_) return;
+    shown_ = percent;
+    const std::string text = style_ == ProgressStyle::kLinuxcnc
+                                 ? fmt::format("FILTER_PROGRESS={}\n", percent)
+                                 : fmt::format("\r{:4} %", percent);
+    std::fputs(text.c_str(), stderr);
+    std::fflush(stderr);
+  }
+
+ private:
+  ProgressStyle style_;
+  std::mutex mutex_;
+  int shown_ = -1;
+};
+
+}  // namespace
+
+std::span<const Choice<ProgressStyle>> progress_styles() { return kStyles; }
+
+Progress show_progress(ProgressStyle style) {
+  const ProgressStyle shown = resolved(style);
+  if (shown == ProgressStyle::kOff) return [](double) { return !interrupted(); };
+  return [display = std::make_shared<Display>(shown)](double part) {
+    display->show(part);
+    return !interrupted();
+  };
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,25 @@
+// How far the work is, on standard error, and whether the user wants it to stop.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "postproc/options.h"
+#include "postproc/pipeline.h"
+
+namespace batten::postproc {
+
+enum class ProgressStyle {
+  kAuto,  // kLinuxcnc when AXIS_PROGRESS_BAR=1, else kOn on a terminal, else kOff
+  kOn,    // one line that is written over
+  kOff,
+  kLinuxcnc,  // lines FILTER_PROGRESS=nn, as LinuxCNC reads them from a filter program
+};
+
+[[nodiscard]] std::span<const Choice<ProgressStyle>> progress_styles();
+
+// For smooth_program: shows the part that is done, and returns false after Ctrl-C or SIGTERM
+// (postproc/interrupt.h). May be called from several threads.
+[[nodiscard]] Progress show_progress(ProgressStyle style);
+
+}  // namespace batten::postproc
