@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "gcode/characters.h"
+
 namespace batten::gcode {
 namespace {
 
@@ -113,9 +115,6 @@ int fraction_digits(const Decimal& decimal, const NumberFormat& format) {
   }
   return last;
 }
-
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // Digits and point of a number, gathered in one pass.
 struct Scan {

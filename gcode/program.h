@@ -12,7 +12,9 @@ namespace batten::gcode {
 
 // A letter and its value, as `X-.5`.
 struct Word {
-  char letter = 0;            // upper case, 'A' to 'Z'
+  // Upper case, 'A' to 'Z'; or ',' for a corner word (,R2 ,C1 ,A45), whose block is
+  // Opacity::kCornerWord.
+  char letter = 0;
   std::uint8_t decimals = 0;  // digits after the point as written
   bool has_point = false;     // a decimal point was written: X5. and X5 differ on old controls
   bool is_number =
@@ -33,14 +35,19 @@ struct Comment {
 };
 
 // Why a block was not split into plain words. Such blocks are copied as they are.
+//
+// A block of kNone, kExpression or kCornerWord lists all its words. The others list the words
+// that were read before the reader stopped, so that an N number is there when it came first.
 enum class Opacity {
   kNone,         // understood as words and comments
   kUnreadable,   // no grammar that is known
   kExpression,   // a word whose value is an expression or a parameter: X[#1+2], X#5
-  kAssignment,   // #1=.., #<name>=.., R1=..
+  kAssignment,   // #1=.., #<name>=.., R1=..; besides them only N and comments
   kFlow,         // O-words, IF, WHILE, GOTO, DO, END, labels: the order of blocks changes
   kForeign,      // strings, $, {, !, @ lines, and words of other languages (DEF, CALL, ..)
-  kProgramMark,  // a % line; or text outside the % marks
+  kProgramMark,  // a % line; text outside the % marks; the program's own number (O1000 before
+                 // any other word); a line of NUL or 0x1A: controls do nothing here
+  kCornerWord,   // ,R2 ,C1 ,A45: the path does not reach the point that the words name
 };
 
 // One line of the source.
@@ -54,6 +61,9 @@ struct Block {
   std::uint32_t comment_count = 0;
   Opacity opacity = Opacity::kNone;
   bool block_delete = false;  // starts with /, or /2 ..
+  // Ends with *71, and the sum is right. The host counts such lines by their N: where one is
+  // left out or added, all numbers and sums after it are wrong.
+  bool has_checksum = false;
 };
 
 struct Program {

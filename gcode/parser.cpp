@@ -1,0 +1,328 @@
+#include "gcode/parser.h"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "gcode/active_comment.h"
+#include "gcode/characters.h"
+#include "gcode/foreign_language.h"
+#include "gcode/lexer.h"
+#include "gcode/line_cursor.h"
+#include "gcode/program_marks.h"
+
+namespace batten::gcode {
+namespace {
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+// What the tape and file ends of old systems are filled with. Controls skip both.
+constexpr char kNul = '\0';
+constexpr char kEndOfFile = '\x1A';
+
+// A program of rubbish must not bury the reader in lines that all say the same.
+constexpr std::size_t kMostUnreadableTold = 50;
+
+constexpr std::uint8_t kMostDecimals = 255;
+
+bool is_sixteen_bit_text(std::string_view text) {
+  return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+}
+
+// One pass over the source, line by line.
+class Parser {
+ public:
+  Parser(const SourceText& source, Diagnostics& found)
+      : program_{source, {}, {}, {}}, text_(source.text()), found_(found) {}
+
+  Program run() {
+    reserve();
+    const std::size_t before = found_.size();
+    const std::size_t last_of_content =
+        text_.find_last_not_of(std::string_view("\0\x1A\r\n \t", 6));
+    content_end_ = last_of_content == std::string_view::npos ? 0 : last_of_content + 1;
+    if (is_sixteen_bit_text(text_)) {
+      tell(Severity::kError, "sixteen-bit-text", SourceSpan{0, 2},
+           "the file is text of 16 bits per character (UTF-16); expected bytes of ASCII. Save it "
+           "as plain text or UTF-8");
+    }
+    LineCursor lines(text_);
+    while (const auto line = lines.next()) {
+      read_block(*line);
+    }
+    tell_untold();
+    close_program_marks(program_, found_);
+    std::stable_sort(
+        found_.begin() + static_cast<std::ptrdiff_t>(before), found_.end(),
+        [](const Diagnostic& a, const Diagnostic& b) { return a.where.begin < b.where.begin; });
+    return std::move(program_);
+  }
+
+ private:
+  // Sized for lines as CAM systems write them; longer programs of shorter lines grow it.
+  void reserve() {
+    constexpr std::size_t kBytesPerBlock = 24;
+    constexpr std::size_t kBytesPerWord = 9;
+    program_.blocks.reserve(text_.size() / kBytesPerBlock + 1);
+    program_.words.reserve(text_.size() / kBytesPerWord + 1);
+  }
+
+  void read_block(const LineBounds& line) {
+    Block block;
+    block.span = {line.begin, line.text_end};
+    block.end = line.end;
+    block.line = static_cast<std::uint32_t>(program_.blocks.size()) + 1;
+    block.first_word = static_cast<std::uint32_t>(program_.words.size());
+    block.first_comment = static_cast<std::uint32_t>(program_.comments.size());
+    const SourceSpan content = without_filling(block);
+    if (content.size() > 0 && text_[content.begin] == '%') {
+      read_mark(block, content);
+    } else {
+      read_tokens(block, content);
+    }
+    block.word_count = static_cast<std::uint32_t>(program_.words.size()) - block.first_word;
+    block.comment_count =
+        static_cast<std::uint32_t>(program_.comments.size()) - block.first_comment;
+    program_.blocks.push_back(block);
+    told_in_block_ = false;
+  }
+
+  // The line without blanks, NULs and end-of-file signs at its edges. A line of nothing but
+  // these signs becomes a program mark: it must not vanish with the lines around it.
+  SourceSpan without_filling(Block& block) const {
+    std::uint32_t begin = block.span.begin;
+    std::uint32_t end = block.span.end;
+    if (begin == 0 && text_.starts_with(kByteOrderMark)) {
+      begin += static_cast<std::uint32_t>(kByteOrderMark.size());
+    }
+    bool filled = false;
+    while (end > begin && is_filling(end - 1, filled)) {
+      --end;
+    }
+    while (begin < end && is_filling(begin, filled)) {
+      ++begin;
+    }
+    if (begin == end && filled) {
+      block.opacity = Opacity::kProgramMark;
+    }
+    return {begin, end};
+  }
+
+  bool is_filling(std::uint32_t at, bool& filled) const {
+    const char c = text_[at];
+    if (is_blank(c)) {
+      return true;
+    }
+    const bool sign = c == kNul || (c == kEndOfFile && at >= content_end_);
+    filled = filled || sign;
+    return sign;
+  }
+
+  void read_mark(Block& block, SourceSpan content) {
+    block.opacity = Opacity::kProgramMark;
+    note_foreign_language(content);
+  }
+
+  void read_tokens(Block& block, SourceSpan content) {
+    LineLexer lexer(text_, content);
+    bool only_n = true;  // no word but N so far
+    for (Token token = lexer.next(); token.kind != TokenKind::kEnd; token = lexer.next()) {
+      switch (token.kind) {
+        case TokenKind::kWord:
+          add_word(token, token.letter);
+          only_n = only_n && token.letter == 'N';
+          break;
+        case TokenKind::kValueWord:
+          add_word(token, token.letter);
+          only_n = only_n && token.letter == 'N';
+          raise(block, Opacity::kExpression);
+          break;
+        case TokenKind::kCornerWord:
+          add_word(token, ',');
+          only_n = false;
+          raise(block, Opacity::kCornerWord);
+          break;
+        case TokenKind::kComment:
+        case TokenKind::kLineComment:
+          add_comment(token);
+          break;
+        case TokenKind::kAssignment:
+          raise(block, Opacity::kAssignment);
+          break;
+        case TokenKind::kBlockDelete:
+          read_block_delete(block, token, only_n);
+          break;
+        case TokenKind::kChecksum:
+          read_checksum(block, token, content);
+          break;
+        case TokenKind::kProgramNumber:
+          read_program_number(block);
+          add_word(token, token.letter);
+          break;
+        case TokenKind::kFlow:
+          block.opacity = Opacity::kFlow;
+          break;
+        case TokenKind::kForeign:
+          block.opacity = Opacity::kForeign;
+          note_foreign_language(content);
+          break;
+        case TokenKind::kUnreadable:
+          make_unreadable(block, token.span, token.trouble);
+          break;
+        case TokenKind::kEnd:
+          break;
+      }
+    }
+    if (block.opacity == Opacity::kAssignment && !only_n) {
+      make_unreadable(block, content, "a parameter that is set beside other words");
+    }
+    words_seen_ = words_seen_ || has_words(block);
+  }
+
+  // Is there anything in the block that a control acts on?
+  [[nodiscard]] bool has_words(const Block& block) const {
+    const bool words = program_.words.size() > block.first_word;
+    return block.opacity == Opacity::kNone ? words : block.opacity != Opacity::kProgramMark;
+  }
+
+  void add_word(const Token& token, char letter) {
+    Word word;
+    word.letter = letter;
+    word.decimals = static_cast<std::uint8_t>(std::min<int>(token.number.decimals, kMostDecimals));
+    word.has_point = token.number.has_point;
+    word.is_number = token.has_value;
+    word.value = token.number.value;
+    word.span = token.span;
+    program_.words.push_back(word);
+  }
+
+  void add_comment(const Token& token) {
+    Comment comment;
+    comment.span = token.span;
+    const std::string_view text = text_.substr(token.span.begin, token.span.size());
+    if (is_active_comment(text)) {
+      comment.kind = CommentKind::kActive;
+    } else if (token.kind == TokenKind::kLineComment) {
+      comment.kind = CommentKind::kSemicolon;
+      note_foreign_language(token.span);
+    }
+    program_.comments.push_back(comment);
+    if (token.unclosed) {
+      tell(Severity::kWarning, "unclosed-comment", token.span,
+           "'(' without ')'; read as a comment up to the end of the line");
+    }
+  }
+
+  // Words that name no value are less than words that belong to no known grammar: what was
+  // said first about a block is only replaced by what is worse.
+  static void raise(Block& block, Opacity opacity) {
+    const bool replaceable =
+        block.opacity == Opacity::kNone || block.opacity == Opacity::kExpression;
+    if (replaceable || opacity == Opacity::kAssignment) {
+      block.opacity = opacity;
+    }
+  }
+
+  void read_block_delete(Block& block, const Token& token, bool only_n) {
+    if (block.block_delete || !only_n || block.opacity != Opacity::kNone) {
+      make_unreadable(block, token.span, "a '/' that is not at the beginning of the block");
+      return;
+    }
+    block.block_delete = true;
+  }
+
+  // The sum is the exclusive or of all bytes before the star.
+  void read_checksum(Block& block, const Token& token, SourceSpan content) {
+    const bool numbered =
+        program_.words.size() > block.first_word && program_.words[block.first_word].letter == 'N';
+    if (!numbered) {
+      make_unreadable(block, token.span, "a check sum without a line number before it");
+      return;
+    }
+    unsigned char sum = 0;
+    for (const char c : text_.substr(content.begin, token.span.begin - content.begin)) {
+      sum = static_cast<unsigned char>(sum ^ static_cast<unsigned char>(c));
+    }
+    if (token.number.value != sum) {
+      make_unreadable(block, token.span, "a check sum that does not fit its line");
+      return;
+    }
+    block.has_checksum = true;
+  }
+
+  // The first thing of a program may be its number, which no control acts on. Later ones
+  // begin subprograms.
+  void read_program_number(Block& block) const {
+    const bool alone = program_.words.size() == block.first_word && !block.block_delete;
+    block.opacity = alone && !words_seen_ ? Opacity::kProgramMark : Opacity::kFlow;
+  }
+
+  void make_unreadable(Block& block, SourceSpan where, std::string_view trouble) {
+    if (block.opacity == Opacity::kUnreadable) {
+      return;
+    }
+    block.opacity = Opacity::kUnreadable;
+    if (++unreadable_ <= kMostUnreadableTold) {
+      tell(Severity::kWarning, "unreadable-block", where,
+           std::string(trouble) + "; the block is copied as it is");
+    } else if (untold_ == 0) {
+      first_untold_ = where;
+      untold_ = 1;
+    } else {
+      ++untold_;
+    }
+  }
+
+  void tell_untold() {
+    if (untold_ > 0) {
+      tell(Severity::kWarning, "unreadable-block", first_untold_,
+           "this and " + std::to_string(untold_ - 1) +
+               " more blocks after it cannot be read either; they are copied as they are");
+    }
+  }
+
+  void note_foreign_language(SourceSpan where) {
+    if (foreign_told_) {
+      return;
+    }
+    const auto language = foreign_language_of(text_.substr(where.begin, where.size()));
+    if (!language) {
+      return;
+    }
+    foreign_told_ = true;
+    tell(Severity::kError, "foreign-language", where,
+         "found " + std::string(language->evidence) + ", so this is a program in " +
+             std::string(language->name) +
+             "; expected a program of the RS-274 family (G01 X.. Y..): this language is not read");
+  }
+
+  // One diagnostic per block: the first, unless an error follows.
+  void tell(Severity severity, std::string_view id, SourceSpan where, std::string message) {
+    if (told_in_block_ && severity != Severity::kError) {
+      return;
+    }
+    if (told_in_block_) {
+      found_.pop_back();
+    }
+    found_.push_back({severity, id, where, std::move(message)});
+    told_in_block_ = true;
+  }
+
+  Program program_;
+  std::string_view text_;
+  Diagnostics& found_;
+  std::size_t content_end_ = 0;  // nothing but filling and line ends from here on
+  std::size_t unreadable_ = 0;
+  std::size_t untold_ = 0;
+  SourceSpan first_untold_;
+  bool words_seen_ = false;
+  bool told_in_block_ = false;
+  bool foreign_told_ = false;
+};
+
+}  // namespace
+
+Program parse(const SourceText& source, Diagnostics& found) { return Parser(source, found).run(); }
+
+}  // namespace batten::gcode
