@@ -6,8 +6,13 @@
 // straight, or an arc or Bezier piece that has been cut so finely that its distance from
 // its chord is a known, small part of the tolerance. The distance of two linear motions is
 // greatest at an end, so the chain is a certificate: the Fréchet distance is at most the
-// greatest pair distance plus the chord errors. The pair distances of places that are
-// printed decimals are compared with the tolerance by CGAL's exact predicates.
+// greatest pair distance plus the chord errors. Pairs of printed decimals are compared with
+// the tolerance by CGAL's exact arithmetic: a copy shifted by exactly the tolerance is proved,
+// one shifted by a last digit more is broken.
+//
+// What is left open (kNotProved): a distance that is the tolerance to within rounding but
+// met at places that are no decimals, as where a fold is waited for; and paths that
+// lie in a heap within the tolerance of themselves, where the search would cost too much.
 //
 // What is not checked. Piece ends must chain; a gap counts as a straight piece.
 #pragma once
@@ -36,7 +41,7 @@ enum class Verdict {
 
 struct PathComparison {
   Verdict verdict = Verdict::kNotProved;
-  DistanceBounds bounds;          // at_most is infinite when nothing was proved
+  DistanceBounds bounds;
   std::size_t worst_piece_a = 0;  // where the greatest distance was met (or the breach seen)
   std::size_t worst_piece_b = 0;
   Point3 worst_a = Point3::Zero();
@@ -45,9 +50,9 @@ struct PathComparison {
 };
 
 // Compares path `a` with path `b` under `tolerance` (mm, > 0; throws std::invalid_argument
-// otherwise). Empty paths: two empty paths are proved at distance 0; an empty path against a
-// non-empty one is broken unless the other stays within the tolerance of one place (then it
-// is proved). `at_most` is tight to within about 2 % of the tolerance.
+// otherwise). Two empty paths are proved at distance 0; an empty path stands for one that
+// waits where the other one starts. `at_most` is tight to within about 2 % of the tolerance
+// where the paths are proved, and never above the tolerance then; it is finite always.
 //
 // Cost: about linear in the number of pieces where the paths stay within a few pieces of
 // each other.
