@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "gcode/reason.h"
@@ -52,18 +53,14 @@ std::string_view name_in(const std::array<Choice<Value>, count>& choices, Value 
   return "unknown";
 }
 
-double step_of(int decimals, gcode::Units units) {
-  const double step = std::pow(10.0, -decimals);
-  return units == gcode::Units::kInch ? step * kMillimetresPerInch : step;
-}
-
 // See ToleranceShares, 2.
 double rounding_of(const SmoothOptions& options, gcode::Units units, int run_decimals) {
-  const int decimals = std::max(options.target->coordinates(units).decimals, run_decimals);
-  const double place = std::numbers::sqrt3 / 2 * step_of(decimals, units);
+  gcode::NumberFormat places = options.target->coordinates(units);
+  places.decimals = std::max(places.decimals, run_decimals);
+  const double place = std::numbers::sqrt3 / 2 * gcode::printed_step(places, units);
   if (options.output == Form::kLines) return place;
-  const int offset_decimals = options.target->arc_offsets(units).decimals;
-  return place + std::numbers::sqrt2 / 2 * step_of(offset_decimals, units);
+  const double offset = gcode::printed_step(options.target->arc_offsets(units), units);
+  return place + std::numbers::sqrt2 / 2 * offset;
 }
 
 bool takes_any_arcs(const gcode::Dialect& target) {
@@ -86,37 +83,13 @@ void check_tolerance(const SmoothOptions& options, std::vector<std::string>& pro
     return;
   }
   if (options.target == nullptr) return;
-  // Units that are not known yet: millimetres are the finer ones of the two.
-  const gcode::Units units =
-      options.units == gcode::Units::kInch ? gcode::Units::kInch : gcode::Units::kMillimetre;
-  const ToleranceShares shares = share_tolerance(options, units);
+  // Units that only the program will tell: millimetres, the finer ones, are the least demand.
+  const ToleranceShares shares = share_tolerance(options, options.units);
   if (shares.smoothing <= 0) {
     problems.push_back(
         fmt::format("--tolerance: {:g} mm, expected more than the {:.5f} mm that the decimals of "
                     "target {} lose by rounding",
                     tolerance, shares.rounding, options.target->name()));
-  }
-}
-
-void check_allowed(const SmoothOptions& options, std::vector<std::string>& problems) {
-  std::string possible;
-  for (const auto& explanation : gcode::reason::explanations()) {
-    if (!explanation.can_be_allowed) continue;
-    if (!possible.empty()) possible += ", ";
-    possible += explanation.id;
-  }
-  for (const std::string& id : options.allowed) {
-    const auto all = gcode::reason::explanations();
-    const auto found = std::ranges::find(all, id, &gcode::reason::Explanation::id);
-    if (found == all.end()) {
-      problems.push_back(fmt::format("--allow: there is no reason '{}', possible: {}", id,
-                                     possible.empty() ? "none" : possible));
-    } else if (!found->can_be_allowed) {
-      problems.push_back(
-          fmt::format("--allow: '{}' cannot be lifted, since no rewriting would be safe there; "
-                      "possible: {}",
-                      id, possible.empty() ? "none" : possible));
-    }
   }
 }
 
@@ -142,6 +115,30 @@ std::string_view name_of(gcode::Units units) {
   return "unknown";
 }
 
+std::vector<std::string> problems_of_allowed(std::span<const std::string> ids) {
+  std::vector<std::string> problems;
+  const auto all = gcode::reason::explanations();
+  std::string possible;
+  for (const auto& explanation : all) {
+    if (!explanation.can_be_allowed) continue;
+    possible += (possible.empty() ? "" : ", ") + std::string(explanation.id);
+  }
+  if (possible.empty()) possible = "none";
+  for (const std::string& id : ids) {
+    const auto found = std::ranges::find(all, id, &gcode::reason::Explanation::id);
+    if (found == all.end()) {
+      problems.push_back(
+          fmt::format("--allow: there is no reason '{}'; possible: {}", id, possible));
+    } else if (!found->can_be_allowed) {
+      problems.push_back(
+          fmt::format("--allow: '{}' cannot be lifted, since rewriting would not be safe there; "
+                      "possible: {}",
+                      id, possible));
+    }
+  }
+  return problems;
+}
+
 std::vector<std::string> problems_of(const SmoothOptions& options) {
   std::vector<std::string> problems;
   if (options.target == nullptr) {
@@ -162,7 +159,7 @@ std::vector<std::string> problems_of(const SmoothOptions& options) {
         fmt::format("--keep-corners: {:g} degrees, expected more than 0 and at most 180",
                     *options.keep_corners_deg));
   }
-  check_allowed(options, problems);
+  std::ranges::move(problems_of_allowed(options.allowed), std::back_inserter(problems));
   if (options.min_motions < 2) {
     problems.push_back(
         fmt::format("min_motions: {}, expected 2 or more motions in a run", options.min_motions));
@@ -177,7 +174,9 @@ std::vector<std::string> problems_of(const SmoothOptions& options) {
 ToleranceShares share_tolerance(const SmoothOptions& options, gcode::Units units,
                                 int run_decimals) {
   ToleranceShares shares;
-  shares.rounding = rounding_of(options, units, run_decimals);
+  const gcode::Units written =
+      units == gcode::Units::kInch ? gcode::Units::kInch : gcode::Units::kMillimetre;
+  shares.rounding = rounding_of(options, written, run_decimals);
   const double rest = options.tolerance_mm * (1 - kProofLooseness) - shares.rounding;
   if (rest > 0) {
     shares.form = kFormPart * rest;

@@ -34,8 +34,6 @@ struct Choice {
 [[nodiscard]] std::string_view name_of(Prefer prefer);
 [[nodiscard]] std::string_view name_of(gcode::Units units);  // "mm", "inch", "unknown"
 
-inline constexpr double kMillimetresPerInch = 25.4;
-
 // Decisions of `smooth`, without files and messages.
 struct SmoothOptions {
   const gcode::Dialect* target = nullptr;       // required
@@ -54,6 +52,9 @@ struct SmoothOptions {
 
 // Every problem of the options at once, as sentences; empty when they are fine.
 [[nodiscard]] std::vector<std::string> problems_of(const SmoothOptions& options);
+
+// Those of --allow alone: reason ids that do not exist or that cannot be lifted.
+[[nodiscard]] std::vector<std::string> problems_of_allowed(std::span<const std::string> ids);
 
 // How the user's tolerance is shared: smoothing + form + rounding <= tolerance.
 //

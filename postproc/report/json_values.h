@@ -13,7 +13,8 @@ namespace batten::postproc {
 using Json = nlohmann::ordered_json;
 
 // [{"severity": "warning", "id": "", "line": 1, "column": 1, "message": ""}]
-[[nodiscard]] Json diagnostics_json(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source);
+[[nodiscard]] Json diagnostics_json(const gcode::Diagnostics& diagnostics,
+                                    const gcode::SourceText& source);
 
 // Indented text with a last newline; bytes that are not UTF-8 are replaced.
 [[nodiscard]] std::string json_text(const Json& json);

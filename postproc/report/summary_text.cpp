@@ -48,7 +48,7 @@ std::string seconds(double time) {
 
 std::string length(double mm, gcode::Units units) {
   if (units != gcode::Units::kInch) return fmt::format("{:.4f} mm", mm);
-  return fmt::format("{:.4f} mm ({:.5f} in)", mm, mm / kMillimetresPerInch);
+  return fmt::format("{:.4f} mm ({:.5f} in)", mm, mm / gcode::millimetres_per(gcode::Units::kInch));
 }
 
 std::string times(const SmoothResult& result, const Machine& machine) {
@@ -109,10 +109,9 @@ void add_proof(const SmoothReport& report, bool rewritten, Lines& lines) {
 std::string summary_text(const SmoothReport& report) {
   const SmoothResult& result = report.result;
   Lines lines;
-  lines.add_head(
-      fmt::format("{} -> {}, for {}", report.source.name(),
-                  report.output_file.empty() ? "nothing written" : report.output_file,
-                  report.options.target->name()));
+  lines.add_head(fmt::format("{} -> {}, for {}", report.source.name(),
+                             report.output_file.empty() ? "nothing written" : report.output_file,
+                             report.options.target->name()));
   lines.add("blocks", change(result.blocks_in, result.blocks_out));
   lines.add("bytes", change(report.source.text().size(), result.text.size()));
   add_runs(result, lines);

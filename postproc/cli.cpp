@@ -1,0 +1,201 @@
+#include "postproc/cli.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+
+#include "postproc/cli_commands.h"
+#include "postproc/cli_config.h"
+#include "postproc/cli_given.h"
+
+namespace batten::postproc {
+
+namespace {
+
+struct CommandRow {
+  std::string_view name;
+  std::string_view description;
+  std::span<const OptionRow> rows;
+  std::vector<std::pair<std::string_view, std::string_view>> files;  // name, help
+  std::string_view example;
+};
+
+std::vector<CommandRow> command_rows() {
+  return {
+      {"smooth",
+       "Bend fair curves through the short G01 moves of a program and write it again, proved.",
+       smooth_rows(),
+       {{"IN", "the program, - is standard input"}},
+       "Example:\n"
+       "  batten smooth part.nc --target linuxcnc --tolerance 0.01\n"
+       "writes part.smooth.nc, nowhere more than 0.01 mm from part.nc."},
+      {"verify",
+       "Prove that a new program does what the old one did, within a tolerance.",
+       verify_rows(),
+       {{"OLD", "the old program"}, {"NEW", "the new program"}},
+       "Example:\n"
+       "  batten verify part.nc part.smooth.nc --tolerance 0.01\n"
+       "exits with 0 when proved, with 3 on a breach or without a proof."},
+      {"inspect",
+       "Show the runs of a program, their segments, and why the rest would be kept.",
+       inspect_rows(),
+       {{"IN", "the program, - is standard input"}},
+       "Example:\n  batten inspect part.nc --json part.json"},
+      {"targets",
+       "List the controls that programs can be written for.",
+       list_rows(),
+       {},
+       "Example:\n  batten targets"},
+      {"machines", "List the built-in machines.", list_rows(), {}, "Example:\n  batten machines"},
+      {"methods", "List the ways of smoothing.", list_rows(), {}, "Example:\n  batten methods"},
+  };
+}
+
+constexpr std::string_view kExitCodes =
+    "Exit codes: 0 done, 1 wrong options, 2 program not understood, 3 not proved, 4 file error,\n"
+    "5 internal error. `batten COMMAND --help` tells more about a command.";
+
+void add_row(const OptionRow& row, CLI::App& command) {
+  const std::string name = (row.name == "out" ? "-o,--" : "--") + std::string(row.name);
+  std::string help(row.help);
+  if (row.kind == OptionKind::kFlag) {
+    command.add_flag(name, help);
+    return;
+  }
+  if (!row.default_value.empty()) help += fmt::format("; default: {}", row.default_value);
+  CLI::Option* option =
+      command.add_option(name)->description(help)->type_name(std::string(row.value));
+  if (row.kind == OptionKind::kList) {
+    option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->expected(1);
+  }
+}
+
+void add_command(const CommandRow& row, CLI::App& app) {
+  CLI::App* command = app.add_subcommand(std::string(row.name), std::string(row.description));
+  command->allow_extras();  // told of together with everything else
+  command->footer(std::string(row.example));
+  for (const auto& [name, help] : row.files) {
+    command->add_option(std::string(name))->description(std::string(help))->type_name("");
+  }
+  for (const OptionRow& option : row.rows) add_row(option, *command);
+}
+
+Given given_in(const CLI::App& command, std::span<const OptionRow> rows) {
+  Given given;
+  for (const OptionRow& row : rows) {
+    const CLI::Option* option = command.get_option("--" + std::string(row.name));
+    if (option->count() == 0) continue;
+    if (row.kind == OptionKind::kFlag) {
+      given.add(row.name, "true");
+      continue;
+    }
+    for (const std::string& value : option->results()) given.add(row.name, value);
+  }
+  return given;
+}
+
+// The words that are no options, in order; unknown options become problems.
+std::vector<std::string> files_in(const CLI::App& command, const CommandRow& row,
+                                  Problems& problems) {
+  std::vector<std::string> files;
+  for (const auto& [name, help] : row.files) {
+    for (const std::string& file : command.get_option(std::string(name))->results()) {
+      files.push_back(file);
+    }
+  }
+  std::vector<std::string_view> names;
+  for (const OptionRow& option : row.rows) names.push_back(option.name);
+  bool unknown_option = false;
+  for (const std::string& word : command.remaining()) {
+    if (!word.starts_with("-") || word == "-") {
+      // After an unknown option it is likely the value of that option.
+      if (!unknown_option) files.push_back(word);
+      continue;
+    }
+    unknown_option = true;
+    const std::string name = word.substr(word.find_first_not_of('-'));
+    const std::string_view nearest = nearest_name(name.substr(0, name.find('=')), names);
+    problems.push_back(
+        fmt::format("{}: {} has no such option{}", word, row.name,
+                    nearest.empty() ? "" : fmt::format(", did you mean --{}?", nearest)));
+  }
+  return files;
+}
+
+Command smooth_or_config(Given given, const std::vector<std::string>& files, Problems& problems) {
+  if (const auto file = given.value("config")) {
+    given.complete_from(read_config(*file, problems));
+  }
+  SmoothCommand command = smooth_command(given, files, problems);
+  if (given.flag("print-config")) return PrintText{config_text(given)};
+  return command;
+}
+
+Command command_of(std::string_view name, const Given& given, const std::vector<std::string>& files,
+                   Problems& problems) {
+  if (name == "smooth") return smooth_or_config(given, files, problems);
+  if (name == "verify") return verify_command(given, files, problems);
+  if (name == "inspect") return inspect_command(given, files, problems);
+  if (name == "targets") return list_command(BuiltIn::kTargets, given, files, problems);
+  if (name == "machines") return list_command(BuiltIn::kMachines, given, files, problems);
+  return list_command(BuiltIn::kMethods, given, files, problems);
+}
+
+std::string no_command(const CLI::App& app, const std::vector<CommandRow>& rows) {
+  std::string possible;
+  std::vector<std::string_view> names;
+  for (const CommandRow& row : rows) {
+    possible += (possible.empty() ? "" : ", ") + std::string(row.name);
+    names.push_back(row.name);
+  }
+  const auto words = app.remaining();
+  if (words.empty()) return "no command given; possible: " + possible;
+  const std::string_view nearest = nearest_name(words.front(), names);
+  return fmt::format("there is no command '{}'{}; possible: {}", words.front(),
+                     nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest), possible);
+}
+
+}  // namespace
+
+CommandLine read_command_line(const std::vector<std::string>& arguments) {
+  CLI::App app("Smooths CAM programs made of short lines and proves what it wrote.", "batten");
+  app.set_version_flag("--version", std::string("batten " BATTEN_VERSION));
+  app.footer(std::string(kExitCodes));
+  app.require_subcommand(0, 1);
+  app.allow_extras();
+  const auto rows = command_rows();
+  for (const CommandRow& row : rows) add_command(row, app);
+
+  CommandLine line;
+  line.help_hint = "batten --help";
+  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // as CLI11 wants it
+  try {
+    app.parse(reversed);
+  } catch (const CLI::CallForHelp&) {
+    line.command = PrintText{app.help()};
+    return line;
+  } catch (const CLI::CallForVersion& version) {
+    line.command = PrintText{std::string(version.what()) + "\n"};
+    return line;
+  } catch (const CLI::ParseError& error) {
+    line.problems.emplace_back(error.what());
+    return line;
+  }
+
+  const auto commands = app.get_subcommands();
+  if (commands.empty()) {
+    line.problems.push_back(no_command(app, rows));
+    return line;
+  }
+  const CLI::App& command = *commands.front();
+  const auto row = std::ranges::find(rows, command.get_name(), &CommandRow::name);
+  line.help_hint = "batten " + command.get_name() + " --help";
+  const Given given = given_in(command, row->rows);
+  const auto files = files_in(command, *row, line.problems);
+  line.command = command_of(command.get_name(), given, files, line.problems);
+  return line;
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,130 @@
+#include "postproc/cli_given.h"
+
+#include <array>
+
+namespace batten::postproc {
+
+namespace {
+
+constexpr OptionRow kJson = {
+    .name = "json", .value = "FILE", .help = "write the report as JSON, - is standard output"};
+constexpr OptionRow kForce = {
+    .name = "force", .kind = OptionKind::kFlag, .help = "replace files that exist already"};
+constexpr OptionRow kTolerance = {
+    .name = "tolerance",
+    .value = "LENGTH",
+    .help =
+        "greatest distance between old and new path: 0.01, 0.01mm or 0.0005in (without a "
+        "unit: mm)",
+    .default_value = "0.01mm",
+    .in_config = true};
+constexpr OptionRow kUnits = {.name = "units",
+                              .value = "mm|inch",
+                              .help = "units of a program that has no G20 or G21",
+                              .in_config = true};
+constexpr OptionRow kAllow = {
+    .name = "allow",
+    .kind = OptionKind::kList,
+    .value = "REASON",
+    .help = "lift a rule that keeps runs, by its id in the report; may be repeated",
+    .in_config = true};
+
+constexpr std::array kSmoothRows = {
+    OptionRow{.name = "target",
+              .value = "NAME",
+              .help = "the control that will run the program (batten targets)",
+              .in_config = true},
+    kTolerance,
+    OptionRow{.name = "machine",
+              .value = "NAME|FILE.toml",
+              .help = "the machine whose time counts (batten machines); default: the target's",
+              .in_config = true},
+    OptionRow{.name = "method",
+              .value = "best|fair|none",
+              .help = "how runs are smoothed (batten methods)",
+              .default_value = "best",
+              .in_config = true},
+    OptionRow{.name = "output",
+              .value = "auto|arcs|lines",
+              .help = "what rewritten runs are made of",
+              .default_value = "auto",
+              .in_config = true},
+    OptionRow{.name = "prefer",
+              .value = "time|accuracy|size",
+              .help = "what the tolerance is spent on",
+              .default_value = "time",
+              .in_config = true},
+    OptionRow{.name = "keep-corners",
+              .value = "DEG",
+              .help = "turns of more degrees than this stay corners",
+              .in_config = true},
+    kUnits,
+    kAllow,
+    OptionRow{.name = "out",
+              .value = "FILE",
+              .help = "the new program, - is standard output; default: IN with .smooth before "
+                      "the suffix"},
+    OptionRow{.name = "in-place", .kind = OptionKind::kFlag, .help = "replace the input itself"},
+    kForce,
+    OptionRow{.name = "dry-run",
+              .kind = OptionKind::kFlag,
+              .help = "do everything but write the new program"},
+    OptionRow{.name = "strict",
+              .kind = OptionKind::kFlag,
+              .help = "write nothing and exit 3 when a run could not be proved",
+              .default_value = "false",
+              .in_config = true},
+    kJson,
+    OptionRow{.name = "threads",
+              .value = "N",
+              .help = "0: all cores; the result is the same for any number",
+              .default_value = "0",
+              .in_config = true},
+    OptionRow{.name = "progress",
+              .value = "auto|on|off|linuxcnc",
+              .help = "how far the work is, on standard error",
+              .default_value = "auto",
+              .in_config = true},
+    OptionRow{.name = "config",
+              .value = "FILE.toml",
+              .help = "read options from a file; the command line goes first"},
+    OptionRow{.name = "print-config",
+              .kind = OptionKind::kFlag,
+              .help = "print the options as such a file and do nothing else"},
+};
+
+constexpr std::array kVerifyRows = {kTolerance, kUnits, kJson, kForce};
+constexpr std::array kInspectRows = {kUnits, kAllow, kJson, kForce};
+constexpr std::array kListRows = {kJson, kForce};
+
+}  // namespace
+
+std::span<const OptionRow> smooth_rows() { return kSmoothRows; }
+std::span<const OptionRow> verify_rows() { return kVerifyRows; }
+std::span<const OptionRow> inspect_rows() { return kInspectRows; }
+std::span<const OptionRow> list_rows() { return kListRows; }
+
+void Given::add(std::string_view name, std::string value) {
+  values_[std::string(name)].push_back(std::move(value));
+}
+
+bool Given::has(std::string_view name) const { return values_.contains(name); }
+
+bool Given::flag(std::string_view name) const { return value(name) == "true"; }
+
+std::optional<std::string> Given::value(std::string_view name) const {
+  const auto found = values_.find(name);
+  if (found == values_.end() || found->second.empty()) return std::nullopt;
+  return found->second.front();
+}
+
+std::vector<std::string> Given::values(std::string_view name) const {
+  const auto found = values_.find(name);
+  return found == values_.end() ? std::vector<std::string>{} : found->second;
+}
+
+void Given::complete_from(const Given& other) {
+  for (const auto& [name, values] : other.values_) values_.try_emplace(name, values);
+}
+
+}  // namespace batten::postproc
