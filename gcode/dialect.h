@@ -2,7 +2,7 @@
 // else in the program asks for a dialect's name.
 #pragma once
 
-#include <optional>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,9 +25,16 @@ class Dialect {
   [[nodiscard]] virtual NumberFormat arc_offsets(Units units) const = 0;
   [[nodiscard]] virtual NumberFormat feeds(Units units) const = 0;
 
-  // Greatest number of bytes in a line, without the line end. `counts_blanks`: whether
-  // blanks and comments count.
+  // Coordinates in a chain that contains arcs: as many decimals as `coordinates`, or more where
+  // a rounded joint would no longer be tangent for the control.
+  [[nodiscard]] virtual NumberFormat arc_ends(Units units) const { return coordinates(units); }
+
+  // Greatest number of bytes in a line, as line_length counts them.
   [[nodiscard]] virtual std::size_t max_line_length() const = 0;
+
+  // The bytes of a line that the control has to keep: without the line end; whether blanks
+  // and comments count is the control's matter.
+  [[nodiscard]] virtual std::size_t line_length(std::string_view line) const = 0;
 
   [[nodiscard]] virtual bool takes_arcs_in(Plane plane) const = 0;
   [[nodiscard]] virtual bool takes_helices() const = 0;
@@ -55,5 +62,11 @@ class Dialect {
 
 // Nothing when there is no dialect of that name.
 [[nodiscard]] const Dialect* find_dialect(std::string_view name);
+
+// 1 or 25.4. Throws std::invalid_argument for unknown units.
+[[nodiscard]] double millimetres_per(Units units);
+
+// The step between neighbouring numbers of a format, in mm.
+[[nodiscard]] double printed_step(const NumberFormat& format, Units units);
 
 }  // namespace batten::gcode

@@ -1,0 +1,241 @@
+#include "gcode/writer.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "gcode/arc_center.h"
+#include "geometry/numeric.h"
+
+namespace batten::gcode {
+namespace {
+
+using geometry::Point3;
+
+constexpr std::array<char, 3> kAxisLetters = {'X', 'Y', 'Z'};
+constexpr std::array<char, 3> kCenterLetters = {'I', 'J', 'K'};
+
+// Enough for any number of a source.
+constexpr NumberFormat kAllDecimals = {.decimals = 9};
+
+const PlaneAxes& arc_plane(const geometry::Vector3& axis) {
+  const PlaneAxes* plane = plane_across(axis);
+  if (plane != nullptr) return *plane;
+  throw std::invalid_argument("Writer: arc axis (" + std::to_string(axis.x()) + ", " +
+                              std::to_string(axis.y()) + ", " + std::to_string(axis.z()) +
+                              "), expected an axis of the coordinate system");
+}
+
+PlanePoint in_plane(const Point3& place, const PlaneAxes& plane) {
+  return {place[plane.first], place[plane.second]};
+}
+
+// The angle from `start` to `end` about `center` in the direction of `wanted`'s sign: above 0
+// and at most a full turn in size.
+double sweep_between(const PlanePoint& start, const PlanePoint& end, const PlanePoint& center,
+                     double wanted) {
+  const PlanePoint a = start - center;
+  const PlanePoint b = end - center;
+  const double angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+  if (wanted > 0) return angle > 0 ? angle : angle + 2 * std::numbers::pi;
+  return angle < 0 ? angle : angle - 2 * std::numbers::pi;
+}
+
+void check(const ModalState& modal) {
+  if (modal.units == Units::kUnknown) {
+    throw std::invalid_argument("Writer: units unknown, expected millimetre or inch");
+  }
+  if (modal.distance != DistanceMode::kAbsolute) {
+    throw std::invalid_argument("Writer: distances not absolute, expected G90");
+  }
+  if (modal.feed_mode != FeedMode::kPerMinute) {
+    throw std::invalid_argument("Writer: feeds not per minute, expected G94");
+  }
+}
+
+}  // namespace
+
+struct Writer::PrintedArc {
+  PlaneAxes plane;
+  geometry::Arc arc;  // as the printed numbers say it, about the positive axis
+  Coordinates end;
+  std::array<std::string, 2> center;  // of the plane's first and second axis; empty: left out
+};
+
+Writer::Writer(const Dialect& dialect, WriterState state, std::string_view line_end)
+    : dialect_(dialect),
+      state_(std::move(state)),
+      line_end_(line_end),
+      unit_((check(state_.modal), millimetres_per(state_.modal.units))),
+      coordinates_(dialect.coordinates(state_.modal.units)) {}
+
+void Writer::line_to(const Point3& end, double feed) {
+  const Coordinates coordinates = print(end);
+  if (!coordinates[0].changes && !coordinates[1].changes && !coordinates[2].changes) return;
+  add_motion(MotionMode::kLine);
+  add_coordinates(coordinates);
+  add_feed(feed);
+  end_block();
+}
+
+bool Writer::arc_to(const geometry::Arc& arc, double feed) {
+  const std::optional<PrintedArc> printed = print_arc(arc);
+  if (!printed) return false;
+  add_plane(printed->plane.plane);
+  add_motion(printed->arc.sweep > 0 ? MotionMode::kCounterclockwise : MotionMode::kClockwise);
+  add_coordinates(printed->end);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis == printed->plane.normal) continue;
+    const std::string& digits = printed->center[axis == printed->plane.first ? 0 : 1];
+    if (!digits.empty()) add(kCenterLetters[static_cast<std::size_t>(axis)], digits);
+  }
+  add_feed(feed);
+  end_block();
+  return true;
+}
+
+void Writer::copy_line(std::string_view text) {
+  text_ += text;
+  text_ += line_end_;
+}
+
+void Writer::restore(const ModalState& expected) {
+  if (expected.plane != Plane::kUnknown) add_plane(expected.plane);
+  if (expected.motion != MotionMode::kUnknown && expected.motion != state_.modal.motion) {
+    if (expected.motion != MotionMode::kLine && expected.motion != MotionMode::kRapid) {
+      throw std::invalid_argument(
+          "Writer::restore: a motion word that cannot stand alone, "
+          "expected G0 or G1");
+    }
+    add_motion(expected.motion);
+  }
+  if (expected.feed) add_feed(*expected.feed);
+  if (!block_.empty()) end_block();
+}
+
+Writer::Coordinate Writer::print(int axis, double mm) const {
+  const auto known = state_.position.known[static_cast<std::size_t>(axis)];
+  const double now = state_.position.mm[axis];
+  if (known && std::abs(mm - now) <= geometry::kSamePlace) return {false, now, {}};
+  Coordinate printed;
+  printed.digits = to_text(mm / unit_, coordinates_);
+  printed.mm = read_number(printed.digits)->value * unit_;
+  printed.changes = !known || std::abs(printed.mm - now) > geometry::kSamePlace;
+  if (!printed.changes) printed.mm = now;
+  return printed;
+}
+
+Writer::Coordinates Writer::print(const Point3& place) const {
+  return {print(0, place[0]), print(1, place[1]), print(2, place[2])};
+}
+
+std::optional<Writer::PrintedArc> Writer::print_arc(const geometry::Arc& arc) const {
+  PrintedArc printed;
+  printed.plane = arc_plane(arc.axis);
+  const int normal = printed.plane.normal;
+  if (!dialect_.takes_arcs_in(printed.plane.plane) || !centers_understood()) return std::nullopt;
+
+  printed.end = print_arc_end(arc.end, printed.plane);
+  if (printed.end[static_cast<std::size_t>(normal)].changes && !dialect_.takes_helices()) {
+    return std::nullopt;
+  }
+  printed.arc.start = state_.position.mm;
+  printed.arc.end = {printed.end[0].mm, printed.end[1].mm, printed.end[2].mm};
+  printed.arc.axis = geometry::Vector3::Unit(normal);
+  const double sweep = arc.axis[normal] > 0 ? arc.sweep : -arc.sweep;
+  print_center(arc.center, sweep, printed);
+  if (std::abs(printed.arc.sweep - sweep) > std::numbers::pi) return std::nullopt;
+  if (!dialect_.arc_complaint(printed.arc, state_.modal.units).empty()) return std::nullopt;
+  return printed;
+}
+
+bool Writer::absolute_centers() const {
+  return state_.modal.arc_distance == DistanceMode::kAbsolute && dialect_.takes_arc_distance_mode();
+}
+
+bool Writer::centers_understood() const {
+  return absolute_centers() || state_.modal.arc_distance == DistanceMode::kIncremental;
+}
+
+// An arc needs a word of its plane even where it comes back to where it began.
+Writer::Coordinates Writer::print_arc_end(const Point3& end, const PlaneAxes& plane) const {
+  Coordinates coordinates = print(end);
+  Coordinate& first = coordinates[static_cast<std::size_t>(plane.first)];
+  if (!first.changes && !coordinates[static_cast<std::size_t>(plane.second)].changes) {
+    first.changes = true;
+    first.digits = to_text(first.mm / unit_, kAllDecimals);  // where it is, exactly
+  }
+  return coordinates;
+}
+
+// The centre in the program's units, from printed start and printed end; then the sweep.
+void Writer::print_center(const Point3& wanted, double sweep, PrintedArc& printed) const {
+  const PlaneAxes& plane = printed.plane;
+  const NumberFormat format = dialect_.arc_offsets(state_.modal.units);
+  const PlanePoint start = in_plane(printed.arc.start, plane) / unit_;
+  const PlanePoint end = in_plane(printed.arc.end, plane) / unit_;
+  CenterGrid grid;
+  grid.step = std::pow(10.0, -format.decimals);
+  if (!absolute_centers()) grid.base = start;
+  const PlanePoint steps = printed_center(start, end, in_plane(wanted, plane) / unit_, sweep, grid);
+  PlanePoint center = grid.base;
+  for (const int i : {0, 1}) {
+    std::string digits = to_text(steps[i] * grid.step, format);
+    center[i] += read_number(digits)->value;
+    // An offset of zero need not be said, unless both are. Absolute centres need both words.
+    const bool says_nothing = !absolute_centers() && steps[i] == 0 && steps[1 - i] != 0;
+    if (!says_nothing) printed.center[static_cast<std::size_t>(i)] = std::move(digits);
+  }
+  printed.arc.sweep = sweep_between(start, end, center, sweep);
+  printed.arc.center = printed.arc.start;
+  printed.arc.center[plane.first] = center.x() * unit_;
+  printed.arc.center[plane.second] = center.y() * unit_;
+}
+
+void Writer::add(char letter, std::string_view digits) {
+  if (!block_.empty() && dialect_.blanks_between_words()) block_ += ' ';
+  block_ += letter;
+  block_ += digits;
+}
+
+void Writer::add_plane(Plane plane) {
+  if (plane == state_.modal.plane) return;
+  add('G', plane == Plane::kXY ? "17" : (plane == Plane::kZX ? "18" : "19"));
+  state_.modal.plane = plane;
+}
+
+void Writer::add_motion(MotionMode motion) {
+  if (motion == state_.modal.motion) return;
+  constexpr std::array<std::string_view, 4> kNumbers = {"0", "1", "2", "3"};
+  add('G',
+      kNumbers[static_cast<std::size_t>(motion) - static_cast<std::size_t>(MotionMode::kRapid)]);
+  state_.modal.motion = motion;
+}
+
+void Writer::add_coordinates(const Coordinates& coordinates) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    if (!coordinates[i].changes) continue;
+    add(kAxisLetters[i], coordinates[i].digits);
+    state_.position.mm[axis] = coordinates[i].mm;
+    state_.position.known[i] = true;
+  }
+}
+
+void Writer::add_feed(double feed) {
+  if (state_.modal.feed == feed) return;
+  const NumberFormat format = dialect_.feeds(state_.modal.units);
+  const std::string digits = to_text(feed / unit_, format);
+  if (state_.modal.feed && to_text(*state_.modal.feed / unit_, format) == digits) return;
+  add('F', digits);
+  state_.modal.feed = read_number(digits)->value * unit_;
+}
+
+void Writer::end_block() {
+  text_ += block_;
+  text_ += line_end_;
+  block_.clear();
+}
+
+}  // namespace batten::gcode
