@@ -35,23 +35,33 @@ SourceSpan span_of(std::size_t begin, std::size_t end) {
 
 }  // namespace
 
-Token LineLexer::take(TokenKind kind, std::size_t end) {
-  Token token;
-  token.kind = kind;
-  token.span = span_of(at_, end);
+const Token& LineLexer::take(TokenKind kind, std::size_t end) {
+  token_.kind = kind;
+  token_.letter = 0;
+  token_.has_value = false;
+  token_.unclosed = false;
+  token_.span = span_of(at_, end);
   at_ = end;
-  return token;
+  return token_;
 }
 
-Token LineLexer::rest(TokenKind kind, std::size_t where) {
+// Field by field: a copy of the whole would wait until the parts have been written.
+void LineLexer::take_number(const ReadNumber& number) {
+  token_.has_value = true;
+  token_.number.value = number.value;
+  token_.number.decimals = number.decimals;
+  token_.number.has_point = number.has_point;
+}
+
+const Token& LineLexer::rest(TokenKind kind, std::size_t where) {
   at_ = where;
   return take(kind, text_.size());
 }
 
-Token LineLexer::unreadable(std::size_t where, std::string_view trouble) {
-  Token token = rest(TokenKind::kUnreadable, where);
-  token.trouble = trouble;
-  return token;
+const Token& LineLexer::unreadable(std::size_t where, std::string_view trouble) {
+  rest(TokenKind::kUnreadable, where);
+  token_.trouble = trouble;
+  return token_;
 }
 
 std::size_t LineLexer::after_blanks(std::size_t at) const {
@@ -61,7 +71,7 @@ std::size_t LineLexer::after_blanks(std::size_t at) const {
   return at;
 }
 
-Token LineLexer::next() {
+const Token& LineLexer::next() {
   at_ = after_blanks(at_);
   if (at_ >= text_.size()) {
     return take(TokenKind::kEnd, text_.size());
@@ -70,7 +80,7 @@ Token LineLexer::next() {
   return is_letter(c) ? letter_token() : sign_token(c);
 }
 
-Token LineLexer::sign_token(char c) {
+const Token& LineLexer::sign_token(char c) {
   switch (c) {
     case '(':
       return comment();
@@ -79,7 +89,10 @@ Token LineLexer::sign_token(char c) {
     case '/':
       return block_delete();
     case '*':
-      return checksum();
+      if (at_ > begin_) {
+        return checksum();
+      }
+      break;
     case ',':
       return corner_word();
     case '#':
@@ -91,9 +104,10 @@ Token LineLexer::sign_token(char c) {
     default:
       break;
   }
-  const bool first = after_blanks(begin_) == at_;
-  if (kForeignCharacters.find(c) != std::string_view::npos || (first && is_digit(c))) {
-    return rest(TokenKind::kForeign, at_);  // a line that starts with digits is Klartext
+  const bool first = at_ == begin_;
+  if (kForeignCharacters.find(c) != std::string_view::npos ||
+      (first && (is_digit(c) || c == '*'))) {
+    return rest(TokenKind::kForeign, at_);  // Klartext lines start with digits or a star
   }
   if (is_digit(c) || c == '.' || c == '+' || c == '-') {
     return unreadable(at_, "a number without a letter");
@@ -101,7 +115,7 @@ Token LineLexer::sign_token(char c) {
   return unreadable(at_, "a character that no word starts with");
 }
 
-Token LineLexer::letter_token() {
+const Token& LineLexer::letter_token() {
   const char letter = upper(text_[at_]);
   const std::size_t value = after_blanks(at_ + 1);
   const char c = peek(value);
@@ -133,7 +147,7 @@ Token LineLexer::letter_token() {
   return unreadable(at_, "a letter without a number");
 }
 
-Token LineLexer::number_word(char letter, std::size_t value_at) {
+const Token& LineLexer::number_word(char letter, std::size_t value_at) {
   const auto scanned = scan_number(text_.substr(value_at));
   if (!scanned) {
     return unreadable(at_, "a letter without a number that can be read");
@@ -155,26 +169,25 @@ Token LineLexer::number_word(char letter, std::size_t value_at) {
     default:
       break;
   }
-  Token token = take(TokenKind::kWord, end);
-  token.letter = letter;
-  token.has_value = true;
-  token.number = scanned->number;
-  return token;
+  take(TokenKind::kWord, end);
+  token_.letter = letter;
+  take_number(scanned->number);
+  return token_;
 }
 
-Token LineLexer::value_word(char letter, std::size_t value_at) {
+const Token& LineLexer::value_word(char letter, std::size_t value_at) {
   const auto end = after_computed_value(text_, value_at);
   if (!end) {
     return unreadable(at_, "a letter without a value that can be read");
   }
-  Token token = take(TokenKind::kValueWord, *end);
-  token.letter = letter;
-  return token;
+  take(TokenKind::kValueWord, *end);
+  token_.letter = letter;
+  return token_;
 }
 
 // O1000 alone is a program's number; with anything else (O100 sub, O<name> call) the order of
 // blocks changes.
-Token LineLexer::o_word() {
+const Token& LineLexer::o_word() {
   const std::size_t value = after_blanks(at_ + 1);
   const auto scanned =
       is_digit(peek(value)) ? scan_number(text_.substr(value)) : std::optional<ScannedNumber>();
@@ -187,15 +200,14 @@ Token LineLexer::o_word() {
   if (following < text_.size() && c != '(' && c != ';') {
     return rest(TokenKind::kFlow, at_);
   }
-  Token token = take(TokenKind::kProgramNumber, end);
-  token.letter = 'O';
-  token.has_value = true;
-  token.number = scanned->number;
-  return token;
+  take(TokenKind::kProgramNumber, end);
+  token_.letter = 'O';
+  take_number(scanned->number);
+  return token_;
 }
 
 // Two letters without anything between them: no word of the RS-274 family.
-Token LineLexer::keyword() {
+const Token& LineLexer::keyword() {
   std::size_t end = at_;
   while (is_letter(peek(end))) {
     ++end;
@@ -210,7 +222,7 @@ Token LineLexer::keyword() {
 
 // Ends with its own closing bracket. Nested comments are an error for most controls and one
 // comment for some (ISG): read as one when the brackets balance, which nobody reads as words.
-Token LineLexer::comment() {
+const Token& LineLexer::comment() {
   std::size_t first_close = 0;
   int depth = 0;
   bool nested = false;
@@ -234,14 +246,14 @@ Token LineLexer::comment() {
   if (first_close != 0 && after_blanks(first_close + 1) < text_.size()) {
     return unreadable(at_, "a comment in a comment, and words after it");
   }
-  Token token = take(TokenKind::kComment, text_.size());
-  token.unclosed = first_close == 0;
-  return token;
+  take(TokenKind::kComment, text_.size());
+  token_.unclosed = first_close == 0;
+  return token_;
 }
 
-Token LineLexer::line_comment() { return take(TokenKind::kLineComment, text_.size()); }
+const Token& LineLexer::line_comment() { return take(TokenKind::kLineComment, text_.size()); }
 
-Token LineLexer::block_delete() {
+const Token& LineLexer::block_delete() {
   const std::size_t end = is_digit(peek(at_ + 1)) ? at_ + 2 : at_ + 1;
   if (is_digit(peek(end)) || peek(end) == '.') {
     return unreadable(at_, "a block delete sign with a number above 9");
@@ -249,7 +261,7 @@ Token LineLexer::block_delete() {
   return take(TokenKind::kBlockDelete, end);
 }
 
-Token LineLexer::checksum() {
+const Token& LineLexer::checksum() {
   constexpr std::size_t kMostDigits = 3;  // a sum is a byte
   std::size_t end = at_ + 1;
   while (is_digit(peek(end))) {
@@ -260,13 +272,12 @@ Token LineLexer::checksum() {
     return unreadable(at_, "a '*' that is no check sum");
   }
   const auto scanned = scan_number(text_.substr(at_ + 1, digits));
-  Token token = take(TokenKind::kChecksum, end);
-  token.has_value = true;
-  token.number = scanned->number;
-  return token;
+  take(TokenKind::kChecksum, end);
+  take_number(scanned->number);
+  return token_;
 }
 
-Token LineLexer::parameter_assignment() {
+const Token& LineLexer::parameter_assignment() {
   const auto target = after_parameter(text_, at_);
   if (!target) {
     // #SPLINE ON, #HSC, #set(..)#: commands of other controls.
@@ -281,13 +292,13 @@ Token LineLexer::parameter_assignment() {
   return assigned(equals);
 }
 
-Token LineLexer::assigned(std::size_t equals_at) {
+const Token& LineLexer::assigned(std::size_t equals_at) {
   const auto end = after_sum(text_, equals_at + 1);
   return end ? take(TokenKind::kAssignment, *end)
              : unreadable(at_, "a parameter that is set to something that cannot be read");
 }
 
-Token LineLexer::corner_word() {
+const Token& LineLexer::corner_word() {
   const std::size_t letter_at = after_blanks(at_ + 1);
   const char letter = upper(peek(letter_at));
   const std::size_t value = after_blanks(letter_at + 1);
@@ -301,11 +312,12 @@ Token LineLexer::corner_word() {
   if (!computed) {
     return unreadable(at_, "a corner word without a value that can be read");
   }
-  Token token = take(TokenKind::kCornerWord, *computed);
-  token.letter = letter;
-  token.has_value = scanned.has_value();
-  token.number = scanned ? scanned->number : ReadNumber{};
-  return token;
+  take(TokenKind::kCornerWord, *computed);
+  token_.letter = letter;
+  if (scanned) {
+    take_number(scanned->number);
+  }
+  return token_;
 }
 
 }  // namespace batten::gcode

@@ -116,16 +116,50 @@ int fraction_digits(const Decimal& decimal, const NumberFormat& format) {
   return last;
 }
 
-// Digits and point of a number, gathered in one pass.
+// Digits and point of a number.
 struct Scan {
   std::uint64_t mantissa = 0;  // of all digits, while it is exact
-  bool exact = true;           // mantissa still holds every digit
   int digits = 0;
   int decimals = 0;
+  bool exact = true;  // mantissa still holds every digit
   bool has_point = false;
   bool whole_part = false;  // a digit other than 0 stands before the point
   std::size_t end = 0;      // after the last character of the number
 };
+
+// Fifteen digits are below 2^53, below which every integer is a double.
+constexpr int kExactDigits = 15;
+
+// The way of nearly all numbers: few digits and no blanks between them. False when the number
+// is of another kind; `scan` is of no use then.
+bool scan_plain_digits(std::string_view text, std::size_t at, Scan& scan) {
+  std::uint64_t mantissa = 0;
+  const std::size_t begin = at;
+  while (at < text.size() && is_digit(text[at])) {
+    mantissa = mantissa * 10 + static_cast<std::uint64_t>(text[at++] - '0');
+  }
+  std::size_t digits = at - begin;
+  if (at < text.size() && text[at] == '.') {
+    scan.has_point = true;
+    const std::size_t fraction = ++at;
+    while (at < text.size() && is_digit(text[at])) {
+      mantissa = mantissa * 10 + static_cast<std::uint64_t>(text[at++] - '0');
+    }
+    scan.decimals = static_cast<int>(at - fraction);
+    digits += at - fraction;
+  }
+  scan.mantissa = mantissa;
+  scan.digits = static_cast<int>(digits);
+  scan.end = at;
+  std::size_t following = at;
+  while (following < text.size() && is_blank(text[following])) {
+    ++following;
+  }
+  // Behind blanks the same number may go on.
+  const bool goes_on = following > at && following < text.size() &&
+                       (is_digit(text[following]) || text[following] == '.');
+  return digits > 0 && digits <= kExactDigits && !goes_on;
+}
 
 Scan scan_digits(std::string_view text, std::size_t at) {
   // A mantissa below this takes one digit more without leaving 2^53, below which every
@@ -234,7 +268,10 @@ std::optional<ScannedNumber> scan_number(std::string_view text) {
   if (negative || (at < text.size() && text[at] == '+')) {
     ++at;
   }
-  const Scan scan = scan_digits(text, at);
+  Scan scan;
+  if (!scan_plain_digits(text, at, scan)) {
+    scan = scan_digits(text, at);
+  }
   if (scan.digits == 0) {
     return std::nullopt;
   }

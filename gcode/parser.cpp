@@ -60,10 +60,11 @@ class Parser {
   }
 
  private:
-  // Sized for lines as CAM systems write them; longer programs of shorter lines grow it.
+  // Room for lines as CAM systems write them (`X1.5Y-2.25` and the like): growing would copy
+  // everything. Room that is not used takes no memory.
   void reserve() {
-    constexpr std::size_t kBytesPerBlock = 24;
-    constexpr std::size_t kBytesPerWord = 9;
+    constexpr std::size_t kBytesPerBlock = 16;
+    constexpr std::size_t kBytesPerWord = 6;
     program_.blocks.reserve(text_.size() / kBytesPerBlock + 1);
     program_.words.reserve(text_.size() / kBytesPerWord + 1);
   }
@@ -127,7 +128,11 @@ class Parser {
   void read_tokens(Block& block, SourceSpan content) {
     LineLexer lexer(text_, content);
     bool only_n = true;  // no word but N so far
-    for (Token token = lexer.next(); token.kind != TokenKind::kEnd; token = lexer.next()) {
+    for (;;) {
+      const Token& token = lexer.next();
+      if (token.kind == TokenKind::kEnd) {
+        break;
+      }
       switch (token.kind) {
         case TokenKind::kWord:
           add_word(token, token.letter);
@@ -187,14 +192,16 @@ class Parser {
   }
 
   void add_word(const Token& token, char letter) {
-    Word word;
+    Word& word = program_.words.emplace_back();
     word.letter = letter;
-    word.decimals = static_cast<std::uint8_t>(std::min<int>(token.number.decimals, kMostDecimals));
-    word.has_point = token.number.has_point;
-    word.is_number = token.has_value;
-    word.value = token.number.value;
     word.span = token.span;
-    program_.words.push_back(word);
+    word.is_number = token.has_value;
+    if (token.has_value) {
+      word.decimals =
+          static_cast<std::uint8_t>(std::min<int>(token.number.decimals, kMostDecimals));
+      word.has_point = token.number.has_point;
+      word.value = token.number.value;
+    }
   }
 
   void add_comment(const Token& token) {

@@ -29,9 +29,9 @@ struct Token {
   char letter = 0;         // upper case
   bool has_value = false;  // `number` was read
   bool unclosed = false;   // a comment that nothing closes
-  ReadNumber number;
+  ReadNumber number;       // means nothing without has_value
   SourceSpan span;
-  std::string_view trouble;  // what cannot be read, for people
+  std::string_view trouble;  // kUnreadable: what cannot be read, for people
 };
 
 }  // namespace batten::gcode
