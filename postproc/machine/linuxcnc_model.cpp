@@ -144,7 +144,7 @@ class Queue {
     const auto arc = blend_arc(last, next, machine_, tolerance);
     double arc_worth = 0;
     if (arc) {
-      const double left = takes_rest_of_last(*arc) ? last.length - arc->trim : 0;
+      const double left = takes_rest_of_last(*arc) ? last.length - arc->trim_before : 0;
       arc_worth = std::min(arc->velocity, (arc->radius * arc->turn + left) / machine_.block_period);
     }
     if (arc_worth > std::max(parabolic_worth, last.kink_velocity)) {
@@ -162,7 +162,7 @@ class Queue {
   [[nodiscard]] bool takes_rest_of_last(const BlendArc& arc) const {
     const Segment& last = moves_.back();
     if (last.shape != Shape::kLine || last.after_parabolic) return false;
-    return last.length - arc.trim < kGapPeriods * machine_.block_period * arc.velocity;
+    return last.length - arc.trim_before < kGapPeriods * machine_.block_period * arc.velocity;
   }
 
   void insert(const BlendArc& arc, Segment& next) {
@@ -171,17 +171,18 @@ class Queue {
     const bool takes_rest = takes_rest_of_last(arc);
     Segment bend;
     bend.shape = Shape::kBlendArc;
-    bend.length = arc.radius * arc.turn + (takes_rest ? std::max(0.0, last.length - arc.trim) : 0);
+    bend.length =
+        arc.radius * arc.turn + (takes_rest ? std::max(0.0, last.length - arc.trim_before) : 0);
     bend.nominal_length = bend.length;
     bend.feed = std::max(last.feed, next.feed);
     bend.max_velocity = arc.velocity;
     bend.acceleration = arc.acceleration;
     bend.end = Joint::kTangent;
-    shorten(next, arc.trim);
+    shorten(next, arc.trim_after);
     if (takes_rest) {
       moves_.pop_back();
     } else {
-      shorten(last, arc.trim);
+      shorten(last, arc.trim_before);
       last.end = Joint::kTangent;
       finish_segment(last, machine_.block_period);
     }

@@ -24,6 +24,32 @@ double triangle_velocity(double acceleration, double length) {
   return std::sqrt(acceleration * length);
 }
 
+// Limits on a bend of radius r in its plane; a helix has the speed and acceleration of its
+// projection. The control takes r + h^2 / r for the radius of curvature, with h the whole
+// rise of the move and not the rise per radian, so that steep helices speed up faster.
+void set_bend(Segment& s, double radius, double rise, double flat_length, const Machine& m) {
+  const double stretch = s.length / flat_length;
+  s.shape = Shape::kArc;
+  s.radius = radius;
+  s.speed_radius = radius + rise * rise / radius;
+  s.acceleration = m.max_acceleration * stretch;
+  s.max_velocity =
+      std::min(m.max_velocity, std::sqrt(kNormalShare * m.max_acceleration * radius)) * stretch;
+  s.sweep = flat_length / radius;
+}
+
+void set_arc(Segment& s, const geometry::Arc& arc, const Machine& m) {
+  const double rise = arc.axis.dot(arc.end - arc.start);
+  const Vector3 start = arc.start - arc.center;
+  const Vector3 end = arc.end - arc.center;
+  const double r0 = (start - arc.axis.dot(start) * arc.axis).norm();
+  const double r1 = (end - arc.axis.dot(end) * arc.axis).norm();
+  const double flat_length = std::sqrt(std::max(0.0, s.length * s.length - rise * rise));
+  set_bend(s, std::min(r0, r1), rise, flat_length, m);
+  s.axis = arc.sweep > 0 ? arc.axis : Vector3(-arc.axis);
+  s.sweep = std::abs(arc.sweep);
+}
+
 }  // namespace
 
 Segment segment_of(const TimedPiece& timed, const Machine& machine, Joint end) {
@@ -37,17 +63,10 @@ Segment segment_of(const TimedPiece& timed, const Machine& machine, Joint end) {
   if (curvature <= kStraight) {
     s.max_velocity = limit_along(s.start_direction, machine.max_velocity);
     s.acceleration = limit_along(s.start_direction, machine.max_acceleration);
+  } else if (const auto* arc = std::get_if<geometry::Arc>(&timed.piece)) {
+    set_arc(s, *arc, machine);
   } else {
-    s.shape = Shape::kArc;
-    s.radius = 1 / curvature;
-    s.acceleration = machine.max_acceleration;
-    s.max_velocity =
-        std::min(machine.max_velocity, std::sqrt(kNormalShare * s.acceleration * s.radius));
-    s.sweep = s.length / s.radius;
-    if (const auto* arc = std::get_if<geometry::Arc>(&timed.piece)) {
-      s.axis = arc->sweep > 0 ? arc->axis : Vector3(-arc->axis);
-      s.sweep = std::abs(arc->sweep);
-    }
+    set_bend(s, 1 / curvature, 0, s.length, machine);
   }
   // The path as a whole has the limit of one axis too ([TRAJ]MAX_LINEAR_VELOCITY).
   s.max_velocity =
@@ -73,12 +92,12 @@ void finish_segment(Segment& s, double period) {
   s.max_velocity = std::min(s.max_velocity, s.length / (period * kLeastPeriods));
   if (s.shape != Shape::kArc) return;
   const double usable = usable_acceleration(s);
-  const double steepest = std::sqrt(kNormalShare * usable * s.radius);
+  const double steepest = std::sqrt(kNormalShare * usable * s.speed_radius);
   if (s.max_velocity >= steepest) {
     s.max_velocity = steepest;
     s.tangential_share = kTangentialShare;
   } else {
-    const double normal = s.max_velocity * s.max_velocity / s.radius / usable;
+    const double normal = s.max_velocity * s.max_velocity / s.speed_radius / usable;
     s.tangential_share = std::sqrt(1 - normal * normal);
   }
 }

@@ -36,8 +36,9 @@ struct Segment {
   geometry::Vector3 end_direction = geometry::Vector3::Zero();
 
   // Arcs only.
-  double radius = 0;                                   // mm, of curvature
-  double sweep = 0;                                    // radians, above 0
+  double radius = 0;        // mm, seen along the axis
+  double speed_radius = 0;  // mm: the radius by which the control judges the speed
+  double sweep = 0;         // radians, above 0
   geometry::Vector3 axis = geometry::Vector3::Zero();  // unit length; zero: not plane
   double tangential_share = kTangentialShare;
 
