@@ -12,13 +12,19 @@ struct ReadOptions {
 };
 
 // Follows the program from its first block to its last, as a control would, without loops
-// and calls: blocks that would need them are opaque.
+// and calls: blocks that would need them are opaque, and what they could have changed is
+// unknown after them.
 //
 // State at the start: units as in the options; everything else as controls have it after
 // power-on (absolute, XY plane, feed per minute, compensations off), the position unknown.
 //
-// Adds errors for what a control would refuse (two words of one group, an arc whose radii
-// differ by more than 0.1 % and 0.0283 mm) - as diagnostics; the block is opaque then.
+// What most controls would refuse (two words of one group, an arc whose radii differ by more
+// than 0.0283 mm and 0.1 %) gives a warning; the block is opaque then. The only error is
+// units-missing: motions in a program that names no unit, without ReadOptions::units. At most
+// one diagnostic per block. Linear time.
+//
+// Positions are those of the program's own coordinates. In states that no motion may be
+// rewritten in (scaling, rotation, tilted planes ..) they are not where the tool is.
 [[nodiscard]] Interpretation interpret(const Program& program, const ReadOptions& options,
                                        Diagnostics& found);
 

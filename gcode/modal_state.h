@@ -58,6 +58,16 @@ struct ModalState {
   bool operator==(const ModalState&) const = default;
 };
 
+// Nothing is known: after a call, or a block that could have changed anything.
+[[nodiscard]] ModalState unknown_modal_state();
+
+// What is known when either of two states may hold: items in which they differ are unknown.
+[[nodiscard]] ModalState either(const ModalState& a, const ModalState& b);
+
+// Does every item have a value? The motion mode, the feed, the spindle speed and the laser
+// mode are not asked for: a block names the first itself, the others do not bend the path.
+[[nodiscard]] bool is_known(const ModalState& state);
+
 // The programmed position, mm. An axis that is not known has no value: before its first
 // word, and after blocks that moved it in ways that were not understood.
 struct Position {

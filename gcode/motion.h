@@ -22,34 +22,47 @@ enum class MotionKind : std::uint8_t {
 struct Motion {
   std::uint32_t block = 0;  // index into Program::blocks
   MotionKind kind = MotionKind::kLine;
-  bool start_known = false;  // every axis that this motion moves was known before it
+  // Every axis that the block names was known before it; for arcs both axes of the plane too.
+  // Axes that are not known stand at 0 in `piece`, before and after: an axis that a 2D program
+  // never names is a constant, and which one does not matter.
+  bool start_known = false;
+  // Every axis that the block names is known after it. False in G91 from an unknown place.
+  bool end_known = false;
   std::array<bool, 3> axes_named = {false, false, false};  // X, Y, Z stand in the block
   geometry::PathPiece piece;  // a Line for kRapid and kLine, an Arc for kArc; absolute mm
 };
 
 // What a block is, as far as grouping and checking are concerned.
 enum class BlockKind : std::uint8_t {
-  kEmpty,          // nothing, or comments only
-  kMotion,         // one motion of MotionKind, and words that only describe it or change nothing
-  kSettings,       // words that change the state or act (M, S, T, G54 ..), without a motion
+  kEmpty,          // nothing, comments, N, or words that change nothing
+  kMotion,         // one motion of MotionKind, and words that only describe it (F, G1) or change
+                   // nothing
+  kSettings,       // words that change the state or act (M, S, T, G54, an F alone ..), without a
+                   // motion that can be followed (G28, cycles)
   kMotionAndMore,  // a motion with words that change the state or act in the same block
-  kOpaque,         // not understood
+  kOpaque,         // not understood, not certain to be executed, or of an unknown state
 };
 
 struct BlockMeaning {
   BlockKind kind = BlockKind::kEmpty;
-  // Why this block itself cannot be part of a run; empty where it can (see reason.h).
+  // Why this block itself cannot be part of a run; empty where it can (see reason.h). The state
+  // may still forbid it. Empty also for blocks without motion that may stand inside a run and
+  // vanish with it: empty lines, comments, and words that change nothing or the feed only.
   std::string_view barrier;
   std::int32_t motion = -1;       // index into Interpretation::motions, -1: none
   std::uint32_t state_after = 0;  // index into Interpretation::states
   bool label_referenced = false;  // its N number is the target of GOTO, P, M97, M99 ..
+  // Before this block the state and place are not what the block before it left: control can
+  // come from elsewhere (a label that is jumped to).
+  bool entered_from_elsewhere = false;
 };
 
 struct Interpretation {
   std::vector<BlockMeaning> blocks;  // one per block of the program
   std::vector<Motion> motions;       // in order
   std::vector<ModalState> states;    // states[0] is the state before the first block
-  bool unit_word_seen = false;       // G20/G21 (G70/G71) stood somewhere, or --units was given
+  // G20 or G21 (or G70/G71 without parameters) stood somewhere, or --units was given.
+  bool unit_word_seen = false;
 };
 
 }  // namespace batten::gcode

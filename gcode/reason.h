@@ -34,7 +34,8 @@ inline constexpr std::string_view kSpindle = "spindle";             // S, M3, M4
 inline constexpr std::string_view kCoolant = "coolant";             // M7, M8, M9
 inline constexpr std::string_view kMiscFunction = "misc-function";  // any other M word
 inline constexpr std::string_view kStateChange = "state-change";    // units, plane, distance, modes
-inline constexpr std::string_view kComment = "comment";  // only where comments must stand alone
+inline constexpr std::string_view kComment = "comment";    // only where comments must stand alone
+inline constexpr std::string_view kChecksum = "checksum";  // N5 G1 X1*71: the host counts lines
 inline constexpr std::string_view kSubprogram = "subprogram";   // M98, M99, G65, O..
 inline constexpr std::string_view kProgramEnd = "program-end";  // M0 M1 M2 M30
 

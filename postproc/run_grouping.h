@@ -11,21 +11,23 @@
 namespace batten::postproc {
 
 struct GroupingOptions {
-  std::size_t min_motions = 3;            // shorter chains are copied: too-short
+  std::size_t min_motions = 3;            // chains of fewer motions with a length: too-short
   std::vector<std::string_view> allowed;  // reason ids lifted by --allow
 };
 
 // Sections in the order of the program; together they cover every block once. A Verbatim
-// section holds neighbouring blocks that are kept for one reason; blocks without motion and
-// without words (empty lines, comments) go with the section before them.
+// section holds neighbouring blocks that are kept for one reason; blocks that say nothing
+// (empty lines, comments) go with the Verbatim section before them, behind a run with the one
+// after them. A run is not longer than its motions: what stands around it is copied.
 //
 // Requires: `interpretation` belongs to `program`.
 [[nodiscard]] std::vector<Section> group_runs(const gcode::Program& program,
                                               const gcode::Interpretation& interpretation,
                                               const GroupingOptions& options);
 
-// Why no motion may be rewritten in this state; empty where it may. The rows of the table
-// of unsafe states.
+// Why no motion may be rewritten in this state; empty where it may: one row per unsafe state.
+// G61 (exact path) is lifted by --allow exact-stop; G61.1 and G60 are not, their user asked for
+// the stops. Ask with the state after the motion's block, which is the one it moves in.
 [[nodiscard]] std::string_view unsafe_state(const gcode::ModalState& state,
                                             const GroupingOptions& options);
 

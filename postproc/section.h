@@ -19,19 +19,26 @@ struct FeedFrom {
   double feed = 0;  // mm/min
 };
 
-// A comment that stood on the block that leads to this vertex (1 ..).
+// A comment that stood on the block that leads to this vertex (1 ..), or on a line of its own
+// before that block.
 struct CommentAt {
   std::size_t vertex = 0;
   gcode::SourceSpan text;
 };
 
-// A chain of straight cutting moves with unchanged state that may be rewritten together.
+// A chain of straight cutting moves with unchanged state that may be rewritten together. Its
+// first and last block are motions of some length; between them may stand motions of no
+// length, lines that change only the feed or nothing, comments and empty lines.
+//
+// Axes whose place is not known stand at 0 in all points: no block of the run names them.
 struct Run {
   std::vector<geometry::Point3> points;  // start and the end of every motion, mm
-  std::vector<FeedFrom> feeds;
+  std::vector<FeedFrom> feeds;           // by vertex, each different from the one before it
   std::vector<CommentAt> comments;
-  int decimals = 3;  // most digits after the point that the run's coordinates were written with
-  std::uint32_t state = 0;  // Interpretation::states at the run's start
+  // Most digits after the point among the X, Y, Z words of its motions, as they were written:
+  // X.1234 in inches counts 4.
+  int decimals = 3;
+  std::uint32_t state = 0;  // Interpretation::states before its first block
   bool closed = false;      // first and last point are one place
 };
 

@@ -1,0 +1,538 @@
+#include "gcode/interpreter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "gcode/arc_from_words.h"
+#include "gcode/block_words.h"
+#include "gcode/control_state.h"
+#include "gcode/program_flow.h"
+#include "gcode/reason.h"
+#include "gcode/state_changes.h"
+
+namespace batten::gcode {
+namespace {
+
+using geometry::Point3;
+
+constexpr double kMillimetresPerInch = 25.4;
+
+std::string_view opacity_reason(Opacity opacity) {
+  switch (opacity) {
+    case Opacity::kExpression:
+      return reason::kExpression;
+    case Opacity::kCornerWord:
+      return reason::kCornerWord;
+    case Opacity::kAssignment:
+      return reason::kAssignment;
+    case Opacity::kFlow:
+      return reason::kProgramFlow;
+    case Opacity::kForeign:
+      return reason::kForeignWords;
+    case Opacity::kProgramMark:
+      return reason::kProgramMark;
+    default:
+      return reason::kNotUnderstood;
+  }
+}
+
+MotionMode mode_of(Code motion) {
+  switch (motion) {
+    case 0:
+      return MotionMode::kRapid;
+    case 10:
+      return MotionMode::kLine;
+    case 20:
+      return MotionMode::kClockwise;
+    case 30:
+      return MotionMode::kCounterclockwise;
+    default:
+      return MotionMode::kOther;
+  }
+}
+
+// Why a motion that is neither G0, G1, G2 nor G3 ends a run.
+std::string_view other_motion_reason(Code motion) {
+  switch (motion) {
+    case 50:
+    case 51:
+    case 52:
+    case 53:
+    case 60:
+    case 61:
+    case 62:
+    case 63:
+      return reason::kSpline;
+    case 310:
+    case 382:
+    case 383:
+    case 384:
+    case 385:
+      return reason::kProbe;
+    case 320:
+    case 330:
+    case 331:
+    case 340:
+    case 760:
+      return reason::kThreading;
+    default:
+      return reason::kCannedCycle;
+  }
+}
+
+bool is_arc(MotionMode mode) {
+  return mode == MotionMode::kClockwise || mode == MotionMode::kCounterclockwise;
+}
+
+// Parameter assignments of LinuxCNC and macro B change no modal state, but high numbers are
+// windows into the control: FANUC's tool offsets begin at #2000, work offsets lie above #5000.
+bool assigns_only_variables(std::string_view text) {
+  constexpr int kFirstSystemVariable = 2000;
+  for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1)) {
+    std::size_t digit = at + 1;
+    int number = 0;
+    while (digit < text.size() && text[digit] >= '0' && text[digit] <= '9' &&
+           number < kFirstSystemVariable) {
+      number = number * 10 + (text[digit] - '0');
+      ++digit;
+    }
+    const bool named = digit < text.size() && text[digit] == '<';
+    if (number >= kFirstSystemVariable || (digit == at + 1 && !named)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+class Interpreter {
+ public:
+  Interpreter(const Program& program, const ReadOptions& options, Diagnostics& found)
+      : program_(program), options_(options), found_(found) {
+    now_.modal.units = options.units;
+    read_.unit_word_seen = options.units != Units::kUnknown;
+    read_.states.push_back(now_.modal);
+    read_.blocks.reserve(program.blocks.size());
+  }
+
+  Interpretation run() {
+    const std::vector<BlockFlow> flow = find_flow(program_);
+    for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
+      read_block(static_cast<std::uint32_t>(i), flow[i]);
+    }
+    report_missing_units();
+    return std::move(read_);
+  }
+
+ private:
+  void read_block(std::uint32_t index, const BlockFlow& flow) {
+    const Block& block = program_.blocks[index];
+    meaning_ = BlockMeaning{};
+    block_index_ = index;
+    told_ = false;
+    meaning_.label_referenced = flow.label_referenced;
+    if (flow.jump_target) {
+      meaning_.entered_from_elsewhere = true;
+      forget_everything(now_);
+    }
+    if (block.block_delete) {
+      read_deletable(block);
+    } else {
+      read_words_or_text(block);
+    }
+    add_barriers_of_place(block, flow);
+    if (read_.states.back() != now_.modal) {
+      read_.states.push_back(now_.modal);
+    }
+    meaning_.state_after = static_cast<std::uint32_t>(read_.states.size() - 1);
+    read_.blocks.push_back(meaning_);
+  }
+
+  // The operator chooses whether the block is executed: what it changes is unknown afterwards.
+  void read_deletable(const Block& block) {
+    const ControlState skipped = now_;
+    read_words_or_text(block);
+    now_ = either(skipped, now_);
+    const bool acts = meaning_.kind != BlockKind::kEmpty;
+    drop_motion();
+    if (acts) {
+      meaning_.kind = BlockKind::kOpaque;
+    }
+    meaning_.barrier = reason::kBlockDelete;
+  }
+
+  void read_words_or_text(const Block& block) {
+    switch (block.opacity) {
+      case Opacity::kNone:
+      case Opacity::kExpression:
+        return read_words(block);
+      case Opacity::kProgramMark:  // and text that no control reads
+        return make_opaque(reason::kProgramMark);
+      case Opacity::kAssignment:
+        if (!assigns_only_variables(program_.source.text(block.span))) {
+          forget_position(now_);
+          now_.work_offset = 0;
+        }
+        return make_opaque(reason::kAssignment);
+      case Opacity::kFlow:
+        if (flow_effect(program_.source.text(block.span)) != FlowEffect::kNothing) {
+          forget_everything(now_);
+        }
+        return make_opaque(reason::kProgramFlow);
+      case Opacity::kCornerWord:
+        // The block's motion stops short of its end, and the next one starts beside it.
+        read_words(block);
+        drop_motion();
+        forget_position(now_);
+        return make_opaque(reason::kCornerWord);
+      default:
+        forget_everything(now_);
+        return make_opaque(opacity_reason(block.opacity));
+    }
+  }
+
+  void make_opaque(std::string_view why) {
+    meaning_.kind = BlockKind::kOpaque;
+    meaning_.barrier = why;
+  }
+
+  void drop_motion() {
+    if (meaning_.motion >= 0) {
+      read_.motions.pop_back();
+      meaning_.motion = -1;
+    }
+  }
+
+  void add_barriers_of_place(const Block& block, const BlockFlow& flow) {
+    const bool active = std::ranges::any_of(program_.comments_of(block), [](const Comment& c) {
+      return c.kind == CommentKind::kActive;
+    });
+    if (block.has_checksum) {
+      block_run(reason::kChecksum);  // the host counts these lines
+    }
+    if (active) {
+      block_run(reason::kActiveComment);
+      if (meaning_.kind == BlockKind::kEmpty) {
+        meaning_.kind = BlockKind::kSettings;
+      } else if (meaning_.kind == BlockKind::kMotion) {
+        meaning_.kind = BlockKind::kMotionAndMore;
+      }
+    }
+    if (meaning_.label_referenced) {
+      block_run(reason::kReferencedLabel);
+    }
+    if (flow.in_body && meaning_.kind != BlockKind::kEmpty) {
+      block_run(reason::kLoopBody);
+    }
+  }
+
+  void block_run(std::string_view why) {
+    if (meaning_.barrier.empty()) {
+      meaning_.barrier = why;
+    }
+  }
+
+  // --- words --------------------------------------------------------------------------------
+
+  void read_words(const Block& block) {
+    const BlockWords words(program_.words_of(block));
+    if (words.problem() != BlockWords::Problem::kNone) {
+      return refuse_words(words);
+    }
+    const StateEffect effect = apply_words(words, now_);
+    read_.unit_word_seen |= effect.unit_word;
+    if (effect.unknown_code >= 0) {
+      tell_unknown_code(block, effect.unknown_code);
+    }
+    meaning_.barrier = effect.barrier;
+    read_motion(words, effect);
+    apply_late_words(words, now_);
+    if (!words.all_numbers()) {
+      drop_motion();
+      make_opaque(reason::kExpression);
+    } else if (!effect.understood && meaning_.kind != BlockKind::kOpaque) {
+      drop_motion();
+      make_opaque(effect.barrier);
+    }
+  }
+
+  void refuse_words(const BlockWords& words) {
+    forget_everything(now_);
+    make_opaque(words.all_numbers() ? reason::kNotUnderstood : reason::kExpression);
+    const auto text = [this](const Word* word) { return program_.source.text(word->span); };
+    switch (words.problem()) {
+      case BlockWords::Problem::kSameGroupTwice:
+        return tell(Severity::kWarning, "two-words-of-one-group", words.second()->span,
+                    fmt::format("{} and {} in one block; expected one word of their group",
+                                text(words.first()), text(words.second())));
+      case BlockWords::Problem::kLetterTwice:
+        return tell(Severity::kWarning, "word-repeated", words.second()->span,
+                    fmt::format("{} and {} in one block; expected one {} word", text(words.first()),
+                                text(words.second()), words.first()->letter));
+      default:
+        if (words.all_numbers()) {
+          tell(Severity::kWarning, "bad-code", words.first()->span,
+               fmt::format("{} is no code; expected a G or M number that a block can hold",
+                           text(words.first())));
+        }
+    }
+  }
+
+  void read_motion(const BlockWords& words, const StateEffect& effect) {
+    const bool settings = !effect.barrier.empty();
+    if (effect.motion >= 0) {
+      set_motion_mode(effect.motion);
+    }
+    const MotionMode mode = now_.modal.motion;
+    const bool arc_words = is_arc(mode) && words.has_any("IJKR");
+    const bool moves = !effect.takes_axes && (words.has_any("XYZ") || arc_words);
+    if (effect.motion >= 0 && mode == MotionMode::kOther) {
+      return read_other_motion(now_.other_motion);
+    }
+    if (!moves) {
+      return finish_without_motion(words, effect);
+    }
+    if (mode == MotionMode::kOther) {
+      return read_other_motion(now_.other_motion);
+    }
+    if (const std::string_view why = why_not_followed(words, effect); !why.empty()) {
+      return lose_motion(words, why);
+    }
+    if (!(is_arc(mode) ? add_arc(words) : add_line(words))) {
+      return;
+    }
+    meaning_.kind = settings ? BlockKind::kMotionAndMore : BlockKind::kMotion;
+    forget_increments(words);
+  }
+
+  void set_motion_mode(Code motion) {
+    now_.modal.motion = mode_of(motion);
+    now_.other_motion =
+        now_.modal.motion == MotionMode::kOther ? other_motion_reason(motion) : std::string_view{};
+    if (motion == 310 || motion == 120 || motion == 130) {
+      // One-shot on some controls, modal on others.
+      now_.modal.motion = MotionMode::kOther;
+    }
+  }
+
+  // Cycles, threads, splines, probes: where the tool is afterwards depends on the control.
+  void read_other_motion(std::string_view why) {
+    forget_position(now_);
+    block_run(why);
+    meaning_.kind = BlockKind::kSettings;
+  }
+
+  void finish_without_motion(const BlockWords& words, const StateEffect& effect) {
+    if (effect.motion >= 0 && !effect.takes_axes) {
+      // G1 alone: the next block moves in this mode.
+      if (read_.states.back().motion != now_.modal.motion) {
+        block_run(reason::kStateChange);
+      }
+    }
+    forget_increments(words);
+    if (!effect.takes_parameters && words.has_any("PQLIJKR")) {
+      forget_position(now_);
+      return make_opaque(reason::kNotUnderstood);
+    }
+    const bool nothing = meaning_.barrier.empty() && !effect.feed_changed;
+    meaning_.kind = nothing ? BlockKind::kEmpty : BlockKind::kSettings;
+  }
+
+  // U, V, W move X, Y, Z by increments on lathes, and axes of their own elsewhere.
+  void forget_increments(const BlockWords& words) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (words.has("UVW"[axis])) {
+        forget_axis(now_, axis);
+      }
+    }
+  }
+
+  // Why the motion of this block cannot be followed; empty when it can.
+  std::string_view why_not_followed(const BlockWords& words, const StateEffect& effect) const {
+    const ModalState& modal = now_.modal;
+    if (!words.all_numbers()) {
+      return reason::kExpression;
+    }
+    if (modal.motion == MotionMode::kUnknown || modal.distance == DistanceMode::kUnknown) {
+      return reason::kStateUnknown;
+    }
+    if (modal.polar != Tri::kOff || modal.modal_macro != Tri::kOff) {
+      return modal.polar == Tri::kOn         ? reason::kPolar
+             : modal.modal_macro == Tri::kOn ? reason::kModalMacro
+                                             : reason::kStateUnknown;
+    }
+    if (is_arc(modal.motion)) {
+      return why_arc_not_followed(words, effect);
+    }
+    if (!effect.takes_parameters && words.has('R')) {
+      return reason::kCornerWord;  // G1 X10 R2: a rounded corner
+    }
+    if (!effect.takes_parameters && words.has_any("IJKPQL")) {
+      return reason::kNotUnderstood;
+    }
+    return {};
+  }
+
+  std::string_view why_arc_not_followed(const BlockWords& words, const StateEffect& effect) const {
+    const ModalState& modal = now_.modal;
+    if (modal.plane == Plane::kUnknown || modal.arc_distance == DistanceMode::kUnknown) {
+      return reason::kStateUnknown;
+    }
+    const PlaneAxes plane = axes_of(modal.plane);
+    if (!now_.position.known[plane.axis0] || !now_.position.known[plane.axis1]) {
+      return reason::kPositionUnknown;
+    }
+    const Word* turns = words.find('P');
+    const bool several_turns = turns != nullptr && turns->value != 1;
+    if (!effect.takes_parameters && (several_turns || words.has_any("QL"))) {
+      return reason::kNotUnderstood;
+    }
+    return {};
+  }
+
+  // The motion happens, but its path is not known. Nor is its end, as a rule: controls that
+  // refuse the block stop, others go where the words say.
+  void lose_motion(const BlockWords& words, std::string_view why) {
+    make_opaque(why);
+    if (why == reason::kExpression) {
+      forget_named_axes(now_, words);
+    } else if (why == reason::kPositionUnknown && now_.modal.distance == DistanceMode::kAbsolute) {
+      now_.position = end_of_motion(words);
+    } else {
+      forget_position(now_);
+    }
+  }
+
+  // --- geometry -----------------------------------------------------------------------------
+
+  // With unknown units the numbers stand for themselves: such motions are never rewritten.
+  double to_mm(double value) const {
+    return now_.modal.units == Units::kInch ? value * kMillimetresPerInch : value;
+  }
+
+  Position end_of_motion(const BlockWords& words) const {
+    Position end = now_.position;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Word* word = words.find("XYZ"[axis]);
+      if (word == nullptr) {
+        continue;
+      }
+      double& place = end.mm[static_cast<Eigen::Index>(axis)];
+      if (now_.modal.distance == DistanceMode::kAbsolute) {
+        place = to_mm(word->value);
+        end.known[axis] = true;
+      } else {
+        place += end.known[axis] ? to_mm(word->value) : 0;
+      }
+    }
+    return end;
+  }
+
+  bool add_line(const BlockWords& words) {
+    const Position end = end_of_motion(words);
+    Motion motion;
+    motion.kind = now_.modal.motion == MotionMode::kRapid ? MotionKind::kRapid : MotionKind::kLine;
+    motion.piece = geometry::Line{now_.position.mm, end.mm};
+    add_motion(motion, words, end);
+    if (motion.kind == MotionKind::kRapid) {
+      block_run(reason::kRapid);
+    }
+    return true;
+  }
+
+  bool add_arc(const BlockWords& words) {
+    const Position end = end_of_motion(words);
+    ArcWords arc;
+    arc.start = now_.position.mm;
+    arc.end = end.mm;
+    arc.plane = axes_of(now_.modal.plane);
+    arc.clockwise = now_.modal.motion == MotionMode::kClockwise;
+    arc.center_absolute = now_.modal.arc_distance == DistanceMode::kAbsolute;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (const Word* word = words.find("IJK"[axis])) {
+        arc.center[axis] = to_mm(word->value);
+      }
+    }
+    if (const Word* word = words.find('R')) {
+      arc.radius = to_mm(word->value);
+    }
+    const ArcReading reading = arc_from_words(arc);
+    if (!reading.arc) {
+      tell(Severity::kWarning, reading.problem, program_.blocks[block_index_].span,
+           reading.message);
+      lose_motion(words, reason::kArc);
+      return false;
+    }
+    Motion motion;
+    motion.kind = MotionKind::kArc;
+    motion.piece = *reading.arc;
+    add_motion(motion, words, end);
+    block_run(reason::kArc);
+    return true;
+  }
+
+  void add_motion(Motion& motion, const BlockWords& words, const Position& end) {
+    motion.block = block_index_;
+    motion.start_known = true;
+    motion.end_known = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      motion.axes_named[axis] = words.has("XYZ"[axis]);
+      motion.start_known &= !motion.axes_named[axis] || now_.position.known[axis];
+      motion.end_known &= !motion.axes_named[axis] || end.known[axis];
+    }
+    now_.position = end;
+    meaning_.motion = static_cast<std::int32_t>(read_.motions.size());
+    read_.motions.push_back(motion);
+  }
+
+  // --- diagnostics --------------------------------------------------------------------------
+
+  void tell(Severity severity, std::string_view id, SourceSpan where, std::string message) {
+    if (!told_) {
+      found_.push_back({severity, id, where, std::move(message)});
+    }
+    told_ = true;
+  }
+
+  // Once per code: a program that uses it a thousand times says nothing new.
+  void tell_unknown_code(const Block& block, Code code) {
+    if (std::ranges::find(unknown_codes_, code) != unknown_codes_.end()) {
+      return;
+    }
+    unknown_codes_.push_back(code);
+    tell(Severity::kWarning, "unknown-g-code", block.span,
+         fmt::format("G{} is not known and may change anything; what follows is left alone until "
+                     "the program has set every mode again",
+                     code % 10 == 0 ? fmt::format("{}", code / 10)
+                                    : fmt::format("{}.{}", code / 10, code % 10)));
+  }
+
+  void report_missing_units() {
+    if (read_.unit_word_seen || read_.motions.empty()) {
+      return;
+    }
+    const Block& block = program_.blocks[read_.motions.front().block];
+    found_.push_back({Severity::kError, "units-missing", block.span,
+                      "no G20 or G21 in the whole program; without a unit a tolerance means "
+                      "nothing. Say --units mm or --units inch"});
+  }
+
+  const Program& program_;
+  const ReadOptions& options_;
+  Diagnostics& found_;
+  ControlState now_;
+  Interpretation read_;
+  BlockMeaning meaning_;  // of the block that is being read
+  std::uint32_t block_index_ = 0;
+  bool told_ = false;  // it has its diagnostic
+  std::vector<Code> unknown_codes_;
+};
+
+}  // namespace
+
+Interpretation interpret(const Program& program, const ReadOptions& options, Diagnostics& found) {
+  return Interpreter(program, options, found).run();
+}
+
+}  // namespace batten::gcode

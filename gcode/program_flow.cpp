@@ -1,0 +1,298 @@
+#include "gcode/program_flow.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <unordered_set>
+
+namespace batten::gcode {
+namespace {
+
+using Label = std::uint64_t;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// Upper case, without blanks, comments, block delete and the leading N number.
+std::string bare_words(std::string_view text) {
+  std::string bare;
+  bool in_comment = false;
+  for (const char c : text) {
+    if (c == ';' && !in_comment) {
+      break;
+    }
+    in_comment |= c == '(';
+    if (!in_comment && c != ' ' && c != '\t') {
+      bare.push_back(static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
+    }
+    in_comment &= c != ')';
+  }
+  std::size_t from = 0;
+  if (from < bare.size() && bare[from] == '/') {
+    ++from;
+  }
+  if (from + 1 < bare.size() && bare[from] == 'N' && is_digit(bare[from + 1])) {
+    ++from;
+    while (from < bare.size() && is_digit(bare[from])) {
+      ++from;
+    }
+  }
+  return bare.substr(from);
+}
+
+bool contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+bool starts_with_word_and_digit(std::string_view text, std::string_view word) {
+  return text.starts_with(word) && text.size() > word.size() && is_digit(text[word.size()]);
+}
+
+bool is_program_number(std::string_view bare) {
+  return bare.size() > 1 && (bare[0] == 'O' || bare[0] == ':') &&
+         std::all_of(bare.begin() + 1, bare.end(), is_digit);
+}
+
+// +1 where a body begins, -1 where it ends.
+int body_step(std::string_view bare) {
+  if (starts_with_word_and_digit(bare, "END")) {
+    return -1;  // macro B: END1
+  }
+  if (starts_with_word_and_digit(bare, "DO")) {
+    return 1;
+  }
+  if (bare.starts_with("WHILE") && contains(bare, "]DO")) {
+    return 1;
+  }
+  if (bare.empty() || bare[0] != 'O') {
+    return 0;
+  }
+  for (const std::string_view word : {"ENDSUB", "ENDWHILE", "ENDREPEAT", "ENDIF"}) {
+    if (contains(bare, word)) {
+      return -1;
+    }
+  }
+  // `O1 do` .. `O1 while [..]` and `O1 while [..]` .. `O1 endwhile` cannot be told apart by one
+  // line; the end of the first looks like the begin of the second. Bodies then last longer.
+  for (const std::string_view word : {"SUB", "WHILE", "REPEAT", "DO"}) {
+    if (contains(bare, word)) {
+      return 1;
+    }
+  }
+  return contains(bare, "IF") && !contains(bare, "ELSEIF") ? 1 : 0;
+}
+
+std::optional<Label> whole_number(const Word* word) {
+  constexpr double kGreatestLabel = 1e15;
+  if (word == nullptr || !word->is_number || word->value < 0 || word->value > kGreatestLabel ||
+      word->value != std::floor(word->value)) {
+    return std::nullopt;
+  }
+  return static_cast<Label>(word->value);
+}
+
+const Word* find_word(std::span<const Word> words, char letter) {
+  const auto found =
+      std::ranges::find_if(words, [letter](const Word& word) { return word.letter == letter; });
+  return found == words.end() ? nullptr : &*found;
+}
+
+bool has_code(std::span<const Word> words, char letter, double low, double high) {
+  return std::ranges::any_of(words, [=](const Word& word) {
+    return word.letter == letter && word.is_number && word.value >= low && word.value <= high;
+  });
+}
+
+class FlowFinder {
+ public:
+  explicit FlowFinder(const Program& program)
+      : program_(program), flow_(program.blocks.size()), labels_(program.blocks.size()) {}
+
+  std::vector<BlockFlow> find() {
+    for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
+      read_block(i);
+    }
+    close_segment(program_.blocks.size());
+    mark_labels();
+    mark_contours();
+    return std::move(flow_);
+  }
+
+ private:
+  void read_block(std::size_t i) {
+    const Block& block = program_.blocks[i];
+    if (block.opacity == Opacity::kProgramMark) {
+      return;
+    }
+    const auto words = program_.words_of(block);
+    labels_[i] = whole_number(find_word(words, 'N'));
+    if (block.opacity != Opacity::kNone) {
+      read_text(i, block.opacity == Opacity::kFlow);
+    }
+    if (find_word(words, 'M') != nullptr) {
+      read_calls(words);
+    }
+    read_lathe_cycle(words);
+    flow_[i].in_body |= depth_ > 0;
+  }
+
+  void read_text(std::size_t i, bool is_flow) {
+    const std::string_view text = program_.source.text(program_.blocks[i].span);
+    const std::string bare = bare_words(text);
+    if (!labels_[i]) {
+      labels_[i] = leading_label(text);
+    }
+    find_jumps(bare);
+    if (!is_flow) {
+      return;
+    }
+    if (is_program_number(bare)) {
+      close_segment(i);
+    }
+    const int step = body_step(bare);
+    flow_[i].in_body |= step != 0 || depth_ > 0;
+    depth_ = std::max(0, depth_ + step);
+  }
+
+  static std::optional<Label> leading_label(std::string_view text) {
+    std::size_t at = text.find_first_not_of("/ \t");
+    if (at == std::string_view::npos || std::toupper(static_cast<unsigned char>(text[at])) != 'N') {
+      return std::nullopt;
+    }
+    return number_at(text, at + 1);
+  }
+
+  static std::optional<Label> number_at(std::string_view text, std::size_t at) {
+    constexpr std::size_t kMaxDigits = 15;
+    Label number = 0;
+    std::size_t digits = 0;
+    for (; at < text.size() && is_digit(text[at]) && digits < kMaxDigits; ++at, ++digits) {
+      number = number * 10 + static_cast<Label>(text[at] - '0');
+    }
+    return digits == 0 ? std::nullopt : std::optional(number);
+  }
+
+  // GOTO 100, GOTO N100, GOTOF N100, IF [..] N100. A name is no N number and not our concern;
+  // a computed target can be any label.
+  void find_jumps(std::string_view bare) {
+    for (std::size_t at = bare.find("GOTO"); at != std::string_view::npos;
+         at = bare.find("GOTO", at + 4)) {
+      std::size_t to = at + 4;
+      while (to < bare.size() && contains("FBCSN", bare.substr(to, 1))) {
+        ++to;
+      }
+      if (const auto label = number_at(bare, to)) {
+        jump_targets_.insert(*label);
+      } else if (to < bare.size() && (bare[to] == '#' || bare[to] == '[' || bare[to] == '(')) {
+        any_label_ = true;
+      }
+    }
+    for (std::size_t at = bare.find('N'); at != std::string_view::npos;
+         at = bare.find('N', at + 1)) {
+      if (const auto label = number_at(bare, at + 1)) {
+        jump_targets_.insert(*label);
+      }
+    }
+  }
+
+  // M97 P, M99 P and M98 P.. H name a block; M98 P alone names a program.
+  void read_calls(std::span<const Word> words) {
+    const bool ends_subprogram = has_code(words, 'M', 99, 99);
+    if (ends_subprogram || has_code(words, 'M', 97, 97)) {
+      add_target(find_word(words, 'P'));
+    }
+    if (has_code(words, 'M', 98, 98)) {
+      add_target(find_word(words, 'H'));
+    }
+    segment_is_subprogram_ |= ends_subprogram;
+  }
+
+  void add_target(const Word* word) {
+    if (word == nullptr) {
+      return;
+    }
+    const auto label = whole_number(word);
+    if (label) {
+      jump_targets_.insert(*label);
+    } else if (!word->is_number) {
+      any_label_ = true;
+    }
+  }
+
+  // G70 to G73 P Q of lathes name the first and the last block of a contour. On mills G73 drills,
+  // with Z or R in the block.
+  void read_lathe_cycle(std::span<const Word> words) {
+    if (!has_code(words, 'G', 70, 73) || find_word(words, 'Z') != nullptr ||
+        find_word(words, 'R') != nullptr) {
+      return;
+    }
+    const auto first = whole_number(find_word(words, 'P'));
+    const auto last = whole_number(find_word(words, 'Q'));
+    if (first && last) {
+      contours_.emplace_back(*first, *last);
+    }
+  }
+
+  // A program with M99 is a subprogram, or starts again from its beginning: its blocks can be
+  // entered in a state that we do not see.
+  void close_segment(std::size_t end) {
+    for (std::size_t i = segment_begin_; segment_is_subprogram_ && i < end; ++i) {
+      flow_[i].in_body = true;
+    }
+    segment_begin_ = end;
+    segment_is_subprogram_ = false;
+  }
+
+  void mark_labels() {
+    if (jump_targets_.empty() && !any_label_) {
+      return;
+    }
+    for (std::size_t i = 0; i < labels_.size(); ++i) {
+      if (labels_[i] && (any_label_ || jump_targets_.contains(*labels_[i]))) {
+        flow_[i].label_referenced = true;
+        flow_[i].jump_target = true;
+      }
+    }
+  }
+
+  void mark_contours() {
+    for (const auto& [first, last] : contours_) {
+      bool inside = false;
+      for (std::size_t i = 0; i < labels_.size(); ++i) {
+        const bool is_first = labels_[i] == first;
+        const bool is_last = labels_[i] == last;
+        flow_[i].label_referenced |= is_first || is_last;
+        inside |= is_first;
+        flow_[i].in_body |= inside;
+        inside &= !is_last;
+      }
+    }
+  }
+
+  const Program& program_;
+  std::vector<BlockFlow> flow_;
+  std::vector<std::optional<Label>> labels_;
+  std::unordered_set<Label> jump_targets_;
+  std::vector<std::pair<Label, Label>> contours_;
+  bool any_label_ = false;
+  int depth_ = 0;
+  std::size_t segment_begin_ = 0;
+  bool segment_is_subprogram_ = false;
+};
+
+}  // namespace
+
+std::vector<BlockFlow> find_flow(const Program& program) { return FlowFinder(program).find(); }
+
+FlowEffect flow_effect(std::string_view text) {
+  const std::string bare = bare_words(text);
+  if (is_program_number(bare)) {
+    return FlowEffect::kProgramNumber;
+  }
+  const bool jumps = bare.starts_with("GOTO") || (bare.starts_with("IF") && contains(bare, "GOTO"));
+  const bool assigns = bare.starts_with("IF") && contains(bare, "THEN#");
+  return jumps || assigns ? FlowEffect::kNothing : FlowEffect::kEverything;
+}
+
+}  // namespace batten::gcode

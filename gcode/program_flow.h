@@ -1,0 +1,32 @@
+// Where control can come from elsewhere: jump targets, loop bodies, subprograms. Only as much
+// as is needed to leave such blocks alone.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "gcode/program.h"
+
+namespace batten::gcode {
+
+// What a line of flow words does to the state of the blocks after it.
+enum class FlowEffect : std::uint8_t {
+  kNothing,        // GOTO, IF .. GOTO: falls through with the state that it found
+  kProgramNumber,  // O1234: the beginning of a program
+  kEverything,     // calls, loops, branches: the state after it depends on what was executed
+};
+
+// `text` is a line of Opacity::kFlow.
+[[nodiscard]] FlowEffect flow_effect(std::string_view text);
+
+struct BlockFlow {
+  bool label_referenced = false;  // its N number is named by some word of the program
+  bool jump_target = false;       // control can come to it from another place
+  bool in_body = false;           // of a loop, a subprogram, or a contour that a cycle names
+};
+
+// One entry per block. A jump to a computed label makes every block with an N number a target.
+[[nodiscard]] std::vector<BlockFlow> find_flow(const Program& program);
+
+}  // namespace batten::gcode
