@@ -1,0 +1,357 @@
+#include "geometry/arc_chain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "geometry/numeric.h"
+
+namespace batten::geometry {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// A step's end is searched to this part of its length: a hundred pieces lose a third of one.
+constexpr double kReachPrecision = 3e-3;
+
+// A single arc is taken instead of a pair when it reaches this part of the pair's length:
+// one piece then covers more than a piece of the pair does.
+constexpr double kSingleReach = 0.6;
+
+// Kink (radians) of a single arc at a fixed tangent that is noise of a fitted curve.
+constexpr double kKinkNoise = 1e-5;
+
+// Greatest error of a helix' rise per mm against the curve's, so that the direction in
+// space does not jump where heights are within their tolerance.
+constexpr double kSlopeError = 5e-3;
+
+// The deviation is narrowed by halving the doubt so often; only for chains so short that
+// the last step can be a remainder that is worth spreading.
+constexpr int kBalancingRounds = 5;
+constexpr std::size_t kBalancedPieces = 60;
+
+// Shortest step, in grid units: below, rounding turns a tangent by a tenth of a radian.
+constexpr double kShortestInGrids = 10;
+constexpr double kShortest = 1e-5;  // mm, without a grid
+
+double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
+
+Point2 in_plane(const Point3& p) { return p.head<2>(); }
+
+// The farthest u in ]from, limit] where `holds`, starting with a step of `guess`; `from`
+// when none was found above `shortest`.
+template <typename Holds>
+double farthest(double from, double limit, double guess, double shortest, const Holds& holds) {
+  double good = from;
+  double bad = limit;
+  double step = std::min(guess, limit - from);
+  if (holds(from + step >= limit ? limit : from + step)) {
+    for (;;) {
+      good = std::min(from + step, limit);
+      if (good >= limit) return limit;
+      step *= 2;
+      const double next = std::min(from + step, limit);
+      if (!holds(next)) {
+        bad = next;
+        break;
+      }
+    }
+  } else {
+    for (;;) {
+      bad = from + step;
+      step /= 2;
+      if (step < shortest) return from;
+      if (holds(from + step)) {
+        good = from + step;
+        break;
+      }
+    }
+  }
+  while (bad - good > kReachPrecision * (bad - from)) {
+    const double middle = (good + bad) / 2;
+    (holds(middle) ? good : bad) = middle;
+  }
+  return good;
+}
+
+}  // namespace
+
+Point3 ArcChain::rounded(const Point3& place) const {
+  if (limits_.grid <= 0) return place;
+  return (place / limits_.grid).array().round().matrix() * limits_.grid;
+}
+
+// Where the tangent of the chain should differ from the curve's. Over a stretch of length
+// h whose curvature changes evenly by dk, the pair of arcs with the least deviation crosses
+// the curve at its ends and in its middle, each time turned by -dk h / 48; it deviates a
+// third as much as the pair that is tangent to the curve there.
+ChainNode ArcChain::node_at(const ChainNode& start, double u) const {
+  Point3 place = rounded(curve_.place_at(u));
+  if (limits_.flat) place.z() = start.place.z();
+  const double h = (place - start.place).head<2>().norm();
+  const double change = curve_.curvature_at(u) - curve_.curvature_at(start.u);
+  const double most = h > 0 ? 12 * limits_.deviation / h : 0.0;  // 10.4 where it is best
+  return {u, place, curve_.angle_at(u) + std::clamp(-change * h / 48, -most, most)};
+}
+
+bool ArcChain::allowed(const PlaneArc& arc) const {
+  return arc.is_line() ||
+         (arc.radius >= limits_.min_radius && std::abs(arc.sweep) <= limits_.max_sweep);
+}
+
+bool ArcChain::heights_hold(const PlaneArc& arc, double from, double to, double from_height,
+                            double to_height) const {
+  const double length = arc.length();
+  if (length <= kSamePlace) return false;
+  const double slope = (to_height - from_height) / length;
+  const double slope_error = kSlopeError + 2 * limits_.grid / length;
+  const double inside = (to - from) * 1e-6;  // the slopes of this stretch, not of the next
+  for (double u : {from + inside, to - inside}) {
+    if (!(std::abs(curve_.slope_at(u) - slope) <= slope_error)) return false;
+  }
+  const auto way = [&arc](const Point2& p) {
+    if (arc.is_line()) {
+      const Vector2 chord = arc.end - arc.start;
+      return (p - arc.start).dot(chord) / chord.squaredNorm();
+    }
+    const Vector2 r0 = arc.start - arc.center;
+    const Vector2 r = p - arc.center;
+    // From the middle of the arc, where no angle wraps.
+    const Vector2 middle(std::cos(arc.sweep / 2) * r0.x() - std::sin(arc.sweep / 2) * r0.y(),
+                         std::sin(arc.sweep / 2) * r0.x() + std::cos(arc.sweep / 2) * r0.y());
+    return 0.5 + std::atan2(cross(middle, r), middle.dot(r)) / arc.sweep;
+  };
+  // Samples: the ends and three places within each span; the error is a smooth function on
+  // each, and the plan's tenth of a margin is left for what lies between.
+  for (std::size_t i = curve_.index_of(from); i < curve_.size(); ++i) {
+    const double a = std::max(from, curve_.breaks()[i]);
+    const double b = std::min(to, curve_.breaks()[i + 1]);
+    if (a >= to) break;
+    for (double t : {0.25, 0.5, 0.75, 1.0}) {
+      const Point3 p = curve_.place_at(a + t * (b - a));
+      const double expected = from_height + (to_height - from_height) * way(in_plane(p));
+      if (std::abs(p.z() - expected) > 0.9 * limits_.height_deviation) return false;
+    }
+  }
+  return true;
+}
+
+bool ArcChain::holds(const PlaneArc& arc, double from, double to, double from_height,
+                     double to_height) const {
+  if (!allowed(arc) || !(to > from)) return false;
+  for (std::size_t i = curve_.index_of(from); i < curve_.size(); ++i) {
+    if (curve_.breaks()[i] >= to) break;
+    if (!stays_near(curve_.part(i, from, to), arc, limits_.deviation)) return false;
+  }
+  return limits_.flat || heights_hold(arc, from, to, from_height, to_height);
+}
+
+// Where the curve passes the normal through the joint.
+double ArcChain::joint_parameter(const Point2& joint, const Vector2& tangent, double from,
+                                 double to) const {
+  const auto before = [&](double u) {
+    return (in_plane(curve_.place_at(u)) - joint).dot(tangent) < 0;
+  };
+  const auto& breaks = curve_.breaks();
+  std::size_t low = curve_.index_of(from);
+  std::size_t high = curve_.index_of(to);
+  while (low < high) {  // the last piece whose start is before the joint
+    const std::size_t middle = (low + high + 1) / 2;
+    if (breaks[middle] <= from || before(breaks[middle])) {
+      low = middle;
+    } else {
+      high = middle - 1;
+    }
+  }
+  double good = std::max(from, breaks[low]);
+  double bad = std::min(to, breaks[low + 1]);
+  constexpr int kSteps = 24;  // 1e-7 of a piece
+  for (int step = 0; step < kSteps; ++step) {
+    const double middle = (good + bad) / 2;
+    (before(middle) ? good : bad) = middle;
+  }
+  return (good + bad) / 2;
+}
+
+std::optional<ArcPair> ArcChain::pair_between(const ChainNode& start, const ChainNode& end,
+                                              double balance) const {
+  const Point2 a = in_plane(start.place);
+  const Point2 b = in_plane(end.place);
+  if ((b - a).norm() <= kSamePlace) return std::nullopt;
+  const auto joint = biarc_joint(a, start.angle, b, end.angle, balance);
+  if (!joint) return std::nullopt;
+  const Point2 middle = in_plane(rounded({joint->place.x(), joint->place.y(), 0}));
+  ArcPair pair{arc_leaving(a, start.angle, middle, limits_.max_radius),
+               arc_arriving(middle, b, end.angle, limits_.max_radius),
+               0,
+               start.place.z(),
+               0,
+               end};
+  if (!allowed(pair.first) || !allowed(pair.second)) return std::nullopt;
+  // The pair turns as much as the curve does: no turn more or less.
+  const double turn = pair.first.sweep + pair.second.sweep;
+  if (std::abs(turn - (end.angle - start.angle)) > 1) return std::nullopt;
+  pair.kink =
+      std::abs(wrapped(pair.second.start_angle() - pair.first.start_angle() - pair.first.sweep));
+  pair.joint_u = joint_parameter(joint->place, joint->tangent, start.u, end.u);
+  if (!limits_.flat) pair.joint_height = rounded(curve_.place_at(pair.joint_u)).z();
+  return pair;
+}
+
+bool ArcChain::holds(const ArcPair& pair, const ChainNode& start) const {
+  return holds(pair.first, start.u, pair.joint_u, start.place.z(), pair.joint_height) &&
+         holds(pair.second, pair.joint_u, pair.end.u, pair.joint_height, pair.end.place.z());
+}
+
+std::optional<ArcPair> ArcChain::pair_to(const ChainNode& start, double u) const {
+  auto pair = pair_between(start, node_at(start, u), 1);
+  if (pair && !holds(*pair, start)) return std::nullopt;
+  return pair;
+}
+
+// The joint may lie anywhere on a circle: choose the place where the circle passes nearest
+// to a grid point, so that the two arcs meet without a kink.
+ArcPair ArcChain::best_pair(const ChainNode& start, const ArcPair& found) const {
+  if (limits_.grid <= 0) return found;
+  constexpr int kPlaces = 60;
+  constexpr double kWidest = 1.3;  // beyond, one arc is much shorter than the other
+  std::vector<ArcPair> pairs;
+  for (int i = -kPlaces; i <= kPlaces; ++i) {
+    const double balance = std::pow(kWidest, static_cast<double>(i) / kPlaces);
+    if (const auto pair = pair_between(start, found.end, balance)) pairs.push_back(*pair);
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const ArcPair& a, const ArcPair& b) { return a.kink < b.kink; });
+  for (const ArcPair& pair : pairs) {
+    if (pair.kink >= found.kink) break;
+    if (holds(pair, start)) return pair;
+  }
+  return found;
+}
+
+std::optional<ChainPiece> ArcChain::single_to(const ChainNode& start, const ChainNode& end) const {
+  const PlaneArc arc =
+      arc_leaving(in_plane(start.place), start.angle, in_plane(end.place), limits_.max_radius);
+  const double length = arc.length();
+  if (length <= kSamePlace) return std::nullopt;
+  const double turned = end.angle - start.angle;
+  if (std::abs(arc.sweep - turned) > 1) return std::nullopt;
+  if (!holds(arc, start.u, end.u, start.place.z(), end.place.z())) return std::nullopt;
+  return ChainPiece{arc, end.place.z(), end.u};
+}
+
+// No arc holds: the place is tighter than the least radius. A short chord across it.
+std::optional<ArcChain::Step> ArcChain::line_step(const ChainNode& start,
+                                                  const ChainNode& end) const {
+  const double longest = std::max(4 * limits_.min_radius, kShortestInGrids * limits_.grid);
+  const auto line_to = [&](double u) {
+    const ChainNode node = u >= end.u ? end : node_at(start, u);
+    return PlaneArc{in_plane(start.place), in_plane(node.place)};
+  };
+  const auto line_holds = [&](double u) {
+    const PlaneArc line = line_to(u);
+    const double to_height = u >= end.u ? end.place.z() : node_at(start, u).place.z();
+    return line.length() > kSamePlace && line.length() <= longest &&
+           holds(line, start.u, u, start.place.z(), to_height);
+  };
+  const double all = end.u - start.u;
+  const double reach = farthest(start.u, end.u, all, 1e-9 * all, line_holds);
+  if (reach <= start.u) return std::nullopt;
+  ChainNode node = reach >= end.u ? end : node_at(start, reach);
+  if (reach < end.u) node.angle = curve_.angle_at(reach);
+  return Step{{ChainPiece{line_to(reach), node.place.z(), reach, true}}, node};
+}
+
+std::optional<ArcChain::Step> ArcChain::next_step(const ChainNode& start, const ChainNode& end,
+                                                  double guess) const {
+  const auto target = [&](double u) { return u >= end.u ? end : node_at(start, u); };
+  const double shortest_length = std::max(kShortest, kShortestInGrids * limits_.grid);
+  std::optional<ArcPair> best;
+  const auto pair_holds = [&](double u) {
+    auto pair = pair_between(start, target(u), 1);
+    if (!pair || !holds(*pair, start)) return false;
+    best = std::move(pair);
+    return true;
+  };
+  // Parameters run about with the length, in whatever unit: the whole stretch tells it.
+  const double length = (end.place - start.place).norm();
+  const double shortest = (end.u - start.u) * std::min(0.01, shortest_length / (length + 1e-12));
+  double reach = farthest(start.u, end.u, guess, shortest, pair_holds);
+  if (best && best->end.u != reach) best = pair_between(start, target(reach), 1);
+
+  // One arc instead of two, where it gets far enough; to the end, where its tangent fits.
+  std::optional<ChainPiece> single;
+  const auto single_holds = [&](double u) {
+    const ChainNode node = target(u);
+    auto piece = single_to(start, node);
+    if (!piece) return false;
+    const double miss = std::abs(start.angle + piece->arc.sweep - node.angle);
+    const double most = u >= end.u ? kKinkNoise + 2 * limits_.grid / piece->arc.length()
+                                   : 12 * limits_.deviation / piece->arc.length();
+    if (miss > most) return false;
+    single = std::move(piece);
+    return true;
+  };
+  if (best && reach >= end.u) {
+    if (single_holds(end.u)) return Step{{*single}, end};
+  } else {
+    const double wanted = best ? start.u + kSingleReach * (reach - start.u) : start.u;
+    const double from = best ? wanted - start.u : guess;
+    if (!best || single_holds(wanted)) {
+      const double single_reach = farthest(start.u, end.u, from, shortest, single_holds);
+      if (single_reach > wanted) {
+        single_holds(single_reach);
+        ChainNode node = target(single_reach);
+        if (single_reach < end.u) node.angle = start.angle + single->arc.sweep;
+        return Step{{*single}, node};
+      }
+    }
+  }
+  if (!best) return line_step(start, end);
+  const ArcPair pair = best_pair(start, *best);
+  return Step{{ChainPiece{pair.first, pair.joint_height, pair.joint_u},
+               ChainPiece{pair.second, pair.end.place.z(), pair.end.u}},
+              pair.end};
+}
+
+std::optional<std::vector<ChainPiece>> ArcChain::greedy(const ChainNode& start,
+                                                        const ChainNode& end,
+                                                        std::size_t at_most) const {
+  std::vector<ChainPiece> pieces;
+  ChainNode at = start;
+  double guess = end.u - start.u;
+  while (at.u < end.u) {
+    const auto step = next_step(at, end, guess);
+    if (!step || pieces.size() + step->pieces.size() > at_most) return std::nullopt;
+    pieces.insert(pieces.end(), step->pieces.begin(), step->pieces.end());
+    guess = step->end.u - at.u;
+    at = step->end;
+  }
+  return pieces;
+}
+
+std::optional<std::vector<ChainPiece>> ArcChain::between(const ChainNode& start,
+                                                         const ChainNode& end) const {
+  auto best = greedy(start, end, std::numeric_limits<std::size_t>::max());
+  if (!best || best->size() > kBalancedPieces) return best;
+  // With as many pieces, how much smaller can the deviation be?
+  double good = 1;
+  double small = 0;
+  for (int round = 0; round < kBalancingRounds && best->size() > 2; ++round) {
+    const double part = (good + small) / 2;
+    ArcChainLimits narrower = limits_;
+    narrower.deviation *= part;
+    narrower.max_sweep *= std::cbrt(part);  // deviations grow with the cube of the length
+    auto chain = ArcChain(curve_, narrower).greedy(start, end, best->size());
+    if (chain) {
+      best = std::move(chain);
+      good = part;
+    } else {
+      small = part;
+    }
+  }
+  return best;
+}
+
+}  // namespace batten::geometry

@@ -1,0 +1,92 @@
+// One smooth stretch of a plane curve as a chain of arcs, greedily: each step takes the
+// pair of arcs (or the single arc) that reaches farthest inside the allowed deviation.
+// Method: docs/algorithms/arc_fit.md, steps 3 to 5.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "geometry/biarc.h"
+#include "geometry/plane_curve.h"
+
+namespace batten::geometry {
+
+struct ArcChainLimits {
+  double deviation = 0;         // mm in the plane
+  double height_deviation = 0;  // mm along the axis, at equal angles
+  double min_radius = 0;        // mm
+  double max_radius = 0;        // mm
+  double max_sweep = 0;         // radians
+  double grid = 0;              // mm; 0: none
+  bool flat = true;             // heights play no part
+};
+
+// A place that the chain passes with a known tangent.
+struct ChainNode {
+  double u;      // on the curve
+  Point3 place;  // local coordinates of the curve, rounded to the grid
+  double angle;  // of the tangent in the plane, on the count of PlaneCurve::angle_at
+};
+
+struct ChainPiece {
+  PlaneArc arc;
+  double end_height;
+  double end_u;
+  bool forced_line = false;  // no arc was found here
+};
+
+struct ArcPair {
+  PlaneArc first;
+  PlaneArc second;
+  double joint_u;
+  double joint_height;
+  double kink;  // radians at the joint, which rounding forces
+  ChainNode end;
+};
+
+class ArcChain {
+ public:
+  ArcChain(const PlaneCurve& curve, const ArcChainLimits& limits)
+      : curve_(curve), limits_(limits) {}
+
+  // Pieces from one node to the other, the fewest first, then the least deviation. Nothing
+  // when neither arcs nor short lines hold.
+  [[nodiscard]] std::optional<std::vector<ChainPiece>> between(const ChainNode& start,
+                                                               const ChainNode& end) const;
+
+  // A pair of arcs from `start` to the place at u, in the search's form.
+  [[nodiscard]] std::optional<ArcPair> pair_to(const ChainNode& start, double u) const;
+
+  [[nodiscard]] Point3 rounded(const Point3& place) const;
+
+ private:
+  struct Step {
+    std::vector<ChainPiece> pieces;
+    ChainNode end;
+  };
+
+  std::optional<std::vector<ChainPiece>> greedy(const ChainNode& start, const ChainNode& end,
+                                                std::size_t at_most) const;
+  std::optional<Step> next_step(const ChainNode& start, const ChainNode& end, double guess) const;
+  std::optional<Step> line_step(const ChainNode& start, const ChainNode& end) const;
+
+  ChainNode node_at(const ChainNode& start, double u) const;
+  std::optional<ArcPair> pair_between(const ChainNode& start, const ChainNode& end,
+                                      double balance) const;
+  ArcPair best_pair(const ChainNode& start, const ArcPair& found) const;
+  std::optional<ChainPiece> single_to(const ChainNode& start, const ChainNode& end) const;
+
+  bool holds(const ArcPair& pair, const ChainNode& start) const;
+  bool holds(const PlaneArc& arc, double from, double to, double from_height,
+             double to_height) const;
+  bool allowed(const PlaneArc& arc) const;
+  bool heights_hold(const PlaneArc& arc, double from, double to, double from_height,
+                    double to_height) const;
+  double joint_parameter(const Point2& joint, const Vector2& tangent, double from, double to) const;
+
+  const PlaneCurve& curve_;
+  ArcChainLimits limits_;
+};
+
+}  // namespace batten::geometry
