@@ -137,7 +137,8 @@ PlaneAxes axes_of(Plane plane) {
 }
 
 ArcReading arc_from_words(const ArcWords& words) {
-  if (words.center[words.plane.normal]) {
+  // K0 in the XY plane says nothing; FreeCAD writes it for grbl.
+  if (words.center[words.plane.normal].value_or(0) != 0) {
     return problem("arc-words-conflict", fmt::format("{} is no centre word of the active plane",
                                                      "IJK"[words.plane.normal]));
   }

@@ -40,7 +40,8 @@ struct ArcReading {
 // a centre, an end at the start means a full turn.
 //
 // Problems: arc-centre-missing (no I, J, K of the plane and no R; with absolute centres both
-// are needed), arc-words-conflict (R beside I, J, K; I, J, K that is not of the plane),
+// are needed), arc-words-conflict (R beside I, J, K; a word of I, J, K along the
+// normal of the plane that is not 0),
 // arc-radius-mismatch, arc-radius-too-small (the ends are more than 2 R apart, or R meets no
 // chord).
 [[nodiscard]] ArcReading arc_from_words(const ArcWords& words);
