@@ -31,7 +31,8 @@ class LineCursor {
     std::size_t end = text_.size();
     if (carriage < feed) {
       text_end = carriage;
-      end = carriage + 1 == feed ? feed + 1 : carriage + 1;
+      const bool feed_follows = carriage + 1 == feed && feed < text_.size();
+      end = feed_follows ? feed + 1 : carriage + 1;
     } else if (feed < text_.size()) {
       text_end = feed;
       end = feed + 1;

@@ -22,13 +22,34 @@ constexpr char kNul = '\0';
 constexpr char kEndOfFile = '\x1A';
 
 // A program of rubbish must not bury the reader in lines that all say the same.
-constexpr std::size_t kMostUnreadableTold = 50;
+constexpr std::size_t kMostTold = 50;
+
+constexpr std::string_view kUnreadableBlock = "unreadable-block";
+constexpr std::string_view kUnclosedComment = "unclosed-comment";
 
 constexpr std::uint8_t kMostDecimals = 255;
 
 bool is_sixteen_bit_text(std::string_view text) {
   return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
 }
+
+// Counts diagnostics of one id.
+struct Flood {
+  std::size_t told = 0;
+  std::size_t untold = 0;
+  SourceSpan first_untold;
+
+  // May one more be told?
+  bool counts(SourceSpan where) {
+    if (told < kMostTold) {
+      ++told;
+      return true;
+    }
+    first_untold = untold == 0 ? where : first_untold;
+    ++untold;
+    return false;
+  }
+};
 
 // One pass over the source, line by line.
 class Parser {
@@ -51,8 +72,9 @@ class Parser {
     while (const auto line = lines.next()) {
       read_block(*line);
     }
-    tell_untold();
-    close_program_marks(program_, found_);
+    tell_flood(kUnreadableBlock);
+    tell_flood(kUnclosedComment);
+    close_marks();
     std::stable_sort(
         found_.begin() + static_cast<std::ptrdiff_t>(before), found_.end(),
         [](const Diagnostic& a, const Diagnostic& b) { return a.where.begin < b.where.begin; });
@@ -216,7 +238,7 @@ class Parser {
     }
     program_.comments.push_back(comment);
     if (token.unclosed) {
-      tell(Severity::kWarning, "unclosed-comment", token.span,
+      tell(Severity::kWarning, kUnclosedComment, token.span,
            "'(' without ')'; read as a comment up to the end of the line");
     }
   }
@@ -270,23 +292,8 @@ class Parser {
       return;
     }
     block.opacity = Opacity::kUnreadable;
-    if (++unreadable_ <= kMostUnreadableTold) {
-      tell(Severity::kWarning, "unreadable-block", where,
-           std::string(trouble) + "; the block is copied as it is");
-    } else if (untold_ == 0) {
-      first_untold_ = where;
-      untold_ = 1;
-    } else {
-      ++untold_;
-    }
-  }
-
-  void tell_untold() {
-    if (untold_ > 0) {
-      tell(Severity::kWarning, "unreadable-block", first_untold_,
-           "this and " + std::to_string(untold_ - 1) +
-               " more blocks after it cannot be read either; they are copied as they are");
-    }
+    tell(Severity::kWarning, kUnreadableBlock, where,
+         std::string(trouble) + "; the block is copied as it is");
   }
 
   void note_foreign_language(SourceSpan where) {
@@ -306,23 +313,51 @@ class Parser {
 
   // One diagnostic per block: the first, unless an error follows.
   void tell(Severity severity, std::string_view id, SourceSpan where, std::string message) {
-    if (told_in_block_ && severity != Severity::kError) {
+    if (severity == Severity::kError) {
+      if (told_in_block_) {
+        found_.pop_back();
+      }
+      found_.push_back({severity, id, where, std::move(message)});
+    } else if (!told_in_block_ && flood(id).counts(where)) {
+      found_.push_back({severity, id, where, std::move(message)});
+    } else {
       return;
     }
-    if (told_in_block_) {
-      found_.pop_back();
-    }
-    found_.push_back({severity, id, where, std::move(message)});
     told_in_block_ = true;
+  }
+
+  Flood& flood(std::string_view id) { return id == kUnclosedComment ? unclosed_ : unreadable_; }
+
+  void tell_flood(std::string_view id) {
+    const Flood& flood_of_id = flood(id);
+    if (flood_of_id.untold > 0) {
+      found_.push_back(
+          {Severity::kWarning, id, flood_of_id.first_untold,
+           "from here on " + std::to_string(flood_of_id.untold) + " more blocks of this kind"});
+    }
+  }
+
+  // The marks are closed when all blocks are read; their lines may have been told of already.
+  void close_marks() {
+    Diagnostics at_marks;
+    close_program_marks(program_, at_marks);
+    for (Diagnostic& diagnostic : at_marks) {
+      const SourceSpan line = diagnostic.where;
+      const bool told = std::any_of(found_.begin(), found_.end(), [&](const Diagnostic& other) {
+        return other.where.begin >= line.begin && other.where.begin < line.end;
+      });
+      if (!told) {
+        found_.push_back(std::move(diagnostic));
+      }
+    }
   }
 
   Program program_;
   std::string_view text_;
   Diagnostics& found_;
   std::size_t content_end_ = 0;  // nothing but filling and line ends from here on
-  std::size_t unreadable_ = 0;
-  std::size_t untold_ = 0;
-  SourceSpan first_untold_;
+  Flood unreadable_;
+  Flood unclosed_;
   bool words_seen_ = false;
   bool told_in_block_ = false;
   bool foreign_told_ = false;

@@ -33,9 +33,22 @@ TEST(LineCursor, TakesAnyLineEnd) {
   EXPECT_EQ(lines_of("a\r\r\nb"), (Lines{"a", "", "b"}));
 }
 
+TEST(LineCursor, EndsWithTheText) {
+  for (const std::string text : {"a", "a\n", "a\r", "a\r\n", "\r", "\n\r", "a\n\r\r"}) {
+    LineCursor cursor(text);
+    std::uint32_t end = 0;
+    while (const auto line = cursor.next()) {
+      EXPECT_EQ(line->begin, end);
+      end = line->end;
+    }
+    EXPECT_EQ(end, text.size());
+  }
+}
+
 TEST(LineCursor, AMissingLastLineEndLosesNothing) {
   EXPECT_EQ(lines_of("a\nb"), (Lines{"a", "b"}));
   EXPECT_EQ(lines_of("a"), (Lines{"a"}));
+  EXPECT_EQ(lines_of("a\r"), (Lines{"a"}));
   EXPECT_EQ(lines_of(""), Lines{});
   EXPECT_EQ(lines_of("\n"), (Lines{""}));
   EXPECT_EQ(lines_of("\n\n"), (Lines{"", ""}));

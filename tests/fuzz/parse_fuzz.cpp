@@ -1,0 +1,20 @@
+// For libFuzzer: clang++ -std=c++20 -g -fsanitize=fuzzer,address,undefined -I. gcode/*.cpp ..
+// See docs/diagnostics.md for what the reader may say; here only its promises count.
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "tests/fuzz/parse_promises.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const std::string broken = batten::gcode::promises::broken_by(text);
+  if (!broken.empty()) {
+    std::fprintf(stderr, "broken promise: %s\n", broken.c_str());
+    std::abort();
+  }
+  return 0;
+}
