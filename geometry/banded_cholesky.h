@@ -1,0 +1,44 @@
+// Symmetric positive definite systems with three sub-diagonals, as cubic B-splines give them,
+// factored and solved for points in linear time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "geometry/point.h"
+
+namespace batten::geometry {
+
+class BandedMatrix {
+ public:
+  static constexpr int kBands = 3;  // below the diagonal
+
+  explicit BandedMatrix(std::size_t size) : rows_(size, Row{}) {}
+
+  [[nodiscard]] std::size_t size() const { return rows_.size(); }
+  void set_zero();
+
+  // Entry (i, i - below), 0 <= below <= kBands, below <= i. The matrix is symmetric: only
+  // the lower half is kept.
+  double& at(std::size_t i, int below) { return rows_[i][below]; }
+  [[nodiscard]] double at(std::size_t i, int below) const { return rows_[i][below]; }
+
+  // Replaces row and column i by the unit row, moving `value` times the column to `right`:
+  // the unknown i is then exactly `value`.
+  void fix(std::size_t i, const Point3& value, std::vector<Point3>& right);
+
+  // Solves in place: `right` becomes the solution. The matrix is overwritten by its factors
+  // (L D L^T). Returns false when a pivot is not positive; `right` is undefined then.
+  [[nodiscard]] bool solve(std::vector<Point3>& right);
+
+  // After solve(): the entries of the inverse inside the band, as another banded matrix
+  // (K. Takahashi et al. 1973). Linear time.
+  [[nodiscard]] BandedMatrix inverse_band() const;
+
+ private:
+  using Row = std::array<double, kBands + 1>;  // diagonal first, then below
+  std::vector<Row> rows_;
+};
+
+}  // namespace batten::geometry

@@ -1,0 +1,280 @@
+#include "geometry/fair_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace batten::geometry {
+
+namespace {
+
+// A corner is rounded within this many tolerances along its legs: enough for the curve to
+// leave the line gently, little enough to keep its deviation local.
+constexpr double kReach = 40;
+
+// Knots around a corner start at this part of the limit and double outwards.
+constexpr double kFirstKnot = 0.5;
+
+// The first fit has a knot per so many vertices; spans that cannot follow are split.
+constexpr std::size_t kVerticesPerSpan = 64;
+
+// Smooth edges whose chord may leave the curve by this part of the limit are watched between
+// their vertices; so are those whose vertices leave the curve as much room.
+constexpr double kWatchedSagitta = 0.25;
+
+// The middle of a line edge that stays exactly straight.
+struct Straight {
+  double from;
+  double to;
+};
+
+class ProblemMaker {
+ public:
+  ProblemMaker(std::span<const Point3> points, const PathFeatures& features,
+               std::span<const double> loosen, const BandOptions& options)
+      : p_(points), f_(features), loosen_(loosen), options_(options), n_(points.size()) {}
+
+  FitProblem make() {
+    find_reaches();
+    for (std::size_t i = 0; i < n_; ++i) {
+      add_vertex(i);
+      if (i + 1 < n_) add_edge(i);
+    }
+    finish();
+    return std::move(problem_);
+  }
+
+ private:
+  [[nodiscard]] double length(std::size_t edge) const {
+    return f_.parameters[edge + 1] - f_.parameters[edge];
+  }
+  [[nodiscard]] Vector3 direction(std::size_t edge) const {
+    return (p_[edge + 1] - p_[edge]) / length(edge);
+  }
+  [[nodiscard]] bool corner(std::size_t i) const { return f_.kinds[i] == VertexKind::kCorner; }
+  [[nodiscard]] bool pinned(std::size_t i) const { return f_.kinds[i] == VertexKind::kKeptCorner; }
+
+  // How far each corner's rounding may go along the path: not past the middle of the way to
+  // the next corner.
+  void find_reaches() {
+    reach_before_.assign(n_, 0);
+    reach_after_.assign(n_, 0);
+    std::optional<std::size_t> last;
+    for (std::size_t i = 0; i < n_; ++i) {
+      if (!corner(i) && !pinned(i)) continue;
+      if (last) {
+        const double way = f_.parameters[i] - f_.parameters[*last];
+        const double share = corner(i) && corner(*last) ? 0.45 : 0.9;
+        const double reach = std::min(kReach * options_.limit, share * way);
+        if (corner(*last)) reach_after_[*last] = reach;
+        if (corner(i)) reach_before_[i] = reach;
+      }
+      last = i;
+    }
+  }
+
+  void add_vertex(std::size_t i) {
+    if (pinned(i)) {
+      problem_.pins.push_back({f_.parameters[i], p_[i]});
+      problem_.breakpoints.push_back(f_.parameters[i]);
+      since_break_ = 0;
+      return;
+    }
+    FitSample sample;
+    sample.parameter = f_.parameters[i];
+    sample.target = p_[i];
+    sample.limit = options_.limit;
+    if (corner(i)) {
+      problem_.samples.push_back(sample);
+      add_corner_knots(i);
+      return;
+    }
+    sample.along = (p_[i + 1] - p_[i - 1]).normalized();
+    sample.scatter = inside_reach(f_.parameters[i]) ? 0 : scatter(i);
+    loose_ = !(sample.scatter > 0) || sample.scatter > kWatchedSagitta * options_.limit;
+    problem_.samples.push_back(sample);
+    if (++since_break_ >= kVerticesPerSpan) {
+      problem_.breakpoints.push_back(f_.parameters[i]);
+      since_break_ = 0;
+    }
+  }
+
+  [[nodiscard]] double scatter(std::size_t i) const {
+    const double expected = std::max(f_.noise[i], options_.least_scatter);
+    const double loose = loosen_.empty() ? 1 : loosen_[i];
+    return std::isinf(loose) ? 0 : expected * loose;
+  }
+
+  // Whether a corner nearby owns this place. Vertices come in order, so the last corner seen
+  // and the next one are enough.
+  [[nodiscard]] bool inside_reach(double u) {
+    while (next_ < n_ && (!corner(next_) || f_.parameters[next_] < u)) {
+      if (corner(next_)) before_ = next_;
+      ++next_;
+    }
+    if (before_ && u - f_.parameters[*before_] < reach_after_[*before_]) return true;
+    return next_ < n_ && f_.parameters[next_] - u < reach_before_[next_];
+  }
+
+  void add_corner_knots(std::size_t i) {
+    const double u = f_.parameters[i];
+    const double first = kFirstKnot * options_.limit;
+    for (double d = first; d < reach_before_[i]; d *= 2) problem_.breakpoints.push_back(u - d);
+    for (double d = first; d < reach_after_[i]; d *= 2) problem_.breakpoints.push_back(u + d);
+    problem_.breakpoints.push_back(u - std::max(reach_before_[i], first / 2));
+    problem_.breakpoints.push_back(u + std::max(reach_after_[i], first / 2));
+    since_break_ = 0;
+  }
+
+  // The exactly straight middle of a line; nothing when the line has no room for one.
+  [[nodiscard]] std::optional<Straight> straight_of(std::size_t edge) const {
+    if (!f_.lines[edge]) return std::nullopt;
+    const double before = end_room(edge, edge, reach_after_[edge]);
+    const double after = end_room(edge, edge + 1, reach_before_[edge + 1]);
+    if (before + after > 0.6 * length(edge)) return std::nullopt;
+    return Straight{f_.parameters[edge] + before, f_.parameters[edge + 1] - after};
+  }
+
+  // What a line gives to its neighbour at one end.
+  [[nodiscard]] double end_room(std::size_t edge, std::size_t vertex, double reach) const {
+    if (pinned(vertex)) return 0;
+    if (corner(vertex)) return reach;
+    const std::size_t other = vertex == edge ? edge - 1 : edge + 1;
+    return std::min(2 * length(other), 0.25 * length(edge));
+  }
+
+  void add_edge(std::size_t edge) {
+    const double u0 = f_.parameters[edge];
+    const double u1 = f_.parameters[edge + 1];
+    if (const auto straight = straight_of(edge)) {
+      if (!pinned(edge) && !corner(edge)) add_smooth_end(u0, straight->from, edge);
+      add_leg_samples(edge, u0, straight->from);
+      problem_.breakpoints.push_back(straight->from);
+      problem_.breakpoints.push_back(straight->to);
+      const Vector3 d = direction(edge);
+      problem_.zones.push_back({straight->from, straight->to, p_[edge] + (straight->from - u0) * d,
+                                p_[edge] + (straight->to - u0) * d});
+      add_leg_samples(edge, straight->to, u1);
+      if (!pinned(edge + 1) && !corner(edge + 1)) add_smooth_end(straight->to, u1, edge);
+      since_break_ = 0;
+      return;
+    }
+    const bool leg = corner(edge) || corner(edge + 1);
+    const double sagitta = length(edge) * std::max(f_.turns[edge], f_.turns[edge + 1]) / 8;
+    if (leg) {
+      add_leg_samples(edge, u0, u1);
+    } else if (sagitta > kWatchedSagitta * options_.limit) {
+      for (const double part : {0.25, 0.5, 0.75}) add_sample_on(edge, u0 + part * (u1 - u0));
+    } else if (loose_) {
+      add_sample_on(edge, 0.5 * (u0 + u1));
+    }
+  }
+
+  // A line that leaves a curve smoothly: knots at the joint and half way to its straight part.
+  void add_smooth_end(double from, double to, std::size_t) {
+    problem_.breakpoints.push_back(from);
+    problem_.breakpoints.push_back(0.5 * (from + to));
+    problem_.breakpoints.push_back(to);
+  }
+
+  // Samples on an edge as dense as the corner knots around: they double away from corners.
+  void add_leg_samples(std::size_t edge, double from, double to) {
+    const double first = 0.5 * kFirstKnot * options_.limit;
+    std::vector<double> places;
+    constexpr double kStep = 1.4142135623730951;  // two samples per doubling
+    const double u0 = f_.parameters[edge];
+    const double u1 = f_.parameters[edge + 1];
+    if (corner(edge)) {
+      for (double d = first; u0 + d < to && d < 2 * reach_after_[edge]; d *= kStep) {
+        if (u0 + d > from) places.push_back(u0 + d);
+      }
+    }
+    if (corner(edge + 1)) {
+      for (double d = first; u1 - d > from && d < 2 * reach_before_[edge + 1]; d *= kStep) {
+        if (u1 - d < to) places.push_back(u1 - d);
+      }
+    }
+    for (const double part : {0.25, 0.5, 0.75}) places.push_back(from + part * (to - from));
+    std::sort(places.begin(), places.end());
+    for (const double u : places) {
+      if (u > from && u < to) add_sample_on(edge, u);
+    }
+  }
+
+  void add_sample_on(std::size_t edge, double u) {
+    FitSample sample;
+    sample.parameter = u;
+    sample.along = direction(edge);
+    sample.target = p_[edge] + (u - f_.parameters[edge]) * sample.along;
+    sample.limit = options_.limit;
+    problem_.samples.push_back(sample);
+  }
+
+  // Knots and samples came in the order of the path but for those of corners.
+  void finish() {
+    auto& samples = problem_.samples;
+    const auto earlier = [](const FitSample& a, const FitSample& b) {
+      return a.parameter < b.parameter;
+    };
+    std::sort(samples.begin(), samples.end(), earlier);
+    auto& knots = problem_.breakpoints;
+    std::sort(knots.begin(), knots.end());
+    // Knots closer than a quarter of the finest wanted spacing add nothing but trouble; ends of
+    // zones and pins are kept.
+    const double close = 0.25 * kFirstKnot * options_.limit;
+    std::vector<double> needed;
+    for (const Pin& pin : problem_.pins) needed.push_back(pin.parameter);
+    for (const StraightZone& zone : problem_.zones) {
+      needed.push_back(zone.from);
+      needed.push_back(zone.to);
+    }
+    std::sort(needed.begin(), needed.end());
+    needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
+    std::vector<double> kept;
+    std::size_t next = 0;
+    std::size_t zone = 0;
+    for (const double u : knots) {
+      while (next < needed.size() && needed[next] < u) ++next;
+      const bool must = next < needed.size() && needed[next] == u;
+      if (must) {
+        while (!kept.empty() && u - kept.back() < close && !is_needed(needed, kept.back())) {
+          kept.pop_back();
+        }
+        if (kept.empty() || kept.back() != u) kept.push_back(u);
+        continue;
+      }
+      while (zone < problem_.zones.size() && problem_.zones[zone].to <= u) ++zone;
+      const bool inside = zone < problem_.zones.size() && u > problem_.zones[zone].from;
+      const bool outside_path = u <= f_.parameters.front() || u >= f_.parameters.back();
+      if (inside || outside_path || (!kept.empty() && u - kept.back() < close)) continue;
+      kept.push_back(u);
+    }
+    knots = std::move(kept);
+  }
+
+  static bool is_needed(const std::vector<double>& needed, double u) {
+    return std::binary_search(needed.begin(), needed.end(), u);
+  }
+
+  std::span<const Point3> p_;
+  const PathFeatures& f_;
+  std::span<const double> loosen_;
+  BandOptions options_;
+  std::size_t n_;
+  FitProblem problem_;
+  std::vector<double> reach_before_;
+  std::vector<double> reach_after_;
+  std::size_t since_break_ = 0;
+  bool loose_ = false;  // the last vertex left the curve room of the size of the limit
+  std::optional<std::size_t> before_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+FitProblem state_fair_problem(std::span<const Point3> points, const PathFeatures& features,
+                              std::span<const double> loosen, const BandOptions& options) {
+  return ProblemMaker(points, features, loosen, options).make();
+}
+
+}  // namespace batten::geometry

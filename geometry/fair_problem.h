@@ -1,0 +1,26 @@
+// States the fairing of a path as a fit: where knots may start, which places the curve has to
+// keep and how closely. Method: docs/algorithms/fair.md, sections Band and Corners.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geometry/bspline_fit.h"
+#include "geometry/path_features.h"
+#include "geometry/point.h"
+
+namespace batten::geometry {
+
+struct BandOptions {
+  double limit = 0.01;          // mm, full distance allowed
+  double least_scatter = 3e-4;  // mm, what rounding of the printed places leaves
+};
+
+// `loosen[i]` >= 1 widens the scatter expected at vertex i (the machine needs more room
+// there); infinite: only the limit counts. Empty: 1 everywhere.
+[[nodiscard]] FitProblem state_fair_problem(std::span<const Point3> points,
+                                            const PathFeatures& features,
+                                            std::span<const double> loosen,
+                                            const BandOptions& options);
+
+}  // namespace batten::geometry
