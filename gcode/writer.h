@@ -51,6 +51,9 @@ class Writer {
   // cannot stand alone (only G0 and G1 can) and that is not active.
   void restore(const ModalState& expected);
 
+  // Whether it is known how arc centres are to be given; arc_to refuses every arc where not.
+  [[nodiscard]] bool centers_understood() const;
+
   [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] const WriterState& state() const { return state_; }
 
@@ -71,7 +74,6 @@ class Writer {
                                           const PlaneAxes& plane) const;
   void print_center(const geometry::Point3& wanted, double sweep, PrintedArc& printed) const;
   [[nodiscard]] bool absolute_centers() const;
-  [[nodiscard]] bool centers_understood() const;
 
   // The words of one block, gathered until it ends.
   void add(char letter, std::string_view digits);

@@ -23,9 +23,11 @@ struct PlannedMove {
   std::vector<std::size_t> comments_before;  // indices into Run::comments
 };
 
+// The moves chain exactly, from the run's first point to its last.
 struct OutputPlan {
   OutputForm form = OutputForm::kLines;
   std::vector<PlannedMove> moves;
+  std::vector<std::size_t> comments_after;  // those that stood on the run's last blocks
 };
 
 struct PlanOptions {
@@ -37,12 +39,23 @@ struct PlanOptions {
   double max_deviation = 0.005;  // mm, moves to curve: the share of the form
 };
 
-// Chords with vertices on the curve.
+// Both plans cut the curve where the feed changes, and put each comment before the move that
+// starts at or first after the comment's vertex. Both throw std::invalid_argument when `fair`
+// does not have one parameter per point of the run.
+
+// Chords with vertices on the curve. How fine depends on the preference:
+//   time      half of max_deviation, but all of it where chords would be shorter than twice the
+//             way of one block period at the feed: the control would slow down for them;
+//   accuracy  as fine as the block period allows, down to a tenth of the rounding of the printed
+//             numbers, and all of max_deviation where even that is too much for the control;
+//   size      all of max_deviation.
 [[nodiscard]] OutputPlan plan_lines(const Run& run, const geometry::FairPath& fair,
                                     const PlanOptions& options);
 
-// Arcs in the plane that fits (the active one first); nothing when the run lies in no plane
-// that the target takes arcs in.
+// Arcs in a plane that the target takes arcs in and that the run lies in, the active plane
+// first; helices in such a plane where the target takes them and the run lies in none. Nothing
+// when no plane serves. Arcs that the target would refuse are chords already. Comments are
+// placed by the length along the moves, which may be one short move off.
 [[nodiscard]] std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fair,
                                                   const PlanOptions& options);
 

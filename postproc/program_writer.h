@@ -14,15 +14,22 @@
 namespace batten::postproc {
 
 struct RunText {
-  std::string text;  // whole lines, with line ends
-  std::size_t blocks = 0;
+  std::string text;        // whole lines, with line ends
+  std::size_t blocks = 0;  // lines with words, not those of comments alone
   std::size_t arcs = 0;
 };
 
-// The run's blocks. `before` is the state and place after the last block before the run,
-// `after` the state in which the copied block after it must find the control.
-// Nothing when the dialect refuses an arc that cannot be said as lines either, or when a line
-// would be too long.
+// The run's blocks. `before` is the state after the last block before the run (the place is the
+// run's first point), `after` the state in which the copied block after it must find the control:
+// where plane, motion word or feed differ at the end of the run, one block restores them; what
+// `after` does not know is left as it is.
+//
+// The run's first and last point are met exactly: the last move is printed with as many decimals
+// as the run was. Comments are copied, each on a line of its own.
+//
+// Nothing when arcs are planned and it is not known how their centres are to be given, when a
+// line would be too long, or when the last point has more decimals than can be printed. An arc
+// that the dialect refuses once it is printed is written as chords.
 [[nodiscard]] std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
                                                const gcode::Program& program,
                                                const gcode::Dialect& target,

@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "gcode/plane_axes.h"
+#include "geometry/arc_fit.h"
+#include "geometry/numeric.h"
+#include "postproc/output_plan.h"
+#include "postproc/plan_stretches.h"
+
+namespace batten::postproc {
+namespace {
+
+using gcode::PlaneAxes;
+using geometry::BsplineCurve;
+using geometry::Path;
+using geometry::PathPiece;
+
+// The part of the deviation that is kept for chords in place of arcs that the target refuses:
+// too tight, too short. There are few of them.
+constexpr double kPartForChords = 0.1;
+
+// With Prefer::kAccuracy arcs are this much nearer to the curve. An arc's deviation falls with
+// the third power of its length, so it costs little more than twice the arcs.
+constexpr double kAccuratePart = 0.1;
+
+// Planes that the target takes arcs in, the active one first.
+std::vector<PlaneAxes> planes_to_try(const PlanOptions& options) {
+  std::vector<PlaneAxes> planes;
+  for (const PlaneAxes& each : gcode::kPlaneAxes) {
+    if (options.target->takes_arcs_in(each.plane)) planes.push_back(each);
+  }
+  std::ranges::stable_partition(
+      planes, [&](const PlaneAxes& each) { return each.plane == options.active_plane; });
+  return planes;
+}
+
+double grid_of(const PlanOptions& options) {
+  return gcode::printed_step(options.target->arc_ends(options.units), options.units);
+}
+
+// The curve laid flat into the plane, when it lies in it to within half a printed step and its
+// ends do so exactly.
+std::optional<BsplineCurve> laid_flat(const Run& run, const BsplineCurve& curve, int normal,
+                                      double step) {
+  const double height = run.points.front()[normal];
+  if (std::abs(run.points.back()[normal] - height) > geometry::kSamePlace) return std::nullopt;
+  std::vector<geometry::Point3> points = curve.control_points();
+  for (geometry::Point3& point : points) {
+    if (std::abs(point[normal] - height) > step / 2) return std::nullopt;
+    point[normal] = height;
+  }
+  return BsplineCurve(curve.basis(), std::move(points));
+}
+
+double fit_deviation(const PlanOptions& options) {
+  const double limit = options.max_deviation;
+  if (options.prefer != Prefer::kAccuracy) return limit * (1 - kPartForChords);
+  const double worth_it = grid_of(options);  // finer than that is lost in print
+  return std::min(std::max(kAccuratePart * limit, worth_it), limit * (1 - kPartForChords));
+}
+
+geometry::ArcFitOptions fit_options(const PlanOptions& options, const PlaneAxes& plane,
+                                    bool helical) {
+  geometry::ArcFitOptions fit;
+  fit.max_deviation = fit_deviation(options);
+  fit.axis = geometry::Vector3::Unit(plane.normal);
+  fit.helical = helical;
+  fit.min_radius = options.target->min_arc_radius();
+  fit.max_radius = options.target->max_arc_radius();
+  fit.grid = grid_of(options);
+  return fit;
+}
+
+// Chords for an arc, each within `deviation` of it.
+Path chords_for(const geometry::Arc& arc, double deviation) {
+  const double radius =
+      (arc.start - arc.center - (arc.start - arc.center).dot(arc.axis) * arc.axis).norm();
+  const double half_angle = std::acos(std::max(1 - deviation / radius, 0.0));
+  const auto count = std::max(1, static_cast<int>(std::ceil(std::abs(arc.sweep) / 2 / half_angle)));
+  Path chords;
+  geometry::Point3 place = arc.start;
+  for (int i = 1; i <= count; ++i) {
+    const geometry::Point3 next = geometry::point_at(arc, static_cast<double>(i) / count);
+    chords.push_back(geometry::Line{place, next});
+    place = next;
+  }
+  return chords;
+}
+
+void append_taken(const PathPiece& piece, const PlanOptions& options, Path& path) {
+  const auto* arc = std::get_if<geometry::Arc>(&piece);
+  if (arc == nullptr || options.target->arc_complaint(*arc, options.units).empty()) {
+    path.push_back(piece);
+    return;
+  }
+  const Path chords = chords_for(*arc, kPartForChords * options.max_deviation);
+  path.insert(path.end(), chords.begin(), chords.end());
+}
+
+// Adds the pieces of one stretch to the plan, and the parameters at which they start to `starts`:
+// the curve's parameter goes about with the length along it.
+void append_stretch(const Path& path, const FeedStretch& stretch, OutputPlan& plan,
+                    std::vector<double>& starts) {
+  const double length = geometry::length_of(path);
+  double done = 0;
+  for (const PathPiece& piece : path) {
+    const double part = length > 0 ? done / length : 0;
+    starts.push_back(stretch.from + (stretch.to - stretch.from) * part);
+    plan.moves.push_back({piece, stretch.feed, {}});
+    done += geometry::length_of(piece);
+  }
+}
+
+std::optional<OutputPlan> plan_in(const Run& run, const geometry::FairPath& fair,
+                                  const BsplineCurve& curve, const geometry::ArcFitOptions& fit,
+                                  const PlanOptions& options) {
+  OutputPlan plan;
+  plan.form = OutputForm::kArcs;
+  std::vector<double> starts;
+  for (const FeedStretch& stretch : feed_stretches(run, fair)) {
+    const std::optional<Path> arcs = geometry::fit_arcs(curve, stretch.from, stretch.to, fit);
+    if (!arcs) return std::nullopt;
+    Path taken;
+    for (const PathPiece& piece : *arcs) append_taken(piece, options, taken);
+    append_stretch(taken, stretch, plan, starts);
+  }
+  place_comments(run, fair, starts, plan);
+  return plan;
+}
+
+}  // namespace
+
+std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fair,
+                                    const PlanOptions& options) {
+  const std::vector<PlaneAxes> planes = planes_to_try(options);
+  bool flat_somewhere = false;
+  for (const PlaneAxes& plane : planes) {
+    const auto flat = laid_flat(run, fair.curve, plane.normal, grid_of(options));
+    if (!flat) continue;
+    flat_somewhere = true;
+    auto plan = plan_in(run, fair, *flat, fit_options(options, plane, false), options);
+    if (plan) return plan;
+  }
+  if (flat_somewhere || !options.target->takes_helices()) return std::nullopt;
+  for (const PlaneAxes& plane : planes) {
+    auto plan = plan_in(run, fair, fair.curve, fit_options(options, plane, true), options);
+    if (plan) return plan;
+  }
+  return std::nullopt;
+}
+
+}  // namespace batten::postproc

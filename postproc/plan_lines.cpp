@@ -1,0 +1,102 @@
+#include <algorithm>
+
+#include "geometry/linearize.h"
+#include "postproc/output_plan.h"
+#include "postproc/plan_stretches.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::BsplineCurve;
+
+// How far chords may go in either direction.
+struct Fineness {
+  double finest = 0;      // mm, chord to curve, wished for
+  double coarsest = 0;    // mm, the limit
+  double min_length = 0;  // mm; where chords would be shorter, they become coarser
+};
+
+// From one fineness to the next coarser one that is tried: chords twice as long.
+constexpr double kCoarser = 4;
+
+// Chords of so many block periods leave the control room to look ahead; with one and a little
+// the control just holds the feed.
+constexpr double kPeriodsForTime = 2;
+constexpr double kPeriodsForAccuracy = 1.1;
+
+// The way of one block period at this feed, mm.
+double length_per_block(double feed, const Machine& machine) {
+  return std::min(feed / 60, machine.max_velocity) * machine.block_period;
+}
+
+Fineness fineness_for(double feed, const PlanOptions& options) {
+  const double limit = options.max_deviation;
+  const double per_block = length_per_block(feed, *options.machine);
+  switch (options.prefer) {
+    case Prefer::kTime:
+      return {limit / 2, limit, kPeriodsForTime * per_block};
+    case Prefer::kAccuracy: {
+      const double step =
+          gcode::printed_step(options.target->coordinates(options.units), options.units);
+      const double tenth_of_rounding = step / 2 / 10;
+      return {std::min(tenth_of_rounding, limit), limit, kPeriodsForAccuracy * per_block};
+    }
+    case Prefer::kSize:
+      break;
+  }
+  return {limit, limit, 0};
+}
+
+// Parameters of the vertices between two places, both included: as fine as wished for, and
+// coarser on each stretch whose chords come out too short.
+std::vector<double> chords(const BsplineCurve& curve, double from, double to,
+                           const Fineness& fineness) {
+  const std::vector<double> wished =
+      geometry::chord_vertices(curve, from, to, {.max_deviation = fineness.finest});
+  if (fineness.finest >= fineness.coarsest) return wished;
+  Fineness coarser = fineness;
+  coarser.finest = std::min(fineness.finest * kCoarser, fineness.coarsest);
+
+  std::vector<geometry::Point3> places;
+  for (const double u : wished) places.push_back(curve.point_at(u));
+  const auto is_short = [&](std::size_t i) {
+    return i + 1 < wished.size() && (places[i + 1] - places[i]).norm() < fineness.min_length;
+  };
+  std::vector<double> vertices = {from};
+  for (std::size_t i = 0; i + 1 < wished.size();) {
+    std::size_t end = i;
+    while (is_short(end)) ++end;
+    if (end <= i + 1) {
+      vertices.push_back(wished[++i]);
+      continue;
+    }
+    const std::vector<double> longer = chords(curve, wished[i], wished[end], coarser);
+    vertices.insert(vertices.end(), longer.begin() + 1, longer.end());
+    i = end;
+  }
+  return vertices;
+}
+
+}  // namespace
+
+OutputPlan plan_lines(const Run& run, const geometry::FairPath& fair, const PlanOptions& options) {
+  OutputPlan plan;
+  plan.form = OutputForm::kLines;
+  std::vector<double> starts;
+  geometry::Point3 place = run.points.front();
+  for (const FeedStretch& stretch : feed_stretches(run, fair)) {
+    const std::vector<double> vertices =
+        chords(fair.curve, stretch.from, stretch.to, fineness_for(stretch.feed, options));
+    for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
+      const bool last = vertices[i + 1] >= fair.curve.last();
+      const geometry::Point3 next = last ? run.points.back() : fair.curve.point_at(vertices[i + 1]);
+      plan.moves.push_back({geometry::Line{place, next}, stretch.feed, {}});
+      starts.push_back(vertices[i]);
+      place = next;
+    }
+  }
+  place_comments(run, fair, starts, plan);
+  return plan;
+}
+
+}  // namespace batten::postproc

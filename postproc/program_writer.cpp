@@ -1,0 +1,126 @@
+#include "postproc/program_writer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gcode/writer.h"
+#include "geometry/numeric.h"
+
+namespace batten::postproc {
+namespace {
+
+using gcode::NumberFormat;
+using gcode::Writer;
+
+// The most digits after the point that can be printed.
+constexpr int kMostDecimals = 9;
+
+// Writes the moves of one run and counts what it writes.
+class RunWriter {
+ public:
+  RunWriter(const gcode::Dialect& target, Writer writer)
+      : target_(target), writer_(std::move(writer)) {}
+
+  Writer& writer() { return writer_; }
+
+  void write(const PlannedMove& move) {
+    const std::size_t begin = writer_.text().size();
+    if (const auto* arc = std::get_if<geometry::Arc>(&move.piece)) {
+      if (writer_.arc_to(*arc, move.feed)) {
+        ++result_.arcs;
+      } else {
+        write_chords(*arc, move.feed);
+      }
+    } else {
+      writer_.line_to(geometry::end_point(move.piece), move.feed);
+    }
+    count_from(begin);
+  }
+
+  void restore(const gcode::ModalState& after) {
+    const std::size_t begin = writer_.text().size();
+    writer_.restore(after);
+    count_from(begin);
+  }
+
+  [[nodiscard]] bool every_line_fits() const { return every_line_fits_; }
+
+  RunText finished() {
+    result_.text = writer_.text();
+    return std::move(result_);
+  }
+
+ private:
+  // Chords that differ from the arc by half a printed step at the most.
+  void write_chords(const geometry::Arc& arc, double feed) {
+    const gcode::Units units = writer_.state().modal.units;
+    const double deviation = gcode::printed_step(target_.coordinates(units), units) / 2;
+    const geometry::Vector3 out = arc.start - arc.center;
+    const double radius = (out - out.dot(arc.axis) * arc.axis).norm();
+    const double half_angle = std::acos(std::max(1 - deviation / radius, 0.0));
+    const double count = std::max(1.0, std::ceil(std::abs(arc.sweep) / 2 / half_angle));
+    for (double i = 1; i <= count; ++i) {
+      writer_.line_to(geometry::point_at(arc, i / count), feed);
+    }
+  }
+
+  void count_from(std::size_t begin) {
+    std::string_view written = std::string_view(writer_.text()).substr(begin);
+    while (!written.empty()) {
+      const std::size_t end = written.find_first_of("\r\n");
+      const std::string_view line = written.substr(0, end);
+      every_line_fits_ = every_line_fits_ && target_.line_length(line) <= target_.max_line_length();
+      ++result_.blocks;
+      const std::size_t next = written.find_first_not_of("\r\n", end);
+      written = next == std::string_view::npos ? std::string_view() : written.substr(next);
+    }
+  }
+
+  const gcode::Dialect& target_;
+  Writer writer_;
+  RunText result_;
+  bool every_line_fits_ = true;
+};
+
+bool has_arcs(const OutputPlan& plan) {
+  return std::ranges::any_of(plan.moves, [](const PlannedMove& move) {
+    return std::holds_alternative<geometry::Arc>(move.piece);
+  });
+}
+
+}  // namespace
+
+std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
+                                 const gcode::Program& program, const gcode::Dialect& target,
+                                 const gcode::ModalState& before, const gcode::ModalState& after,
+                                 std::string_view line_end) {
+  const gcode::Position start{run.points.front(), {true, true, true}};
+  RunWriter out(target, Writer(target, {before, start}, line_end));
+  if (has_arcs(plan) && !out.writer().centers_understood()) return std::nullopt;
+
+  const auto copy_comments = [&](const std::vector<std::size_t>& comments) {
+    for (const std::size_t i : comments) {
+      out.writer().copy_line(program.source.text(run.comments[i].text));
+    }
+  };
+  NumberFormat format = plan.form == OutputForm::kArcs ? target.arc_ends(before.units)
+                                                       : target.coordinates(before.units);
+  out.writer().use_coordinates(format);
+  for (const PlannedMove& move : plan.moves) {
+    copy_comments(move.comments_before);
+    if (&move == &plan.moves.back()) {
+      format.decimals = std::min(std::max(format.decimals, run.decimals), kMostDecimals);
+      out.writer().use_coordinates(format);
+    }
+    out.write(move);
+  }
+  copy_comments(plan.comments_after);
+  out.restore(after);
+
+  const geometry::Point3& reached = out.writer().state().position.mm;
+  if ((reached - run.points.back()).norm() > geometry::kSamePlace) return std::nullopt;
+  if (!out.every_line_fits()) return std::nullopt;
+  return out.finished();
+}
+
+}  // namespace batten::postproc
