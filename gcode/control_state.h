@@ -10,6 +10,8 @@
 
 namespace batten::gcode {
 
+inline constexpr double kMillimetresPerInch = 25.4;
+
 struct ControlState {
   ModalState modal;
   Position position;

@@ -8,6 +8,8 @@
 #include "gcode/arc_from_words.h"
 #include "gcode/block_words.h"
 #include "gcode/control_state.h"
+#include "gcode/motion_words.h"
+#include "gcode/opaque_blocks.h"
 #include "gcode/program_flow.h"
 #include "gcode/reason.h"
 #include "gcode/state_changes.h"
@@ -15,101 +17,10 @@
 namespace batten::gcode {
 namespace {
 
-using geometry::Point3;
-
-constexpr double kMillimetresPerInch = 25.4;
-
-std::string_view opacity_reason(Opacity opacity) {
-  switch (opacity) {
-    case Opacity::kExpression:
-      return reason::kExpression;
-    case Opacity::kCornerWord:
-      return reason::kCornerWord;
-    case Opacity::kAssignment:
-      return reason::kAssignment;
-    case Opacity::kFlow:
-      return reason::kProgramFlow;
-    case Opacity::kForeign:
-      return reason::kForeignWords;
-    case Opacity::kProgramMark:
-      return reason::kProgramMark;
-    default:
-      return reason::kNotUnderstood;
-  }
-}
-
-MotionMode mode_of(Code motion) {
-  switch (motion) {
-    case 0:
-      return MotionMode::kRapid;
-    case 10:
-      return MotionMode::kLine;
-    case 20:
-      return MotionMode::kClockwise;
-    case 30:
-      return MotionMode::kCounterclockwise;
-    default:
-      return MotionMode::kOther;
-  }
-}
-
-// Why a motion that is neither G0, G1, G2 nor G3 ends a run.
-std::string_view other_motion_reason(Code motion) {
-  switch (motion) {
-    case 50:
-    case 51:
-    case 52:
-    case 53:
-    case 60:
-    case 61:
-    case 62:
-    case 63:
-      return reason::kSpline;
-    case 310:
-    case 382:
-    case 383:
-    case 384:
-    case 385:
-      return reason::kProbe;
-    case 320:
-    case 330:
-    case 331:
-    case 340:
-    case 760:
-      return reason::kThreading;
-    default:
-      return reason::kCannedCycle;
-  }
-}
-
-bool is_arc(MotionMode mode) {
-  return mode == MotionMode::kClockwise || mode == MotionMode::kCounterclockwise;
-}
-
-// Parameter assignments of LinuxCNC and macro B change no modal state, but high numbers are
-// windows into the control: FANUC's tool offsets begin at #2000, work offsets lie above #5000.
-bool assigns_only_variables(std::string_view text) {
-  constexpr int kFirstSystemVariable = 2000;
-  for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1)) {
-    std::size_t digit = at + 1;
-    int number = 0;
-    while (digit < text.size() && text[digit] >= '0' && text[digit] <= '9' &&
-           number < kFirstSystemVariable) {
-      number = number * 10 + (text[digit] - '0');
-      ++digit;
-    }
-    const bool named = digit < text.size() && text[digit] == '<';
-    if (number >= kFirstSystemVariable || (digit == at + 1 && !named)) {
-      return false;
-    }
-  }
-  return true;
-}
-
 class Interpreter {
  public:
   Interpreter(const Program& program, const ReadOptions& options, Diagnostics& found)
-      : program_(program), options_(options), found_(found) {
+      : program_(program), found_(found) {
     now_.modal.units = options.units;
     read_.unit_word_seen = options.units != Units::kUnknown;
     read_.states.push_back(now_.modal);
@@ -167,19 +78,6 @@ class Interpreter {
       case Opacity::kNone:
       case Opacity::kExpression:
         return read_words(block);
-      case Opacity::kProgramMark:  // and text that no control reads
-        return make_opaque(reason::kProgramMark);
-      case Opacity::kAssignment:
-        if (!assigns_only_variables(program_.source.text(block.span))) {
-          forget_position(now_);
-          now_.work_offset = 0;
-        }
-        return make_opaque(reason::kAssignment);
-      case Opacity::kFlow:
-        if (flow_effect(program_.source.text(block.span)) != FlowEffect::kNothing) {
-          forget_everything(now_);
-        }
-        return make_opaque(reason::kProgramFlow);
       case Opacity::kCornerWord:
         // The block's motion stops short of its end, and the next one starts beside it.
         read_words(block);
@@ -187,7 +85,7 @@ class Interpreter {
         forget_position(now_);
         return make_opaque(reason::kCornerWord);
       default:
-        forget_everything(now_);
+        apply_opaque(block.opacity, program_.source.text(block.span), now_);
         return make_opaque(opacity_reason(block.opacity));
     }
   }
@@ -296,7 +194,7 @@ class Interpreter {
     if (mode == MotionMode::kOther) {
       return read_other_motion(now_.other_motion);
     }
-    if (const std::string_view why = why_not_followed(words, effect); !why.empty()) {
+    if (const std::string_view why = why_not_followed(words, effect, now_); !why.empty()) {
       return lose_motion(words, why);
     }
     if (!(is_arc(mode) ? add_arc(words) : add_line(words))) {
@@ -348,49 +246,6 @@ class Interpreter {
     }
   }
 
-  // Why the motion of this block cannot be followed; empty when it can.
-  std::string_view why_not_followed(const BlockWords& words, const StateEffect& effect) const {
-    const ModalState& modal = now_.modal;
-    if (!words.all_numbers()) {
-      return reason::kExpression;
-    }
-    if (modal.motion == MotionMode::kUnknown || modal.distance == DistanceMode::kUnknown) {
-      return reason::kStateUnknown;
-    }
-    if (modal.polar != Tri::kOff || modal.modal_macro != Tri::kOff) {
-      return modal.polar == Tri::kOn         ? reason::kPolar
-             : modal.modal_macro == Tri::kOn ? reason::kModalMacro
-                                             : reason::kStateUnknown;
-    }
-    if (is_arc(modal.motion)) {
-      return why_arc_not_followed(words, effect);
-    }
-    if (!effect.takes_parameters && words.has('R')) {
-      return reason::kCornerWord;  // G1 X10 R2: a rounded corner
-    }
-    if (!effect.takes_parameters && words.has_any("IJKPQL")) {
-      return reason::kNotUnderstood;
-    }
-    return {};
-  }
-
-  std::string_view why_arc_not_followed(const BlockWords& words, const StateEffect& effect) const {
-    const ModalState& modal = now_.modal;
-    if (modal.plane == Plane::kUnknown || modal.arc_distance == DistanceMode::kUnknown) {
-      return reason::kStateUnknown;
-    }
-    const PlaneAxes plane = axes_of(modal.plane);
-    if (!now_.position.known[plane.axis0] || !now_.position.known[plane.axis1]) {
-      return reason::kPositionUnknown;
-    }
-    const Word* turns = words.find('P');
-    const bool several_turns = turns != nullptr && turns->value != 1;
-    if (!effect.takes_parameters && (several_turns || words.has_any("QL"))) {
-      return reason::kNotUnderstood;
-    }
-    return {};
-  }
-
   // The motion happens, but its path is not known. Nor is its end, as a rule: controls that
   // refuse the block stop, others go where the words say.
   void lose_motion(const BlockWords& words, std::string_view why) {
@@ -398,7 +253,7 @@ class Interpreter {
     if (why == reason::kExpression) {
       forget_named_axes(now_, words);
     } else if (why == reason::kPositionUnknown && now_.modal.distance == DistanceMode::kAbsolute) {
-      now_.position = end_of_motion(words);
+      now_.position = end_of_motion(words, now_);
     } else {
       forget_position(now_);
     }
@@ -406,31 +261,8 @@ class Interpreter {
 
   // --- geometry -----------------------------------------------------------------------------
 
-  // With unknown units the numbers stand for themselves: such motions are never rewritten.
-  double to_mm(double value) const {
-    return now_.modal.units == Units::kInch ? value * kMillimetresPerInch : value;
-  }
-
-  Position end_of_motion(const BlockWords& words) const {
-    Position end = now_.position;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Word* word = words.find("XYZ"[axis]);
-      if (word == nullptr) {
-        continue;
-      }
-      double& place = end.mm[static_cast<Eigen::Index>(axis)];
-      if (now_.modal.distance == DistanceMode::kAbsolute) {
-        place = to_mm(word->value);
-        end.known[axis] = true;
-      } else {
-        place += end.known[axis] ? to_mm(word->value) : 0;
-      }
-    }
-    return end;
-  }
-
   bool add_line(const BlockWords& words) {
-    const Position end = end_of_motion(words);
+    const Position end = end_of_motion(words, now_);
     Motion motion;
     motion.kind = now_.modal.motion == MotionMode::kRapid ? MotionKind::kRapid : MotionKind::kLine;
     motion.piece = geometry::Line{now_.position.mm, end.mm};
@@ -442,22 +274,8 @@ class Interpreter {
   }
 
   bool add_arc(const BlockWords& words) {
-    const Position end = end_of_motion(words);
-    ArcWords arc;
-    arc.start = now_.position.mm;
-    arc.end = end.mm;
-    arc.plane = axes_of(now_.modal.plane);
-    arc.clockwise = now_.modal.motion == MotionMode::kClockwise;
-    arc.center_absolute = now_.modal.arc_distance == DistanceMode::kAbsolute;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (const Word* word = words.find("IJK"[axis])) {
-        arc.center[axis] = to_mm(word->value);
-      }
-    }
-    if (const Word* word = words.find('R')) {
-      arc.radius = to_mm(word->value);
-    }
-    const ArcReading reading = arc_from_words(arc);
+    const Position end = end_of_motion(words, now_);
+    const ArcReading reading = arc_from_words(arc_words(words, now_, end));
     if (!reading.arc) {
       tell(Severity::kWarning, reading.problem, program_.blocks[block_index_].span,
            reading.message);
@@ -519,7 +337,6 @@ class Interpreter {
   }
 
   const Program& program_;
-  const ReadOptions& options_;
   Diagnostics& found_;
   ControlState now_;
   Interpretation read_;
