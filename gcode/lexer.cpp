@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "gcode/characters.h"
 #include "gcode/expression.h"
@@ -28,6 +29,9 @@ bool is_flow_word(std::string_view word) {
                       [](char a, char b) { return a == upper(b); });
   });
 }
+
+// No control takes numbers as great as this, and none that we write is (number_format).
+constexpr double kValueLimit = 1e9;
 
 SourceSpan span_of(std::size_t begin, std::size_t end) {
   return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
@@ -98,7 +102,7 @@ const Token& LineLexer::sign_token(char c) {
     case '#':
       return parameter_assignment();
     case ':':  // ISO code writes it for the O of a program number; labels end in it
-      return rest(TokenKind::kFlow, at_);
+      return at_ == begin_ ? o_word() : rest(TokenKind::kFlow, at_);
     case ')':
       return unreadable(at_, "')' without '('");
     default:
@@ -151,6 +155,9 @@ const Token& LineLexer::number_word(char letter, std::size_t value_at) {
   const auto scanned = scan_number(text_.substr(value_at));
   if (!scanned) {
     return unreadable(at_, "a letter without a number that can be read");
+  }
+  if (std::abs(scanned->number.value) >= kValueLimit) {
+    return unreadable(at_, "a number of a thousand million or more");
   }
   const std::size_t end = value_at + scanned->length;
   const char glued = peek(end);

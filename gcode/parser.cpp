@@ -282,9 +282,10 @@ class Parser {
 
   // The first thing of a program may be its number, which no control acts on. Later ones
   // begin subprograms.
-  void read_program_number(Block& block) const {
+  void read_program_number(Block& block) {
     const bool alone = program_.words.size() == block.first_word && !block.block_delete;
     block.opacity = alone && !words_seen_ ? Opacity::kProgramMark : Opacity::kFlow;
+    words_seen_ = true;
   }
 
   void make_unreadable(Block& block, SourceSpan where, std::string_view trouble) {

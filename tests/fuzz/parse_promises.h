@@ -39,7 +39,8 @@ inline bool word_is_true(const Word& word, std::string_view text) {
     return true;
   }
   const auto number = read_number(text.substr(1));
-  return upper(text.front()) == word.letter && number && number->value == word.value &&
+  const char letter = text.front() == ':' ? 'O' : upper(text.front());
+  return letter == word.letter && number && number->value == word.value &&
          number->has_point == word.has_point &&
          (number->decimals == word.decimals || number->decimals > 255);
 }

@@ -97,6 +97,8 @@ INSTANTIATE_TEST_SUITE_P(
                     SplitCase{"TooGreat",
                               "X" + std::string(400, '9'),
                               {"unreadable X" + std::string(400, '9')}},
+                    SplitCase{"AThousandMillion", "X-1000000000", {"unreadable X-1000000000"}},
+                    SplitCase{"JustBelow", "X999999999.9", {"X999999999.9"}},
                     SplitCase{"NonAscii", "G1 \xC3\xA9", {"G1", "unreadable \xC3\xA9"}},
                     SplitCase{"Control", "G1 \x18", {"G1", "unreadable \x18"}}),
     name_of);
@@ -169,7 +171,8 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     OtherLanguages, SplitWords,
     testing::Values(SplitCase{"ProgramNumber", "O1000 (part)", {"program O1000", "comment (part)"}},
-                    SplitCase{"ProgramNumberColon", ":1000", {"flow :1000"}},
+                    SplitCase{"ProgramNumberColon", ":1000", {"program :1000"}},
+                    SplitCase{"ColonInside", "G1 :1000", {"flow G1 :1000"}},
                     SplitCase{"OWord", "o100 sub", {"flow o100 sub"}},
                     SplitCase{"NamedOWord", "o<x> call [1]", {"flow o<x> call [1]"}},
                     SplitCase{"ONumberThenWords", "O1000 G21", {"flow O1000 G21"}},

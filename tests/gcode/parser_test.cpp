@@ -172,6 +172,7 @@ TEST(Parser, TheFirstNumberIsTheProgramsOwn) {
   EXPECT_EQ(blocks_of("G21\nO1000\n"), (Blocks{"words: G21", "flow: O1000"}));
   EXPECT_EQ(blocks_of("#1=2\nO1000\n").back(), "flow: O1000");
   EXPECT_EQ(blocks_of("/O1000\n").back(), "flow: O1000");
+  EXPECT_EQ(blocks_of(":1000\n:2000\n"), (Blocks{"mark: O1000", "flow: O2000"}));
 }
 
 TEST(ProgramMarks, BoundTheProgram) {
