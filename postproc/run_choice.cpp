@@ -1,0 +1,83 @@
+#include "postproc/run_choice.h"
+
+#include <algorithm>
+
+#include "gcode/reason.h"
+
+namespace batten::postproc {
+
+namespace {
+
+// Times are estimates: a difference below this is none.
+constexpr double kSameTime = 0.01;
+
+// What counts as a gain: so much less time, so many fewer blocks or bytes, an error so much
+// smaller.
+constexpr double kLessTime = 0.02;
+constexpr double kFewerBlocks = 0.75;
+constexpr double kFewerBytes = 0.85;
+constexpr double kNearer = 0.5;
+
+// More blocks than this multiple are no bargain for accuracy.
+constexpr double kMoreBlocks = 1.5;
+
+// Errors within this factor are equal: then the smaller text is better.
+constexpr double kSameError = 2.5;
+
+bool slower(const Candidate& c, const RunFacts& old) {
+  return c.time_s > (1 + kSameTime) * old.time_s;
+}
+
+bool gains(const Candidate& c, const SmoothedRun& run, const RunContext& context, Prefer prefer) {
+  const RunFacts& old = run.facts;
+  const auto blocks = static_cast<double>(c.text.blocks);
+  const auto blocks_before = static_cast<double>(context.blocks);
+  const auto bytes = static_cast<double>(c.text.text.size());
+  const bool faster = c.time_s < (1 - kLessTime) * old.time_s;
+  const bool smaller = blocks <= kFewerBlocks * blocks_before;
+  const bool nearer = c.error <= kNearer * old.error && blocks <= kMoreBlocks * blocks_before;
+  if (prefer == Prefer::kSize) return bytes <= kFewerBytes * static_cast<double>(context.bytes);
+  return faster || smaller || nearer;
+}
+
+bool better(const Candidate& a, const Candidate& b, Prefer prefer) {
+  if (prefer == Prefer::kSize) return a.text.text.size() < b.text.text.size();
+  if (prefer == Prefer::kTime) {
+    if (a.time_s < (1 - kSameTime) * b.time_s) return true;
+    if (b.time_s < (1 - kSameTime) * a.time_s) return false;
+    if (a.error * kSameError < b.error) return true;
+    if (b.error * kSameError < a.error) return false;
+    return a.text.blocks < b.text.blocks;
+  }
+  return a.error < b.error;
+}
+
+}  // namespace
+
+Choosing choose(const SmoothedRun& run, const RunContext& context, Prefer prefer) {
+  Choosing choosing;
+  if (run.candidates.empty()) {
+    choosing.reason = run.reason;
+    return choosing;
+  }
+  bool all_slower = true;
+  for (std::size_t i = 0; i < run.candidates.size(); ++i) {
+    const Candidate& c = run.candidates[i];
+    if (slower(c, run.facts)) continue;
+    all_slower = false;
+    if (gains(c, run, context, prefer)) choosing.order.push_back(i);
+  }
+  // With three or more candidates "better" is no order (its margins do not add up), so the best
+  // is found by one pass and the rest follow as they are.
+  for (std::size_t i = 1; i < choosing.order.size(); ++i) {
+    if (better(run.candidates[choosing.order[i]], run.candidates[choosing.order[0]], prefer)) {
+      std::swap(choosing.order[0], choosing.order[i]);
+    }
+  }
+  if (choosing.order.empty()) {
+    choosing.reason = all_slower ? gcode::reason::kSlower : gcode::reason::kNoGain;
+  }
+  return choosing;
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,181 @@
+#include "postproc/smoothing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "gcode/reason.h"
+#include "geometry/fair.h"
+#include "postproc/machine/cycle_time.h"
+
+namespace batten::postproc {
+
+namespace {
+
+constexpr double kMmPerInch = 25.4;
+
+// Of the share of the form, the curve may use this part too: what it leaves of it, and of its
+// own share, the form gets back.
+constexpr double kLent = 0.4;
+
+// The form gets no more than this multiple of its share, however little the curve used: finer
+// arcs and chords cost blocks.
+constexpr double kMostForm = 1.5;
+
+double step_of(int decimals, gcode::Units units) {
+  const double step = std::pow(10.0, -decimals);
+  return units == gcode::Units::kInch ? kMmPerInch * step : step;
+}
+
+double greatest_feed(const Run& run) {
+  double feed = 0;
+  for (const FeedFrom& from : run.feeds) feed = std::max(feed, from.feed);
+  return feed;
+}
+
+// 1/mm, of the circles through three neighbouring vertices.
+double greatest_curvature(std::span<const geometry::Point3> p) {
+  double most = 0;
+  for (std::size_t i = 1; i + 1 < p.size(); ++i) {
+    const geometry::Vector3 a = p[i] - p[i - 1];
+    const geometry::Vector3 b = p[i + 1] - p[i];
+    const double sides = a.norm() * b.norm() * (p[i + 1] - p[i - 1]).norm();
+    if (sides > 0) most = std::max(most, 2 * a.cross(b).norm() / sides);
+  }
+  return most;
+}
+
+double greatest_curvature(const geometry::FairPath& fair) {
+  constexpr int kParts = 8;
+  double most = 0;
+  const std::vector<double> knots = fair.curve.breakpoints();
+  for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+    for (int k = 0; k < kParts; ++k) {
+      const double u = knots[i] + (knots[i + 1] - knots[i]) * k / kParts;
+      most = std::max(most, fair.curve.curvature_at(u));
+    }
+  }
+  return std::max(most, fair.curve.curvature_at(fair.curve.last()));
+}
+
+std::vector<TimedPiece> timed_pieces(const Run& run) {
+  std::vector<TimedPiece> pieces;
+  pieces.reserve(run.points.size());
+  std::size_t next = 0;
+  double feed = 0;
+  for (std::size_t i = 0; i + 1 < run.points.size(); ++i) {
+    while (next < run.feeds.size() && run.feeds[next].vertex <= i) feed = run.feeds[next++].feed;
+    pieces.push_back({geometry::Line{run.points[i], run.points[i + 1]}, feed});
+  }
+  return pieces;
+}
+
+std::vector<TimedPiece> timed_pieces(const OutputPlan& plan) {
+  std::vector<TimedPiece> pieces;
+  pieces.reserve(plan.moves.size());
+  for (const PlannedMove& move : plan.moves) pieces.push_back({move.piece, move.feed});
+  return pieces;
+}
+
+// How far the chords of the run are from the curve that was meant, as the height of equal
+// chords: the rms distance of their middles. Noisy vertices are as far off as they scatter.
+double error_of(const Run& run, const geometry::FairPath& fair, double rounding) {
+  double squares = 0;
+  for (std::size_t i = 0; i + 1 < run.points.size(); ++i) {
+    const double u = 0.5 * (fair.vertex_parameters[i] + fair.vertex_parameters[i + 1]);
+    const geometry::Point3 middle = 0.5 * (run.points[i] + run.points[i + 1]);
+    const geometry::Vector3 off = fair.curve.point_at(u) - middle;
+    const geometry::Vector3 along = run.points[i + 1] - run.points[i];
+    const double length = along.squaredNorm();
+    const double slide = length > 0 ? off.dot(along) / length : 0;
+    squares += (off - slide * along).squaredNorm();
+  }
+  const double chords = std::sqrt(squares / static_cast<double>(run.points.size() - 1));
+  return fair.noise > 2 * rounding ? std::max(chords, fair.noise) : chords;
+}
+
+class RunSmoother {
+ public:
+  RunSmoother(const Run& run, const RunContext& context, const SmoothOptions& options)
+      : run_(run), context_(context), options_(options), units_(context.before.units) {}
+
+  SmoothedRun smooth() {
+    result_.facts.max_curvature = greatest_curvature(run_.points);
+    result_.facts.time_s = cutting_time(timed_pieces(run_), *options_.machine, context_.after.path);
+    if (options_.method == Method::kNone) return kept(gcode::reason::kMethodNone);
+
+    const ToleranceShares shares = share_tolerance(options_, units_, run_.decimals);
+    if (!(shares.smoothing > 0)) return kept(gcode::reason::kNoFit);
+    const double rounding = 0.5 * step_of(run_.decimals, units_);
+    const auto fair = geometry::fair_path(run_.points, fair_options(shares, rounding));
+    if (!fair) return kept(gcode::reason::kNoFit);
+    result_.facts.noise = fair->noise;
+    result_.facts.error = error_of(run_, *fair, rounding);
+    result_.facts.fair_curvature = greatest_curvature(*fair);
+
+    const double left = shares.smoothing + shares.form - fair->deviation;
+    const double form = std::min(left, kMostForm * shares.form);
+    if (!(form > 0)) return kept(gcode::reason::kNoFit);
+    add_candidates(*fair, form);
+    if (result_.candidates.empty()) return kept(gcode::reason::kTargetCannot);
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] geometry::FairOptions fair_options(const ToleranceShares& shares,
+                                                   double rounding) const {
+    geometry::FairOptions fair;
+    fair.tolerance = shares.smoothing + kLent * shares.form;
+    fair.rounding = rounding;
+    fair.feed = std::max(1.0, greatest_feed(run_));
+    fair.acceleration = options_.machine->max_acceleration;
+    fair.accurate = options_.prefer == Prefer::kAccuracy;
+    if (options_.keep_corners_deg) {
+      fair.keep_corner_angle = *options_.keep_corners_deg * std::numbers::pi / 180;
+    }
+    return fair;
+  }
+
+  void add_candidates(const geometry::FairPath& fair, double form) {
+    const PlanOptions plan = {options_.target,       options_.machine, units_,
+                              context_.before.plane, options_.prefer,  form};
+    if (options_.output != Form::kLines) add(plan_arcs(run_, fair, plan), form);
+    if (options_.output != Form::kArcs) add(plan_lines(run_, fair, plan), form);
+  }
+
+  void add(const std::optional<OutputPlan>& plan, double error) {
+    if (!plan) return;
+    auto text = write_run(*plan, run_, context_.program, *options_.target, context_.before,
+                          context_.after, context_.line_end);
+    if (!text) return;
+    Candidate candidate;
+    candidate.method = "fair";
+    candidate.form = plan->form;
+    candidate.error = error;
+    candidate.time_s = cutting_time(timed_pieces(*plan), *options_.machine, context_.after.path);
+    candidate.text = std::move(*text);
+    result_.candidates.push_back(std::move(candidate));
+  }
+
+  SmoothedRun kept(std::string_view reason) {
+    result_.reason = reason;
+    return std::move(result_);
+  }
+
+  const Run& run_;
+  const RunContext& context_;
+  const SmoothOptions& options_;
+  gcode::Units units_;
+  SmoothedRun result_;
+};
+
+}  // namespace
+
+SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOptions& options) {
+  return RunSmoother(run, context, options).smooth();
+}
+
+}  // namespace batten::postproc
