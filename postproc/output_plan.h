@@ -23,7 +23,7 @@ struct PlannedMove {
   std::vector<std::size_t> comments_before;  // indices into Run::comments
 };
 
-// The moves chain exactly, from the run's first point to its last.
+// The moves chain to within kSamePlace, from the run's first point to its last.
 struct OutputPlan {
   OutputForm form = OutputForm::kLines;
   std::vector<PlannedMove> moves;
