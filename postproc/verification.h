@@ -4,7 +4,7 @@
 // What is compared, in order: every block that acts (M, S, T words, coordinate systems,
 // dwells, opaque blocks ..) must stand in both, the same; rapids must have the same ends; and
 // between them each stretch of cutting moves at one feed must keep the tolerance, both ways
-// and in order (geometry/path_distance).
+// and in order (geometry/path_distance). What counts as an event: postproc/program_events.h.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +16,7 @@
 #include "gcode/motion.h"
 #include "gcode/program.h"
 #include "geometry/path_distance.h"
+#include "postproc/program_events.h"
 
 namespace batten::postproc {
 
@@ -30,20 +31,21 @@ enum class BreachKind {
 
 struct Breach {
   BreachKind kind = BreachKind::kDistance;
-  std::string
-      id;  // stable: "distance", "not-proved", "feed-changed", "rapid-changed", "event-lost" ..
-  std::uint32_t old_line = 0;  // 0: none
+  std::string id;  // stable, all listed in docs/diagnostics.md: "distance", "event-lost" ..
+  std::uint32_t old_line = 0;  // of the breach itself, as near as it is known; 0: none
   std::uint32_t new_line = 0;
   double deviation_mm = 0;  // kDistance: at least this much
   std::string message;      // found and expected
 };
 
-// One stretch of cutting moves that was compared.
+// One stretch of cutting moves at one feed that was compared, without the moves at its ends
+// that are the same in both programs.
 struct Stretch {
   std::uint32_t old_first_block = 0, old_last_block = 0;
   std::uint32_t new_first_block = 0, new_last_block = 0;
-  geometry::PathComparison
-      comparison;  // verdict kProved at distance 0 where the motions are identical
+  geometry::PathComparison comparison;
+  std::uint32_t old_worst_line = 0;  // where the greatest distance was met
+  std::uint32_t new_worst_line = 0;
 };
 
 struct Verification {
@@ -55,11 +57,8 @@ struct Verification {
   [[nodiscard]] bool proved() const { return breaches.empty(); }
 };
 
-struct ReadProgram {
-  const gcode::Program* program = nullptr;
-  const gcode::Interpretation* interpretation = nullptr;
-};
-
+// Feeds are the same when they differ by less than a millionth: they are printed again.
+// Requires a tolerance > 0 (throws std::invalid_argument otherwise).
 [[nodiscard]] Verification verify(const ReadProgram& before, const ReadProgram& after,
                                   double tolerance_mm);
 

@@ -1,0 +1,308 @@
+#include "postproc/program_events.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "gcode/code_groups.h"
+#include "gcode/reason.h"
+
+namespace batten::postproc {
+namespace {
+
+using gcode::Block;
+using gcode::BlockKind;
+using gcode::BlockMeaning;
+using gcode::Code;
+using gcode::CodeGroup;
+using gcode::ModalState;
+using gcode::Motion;
+using gcode::MotionKind;
+using gcode::Tri;
+using gcode::Word;
+namespace reason = gcode::reason;
+
+// Codes are kept in tenths; a word with more decimals is none of ours.
+std::optional<Code> code_of(const Word& word) {
+  const double tenths = word.value * 10;
+  const double rounded = std::round(tenths);
+  constexpr double kDecimalNoise = 1e-6;  // 38.2 * 10 is not 382
+  if (std::abs(tenths - rounded) > kDecimalNoise || rounded < 0 || rounded > 1e6) return {};
+  return static_cast<Code>(rounded);
+}
+
+// "G 1" is G1 and "g1" too: blanks and case mean nothing inside a word.
+void append_word(std::string& text, std::string_view word) {
+  for (const char c : word) {
+    if (c == ' ' || c == '\t') continue;
+    text += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  }
+}
+
+// A state in which the path in X, Y, Z is all there is to a cutting motion. Unknown is not.
+bool path_alone_counts(const ModalState& state) {
+  const std::array switches = {
+      state.cutter_compensation,
+      state.tool_center_point,
+      state.tilted_plane,
+      state.scaling,
+      state.rotation,
+      state.mirror,
+      state.polar,
+      state.cylindrical,
+      state.control_smoothing,
+      state.modal_macro,
+      state.constant_surface_speed,
+      state.lathe_diameter,
+  };
+  return std::ranges::all_of(switches, [](Tri item) { return item == Tri::kOff; }) &&
+         state.units != gcode::Units::kUnknown && state.feed_mode == gcode::FeedMode::kPerMinute &&
+         state.distance == gcode::DistanceMode::kAbsolute;
+}
+
+// Barriers of blocks that can be said word by word.
+bool can_be_said_in_words(std::string_view barrier) {
+  constexpr std::array kOurs = {
+      std::string_view{},  reason::kRapid,         reason::kArc,          reason::kStateChange,
+      reason::kSpindle,    reason::kCoolant,       reason::kMiscFunction, reason::kToolChange,
+      reason::kProgramEnd, reason::kActiveComment, reason::kCannedCycle,  reason::kCoordinateChange,
+      reason::kExactStop,
+  };
+  return std::ranges::find(kOurs, barrier) != kOurs.end();
+}
+
+bool has_length(const geometry::PathPiece& piece) {
+  const auto* line = std::get_if<geometry::Line>(&piece);
+  return line == nullptr || line->start != line->end;
+}
+
+class Lister {
+ public:
+  explicit Lister(const ReadProgram& read)
+      : program_(*read.program), interpretation_(*read.interpretation) {}
+
+  ProgramEvents run() {
+    for (std::uint32_t i = 0; i < program_.blocks.size(); ++i) list_block(i);
+    list_.cuts_before.push_back(list_.cuts.size());
+    return std::move(list_);
+  }
+
+ private:
+  void list_block(std::uint32_t index) {
+    block_index_ = index;
+    const Block& block = program_.blocks[index];
+    const BlockMeaning& meaning = interpretation_.blocks[index];
+    if (block.opacity != gcode::Opacity::kNone || block.block_delete) {
+      add_text(std::string(program_.source.text(block.span)));
+    } else {
+      list_words(block, meaning);
+      list_active_comments(block);
+    }
+    // Where nothing is known any more, no word is a repetition.
+    if (state_after().distance == gcode::DistanceMode::kUnknown) set_by_word_.fill(kNotSet);
+  }
+
+  // --- words --------------------------------------------------------------------------------
+
+  void list_words(const Block& block, const BlockMeaning& meaning) {
+    if (must_stand_as_text(block, meaning)) {
+      remember_words(block);
+      std::string text = text_of_words(block, meaning.label_referenced);
+      if (!text.empty()) add_text(std::move(text));
+      return;
+    }
+    for (const Word& word : program_.words_of(block)) list_word(word, meaning.motion >= 0);
+    if (meaning.motion < 0) return;
+    const Motion& motion = interpretation_.motions[static_cast<std::size_t>(meaning.motion)];
+    if (motion.kind == MotionKind::kRapid) {
+      ProgramEvent& event = add_event(EventKind::kRapid);
+      event.motion = meaning.motion;
+    } else if (has_length(motion.piece)) {
+      list_.cuts.push_back({static_cast<std::uint32_t>(meaning.motion), state_after().feed});
+    }
+    if (acts_with_motion_) {
+      // Controls differ in whether such a word acts before or after the motion of its block:
+      // both ends of the motion are places that must stay.
+      add_event(EventKind::kWord).text = "end of motion with words";
+      acts_with_motion_ = false;
+    }
+  }
+
+  [[nodiscard]] bool must_stand_as_text(const Block& block, const BlockMeaning& meaning) const {
+    if (meaning.kind == BlockKind::kOpaque || meaning.label_referenced ||
+        meaning.entered_from_elsewhere || !can_be_said_in_words(meaning.barrier)) {
+      return true;
+    }
+    const bool moves = meaning.motion >= 0;
+    for (const Word& word : program_.words_of(block)) {
+      if (!can_stand_alone(word, moves)) return true;
+    }
+    if (!moves) return false;
+    const Motion& motion = interpretation_.motions[static_cast<std::size_t>(meaning.motion)];
+    return !motion.start_known || !motion.end_known || !path_alone_counts(state_after());
+  }
+
+  // Does the word mean what it means without its neighbours? X of a line does, X of G28 not.
+  static bool can_stand_alone(const Word& word, bool moves) {
+    if (!word.is_number) return false;
+    switch (word.letter) {
+      case 'N':
+      case 'F':
+      case 'S':
+      case 'T':
+      case 'D':
+      case 'H':
+      case 'M':
+        return true;
+      case 'X':
+      case 'Y':
+      case 'Z':
+      case 'I':
+      case 'J':
+      case 'K':
+      case 'R':
+        return moves;
+      case 'G': {
+        const std::optional<Code> code = code_of(word);
+        return code && g_can_stand_alone(*code);
+      }
+      default:
+        return false;
+    }
+  }
+
+  static bool g_can_stand_alone(Code code) {
+    switch (gcode::group_of_g(code)) {
+      case CodeGroup::kUnknown:
+      case CodeGroup::kNone:
+      case CodeGroup::kAxisUser:
+      case CodeGroup::kModalMacro:
+      case CodeGroup::kSmoothing:
+        return false;
+      case CodeGroup::kMotion:
+        return code <= 30;  // G0 G1 G2 G3
+      default:
+        return true;
+    }
+  }
+
+  void list_word(const Word& word, bool moves) {
+    switch (word.letter) {
+      case 'G':
+        return list_g(word, moves);
+      case 'S':
+        if (state_before().spindle_speed == word.value) return;
+        return add_word(word, moves);
+      case 'M':
+      case 'T':
+      case 'D':
+      case 'H':
+        return add_word(word, moves);
+      default:
+        return;
+    }
+  }
+
+  void list_g(const Word& word, bool moves) {
+    const Code code = *code_of(word);
+    const CodeGroup group = gcode::group_of_g(code);
+    if (group == CodeGroup::kMotion) return;
+    Code& set = set_by_word_[static_cast<std::size_t>(group)];
+    const bool repeats = set == code && group != CodeGroup::kCycleEnd;
+    set = code;
+    if (repeats || group == CodeGroup::kPlane || group == CodeGroup::kArcDistance) return;
+    add_word(word, moves);
+  }
+
+  // A block that stands as text sets modes too.
+  void remember_words(const Block& block) {
+    for (const Word& word : program_.words_of(block)) {
+      const std::optional<Code> code = word.is_number ? code_of(word) : std::nullopt;
+      if (word.letter == 'G' && code) {
+        set_by_word_[static_cast<std::size_t>(gcode::group_of_g(*code))] = *code;
+      }
+    }
+  }
+
+  [[nodiscard]] std::string text_of_words(const Block& block, bool with_label) const {
+    std::string text;
+    for (const Word& word : program_.words_of(block)) {
+      if (word.letter != 'N' || with_label) append_word(text, program_.source.text(word.span));
+    }
+    return text;
+  }
+
+  void list_active_comments(const Block& block) {
+    for (const gcode::Comment& comment : program_.comments_of(block)) {
+      if (comment.kind == gcode::CommentKind::kActive) {
+        add_text(std::string(program_.source.text(comment.span)));
+      }
+    }
+  }
+
+  // --- events -------------------------------------------------------------------------------
+
+  void add_word(const Word& word, bool moves) {
+    ProgramEvent& event = add_event(EventKind::kWord);
+    append_word(event.text, program_.source.text(word.span));
+    if (moves) {
+      event.text += " with motion";
+      acts_with_motion_ = true;
+    }
+  }
+
+  void add_text(std::string text) { add_event(EventKind::kText).text = std::move(text); }
+
+  ProgramEvent& add_event(EventKind kind) {
+    ProgramEvent event;
+    event.kind = kind;
+    event.block = block_index_;
+    event.state_before = state_index_before();
+    event.plane_set = is_set(CodeGroup::kPlane);
+    event.arc_distance_set = is_set(CodeGroup::kArcDistance);
+    list_.cuts_before.push_back(list_.cuts.size());
+    list_.events.push_back(std::move(event));
+    return list_.events.back();
+  }
+
+  [[nodiscard]] bool is_set(CodeGroup group) const {
+    return set_by_word_[static_cast<std::size_t>(group)] != kNotSet;
+  }
+  [[nodiscard]] std::uint32_t state_index_before() const {
+    return block_index_ > 0 ? interpretation_.blocks[block_index_ - 1].state_after : 0;
+  }
+  [[nodiscard]] const ModalState& state_before() const {
+    return interpretation_.states[state_index_before()];
+  }
+  [[nodiscard]] const ModalState& state_after() const {
+    return interpretation_.states[interpretation_.blocks[block_index_].state_after];
+  }
+
+  static constexpr Code kNotSet = -1;
+  static constexpr std::size_t kGroups = static_cast<std::size_t>(CodeGroup::kModalMacro) + 1;
+
+  static std::array<Code, kGroups> nothing_set() {
+    std::array<Code, kGroups> none;
+    none.fill(kNotSet);
+    return none;
+  }
+
+  const gcode::Program& program_;
+  const gcode::Interpretation& interpretation_;
+  ProgramEvents list_;
+  std::uint32_t block_index_ = 0;
+  std::array<Code, kGroups> set_by_word_ = nothing_set();  // the last word of each group
+  bool acts_with_motion_ = false;
+};
+
+}  // namespace
+
+bool same_feed(const std::optional<double>& a, const std::optional<double>& b) {
+  constexpr double kPrinted = 1e-6;
+  if (!a || !b) return a.has_value() == b.has_value();
+  return std::abs(*a - *b) <= kPrinted * std::max(std::abs(*a), std::abs(*b));
+}
+
+ProgramEvents list_events(const ReadProgram& read) { return Lister(read).run(); }
+
+}  // namespace batten::postproc

@@ -1,0 +1,72 @@
+// What a program does, as a list: events in order, and the cutting motions between them.
+// The verifier's view of a program; it knows nothing of runs.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gcode/motion.h"
+#include "gcode/program.h"
+
+namespace batten::postproc {
+
+struct ReadProgram {
+  const gcode::Program* program = nullptr;
+  const gcode::Interpretation* interpretation = nullptr;
+};
+
+enum class EventKind : std::uint8_t {
+  kWord,   // one word that acts: M8, T3, S1200, G54, G90
+  kText,   // a block that must stand in the other program too, word for word
+  kRapid,  // a rapid whose place is known
+};
+
+struct ProgramEvent {
+  EventKind kind = EventKind::kWord;
+  std::uint32_t block = 0;
+  // kWord: the word; with " with motion" where the block also moves, since controls differ in
+  // which of the two comes first. kText: the whole text of a block that is not understood, else
+  // its words without blanks, N and comments. Empty for rapids.
+  std::string text;
+  std::int32_t motion = -1;        // of kRapid
+  std::uint32_t state_before = 0;  // Interpretation::states before the block
+  // A word has set the plane, the arc distance mode: not only assumed as after power-on.
+  bool plane_set = false;
+  bool arc_distance_set = false;
+};
+
+// A motion at feed rate whose place is known, in a state in which the path alone counts.
+struct Cut {
+  std::uint32_t motion = 0;
+  std::optional<double> feed;  // as ModalState::feed
+};
+
+struct ProgramEvents {
+  std::vector<ProgramEvent> events;
+  std::vector<Cut> cuts;                 // those that move; in order
+  std::vector<std::size_t> cuts_before;  // for each event, and once more for the end
+
+  // Stretch k stands before event k; the last one after all events.
+  [[nodiscard]] std::size_t stretch_begin(std::size_t k) const {
+    return k > 0 ? cuts_before[k - 1] : 0;
+  }
+};
+
+// Feeds are the same when they differ by less than a millionth: they are printed again, 39.3701
+// in/min for 1000 mm/min.
+[[nodiscard]] bool same_feed(const std::optional<double>& a, const std::optional<double>& b);
+
+// No events are: comments that do not act, N words that nothing refers to, F (a property of the
+// cuts), motion words, plane and arc distance words (they only say how arcs are written), and
+// words of other modal groups and S that repeat what a word has set before.
+//
+// Everything that could depend on more than the path is a kText event: blocks that are not
+// understood, other axes, motions from unknown places, loops, labels that are referred to, and
+// motions in states where the text is not the path (cutter compensation, inverse time ..).
+[[nodiscard]] ProgramEvents list_events(const ReadProgram& read);
+
+}  // namespace batten::postproc
