@@ -106,7 +106,7 @@ def even_points(curve, step, fine=200000, span=(0.0, 1.0)):
 
 
 def butterfly():
-    """The butterfly curve of T. Fay (1989), about 80 mm wide, points 0.2 mm apart with 0.005 mm noise."""
+    """The butterfly curve of T. Fay (1989), 58 mm wide, points 0.2 mm apart with 0.005 mm noise."""
     noise = random.Random(1)
 
     def curve(t):
@@ -288,7 +288,7 @@ def stroke_points(stroke, left, bottom):
 
 def engraved_text():
     """BATTEN CURVES in a stroke font, engraved 0.2 mm deep."""
-    program = Program(*head("engraved text"), "S24000 M3")
+    program = Program("(engraved text)", "G21 G90 G17 G94", "S24000 M3")  # grbl has no G64
     program.rapid(z=2)
     for row, word in enumerate(("BATTEN", "CURVES")):
         for column, letter in enumerate(word):

@@ -1,0 +1,343 @@
+// What a user's shell and scripts depend on: help, exit codes, which files are written.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "batten_process.h"
+
+namespace batten {
+namespace {
+
+using testing::TestWithParam;
+using testing::Values;
+
+constexpr const char* kSmooth = "smooth part.nc --target linuxcnc --tolerance 0.01 ";
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class CommandLine : public testing::Test {
+ protected:
+  void SetUp() override { folder_.put("part.nc", wave_program()); }
+
+  [[nodiscard]] ProcessResult batten(const std::string& arguments) const {
+    return folder_.batten(arguments);
+  }
+
+  BattenFolder folder_;
+};
+
+// --- help ------------------------------------------------------------------------------------
+
+class Help : public TestWithParam<const char*> {};
+
+TEST_P(Help, OfEachCommandHasAnExample) {
+  const BattenFolder folder;
+  const ProcessResult help = folder.batten(std::string(GetParam()) + " --help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_TRUE(contains(help.out, "Example")) << help.out;
+  EXPECT_TRUE(contains(help.out, std::string("batten ") + GetParam())) << help.out;
+  EXPECT_EQ(help.err, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(CommandLine, Help,
+                         Values("smooth", "verify", "inspect", "targets", "machines", "methods"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST_F(CommandLine, HelpListsTheCommandsAndExitCodes) {
+  const ProcessResult help = batten("--help");
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* command : {"smooth", "verify", "inspect", "targets", "machines", "methods"}) {
+    EXPECT_TRUE(contains(help.out, command)) << command;
+  }
+  EXPECT_TRUE(contains(help.out, "3 not proved")) << help.out;
+}
+
+TEST_F(CommandLine, VersionIsOneLine) {
+  const ProcessResult version = batten("--version");
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_EQ(version.out, "batten " BATTEN_VERSION "\n");
+}
+
+TEST_F(CommandLine, ListsWhatIsBuiltIn) {
+  EXPECT_TRUE(contains(batten("targets").out, "grbl"));
+  EXPECT_TRUE(contains(batten("machines").out, "linuxcnc"));
+  EXPECT_TRUE(contains(batten("methods").out, "fair"));
+  const auto targets = nlohmann::json::parse(batten("targets --json -").out);
+  ASSERT_GE(targets.size(), 2u);
+  EXPECT_EQ(targets[0]["name"], "linuxcnc");
+}
+
+// --- wrong usage -------------------------------------------------------------------------------
+
+struct WrongUsage {
+  const char* name;
+  const char* arguments;
+  const char* message;
+};
+
+class WrongUsages : public TestWithParam<WrongUsage> {};
+
+TEST_P(WrongUsages, ExitWithOneAndTouchNothing) {
+  const BattenFolder folder;
+  folder.put("part.nc", wave_program());
+  const ProcessResult result = folder.batten(GetParam().arguments);
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_TRUE(contains(result.err, GetParam().message)) << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(folder.text_of("part.nc"), wave_program());
+  EXPECT_FALSE(folder.has("part.smooth.nc"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CommandLine, WrongUsages,
+    Values(
+        WrongUsage{"NoCommand", "", "no command given; possible: smooth, verify"},
+        WrongUsage{"UnknownCommand", "smoth part.nc", "did you mean 'smooth'?"},
+        WrongUsage{"NoFile", "smooth --target linuxcnc", "IN: no file given"},
+        WrongUsage{"TwoFiles", "smooth --target linuxcnc part.nc b.nc", "one file too many"},
+        WrongUsage{"NoTarget", "smooth part.nc", "--target: no target given; possible: linuxcnc"},
+        WrongUsage{"UnknownTarget", "smooth part.nc --target linuxcn", "did you mean 'linuxcnc'?"},
+        WrongUsage{"UnknownMachine", "smooth part.nc --target grbl --machine x", "--machine"},
+        WrongUsage{"MissingMachineFile", "smooth part.nc --target grbl --machine x.toml", "x.toml"},
+        WrongUsage{"UnknownOption", "smooth part.nc --target grbl --tolerence 1",
+                   "did you mean --tolerance?"},
+        WrongUsage{"UnknownForm", "smooth part.nc --target grbl --output curves",
+                   "possible: auto, arcs, lines"},
+        WrongUsage{"UnknownMethod", "smooth part.nc --target grbl --method guo",
+                   "possible: best, fair, none"},
+        WrongUsage{"ToleranceWithoutAValue", "smooth part.nc --target grbl --tolerance",
+                   "--tolerance"},
+        WrongUsage{"ToleranceWithAComma", "smooth part.nc --target grbl --tolerance 0,01",
+                   "not a comma"},
+        WrongUsage{"ToleranceOfAnotherUnit", "smooth part.nc --target grbl --tolerance 0.01cm",
+                   "0.0005in"},
+        WrongUsage{"NegativeTolerance", "smooth part.nc --target grbl --tolerance=-0.01",
+                   "above 0"},
+        WrongUsage{"RuleThatCannotBeLifted",
+                   "smooth part.nc --target grbl --allow cutter-compensation", "cannot be lifted"},
+        WrongUsage{"OutputIsTheInput", "smooth part.nc --target grbl -o ./part.nc --force",
+                   "--in-place"},
+        WrongUsage{"ReportIsTheInput", "smooth part.nc --target grbl --json part.nc --force",
+                   "--json"},
+        WrongUsage{"ReportIsTheOutput", "smooth part.nc --target grbl -o x.nc --json x.nc",
+                   "--json"},
+        WrongUsage{"InPlaceWithOut", "smooth part.nc --target grbl --in-place -o x.nc",
+                   "--in-place"},
+        WrongUsage{"InPlaceOfStandardInput", "smooth - --target grbl --in-place", "--in-place"},
+        WrongUsage{"ProgramAndReportOnStandardOutput", "smooth part.nc --target grbl -o - --json -",
+                   "--json"},
+        WrongUsage{"MissingConfig", "smooth part.nc --target grbl --config no.toml", "no.toml"},
+        WrongUsage{"VerifyWithOneFile", "verify part.nc", "NEW: no file given"},
+        WrongUsage{"VerifyStandardInputTwice", "verify - -", "only once"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST_F(CommandLine, TellsAllProblemsAtOnce) {
+  const ProcessResult result = batten(
+      "smooth part.nc --target no --tolerance x --method y --keep-corners 999 --threads -1 --nope");
+  EXPECT_EQ(result.exit_code, 1);
+  for (const char* option :
+       {"--target", "--tolerance", "--method", "--keep-corners", "--threads", "--nope"}) {
+    EXPECT_TRUE(contains(result.err, std::string("batten: ") + option)) << option << result.err;
+  }
+}
+
+// --- files ---------------------------------------------------------------------------------------
+
+TEST_F(CommandLine, WritesBesideTheInputByDefault) {
+  const ProcessResult result = batten(kSmooth);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(folder_.has("part.smooth.nc"));
+  EXPECT_EQ(folder_.text_of("part.nc"), wave_program());
+  EXPECT_EQ(result.out, "");
+  EXPECT_TRUE(contains(result.err, "part.nc -> part.smooth.nc, for linuxcnc")) << result.err;
+}
+
+TEST_F(CommandLine, DoesNotReplaceAFileWithoutForce) {
+  folder_.put("part.smooth.nc", "mine");
+  const ProcessResult refused = batten(kSmooth);
+  EXPECT_EQ(refused.exit_code, 4);
+  EXPECT_TRUE(contains(refused.err, "--force")) << refused.err;
+  EXPECT_EQ(folder_.text_of("part.smooth.nc"), "mine");
+  EXPECT_EQ(batten(std::string(kSmooth) + "--force").exit_code, 0);
+  EXPECT_NE(folder_.text_of("part.smooth.nc"), "mine");
+}
+
+TEST_F(CommandLine, DoesNotReplaceAReportWithoutForce) {
+  folder_.put("report.json", "mine");
+  EXPECT_EQ(batten(std::string(kSmooth) + "--json report.json").exit_code, 4);
+  EXPECT_EQ(folder_.text_of("report.json"), "mine");
+  EXPECT_FALSE(folder_.has("part.smooth.nc"));
+}
+
+TEST_F(CommandLine, ReplacesTheInputOnlyWhenAsked) {
+  ASSERT_EQ(batten(kSmooth).exit_code, 0);
+  ASSERT_EQ(batten(std::string(kSmooth) + "--in-place").exit_code, 0);
+  EXPECT_EQ(folder_.text_of("part.nc"), folder_.text_of("part.smooth.nc"));
+}
+
+TEST_F(CommandLine, DryRunWritesNoProgram) {
+  const ProcessResult result = batten(std::string(kSmooth) + "--dry-run --json -");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_FALSE(folder_.has("part.smooth.nc"));
+  EXPECT_EQ(nlohmann::json::parse(result.out)["input"]["file"], "part.nc");
+}
+
+TEST_F(CommandLine, ReadsStandardInputAndWritesStandardOutput) {
+  ASSERT_EQ(batten(kSmooth).exit_code, 0);
+  const ProcessResult piped =
+      folder_.shell("batten smooth - --target linuxcnc --tolerance 0.01 <part.nc");
+  EXPECT_EQ(piped.exit_code, 0) << piped.err;
+  EXPECT_EQ(piped.out, folder_.text_of("part.smooth.nc"));
+  const ProcessResult filter = batten(std::string(kSmooth) + "-o -");
+  EXPECT_EQ(filter.out, folder_.text_of("part.smooth.nc"));
+}
+
+TEST_F(CommandLine, TellsAFullOrClosedStandardOutput) {
+  EXPECT_EQ(folder_.shell(std::string("batten ") + kSmooth + "-o - >/dev/full").exit_code, 4);
+}
+
+TEST_F(CommandLine, TellsAMissingFile) {
+  const ProcessResult result = batten("smooth missing.nc --target grbl");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_TRUE(contains(result.err, "missing.nc")) << result.err;
+}
+
+TEST_F(CommandLine, RefusesAProgramWithoutUnitsUntilTheyAreGiven) {
+  std::string text = wave_program();
+  text.replace(0, 4, "");  // without its G21
+  folder_.put("part.nc", text);
+  const ProcessResult refused = batten(kSmooth);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(contains(refused.err, "part.nc:")) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "--units")) << refused.err;
+  EXPECT_FALSE(folder_.has("part.smooth.nc"));
+  EXPECT_EQ(batten(std::string(kSmooth) + "--units mm").exit_code, 0);
+  EXPECT_TRUE(folder_.has("part.smooth.nc"));
+}
+
+// --- verify and inspect --------------------------------------------------------------------------
+
+TEST_F(CommandLine, VerifyAcceptsWhatSmoothWrote) {
+  ASSERT_EQ(batten(kSmooth).exit_code, 0);
+  const ProcessResult result = batten("verify part.nc part.smooth.nc --tolerance 0.01 --json -");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "proved")) << result.err;
+  const auto report = nlohmann::json::parse(result.out);
+  EXPECT_EQ(report["proved"], true);
+  EXPECT_LE(report["deviation_mm"].get<double>(), 0.01);
+}
+
+TEST_F(CommandLine, VerifyRejectsAChangedProgram) {
+  std::string text = wave_program();
+  text.insert(text.find("G0 Z5"), "M9\n");
+  folder_.put("new.nc", text);
+  const ProcessResult result = batten("verify part.nc new.nc --tolerance 0.01");
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_TRUE(contains(result.err, "new.nc:")) << result.err;
+  EXPECT_TRUE(contains(result.err, "NOT PROVED")) << result.err;
+}
+
+TEST_F(CommandLine, InspectShowsRunsAndReasons) {
+  const ProcessResult text = batten("inspect part.nc");
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_TRUE(contains(text.out, "may be rewritten")) << text.out;
+  EXPECT_TRUE(contains(text.out, "rapid: ")) << text.out;
+  const ProcessResult json = batten("inspect part.nc --json -");
+  EXPECT_EQ(json.exit_code, 0);
+  std::size_t runs = 0;
+  for (const auto& section : nlohmann::json::parse(json.out)["sections"]) {
+    if (section["status"] != "run") continue;
+    ++runs;
+    EXPECT_GE(section["segments"]["count"].get<int>(), 100);
+    EXPECT_NEAR(section["segments"]["median_mm"].get<double>(), 0.22361, 1e-4);  // 0.2, 0.1
+  }
+  EXPECT_EQ(runs, 1u);
+}
+
+// --- options in files ----------------------------------------------------------------------------
+
+TEST_F(CommandLine, ConfigGivesTheSameResultAsOptions) {
+  folder_.put(
+      "options.toml",
+      "target = \"linuxcnc\"\ntolerance = 0.01\nstrict = false\nallow = [\"exact-stop\"]\n");
+  ASSERT_EQ(batten("smooth part.nc --config options.toml").exit_code, 0);
+  ASSERT_EQ(batten(std::string(kSmooth) + "--allow exact-stop -o given.nc").exit_code, 0);
+  EXPECT_EQ(folder_.text_of("part.smooth.nc"), folder_.text_of("given.nc"));
+}
+
+TEST_F(CommandLine, PrintedConfigReadsBackTheSame) {
+  const std::string options =
+      "smooth --print-config --target grbl --tolerance 0.0005in --prefer size --keep-corners 12.5 "
+      "--allow exact-stop --strict";
+  const ProcessResult printed = batten(options);
+  ASSERT_EQ(printed.exit_code, 0) << printed.err;
+  folder_.put("options.toml", printed.out);
+  const ProcessResult again = batten("smooth --print-config --config options.toml");
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(again.out, printed.out);
+  EXPECT_TRUE(contains(printed.out, "keep-corners = \"12.5\"")) << printed.out;
+  EXPECT_TRUE(contains(printed.out, "strict = true")) << printed.out;
+}
+
+TEST_F(CommandLine, TheCommandLineGoesBeforeTheConfig) {
+  folder_.put("options.toml", "target = \"linuxcnc\"\n");
+  const ProcessResult result = batten("smooth --print-config --config options.toml --target grbl");
+  EXPECT_TRUE(contains(result.out, "target = \"grbl\"")) << result.out;
+}
+
+TEST_F(CommandLine, TellsEveryProblemOfAConfigWithItsLine) {
+  folder_.put("options.toml", "target = [1]\ntolerence = 1\nforce = true\nstrict = 3\n");
+  const ProcessResult result = batten("smooth part.nc --config options.toml");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.err, "options.toml:1: 'target'")) << result.err;
+  EXPECT_TRUE(contains(result.err, "options.toml:2: there is no option 'tolerence'")) << result.err;
+  EXPECT_TRUE(contains(result.err, "options.toml:3: 'force' is for the command line"))
+      << result.err;
+  EXPECT_TRUE(contains(result.err, "options.toml:4: 'strict', expected true or false"))
+      << result.err;
+}
+
+TEST_F(CommandLine, TakesAMachineFromAFile) {
+  folder_.put("router.toml", "based-on = \"linuxcnc\"\nmax-acceleration = 500\n");
+  const ProcessResult result = batten(std::string(kSmooth) + "--machine router.toml");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "machine router")) << result.err;
+  folder_.put("bad.toml", "based-on = \"linuxcn\"\nmax-acceleration = -1\nmax-speed = 3\n");
+  const ProcessResult bad = batten(std::string(kSmooth) + "--machine bad.toml --force");
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_TRUE(contains(bad.err, "there is no machine 'linuxcn'")) << bad.err;
+  EXPECT_TRUE(contains(bad.err, "bad.toml:2: max-acceleration: expected a number above 0"))
+      << bad.err;
+  EXPECT_TRUE(contains(bad.err, "bad.toml:3: max-speed: expected one of")) << bad.err;
+}
+
+// --- progress and interrupts ---------------------------------------------------------------------
+
+TEST_F(CommandLine, ProgressForLinuxcncIsItsLinesAndNothingElse) {
+  const ProcessResult result = batten(std::string(kSmooth) + "--progress linuxcnc -o -");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_TRUE(contains(result.err, "FILTER_PROGRESS=100\n")) << result.err;
+  EXPECT_FALSE(contains(result.out, "FILTER_PROGRESS"));
+  const ProcessResult under_axis = folder_.shell(
+      std::string("AXIS_PROGRESS_BAR=1; export AXIS_PROGRESS_BAR; batten ") + kSmooth + "-o -");
+  EXPECT_TRUE(contains(under_axis.err, "FILTER_PROGRESS=100\n"));
+  EXPECT_FALSE(contains(batten(std::string(kSmooth) + "-o -").err, "FILTER_PROGRESS"));
+}
+
+// The program waits for standard input, so the signal comes while it runs, whatever its speed.
+TEST_F(CommandLine, ASignalEndsTheProgramAndNothingIsWritten) {
+  const std::string wait_and_kill =
+      "mkfifo pipe; { sleep 20 >pipe; } & sleeper=$!\n"
+      "'" BATTEN_BINARY
+      "' smooth - --target linuxcnc -o new.nc <pipe & work=$!\n"
+      "sleep 0.5; kill -TERM $work; wait $work; code=$?; kill $sleeper; exit $code";
+  const ProcessResult result = folder_.shell("( " + wait_and_kill + " )");
+  EXPECT_EQ(result.exit_code, 143) << result.err;
+  EXPECT_FALSE(folder_.has("new.nc"));
+}
+
+}  // namespace
+}  // namespace batten
