@@ -17,7 +17,7 @@ namespace batten::geometry {
 //
 // A coordinate is taken as the decimal of nine digits after the point (mm) that the double
 // stands for, where there is one: coordinates come from printed millimetres, or from printed
-// inches of at most seven digits times 25.4, and both are such decimals. So is the tolerance.
+// inches of up to eight decimals times 25.4, and both are such decimals. So is the tolerance.
 // Other coordinates are taken as the number that the double is.
 //
 // A pair of a vertex and a place inside an edge may be read as the vertex and the foot of the
