@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -32,16 +33,27 @@ bool would_be_refused(const std::string& file, bool replace_existing) {
 }
 
 bool has_unproved_run(const SmoothResult& result) {
-  for (const RunReport& run : result.runs) {
-    if (run.status == RunStatus::kKept && run.reason == gcode::reason::kNotProved) return true;
-  }
-  return !result.proved;
+  return std::ranges::any_of(result.runs, [](const RunReport& run) {
+    return run.status == RunStatus::kKept && run.reason == gcode::reason::kNotProved;
+  });
+}
+
+// The progress line is gone when this returns.
+SmoothResult smooth_with_progress(const gcode::SourceText& source, const SmoothCommand& command) {
+  const Progress progress = show_progress(command.progress);
+  SmoothResult result = smooth_program(source, command.options, progress);
+  (void)progress(1);
+  return result;
 }
 
 // What the result means before anything is written.
-ExitCode judge(const SmoothCommand& command, const SmoothResult& result) {
+ExitCode judge(const SmoothCommand& command, const gcode::SourceText& source,
+               const SmoothResult& result) {
   if (!result.understood) return ExitCode::kNotUnderstood;
-  if (!result.proved || (command.strict && has_unproved_run(result))) return ExitCode::kNotProved;
+  // The same bytes need no proof: programs with words that cannot be followed come out as they
+  // were.
+  const bool proved = result.proved || result.text == source.text();
+  if (!proved || (command.strict && has_unproved_run(result))) return ExitCode::kNotProved;
   return ExitCode::kDone;
 }
 
@@ -66,15 +78,14 @@ int run(const SmoothCommand& command) {
   if (interrupted()) return interrupt_exit_code();
   if (!source) return static_cast<int>(ExitCode::kFileError);
 
-  const SmoothResult result =
-      smooth_program(*source, command.options, show_progress(command.progress));
+  const SmoothResult result = smooth_with_progress(*source, command);
   if (interrupted()) {
     say("interrupted; nothing was written");
     return interrupt_exit_code();
   }
   print(result.diagnostics, *source);
 
-  const ExitCode verdict = judge(command, result);
+  const ExitCode verdict = judge(command, *source, result);
   const bool writes = verdict == ExitCode::kDone && !command.dry_run;
   const SmoothReport report = {
       .source = *source,
