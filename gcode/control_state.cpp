@@ -36,6 +36,9 @@ ControlState either(const ControlState& a, const ControlState& b) {
       forget_axis(both, axis);
     }
   }
+  if (a.modal.units != b.modal.units) {
+    forget_position(both);  // what is programmed next has no certain length
+  }
   if (a.other_motion != b.other_motion) {
     both.other_motion = {};
   }

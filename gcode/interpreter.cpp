@@ -17,6 +17,9 @@
 namespace batten::gcode {
 namespace {
 
+// Programs of rubbish, or for a control with other arcs, must not bury their reader.
+constexpr std::size_t kMostTold = 50;  // of one id
+
 class Interpreter {
  public:
   Interpreter(const Program& program, const ReadOptions& options, Diagnostics& found)
@@ -32,6 +35,7 @@ class Interpreter {
     for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
       read_block(static_cast<std::uint32_t>(i), flow[i]);
     }
+    tell_untold();
     report_missing_units();
     return std::move(read_);
   }
@@ -307,10 +311,29 @@ class Interpreter {
   // --- diagnostics --------------------------------------------------------------------------
 
   void tell(Severity severity, std::string_view id, SourceSpan where, std::string message) {
-    if (!told_) {
-      found_.push_back({severity, id, where, std::move(message)});
+    if (std::exchange(told_, true)) {
+      return;
     }
-    told_ = true;
+    const auto same_id = [id](const auto& entry) { return entry.id == id; };
+    auto counted = std::ranges::find_if(counts_, same_id);
+    if (counted == counts_.end()) {
+      counted = counts_.insert(counts_.end(), {id, 0, where});
+    }
+    if (++counted->count <= kMostTold) {
+      found_.push_back({severity, id, where, std::move(message)});
+    } else if (counted->count == kMostTold + 1) {
+      counted->first_untold = where;
+    }
+  }
+
+  void tell_untold() {
+    for (const Count& counted : counts_) {
+      if (counted.count > kMostTold) {
+        found_.push_back({Severity::kWarning, counted.id, counted.first_untold,
+                          fmt::format("this and {} more blocks after it have the same trouble",
+                                      counted.count - kMostTold - 1)});
+      }
+    }
   }
 
   // Once per code: a program that uses it a thousand times says nothing new.
@@ -343,6 +366,12 @@ class Interpreter {
   BlockMeaning meaning_;  // of the block that is being read
   std::uint32_t block_index_ = 0;
   bool told_ = false;  // it has its diagnostic
+  struct Count {
+    std::string_view id;
+    std::size_t count = 0;
+    SourceSpan first_untold;
+  };
+  std::vector<Count> counts_;
   std::vector<Code> unknown_codes_;
 };
 

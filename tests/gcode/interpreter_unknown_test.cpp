@@ -1,0 +1,158 @@
+// What is forgotten: after a block that could have changed something, that something is
+// unknown, until a word sets it again.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "gcode/reason.h"
+#include "tests/support/interpreted.h"
+
+namespace batten::gcode {
+namespace {
+
+using tests::Interpreted;
+
+constexpr const char* kStart =
+    "G21 G90 G94 G17 G40 G49 G64 F100\nG54\nG0 X1 Y1 Z1\nG1 X2\n";  // 4 lines
+constexpr const char* kAfter = "\nG1 X3\nY3\nZ3\nG1 X4 Y4 Z4\n";
+
+struct PlaceCase {
+  const char* name;
+  const char* block;
+  bool x, y, z;  // known after it
+};
+void PrintTo(const PlaceCase& test, std::ostream* out) { *out << test.block; }
+
+class PlaceAfter : public testing::TestWithParam<PlaceCase> {};
+
+TEST_P(PlaceAfter, IsKnownOnTheseAxes) {
+  const Interpreted it(std::string(kStart) + GetParam().block + kAfter);
+  const std::size_t last = it.read.blocks.size();
+  ASSERT_NE(it.motion_of_line(last - 3), nullptr);
+  EXPECT_EQ(it.motion_of_line(last - 3)->start_known, GetParam().x);
+  EXPECT_EQ(it.motion_of_line(last - 2)->start_known, GetParam().y);
+  EXPECT_EQ(it.motion_of_line(last - 1)->start_known, GetParam().z);
+  EXPECT_TRUE(it.motion_of_line(last)->start_known);  // the words said all of it again
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Interpreter, PlaceAfter,
+    testing::Values(PlaceCase{"Comment", "(text)", true, true, true},
+                    PlaceCase{"Spindle", "M3 S100", true, true, true},
+                    PlaceCase{"Dwell", "G4 P1", true, true, true},
+                    PlaceCase{"DwellWithX", "G4 X1", false, true, true},
+                    PlaceCase{"SameOffset", "G54", true, true, true},
+                    PlaceCase{"OtherOffset", "G55", false, false, false},
+                    PlaceCase{"ExtendedOffset", "G54.1 P3", false, false, false},
+                    PlaceCase{"OffsetWithP", "G54 P3", false, false, false},
+                    PlaceCase{"OriginOfOneAxis", "G92 Y0", true, false, true},
+                    PlaceCase{"OriginOfTheExtruder", "G92 E0", true, true, true},
+                    PlaceCase{"OriginBack", "G92.1", false, false, false},
+                    PlaceCase{"LocalOffset", "G52 X1", false, false, false},
+                    PlaceCase{"Data", "G10 L2 P1 X0\nG1", false, false, false},
+                    PlaceCase{"MachinePlace", "G53 G1 Z0", true, true, false},
+                    PlaceCase{"HomeOneAxis", "G28 Z0", true, true, false},
+                    PlaceCase{"HomeByIncrement", "G28 W0", true, true, false},
+                    PlaceCase{"HomeRotary", "G28 A0", true, true, true},
+                    PlaceCase{"HomeAll", "G30", false, false, false},
+                    PlaceCase{"ToolLength", "G43 H1", false, false, false},
+                    PlaceCase{"ToolLengthOff", "G49", false, false, false},
+                    PlaceCase{"LengthNumber", "H2", false, false, false},
+                    PlaceCase{"ToolChange", "M6", false, false, false},
+                    PlaceCase{"Tool", "T2", false, false, false},
+                    PlaceCase{"ToolBesideMotion", "G1 X5 T2", false, false, false},
+                    PlaceCase{"LatheIncrement", "G1 U5", false, true, true},
+                    PlaceCase{"ExpressionOnX", "G1 X#1 ", false, true, true},
+                    PlaceCase{"CornerWord", "G1 X5 ,R1", false, false, false},
+                    PlaceCase{"Variable", "#100=5", true, true, true},
+                    PlaceCase{"NamedVariable", "#<_depth>=5", true, true, true},
+                    PlaceCase{"SystemVariable", "#5221=5", false, false, false},
+                    PlaceCase{"ComputedVariable", "##1=5", false, false, false},
+                    PlaceCase{"CompensationOff", "G41 D1\nG40", false, false, false},
+                    PlaceCase{"DeletableMotion", "/G1 X9", false, true, true},
+                    PlaceCase{"DeletableNothing", "/G1 X2", true, true, true},
+                    PlaceCase{"UserM", "M150 P1", true, true, true}),
+    [](const auto& test) { return test.param.name; });
+
+struct ForgetCase {
+  const char* name;
+  const char* block;
+};
+void PrintTo(const ForgetCase& test, std::ostream* out) { *out << test.block; }
+
+class Everything : public testing::TestWithParam<ForgetCase> {};
+
+TEST_P(Everything, IsUnknownAfterIt) {
+  const Interpreted it(std::string(kStart) + GetParam().block + "\n");
+  EXPECT_EQ(it.last_state(), unknown_modal_state());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Interpreter, Everything,
+    testing::Values(ForgetCase{"Call", "M98 P1000"}, ForgetCase{"LocalCall", "M97 P10"},
+                    ForgetCase{"CallBesideMotion", "G1 X1 M98 P1"}, ForgetCase{"Return", "M99"},
+                    ForgetCase{"Macro", "G65 P9010"}, ForgetCase{"OWord", "o100 call"},
+                    ForgetCase{"OWordIf", "o1 if [#1 GT 2]"},
+                    ForgetCase{"Loop", "WHILE [#1 LT 2] DO1"}, ForgetCase{"NextProgram", "O1234"},
+                    ForgetCase{"End", "M30"}, ForgetCase{"SavedState", "M72"},
+                    ForgetCase{"UnknownG", "G777"}, ForgetCase{"Foreign", "CYCLE832(0.01)"},
+                    ForgetCase{"Sender", "$32=1"}, ForgetCase{"Unreadable", "G1 X"},
+                    ForgetCase{"DeletableCall", "/M98 P1"}, ForgetCase{"TwoOfOneGroup", "G90 G91"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(InterpreterUnknown, AJumpThatIsNotTakenChangesNothing) {
+  const Interpreted it(std::string(kStart) + "IF [#1 GT 2] GOTO 900\nG1 X5\n");
+  EXPECT_TRUE(it.motion_of_line(6)->start_known);
+  EXPECT_EQ(it.last_state(), it.state_after_line(4));
+}
+
+TEST(InterpreterUnknown, ADeletableBlockMakesUnknownWhatItChanges) {
+  const Interpreted it(std::string(kStart) + "/G91 F200\n");
+  EXPECT_EQ(it.last_state().distance, DistanceMode::kUnknown);
+  EXPECT_EQ(it.last_state().feed, std::nullopt);
+  EXPECT_EQ(it.last_state().units, Units::kMillimetre);
+  EXPECT_EQ(it.last_state().plane, Plane::kXY);
+}
+
+TEST(InterpreterUnknown, DeletableUnitsTakeThePlaceAlong) {
+  const Interpreted it(std::string(kStart) + "/G20\nG1 X2 Y2 Z2\nX3\n");
+  EXPECT_EQ(it.last_state().units, Units::kUnknown);
+  EXPECT_FALSE(it.motion_of_line(6)->start_known);
+}
+
+TEST(InterpreterUnknown, ModesThatAreSetAgainAreKnownAgain) {
+  const Interpreted it(std::string(kStart) + "M98 P1\nG21 G90 G18 G94 G61 G40 F50\nG1 X1\n");
+  const ModalState& now = it.last_state();
+  EXPECT_EQ(now.units, Units::kMillimetre);
+  EXPECT_EQ(now.distance, DistanceMode::kAbsolute);
+  EXPECT_EQ(now.plane, Plane::kZX);
+  EXPECT_EQ(now.path, PathMode::kExactPath);
+  EXPECT_EQ(now.cutter_compensation, Tri::kOff);
+  EXPECT_EQ(now.feed, 50.0);
+  EXPECT_EQ(now.scaling, Tri::kUnknown);  // nobody said G50
+  EXPECT_FALSE(is_known(now));
+}
+
+TEST(InterpreterUnknown, AxisWordsInACycleAreNoLines) {
+  const Interpreted it(std::string(kStart) + "G81 X5 Y5 Z-3 R1\nX6\nG80\nX7\nG0 X8\n");
+  EXPECT_EQ(it.line(6).barrier, reason::kCannedCycle);
+  EXPECT_EQ(it.motion_of_line(6), nullptr);
+  EXPECT_EQ(it.motion_of_line(8), nullptr);  // a line on FANUC, an error on LinuxCNC
+  ASSERT_NE(it.motion_of_line(9), nullptr);
+  EXPECT_FALSE(it.motion_of_line(9)->start_known);
+}
+
+TEST(InterpreterUnknown, RepeatedModesCountOnlyAfterTheyWereSaid) {
+  const Interpreted it(std::string(kStart) + "M98 P1\nG90\nG90\n");
+  EXPECT_EQ(it.line(6).kind, BlockKind::kSettings);
+  EXPECT_EQ(it.line(7).kind, BlockKind::kEmpty);
+}
+
+TEST(InterpreterUnknown, TextAfterTheLastMarkIsInert) {
+  const Interpreted it("%\nG21 G0 X1\n%\nG20 more\n");
+  EXPECT_EQ(it.line(4).barrier, reason::kProgramMark);
+  EXPECT_EQ(it.last_state().units, Units::kMillimetre);
+}
+
+}  // namespace
+}  // namespace batten::gcode

@@ -1,0 +1,100 @@
+// Blocks that control can reach from elsewhere are found, and only those.
+#include "gcode/program_flow.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "gcode/reason.h"
+#include "tests/support/interpreted.h"
+
+namespace batten::gcode {
+namespace {
+
+using tests::Interpreted;
+using Lines = std::vector<std::size_t>;
+
+struct FlowCase {
+  const char* name;
+  const char* text;
+  Lines labels;   // lines whose N number is referenced
+  Lines targets;  // lines that are jumped to
+  Lines bodies;   // lines inside loops, subprograms, contours
+};
+void PrintTo(const FlowCase& test, std::ostream* out) { *out << test.text; }
+
+class Flow : public testing::TestWithParam<FlowCase> {};
+
+TEST_P(Flow, IsFound) {
+  Diagnostics found;
+  const Program program = parse(SourceText("test.nc", GetParam().text), found);
+  const std::vector<BlockFlow> flow = find_flow(program);
+  Lines labels;
+  Lines targets;
+  Lines bodies;
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    if (flow[i].label_referenced) labels.push_back(i + 1);
+    if (flow[i].jump_target) targets.push_back(i + 1);
+    if (flow[i].in_body) bodies.push_back(i + 1);
+  }
+  EXPECT_EQ(labels, GetParam().labels);
+  EXPECT_EQ(targets, GetParam().targets);
+  EXPECT_EQ(bodies, GetParam().bodies);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ProgramFlow, Flow,
+    testing::Values(
+        FlowCase{"NothingRefers", "N10 G1 X1\nN20 X2\nM98 P20\nG4 P10\n", {}, {}, {}},
+        FlowCase{"Goto", "N10 X1\nN20 X2\nIF [#1 EQ 2] GOTO 20\n", {2}, {2}, {}},
+        FlowCase{"GotoN", "N10 X1\nGOTO N10\n", {1}, {1}, {}},
+        FlowCase{"GotoForward", "GOTOF N30\nN20 X1\nn 30 X2\n", {3}, {3}, {}},
+        FlowCase{"TwoJumps", "GOTO 10\nN10 X1\nN20 X2\nGOTO 20\n", {2, 3}, {2, 3}, {}},
+        FlowCase{"ComputedJump", "N10 X1\nX2\nN20 X3\nGOTO #5\n", {1, 3}, {1, 3}, {}},
+        FlowCase{"LocalCall", "M97 P50\nM30\nN50 X1\n", {3}, {3}, {}},
+        FlowCase{"CallAtABlock", "M98 P1000 H30\nN30 X1\n", {2}, {2}, {}},
+        FlowCase{"ReturnTo", "N10 X1\nM30\nO5\nX1\nM99 P10\n", {1}, {1}, {3, 4, 5}},
+        FlowCase{"SubprogramFile", "X1\nX2\nM99\n", {}, {}, {1, 2, 3}},
+        FlowCase{"MainBeforeSubprogram", "O1\nX1\nM30\nO2\nX1\nM99\n", {}, {}, {4, 5, 6}},
+        FlowCase{"MacroLoop", "X1\nWHILE [#1 LT 3] DO1\nX2\nEND1\nX3\n", {}, {}, {2, 3, 4}},
+        FlowCase{"NestedLoops",
+                 "WHILE[#1LT3]DO1\nX1\nDO2\nX2\nEND2\nX3\nEND1\nX4\n",
+                 {},
+                 {},
+                 {1, 2, 3, 4, 5, 6, 7}},
+        FlowCase{"OWordSub", "o<part> sub\nX1\no<part> endsub\nX2\n", {}, {}, {1, 2, 3}},
+        FlowCase{"OWordRepeat", "o1 repeat [3]\nX1\no1 endrepeat\nX2\n", {}, {}, {1, 2, 3}},
+        FlowCase{
+            "OWordIf", "o1 if [#1 GT 2]\nX1\no1 else\nX2\no1 endif\nX3\n", {}, {}, {1, 2, 3, 4, 5}},
+        FlowCase{"OWordCallIsNoBody", "o1 call [3]\nX1\n", {}, {}, {}},
+        FlowCase{"LatheContour", "G71 P10 Q20\nN10 G0 X1\nX2\nN20 X3\nX4\n", {2, 4}, {}, {2, 3, 4}},
+        FlowCase{"MillPecking", "N2 X1\nG73 X1 Z-2 R1 P1 Q2\nN1 X2\n", {}, {}, {}},
+        FlowCase{"AfterTheProgram", "%\nN10 X1\n%\nGOTO 10\n", {}, {}, {}}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(ProgramFlow, JumpTargetsAreEnteredWithNothingKnown) {
+  const Interpreted it("G21 G90 F9\nG0 X1 Y1 Z1\nG1 X2\nN10 G1 X3\nG1 X4\nIF [#1 LT 3] GOTO 10\n");
+  EXPECT_TRUE(it.line(4).entered_from_elsewhere);
+  EXPECT_TRUE(it.line(4).label_referenced);
+  EXPECT_EQ(it.state_after_line(4).units, Units::kUnknown);
+  EXPECT_FALSE(it.line(3).entered_from_elsewhere);
+}
+
+TEST(ProgramFlow, BarriersNameTheLabelAndTheBody) {
+  const Interpreted it("G21 F9\nG0 X1\nG71 P10 Q20\nN10 G1 X3\nX4\nN20 X5\nX6\n");
+  EXPECT_EQ(it.line(5).barrier, reason::kLoopBody);
+  EXPECT_EQ(it.line(7).barrier, std::string_view());
+  const Interpreted jump("G21 F9\nG0 X1\nN10 F9\nGOTO 10\n");
+  EXPECT_EQ(jump.line(3).barrier, reason::kReferencedLabel);
+}
+
+TEST(ProgramFlow, LinesWithACheckSumAreCounted) {
+  // The exclusive or of the bytes of "N5 G1 X1".
+  const int sum = 0x4e ^ 0x35 ^ 0x20 ^ 0x47 ^ 0x31 ^ 0x20 ^ 0x58 ^ 0x31;
+  const Interpreted it("G21 F9\nG0 X0\nN5 G1 X1*" + std::to_string(sum) + "\n");
+  EXPECT_EQ(it.line(3).barrier, reason::kChecksum);
+}
+
+}  // namespace
+}  // namespace batten::gcode

@@ -1,0 +1,59 @@
+#include "gcode/reason.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace batten::gcode::reason {
+namespace {
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(std::string(BATTEN_SOURCE_DIR) + "/" + file);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// The ids as the header declares them.
+std::set<std::string> declared_ids() {
+  const std::string header = text_of("gcode/reason.h");
+  const std::regex id("string_view k\\w+\\s*=\\s*\"([a-z-]+)\"");
+  std::set<std::string> ids;
+  for (std::sregex_iterator at(header.begin(), header.end(), id), end; at != end; ++at) {
+    ids.insert((*at)[1]);
+  }
+  return ids;
+}
+
+TEST(Reason, EveryDeclaredIdIsExplainedOnce) {
+  const std::set<std::string> declared = declared_ids();
+  ASSERT_GT(declared.size(), 40U);
+  std::set<std::string> explained;
+  for (const Explanation& explanation : explanations()) {
+    EXPECT_TRUE(explained.insert(std::string(explanation.id)).second) << explanation.id;
+    EXPECT_FALSE(explanation.text.empty()) << explanation.id;
+    EXPECT_FALSE(explanation.advice.empty()) << explanation.id;
+  }
+  EXPECT_EQ(explained, declared);
+}
+
+TEST(Reason, OnlyTheExactPathCanBeAllowed) {
+  for (const Explanation& explanation : explanations()) {
+    EXPECT_EQ(explanation.can_be_allowed, explanation.id == kExactStop) << explanation.id;
+  }
+}
+
+TEST(Reason, EveryIdStandsInTheDocumentation) {
+  const std::string page = text_of("docs/diagnostics.md");
+  for (const Explanation& explanation : explanations()) {
+    EXPECT_NE(page.find("`" + std::string(explanation.id) + "`"), std::string::npos)
+        << explanation.id;
+  }
+}
+
+}  // namespace
+}  // namespace batten::gcode::reason
