@@ -60,6 +60,7 @@ class Queue {
 
   [[nodiscard]] double time(ChainEnd end) {
     if (moves_.empty()) return 0;
+    if (end == ChainEnd::kEndOfMotion) enter_last_move_slowly();
     if (end == ChainEnd::kStop || joint_ != Joint::kParabolic) moves_.back().end = Joint::kStop;
     ProfileRules rules;
     rules.look_ahead = machine_.look_ahead;
@@ -86,6 +87,16 @@ class Queue {
   }
 
  private:
+  // The last move of the queue could still lose half of its length to a corner: the planner
+  // enters it only as fast as it can stop on the other half.
+  void enter_last_move_slowly() {
+    if (moves_.size() < 2) return;
+    const Segment& last = moves_.back();
+    Segment& before = moves_[moves_.size() - 2];
+    before.kink_velocity =
+        std::min(before.kink_velocity, std::sqrt(tangential_acceleration(last) * last.length));
+  }
+
   // While one move slows down to rest and the next speeds up from rest, the path goes on at
   // an even speed: neither move can go faster over this length (mm) next to the joint.
   static double overlap(const Segment& before, const Segment& after) {
