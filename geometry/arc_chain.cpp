@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "geometry/numeric.h"
@@ -21,6 +20,18 @@ constexpr double kSingleReach = 0.6;
 
 // Kink (radians) of a single arc at a fixed tangent that is noise of a fitted curve.
 constexpr double kKinkNoise = 1e-5;
+
+// 36 sqrt(12): see ArcChain::crossing_angle.
+constexpr double kBestArc = 124.7;
+
+// How much of that angle is used. With all of it only chains of just the best length hold,
+// shorter ones swing too far, and the search would fall between; half of it already gives
+// 16 % longer arcs than tangents of the curve, and holds at every length.
+constexpr double kCrossingShare = 0.5;
+
+// A single arc may miss the best crossing angle (10.4 T / L) by this much: more would cost
+// the next arc.
+constexpr double kCrossingNoise = 2;  // times T / L
 
 // Greatest error of a helix' rise per mm against the curve's, so that the direction in
 // space does not jump where heights are within their tolerance.
@@ -82,17 +93,24 @@ Point3 ArcChain::rounded(const Point3& place) const {
   return (place / limits_.grid).array().round().matrix() * limits_.grid;
 }
 
-// Where the tangent of the chain should differ from the curve's. Over a stretch of length
-// h whose curvature changes evenly by dk, the pair of arcs with the least deviation crosses
-// the curve at its ends and in its middle, each time turned by -dk h / 48; it deviates a
-// third as much as the pair that is tangent to the curve there.
+// How the tangent of the best chain differs from the curve's where it crosses the curve.
+// Where the curvature changes by k' per mm, the arcs of length L that deviate least cross
+// the curve at their ends, turned there by -k' L^2 / 12, and deviate by T = k' L^3 / 124.7
+// (a third of what arcs do that are tangent to the curve). L follows from T.
+double ArcChain::crossing_angle(double u, double reach) const {
+  const double before = std::max(u - reach / 2, curve_.breaks().front());
+  const double after = std::min(u + reach / 2, curve_.breaks().back());
+  const double length = (curve_.place_at(after) - curve_.place_at(before)).head<2>().norm();
+  if (length <= kSamePlace) return 0;
+  const double change = (curve_.curvature_at(after) - curve_.curvature_at(before)) / length;
+  const double arc_cubed = kBestArc * limits_.deviation;  // times 1 / k'
+  return -kCrossingShare * std::cbrt(change) * std::cbrt(arc_cubed * arc_cubed) / 12;
+}
+
 ChainNode ArcChain::node_at(const ChainNode& start, double u) const {
   Point3 place = rounded(curve_.place_at(u));
   if (limits_.flat) place.z() = start.place.z();
-  const double h = (place - start.place).head<2>().norm();
-  const double change = curve_.curvature_at(u) - curve_.curvature_at(start.u);
-  const double most = h > 0 ? 12 * limits_.deviation / h : 0.0;  // 10.4 where it is best
-  return {u, place, curve_.angle_at(u) + std::clamp(-change * h / 48, -most, most)};
+  return {u, place, curve_.angle_at(u) + crossing_angle(u, u - start.u)};
 }
 
 bool ArcChain::allowed(const PlaneArc& arc) const {
@@ -184,7 +202,8 @@ std::optional<ArcPair> ArcChain::pair_between(const ChainNode& start, const Chai
   const Point2 middle = in_plane(rounded({joint->place.x(), joint->place.y(), 0}));
   ArcPair pair{arc_leaving(a, start.angle, middle, limits_.max_radius),
                arc_arriving(middle, b, end.angle, limits_.max_radius),
-               0,
+               joint->tangent,
+               start.u,
                start.place.z(),
                0,
                end};
@@ -194,12 +213,12 @@ std::optional<ArcPair> ArcChain::pair_between(const ChainNode& start, const Chai
   if (std::abs(turn - (end.angle - start.angle)) > 1) return std::nullopt;
   pair.kink =
       std::abs(wrapped(pair.second.start_angle() - pair.first.start_angle() - pair.first.sweep));
-  pair.joint_u = joint_parameter(joint->place, joint->tangent, start.u, end.u);
-  if (!limits_.flat) pair.joint_height = rounded(curve_.place_at(pair.joint_u)).z();
   return pair;
 }
 
-bool ArcChain::holds(const ArcPair& pair, const ChainNode& start) const {
+bool ArcChain::holds(ArcPair& pair, const ChainNode& start) const {
+  pair.joint_u = joint_parameter(pair.first.end, pair.tangent, start.u, pair.end.u);
+  if (!limits_.flat) pair.joint_height = rounded(curve_.place_at(pair.joint_u)).z();
   return holds(pair.first, start.u, pair.joint_u, start.place.z(), pair.joint_height) &&
          holds(pair.second, pair.joint_u, pair.end.u, pair.joint_height, pair.end.place.z());
 }
@@ -214,7 +233,7 @@ std::optional<ArcPair> ArcChain::pair_to(const ChainNode& start, double u) const
 // to a grid point, so that the two arcs meet without a kink.
 ArcPair ArcChain::best_pair(const ChainNode& start, const ArcPair& found) const {
   if (limits_.grid <= 0) return found;
-  constexpr int kPlaces = 60;
+  constexpr int kPlaces = 40;
   constexpr double kWidest = 1.3;  // beyond, one arc is much shorter than the other
   std::vector<ArcPair> pairs;
   for (int i = -kPlaces; i <= kPlaces; ++i) {
@@ -223,7 +242,7 @@ ArcPair ArcChain::best_pair(const ChainNode& start, const ArcPair& found) const 
   }
   std::stable_sort(pairs.begin(), pairs.end(),
                    [](const ArcPair& a, const ArcPair& b) { return a.kink < b.kink; });
-  for (const ArcPair& pair : pairs) {
+  for (ArcPair& pair : pairs) {
     if (pair.kink >= found.kink) break;
     if (holds(pair, start)) return pair;
   }
@@ -260,7 +279,7 @@ std::optional<ArcChain::Step> ArcChain::line_step(const ChainNode& start,
   if (reach <= start.u) return std::nullopt;
   ChainNode node = reach >= end.u ? end : node_at(start, reach);
   if (reach < end.u) node.angle = curve_.angle_at(reach);
-  return Step{{ChainPiece{line_to(reach), node.place.z(), reach, true}}, node};
+  return Step{{ChainPiece{line_to(reach), node.place.z(), reach}}, node};
 }
 
 std::optional<ArcChain::Step> ArcChain::next_step(const ChainNode& start, const ChainNode& end,
@@ -275,10 +294,10 @@ std::optional<ArcChain::Step> ArcChain::next_step(const ChainNode& start, const 
     return true;
   };
   // Parameters run about with the length, in whatever unit: the whole stretch tells it.
-  const double length = (end.place - start.place).norm();
-  const double shortest = (end.u - start.u) * std::min(0.01, shortest_length / (length + 1e-12));
+  const double span = (end.place - start.place).norm();
+  const double shortest = (end.u - start.u) * std::min(0.01, shortest_length / (span + 1e-12));
   double reach = farthest(start.u, end.u, guess, shortest, pair_holds);
-  if (best && best->end.u != reach) best = pair_between(start, target(reach), 1);
+  if (best && best->end.u != reach) pair_holds(reach);
 
   // One arc instead of two, where it gets far enough; to the end, where its tangent fits.
   std::optional<ChainPiece> single;
@@ -286,9 +305,14 @@ std::optional<ArcChain::Step> ArcChain::next_step(const ChainNode& start, const 
     const ChainNode node = target(u);
     auto piece = single_to(start, node);
     if (!piece) return false;
-    const double miss = std::abs(start.angle + piece->arc.sweep - node.angle);
-    const double most = u >= end.u ? kKinkNoise + 2 * limits_.grid / piece->arc.length()
-                                   : 12 * limits_.deviation / piece->arc.length();
+    const double length = piece->arc.length();
+    double wanted = node.angle;
+    double most = kKinkNoise + 2 * limits_.grid / length;
+    if (u < end.u) {
+      wanted = curve_.angle_at(u) + crossing_angle(u, u - start.u);
+      most = kCrossingNoise * limits_.deviation / length;
+    }
+    const double miss = std::abs(start.angle + piece->arc.sweep - wanted);
     if (miss > most) return false;
     single = std::move(piece);
     return true;
@@ -332,8 +356,9 @@ std::optional<std::vector<ChainPiece>> ArcChain::greedy(const ChainNode& start,
 }
 
 std::optional<std::vector<ChainPiece>> ArcChain::between(const ChainNode& start,
-                                                         const ChainNode& end) const {
-  auto best = greedy(start, end, std::numeric_limits<std::size_t>::max());
+                                                         const ChainNode& end,
+                                                         std::size_t at_most) const {
+  auto best = greedy(start, end, at_most);
   if (!best || best->size() > kBalancedPieces) return best;
   // With as many pieces, how much smaller can the deviation be?
   double good = 1;

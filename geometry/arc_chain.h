@@ -33,15 +33,15 @@ struct ChainPiece {
   PlaneArc arc;
   double end_height;
   double end_u;
-  bool forced_line = false;  // no arc was found here
 };
 
 struct ArcPair {
   PlaneArc first;
   PlaneArc second;
-  double joint_u;
-  double joint_height;
-  double kink;  // radians at the joint, which rounding forces
+  Vector2 tangent;      // at the joint, before rounding
+  double joint_u;       // where the curve passes the joint
+  double joint_height;  // of the curve there, rounded
+  double kink;          // radians at the joint, which rounding forces
   ChainNode end;
 };
 
@@ -51,9 +51,10 @@ class ArcChain {
       : curve_(curve), limits_(limits) {}
 
   // Pieces from one node to the other, the fewest first, then the least deviation. Nothing
-  // when neither arcs nor short lines hold.
+  // when neither arcs nor short lines hold, or when more than `at_most` would be needed.
   [[nodiscard]] std::optional<std::vector<ChainPiece>> between(const ChainNode& start,
-                                                               const ChainNode& end) const;
+                                                               const ChainNode& end,
+                                                               std::size_t at_most) const;
 
   // A pair of arcs from `start` to the place at u, in the search's form.
   [[nodiscard]] std::optional<ArcPair> pair_to(const ChainNode& start, double u) const;
@@ -71,13 +72,14 @@ class ArcChain {
   std::optional<Step> next_step(const ChainNode& start, const ChainNode& end, double guess) const;
   std::optional<Step> line_step(const ChainNode& start, const ChainNode& end) const;
 
+  double crossing_angle(double u, double reach) const;
   ChainNode node_at(const ChainNode& start, double u) const;
   std::optional<ArcPair> pair_between(const ChainNode& start, const ChainNode& end,
                                       double balance) const;
   ArcPair best_pair(const ChainNode& start, const ArcPair& found) const;
   std::optional<ChainPiece> single_to(const ChainNode& start, const ChainNode& end) const;
 
-  bool holds(const ArcPair& pair, const ChainNode& start) const;
+  bool holds(ArcPair& pair, const ChainNode& start) const;  // finds where the joint is
   bool holds(const PlaneArc& arc, double from, double to, double from_height,
              double to_height) const;
   bool allowed(const PlaneArc& arc) const;

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/arc_chain.h"
@@ -168,6 +171,16 @@ class PathBuilder {
   Path path_;
 };
 
+// Off the plane most curves are no helices: arcs that are more than chords would be do not
+// pay. In the plane arcs are worth more than chords, since their tangents agree.
+std::size_t most_pieces(const BsplineCurve& curve, double from, double to,
+                        const ArcFitOptions& options, bool flat) {
+  if (flat) return std::numeric_limits<std::size_t>::max();
+  ChordOptions chords;
+  chords.max_deviation = options.max_deviation;
+  return chord_vertices(curve, from, to, chords).size() - 1;
+}
+
 void check(const ArcFitOptions& options) {
   if (!(options.max_deviation > 0)) {
     throw std::invalid_argument("fit_arcs: max_deviation " + std::to_string(options.max_deviation) +
@@ -204,6 +217,7 @@ std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
   const std::vector<Stop> stops = stops_of(plane_curve, chain, stretches, flat);
 
   PathBuilder builder(frame, options.axis, curve.point_at(from));
+  std::size_t left = most_pieces(curve, from, to, options, flat);
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const Stretch& stretch = stretches[i];
     if (stretch.straight) {
@@ -212,8 +226,9 @@ std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
     }
     const ChainNode start{stretch.from, stops[i].place, stops[i].leaving};
     const ChainNode end{stretch.to, stops[i + 1].place, stops[i + 1].arriving};
-    const auto pieces = chain.between(start, end);
+    const auto pieces = chain.between(start, end, left);
     if (!pieces) return std::nullopt;
+    left -= pieces->size();
     for (const ChainPiece& piece : *pieces) builder.add(piece);
   }
   return builder.take();

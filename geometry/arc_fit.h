@@ -25,8 +25,13 @@ struct ArcFitOptions {
 
 // Lines and arcs along `curve` between two parameters. The pieces chain exactly; where the
 // curve is smooth, neighbouring pieces share their tangent to within the rounding that
-// `grid` forces. Returns nothing when the curve leaves the planes across `axis` and
-// `helical` is false, or when its rise cannot be held by helices and lines.
+// `grid` forces (see docs/algorithms/arc_fit.md), or where a place tighter than min_radius
+// has to be crossed by short lines. Returns nothing when the curve leaves the planes across
+// `axis` and `helical` is false, when its rise cannot be held by helices and lines, or when
+// that takes more pieces than chords would be.
+//
+// Requires degree 3 or less, first() <= from < to <= last(), an axis of unit length. Throws
+// std::invalid_argument when max_deviation is not positive or max_sweep not in ]0, pi[.
 //
 // Each straight span of the curve that is longer than an arc could be held on stays a Line.
 [[nodiscard]] std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
