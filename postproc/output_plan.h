@@ -53,9 +53,10 @@ struct PlanOptions {
                                     const PlanOptions& options);
 
 // Arcs in a plane that the target takes arcs in and that the run lies in, the active plane
-// first; helices in such a plane where the target takes them and the run lies in none. Nothing
-// when no plane serves. Arcs that the target would refuse are chords already. Comments are
-// placed by the length along the moves, which may be one short move off.
+// first. A run in space: helices and lines in the plane that needs the fewest, where the target
+// takes helices and they are fewer than the run's motions. Nothing when no plane serves. Arcs that
+// the target would refuse are chords already. Comments are placed by the length along the moves,
+// which may be one short move off.
 [[nodiscard]] std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fair,
                                                   const PlanOptions& options);
 

@@ -144,11 +144,19 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fa
     if (plan) return plan;
   }
   if (flat_somewhere || !options.target->takes_helices()) return std::nullopt;
+  // In space the planes differ much: the rows of a raster along X are arcs in G18, and in G17 they
+  // are lines and steep little helices. The fewest moves win, the active plane among equals.
+  // More moves than the run has motions are chords in all but name, and plan_lines does those
+  // better.
+  std::optional<OutputPlan> best;
+  std::size_t most = run.points.size() - 1;
   for (const PlaneAxes& plane : planes) {
     auto plan = plan_in(run, fair, fair.curve, fit_options(options, plane, true), options);
-    if (plan) return plan;
+    if (!plan || plan->moves.size() >= most) continue;
+    most = plan->moves.size();
+    best = std::move(plan);
   }
-  return std::nullopt;
+  return best;
 }
 
 }  // namespace batten::postproc

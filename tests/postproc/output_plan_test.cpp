@@ -349,6 +349,17 @@ TEST(PlanArcs, WritesHelicesForARamp) {
   EXPECT_LE(deviation_of(*plan, ramp.fair.curve), 0.00505);
 }
 
+// A curve that climbs as steeply as it bends has no use for helices about any axis.
+TEST(PlanArcs, PlansNothingInSpaceThatNeedsMoreMovesThanTheRunHas) {
+  const auto f = [](double u) {
+    return Point3(u, 5 * std::sin(u / 5), 5 * std::sin(u / 4) * std::cos(u / 7));
+  };
+  Planning planning;
+  const Smoothed wild = smoothed(geometry::curve_of(f, 0, 60, 600), 31, 1000);
+  const auto plan = plan_arcs(wild.run, wild.fair, planning.with_machine());
+  EXPECT_FALSE(plan);
+}
+
 TEST(PlanArcs, PlansNoArcThatTheTargetRefuses) {
   // Spirals in until the radius is below what grbl takes.
   const auto f = [](double u) {
