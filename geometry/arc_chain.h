@@ -18,6 +18,7 @@ struct ArcChainLimits {
   double min_radius = 0;        // mm
   double max_radius = 0;        // mm
   double max_sweep = 0;         // radians
+  double min_length = 0;        // mm; shorter arcs become lines where these hold
   double grid = 0;              // mm; 0: none
   bool flat = true;             // heights play no part
 };
@@ -69,6 +70,10 @@ class ArcChain {
 
   std::optional<std::vector<ChainPiece>> greedy(const ChainNode& start, const ChainNode& end,
                                                 std::size_t at_most) const;
+  std::optional<std::vector<ChainPiece>> balanced(
+      const ChainNode& start, const ChainNode& end,
+      std::optional<std::vector<ChainPiece>> best) const;
+  void straighten_short(const ChainNode& start, std::vector<ChainPiece>& pieces) const;
   std::optional<Step> next_step(const ChainNode& start, const ChainNode& end, double guess) const;
   std::optional<Step> line_step(const ChainNode& start, const ChainNode& end) const;
 

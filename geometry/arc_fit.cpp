@@ -208,6 +208,7 @@ std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
   limits.min_radius = options.min_radius;
   limits.max_radius = options.max_radius;
   limits.max_sweep = options.max_sweep;
+  limits.min_length = options.min_length;
   limits.grid = options.grid;
   limits.flat = flat;
   const ArcChain chain(plane_curve, limits);
