@@ -53,10 +53,11 @@ class BlockWords {
   void note(Problem problem, const Word* first, const Word* second);
 
   std::array<const Word*, 26> words_{};
-  std::array<Code, kMaxCodes> g_{};
-  std::array<Code, kMaxCodes> m_{};
-  std::array<const Word*, kMaxCodes> g_words_{};
-  std::array<const Word*, kMaxCodes> m_words_{};
+  // Filled up to their counts only: clearing them would take longer than reading a block.
+  std::array<Code, kMaxCodes> g_;
+  std::array<Code, kMaxCodes> m_;
+  std::array<const Word*, kMaxCodes> g_words_;
+  std::array<const Word*, kMaxCodes> m_words_;
   std::size_t g_count_ = 0;
   std::size_t m_count_ = 0;
   bool has_words_ = false;

@@ -28,6 +28,7 @@ class Interpreter {
     read_.unit_word_seen = options.units != Units::kUnknown;
     read_.states.push_back(now_.modal);
     read_.blocks.reserve(program.blocks.size());
+    read_.motions.reserve(program.blocks.size());  // nearly every block of a long program moves
   }
 
   Interpretation run() {
