@@ -27,8 +27,8 @@ constexpr double kChordShares[] = {5e-3, 5e-3 / 16, 5e-3 / 256};
 constexpr double kTightness = 0.01;
 
 // Cells of one decision. Paths that run beside each other need some ten per vertex; the
-// first number lets short paths be folded as they like (96 MB at the most).
-constexpr std::size_t kCellsAtLeast = 4'000'000;
+// first number (24 MB) lets short paths be folded as they like.
+constexpr std::size_t kCellsAtLeast = 1'000'000;
 constexpr std::size_t kCellsPerVertex = 24;
 
 // Making a known bound tighter is worth less than finding one.
@@ -69,8 +69,11 @@ class Comparison {
     return result();
   }
 
-  // No chord stands for anything else: finer ones would change nothing.
-  [[nodiscard]] bool exact() const { return greatest_error(a_) + greatest_error(b_) == 0; }
+  // Would finer chords change nothing? So it is when no chord stands for anything else, and
+  // when there are too many already.
+  [[nodiscard]] bool finer_is_useless() const {
+    return too_wide_ || greatest_error(a_) + greatest_error(b_) == 0;
+  }
 
  private:
   // The ends of the paths are passed together, so they are never nearer than the paths are.
@@ -94,6 +97,7 @@ class Comparison {
     for (const double distance : {tolerance_ + noise_, tolerance_ - 2 * noise_}) {
       FreeSpaceAnswer answer =
           find_passage(a_, b_, distance, ChordErrors::kSubtracted, most_cells());
+      too_wide_ = answer.passage == Passage::kTooWide;
       if (answer.passage != Passage::kFound) return;
       keep_if_better(std::move(answer.way));
       if (proved_) return;
@@ -135,6 +139,7 @@ class Comparison {
   // No way even at the tolerance plus all errors: the tolerance is broken. By how much, to
   // within a few percent of what is known from above, is worth some more questions.
   void refute() {
+    if (too_wide_) return;  // a larger distance leaves more cells free, not fewer
     FreeSpaceAnswer answer =
         find_passage(a_, b_, tolerance_ + 2 * noise_, ChordErrors::kAdded, most_cells());
     if (answer.passage != Passage::kNone) return;
@@ -185,6 +190,7 @@ class Comparison {
   std::size_t vertices_;
   double at_least_ = 0;
   bool proved_ = false;
+  bool too_wide_ = false;
   Certificate best_;  // always set: the nearest places in order are a matching
   std::optional<MatchedPair> breach_;
 };
@@ -217,7 +223,7 @@ PathComparison compare_paths(std::span<const PathPiece> a, std::span<const PathP
   for (const double share : kChordShares) {
     Comparison comparison(a, b, tolerance, share * tolerance);
     found = comparison.run();
-    if (found.verdict != Verdict::kNotProved || comparison.exact()) break;
+    if (found.verdict != Verdict::kNotProved || comparison.finer_is_useless()) break;
   }
   return found;
 }

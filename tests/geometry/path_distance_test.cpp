@@ -7,6 +7,10 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
+
+#include "geometry/chord_polyline.h"
+#include "geometry/in_order_matching.h"
 
 namespace batten::geometry {
 namespace {
@@ -110,6 +114,30 @@ std::vector<DigitCase> digit_cases() {
 
 INSTANTIATE_TEST_SUITE_P(ComparePaths, LastDigit, testing::ValuesIn(digit_cases()),
                          [](const auto& test) { return test.param.name; });
+
+TEST(ComparePaths, DoesNotProveWhatOnlyExactArithmeticTells) {
+  // sqrt(0.006^2 + 0.008^2 + 1e-9^2) is 0.01 + 5e-17 mm: in doubles at 100 mm it is 0.01.
+  const Path path = chain({{100, 100, 100}, {101.5, 107, 99}, {100, 110, 103}});
+  EXPECT_EQ(compare_paths(path, moved(path, {0.006, 0.008, 0}), 0.01).verdict, Verdict::kProved);
+  EXPECT_NE(compare_paths(path, moved(path, {0.006, 0.008, 1e-9}), 0.01).verdict, Verdict::kProved);
+}
+
+TEST(Matching, IsNoCertificateWhenItStepsBackOrLeavesOut) {
+  const ChordPolyline a = cut_into_chords(chain({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}), 1e-4);
+  const ChordPolyline b = cut_into_chords(chain({{0, 0, 0}, {2, 0, 0}}), 1e-4);
+  const Matching good{{{0, 0}, {0, 0}}, {{0, 1}, {0, 0.5}}, {{1, 1}, {0, 1}}};
+  EXPECT_TRUE(goes_forward(good, a, b));
+  Matching back = good;
+  back.insert(back.begin() + 1, MatchedPair{{0, 0.5}, {0, 0.6}});
+  EXPECT_FALSE(goes_forward(back, a, b));
+  Matching jump = good;
+  jump[1].a.t = 0.9;  // leaves the edge before its end
+  EXPECT_FALSE(goes_forward(jump, a, b));
+  EXPECT_FALSE(goes_forward({good[0], good[1]}, a, b));
+  EXPECT_FALSE(goes_forward({good[1], good[2]}, a, b));
+  EXPECT_FALSE(goes_forward({good[0], good[2]}, a, b));
+  EXPECT_FALSE(goes_forward({}, a, b));
+}
 
 // --- in order -----------------------------------------------------------------------------------
 
@@ -328,7 +356,7 @@ TEST(ComparePaths, BoundsItsCostWhereEverythingIsNearEverything) {
   const auto begin = std::chrono::steady_clock::now();
   const PathComparison found = compare_paths(wander(1), wander(2), 0.01);
   EXPECT_LE(found.bounds.at_least, found.bounds.at_most);
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 20);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 60);
 }
 
 }  // namespace
