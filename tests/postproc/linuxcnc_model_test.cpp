@@ -88,6 +88,15 @@ Chain scallops() {
   return p.chain();
 }
 
+Chain lines_and_arcs() {
+  Program p(6000);
+  for (int k = 0; k < 6; ++k) {
+    const double x = 10 * k;
+    p.line(x + 2, 0).arc(x + 8, 0, 3, 0, -pi).line(x + 9, 2).line(x + 10, 0);
+  }
+  return p.chain();
+}
+
 Chain helix() {
   Program p(6000);
   for (int k = 1; k <= 3; ++k) p.arc(0, 0, 5, 0, 2 * pi, -2 * k);
@@ -150,6 +159,10 @@ INSTANTIATE_TEST_SUITE_P(
                     MeasuredCase{"ScallopsExactPath", scallops(), kG61, 0, 0.848},
                     MeasuredCase{"ScallopsBlendedFreely", scallops(), kG64, 0, 0.556},
                     MeasuredCase{"ScallopsBlended", scallops(), kG64, 0.01, 0.788},
+                    MeasuredCase{"LinesAndArcsExactPath", lines_and_arcs(), kG61, 0, 1.776},
+                    MeasuredCase{"LinesAndArcsBlendedFreely", lines_and_arcs(), kG64, 0, 1.301},
+                    MeasuredCase{"LinesAndArcsBlended", lines_and_arcs(), kG64, 0.01, 1.646},
+                    MeasuredCase{"LinesAndArcsBlendedMore", lines_and_arcs(), kG64, 0.05, 1.599},
                     MeasuredCase{"HelixExactPath", helix(), kG61, 0, 1.047},
                     MeasuredCase{"HelixBlended", helix(), kG64, 0.01, 1.084},
                     MeasuredCase{"StarExactPath", star(), kG61, 0, 3.413},
@@ -180,11 +193,11 @@ TEST(LinuxcncTime, PrefersLongLinesToArcsAndArcsToTinyLines) {
   const double lines = time(circle_of_lines(15000, 255));
   const double arcs = time(circle_of_arcs(15000));
   const double tiny_lines = time(circle_of_lines(15000, 2517));
-  EXPECT_NEAR(lines, 0.633, 0.01);
-  EXPECT_NEAR(arcs, 0.691, 0.01);
-  EXPECT_NEAR(tiny_lines, 2.581, 0.02);
+  EXPECT_NEAR(lines, 0.633, 0.001);
+  EXPECT_NEAR(arcs, 0.691, 0.001);
+  EXPECT_NEAR(tiny_lines, 2.581, 0.005);
   m.naive_cam_tolerance = 0.01;
-  EXPECT_NEAR(time(circle_of_lines(15000, 2517)), 0.633, 0.01) << "joined by naive CAM";
+  EXPECT_NEAR(time(circle_of_lines(15000, 2517)), 0.633, 0.001) << "joined by naive CAM";
 }
 
 // Corners that the exact path keeps stop; each side gives a tenth of its acceleration away.
