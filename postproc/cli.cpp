@@ -61,7 +61,7 @@ void add_row(const OptionRow& row, CLI::App& command) {
   const std::string name = (row.name == "out" ? "-o,--" : "--") + std::string(row.name);
   std::string help(row.help);
   if (row.kind == OptionKind::kFlag) {
-    command.add_flag(name, help);
+    command.add_flag(name)->description(help);
     return;
   }
   if (!row.default_value.empty()) help += fmt::format("; default: {}", row.default_value);

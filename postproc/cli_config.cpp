@@ -68,7 +68,9 @@ void add_value(const OptionRow& row, const toml::node& node, const std::string& 
 
 std::string quoted(const std::string& text) {
   std::ostringstream stream;
-  stream << toml::value<std::string>(text);
+  const toml::value<std::string> value(text);
+  stream << toml::toml_formatter(
+      value, toml::toml_formatter::default_flags & ~toml::format_flags::allow_literal_strings);
   return stream.str();
 }
 

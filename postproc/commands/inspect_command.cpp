@@ -76,8 +76,8 @@ std::map<std::string_view, KeptTotal> kept_totals(const std::vector<InspectedSec
 std::string kept_table(const std::vector<InspectedSection>& sections) {
   std::string text = "kept as it is:\n";
   for (const auto& [reason, total] : kept_totals(sections)) {
-    text += fmt::format("{:>8} blocks, {} of them cut: {}: {}\n", total.blocks, total.cutting_moves,
-                        reason, text_of(reason));
+    text += fmt::format("{:>8} {:<6} {:>6} cutting moves  {}: {}\n", total.blocks,
+                        total.cutting_moves, reason, text_of(reason));
   }
   return text;
 }
