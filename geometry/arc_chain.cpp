@@ -18,6 +18,12 @@ constexpr double kReachPrecision = 3e-3;
 // one piece then covers more than a piece of the pair does.
 constexpr double kSingleReach = 0.6;
 
+// A step that is this much shorter than the one before may have failed by its end's tangent.
+constexpr double kStumble = 0.5;
+
+// What is left after a step, relative to it, that would make a last step too short.
+constexpr double kRemainder = 0.3;
+
 // Kink (radians) of a single arc at a fixed tangent that is noise of a fitted curve.
 constexpr double kKinkNoise = 1e-5;
 
@@ -97,20 +103,27 @@ Point3 ArcChain::rounded(const Point3& place) const {
 // Where the curvature changes by k' per mm, the arcs of length L that deviate least cross
 // the curve at their ends, turned there by -k' L^2 / 12, and deviate by T = k' L^3 / 124.7
 // (a third of what arcs do that are tangent to the curve). L follows from T.
-double ArcChain::crossing_angle(double u, double reach) const {
+// On a circle L would have no end: there it is bounded by the length that the arc has.
+double ArcChain::crossing_angle(double u, double reach, double arc_length) const {
   const double before = std::max(u - reach / 2, curve_.breaks().front());
   const double after = std::min(u + reach / 2, curve_.breaks().back());
   const double length = (curve_.place_at(after) - curve_.place_at(before)).head<2>().norm();
   if (length <= kSamePlace) return 0;
   const double change = (curve_.curvature_at(after) - curve_.curvature_at(before)) / length;
-  const double arc_cubed = kBestArc * limits_.deviation;  // times 1 / k'
-  return -kCrossingShare * std::cbrt(change) * std::cbrt(arc_cubed * arc_cubed) / 12;
+  const double best = std::cbrt(kBestArc * limits_.deviation / std::abs(change));
+  const double used = std::min(best, 2 * arc_length);  // best is infinite on a circle
+  return -kCrossingShare * change * used * used / 12;
 }
 
-ChainNode ArcChain::node_at(const ChainNode& start, double u) const {
+ChainNode ArcChain::node_at(const ChainNode& start, double u, Tangent tangent) const {
   Point3 place = rounded(curve_.place_at(u));
   if (limits_.flat) place.z() = start.place.z();
-  return {u, place, curve_.angle_at(u) + crossing_angle(u, u - start.u)};
+  double angle = curve_.angle_at(u);
+  if (tangent == Tangent::kCrossing) {
+    const double length = (place - start.place).head<2>().norm();
+    angle += crossing_angle(u, u - start.u, length / 2);
+  }
+  return {u, place, angle};
 }
 
 bool ArcChain::allowed(const PlaneArc& arc) const {
@@ -224,7 +237,7 @@ bool ArcChain::holds(ArcPair& pair, const ChainNode& start) const {
 }
 
 std::optional<ArcPair> ArcChain::pair_to(const ChainNode& start, double u) const {
-  auto pair = pair_between(start, node_at(start, u), 1);
+  auto pair = pair_between(start, node_at(start, u, Tangent::kCurve), 1);
   if (pair && !holds(*pair, start)) return std::nullopt;
   return pair;
 }
@@ -265,78 +278,93 @@ std::optional<ArcChain::Step> ArcChain::line_step(const ChainNode& start,
                                                   const ChainNode& end) const {
   const double longest = std::max(4 * limits_.min_radius, kShortestInGrids * limits_.grid);
   const auto line_to = [&](double u) {
-    const ChainNode node = u >= end.u ? end : node_at(start, u);
+    const ChainNode node = u >= end.u ? end : node_at(start, u, Tangent::kCurve);
     return PlaneArc{in_plane(start.place), in_plane(node.place)};
+  };
+  const auto height_of = [&](double u) {
+    return u >= end.u ? end.place.z() : node_at(start, u, Tangent::kCurve).place.z();
   };
   const auto line_holds = [&](double u) {
     const PlaneArc line = line_to(u);
-    const double to_height = u >= end.u ? end.place.z() : node_at(start, u).place.z();
     return line.length() > kSamePlace && line.length() <= longest &&
-           holds(line, start.u, u, start.place.z(), to_height);
+           holds(line, start.u, u, start.place.z(), height_of(u));
   };
   const double all = end.u - start.u;
   const double reach = farthest(start.u, end.u, all, 1e-9 * all, line_holds);
   if (reach <= start.u) return std::nullopt;
-  ChainNode node = reach >= end.u ? end : node_at(start, reach);
-  if (reach < end.u) node.angle = curve_.angle_at(reach);
+  const ChainNode node = reach >= end.u ? end : node_at(start, reach, Tangent::kCurve);
   return Step{{ChainPiece{line_to(reach), node.place.z(), reach}}, node};
 }
 
-std::optional<ArcChain::Step> ArcChain::next_step(const ChainNode& start, const ChainNode& end,
-                                                  double guess) const {
-  const auto target = [&](double u) { return u >= end.u ? end : node_at(start, u); };
-  const double shortest_length = std::max(kShortest, kShortestInGrids * limits_.grid);
+// Parameters run about with the length, in whatever unit: the whole stretch tells it.
+double ArcChain::shortest_step(const ChainNode& start, const ChainNode& end) const {
+  const double length = std::max(kShortest, kShortestInGrids * limits_.grid);
+  const double span = (end.place - start.place).norm() + kSamePlace;
+  constexpr double kPartOfStretch = 0.01;  // a closed stretch has no span
+  return (end.u - start.u) * std::min(kPartOfStretch, length / span);
+}
+
+std::optional<ArcPair> ArcChain::farthest_pair(const ChainNode& start, const ChainNode& end,
+                                               double limit, double guess, Tangent tangent) const {
   std::optional<ArcPair> best;
   const auto pair_holds = [&](double u) {
-    auto pair = pair_between(start, target(u), 1);
+    auto pair = pair_between(start, u >= end.u ? end : node_at(start, u, tangent), 1);
     if (!pair || !holds(*pair, start)) return false;
-    best = std::move(pair);
+    if (!best || pair->end.u > best->end.u) best = std::move(pair);
     return true;
   };
-  // Parameters run about with the length, in whatever unit: the whole stretch tells it.
-  const double span = (end.place - start.place).norm();
-  const double shortest = (end.u - start.u) * std::min(0.01, shortest_length / (span + 1e-12));
-  double reach = farthest(start.u, end.u, guess, shortest, pair_holds);
-  if (best && best->end.u != reach) pair_holds(reach);
+  (void)farthest(start.u, limit, guess, shortest_step(start, end), pair_holds);
+  return best;
+}
 
-  // One arc instead of two, where it gets far enough; to the end, where its tangent fits.
-  std::optional<ChainPiece> single;
+// One arc that leaves `start` along its tangent and meets the curve again at about the best
+// angle (at the end of the stretch: at the tangent there).
+std::optional<ArcChain::Step> ArcChain::farthest_single(const ChainNode& start,
+                                                        const ChainNode& end, double limit,
+                                                        double least, double guess) const {
+  std::optional<Step> best;
   const auto single_holds = [&](double u) {
-    const ChainNode node = target(u);
-    auto piece = single_to(start, node);
+    ChainNode node = u >= end.u ? end : node_at(start, u, Tangent::kCurve);
+    const auto piece = single_to(start, node);
     if (!piece) return false;
     const double length = piece->arc.length();
     double wanted = node.angle;
     double most = kKinkNoise + 2 * limits_.grid / length;
     if (u < end.u) {
-      wanted = curve_.angle_at(u) + crossing_angle(u, u - start.u);
+      wanted += crossing_angle(u, u - start.u, length);
       most = kCrossingNoise * limits_.deviation / length;
+      node.angle = start.angle + piece->arc.sweep;
     }
-    const double miss = std::abs(start.angle + piece->arc.sweep - wanted);
-    if (miss > most) return false;
-    single = std::move(piece);
+    if (std::abs(start.angle + piece->arc.sweep - wanted) > most) return false;
+    if (!best || u > best->end.u) best = Step{{*piece}, node};
     return true;
   };
-  if (best && reach >= end.u) {
-    if (single_holds(end.u)) return Step{{*single}, end};
-  } else {
-    const double wanted = best ? start.u + kSingleReach * (reach - start.u) : start.u;
-    const double from = best ? wanted - start.u : guess;
-    if (!best || single_holds(wanted)) {
-      const double single_reach = farthest(start.u, end.u, from, shortest, single_holds);
-      if (single_reach > wanted) {
-        single_holds(single_reach);
-        ChainNode node = target(single_reach);
-        if (single_reach < end.u) node.angle = start.angle + single->arc.sweep;
-        return Step{{*single}, node};
-      }
-    }
+  if (least > start.u && !single_holds(least)) return std::nullopt;
+  if (least < limit) {
+    (void)farthest(start.u, limit, guess, shortest_step(start, end), single_holds);
   }
-  if (!best) return line_step(start, end);
-  const ArcPair pair = best_pair(start, *best);
-  return Step{{ChainPiece{pair.first, pair.joint_height, pair.joint_u},
-               ChainPiece{pair.second, pair.end.place.z(), pair.end.u}},
-              pair.end};
+  return best;
+}
+
+std::optional<ArcChain::Step> ArcChain::next_step(const ChainNode& start, const ChainNode& end,
+                                                  double limit, double guess) const {
+  auto pair = farthest_pair(start, end, limit, guess, Tangent::kCrossing);
+  if (!pair || pair->end.u - start.u < kStumble * guess) {
+    // The crossing angles expect even changes of curvature; the curve's own tangents do not.
+    auto other = farthest_pair(start, end, limit, guess, Tangent::kCurve);
+    if (other && (!pair || other->end.u > pair->end.u)) pair = std::move(other);
+  }
+  if (!pair) {
+    auto single = farthest_single(start, end, limit, start.u, guess);
+    return single ? single : line_step(start, end);
+  }
+  const double reach = pair->end.u - start.u;
+  const double least = pair->end.u >= limit ? limit : start.u + kSingleReach * reach;
+  if (auto single = farthest_single(start, end, limit, least, kSingleReach * reach)) return single;
+  const ArcPair chosen = best_pair(start, *pair);
+  return Step{{ChainPiece{chosen.first, chosen.joint_height, chosen.joint_u},
+               ChainPiece{chosen.second, chosen.end.place.z(), chosen.end.u}},
+              chosen.end};
 }
 
 std::optional<std::vector<ChainPiece>> ArcChain::greedy(const ChainNode& start,
@@ -346,7 +374,12 @@ std::optional<std::vector<ChainPiece>> ArcChain::greedy(const ChainNode& start,
   ChainNode at = start;
   double guess = end.u - start.u;
   while (at.u < end.u) {
-    const auto step = next_step(at, end, guess);
+    auto step = next_step(at, end, end.u, guess);
+    if (step && end.u - step->end.u < kRemainder * (step->end.u - at.u) && step->end.u < end.u) {
+      // A short remainder would be all rounding: halve what is left instead.
+      const double half = (end.u - at.u) / 2;
+      if (auto shorter = next_step(at, end, at.u + half, half)) step = std::move(shorter);
+    }
     if (!step || pieces.size() + step->pieces.size() > at_most) return std::nullopt;
     pieces.insert(pieces.end(), step->pieces.begin(), step->pieces.end());
     guess = step->end.u - at.u;

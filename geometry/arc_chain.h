@@ -74,11 +74,21 @@ class ArcChain {
       const ChainNode& start, const ChainNode& end,
       std::optional<std::vector<ChainPiece>> best) const;
   void straighten_short(const ChainNode& start, std::vector<ChainPiece>& pieces) const;
-  std::optional<Step> next_step(const ChainNode& start, const ChainNode& end, double guess) const;
+  // Steps end at `limit` at the latest, which is end.u or before it.
+  std::optional<Step> next_step(const ChainNode& start, const ChainNode& end, double limit,
+                                double guess) const;
   std::optional<Step> line_step(const ChainNode& start, const ChainNode& end) const;
 
-  double crossing_angle(double u, double reach) const;
-  ChainNode node_at(const ChainNode& start, double u) const;
+  // What the chain's tangent is taken from where it meets the curve.
+  enum class Tangent { kCurve, kCrossing };
+
+  double crossing_angle(double u, double reach, double arc_length) const;
+  ChainNode node_at(const ChainNode& start, double u, Tangent tangent) const;
+  double shortest_step(const ChainNode& start, const ChainNode& end) const;
+  std::optional<ArcPair> farthest_pair(const ChainNode& start, const ChainNode& end, double limit,
+                                       double guess, Tangent tangent) const;
+  std::optional<Step> farthest_single(const ChainNode& start, const ChainNode& end, double limit,
+                                      double least, double guess) const;
   std::optional<ArcPair> pair_between(const ChainNode& start, const ChainNode& end,
                                       double balance) const;
   ArcPair best_pair(const ChainNode& start, const ArcPair& found) const;
