@@ -77,7 +77,8 @@ std::string kept_table(const std::vector<InspectedSection>& sections) {
   std::string text = "kept as it is:\n";
   for (const auto& [reason, total] : kept_totals(sections)) {
     text += fmt::format("{:>8} {:<6} {:>6} cutting moves  {}: {}\n", total.blocks,
-                        total.cutting_moves, reason, text_of(reason));
+                        total.blocks == 1 ? "block" : "blocks", total.cutting_moves, reason,
+                        text_of(reason));
   }
   return text;
 }
