@@ -45,8 +45,8 @@ constexpr int kSettled = 3;
 constexpr double kSteady = 0.005;
 constexpr double kInside = 1.03;
 
-// A blend of two solutions changes from one to the other over twenty control points.
-constexpr double kFade = 0.05;
+// A blend of two solutions changes from one to the other over five control points.
+constexpr double kFade = 0.2;
 
 // A sample this far above its limit asks for another knot; so does a span whose samples
 // scatter this much more than expected (a tight fit leaves about half of the scatter).
@@ -394,14 +394,33 @@ void draw_inside(const FitProblem& problem, const std::vector<Point3>& tight, Fi
   measure(problem, fit, state);
 }
 
+// The solution that a curve is drawn back to: the smoothest one that was inside the limits, or
+// the one that was least outside.
+class Refuge {
+ public:
+  void offer(const FitOnKnots& fit, double worst, double energy) {
+    const bool inside = worst <= 1;
+    const bool was_inside = worst_ <= 1;
+    const bool better = inside && was_inside ? energy < energy_ : worst < worst_;
+    if (!better || (was_inside && !inside)) return;
+    worst_ = worst;
+    energy_ = energy;
+    points_ = fit.points();
+  }
+  [[nodiscard]] const std::vector<Point3>& points() const { return points_; }
+
+ private:
+  double worst_ = std::numeric_limits<double>::infinity();
+  double energy_ = std::numeric_limits<double>::infinity();
+  std::vector<Point3> points_;
+};
+
 // Solves and reweights in turn. Weights approach their values from both sides, so in the end
-// the curve may be slightly outside somewhere: it is drawn back there towards the tightest
-// solution met.
+// the curve may be slightly outside somewhere: it is drawn back there.
 void run_passes(const FitProblem& problem, int passes, const std::vector<double>& stiffness,
                 FitOnKnots& fit, Samples& state) {
   std::vector<double> weights(state.weights.size());
-  std::vector<Point3> tightest;
-  double tightest_worst = std::numeric_limits<double>::infinity();
+  Refuge refuge;
   double energy = std::numeric_limits<double>::infinity();
   int settled = 0;
   for (int pass = 0; pass < passes && settled < kSettled; ++pass) {
@@ -413,15 +432,12 @@ void run_passes(const FitProblem& problem, int passes, const std::vector<double>
     if (!fit.solve(weights, state.targets)) break;
     measure(problem, fit, state);
     const double worst = worst_of(problem, state);
-    if (worst < tightest_worst) {
-      tightest_worst = worst;
-      tightest = fit.points();
-    }
     const double before = std::exchange(energy, fit.energy());
+    refuge.offer(fit, worst, energy);
     const bool steady = std::abs(energy - before) <= kSteady * before && worst <= kInside;
     settled = steady ? settled + 1 : 0;
   }
-  if (!tightest.empty()) draw_inside(problem, tightest, fit, state);
+  if (!refuge.points().empty()) draw_inside(problem, refuge.points(), fit, state);
 }
 
 bool in_zone(const std::vector<StraightZone>& zones, double u) {
