@@ -18,6 +18,10 @@ constexpr double kFirstKnot = 0.5;
 // The first fit has a knot per so many vertices; spans that cannot follow are split.
 constexpr std::size_t kVerticesPerSpan = 64;
 
+// Scatter is taken this much greater than the estimated noise: a curve that follows a part of
+// the noise is worse than one that is a little too smooth.
+constexpr double kNoiseMargin = 1.2;
+
 // Smooth edges whose chord may leave the curve by this part of the limit are watched between
 // their vertices; so are those whose vertices leave the curve as much room.
 constexpr double kWatchedSagitta = 0.25;
@@ -100,7 +104,7 @@ class ProblemMaker {
   }
 
   [[nodiscard]] double scatter(std::size_t i) const {
-    const double expected = std::max(f_.noise[i], options_.least_scatter);
+    const double expected = std::max(kNoiseMargin * f_.noise[i], options_.least_scatter);
     const double loose = loosen_.empty() ? 1 : loosen_[i];
     return std::isinf(loose) ? 0 : expected * loose;
   }

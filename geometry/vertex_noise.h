@@ -10,7 +10,7 @@
 namespace batten::geometry {
 
 // One value per vertex: the estimated standard deviation (mm) of its distance from the smooth
-// path, local over some 30 vertices; 0 where the neighbourhood shows none. Corners that stand
+// path, local over some 80 vertices; 0 where the neighbourhood shows none. Corners that stand
 // alone do not count as noise, nor does the curvature of a coarsely sampled curve: noise is
 // what changes its sign from vertex to vertex.
 //
