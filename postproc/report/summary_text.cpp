@@ -92,10 +92,11 @@ void add_proof(const SmoothReport& report, bool rewritten, Lines& lines) {
     lines.add("deviation", "none: every block is as it was");
     return;
   }
-  lines.add(
-      "deviation",
-      fmt::format("at most {}, near line {}; allowed {}", length(result.deviation_mm, result.units),
-                  result.deviation_line, length(report.options.tolerance_mm, result.units)));
+  const std::string place =
+      result.deviation_line > 0 ? fmt::format(", near line {}", result.deviation_line) : "";
+  lines.add("deviation",
+            fmt::format("at most {}{}; allowed {}", length(result.deviation_mm, result.units),
+                        place, length(report.options.tolerance_mm, result.units)));
   lines.add("proof", result.proved
                          ? "the new text was read again: every rewritten run keeps the tolerance,"
                          : "NOT PROVED: the new text could not be shown to keep the tolerance");
