@@ -33,6 +33,8 @@ constexpr Explanation kExplanations[] = {
     {kCornerWord, "A corner is rounded or chamfered by a word (,R ,C, or R beside G1).",
      "Let the CAM system write the corner as an arc or a line.", false},
     {kRapid, "A rapid move.", kCopied, false},
+    {kPlunge, "A move straight along Z into or out of a cut: its end is a corner that was meant.",
+     "Nothing: the cuts on either side are smoothed by themselves.", false},
     {kArc, "The block is an arc already, or an arc that is not understood.", kCopied, false},
     {kDwell, "A dwell (G4).", kCopied, false},
     {kProbe, "A probing move.", kCopied, false},

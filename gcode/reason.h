@@ -21,6 +21,7 @@ inline constexpr std::string_view kOtherAxis = "other-axis";    // A B C U V W, 
 inline constexpr std::string_view kExtruder = "extruder";       // E
 inline constexpr std::string_view kCornerWord = "corner-word";  // ,R ,C direct drawing
 inline constexpr std::string_view kRapid = "rapid";
+inline constexpr std::string_view kPlunge = "plunge";  // straight down or up between moves in the plane
 inline constexpr std::string_view kArc = "arc";
 inline constexpr std::string_view kDwell = "dwell";
 inline constexpr std::string_view kProbe = "probe";

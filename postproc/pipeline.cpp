@@ -231,8 +231,8 @@ class Smoothing {
     r.noise_mm = facts.noise;
     r.max_curvature_before = facts.max_curvature;
     r.max_curvature_after = chosen != nullptr ? facts.fair_curvature : facts.max_curvature;
-    r.time_before_s = facts.time_s;
-    r.time_after_s = chosen != nullptr ? chosen->time_s : facts.time_s;
+    r.time_before_s = facts.times.as_set;
+    r.time_after_s = chosen != nullptr ? chosen->times.as_set : facts.times.as_set;
     if (chosen == nullptr) {
       r.reason = work.went_back ? gcode::reason::kNotProved : work.choosing.reason;
       return r;

@@ -8,8 +8,14 @@ namespace batten::postproc {
 
 namespace {
 
-// Times are estimates: a difference below this is none.
+// Times are estimates, good to about a percent: a difference below this is none, and half of
+// it already speaks against replacing what stood there.
 constexpr double kSameTime = 0.01;
+constexpr double kSlower = 0.005;
+
+// Of two equals, one that would keep its speed under exact path is better when it takes less
+// than this part of the other's time there: it has fewer kinks, on any control.
+constexpr double kFewerKinks = 0.7;
 
 // What counts as a gain: so much less time, so many fewer blocks or bytes, an error so much
 // smaller.
@@ -24,16 +30,25 @@ constexpr double kMoreBlocks = 1.5;
 // Errors within this factor are equal: then the smaller text is better.
 constexpr double kSameError = 2.5;
 
-bool slower(const Candidate& c, const RunFacts& old) {
-  return c.time_s > (1 + kSameTime) * old.time_s;
+bool slower(const Candidate& c, const RunFacts& old, std::size_t blocks_before) {
+  const Times& a = c.times;
+  const Times& b = old.times;
+  // With the feed turned up a text of a quarter of the blocks may cost a little.
+  const bool far_smaller = 4 * c.text.blocks <= blocks_before;
+  const double flat_out = far_smaller ? 2.5 * kSameTime : kSameTime;
+  return a.as_set > (1 + kSlower) * b.as_set ||
+         a.without_merging > (1 + kSlower) * b.without_merging ||
+         a.flat_out > (1 + flat_out) * b.flat_out;
 }
+
+double sum_of(const Times& times) { return times.as_set + times.without_merging; }
 
 bool gains(const Candidate& c, const SmoothedRun& run, const RunContext& context, Prefer prefer) {
   const RunFacts& old = run.facts;
   const auto blocks = static_cast<double>(c.text.blocks);
   const auto blocks_before = static_cast<double>(context.blocks);
   const auto bytes = static_cast<double>(c.text.text.size());
-  const bool faster = c.time_s < (1 - kLessTime) * old.time_s;
+  const bool faster = sum_of(c.times) < (1 - kLessTime) * sum_of(old.times);
   const bool smaller = blocks <= kFewerBlocks * blocks_before;
   const bool nearer = c.error <= kNearer * old.error && blocks <= kMoreBlocks * blocks_before;
   if (prefer == Prefer::kSize) return bytes <= kFewerBytes * static_cast<double>(context.bytes);
@@ -43,8 +58,10 @@ bool gains(const Candidate& c, const SmoothedRun& run, const RunContext& context
 bool better(const Candidate& a, const Candidate& b, Prefer prefer) {
   if (prefer == Prefer::kSize) return a.text.text.size() < b.text.text.size();
   if (prefer == Prefer::kTime) {
-    if (a.time_s < (1 - kSameTime) * b.time_s) return true;
-    if (b.time_s < (1 - kSameTime) * a.time_s) return false;
+    if (sum_of(a.times) < (1 - kSameTime) * sum_of(b.times)) return true;
+    if (sum_of(b.times) < (1 - kSameTime) * sum_of(a.times)) return false;
+    if (a.times.exact_path < kFewerKinks * b.times.exact_path) return true;
+    if (b.times.exact_path < kFewerKinks * a.times.exact_path) return false;
     if (a.error * kSameError < b.error) return true;
     if (b.error * kSameError < a.error) return false;
     return a.text.blocks < b.text.blocks;
@@ -63,7 +80,7 @@ Choosing choose(const SmoothedRun& run, const RunContext& context, Prefer prefer
   bool all_slower = true;
   for (std::size_t i = 0; i < run.candidates.size(); ++i) {
     const Candidate& c = run.candidates[i];
-    if (slower(c, run.facts)) continue;
+    if (slower(c, run.facts, context.blocks)) continue;
     all_slower = false;
     if (gains(c, run, context, prefer)) choosing.order.push_back(i);
   }

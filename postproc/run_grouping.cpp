@@ -1,6 +1,7 @@
 #include "postproc/run_grouping.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -133,8 +134,60 @@ class RunGrouper {
     return !is_one_place(line.start, line.end);
   }
 
-  // Motions of no length at the ends of a chain say nothing about its path: they are copied.
+  // Whether a block moves straight along Z, in the plane across it, or neither.
+  enum class Heading { kAlongZ, kInPlane, kOther };
+
+  Heading heading(std::uint32_t block) const {
+    const geometry::Vector3 way = line_of(block).end - line_of(block).start;
+    const bool across =
+        std::abs(way.x()) > geometry::kSamePlace || std::abs(way.y()) > geometry::kSamePlace;
+    const bool along = std::abs(way.z()) > geometry::kSamePlace;
+    if (along && !across) {
+      return Heading::kAlongZ;
+    }
+    return across && !along ? Heading::kInPlane : Heading::kOther;
+  }
+
+  // The tool goes down into a cut and comes up out of it: where such a move meets the cut is a
+  // corner that was meant, and rounding it would tilt the cut out of its plane. So plunges are
+  // copied, and the chain is cut there. Straight down in the midst of a surface is no plunge.
   void close_chain() {
+    std::vector<std::uint32_t> whole = std::exchange(chain_, {});
+    std::size_t i = 0;
+    while (i < whole.size()) {
+      const std::size_t end = end_of_plunge(whole, i);
+      if (end == i) {
+        chain_.push_back(whole[i++]);
+        continue;
+      }
+      close_part();
+      keep(whole[end - 1], reason::kPlunge);
+      i = end;
+    }
+    close_part();
+  }
+
+  // Behind the moves along Z that start at `begin`, when they are a plunge; `begin` otherwise.
+  std::size_t end_of_plunge(const std::vector<std::uint32_t>& chain, std::size_t begin) const {
+    const auto flat = [&](std::size_t k) { return heading(chain[k]) == Heading::kInPlane; };
+    std::size_t end = begin;
+    while (end < chain.size() && (!moves(chain[end]) || heading(chain[end]) == Heading::kAlongZ)) {
+      ++end;
+    }
+    if (end == begin || !moves(chain[begin])) {
+      return begin;
+    }
+    std::size_t before = begin;
+    while (before > 0 && !moves(chain[before - 1])) {
+      --before;
+    }
+    const bool flat_before = before == 0 || flat(before - 1);
+    const bool flat_after = end == chain.size() || flat(end);
+    return flat_before && flat_after ? end : begin;
+  }
+
+  // Motions of no length at the ends of a chain say nothing about its path: they are copied.
+  void close_part() {
     const auto moving = [this](std::uint32_t block) { return moves(block); };
     const auto first = std::find_if(chain_.begin(), chain_.end(), moving);
     const auto last = std::find_if(chain_.rbegin(), chain_.rend(), moving).base();

@@ -21,9 +21,12 @@ constexpr double kMmPerInch = 25.4;
 // own share, the form gets back.
 constexpr double kLent = 0.4;
 
-// The form gets no more than this multiple of its share, however little the curve used: finer
-// arcs and chords cost blocks.
-constexpr double kMostForm = 1.5;
+// Arcs get no more than this multiple of the form's share, however little the curve used, and
+// chords these: the coarse ones are fewer, the fine ones keep the speed on a control that
+// rounds each of their corners.
+constexpr double kArcs = 1.5;
+constexpr double kCoarseChords = 0.6;
+constexpr double kFineChords = 0.25;
 
 double step_of(int decimals, gcode::Units units) {
   const double step = std::pow(10.0, -decimals);
@@ -104,7 +107,7 @@ class RunSmoother {
 
   SmoothedRun smooth() {
     result_.facts.max_curvature = greatest_curvature(run_.points);
-    result_.facts.time_s = cutting_time(timed_pieces(run_), *options_.machine, context_.after.path);
+    result_.facts.times = times_of(timed_pieces(run_));
     if (options_.method == Method::kNone) return kept(gcode::reason::kMethodNone);
 
     const ToleranceShares shares = share_tolerance(options_, units_, run_.decimals);
@@ -117,9 +120,8 @@ class RunSmoother {
     result_.facts.fair_curvature = greatest_curvature(*fair);
 
     const double left = shares.smoothing + shares.form - fair->deviation;
-    const double form = std::min(left, kMostForm * shares.form);
-    if (!(form > 0)) return kept(gcode::reason::kNoFit);
-    add_candidates(*fair, form);
+    if (!(left > 0)) return kept(gcode::reason::kNoFit);
+    add_candidates(*fair, shares.form, left);
     if (result_.candidates.empty()) return kept(gcode::reason::kTargetCannot);
     return std::move(result_);
   }
@@ -139,11 +141,38 @@ class RunSmoother {
     return fair;
   }
 
-  void add_candidates(const geometry::FairPath& fair, double form) {
-    const PlanOptions plan = {options_.target,       options_.machine, units_,
-                              context_.before.plane, options_.prefer,  form};
-    if (options_.output != Form::kLines) add(plan_arcs(run_, fair, plan), form);
-    if (options_.output != Form::kArcs) add(plan_lines(run_, fair, plan), form);
+  [[nodiscard]] Times times_of(const std::vector<TimedPiece>& pieces) const {
+    const Machine& machine = *options_.machine;
+    Machine unmerged = machine;
+    unmerged.naive_cam_tolerance = 0;
+    Times times;
+    times.as_set = cutting_time(pieces, machine, context_.after.path);
+    times.without_merging = machine.naive_cam_tolerance > 0
+                                ? cutting_time(pieces, unmerged, context_.after.path)
+                                : times.as_set;
+    std::vector<TimedPiece> unlimited = pieces;
+    for (TimedPiece& piece : unlimited) piece.feed = 0;
+    times.flat_out = cutting_time(unlimited, machine, context_.after.path);
+    times.exact_path = cutting_time(pieces, machine, gcode::PathMode::kExactPath);
+    return times;
+  }
+
+  // `share` of the tolerance belongs to the form; `left` is what the curve leaves.
+  void add_candidates(const geometry::FairPath& fair, double share, double left) {
+    const auto plan_with = [&](double multiple) {
+      return PlanOptions{options_.target,       options_.machine, units_,
+                         context_.before.plane, options_.prefer,  std::min(left, multiple * share)};
+    };
+    if (options_.output != Form::kLines) {
+      const PlanOptions arcs = plan_with(kArcs);
+      add(plan_arcs(run_, fair, arcs), arcs.max_deviation);
+    }
+    if (options_.output == Form::kArcs) return;
+    const bool smallest = options_.prefer == Prefer::kSize;
+    for (const double multiple : {smallest ? kArcs : kCoarseChords, kFineChords}) {
+      const PlanOptions lines = plan_with(multiple);
+      add(plan_lines(run_, fair, lines), lines.max_deviation);
+    }
   }
 
   void add(const std::optional<OutputPlan>& plan, double error) {
@@ -155,7 +184,7 @@ class RunSmoother {
     candidate.method = "fair";
     candidate.form = plan->form;
     candidate.error = error;
-    candidate.time_s = cutting_time(timed_pieces(*plan), *options_.machine, context_.after.path);
+    candidate.times = times_of(timed_pieces(*plan));
     candidate.text = std::move(*text);
     result_.candidates.push_back(std::move(candidate));
   }

@@ -23,17 +23,26 @@ struct RunContext {
   std::size_t bytes = 0;
 };
 
+// Seconds on the machine under each way in which its control may be set. A program rarely says
+// how, and what is faster under one setting must not be slower under another.
+struct Times {
+  double as_set = 0;           // as the machine's model says
+  double without_merging = 0;  // LinuxCNC: G64 P with Q0, lines are not joined before planning
+  double flat_out = 0;         // whatever the F words say, as with the feed override turned up
+  double exact_path = 0;       // G61: kinks cost stops
+};
+
 struct Candidate {
   std::string_view method;  // "fair"
   OutputForm form = OutputForm::kLines;
   RunText text;
-  double error = 0;   // mm, the written form from the fair curve
-  double time_s = 0;  // by the machine's model
+  double error = 0;  // mm, the written form from the fair curve
+  Times times;
 };
 
 // What is known of a run, whether it is rewritten or not.
 struct RunFacts {
-  double time_s = 0;
+  Times times;
   double max_curvature = 0;   // 1/mm, circle through three neighbouring vertices
   double noise = 0;           // mm, rms distance of the vertices from the fair curve
   double error = 0;           // mm, how far the old path is from the one that was meant
