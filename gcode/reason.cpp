@@ -109,6 +109,8 @@ constexpr Explanation kExplanations[] = {
      "--prefer size or a larger tolerance may help.", false},
     {kNotProved, "The new path could not be proved to keep the tolerance.",
      "A larger tolerance helps, or more decimals.", false},
+    {kUnsettled, "Smoothing the new text again would have changed it again, and tolerances add up.",
+     "Nothing: the original is kept so that a second pass changes nothing.", false},
     {kNoFit, "No curve inside the tolerance was found.", "A larger tolerance may help.", false},
     {kTargetCannot, "The target control cannot say the new form.",
      "--output lines works with every target.", false},

@@ -21,7 +21,8 @@ inline constexpr std::string_view kOtherAxis = "other-axis";    // A B C U V W, 
 inline constexpr std::string_view kExtruder = "extruder";       // E
 inline constexpr std::string_view kCornerWord = "corner-word";  // ,R ,C direct drawing
 inline constexpr std::string_view kRapid = "rapid";
-inline constexpr std::string_view kPlunge = "plunge";  // straight down or up between moves in the plane
+inline constexpr std::string_view kPlunge =
+    "plunge";  // straight down or up between moves in the plane
 inline constexpr std::string_view kArc = "arc";
 inline constexpr std::string_view kDwell = "dwell";
 inline constexpr std::string_view kProbe = "probe";
@@ -69,7 +70,8 @@ inline constexpr std::string_view kTooShort = "too-short";  // fewer motions tha
 inline constexpr std::string_view kNoGain = "no-gain";      // not faster, smaller or nearer
 inline constexpr std::string_view kSlower = "slower";
 inline constexpr std::string_view kNotProved = "not-proved";
-inline constexpr std::string_view kNoFit = "no-fit";  // no curve in the band was found
+inline constexpr std::string_view kUnsettled = "unsettled";  // a second pass would change it again
+inline constexpr std::string_view kNoFit = "no-fit";         // no curve in the band was found
 inline constexpr std::string_view kTargetCannot = "target-cannot";  // the target cannot say it
 inline constexpr std::string_view kMethodNone = "method-none";
 

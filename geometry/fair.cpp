@@ -18,7 +18,8 @@ namespace {
 // The fit aims inside the band by this share, since between its samples the curve leaves the
 // band by a percent or two.
 constexpr double kAim = 0.96;
-constexpr int kAttempts = 2;
+constexpr int kAttempts = 4;
+constexpr double kSlightly = 1.2;  // left the band by less: one more fit further inside holds it
 
 // Vertices of a closed run that are added before its start and after its end: the influence of
 // a vertex on the curve dies out over some ten vertices.
@@ -83,26 +84,34 @@ double distance_to_edge(const Point3& p, const Point3& a, const Point3& b) {
   return (p - a - t * d).norm();
 }
 
-// Greatest distance between curve and polyline, by samples, near in order.
-double deviation_of(const Faired& faired, std::span<const Point3> points) {
-  double worst = 0;
-  const std::size_t n = points.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    worst = std::max(worst, (faired.curve.point_at(faired.parameters[i]) - points[i]).norm());
-    if (i + 1 == n) break;
+// Greatest distance between each edge and the curve beside it, by samples, near in order; the
+// distance of a vertex counts for both its edges.
+std::vector<double> edge_deviations(const Faired& faired, std::span<const Point3> points) {
+  const std::size_t edges = points.size() - 1;
+  std::vector<double> worst(edges, 0);
+  for (std::size_t i = 0; i <= edges; ++i) {
+    const double off = (faired.curve.point_at(faired.parameters[i]) - points[i]).norm();
+    if (i > 0) worst[i - 1] = std::max(worst[i - 1], off);
+    if (i == edges) break;
+    worst[i] = std::max(worst[i], off);
     constexpr int kParts = 6;
     for (int k = 1; k < kParts; ++k) {
       const double u =
           faired.parameters[i] + (faired.parameters[i + 1] - faired.parameters[i]) * k / kParts;
       const Point3 here = faired.curve.point_at(u);
       double nearest = std::numeric_limits<double>::infinity();
-      for (std::size_t e = i == 0 ? 0 : i - 1; e <= i + 1 && e + 1 < n; ++e) {
+      for (std::size_t e = i == 0 ? 0 : i - 1; e <= i + 1 && e < edges; ++e) {
         nearest = std::min(nearest, distance_to_edge(here, points[e], points[e + 1]));
       }
-      worst = std::max(worst, nearest);
+      worst[i] = std::max(worst[i], nearest);
     }
   }
   return worst;
+}
+
+double deviation_of(const Faired& faired, std::span<const Point3> points) {
+  const std::vector<double> edges = edge_deviations(faired, points);
+  return *std::max_element(edges.begin(), edges.end());
 }
 
 class Fairing {
@@ -134,15 +143,35 @@ class Fairing {
   }
 
  private:
-  // Fits, looks at the curve between the samples, and fits again a little further inside
-  // where it left the band.
-  [[nodiscard]] Faired fit(const std::vector<double>& loosen) const {
+  // Fits, looks at the curve between the samples, and fits again where it left the band: a
+  // little further inside at first, and then with the edges that cannot be held as they were.
+  [[nodiscard]] Faired fit(const std::vector<double>& loosen) {
     double limit = kAim * options_.tolerance;
     for (int attempt = 0;; ++attempt) {
       Faired faired = fit_inside(limit, loosen);
-      const double deviation = deviation_of(faired, points_);
-      if (deviation <= options_.tolerance || attempt == kAttempts) return faired;
-      limit *= std::max(0.5, kAim * options_.tolerance / deviation);
+      const std::vector<double> off = edge_deviations(faired, points_);
+      const double worst = *std::max_element(off.begin(), off.end());
+      if (worst <= options_.tolerance || attempt == kAttempts) return faired;
+      if (attempt == 0 && worst < kSlightly * options_.tolerance) {
+        limit *= kAim * options_.tolerance / worst;
+      } else {
+        keep_edges(off, attempt);
+      }
+    }
+  }
+
+  // The edges that the curve left, and more around them with every attempt, stay lines between
+  // kept corners.
+  void keep_edges(const std::vector<double>& off, int around) {
+    const std::size_t edges = off.size();
+    const auto reach = static_cast<std::size_t>(around);
+    for (std::size_t e = 0; e < edges; ++e) {
+      if (off[e] <= options_.tolerance) continue;
+      for (std::size_t k = e < reach ? 0 : e - reach; k <= e + reach && k < edges; ++k) {
+        features_.lines[k] = true;
+        features_.kinds[k] = VertexKind::kKeptCorner;
+        features_.kinds[k + 1] = VertexKind::kKeptCorner;
+      }
     }
   }
 

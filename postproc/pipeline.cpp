@@ -30,8 +30,12 @@ struct RunWork {
   RunContext context;
   SmoothedRun smoothed;
   Choosing choosing;
-  std::size_t tried = 0;  // candidates that were not proved
-  bool went_back = false;
+  std::size_t tried = 0;       // candidates that were not proved or not settled
+  std::string_view went_back;  // why none of them is left
+
+  // Where the chosen text stands in the assembled program: bytes [begin, end[.
+  std::size_t begin = 0;
+  std::size_t end = 0;
 
   [[nodiscard]] const Candidate* chosen() const {
     if (tried >= choosing.order.size()) return nullptr;
@@ -74,41 +78,51 @@ class Smoothing {
     }
   }
 
-  [[nodiscard]] const gcode::ModalState& state_after(std::uint32_t block) const {
-    return meaning_.states[meaning_.blocks[block].state_after];
-  }
-
-  [[nodiscard]] const gcode::ModalState& state_before(std::uint32_t block) const {
-    return block == 0 ? meaning_.states[0] : state_after(block - 1);
+  [[nodiscard]] static std::string_view bytes_of(const gcode::Program& program,
+                                                 const Section& section) {
+    const std::uint32_t begin = program.blocks[section.first_block].span.begin;
+    return program.source.text({begin, program.blocks[section.last_block].end});
   }
 
   [[nodiscard]] std::string_view bytes_of(const Section& section) const {
-    const std::uint32_t begin = program_.blocks[section.first_block].span.begin;
-    return source_.text({begin, program_.blocks[section.last_block].end});
+    return bytes_of(program_, section);
   }
 
-  [[nodiscard]] std::string_view line_end_of(const Section& section) const {
-    const gcode::Block& block = program_.blocks[section.first_block];
-    return source_.text({block.span.end, block.end});
+  [[nodiscard]] static RunContext context_of(const gcode::Program& program,
+                                             const gcode::Interpretation& meaning,
+                                             const Section& section) {
+    const auto state_after = [&](std::uint32_t block) -> const gcode::ModalState& {
+      return meaning.states[meaning.blocks[block].state_after];
+    };
+    const gcode::Block& first = program.blocks[section.first_block];
+    return {program,
+            section.first_block == 0 ? meaning.states[0] : state_after(section.first_block - 1),
+            state_after(section.last_block),
+            program.source.text({first.span.end, first.end}),
+            section.last_block - section.first_block + 1,
+            bytes_of(program, section).size()};
   }
 
-  void prepare_runs() {
+  [[nodiscard]] GroupingOptions grouping() const {
     GroupingOptions grouping;
     grouping.min_motions = options_.min_motions;
     for (const std::string& id : options_.allowed) grouping.allowed.push_back(id);
-    sections_ = group_runs(program_, meaning_, grouping);
+    return grouping;
+  }
+
+  // Items do not look at each other: any number of threads gives the same bytes.
+  template <typename Function>
+  void in_parallel(std::size_t count, const Function& function) const {
+    oneapi::tbb::task_arena arena(options_.threads > 0 ? options_.threads
+                                                       : oneapi::tbb::task_arena::automatic);
+    arena.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, count, function); });
+  }
+
+  void prepare_runs() {
+    sections_ = group_runs(program_, meaning_, grouping());
     for (std::size_t i = 0; i < sections_.size(); ++i) {
-      const Section& section = sections_[i];
-      if (!std::holds_alternative<Run>(section.content)) continue;
-      const std::size_t blocks = section.last_block - section.first_block + 1;
-      work_.push_back(
-          {i,
-           {program_, state_before(section.first_block), state_after(section.last_block),
-            line_end_of(section), blocks, bytes_of(section).size()},
-           {},
-           {},
-           0,
-           false});
+      if (!std::holds_alternative<Run>(sections_[i].content)) continue;
+      work_.push_back({i, context_of(program_, meaning_, sections_[i]), {}, {}, 0, {}, 0, 0});
     }
   }
 
@@ -116,7 +130,6 @@ class Smoothing {
     return std::get<Run>(sections_[work.section].content);
   }
 
-  // Runs do not look at each other: any number of threads gives the same bytes.
   bool smooth_runs() {
     std::size_t points = 0;
     for (const RunWork& work : work_) points += run_of(work).points.size();
@@ -127,26 +140,30 @@ class Smoothing {
       if (stopped) return;
       RunWork& work = work_[i];
       work.smoothed = smooth_run(run_of(work), work.context, options_);
-      work.choosing = choose(work.smoothed, work.context, options_.prefer);
+      work.choosing = choose(work.smoothed, work.context, options_);
       done += run_of(work).points.size();
       const double part = static_cast<double>(done) / static_cast<double>(points);
       const std::scoped_lock lock(telling);
       if (!tell(kAfterReading + part * (kAfterSmoothing - kAfterReading))) stopped = true;
     };
-    oneapi::tbb::task_arena arena(options_.threads > 0 ? options_.threads
-                                                       : oneapi::tbb::task_arena::automatic);
-    arena.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, work_.size(), one); });
+    in_parallel(work_.size(), one);
     return !stopped;
   }
 
-  [[nodiscard]] std::string assemble() const {
+  [[nodiscard]] std::string assemble() {
     std::string text;
     text.reserve(source_.text().size());
     std::size_t next = 0;
     for (std::size_t i = 0; i < sections_.size(); ++i) {
-      const Candidate* chosen = nullptr;
-      if (next < work_.size() && work_[next].section == i) chosen = work_[next++].chosen();
+      if (next == work_.size() || work_[next].section != i) {
+        text += bytes_of(sections_[i]);
+        continue;
+      }
+      RunWork& work = work_[next++];
+      const Candidate* chosen = work.chosen();
+      work.begin = text.size();
       text += chosen != nullptr ? std::string_view(chosen->text.text) : bytes_of(sections_[i]);
+      work.end = text.size();
     }
     return text;
   }
@@ -166,8 +183,8 @@ class Smoothing {
       result_.text = std::move(text);
       result_.blocks_out = program.blocks.size();
       if (!tell(kAfterSmoothing)) return false;
-      const bool settled = verification.proved() || !take_back(verification);
-      if (settled) {
+      if (!verification.proved() && take_back(verification)) continue;
+      if (!verification.proved() || !take_back_unsettled(program, meaning)) {
         result_.proved = verification.proved();
         result_.deviation_mm = verification.deviation_mm;
         result_.deviation_line = verification.deviation_line;
@@ -200,13 +217,54 @@ class Smoothing {
         if (work.chosen() != nullptr) runs.push_back(&work);
       }
     }
+    return give_way(std::move(runs), gcode::reason::kNotProved);
+  }
+
+  static bool give_way(std::vector<RunWork*> runs, std::string_view why) {
     std::sort(runs.begin(), runs.end());
     runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
     for (RunWork* work : runs) {
       ++work->tried;
-      work->went_back = work->chosen() == nullptr;
+      if (work->chosen() == nullptr) work->went_back = why;
     }
     return !runs.empty();
+  }
+
+  // A second pass over the new program must change nothing: tolerances would add up. So the runs
+  // that a second pass would find in the new text, where it was rewritten, are smoothed as that
+  // pass would, and a candidate that it would replace is given up.
+  bool take_back_unsettled(const gcode::Program& program, const gcode::Interpretation& meaning) {
+    std::vector<Section> found = group_runs(program, meaning, grouping());
+    std::erase_if(found, [&](const Section& section) {
+      return !std::holds_alternative<Run>(section.content) ||
+             rewritten_in(program, section).empty();
+    });
+    std::vector<char> changes(found.size(), 0);
+    in_parallel(found.size(), [&](std::size_t i) {
+      const RunContext context = context_of(program, meaning, found[i]);
+      const SmoothedRun again = smooth_run(std::get<Run>(found[i].content), context, options_);
+      changes[i] = choose(again, context, options_).order.empty() ? 0 : 1;
+    });
+    std::vector<RunWork*> runs;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (changes[i] == 0) continue;
+      const std::vector<RunWork*> here = rewritten_in(program, found[i]);
+      runs.insert(runs.end(), here.begin(), here.end());
+    }
+    return give_way(std::move(runs), gcode::reason::kUnsettled);
+  }
+
+  // The rewritten runs whose new text stands in a section of the new program.
+  std::vector<RunWork*> rewritten_in(const gcode::Program& program, const Section& section) {
+    const std::size_t begin = program.blocks[section.first_block].span.begin;
+    const std::size_t end = program.blocks[section.last_block].end;
+    std::vector<RunWork*> runs;
+    auto work = std::partition_point(work_.begin(), work_.end(),
+                                     [&](const RunWork& w) { return w.end <= begin; });
+    for (; work != work_.end() && work->begin < end; ++work) {
+      if (work->chosen() != nullptr) runs.push_back(&*work);
+    }
+    return runs;
   }
 
   void report() {
@@ -234,7 +292,7 @@ class Smoothing {
     r.time_before_s = facts.times.as_set;
     r.time_after_s = chosen != nullptr ? chosen->times.as_set : facts.times.as_set;
     if (chosen == nullptr) {
-      r.reason = work.went_back ? gcode::reason::kNotProved : work.choosing.reason;
+      r.reason = work.went_back.empty() ? work.choosing.reason : work.went_back;
       return r;
     }
     r.status = RunStatus::kRewritten;

@@ -13,16 +13,19 @@ namespace {
 constexpr double kSameTime = 0.01;
 constexpr double kSlower = 0.005;
 
+// A form that the user asked for by name may cost this much.
+constexpr double kWantedCosts = 0.15;
+
 // Of two equals, one that would keep its speed under exact path is better when it takes less
 // than this part of the other's time there: it has fewer kinks, on any control.
 constexpr double kFewerKinks = 0.7;
 
 // What counts as a gain: so much less time, so many fewer blocks or bytes, an error so much
 // smaller.
-constexpr double kLessTime = 0.02;
-constexpr double kFewerBlocks = 0.75;
-constexpr double kFewerBytes = 0.85;
-constexpr double kNearer = 0.5;
+constexpr double kLessTime = 0.01;
+constexpr double kFewerBlocks = 0.9;
+constexpr double kFewerBytes = 0.9;
+constexpr double kNearer = 0.6;
 
 // More blocks than this multiple are no bargain for accuracy.
 constexpr double kMoreBlocks = 1.5;
@@ -30,9 +33,10 @@ constexpr double kMoreBlocks = 1.5;
 // Errors within this factor are equal: then the smaller text is better.
 constexpr double kSameError = 2.5;
 
-bool slower(const Candidate& c, const RunFacts& old, std::size_t blocks_before) {
+bool slower(const Candidate& c, const RunFacts& old, std::size_t blocks_before, bool wanted) {
   const Times& a = c.times;
   const Times& b = old.times;
+  if (wanted) return a.as_set > (1 + kWantedCosts) * b.as_set;
   // With the feed turned up a text of a quarter of the blocks may cost a little.
   const bool far_smaller = 4 * c.text.blocks <= blocks_before;
   const double flat_out = far_smaller ? 2.5 * kSameTime : kSameTime;
@@ -71,7 +75,9 @@ bool better(const Candidate& a, const Candidate& b, Prefer prefer) {
 
 }  // namespace
 
-Choosing choose(const SmoothedRun& run, const RunContext& context, Prefer prefer) {
+Choosing choose(const SmoothedRun& run, const RunContext& context, const SmoothOptions& options) {
+  const Prefer prefer = options.prefer;
+  const bool wanted = options.output != Form::kAuto;
   Choosing choosing;
   if (run.candidates.empty()) {
     choosing.reason = run.reason;
@@ -80,7 +86,7 @@ Choosing choose(const SmoothedRun& run, const RunContext& context, Prefer prefer
   bool all_slower = true;
   for (std::size_t i = 0; i < run.candidates.size(); ++i) {
     const Candidate& c = run.candidates[i];
-    if (slower(c, run.facts, context.blocks)) continue;
+    if (slower(c, run.facts, context.blocks, wanted)) continue;
     all_slower = false;
     if (gains(c, run, context, prefer)) choosing.order.push_back(i);
   }

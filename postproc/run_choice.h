@@ -15,8 +15,9 @@ struct Choosing {
 };
 
 // A candidate is worth writing when it is not slower and gains time, blocks or accuracy by a
-// margin. The margins are greater than what a second pass over its own output could gain, so
-// that a second pass changes nothing. Between candidates `prefer` decides.
-[[nodiscard]] Choosing choose(const SmoothedRun& run, const RunContext& context, Prefer prefer);
+// margin. Between candidates `prefer` decides. A form that the user asked for by name may be
+// somewhat slower.
+[[nodiscard]] Choosing choose(const SmoothedRun& run, const RunContext& context,
+                              const SmoothOptions& options);
 
 }  // namespace batten::postproc

@@ -22,10 +22,11 @@ constexpr double kMmPerInch = 25.4;
 constexpr double kLent = 0.4;
 
 // Arcs get no more than this multiple of the form's share, however little the curve used, and
-// chords these: the coarse ones are fewer, the fine ones keep the speed on a control that
-// rounds each of their corners.
+// chords these: long ones are few, fine ones are near to the curve and keep the speed on a
+// control that rounds each of their corners.
 constexpr double kArcs = 1.5;
-constexpr double kCoarseChords = 0.6;
+constexpr double kLongChords = 1.5;
+constexpr double kMiddleChords = 0.6;
 constexpr double kFineChords = 0.25;
 
 double step_of(int decimals, gcode::Units units) {
@@ -168,8 +169,7 @@ class RunSmoother {
       add(plan_arcs(run_, fair, arcs), arcs.max_deviation);
     }
     if (options_.output == Form::kArcs) return;
-    const bool smallest = options_.prefer == Prefer::kSize;
-    for (const double multiple : {smallest ? kArcs : kCoarseChords, kFineChords}) {
+    for (const double multiple : {kLongChords, kMiddleChords, kFineChords}) {
       const PlanOptions lines = plan_with(multiple);
       add(plan_lines(run_, fair, lines), lines.max_deviation);
     }
