@@ -118,7 +118,8 @@ class Fairing {
  public:
   Fairing(std::vector<Point3> points, const FairOptions& options, std::vector<std::size_t> met)
       : points_(std::move(points)), options_(options), met_(std::move(met)) {
-    features_ = find_features(points_, {options.tolerance, options.keep_corner_angle});
+    features_ =
+        find_features(points_, {options.tolerance, options.keep_corner_angle, options.rounding});
   }
 
   [[nodiscard]] const PathFeatures& features() const { return features_; }
@@ -178,7 +179,7 @@ class Fairing {
   [[nodiscard]] Faired fit_inside(double limit, const std::vector<double>& loosen) const {
     BandOptions band;
     band.limit = limit;
-    band.least_scatter = std::min(0.6 * options_.rounding, 0.25 * options_.tolerance);
+    band.least_scatter = std::min(options_.rounding, 0.25 * options_.tolerance);
     FitProblem problem = state_fair_problem(points_, features_, loosen, band);
     for (const std::size_t i : met_) {
       const auto at =
@@ -237,7 +238,7 @@ class Fairing {
     for (std::size_t i = 0; i < tight.size(); ++i) {
       if (!tight[i] || std::isinf(loosen[i])) continue;
       loosen[i] *= kWiden;
-      const double scatter = std::max(features_.noise[i], 0.6 * options_.rounding) * loosen[i];
+      const double scatter = std::max(features_.noise[i], options_.rounding) * loosen[i];
       if (scatter > 0.5 * options_.tolerance) {
         loosen[i] = std::numeric_limits<double>::infinity();
       }

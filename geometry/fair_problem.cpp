@@ -22,6 +22,11 @@ constexpr std::size_t kVerticesPerSpan = 64;
 // the noise is worse than one that is a little too smooth.
 constexpr double kNoiseMargin = 1.2;
 
+// Where the curve through the vertices would leave the chords by more than this part of the
+// limit, the vertices no longer bind: the curve runs between vertices and chords. Otherwise
+// it would have to swing out to each vertex.
+constexpr double kTooHigh = 0.7;
+
 // Smooth edges whose chord may leave the curve by this part of the limit are watched between
 // their vertices; so are those whose vertices leave the curve as much room.
 constexpr double kWatchedSagitta = 0.25;
@@ -103,7 +108,14 @@ class ProblemMaker {
     }
   }
 
+  // How far a curve through the vertices would leave an edge.
+  [[nodiscard]] double sagitta(std::size_t edge) const {
+    return length(edge) * (f_.turns[edge] + f_.turns[edge + 1]) / 16;
+  }
+
   [[nodiscard]] double scatter(std::size_t i) const {
+    const double height = std::max(sagitta(i - 1), sagitta(i));
+    if (height > kTooHigh * options_.limit) return 0;
     const double expected = std::max(kNoiseMargin * f_.noise[i], options_.least_scatter);
     const double loose = loosen_.empty() ? 1 : loosen_[i];
     return std::isinf(loose) ? 0 : expected * loose;
@@ -164,10 +176,10 @@ class ProblemMaker {
       return;
     }
     const bool leg = corner(edge) || corner(edge + 1);
-    const double sagitta = length(edge) * std::max(f_.turns[edge], f_.turns[edge + 1]) / 8;
+    const double height = length(edge) * std::max(f_.turns[edge], f_.turns[edge + 1]) / 8;
     if (leg) {
       add_leg_samples(edge, u0, u1);
-    } else if (sagitta > kWatchedSagitta * options_.limit) {
+    } else if (height > kWatchedSagitta * options_.limit) {
       for (const double part : {0.25, 0.5, 0.75}) add_sample_on(edge, u0 + part * (u1 - u0));
     } else if (loose_) {
       add_sample_on(edge, 0.5 * (u0 + u1));

@@ -13,7 +13,9 @@ namespace batten::geometry {
 
 struct BandOptions {
   double limit = 0.01;          // mm, full distance allowed
-  double least_scatter = 3e-4;  // mm, what rounding of the printed places leaves
+  // mm: a curve that passes the printed places at their rounding is as likely as one that meets
+  // them; the errors of dense places on a slanting line are no white noise, but long ramps.
+  double least_scatter = 5e-4;
 };
 
 // `loosen[i]` >= 1 widens the scatter expected at vertex i (the machine needs more room

@@ -53,7 +53,8 @@ VertexKind kind_of(const PathFeatures& f, std::size_t i, const FeatureOptions& o
   if (turn > std::min(options.keep_corner_angle, kReversal)) return VertexKind::kKeptCorner;
   const double before = f.parameters[i] - f.parameters[i - 1];
   const double after = f.parameters[i + 1] - f.parameters[i];
-  const double from_noise = kNoiseTurns * f.noise[i] * (1 / before + 1 / after);
+  const double scatter = std::max(f.noise[i], options.rounding);
+  const double from_noise = kNoiseTurns * scatter * (1 / before + 1 / after);
   if (turn < std::max(kLeastCorner, from_noise)) return VertexKind::kSmooth;
   // Chords of a curve leave it by about (edge * turn / 8): if that is far more than the
   // tolerance, these edges are no chords that a CAM system would have written for it.

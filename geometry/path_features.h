@@ -18,6 +18,7 @@ enum class VertexKind {
 struct FeatureOptions {
   double tolerance = 0.01;         // mm
   double keep_corner_angle = 3.2;  // radians: greater turns are kept corners
+  double rounding = 0;             // mm, greatest error of one printed coordinate
 };
 
 struct PathFeatures {
