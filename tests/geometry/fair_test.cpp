@@ -326,7 +326,7 @@ TEST(FairPath, GivesTheToleranceToFeedUnlessItShallBeAccurate) {
   EXPECT_GT(fast->rounds, 0);
   EXPECT_EQ(accurate->rounds, 0);
   EXPECT_LT(greatest_curvature(fast->curve), 0.7 * greatest_curvature(accurate->curve));
-  EXPECT_LE(accurate->noise, 0.0005);
+  EXPECT_LE(accurate->noise, 2 * options.rounding);
 }
 
 }  // namespace
