@@ -154,7 +154,12 @@ class FitOnKnots {
 
   // After solve(): the inverse of the last system, and the compliance of the curve at a sample,
   // how far a unit force there moves it.
-  [[nodiscard]] BandedMatrix inverse() const { return matrix_.inverse_band(); }
+  [[nodiscard]] BandedMatrix inverse() const {
+    BandedMatrix inverse = matrix_.inverse_band();
+    // Fixed control points do not move: their unit rows stand for no compliance.
+    for (const auto& [index, place] : fixed_) inverse.at(index, 0) = 0;
+    return inverse;
+  }
   [[nodiscard]] double leverage(std::size_t i, const BandedMatrix& inverse) const {
     const BasisRow& row = rows_[i];
     double sum = 0;

@@ -23,7 +23,7 @@ constexpr double kSlightly = 1.2;  // left the band by less: one more fit furthe
 
 // Vertices of a closed run that are added before its start and after its end: the influence of
 // a vertex on the curve dies out over some ten vertices.
-constexpr std::size_t kWrap = 60;
+constexpr std::size_t kWrap = 200;
 
 // The seam of a closed run is met to this part of the tolerance by the fit, and then exactly by
 // a shift of that size.
@@ -89,15 +89,27 @@ double distance_to_edge(const Point3& p, const Point3& a, const Point3& b) {
 std::vector<double> edge_deviations(const Faired& faired, std::span<const Point3> points) {
   const std::size_t edges = points.size() - 1;
   std::vector<double> worst(edges, 0);
+  const std::vector<double> breaks = faired.curve.breakpoints();
+  std::vector<double> places;
+  std::size_t span = 0;
   for (std::size_t i = 0; i <= edges; ++i) {
     const double off = (faired.curve.point_at(faired.parameters[i]) - points[i]).norm();
     if (i > 0) worst[i - 1] = std::max(worst[i - 1], off);
     if (i == edges) break;
     worst[i] = std::max(worst[i], off);
+    const double from = faired.parameters[i];
+    const double to = faired.parameters[i + 1];
+    places.clear();
     constexpr int kParts = 6;
-    for (int k = 1; k < kParts; ++k) {
-      const double u =
-          faired.parameters[i] + (faired.parameters[i + 1] - faired.parameters[i]) * k / kParts;
+    for (int k = 1; k < kParts; ++k) places.push_back(from + (to - from) * k / kParts);
+    while (span + 1 < breaks.size() && breaks[span + 1] <= from) ++span;
+    for (std::size_t b = span; b + 1 < breaks.size() && breaks[b] < to; ++b) {
+      for (int k = 0; k < kParts; ++k) {
+        const double u = breaks[b] + (breaks[b + 1] - breaks[b]) * k / kParts;
+        if (u > from && u < to) places.push_back(u);
+      }
+    }
+    for (const double u : places) {
       const Point3 here = faired.curve.point_at(u);
       double nearest = std::numeric_limits<double>::infinity();
       for (std::size_t e = i == 0 ? 0 : i - 1; e <= i + 1 && e < edges; ++e) {
@@ -133,9 +145,14 @@ class Fairing {
     double time = travel_time(best);
     for (int round = 0; round < kNeedRounds; ++round) {
       if (!widen_where_needed(best, loosen)) break;
+      const PathFeatures before = features_;
       Faired next = fit(loosen);
       const double next_time = travel_time(next);
-      if (next_time > (1 - kWorthIt) * time) break;
+      const bool held = deviation_of(next, points_) <= options_.tolerance;
+      if (!held || next_time > (1 - kWorthIt) * time) {
+        features_ = before;
+        break;
+      }
       best = std::move(next);
       time = next_time;
       ++rounds_;
@@ -284,10 +301,23 @@ Faired one_period(const Faired& all, std::size_t wrap, std::size_t count, const 
   const Vector3 at_start = seam - points.front();
   const Vector3 at_end = seam - points.back();
   const std::size_t n = points.size();
-  const std::size_t moved = std::min<std::size_t>(3, n / 2);
-  for (std::size_t i = 0; i < moved; ++i) {
-    points[i] += at_start;
-    points[n - 1 - i] += at_end;
+  if (n < 6) {
+    points[0] += at_start, points[n - 1] += at_end;
+  } else {
+    const Vector3 d1 =
+        0.5 * (part.derivative_at(part.first(), 1) + part.derivative_at(part.last(), 1));
+    const Vector3 d2 =
+        0.5 * (part.derivative_at(part.first(), 2) + part.derivative_at(part.last(), 2));
+    const auto& t = part.basis().knots();
+    const std::size_t m = t.size();
+    const double h1 = t[4] - t[3];
+    const double h2 = t[5] - t[3];
+    const double g1 = t[m - 4] - t[m - 5];
+    const double g2 = t[m - 4] - t[m - 6];
+    points[1] = seam + h1 / 3 * d1;
+    points[2] = points[1] + h2 / 3 * (d1 + h1 / 2 * d2);
+    points[n - 2] = seam - g1 / 3 * d1;
+    points[n - 3] = points[n - 2] - g2 / 3 * (d1 - g1 / 2 * d2);
   }
   points.front() = seam;
   points.back() = seam;

@@ -27,7 +27,9 @@ struct FairPath {
   // Parameter of each input point, not decreasing; front() == curve.first(), back() ==
   // curve.last().
   std::vector<double> vertex_parameters;
-  double deviation = 0;  // mm, estimated by samples; the proof is the verifier's
+  // mm, estimated by samples; the proof is the verifier's. Above the tolerance where the band
+  // could not be held: the caller has to look.
+  double deviation = 0;
   double noise = 0;      // mm, estimated scatter of the vertices about the curve (rms)
   int kept_corners = 0;
   int rounds = 0;  // how often the band was widened for the machine's need

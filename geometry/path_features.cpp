@@ -27,6 +27,9 @@ constexpr double kLeastCorner = 2 * std::numbers::pi / 180;
 // a corner turns more than this many standard deviations.
 constexpr double kNoiseTurns = 4;
 
+// A line that was cut into blocks does not turn between them, but for rounding.
+constexpr double kNoTurn = 1e-6;
+
 // A line is this many times longer than the edges beside it. Chords of a curve whose
 // curvature changes smoothly differ less from their neighbours.
 constexpr double kLineIsLonger = 6;
@@ -53,7 +56,8 @@ VertexKind kind_of(const PathFeatures& f, std::size_t i, const FeatureOptions& o
   if (turn > std::min(options.keep_corner_angle, kReversal)) return VertexKind::kKeptCorner;
   const double before = f.parameters[i] - f.parameters[i - 1];
   const double after = f.parameters[i + 1] - f.parameters[i];
-  const double scatter = std::max(f.noise[i], options.rounding);
+  // What is more than the tolerance is no noise that could be smoothed: stairs and teeth.
+  const double scatter = std::max(std::min(f.noise[i], options.tolerance), options.rounding);
   const double from_noise = kNoiseTurns * scatter * (1 / before + 1 / after);
   if (turn < std::max(kLeastCorner, from_noise)) return VertexKind::kSmooth;
   // Chords of a curve leave it by about (edge * turn / 8): if that is far more than the
@@ -63,15 +67,22 @@ VertexKind kind_of(const PathFeatures& f, std::size_t i, const FeatureOptions& o
   return too_coarse || stands_out ? VertexKind::kCorner : VertexKind::kSmooth;
 }
 
+// The length of the first edge beyond `edge` on one side that is not its straight continuation;
+// 0 where a corner or an end stands first.
+double length_beyond(const PathFeatures& f, std::size_t edge, bool forward) {
+  std::size_t e = edge;
+  while (true) {
+    const std::size_t vertex = forward ? e + 1 : e;
+    if (f.kinds[vertex] != VertexKind::kSmooth) return 0;
+    e = forward ? e + 1 : e - 1;
+    if (f.turns[vertex] > kNoTurn) return f.parameters[e + 1] - f.parameters[e];
+  }
+}
+
 bool is_line(const PathFeatures& f, std::size_t edge) {
-  const auto length = [&](std::size_t e) { return f.parameters[e + 1] - f.parameters[e]; };
-  const std::size_t edges = f.lines.size();
-  const bool sharp_start = f.kinds[edge] != VertexKind::kSmooth;
-  const bool sharp_end = f.kinds[edge + 1] != VertexKind::kSmooth;
-  const bool longer_start = sharp_start || length(edge) > kLineIsLonger * length(edge - 1);
-  const bool longer_end =
-      sharp_end || edge + 1 == edges || length(edge) > kLineIsLonger * length(edge + 1);
-  return longer_start && longer_end;
+  const double length = f.parameters[edge + 1] - f.parameters[edge];
+  return length > kLineIsLonger * length_beyond(f, edge, false) &&
+         length > kLineIsLonger * length_beyond(f, edge, true);
 }
 
 }  // namespace

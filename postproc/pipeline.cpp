@@ -12,6 +12,7 @@
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
 #include "gcode/reason.h"
+#include "postproc/provenance.h"
 #include "postproc/run_choice.h"
 #include "postproc/run_grouping.h"
 #include "postproc/smoothing.h"
@@ -30,12 +31,8 @@ struct RunWork {
   RunContext context;
   SmoothedRun smoothed;
   Choosing choosing;
-  std::size_t tried = 0;       // candidates that were not proved or not settled
+  std::size_t tried = 0;       // candidates that were not proved
   std::string_view went_back;  // why none of them is left
-
-  // Where the chosen text stands in the assembled program: bytes [begin, end[.
-  std::size_t begin = 0;
-  std::size_t end = 0;
 
   [[nodiscard]] const Candidate* chosen() const {
     if (tried >= choosing.order.size()) return nullptr;
@@ -103,6 +100,10 @@ class Smoothing {
             bytes_of(program, section).size()};
   }
 
+  [[nodiscard]] bool is_allowed(std::string_view id) const {
+    return std::ranges::find(options_.allowed, id) != options_.allowed.end();
+  }
+
   [[nodiscard]] GroupingOptions grouping() const {
     GroupingOptions grouping;
     grouping.min_motions = options_.min_motions;
@@ -122,7 +123,7 @@ class Smoothing {
     sections_ = group_runs(program_, meaning_, grouping());
     for (std::size_t i = 0; i < sections_.size(); ++i) {
       if (!std::holds_alternative<Run>(sections_[i].content)) continue;
-      work_.push_back({i, context_of(program_, meaning_, sections_[i]), {}, {}, 0, {}, 0, 0});
+      work_.push_back({i, context_of(program_, meaning_, sections_[i]), {}, {}, 0, {}});
     }
   }
 
@@ -136,9 +137,14 @@ class Smoothing {
     std::atomic<std::size_t> done = 0;
     std::atomic<bool> stopped = false;
     std::mutex telling;
+    const bool again = was_smoothed(program_) && !is_allowed(gcode::reason::kAlreadySmoothed);
     const auto one = [&](std::size_t i) {
       if (stopped) return;
       RunWork& work = work_[i];
+      if (again) {
+        work.choosing.reason = gcode::reason::kAlreadySmoothed;
+        return;
+      }
       work.smoothed = smooth_run(run_of(work), work.context, options_);
       work.choosing = choose(work.smoothed, work.context, options_);
       done += run_of(work).points.size();
@@ -150,20 +156,23 @@ class Smoothing {
     return !stopped;
   }
 
-  [[nodiscard]] std::string assemble() {
+  // The first rewritten run carries the comment that the program was smoothed.
+  [[nodiscard]] std::string assemble() const {
     std::string text;
     text.reserve(source_.text().size());
+    std::string told = provenance_comment(*options_.target, options_.tolerance_mm);
     std::size_t next = 0;
     for (std::size_t i = 0; i < sections_.size(); ++i) {
-      if (next == work_.size() || work_[next].section != i) {
-        text += bytes_of(sections_[i]);
-        continue;
+      const Candidate* chosen = nullptr;
+      if (next < work_.size() && work_[next].section == i) {
+        chosen = work_[next].chosen();
+        if (chosen != nullptr && !told.empty()) {
+          text += std::exchange(told, {});
+          text += work_[next].context.line_end;
+        }
+        ++next;
       }
-      RunWork& work = work_[next++];
-      const Candidate* chosen = work.chosen();
-      work.begin = text.size();
       text += chosen != nullptr ? std::string_view(chosen->text.text) : bytes_of(sections_[i]);
-      work.end = text.size();
     }
     return text;
   }
@@ -184,13 +193,11 @@ class Smoothing {
       result_.blocks_out = program.blocks.size();
       if (!tell(kAfterSmoothing)) return false;
       if (!verification.proved() && take_back(verification)) continue;
-      if (!verification.proved() || !take_back_unsettled(program, meaning)) {
-        result_.proved = verification.proved();
-        result_.deviation_mm = verification.deviation_mm;
-        result_.deviation_line = verification.deviation_line;
-        verification_ = std::move(verification);
-        return true;
-      }
+      result_.proved = verification.proved();
+      result_.deviation_mm = verification.deviation_mm;
+      result_.deviation_line = verification.deviation_line;
+      verification_ = std::move(verification);
+      return true;
     }
   }
 
@@ -228,43 +235,6 @@ class Smoothing {
       if (work->chosen() == nullptr) work->went_back = why;
     }
     return !runs.empty();
-  }
-
-  // A second pass over the new program must change nothing: tolerances would add up. So the runs
-  // that a second pass would find in the new text, where it was rewritten, are smoothed as that
-  // pass would, and a candidate that it would replace is given up.
-  bool take_back_unsettled(const gcode::Program& program, const gcode::Interpretation& meaning) {
-    std::vector<Section> found = group_runs(program, meaning, grouping());
-    std::erase_if(found, [&](const Section& section) {
-      return !std::holds_alternative<Run>(section.content) ||
-             rewritten_in(program, section).empty();
-    });
-    std::vector<char> changes(found.size(), 0);
-    in_parallel(found.size(), [&](std::size_t i) {
-      const RunContext context = context_of(program, meaning, found[i]);
-      const SmoothedRun again = smooth_run(std::get<Run>(found[i].content), context, options_);
-      changes[i] = choose(again, context, options_).order.empty() ? 0 : 1;
-    });
-    std::vector<RunWork*> runs;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      if (changes[i] == 0) continue;
-      const std::vector<RunWork*> here = rewritten_in(program, found[i]);
-      runs.insert(runs.end(), here.begin(), here.end());
-    }
-    return give_way(std::move(runs), gcode::reason::kUnsettled);
-  }
-
-  // The rewritten runs whose new text stands in a section of the new program.
-  std::vector<RunWork*> rewritten_in(const gcode::Program& program, const Section& section) {
-    const std::size_t begin = program.blocks[section.first_block].span.begin;
-    const std::size_t end = program.blocks[section.last_block].end;
-    std::vector<RunWork*> runs;
-    auto work = std::partition_point(work_.begin(), work_.end(),
-                                     [&](const RunWork& w) { return w.end <= begin; });
-    for (; work != work_.end() && work->begin < end; ++work) {
-      if (work->chosen() != nullptr) runs.push_back(&*work);
-    }
-    return runs;
   }
 
   void report() {

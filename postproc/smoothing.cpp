@@ -133,7 +133,7 @@ class RunSmoother {
     geometry::FairOptions fair;
     fair.tolerance = shares.smoothing + kLent * shares.form;
     fair.rounding = rounding;
-    fair.feed = std::max(1.0, greatest_feed(run_));
+    fair.feed = std::clamp(greatest_feed(run_), 1.0, 60 * options_.machine->max_velocity);
     fair.acceleration = options_.machine->max_acceleration;
     fair.accurate = options_.prefer == Prefer::kAccuracy;
     if (options_.keep_corners_deg) {

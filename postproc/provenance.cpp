@@ -1,0 +1,29 @@
+#include "postproc/provenance.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "gcode/number_format.h"
+
+namespace batten::postproc {
+
+namespace {
+
+constexpr std::string_view kSmoothed = "Batten: smoothed within ";
+
+// Digits of the tolerance in the comment: a ten-thousandth of the usual 0.01 mm.
+constexpr gcode::NumberFormat kTolerance = {6, false, false};
+
+}  // namespace
+
+std::string provenance_comment(const gcode::Dialect& target, double tolerance_mm) {
+  return target.comment(std::string(kSmoothed) + gcode::to_text(tolerance_mm, kTolerance) + " mm");
+}
+
+bool was_smoothed(const gcode::Program& program) {
+  return std::ranges::any_of(program.comments, [&](const gcode::Comment& comment) {
+    return program.source.text(comment.span).find(kSmoothed) != std::string_view::npos;
+  });
+}
+
+}  // namespace batten::postproc
