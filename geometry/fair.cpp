@@ -148,7 +148,9 @@ class Fairing {
       const PathFeatures before = features_;
       Faired next = fit(loosen);
       const double next_time = travel_time(next);
-      const bool held = deviation_of(next, points_) <= options_.tolerance;
+      // A curve that had to keep edges as they were is not smoother, whatever its time says.
+      const bool held =
+          deviation_of(next, points_) <= options_.tolerance && features_.kinds == before.kinds;
       if (!held || next_time > (1 - kWorthIt) * time) {
         features_ = before;
         break;
@@ -196,7 +198,8 @@ class Fairing {
   [[nodiscard]] Faired fit_inside(double limit, const std::vector<double>& loosen) const {
     BandOptions band;
     band.limit = limit;
-    band.least_scatter = std::min(options_.rounding, 0.25 * options_.tolerance);
+    band.least_scatter =
+        std::max(options_.scatter, std::min(options_.rounding, 0.25 * options_.tolerance));
     FitProblem problem = state_fair_problem(points_, features_, loosen, band);
     for (const std::size_t i : met_) {
       const auto at =

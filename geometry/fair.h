@@ -17,7 +17,9 @@ struct FairOptions {
   double keep_corner_angle = 3.2;  // radians: vertices that turn more stay as they are (> pi: none)
   double feed = 1000;              // mm/min that the machine should hold (the greatest of the run)
   double acceleration = 1000;      // mm/s^2 across the path that the machine can give
-  bool accurate = false;           // spend the tolerance on noise only, never on feed
+  double scatter = 0;     // mm that vertices may scatter about the curve, beyond their noise:
+                          // a simpler curve, further from the path that was meant
+  bool accurate = false;  // spend the tolerance on noise only, never on feed
 };
 
 struct FairPath {
@@ -30,7 +32,7 @@ struct FairPath {
   // mm, estimated by samples; the proof is the verifier's. Above the tolerance where the band
   // could not be held: the caller has to look.
   double deviation = 0;
-  double noise = 0;      // mm, estimated scatter of the vertices about the curve (rms)
+  double noise = 0;  // mm, estimated scatter of the vertices about the curve (rms)
   int kept_corners = 0;
   int rounds = 0;  // how often the band was widened for the machine's need
 };

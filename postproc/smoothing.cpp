@@ -17,6 +17,10 @@ namespace {
 
 constexpr double kMmPerInch = 25.4;
 
+// Where few blocks are wanted, vertices may scatter by this part of the tolerance: fewer arcs
+// and chords do for the simpler curve.
+constexpr double kSpent = 0.25;
+
 // Of the share of the form, the curve may use this part too: what it leaves of it, and of its
 // own share, the form gets back.
 constexpr double kLent = 0.4;
@@ -135,6 +139,9 @@ class RunSmoother {
     fair.rounding = rounding;
     fair.feed = std::clamp(greatest_feed(run_), 1.0, 60 * options_.machine->max_velocity);
     fair.acceleration = options_.machine->max_acceleration;
+    if (options_.output == Form::kArcs || options_.prefer == Prefer::kSize) {
+      fair.scatter = kSpent * fair.tolerance;
+    }
     fair.accurate = options_.prefer == Prefer::kAccuracy;
     if (options_.keep_corners_deg) {
       fair.keep_corner_angle = *options_.keep_corners_deg * std::numbers::pi / 180;
