@@ -10,7 +10,7 @@
 
 #include "geometry/curve_pieces.h"
 #include "geometry/path_distance.h"
-#include "support/paths.h"
+#include "tests/support/paths.h"
 
 namespace batten::geometry {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "support/paths.h"
+#include "tests/support/paths.h"
 
 namespace batten::geometry {
 namespace {

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "support/paths.h"
+#include "tests/support/paths.h"
 
 namespace batten::geometry {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "geometry/fair.h"
 #include "geometry/path_distance.h"
-#include "support/paths.h"
+#include "tests/support/paths.h"
 
 namespace batten::geometry {
 namespace {
