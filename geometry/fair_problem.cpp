@@ -144,7 +144,9 @@ class ProblemMaker {
 
   // The exactly straight middle of a line; nothing when the line has no room for one.
   [[nodiscard]] std::optional<Straight> straight_of(std::size_t edge) const {
-    if (!f_.lines[edge]) return std::nullopt;
+    // Between two pins nothing else would hold a curve.
+    const bool between_pins = pinned(edge) && pinned(edge + 1);
+    if (!f_.lines[edge] && !between_pins) return std::nullopt;
     const double before = end_room(edge, edge, reach_after_[edge]);
     const double after = end_room(edge, edge + 1, reach_before_[edge + 1]);
     if (before + after > 0.6 * length(edge)) return std::nullopt;
