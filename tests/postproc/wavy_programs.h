@@ -1,0 +1,118 @@
+// Programs of many short lines along a curve that is known, and what Batten makes of them.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "gcode/interpreter.h"
+#include "gcode/parser.h"
+#include "gcode/source_text.h"
+#include "postproc/pipeline.h"
+#include "postproc/verification.h"
+
+namespace batten::postproc {
+
+struct Wave {
+  int lines = 200;
+  double step = 0.2;   // in X, in the program's units
+  double height = 2;   // of the wave in Y
+  double length = 18;  // of one wave
+  double noise = 0;    // greatest, in Y
+  int decimals = 3;
+  double feed = 2000;
+  std::string line_end = "\n";
+  unsigned seed = 1;
+};
+
+// The lines alone, "X0.200 Y0.139" and so on; the first one has the feed. Place 0 is X0 Y0.
+inline std::vector<std::string> wave_lines(const Wave& wave) {
+  constexpr double kTwoPi = 6.283185307179586;
+  std::mt19937 random(wave.seed);
+  std::uniform_real_distribution<double> scatter(-wave.noise, wave.noise);
+  std::vector<std::string> lines;
+  for (int i = 1; i <= wave.lines; ++i) {
+    const double x = wave.step * i;
+    const double y = wave.height * std::sin(kTwoPi * x / wave.length) + scatter(random);
+    std::string line = fmt::format("X{:.{}f} Y{:.{}f}", x, wave.decimals, y, wave.decimals);
+    if (i == 1) line = "G1 " + line + fmt::format(" F{}", wave.feed);
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+inline std::string joined(const std::vector<std::string>& lines, const std::string& line_end) {
+  std::string text;
+  for (const std::string& line : lines) text += line + line_end;
+  return text;
+}
+
+inline std::string head(const std::string& units, const std::string& line_end = "\n") {
+  return joined({units + " G90 G17", "S12000 M3", "G0 X0 Y0 Z5", "G1 Z-1 F300"}, line_end);
+}
+
+inline std::string tail(const std::string& line_end = "\n") {
+  return joined({"G0 Z5", "M5", "M2"}, line_end);
+}
+
+// From a rapid down into the cut, along the wave, up again.
+inline std::string wave_program(const Wave& wave = {}, const std::string& units = "G21") {
+  return head(units, wave.line_end) + joined(wave_lines(wave), wave.line_end) + tail(wave.line_end);
+}
+
+inline SmoothOptions options_for(std::string_view target) {
+  SmoothOptions options;
+  options.target = gcode::find_dialect(target);
+  options.machine = find_machine(options.target->default_machine());
+  options.threads = 1;
+  return options;
+}
+
+inline SmoothResult smoothed(const std::string& text, const SmoothOptions& options,
+                             const Progress& progress = {}) {
+  return smooth_program(gcode::SourceText("test.nc", text), options, progress);
+}
+
+// A text that was read, for as long as its meaning is needed.
+struct ReadText {
+  explicit ReadText(const std::string& text)
+      : program(gcode::parse(gcode::SourceText("test.nc", text), found)),
+        meaning(gcode::interpret(program, {}, found)) {}
+  gcode::Diagnostics found;
+  gcode::Program program;
+  gcode::Interpretation meaning;
+};
+
+// The verdict on two texts, whatever `smooth_program` said.
+inline Verification verdict(const std::string& before, const std::string& after,
+                            double tolerance_mm) {
+  const ReadText old_text(before);
+  const ReadText new_text(after);
+  return verify({&old_text.program, &old_text.meaning}, {&new_text.program, &new_text.meaning},
+                tolerance_mm);
+}
+
+inline std::size_t rewritten_runs(const SmoothResult& result) {
+  std::size_t count = 0;
+  for (const RunReport& run : result.runs) count += run.status == RunStatus::kRewritten ? 1 : 0;
+  return count;
+}
+
+// Without their line ends.
+inline std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::size_t begin = 0;
+  while (begin < text.size()) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    if (!lines.back().empty() && lines.back().back() == '\r') lines.back().pop_back();
+    begin = end + 1;
+  }
+  return lines;
+}
+
+}  // namespace batten::postproc
