@@ -93,7 +93,7 @@ void BsplineBasis::evaluate_derivatives(std::size_t span, double u, int derivati
       rows[q][j] = value;
     }
   }
-  const int stride = p + 1;
+  const std::ptrdiff_t stride = p + 1;
   for (int d = 0; d <= derivatives; ++d) {
     if (d > p) {
       std::fill_n(values + d * stride, stride, 0.0);

@@ -61,6 +61,6 @@ struct BsplineFit {
 
 // Always returns a curve; worst_ratio says whether it keeps the limits. Linear time per pass.
 // Requires two pins or more and the order promised above.
-[[nodiscard]] BsplineFit fit_bspline(const FitProblem& problem, const FitOptions& options);
+[[nodiscard]] BsplineFit fit_bspline(const FitProblem& given, const FitOptions& options);
 
 }  // namespace batten::geometry

@@ -71,9 +71,9 @@ struct ReadPlace {
 bool is_vertex(const PlaceOnChord& place) { return place.t == 0 || place.t == 1; }
 
 Exact::Point_3 exact_place(const ChordPolyline& polyline, const PlaceOnChord& place) {
-  const Exact::Point_3 from = exact_point(polyline.points[place.edge]);
+  Exact::Point_3 from = exact_point(polyline.points[place.edge]);
   if (place.t == 0) return from;
-  const Exact::Point_3 to = exact_point(polyline.points[place.edge + 1]);
+  Exact::Point_3 to = exact_point(polyline.points[place.edge + 1]);
   if (place.t == 1) return to;
   return from + ExactNumber(place.t) * (to - from);
 }

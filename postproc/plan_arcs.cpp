@@ -31,8 +31,8 @@ std::vector<PlaneAxes> planes_to_try(const PlanOptions& options) {
   for (const PlaneAxes& each : gcode::kPlaneAxes) {
     if (options.target->takes_arcs_in(each.plane)) planes.push_back(each);
   }
-  std::ranges::stable_partition(
-      planes, [&](const PlaneAxes& each) { return each.plane == options.active_plane; });
+  std::stable_partition(planes.begin(), planes.end(),
+                        [&](const PlaneAxes& each) { return each.plane == options.active_plane; });
   return planes;
 }
 

@@ -51,13 +51,14 @@ Fineness fineness_for(double feed, const PlanOptions& options) {
 // coarser on each stretch whose chords come out too short.
 std::vector<double> chords(const BsplineCurve& curve, double from, double to,
                            const Fineness& fineness) {
-  const std::vector<double> wished =
+  std::vector<double> wished =
       geometry::chord_vertices(curve, from, to, {.max_deviation = fineness.finest});
   if (fineness.finest >= fineness.coarsest) return wished;
   Fineness coarser = fineness;
   coarser.finest = std::min(fineness.finest * kCoarser, fineness.coarsest);
 
   std::vector<geometry::Point3> places;
+  places.reserve(wished.size());
   for (const double u : wished) places.push_back(curve.point_at(u));
   const auto is_short = [&](std::size_t i) {
     return i + 1 < wished.size() && (places[i + 1] - places[i]).norm() < fineness.min_length;

@@ -11,11 +11,9 @@
 namespace batten::postproc {
 namespace {
 
-using gcode::BlockKind;
 using gcode::BlockMeaning;
 using gcode::ModalState;
 using gcode::Motion;
-using gcode::MotionKind;
 using gcode::Tri;
 namespace reason = gcode::reason;
 
