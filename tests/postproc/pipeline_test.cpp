@@ -113,13 +113,14 @@ TEST(Pipeline, KeepsEveryByteWithMethodNone) {
   EXPECT_EQ(result.runs.back().reason, gcode::reason::kMethodNone);
 }
 
-// Three decimals move a place by up to 0.00087 mm in space, so 0.0001 mm cannot be kept.
+// Four decimals move a place by up to 0.000087 mm in space, so 0.00005 mm cannot be kept.
 TEST(Pipeline, KeepsEveryByteWhereRoundingAloneUsesUpTheTolerance) {
   SmoothOptions options = options_for("linuxcnc");
-  options.tolerance_mm = 0.0001;
+  options.tolerance_mm = 0.00005;
   const SmoothResult result = smoothed(wave_program(), options);
   EXPECT_EQ(result.text, wave_program());
   EXPECT_TRUE(result.proved);
+  EXPECT_EQ(result.runs.back().reason, gcode::reason::kNoFit);
 }
 
 // --- programs that are refused ----------------------------------------------------------------

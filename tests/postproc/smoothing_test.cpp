@@ -1,0 +1,185 @@
+// What is known of a run and what could be written instead of it.
+#include "postproc/smoothing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "gcode/reason.h"
+#include "postproc/run_grouping.h"
+#include "wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+// The only run of a program, smoothed.
+class OneRun {
+ public:
+  explicit OneRun(const std::string& text) : text_(text), read_(text) {
+    for (const Section& section : group_runs(read_.program, read_.meaning, {})) {
+      if (std::holds_alternative<Run>(section.content)) sections_.push_back(section);
+    }
+  }
+
+  [[nodiscard]] const Run& run() const { return std::get<Run>(sections_.at(0).content); }
+
+  [[nodiscard]] SmoothedRun smooth(const SmoothOptions& options) const {
+    const Section& section = sections_.at(0);
+    const auto state_after = [&](std::uint32_t block) -> const gcode::ModalState& {
+      return read_.meaning.states[read_.meaning.blocks[block].state_after];
+    };
+    return smooth_run(
+        run(),
+        {read_.program, state_after(section.first_block - 1), state_after(section.last_block), "\n",
+         section.last_block - section.first_block + 1, bytes(section)},
+        options);
+  }
+
+  // The program with the candidate in the place of the run.
+  [[nodiscard]] std::string with(const Candidate& candidate) const {
+    const Section& section = sections_.at(0);
+    const std::uint32_t begin = read_.program.blocks[section.first_block].span.begin;
+    return text_.substr(0, begin) + candidate.text.text + text_.substr(begin + bytes(section));
+  }
+
+ private:
+  [[nodiscard]] std::size_t bytes(const Section& section) const {
+    return read_.program.blocks[section.last_block].end -
+           read_.program.blocks[section.first_block].span.begin;
+  }
+
+  std::string text_;
+  ReadText read_;
+  std::vector<Section> sections_;
+};
+
+// Half a circle of radius 10 mm in equal chords.
+std::string circle_program(int chords, int decimals = 5) {
+  constexpr double kPi = 3.141592653589793;
+  std::string text = "G21 G90 G17\nG0 X10 Y0 Z0\nG1 Z-1 F300\nF3000\n";
+  for (int i = 1; i <= chords; ++i) {
+    const double angle = kPi * i / chords;
+    text += fmt::format("G1 X{:.{}f} Y{:.{}f}\n", 10 * std::cos(angle), decimals,
+                        10 * std::sin(angle), decimals);
+  }
+  return text + "G0 Z5\nM2\n";
+}
+
+// --- what is known of a run -------------------------------------------------------------------
+
+// The circle through any three vertices has radius 10.
+TEST(SmoothRun, KnowsTheCurvatureOfACircle) {
+  const RunFacts facts = OneRun(circle_program(100)).smooth(options_for("linuxcnc")).facts;
+  EXPECT_NEAR(facts.max_curvature, 0.1, 0.001);
+  EXPECT_NEAR(facts.fair_curvature, 0.1, 0.005);
+}
+
+// Chords are off by R (1 - cos(angle / 2)): 80 of them by 1.93 um.
+TEST(SmoothRun, KnowsHowFarChordsAreFromTheirCircle) {
+  const RunFacts facts = OneRun(circle_program(80)).smooth(options_for("linuxcnc")).facts;
+  const double height = 10 * (1 - std::cos(3.141592653589793 / 160));
+  EXPECT_NEAR(facts.error, height, 0.05 * height);
+  EXPECT_LT(facts.noise, 0.0001);
+}
+
+// Uniform scatter within 3 um has an rms of 3 / sqrt(3) um = 1.73 um, nearly all of it in Y.
+TEST(SmoothRun, KnowsHowMuchVerticesScatter) {
+  const Wave wave{.height = 0.5, .length = 40, .noise = 0.003, .decimals = 4};
+  const RunFacts facts = OneRun(wave_program(wave)).smooth(options_for("linuxcnc")).facts;
+  EXPECT_GT(facts.noise, 0.0012);
+  EXPECT_LT(facts.noise, 0.0022);
+  EXPECT_GE(facts.error, facts.noise) << "noisy vertices are as far off as they scatter";
+}
+
+// 31.416 mm at 3000 mm/min take 0.628 s, and a little more to start and to stop.
+TEST(SmoothRun, KnowsTheTimeOfTheRunUnderEachSetting) {
+  const Times times = OneRun(circle_program(100)).smooth(options_for("linuxcnc")).facts.times;
+  const double at_feed = 3.141592653589793 * 10 / 50;
+  EXPECT_GE(times.as_set, at_feed);
+  EXPECT_LT(times.as_set, 1.3 * at_feed);
+  EXPECT_LE(times.flat_out, times.as_set);
+  EXPECT_GE(times.exact_path, times.as_set);
+  EXPECT_GE(times.without_merging, at_feed);
+}
+
+// --- what could be written --------------------------------------------------------------------
+
+TEST(SmoothRun, MakesEveryCandidateGoodEnoughToBeProved) {
+  for (const char* target : {"linuxcnc", "grbl"}) {
+    for (const std::string& text : {circle_program(100, 3), wave_program()}) {
+      const OneRun run(text);
+      const SmoothedRun smoothed = run.smooth(options_for(target));
+      EXPECT_EQ(smoothed.reason, "");
+      EXPECT_GE(smoothed.candidates.size(), 2u);
+      for (const Candidate& candidate : smoothed.candidates) {
+        EXPECT_TRUE(verdict(text, run.with(candidate), 0.01).proved());
+        EXPECT_EQ(candidate.method, "fair");
+        EXPECT_GT(candidate.error, 0);
+        EXPECT_LE(candidate.error, 0.01);
+        EXPECT_GT(candidate.times.as_set, 0);
+      }
+    }
+  }
+}
+
+TEST(SmoothRun, WritesTheFormThatWasAskedFor) {
+  const OneRun run(circle_program(100));
+  SmoothOptions options = options_for("linuxcnc");
+  for (const auto& [asked, written] :
+       {std::pair{Form::kArcs, OutputForm::kArcs}, std::pair{Form::kLines, OutputForm::kLines}}) {
+    options.output = asked;
+    const std::vector<Candidate> candidates = run.smooth(options).candidates;
+    EXPECT_FALSE(candidates.empty());
+    for (const Candidate& candidate : candidates) {
+      EXPECT_EQ(candidate.form, written);
+      EXPECT_EQ(candidate.text.arcs > 0, written == OutputForm::kArcs);
+    }
+  }
+}
+
+// Half a circle, in chords that are all on it.
+TEST(SmoothRun, SaysACircleInFewArcs) {
+  SmoothOptions options = options_for("linuxcnc");
+  options.output = Form::kArcs;
+  const std::vector<Candidate> candidates =
+      OneRun(circle_program(200, 3)).smooth(options).candidates;
+  ASSERT_EQ(candidates.size(), 1u);
+  EXPECT_LE(candidates[0].text.arcs, 10u);
+}
+
+// --- what is kept -----------------------------------------------------------------------------
+
+TEST(SmoothRun, SaysWhyThereIsNoCandidate) {
+  const OneRun run(wave_program());
+  SmoothOptions none = options_for("linuxcnc");
+  none.method = Method::kNone;
+  EXPECT_EQ(run.smooth(none).reason, gcode::reason::kMethodNone);
+  SmoothOptions tiny = options_for("linuxcnc");
+  tiny.tolerance_mm = 0.00005;  // less than rounding to four decimals costs
+  EXPECT_EQ(run.smooth(tiny).reason, gcode::reason::kNoFit);
+  for (const SmoothOptions& options : {none, tiny}) {
+    const SmoothedRun kept = run.smooth(options);
+    EXPECT_TRUE(kept.candidates.empty());
+    EXPECT_GT(kept.facts.times.as_set, 0) << "its time is known all the same";
+    EXPECT_GT(kept.facts.max_curvature, 0);
+  }
+}
+
+// A run in space that is no helix, for a target that takes no helices, in arcs alone.
+TEST(SmoothRun, SaysThatTheTargetCannot) {
+  std::string text = "G21 G90 G17\nG0 X0 Y0 Z0\nG1 X0 F3000\n";
+  for (int i = 1; i <= 100; ++i) {
+    text += fmt::format("G1 X{:.3f} Y{:.3f} Z{:.3f}\n", 0.2 * i, 2 * std::sin(0.1 * i),
+                        std::sin(0.17 * i));
+  }
+  SmoothOptions options = options_for("linuxcnc");
+  options.output = Form::kArcs;
+  const SmoothedRun kept = OneRun(text + "G0 Z5\nM2\n").smooth(options);
+  EXPECT_TRUE(kept.candidates.empty());
+  EXPECT_EQ(kept.reason, gcode::reason::kTargetCannot);
+}
+
+}  // namespace
+}  // namespace batten::postproc
