@@ -2,11 +2,13 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gcode/interpreter.h"
@@ -113,6 +115,40 @@ inline std::vector<std::string> lines_of(const std::string& text) {
     begin = end + 1;
   }
   return lines;
+}
+
+// Lines `first` to `last` (counted from 1) as they stand, line ends included.
+inline std::string lines_between(const std::string& text, std::uint32_t first, std::uint32_t last) {
+  std::string part;
+  std::uint32_t line = 1;
+  for (const char c : text) {
+    if (line >= first && line <= last) part += c;
+    if (c == '\n') ++line;
+  }
+  return part;
+}
+
+// Every stretch of lines outside rewritten runs stands in the output, unchanged and in order.
+inline void expect_rest_copied(const std::string& before, const SmoothResult& result) {
+  std::size_t from = 0;
+  std::uint32_t next = 1;
+  const auto expect_next = [&](std::uint32_t last) {
+    if (next > last) return;
+    const std::string part = lines_between(before, next, last);
+    const std::size_t at = result.text.find(part, from);
+    ASSERT_NE(at, std::string::npos) << "lines " << next << " to " << last;
+    if (from == 0) {
+      EXPECT_TRUE(at == 0 || next > 1) << "something stands before the first line";
+    }
+    from = at + part.size();
+  };
+  for (const RunReport& run : result.runs) {
+    if (run.status != RunStatus::kRewritten) continue;
+    expect_next(run.first_line - 1);
+    next = run.last_line + 1;
+  }
+  expect_next(static_cast<std::uint32_t>(lines_of(before).size()));
+  EXPECT_EQ(from, result.text.size()) << "something stands behind the last line";
 }
 
 }  // namespace batten::postproc
