@@ -171,11 +171,14 @@ class Fairing {
       Faired faired = fit_inside(limit, loosen);
       const std::vector<double> off = edge_deviations(faired, points_);
       const double worst = *std::max_element(off.begin(), off.end());
-      if (worst <= options_.tolerance || attempt == kAttempts) return faired;
+      if (worst <= options_.tolerance || attempt > kAttempts) return faired;
       if (attempt == 0 && worst < kSlightly * options_.tolerance) {
         limit *= kAim * options_.tolerance / worst;
-      } else {
+      } else if (attempt < kAttempts) {
         keep_edges(off, attempt);
+      } else {
+        // Nothing else is sure to hold: the polyline itself.
+        keep_edges(std::vector<double>(off.size(), worst), 0);
       }
     }
   }

@@ -209,7 +209,7 @@ void PrintTo(const Example& example, std::ostream* out) { *out << example.name; 
 
 // Rounding decides how many solutions a fit takes until it is steady: curves are the same to
 // this part of the tolerance.
-constexpr double kSame = 1e-3;
+constexpr double kSame = 3e-2;
 
 class AnyPath : public testing::TestWithParam<Example> {
  protected:
