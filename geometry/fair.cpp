@@ -297,37 +297,69 @@ std::vector<Point3> wrapped(const std::vector<Point3>& points, std::size_t wrap)
   return out;
 }
 
-// One period of a fit to a wrapped run, moved by a shift of both ends so that it starts and
-// ends at `seam`. The shift moves three control points alike: tangent and curvature stay.
-Faired one_period(const Faired& all, std::size_t wrap, std::size_t count, const Point3& seam) {
+// One period of a fit to a wrapped run.
+Faired one_period(const Faired& all, std::size_t wrap, std::size_t count) {
   const auto begin = all.parameters.begin() + static_cast<std::ptrdiff_t>(wrap);
   std::vector<double> at(begin, begin + static_cast<std::ptrdiff_t>(count));
-  const BsplineCurve part = all.curve.part(at.front(), at.back());
-  std::vector<Point3> points = part.control_points();
+  BsplineCurve part = all.curve.part(at.front(), at.back());
+  return {std::move(part), std::move(at)};
+}
+
+// The period moved at both ends so that it starts and ends at `seam`: three control points are
+// shifted alike, so that tangent and curvature stay as they are there.
+Faired shifted_to(const Faired& period, const Point3& seam) {
+  std::vector<Point3> points = period.curve.control_points();
   const Vector3 at_start = seam - points.front();
   const Vector3 at_end = seam - points.back();
   const std::size_t n = points.size();
-  if (n < 6) {
-    points[0] += at_start, points[n - 1] += at_end;
-  } else {
-    const Vector3 d1 =
-        0.5 * (part.derivative_at(part.first(), 1) + part.derivative_at(part.last(), 1));
-    const Vector3 d2 =
-        0.5 * (part.derivative_at(part.first(), 2) + part.derivative_at(part.last(), 2));
-    const auto& t = part.basis().knots();
-    const std::size_t m = t.size();
-    const double h1 = t[4] - t[3];
-    const double h2 = t[5] - t[3];
-    const double g1 = t[m - 4] - t[m - 5];
-    const double g2 = t[m - 4] - t[m - 6];
-    points[1] = seam + h1 / 3 * d1;
-    points[2] = points[1] + h2 / 3 * (d1 + h1 / 2 * d2);
-    points[n - 2] = seam - g1 / 3 * d1;
-    points[n - 3] = points[n - 2] - g2 / 3 * (d1 - g1 / 2 * d2);
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, n / 2); ++i) {
+    points[i] += at_start;
+    points[n - 1 - i] += at_end;
   }
   points.front() = seam;
   points.back() = seam;
-  return {BsplineCurve(part.basis(), std::move(points)), std::move(at)};
+  return {BsplineCurve(period.curve.basis(), std::move(points)), period.parameters};
+}
+
+// The period with both ends at `seam` and with the mean of the two first and second derivatives
+// there: no seam at all. Requires six control points or more.
+Faired joined_at(const Faired& period, const Point3& seam) {
+  const BsplineCurve& curve = period.curve;
+  std::vector<Point3> points = curve.control_points();
+  const std::size_t n = points.size();
+  const auto mean = [&](int order) {
+    return Vector3(0.5 * (curve.derivative_at(curve.first(), order) +
+                          curve.derivative_at(curve.last(), order)));
+  };
+  const Vector3 d1 = mean(1);
+  const Vector3 d2 = mean(2);
+  const auto& t = curve.basis().knots();
+  const std::size_t m = t.size();
+  const double h1 = t[4] - t[3];
+  const double h2 = t[5] - t[3];
+  const double g1 = t[m - 4] - t[m - 5];
+  const double g2 = t[m - 4] - t[m - 6];
+  points[0] = seam;
+  points[1] = seam + h1 / 3 * d1;
+  points[2] = points[1] + h2 / 3 * (d1 + h1 / 2 * d2);
+  points[n - 1] = seam;
+  points[n - 2] = seam - g1 / 3 * d1;
+  points[n - 3] = points[n - 2] - g2 / 3 * (d1 - g1 / 2 * d2);
+  return {BsplineCurve(curve.basis(), std::move(points)), period.parameters};
+}
+
+// A closed curve without a seam where the band allows it; with one of the size of the fit's
+// error, some thousandths of a radian, where joining would leave the band.
+std::optional<Faired> closed_at(const Faired& period, std::span<const Point3> points,
+                                double tolerance) {
+  constexpr std::size_t kRoomToJoin = 6;
+  if (period.curve.control_points().size() >= kRoomToJoin) {
+    Faired joined = joined_at(period, points.front());
+    if (deviation_of(joined, points) <= tolerance) return joined;
+  }
+  Faired shifted = shifted_to(period, points.front());
+  if (deviation_of(shifted, points) <= tolerance) return shifted;
+  return std::nullopt;
 }
 
 FairPath result_of(Faired faired, const Vertices& vertices, const Fairing& fairing,
@@ -367,8 +399,9 @@ std::optional<FairPath> fair_path(std::span<const Point3> points, const FairOpti
     const std::size_t wrap = std::min(kWrap, n - 1);
     Fairing fairing(wrapped(vertices.points, wrap), options, {wrap, wrap + n - 1});
     if (fairing.features().kinds[wrap] == VertexKind::kSmooth) {
-      Faired period = one_period(fairing.solve(), wrap, n, vertices.points.front());
-      return result_of(std::move(period), vertices, fairing, wrap);
+      const Faired period = one_period(fairing.solve(), wrap, n);
+      auto closed_path = closed_at(period, vertices.points, options.tolerance);
+      if (closed_path) return result_of(std::move(*closed_path), vertices, fairing, wrap);
     }
   }
   Fairing fairing(vertices.points, options, {});
