@@ -5,6 +5,7 @@
 #include <numbers>
 #include <ostream>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "geometry/fair.h"
@@ -209,7 +210,11 @@ void PrintTo(const Example& example, std::ostream* out) { *out << example.name; 
 
 // Rounding decides how many solutions a fit takes until it is steady: curves are the same to
 // this part of the tolerance.
-constexpr double kSame = 3e-2;
+constexpr double kSame = 1e-3;
+
+// A shifted circle is the exception: its fit stops a pass earlier or later, and the curves differ
+// by some hundredths of the tolerance.
+constexpr double kSameCircle = 3e-2;
 
 class AnyPath : public testing::TestWithParam<Example> {
  protected:
@@ -237,7 +242,8 @@ TEST_P(AnyPath, ShiftedGivesTheShiftedCurve) {
   const auto before = fair_path(points, options());
   const auto after = fair_path(moved(points, shift), options());
   ASSERT_TRUE(before && after);
-  EXPECT_LE(greatest_difference(before->curve, after->curve, shift), kSame * options().tolerance);
+  const double same = std::string(GetParam().name) == "Circle" ? kSameCircle : kSame;
+  EXPECT_LE(greatest_difference(before->curve, after->curve, shift), same * options().tolerance);
 }
 
 TEST_P(AnyPath, RunBackwardsStaysInTheBandToo) {
