@@ -122,16 +122,29 @@ std::string json_report(const Verification& verification, const VerifyCommand& c
                     {"diagnostics", diagnostics_json(after.diagnostics, after.source)}});
 }
 
-// A tolerance in millimetres says nothing about a program whose numbers have no unit.
+// Moves without a unit are an error among the diagnostics: a tolerance means nothing then.
 bool is_understood(const Read& read) {
   print(read.diagnostics, read.source);
-  if (!read.interpretation.unit_word_seen) {
-    say(read.source.name() +
-        ": no G20 or G21 tells whether its numbers are inches or millimetres; say --units mm or "
-        "--units inch");
-    return false;
-  }
   return !gcode::has_error(read.diagnostics);
+}
+
+// 0 when written or not asked for; else says why and returns the exit code.
+int write_json(const VerifyCommand& command, const Verification& verification, const Read& before,
+               const Read& after) {
+  if (command.json_file.empty()) return 0;
+  return write_result(command.json_file, json_report(verification, command, before, after),
+                      command.force);
+}
+
+// The same bytes do the same on every control, in any unit, and whether they are understood here
+// or not.
+int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& source) {
+  std::fputs(fmt::format("proved: {} and {} are the same, byte for byte\n", command.new_program,
+                         command.old_program)
+                 .c_str(),
+             stderr);
+  const Read same = read(source, command.units);
+  return write_json(command, {}, same, same);
 }
 
 }  // namespace
@@ -141,6 +154,7 @@ int run(const VerifyCommand& command) {
   const auto new_source = read_program(command.new_program);
   if (interrupted()) return interrupt_exit_code();
   if (!old_source || !new_source) return static_cast<int>(ExitCode::kFileError);
+  if (old_source->text() == new_source->text()) return accept_same_bytes(command, *new_source);
 
   const Read before = read(*old_source, command.units);
   const Read after = read(*new_source, command.units);
@@ -165,12 +179,8 @@ int run(const VerifyCommand& command) {
   }
   std::fputs(summary_of(verification, command).c_str(), stderr);
   const ExitCode verdict = verification.proved() ? ExitCode::kDone : ExitCode::kNotProved;
-  if (!command.json_file.empty()) {
-    const int code = write_result(command.json_file,
-                                  json_report(verification, command, before, after), command.force);
-    if (verdict == ExitCode::kDone) return code;
-  }
-  return static_cast<int>(verdict);
+  const int code = write_json(command, verification, before, after);
+  return verdict == ExitCode::kDone ? code : static_cast<int>(verdict);
 }
 
 }  // namespace batten::postproc

@@ -240,6 +240,32 @@ TEST_F(CommandLine, VerifyRejectsAChangedProgram) {
   EXPECT_TRUE(contains(result.err, "NOT PROVED")) << result.err;
 }
 
+TEST_F(CommandLine, VerifyProvesTheSameBytesInAnyUnit) {
+  std::string text = wave_program();
+  text.replace(0, 4, "");  // without its G21
+  folder_.put("part.nc", text);
+  folder_.put("same.nc", text);
+  const ProcessResult same = batten("verify part.nc same.nc --json -");
+  EXPECT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_TRUE(contains(same.err, "byte for byte")) << same.err;
+  EXPECT_EQ(nlohmann::json::parse(same.out)["proved"], true);
+
+  folder_.put("other.nc", text + "(a comment does nothing, but these are other bytes)\n");
+  const ProcessResult other = batten("verify part.nc other.nc");
+  EXPECT_EQ(other.exit_code, 2) << other.err;
+  EXPECT_TRUE(contains(other.err, "units-missing")) << other.err;
+  EXPECT_EQ(batten("verify part.nc other.nc --units inch").exit_code, 0);
+}
+
+// A tolerance needs a unit only where something moves.
+TEST_F(CommandLine, VerifyComparesProgramsWithoutMovesInAnyUnit) {
+  folder_.put("old.nc", "T1 M6\nM30\n");
+  folder_.put("same.nc", "T1 M6 (the long drill)\nM30\n");
+  folder_.put("other.nc", "T2 M6\nM30\n");
+  EXPECT_EQ(batten("verify old.nc same.nc").exit_code, 0);
+  EXPECT_EQ(batten("verify old.nc other.nc").exit_code, 3);
+}
+
 TEST_F(CommandLine, InspectShowsRunsAndReasons) {
   const ProcessResult text = batten("inspect part.nc");
   EXPECT_EQ(text.exit_code, 0) << text.err;
