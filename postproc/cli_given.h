@@ -26,7 +26,7 @@ struct OptionRow {
   bool in_config = false;               // may stand in a configuration file
 };
 
-// An option to add: a row here, a line in cli_smooth.cpp that reads its value.
+// An option to add: a row here, a line in cli_commands.cpp that reads its value.
 [[nodiscard]] std::span<const OptionRow> smooth_rows();
 [[nodiscard]] std::span<const OptionRow> verify_rows();
 [[nodiscard]] std::span<const OptionRow> inspect_rows();

@@ -1,4 +1,4 @@
-// For libFuzzer: clang++ -std=c++20 -g -fsanitize=fuzzer,address,undefined -I. gcode/*.cpp ..
+// For libFuzzer, see preset `fuzz` in docs/development.md.
 // See docs/diagnostics.md for what the reader may say; here only its promises count.
 #include <cstddef>
 #include <cstdint>
