@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <fstream>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -21,10 +21,13 @@ std::string text_of(const std::string& file) {
 // The ids as the header declares them.
 std::set<std::string> declared_ids() {
   const std::string header = text_of("gcode/reason.h");
-  const std::regex id("string_view k\\w+\\s*=\\s*\"([a-z-]+)\"");
+  const std::string declaration = "string_view k";
   std::set<std::string> ids;
-  for (std::sregex_iterator at(header.begin(), header.end(), id), end; at != end; ++at) {
-    ids.insert((*at)[1]);
+  for (std::size_t at = header.find(declaration); at != std::string::npos;
+       at = header.find(declaration, at)) {
+    const std::size_t begin = header.find('"', at) + 1;
+    at = header.find('"', begin);
+    ids.insert(header.substr(begin, at - begin));
   }
   return ids;
 }
