@@ -393,7 +393,6 @@ std::optional<std::vector<ChainPiece>> ArcChain::between(const ChainNode& start,
                                                          std::size_t at_most) const {
   auto best = greedy(start, end, at_most);
   if (best && best->size() <= kBalancedPieces) best = balanced(start, end, std::move(best));
-  if (best) straighten_short(start, *best);
   return best;
 }
 
@@ -417,20 +416,6 @@ std::optional<std::vector<ChainPiece>> ArcChain::balanced(
     }
   }
   return best;
-}
-
-void ArcChain::straighten_short(const ChainNode& start, std::vector<ChainPiece>& pieces) const {
-  double u = start.u;
-  double height = start.place.z();
-  for (ChainPiece& piece : pieces) {
-    const PlaneArc line{piece.arc.start, piece.arc.end};
-    if (piece.arc.length() < limits_.min_length &&
-        holds(line, u, piece.end_u, height, piece.end_height)) {
-      piece.arc = line;
-    }
-    u = piece.end_u;
-    height = piece.end_height;
-  }
 }
 
 }  // namespace batten::geometry

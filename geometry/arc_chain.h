@@ -1,6 +1,6 @@
 // One smooth stretch of a plane curve as a chain of arcs, greedily: each step takes the
 // pair of arcs (or the single arc) that reaches farthest inside the allowed deviation.
-// Method: docs/algorithms/arc_fit.md, steps 3 to 5.
+// Method: docs/algorithms/arc_fit.md, steps 4 to 6.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,6 @@ struct ArcChainLimits {
   double min_radius = 0;        // mm
   double max_radius = 0;        // mm
   double max_sweep = 0;         // radians
-  double min_length = 0;        // mm; shorter arcs become lines where these hold
   double grid = 0;              // mm; 0: none
   bool flat = true;             // heights play no part
 };
@@ -73,7 +72,6 @@ class ArcChain {
   std::optional<std::vector<ChainPiece>> balanced(
       const ChainNode& start, const ChainNode& end,
       std::optional<std::vector<ChainPiece>> best) const;
-  void straighten_short(const ChainNode& start, std::vector<ChainPiece>& pieces) const;
   // Steps end at `limit` at the latest, which is end.u or before it.
   std::optional<Step> next_step(const ChainNode& start, const ChainNode& end, double limit,
                                 double guess) const;

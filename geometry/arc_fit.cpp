@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "geometry/arc_chain.h"
+#include "geometry/arc_spline.h"
 #include "geometry/curve_pieces.h"
 #include "geometry/linearize.h"
+#include "geometry/numeric.h"
 #include "geometry/plane_curve.h"
 
 namespace batten::geometry {
@@ -171,6 +173,43 @@ class PathBuilder {
   Path path_;
 };
 
+// In the plane the curve is held against chords that leave it by no more than this part of
+// the deviation.
+constexpr double kChordPart = 0.02;
+
+// The fewest arcs found for one smooth stretch of a flat curve; nothing when the search finds
+// no tangent chain.
+std::optional<std::vector<ChainPiece>> spline_between(const BsplineCurve& curve,
+                                                      const PlaneFrame& frame,
+                                                      const ChainNode& start, const ChainNode& end,
+                                                      const ArcChainLimits& limits) {
+  ChordOptions chords;
+  chords.max_deviation = kChordPart * limits.deviation;
+  std::vector<Point2> points;
+  for (const double u : chord_vertices(curve, start.u, end.u, chords)) {
+    const Point2 p = frame.local(curve.point_at(u)).head<2>();
+    if (points.empty() || (p - points.back()).norm() > kSamePlace) points.push_back(p);
+  }
+  if (points.size() < 2) return std::nullopt;
+  points.front() = start.place.head<2>();
+  points.back() = end.place.head<2>();
+  ArcSplineOptions options;
+  options.tolerance = (1 - kChordPart) * limits.deviation;
+  options.min_radius = limits.min_radius;
+  options.max_radius = limits.max_radius;
+  options.max_sweep = limits.max_sweep;
+  options.grid = limits.grid;
+  options.start_angle = start.angle;
+  options.end_angle = end.angle;
+  const auto spline = fit_arc_spline(points, options);
+  if (!spline || spline->kinks > 0) return std::nullopt;
+  std::vector<ChainPiece> pieces;
+  for (const ArcSplinePiece& piece : spline->pieces) {
+    pieces.push_back({piece.arc, start.place.z(), 0});
+  }
+  return pieces;
+}
+
 // Off the plane most curves are no helices: arcs that are more than chords would be do not
 // pay. In the plane arcs are worth more than chords, since their tangents agree.
 std::size_t most_pieces(const BsplineCurve& curve, double from, double to,
@@ -208,7 +247,6 @@ std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
   limits.min_radius = options.min_radius;
   limits.max_radius = options.max_radius;
   limits.max_sweep = options.max_sweep;
-  limits.min_length = options.min_length;
   limits.grid = options.grid;
   limits.flat = flat;
   const ArcChain chain(plane_curve, limits);
@@ -227,7 +265,8 @@ std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
     }
     const ChainNode start{stretch.from, stops[i].place, stops[i].leaving};
     const ChainNode end{stretch.to, stops[i + 1].place, stops[i + 1].arriving};
-    const auto pieces = chain.between(start, end, left);
+    auto pieces = flat ? spline_between(curve, frame, start, end, limits) : std::nullopt;
+    if (!pieces) pieces = chain.between(start, end, left);
     if (!pieces) return std::nullopt;
     left -= pieces->size();
     for (const ChainPiece& piece : *pieces) builder.add(piece);

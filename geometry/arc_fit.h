@@ -16,7 +16,6 @@ struct ArcFitOptions {
   double min_radius = 0.1;          // mm; tighter places become short lines
   double max_radius = 1e4;          // mm; flatter ones become lines
   double max_sweep = 3.0;           // radians; below pi, so that no arc is ambiguous when rounded
-  double min_length = 0;            // mm; prefer a line to an arc shorter than this
   // Places are rounded to multiples of this (mm) before the arcs are computed, so that the
   // printed ends are the ends that the arcs were made for. 0: no rounding. The first and the
   // last place are met exactly and are not rounded.

@@ -36,7 +36,8 @@ struct PlanOptions {
   gcode::Units units = gcode::Units::kMillimetre;
   gcode::Plane active_plane = gcode::Plane::kXY;
   Prefer prefer = Prefer::kTime;
-  double max_deviation = 0.005;  // mm, moves to curve: the share of the form
+  double max_deviation = 0.005;    // mm, moves to curve: the share of the form
+  double keep_corner_angle = 3.2;  // radians: see geometry::FairOptions
 };
 
 // Both plans cut the curve where the feed changes, and put each comment before the move that
@@ -59,5 +60,13 @@ struct PlanOptions {
 // which may be one short move off.
 [[nodiscard]] std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fair,
                                                   const PlanOptions& options);
+
+// Few arcs in the band around the run's vertices themselves, where max_deviation is measured
+// from; of the fair curve only the direction is taken where the path is cut. Every joint is
+// tangent but for corners in which no arc of the target's least radius fits. The run lies in a
+// plane that the target takes arcs in; nothing otherwise, or when no chain was found.
+[[nodiscard]] std::optional<OutputPlan> plan_arc_spline(const Run& run,
+                                                        const geometry::FairPath& fair,
+                                                        const PlanOptions& options);
 
 }  // namespace batten::postproc

@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "gcode/plane_axes.h"
 #include "geometry/arc_fit.h"
 #include "geometry/numeric.h"
+#include "postproc/arc_moves.h"
 #include "postproc/output_plan.h"
 #include "postproc/plan_stretches.h"
 
@@ -25,21 +25,6 @@ constexpr double kPartForChords = 0.1;
 // the third power of its length, so it costs little more than twice the arcs.
 constexpr double kAccuratePart = 0.1;
 
-// Planes that the target takes arcs in, the active one first.
-std::vector<PlaneAxes> planes_to_try(const PlanOptions& options) {
-  std::vector<PlaneAxes> planes;
-  for (const PlaneAxes& each : gcode::kPlaneAxes) {
-    if (options.target->takes_arcs_in(each.plane)) planes.push_back(each);
-  }
-  std::stable_partition(planes.begin(), planes.end(),
-                        [&](const PlaneAxes& each) { return each.plane == options.active_plane; });
-  return planes;
-}
-
-double grid_of(const PlanOptions& options) {
-  return gcode::printed_step(options.target->arc_ends(options.units), options.units);
-}
-
 // The curve laid flat into the plane, when it lies in it to within half a printed step and its
 // ends do so exactly.
 std::optional<BsplineCurve> laid_flat(const Run& run, const BsplineCurve& curve, int normal,
@@ -57,7 +42,7 @@ std::optional<BsplineCurve> laid_flat(const Run& run, const BsplineCurve& curve,
 double fit_deviation(const PlanOptions& options) {
   const double limit = options.max_deviation;
   if (options.prefer != Prefer::kAccuracy) return limit * (1 - kPartForChords);
-  const double worth_it = grid_of(options);  // finer than that is lost in print
+  const double worth_it = arc_grid(options);  // finer than that is lost in print
   return std::min(std::max(kAccuratePart * limit, worth_it), limit * (1 - kPartForChords));
 }
 
@@ -69,34 +54,8 @@ geometry::ArcFitOptions fit_options(const PlanOptions& options, const PlaneAxes&
   fit.helical = helical;
   fit.min_radius = options.target->min_arc_radius();
   fit.max_radius = options.target->max_arc_radius();
-  fit.grid = grid_of(options);
+  fit.grid = arc_grid(options);
   return fit;
-}
-
-// Chords for an arc, each within `deviation` of it.
-Path chords_for(const geometry::Arc& arc, double deviation) {
-  const double radius =
-      (arc.start - arc.center - (arc.start - arc.center).dot(arc.axis) * arc.axis).norm();
-  const double half_angle = std::acos(std::max(1 - deviation / radius, 0.0));
-  const auto count = std::max(1, static_cast<int>(std::ceil(std::abs(arc.sweep) / 2 / half_angle)));
-  Path chords;
-  geometry::Point3 place = arc.start;
-  for (int i = 1; i <= count; ++i) {
-    const geometry::Point3 next = geometry::point_at(arc, static_cast<double>(i) / count);
-    chords.push_back(geometry::Line{place, next});
-    place = next;
-  }
-  return chords;
-}
-
-void append_taken(const PathPiece& piece, const PlanOptions& options, Path& path) {
-  const auto* arc = std::get_if<geometry::Arc>(&piece);
-  if (arc == nullptr || options.target->arc_complaint(*arc, options.units).empty()) {
-    path.push_back(piece);
-    return;
-  }
-  const Path chords = chords_for(*arc, kPartForChords * options.max_deviation);
-  path.insert(path.end(), chords.begin(), chords.end());
 }
 
 // Adds the pieces of one stretch to the plan, and the parameters at which they start to `starts`:
@@ -123,7 +82,9 @@ std::optional<OutputPlan> plan_in(const Run& run, const geometry::FairPath& fair
     const std::optional<Path> arcs = geometry::fit_arcs(curve, stretch.from, stretch.to, fit);
     if (!arcs) return std::nullopt;
     Path taken;
-    for (const PathPiece& piece : *arcs) append_taken(piece, options, taken);
+    for (const PathPiece& piece : *arcs) {
+      append_taken(piece, kPartForChords * options.max_deviation, options, taken);
+    }
     append_stretch(taken, stretch, plan, starts);
   }
   place_comments(run, fair, starts, plan);
@@ -134,10 +95,10 @@ std::optional<OutputPlan> plan_in(const Run& run, const geometry::FairPath& fair
 
 std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fair,
                                     const PlanOptions& options) {
-  const std::vector<PlaneAxes> planes = planes_to_try(options);
+  const std::vector<PlaneAxes> planes = arc_planes(options);
   bool flat_somewhere = false;
   for (const PlaneAxes& plane : planes) {
-    const auto flat = laid_flat(run, fair.curve, plane.normal, grid_of(options));
+    const auto flat = laid_flat(run, fair.curve, plane.normal, arc_grid(options));
     if (!flat) continue;
     flat_somewhere = true;
     auto plan = plan_in(run, fair, *flat, fit_options(options, plane, false), options);

@@ -59,11 +59,14 @@ bool gains(const Candidate& c, const SmoothedRun& run, const RunContext& context
   return faster || smaller || nearer;
 }
 
-bool better(const Candidate& a, const Candidate& b, Prefer prefer) {
+// Who asks for arcs by name asks for few of them.
+bool better(const Candidate& a, const Candidate& b, const SmoothOptions& options) {
+  const Prefer prefer = options.prefer;
   if (prefer == Prefer::kSize) return a.text.text.size() < b.text.text.size();
   if (prefer == Prefer::kTime) {
     if (sum_of(a.times) < (1 - kSameTime) * sum_of(b.times)) return true;
     if (sum_of(b.times) < (1 - kSameTime) * sum_of(a.times)) return false;
+    if (options.output == Form::kArcs) return a.text.blocks < b.text.blocks;
     if (a.times.exact_path < kFewerKinks * b.times.exact_path) return true;
     if (b.times.exact_path < kFewerKinks * a.times.exact_path) return false;
     if (a.error * kSameError < b.error) return true;
@@ -93,7 +96,7 @@ Choosing choose(const SmoothedRun& run, const RunContext& context, const SmoothO
   // With three or more candidates "better" is no order (its margins do not add up), so the best
   // is found by one pass and the rest follow as they are.
   for (std::size_t i = 1; i < choosing.order.size(); ++i) {
-    if (better(run.candidates[choosing.order[i]], run.candidates[choosing.order[0]], prefer)) {
+    if (better(run.candidates[choosing.order[i]], run.candidates[choosing.order[0]], options)) {
       std::swap(choosing.order[0], choosing.order[i]);
     }
   }

@@ -139,14 +139,21 @@ class RunSmoother {
     fair.rounding = rounding;
     fair.feed = std::clamp(greatest_feed(run_), 1.0, 60 * options_.machine->max_velocity);
     fair.acceleration = options_.machine->max_acceleration;
-    if (options_.output == Form::kArcs || options_.prefer == Prefer::kSize) {
-      fair.scatter = kSpent * fair.tolerance;
-    }
+    if (few_wanted()) fair.scatter = kSpent * fair.tolerance;
     fair.accurate = options_.prefer == Prefer::kAccuracy;
-    if (options_.keep_corners_deg) {
-      fair.keep_corner_angle = *options_.keep_corners_deg * std::numbers::pi / 180;
-    }
+    fair.keep_corner_angle = keep_corner_angle();
     return fair;
+  }
+
+  // Whether the whole tolerance may be spent on fewer moves.
+  [[nodiscard]] bool few_wanted() const {
+    if (options_.prefer == Prefer::kAccuracy) return false;
+    return options_.output == Form::kArcs || options_.prefer == Prefer::kSize;
+  }
+
+  [[nodiscard]] double keep_corner_angle() const {
+    if (!options_.keep_corners_deg) return geometry::FairOptions{}.keep_corner_angle;
+    return *options_.keep_corners_deg * std::numbers::pi / 180;
   }
 
   [[nodiscard]] Times times_of(const std::vector<TimedPiece>& pieces) const {
@@ -169,11 +176,17 @@ class RunSmoother {
   void add_candidates(const geometry::FairPath& fair, double share, double left) {
     const auto plan_with = [&](double multiple) {
       return PlanOptions{options_.target,       options_.machine, units_,
-                         context_.before.plane, options_.prefer,  std::min(left, multiple * share)};
+                         context_.before.plane, options_.prefer,  std::min(left, multiple * share),
+                         keep_corner_angle()};
     };
     if (options_.output != Form::kLines) {
       const PlanOptions arcs = plan_with(kArcs);
       add(plan_arcs(run_, fair, arcs), arcs.max_deviation);
+      if (few_wanted()) {
+        PlanOptions whole = arcs;  // the band around the vertices themselves
+        whole.max_deviation = left + fair.deviation;
+        add(plan_arc_spline(run_, fair, whole), whole.max_deviation);
+      }
     }
     if (options_.output == Form::kArcs) return;
     for (const double multiple : {kLongChords, kMiddleChords, kFineChords}) {

@@ -205,19 +205,6 @@ TEST(FitArcs, CrossesPlacesTighterThanTheLeastRadiusByShortLines) {
   EXPECT_TRUE(found.arcs == 0 || found.least_radius >= 0.1);
 }
 
-TEST(FitArcs, PrefersALineToAShortArc) {
-  const BsplineCurve bend = Drawing({0, 0, 0})
-                                .line_to({10, 0, 0})
-                                .arc_about({10, 3, 0}, 0.1)
-                                .line_to({10 + 3 * std::sin(0.1) + 10 * std::cos(0.1),
-                                          3 - 3 * std::cos(0.1) + 10 * std::sin(0.1), 0})
-                                .curve();
-  ArcFitOptions options = on_grid();
-  EXPECT_EQ(measure(bend, fitted(bend, options), 0.01).arcs, 1);
-  options.min_length = 0.5;  // the arc is 0.3 mm long, its sagitta 0.00375
-  EXPECT_EQ(measure(bend, fitted(bend, options), 0.01).arcs, 0);
-}
-
 TEST(FitArcs, MeetsTheEndsOfAPartExactly) {
   const BsplineCurve curve = circle(20, 100);
   const auto path = fit_arcs(curve, 0.123, 1.77, on_grid());
