@@ -29,9 +29,14 @@ constexpr double kLent = 0.6;
 // chords these: long ones are few, fine ones are near to the curve and keep the speed on a
 // control that rounds each of their corners.
 constexpr double kArcs = 1.5;
+constexpr double kFineArcs = 0.25;
 constexpr double kLongChords = 1.5;
 constexpr double kMiddleChords = 0.6;
 constexpr double kFineChords = 0.25;
+
+// The fair curve of scattered vertices is no better known than this part of their scatter: a form
+// that is nearer to it than that is not nearer to the path that was meant.
+constexpr double kKnown = 0.5;
 
 double step_of(int decimals, gcode::Units units) {
   const double step = std::pow(10.0, -decimals);
@@ -180,10 +185,12 @@ class RunSmoother {
                          keep_corner_angle()};
     };
     if (options_.output != Form::kLines) {
-      const PlanOptions arcs = plan_with(kArcs);
-      add(plan_arcs(run_, fair, arcs), arcs.max_deviation);
+      for (const double multiple : {kArcs, kFineArcs}) {
+        const PlanOptions arcs = plan_with(multiple);
+        add(plan_arcs(run_, fair, arcs), arcs.max_deviation);
+      }
       if (few_wanted()) {
-        PlanOptions whole = arcs;  // the band around the vertices themselves
+        PlanOptions whole = plan_with(kArcs);  // the band around the vertices themselves
         whole.max_deviation = left + fair.deviation;
         add(plan_arc_spline(run_, fair, whole), whole.max_deviation);
       }
@@ -203,7 +210,7 @@ class RunSmoother {
     Candidate candidate;
     candidate.method = "fair";
     candidate.form = plan->form;
-    candidate.error = error;
+    candidate.error = std::max(error, kKnown * result_.facts.noise);
     candidate.times = times_of(timed_pieces(*plan));
     candidate.text = std::move(*text);
     result_.candidates.push_back(std::move(candidate));
