@@ -24,7 +24,8 @@ import numpy as np  # noqa: E402
 
 WORD = re.compile(r"([A-Z])\s*([-+]?[0-9]*\.?[0-9]+)")
 PLANES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}
-ARC_STEP = math.radians(2)  # between points of an arc
+ARC_STEP = math.radians(2)  # between points of an arc, at the most
+ARC_SAGITTA = 1e-4  # mm by which an arc's drawn chords leave it: far below what is to be seen
 STEP = 0.05  # mm between the places at which the new path is looked at
 
 
@@ -46,7 +47,8 @@ def arc_points(start, end, centre, clockwise, plane):
         sweep = -(-sweep % (2 * math.pi) or 2 * math.pi)
     else:
         sweep = sweep % (2 * math.pi) or 2 * math.pi
-    count = max(2, math.ceil(abs(sweep) / ARC_STEP))
+    chord = 2 * math.sqrt(2 * ARC_SAGITTA / max(radius0, 1e-3))
+    count = max(2, math.ceil(abs(sweep) / min(ARC_STEP, chord)))
     points = []
     for i in range(count + 1):
         part = i / count
