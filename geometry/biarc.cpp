@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/bezier_halves.h"
 #include "geometry/numeric.h"
 
 namespace batten::geometry {
@@ -22,17 +23,6 @@ double angle_of(const Vector2& v) { return std::atan2(v.y(), v.x()); }
 struct PlaneCubic {
   std::array<Point2, 4> control;
 };
-
-std::array<PlaneCubic, 2> halves(const PlaneCubic& piece) {
-  const auto& p = piece.control;
-  const Point2 first = (p[0] + p[1]) / 2;
-  const Point2 second = (p[1] + p[2]) / 2;
-  const Point2 third = (p[2] + p[3]) / 2;
-  const Point2 left = (first + second) / 2;
-  const Point2 right = (second + third) / 2;
-  const Point2 middle = (left + right) / 2;
-  return {PlaneCubic{{p[0], first, left, middle}}, PlaneCubic{{middle, right, third, p[3]}}};
-}
 
 struct Range {
   double least;

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "geometry/bezier_halves.h"
 #include "geometry/curve_pieces.h"
 
 namespace batten::geometry {
@@ -43,18 +44,6 @@ struct Limits {
 Limits scaled(const Limits& limits, double chord_length) {
   // A chord's deviation grows with the square of its length.
   return {limits.deviation * chord_length * chord_length, limits.max_length * chord_length};
-}
-
-// De Casteljau at 1/2.
-std::pair<CubicBezier, CubicBezier> halves(const CubicBezier& piece) {
-  const auto& p = piece.control;
-  const Point3 first = (p[0] + p[1]) / 2;
-  const Point3 second = (p[1] + p[2]) / 2;
-  const Point3 third = (p[2] + p[3]) / 2;
-  const Point3 left = (first + second) / 2;
-  const Point3 right = (second + third) / 2;
-  const Point3 middle = (left + right) / 2;
-  return {CubicBezier{{p[0], first, left, middle}}, CubicBezier{{middle, right, third, p[3]}}};
 }
 
 // The proof that a stretch of curve stays near one chord: each control point is matched to
