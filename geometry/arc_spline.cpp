@@ -371,9 +371,10 @@ class Search {
 
 void check(const ArcSplineOptions& options) {
   const auto require = [](bool holds, const char* what, double value) {
-    if (!holds)
+    if (!holds) {
       throw std::invalid_argument(std::string("fit_arc_spline: ") + what + " " +
                                   std::to_string(value) + " out of range");
+    }
   };
   require(options.tolerance > 0, "tolerance", options.tolerance);
   require(options.min_radius > 0, "min_radius", options.min_radius);
