@@ -20,8 +20,8 @@ struct FitSample {
   Point3 target = Point3::Zero();
   Vector3 along =
       Vector3::Zero();  // unit direction of free sliding; zero: the full distance counts
-  double limit = 0;    // mm, > 0: no distance is greater
-  double scatter = 0;  // mm, rms distance expected here; 0: only the limit counts
+  double limit = 0;     // mm, > 0: no distance is greater
+  double scatter = 0;   // mm, rms distance expected here; 0: only the limit counts
 };
 
 // The curve is exactly the straight line from `start` to `end` over [from, to], run at even

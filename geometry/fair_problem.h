@@ -12,7 +12,7 @@
 namespace batten::geometry {
 
 struct BandOptions {
-  double limit = 0.01;          // mm, full distance allowed
+  double limit = 0.01;  // mm, full distance allowed
   // mm: a curve that passes the printed places at their rounding is as likely as one that meets
   // them; the errors of dense places on a slanting line are no white noise, but long ramps.
   double least_scatter = 5e-4;
