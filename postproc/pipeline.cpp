@@ -14,7 +14,9 @@
 #include "gcode/reason.h"
 #include "postproc/provenance.h"
 #include "postproc/run_choice.h"
+#include "postproc/run_cutting.h"
 #include "postproc/run_grouping.h"
+#include "postproc/run_work.h"
 #include "postproc/smoothing.h"
 
 namespace batten::postproc {
@@ -25,20 +27,13 @@ namespace {
 constexpr double kAfterReading = 0.1;
 constexpr double kAfterSmoothing = 0.7;
 
-// A section that may be rewritten, and what became of it.
-struct RunWork {
-  std::size_t section = 0;
-  RunContext context;
-  SmoothedRun smoothed;
-  Choosing choosing;
-  std::size_t tried = 0;       // candidates that were not proved
-  std::string_view went_back;  // why none of them is left
+// Runs of more points are cut at once: their parts differ, and a run is worth no more than its
+// worst part. Shorter ones are cut where they would be kept as a whole.
+constexpr std::size_t kWholeAtMost = 3000;
 
-  [[nodiscard]] const Candidate* chosen() const {
-    if (tried >= choosing.order.size()) return nullptr;
-    return &smoothed.candidates[choosing.order[tried]];
-  }
-};
+// Neighbours of a piece that are timed with it: the machine looks ahead over as many blocks to
+// stop, at most.
+constexpr std::size_t kNeighbours = 100;
 
 class Smoothing {
  public:
@@ -123,7 +118,7 @@ class Smoothing {
     sections_ = group_runs(program_, meaning_, grouping());
     for (std::size_t i = 0; i < sections_.size(); ++i) {
       if (!std::holds_alternative<Run>(sections_[i].content)) continue;
-      work_.push_back({i, context_of(program_, meaning_, sections_[i]), {}, {}, 0, {}});
+      work_.push_back({i, context_of(program_, meaning_, sections_[i])});
     }
   }
 
@@ -132,28 +127,97 @@ class Smoothing {
   }
 
   bool smooth_runs() {
-    std::size_t points = 0;
-    for (const RunWork& work : work_) points += run_of(work).points.size();
-    std::atomic<std::size_t> done = 0;
+    again_ = was_smoothed(program_) && !is_allowed(gcode::reason::kAlreadySmoothed);
+    std::vector<std::size_t> whole;
+    for (std::size_t i = 0; i < work_.size(); ++i) {
+      if (again_) {
+        work_[i].choosing.reason = gcode::reason::kAlreadySmoothed;
+      } else if (run_of(work_[i]).points.size() <= kWholeAtMost) {
+        whole.push_back(i);
+      }
+    }
+    if (again_) return true;
+    for (const RunWork& work : work_) points_ += run_of(work).points.size();
+    if (!smooth_works(whole)) return false;
+    const std::vector<std::size_t> pieces = cut_runs();
+    if (!smooth_works(pieces)) return false;
+    for (CutRun& cut : cut_runs_) settle(cut, work_, options_);
+    return true;
+  }
+
+  bool smooth_works(const std::vector<std::size_t>& works) {
     std::atomic<bool> stopped = false;
     std::mutex telling;
-    const bool again = was_smoothed(program_) && !is_allowed(gcode::reason::kAlreadySmoothed);
     const auto one = [&](std::size_t i) {
       if (stopped) return;
-      RunWork& work = work_[i];
-      if (again) {
-        work.choosing.reason = gcode::reason::kAlreadySmoothed;
-        return;
-      }
+      RunWork& work = work_[works[i]];
       work.smoothed = smooth_run(run_of(work), work.context, options_);
       work.choosing = choose(work.smoothed, work.context, options_);
-      done += run_of(work).points.size();
-      const double part = static_cast<double>(done) / static_cast<double>(points);
       const std::scoped_lock lock(telling);
+      smoothed_points_ += run_of(work).points.size();
+      const double part =
+          std::min(1.0, static_cast<double>(smoothed_points_) / static_cast<double>(2 * points_));
       if (!tell(kAfterReading + part * (kAfterSmoothing - kAfterReading))) stopped = true;
     };
-    in_parallel(work_.size(), one);
+    in_parallel(works.size(), one);
     return !stopped;
+  }
+
+  // Puts pieces in the place of runs that are too long or that would be kept as a whole. Returns
+  // the works that are new.
+  std::vector<std::size_t> cut_runs() {
+    std::vector<std::size_t> fresh;
+    std::vector<Section> sections;
+    std::vector<RunWork> works;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < sections_.size(); ++i) {
+      const bool is_run = next < work_.size() && work_[next].section == i;
+      if (!is_run || !add_pieces(work_[next], sections, works, fresh)) {
+        if (is_run) {
+          work_[next].section = sections.size();
+          works.push_back(std::move(work_[next]));
+        }
+        sections.push_back(std::move(sections_[i]));
+      }
+      if (is_run) ++next;
+    }
+    sections_ = std::move(sections);
+    work_ = std::move(works);
+    return fresh;
+  }
+
+  bool add_pieces(RunWork& work, std::vector<Section>& sections, std::vector<RunWork>& works,
+                  std::vector<std::size_t>& fresh) {
+    const bool too_long = run_of(work).points.size() > kWholeAtMost;
+    const std::string_view kept = work.choosing.reason;
+    const bool disappoints = kept == gcode::reason::kNoGain || kept == gcode::reason::kSlower ||
+                             kept == gcode::reason::kNoFit;
+    if (!too_long && !disappoints) return false;
+    std::vector<RunPiece> pieces = cut_run(sections_[work.section], meaning_, {});
+    if (pieces.size() < 2) return false;
+    CutRun cut;
+    cut.path = work.context.after.path;
+    if (!too_long) cut.facts = work.smoothed.facts;
+    cut.reason = work.choosing.reason;
+    cut.first_work = works.size();
+    cut.pieces = pieces.size();
+    cut.run = std::move(std::get<Run>(sections_[work.section].content));
+    for (RunPiece& piece : pieces) {
+      fresh.push_back(works.size());
+      RunWork part{sections.size(), context_of(program_, meaning_, piece.section)};
+      part.cut_run = cut_runs_.size();
+      part.first = piece.first;
+      part.last = piece.last;
+      const std::size_t end = cut.run.points.size() - 1;
+      part.context.lead = timed_pieces(
+          cut.run, piece.first < kNeighbours ? 0 : piece.first - kNeighbours, piece.first);
+      part.context.tail =
+          timed_pieces(cut.run, piece.last, std::min(piece.last + kNeighbours, end));
+      works.push_back(std::move(part));
+      sections.push_back(std::move(piece.section));
+    }
+    cut_runs_.push_back(std::move(cut));
+    return true;
   }
 
   // The first rewritten run carries the comment that the program was smoothed.
@@ -227,12 +291,12 @@ class Smoothing {
     return give_way(std::move(runs), gcode::reason::kNotProved);
   }
 
-  static bool give_way(std::vector<RunWork*> runs, std::string_view why) {
+  bool give_way(std::vector<RunWork*> runs, std::string_view why) {
     std::sort(runs.begin(), runs.end());
     runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
     for (RunWork* work : runs) {
-      ++work->tried;
-      if (work->chosen() == nullptr) work->went_back = why;
+      work->give_way(why);
+      if (work->cut_run) settle(cut_runs_[*work->cut_run], work_, options_);
     }
     return !runs.empty();
   }
@@ -240,12 +304,61 @@ class Smoothing {
   void report() {
     std::size_t next = 0;
     for (std::size_t i = 0; i < sections_.size(); ++i) {
-      if (next < work_.size() && work_[next].section == i) {
-        result_.runs.push_back(report_of(work_[next++]));
-      } else {
+      if (next >= work_.size() || work_[next].section != i) {
         report_kept_motions(sections_[i]);
+        continue;
+      }
+      const RunWork& work = work_[next++];
+      if (work.cut_run) {
+        report_piece(work);
+      } else {
+        result_.runs.push_back(report_of(work));
       }
     }
+  }
+
+  // Neighbouring pieces that are kept for one reason are one run of the report. Where the whole
+  // run was tried and no piece of it is left, it is as if it had not been cut.
+  void report_piece(const RunWork& work) {
+    const CutRun& cut = cut_runs_[*work.cut_run];
+    const auto first = work_.begin() + static_cast<std::ptrdiff_t>(cut.first_work);
+    const auto last = first + static_cast<std::ptrdiff_t>(cut.pieces);
+    const bool all_kept =
+        std::all_of(first, last, [](const RunWork& w) { return w.chosen() == nullptr; });
+    RunReport r = report_of(work);
+    // The times of the pieces are those between their neighbours; they are shares of the run's.
+    Times before;
+    Times after;
+    for (auto piece = first; piece != last; ++piece) {
+      const Candidate* chosen = piece->chosen();
+      before += piece->smoothed.facts.times;
+      after += chosen != nullptr ? chosen->times : piece->smoothed.facts.times;
+    }
+    if (before.as_set > 0) r.time_before_s *= cut.before.as_set / before.as_set;
+    if (after.as_set > 0) r.time_after_s *= cut.after.as_set / after.as_set;
+    if (all_kept && cut.facts) {
+      r.reason = cut.reason;
+      r.noise_mm = cut.facts->noise;
+      r.max_curvature_before = cut.facts->max_curvature;
+      r.max_curvature_after = r.max_curvature_before;
+    }
+    const bool goes_on = &work != &*first && result_.runs.back().status == RunStatus::kKept &&
+                         r.status == RunStatus::kKept && result_.runs.back().reason == r.reason;
+    if (!goes_on) {
+      result_.runs.push_back(r);
+      return;
+    }
+    RunReport& before_it = result_.runs.back();
+    before_it.last_line = r.last_line;
+    before_it.points += r.points - 1;
+    before_it.blocks_in += r.blocks_in;
+    before_it.blocks_out += r.blocks_out;
+    before_it.noise_mm = std::max(before_it.noise_mm, r.noise_mm);
+    before_it.max_curvature_before =
+        std::max(before_it.max_curvature_before, r.max_curvature_before);
+    before_it.max_curvature_after = std::max(before_it.max_curvature_after, r.max_curvature_after);
+    before_it.time_before_s += r.time_before_s;
+    before_it.time_after_s += r.time_after_s;
   }
 
   [[nodiscard]] RunReport report_of(const RunWork& work) const {
@@ -311,6 +424,10 @@ class Smoothing {
   gcode::Interpretation meaning_;
   std::vector<Section> sections_;
   std::vector<RunWork> work_;
+  std::vector<CutRun> cut_runs_;
+  bool again_ = false;               // the program was smoothed before
+  std::size_t points_ = 0;           // of all runs
+  std::size_t smoothed_points_ = 0;  // pieces count again
   Verification verification_;
 };
 

@@ -33,17 +33,8 @@ constexpr double kMoreBlocks = 1.5;
 // Errors within this factor are equal: then the smaller text is better.
 constexpr double kSameError = 2.5;
 
-bool slower(const Candidate& c, const RunFacts& old, std::size_t blocks_before, bool wanted) {
-  const Times& a = c.times;
-  const Times& b = old.times;
-  if (wanted) return a.as_set > (1 + kWantedCosts) * b.as_set;
-  // With the feed turned up a text of a quarter of the blocks may cost a little.
-  const bool far_smaller = 4 * c.text.blocks <= blocks_before;
-  const double flat_out = far_smaller ? 2.5 * kSameTime : kSameTime;
-  return a.as_set > (1 + kSlower) * b.as_set ||
-         a.without_merging > (1 + kSlower) * b.without_merging ||
-         a.flat_out > (1 + flat_out) * b.flat_out;
-}
+// An estimate of blocks may be too high by this factor.
+constexpr double kEstimate = 1.25;
 
 double sum_of(const Times& times) { return times.as_set + times.without_merging; }
 
@@ -78,6 +69,23 @@ bool better(const Candidate& a, const Candidate& b, const SmoothOptions& options
 
 }  // namespace
 
+bool slower(const Times& now, const Times& before, bool far_smaller, bool wanted) {
+  if (wanted) return now.as_set > (1 + kWantedCosts) * before.as_set;
+  // With the feed turned up a text of a quarter of the blocks may cost a little.
+  const double flat_out = far_smaller ? 2.5 * kSameTime : kSameTime;
+  return now.as_set > (1 + kSlower) * before.as_set ||
+         now.without_merging > (1 + kSlower) * before.without_merging ||
+         now.flat_out > (1 + flat_out) * before.flat_out;
+}
+
+bool may_gain(const Prospect& prospect, const RunFacts& before, std::size_t blocks, Prefer prefer) {
+  if (prefer == Prefer::kSize) return true;
+  const double least = prospect.blocks / kEstimate / static_cast<double>(blocks);
+  const bool faster = 2 * prospect.least_time < (1 - kLessTime) * sum_of(before.times);
+  const bool nearer = prospect.error <= kNearer * before.error && least <= kMoreBlocks;
+  return faster || least <= kFewerBlocks || nearer;
+}
+
 Choosing choose(const SmoothedRun& run, const RunContext& context, const SmoothOptions& options) {
   const Prefer prefer = options.prefer;
   const bool wanted = options.output != Form::kAuto;
@@ -89,7 +97,8 @@ Choosing choose(const SmoothedRun& run, const RunContext& context, const SmoothO
   bool all_slower = true;
   for (std::size_t i = 0; i < run.candidates.size(); ++i) {
     const Candidate& c = run.candidates[i];
-    if (slower(c, run.facts, context.blocks, wanted)) continue;
+    const bool far_smaller = 4 * c.text.blocks <= context.blocks;
+    if (slower(c.times, run.facts.times, far_smaller, wanted)) continue;
     all_slower = false;
     if (gains(c, run, context, prefer)) choosing.order.push_back(i);
   }

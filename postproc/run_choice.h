@@ -14,6 +14,22 @@ struct Choosing {
   std::string_view reason;         // why there is none
 };
 
+// Whether `now` is more than the error of the estimate above `before`. `far_smaller`: in a quarter
+// of the blocks. `wanted`: the user asked for the form by name, which may cost something.
+[[nodiscard]] bool slower(const Times& now, const Times& before, bool far_smaller, bool wanted);
+
+// What is known of a candidate before it is made. `blocks` may be too many by a fifth, `least_time`
+// is a bound for every way in which the control may be set.
+struct Prospect {
+  double least_time = 0;  // s
+  double blocks = 0;
+  double error = 0;  // mm
+};
+
+// Whether such a candidate could be worth writing. `before` as for `choose`.
+[[nodiscard]] bool may_gain(const Prospect& prospect, const RunFacts& before, std::size_t blocks,
+                            Prefer prefer);
+
 // A candidate is worth writing when it is not slower and gains time, blocks or accuracy by a
 // margin. Between candidates `prefer` decides. A form that the user asked for by name may be
 // somewhat slower.

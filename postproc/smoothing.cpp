@@ -10,6 +10,8 @@
 #include "gcode/reason.h"
 #include "geometry/fair.h"
 #include "postproc/machine/cycle_time.h"
+#include "postproc/run_choice.h"
+#include "postproc/run_prospect.h"
 
 namespace batten::postproc {
 
@@ -33,6 +35,9 @@ constexpr double kFineArcs = 0.25;
 constexpr double kLongChords = 1.5;
 constexpr double kMiddleChords = 0.6;
 constexpr double kFineChords = 0.25;
+
+// Of a run with so many coarse vertices there is nothing left to fit but corners.
+constexpr double kCoarse = 0.5;
 
 // The fair curve of scattered vertices is no better known than this part of their scatter: a form
 // that is nearer to it than that is not nearer to the path that was meant.
@@ -74,18 +79,6 @@ double greatest_curvature(const geometry::FairPath& fair) {
   return std::max(most, fair.curve.curvature_at(fair.curve.last()));
 }
 
-std::vector<TimedPiece> timed_pieces(const Run& run) {
-  std::vector<TimedPiece> pieces;
-  pieces.reserve(run.points.size());
-  std::size_t next = 0;
-  double feed = 0;
-  for (std::size_t i = 0; i + 1 < run.points.size(); ++i) {
-    while (next < run.feeds.size() && run.feeds[next].vertex <= i) feed = run.feeds[next++].feed;
-    pieces.push_back({geometry::Line{run.points[i], run.points[i + 1]}, feed});
-  }
-  return pieces;
-}
-
 std::vector<TimedPiece> timed_pieces(const OutputPlan& plan) {
   std::vector<TimedPiece> pieces;
   pieces.reserve(plan.moves.size());
@@ -117,12 +110,15 @@ class RunSmoother {
 
   SmoothedRun smooth() {
     result_.facts.max_curvature = greatest_curvature(run_.points);
-    result_.facts.times = times_of(timed_pieces(run_));
+    time_around_ = times_around();
+    result_.facts.times = times_in_place(timed_pieces(run_, 0, run_.points.size() - 1));
     if (options_.method == Method::kNone) return kept(gcode::reason::kMethodNone);
 
     const ToleranceShares shares = share_tolerance(options_, units_, run_.decimals);
     if (!(shares.smoothing > 0)) return kept(gcode::reason::kNoFit);
     const double rounding = 0.5 * step_of(run_.decimals, units_);
+    find_prospect();
+    if (is_hopeless()) return kept(gcode::reason::kNoGain);
     const auto fair = geometry::fair_path(run_.points, fair_options(shares, rounding));
     if (!fair) return kept(gcode::reason::kNoFit);
     result_.facts.noise = fair->noise;
@@ -132,7 +128,9 @@ class RunSmoother {
     const double left = shares.smoothing + shares.form - fair->deviation;
     if (!(left > 0)) return kept(gcode::reason::kNoFit);
     add_candidates(*fair, shares.form, left);
-    if (result_.candidates.empty()) return kept(gcode::reason::kTargetCannot);
+    if (result_.candidates.empty()) {
+      return kept(passed_over_ ? gcode::reason::kNoGain : gcode::reason::kTargetCannot);
+    }
     return std::move(result_);
   }
 
@@ -161,20 +159,57 @@ class RunSmoother {
     return *options_.keep_corners_deg * std::numbers::pi / 180;
   }
 
-  [[nodiscard]] Times times_of(const std::vector<TimedPiece>& pieces) const {
-    const Machine& machine = *options_.machine;
-    Machine unmerged = machine;
-    unmerged.naive_cam_tolerance = 0;
-    Times times;
-    times.as_set = cutting_time(pieces, machine, context_.after.path);
-    times.without_merging = machine.naive_cam_tolerance > 0
-                                ? cutting_time(pieces, unmerged, context_.after.path)
-                                : times.as_set;
-    std::vector<TimedPiece> unlimited = pieces;
-    for (TimedPiece& piece : unlimited) piece.feed = 0;
-    times.flat_out = cutting_time(unlimited, machine, context_.after.path);
-    times.exact_path = cutting_time(pieces, machine, gcode::PathMode::kExactPath);
+  [[nodiscard]] Times times_alone(const std::vector<TimedPiece>& chain) const {
+    return times_of(chain, *options_.machine, context_.after.path);
+  }
+
+  // What the neighbours take without this piece, each from rest to rest.
+  [[nodiscard]] Times times_around() const {
+    Times sum;
+    if (!context_.lead.empty()) sum += times_alone(context_.lead);
+    if (!context_.tail.empty()) sum += times_alone(context_.tail);
+    return sum;
+  }
+
+  // What the moves add to the time of their neighbours.
+  [[nodiscard]] Times times_in_place(const std::vector<TimedPiece>& moves) const {
+    if (!context_.is_piece()) return times_alone(moves);
+    std::vector<TimedPiece> chain = context_.lead;
+    chain.insert(chain.end(), moves.begin(), moves.end());
+    chain.insert(chain.end(), context_.tail.begin(), context_.tail.end());
+    Times times = times_alone(chain);
+    times -= time_around_;
     return times;
+  }
+
+  // Times of a piece leave out what its neighbours need to stop and start; what it could gain is
+  // judged by its time alone.
+  void find_prospect() {
+    least_time_ = least_time(run_, options_.tolerance_mm, *options_.machine);
+    judged_ = result_.facts;
+    if (context_.is_piece()) {
+      judged_.times = times_alone(timed_pieces(run_, 0, run_.points.size() - 1));
+    }
+  }
+
+  // The program's own chords are coarser than the tolerance nearly everywhere: a curve could only
+  // round their corners, in more blocks than there are.
+  [[nodiscard]] bool is_hopeless() const {
+    if (coarse_part(run_, options_.tolerance_mm) < kCoarse) return false;
+    const Prospect corners{least_time_, 2.0 * static_cast<double>(context_.blocks), judged_.error};
+    return !may_gain(corners, judged_, context_.blocks, options_.prefer);
+  }
+
+  [[nodiscard]] bool is_hopeless(const geometry::FairPath& fair, const PlanOptions& lines) {
+    const double step = std::min(greatest_feed(run_) / 60, options_.machine->max_velocity) *
+                        options_.machine->block_period;
+    judged_.error = result_.facts.error;
+    const Prospect chords{least_time_, chords_for(fair, 0.5 * lines.max_deviation, 2 * step),
+                          known(lines.max_deviation)};
+    const bool hopeless = options_.prefer == Prefer::kTime &&
+                          !may_gain(chords, judged_, context_.blocks, options_.prefer);
+    passed_over_ = passed_over_ || hopeless;
+    return hopeless;
   }
 
   // `share` of the tolerance belongs to the form; `left` is what the curve leaves.
@@ -196,10 +231,18 @@ class RunSmoother {
       }
     }
     if (options_.output == Form::kArcs) return;
+    double before = 0;
     for (const double multiple : {kLongChords, kMiddleChords, kFineChords}) {
       const PlanOptions lines = plan_with(multiple);
+      if (lines.max_deviation == before || is_hopeless(fair, lines)) continue;
+      before = lines.max_deviation;
       add(plan_lines(run_, fair, lines), lines.max_deviation);
     }
+  }
+
+  // How near a form can be said to be to the path that was meant.
+  [[nodiscard]] double known(double error) const {
+    return std::max(error, kKnown * result_.facts.noise);
   }
 
   void add(const std::optional<OutputPlan>& plan, double error) {
@@ -210,9 +253,11 @@ class RunSmoother {
     Candidate candidate;
     candidate.method = "fair";
     candidate.form = plan->form;
-    candidate.error = std::max(error, kKnown * result_.facts.noise);
-    candidate.times = times_of(timed_pieces(*plan));
+    candidate.error = known(error);
+    std::vector<TimedPiece> moves = timed_pieces(*plan);
+    candidate.times = times_in_place(moves);
     candidate.text = std::move(*text);
+    if (context_.is_piece()) candidate.moves = std::move(moves);
     result_.candidates.push_back(std::move(candidate));
   }
 
@@ -225,10 +270,56 @@ class RunSmoother {
   const RunContext& context_;
   const SmoothOptions& options_;
   gcode::Units units_;
+  Times time_around_;
+  double least_time_ = 0;
+  RunFacts judged_;           // what a gain is measured by before the candidates are there
+  bool passed_over_ = false;  // a candidate that could not gain was not made
   SmoothedRun result_;
 };
 
 }  // namespace
+
+Times& Times::operator+=(const Times& other) {
+  as_set += other.as_set;
+  without_merging += other.without_merging;
+  flat_out += other.flat_out;
+  exact_path += other.exact_path;
+  return *this;
+}
+
+Times& Times::operator-=(const Times& other) {
+  as_set -= other.as_set;
+  without_merging -= other.without_merging;
+  flat_out -= other.flat_out;
+  exact_path -= other.exact_path;
+  return *this;
+}
+
+Times times_of(const std::vector<TimedPiece>& chain, const Machine& machine, gcode::PathMode path) {
+  Machine unmerged = machine;
+  unmerged.naive_cam_tolerance = 0;
+  Times times;
+  times.as_set = cutting_time(chain, machine, path);
+  times.without_merging =
+      machine.naive_cam_tolerance > 0 ? cutting_time(chain, unmerged, path) : times.as_set;
+  std::vector<TimedPiece> unlimited = chain;
+  for (TimedPiece& piece : unlimited) piece.feed = 0;
+  times.flat_out = cutting_time(unlimited, machine, path);
+  times.exact_path = cutting_time(chain, machine, gcode::PathMode::kExactPath);
+  return times;
+}
+
+std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::size_t last) {
+  std::vector<TimedPiece> pieces;
+  pieces.reserve(last - first);
+  std::size_t next = 0;
+  double feed = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    while (next < run.feeds.size() && run.feeds[next].vertex <= i) feed = run.feeds[next++].feed;
+    pieces.push_back({geometry::Line{run.points[i], run.points[i + 1]}, feed});
+  }
+  return pieces;
+}
 
 SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOptions& options) {
   return RunSmoother(run, context, options).smooth();

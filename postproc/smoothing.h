@@ -6,6 +6,7 @@
 
 #include "gcode/modal_state.h"
 #include "gcode/program.h"
+#include "postproc/machine/cycle_time.h"
 #include "postproc/options.h"
 #include "postproc/output_plan.h"
 #include "postproc/program_writer.h"
@@ -21,6 +22,12 @@ struct RunContext {
   std::string_view line_end;
   std::size_t blocks = 0;  // of the run, as they were
   std::size_t bytes = 0;
+  // What is cut right before and after it, where it is a piece of a longer run: a piece is not
+  // run from rest to rest.
+  std::vector<TimedPiece> lead = {};
+  std::vector<TimedPiece> tail = {};
+
+  [[nodiscard]] bool is_piece() const { return !lead.empty() || !tail.empty(); }
 };
 
 // Seconds on the machine under each way in which its control may be set. A program rarely says
@@ -30,7 +37,18 @@ struct Times {
   double without_merging = 0;  // LinuxCNC: G64 P with Q0, lines are not joined before planning
   double flat_out = 0;         // whatever the F words say, as with the feed override turned up
   double exact_path = 0;       // G61: kinks cost stops
+
+  Times& operator+=(const Times& other);
+  Times& operator-=(const Times& other);
 };
+
+// Of a chain that starts and ends at rest. `path`: as the program says.
+[[nodiscard]] Times times_of(const std::vector<TimedPiece>& chain, const Machine& machine,
+                             gcode::PathMode path);
+
+// The motions of a run between two of its vertices.
+[[nodiscard]] std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first,
+                                                   std::size_t last);
 
 struct Candidate {
   std::string_view method;  // "fair"
@@ -38,6 +56,7 @@ struct Candidate {
   RunText text;
   double error = 0;  // mm, the written form from the fair curve
   Times times;
+  std::vector<TimedPiece> moves;  // of a piece of a run; empty otherwise
 };
 
 // What is known of a run, whether it is rewritten or not.

@@ -1,0 +1,27 @@
+// Whether rewriting a run can gain anything, told before the work is done. What is said to be
+// hopeless would have been kept after all, as `choose` decides; what is not may still be kept.
+#pragma once
+
+#include <cstddef>
+
+#include "geometry/fair.h"
+#include "postproc/machine/machine.h"
+#include "postproc/section.h"
+#include "postproc/smoothing.h"
+
+namespace batten::postproc {
+
+// Seconds below which no form of the run comes that stays within `tolerance`: its length at its
+// feeds, less what can be saved at its vertices, when there were no accelerations to mind.
+[[nodiscard]] double least_time(const Run& run, double tolerance, const Machine& machine);
+
+// The part of the run's vertices whose chords would leave a curve through them by more than
+// `tolerance`: a run of a coarser tolerance, of which only the corners could be rounded.
+[[nodiscard]] double coarse_part(const Run& run, double tolerance);
+
+// About how many chords within `deviation` the fair curve takes, where chords shorter than
+// `min_length` may be twice as far off.
+[[nodiscard]] double chords_for(const geometry::FairPath& fair, double deviation,
+                                double min_length);
+
+}  // namespace batten::postproc
