@@ -1,0 +1,55 @@
+#include "geometry/displacement.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "geometry/bezier_halves.h"
+
+namespace batten::geometry {
+
+namespace {
+
+// A half is nearer to its polygon by a quarter, so twenty halvings take a millimetre to 1e-12 mm.
+constexpr int kMostHalvings = 20;
+
+double farthest_control(const CubicBezier& piece) {
+  double most = 0;
+  for (const Point3& p : piece.control) most = std::max(most, p.norm());
+  return most;
+}
+
+// `reached` is the greatest |displacement| met so far in the span. The span's maximum is above
+// it or on it, so a piece whose bound is less than `slack` above it need not be looked at.
+double bound_of(const CubicBezier& piece, double slack, int halvings, double& reached) {
+  reached = std::max({reached, piece.control[0].norm(), piece.control[3].norm()});
+  const double bound = farthest_control(piece);
+  if (bound <= reached + slack || halvings == 0) return bound;
+  const auto [left, right] = halves(piece);
+  return std::max(bound_of(left, slack, halvings - 1, reached),
+                  bound_of(right, slack, halvings - 1, reached));
+}
+
+}  // namespace
+
+BsplineCurve displacement_between(const BsplineCurve& original, const BsplineCurve& moved) {
+  std::vector<Point3> points = moved.control_points();
+  if (points.size() != original.control_points().size()) {
+    throw std::invalid_argument("displacement_between: " + std::to_string(points.size()) +
+                                " control points, expected " +
+                                std::to_string(original.control_points().size()));
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] -= original.control_points()[i];
+  return {original.basis(), std::move(points)};
+}
+
+std::vector<double> displacement_bounds(const BsplineCurve& displacement, double slack) {
+  std::vector<double> bounds;
+  for (const CubicBezier& piece : displacement.bezier_pieces()) {
+    double reached = 0;
+    bounds.push_back(bound_of(piece, slack, kMostHalvings, reached));
+  }
+  return bounds;
+}
+
+}  // namespace batten::geometry

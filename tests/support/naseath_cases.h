@@ -1,0 +1,44 @@
+// The curves of tests/cases/naseath.json, with what an independent program found of them.
+#pragma once
+
+#include <cstddef>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "geometry/bspline_curve.h"
+#include "geometry/point.h"
+
+namespace batten::geometry {
+
+// The entry of that name; "distinct_knots", "control_points" and the figures beside them.
+inline nlohmann::json naseath_case(const std::string& name) {
+  std::ifstream file(BATTEN_SOURCE_DIR "/tests/cases/naseath.json");
+  return nlohmann::json::parse(file).at(name);
+}
+
+inline std::vector<Point3> points_of(const nlohmann::json& pairs) {
+  std::vector<Point3> points;
+  for (const auto& pair : pairs) points.emplace_back(pair[0], pair[1], 0);
+  return points;
+}
+
+inline BsplineCurve curve_of_case(const nlohmann::json& given) {
+  return {BsplineBasis::clamped(3, given.at("distinct_knots").get<std::vector<double>>()),
+          points_of(given.at("control_points"))};
+}
+
+inline BsplineCurve curve_of_case(const std::string& name) {
+  return curve_of_case(naseath_case(name));
+}
+
+// A clamped cubic on the knots 0, 1, 2 ..
+inline BsplineCurve uniform_cubic(std::vector<Point3> points) {
+  std::vector<double> knots;
+  for (std::size_t i = 0; i + 2 < points.size(); ++i) knots.push_back(static_cast<double>(i));
+  return {BsplineBasis::clamped(3, knots), std::move(points)};
+}
+
+}  // namespace batten::geometry
