@@ -1,0 +1,114 @@
+#include "geometry/corner_blend.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "geometry/extrema.h"
+#include "geometry/numeric.h"
+#include "geometry/path.h"
+
+namespace batten::geometry {
+namespace {
+
+// Distance from the leg of that unit direction and length that starts at the vertex; `from` is
+// measured from the vertex.
+double leg_distance(const Vector3& from, const Vector3& direction, double length) {
+  const double foot = std::clamp(from.dot(direction), 0.0, length);
+  return (from - foot * direction).norm();
+}
+
+// The pieces of a blend as one function of s in [0, pieces].
+class PiecewiseCurve {
+ public:
+  PiecewiseCurve(const BsplineCurve& curve, const CornerFrame& frame)
+      : frame_(frame), pieces_(curve.bezier_pieces()) {}
+
+  double end() const { return static_cast<double>(pieces_.size()); }
+
+  Vector3 from_vertex(double s) const {
+    const std::size_t i = std::min(static_cast<std::size_t>(s), pieces_.size() - 1);
+    return point_at(pieces_[i], s - static_cast<double>(i)) - frame_.vertex;
+  }
+  double from_a(double s) const { return leg_distance(from_vertex(s), frame_.a, frame_.length_a); }
+  double from_b(double s) const { return leg_distance(from_vertex(s), frame_.b, frame_.length_b); }
+
+ private:
+  const CornerFrame& frame_;
+  std::vector<CubicBezier> pieces_;
+};
+
+}  // namespace
+
+std::string_view name_of(NoBlend reason) {
+  switch (reason) {
+    case NoBlend::kNoLeg:
+      return "no-leg";
+    case NoBlend::kStraight:
+      return "straight";
+    case NoBlend::kReversal:
+      return "reversal";
+    case NoBlend::kNoRoom:
+      return "no-room";
+  }
+  return "";
+}
+
+Vector3 CornerFrame::outward_a() const { return -(b - b.dot(a) * a).normalized(); }
+Vector3 CornerFrame::outward_b() const { return -(a - a.dot(b) * b).normalized(); }
+
+std::variant<CornerFrame, NoBlend> frame_of(const Corner& corner) {
+  const Vector3 to_before = corner.before - corner.vertex;
+  const Vector3 to_after = corner.after - corner.vertex;
+  const double length_a = to_before.norm();
+  const double length_b = to_after.norm();
+  if (!(length_a > kSamePlace && length_b > kSamePlace)) return NoBlend::kNoLeg;
+  const Vector3 a = to_before / length_a;
+  const Vector3 b = to_after / length_b;
+  // |a - b| and |a + b| are twice sine and cosine of half the angle, accurate at both ends.
+  const double sin_half = (a - b).norm() / 2;
+  const double cos_half = (a + b).norm() / 2;
+  if (!(sin_half >= kSameDirection)) return NoBlend::kReversal;
+  if (!(cos_half >= kSameDirection)) return NoBlend::kStraight;
+  return CornerFrame{corner.vertex, a, b, length_a, length_b, sin_half, cos_half};
+}
+
+CornerFrame reversed(const CornerFrame& frame) {
+  return {frame.vertex,   frame.b,        frame.a,       frame.length_b,
+          frame.length_a, frame.sin_half, frame.cos_half};
+}
+
+double deviation_of(const BlendDeviation& deviation, ToleranceKind kind) {
+  return kind == ToleranceKind::kBand ? deviation.legs : deviation.in_order;
+}
+
+BlendDeviation measure_blend(const BsplineCurve& curve, const CornerFrame& frame) {
+  const PiecewiseCurve blend(curve, frame);
+  const int samples = kSamplesPerSpan * static_cast<int>(blend.end());
+  const double end = blend.end();
+  const auto nearness = [&blend](double s) { return -blend.from_vertex(s).norm(); };
+  const auto from_a = [&blend](double s) { return blend.from_a(s); };
+  const auto from_b = [&blend](double s) { return blend.from_b(s); };
+  const auto from_nearer = [&](double s) { return std::min(from_a(s), from_b(s)); };
+
+  BlendDeviation found;
+  const Extremum nearest = greatest(nearness, 0, end, samples);
+  found.corner = -nearest.value;
+  found.legs = greatest(from_nearer, 0, end, samples).value;
+  found.in_order = std::max({found.corner, greatest(from_a, 0, nearest.at, samples).value,
+                             greatest(from_b, nearest.at, end, samples).value});
+  return found;
+}
+
+void require_positive_tolerance(double tolerance, std::string_view caller) {
+  if (tolerance > 0 && std::isfinite(tolerance)) return;
+  throw std::invalid_argument(std::string(caller) + ": tolerance " + std::to_string(tolerance) +
+                              " mm, expected a positive number");
+}
+
+}  // namespace batten::geometry
