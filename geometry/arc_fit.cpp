@@ -201,8 +201,9 @@ std::optional<std::vector<ChainPiece>> spline_between(const BsplineCurve& curve,
   options.grid = limits.grid;
   options.start_angle = start.angle;
   options.end_angle = end.angle;
+  options.kinks = false;
   const auto spline = fit_arc_spline(points, options);
-  if (!spline || spline->kinks > 0) return std::nullopt;
+  if (!spline) return std::nullopt;
   std::vector<ChainPiece> pieces;
   for (const ArcSplinePiece& piece : spline->pieces) {
     pieces.push_back({piece.arc, start.place.z(), 0});

@@ -41,6 +41,9 @@ constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 // A kink counts as so many arcs.
 constexpr std::size_t kKinkCosts = 3;
 
+// Levels that may pass without one that sees farther: as many as a kink costs, and some more.
+constexpr std::size_t kStuck = kKinkCosts + 4;
+
 // Turns of the polyline beyond this may become kinks.
 constexpr double kKinkTurn = 0.2;
 
@@ -80,22 +83,33 @@ class Search {
 
   std::optional<ArcSpline> run() {
     add_starts();
+    std::size_t improved = 0;  // the level that saw farther than the ones before it
+    double farthest = -1;
     for (std::size_t arcs = 0; arcs < levels_.size() && arcs < best_arcs_; ++arcs) {
       keep_best(levels_[arcs]);
       const std::vector<std::size_t> level = levels_[arcs];  // levels_ grows below
-      std::vector<Node> found;
-      for (const std::size_t i : level) {
-        finish(i, arcs);
-        spread(i, found);
-        turn_at_corner(i, arcs);
+      if (!level.empty() && nodes_[level.front()].score > farthest) {
+        farthest = nodes_[level.front()].score;
+        improved = arcs;
       }
-      follow(found, arcs + 1);
-      if (levels_.size() <= arcs + 1 && !best_) turn_where_stuck(level, arcs);
+      if (arcs > improved + kStuck) break;
+      grow(level, arcs);
     }
     return chain();
   }
 
  private:
+  void grow(const std::vector<std::size_t>& level, std::size_t arcs) {
+    std::vector<Node> found;
+    for (const std::size_t i : level) {
+      finish(i, arcs);
+      spread(i, found);
+      if (options_.kinks) turn_at_corner(i, arcs);
+    }
+    follow(found, arcs + 1);
+    if (options_.kinks && levels_.size() <= arcs + 1 && !best_) turn_where_stuck(level, arcs);
+  }
+
   void add_to(std::size_t arcs, Node node) {
     if (levels_.size() <= arcs) levels_.resize(arcs + 1);
     levels_[arcs].push_back(nodes_.size());

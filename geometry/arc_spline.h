@@ -21,6 +21,7 @@ struct ArcSplineOptions {
   double direction = 0;     // radians: in which the path starts, about
   std::optional<double> start_angle;  // radians: of the tangent in which it starts, exactly;
   std::optional<double> end_angle;    // and in which it ends. Free where there is none
+  bool kinks = true;                  // whether the chain may turn where no arc fits
 };
 
 struct ArcSplinePiece {
