@@ -1,8 +1,6 @@
 #include "geometry/displacement.h"
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 
 #include "geometry/bezier_halves.h"
 
@@ -31,17 +29,6 @@ double bound_of(const CubicBezier& piece, double slack, int halvings, double& re
 }
 
 }  // namespace
-
-BsplineCurve displacement_between(const BsplineCurve& original, const BsplineCurve& moved) {
-  std::vector<Point3> points = moved.control_points();
-  if (points.size() != original.control_points().size()) {
-    throw std::invalid_argument("displacement_between: " + std::to_string(points.size()) +
-                                " control points, expected " +
-                                std::to_string(original.control_points().size()));
-  }
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] -= original.control_points()[i];
-  return {original.basis(), std::move(points)};
-}
 
 std::vector<double> displacement_bounds(const BsplineCurve& displacement, double slack) {
   std::vector<double> bounds;

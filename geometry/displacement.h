@@ -1,6 +1,7 @@
-// How far a curve was moved, when another curve with the same knots was made of it: bounds on
-// |C(u) - C0(u)| that hold for every u, not only at samples. (It is never less than the distance
-// of the two curves at u, so it bounds that distance as well.)
+// How far a curve was moved, when another curve with the same knots was made of it. The
+// displacement D(u) = C(u) - C0(u) is a spline itself, its control points the moves of the control
+// points. Bounds on |D(u)| that hold for every u, not only at samples; no place of either curve is
+// further from the other curve than the greatest |D|.
 #pragma once
 
 #include <vector>
@@ -8,11 +9,6 @@
 #include "geometry/bspline_curve.h"
 
 namespace batten::geometry {
-
-// The curve u -> moved(u) - original(u). Requires equal knots (throws std::invalid_argument
-// where the numbers of control points differ; the knots themselves are not compared).
-[[nodiscard]] BsplineCurve displacement_between(const BsplineCurve& original,
-                                                const BsplineCurve& moved);
 
 // For each span of displacement.breakpoints() a number (mm) that |displacement| does not exceed
 // there, and exceeds the greatest |displacement| of the span by no more than `slack` (mm, > 0).

@@ -22,17 +22,20 @@ struct NaseathRepairs {
   bool exact_bound = true;
   // A stretch that touched the tube stops, the rest goes on. Needs exact_bound.
   bool local_stop = true;
+  // Points go back where a pass would make the curve bend harder than the old one does in the
+  // same span or the next to it; the rest goes on.
+  bool guard_curvature = true;
   // Of all passes the one that bends least is returned, not the last one.
   bool keep_best = true;
   // With keep_best: passes without a better curve after which it ends. 0: no such end.
   int stall_passes = 30;
   // Sensitivities count as no less than this, since one tiny value makes all other moves tiny.
   // 0: no floor.
-  double sensitivity_floor = 0.05;
+  double sensitivity_floor = 0.3;
   // Ripples and ends do not go past the line through their neighbours.
   bool clamp_moves = false;
 
-  [[nodiscard]] static NaseathRepairs none() { return {false, false, false, 0, 0, false}; }
+  [[nodiscard]] static NaseathRepairs none() { return {false, false, false, false, 0, 0, false}; }
 };
 
 struct NaseathOptions {

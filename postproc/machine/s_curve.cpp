@@ -15,21 +15,23 @@ double allowed_velocity(double curvature, const SCurveLimits& limits) {
   return std::min(limits.velocity, std::sqrt(limits.acceleration / curvature));
 }
 
-// Neighbouring samples with one allowed speed.
+// Neighbouring samples with one allowed speed, by their numbers.
 struct Level {
   double velocity = 0;
-  double from = 0;  // mm
-  double to = 0;
+  std::size_t first = 0;
+  std::size_t last = 0;
+
+  [[nodiscard]] std::size_t middle() const { return (first + last) / 2; }
 };
 
 std::vector<Level> levels_of(std::span<const ParameterSample> samples, const SCurveLimits& limits) {
   std::vector<Level> levels;
-  for (const ParameterSample& sample : samples) {
-    const double v = allowed_velocity(sample.curvature, limits);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double v = allowed_velocity(samples[i].curvature, limits);
     if (!levels.empty() && levels.back().velocity == v) {
-      levels.back().to = sample.distance;
+      levels.back().last = i;
     } else {
-      levels.push_back({v, sample.distance, sample.distance});
+      levels.push_back({v, i, i});
     }
   }
   return levels;
@@ -72,12 +74,12 @@ std::vector<SCurveNode> s_curve_nodes(std::span<const ParameterSample> samples,
                                       const SCurveLimits& limits) {
   const std::vector<Level> levels = levels_of(samples, limits);
   if (levels.empty()) return {};
-  std::vector<SCurveNode> nodes = {{levels.front().from, levels.front().velocity}};
+  std::vector<SCurveNode> nodes = {{samples.front().distance, levels.front().velocity}};
   for (std::size_t i = 1; i + 1 < levels.size(); ++i) {
     if (!is_extremum(levels[i - 1], levels[i], levels[i + 1])) continue;
-    nodes.push_back({0.5 * (levels[i].from + levels[i].to), levels[i].velocity});
+    nodes.push_back({samples[levels[i].middle()].distance, levels[i].velocity});
   }
-  nodes.push_back({levels.back().to, levels.back().velocity});
+  nodes.push_back({samples.back().distance, levels.back().velocity});
   for (std::size_t i = 1; i < nodes.size(); ++i) lower(nodes[i], nodes[i - 1], limits);
   for (std::size_t i = nodes.size() - 1; i > 0; --i) lower(nodes[i - 1], nodes[i], limits);
   return nodes;

@@ -23,8 +23,9 @@ struct SCurveNode {
   double velocity = 0;  // mm/s
 };
 
-// Both ends and the local extrema of the allowed speed, lowered until an S-curve fits between
-// each two neighbours. It starts and ends at the speed allowed there, not at rest.
+// Both ends and the local extrema of the allowed speed (of an even stretch the sample in the
+// middle by number), lowered until an S-curve fits between each two neighbours. It starts and ends
+// at the speed allowed there, not at rest.
 [[nodiscard]] std::vector<SCurveNode> s_curve_nodes(
     std::span<const geometry::ParameterSample> samples, const SCurveLimits& limits);
 

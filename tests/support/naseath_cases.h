@@ -25,14 +25,12 @@ inline std::vector<Point3> points_of(const nlohmann::json& pairs) {
   return points;
 }
 
-inline BsplineCurve curve_of_case(const nlohmann::json& given) {
+inline BsplineCurve curve_in(const nlohmann::json& given) {
   return {BsplineBasis::clamped(3, given.at("distinct_knots").get<std::vector<double>>()),
           points_of(given.at("control_points"))};
 }
 
-inline BsplineCurve curve_of_case(const std::string& name) {
-  return curve_of_case(naseath_case(name));
-}
+inline BsplineCurve curve_of_case(const std::string& name) { return curve_in(naseath_case(name)); }
 
 // A clamped cubic on the knots 0, 1, 2 ..
 inline BsplineCurve uniform_cubic(std::vector<Point3> points) {
