@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/cubic_polynomial.h"
 #include "geometry/extrema.h"
 #include "geometry/numeric.h"
 #include "geometry/path.h"
@@ -26,21 +27,46 @@ double leg_distance(const Vector3& from, const Vector3& direction, double length
 // The pieces of a blend as one function of s in [0, pieces].
 class PiecewiseCurve {
  public:
-  PiecewiseCurve(const BsplineCurve& curve, const CornerFrame& frame)
-      : frame_(frame), pieces_(curve.bezier_pieces()) {}
+  PiecewiseCurve(const BsplineCurve& curve, const CornerFrame& frame) : frame_(frame) {
+    for (const CubicBezier& piece : curve.bezier_pieces()) {
+      pieces_.emplace_back(piece, frame.vertex);
+    }
+  }
 
+  // Greatest distance from the nearer leg.
+  double off_legs() const {
+    const auto away = [this](double s) {
+      const Vector3 from = from_vertex(s);
+      return std::min(from_a(from), from_b(from));
+    };
+    return greatest(away, 0, end(), samples()).value;
+  }
+
+  // With its distance from the vertex as a negative value.
+  Extremum nearest_to_vertex() const {
+    return greatest([this](double s) { return -from_vertex(s).norm(); }, 0, end(), samples());
+  }
+
+  double in_order(const Extremum& nearest) const {
+    const auto before = [this](double s) { return from_a(from_vertex(s)); };
+    const auto after = [this](double s) { return from_b(from_vertex(s)); };
+    return std::max({-nearest.value, greatest(before, 0, nearest.at, samples()).value,
+                     greatest(after, nearest.at, end(), samples()).value});
+  }
+
+ private:
   double end() const { return static_cast<double>(pieces_.size()); }
+  int samples() const { return kSamplesPerSpan * static_cast<int>(pieces_.size()); }
 
   Vector3 from_vertex(double s) const {
     const std::size_t i = std::min(static_cast<std::size_t>(s), pieces_.size() - 1);
-    return point_at(pieces_[i], s - static_cast<double>(i)) - frame_.vertex;
+    return pieces_[i].value(s - static_cast<double>(i));
   }
-  double from_a(double s) const { return leg_distance(from_vertex(s), frame_.a, frame_.length_a); }
-  double from_b(double s) const { return leg_distance(from_vertex(s), frame_.b, frame_.length_b); }
+  double from_a(const Vector3& from) const { return leg_distance(from, frame_.a, frame_.length_a); }
+  double from_b(const Vector3& from) const { return leg_distance(from, frame_.b, frame_.length_b); }
 
- private:
   const CornerFrame& frame_;
-  std::vector<CubicBezier> pieces_;
+  std::vector<CubicPolynomial> pieces_;
 };
 
 }  // namespace
@@ -89,20 +115,14 @@ double deviation_of(const BlendDeviation& deviation, ToleranceKind kind) {
 
 BlendDeviation measure_blend(const BsplineCurve& curve, const CornerFrame& frame) {
   const PiecewiseCurve blend(curve, frame);
-  const int samples = kSamplesPerSpan * static_cast<int>(blend.end());
-  const double end = blend.end();
-  const auto nearness = [&blend](double s) { return -blend.from_vertex(s).norm(); };
-  const auto from_a = [&blend](double s) { return blend.from_a(s); };
-  const auto from_b = [&blend](double s) { return blend.from_b(s); };
-  const auto from_nearer = [&](double s) { return std::min(from_a(s), from_b(s)); };
+  const Extremum nearest = blend.nearest_to_vertex();
+  return {blend.off_legs(), -nearest.value, blend.in_order(nearest)};
+}
 
-  BlendDeviation found;
-  const Extremum nearest = greatest(nearness, 0, end, samples);
-  found.corner = -nearest.value;
-  found.legs = greatest(from_nearer, 0, end, samples).value;
-  found.in_order = std::max({found.corner, greatest(from_a, 0, nearest.at, samples).value,
-                             greatest(from_b, nearest.at, end, samples).value});
-  return found;
+double measure_deviation(const BsplineCurve& curve, const CornerFrame& frame, ToleranceKind kind) {
+  const PiecewiseCurve blend(curve, frame);
+  if (kind == ToleranceKind::kBand) return blend.off_legs();
+  return blend.in_order(blend.nearest_to_vertex());
 }
 
 void require_positive_tolerance(double tolerance, std::string_view caller) {

@@ -73,6 +73,10 @@ struct BlendDeviation {
 // Requires degree 3 or less.
 [[nodiscard]] BlendDeviation measure_blend(const BsplineCurve& curve, const CornerFrame& frame);
 
+// The same as deviation_of(measure_blend(curve, frame), kind), for less where only that is asked.
+[[nodiscard]] double measure_deviation(const BsplineCurve& curve, const CornerFrame& frame,
+                                       ToleranceKind kind);
+
 struct CornerBlend {
   BsplineCurve curve;  // from the leg that arrives to the leg that leaves
   BlendDeviation deviation;

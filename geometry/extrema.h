@@ -1,6 +1,9 @@
 // The greatest value of a function of one variable with few extrema.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace batten::geometry {
@@ -45,21 +48,18 @@ template <typename Function>
 
 // The greatest value of f on [low, high], ends included: sampled in so many steps, then refined
 // around each sample that is no lower than its neighbours and near enough to the highest that
-// it may hide more.
+// it may hide more. Where the answer matters only if it is above `floor`, less is refined.
 template <typename Function>
-[[nodiscard]] Extremum greatest(const Function& f, double low, double high, int steps) {
+[[nodiscard]] Extremum greatest(const Function& f, double low, double high, int steps,
+                                double floor = -std::numeric_limits<double>::infinity()) {
   const auto place = [&](int i) { return i == steps ? high : low + (high - low) * i / steps; };
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(steps) + 1);
-  Extremum best{low, f(low)};
-  double lowest = best.value;
-  for (int i = 0; i <= steps; ++i) {
-    values.push_back(f(place(i)));
-    if (values.back() > best.value) best = {place(i), values.back()};
-    if (values.back() < lowest) lowest = values.back();
-  }
+  for (int i = 0; i <= steps; ++i) values.push_back(f(place(i)));
+  const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
+  Extremum best{place(static_cast<int>(highest - values.begin())), *highest};
   // Between samples a smooth maximum rises by little of what f rises over its whole way there.
-  const double worth = best.value - 0.1 * (best.value - lowest);
+  const double worth = std::max(best.value, floor) - 0.1 * (best.value - *lowest);
   for (int i = 0; i <= steps; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const bool peak =
