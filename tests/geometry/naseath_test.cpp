@@ -1,0 +1,591 @@
+#include "geometry/naseath.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "geometry/naseath_categories.h"
+#include "geometry/naseath_directions.h"
+#include "geometry/naseath_sensitivity.h"
+#include "geometry/parameter_samples.h"
+#include "tests/support/naseath_cases.h"
+
+namespace batten::geometry {
+namespace {
+
+NaseathOptions literal(double radius) {
+  NaseathOptions options;
+  options.radius = radius;
+  options.repairs = NaseathRepairs::none();
+  return options;
+}
+
+NaseathOptions repaired(double radius) {
+  NaseathOptions options;
+  options.radius = radius;
+  return options;
+}
+
+double greatest_curvature(const BsplineCurve& curve) {
+  return max_curvature(parameter_samples(curve, kNaseathSteps));
+}
+
+void expect_no_worse(const BsplineCurve& after, const BsplineCurve& before) {
+  EXPECT_LE(greatest_curvature(after), greatest_curvature(before) * (1 + 1e-8));
+}
+
+// At a thousand places, with no help of the library's bounds.
+double greatest_displacement(const BsplineCurve& a, const BsplineCurve& b) {
+  double most = 0;
+  for (int i = 0; i <= 1000; ++i) {
+    const double u = a.first() + (a.last() - a.first()) * i / 1000;
+    most = std::max(most, (a.point_at(u) - b.point_at(u)).norm());
+  }
+  return most;
+}
+
+double farthest(const std::vector<Point3>& a, const std::vector<Point3>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double most = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    most = std::max(most, (a[i] - b[i]).norm());
+  }
+  return most;
+}
+
+ControlPolygon polygon_of(const BsplineCurve& curve) { return {curve.control_points(), false}; }
+
+// --- the thesis, step by step ------------------------------------------------------------------
+
+class NaseathCase : public testing::TestWithParam<std::string> {
+ protected:
+  nlohmann::json given = naseath_case(GetParam());
+  BsplineCurve curve = curve_in(given);
+};
+
+TEST_P(NaseathCase, TurnsAndGroupsAreThoseOfTheThesis) {
+  const ControlPolygon polygon = polygon_of(curve);
+  const auto turns = turns_of(polygon);
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const double z = turns[i].z();
+    EXPECT_EQ((z > 0) - (z < 0), given["turns"][i].get<int>()) << "point " << i;
+  }
+  const auto groups = categories_of(polygon).groups;
+  ASSERT_EQ(groups.size(), given["groups"].size());
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    EXPECT_EQ(groups[i].first, given["groups"][i][0].get<std::size_t>());
+    EXPECT_EQ(groups[i].first + groups[i].count - 1, given["groups"][i][1].get<std::size_t>());
+  }
+}
+
+TEST_P(NaseathCase, DirectionsAreThoseOfTheThesis) {
+  const ControlPolygon polygon = polygon_of(curve);
+  const auto directions = naseath_directions(polygon, categories_of(polygon), end_legs(polygon));
+  EXPECT_LE(farthest(directions, points_of(given["directions"])), 1e-12);
+}
+
+TEST_P(NaseathCase, PassesAreThoseOfTheThesis) {
+  const NaseathResult result = smooth_naseath(curve, literal(given["R"]));
+  EXPECT_EQ(result.passes, given["iterations"].get<int>());
+  EXPECT_EQ(result.kept_pass, result.passes);
+  EXPECT_EQ(result.stop, NaseathStop::kTouchesTube);
+  const auto remaining = given["dmax"].get<std::vector<double>>();
+  ASSERT_EQ(result.remaining.size(), remaining.size());
+  for (std::size_t i = 0; i < remaining.size(); ++i) {
+    EXPECT_NEAR(result.remaining[i], remaining[i], 1e-9) << "pass " << i;
+  }
+  EXPECT_LE(farthest(result.curve.control_points(), points_of(given["result"])), 1e-9);
+}
+
+TEST_P(NaseathCase, LengthAndCurvatureAreThoseOfTheThesis) {
+  const auto before = parameter_samples(curve, kNaseathSteps);
+  EXPECT_NEAR(sampled_length(before), given["L0"].get<double>(), 1e-9);
+  EXPECT_NEAR(max_curvature(before), given["kmax0"].get<double>(), 1e-9);
+  const NaseathResult result = smooth_naseath(curve, literal(given["R"]));
+  const auto after = parameter_samples(result.curve, kNaseathSteps);
+  EXPECT_NEAR(sampled_length(after), given["L1"].get<double>(), 1e-9);
+  EXPECT_NEAR(max_curvature(after), given["kmax1"].get<double>(), 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Small, NaseathCase, testing::Values("G1", "G2", "G3"),
+                         [](const auto& test) { return test.param; });
+
+struct SensitivityCase {
+  std::string name;
+  std::vector<double> expected;
+};
+
+class NaseathSensitivity : public testing::TestWithParam<SensitivityCase> {};
+
+TEST_P(NaseathSensitivity, IsHowFarTheCurveFollowsAMockMove) {
+  const BsplineCurve curve = curve_of_case(GetParam().name);
+  const ControlPolygon polygon = polygon_of(curve);
+  const std::size_t m = polygon.size();
+  constexpr double kMove = 0.25;
+  auto moves = naseath_directions(polygon, categories_of(polygon), end_legs(polygon));
+  for (Vector3& move : moves) move *= kMove;
+  const auto sensitivities =
+      naseath_sensitivities({curve.basis(), moves}, parameters_of_influence(curve.basis(), m),
+                            std::vector<double>(m, kMove), std::vector<double>(m, 1));
+  ASSERT_EQ(sensitivities.size(), GetParam().expected.size());
+  for (std::size_t i = 0; i < m; ++i) {
+    EXPECT_NEAR(sensitivities[i], GetParam().expected[i], 1e-6) << "point " << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Small, NaseathSensitivity,
+    testing::Values(SensitivityCase{"G1", {1, .280474, .224190, .337638, .224190, .280474, 1}},
+                    SensitivityCase{"G3", {1, .233545, .512325, .999556, .512325, .233545, 1}}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(NaseathDirections, OfADoubleApexAreTheNormalOfItsLeg) {
+  const ControlPolygon polygon = polygon_of(curve_of_case("G2"));
+  const auto categories = categories_of(polygon);
+  ASSERT_EQ(categories.groups.size(), 1u);
+  EXPECT_TRUE(categories.groups[0].has_two_apexes());
+  EXPECT_EQ(categories.of_point[3], NaseathCategory::kApex);
+  EXPECT_EQ(categories.of_point[4], NaseathCategory::kApex);
+  EXPECT_EQ(categories.of_point[5], NaseathCategory::kSide);
+}
+
+// Legs that are parallel but for the rounding of their coordinates.
+TEST(NaseathCategories, ARoundingErrorIsNoTurn) {
+  const ControlPolygon polygon{
+      {{0, 0, 0}, {0.1, 0.3, 0}, {0.3, 0.9, 0}, {0.7, 2.1, 0}, {5, 1, 0}, {6, 3, 0}}, false};
+  const auto turns = turns_of(polygon);
+  EXPECT_EQ(turns[1], Vector3::Zero());
+  EXPECT_EQ(turns[2], Vector3::Zero());
+  EXPECT_NE(turns[3], Vector3::Zero());
+  EXPECT_TRUE(categories_of(polygon).groups.empty());
+}
+
+TEST(NaseathCategories, TwoPointsAreNoGroupAndThreeAre) {
+  ControlPolygon polygon{{{0, 0, 0}, {1, 0, 0}, {2, 1, 0}, {2, 2, 0}}, false};
+  EXPECT_TRUE(categories_of(polygon).groups.empty());
+  polygon.points.emplace_back(1, 3, 0);
+  ASSERT_EQ(categories_of(polygon).groups.size(), 1u);
+  EXPECT_EQ(categories_of(polygon).groups[0].count, 3u);
+}
+
+TEST(NaseathCategories, AGroupGoesOnAcrossTheSeamOfARing) {
+  // A square's corners with one dent, begun at different points: the group of the seven others
+  // starts behind the dent each time.
+  const std::vector<Point3> shape = {{0, 0, 0}, {4, 0, 0}, {8, 0.1, 0}, {9, 4, 0},
+                                     {8, 8, 0}, {4, 7, 0}, {0, 8, 0},   {-1, 4, 0}};
+  for (std::size_t shift = 0; shift < shape.size(); ++shift) {
+    SCOPED_TRACE(testing::Message() << "shift " << shift);
+    ControlPolygon ring{shape, true};
+    std::rotate(ring.points.begin(), ring.points.begin() + static_cast<std::ptrdiff_t>(shift),
+                ring.points.end());
+    const auto categories = categories_of(ring);
+    ASSERT_EQ(categories.groups.size(), 1u);
+    EXPECT_EQ(categories.groups[0].count, 7u);
+    EXPECT_LE((ring.at(categories.groups[0].first) - Point3(0, 8, 0)).norm(), 0);
+    EXPECT_FALSE(categories.turns_one_way);
+  }
+}
+
+// --- the tables --------------------------------------------------------------------------------
+
+class NaseathOriginal : public testing::TestWithParam<std::string> {};
+
+TEST_P(NaseathOriginal, HasTheLengthAndCurvatureOfTheTable) {
+  const auto given = naseath_case(GetParam());
+  const auto samples = parameter_samples(curve_in(given), kNaseathSteps);
+  const double length = given["length"];
+  const double mean = given["kappa_param_mean"];
+  const double most = given["kappa_max"];
+  EXPECT_NEAR(sampled_length(samples), length, 1e-9 * length);
+  EXPECT_NEAR(mean_curvature(samples), mean, 1e-9 * mean);
+  EXPECT_NEAR(max_curvature(samples), most, 1e-9 * most);
+}
+
+INSTANTIATE_TEST_SUITE_P(Tables, NaseathOriginal,
+                         testing::Values("tc1", "tc2", "tc3", "tc5a", "tc5b", "tc6"),
+                         [](const auto& test) { return test.param; });
+
+// What is cut off, in percent, as the table prints it; below 0 where it prints nothing.
+struct TableRow {
+  std::string name;
+  double radius;
+  double curvature;
+  double length;
+};
+
+class NaseathTable : public testing::TestWithParam<TableRow> {};
+
+TEST_P(NaseathTable, TheLiteralMethodCutsOffWhatTheTableSays) {
+  const TableRow& row = GetParam();
+  const BsplineCurve curve = curve_of_case(row.name);
+  const auto before = parameter_samples(curve, kNaseathSteps);
+  const NaseathResult result = smooth_naseath(curve, literal(row.radius));
+  const auto after = parameter_samples(result.curve, kNaseathSteps);
+  const auto cut = [](double was, double is) { return 100 * (1 - is / was); };
+  if (row.curvature >= 0) {
+    EXPECT_NEAR(cut(mean_curvature(before), mean_curvature(after)), row.curvature, 0.06);
+  }
+  if (row.length >= 0) {
+    EXPECT_NEAR(cut(sampled_length(before), sampled_length(after)), row.length, 0.006);
+  }
+}
+
+// tc5a prints lengths, 100.375, 100.168 and 100.023 of 100.441.
+constexpr double kNone = -1;
+INSTANTIATE_TEST_SUITE_P(
+    Tables, NaseathTable,
+    testing::Values(TableRow{"tc5a", .025, 7.5, .066}, TableRow{"tc5a", .125, 38.0, .272},
+                    TableRow{"tc5a", .25, 84.7, .416}, TableRow{"tc6", .025, 1.6, .18},
+                    TableRow{"tc6", .125, 7.6, .88}, TableRow{"tc6", .25, 14.6, 1.66},
+                    TableRow{"tc1", .025, kNone, .04}, TableRow{"tc1", .125, kNone, .21},
+                    TableRow{"tc1", .25, kNone, .51}, TableRow{"tc3", .025, kNone, .46},
+                    TableRow{"tc3", .125, kNone, 2.28}, TableRow{"tc3", .25, kNone, 4.51}),
+    [](const auto& test) {
+      return test.param.name + "_" +
+             std::to_string(static_cast<int>(std::lround(1000 * test.param.radius)));
+    });
+
+// --- space -------------------------------------------------------------------------------------
+
+TEST(Naseath, TurnsWithTheCurveIntoSpace) {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1.1, Vector3(1, 2, -0.5).normalized()).toRotationMatrix();
+  const Vector3 shift(3, -7, 11);
+  for (const auto& options : {literal(.125), repaired(.125)}) {
+    for (const std::string name : {"G1", "G2", "G3", "tc6"}) {
+      SCOPED_TRACE(name);
+      const BsplineCurve flat = curve_of_case(name);
+      std::vector<Point3> points = flat.control_points();
+      for (Point3& p : points) p = turn * p + shift;
+      const NaseathResult of_flat = smooth_naseath(flat, options);
+      const NaseathResult of_turned = smooth_naseath({flat.basis(), points}, options);
+      EXPECT_EQ(of_turned.passes, of_flat.passes);
+      std::vector<Point3> expected = of_flat.curve.control_points();
+      for (Point3& p : expected) p = turn * p + shift;
+      EXPECT_LE(farthest(of_turned.curve.control_points(), expected), 1e-8);
+    }
+  }
+}
+
+// The cubic through the points, chord-length knots, no curvature at the ends.
+BsplineCurve natural_cubic(const std::vector<Point3>& through) {
+  std::vector<double> knots = {0};
+  for (std::size_t i = 1; i < through.size(); ++i) {
+    knots.push_back(knots.back() + (through[i] - through[i - 1]).norm());
+  }
+  const BsplineBasis basis = BsplineBasis::clamped(3, knots);
+  const auto m = static_cast<Eigen::Index>(basis.size());
+  Eigen::MatrixXd equations = Eigen::MatrixXd::Zero(m, m);
+  Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(m, 3);
+  const auto set = [&](Eigen::Index row, double u, int derivative) {
+    double values[12];
+    const std::size_t span = basis.find_span(u);
+    basis.evaluate_derivatives(span, u, 2, values);
+    for (int j = 0; j < 4; ++j) {
+      equations(row, static_cast<Eigen::Index>(span) - 3 + j) = values[derivative * 4 + j];
+    }
+  };
+  for (std::size_t i = 0; i < through.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    set(row, knots[i], 0);
+    sides.row(row) = through[i].transpose();
+  }
+  set(m - 2, knots.front(), 2);
+  set(m - 1, knots.back(), 2);
+  const Eigen::MatrixXd solution = equations.partialPivLu().solve(sides);
+  std::vector<Point3> points;
+  for (Eigen::Index i = 0; i < m; ++i) points.emplace_back(solution.row(i).transpose());
+  return {basis, points};
+}
+
+// 60 points of a helix of radius 20, two of them wrong.
+BsplineCurve noisy_helix() {
+  std::vector<Point3> points;
+  for (int i = 0; i < 60; ++i) {
+    const double t = 4 * std::numbers::pi * i / 59;
+    points.emplace_back(20 * std::cos(t), 20 * std::sin(t), 3 * t);
+  }
+  points[20].z() += 0.2;
+  points[41] += Vector3(0.15, 0.1, 0);
+  return natural_cubic(points);
+}
+
+TEST(Naseath, OnANoisyHelixIsWorseLiterallyAndNotWithRepairs) {
+  const BsplineCurve helix = noisy_helix();
+  const double before = greatest_curvature(helix);
+  EXPECT_NEAR(before, .0678, 5e-5);
+  const std::vector<std::pair<double, double>> table = {{.025, .0680}, {.125, .0687}, {.25, .0696}};
+  for (const auto& [radius, expected] : table) {
+    SCOPED_TRACE(testing::Message() << "radius " << radius);
+    EXPECT_NEAR(greatest_curvature(smooth_naseath(helix, literal(radius)).curve), expected, 6e-5);
+    expect_no_worse(smooth_naseath(helix, repaired(radius)).curve, helix);
+  }
+}
+
+// --- what the repairs promise ------------------------------------------------------------------
+
+// 30 control points on a line, 1e-6 to and fro.
+BsplineCurve sawtooth() {
+  std::vector<Point3> points;
+  for (int i = 0; i < 30; ++i) points.emplace_back(3.4 * i, i % 2 ? -1e-6 : 1e-6, 0);
+  return uniform_cubic(points);
+}
+
+BsplineCurve u_shape() {
+  return uniform_cubic({{0, 30, 0},
+                        {0, 15, 0},
+                        {0, 4, 0},
+                        {1.2, .8, 0},
+                        {4, 0, 0},
+                        {6, 0, 0},
+                        {8.8, .8, 0},
+                        {10, 4, 0},
+                        {10, 15, 0},
+                        {10, 30, 0}});
+}
+
+// After 200 passes, as the table has it; it ends after 983 with points moved by .248 mm.
+TEST(Naseath, AddsWavesToASawtoothLiterallyAndNoneWithRepairs) {
+  const BsplineCurve line = sawtooth();
+  NaseathOptions options = literal(.25);
+  options.max_passes = 200;
+  const BsplineCurve waves = smooth_naseath(line, options).curve;
+  EXPECT_NEAR(farthest(waves.control_points(), line.control_points()), .19, .005);
+  EXPECT_NEAR(greatest_curvature(line), 3e-7, .5e-7);
+  EXPECT_NEAR(greatest_curvature(waves), 1e-2, .2e-2);
+
+  const NaseathResult result = smooth_naseath(line, repaired(.25));
+  expect_no_worse(result.curve, line);
+  EXPECT_LE(result.displacement, 1e-5);
+}
+
+TEST(Naseath, BendsAUShapeHarderLiterallyAndNotWithRepairs) {
+  const BsplineCurve u = u_shape();
+  EXPECT_NEAR(greatest_curvature(u), .393, 5e-4);
+  const std::vector<std::pair<double, double>> table = {
+      {.25, .395}, {1, .400}, {2, .407}, {4, .416}};
+  for (const auto& [radius, expected] : table) {
+    SCOPED_TRACE(testing::Message() << "radius " << radius);
+    EXPECT_NEAR(greatest_curvature(smooth_naseath(u, literal(radius)).curve), expected, 6e-4);
+    expect_no_worse(smooth_naseath(u, repaired(radius)).curve, u);
+  }
+}
+
+TEST(Naseath, BendsG3HarderLiterallyAndNotWithRepairs) {
+  const BsplineCurve curve = curve_of_case("G3");
+  EXPECT_GT(greatest_curvature(smooth_naseath(curve, literal(.25)).curve), .060);
+  expect_no_worse(smooth_naseath(curve, repaired(.25)).curve, curve);
+}
+
+// A line with noise that the tube holds.
+BsplineCurve noisy_line(int seed, double peak) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> noise(-peak, peak);
+  std::vector<Point3> points;
+  for (int i = 0; i < 30; ++i) points.emplace_back(3.4 * i, i > 0 && i < 29 ? noise(random) : 0, 0);
+  return natural_cubic(points);
+}
+
+TEST(Naseath, EndsOnALineWithNoiseBelowTheRadius) {
+  int endless = 0;
+  for (int seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const BsplineCurve line = noisy_line(seed, .2);
+    NaseathOptions options = literal(.25);
+    options.max_passes = 300;
+    endless += smooth_naseath(line, options).stop == NaseathStop::kPassLimit;
+    const NaseathResult result = smooth_naseath(line, repaired(.25));
+    EXPECT_LT(result.passes, 500);
+    EXPECT_LT(greatest_curvature(result.curve), 0.3 * greatest_curvature(line));
+  }
+  EXPECT_GT(endless, 0) << "the literal method always ended: the test does not test";
+}
+
+BsplineCurve random_curve(int seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> step(0, 1);
+  std::uniform_real_distribution<double> width(0.3, 3);
+  std::vector<double> knots = {0};
+  std::vector<Point3> points = {Point3::Zero()};
+  const int size = 5 + seed % 20;
+  while (static_cast<int>(points.size()) < size) {
+    const Vector3 across(step(random), step(random), seed % 2 ? step(random) : 0);
+    points.push_back(points.back() + Vector3(2, 0, 0) + across);
+  }
+  while (knots.size() + 2 < points.size()) knots.push_back(knots.back() + width(random));
+  return {BsplineBasis::clamped(3, knots), points};
+}
+
+TEST(Naseath, StaysInTheTubeAndBendsNoHarder) {
+  for (int seed = 0; seed < 150; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const BsplineCurve curve = random_curve(seed);
+    const double radius = std::pow(10.0, -3.0 + seed % 4);
+    NaseathOptions options = repaired(radius);
+    options.repairs.clamp_moves = seed % 3 == 0;
+    options.held_points = seed % 5 == 0 ? 2 : 0;
+    const NaseathResult result = smooth_naseath(curve, options);
+    EXPECT_LE(result.displacement, radius);
+    EXPECT_LE(greatest_displacement(curve, result.curve), result.displacement * (1 + 1e-9));
+    expect_no_worse(result.curve, curve);
+    EXPECT_EQ(static_cast<int>(result.remaining.size()), result.passes + 1);
+  }
+}
+
+TEST(Naseath, ExactBoundAloneHoldsTheTubeWhereFiveSamplesDoNot) {
+  const BsplineCurve curve = curve_of_case("tc5a");
+  const double radius = .125;
+  EXPECT_GT(greatest_displacement(curve, smooth_naseath(curve, literal(radius)).curve),
+            1.04 * radius);
+  NaseathOptions options = literal(radius);
+  options.repairs.exact_bound = true;
+  EXPECT_LE(greatest_displacement(curve, smooth_naseath(curve, options).curve), radius);
+}
+
+TEST(Naseath, GoesOnWhereTheTubeIsNotTouched) {
+  const BsplineCurve curve = curve_of_case("tc6");
+  NaseathOptions global = repaired(.25);
+  global.repairs.local_stop = false;
+  const auto mean = [](const BsplineCurve& of) {
+    return mean_curvature(parameter_samples(of, kNaseathSteps));
+  };
+  const double before = mean(curve);
+  const double with_global = mean(smooth_naseath(curve, global).curve);
+  const double with_local = mean(smooth_naseath(curve, repaired(.25)).curve);
+  EXPECT_LT(with_local, with_global - 0.01 * before);
+}
+
+TEST(Naseath, HeldPointsStay) {
+  const BsplineCurve curve = curve_of_case("tc5b");
+  for (const int held : {1, 2, 3}) {
+    for (NaseathOptions options : {literal(.125), repaired(.125)}) {
+      options.held_points = held;
+      const auto points = smooth_naseath(curve, options).curve.control_points();
+      const std::size_t m = points.size();
+      for (std::size_t i = 0; i < static_cast<std::size_t>(held); ++i) {
+        EXPECT_EQ(points[i], curve.control_points()[i]);
+        EXPECT_EQ(points[m - 1 - i], curve.control_points()[m - 1 - i]);
+      }
+      EXPECT_NE(points[10], curve.control_points()[10]);
+    }
+  }
+}
+
+TEST(Naseath, ClampedRipplesEndOnTheLineOfTheirNeighbours) {
+  // The bisector of the right angle at the origin meets the line of the two ends at (1, 1).
+  const ControlPolygon polygon{{{2, 0, 0}, {0, 0, 0}, {0, 2, 0}, {5, 5, 0}}, false};
+  const auto categories = categories_of(polygon);
+  const auto directions = naseath_directions(polygon, categories, end_legs(polygon));
+  EXPECT_NEAR(distance_to_target(polygon, categories, 1, directions[1]), std::sqrt(2.0), 1e-12);
+  // The end goes across its leg, upwards, to the line x = 0: it never gets there.
+  EXPECT_EQ(distance_to_target(polygon, categories, 0, Vector3(0, 1, 0)), 0);
+  // Obliquely it does.
+  const Vector3 oblique = Vector3(-1, 1, 0).normalized();
+  EXPECT_NEAR(distance_to_target(polygon, categories, 0, oblique), 2 * std::sqrt(2.0), 1e-12);
+}
+
+TEST(Naseath, LeavesAStraightLineAlone) {
+  const BsplineCurve line =
+      uniform_cubic({{0, 0, 0}, {1, 2, 3}, {2, 4, 6}, {3, 6, 9}, {5, 10, 15}});
+  for (const auto& options : {literal(.25), repaired(.25)}) {
+    const NaseathResult result = smooth_naseath(line, options);
+    EXPECT_EQ(result.stop, NaseathStop::kNothingToMove);
+    EXPECT_EQ(result.passes, 0);
+    EXPECT_EQ(result.curve.control_points(), line.control_points());
+  }
+}
+
+// --- rings -------------------------------------------------------------------------------------
+
+// A periodic cubic on uniform knots.
+BsplineCurve ring_of(std::vector<Point3> points) {
+  for (std::size_t i = 0; i < 3; ++i) points.push_back(points[i]);
+  std::vector<double> knots;
+  for (std::size_t i = 0; i < points.size() + 4; ++i) knots.push_back(static_cast<double>(i));
+  return {BsplineBasis(3, knots), points};
+}
+
+std::vector<Point3> circle_points(int count, double radius, double noise, int seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> off(-noise, noise);
+  std::vector<Point3> points;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * i / count;
+    const double r = radius + off(random);
+    points.emplace_back(r * std::cos(angle), r * std::sin(angle), 0);
+  }
+  return points;
+}
+
+TEST(NaseathRing, ThatTurnsOneWayIsNotShrunk) {
+  const BsplineCurve ring = ring_of(circle_points(24, 20, 0, 1));
+  ASSERT_TRUE(is_periodic_ring(ring));
+  const NaseathResult result = smooth_naseath(ring, literal(.25));
+  EXPECT_EQ(result.stop, NaseathStop::kNothingToMove);
+  EXPECT_EQ(result.curve.control_points(), ring.control_points());
+}
+
+TEST(NaseathRing, LosesItsNoiseAndStaysARing) {
+  for (int seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const BsplineCurve ring = ring_of(circle_points(60, 20, .2, seed));
+    const NaseathResult result = smooth_naseath(ring, repaired(.25));
+    EXPECT_TRUE(is_periodic_ring(result.curve));
+    EXPECT_LE(result.displacement, .25);
+    expect_no_worse(result.curve, ring);
+    const double circle = 2 * std::numbers::pi / 20;  // the bending of the ring without noise
+    EXPECT_LT(bending(parameter_samples(result.curve, 50)) - circle,
+              0.6 * (bending(parameter_samples(ring, 50)) - circle));
+  }
+}
+
+TEST(NaseathRing, DoesNotKnowWhereItStarts) {
+  for (int shift = 1; shift < 40; shift += 7) {
+    SCOPED_TRACE(testing::Message() << "shift " << shift);
+    std::vector<Point3> points = circle_points(40, 20, .3, 5);
+    const NaseathResult whole = smooth_naseath(ring_of(points), repaired(.2));
+    std::rotate(points.begin(), points.begin() + shift, points.end());
+    const NaseathResult shifted = smooth_naseath(ring_of(points), repaired(.2));
+    EXPECT_EQ(shifted.passes, whole.passes);
+    for (std::size_t i = 0; i < 40; ++i) {
+      const Point3& expected =
+          whole.curve.control_points()[(i + static_cast<std::size_t>(shift)) % 40];
+      EXPECT_LE((shifted.curve.control_points()[i] - expected).norm(), 1e-8);
+    }
+  }
+}
+
+// --- refusals ----------------------------------------------------------------------------------
+
+TEST(Naseath, RefusesWhatItCannotSmooth) {
+  const BsplineCurve line = curve_of_case("G1");
+  NaseathOptions options = repaired(0);
+  EXPECT_THROW((void)smooth_naseath(line, options), std::invalid_argument);
+  options = repaired(.1);
+  options.accuracy = 0;
+  EXPECT_THROW((void)smooth_naseath(line, options), std::invalid_argument);
+  options = repaired(.1);
+  options.precision = 0;
+  EXPECT_THROW((void)smooth_naseath(line, options), std::invalid_argument);
+  options = repaired(.1);
+  options.max_passes = 0;
+  EXPECT_THROW((void)smooth_naseath(line, options), std::invalid_argument);
+
+  options = repaired(.1);
+  const std::vector<Point3> points = line.control_points();
+  const BsplineCurve quadratic(BsplineBasis(2, {0, 0, 0, 1, 2, 3, 4, 5, 5, 5}), points);
+  EXPECT_THROW((void)smooth_naseath(quadratic, options), std::invalid_argument);
+  const BsplineCurve corner(BsplineBasis(3, {0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2}), points);
+  EXPECT_THROW((void)smooth_naseath(corner, options), std::invalid_argument);
+  const BsplineCurve unclamped(BsplineBasis(3, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}), points);
+  EXPECT_THROW((void)smooth_naseath(unclamped, options), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace batten::geometry
