@@ -27,9 +27,9 @@ namespace {
 constexpr double kAfterReading = 0.1;
 constexpr double kAfterSmoothing = 0.7;
 
-// Runs of more points are cut at once: their parts differ, and a run is worth no more than its
-// worst part. Shorter ones are cut where they would be kept as a whole.
-constexpr std::size_t kWholeAtMost = 3000;
+// Runs are cut where they would be kept as a whole: their parts differ. Runs of more points than
+// this are cut at once, which bounds the memory; every cut costs a joint that is not smooth.
+constexpr std::size_t kWholeAtMost = 200000;
 
 // Neighbours of a piece that are timed with it: the machine looks ahead over as many blocks to
 // stop, at most.

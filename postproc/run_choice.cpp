@@ -23,11 +23,12 @@ constexpr double kFewerKinks = 0.7;
 // What counts as a gain: so much less time, so many fewer blocks or bytes, an error so much
 // smaller.
 constexpr double kLessTime = 0.01;
+constexpr double kLessTimeForMore = 0.03;  // where it takes more blocks than before
 constexpr double kFewerBlocks = 0.9;
 constexpr double kFewerBytes = 0.9;
 constexpr double kNearer = 0.6;
 
-// More blocks than this multiple are no bargain for accuracy.
+// Who prefers accuracy may get this multiple of blocks for it.
 constexpr double kMoreBlocks = 1.5;
 
 // Errors within this factor are equal: then the smaller text is better.
@@ -38,14 +39,20 @@ constexpr double kEstimate = 1.25;
 
 double sum_of(const Times& times) { return times.as_set + times.without_merging; }
 
+double most_blocks_for_accuracy(Prefer prefer) {
+  return prefer == Prefer::kAccuracy ? kMoreBlocks : 1;
+}
+
 bool gains(const Candidate& c, const SmoothedRun& run, const RunContext& context, Prefer prefer) {
   const RunFacts& old = run.facts;
   const auto blocks = static_cast<double>(c.text.blocks);
   const auto blocks_before = static_cast<double>(context.blocks);
   const auto bytes = static_cast<double>(c.text.text.size());
-  const bool faster = sum_of(c.times) < (1 - kLessTime) * sum_of(old.times);
+  const double less = blocks > blocks_before ? kLessTimeForMore : kLessTime;
+  const bool faster = sum_of(c.times) < (1 - less) * sum_of(old.times);
   const bool smaller = blocks <= kFewerBlocks * blocks_before;
-  const bool nearer = c.error <= kNearer * old.error && blocks <= kMoreBlocks * blocks_before;
+  const bool nearer =
+      c.error <= kNearer * old.error && blocks <= most_blocks_for_accuracy(prefer) * blocks_before;
   if (prefer == Prefer::kSize) return bytes <= kFewerBytes * static_cast<double>(context.bytes);
   return faster || smaller || nearer;
 }
@@ -82,7 +89,8 @@ bool may_gain(const Prospect& prospect, const RunFacts& before, std::size_t bloc
   if (prefer == Prefer::kSize) return true;
   const double least = prospect.blocks / kEstimate / static_cast<double>(blocks);
   const bool faster = 2 * prospect.least_time < (1 - kLessTime) * sum_of(before.times);
-  const bool nearer = prospect.error <= kNearer * before.error && least <= kMoreBlocks;
+  const bool nearer =
+      prospect.error <= kNearer * before.error && least <= most_blocks_for_accuracy(prefer);
   return faster || least <= kFewerBlocks || nearer;
 }
 

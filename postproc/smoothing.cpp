@@ -9,6 +9,7 @@
 
 #include "gcode/reason.h"
 #include "geometry/fair.h"
+#include "geometry/numeric.h"
 #include "postproc/machine/cycle_time.h"
 #include "postproc/run_choice.h"
 #include "postproc/run_prospect.h"
@@ -220,9 +221,11 @@ class RunSmoother {
                          keep_corner_angle()};
     };
     if (options_.output != Form::kLines) {
-      for (const double multiple : {kArcs, kFineArcs}) {
-        const PlanOptions arcs = plan_with(multiple);
-        add(plan_arcs(run_, fair, arcs), arcs.max_deviation);
+      const PlanOptions arcs = plan_with(kArcs);
+      add(plan_arcs(run_, fair, arcs), arcs.max_deviation);
+      if (lies_flat()) {
+        const PlanOptions fine = plan_with(kFineArcs);
+        add(plan_arcs(run_, fair, fine), fine.max_deviation);
       }
       if (few_wanted()) {
         PlanOptions whole = plan_with(kArcs);  // the band around the vertices themselves
@@ -238,6 +241,18 @@ class RunSmoother {
       before = lines.max_deviation;
       add(plan_lines(run_, fair, lines), lines.max_deviation);
     }
+  }
+
+  // In a plane across an axis. Helices are dear to find, and a finer chain of them seldom pays.
+  [[nodiscard]] bool lies_flat() const {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double height = run_.points.front()[axis];
+      const auto at_height = [&](const geometry::Point3& p) {
+        return std::abs(p[axis] - height) <= geometry::kSamePlace;
+      };
+      if (std::ranges::all_of(run_.points, at_height)) return true;
+    }
+    return false;
   }
 
   // How near a form can be said to be to the path that was meant.
