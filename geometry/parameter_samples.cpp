@@ -8,12 +8,29 @@ namespace batten::geometry {
 
 namespace {
 
-ParameterSample sample_at(const BsplineCurve& curve, double u) {
-  const Vector3 first = curve.derivative_at(u, 1);
-  const double speed = first.norm();
-  const double across = first.cross(curve.derivative_at(u, 2)).norm();
-  return {u, 0, speed, speed > 0 ? across / (speed * speed * speed) : 0};
-}
+// One span of a cubic: its first two derivatives by the curve's parameter, as Bezier polynomials.
+class SpanDerivatives {
+ public:
+  SpanDerivatives(const CubicBezier& piece, double width) {
+    const auto& p = piece.control;
+    for (int i = 0; i < 3; ++i) first_[i] = 3 / width * (p[i + 1] - p[i]);
+    for (int i = 0; i < 2; ++i) second_[i] = 2 / width * (first_[i + 1] - first_[i]);
+  }
+
+  // At part t of the span.
+  [[nodiscard]] ParameterSample sample_at(double t, double parameter) const {
+    const double s = 1 - t;
+    const Vector3 first = s * s * first_[0] + 2 * s * t * first_[1] + t * t * first_[2];
+    const Vector3 second = s * second_[0] + t * second_[1];
+    const double speed = first.norm();
+    const double across = first.cross(second).norm();
+    return {parameter, 0, speed, speed > 0 ? across / (speed * speed * speed) : 0};
+  }
+
+ private:
+  Vector3 first_[3];
+  Vector3 second_[2];
+};
 
 }  // namespace
 
@@ -23,16 +40,19 @@ std::vector<ParameterSample> parameter_samples(const BsplineCurve& curve, int st
                                 " steps, expected 1 or more");
   }
   const std::vector<double> knots = curve.breakpoints();
-  std::vector<ParameterSample> samples = {sample_at(curve, knots.front())};
-  samples.reserve((knots.size() - 1) * static_cast<std::size_t>(steps) + 1);
-  for (std::size_t span = 0; span + 1 < knots.size(); ++span) {
+  const std::vector<CubicBezier> pieces = curve.bezier_pieces();
+  std::vector<ParameterSample> samples;
+  samples.reserve(pieces.size() * static_cast<std::size_t>(steps) + 1);
+  for (std::size_t span = 0; span < pieces.size(); ++span) {
     const double width = knots[span + 1] - knots[span];
+    const SpanDerivatives derivatives(pieces[span], width);
+    if (span == 0) samples.push_back(derivatives.sample_at(0, knots[0]));
     for (int i = 1; i <= steps; ++i) {
-      const double u = i == steps ? knots[span + 1] : knots[span] + width * i / steps;
-      ParameterSample next = sample_at(curve, u);
+      const double t = static_cast<double>(i) / steps;
+      const double u = i == steps ? knots[span + 1] : knots[span] + width * t;
+      ParameterSample next = derivatives.sample_at(t, u);
       const ParameterSample& last = samples.back();
-      next.distance =
-          last.distance + 0.5 * (last.speed + next.speed) * (next.parameter - last.parameter);
+      next.distance = last.distance + 0.5 * (last.speed + next.speed) * (u - last.parameter);
       samples.push_back(next);
     }
   }

@@ -19,8 +19,9 @@ struct ParameterSample {
   double curvature = 0;  // 1/mm; 0 where the speed is 0
 };
 
-// Every breakpoint once and `steps` equal steps in every span; distances by the trapezoidal
-// rule. Throws std::invalid_argument when steps < 1.
+// Every breakpoint once (seen from the span before it) and `steps` equal steps in every span;
+// distances by the trapezoidal rule. Requires degree 3 or less; throws std::invalid_argument
+// where steps < 1.
 [[nodiscard]] std::vector<ParameterSample> parameter_samples(const BsplineCurve& curve, int steps);
 
 // Mean over the samples, each counted once whatever the distance to its neighbours: a short span

@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <limits>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -131,10 +135,17 @@ INSTANTIATE_TEST_SUITE_P(
 
 // --- the tables of docs/algorithms/naseath.md, printed ------------------------------------------
 
+// One cell of the table; checks on the way what its row promises.
 std::string figures(const BsplineCurve& before, const NaseathOptions& options) {
   const auto result = smooth_naseath(before, options);
   const auto old_samples = parameter_samples(before, kNaseathSteps);
   const auto samples = parameter_samples(result.curve, kNaseathSteps);
+  if (options.repairs.exact_bound) {
+    EXPECT_LE(result.displacement, options.radius);
+  }
+  if (options.repairs.keep_best) {
+    EXPECT_LE(max_curvature(samples), max_curvature(old_samples) * (1 + 1e-8));
+  }
   return fmt::format("{:6.1f}{:6.2f}{:8.3f}{:5}{:7.3f}",
                      percent_less(mean_curvature(old_samples), mean_curvature(samples)),
                      percent_less(s_curve_time(old_samples, {}), s_curve_time(samples, {})),
@@ -177,6 +188,45 @@ TEST(NaseathFigures, ArePrinted) {
       }
       fmt::print("\n");
     }
+  }
+}
+
+// A wave with noise, so many control points.
+BsplineCurve noisy_wave(int count) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0, 0.02);
+  std::vector<geometry::Point3> points;
+  for (int i = 0; i < count; ++i) {
+    points.emplace_back(i, 5 * std::sin(i / 9.0) + noise(random), noise(random));
+  }
+  return geometry::uniform_cubic(points);
+}
+
+// Microseconds per control point and pass, the least of three runs.
+double cost_of(int count, const NaseathRepairs& repairs) {
+  NaseathOptions options;
+  options.radius = 0.05;
+  options.repairs = repairs;
+  const BsplineCurve curve = noisy_wave(count);
+  double least = std::numeric_limits<double>::infinity();
+  for (int run = 0; run < 3; ++run) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto result = smooth_naseath(curve, options);
+    const std::chrono::duration<double, std::micro> taken =
+        std::chrono::steady_clock::now() - start;
+    least = std::min(least, taken.count() / count / result.passes);
+  }
+  return least;
+}
+
+// The bound is loose, since other work may slow one size down and not the other.
+TEST(NaseathFigures, CostPerPassGrowsWithThePoints) {
+  for (const auto& repairs : {NaseathRepairs::none(), NaseathRepairs()}) {
+    const double few = cost_of(200, repairs);
+    const double many = cost_of(2000, repairs);
+    fmt::print("{}: {:.2f} us per control point and pass at 200 points, {:.2f} at 2000\n",
+               repairs.keep_best ? "repaired" : "literal", few, many);
+    EXPECT_LT(many, 4 * few);
   }
 }
 
