@@ -1,10 +1,8 @@
 #include "geometry/corner_blend.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -12,7 +10,6 @@
 #include "geometry/cubic_polynomial.h"
 #include "geometry/extrema.h"
 #include "geometry/numeric.h"
-#include "geometry/path.h"
 
 namespace batten::geometry {
 namespace {
@@ -31,6 +28,8 @@ class PiecewiseCurve {
     for (const CubicBezier& piece : curve.bezier_pieces()) {
       pieces_.emplace_back(piece, frame.vertex);
     }
+    places_ = with_even_places(turning_places(), 0, static_cast<double>(pieces_.size()),
+                               kPlacesPerSpan * static_cast<int>(pieces_.size()));
   }
 
   // Greatest distance from the nearer leg.
@@ -39,24 +38,44 @@ class PiecewiseCurve {
       const Vector3 from = from_vertex(s);
       return std::min(from_a(from), from_b(from));
     };
-    return greatest(away, 0, end(), samples()).value;
+    return greatest(away, places_).value;
   }
 
   // With its distance from the vertex as a negative value.
   Extremum nearest_to_vertex() const {
-    return greatest([this](double s) { return -from_vertex(s).norm(); }, 0, end(), samples());
+    return greatest([this](double s) { return -from_vertex(s).norm(); }, places_);
   }
 
   double in_order(const Extremum& nearest) const {
     const auto before = [this](double s) { return from_a(from_vertex(s)); };
     const auto after = [this](double s) { return from_b(from_vertex(s)); };
-    return std::max({-nearest.value, greatest(before, 0, nearest.at, samples()).value,
-                     greatest(after, nearest.at, end(), samples()).value});
+    const auto first_after = std::upper_bound(places_.begin(), places_.end(), nearest.at);
+    std::vector<double> to_nearest(places_.begin(), first_after);
+    to_nearest.push_back(nearest.at);
+    std::vector<double> from_nearest = {nearest.at};
+    from_nearest.insert(from_nearest.end(), first_after, places_.end());
+    return std::max(
+        {-nearest.value, greatest(before, to_nearest).value, greatest(after, from_nearest).value});
   }
 
  private:
-  double end() const { return static_cast<double>(pieces_.size()); }
-  int samples() const { return kSamplesPerSpan * static_cast<int>(pieces_.size()); }
+  // Where a distance from a leg has a smooth extremum or a kink: where the curve is parallel to a
+  // leg, beside the vertex, or as near to the one leg as to the other. Kinks can be too narrow
+  // for even places, and a search for the best curve would find those.
+  std::vector<double> turning_places() const {
+    const Vector3 across_a = frame_.outward_a();
+    const Vector3 across_b = frame_.outward_b();
+    std::vector<double> places;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      const auto offset = static_cast<double>(i);
+      pieces_[i].append_extrema(across_a, offset, places);
+      pieces_[i].append_extrema(across_b, offset, places);
+      pieces_[i].append_crossings(frame_.a, offset, places);
+      pieces_[i].append_crossings(frame_.b, offset, places);
+      pieces_[i].append_crossings(frame_.a - frame_.b, offset, places);
+    }
+    return places;
+  }
 
   Vector3 from_vertex(double s) const {
     const std::size_t i = std::min(static_cast<std::size_t>(s), pieces_.size() - 1);
@@ -67,6 +86,7 @@ class PiecewiseCurve {
 
   const CornerFrame& frame_;
   std::vector<CubicPolynomial> pieces_;
+  std::vector<double> places_;  // increasing, from 0 to the number of pieces
 };
 
 }  // namespace

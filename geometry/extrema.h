@@ -8,9 +8,9 @@
 
 namespace batten::geometry {
 
-// Samples per span of a cubic: its distance from a line has two extrema, its derivatives by
-// length a few more, so that neighbouring extrema have samples between them.
-inline constexpr int kSamplesPerSpan = 32;
+// Even places per span of a cubic: its distance from a line has two extrema, its derivatives by
+// length a few more, so that neighbouring smooth extrema have places between them.
+inline constexpr int kPlacesPerSpan = 16;
 
 struct Extremum {
   double at;
@@ -46,27 +46,36 @@ template <typename Function>
   return at_left >= at_right ? Extremum{left, at_left} : Extremum{right, at_right};
 }
 
-// The greatest value of f on [low, high], ends included: sampled in so many steps, then refined
-// around each sample that is no lower than its neighbours and near enough to the highest that
-// it may hide more. Where the answer matters only if it is above `floor`, less is refined.
+// `places` and steps + 1 even ones from low to high, in order.
+[[nodiscard]] inline std::vector<double> with_even_places(std::vector<double> places, double low,
+                                                          double high, int steps) {
+  for (int i = 0; i < steps; ++i) places.push_back(low + (high - low) * i / steps);
+  places.push_back(high);
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+// The greatest value of f from the first to the last of `places`, which increase: of f there, and
+// refined around each place that is no lower than its neighbours and near enough to the highest
+// that it may hide more. A kink or a narrow peak must be among the places to be found surely.
+// Where the answer matters only if it is above `floor`, less is refined.
 template <typename Function>
-[[nodiscard]] Extremum greatest(const Function& f, double low, double high, int steps,
+[[nodiscard]] Extremum greatest(const Function& f, const std::vector<double>& places,
                                 double floor = -std::numeric_limits<double>::infinity()) {
-  const auto place = [&](int i) { return i == steps ? high : low + (high - low) * i / steps; };
   std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(steps) + 1);
-  for (int i = 0; i <= steps; ++i) values.push_back(f(place(i)));
+  values.reserve(places.size());
+  for (const double place : places) values.push_back(f(place));
   const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
-  Extremum best{place(static_cast<int>(highest - values.begin())), *highest};
-  // Between samples a smooth maximum rises by little of what f rises over its whole way there.
+  Extremum best{places[static_cast<std::size_t>(highest - values.begin())], *highest};
+  // Between places a smooth maximum rises by little of what f rises over its whole way there.
   const double worth = std::max(best.value, floor) - 0.1 * (best.value - *lowest);
-  for (int i = 0; i <= steps; ++i) {
-    const auto k = static_cast<std::size_t>(i);
+  const std::size_t last = places.size() - 1;
+  for (std::size_t i = 0; i <= last; ++i) {
     const bool peak =
-        (i == 0 || values[k - 1] <= values[k]) && (i == steps || values[k + 1] <= values[k]);
-    if (!peak || values[k] < worth) continue;
+        (i == 0 || values[i - 1] <= values[i]) && (i == last || values[i + 1] <= values[i]);
+    if (!peak || values[i] < worth) continue;
     const Extremum refined =
-        golden_maximum(f, place(i == 0 ? 0 : i - 1), place(i == steps ? steps : i + 1));
+        golden_maximum(f, places[i - (i > 0 ? 1 : 0)], places[i + (i < last ? 1 : 0)]);
     if (refined.value > best.value) best = refined;
   }
   return best;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "geometry/cubic_polynomial.h"
 #include "geometry/extrema.h"
@@ -44,7 +46,11 @@ double feed_estimate(const BsplineCurve& curve, const KinematicLimits& limits) {
   for (const CubicBezier& bezier : curve.bezier_pieces()) {
     const CubicPolynomial piece(bezier);
     const auto at = [&](double t) { return cubed_slowness(piece, t, limits); };
-    slowest = std::max(slowest, greatest(at, 0, 1, kSamplesPerSpan, slowest).value);
+    // Where the parameter runs slowly, the derivatives by length have narrow peaks.
+    std::vector<double> places;
+    piece.append_speed_extrema(0, places);
+    places = with_even_places(std::move(places), 0, 1, kPlacesPerSpan);
+    slowest = std::max(slowest, greatest(at, places, slowest).value);
   }
   return 1 / std::cbrt(slowest);
 }

@@ -232,13 +232,12 @@ std::variant<OzcanBlend, NoBlend> ozcan_optimum(const CornerFrame& frame, const 
                                                 const KinematicLimits& limits) {
   // The longer leg first, so that a corner and the same corner reversed have one search.
   if (legs.before[2] < legs.after[2]) {
-    const auto other =
-        ozcan_optimum(reversed(frame), {legs.after, legs.before}, tolerance, kind, limits);
+    auto other = ozcan_optimum(reversed(frame), {legs.after, legs.before}, tolerance, kind, limits);
     if (const auto* blend = std::get_if<OzcanBlend>(&other)) return turned_back(*blend);
     return other;
   }
   const Problem problem = checked_problem(frame, legs, tolerance, kind, limits);
-  const auto usual = usual_of(problem);
+  auto usual = usual_of(problem);
   const auto* start = std::get_if<OzcanBlend>(&usual);
   if (start == nullptr) return usual;
   return searched(problem, *start, legs.before == legs.after);

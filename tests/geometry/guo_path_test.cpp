@@ -115,7 +115,9 @@ TEST(GuoPath, GivesTheFiguresOfTheButterfly) {
 }
 
 TEST(GuoPath, GivesTheFiguresOfTheHexagon) {
-  const GuoPath literal = guo_path(hexagon(), GuoOptions::literal(0.05, 0.1));
+  GuoOptions options = GuoOptions::literal(0.05, 0.1);
+  options.closed = true;  // changes nothing: the paper leaves the seam sharp
+  const GuoPath literal = guo_path(hexagon(), options);
   ASSERT_EQ(blends_of(literal).size(), 5u);
   for (const GuoBlend& blend : blends_of(literal)) {
     EXPECT_NEAR(blend.spacing / 0.084102, 1, 1e-4);
@@ -196,6 +198,19 @@ TEST(GuoPath, PassesOverPointsThatAreOnePlace) {
   EXPECT_EQ(path.corners[0].vertex, 2u);
   EXPECT_EQ(path.corners[1].vertex, 4u);
   EXPECT_EQ(blends_of(path).size(), 2u);
+}
+
+TEST(GuoPath, EndsOnItsOwnPointsWhereBlendsTakeAllOfTheLegs) {
+  std::mt19937 random(5);
+  for (int seed = 0; seed < 50; ++seed) {
+    const Motion motion = random_motion(random);
+    const Corner corner = motion(corner_of(10 + seed, 1, 1));
+    const std::vector<Point3> points = {corner.before, corner.vertex, corner.after};
+    const GuoPath path = guo_path(points, fair(10, ToleranceKind::kPath));
+    EXPECT_LE(path.pieces.size(), 4u);
+    EXPECT_EQ(start_point(path.pieces.front()), points.front());
+    EXPECT_EQ(end_point(path.pieces.back()), points.back());
+  }
 }
 
 TEST(GuoPath, TakesAnyNumberOfPoints) {

@@ -356,7 +356,7 @@ TEST(OzcanCorner, HoldsItsPromisesAnywhereInSpace) {
   std::mt19937 random(6);
   KinematicLimits limits;
   limits.feed = 1000;
-  for (int seed = 0; seed < 30; ++seed) {
+  for (int seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(testing::Message() << "corner " << seed);
     const RandomCorner given = random_corner(random, seed);
     const Corner corner = random_motion(random)(given.flat);
