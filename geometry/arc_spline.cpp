@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -18,18 +19,24 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// So many chains are followed at once.
-constexpr std::size_t kWidth = 24;
+// How much is looked at. Half of it all gives some percent more arcs.
+struct Effort {
+  std::size_t width;  // chains that are followed at once
+  int of_one_place;   // and of them, so many of one place, so that they are not all alike
+  // Where an arc ends, as a part of its farthest reach: at the very end it leans on the edge of
+  // the band, and the next one has no room.
+  std::span<const double> parts;
+  // The arcs to one end, by their place in the range of curvatures.
+  std::span<const double> in_range;
+};
 
-// Of one place at most so many, so that the ones followed are not all alike.
-constexpr int kOfOnePlace = 4;
+constexpr std::array kQuickParts = {1.0, 0.93, 0.84, 0.74, 0.6, 0.4};
+constexpr std::array kQuickInRange = {0.05, 0.3, 0.5, 0.7, 0.95};
+constexpr Effort kQuick = {8, 2, kQuickParts, kQuickInRange};
 
-// Where an arc ends, as a part of its farthest reach: at the very end it leans on the edge of
-// the band, and the next one has no room.
-constexpr std::array kParts = {1.0, 0.95, 0.9, 0.84, 0.77, 0.7, 0.6, 0.5, 0.35};
-
-// The arcs to one end, by their place in the range of curvatures.
-constexpr std::array kInRange = {0.03, 0.15, 0.3, 0.42, 0.5, 0.58, 0.7, 0.85, 0.97};
+constexpr std::array kManyParts = {1.0, 0.95, 0.9, 0.84, 0.77, 0.7, 0.6, 0.5, 0.35};
+constexpr std::array kManyInRange = {0.03, 0.15, 0.3, 0.42, 0.5, 0.58, 0.7, 0.85, 0.97};
+constexpr Effort kThorough = {12, 3, kManyParts, kManyInRange};
 
 // Directions in which a chain may start, about the given one, radians.
 constexpr std::array kStarts = {0.0,   1e-4, -1e-4, 3e-4, -3e-4, 1e-3, -1e-3, 3e-3,
@@ -77,6 +84,7 @@ class Search {
   Search(std::span<const Point2> points, const ArcSplineOptions& options,
          std::size_t at_most = kNone - 1)
       : options_(options),
+        effort_(options.thorough ? kThorough : kQuick),
         band_(points, {options.tolerance, 1 / options.min_radius, options.max_sweep}),
         count_(band_.samples().size()),
         best_arcs_(at_most + 1) {}
@@ -144,7 +152,7 @@ class Search {
     std::stable_sort(level.begin(), level.end(), [this](std::size_t a, std::size_t b) {
       return nodes_[a].score > nodes_[b].score;
     });
-    if (level.size() > kWidth) level.resize(kWidth);
+    if (level.size() > effort_.width) level.resize(effort_.width);
   }
 
   [[nodiscard]] Point2 rounded(const Point2& p) const {
@@ -186,7 +194,7 @@ class Search {
     const double start = samples[next - 1].station;
     const double reach = samples[next + fan.ranges.size() - 1].station - start;
     std::size_t last = count_;
-    for (const double part : kParts) {
+    for (const double part : effort_.parts) {
       const std::size_t j = sample_at(start + part * reach, next, next + fan.ranges.size() - 1);
       if (j == last || j + 1 == count_) continue;
       last = j;
@@ -198,7 +206,7 @@ class Search {
         }
       };
       if (range.low < 0 && range.high > 0) add(0);
-      for (const double place : kInRange) {
+      for (const double place : effort_.in_range) {
         const double curvature = range.low + place * (range.high - range.low);
         if (std::abs(curvature) * options_.max_radius > 1) add(curvature);
       }
@@ -217,18 +225,25 @@ class Search {
   }
 
   // Keeps the best of the found ones that hold.
-  void follow(std::vector<Node>& found, std::size_t arcs) {
-    std::stable_sort(found.begin(), found.end(),
-                     [](const Node& a, const Node& b) { return a.score > b.score; });
-    std::vector<int> of_place(count_ + 1, 0);
+  void follow(const std::vector<Node>& found, std::size_t arcs) {
+    std::vector<std::size_t> order(found.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&found](std::size_t a, std::size_t b) {
+      return found[a].score > found[b].score;
+    });
+    std::vector<std::pair<std::size_t, int>> of_place;  // how many were kept of a place
     std::size_t kept = 0;
-    for (Node& node : found) {
-      if (kept == kWidth) break;
-      if (of_place[node.entry.next] == kOfOnePlace) continue;
+    for (const std::size_t i : order) {
+      if (kept == effort_.width) break;
+      Node node = found[i];
+      const std::size_t place = node.entry.next;
+      auto same = std::ranges::find(of_place, place, &std::pair<std::size_t, int>::first);
+      if (same != of_place.end() && same->second == effort_.of_one_place) continue;
       const BandEntry& from = nodes_[static_cast<std::size_t>(node.before)].entry;
       const auto passed = band_.passed(from, node.arc);
       if (!passed || *passed < from.next) continue;
-      ++of_place[node.entry.next];
+      if (same == of_place.end()) same = of_place.insert(same, {place, 0});
+      ++same->second;
       node.entry.next = *passed;
       add_to(arcs, node);
       ++kept;
@@ -375,6 +390,7 @@ class Search {
   }
 
   const ArcSplineOptions& options_;
+  const Effort& effort_;
   PlaneBand band_;
   std::size_t count_;
   std::vector<Node> nodes_;

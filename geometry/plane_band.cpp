@@ -40,13 +40,12 @@ constexpr double kFanPart = 0.97;
 // from | |place - centre| - 1 / |k| | <= e.
 class ClosingFan {
  public:
-  ClosingFan(const BandEntry& entry, const PlaneBand::Limits& limits)
+  ClosingFan(const BandEntry& entry, const PlaneBand::Limits& limits, double steepest)
       : place_(entry.place),
         along_(unit_vector(entry.angle)),
         tolerance_(kFanPart * limits.tolerance),
         range_{-limits.max_curvature, limits.max_curvature},
-        // A place seen at half the sweep from the tangent is where the arc has turned by it.
-        steepest_(std::tan(limits.max_sweep / 2)) {}
+        steepest_(steepest) {}
 
   // False when no arc passes this place as well; the range stays as it was.
   bool narrow(const Point2& sample) {
@@ -142,7 +141,8 @@ double distance_to_segment(const Point2& p, const Point2& a, const Point2& b) {
 
 }  // namespace
 
-PlaneBand::PlaneBand(std::span<const Point2> points, const Limits& limits) : limits_(limits) {
+PlaneBand::PlaneBand(std::span<const Point2> points, const Limits& limits)
+    : limits_(limits), steepest_(std::tan(limits.max_sweep / 2)) {
   const std::size_t n = points.size();
   std::vector<double> turns(n, 0);
   for (std::size_t i = 1; i + 1 < n; ++i) {
@@ -185,7 +185,7 @@ void PlaneBand::add_edge(const Point2& from, const Point2& to, double turn_befor
 
 ArcFan PlaneBand::fan(const BandEntry& entry) const {
   ArcFan fan;
-  ClosingFan closing(entry, limits_);
+  ClosingFan closing(entry, limits_, steepest_);
   for (std::size_t i = entry.next; i < samples_.size() && closing.narrow(samples_[i].place); ++i) {
     fan.ranges.push_back(closing.range());
   }
@@ -193,7 +193,7 @@ ArcFan PlaneBand::fan(const BandEntry& entry) const {
 }
 
 ArcReach PlaneBand::reach(const BandEntry& entry) const {
-  ClosingFan closing(entry, limits_);
+  ClosingFan closing(entry, limits_, steepest_);
   std::size_t i = entry.next;
   while (i < samples_.size() && closing.narrow(samples_[i].place)) ++i;
   return {i, closing.width()};

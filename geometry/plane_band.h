@@ -75,6 +75,7 @@ class PlaneBand {
   void add_edge(const Point2& from, const Point2& to, double turn_before, double turn_after);
 
   Limits limits_;
+  double steepest_;  // a place seen at half the sweep from the tangent: the arc has turned by it
   std::vector<Sample> samples_;
 };
 

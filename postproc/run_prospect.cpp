@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/curve_pieces.h"
+
 namespace batten::postproc {
 
 using geometry::Point3;
@@ -63,6 +65,11 @@ double chords_for(const geometry::FairPath& fair, double deviation, double min_l
     }
   }
   return chords;
+}
+
+double arcs_for(const geometry::FairPath& fair) {
+  const geometry::CurvePieces pieces(fair.curve, fair.curve.first(), fair.curve.last());
+  return 3.0 * static_cast<double>(pieces.straight_runs().size());
 }
 
 }  // namespace batten::postproc

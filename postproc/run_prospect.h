@@ -24,4 +24,8 @@ namespace batten::postproc {
 [[nodiscard]] double chords_for(const geometry::FairPath& fair, double deviation,
                                 double min_length);
 
+// The least number of arcs and lines that the fair curve takes, by its straight parts: each is a
+// line, and what joins two of them gently takes two arcs or more.
+[[nodiscard]] double arcs_for(const geometry::FairPath& fair);
+
 }  // namespace batten::postproc

@@ -213,6 +213,14 @@ class RunSmoother {
     return hopeless;
   }
 
+  // Corners between lines, each of which would be more arcs than it has blocks: chords do as well.
+  [[nodiscard]] bool arcs_are_hopeless(const geometry::FairPath& fair) {
+    const bool hopeless = options_.prefer == Prefer::kTime && options_.output == Form::kAuto &&
+                          arcs_for(fair) > static_cast<double>(context_.blocks);
+    passed_over_ = passed_over_ || hopeless;
+    return hopeless;
+  }
+
   // `share` of the tolerance belongs to the form; `left` is what the curve leaves.
   void add_candidates(const geometry::FairPath& fair, double share, double left) {
     const auto plan_with = [&](double multiple) {
@@ -220,7 +228,7 @@ class RunSmoother {
                          context_.before.plane, options_.prefer,  std::min(left, multiple * share),
                          keep_corner_angle()};
     };
-    if (options_.output != Form::kLines) {
+    if (options_.output != Form::kLines && !arcs_are_hopeless(fair)) {
       const PlanOptions arcs = plan_with(kArcs);
       add(plan_arcs(run_, fair, arcs), arcs.max_deviation);
       if (lies_flat()) {

@@ -151,7 +151,8 @@ TEST(ArcSpline, LinesStayLinesAndTheirCornerAKink) {
 TEST(ArcSpline, ABluntCornerIsRoundedInTheBand) {
   const double turn = 20 * kPi / 180;
   const std::vector<Point2> points = {{0, 0}, {10, 0}, Point2(10, 0) + 10 * unit_vector(turn)};
-  const ArcSplineOptions options = options_for(points);
+  ArcSplineOptions options = options_for(points);
+  options.thorough = true;
   const auto spline = fit_arc_spline(points, options);
   ASSERT_TRUE(spline);
   expect_sound(*spline, points, options);
@@ -198,13 +199,19 @@ TEST(ArcSpline, NeedsFewMoreArcsThanTheLeast) {
     const auto points = along(row.shape, row.from, row.to, 20000);
     ArcSplineOptions options = options_for(points);
     options.tolerance = 0.005;
-    const auto spline = fit_arc_spline(points, options);
-    ASSERT_TRUE(spline) << row.name;
-    expect_sound(*spline, points, options);
     const double least = least_arcs(row.shape, row.from, row.to, options.tolerance);
-    std::cout << row.name << ": least " << least << ", found " << spline->pieces.size() << "\n";
-    EXPECT_EQ(spline->kinks, 0) << row.name;
-    EXPECT_LE(static_cast<double>(spline->pieces.size()), 1.15 * least + 2) << row.name;
+    std::cout << row.name << ": least " << least;
+    for (const bool thorough : {false, true}) {
+      options.thorough = thorough;
+      const auto spline = fit_arc_spline(points, options);
+      ASSERT_TRUE(spline) << row.name;
+      expect_sound(*spline, points, options);
+      std::cout << (thorough ? ", thorough " : ", quick ") << spline->pieces.size();
+      EXPECT_EQ(spline->kinks, 0) << row.name;
+      const double most = (thorough ? 1.15 : 1.25) * least + 2;
+      EXPECT_LE(static_cast<double>(spline->pieces.size()), most) << row.name;
+    }
+    std::cout << "\n";
   }
 }
 
@@ -222,7 +229,8 @@ TEST(ArcSpline, HoldsTheBandOfNoisyRandomPaths) {
       points.emplace_back(u + noise * any(random),
                           a * std::sin(u / 4) + b * std::cos(u / 7) + noise * any(random));
     }
-    const ArcSplineOptions options = options_for(points);
+    ArcSplineOptions options = options_for(points);
+    options.thorough = round % 2 == 0;
     const auto spline = fit_arc_spline(points, options);
     ASSERT_TRUE(spline) << round;
     expect_sound(*spline, points, options);

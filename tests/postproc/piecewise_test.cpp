@@ -25,18 +25,18 @@ std::string half_coarse_program(int lines) {
 }
 
 TEST(Piecewise, RewritesThePartThatGainsAndKeepsTheOther) {
-  const std::string text = half_coarse_program(2000);
+  const std::string text = half_coarse_program(700);
   const SmoothResult result = smoothed(text, options_for("linuxcnc"));
   ASSERT_TRUE(result.proved);
   EXPECT_GE(rewritten_runs(result), 1U);
   EXPECT_LT(result.blocks_out, result.blocks_in * 3 / 4);
   expect_rest_copied(text, result);
   const std::vector<std::string> lines = lines_of(text);
-  EXPECT_NE(result.text.find(lines[3500]), std::string::npos) << "a coarse line";
+  EXPECT_NE(result.text.find(lines[1200]), std::string::npos) << "a coarse line";
 }
 
 TEST(Piecewise, TellsTheLinesAndTheReasonOfEveryPart) {
-  const SmoothResult result = smoothed(half_coarse_program(2000), options_for("linuxcnc"));
+  const SmoothResult result = smoothed(half_coarse_program(700), options_for("linuxcnc"));
   std::uint32_t next = 5;  // the head has four lines
   for (const RunReport& run : result.runs) {
     if (run.last_line < next) continue;
@@ -44,16 +44,16 @@ TEST(Piecewise, TellsTheLinesAndTheReasonOfEveryPart) {
     EXPECT_EQ(run.status == RunStatus::kKept, !run.reason.empty());
     next = run.last_line + 1;
   }
-  EXPECT_EQ(next, 5U + 4000U);
+  EXPECT_EQ(next, 5U + 1400U);
 }
 
 TEST(Piecewise, IsNotSlowerAsAWhole) {
-  const SmoothResult result = smoothed(half_coarse_program(2000), options_for("linuxcnc"));
+  const SmoothResult result = smoothed(half_coarse_program(700), options_for("linuxcnc"));
   EXPECT_LE(result.time_after_s, 1.005 * result.time_before_s);
 }
 
 TEST(Piecewise, GivesTheSameBytesForAnyNumberOfThreads) {
-  const std::string text = half_coarse_program(2500);
+  const std::string text = half_coarse_program(800);
   SmoothOptions options = options_for("linuxcnc");
   const SmoothResult one = smoothed(text, options);
   options.threads = 2;
