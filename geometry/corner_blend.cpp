@@ -28,7 +28,7 @@ class PiecewiseCurve {
     for (const CubicBezier& piece : curve.bezier_pieces()) {
       pieces_.emplace_back(piece, frame.vertex);
     }
-    places_ = with_even_places(turning_places(), 0, static_cast<double>(pieces_.size()),
+    places_ = with_even_places(kinks(), 0, static_cast<double>(pieces_.size()),
                                kPlacesPerSpan * static_cast<int>(pieces_.size()));
   }
 
@@ -59,17 +59,13 @@ class PiecewiseCurve {
   }
 
  private:
-  // Where a distance from a leg has a smooth extremum or a kink: where the curve is parallel to a
-  // leg, beside the vertex, or as near to the one leg as to the other. Kinks can be too narrow
-  // for even places, and a search for the best curve would find those.
-  std::vector<double> turning_places() const {
-    const Vector3 across_a = frame_.outward_a();
-    const Vector3 across_b = frame_.outward_b();
+  // Where a distance from the legs has a kink: beside the vertex, or as near to the one leg as to
+  // the other. Kinks can be too narrow for even places, and a search for the best curve would
+  // find those.
+  std::vector<double> kinks() const {
     std::vector<double> places;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const auto offset = static_cast<double>(i);
-      pieces_[i].append_extrema(across_a, offset, places);
-      pieces_[i].append_extrema(across_b, offset, places);
       pieces_[i].append_crossings(frame_.a, offset, places);
       pieces_[i].append_crossings(frame_.b, offset, places);
       pieces_[i].append_crossings(frame_.a - frame_.b, offset, places);

@@ -24,19 +24,14 @@ class CubicPolynomial {
   [[nodiscard]] Vector3 second(double t) const { return 2 * c2_ + 6 * t * c3_; }
   [[nodiscard]] Vector3 third() const { return 6 * c3_; }
 
-  // Appends offset + t for the places t in [0, 1] where the value has no part along `direction`,
-  // or where its part along `direction` is greatest or least.
+  // Appends offset + t for the places t in [0, 1] where the value has no part along `direction`.
   void append_crossings(const Vector3& direction, double offset,
                         std::vector<double>& places) const {
     append_cubic_roots(c0_.dot(direction), c1_.dot(direction), c2_.dot(direction),
                        c3_.dot(direction), offset, places);
   }
-  void append_extrema(const Vector3& direction, double offset, std::vector<double>& places) const {
-    append_cubic_roots(c1_.dot(direction), 2 * c2_.dot(direction), 3 * c3_.dot(direction), 0,
-                       offset, places);
-  }
 
-  // The same where the first derivative is shortest or longest: where it is normal to the second.
+  // The same where the first derivative is shortest or longest: normal to the second.
   void append_speed_extrema(double offset, std::vector<double>& places) const {
     append_cubic_roots(c1_.dot(c2_), 3 * c1_.dot(c3_) + 2 * c2_.squaredNorm(), 9 * c2_.dot(c3_),
                        9 * c3_.squaredNorm(), offset, places);

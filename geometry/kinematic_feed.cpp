@@ -39,6 +39,21 @@ double cubed_slowness(const CubicPolynomial& piece, double t, const KinematicLim
                    by_acceleration * std::sqrt(by_acceleration), by_jerk});
 }
 
+// Even places, and more where the parameter runs slowly: there the derivatives by length have
+// several peaks, as wide as the way in t on which the speed |C'| doubles.
+std::vector<double> sampled_places(const CubicPolynomial& piece) {
+  std::vector<double> slow;
+  piece.append_speed_extrema(0, slow);
+  std::vector<double> places;
+  for (const double t : slow) {
+    const double turn = piece.second(t).norm();
+    const double width = turn > 0 ? piece.first(t).norm() / turn : 1;
+    if (width * kPlacesPerSpan > 2) continue;  // even places are close enough
+    for (int k = -12; k <= 12; ++k) places.push_back(std::clamp(t + k * width / 4, 0.0, 1.0));
+  }
+  return with_even_places(std::move(places), 0, 1, kPlacesPerSpan);
+}
+
 }  // namespace
 
 double feed_estimate(const BsplineCurve& curve, const KinematicLimits& limits) {
@@ -46,11 +61,7 @@ double feed_estimate(const BsplineCurve& curve, const KinematicLimits& limits) {
   for (const CubicBezier& bezier : curve.bezier_pieces()) {
     const CubicPolynomial piece(bezier);
     const auto at = [&](double t) { return cubed_slowness(piece, t, limits); };
-    // Where the parameter runs slowly, the derivatives by length have narrow peaks.
-    std::vector<double> places;
-    piece.append_speed_extrema(0, places);
-    places = with_even_places(std::move(places), 0, 1, kPlacesPerSpan);
-    slowest = std::max(slowest, greatest(at, places, slowest).value);
+    slowest = std::max(slowest, greatest(at, sampled_places(piece), slowest).value);
   }
   return 1 / std::cbrt(slowest);
 }

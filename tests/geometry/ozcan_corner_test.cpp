@@ -333,6 +333,32 @@ TEST(FeedEstimate, IsWhatDifferencesByLengthSay) {
   }
 }
 
+// Almost a cusp, away from the middle: the peak is a hundredth of the parameter wide.
+TEST(FeedEstimate, SeesNarrowPeaks) {
+  const BsplineCurve curve(BsplineBasis::clamped(3, {0, 1}),
+                           {{0, 0, 0}, {10, 1.01, 0}, {-1.08, 1, 0}, {8, 0.3, 0}});
+  KinematicLimits limits;
+  limits.feed = 1e6;
+  limits.speed = limits.acceleration = Vector3::Constant(1e12);
+  double slowest = 0;
+  constexpr int kSamples = 200000;
+  for (int i = 0; i <= kSamples; ++i) {
+    const double t = static_cast<double>(i) / kSamples;
+    const Vector3 d1 = curve.derivative_at(t, 1);
+    const Vector3 d2 = curve.derivative_at(t, 2);
+    const Vector3 d3 = curve.derivative_at(t, 3);
+    // x_ss = d2/v^2 - d1 (d1.d2)/v^4, differentiated by t once more and divided by v.
+    const double w = d1.squaredNorm();
+    const double p = d1.dot(d2);
+    const double dp = d2.squaredNorm() + d1.dot(d3);
+    const Vector3 by_t =
+        d3 / w - 2 * p / (w * w) * d2 - (p * d2 + dp * d1) / (w * w) + 4 * p * p / (w * w * w) * d1;
+    slowest = std::max(slowest, (by_t / std::sqrt(w)).cwiseAbs().maxCoeff());
+  }
+  const double expected = std::cbrt(5000 / slowest);
+  EXPECT_NEAR(feed_estimate(curve, limits) / expected, 1, 1e-4);
+}
+
 // --- properties ------------------------------------------------------------------------------
 
 struct RandomCorner {
