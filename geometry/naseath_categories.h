@@ -1,5 +1,5 @@
 // What each point of a control polygon is to Naseath's smoother: part of a smooth group, an
-// apex, a ripple or an end. (Naseath 2007, section 3.5; docs/algorithms/naseath.md, steps 1 and 2.)
+// apex, a ripple or an end. (Naseath 2007, chapter 3; docs/algorithms/naseath.md, steps 1 and 2.)
 #pragma once
 
 #include <cstddef>

@@ -10,7 +10,7 @@ namespace {
 // Shorter vectors (mm, or sums of unit vectors) are rounding and have no direction.
 constexpr double kNoDirection = 1e-12;
 
-// A side point goes with its apex, this many parts to one of its own bisector (3-29).
+// A side point goes with its apex, this many parts to one of its own bisector.
 constexpr double kApexShare = 9;
 
 Vector3 unit(const Vector3& v) {

@@ -1,4 +1,4 @@
-// Where Naseath's smoother moves each control point. (Naseath 2007, sections 3.6 to 3.8;
+// Where Naseath's smoother moves each control point. (Naseath 2007, chapter 3;
 // docs/algorithms/naseath.md, step 3.)
 #pragma once
 

@@ -43,7 +43,7 @@ bool NaseathMover::move(ControlPolygon& polygon, const NaseathRoom& room) {
 }
 
 // The nominal moves: the room, all of it for the least sensitive point, and in proportion to 1/S
-// for the others. (3-39), (3-40)
+// for the others.
 std::vector<double> NaseathMover::sizes_of(const ControlPolygon& polygon,
                                            const NaseathCategories& categories,
                                            const std::vector<Vector3>& directions,

@@ -1,5 +1,5 @@
-// One pass of Naseath's smoother: sizes the moves and makes them. (Naseath 2007, sections 3.9 and
-// 3.10; docs/algorithms/naseath.md, steps 4 and 5.)
+// One pass of Naseath's smoother: sizes the moves and makes them. (Naseath 2007,
+// chapter 3; docs/algorithms/naseath.md, steps 4 and 5.)
 #pragma once
 
 #include <optional>

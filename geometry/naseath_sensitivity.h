@@ -1,4 +1,4 @@
-// How much of a control point's move the curve follows. (Naseath 2007, section 3.9;
+// How much of a control point's move the curve follows. (Naseath 2007, chapter 3;
 // docs/algorithms/naseath.md, step 4.)
 #pragma once
 
