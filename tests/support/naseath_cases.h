@@ -1,14 +1,18 @@
 // The curves of tests/cases/naseath.json, with what an independent program found of them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "geometry/bspline_curve.h"
+#include "geometry/naseath.h"
+#include "geometry/parameter_samples.h"
 #include "geometry/point.h"
 
 namespace batten::geometry {
@@ -31,6 +35,34 @@ inline BsplineCurve curve_in(const nlohmann::json& given) {
 }
 
 inline BsplineCurve curve_of_case(const std::string& name) { return curve_in(naseath_case(name)); }
+
+// The method as the thesis has it, and as we repaired it.
+inline NaseathOptions literal(double radius) {
+  NaseathOptions options;
+  options.radius = radius;
+  options.repairs = NaseathRepairs::none();
+  return options;
+}
+
+inline NaseathOptions repaired(double radius) {
+  NaseathOptions options;
+  options.radius = radius;
+  return options;
+}
+
+inline double greatest_curvature(const BsplineCurve& curve) {
+  return max_curvature(parameter_samples(curve, kNaseathSteps));
+}
+
+// The greatest distance of two points with one index; both must be as many.
+inline double farthest(const std::vector<Point3>& a, const std::vector<Point3>& b) {
+  if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    most = std::max(most, (a[i] - b[i]).norm());
+  }
+  return most;
+}
 
 // A clamped cubic on the knots 0, 1, 2 ..
 inline BsplineCurve uniform_cubic(std::vector<Point3> points) {
