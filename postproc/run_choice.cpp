@@ -23,7 +23,7 @@ constexpr double kFewerKinks = 0.7;
 // What counts as a gain: so much less time, so many fewer blocks or bytes, an error so much
 // smaller.
 constexpr double kLessTime = 0.01;
-constexpr double kLessTimeForMore = 0.03;  // where it takes more blocks than before
+constexpr double kLessTimeForMore = 0.05;  // where it takes more blocks than before
 constexpr double kFewerBlocks = 0.9;
 constexpr double kFewerBytes = 0.9;
 constexpr double kNearer = 0.6;
