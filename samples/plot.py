@@ -140,16 +140,16 @@ def nearest_on(old, places):
     starts, steps = old[:-1], np.diff(old, axis=0)
     squares = np.maximum((steps**2).sum(axis=1), 1e-18)
     ends = np.concatenate(([0], np.cumsum(np.sqrt(squares))))
-    found, first = [], 0
+    found, at = [], 0
     for place in places:
         # Not farther ahead than 10 mm: elsewhere the path may come by again.
-        last = np.searchsorted(ends, ends[first] + 10.0) + 1
+        first, last = max(0, at - 2), np.searchsorted(ends, ends[at + 1] + 10.0) + 1
         s, d, q = starts[first:last], steps[first:last], squares[first:last]
         t = np.clip(((place - s) * d).sum(axis=1) / q, 0, 1)
         candidates = s + t[:, None] * d
         best = int(np.argmin(((candidates - place) ** 2).sum(axis=1)))
         found.append(candidates[best])
-        first = max(first, first + best - 2)
+        at = max(at, first + best)
     return np.array(found)
 
 
