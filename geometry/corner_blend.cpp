@@ -97,6 +97,8 @@ std::string_view name_of(NoBlend reason) {
       return "reversal";
     case NoBlend::kNoRoom:
       return "no-room";
+    case NoBlend::kKept:
+      return "kept";
   }
   return "";
 }

@@ -9,14 +9,9 @@
 
 #include "geometry/bspline_curve.h"
 #include "geometry/point.h"
+#include "geometry/tolerance_kind.h"
 
 namespace batten::geometry {
-
-// What a tolerance allows a blend.
-enum class ToleranceKind {
-  kPath,  // blend and corner are within tolerance of each other, both ways and in order
-  kBand,  // the blend is within tolerance of the legs; the corner may be further from it
-};
 
 struct Corner {
   Point3 before;
@@ -30,9 +25,10 @@ enum class NoBlend {
   kStraight,  // the path goes straight on (half turn below kSameDirection)
   kReversal,  // the path goes back on itself: no curve inside the tolerance leads round
   kNoRoom,    // tolerance or shares of the legs leave less than rounding noise
+  kKept,      // turns more than the caller allows
 };
 
-// "no-leg", "straight", "reversal", "no-room".
+// "no-leg", "straight", "reversal", "no-room", "kept".
 [[nodiscard]] std::string_view name_of(NoBlend reason);
 
 // A corner in its own directions.

@@ -1,59 +1,32 @@
 #include "geometry/guo_path.h"
 
-#include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "geometry/numeric.h"
+#include "geometry/blended_path.h"
 
 namespace batten::geometry {
 namespace {
 
-// The vertices that are apart from the one before them.
-struct Vertices {
-  std::vector<Point3> points;
-  std::vector<std::size_t> indices;
-};
-
-Vertices distinct_vertices(std::span<const Point3> points, bool closed) {
-  Vertices kept;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!kept.points.empty() && (points[i] - kept.points.back()).norm() <= kSamePlace) continue;
-    kept.points.push_back(points[i]);
-    kept.indices.push_back(i);
-  }
-  // The last point of a closed path is the first one.
-  while (closed && kept.points.size() > 1 &&
-         (kept.points.back() - kept.points.front()).norm() <= kSamePlace) {
-    kept.points.pop_back();
-    kept.indices.pop_back();
-  }
-  return kept;
+GuoRule rule_at(const Corner& corner, const GuoOptions& options) {
+  GuoRule rule = options.rule;
+  rule.kind = kind_at(corner, rule.kind, options.strict_sharper_than);
+  return rule;
 }
 
 // --- routine 2 with fair shares ------------------------------------------------------------
 
-std::vector<GuoPathCorner> fair_corners(const Vertices& vertices, const GuoOptions& options) {
-  const std::vector<Point3>& q = vertices.points;
-  const std::size_t n = q.size();
-  const std::size_t first = options.closed ? 0 : 1;
-  const std::size_t last = options.closed ? n : n - 1;  // one past
-  const auto corner_at = [&](std::size_t i) {
-    return Corner{q[(i + n - 1) % n], q[i], q[(i + 1) % n]};
-  };
-  std::vector<bool> turns(n, false);
-  for (std::size_t i = first; i < last; ++i) {
-    turns[i] = std::holds_alternative<CornerFrame>(frame_of(corner_at(i)));
-  }
-  const auto share = [&](std::size_t vertex, std::size_t neighbour) {
-    return (q[vertex] - q[neighbour]).norm() / (turns[neighbour] ? 2 : 1);
-  };
+std::vector<GuoPathCorner> fair_corners(const DistinctVertices& vertices,
+                                        const GuoOptions& options) {
   std::vector<GuoPathCorner> corners;
-  for (std::size_t i = first; i < last; ++i) {
-    corners.push_back(
-        {vertices.indices[i],
-         guo_corner(corner_at(i), options.rule, share(i, (i + n - 1) % n), share(i, (i + 1) % n))});
+  for (const SharedCorner& each :
+       shared_corners(vertices.points, options.closed, options.keep_corner_angle)) {
+    corners.push_back({vertices.indices[each.vertex], NoBlend::kKept});
+    if (each.stays) continue;
+    corners.back().outcome =
+        guo_corner(each.corner, rule_at(each.corner, options), each.share_before, each.share_after);
   }
   return corners;
 }
@@ -62,7 +35,8 @@ std::vector<GuoPathCorner> fair_corners(const Vertices& vertices, const GuoOptio
 
 // start = Q0; for each inner vertex Q_i: the blend that fits between start and Q_{i+1}, halved
 // where it would reach Q_{i+1} and that is a corner, too; then start = P4 + lambda (Q_{i+1} - P4).
-std::vector<GuoPathCorner> literal_corners(const Vertices& vertices, const GuoOptions& options) {
+std::vector<GuoPathCorner> literal_corners(const DistinctVertices& vertices,
+                                           const GuoOptions& options) {
   const std::vector<Point3>& q = vertices.points;
   const std::size_t n = q.size() - 1;
   std::vector<GuoPathCorner> corners;
@@ -71,12 +45,18 @@ std::vector<GuoPathCorner> literal_corners(const Vertices& vertices, const GuoOp
     const double a = (q[i] - start).norm();
     const double b = (q[i + 1] - q[i]).norm();
     const Corner corner{q[i - 1], q[i], q[i + 1]};
-    auto outcome = guo_corner(corner, options.rule, a, b);
+    if (turns_more(corner, options.keep_corner_angle)) {
+      corners.push_back({vertices.indices[i], NoBlend::kKept});
+      start = q[i];
+      continue;
+    }
+    const GuoRule rule = rule_at(corner, options);
+    auto outcome = guo_corner(corner, rule, a, b);
     // Only a blend that the segments limit can fill the next one, so the tolerance has its say
     // before this rule.
     const auto* blend = std::get_if<GuoBlend>(&outcome);
     if (blend != nullptr && i + 1 < n && 2 * blend->spacing >= b) {
-      outcome = guo_corner(corner, options.rule, b / 2, b / 2);
+      outcome = guo_corner(corner, rule, b / 2, b / 2);
       blend = std::get_if<GuoBlend>(&outcome);
     }
     start = q[i];
@@ -91,68 +71,25 @@ std::vector<GuoPathCorner> literal_corners(const Vertices& vertices, const GuoOp
 
 // --- the path -----------------------------------------------------------------------------
 
-// Lines and pieces one after the other, from where it was begun.
-class Chain {
- public:
-  explicit Chain(const Point3& start) : cursor_(start) {}
-
-  void line_to(const Point3& end) {
-    if ((end - cursor_).norm() <= kSamePlace) return;
-    pieces_.push_back(Line{cursor_, end});
-    cursor_ = end;
-  }
-
-  void curve(CubicBezier piece) {
-    line_to(piece.control[0]);
-    piece.control[0] = cursor_;
-    pieces_.push_back(piece);
-    cursor_ = piece.control[3];
-  }
-
-  // Ends exactly there, also where the last piece ends beside it by rounding.
-  Path finish(const Point3& end) && {
-    line_to(end);
-    if (pieces_.empty()) return std::move(pieces_);
-    if (auto* line = std::get_if<Line>(&pieces_.back())) line->end = end;
-    if (auto* bezier = std::get_if<CubicBezier>(&pieces_.back())) bezier->control[3] = end;
-    return std::move(pieces_);
-  }
-
- private:
-  Point3 cursor_;
-  Path pieces_;
-};
-
 // `corners` are those of the inner vertices, or of all vertices of a ring.
-Path rounded_path(const std::vector<Point3>& q, const std::vector<GuoPathCorner>& corners,
-                  bool ring) {
-  const auto halves_at = [&](std::size_t i) {
-    const auto* blend = std::get_if<GuoBlend>(&corners[ring ? i : i - 1].outcome);
-    return blend ? blend->blend.curve.bezier_pieces() : std::vector<CubicBezier>();
-  };
-  const std::vector<CubicBezier> seam = ring ? halves_at(0) : std::vector<CubicBezier>();
-  Chain chain(seam.empty() ? q.front() : seam.back().control[0]);
-  if (!seam.empty()) chain.curve(seam.back());
-  const std::size_t inner_end = ring ? q.size() : q.size() - 1;
-  for (std::size_t i = 1; i < inner_end; ++i) {
-    const std::vector<CubicBezier> halves = halves_at(i);
-    if (halves.empty()) chain.line_to(q[i]);
-    for (const CubicBezier& half : halves) chain.curve(half);
+BlendedPath rounded_path(const std::vector<Point3>& q, const std::vector<GuoPathCorner>& corners,
+                         bool ring) {
+  std::vector<std::optional<BsplineCurve>> blends(q.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto* blend = std::get_if<GuoBlend>(&corners[i].outcome);
+    if (blend != nullptr) blends[ring ? i : i + 1] = blend->blend.curve;
   }
-  if (!seam.empty()) {
-    chain.curve(seam.front());
-    return std::move(chain).finish(seam.back().control[0]);
-  }
-  return std::move(chain).finish(ring ? q.front() : q.back());
+  return blended_path(q, blends, ring);
 }
 
 }  // namespace
 
 GuoOptions GuoOptions::literal(double tolerance, double lambda) {
-  return {{tolerance, ToleranceKind::kBand, GuoApex::kHalfTolerance},
-          GuoSharing::kLiteral,
-          lambda,
-          false};
+  GuoOptions options;
+  options.rule = {tolerance, ToleranceKind::kBand, GuoApex::kHalfTolerance};
+  options.sharing = GuoSharing::kLiteral;
+  options.lambda = lambda;
+  return options;
 }
 
 GuoPath guo_path(std::span<const Point3> points, const GuoOptions& options) {
@@ -163,11 +100,13 @@ GuoPath guo_path(std::span<const Point3> points, const GuoOptions& options) {
   }
   const bool fair = options.sharing == GuoSharing::kFair;
   const bool ring = options.closed && fair;
-  const Vertices vertices = distinct_vertices(points, ring);
-  if (vertices.points.size() < 2) return {};
+  const DistinctVertices vertices = distinct_vertices(points, ring);
+  if (vertices.size() < 2) return {};
   GuoPath path;
   path.corners = fair ? fair_corners(vertices, options) : literal_corners(vertices, options);
-  path.pieces = rounded_path(vertices.points, path.corners, ring);
+  BlendedPath rounded = rounded_path(vertices.points, path.corners, ring);
+  path.pieces = std::move(rounded.pieces);
+  path.stations = std::move(rounded.stations);
   return path;
 }
 

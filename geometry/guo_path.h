@@ -27,6 +27,9 @@ struct GuoOptions {
   // The first and the last point are one place, where there is a corner as anywhere else.
   // The literal sharing has no such corner: it leaves the seam sharp.
   bool closed = false;
+  double keep_corner_angle = 3.2;  // radians: vertices that turn more stay (> pi: none)
+  // Radians between the legs: sharper corners are held to ToleranceKind::kPath, whatever the rule.
+  double strict_sharper_than = 0;
 
   // The paper's routines, word for word but for the guards of degenerate corners.
   [[nodiscard]] static GuoOptions literal(double tolerance, double lambda);
@@ -40,6 +43,7 @@ struct GuoPathCorner {
 struct GuoPath {
   std::vector<GuoPathCorner> corners;  // in order of their vertices
   Path pieces;                         // lines and Bezier pieces, joined end to end
+  std::vector<double> stations;        // mm along the polyline where they meet: see BlendedPath
 };
 
 // Points that are one place with the one before them are passed over and have no corner. A

@@ -396,6 +396,22 @@ TEST(GuoPath, MakesNoVertexOfAClosedPathSpecial) {
   }
 }
 
+TEST(GuoPath, LeavesCornersThatTurnMoreThanAsked) {
+  // Turns of 5.7 and 84 degrees.
+  const std::vector<Point3> points = {{0, 0, 0}, {10, 0, 0}, {20, 1, 0}, {20, 11, 0}};
+  for (const GuoSharing sharing : {GuoSharing::kFair, GuoSharing::kLiteral}) {
+    GuoOptions options = fair(5, ToleranceKind::kPath);
+    options.sharing = sharing;
+    options.keep_corner_angle = 1;
+    const GuoPath path = guo_path(points, options);
+    ASSERT_EQ(path.corners.size(), 2u);
+    // The kept one needs nothing of the segment between them: 2L is all of the first leg.
+    EXPECT_NEAR(std::get<GuoBlend>(path.corners[0].outcome).spacing, 5, 1e-12);
+    EXPECT_EQ(std::get<NoBlend>(path.corners[1].outcome), NoBlend::kKept);
+    EXPECT_EQ(start_point(path.pieces.back()), points[2]);
+  }
+}
+
 TEST(GuoPath, RefusesALambdaThatLeavesNothing) {
   for (const double lambda : {-0.1, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THROW(static_cast<void>(guo_path(hexagon(), GuoOptions::literal(0.05, lambda))),
