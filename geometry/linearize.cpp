@@ -7,16 +7,11 @@
 #include <string>
 #include <utility>
 
-#include "geometry/bezier_halves.h"
+#include "geometry/chord_proof.h"
 #include "geometry/curve_pieces.h"
 
 namespace batten::geometry {
 namespace {
-
-// How often a Bezier piece is halved to tighten the bound of its control points. Each
-// halving quarters what the bound has too much (a third of the deviation at first), so
-// seven leave 2e-5 of it.
-constexpr int kHalvings = 7;
 
 // A chord's end is searched to this part of its length: a thousand chords lose one tenth of
 // a chord.
@@ -46,61 +41,11 @@ Limits scaled(const Limits& limits, double chord_length) {
   return {limits.deviation * chord_length * chord_length, limits.max_length * chord_length};
 }
 
-// The proof that a stretch of curve stays near one chord: each control point is matched to
-// a place on the chord, never going back; curve and chord then are the same convex
-// combinations of near places, in order.
-class ChordProof {
- public:
-  ChordProof(const Point3& start, const Point3& end, double deviation)
-      : start_(start), length_((end - start).norm()), allowed_(deviation * deviation) {
-    along_ = length_ > 0 ? Vector3((end - start) / length_) : Vector3(Vector3::Zero());
-  }
-
-  bool holds(const CubicBezier& piece) { return holds(piece, kHalvings); }
-
- private:
-  bool holds(const CubicBezier& piece, int halvings) {
-    double at = reached_;
-    bool near = true;
-    for (const Point3& control : piece.control) {
-      at = std::max(at, std::clamp(along_.dot(control - start_), 0.0, length_));
-      if ((control - start_ - at * along_).squaredNorm() > allowed_) {
-        near = false;
-        break;
-      }
-    }
-    if (near) {
-      reached_ = at;
-      return true;
-    }
-    if (halvings == 0 || !near_end(piece.control[0]) || !near_end(piece.control[3])) return false;
-    const auto [left, right] = halves(piece);
-    return holds(left, halvings - 1) && holds(right, halvings - 1);
-  }
-
-  // A point of the curve itself: too far from the chord, and no halving will help.
-  bool near_end(const Point3& p) const {
-    const double at = std::clamp(along_.dot(p - start_), 0.0, length_);
-    return (p - start_ - at * along_).squaredNorm() <= allowed_;
-  }
-
-  Point3 start_;
-  Vector3 along_;
-  double length_;
-  double allowed_;
-  double reached_ = 0;  // mm along the chord, matched so far
-};
-
 bool chord_holds(const CurvePieces& pieces, double from, double to, const Limits& limits) {
   const Point3 start = pieces.point_at(from);
   const Point3 end = pieces.point_at(to);
   if ((end - start).norm() > limits.max_length * (1 + kLengthNoise)) return false;
-  ChordProof proof(start, end, limits.deviation);
-  for (std::size_t i = pieces.index_of(from); i < pieces.size(); ++i) {
-    if (pieces.breaks()[i] >= to) break;
-    if (!proof.holds(pieces.part(i, from, to))) return false;
-  }
-  return true;
+  return chord_proved(pieces, from, to, ChordProof(start, end, limits.deviation));
 }
 
 // Where the distance from `from` reaches `length`, between `good` (nearer) and `bad`.

@@ -1,0 +1,21 @@
+// Few links in the tolerance tube of a curve in space, each as long as it can be.
+// Method: docs/algorithms/min_link.md.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/min_link_gates.h"
+#include "geometry/min_link_plane.h"
+
+namespace batten::geometry {
+
+// Links from `start`, near the first gate's centre, to the centre of the last one, through all
+// gates in order, each inside a polygon of 16 corners in the circle of radius `width` (mm) about
+// the gate's centre; a corner points to where the curve bends. Nothing when the curve bends so
+// closely that no link gets on.
+[[nodiscard]] std::optional<std::vector<LinkVertex>> few_links_in_space(const GateChain& gates,
+                                                                        const Point3& start,
+                                                                        double width);
+
+}  // namespace batten::geometry
