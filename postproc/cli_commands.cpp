@@ -106,6 +106,9 @@ void read_smooth_options(const Given& given, SmoothCommand& command, Problems& p
   if (const auto text = given.value("prefer")) {
     read_into(options.prefer, read_choice("prefer", *text, preferences(), problems));
   }
+  if (const auto text = given.value("linearize")) {
+    options.linearize = read_choice("linearize", *text, linearizations(), problems);
+  }
   if (const auto text = given.value("keep-corners")) {
     options.keep_corners_deg = read_decimal("keep-corners", *text, problems);
   }

@@ -54,6 +54,11 @@ constexpr std::array kSmoothRows = {
               .help = "what the tolerance is spent on",
               .default_value = "time",
               .in_config = true},
+    OptionRow{.name = "linearize",
+              .value = "minlink|chord|ilca|blca",
+              .help = "how lines are laid along a curve; default: chord, minlink with --prefer "
+                      "size",
+              .in_config = true},
     OptionRow{.name = "keep-corners",
               .value = "DEG",
               .help = "turns of more degrees than this stay corners",

@@ -45,6 +45,14 @@ constexpr std::array kPreferences = {
     Choice<Prefer>{Prefer::kSize, "size", "the fewest bytes inside the tolerance"},
 };
 
+constexpr std::array kLinearizations = {
+    Choice<Linearize>{Linearize::kMinLink, "minlink",
+                      "the fewest lines: ends anywhere inside the tolerance"},
+    Choice<Linearize>{Linearize::kChord, "chord", "few chords with ends on the curve"},
+    Choice<Linearize>{Linearize::kIlca, "ilca", "equal steps of the parameter (Hamdan 2005)"},
+    Choice<Linearize>{Linearize::kBlca, "blca", "steps until the tangent is left (Hamdan 2005)"},
+};
+
 template <typename Value, std::size_t count>
 std::string_view name_in(const std::array<Choice<Value>, count>& choices, Value value) {
   for (const auto& choice : choices) {
@@ -98,10 +106,17 @@ void check_tolerance(const SmoothOptions& options, std::vector<std::string>& pro
 std::span<const Choice<Form>> forms() { return kForms; }
 std::span<const Choice<Method>> methods() { return kMethods; }
 std::span<const Choice<Prefer>> preferences() { return kPreferences; }
+std::span<const Choice<Linearize>> linearizations() { return kLinearizations; }
 
 std::string_view name_of(Form form) { return name_in(kForms, form); }
 std::string_view name_of(Method method) { return name_in(kMethods, method); }
 std::string_view name_of(Prefer prefer) { return name_in(kPreferences, prefer); }
+std::string_view name_of(Linearize linearize) { return name_in(kLinearizations, linearize); }
+
+Linearize linearize_of(const SmoothOptions& options) {
+  if (options.linearize) return *options.linearize;
+  return options.prefer == Prefer::kSize ? Linearize::kMinLink : Linearize::kChord;
+}
 
 std::string_view name_of(gcode::Units units) {
   switch (units) {

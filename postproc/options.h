@@ -16,6 +16,7 @@ namespace batten::postproc {
 enum class Form { kAuto, kArcs, kLines };
 enum class Method { kBest, kFair, kNone };
 enum class Prefer { kTime, kAccuracy, kSize };
+enum class Linearize { kMinLink, kChord, kIlca, kBlca };
 
 // A value that the user chooses by name.
 template <typename Value>
@@ -28,10 +29,12 @@ struct Choice {
 [[nodiscard]] std::span<const Choice<Form>> forms();
 [[nodiscard]] std::span<const Choice<Method>> methods();
 [[nodiscard]] std::span<const Choice<Prefer>> preferences();
+[[nodiscard]] std::span<const Choice<Linearize>> linearizations();
 
 [[nodiscard]] std::string_view name_of(Form form);
 [[nodiscard]] std::string_view name_of(Method method);
 [[nodiscard]] std::string_view name_of(Prefer prefer);
+[[nodiscard]] std::string_view name_of(Linearize linearize);
 [[nodiscard]] std::string_view name_of(gcode::Units units);  // "mm", "inch", "unknown"
 
 // Decisions of `smooth`, without files and messages.
@@ -44,11 +47,16 @@ struct SmoothOptions {
   Method method = Method::kBest;
   Form output = Form::kAuto;
   Prefer prefer = Prefer::kTime;
+  std::optional<Linearize> linearize;  // nothing: what serves `prefer`, see linearize_of
   std::optional<double> keep_corners_deg;  // turns above this stay corners
   std::vector<std::string> allowed;        // --allow
   std::size_t min_motions = 3;
   int threads = 0;  // 0: all cores
 };
+
+// How lines are laid along a curve: as the user said, otherwise minlink for the fewest bytes and
+// chords, whose ends are nearer to the path that was meant, for time and accuracy.
+[[nodiscard]] Linearize linearize_of(const SmoothOptions& options);
 
 // Every problem of the options at once, as sentences; empty when they are fine.
 [[nodiscard]] std::vector<std::string> problems_of(const SmoothOptions& options);

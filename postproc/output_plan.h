@@ -38,13 +38,15 @@ struct PlanOptions {
   Prefer prefer = Prefer::kTime;
   double max_deviation = 0.005;    // mm, moves to curve: the share of the form
   double keep_corner_angle = 3.2;  // radians: see geometry::FairOptions
+  Linearize linearize = Linearize::kChord;
 };
 
 // Both plans cut the curve where the feed changes, and put each comment before the move that
 // starts at or first after the comment's vertex. Both throw std::invalid_argument when `fair`
 // does not have one parameter per point of the run.
 
-// Chords with vertices on the curve. How fine depends on the preference:
+// Lines along the curve, as `linearize` says. minlink, ilca and blca take all of max_deviation; the
+// vertices of minlink alone leave the curve. How fine chords are depends on the preference:
 //   time      half of max_deviation, but all of it where chords would be shorter than twice the
 //             way of one block period at the feed: the control would slow down for them;
 //   accuracy  as fine as the block period allows, down to a tenth of the rounding of the printed

@@ -1,6 +1,9 @@
 #include <algorithm>
 
+#include "geometry/blca.h"
+#include "geometry/ilca.h"
 #include "geometry/linearize.h"
+#include "geometry/min_link.h"
 #include "postproc/output_plan.h"
 #include "postproc/plan_stretches.h"
 
@@ -8,6 +11,7 @@ namespace batten::postproc {
 namespace {
 
 using geometry::BsplineCurve;
+using Vertices = std::vector<geometry::LinkVertex>;
 
 // How far chords may go in either direction.
 struct Fineness {
@@ -78,6 +82,33 @@ std::vector<double> chords(const BsplineCurve& curve, double from, double to,
   return vertices;
 }
 
+Vertices on_the_curve(const BsplineCurve& curve, const std::vector<double>& parameters) {
+  Vertices vertices;
+  vertices.reserve(parameters.size());
+  for (const double u : parameters) vertices.push_back({curve.point_at(u), u});
+  return vertices;
+}
+
+Vertices vertices_on(const BsplineCurve& curve, const FeedStretch& stretch,
+                     const PlanOptions& options) {
+  const double deviation = options.max_deviation;
+  switch (options.linearize) {
+    case Linearize::kMinLink:
+      return geometry::min_link_vertices(curve, stretch.from, stretch.to, {.tolerance = deviation});
+    case Linearize::kIlca:
+      return on_the_curve(
+          curve,
+          geometry::ilca(curve, stretch.from, stretch.to, {.max_deviation = deviation}).parameters);
+    case Linearize::kBlca:
+      return on_the_curve(curve,
+                          geometry::blca(curve, stretch.from, stretch.to, deviation).parameters);
+    case Linearize::kChord:
+      break;
+  }
+  return on_the_curve(curve,
+                      chords(curve, stretch.from, stretch.to, fineness_for(stretch.feed, options)));
+}
+
 }  // namespace
 
 OutputPlan plan_lines(const Run& run, const geometry::FairPath& fair, const PlanOptions& options) {
@@ -86,13 +117,12 @@ OutputPlan plan_lines(const Run& run, const geometry::FairPath& fair, const Plan
   std::vector<double> starts;
   geometry::Point3 place = run.points.front();
   for (const FeedStretch& stretch : feed_stretches(run, fair)) {
-    const std::vector<double> vertices =
-        chords(fair.curve, stretch.from, stretch.to, fineness_for(stretch.feed, options));
+    const Vertices vertices = vertices_on(fair.curve, stretch, options);
     for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
-      const bool last = vertices[i + 1] >= fair.curve.last();
-      const geometry::Point3 next = last ? run.points.back() : fair.curve.point_at(vertices[i + 1]);
+      const bool last = i + 2 == vertices.size() && stretch.to >= fair.curve.last();
+      const geometry::Point3 next = last ? run.points.back() : vertices[i + 1].place;
       plan.moves.push_back({geometry::Line{place, next}, stretch.feed, {}});
-      starts.push_back(vertices[i]);
+      starts.push_back(vertices[i].parameter);
       place = next;
     }
   }

@@ -224,9 +224,10 @@ class RunSmoother {
   // `share` of the tolerance belongs to the form; `left` is what the curve leaves.
   void add_candidates(const geometry::FairPath& fair, double share, double left) {
     const auto plan_with = [&](double multiple) {
-      return PlanOptions{options_.target,       options_.machine, units_,
-                         context_.before.plane, options_.prefer,  std::min(left, multiple * share),
-                         keep_corner_angle()};
+      return PlanOptions{
+          options_.target,       options_.machine,      units_,
+          context_.before.plane, options_.prefer,       std::min(left, multiple * share),
+          keep_corner_angle(),   linearize_of(options_)};
     };
     if (options_.output != Form::kLines && !arcs_are_hopeless(fair)) {
       const PlanOptions arcs = plan_with(kArcs);

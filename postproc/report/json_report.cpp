@@ -19,6 +19,7 @@ Json json_of(const SmoothOptions& options, bool strict) {
   json["method"] = name_of(options.method);
   json["output"] = name_of(options.output);
   json["prefer"] = name_of(options.prefer);
+  json["linearize"] = name_of(linearize_of(options));
   json["units"] = name_of(options.units);
   json["keep_corners_deg"] =
       options.keep_corners_deg ? Json(*options.keep_corners_deg) : Json(nullptr);
