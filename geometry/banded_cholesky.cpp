@@ -20,7 +20,7 @@ void BandedMatrix::fix(std::size_t i, const Point3& value, std::vector<Point3>& 
   right[i] = value;
 }
 
-bool BandedMatrix::solve(std::vector<Point3>& right) {
+bool BandedMatrix::factor() {
   const std::size_t n = rows_.size();
   // L D L^T row by row; rows_[i][k] becomes L(i, i-k), rows_[i][0] becomes D(i).
   for (std::size_t i = 0; i < n; ++i) {
@@ -39,6 +39,12 @@ bool BandedMatrix::solve(std::vector<Point3>& right) {
     if (!(diagonal > 0)) return false;
     row[0] = diagonal;
   }
+  return true;
+}
+
+template <typename Value>
+void BandedMatrix::substitute(std::vector<Value>& right) const {
+  const std::size_t n = rows_.size();
   for (std::size_t i = 0; i < n; ++i) {
     const int before = static_cast<int>(std::min<std::size_t>(i, kBands));
     for (int k = 1; k <= before; ++k) right[i] -= rows_[i][k] * right[i - k];
@@ -47,6 +53,13 @@ bool BandedMatrix::solve(std::vector<Point3>& right) {
     right[i] /= rows_[i][0];
     for (int k = 1; k <= kBands && i + k < n; ++k) right[i] -= rows_[i + k][k] * right[i + k];
   }
+}
+
+void BandedMatrix::solve_factored(std::vector<double>& right) const { substitute(right); }
+
+bool BandedMatrix::solve(std::vector<Point3>& right) {
+  if (!factor()) return false;
+  substitute(right);
   return true;
 }
 

@@ -32,12 +32,22 @@ class BandedMatrix {
   // (L D L^T). Returns false when a pivot is not positive; `right` is undefined then.
   [[nodiscard]] bool solve(std::vector<Point3>& right);
 
-  // After solve(): the entries of the inverse inside the band, as another banded matrix
+  // The same in two steps, for several right sides: factor() overwrites the matrix by its factors
+  // and returns false when a pivot is not positive, solve_factored() then solves in place for
+  // numbers.
+  [[nodiscard]] bool factor();
+  void solve_factored(std::vector<double>& right) const;
+
+  // After solve() or factor(): the entries of the inverse inside the band, as another banded matrix
   // (K. Takahashi et al. 1973). Linear time.
   [[nodiscard]] BandedMatrix inverse_band() const;
 
  private:
   using Row = std::array<double, kBands + 1>;  // diagonal first, then below
+
+  template <typename Value>
+  void substitute(std::vector<Value>& right) const;
+
   std::vector<Row> rows_;
 };
 

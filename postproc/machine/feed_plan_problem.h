@@ -1,0 +1,93 @@
+// The search for the fastest feed along a path, as an optimisation over a grid.
+//
+// q = (ds/dt)^2 is a cubic on each interval between two nodes, given by q and p = dq/ds at both, so
+// speed and acceleration are continuous and the jerk may jump at nodes. The windows below are the
+// four unknowns (q0, p0, q1, p1) of one interval.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "geometry/path.h"
+#include "postproc/machine/feed_plan_grid.h"
+#include "postproc/machine/feed_plan_limits.h"
+
+namespace batten::postproc {
+
+using PlanWindow = std::array<double, 4>;
+
+// Places of an interval at which limits are asked for.
+enum class PlanPlace { kStart, kMiddle, kEnd };
+
+// q, dq/ds and d2q/ds2 at a place as sums over the window.
+struct PlanWeights {
+  PlanWindow q;
+  PlanWindow p;
+  PlanWindow r;
+};
+
+[[nodiscard]] PlanWeights plan_weights(PlanPlace place, double length);
+
+enum class PlanLimit {
+  kUpper,  // c.x <= 1
+  kEven,   // |c.x| <= 1
+  kJerk,   // |c.x| <= 1 / sqrt(q) at `place`
+};
+
+struct PlanRow {
+  PlanWindow c;
+  PlanLimit limit;
+  PlanPlace place;
+};
+
+// An end of the path at rest: from there to the first unknown node, `length` mm away, the speed
+// grows with a power of the way (2/3 where the jerk is limited, else 1/2), which constant jerk (or
+// acceleration) gives. So p = 2 power q / length, and the time is length / ((1 - power) v).
+// No rest where length is 0.
+struct PlanRest {
+  double length = 0;
+  double power = 2.0 / 3;
+
+  [[nodiscard]] double slope() const { return length > 0 ? 2 * power / length : 0; }
+  [[nodiscard]] double time() const { return length / (1 - power); }  // times 1 / v
+
+  // mm/s^2, for q at the node: half of dq/ds, where the power leaves one.
+  [[nodiscard]] double acceleration_at_rest(double q) const {
+    return power > 0.5 ? 0 : 0.5 * q / length;
+  }
+};
+
+struct PlanProblem {
+  std::vector<double> lengths;          // mm, of the intervals
+  std::vector<PlanRow> rows;            // those of one interval side by side
+  std::vector<std::size_t> first_rows;  // of each interval; one more than intervals
+  PlanRest start;
+  PlanRest end;
+
+  [[nodiscard]] std::size_t intervals() const { return lengths.size(); }
+  [[nodiscard]] std::size_t unknowns() const { return 2 * lengths.size() + 2; }
+  [[nodiscard]] std::span<const PlanRow> rows_of(std::size_t interval) const {
+    return std::span(rows).subspan(first_rows[interval],
+                                   first_rows[interval + 1] - first_rows[interval]);
+  }
+};
+
+[[nodiscard]] PlanProblem make_plan_problem(std::span<const geometry::PathPiece> pieces,
+                                            const PlanGrid& grid,
+                                            const KinematicPathLimits& limits);
+
+// Unknowns that keep all limits by a margin: from the grid's rough speeds, smoothed, and slowed
+// down as a whole until they do. Any q that keeps all limits keeps them times a factor below 1.
+[[nodiscard]] std::vector<double> feasible_start(const PlanProblem& problem, const PlanGrid& grid);
+
+// Seconds that these unknowns take, Simpson's rule on 1 / sqrt(q); of one interval, and in all.
+[[nodiscard]] double interval_seconds(double length, const double* window);
+[[nodiscard]] double planned_seconds(const PlanProblem& problem, std::span<const double> x);
+
+[[nodiscard]] inline double dot(const PlanWindow& c, const double* x) {
+  return c[0] * x[0] + c[1] * x[1] + c[2] * x[2] + c[3] * x[3];
+}
+
+}  // namespace batten::postproc
