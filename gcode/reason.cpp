@@ -109,6 +109,10 @@ constexpr Explanation kExplanations[] = {
      "--prefer size or a larger tolerance may help.", false},
     {kNotProved, "The new path could not be proved to keep the tolerance.",
      "A larger tolerance helps, or more decimals.", false},
+    {kCrossesItself,
+     "Two parts of the run are so near to each other that the new path would cross itself where "
+     "the old one does not.",
+     "A smaller tolerance may help.", false},
     {kAlreadySmoothed, "The program says that it was smoothed before; tolerances add up.",
      "Smooth the original instead, or --allow already-smoothed.", true},
     {kNoFit, "No curve inside the tolerance was found.", "A larger tolerance may help.", false},

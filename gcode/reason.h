@@ -70,6 +70,7 @@ inline constexpr std::string_view kTooShort = "too-short";  // fewer motions tha
 inline constexpr std::string_view kNoGain = "no-gain";      // not faster, smaller or nearer
 inline constexpr std::string_view kSlower = "slower";
 inline constexpr std::string_view kNotProved = "not-proved";
+inline constexpr std::string_view kCrossesItself = "crosses-itself";
 inline constexpr std::string_view kAlreadySmoothed = "already-smoothed";
 inline constexpr std::string_view kNoFit = "no-fit";  // no curve in the band was found
 inline constexpr std::string_view kTargetCannot = "target-cannot";  // the target cannot say it

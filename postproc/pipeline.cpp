@@ -279,9 +279,12 @@ class Smoothing {
   // Returns whether any run gave way.
   bool take_back(const Verification& verification) {
     std::vector<RunWork*> runs;
+    std::vector<RunWork*> crossing;
     for (const Breach& breach : verification.breaches) {
-      if (RunWork* work = rewritten_run_at(breach.old_line)) runs.push_back(work);
+      auto& list = breach.kind == BreachKind::kCrossing ? crossing : runs;
+      if (RunWork* work = rewritten_run_at(breach.old_line)) list.push_back(work);
     }
+    if (give_way(std::move(crossing), gcode::reason::kCrossesItself)) return true;
     if (runs.empty()) {
       // A breach that belongs to no run: believe none of them.
       for (RunWork& work : work_) {

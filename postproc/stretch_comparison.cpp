@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
+
+#include "geometry/tolerance_band.h"
 
 namespace batten::postproc {
 namespace {
@@ -76,6 +79,20 @@ struct Part {
     if (side->cuts.empty()) return side->line;
     const std::size_t index = std::min(begin + i, side->cuts.size() - 1);
     return line_of(side->cuts[index], *side->read);
+  }
+  // Line of the cut with an end nearest to the place.
+  [[nodiscard]] std::uint32_t line_near(const geometry::Point3& place) const {
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < size(); ++i) {
+      const double distance = std::min((geometry::start_point(piece(i)) - place).norm(),
+                                       (geometry::end_point(piece(i)) - place).norm());
+      if (distance < least) {
+        least = distance;
+        nearest = i;
+      }
+    }
+    return line(nearest);
   }
 };
 
@@ -168,6 +185,24 @@ Breach distance_breach(const PartPair& pair, const PathComparison& comparison,
   return breach;
 }
 
+// `middle`: without the pieces that are the same, which cannot be to blame.
+std::optional<Breach> crossing_breach(const PartPair& pair, const PartPair& middle,
+                                      double tolerance_mm) {
+  const auto found = geometry::new_crossing(pair.before.path(), pair.after.path(), tolerance_mm);
+  if (!found) return {};
+  Breach breach;
+  breach.kind = BreachKind::kCrossing;
+  breach.id = "crosses-itself";
+  breach.old_line = middle.before.line_near(found->place);
+  breach.new_line = pair.after.line(found->first_piece);
+  breach.message = fmt::format(
+      "the new path meets itself at X{:.4f} Y{:.4f} Z{:.4f} (lines {} and {}), the old one does "
+      "not",
+      found->place.x(), found->place.y(), found->place.z(), breach.new_line,
+      pair.after.line(found->second_piece));
+  return breach;
+}
+
 class StretchComparer {
  public:
   StretchComparer(const StretchSide& before, const StretchSide& after, double tolerance_mm)
@@ -219,6 +254,10 @@ class StretchComparer {
     PathComparison comparison = compare(middle, tolerance_);
     if (comparison.verdict == Verdict::kProved) {
       result_.stretches.push_back(stretch_of(middle, std::move(comparison)));
+      // Of the whole, for a new part may also cross one that is the same.
+      if (auto breach = crossing_breach(pair, middle, tolerance_)) {
+        result_.breaches.push_back(std::move(*breach));
+      }
       return;
     }
     // The same ends may be passed otherwise than together: only the whole is a refutation.

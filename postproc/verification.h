@@ -23,6 +23,7 @@ namespace batten::postproc {
 enum class BreachKind {
   kDistance,   // a stretch leaves the tolerance
   kNotProved,  // a stretch could neither be proved nor refuted
+  kCrossing,   // a flat stretch crosses itself where the old one did not
   kFeed,       // another feed, or a feed that changes at another place
   kRapid,      // a rapid with another start or end, lost or added
   kEvent,      // an acting word or block lost, added, moved or changed

@@ -39,6 +39,8 @@ std::string_view name_of(BreachKind kind) {
       return "distance";
     case BreachKind::kNotProved:
       return "not-proved";
+    case BreachKind::kCrossing:
+      return "crossing";
     case BreachKind::kFeed:
       return "feed";
     case BreachKind::kRapid:

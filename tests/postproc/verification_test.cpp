@@ -351,5 +351,21 @@ TEST(Verify, ThrowsWhenTheToleranceIsNoLength) {
   EXPECT_THROW(static_cast<void>(verify_texts(kProgram, kProgram, 0)), std::invalid_argument);
 }
 
+TEST(Verify, FindsAPathThatCrossesItselfWhereTheOldOneDoesNot) {
+  // Out along Y0, round a loop, and back 0.015 mm beside it.
+  const std::string before =
+      "G21 G90 G17\nG0 X0 Y0\nG1 Z-1 F600\nX5\nX10\nX14 Y3\nX10 Y0.015\nX5\nX0\nG0 Z5\nM30\n";
+  const std::string apart = replaced(before, "X5\nX10\n", "X5 Y-0.009\nX10 Y0\n");
+  const std::string over = replaced(replaced(before, "X5\nX10\n", "X5 Y0.009\nX10 Y0\n"),
+                                    "X5\nX0\n", "X5 Y0.006\nX0 Y0.015\n");
+  EXPECT_TRUE(verify_texts(before, apart).proved()) << all_breaches(verify_texts(before, apart));
+  const Verification found = verify_texts(before, over);
+  ASSERT_EQ(found.breaches.size(), 1u) << all_breaches(found);
+  EXPECT_EQ(found.breaches[0].id, "crosses-itself");
+  EXPECT_EQ(found.breaches[0].kind, BreachKind::kCrossing);
+  EXPECT_EQ(found.breaches[0].new_line, 4u);
+  EXPECT_TRUE(verify_texts(over, over).proved()) << "where it crossed before it may cross";
+}
+
 }  // namespace
 }  // namespace batten::postproc

@@ -1,0 +1,212 @@
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/box_intersection_d.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "geometry/chord_polyline.h"
+#include "geometry/numeric.h"
+#include "geometry/tolerance_band.h"
+#include "geometry/tolerance_band_pairs.h"
+
+namespace batten::geometry {
+namespace {
+
+using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 2, std::size_t>;
+
+// Chords may be this part of the tolerance off the pieces they stand for.
+constexpr double kChordPart = 0.01;
+
+// A loop that the old path makes within its own band moves by no more than some tolerances: it
+// fits into a circle of twice the tolerance, and either of its sides moves by one.
+constexpr double kSameLoop = 4;
+
+// What of a path lies in one plane across an axis.
+struct Layer {
+  FlatEdges edges;
+  std::vector<std::size_t> pieces;  // of the path, for each edge
+  double height = 0;
+};
+
+// Heights are printed, so those of one plane are the same to within the noise of doubles.
+using Layers = std::map<double, Layer>;
+
+double rounded(double height) { return std::round(height / kSamePlace) * kSamePlace; }
+
+Point2 across(const Point3& place, int axis) {
+  return {place[axis == 0 ? 1 : 0], place[axis == 2 ? 1 : 2]};
+}
+
+bool is_flat(const ChordPolyline& chords, std::size_t edge, int axis) {
+  return std::abs(chords.points[edge][axis] - chords.points[edge + 1][axis]) <= kSamePlace;
+}
+
+Layers layers_of(const ChordPolyline& chords, int axis) {
+  Layers layers;
+  for (std::size_t i = 0; i < chords.edge_count(); ++i) {
+    if (!is_flat(chords, i, axis)) continue;
+    const Point3& from = chords.points[i];
+    Layer& layer = layers[rounded(from[axis])];
+    layer.height = from[axis];
+    if (layer.edges.add(across(from, axis), across(chords.points[i + 1], axis))) {
+      layer.pieces.push_back(chords.pieces[i]);
+    }
+  }
+  return layers;
+}
+
+// What the old path does where bands overlap.
+class OldLayer {
+ public:
+  // Nothing when it lies in a heap.
+  static std::optional<OldLayer> made_of(const FlatEdges& edges, double tolerance) {
+    const double reach = 2 * (1 + kChordPart) * tolerance;
+    auto pairs = near_pairs(edges, reach);
+    if (!pairs) return {};
+    std::vector<std::size_t> groups = group_pairs(*pairs, edges, reach);
+    return OldLayer(edges, std::move(*pairs), std::move(groups), tolerance);
+  }
+
+  // Whether the old path meets itself where two of its parts may have come to `place`. `near`: its
+  // edges that may be less than kSameLoop tolerances from there, sorted.
+  [[nodiscard]] bool meets_itself_at(const Point2& place, std::span<const std::size_t> near) const {
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      const double first = edge_distance(edges_, near[i], place);
+      if (first > kSameLoop * tolerance_) continue;
+      for (std::size_t k = i + 1; k < near.size(); ++k) {
+        const double second = edge_distance(edges_, near[k], place);
+        if (second > kSameLoop * tolerance_) continue;
+        const EdgePair pair{static_cast<std::uint32_t>(near[i]),
+                            static_cast<std::uint32_t>(near[k])};
+        if (excuses(pair, std::max(first, second))) return true;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::vector<Box> boxes() const {
+    std::vector<Box> result;
+    const double margin = kSameLoop * tolerance_;
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      const Point2 low = edges_.from(i).cwiseMin(edges_.to(i));
+      const Point2 high = edges_.from(i).cwiseMax(edges_.to(i));
+      result.emplace_back(
+          CGAL::Bbox_2(low.x() - margin, low.y() - margin, high.x() + margin, high.y() + margin),
+          i);
+    }
+    return result;
+  }
+
+ private:
+  OldLayer(const FlatEdges& edges, std::vector<EdgePair> pairs, std::vector<std::size_t> groups,
+           double tolerance)
+      : edges_(edges),
+        pairs_(std::move(pairs)),
+        groups_(std::move(groups)),
+        meets_(groups_.size() + 1, false),
+        tolerance_(tolerance) {
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      if (!edges_meet(edges_, pairs_[i])) continue;
+      met_.push_back(pairs_[i]);
+      if (groups_[i] > 0) meets_[groups_[i]] = true;
+    }
+  }
+
+  // `distance`: of the place from the farther edge of the pair.
+  [[nodiscard]] bool excuses(const EdgePair& pair, double distance) const {
+    if (std::binary_search(met_.begin(), met_.end(), pair)) return true;
+    if (distance > (1 + 2 * kChordPart) * tolerance_) return false;
+    const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), pair);
+    if (found == pairs_.end() || *found != pair) return false;
+    return meets_[groups_[static_cast<std::size_t>(found - pairs_.begin())]];
+  }
+
+  const FlatEdges& edges_;
+  std::vector<EdgePair> pairs_;
+  std::vector<std::size_t> groups_;
+  std::vector<bool> meets_;    // by group: whether its two parts meet anywhere
+  std::vector<EdgePair> met_;  // the pairs that do, sorted
+  double tolerance_;
+};
+
+struct Meeting {
+  EdgePair edges;
+  Point2 place;
+};
+
+std::vector<Meeting> meetings_of(const FlatEdges& edges) {
+  std::vector<Meeting> met;
+  const auto touching = near_pairs(edges, 0);
+  if (!touching) return met;
+  for (const EdgePair& pair : *touching) {
+    if (edges_meet(edges, pair)) met.push_back({pair, meeting_place(edges, pair)});
+  }
+  return met;
+}
+
+// The first meeting of the new path that the old one does not excuse.
+std::optional<Meeting> first_new(const std::vector<Meeting>& met, const FlatEdges& before,
+                                 double tolerance) {
+  const auto old = OldLayer::made_of(before, tolerance);
+  if (!old) return {};
+  std::vector<Box> places;
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    const Point2& p = met[i].place;
+    places.emplace_back(CGAL::Bbox_2(p.x(), p.y(), p.x(), p.y()), i);
+  }
+  std::vector<std::vector<std::size_t>> near(met.size());
+  std::vector<Box> edges = old->boxes();
+  CGAL::box_intersection_d(
+      places.begin(), places.end(), edges.begin(), edges.end(),
+      [&](const Box& place, const Box& edge) { near[place.info()].push_back(edge.info()); });
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    std::sort(near[i].begin(), near[i].end());
+    if (!old->meets_itself_at(met[i].place, near[i])) return met[i];
+  }
+  return {};
+}
+
+// The axis across which most of the chords lie; Z before Y before X.
+int main_axis(const ChordPolyline& chords) {
+  int axis = 2;
+  std::size_t most = 0;
+  for (const int candidate : {2, 1, 0}) {
+    std::size_t flat = 0;
+    for (std::size_t i = 0; i < chords.edge_count(); ++i) {
+      if (is_flat(chords, i, candidate)) ++flat;
+    }
+    if (flat <= most) continue;
+    most = flat;
+    axis = candidate;
+  }
+  return axis;
+}
+
+}  // namespace
+
+std::optional<NewCrossing> new_crossing(std::span<const PathPiece> before,
+                                        std::span<const PathPiece> after, double tolerance) {
+  if (before.empty() || after.empty()) return {};
+  const ChordPolyline chords = cut_into_chords(after, kChordPart * tolerance);
+  const int axis = main_axis(chords);
+  const Layers then = layers_of(cut_into_chords(before, kChordPart * tolerance), axis);
+  std::optional<NewCrossing> first;
+  for (const auto& [key, layer] : layers_of(chords, axis)) {
+    const auto old = then.find(key);
+    if (old == then.end()) continue;
+    const std::vector<Meeting> met = meetings_of(layer.edges);
+    if (met.empty()) continue;
+    const auto found = first_new(met, old->second.edges, tolerance);
+    if (!found) continue;
+    NewCrossing crossing{layer.pieces[found->edges.first], layer.pieces[found->edges.second], {}};
+    crossing.place[axis] = layer.height;
+    crossing.place[axis == 0 ? 1 : 0] = found->place.x();
+    crossing.place[axis == 2 ? 1 : 2] = found->place.y();
+    if (!first || crossing.first_piece < first->first_piece) first = crossing;
+  }
+  return first;
+}
+
+}  // namespace batten::geometry
