@@ -29,7 +29,7 @@ constexpr int kLeastGates = 8;
 constexpr double kFlat = 0.02;
 
 // How often the tolerance is halved in on while looking for the least one that needs as many links.
-constexpr int kBalancingRounds = 6;
+constexpr int kBalancingRounds = 4;
 
 // A tolerance that is 9/16 of another one needs a third more links.
 constexpr double kNarrowest = 9.0 / 16;
@@ -43,22 +43,27 @@ constexpr int kMostCuts = 12;
 // Along a stretch without corners.
 class Stretch {
  public:
-  Stretch(const CurvePieces& pieces, double from, double to, const MinLinkOptions& options)
-      : pieces_(pieces), from_(from), to_(to), options_(options) {
+  // `chords`: vertices of proved chords over the stretch, its ends included.
+  Stretch(const CurvePieces& pieces, std::span<const double> chords, const MinLinkOptions& options)
+      : pieces_(pieces),
+        chords_(chords),
+        from_(chords.front()),
+        to_(chords.back()),
+        options_(options) {
     const double gates = options.gates_per_link;
     gap_ = 2 * options.tolerance / (gates * gates);
     find_plane();
   }
 
-  // Proved links, not more than `at_most`; nothing otherwise.
-  std::optional<Vertices> links(std::size_t at_most) const {
-    const Vertices start = {{pieces_.point_at(from_), from_}};
-    auto found = continued(start, options_.tolerance);
-    if (!found) return std::nullopt;
-    if (options_.balanced && found->size() > 2) balance(*found);
-    if (!prove(*found) || found->size() - 1 > at_most) return std::nullopt;
-    found->back().place = pieces_.point_at(to_);
-    return found;
+  // Proved links where they are fewer than the chords, otherwise these.
+  Vertices links() const {
+    Vertices found = continued({{pieces_.point_at(from_), from_}}, options_.tolerance);
+    if (options_.balanced && found.size() > 2) balance(found);
+    if (prove(found) && found.size() < chords_.size()) return found;
+    Vertices on_curve;
+    on_curve.reserve(chords_.size());
+    for (const double u : chords_) on_curve.push_back({pieces_.point_at(u), u});
+    return on_curve;
   }
 
  private:
@@ -82,17 +87,15 @@ class Stretch {
   }
 
   // From the last of `start` to the end of the stretch, with this tolerance.
-  [[nodiscard]] std::optional<Vertices> continued(const Vertices& start, double tolerance) const {
+  [[nodiscard]] Vertices continued(const Vertices& start, double tolerance) const {
     const LinkVertex& last = start.back();
     const GateChain gates(pieces_, last.parameter, to_, gap_);
     std::optional<Vertices> more;
     if (normal_) {
       const double width = std::sqrt(tolerance * tolerance - 4 * height_ * height_);
       more = min_link_in_plane(gates, *normal_, last.place, width);
-    } else {
-      more = few_links_in_space(gates, last.place, tolerance);
     }
-    if (!more) return std::nullopt;
+    if (!more) more = few_links_in_space(gates, last.place, tolerance, chords_);
     Vertices all(start.begin(), start.end() - 1);
     all.insert(all.end(), more->begin(), more->end());
     return all;
@@ -108,9 +111,9 @@ class Stretch {
     double bad = kNarrowest;
     for (int round = 0; round < kBalancingRounds; ++round) {
       const double middle = (good + bad) / 2;
-      const auto narrower = continued(start, middle * options_.tolerance);
-      if (narrower && narrower->size() <= vertices.size()) {
-        vertices = *narrower;
+      Vertices narrower = continued(start, middle * options_.tolerance);
+      if (narrower.size() <= vertices.size()) {
+        vertices = std::move(narrower);
         good = middle;
       } else {
         bad = middle;
@@ -122,6 +125,8 @@ class Stretch {
   bool prove(Vertices& vertices) const {
     Vertices proved = {vertices.front()};
     for (std::size_t i = 1; i < vertices.size(); ++i) {
+      const bool again = vertices[i].place == proved.back().place && i + 1 < vertices.size();
+      if (again) continue;
       if (!is_near_curve(vertices[i])) return false;
       if (!prove_link(vertices[i], kMostCuts, proved)) return false;
     }
@@ -147,6 +152,7 @@ class Stretch {
   }
 
   const CurvePieces& pieces_;
+  std::span<const double> chords_;
   double from_;
   double to_;
   MinLinkOptions options_;
@@ -167,13 +173,6 @@ void check(const MinLinkOptions& options) {
   }
 }
 
-Vertices on_the_curve(const CurvePieces& pieces, std::span<const double> parameters) {
-  Vertices vertices;
-  vertices.reserve(parameters.size());
-  for (const double u : parameters) vertices.push_back({pieces.point_at(u), u});
-  return vertices;
-}
-
 }  // namespace
 
 std::vector<LinkVertex> min_link_vertices(const BsplineCurve& curve, double from, double to,
@@ -188,12 +187,12 @@ std::vector<LinkVertex> min_link_vertices(const BsplineCurve& curve, double from
   auto chord = chords.begin();  // corners are vertices of the chords too
   for (const double end : ends) {
     const auto chord_end = std::lower_bound(chord, chords.end(), end);
-    const auto count = static_cast<std::size_t>(chord_end - chord);
-    auto links = Stretch(pieces, *chord, end, options).links(count - 1);
-    if (!links) links = on_the_curve(pieces, {&*chord, count + 1});
-    vertices.insert(vertices.end(), links->begin() + 1, links->end());
+    const Vertices links = Stretch(pieces, {chord, chord_end + 1}, options).links();
+    vertices.insert(vertices.end(), links.begin() + 1, links.end());
     chord = chord_end;
   }
+  vertices.front().place = curve.point_at(from);
+  vertices.back().place = curve.point_at(to);
   return vertices;
 }
 

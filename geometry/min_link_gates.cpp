@@ -127,6 +127,24 @@ void GateChain::find_bends() {
   }
 }
 
+std::size_t GateChain::index_of(double parameter) const {
+  const auto after =
+      std::upper_bound(gates_.begin() + 1, gates_.end() - 1, parameter,
+                       [](double u, const Gate& gate) { return u < gate.parameter; });
+  return static_cast<std::size_t>(after - gates_.begin()) - 1;
+}
+
+Gate GateChain::at(double parameter) const {
+  const std::size_t i = index_of(parameter);
+  const double from = gates_[i].parameter;
+  Gate gate = between(i, (parameter - from) / (gates_[i + 1].parameter - from));
+  if (gate.parameter != parameter) {  // rounded
+    gate.parameter = parameter;
+    gate.center = pieces_->point_at(parameter);
+  }
+  return gate;
+}
+
 Gate GateChain::between(std::size_t i, double part) const {
   const Gate& before = gates_[i];
   const Gate& after = gates_[i + 1];

@@ -32,6 +32,12 @@ class GateChain {
   [[nodiscard]] const Gate& operator[](std::size_t i) const { return gates_[i]; }
   [[nodiscard]] const Gate& back() const { return gates_.back(); }
 
+  // The last gate that is not after this parameter, but for the last of all.
+  [[nodiscard]] std::size_t index_of(double parameter) const;
+
+  // A gate at a parameter of the chain.
+  [[nodiscard]] Gate at(double parameter) const;
+
   // A gate between number i and the next one, at this part of the parameter between them.
   [[nodiscard]] Gate between(std::size_t i, double part) const;
 

@@ -18,12 +18,24 @@ namespace {
 // curve bends, where the width is needed, it is not.
 constexpr int kCorners = 16;
 
-// How often the last place of a link is halved out, of the way between two gates.
-constexpr int kEndHalvings = 20;
+// The corners after the first, which is at (1, 0), and that again.
+const std::array<Point2, kCorners> kCircle = [] {
+  std::array<Point2, kCorners> corners;
+  for (int i = 0; i < kCorners; ++i) {
+    corners[static_cast<std::size_t>(i)] = unit_vector(2 * std::numbers::pi * (i + 1) / kCorners);
+  }
+  return corners;
+}();
+
+// How often the last place of a link is halved out: to 1e-4 of the way between two gates.
+constexpr int kEndHalvings = 13;
 
 // Where a link may turn before the farthest place it gets to, as parts of its gates: there the
 // link after it may see more, when the curve begins to bend another way.
 constexpr std::array kEarlierTurns = {0.125, 0.25, 0.5};
+
+// Bends whose directions differ by less than 60 degrees are one bend (the cosine).
+constexpr double kSameBend = 0.5;
 
 // A link turns from the curve's direction at its start by less than 45 degrees.
 constexpr double kWidestView = 1;
@@ -67,19 +79,19 @@ class View {
         })) {
       return true;
     }
-    std::vector<Point2> left = polygon_;
+    before_ = polygon_;
     const Vector3 side = circle.along.cross(circle.across);
-    Vector3 corner = circle.radius * circle.across + circle.center - eye_;
-    for (int i = 1; i <= kCorners && !left.empty(); ++i) {
-      const double angle = 2 * std::numbers::pi * i / kCorners;
+    Vector3 corner = circle.center + circle.radius * circle.across - eye_;
+    for (const Point2& unit : kCircle) {
       const Vector3 next =
-          circle.radius * (std::cos(angle) * circle.across + std::sin(angle) * side) +
-          circle.center - eye_;
-      cut(corner.cross(next), left);
+          circle.center + circle.radius * (unit.x() * circle.across + unit.y() * side) - eye_;
+      cut(corner.cross(next));
+      if (polygon_.empty()) {
+        polygon_ = before_;
+        return false;
+      }
       corner = next;
     }
-    if (left.empty()) return false;
-    polygon_ = std::move(left);
     return true;
   }
 
@@ -110,18 +122,21 @@ class View {
   }
 
   // Keeps the directions on the inner side of a plane through the eye.
-  void cut(const Vector3& inward, std::vector<Point2>& polygon) const {
-    std::vector<Point2> kept;
-    kept.reserve(polygon.size() + 1);
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const Point2& a = polygon[i];
-      const Point2& b = polygon[(i + 1) % polygon.size()];
-      const double at_a = inward.dot(direction(a));
-      const double at_b = inward.dot(direction(b));
-      if (at_a >= 0) kept.push_back(a);
-      if ((at_a >= 0) != (at_b >= 0)) kept.push_back(a + at_a / (at_a - at_b) * (b - a));
+  void cut(const Vector3& inward) {
+    const double base = inward.dot(ahead_);
+    const Point2 rise(inward.dot(right_), inward.dot(up_));
+    const auto height = [&](const Point2& p) { return base + rise.dot(p); };
+    if (std::ranges::all_of(polygon_, [&](const Point2& p) { return height(p) >= 0; })) return;
+    cut_.clear();
+    for (std::size_t i = 0; i < polygon_.size(); ++i) {
+      const Point2& a = polygon_[i];
+      const Point2& b = polygon_[i + 1 < polygon_.size() ? i + 1 : 0];
+      const double at_a = height(a);
+      const double at_b = height(b);
+      if (at_a >= 0) cut_.push_back(a);
+      if ((at_a >= 0) != (at_b >= 0)) cut_.push_back(a + at_a / (at_a - at_b) * (b - a));
     }
-    polygon = std::move(kept);
+    polygon_.swap(cut_);
   }
 
   Point3 eye_;
@@ -129,6 +144,8 @@ class View {
   Vector3 right_;
   Vector3 up_;
   std::vector<Point2> polygon_;  // counter-clockwise seen from the eye's back
+  std::vector<Point2> before_;   // room for the polygon before a circle,
+  std::vector<Point2> cut_;      // and for what a plane leaves of it
 };
 
 // A vertex, and how far links from it get.
@@ -151,13 +168,16 @@ class Walk {
     for (std::size_t i = 0; i < gates.size(); ++i) circles_.push_back(circle_of(gates[i], width));
   }
 
-  std::optional<std::vector<LinkVertex>> links_from(const Point3& start) const {
+  std::vector<LinkVertex> links_from(const Point3& start, std::span<const double> places) const {
     std::vector<LinkVertex> vertices;
     Stand stand = look({start, gates_[0].parameter}, 1, gates_[0].along);
     while (!stand.sees_end) {
       vertices.push_back(stand.vertex);
-      if (stand.last < stand.next) return std::nullopt;
-      stand = stand.last == last_gate() ? before_end(stand) : best_after(stand);
+      if (stand.last < stand.next) {
+        stand = on_the_curve(stand, places, vertices);
+      } else {
+        stand = stand.last == last_gate() ? before_end(stand) : best_after(stand);
+      }
     }
     vertices.push_back(stand.vertex);
     vertices.push_back({gates_.back().center, gates_.back().parameter});
@@ -189,6 +209,22 @@ class Walk {
     return stand;
   }
 
+  // On to the next of `places`, by way of the curve's own place here.
+  [[nodiscard]] Stand on_the_curve(const Stand& stand, std::span<const double> places,
+                                   std::vector<LinkVertex>& vertices) const {
+    const Gate here = gates_.at(stand.vertex.parameter);
+    if (stand.vertex.place != here.center) vertices.push_back({here.center, here.parameter});
+    const auto next = std::upper_bound(places.begin(), places.end(), here.parameter);
+    if (next == places.end() || *next >= gates_.back().parameter) return at_end(vertices.back());
+    const Gate gate = gates_.at(*next);
+    return look({gate.center, gate.parameter}, gates_.index_of(*next) + 1, gate.along);
+  }
+
+  // Nothing between this vertex and the end.
+  [[nodiscard]] Stand at_end(const LinkVertex& vertex) const {
+    return {vertex, last_gate() + 1, last_gate(), vertex, true};
+  }
+
   // Where the farthest link from `stand` passes gate `i`.
   [[nodiscard]] Stand turned_on(const Stand& stand, std::size_t i) const {
     const Vector3 way = stand.farthest.place - stand.vertex.place;
@@ -200,6 +236,7 @@ class Walk {
   [[nodiscard]] Stand best_after(const Stand& stand) const {
     Stand best = look(stand.farthest, stand.last + 1, gates_[stand.last].along);
     const std::size_t passed = stand.last + 1 - stand.next;
+    if (!bend_changes(stand.last, best.last)) return best;
     for (const double part : kEarlierTurns) {
       const auto back = static_cast<std::size_t>(part * static_cast<double>(passed));
       if (back == 0 || best.sees_end) continue;
@@ -209,10 +246,18 @@ class Walk {
     return best;
   }
 
+  // Does the curve bend anywhere else than at gate `from`, up to gate `to`?
+  [[nodiscard]] bool bend_changes(std::size_t from, std::size_t to) const {
+    for (std::size_t i = from; i <= to; ++i) {
+      if (gates_[i].bend.dot(gates_[from].bend) < kSameBend) return true;
+    }
+    return false;
+  }
+
   // The farthest link gets to the last gate, but not to its centre. It turns as early as the end
   // can be seen from: at the last gate it always can.
   [[nodiscard]] Stand before_end(const Stand& stand) const {
-    Stand best{stand.farthest, last_gate() + 1, last_gate(), stand.farthest, true};
+    Stand best = at_end(stand.farthest);
     for (std::size_t i = last_gate(); i-- > stand.next;) {
       Stand other = turned_on(stand, i);
       if (!other.sees_end) break;
@@ -228,9 +273,9 @@ class Walk {
 
 }  // namespace
 
-std::optional<std::vector<LinkVertex>> few_links_in_space(const GateChain& gates,
-                                                          const Point3& start, double width) {
-  return Walk(gates, width).links_from(start);
+std::vector<LinkVertex> few_links_in_space(const GateChain& gates, const Point3& start,
+                                           double width, std::span<const double> places) {
+  return Walk(gates, width).links_from(start, places);
 }
 
 }  // namespace batten::geometry

@@ -2,7 +2,7 @@
 // Method: docs/algorithms/min_link.md.
 #pragma once
 
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "geometry/min_link_gates.h"
@@ -12,10 +12,13 @@ namespace batten::geometry {
 
 // Links from `start`, near the first gate's centre, to the centre of the last one, through all
 // gates in order, each inside a polygon of 16 corners in the circle of radius `width` (mm) about
-// the gate's centre; a corner points to where the curve bends. Nothing when the curve bends so
-// closely that no link gets on.
-[[nodiscard]] std::optional<std::vector<LinkVertex>> few_links_in_space(const GateChain& gates,
-                                                                        const Point3& start,
-                                                                        double width);
+// the gate's centre; a corner points to where the curve bends.
+//
+// Where the curve bends so closely that no link gets on, the way goes over the next of `places`:
+// parameters of the curve, increasing, between which chords are known to be near it. The last of
+// them is the last gate's.
+[[nodiscard]] std::vector<LinkVertex> few_links_in_space(const GateChain& gates,
+                                                         const Point3& start, double width,
+                                                         std::span<const double> places);
 
 }  // namespace batten::geometry

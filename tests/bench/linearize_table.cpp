@@ -1,0 +1,146 @@
+// Prints how many lines the ways of laying them along a curve need:
+//   linearize_table [--tolerance MM] [--target NAME] [FILE ..]
+// First two parabolas at four tolerances: ilca, blca, chord, minlink (docs/algorithms/hamdan.md).
+// Then for each program, smoothed with --output lines --prefer size: lines in the runs that both
+// ways rewrite, laid as chords and as minlink, what is saved, and whether both texts are proved.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "gcode/dialect.h"
+#include "gcode/source_text.h"
+#include "geometry/blca.h"
+#include "geometry/ilca.h"
+#include "geometry/linearize.h"
+#include "geometry/min_link.h"
+#include "postproc/pipeline.h"
+
+namespace {
+
+using namespace batten;
+using geometry::BsplineCurve;
+using postproc::Linearize;
+
+struct Arguments {
+  double tolerance = 0.01;
+  std::string target = "linuxcnc";
+  std::vector<std::string> files;
+};
+
+std::optional<Arguments> arguments_of(int count, char** words) {
+  Arguments a;
+  for (int i = 1; i < count; ++i) {
+    const std::string_view word = words[i];
+    if (!word.starts_with("--")) {
+      a.files.emplace_back(word);
+    } else if (i + 1 == count) {
+      return std::nullopt;
+    } else if (word == "--tolerance") {
+      a.tolerance = std::atof(words[++i]);
+    } else if (word == "--target") {
+      a.target = words[++i];
+    } else {
+      return std::nullopt;
+    }
+  }
+  return a;
+}
+
+// y = c1 x^2 + c2 x + c3, x being the parameter.
+BsplineCurve parabola(double c1, double c2, double c3, double from, double to) {
+  const auto y = [&](double x) { return (c1 * x + c2) * x + c3; };
+  const auto slope = [&](double x) { return 2 * c1 * x + c2; };
+  const double third = (to - from) / 3;
+  return {geometry::BsplineBasis::clamped(3, {from, to}),
+          {{from, y(from), 0},
+           {from + third, y(from) + third * slope(from), 0},
+           {to - third, y(to) - third * slope(to), 0},
+           {to, y(to), 0}}};
+}
+
+void print_counts(const char* name, const BsplineCurve& curve, double first_step,
+                  double tolerance) {
+  const double from = curve.first();
+  const double to = curve.last();
+  const auto equal = geometry::ilca(curve, from, to, {tolerance, first_step});
+  const auto tangent = geometry::blca(curve, from, to, tolerance);
+  const auto chords = geometry::chord_vertices(curve, from, to, {.max_deviation = tolerance});
+  const auto links = geometry::min_link_vertices(curve, from, to, {.tolerance = tolerance});
+  fmt::print("{:<6} {:>9} {:>6} {:>6} {:>6} {:>8}\n", name, fmt::format("{:g}", tolerance),
+             equal.parameters.size() - 1, tangent.parameters.size() - 1, chords.size() - 1,
+             links.size() - 1);
+}
+
+void print_parabolas() {
+  fmt::print("{:<6} {:>9} {:>6} {:>6} {:>6} {:>8}\n", "curve", "T mm", "ilca", "blca", "chord",
+             "minlink");
+  for (const double tolerance : {0.05, 0.005, 0.0005, 0.00005}) {
+    print_counts("Ex I", parabola(-0.043, 1, 0.01, 2, 11), 3, tolerance);
+    print_counts("Ex II", parabola(2, -1, 1, 1, 10), 2, 0.9 * tolerance);
+  }
+}
+
+postproc::SmoothResult smoothed(const gcode::SourceText& source, const Arguments& arguments,
+                                Linearize linearize) {
+  postproc::SmoothOptions options;
+  options.target = gcode::find_dialect(arguments.target);
+  options.machine = postproc::find_machine(options.target->default_machine());
+  options.tolerance_mm = arguments.tolerance;
+  options.output = postproc::Form::kLines;
+  options.prefer = postproc::Prefer::kSize;
+  options.linearize = linearize;
+  return smooth_program(source, options);
+}
+
+void print_program(const std::string& file, const Arguments& arguments) {
+  std::string error;
+  const auto source = gcode::SourceText::map_file(file, error);
+  if (!source) {
+    fmt::print("{}: {}\n", file, error);
+    return;
+  }
+  const auto chords = smoothed(*source, arguments, Linearize::kChord);
+  const auto links = smoothed(*source, arguments, Linearize::kMinLink);
+  std::size_t before = 0;
+  std::size_t as_chords = 0;
+  std::size_t as_links = 0;
+  for (const auto& run : chords.runs) {
+    const auto same =
+        std::ranges::find(links.runs, run.first_line, &postproc::RunReport::first_line);
+    if (same == links.runs.end() || same->last_line != run.last_line) continue;
+    if (run.status != postproc::RunStatus::kRewritten || same->status != run.status) continue;
+    before += run.blocks_in;
+    as_chords += run.blocks_out;
+    as_links += same->blocks_out;
+  }
+  const double saved =
+      as_chords > 0 ? 1 - static_cast<double>(as_links) / static_cast<double>(as_chords) : 0;
+  const std::size_t slash = file.find_last_of('/');
+  fmt::print("{:<44} {:>7} {:>7} {:>7} {:>6.1f} % {:>8} {:>8} {}\n",
+             slash == std::string::npos ? file : file.substr(slash + 1), before, as_chords,
+             as_links, 100 * saved, chords.text.size(), links.text.size(),
+             chords.proved && links.proved ? "proved" : "NOT PROVED");
+}
+
+}  // namespace
+
+int main(int argument_count, char** argument_words) {
+  const auto arguments = arguments_of(argument_count, argument_words);
+  if (!arguments || gcode::find_dialect(arguments->target) == nullptr ||
+      !(arguments->tolerance > 0)) {
+    fmt::print(stderr, "usage: linearize_table [--tolerance MM] [--target NAME] [FILE ..]\n");
+    return 1;
+  }
+  print_parabolas();
+  if (arguments->files.empty()) return 0;
+  fmt::print("\n{:<44} {:>7} {:>7} {:>7} {:>8} {:>8} {:>8}\n", "program", "before", "chord",
+             "minlink", "saved", "bytes", "bytes");
+  for (const std::string& file : arguments->files) print_program(file, *arguments);
+  return 0;
+}
