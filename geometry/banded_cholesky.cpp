@@ -20,9 +20,10 @@ void BandedMatrix::fix(std::size_t i, const Point3& value, std::vector<Point3>& 
   right[i] = value;
 }
 
-bool BandedMatrix::factor() {
+bool BandedMatrix::solve(std::vector<Point3>& right) {
   const std::size_t n = rows_.size();
-  // L D L^T row by row; rows_[i][k] becomes L(i, i-k), rows_[i][0] becomes D(i).
+  // L D L^T row by row, and L y = right on the way; rows_[i][k] becomes L(i, i-k), rows_[i][0]
+  // becomes 1 / D(i).
   for (std::size_t i = 0; i < n; ++i) {
     Row& row = rows_[i];
     const int before = static_cast<int>(std::min<std::size_t>(i, kBands));
@@ -31,58 +32,51 @@ bool BandedMatrix::factor() {
       for (int m = k + 1; m <= before; ++m) row[k] -= row[m] * rows_[i - k][m - k];
     }
     double diagonal = row[0];
-    for (int k = 1; k <= before; ++k) {
-      const double scaled = row[k] / rows_[i - k][0];
+    Point3 value = right[i];
+    for (int k = before; k >= 1; --k) {
+      const double scaled = row[k] * rows_[i - k][0];
       diagonal -= scaled * row[k];
       row[k] = scaled;
+      value -= scaled * right[i - k];
     }
     if (!(diagonal > 0)) return false;
-    row[0] = diagonal;
-  }
-  return true;
-}
-
-template <typename Value>
-void BandedMatrix::substitute(std::vector<Value>& right) const {
-  const std::size_t n = rows_.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const int before = static_cast<int>(std::min<std::size_t>(i, kBands));
-    for (int k = 1; k <= before; ++k) right[i] -= rows_[i][k] * right[i - k];
+    row[0] = 1 / diagonal;
+    right[i] = value;
   }
   for (std::size_t i = n; i-- > 0;) {
-    right[i] /= rows_[i][0];
-    for (int k = 1; k <= kBands && i + k < n; ++k) right[i] -= rows_[i + k][k] * right[i + k];
+    Point3 value = right[i] * rows_[i][0];
+    for (int k = 1; k <= kBands && i + k < n; ++k) value -= rows_[i + k][k] * right[i + k];
+    right[i] = value;
   }
-}
-
-void BandedMatrix::solve_factored(std::vector<double>& right) const { substitute(right); }
-
-bool BandedMatrix::solve(std::vector<Point3>& right) {
-  if (!factor()) return false;
-  substitute(right);
   return true;
 }
 
 BandedMatrix BandedMatrix::inverse_band() const {
+  BandedMatrix inverse(0);
+  inverse_band(inverse, 0);
+  return inverse;
+}
+
+void BandedMatrix::inverse_band(BandedMatrix& inverse, std::size_t first) const {
   // From L D L^T: row i of the inverse is D^-1 minus the columns of L times the rows below,
   // Z(i, j) = [i = j] / D(i) - sum over k > i of L(k, i) Z(k, j), which stays inside the band.
   const std::size_t n = rows_.size();
-  BandedMatrix z(n);
+  inverse.reset(n);
+  auto& z = inverse.rows_;
   const auto entry = [&](std::size_t a, std::size_t b) {
-    return a >= b ? z.rows_[a][a - b] : z.rows_[b][b - a];
+    return a >= b ? z[a][a - b] : z[b][b - a];
   };
-  for (std::size_t i = n; i-- > 0;) {
+  for (std::size_t i = n; i-- > first;) {
     const std::size_t last = std::min(i + kBands, n - 1);
     for (std::size_t j = last; j > i; --j) {
       double sum = 0;
       for (std::size_t k = i + 1; k <= last; ++k) sum -= rows_[k][k - i] * entry(k, j);
-      z.rows_[j][j - i] = sum;
+      z[j][j - i] = sum;
     }
-    double diagonal = 1 / rows_[i][0];
+    double diagonal = rows_[i][0];
     for (std::size_t k = i + 1; k <= last; ++k) diagonal -= rows_[k][k - i] * entry(k, i);
-    z.rows_[i][0] = diagonal;
+    z[i][0] = diagonal;
   }
-  return z;
 }
 
 }  // namespace batten::geometry

@@ -19,6 +19,9 @@ class BandedMatrix {
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
   void set_zero();
 
+  // All zero and of another size; memory is kept for the next one.
+  void reset(std::size_t size) { rows_.assign(size, Row{}); }
+
   // Entry (i, i - below), 0 <= below <= kBands, below <= i. The matrix is symmetric: only
   // the lower half is kept.
   double& at(std::size_t i, int below) { return rows_[i][below]; }
@@ -29,25 +32,20 @@ class BandedMatrix {
   void fix(std::size_t i, const Point3& value, std::vector<Point3>& right);
 
   // Solves in place: `right` becomes the solution. The matrix is overwritten by its factors
-  // (L D L^T). Returns false when a pivot is not positive; `right` is undefined then.
+  // (L D L^T, with the inverse of D). Returns false when a pivot is not positive; `right` is
+  // undefined then.
   [[nodiscard]] bool solve(std::vector<Point3>& right);
 
-  // The same in two steps, for several right sides: factor() overwrites the matrix by its factors
-  // and returns false when a pivot is not positive, solve_factored() then solves in place for
-  // numbers.
-  [[nodiscard]] bool factor();
-  void solve_factored(std::vector<double>& right) const;
-
-  // After solve() or factor(): the entries of the inverse inside the band, as another banded matrix
+  // After solve(): the entries of the inverse inside the band, as another banded matrix
   // (K. Takahashi et al. 1973). Linear time.
   [[nodiscard]] BandedMatrix inverse_band() const;
 
+  // The same in the memory of another matrix, and only from row `first` on: the rows before it
+  // stay zero.
+  void inverse_band(BandedMatrix& inverse, std::size_t first) const;
+
  private:
   using Row = std::array<double, kBands + 1>;  // diagonal first, then below
-
-  template <typename Value>
-  void substitute(std::vector<Value>& right) const;
-
   std::vector<Row> rows_;
 };
 

@@ -1,5 +1,6 @@
 // The smoothest cubic B-spline that keeps given distances from given places, on few knots.
-// Method: docs/algorithms/bspline_fit.md.
+// Method: docs/algorithms/bspline_fit.md. A fit whose problem changes here and there is made
+// again by AdaptiveFit (bspline_fit_adaptive.h).
 //
 // At the parameter of each sample the curve passes its target at a distance, measured across
 // the sample's direction (sliding along it is free). Of the curves whose distances scatter
@@ -49,7 +50,7 @@ struct FitProblem {
 
 struct FitOptions {
   int max_refinements = 10;  // rounds of splitting the spans that cannot hold their samples
-  int passes = 4;            // solutions per round
+  int passes = 4;            // solutions per round that tell which spans those are
   int last_passes = 40;      // solutions after the last refinement
 };
 
@@ -59,8 +60,8 @@ struct BsplineFit {
   double worst_ratio = 0;
 };
 
-// Always returns a curve; worst_ratio says whether it keeps the limits. Linear time per pass.
+// Always returns a curve; worst_ratio says whether it keeps the limits. Linear time.
 // Requires two pins or more and the order promised above.
-[[nodiscard]] BsplineFit fit_bspline(const FitProblem& given, const FitOptions& options);
+[[nodiscard]] BsplineFit fit_bspline(const FitProblem& problem, const FitOptions& options);
 
 }  // namespace batten::geometry

@@ -40,11 +40,18 @@ struct Straight {
 class ProblemMaker {
  public:
   ProblemMaker(std::span<const Point3> points, const PathFeatures& features,
-               std::span<const double> loosen, const BandOptions& options)
-      : p_(points), f_(features), loosen_(loosen), options_(options), n_(points.size()) {}
+               std::span<const double> loosen, std::span<const EdgeCare> care,
+               const BandOptions& options)
+      : p_(points),
+        f_(features),
+        loosen_(loosen),
+        care_(care),
+        options_(options),
+        n_(points.size()) {}
 
   FitProblem make() {
     find_reaches();
+    problem_.samples.reserve(n_ + n_ / 4);
     for (std::size_t i = 0; i < n_; ++i) {
       add_vertex(i);
       if (i + 1 < n_) add_edge(i);
@@ -92,7 +99,7 @@ class ProblemMaker {
     FitSample sample;
     sample.parameter = f_.parameters[i];
     sample.target = p_[i];
-    sample.limit = options_.limit;
+    sample.limit = options_.limit * std::min(share(i - 1), share(i));
     if (corner(i)) {
       problem_.samples.push_back(sample);
       add_corner_knots(i);
@@ -106,6 +113,10 @@ class ProblemMaker {
       problem_.breakpoints.push_back(f_.parameters[i]);
       since_break_ = 0;
     }
+  }
+
+  [[nodiscard]] double share(std::size_t edge) const {
+    return care_.empty() ? 1 : care_[edge].share;
   }
 
   // How far a curve through the vertices would leave an edge.
@@ -165,6 +176,8 @@ class ProblemMaker {
     const double u0 = f_.parameters[edge];
     const double u1 = f_.parameters[edge + 1];
     if (const auto straight = straight_of(edge)) {
+      add_watching_samples(edge, u0, straight->from);
+      add_watching_samples(edge, straight->to, u1);
       if (!pinned(edge) && !corner(edge)) add_smooth_end(u0, straight->from, edge);
       add_leg_samples(edge, u0, straight->from);
       problem_.breakpoints.push_back(straight->from);
@@ -177,6 +190,7 @@ class ProblemMaker {
       since_break_ = 0;
       return;
     }
+    add_watching_samples(edge, u0, u1);
     const bool leg = corner(edge) || corner(edge + 1);
     const double height = length(edge) * std::max(f_.turns[edge], f_.turns[edge + 1]) / 8;
     if (leg) {
@@ -219,12 +233,22 @@ class ProblemMaker {
     }
   }
 
+  // Where the curve has left the edge before. At odd parts, where no other samples are.
+  void add_watching_samples(std::size_t edge, double from, double to) {
+    constexpr int kPerBreach = 4;
+    constexpr int kMost = 8;
+    const int count = care_.empty() ? 0 : std::min(kMost, kPerBreach * care_[edge].breaches);
+    for (int k = 0; k < count && to > from; ++k) {
+      add_sample_on(edge, from + (to - from) * (2 * k + 1) / (2 * count));
+    }
+  }
+
   void add_sample_on(std::size_t edge, double u) {
     FitSample sample;
     sample.parameter = u;
     sample.along = direction(edge);
     sample.target = p_[edge] + (u - f_.parameters[edge]) * sample.along;
-    sample.limit = options_.limit;
+    sample.limit = options_.limit * share(edge);
     problem_.samples.push_back(sample);
   }
 
@@ -234,12 +258,14 @@ class ProblemMaker {
     const auto earlier = [](const FitSample& a, const FitSample& b) {
       return a.parameter < b.parameter;
     };
-    std::sort(samples.begin(), samples.end(), earlier);
+    if (!std::is_sorted(samples.begin(), samples.end(), earlier)) {
+      std::sort(samples.begin(), samples.end(), earlier);
+    }
     auto& knots = problem_.breakpoints;
     std::sort(knots.begin(), knots.end());
     // Knots closer than a quarter of the finest wanted spacing add nothing but trouble; ends of
     // zones and pins are kept.
-    const double close = 0.25 * kFirstKnot * options_.limit;
+    const double close = closest_knots(options_);
     std::vector<double> needed;
     for (const Pin& pin : problem_.pins) needed.push_back(pin.parameter);
     for (const StraightZone& zone : problem_.zones) {
@@ -277,6 +303,7 @@ class ProblemMaker {
   std::span<const Point3> p_;
   const PathFeatures& f_;
   std::span<const double> loosen_;
+  std::span<const EdgeCare> care_;
   BandOptions options_;
   std::size_t n_;
   FitProblem problem_;
@@ -290,9 +317,12 @@ class ProblemMaker {
 
 }  // namespace
 
+double closest_knots(const BandOptions& options) { return 0.25 * kFirstKnot * options.limit; }
+
 FitProblem state_fair_problem(std::span<const Point3> points, const PathFeatures& features,
-                              std::span<const double> loosen, const BandOptions& options) {
-  return ProblemMaker(points, features, loosen, options).make();
+                              std::span<const double> loosen, std::span<const EdgeCare> care,
+                              const BandOptions& options) {
+  return ProblemMaker(points, features, loosen, care, options).make();
 }
 
 }  // namespace batten::geometry

@@ -18,11 +18,21 @@ struct BandOptions {
   double least_scatter = 5e-4;
 };
 
+// How closely an edge is watched that an earlier curve has left.
+struct EdgeCare {
+  double share = 1;  // of the limit that is given out beside it
+  int breaches = 0;  // so often the curve left it: it gets more samples
+};
+
+// Knots nearer than this to a pin or to the end of a straight line add nothing but trouble, mm.
+[[nodiscard]] double closest_knots(const BandOptions& options);
+
 // `loosen[i]` >= 1 widens the scatter expected at vertex i (the machine needs more room
-// there); infinite: only the limit counts. Empty: 1 everywhere.
+// there); infinite: only the limit counts. Empty: 1 everywhere. `care`: per edge; empty: none.
 [[nodiscard]] FitProblem state_fair_problem(std::span<const Point3> points,
                                             const PathFeatures& features,
                                             std::span<const double> loosen,
+                                            std::span<const EdgeCare> care,
                                             const BandOptions& options);
 
 }  // namespace batten::geometry

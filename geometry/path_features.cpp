@@ -67,22 +67,26 @@ VertexKind kind_of(const PathFeatures& f, std::size_t i, const FeatureOptions& o
   return too_coarse || stands_out ? VertexKind::kCorner : VertexKind::kSmooth;
 }
 
-// The length of the first edge beyond `edge` on one side that is not its straight continuation;
-// 0 where a corner or an end stands first.
-double length_beyond(const PathFeatures& f, std::size_t edge, bool forward) {
-  std::size_t e = edge;
-  while (true) {
-    const std::size_t vertex = forward ? e + 1 : e;
-    if (f.kinds[vertex] != VertexKind::kSmooth) return 0;
-    e = forward ? e + 1 : e - 1;
-    if (f.turns[vertex] > kNoTurn) return f.parameters[e + 1] - f.parameters[e];
+// Which edges were meant as lines: those longer than the first edge at either end that is not
+// their straight continuation. A corner or an end of the path there counts as an edge of no length.
+std::vector<bool> lines_of(const PathFeatures& f) {
+  const std::size_t edges = f.parameters.size() - 1;
+  const auto length = [&](std::size_t e) { return f.parameters[e + 1] - f.parameters[e]; };
+  // The length beyond vertex v, seen along the path, where `next` is the edge behind it and
+  // `further` what lies beyond that one.
+  const auto beyond = [&](std::size_t v, std::size_t next, double further) {
+    if (f.kinds[v] != VertexKind::kSmooth) return 0.0;
+    return f.turns[v] > kNoTurn ? length(next) : further;
+  };
+  std::vector<double> after(edges, 0);
+  for (std::size_t e = edges - 1; e-- > 0;) after[e] = beyond(e + 1, e + 1, after[e + 1]);
+  std::vector<bool> lines(edges, false);
+  double before = 0;
+  for (std::size_t e = 0; e < edges; ++e) {
+    if (e > 0) before = beyond(e, e - 1, before);
+    lines[e] = length(e) > kLineIsLonger * before && length(e) > kLineIsLonger * after[e];
   }
-}
-
-bool is_line(const PathFeatures& f, std::size_t edge) {
-  const double length = f.parameters[edge + 1] - f.parameters[edge];
-  return length > kLineIsLonger * length_beyond(f, edge, false) &&
-         length > kLineIsLonger * length_beyond(f, edge, true);
+  return lines;
 }
 
 }  // namespace
@@ -101,8 +105,7 @@ PathFeatures find_features(std::span<const Point3> points, const FeatureOptions&
   f.noise = vertex_noise(points, f.parameters);
   f.kinds.assign(n, VertexKind::kKeptCorner);
   for (std::size_t i = 1; i + 1 < n; ++i) f.kinds[i] = kind_of(f, i, options);
-  f.lines.assign(n - 1, false);
-  for (std::size_t e = 0; e + 1 < n; ++e) f.lines[e] = is_line(f, e);
+  f.lines = lines_of(f);
   return f;
 }
 

@@ -38,6 +38,29 @@ Vector3 residual(std::span<const Point3> p, std::span<const double> s, std::size
   return off / std::sqrt(squares);
 }
 
+// The values of a window that moves along, in order of size.
+class SortedWindow {
+ public:
+  void add(double value) {
+    const auto end = values_.begin() + static_cast<std::ptrdiff_t>(size_);
+    const auto place = std::upper_bound(values_.begin(), end, value);
+    std::copy_backward(place, end, end + 1);
+    *place = value;
+    ++size_;
+  }
+  void remove(double value) {
+    const auto end = values_.begin() + static_cast<std::ptrdiff_t>(size_);
+    const auto place = std::lower_bound(values_.begin(), end, value);
+    std::copy(place + 1, end, place);
+    --size_;
+  }
+  [[nodiscard]] double median() const { return values_[size_ / 2]; }
+
+ private:
+  std::array<double, 2 * kWindow + 1> values_{};
+  std::size_t size_ = 0;
+};
+
 }  // namespace
 
 std::vector<double> vertex_noise(std::span<const Point3> points,
@@ -54,16 +77,14 @@ std::vector<double> vertex_noise(std::span<const Point3> points,
     products.push_back(-before.dot(here));
     before = here;
   }
-  std::vector<double> window;
+  SortedWindow window;
+  std::size_t begin = 0;
+  std::size_t end = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t center = std::clamp<std::size_t>(i, 2, n - 4) - 2;
-    const std::size_t begin = center < kWindow ? 0 : center - kWindow;
-    const std::size_t end = std::min(products.size(), center + kWindow + 1);
-    window.assign(products.begin() + static_cast<std::ptrdiff_t>(begin),
-                  products.begin() + static_cast<std::ptrdiff_t>(end));
-    const auto middle = window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
-    std::nth_element(window.begin(), middle, window.end());
-    noise[i] = std::sqrt(std::max(0.0, *middle) / kMedianOfProducts);
+    while (begin + kWindow < center) window.remove(products[begin++]);
+    while (end < products.size() && end <= center + kWindow) window.add(products[end++]);
+    noise[i] = std::sqrt(std::max(0.0, window.median()) / kMedianOfProducts);
   }
   return noise;
 }

@@ -1,0 +1,136 @@
+#include "geometry/bspline_fit_weights.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace batten::geometry {
+
+namespace {
+
+// A sample's weight starts at this many times the stiffness of its span: close to the
+// least-squares curve.
+constexpr double kTightStart = 30;
+
+// Weights stay above this part of the stiffness, so that a stretch whose samples all have
+// room is still held somewhere and the system stays regular; and below this multiple of it:
+// heavier weights no longer move the curve where its knots cannot follow.
+constexpr double kWeightFloor = 1e-8;
+constexpr double kWeightCap = 1e4;
+
+// Scatter is judged over this many neighbours on either side: enough for a standard error of
+// a fifth, few enough to follow a change of noise along the path.
+constexpr std::size_t kScatterWindow = 10;
+
+// Sliding along is drawn back by this part in every solution, so that the parameter stays near
+// the place it was made for and the curve cannot fold.
+constexpr double kSlidePull = 0.05;
+
+// No sample slides further than this many limits: the path turns away from its direction.
+constexpr double kSlideRoom = 2;
+
+// In one step a weight grows by this factor at the most. Falling is quicker: distances grow no
+// faster than weights fall, so a weight that falls by the ratio does not fall too far.
+constexpr double kGrowth = 8;
+constexpr double kFall = 1.0 / 32;
+
+// What is left of the base weight of a sample without scatter after each step: little enough to
+// vanish soon, enough for the weights of limits to follow.
+constexpr double kLetGo = 0.25;
+
+// A sample this far above its limit asks for another knot; so does a span whose samples
+// scatter this much more than expected (a tight fit leaves about half of the scatter).
+constexpr double kTooFar = 1.05;
+constexpr double kTooScattered = 1.5;
+
+// Tight weights leave distances that are at most this much greater than heavier ones would.
+constexpr double kHopeless = 2.5;
+
+// Whether a distance, over what is wanted, hardly follows its falling weight: the last step went
+// less than half of the way.
+bool is_numb(double now, double before) { return now < 1 && 1 - now > 0.5 * (1 - before); }
+
+double bounded(double weight, double stiffness) {
+  return std::clamp(weight, kWeightFloor * stiffness, kWeightCap * stiffness);
+}
+
+}  // namespace
+
+void start_tight(SampleState& state) {
+  state.base = kTightStart * state.stiffness;
+  state.push = kWeightFloor * state.stiffness;
+  state.rms = 0;
+}
+
+void measure(const FitSample& sample, const Point3& on_curve, SampleState& state) {
+  const Vector3 off = on_curve - sample.target;
+  const double room = kSlideRoom * sample.limit;
+  const Vector3 slide = std::clamp(off.dot(sample.along), -room, room) * sample.along;
+  state.target = sample.target + (1 - kSlidePull) * slide;
+  state.distance = (off - slide).norm();
+}
+
+void reweight_scatter(std::span<const FitSample> samples, std::span<SampleState> states,
+                      std::size_t begin, std::size_t end, ScatterStep step) {
+  const double least = step == ScatterStep::kGrow ? 1 : kFall;
+  double sum = 0;  // of squared distances over scatter in [first, last[
+  std::size_t count = 0;
+  std::size_t first = begin < kScatterWindow ? 0 : begin - kScatterWindow;
+  std::size_t last = first;
+  const auto square = [&](std::size_t i) {
+    const double ratio = states[i].distance / samples[i].scatter;
+    return ratio * ratio;
+  };
+  for (std::size_t i = begin; i < end; ++i) {
+    for (; last < samples.size() && last <= i + kScatterWindow; ++last) {
+      if (samples[last].scatter > 0) sum += square(last), ++count;
+    }
+    for (; first + kScatterWindow < i; ++first) {
+      if (samples[first].scatter > 0) sum -= square(first), --count;
+    }
+    if (!(samples[i].scatter > 0) || count == 0) continue;
+    const double rms = std::sqrt(std::max(sum, 0.0) / static_cast<double>(count));
+    SampleState& state = states[i];
+    const double factor = is_numb(rms, state.rms) ? rms * rms * rms : rms;
+    state.rms = rms;
+    const double change = std::clamp(factor, least, kGrowth);
+    state.base = bounded(state.base * change, state.stiffness);
+    // What a limit needed beside the heavier weight it will be told again if need be.
+    if (states[i].distance < samples[i].limit) {
+      state.push = bounded(state.push * std::min(change, 1.0), state.stiffness);
+    }
+  }
+}
+
+void relax_limit(double ratio, SampleState& state) {
+  state.push = bounded(state.push * std::clamp(ratio / kAimInside, kFall, 1.0), state.stiffness);
+}
+
+void press_limit(double ratio, double leverage, double part, SampleState& state) {
+  if (!(leverage > 0)) return;
+  const double excess = std::min(ratio / kAimInside, kGrowth) - 1;
+  state.push = bounded(state.push + part * excess / leverage, state.stiffness);
+}
+
+void let_go(SampleState& state) { state.base = bounded(kLetGo * state.base, state.stiffness); }
+
+void forget_limit(SampleState& state) { state.push = kWeightFloor * state.stiffness; }
+
+SpanNeed need_of(std::span<const FitSample> samples, std::span<const SampleState> states) {
+  double squares = 0;
+  double count = 0;
+  double worst = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    worst = std::max(worst, states[i].distance / samples[i].limit);
+    if (!(samples[i].scatter > 0)) continue;
+    const double ratio = states[i].distance / samples[i].scatter;
+    squares += ratio * ratio;
+    ++count;
+  }
+  const double scattered = kTooScattered * kTooScattered * count;
+  // Samples that have a limit only may be holding the others back, for the moment.
+  const bool alike = count == static_cast<double>(samples.size());
+  return {worst, worst > kTooFar || squares > scattered,
+          worst > kHopeless || (alike && squares > kHopeless * kHopeless * scattered)};
+}
+
+}  // namespace batten::geometry

@@ -1,0 +1,64 @@
+// The weights of the samples of a fit: how hard each of them draws the curve.
+// Method: docs/algorithms/bspline_fit.md, section Weights.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "geometry/bspline_fit.h"
+#include "geometry/point.h"
+
+namespace batten::geometry {
+
+// What the fit knows of a sample from one solution to the next.
+struct SampleState {
+  Point3 target = Point3::Zero();  // slid along the path
+  double stiffness = 0;            // of the curve there: what weights are compared with
+  double base = 0;                 // weight that makes the distances scatter as expected
+  double push = 0;                 // weight of the limit, on top of it
+  double distance = 0;             // mm, in the last solution
+  double rms = 0;                  // of the distances around over their scatter, one step before
+};
+
+// Weights close to those of the least-squares curve: they fall from there where there is room.
+void start_tight(SampleState& state);
+
+// Slides the target to the foot of the curve and measures what is left.
+void measure(const FitSample& sample, const Point3& on_curve, SampleState& state);
+
+// The distance that weights of limits aim at, in limits: weights approach their values from both
+// sides, and a curve that is a little outside is of no use.
+inline constexpr double kAimInside = 0.995;
+
+// The discrepancy principle, locally: the base weights of [begin, end[ fall where the distances of
+// the neighbourhood are smaller than their scatter and grow where they are greater.
+enum class ScatterStep { kBothWays, kGrow };
+void reweight_scatter(std::span<const FitSample> samples, std::span<SampleState> states,
+                      std::size_t begin, std::size_t end, ScatterStep step);
+
+// Where a limit leaves room its weight falls by the ratio of distance and limit (C. L. Lawson's
+// reweighting), so that it vanishes where the limit is not felt.
+void relax_limit(double ratio, SampleState& state);
+
+// Where a limit is passed its weight takes a part of Newton's step: with leverage h, the compliance
+// of the curve at the sample, a weight w leaves a distance proportional to 1 / (w + k),
+// k = 1 / h - w, so that w + (ratio - 1) / h would meet the limit if no other sample moved.
+void press_limit(double ratio, double leverage, double part, SampleState& state);
+
+// A sample without scatter is held by its limit alone in the end: its base weight fades.
+void let_go(SampleState& state);
+
+// The limit is told again if need be.
+void forget_limit(SampleState& state);
+
+// Whether the samples show that their span cannot follow them: `far` when not even heavier weights
+// could help.
+struct SpanNeed {
+  double worst = 0;  // the greatest distance over its limit
+  bool knot = false;
+  bool far = false;
+};
+[[nodiscard]] SpanNeed need_of(std::span<const FitSample> samples,
+                               std::span<const SampleState> states);
+
+}  // namespace batten::geometry

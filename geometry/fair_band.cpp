@@ -1,0 +1,155 @@
+#include "geometry/fair_band.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace batten::geometry {
+
+namespace {
+
+// The fit aims inside the band by this share, since between its samples the curve leaves the
+// band by a percent or two.
+constexpr double kAim = 0.96;
+
+// Where the curve left an edge between its samples, the next fit gives out that much less of the
+// limit there, but not less than this part of what it had.
+constexpr double kAimAgain = 0.98;
+constexpr double kLeastShare = 0.85;
+
+// Breaches of an edge after which it stays a line between kept corners, and with it, at every
+// further breach, twice as many edges around it. Fits until nothing is tried any more but the
+// polyline itself.
+constexpr int kWatched = 2;
+constexpr int kAttempts = 9;
+
+// Vertices that are met are met to this part of the tolerance.
+constexpr double kMetLimit = 0.01;
+
+}  // namespace
+
+BandFit::BandFit(std::vector<Point3> points, const FairOptions& options,
+                 std::vector<std::size_t> met)
+    : points_(std::move(points)),
+      options_(options),
+      met_(std::move(met)),
+      features_(
+          find_features(points_, {options.tolerance, options.keep_corner_angle, options.rounding})),
+      loosen_(points_.size(), 1),
+      care_(points_.size() - 1),
+      at_(features_.parameters),
+      off_(points_.size() - 1),
+      time_(points_.size() - 1) {}
+
+void BandFit::loosen(std::vector<double> factors) {
+  loosen_ = std::move(factors);
+  hold();
+}
+
+void BandFit::take_back(const BandFit& before, std::span<const IndexRange> stretches) {
+  for (const IndexRange& stretch : stretches) {
+    for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
+      loosen_[i] = before.loosen_[i];
+      features_.kinds[i] = before.features_.kinds[i];
+      if (i + 1 == stretch.end) break;
+      features_.lines[i] = before.features_.lines[i];
+      care_[i] = before.care_[i];
+    }
+  }
+  hold();
+}
+
+SplineWalk BandFit::walk() const { return {fit_->spline().knots, fit_->spline().points}; }
+
+// Fits, looks at the curve between the samples, and fits again where it left the band.
+void BandFit::hold() {
+  for (int attempt = 0; attempt <= kAttempts; ++attempt) {
+    fit();
+    measure();
+    if (attempt == kAttempts || !mend()) return;
+    if (attempt + 1 < kAttempts) continue;
+    // Nothing else is sure to hold.
+    for (std::size_t edge = 0; edge < off_.size(); ++edge) keep_edges(edge, 0);
+  }
+}
+
+void BandFit::fit() {
+  BandOptions band;
+  band.limit = kAim * options_.tolerance;
+  band.least_scatter =
+      std::max(options_.scatter, std::min(options_.rounding, 0.25 * options_.tolerance));
+  FitProblem problem = state_fair_problem(points_, features_, loosen_, care_, band);
+  hold_met(problem);
+  if (fit_) {
+    fit_->refit(problem, closest_knots(band));
+  } else {
+    fit_.emplace(problem, FitOptions{});
+  }
+}
+
+void BandFit::hold_met(FitProblem& problem) const {
+  for (const std::size_t i : met_) {
+    const auto at =
+        std::lower_bound(problem.samples.begin(), problem.samples.end(), features_.parameters[i],
+                         [](const FitSample& sample, double u) { return sample.parameter < u; });
+    if (at == problem.samples.end() || at->parameter != features_.parameters[i]) continue;
+    at->limit = kMetLimit * options_.tolerance;
+    at->scatter = 0;
+  }
+}
+
+// Renews what depends on the curve, where it moved.
+void BandFit::measure() {
+  const std::vector<double>& start = features_.parameters;
+  const std::size_t vertices = points_.size();
+  SplineWalk curve = walk();
+  const TravelLimits limits{options_.feed / 60, options_.acceleration};
+  const auto index_of = [&](double u) {
+    return static_cast<std::size_t>(std::lower_bound(start.begin(), start.end(), u) -
+                                    start.begin());
+  };
+  std::size_t done = 0;  // vertices before this one are measured
+  for (const ParameterRange& part : fit_->moved()) {
+    // A vertex belongs to a place up to half an edge away.
+    const std::size_t first = std::max(done, std::max<std::size_t>(index_of(part.from), 2) - 2);
+    const std::size_t last = std::min(index_of(part.to) + 2, vertices);
+    for (std::size_t i = first; i < last; ++i) {
+      at_[i] = nearest_parameter(curve, points_, start, i);
+    }
+    const VertexPlaces path{points_, at_};
+    const std::size_t first_edge = std::max<std::size_t>(first, 1) - 1;
+    const std::size_t last_edge = std::min(last, vertices - 1);
+    for (std::size_t edge = first_edge; edge < last_edge; ++edge) {
+      off_[edge] = edge_deviation(curve, path, edge, options_.tolerance);
+      time_[edge] = edge_time(curve, path, edge, limits);
+    }
+    done = last;
+  }
+}
+
+// Tightens the problem where the curve left the band. Returns whether it did anywhere.
+bool BandFit::mend() {
+  bool left = false;
+  for (std::size_t edge = 0; edge < off_.size(); ++edge) {
+    if (off_[edge] <= options_.tolerance) continue;
+    left = true;
+    EdgeCare& care = care_[edge];
+    ++care.breaches;
+    care.share *= std::max(kLeastShare, kAimAgain * options_.tolerance / off_[edge]);
+    if (care.breaches > kWatched) {
+      keep_edges(edge, (std::size_t{1} << (care.breaches - kWatched - 1)) - 1);
+    }
+  }
+  return left;
+}
+
+// An edge and so many on either side stay lines between kept corners.
+void BandFit::keep_edges(std::size_t edge, std::size_t around) {
+  const std::size_t last = std::min(edge + around, off_.size() - 1);
+  for (std::size_t e = edge < around ? 0 : edge - around; e <= last; ++e) {
+    features_.lines[e] = true;
+    features_.kinds[e] = VertexKind::kKeptCorner;
+    features_.kinds[e + 1] = VertexKind::kKeptCorner;
+  }
+}
+
+}  // namespace batten::geometry

@@ -1,0 +1,68 @@
+// A fair curve along a chain of vertices, held inside its band.
+// Method: docs/algorithms/fair.md, sections Band and Staying inside.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/bspline_fit_adaptive.h"
+#include "geometry/fair.h"
+#include "geometry/fair_measure.h"
+#include "geometry/fair_problem.h"
+#include "geometry/path_features.h"
+#include "geometry/point.h"
+
+namespace batten::geometry {
+
+// A value: a copy goes its own way.
+class BandFit {
+ public:
+  // `points`: two or more, neighbours apart. `met`: vertices that the curve meets closely though
+  // they are no corners.
+  BandFit(std::vector<Point3> points, const FairOptions& options, std::vector<std::size_t> met);
+
+  // The first fit. What depends on the curve can be asked for after it.
+  void hold();
+
+  // Expects the vertices to scatter more, by these factors (per vertex, 1 or more; infinite: only
+  // the limit counts), and fits again where that differs from before.
+  void loosen(std::vector<double> factors);
+
+  // Asks for what `before` asked for in these stretches of vertices, and fits again. `before`: an
+  // earlier fit of the same path.
+  void take_back(const BandFit& before, std::span<const IndexRange> stretches);
+
+  [[nodiscard]] const std::vector<Point3>& points() const { return points_; }
+  [[nodiscard]] const PathFeatures& features() const { return features_; }
+  [[nodiscard]] const std::vector<double>& loosened() const { return loosen_; }
+
+  [[nodiscard]] BsplineCurve curve() const { return fit_->curve(); }
+  [[nodiscard]] SplineWalk walk() const;
+  [[nodiscard]] const std::vector<double>& parameters() const { return at_; }  // of the vertices
+
+  // Per edge: greatest distance between it and the curve (mm), and travel time beside it (s).
+  [[nodiscard]] const std::vector<double>& deviations() const { return off_; }
+  [[nodiscard]] const std::vector<double>& times() const { return time_; }
+
+ private:
+  void fit();
+  void measure();
+  [[nodiscard]] bool mend();
+  void keep_edges(std::size_t edge, std::size_t around);
+  void hold_met(FitProblem& problem) const;
+
+  std::vector<Point3> points_;
+  FairOptions options_;
+  std::vector<std::size_t> met_;
+  PathFeatures features_;
+  std::vector<double> loosen_;  // per vertex
+  std::vector<EdgeCare> care_;  // per edge
+  std::optional<AdaptiveFit> fit_;
+  std::vector<double> at_;
+  std::vector<double> off_;
+  std::vector<double> time_;
+};
+
+}  // namespace batten::geometry
