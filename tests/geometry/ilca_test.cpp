@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "geometry/chord_deviation.h"
-#include "support/curve_of.h"
-#include "support/parabolas.h"
+#include "tests/support/curve_of.h"
+#include "tests/support/parabolas.h"
 
 namespace batten::geometry {
 namespace {

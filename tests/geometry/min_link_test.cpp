@@ -11,8 +11,8 @@
 
 #include "geometry/linearize.h"
 #include "geometry/plane_curve.h"
-#include "support/curve_of.h"
-#include "support/parabolas.h"
+#include "tests/support/curve_of.h"
+#include "tests/support/parabolas.h"
 
 namespace batten::geometry {
 namespace {
