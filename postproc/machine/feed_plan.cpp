@@ -1,6 +1,7 @@
 #include "postproc/machine/feed_plan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -11,6 +12,7 @@
 #include "postproc/machine/feed_plan_grid.h"
 #include "postproc/machine/feed_plan_path.h"
 #include "postproc/machine/feed_plan_problem.h"
+#include "postproc/machine/feed_plan_refine.h"
 #include "postproc/machine/feed_plan_solver.h"
 #include "postproc/machine/feed_plan_straight.h"
 
@@ -23,6 +25,17 @@ using geometry::PathPiece;
 // A joint whose speed the machine reaches from rest within this way is a stop: the way is a
 // thousandth of the last printed decimal.
 constexpr double kStopWay = 1e-6;  // mm
+
+// A straight move is not refined, so it has more nodes from the start.
+constexpr double kStraightDensity = 2;
+
+// The first solution only says where nodes are missing.
+constexpr double kFirstGap = 1e-3;
+
+// Intervals are cut where the jerk switches, once, and where a limit is exceeded between the places
+// that were asked, until it is so by less than half a percent; three times are rarely needed.
+constexpr std::array<RefineRule, 4> kRefinements = {RefineRule{0.002, 0.5}, RefineRule{0.004, 2},
+                                                    RefineRule{0.004, 2}, RefineRule{0.004, 2}};
 
 // Times and parameters this close, as part of the whole, are the same: rounding of sums.
 constexpr double kSamePart = 1e-12;
@@ -191,7 +204,7 @@ void Planner::plan_straight(const Chain& chain, double length) {
   std::size_t piece = 0;
   StraightState last;
   double last_time = 0;
-  for (const double time : node_times(move, ends, options_.density)) {
+  for (const double time : node_times(move, ends, kStraightDensity * options_.density)) {
     const StraightState state = state_at(move, time);
     const double from = piece > 0 ? ends[piece - 1] : 0;
     double t = (state.distance - from) / (ends[piece] - from);
@@ -207,9 +220,18 @@ void Planner::plan_straight(const Chain& chain, double length) {
 }
 
 void Planner::plan_bent(const Chain& chain) {
-  const PlanGrid grid = make_plan_grid(chain.pieces, chain.bounds, limits_, options_.density);
-  const PlanProblem problem = make_plan_problem(chain.pieces, grid, limits_);
-  const PlanSolution solution = fastest_plan(problem, feasible_start(problem, grid));
+  PlanGrid grid = make_plan_grid(chain.pieces, chain.bounds, limits_, options_.density);
+  PlanProblem problem = make_plan_problem(chain.pieces, grid, limits_);
+  PlanSolution solution = fastest_plan(problem, feasible_start(problem, grid), kFirstGap);
+  for (const RefineRule& rule : kRefinements) {
+    std::vector<double> start = solution.x;
+    const std::size_t cut = refine_plan(chain.pieces, limits_, problem, rule, grid, start);
+    const bool first = &rule == &kRefinements.front();
+    if (cut == 0 && !first) break;
+    if (cut > 0) problem = make_plan_problem(chain.pieces, grid, limits_);
+    slow_down(problem, start);
+    solution = fastest_plan(problem, std::move(start));
+  }
   const auto& x = solution.x;
   const std::size_t n = problem.intervals();
   const auto& intervals = grid.intervals;

@@ -25,8 +25,8 @@ struct PlanEnds {
 
 struct FeedPlanOptions {
   // Nodes in the time sqrt(v / jerk), half of what the machine needs for a change of its speed
-  // by v. The time found is wrong by about 1 / (10 density^2) of it, mostly too long.
-  double density = 12;
+  // by v; more where the plan needs them. The error of the time falls with the square of it.
+  double density = 6;
 };
 
 // Between two nodes speed^2 is a cubic of the distance; next to rest it is a power of the distance,

@@ -96,7 +96,7 @@ struct Ramp {
 };
 
 // Nodes for a bend whose share of a limit goes from nothing to all, whatever the time it takes.
-constexpr double kNodesPerBend = 4;
+constexpr double kNodesPerBend = 2;
 
 // Up, along the cap, and down.
 void append_ramps(const Envelope& envelope, std::size_t number, const Potential& potential,

@@ -73,15 +73,6 @@ class RowMaker {
   std::vector<PlanRow>& rows_;
 };
 
-// In the middle by length: one Newton step from the middle by parameter.
-double middle_of(const PathPiece& piece, const GridInterval& interval) {
-  const double t = 0.5 * (interval.t0 + interval.t1);
-  const double missing = 0.5 * interval.length - length_between(piece, interval.t0, t);
-  const double rate = length_between(piece, interval.t0, interval.t1) / (interval.t1 - interval.t0);
-  const double quarter = 0.25 * (interval.t1 - interval.t0);
-  return t + std::clamp(missing / rate, -quarter, quarter);
-}
-
 // The speed, one interval away from rest, at which the interval from rest keeps the jerk: its
 // terms, each at the greater end, all of one sign.
 double speed_after_rest(const PathPiece& piece, const GridInterval& interval, const PlanRest& rest,
@@ -171,6 +162,23 @@ PlanProblem make_plan_problem(std::span<const PathPiece> pieces, const PlanGrid&
   }
   problem.first_rows.push_back(problem.rows.size());
   return problem;
+}
+
+PlanState state_in(const double* w, double length, double s) {
+  const double rise = (w[2] - w[0]) / length;
+  const double r0 = (6 * rise - 4 * w[1] - 2 * w[3]) / length;
+  const double third = 6 * (w[1] + w[3] - 2 * rise) / (length * length);
+  return {w[0] + s * (w[1] + s * (r0 / 2 + s * third / 6)), w[1] + s * (r0 + s * third / 2),
+          r0 + s * third};
+}
+
+// One Newton step from the middle by parameter.
+double middle_of(const PathPiece& piece, const GridInterval& interval) {
+  const double t = 0.5 * (interval.t0 + interval.t1);
+  const double missing = 0.5 * interval.length - length_between(piece, interval.t0, t);
+  const double rate = length_between(piece, interval.t0, interval.t1) / (interval.t1 - interval.t0);
+  const double quarter = 0.25 * (interval.t1 - interval.t0);
+  return t + std::clamp(missing / rate, -quarter, quarter);
 }
 
 double interval_seconds(double length, const double* w) {

@@ -30,6 +30,16 @@ struct PlanWeights {
 
 [[nodiscard]] PlanWeights plan_weights(PlanPlace place, double length);
 
+// q, dq/ds and d2q/ds2 themselves.
+struct PlanState {
+  double q = 0;
+  double p = 0;
+  double r = 0;
+};
+
+// `s` mm after the start of an interval.
+[[nodiscard]] PlanState state_in(const double* window, double length, double s);
+
 enum class PlanLimit {
   kUpper,  // c.x <= 1
   kEven,   // |c.x| <= 1
@@ -81,6 +91,12 @@ struct PlanProblem {
 // Unknowns that keep all limits by a margin: from the grid's rough speeds, smoothed, and slowed
 // down as a whole until they do. Any q that keeps all limits keeps them times a factor below 1.
 [[nodiscard]] std::vector<double> feasible_start(const PlanProblem& problem, const PlanGrid& grid);
+
+// The same unknowns times a factor, the greatest that keeps all limits by a margin.
+void slow_down(const PlanProblem& problem, std::vector<double>& x);
+
+// The parameter of the place in the middle of an interval, by length.
+[[nodiscard]] double middle_of(const geometry::PathPiece& piece, const GridInterval& interval);
 
 // Seconds that these unknowns take, Simpson's rule on 1 / sqrt(q); of one interval, and in all.
 [[nodiscard]] double interval_seconds(double length, const double* window);

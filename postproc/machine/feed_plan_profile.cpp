@@ -14,13 +14,6 @@ namespace {
 
 using geometry::PathPiece;
 
-// q = speed^2 and its derivatives by the distance.
-struct Squared {
-  double q = 0;
-  double p = 0;
-  double r = 0;
-};
-
 // One interval of the plan, by the distance and time from its start.
 class Interval {
  public:
@@ -32,19 +25,14 @@ class Interval {
 
   [[nodiscard]] double length() const { return length_; }
 
-  [[nodiscard]] Squared at(double s) const {
+  [[nodiscard]] PlanState at(double s) const {
     if (window_[0] == 0) return power(window_[2], window_[3] / window_[2], s);
     if (window_[2] == 0) {
-      Squared back = power(window_[0], -window_[1] / window_[0], length_ - s);
+      PlanState back = power(window_[0], -window_[1] / window_[0], length_ - s);
       back.p = -back.p;
       return back;
     }
-    const double h = length_;
-    const double rise = (window_[2] - window_[0]) / h;
-    const double r0 = (6 * rise - 4 * window_[1] - 2 * window_[3]) / h;
-    const double third = 6 * (window_[1] + window_[3] - 2 * rise) / (h * h);
-    return {window_[0] + s * (window_[1] + s * (r0 / 2 + s * third / 6)),
-            window_[1] + s * (r0 + s * third / 2), r0 + s * third};
+    return state_in(window_.data(), length_, s);
   }
 
   // The distance `time` seconds after the start.
@@ -68,7 +56,7 @@ class Interval {
 
  private:
   // q = q1 (s / length)^m with the slope at the far end that the plan has: m = p1 length / q1.
-  [[nodiscard]] Squared power(double q1, double slope, double s) const {
+  [[nodiscard]] PlanState power(double q1, double slope, double s) const {
     const double m = slope * length_;
     if (!(s > 0)) return {0, m > 1.01 ? 0 : q1 / length_, 0};
     const double q = q1 * std::pow(s / length_, m);
@@ -108,7 +96,7 @@ double parameter_after(const PathPiece& piece, double t0, double t1, double leng
   return t;
 }
 
-MotionSample sample_at(const PathPiece& piece, double t, const Squared& at, double time) {
+MotionSample sample_at(const PathPiece& piece, double t, const PlanState& at, double time) {
   const LengthDerivatives x = derivatives_by_length(piece, t);
   MotionSample sample;
   sample.time = time;

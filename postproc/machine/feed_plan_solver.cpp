@@ -17,14 +17,15 @@ constexpr double kToLimit = 0.99;
 // derivative only.
 constexpr double kLeastPart = 0.2;
 
-// The search ends where the duals promise no more than this part of the time: below the error of
-// the grid.
-constexpr double kEnoughGap = 2e-5;
-constexpr int kMostIterations = 80;
+constexpr int kMostIterations = 150;
 
 // While the duals do not yet explain the gradient of the time, the search keeps this much distance
 // from the limits: with less, it would creep along them.
 constexpr double kGapPerUnexplained = 0.1;
+
+// After a step shorter than this some limit is too near for its dual: the next step keeps the gap
+// and evens out the products.
+constexpr double kShortStep = 0.2;
 
 // Both sides of a row: 1 - c.x and, but for kUpper, 1 + c.x; for kJerk with 1 / sqrt(q) for 1.
 struct Pair {
@@ -48,7 +49,7 @@ class Search {
     for (const PlanRow& row : problem.rows) sides_ += row.limit == PlanLimit::kUpper ? 1 : 2;
   }
 
-  PlanSolution run();
+  PlanSolution run(double enough_gap);
 
  private:
   // The places of one interval at the present x: q and 1 / sqrt(q) by number of PlanPlace.
@@ -321,12 +322,13 @@ double Search::advance(double target) {
   return primal;
 }
 
-PlanSolution Search::run() {
+PlanSolution Search::run(double enough_gap) {
   PlanSolution best;
   best.x = x_;
   best.seconds = planned_seconds(problem_, x_);
   find_slacks();
   start_duals();
+  double share = 1;
   for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
     assemble();
     best.gap = gap_;
@@ -336,27 +338,29 @@ PlanSolution Search::run() {
     for (std::size_t i = 0; i < step_.size(); ++i) step_[i] = -gradient_[i];
     solve(step_);
     const double ratio = affine_gap() / gap_;
-    const double target =
-        std::max(gap_ * ratio * ratio * ratio, kGapPerUnexplained * unexplained()) / sides_;
+    double aimed = std::max(gap_ * ratio * ratio * ratio, kGapPerUnexplained * unexplained());
+    if (share < kShortStep) aimed = std::max(aimed, gap_);
+    const double target = aimed / sides_;
     aim(target);
     solve(right_);
     step_.swap(right_);
-    const double share = advance(target);
+    share = advance(target);
     find_slacks();
     const double seconds = planned_seconds(problem_, x_);
     if (seconds < best.seconds) {
       best.seconds = seconds;
       best.x = x_;
     }
-    if (gap_ < kEnoughGap * seconds && share > 0.5) break;
+    if (gap_ < enough_gap * seconds && share > 0.5) break;
   }
   return best;
 }
 
 }  // namespace
 
-PlanSolution fastest_plan(const PlanProblem& problem, std::vector<double> start) {
-  return Search(problem, std::move(start)).run();
+PlanSolution fastest_plan(const PlanProblem& problem, std::vector<double> start,
+                          double enough_gap) {
+  return Search(problem, std::move(start)).run(enough_gap);
 }
 
 }  // namespace batten::postproc

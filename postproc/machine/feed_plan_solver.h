@@ -19,6 +19,9 @@ struct PlanSolution {
 // tangent at the present q, which is below it everywhere (1 / sqrt is convex), anew in every step;
 // so every iterate keeps every limit. Each step is one symmetric system with three sub-diagonals:
 // linear cost.
-[[nodiscard]] PlanSolution fastest_plan(const PlanProblem& problem, std::vector<double> start);
+//
+// The search ends where the duals promise no more than `enough_gap` of the time.
+[[nodiscard]] PlanSolution fastest_plan(const PlanProblem& problem, std::vector<double> start,
+                                        double enough_gap = 2e-5);
 
 }  // namespace batten::postproc

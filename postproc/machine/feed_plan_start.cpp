@@ -66,6 +66,11 @@ double allowed_factor(const PlanProblem& problem, const std::vector<double>& x) 
 
 }  // namespace
 
+void slow_down(const PlanProblem& problem, std::vector<double>& x) {
+  const double factor = kStartMargin * allowed_factor(problem, x);
+  for (double& value : x) value *= factor;
+}
+
 std::vector<double> feasible_start(const PlanProblem& problem, const PlanGrid& grid) {
   const std::size_t first = problem.start.length > 0 ? 1 : 0;
   std::vector<double> logarithms;
@@ -80,8 +85,7 @@ std::vector<double> feasible_start(const PlanProblem& problem, const PlanGrid& g
     q.reserve(logarithms.size());
     for (const double value : logarithms) q.push_back(std::exp(value));
     std::vector<double> x = unknowns_of(problem, q);
-    const double factor = kStartMargin * allowed_factor(problem, x);
-    for (double& value : x) value *= factor;
+    slow_down(problem, x);
     const double time = planned_seconds(problem, x);
     if (time < least) {
       least = time;
