@@ -128,6 +128,10 @@ class Interpreter {
     if (flow.in_body && meaning_.kind != BlockKind::kEmpty) {
       block_run(reason::kLoopBody);
     }
+    // Last: an arc that may stand in a run has this barrier alone.
+    if (meaning_.motion >= 0 && read_.motions.back().kind == MotionKind::kArc) {
+      block_run(reason::kArc);
+    }
   }
 
   void block_run(std::string_view why) {
@@ -291,7 +295,6 @@ class Interpreter {
     motion.kind = MotionKind::kArc;
     motion.piece = *reading.arc;
     add_motion(motion, words, end);
-    block_run(reason::kArc);
     return true;
   }
 

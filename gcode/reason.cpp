@@ -35,7 +35,12 @@ constexpr Explanation kExplanations[] = {
     {kRapid, "A rapid move.", kCopied, false},
     {kPlunge, "A move straight along Z into or out of a cut: its end is a corner that was meant.",
      "Nothing: the cuts on either side are smoothed by themselves.", false},
-    {kArc, "The block is an arc already, or an arc that is not understood.", kCopied, false},
+    {kArc, "An arc that is not understood, or one whose G2 or G3 is needed behind it.", kCopied,
+     false},
+    {kIntendedArc,
+     "An arc that was meant as one: a full circle, or it meets its neighbours tangentially or in "
+     "corners. Arcs that meet in small kinks are pieces of a curve, and are smoothed.",
+     kCopied, false},
     {kDwell, "A dwell (G4).", kCopied, false},
     {kProbe, "A probing move.", kCopied, false},
     {kCannedCycle, "A canned cycle, or a position of one.", kCopied, false},

@@ -24,6 +24,7 @@ inline constexpr std::string_view kRapid = "rapid";
 inline constexpr std::string_view kPlunge =
     "plunge";  // straight down or up between moves in the plane
 inline constexpr std::string_view kArc = "arc";
+inline constexpr std::string_view kIntendedArc = "intended-arc";  // no piece of a curve
 inline constexpr std::string_view kDwell = "dwell";
 inline constexpr std::string_view kProbe = "probe";
 inline constexpr std::string_view kCannedCycle = "canned-cycle";

@@ -5,12 +5,13 @@
 #include <numbers>
 
 #include "geometry/numeric.h"
+#include "geometry/path.h"
+#include "postproc/run_path.h"
 
 namespace batten::postproc {
 
 namespace {
 
-using geometry::Point3;
 using geometry::Vector3;
 
 // In between, the mean of the two middle ones.
@@ -29,13 +30,20 @@ double turn_in_degrees(const Vector3& from, const Vector3& to) {
   return std::atan2(from.cross(to).norm(), from.dot(to)) * 180 / std::numbers::pi;
 }
 
+bool moves(const gcode::Interpretation& interpretation, std::uint32_t block) {
+  const std::int32_t motion = interpretation.blocks[block].motion;
+  if (motion < 0) return false;
+  const auto& piece = interpretation.motions[static_cast<std::size_t>(motion)].piece;
+  return geometry::length_of(piece) > geometry::kSamePlace;
+}
+
 // The lines of the blocks that move, in order: one per segment of a run.
 std::vector<std::uint32_t> lines_of_motions(const gcode::Program& program,
                                             const gcode::Interpretation& interpretation,
                                             const Section& section) {
   std::vector<std::uint32_t> lines;
   for (std::uint32_t block = section.first_block; block <= section.last_block; ++block) {
-    if (interpretation.blocks[block].motion >= 0) lines.push_back(program.blocks[block].line);
+    if (moves(interpretation, block)) lines.push_back(program.blocks[block].line);
   }
   return lines;
 }
@@ -57,7 +65,7 @@ void describe_run(const Run& run, const std::vector<std::uint32_t>& lines,
                   InspectedSection& section) {
   section.closed = run.closed;
   section.decimals = run.decimals;
-  section.segments = segment_statistics(run.points, lines);
+  section.segments = segment_statistics(run, lines);
   if (run.feeds.empty()) return;
   const auto [least, greatest] = std::ranges::minmax(run.feeds, {}, &FeedFrom::feed);
   section.least_feed = least.feed;
@@ -66,23 +74,22 @@ void describe_run(const Run& run, const std::vector<std::uint32_t>& lines,
 
 }  // namespace
 
-SegmentStatistics segment_statistics(const std::vector<Point3>& points,
-                                     const std::vector<std::uint32_t>& lines) {
+SegmentStatistics segment_statistics(const Run& run, const std::vector<std::uint32_t>& lines) {
   SegmentStatistics statistics;
-  if (points.size() < 2) return statistics;
   std::vector<double> lengths;
   Vector3 before = Vector3::Zero();
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const Vector3 step = points[i + 1] - points[i];
-    lengths.push_back(step.norm());
-    if (lengths.back() <= geometry::kSamePlace) continue;
-    const double turn = before.isZero() ? 0 : turn_in_degrees(before, step);
+  for (const RunMotion& motion : motions_between(run, 0, run.points.size() - 1)) {
+    const Vector3 start = geometry::direction_at(motion.piece, 0);
+    const double turn = before.isZero() ? 0 : turn_in_degrees(before, start);
     if (turn > statistics.greatest_turn_deg) {
       statistics.greatest_turn_deg = turn;
+      const std::size_t i = lengths.size();
       statistics.turn_line = i > 0 && i <= lines.size() ? lines[i - 1] : 0;
     }
-    before = step;
+    lengths.push_back(geometry::length_of(motion.piece));
+    before = geometry::direction_at(motion.piece, 1);
   }
+  if (lengths.empty()) return statistics;
   statistics.count = lengths.size();
   statistics.shortest = *std::ranges::min_element(lengths);
   statistics.longest = *std::ranges::max_element(lengths);

@@ -40,9 +40,9 @@ struct InspectedSection {
                                                     const gcode::Interpretation& interpretation,
                                                     const std::vector<Section>& sections);
 
-// Segments of length 0 count and have no direction. `lines[i]` is the line of the block that
-// leads to points[i + 1]; may be empty when no line is wanted.
-[[nodiscard]] SegmentStatistics segment_statistics(const std::vector<geometry::Point3>& points,
+// Of the run's motions. `lines[i]` is the line of the block of motion i; may be empty when no line
+// is wanted.
+[[nodiscard]] SegmentStatistics segment_statistics(const Run& run,
                                                    const std::vector<std::uint32_t>& lines);
 
 }  // namespace batten::postproc

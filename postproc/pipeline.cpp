@@ -16,6 +16,7 @@
 #include "postproc/run_choice.h"
 #include "postproc/run_cutting.h"
 #include "postproc/run_grouping.h"
+#include "postproc/run_path.h"
 #include "postproc/run_work.h"
 #include "postproc/smoothing.h"
 
@@ -102,6 +103,7 @@ class Smoothing {
   [[nodiscard]] GroupingOptions grouping() const {
     GroupingOptions grouping;
     grouping.min_motions = options_.min_motions;
+    grouping.tolerance_mm = options_.tolerance_mm;
     for (const std::string& id : options_.allowed) grouping.allowed.push_back(id);
     return grouping;
   }
@@ -369,7 +371,7 @@ class Smoothing {
     const Candidate* chosen = work.chosen();
     const RunFacts& facts = work.smoothed.facts;
     RunReport r = report_of_blocks(section);
-    r.points = run_of(work).points.size();
+    r.points = motion_count(run_of(work)) + 1;
     r.blocks_in = work.context.blocks;
     r.blocks_out = chosen != nullptr ? chosen->text.blocks : work.context.blocks;
     r.noise_mm = facts.noise;

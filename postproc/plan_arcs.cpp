@@ -8,6 +8,7 @@
 #include "postproc/arc_moves.h"
 #include "postproc/output_plan.h"
 #include "postproc/plan_stretches.h"
+#include "postproc/run_path.h"
 
 namespace batten::postproc {
 namespace {
@@ -110,7 +111,7 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fa
   // More moves than the run has motions are chords in all but name, and plan_lines does those
   // better.
   std::optional<OutputPlan> best;
-  std::size_t most = run.points.size() - 1;
+  std::size_t most = motion_count(run);
   for (const PlaneAxes& plane : planes) {
     auto plan = plan_in(run, fair, fair.curve, fit_options(options, plane, true), options);
     if (!plan || plan->moves.size() >= most) continue;

@@ -82,6 +82,14 @@ class RunWriter {
   bool every_line_fits_ = true;
 };
 
+// G2 and G3 cannot be said again by themselves, and no block behind a run needs them (section.h).
+gcode::ModalState without_arc_word(gcode::ModalState state) {
+  const bool arc = state.motion == gcode::MotionMode::kClockwise ||
+                   state.motion == gcode::MotionMode::kCounterclockwise;
+  if (arc) state.motion = gcode::MotionMode::kUnknown;
+  return state;
+}
+
 bool has_arcs(const OutputPlan& plan) {
   return std::ranges::any_of(plan.moves, [](const PlannedMove& move) {
     return std::holds_alternative<geometry::Arc>(move.piece);
@@ -115,7 +123,7 @@ std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
     out.write(move);
   }
   copy_comments(plan.comments_after);
-  out.restore(after);
+  out.restore(without_arc_word(after));
 
   const geometry::Point3& reached = out.writer().state().position.mm;
   if ((reached - run.points.back()).norm() > geometry::kSamePlace) return std::nullopt;

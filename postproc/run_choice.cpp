@@ -28,6 +28,11 @@ constexpr double kFewerBlocks = 0.9;
 constexpr double kFewerBytes = 0.9;
 constexpr double kNearer = 0.6;
 
+// Arcs of which no two meet in more than this part of the greatest kink before are a gain, and may
+// be this part more, or one, where that saves time with the feed turned up.
+constexpr double kSmoother = 0.1;
+constexpr double kMoreForSmoother = 0.1;
+
 // Who prefers accuracy may get this multiple of blocks for it.
 constexpr double kMoreBlocks = 1.5;
 
@@ -53,8 +58,12 @@ bool gains(const Candidate& c, const SmoothedRun& run, const RunContext& context
   const bool smaller = blocks <= kFewerBlocks * blocks_before;
   const bool nearer =
       c.error <= kNearer * old.error && blocks <= most_blocks_for_accuracy(prefer) * blocks_before;
+  const bool quicker_flat_out = c.times.flat_out < (1 - kLessTimeForMore) * old.times.flat_out;
+  const double more = quicker_flat_out ? std::max(1.0, kMoreForSmoother * blocks_before) : 0;
+  const bool smoother =
+      old.kink > 0 && c.kink <= kSmoother * old.kink && blocks <= blocks_before + more;
   if (prefer == Prefer::kSize) return bytes <= kFewerBytes * static_cast<double>(context.bytes);
-  return faster || smaller || nearer;
+  return faster || smaller || nearer || smoother;
 }
 
 // Who asks for arcs by name asks for few of them.

@@ -39,6 +39,9 @@ struct Fitness {
   }
 };
 
+// Inside an arc, or before one that takes its G2 or G3 from the block before it.
+constexpr Fitness kNoPlace{-1, 0};
+
 Fitness fitness_of(double turn) {
   if (turn > kReversal) return {3, 0};
   if (turn > kSharp) return {2, turn};
@@ -46,13 +49,18 @@ Fitness fitness_of(double turn) {
   return {0, -turn};
 }
 
-// The part of a run between two of its vertices.
+// The part of a run between two ends of its motions.
 Run part_of(const Run& run, std::size_t first, std::size_t last) {
   Run part;
   const auto at = [&](std::size_t i) {
     return run.points.begin() + static_cast<std::ptrdiff_t>(i);
   };
   part.points.assign(at(first), at(last + 1));
+  for (const RunArc& arc : run.arcs) {
+    if (arc.first < first || arc.last > last) continue;
+    part.arcs.push_back({arc.first - first, arc.last - first, arc.arc, arc.names_motion});
+  }
+  if (!part.arcs.empty()) part.chord_error = run.chord_error;
   for (const FeedFrom& from : run.feeds) {
     if (from.vertex >= last) break;
     if (from.vertex <= first) part.feeds.clear();
@@ -71,35 +79,61 @@ bool moves(const gcode::Interpretation& read, std::uint32_t block) {
   const std::int32_t motion = read.blocks[block].motion;
   if (motion < 0) return false;
   const auto& piece = read.motions[static_cast<std::size_t>(motion)].piece;
-  return (geometry::end_point(piece) - geometry::start_point(piece)).norm() > geometry::kSamePlace;
+  return std::holds_alternative<geometry::Arc>(piece) ||
+         (geometry::end_point(piece) - geometry::start_point(piece)).norm() > geometry::kSamePlace;
 }
 
-// The block that leads to each vertex of the run; that of vertex 0 is none of its blocks.
-std::vector<std::uint32_t> blocks_of_vertices(const Section& section,
+// The block that leads to each vertex of the run that ends a motion; that of vertex 0 is none of
+// its blocks, and those within arcs have that of the arc.
+std::vector<std::uint32_t> blocks_of_vertices(const Section& section, const Run& run,
                                               const gcode::Interpretation& read) {
   std::vector<std::uint32_t> blocks = {section.first_block};
+  auto arc = run.arcs.begin();
   for (std::uint32_t b = section.first_block; b <= section.last_block; ++b) {
-    if (moves(read, b)) blocks.push_back(b);
+    if (!moves(read, b)) continue;
+    const std::size_t start = blocks.size() - 1;
+    const bool bends = arc != run.arcs.end() && arc->first == start;
+    const std::size_t vertices = bends ? arc->last - arc->first : 1;
+    blocks.insert(blocks.end(), vertices, b);
+    if (bends) ++arc;
   }
   return blocks;
 }
 
+// By vertex: whether the run can be cut there.
+std::vector<bool> cuttable(const Run& run) {
+  std::vector<bool> can(run.points.size(), true);
+  for (const RunArc& arc : run.arcs) {
+    if (!arc.names_motion) can[arc.first] = false;
+    for (std::size_t i = arc.first + 1; i < arc.last; ++i) can[i] = false;
+  }
+  return can;
+}
+
 }  // namespace
 
-std::vector<std::size_t> cut_places(std::span<const Point3> points, const CuttingOptions& options) {
+std::vector<std::size_t> cut_places(const Run& run, const CuttingOptions& options) {
+  const std::span<const Point3> points = run.points;
+  const std::vector<bool> can = cuttable(run);
+  const auto fitness_at = [&](std::size_t i) {
+    return can[i] ? fitness_of(turn_at(points, i)) : kNoPlace;
+  };
   std::vector<std::size_t> places;
   std::size_t from = 0;
   // The rest is not cut when its pieces would be too short.
   while (points.size() - 1 - from > options.longest) {
     const std::size_t end = points.size() - 1 - options.shortest;
     std::size_t best = from + options.shortest;
-    Fitness best_fitness = fitness_of(turn_at(points, best));
-    for (std::size_t i = best + 1; i <= std::min(from + options.longest, end); ++i) {
-      const Fitness fitness = fitness_of(turn_at(points, i));
+    Fitness best_fitness = fitness_at(best);
+    for (std::size_t i = best + 1; i <= end; ++i) {
+      // Further than that only where nothing else can be cut.
+      if (i > from + options.longest && can[best]) break;
+      const Fitness fitness = fitness_at(i);
       if (fitness < best_fitness) continue;  // of equals the last: fewer pieces
       best_fitness = fitness;
       best = i;
     }
+    if (!can[best]) break;
     places.push_back(best);
     from = best;
   }
@@ -109,7 +143,7 @@ std::vector<std::size_t> cut_places(std::span<const Point3> points, const Cuttin
 std::vector<RunPiece> cut_run(const Section& section, const gcode::Interpretation& interpretation,
                               const CuttingOptions& options) {
   const Run& run = std::get<Run>(section.content);
-  const std::vector<std::uint32_t> blocks = blocks_of_vertices(section, interpretation);
+  const std::vector<std::uint32_t> blocks = blocks_of_vertices(section, run, interpretation);
   std::vector<RunPiece> pieces;
   std::size_t first = 0;
   std::uint32_t first_block = section.first_block;
@@ -120,7 +154,7 @@ std::vector<RunPiece> cut_run(const Section& section, const gcode::Interpretatio
     first = last;
     first_block = last_block + 1;
   };
-  for (const std::size_t place : cut_places(run.points, options)) {
+  for (const std::size_t place : cut_places(run, options)) {
     if (blocks[place + 1] == blocks[place] + 1) add(place, blocks[place]);
   }
   add(run.points.size() - 1, section.last_block);

@@ -3,26 +3,25 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "gcode/motion.h"
 #include "gcode/program.h"
-#include "geometry/point.h"
 #include "postproc/section.h"
 
 namespace batten::postproc {
 
 struct CuttingOptions {
-  std::size_t shortest = 60;  // motions in a piece, but for a run that is shorter itself
-  std::size_t longest = 400;  // motions in a piece
+  // By vertices, of which an arc has several.
+  std::size_t shortest = 60;  // in a piece, but for a run that is shorter itself
+  std::size_t longest = 400;  // in a piece, but where it cannot be cut
 };
 
-// The vertices at which a path is cut, increasing, neither its first nor its last: where a cut
+// The vertices at which a run is cut, increasing, neither its first nor its last: where a cut
 // costs least, that is at reversals, else at the sharpest corner, else within a straight line, else
-// where the path turns least. Linear cost; they depend on the points alone.
-[[nodiscard]] std::vector<std::size_t> cut_places(std::span<const geometry::Point3> points,
-                                                  const CuttingOptions& options);
+// where the path turns least; never within an arc, nor before one that takes its G2 or G3 from the
+// block before it. Linear cost; they depend on the path alone.
+[[nodiscard]] std::vector<std::size_t> cut_places(const Run& run, const CuttingOptions& options);
 
 // A piece of a run as a section of its own, and where it lies in it.
 struct RunPiece {

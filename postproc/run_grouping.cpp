@@ -1,12 +1,12 @@
 #include "postproc/run_grouping.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "gcode/reason.h"
-#include "geometry/numeric.h"
+#include "postproc/intended_arcs.h"
+#include "postproc/run_blocks.h"
 
 namespace batten::postproc {
 namespace {
@@ -17,9 +17,9 @@ using gcode::Motion;
 using gcode::Tri;
 namespace reason = gcode::reason;
 
-bool is_one_place(const geometry::Point3& a, const geometry::Point3& b) {
-  return (a - b).norm() <= geometry::kSamePlace;
-}
+// The part of the tolerance by which a run's points may miss its arcs between them. It is taken off
+// what the smoothing may use.
+constexpr double kArcShare = 0.03;
 
 // The states of which each forbids to rewrite.
 struct UnsafeSwitch {
@@ -77,16 +77,16 @@ class RunGrouper {
  public:
   RunGrouper(const gcode::Program& program, const gcode::Interpretation& read,
              const GroupingOptions& options)
-      : program_(program), read_(read), options_(options) {}
+      : read_(read), blocks_(program, read), options_(options) {}
 
   std::vector<Section> group() {
     for (std::uint32_t i = 0; i < read_.blocks.size(); ++i) {
       const BlockMeaning& block = read_.blocks[i];
-      if (!block.barrier.empty()) {
+      if (!block.barrier.empty() && !is_plain_arc(block)) {
         close_chain();
         keep(i, block.barrier);
       } else if (block.motion >= 0) {
-        take_motion(i, read_.motions[static_cast<std::size_t>(block.motion)]);
+        take_motion(i, blocks_.motion(i));
       } else if (chain_.empty()) {
         keep_idle(i);
       }
@@ -98,6 +98,11 @@ class RunGrouper {
   }
 
  private:
+  static bool is_plain_arc(const BlockMeaning& block) {
+    return block.barrier == reason::kArc && block.motion >= 0 &&
+           block.kind == gcode::BlockKind::kMotion;
+  }
+
   void take_motion(std::uint32_t i, const Motion& motion) {
     std::string_view why = reason_in_state(read_.blocks[i].state_after);
     if (why.empty() && !motion.start_known) {
@@ -120,36 +125,53 @@ class RunGrouper {
     return answer_;
   }
 
-  // --- runs ---------------------------------------------------------------------------------
+  // --- arcs ---------------------------------------------------------------------------------
 
-  const geometry::Line& line_of(std::uint32_t block) const {
-    const auto motion = static_cast<std::size_t>(read_.blocks[block].motion);
-    return std::get<geometry::Line>(read_.motions[motion].piece);
-  }
-
-  bool moves(std::uint32_t block) const {
-    const geometry::Line& line = line_of(block);
-    return !is_one_place(line.start, line.end);
-  }
-
-  // Whether a block moves straight along Z, in the plane across it, or neither.
-  enum class Heading { kAlongZ, kInPlane, kOther };
-
-  Heading heading(std::uint32_t block) const {
-    const geometry::Vector3 way = line_of(block).end - line_of(block).start;
-    const bool across =
-        std::abs(way.x()) > geometry::kSamePlace || std::abs(way.y()) > geometry::kSamePlace;
-    const bool along = std::abs(way.z()) > geometry::kSamePlace;
-    if (along && !across) {
-      return Heading::kAlongZ;
+  // Arcs that were meant are copied, and the chain is cut there and at corners beside arcs.
+  void close_chain() {
+    const std::vector<std::uint32_t> whole = std::exchange(chain_, {});
+    const bool has_arcs =
+        std::ranges::any_of(whole, [this](std::uint32_t b) { return blocks_.arc(b) != nullptr; });
+    if (!has_arcs) {
+      chain_ = whole;
+      close_stretch();
+      return;
     }
-    return across && !along ? Heading::kInPlane : Heading::kOther;
+    std::vector<PrintedMotion> moving;
+    for (const std::uint32_t block : whole) {
+      if (blocks_.moves(block)) moving.push_back(blocks_.printed(block));
+    }
+    const ChainJudgement judged =
+        judge_arcs(moving, blocks_.errors_of(whole), options_.tolerance_mm);
+    std::size_t next = 0;
+    for (const std::uint32_t block : whole) {
+      if (!blocks_.moves(block)) {
+        chain_.push_back(block);
+        continue;
+      }
+      const std::size_t i = next++;
+      if (judged.starts_part[i] && can_start(block)) close_stretch();
+      if (judged.kept[i]) {
+        close_stretch();
+        keep(block, reason::kIntendedArc);
+      } else {
+        chain_.push_back(block);
+      }
+    }
+    close_stretch();
   }
+
+  // An arc that takes its G2 or G3 from the block before it stays with it.
+  bool can_start(std::uint32_t block) const {
+    return blocks_.arc(block) == nullptr || blocks_.names_motion(block);
+  }
+
+  // --- plunges ------------------------------------------------------------------------------
 
   // The tool goes down into a cut and comes up out of it: where such a move meets the cut is a
   // corner that was meant, and rounding it would tilt the cut out of its plane. So plunges are
   // copied, and the chain is cut there. Straight down in the midst of a surface is no plunge.
-  void close_chain() {
+  void close_stretch() {
     std::vector<std::uint32_t> whole = std::exchange(chain_, {});
     std::size_t i = 0;
     while (i < whole.size()) {
@@ -167,16 +189,20 @@ class RunGrouper {
 
   // Behind the moves along Z that start at `begin`, when they are a plunge; `begin` otherwise.
   std::size_t end_of_plunge(const std::vector<std::uint32_t>& chain, std::size_t begin) const {
-    const auto flat = [&](std::size_t k) { return heading(chain[k]) == Heading::kInPlane; };
+    using Heading = RunBlocks::Heading;
+    const auto flat = [&](std::size_t k) { return blocks_.heading(chain[k]) == Heading::kInPlane; };
+    const auto along_z = [&](std::size_t k) {
+      return !blocks_.moves(chain[k]) || blocks_.heading(chain[k]) == Heading::kAlongZ;
+    };
     std::size_t end = begin;
-    while (end < chain.size() && (!moves(chain[end]) || heading(chain[end]) == Heading::kAlongZ)) {
+    while (end < chain.size() && along_z(end)) {
       ++end;
     }
-    if (end == begin || !moves(chain[begin])) {
+    if (end == begin || !blocks_.moves(chain[begin])) {
       return begin;
     }
     std::size_t before = begin;
-    while (before > 0 && !moves(chain[before - 1])) {
+    while (before > 0 && !blocks_.moves(chain[before - 1])) {
       --before;
     }
     const bool flat_before = before == 0 || flat(before - 1);
@@ -184,11 +210,15 @@ class RunGrouper {
     return flat_before && flat_after ? end : begin;
   }
 
-  // Motions of no length at the ends of a chain say nothing about its path: they are copied.
+  // Motions of no length at the ends of a chain say nothing about its path: they are copied. So are
+  // arcs at its end whose G2 or G3 is needed behind it.
   void close_part() {
-    const auto moving = [this](std::uint32_t block) { return moves(block); };
+    const auto moving = [this](std::uint32_t block) { return blocks_.moves(block); };
     const auto first = std::find_if(chain_.begin(), chain_.end(), moving);
-    const auto last = std::find_if(chain_.rbegin(), chain_.rend(), moving).base();
+    const auto may_end = [this](std::uint32_t block) {
+      return blocks_.moves(block) && !blocks_.lends_arc_word(block);
+    };
+    const auto last = std::find_if(chain_.rbegin(), chain_.rend(), may_end).base();
     const auto count = first < last ? std::count_if(first, last, moving) : 0;
     if (chain_.empty()) {
       return;
@@ -201,7 +231,7 @@ class RunGrouper {
       }
       add_run(std::vector<std::uint32_t>(first, last));
       if (last != chain_.end()) {
-        keep_up_to(chain_.back(), reason::kTooShort);
+        keep_up_to(chain_.back(), blocks_.moves(*last) ? reason::kArc : reason::kTooShort);
       }
     }
     chain_.clear();
@@ -209,52 +239,9 @@ class RunGrouper {
 
   void add_run(const std::vector<std::uint32_t>& blocks) {
     close_idle_before(blocks.front());
-    Run run;
-    run.state = state_before(blocks.front());
-    run.decimals = 0;
-    run.points.reserve(blocks.size() + 1);
-    run.points.push_back(line_of(blocks.front()).start);
-    std::size_t next = 0;
-    for (std::uint32_t i = blocks.front(); i <= blocks.back(); ++i) {
-      add_comments(i, run);
-      if (blocks[next] == i) {
-        add_motion(i, run);
-        ++next;
-      }
-    }
-    // Comments of motions without length behind the last vertex do not exist: the chain ends
-    // with a motion that moves.
-    run.closed = is_one_place(run.points.front(), run.points.back());
-    sections_.push_back({blocks.front(), blocks.back(), std::move(run)});
+    sections_.push_back(
+        {blocks.front(), blocks.back(), blocks_.run_of(blocks, kArcShare * options_.tolerance_mm)});
     done_ = blocks.back() + 1;
-  }
-
-  void add_motion(std::uint32_t block, Run& run) const {
-    const std::size_t from = run.points.size() - 1;
-    const double feed = *read_.states[read_.blocks[block].state_after].feed;
-    if (!moves(block)) {
-      return;  // its feed is still there at the next motion that moves
-    }
-    if (run.feeds.empty() || run.feeds.back().feed != feed) {
-      run.feeds.push_back({from, feed});
-    }
-    run.points.push_back(line_of(block).end);
-    for (const gcode::Word& word : program_.words_of(program_.blocks[block])) {
-      if (word.letter >= 'X' && word.letter <= 'Z') {
-        run.decimals = std::max(run.decimals, static_cast<int>(word.decimals));
-      }
-    }
-  }
-
-  // The vertex that the block leads to, or for blocks without motion the next motion does.
-  void add_comments(std::uint32_t block, Run& run) const {
-    for (const gcode::Comment& comment : program_.comments_of(program_.blocks[block])) {
-      run.comments.push_back({run.points.size(), comment.span});
-    }
-  }
-
-  std::uint32_t state_before(std::uint32_t block) const {
-    return block == 0 ? 0 : read_.blocks[block - 1].state_after;
   }
 
   // --- what is kept -------------------------------------------------------------------------
@@ -303,8 +290,8 @@ class RunGrouper {
     }
   }
 
-  const gcode::Program& program_;
   const gcode::Interpretation& read_;
+  RunBlocks blocks_;
   const GroupingOptions& options_;
   std::vector<Section> sections_;
   std::vector<std::uint32_t> chain_;  // motion blocks that may become a run

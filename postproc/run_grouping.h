@@ -1,4 +1,5 @@
-// Chains of G01 with unchanged state become runs; everything else is copied, with a reason.
+// Chains of G01, and of G02 and G03 that are pieces of a curve, with unchanged state become runs;
+// everything else is copied, with a reason.
 #pragma once
 
 #include <string_view>
@@ -12,13 +13,16 @@ namespace batten::postproc {
 
 struct GroupingOptions {
   std::size_t min_motions = 3;            // chains of fewer motions with a length: too-short
+  double tolerance_mm = 0.01;             // the user's: tells pieces of a curve from arcs that were
+                                          // meant, and how finely runs follow their arcs
   std::vector<std::string_view> allowed;  // reason ids lifted by --allow
 };
 
 // Sections in the order of the program; together they cover every block once. A Verbatim
 // section holds neighbouring blocks that are kept for one reason; blocks that say nothing
 // (empty lines, comments) go with the Verbatim section before them, behind a run with the one
-// after them. A run is not longer than its motions: what stands around it is copied.
+// after them. A run is not longer than its motions: what stands around it is copied. Which arcs are
+// kept: postproc/intended_arcs.h.
 //
 // Requires: `interpretation` belongs to `program`.
 [[nodiscard]] std::vector<Section> group_runs(const gcode::Program& program,

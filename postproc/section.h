@@ -19,21 +19,34 @@ struct FeedFrom {
   double feed = 0;  // mm/min
 };
 
-// A comment that stood on the block that leads to this vertex (1 ..), or on a line of its own
-// before that block.
+// A comment that stood on the block that leads to this vertex (1 .., an end of a motion), or on a
+// line of its own before that block.
 struct CommentAt {
   std::size_t vertex = 0;
   gcode::SourceSpan text;
 };
 
-// A chain of straight cutting moves with unchanged state that may be rewritten together. Its
-// first and last block are motions of some length; between them may stand motions of no
-// length, lines that change only the feed or nothing, comments and empty lines.
+// A motion of the run that is an arc. The points from `first` to `last` lie on it, at even steps of
+// its parameter; those between them are no ends of motions.
+struct RunArc {
+  std::size_t first = 0;  // vertices
+  std::size_t last = 0;
+  geometry::Arc arc;
+  bool names_motion = true;  // its block says G2 or G3 itself
+};
+
+// A chain of cutting moves, lines and arcs, with unchanged state that may be rewritten together.
+// Its first and last block are motions of some length; between them may stand motions of no
+// length, lines that change only the feed or nothing, comments and empty lines. No block behind
+// it takes G2 or G3 from it.
 //
 // Axes whose place is not known stand at 0 in all points: no block of the run names them.
 struct Run {
-  std::vector<geometry::Point3> points;  // start and the end of every motion, mm
-  std::vector<FeedFrom> feeds;           // by vertex, each different from the one before it
+  std::vector<geometry::Point3> points;  // start and end of every motion, and places on arcs, mm
+  std::vector<RunArc> arcs;              // in order
+  double chord_error = 0;                // mm: no arc leaves the chords of its points by more
+  std::vector<FeedFrom> feeds;           // each different from the one before it, at an end of a
+                                         // motion
   std::vector<CommentAt> comments;
   // Most digits after the point among the X, Y, Z words of its motions, as they were written:
   // X.1234 in inches counts 4.

@@ -12,6 +12,7 @@
 #include "geometry/numeric.h"
 #include "postproc/machine/cycle_time.h"
 #include "postproc/run_choice.h"
+#include "postproc/run_path.h"
 #include "postproc/run_prospect.h"
 
 namespace batten::postproc {
@@ -23,6 +24,10 @@ constexpr double kMmPerInch = 25.4;
 // Where few blocks are wanted, vertices may scatter by this part of the tolerance: fewer arcs
 // and chords do for the simpler curve.
 constexpr double kSpent = 0.25;
+
+// Arcs that are pieces of a curve scatter about it, but the curve that is looked for stays within
+// this part of the tolerance of most of them.
+constexpr double kArcsSpend = 0.5;
 
 // Of the share of the form, the curve may use this part too: what it leaves of it, and of its
 // own share, the form gets back.
@@ -36,6 +41,9 @@ constexpr double kFineArcs = 0.25;
 constexpr double kLongChords = 1.5;
 constexpr double kMiddleChords = 0.6;
 constexpr double kFineChords = 0.25;
+
+// Parts of the band around a run of arcs in which few arcs are looked for.
+constexpr double kBands[] = {1, 0.97, 0.94};
 
 // Of a run with so many coarse vertices there is nothing left to fit but corners.
 constexpr double kCoarse = 0.5;
@@ -112,10 +120,13 @@ class RunSmoother {
   SmoothedRun smooth() {
     result_.facts.max_curvature = greatest_curvature(run_.points);
     time_around_ = times_around();
-    result_.facts.times = times_in_place(timed_pieces(run_, 0, run_.points.size() - 1));
+    const std::vector<TimedPiece> motions = timed_pieces(run_, 0, run_.points.size() - 1);
+    result_.facts.times = times_in_place(motions);
+    if (!run_.arcs.empty()) result_.facts.kink = greatest_kink(motions);
     if (options_.method == Method::kNone) return kept(gcode::reason::kMethodNone);
 
-    const ToleranceShares shares = share_tolerance(options_, units_, run_.decimals);
+    ToleranceShares shares = share_tolerance(options_, units_, run_.decimals);
+    shares.smoothing -= run_.chord_error;  // the points are not quite where the arcs are
     if (!(shares.smoothing > 0)) return kept(gcode::reason::kNoFit);
     const double rounding = 0.5 * step_of(run_.decimals, units_);
     find_prospect();
@@ -144,6 +155,7 @@ class RunSmoother {
     fair.feed = std::clamp(greatest_feed(run_), 1.0, 60 * options_.machine->max_velocity);
     fair.acceleration = options_.machine->max_acceleration;
     if (few_wanted()) fair.scatter = kSpent * fair.tolerance;
+    fair.scatter = std::max(fair.scatter, std::min(arc_scatter(run_), kArcsSpend * fair.tolerance));
     fair.accurate = options_.prefer == Prefer::kAccuracy;
     fair.keep_corner_angle = keep_corner_angle();
     return fair;
@@ -236,10 +248,10 @@ class RunSmoother {
         const PlanOptions fine = plan_with(kFineArcs);
         add(plan_arcs(run_, fair, fine), fine.max_deviation);
       }
-      if (few_wanted()) {
-        PlanOptions whole = plan_with(kArcs);  // the band around the vertices themselves
+      if (few_wanted() || !run_.arcs.empty()) {
+        PlanOptions whole = plan_with(kArcs);
         whole.max_deviation = left + fair.deviation;
-        add(plan_arc_spline(run_, fair, whole), whole.max_deviation);
+        add_arc_splines(fair, whole);
       }
     }
     if (options_.output == Form::kArcs) return;
@@ -249,6 +261,19 @@ class RunSmoother {
       if (lines.max_deviation == before || is_hopeless(fair, lines)) continue;
       before = lines.max_deviation;
       add(plan_lines(run_, fair, lines), lines.max_deviation);
+    }
+  }
+
+  // Arcs in the band around the vertices themselves. Of arcs no more should come than there were:
+  // the search finds one fewer here and there in a band that is a little less wide.
+  void add_arc_splines(const geometry::FairPath& fair, const PlanOptions& whole) {
+    for (const double part : kBands) {
+      PlanOptions band = whole;
+      band.max_deviation = part * whole.max_deviation;
+      add(plan_arc_spline(run_, fair, band), band.max_deviation);
+      const bool enough =
+          !result_.candidates.empty() && result_.candidates.back().text.blocks <= context_.blocks;
+      if (run_.arcs.empty() || enough) return;
     }
   }
 
@@ -279,6 +304,7 @@ class RunSmoother {
     candidate.form = plan->form;
     candidate.error = known(error);
     std::vector<TimedPiece> moves = timed_pieces(*plan);
+    if (!run_.arcs.empty()) candidate.kink = greatest_kink(moves);
     candidate.times = times_in_place(moves);
     candidate.text = std::move(*text);
     if (context_.is_piece()) candidate.moves = std::move(moves);
@@ -335,12 +361,13 @@ Times times_of(const std::vector<TimedPiece>& chain, const Machine& machine, gco
 
 std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::size_t last) {
   std::vector<TimedPiece> pieces;
-  pieces.reserve(last - first);
   std::size_t next = 0;
   double feed = 0;
-  for (std::size_t i = first; i < last; ++i) {
-    while (next < run.feeds.size() && run.feeds[next].vertex <= i) feed = run.feeds[next++].feed;
-    pieces.push_back({geometry::Line{run.points[i], run.points[i + 1]}, feed});
+  for (RunMotion& motion : motions_between(run, first, last)) {
+    while (next < run.feeds.size() && run.feeds[next].vertex <= motion.first) {
+      feed = run.feeds[next++].feed;
+    }
+    pieces.push_back({std::move(motion.piece), feed});
   }
   return pieces;
 }

@@ -55,6 +55,7 @@ struct Candidate {
   OutputForm form = OutputForm::kLines;
   RunText text;
   double error = 0;  // mm, the written form from the fair curve
+  double kink = 0;   // radians, see greatest_kink; 0 where the run is one of lines
   Times times;
   std::vector<TimedPiece> moves;  // of a piece of a run; empty otherwise
 };
@@ -66,6 +67,7 @@ struct RunFacts {
   double noise = 0;           // mm, rms distance of the vertices from the fair curve
   double error = 0;           // mm, how far the old path is from the one that was meant
   double fair_curvature = 0;  // 1/mm, greatest of the fair curve
+  double kink = 0;            // radians, greatest between motions of a run with arcs, or 0
 };
 
 struct SmoothedRun {

@@ -27,14 +27,21 @@ std::vector<Point3> raster(int rows, int steps) {
   return points;
 }
 
+postproc::Run run_through(std::vector<Point3> points) {
+  postproc::Run run;
+  run.points = std::move(points);
+  return run;
+}
+
 TEST(CutPlaces, LeavesShortRunsWhole) {
-  EXPECT_TRUE(cut_places(raster(1, 300), {.shortest = 60, .longest = 400}).empty());
+  EXPECT_TRUE(cut_places(run_through(raster(1, 300)), {.shortest = 60, .longest = 400}).empty());
 }
 
 TEST(CutPlaces, CutsRasterRowsAtTheirEnds) {
   constexpr std::size_t kSteps = 149;  // a row and its step to the next: 150 vertices
   const std::vector<Point3> points = raster(12, kSteps);
-  const std::vector<std::size_t> places = cut_places(points, {.shortest = 60, .longest = 400});
+  const std::vector<std::size_t> places =
+      cut_places(run_through(points), {.shortest = 60, .longest = 400});
   ASSERT_FALSE(places.empty());
   for (const std::size_t place : places) {
     const std::size_t in_row = place % (kSteps + 1);
@@ -46,7 +53,7 @@ TEST(CutPlaces, KeepsTheSizesThatWereAskedFor) {
   std::vector<Point3> wave;
   for (int i = 0; i <= 5000; ++i) wave.emplace_back(0.1 * i, std::sin(0.05 * i), 0);
   constexpr CuttingOptions kOptions{.shortest = 60, .longest = 400};
-  std::vector<std::size_t> ends = cut_places(wave, kOptions);
+  std::vector<std::size_t> ends = cut_places(run_through(wave), kOptions);
   ends.push_back(wave.size() - 1);
   std::size_t from = 0;
   for (const std::size_t end : ends) {
@@ -62,7 +69,8 @@ TEST(CutPlaces, PrefersAReversalToACorner) {
   for (int i = 0; i <= 200; ++i) points.emplace_back(0.1 * i, 0, 0);
   for (int i = 1; i <= 150; ++i) points.emplace_back(20 - 0.1 * i, 0, 0);  // turns by 180 degrees
   for (int i = 1; i <= 150; ++i) points.emplace_back(5, 0.1 * i, 0);       // by 90 degrees
-  EXPECT_EQ(cut_places(points, {.shortest = 60, .longest = 400}), std::vector<std::size_t>{200});
+  EXPECT_EQ(cut_places(run_through(points), {.shortest = 60, .longest = 400}),
+            std::vector<std::size_t>{200});
 }
 
 // --- pieces ----------------------------------------------------------------------------------

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "gcode/reason.h"
+#include "postproc/run_path.h"
 #include "tests/support/interpreted.h"
+#include "tests/support/kinked_arcs.h"
 
 namespace batten::postproc {
 namespace {
@@ -101,7 +103,8 @@ TEST_P(RunEnd, HasItsReason) {
 
 INSTANTIATE_TEST_SUITE_P(RunGrouping, RunEnd,
                          testing::Values(EndCase{"Rapid", "G0 Z5", "rapid"},
-                                         EndCase{"Arc", "G2 X3 Y2 I0 J.5", "arc"},
+                                         EndCase{"Arc", "G2 X3 Y2 I0 J.5", "intended-arc"},
+                                         EndCase{"ArcWithCoolant", "G2 X3 Y2 J.5 M8", "coolant"},
                                          EndCase{"Coolant", "M8", "coolant"},
                                          EndCase{"Spindle", "S600", "spindle"},
                                          EndCase{"SpindleBesideMotion", "X3.5 S600", "spindle"},
@@ -199,6 +202,87 @@ TEST(Run, StandsAtZeroOnAxesThatItDoesNotName) {
   for (const Point3& point : grouped.only_run().points) {
     EXPECT_EQ(point.z(), 0.0);
   }
+}
+
+// --- arcs ---------------------------------------------------------------------------------------
+
+TEST(ArcsInRuns, PiecesOfACurveAreARun) {
+  const Grouped grouped(tests::kinked_arc_program(tests::three_leaves));
+  ASSERT_EQ(grouped.runs().size(), 1U);
+  const postproc::Run& run = grouped.only_run();
+  EXPECT_TRUE(run.closed);
+  EXPECT_EQ(run.arcs.size(), motion_count(run));
+  EXPECT_LE(run.chord_error, 0.05 * GroupingOptions{}.tolerance_mm);
+  EXPECT_EQ(grouped.outline().find("arc"), std::string::npos);
+}
+
+TEST(ArcsInRuns, FeedsAndCommentsStayAtTheEndsOfMotions) {
+  const std::vector<std::string> blocks = tests::arc_blocks(tests::three_leaves, {});
+  std::string text = "G21 G90 G94 G17\nG0 X36.0 Y0 Z0\n";
+  for (std::size_t i = 0; i < 6; ++i) text += blocks[i] + "\n";
+  text += "(note)\n" + blocks[6] + " (here)\n";
+  for (std::size_t i = 7; i < 12; ++i) {
+    text += blocks[i].substr(0, blocks[i].find(" F")) + (i == 9 ? " F300\n" : "\n");
+  }
+  const Grouped grouped(text);
+  const postproc::Run& run = grouped.only_run();
+  ASSERT_EQ(run.arcs.size(), 12U);
+  ASSERT_EQ(run.feeds.size(), 2U);
+  EXPECT_EQ(run.feeds[1].vertex, run.arcs[9].first);
+  ASSERT_EQ(run.comments.size(), 2U);
+  EXPECT_EQ(run.comments[0].vertex, run.arcs[6].last);
+  EXPECT_EQ(run.comments[1].vertex, run.arcs[6].last);
+}
+
+struct ArcCase {
+  const char* name;
+  const char* blocks;  // behind kStart
+  const char* outline;
+};
+void PrintTo(const ArcCase& test, std::ostream* out) { *out << test.blocks; }
+
+class Arcs : public testing::TestWithParam<ArcCase> {};
+
+TEST_P(Arcs, EndARunWhereTheyWereMeant) {
+  const Grouped grouped(std::string(kStart) + GetParam().blocks);
+  EXPECT_EQ(grouped.outline(), std::string("1-1 state-change; 2-2 rapid; ") + GetParam().outline);
+}
+
+constexpr const char* kFillet = "G1 X1\nX2\nX3\nG3 X4 Y1 J1\nG1 Y2\nY3\nY4\n";
+constexpr const char* kFilletAway =  // 3 degrees from the line before it
+    "G1 X1\nX2\nX3\nG3 X3.946 Y1.051 I-.0523 J.9986\nG1 Y2\nY3\nY4\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    ArcsInRuns, Arcs,
+    testing::Values(ArcCase{"Fillet", kFillet, "3-5 run; 6-6 intended-arc; 7-9 run"},
+                    ArcCase{"KinkedFillet", kFilletAway, "3-9 run"},
+                    ArcCase{"FullCircle", "G1 X1\nX2\nX3\nG3 X3 Y0 I.02 J5\nG1 X4\nX5\nX6\n",
+                            "3-5 run; 6-6 intended-arc; 7-9 run"},
+                    ArcCase{"Slot", "G1 X9\nG3 X9 Y4 J2\nG1 X0\nG3 X0 Y0 J-2\n",
+                            "3-3 too-short; 4-4 intended-arc; 5-5 too-short; 6-6 intended-arc"},
+                    ArcCase{"TwoPieces", "G2 X2 Y0 I1 J-5\nG2 X4 Y-.837 I-1.279 J-5.862\nG0 Z5\n",
+                            "3-4 too-short; 5-5 rapid"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(ArcsInRuns, AreCutWhereARampMeetsItsFloor) {
+  const std::vector<std::string> blocks = tests::arc_blocks(tests::three_leaves, {});
+  std::string text = "G21 G90 G94 G17\nG0 X36.0 Y0 Z0\n";
+  for (std::size_t i = 0; i < 8; ++i) {
+    text += blocks[i] + (i < 4 ? " Z-0." + std::to_string(i + 1) : "") + "\n";
+  }
+  EXPECT_EQ(Grouped(text).outline(), "1-1 state-change; 2-2 rapid; 3-6 run; 7-10 run");
+}
+
+// A bare G2 is no block: an arc word that is needed behind a run cannot be given back.
+TEST(ArcsInRuns, EndBeforeAnArcWhoseWordIsNeeded) {
+  std::vector<std::string> blocks = tests::arc_blocks(tests::three_leaves, {});
+  blocks.resize(8);
+  std::string text = "G21 G90 G94 G17\nG0 X36.0 Y0 Z0\n";
+  for (const std::string& block : blocks) text += block + "\n";
+  EXPECT_EQ(Grouped(text + "M9\nG0 Z5\n").outline(),
+            "1-1 state-change; 2-2 rapid; 3-10 run; 11-11 coolant; 12-12 rapid");
+  EXPECT_EQ(Grouped(text + "M98 P5\n").outline(),
+            "1-1 state-change; 2-2 rapid; 3-9 run; 10-10 arc; 11-11 subprogram");
 }
 
 // --- states -------------------------------------------------------------------------------------

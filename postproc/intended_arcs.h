@@ -1,0 +1,47 @@
+// Which arcs of a program were meant as arcs, and which are pieces of a curve that a CAM system
+// could not write otherwise. Method: docs/algorithms/arcs_in_runs.md.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geometry/path.h"
+
+namespace batten::postproc {
+
+// One cutting motion of a chain, as it was printed.
+struct PrintedMotion {
+  geometry::PathPiece piece;  // a Line of some length, or an Arc
+  bool by_radius = false;     // an arc by R
+};
+
+// Greatest errors of printed numbers, mm: half a step of the last digit.
+struct PrintedErrors {
+  double place = 0;   // of X, Y, Z
+  double center = 0;  // of I, J, K, R
+};
+
+enum class ArcJoint {
+  kNone,     // between two lines: says nothing of arcs
+  kTangent,  // as tangent as the printed numbers can tell
+  kKink,     // turns by more than that, and by as little as two pieces of one curve may
+  kCorner,   // turns as it was meant to, or changes from a level cut to a rising one
+};
+
+// `tolerance` (mm) is what a curve in pieces is thought to be true to, twice of it at the most.
+[[nodiscard]] ArcJoint joint_between(const PrintedMotion& before, const PrintedMotion& after,
+                                     const PrintedErrors& errors, double tolerance);
+
+struct ChainJudgement {
+  // By motion. An arc is kept that was meant: a full circle, and one that neither of its neighbours
+  // meets in a kink, unless it is one of many arcs in a row that mostly meet in kinks.
+  std::vector<bool> kept;
+  // By motion: a corner at an arc stands before it, where the chain is to be cut.
+  std::vector<bool> starts_part;
+};
+
+// Neighbours in `chain` follow each other. Linear cost.
+[[nodiscard]] ChainJudgement judge_arcs(std::span<const PrintedMotion> chain,
+                                        const PrintedErrors& errors, double tolerance);
+
+}  // namespace batten::postproc

@@ -1,0 +1,91 @@
+// What becomes of programs of arcs: those that stand for a curve are smoothed, those that were
+// meant stay.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "gcode/reason.h"
+#include "postproc/machine/cycle_time.h"
+#include "postproc/pipeline.h"
+#include "postproc/run_grouping.h"
+#include "tests/support/kinked_arcs.h"
+#include "wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::PathPiece;
+using geometry::Vector2;
+using geometry::Vector3;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+// The cutting motions of a program that have a length, in order.
+std::vector<TimedPiece> cuts_of(const std::string& text) {
+  const ReadText read(text);
+  std::vector<TimedPiece> cuts;
+  for (const gcode::Motion& motion : read.meaning.motions) {
+    if (motion.kind == gcode::MotionKind::kRapid || geometry::length_of(motion.piece) == 0)
+      continue;
+    const auto& state = read.meaning.states[read.meaning.blocks[motion.block].state_after];
+    cuts.push_back({motion.piece, state.feed.value_or(0)});
+  }
+  return cuts;
+}
+
+// The greatest angle between two of them that follow each other, of those below `corner` (radians).
+double greatest_kink(const std::string& text, double corner = 30 * kDegree) {
+  const std::vector<TimedPiece> cuts = cuts_of(text);
+  double greatest = 0;
+  for (std::size_t i = 1; i < cuts.size(); ++i) {
+    const Vector3 a = geometry::direction_at(cuts[i - 1].piece, 1);
+    const Vector3 b = geometry::direction_at(cuts[i].piece, 0);
+    const double kink = std::atan2(a.cross(b).norm(), a.dot(b));
+    if (kink < corner) greatest = std::max(greatest, kink);
+  }
+  return greatest;
+}
+
+double time_of(const std::string& text) {
+  return cutting_time(cuts_of(text), *find_machine("linuxcnc"), gcode::PathMode::kBlending);
+}
+
+// With the feed turned up as far as the machine goes, and without cutting corners: kinks cost
+// stops.
+double exact_time_of(const std::string& text) {
+  std::vector<TimedPiece> cuts = cuts_of(text);
+  for (TimedPiece& cut : cuts) cut.feed = 0;
+  return cutting_time(cuts, *find_machine("linuxcnc"), gcode::PathMode::kExactPath);
+}
+
+// --- arcs that stand for a curve -----------------------------------------------------------------
+
+TEST(KinkedArcs, BecomeSmoothInNoMoreBlocks) {
+  const std::string program = tests::kinked_arc_program(tests::three_leaves);
+  const SmoothResult result = smoothed(program, options_for("linuxcnc"));
+  ASSERT_TRUE(result.proved);
+  EXPECT_EQ(rewritten_runs(result), 1U);
+  EXPECT_LE(result.deviation_mm, 0.01);
+  EXPECT_TRUE(verdict(program, result.text, 0.01).proved());
+
+  const double before = greatest_kink(program);
+  const double after = greatest_kink(result.text);
+  RecordProperty("kink_before_deg", std::to_string(before / kDegree));
+  RecordProperty("kink_after_deg", std::to_string(after / kDegree));
+  RecordProperty("blocks_before", std::to_string(result.blocks_in));
+  RecordProperty("blocks_after", std::to_string(result.blocks_out));
+  EXPECT_GT(before, 0.5 * kDegree);
+  EXPECT_LT(after, 0.1 * before);
+  EXPECT_LE(cuts_of(result.text).size(), cuts_of(program).size());
+  EXPECT_LE(time_of(result.text), 1.001 * time_of(program));
+  EXPECT_LT(exact_time_of(result.text), 0.95 * exact_time_of(program));
+}
+
+}  // namespace
+}  // namespace batten::postproc
