@@ -30,7 +30,11 @@ constexpr double kStopWay = 1e-6;  // mm
 constexpr double kStraightDensity = 2;
 
 // The first solution only says where nodes are missing.
-constexpr double kFirstGap = 1e-3;
+constexpr SearchRule kRough = {0.5, 1e-3};
+
+// The next start from it, slowed down to be inside of the limits.
+constexpr SearchRule kFine = {0.1, 2e-5};
+constexpr double kWarmStart = 0.9;
 
 // Intervals are cut where the jerk switches, once, and where a limit is exceeded between the places
 // that were asked, until it is so by less than half a percent; three times are rarely needed.
@@ -222,15 +226,15 @@ void Planner::plan_straight(const Chain& chain, double length) {
 void Planner::plan_bent(const Chain& chain) {
   PlanGrid grid = make_plan_grid(chain.pieces, chain.bounds, limits_, options_.density);
   PlanProblem problem = make_plan_problem(chain.pieces, grid, limits_);
-  PlanSolution solution = fastest_plan(problem, feasible_start(problem, grid), kFirstGap);
+  PlanSolution solution = fastest_plan(problem, feasible_start(problem, grid), kRough);
   for (const RefineRule& rule : kRefinements) {
     std::vector<double> start = solution.x;
     const std::size_t cut = refine_plan(chain.pieces, limits_, problem, rule, grid, start);
     const bool first = &rule == &kRefinements.front();
     if (cut == 0 && !first) break;
     if (cut > 0) problem = make_plan_problem(chain.pieces, grid, limits_);
-    slow_down(problem, start);
-    solution = fastest_plan(problem, std::move(start));
+    slow_down(problem, kWarmStart, start);
+    solution = fastest_plan(problem, std::move(start), kFine);
   }
   const auto& x = solution.x;
   const std::size_t n = problem.intervals();

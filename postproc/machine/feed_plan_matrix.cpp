@@ -12,9 +12,10 @@ PlanMatrix::PlanMatrix(const PlanProblem& problem)
 void PlanMatrix::set_zero() { std::fill(rows_.begin(), rows_.end(), rows_[0] = {}); }
 
 void PlanMatrix::add(std::size_t interval, const PlanBlock& block) {
+  int entry = 0;
   for (int a = 0; a < 4; ++a) {
     auto& row = rows_[2 * interval + a];
-    for (int b = 0; b <= a; ++b) row[a - b] += block[4 * a + b];
+    for (int b = 0; b <= a; ++b) row[a - b] += block.lower[entry++];
   }
 }
 

@@ -92,8 +92,8 @@ struct PlanProblem {
 // down as a whole until they do. Any q that keeps all limits keeps them times a factor below 1.
 [[nodiscard]] std::vector<double> feasible_start(const PlanProblem& problem, const PlanGrid& grid);
 
-// The same unknowns times a factor, the greatest that keeps all limits by a margin.
-void slow_down(const PlanProblem& problem, std::vector<double>& x);
+// The same unknowns times a factor: this part of the greatest that keeps all limits.
+void slow_down(const PlanProblem& problem, double part, std::vector<double>& x);
 
 // The parameter of the place in the middle of an interval, by length.
 [[nodiscard]] double middle_of(const geometry::PathPiece& piece, const GridInterval& interval);

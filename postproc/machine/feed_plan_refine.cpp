@@ -46,9 +46,8 @@ bool is_too_long(const PathPiece& piece, const GridInterval& interval, const dou
   const PlanState from = state_in(window, h, 0);
   const PlanState to = state_in(window, h, h);
   if (change_along(middle, from, to, limits) > rule.switching) return true;
-  // The limits are kept at both ends and in the middle, so halfway between those is the place
-  // to look at.
-  for (const double part : {0.25, 0.75}) {
+  // The limits are kept at both ends and in the middle: look between those.
+  for (const double part : {0.125, 0.25, 0.375, 0.625, 0.75, 0.875}) {
     const double t = interval.t0 + part * (interval.t1 - interval.t0);
     const double s = length_between(piece, interval.t0, t);
     const LengthDerivatives x = derivatives_by_length(piece, t);

@@ -53,11 +53,11 @@ struct Places {
   std::array<double, 3> slope{};
 };
 
-// Sums over rows of one interval of things times their c, and per place.
-struct PlaceSums {
-  std::array<PlanWindow, 3> by_c{};
-  std::array<double, 3> plain{};
-};
+// q at the places as sums over the window.
+std::array<PlanWindow, 3> place_weights(double length) {
+  return {PlanWindow{1, 0, 0, 0}, PlanWindow{0.5, length / 8, 0.5, -length / 8},
+          PlanWindow{0, 0, 1, 0}};
+}
 
 // The three numbers that a change of the unknowns makes of q at the places.
 std::array<double, 3> at_places(double length, const double* d) {
@@ -67,11 +67,11 @@ std::array<double, 3> at_places(double length, const double* d) {
 class Search {
  public:
   Search(const PlanProblem& problem, std::vector<double> start);
-  PlanSolution run(double enough_gap);
+  PlanSolution run(const SearchRule& rule);
 
  private:
   void find_slacks();
-  void start_duals();
+  void start_duals(double gap);
   void assemble();
   void add_time(std::size_t interval, PlanWindow& gradient, PlanBlock& block) const;
   [[nodiscard]] double unexplained() const;
@@ -137,9 +137,9 @@ void Search::find_slacks() {
   }
 }
 
-// All products slack * dual alike, in sum half of the time.
-void Search::start_duals() {
-  const double product = 0.5 * planned_seconds(problem_, x_) / sides_;
+// All products slack * dual alike, in sum this part of the time.
+void Search::start_duals(double gap) {
+  const double product = gap * planned_seconds(problem_, x_) / sides_;
   for (RowState& row : rows_) {
     row.plus.dual = product * row.plus.inverse;
     row.minus.dual = row.two * product * row.minus.inverse;
@@ -153,15 +153,11 @@ void Search::add_time(std::size_t interval, PlanWindow& gradient, PlanBlock& blo
   std::array<double, 3> weight = {h / 6, 4 * h / 6, h / 6};
   if (interval == 0) weight[0] += problem_.start.time();
   if (interval + 1 == problem_.intervals()) weight[2] += problem_.end.time();
-  const std::array<PlanWindow, 3> c = {PlanWindow{1, 0, 0, 0}, PlanWindow{0.5, h / 8, 0.5, -h / 8},
-                                       PlanWindow{0, 0, 1, 0}};
+  const std::array<PlanWindow, 3> c = place_weights(h);
   for (int p = 0; p < 3; ++p) {
     const double slope = weight[p] * at.slope[p];
-    const double bend = -1.5 * slope / at.q[p];
-    for (int a = 0; a < 4; ++a) {
-      gradient[a] += slope * c[p][a];
-      for (int b = 0; b <= a; ++b) block[4 * a + b] += bend * c[p][a] * c[p][b];
-    }
+    add_scaled(gradient, slope, c[p]);
+    block.add_square(-1.5 * slope / at.q[p], c[p]);
   }
 }
 
@@ -174,43 +170,32 @@ void Search::assemble() {
   std::fill(residual_.begin(), residual_.end(), 0);
   gap_ = 0;
   for (std::size_t i = 0; i < problem_.intervals(); ++i) {
-    PlanBlock block{};
+    PlanBlock block;
     PlanWindow gradient{};
     PlanWindow explained{};
     add_time(i, gradient, block);
-    PlaceSums sums;
+    std::array<PlanWindow, 3> products{};  // by places: sums of (l / g) c and l / g, and of l
+    std::array<double, 3> squares{};
     std::array<double, 3> duals{};
     for (std::size_t k = problem_.first_rows[i]; k < problem_.first_rows[i + 1]; ++k) {
       const RowState& row = rows_[k];
       gap_ += row.plus.slack * row.plus.dual + row.minus.slack * row.minus.dual;
       const double plus = row.plus.dual * row.plus.inverse;
       const double minus = row.minus.dual * row.minus.inverse;
-      const double sum = plus + minus;
-      const double dual = row.minus.dual - row.plus.dual;
-      for (int a = 0; a < 4; ++a) {
-        explained[a] += dual * row.c[a];
-        const double scaled = sum * row.c[a];
-        for (int b = 0; b <= a; ++b) block[4 * a + b] += scaled * row.c[b];
-      }
+      add_scaled(explained, row.minus.dual - row.plus.dual, row.c);
+      block.add_square(plus + minus, row.c);
       if (!row.jerk) continue;
       duals[row.place] += row.plus.dual + row.minus.dual;
-      sums.plain[row.place] += sum;
-      for (int a = 0; a < 4; ++a) sums.by_c[row.place][a] += (minus - plus) * row.c[a];
+      squares[row.place] += plus + minus;
+      add_scaled(products[row.place], minus - plus, row.c);
     }
-    const double h = problem_.lengths[i];
-    const std::array<PlanWindow, 3> weights = {
-        PlanWindow{1, 0, 0, 0}, PlanWindow{0.5, h / 8, 0.5, -h / 8}, PlanWindow{0, 0, 1, 0}};
+    const std::array<PlanWindow, 3> weights = place_weights(problem_.lengths[i]);
     for (int p = 0; p < 3; ++p) {
-      const double slope = places_[i].slope[p];
-      PlanWindow t;
-      for (int a = 0; a < 4; ++a) t[a] = slope * weights[p][a];
-      for (int a = 0; a < 4; ++a) {
-        explained[a] += duals[p] * t[a];
-        for (int b = 0; b <= a; ++b) {
-          block[4 * a + b] +=
-              sums.plain[p] * t[a] * t[b] + t[a] * sums.by_c[p][b] + t[b] * sums.by_c[p][a];
-        }
-      }
+      PlanWindow t{};
+      add_scaled(t, places_[i].slope[p], weights[p]);
+      add_scaled(explained, duals[p], t);
+      block.add_square(squares[p], t);
+      block.add_product(t, products[p]);
     }
     for (int a = 0; a < 4; ++a) {
       gradient_[2 * i + a] += gradient[a];
@@ -278,7 +263,7 @@ void Search::aim(double target) {
       const RowState& row = rows_[k];
       const double plus = (target - row.plus.extra) * row.plus.inverse;
       const double minus = (row.two * target - row.minus.extra) * row.minus.inverse;
-      for (int a = 0; a < 4; ++a) sum[a] += (minus - plus) * row.c[a];
+      add_scaled(sum, minus - plus, row.c);
       if (row.jerk) by_place[row.place] += plus + minus;
     }
     for (int p = 0; p < 3; ++p) by_place[p] *= places_[i].slope[p];
@@ -321,12 +306,12 @@ double Search::advance(double target) {
   return primal_share;
 }
 
-PlanSolution Search::run(double enough_gap) {
+PlanSolution Search::run(const SearchRule& rule) {
   PlanSolution best;
   best.x = x_;
   best.seconds = planned_seconds(problem_, x_);
   find_slacks();
-  start_duals();
+  start_duals(rule.first_gap);
   double share = 1;
   for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
     assemble();
@@ -349,7 +334,7 @@ PlanSolution Search::run(double enough_gap) {
       best.seconds = seconds;
       best.x = x_;
     }
-    if (gap_ < enough_gap * seconds && share > 0.5) break;
+    if (gap_ < rule.enough_gap * seconds && share > 0.5) break;
   }
   return best;
 }
@@ -357,8 +342,8 @@ PlanSolution Search::run(double enough_gap) {
 }  // namespace
 
 PlanSolution fastest_plan(const PlanProblem& problem, std::vector<double> start,
-                          double enough_gap) {
-  return Search(problem, std::move(start)).run(enough_gap);
+                          const SearchRule& rule) {
+  return Search(problem, std::move(start)).run(rule);
 }
 
 }  // namespace batten::postproc

@@ -19,9 +19,12 @@ struct PlanSolution {
 // tangent at the present q, which is below it everywhere (1 / sqrt is convex), anew in every step;
 // so every iterate keeps every limit. Each step is one symmetric system with three sub-diagonals:
 // linear cost.
-//
-// The search ends where the duals promise no more than `enough_gap` of the time.
+struct SearchRule {
+  double first_gap = 0.5;    // products of limits and duals at the start, as part of the time
+  double enough_gap = 2e-5;  // the search ends where the duals promise no more than this part
+};
+
 [[nodiscard]] PlanSolution fastest_plan(const PlanProblem& problem, std::vector<double> start,
-                                        double enough_gap = 2e-5);
+                                        const SearchRule& rule = {});
 
 }  // namespace batten::postproc

@@ -66,8 +66,8 @@ double allowed_factor(const PlanProblem& problem, const std::vector<double>& x) 
 
 }  // namespace
 
-void slow_down(const PlanProblem& problem, std::vector<double>& x) {
-  const double factor = kStartMargin * allowed_factor(problem, x);
+void slow_down(const PlanProblem& problem, double part, std::vector<double>& x) {
+  const double factor = part * allowed_factor(problem, x);
   for (double& value : x) value *= factor;
 }
 
@@ -85,7 +85,7 @@ std::vector<double> feasible_start(const PlanProblem& problem, const PlanGrid& g
     q.reserve(logarithms.size());
     for (const double value : logarithms) q.push_back(std::exp(value));
     std::vector<double> x = unknowns_of(problem, q);
-    slow_down(problem, x);
+    slow_down(problem, kStartMargin, x);
     const double time = planned_seconds(problem, x);
     if (time < least) {
       least = time;

@@ -90,7 +90,7 @@ inline geometry::BsplineCurve random_curve(std::mt19937& random) {
   std::normal_distribution<double> normal;
   std::uniform_int_distribution<int> count(5, 14);
   const int n = count(random);
-  const double size = std::pow(10, normal(random));
+  const double size = std::pow(10, 0.5 * normal(random));
   const bool flat = random() % 2 == 0;
   std::vector<geometry::Point3> points;
   for (int i = 0; i < n; ++i) {
