@@ -10,23 +10,24 @@ namespace batten::geometry {
 namespace {
 
 constexpr int kDegree = 3;
+constexpr std::size_t kFunctions = kDegree + 1;  // that are not zero on a span
 
 // The derivative-th derivative of the curve at u.
 BandCombination combination_at(const BsplineBasis& basis, double u, int derivative) {
   const double inside = std::clamp(u, basis.first(), basis.last());
   const std::size_t span = basis.find_span(inside);
-  std::array<double, (kDegree + 1) * (kDegree + 1)> values{};
+  std::array<double, kFunctions * kFunctions> values{};
   basis.evaluate_derivatives(span, inside, derivative, values.data());
   BandCombination made;
   made.first = span - kDegree;
   for (std::size_t j = 0; j < 4; ++j) {
-    made.weights[j] = values[static_cast<std::size_t>(derivative) * (kDegree + 1) + j];
+    made.weights[j] = values[static_cast<std::size_t>(derivative) * kFunctions + j];
   }
   return made;
 }
 
 Eigen::Matrix3d across_of(const BandSample& sample) {
-  const Eigen::Matrix3d along = sample.direction * sample.direction.transpose();
+  Eigen::Matrix3d along = sample.direction * sample.direction.transpose();
   switch (sample.shape) {
     case BandShape::kCylinder:
       return Eigen::Matrix3d::Identity() - along;

@@ -22,6 +22,14 @@ void check(const RacingOptions& options) {
     throw std::invalid_argument("racing_corner: " + std::to_string(options.spans) +
                                 " spans, expected 8 or more");
   }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::isfinite(options.limits.acceleration[axis]) ||
+        std::isfinite(options.limits.jerk[axis])) {
+      continue;
+    }
+    throw std::invalid_argument("racing_corner: axis " + std::to_string(axis) +
+                                " with neither acceleration nor jerk limited");
+  }
   if (!(options.limits.feed > 0 && std::isfinite(options.limits.feed))) {
     throw std::invalid_argument("racing_corner: feed " + std::to_string(options.limits.feed) +
                                 " mm/s, expected a positive number");

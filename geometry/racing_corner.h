@@ -16,7 +16,8 @@ namespace batten::geometry {
 struct RacingOptions {
   double tolerance = 0.01;  // mm, > 0
   ToleranceKind kind = ToleranceKind::kPath;
-  KinematicLimits limits;  // limits of no importance may be infinite, but not all of them
+  // May be infinite, but for the feed and one of acceleration and jerk of each axis.
+  KinematicLimits limits;
   // mm of each leg that the curve may take, all of it at most.
   double share_before = 0;
   double share_after = 0;

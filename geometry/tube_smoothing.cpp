@@ -172,16 +172,18 @@ std::string_view name_of(TubeMethod method) {
 
 std::vector<TubeCandidate> smooth_in_tube(const BsplineCurve& curve, const TubeOptions& options) {
   check(curve, options);
-  TubeCandidates made(curve, options, 0);
-  made.add(TubeMethod::kOriginal, curve);
-  made.add_naseath({}, TubeMethod::kNaseath);
-  made.add_naseath(NaseathRepairs::none(), TubeMethod::kNaseathLiteral);
-  made.add_least_energies();
-  if (options.halvings == 0) return std::move(made.found);
-  TubeCandidates finer(curve, options, options.halvings);
-  finer.add_least_energies();
-  for (TubeCandidate& candidate : finer.found) made.found.push_back(std::move(candidate));
-  return std::move(made.found);
+  std::vector<TubeCandidate> all;
+  for (int halvings = 0; halvings <= options.halvings; ++halvings) {
+    TubeCandidates made(curve, options, halvings);
+    if (halvings == 0) {
+      made.add(TubeMethod::kOriginal, curve);
+      made.add_naseath({}, TubeMethod::kNaseath);
+      made.add_naseath(NaseathRepairs::none(), TubeMethod::kNaseathLiteral);
+    }
+    made.add_least_energies();
+    for (TubeCandidate& candidate : made.found) all.push_back(std::move(candidate));
+  }
+  return all;
 }
 
 }  // namespace batten::geometry

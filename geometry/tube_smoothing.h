@@ -37,7 +37,8 @@ struct TubeOptions {
   // come from.
   double feed = 400;           // mm/s
   double acceleration = 4000;  // mm/s^2
-  // Beside candidates on the knots as they are there are some on spans halved this often; 0: none.
+  // Spans are halved this often, where more knots may help: 0 keeps the knots. Candidates come
+  // for each number of halvings up to it.
   int halvings = 2;
 };
 

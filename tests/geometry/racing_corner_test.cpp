@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -158,6 +159,25 @@ TEST(RacingCorner, SwingsOutBeforeAndAfterAndInAtTheVertex) {
   }
 }
 
+// A machine that only knows accelerations: what it saves of a stop is bounded by the stop.
+TEST(RacingCorner, NeedsNoJerkLimit) {
+  RacingOptions options = options_for(.1, ToleranceKind::kBand);
+  options.limits.acceleration = Vector3::Constant(500);
+  options.limits.jerk = Vector3::Constant(std::numeric_limits<double>::infinity());
+  const RacingBlend blend = raced(square_corner(), options);
+  const BsplineCurve& curve = blend.blend.curve;
+  for (int i = 0; i <= 1000; ++i) {
+    const double u = curve.first() + blend.time * i / 1000;
+    EXPECT_LE(curve.derivative_at(u, 2).cwiseAbs().maxCoeff(), 500 * 1.0001);
+  }
+  // A stop from 25 mm/s and back costs 25 / (500 sqrt 2) s more than passing; on an arc of the
+  // radius that just touches the band, .1 / (1 - sin 45), one would pass with
+  // sqrt(500 * .3414) = 13 mm/s, and save more than half.
+  const double lost = blend.time - (blend.before + blend.after) / 25;
+  EXPECT_GT(lost, 0);
+  EXPECT_LT(lost, .5 * 25 / (500 * std::sqrt(2.0)));
+}
+
 TEST(RacingCorner, TravelledTheOtherWayTakesAsLong) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -239,6 +259,10 @@ TEST(RacingCorner, SaysWhyACornerStays) {
   RacingOptions narrow = options;
   narrow.share_after = 0;
   EXPECT_EQ(why(square_corner(), narrow), NoBlend::kNoRoom);
+  RacingOptions boundless = options;
+  boundless.limits.jerk.y() = boundless.limits.acceleration.y() =
+      std::numeric_limits<double>::infinity();
+  EXPECT_THROW((void)racing_corner(square_corner(), boundless), std::invalid_argument);
   narrow.tolerance = -1;
   EXPECT_THROW((void)racing_corner(square_corner(), narrow), std::invalid_argument);
 }

@@ -2,9 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "geometry/tube_smoothing.h"
 #include "postproc/machine/s_curve.h"
@@ -36,6 +35,13 @@ TubeChoice best_of(const BsplineCurve& curve, double radius) {
   return best_in_tube(curve, tube(radius), time_of);
 }
 
+void print(const std::string& name, double radius, const TubeChoice& choice) {
+  fmt::print("{} R {:.3f}: {} {:.5f} -> {:.5f} s, {:.2f} % less, kappa_max {:.5f}, {} timed\n",
+             name, radius, geometry::name_of(choice.best.method), choice.time_before, choice.time,
+             100 * (1 - choice.time / choice.time_before), greatest_curvature(choice.best.curve),
+             choice.timed);
+}
+
 double percent_saved(const TubeChoice& choice) {
   return 100 * (1 - choice.time / choice.time_before);
 }
@@ -51,6 +57,7 @@ class BestInTube : public testing::TestWithParam<Goal> {};
 TEST_P(BestInTube, SavesAsMuchTimeAsItShould) {
   const Goal& goal = GetParam();
   const TubeChoice choice = best_of(curve_of_case(goal.name), goal.radius);
+  print(goal.name, goal.radius, choice);
   EXPECT_GE(percent_saved(choice), goal.percent);
   EXPECT_LE(choice.best.displacement, goal.radius);
   EXPECT_DOUBLE_EQ(choice.time, time_of(choice.best.curve));
@@ -74,6 +81,7 @@ TEST_P(BestInTubeAgainstLiteral, IsNeverSlowerThanInputOrThesis) {
     const double literal =
         time_of(geometry::smooth_naseath(curve, geometry::literal(radius)).curve);
     const TubeChoice choice = best_of(curve, radius);
+    print(GetParam(), radius, choice);
     EXPECT_LE(choice.time, choice.time_before);
     EXPECT_LE(choice.time, literal);
   }
@@ -87,8 +95,11 @@ INSTANTIATE_TEST_SUITE_P(Cases, BestInTubeAgainstLiteral,
 TEST(BestInTubeOfTheNoisyHelix, FindsNearlyTheTrueCurvature) {
   const BsplineCurve helix = geometry::helix_with_two_wrong_points();
   EXPECT_NEAR(greatest_curvature(helix), .0678, 5e-5);
-  EXPECT_LE(greatest_curvature(best_of(helix, .125).best.curve), .0506);
-  EXPECT_LE(greatest_curvature(best_of(helix, .25).best.curve), .0510);
+  for (const auto& [radius, curvature] : {std::pair(.125, .0506), std::pair(.25, .0510)}) {
+    const TubeChoice choice = best_of(helix, radius);
+    print("helix", radius, choice);
+    EXPECT_LE(greatest_curvature(choice.best.curve), curvature);
+  }
 }
 
 struct Sound {
@@ -104,6 +115,7 @@ TEST_P(BestInTubeOfSoundCurves, RaisesNeitherTimeNorCurvature) {
   for (const double radius : {.25, 1.0}) {
     SCOPED_TRACE(testing::Message() << "R " << radius);
     const TubeChoice choice = best_of(curve, radius);
+    print(GetParam().name, radius, choice);
     EXPECT_LE(choice.time, choice.time_before);
     EXPECT_LE(greatest_curvature(choice.best.curve), bend * (1 + 1e-9));
   }
