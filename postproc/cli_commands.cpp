@@ -91,11 +91,19 @@ void read_tolerance_into(const Given& given, SmoothOptions& options, Problems& p
   options.tolerance_inch = tolerance->inch;
 }
 
+void read_tolerance_kind_into(geometry::ToleranceKind& kind, const Given& given,
+                              Problems& problems) {
+  if (const auto text = given.value("tolerance-kind")) {
+    read_into(kind, read_choice("tolerance-kind", *text, tolerance_kinds(), problems));
+  }
+}
+
 void read_smooth_options(const Given& given, SmoothCommand& command, Problems& problems) {
   SmoothOptions& options = command.options;
   read_target(given, options, problems);
   read_machine(given, command, problems);
   read_tolerance_into(given, options, problems);
+  read_tolerance_kind_into(options.tolerance_kind, given, problems);
   read_units_into(options.units, given, problems);
   if (const auto text = given.value("method")) {
     read_into(options.method, read_choice("method", *text, methods(), problems));
@@ -184,6 +192,7 @@ VerifyCommand verify_command(const Given& given, const std::vector<std::string>&
   command.json_file = given.value("json").value_or("");
   command.force = given.flag("force");
   read_units_into(command.units, given, problems);
+  read_tolerance_kind_into(command.tolerance_kind, given, problems);
   if (const auto text = given.value("tolerance")) {
     if (const auto tolerance = read_tolerance(*text, problems)) {
       command.tolerance_mm = tolerance->mm;

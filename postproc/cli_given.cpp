@@ -18,6 +18,12 @@ constexpr OptionRow kTolerance = {
         "unit: mm)",
     .default_value = "0.01mm",
     .in_config = true};
+constexpr OptionRow kToleranceKind = {
+    .name = "tolerance-kind",
+    .value = "path|band",
+    .help = "what the tolerance means: both ways, or corners may be further from the new path",
+    .default_value = "path",
+    .in_config = true};
 constexpr OptionRow kUnits = {.name = "units",
                               .value = "mm|inch",
                               .help = "units of a program that has no G20 or G21",
@@ -35,12 +41,13 @@ constexpr std::array kSmoothRows = {
               .help = "the control that will run the program (batten targets)",
               .in_config = true},
     kTolerance,
+    kToleranceKind,
     OptionRow{.name = "machine",
               .value = "NAME|FILE.toml",
               .help = "the machine whose time counts (batten machines); default: the target's",
               .in_config = true},
     OptionRow{.name = "method",
-              .value = "best|fair|none",
+              .value = "best|fair|naseath|guo|ozcan|none",
               .help = "how runs are smoothed (batten methods)",
               .default_value = "best",
               .in_config = true},
@@ -98,7 +105,7 @@ constexpr std::array kSmoothRows = {
               .help = "print the options as such a file and do nothing else"},
 };
 
-constexpr std::array kVerifyRows = {kTolerance, kUnits, kJson, kForce};
+constexpr std::array kVerifyRows = {kTolerance, kToleranceKind, kUnits, kJson, kForce};
 constexpr std::array kInspectRows = {kUnits, kAllow, kJson, kForce};
 constexpr std::array kListRows = {kJson, kForce};
 

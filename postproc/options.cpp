@@ -36,6 +36,16 @@ constexpr std::array kMethods = {
     Choice<Method>{Method::kBest, "best", "every method; the result that serves --prefer is taken"},
     Choice<Method>{Method::kFair, "fair",
                    "the path that was meant, as smooth as the machine needs it"},
+    Choice<Method>{Method::kNaseath, "naseath",
+                   "a spline's control points moved inside a tube (Naseath 2007), repaired"},
+    Choice<Method>{Method::kGuo, "guo",
+                   "lines with a five-point curve at each vertex (Guo 2023), legs shared fairly"},
+    Choice<Method>{Method::kOzcan, "ozcan",
+                   "lines with an eight-point curve at each vertex (Ozcan 2018); slow to compute"},
+    Choice<Method>{Method::kNaseathLiteral, "naseath-literal",
+                   "as the thesis has it, for comparison: may make a path worse"},
+    Choice<Method>{Method::kGuoLiteral, "guo-literal",
+                   "as the paper has it, for comparison: half the tolerance or less is used"},
     Choice<Method>{Method::kNone, "none", "nothing is rewritten: checks and reports only"},
 };
 
@@ -43,6 +53,13 @@ constexpr std::array kPreferences = {
     Choice<Prefer>{Prefer::kTime, "time", "the least cutting time on the machine"},
     Choice<Prefer>{Prefer::kAccuracy, "accuracy", "nearest to the path that was meant"},
     Choice<Prefer>{Prefer::kSize, "size", "the fewest bytes inside the tolerance"},
+};
+
+using geometry::ToleranceKind;
+constexpr std::array kToleranceKinds = {
+    Choice<ToleranceKind>{ToleranceKind::kPath, "path", "both ways and in order, corners too"},
+    Choice<ToleranceKind>{ToleranceKind::kBand, "band",
+                          "new path to old one in order; corners may be further off"},
 };
 
 constexpr std::array kLinearizations = {
@@ -107,6 +124,7 @@ std::span<const Choice<Form>> forms() { return kForms; }
 std::span<const Choice<Method>> methods() { return kMethods; }
 std::span<const Choice<Prefer>> preferences() { return kPreferences; }
 std::span<const Choice<Linearize>> linearizations() { return kLinearizations; }
+std::span<const Choice<ToleranceKind>> tolerance_kinds() { return kToleranceKinds; }
 
 std::string_view name_of(Form form) { return name_in(kForms, form); }
 std::string_view name_of(Method method) { return name_in(kMethods, method); }
@@ -117,6 +135,7 @@ Linearize linearize_of(const SmoothOptions& options) {
   if (options.linearize) return *options.linearize;
   return options.prefer == Prefer::kSize ? Linearize::kMinLink : Linearize::kChord;
 }
+std::string_view name_of(ToleranceKind kind) { return name_in(kToleranceKinds, kind); }
 
 std::string_view name_of(gcode::Units units) {
   switch (units) {

@@ -9,12 +9,13 @@
 
 #include "gcode/dialect.h"
 #include "gcode/modal_state.h"
+#include "geometry/tolerance_kind.h"
 #include "postproc/machine/machine.h"
 
 namespace batten::postproc {
 
 enum class Form { kAuto, kArcs, kLines };
-enum class Method { kBest, kFair, kNone };
+enum class Method { kBest, kFair, kNaseath, kGuo, kOzcan, kNaseathLiteral, kGuoLiteral, kNone };
 enum class Prefer { kTime, kAccuracy, kSize };
 enum class Linearize { kMinLink, kChord, kIlca, kBlca };
 
@@ -30,11 +31,13 @@ struct Choice {
 [[nodiscard]] std::span<const Choice<Method>> methods();
 [[nodiscard]] std::span<const Choice<Prefer>> preferences();
 [[nodiscard]] std::span<const Choice<Linearize>> linearizations();
+[[nodiscard]] std::span<const Choice<geometry::ToleranceKind>> tolerance_kinds();
 
 [[nodiscard]] std::string_view name_of(Form form);
 [[nodiscard]] std::string_view name_of(Method method);
 [[nodiscard]] std::string_view name_of(Prefer prefer);
 [[nodiscard]] std::string_view name_of(Linearize linearize);
+[[nodiscard]] std::string_view name_of(geometry::ToleranceKind kind);
 [[nodiscard]] std::string_view name_of(gcode::Units units);  // "mm", "inch", "unknown"
 
 // Decisions of `smooth`, without files and messages.
@@ -43,6 +46,7 @@ struct SmoothOptions {
   const Machine* machine = nullptr;             // required; never null after options are checked
   double tolerance_mm = 0.01;                   // the full distance allowed, both ways, in order
   std::optional<double> tolerance_inch;         // as given, where it was given in inches
+  geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
   gcode::Units units = gcode::Units::kUnknown;  // --units
   Method method = Method::kBest;
   Form output = Form::kAuto;

@@ -253,8 +253,8 @@ class Smoothing {
       gcode::Diagnostics ignored;
       const gcode::Program program = gcode::parse(written, ignored);
       const gcode::Interpretation meaning = gcode::interpret(program, read_options_, ignored);
-      Verification verification =
-          verify({&program_, &meaning_}, {&program, &meaning}, options_.tolerance_mm);
+      Verification verification = verify({&program_, &meaning_}, {&program, &meaning},
+                                         {options_.tolerance_mm, options_.tolerance_kind});
       result_.text = std::move(text);
       result_.blocks_out = program.blocks.size();
       if (!tell(kAfterSmoothing)) return false;
@@ -262,6 +262,7 @@ class Smoothing {
       result_.proved = verification.proved();
       result_.deviation_mm = verification.deviation_mm;
       result_.deviation_line = verification.deviation_line;
+      result_.corner_mm = verification.corner_mm;
       verification_ = std::move(verification);
       return true;
     }
@@ -376,7 +377,8 @@ class Smoothing {
     r.blocks_out = chosen != nullptr ? chosen->text.blocks : work.context.blocks;
     r.noise_mm = facts.noise;
     r.max_curvature_before = facts.max_curvature;
-    r.max_curvature_after = chosen != nullptr ? facts.fair_curvature : facts.max_curvature;
+    r.max_curvature_after = chosen != nullptr ? chosen->max_curvature : facts.max_curvature;
+    r.methods = method_times(work.smoothed);
     r.time_before_s = facts.times.as_set;
     r.time_after_s = chosen != nullptr ? chosen->times.as_set : facts.times.as_set;
     if (chosen == nullptr) {

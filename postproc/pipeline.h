@@ -9,6 +9,7 @@
 
 #include "gcode/diagnostic.h"
 #include "gcode/source_text.h"
+#include "postproc/method_times.h"
 #include "postproc/options.h"
 #include "postproc/output_plan.h"
 #include "postproc/verification.h"
@@ -23,8 +24,9 @@ struct RunReport {
   std::uint32_t last_line = 0;
   std::size_t points = 0;
   RunStatus status = RunStatus::kKept;
-  std::string_view reason;  // why it was kept; empty when rewritten
-  std::string_view method;  // "fair"
+  std::string_view reason;          // why it was kept; empty when rewritten
+  std::string_view method;          // that made what stands there now; empty where it was kept
+  std::vector<MethodTime> methods;  // all that were tried, whether it was rewritten or not
   OutputForm form = OutputForm::kLines;
   std::size_t blocks_in = 0;
   std::size_t blocks_out = 0;
@@ -47,6 +49,7 @@ struct SmoothResult {
   std::size_t blocks_out = 0;
   double deviation_mm = 0;
   std::uint32_t deviation_line = 0;
+  double corner_mm = 0;  // band reading: greatest distance of a corner that was cut
   double time_before_s = 0;  // cutting runs only
   double time_after_s = 0;
   bool proved = false;  // of the whole text

@@ -15,15 +15,20 @@ namespace {
 // What a path within `tolerance` of a corner can save by cutting it: a chord across the corner at
 // the height h above it is 2 h tan(turn / 4) shorter than the legs. It joins the middles of the
 // legs at most.
-double saved_at(const Vector3& a, const Vector3& b, double tolerance) {
+double saved_at(const Vector3& a, const Vector3& b, double tolerance,
+                geometry::ToleranceKind kind) {
   const double turn = std::atan2(a.cross(b).norm(), a.dot(b));
+  if (kind == geometry::ToleranceKind::kBand) {
+    tolerance /= std::max(std::cos(turn / 2), std::sin(geometry::kSharpestCut / 2));
+  }
   const double to_middles = 0.5 * (a.norm() + b.norm() - (a + b).norm());
   return std::min(to_middles, 2 * tolerance * std::tan(turn / 4));
 }
 
 }  // namespace
 
-double least_time(const Run& run, double tolerance, const Machine& machine) {
+double least_time(const Run& run, double tolerance, const Machine& machine,
+                  geometry::ToleranceKind kind) {
   const auto& p = run.points;
   double time = 0;
   std::size_t next = 0;
@@ -33,7 +38,7 @@ double least_time(const Run& run, double tolerance, const Machine& machine) {
       speed = std::min(run.feeds[next++].feed / 60, machine.max_velocity);
     }
     double length = (p[i + 1] - p[i]).norm();
-    if (i > 0) length -= saved_at(p[i] - p[i - 1], p[i + 1] - p[i], tolerance);
+    if (i > 0) length -= saved_at(p[i] - p[i - 1], p[i + 1] - p[i], tolerance, kind);
     time += length / speed;
   }
   return time;
@@ -70,6 +75,15 @@ double chords_for(const geometry::FairPath& fair, double deviation, double min_l
 double arcs_for(const geometry::FairPath& fair) {
   const geometry::CurvePieces pieces(fair.curve, fair.curve.first(), fair.curve.last());
   return 3.0 * static_cast<double>(pieces.straight_runs().size());
+}
+
+std::vector<Method> methods_worth_trying(double corners, double least_time, double time) {
+  // A run of corners: most of its vertices are coarser than any curve through them.
+  constexpr double kCorners = 0.5;
+  // The least that there must be left to win.
+  constexpr double kWorthTrying = 0.02;
+  if (corners < kCorners || least_time > (1 - kWorthTrying) * time) return {};
+  return {Method::kGuo, Method::kOzcan};
 }
 
 }  // namespace batten::postproc

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "geometry/fair.h"
 #include "postproc/machine/machine.h"
+#include "postproc/options.h"
 #include "postproc/section.h"
 #include "postproc/smoothing.h"
 
@@ -13,7 +15,8 @@ namespace batten::postproc {
 
 // Seconds below which no form of the run comes that stays within `tolerance`: its length at its
 // feeds, less what can be saved at its vertices, when there were no accelerations to mind.
-[[nodiscard]] double least_time(const Run& run, double tolerance, const Machine& machine);
+[[nodiscard]] double least_time(const Run& run, double tolerance, const Machine& machine,
+                                geometry::ToleranceKind kind = geometry::ToleranceKind::kPath);
 
 // The part of the run's vertices whose chords would leave a curve through them by more than
 // `tolerance`: a run of a coarser tolerance, of which only the corners could be rounded.
@@ -27,5 +30,11 @@ namespace batten::postproc {
 // The least number of arcs and lines that the fair curve takes, by its straight parts: each is a
 // line, and what joins two of them gently takes two arcs or more.
 [[nodiscard]] double arcs_for(const geometry::FairPath& fair);
+
+// The methods beside `fair` that may win on a run, for Method::kBest. `corners` is coarse_part of
+// it, `time` (s) what its fastest form so far takes on the machine. docs/algorithms/methods.md says
+// why these.
+[[nodiscard]] std::vector<Method> methods_worth_trying(double corners, double least_time,
+                                                       double time);
 
 }  // namespace batten::postproc

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "gcode/reason.h"
-#include "geometry/fair.h"
 #include "geometry/numeric.h"
 #include "postproc/machine/cycle_time.h"
 #include "postproc/run_choice.h"
+#include "postproc/run_curve.h"
 #include "postproc/run_path.h"
 #include "postproc/run_prospect.h"
 
@@ -63,53 +63,11 @@ double greatest_feed(const Run& run) {
   return feed;
 }
 
-// 1/mm, of the circles through three neighbouring vertices.
-double greatest_curvature(std::span<const geometry::Point3> p) {
-  double most = 0;
-  for (std::size_t i = 1; i + 1 < p.size(); ++i) {
-    const geometry::Vector3 a = p[i] - p[i - 1];
-    const geometry::Vector3 b = p[i + 1] - p[i];
-    const double sides = a.norm() * b.norm() * (p[i + 1] - p[i - 1]).norm();
-    if (sides > 0) most = std::max(most, 2 * a.cross(b).norm() / sides);
-  }
-  return most;
-}
-
-double greatest_curvature(const geometry::FairPath& fair) {
-  constexpr int kParts = 8;
-  double most = 0;
-  const std::vector<double> knots = fair.curve.breakpoints();
-  for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-    for (int k = 0; k < kParts; ++k) {
-      const double u = knots[i] + (knots[i + 1] - knots[i]) * k / kParts;
-      most = std::max(most, fair.curve.curvature_at(u));
-    }
-  }
-  return std::max(most, fair.curve.curvature_at(fair.curve.last()));
-}
-
 std::vector<TimedPiece> timed_pieces(const OutputPlan& plan) {
   std::vector<TimedPiece> pieces;
   pieces.reserve(plan.moves.size());
   for (const PlannedMove& move : plan.moves) pieces.push_back({move.piece, move.feed});
   return pieces;
-}
-
-// How far the chords of the run are from the curve that was meant, as the height of equal
-// chords: the rms distance of their middles. Noisy vertices are as far off as they scatter.
-double error_of(const Run& run, const geometry::FairPath& fair, double rounding) {
-  double squares = 0;
-  for (std::size_t i = 0; i + 1 < run.points.size(); ++i) {
-    const double u = 0.5 * (fair.vertex_parameters[i] + fair.vertex_parameters[i + 1]);
-    const geometry::Point3 middle = 0.5 * (run.points[i] + run.points[i + 1]);
-    const geometry::Vector3 off = fair.curve.point_at(u) - middle;
-    const geometry::Vector3 along = run.points[i + 1] - run.points[i];
-    const double length = along.squaredNorm();
-    const double slide = length > 0 ? off.dot(along) / length : 0;
-    squares += (off - slide * along).squaredNorm();
-  }
-  const double chords = std::sqrt(squares / static_cast<double>(run.points.size() - 1));
-  return fair.noise > 2 * rounding ? std::max(chords, fair.noise) : chords;
 }
 
 class RunSmoother {
@@ -131,15 +89,15 @@ class RunSmoother {
     const double rounding = 0.5 * step_of(run_.decimals, units_);
     find_prospect();
     if (is_hopeless()) return kept(gcode::reason::kNoGain);
-    const auto fair = geometry::fair_path(run_.points, fair_options(shares, rounding));
-    if (!fair) return kept(gcode::reason::kNoFit);
-    result_.facts.noise = fair->noise;
-    result_.facts.error = error_of(run_, *fair, rounding);
-    result_.facts.fair_curvature = greatest_curvature(*fair);
-
-    const double left = shares.smoothing + shares.form - fair->deviation;
-    if (!(left > 0)) return kept(gcode::reason::kNoFit);
-    add_candidates(*fair, shares.form, left);
+    const CurveRequest request = curve_request(shares, rounding);
+    const bool best = options_.method == Method::kBest;
+    const auto curve = curve_of(best ? Method::kFair : options_.method, run_.points, request);
+    if (curve) {
+      know(curve->path, rounding);
+      try_curve(*curve, shares);
+    }
+    if (best) try_others(request, shares);
+    if (!fits_) return kept(gcode::reason::kNoFit);
     if (result_.candidates.empty()) {
       return kept(passed_over_ ? gcode::reason::kNoGain : gcode::reason::kTargetCannot);
     }
@@ -147,18 +105,45 @@ class RunSmoother {
   }
 
  private:
-  [[nodiscard]] geometry::FairOptions fair_options(const ToleranceShares& shares,
-                                                   double rounding) const {
-    geometry::FairOptions fair;
-    fair.tolerance = shares.smoothing + kLent * shares.form;
-    fair.rounding = rounding;
-    fair.feed = std::clamp(greatest_feed(run_), 1.0, 60 * options_.machine->max_velocity);
-    fair.acceleration = options_.machine->max_acceleration;
-    if (few_wanted()) fair.scatter = kSpent * fair.tolerance;
-    fair.scatter = std::max(fair.scatter, std::min(arc_scatter(run_), kArcsSpend * fair.tolerance));
-    fair.accurate = options_.prefer == Prefer::kAccuracy;
-    fair.keep_corner_angle = keep_corner_angle();
-    return fair;
+  [[nodiscard]] CurveRequest curve_request(const ToleranceShares& shares, double rounding) const {
+    CurveRequest request;
+    request.tolerance = shares.smoothing + kLent * shares.form;
+    request.kind = options_.tolerance_kind;
+    request.rounding = rounding;
+    request.keep_corner_angle = keep_corner_angle();
+    request.limits = limits_of(*options_.machine, greatest_feed(run_));
+    if (few_wanted()) request.scatter = kSpent * request.tolerance;
+    const double of_arcs = std::min(arc_scatter(run_), kArcsSpend * request.tolerance);
+    request.scatter = std::max(request.scatter, of_arcs);
+    request.accurate = options_.prefer == Prefer::kAccuracy;
+    return request;
+  }
+
+  void know(const geometry::FairPath& path, double rounding) {
+    result_.facts.noise = path.noise;
+    result_.facts.error = chord_error(run_, path, rounding);
+    result_.facts.fair_curvature = greatest_curvature(path.curve);
+  }
+
+  void try_curve(const RunCurve& curve, const ToleranceShares& shares) {
+    const double left = shares.smoothing + shares.form - curve.path.deviation;
+    if (!(left > 0)) return;
+    fits_ = true;
+    curvature_ = greatest_curvature(curve.path.curve);
+    add_candidates(curve, shares.form, left);
+  }
+
+  // The other methods, where there is time left to win and they may win it.
+  void try_others(const CurveRequest& request, const ToleranceShares& shares) {
+    const auto mean = [](const Times& t) { return 0.5 * (t.as_set + t.without_merging); };
+    double time = mean(judged_.times);
+    if (!context_.is_piece()) {  // else times are not those of the run alone
+      for (const Candidate& c : result_.candidates) time = std::min(time, mean(c.times));
+    }
+    const double corners = coarse_part(run_, options_.tolerance_mm);
+    for (const Method method : methods_worth_trying(corners, least_time_, time)) {
+      if (const auto curve = curve_of(method, run_.points, request)) try_curve(*curve, shares);
+    }
   }
 
   // Whether the whole tolerance may be spent on fewer moves.
@@ -198,7 +183,8 @@ class RunSmoother {
   // Times of a piece leave out what its neighbours need to stop and start; what it could gain is
   // judged by its time alone.
   void find_prospect() {
-    least_time_ = least_time(run_, options_.tolerance_mm, *options_.machine);
+    least_time_ =
+        least_time(run_, options_.tolerance_mm, *options_.machine, options_.tolerance_kind);
     judged_ = result_.facts;
     if (context_.is_piece()) {
       judged_.times = times_alone(timed_pieces(run_, 0, run_.points.size() - 1));
@@ -234,7 +220,8 @@ class RunSmoother {
   }
 
   // `share` of the tolerance belongs to the form; `left` is what the curve leaves.
-  void add_candidates(const geometry::FairPath& fair, double share, double left) {
+  void add_candidates(const RunCurve& curve, double share, double left) {
+    const geometry::FairPath& fair = curve.path;
     const auto plan_with = [&](double multiple) {
       return PlanOptions{
           options_.target,       options_.machine,      units_,
@@ -243,15 +230,15 @@ class RunSmoother {
     };
     if (options_.output != Form::kLines && !arcs_are_hopeless(fair)) {
       const PlanOptions arcs = plan_with(kArcs);
-      add(plan_arcs(run_, fair, arcs), arcs.max_deviation);
+      add(curve, plan_arcs(run_, fair, arcs), arcs.max_deviation);
       if (lies_flat()) {
         const PlanOptions fine = plan_with(kFineArcs);
-        add(plan_arcs(run_, fair, fine), fine.max_deviation);
+        add(curve, plan_arcs(run_, fair, fine), fine.max_deviation);
       }
-      if (few_wanted() || !run_.arcs.empty()) {
+      if ((few_wanted() || !run_.arcs.empty()) && curve.method == Method::kFair) {
         PlanOptions whole = plan_with(kArcs);
         whole.max_deviation = left + fair.deviation;
-        add_arc_splines(fair, whole);
+        add_arc_splines(curve, whole);
       }
     }
     if (options_.output == Form::kArcs) return;
@@ -260,19 +247,19 @@ class RunSmoother {
       const PlanOptions lines = plan_with(multiple);
       if (lines.max_deviation == before || is_hopeless(fair, lines)) continue;
       before = lines.max_deviation;
-      add(plan_lines(run_, fair, lines), lines.max_deviation);
+      add(curve, plan_lines(run_, fair, lines), lines.max_deviation);
     }
   }
 
   // Arcs in the band around the vertices themselves. Of arcs no more should come than there were:
   // the search finds one fewer here and there in a band that is a little less wide.
-  void add_arc_splines(const geometry::FairPath& fair, const PlanOptions& whole) {
+  void add_arc_splines(const RunCurve& curve, const PlanOptions& whole) {
     for (const double part : kBands) {
       PlanOptions band = whole;
       band.max_deviation = part * whole.max_deviation;
-      add(plan_arc_spline(run_, fair, band), band.max_deviation);
-      const bool enough =
-          !result_.candidates.empty() && result_.candidates.back().text.blocks <= context_.blocks;
+      add(curve, plan_arc_spline(run_, curve.path, band), band.max_deviation);
+      const bool enough = !result_.candidates.empty() &&
+                          result_.candidates.back().text.blocks <= context_.blocks;
       if (run_.arcs.empty() || enough) return;
     }
   }
@@ -294,15 +281,19 @@ class RunSmoother {
     return std::max(error, kKnown * result_.facts.noise);
   }
 
-  void add(const std::optional<OutputPlan>& plan, double error) {
+  // `error`: mm, moves to curve. The fair curve is the path that was meant; how far the others are
+  // from it is not known but for their deviation.
+  void add(const RunCurve& curve, const std::optional<OutputPlan>& plan, double error) {
     if (!plan) return;
     auto text = write_run(*plan, run_, context_.program, *options_.target, context_.before,
                           context_.after, context_.line_end);
     if (!text) return;
     Candidate candidate;
-    candidate.method = "fair";
+    candidate.method = name_of(curve.method);
     candidate.form = plan->form;
-    candidate.error = known(error);
+    const bool meant = curve.method == Method::kFair;
+    candidate.error = known(meant ? error : error + curve.path.deviation);
+    candidate.max_curvature = curvature_;
     std::vector<TimedPiece> moves = timed_pieces(*plan);
     if (!run_.arcs.empty()) candidate.kink = greatest_kink(moves);
     candidate.times = times_in_place(moves);
@@ -324,6 +315,8 @@ class RunSmoother {
   double least_time_ = 0;
   RunFacts judged_;           // what a gain is measured by before the candidates are there
   bool passed_over_ = false;  // a candidate that could not gain was not made
+  bool fits_ = false;         // a method found a curve inside the tolerance
+  double curvature_ = 0;      // 1/mm, greatest of the curve that candidates are made of
   SmoothedRun result_;
 };
 

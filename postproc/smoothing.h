@@ -51,11 +51,12 @@ struct Times {
                                                    std::size_t last);
 
 struct Candidate {
-  std::string_view method;  // "fair"
+  std::string_view method;  // name_of(Method): "fair", "guo" ..
   OutputForm form = OutputForm::kLines;
   RunText text;
-  double error = 0;  // mm, the written form from the fair curve
-  double kink = 0;   // radians, see greatest_kink; 0 where the run is one of lines
+  double error = 0;  // mm, the written form from the path that was meant, as far as it is known
+  double max_curvature = 0;  // 1/mm, greatest of the curve that it was made of
+  double kink = 0;           // radians, see greatest_kink; 0 where the run is one of lines
   Times times;
   std::vector<TimedPiece> moves;  // of a piece of a run; empty otherwise
 };

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "geometry/band_comparison.h"
 #include "geometry/tolerance_band.h"
 
 namespace batten::postproc {
@@ -139,11 +140,17 @@ PartPair without_same_ends(const PartPair& pair) {
   return {pair.before.without(first, last), pair.after.without(first, last)};
 }
 
-PathComparison compare(const PartPair& pair, double tolerance_mm) {
-  return geometry::compare_paths(pair.before.path(), pair.after.path(), tolerance_mm);
+geometry::BandComparison compare(const PartPair& pair, const Promise& promise) {
+  const Path before = pair.before.path();
+  const Path after = pair.after.path();
+  if (promise.kind == geometry::ToleranceKind::kBand) {
+    return geometry::compare_in_band(before, after, promise.tolerance_mm);
+  }
+  return {geometry::compare_paths(before, after, promise.tolerance_mm), 0, 0};
 }
 
-Stretch stretch_of(const PartPair& pair, PathComparison comparison) {
+Stretch stretch_of(const PartPair& pair, geometry::BandComparison compared) {
+  PathComparison& comparison = compared.paths;
   const auto block = [](const Part& part, std::size_t i) {
     return part.side->cuts.empty()
                ? 0
@@ -159,6 +166,7 @@ Stretch stretch_of(const PartPair& pair, PathComparison comparison) {
   stretch.old_worst_line = pair.before.line(comparison.worst_piece_a);
   stretch.new_worst_line = pair.after.line(comparison.worst_piece_b);
   stretch.comparison = std::move(comparison);
+  stretch.corner_mm = compared.corner_at_most;
   return stretch;
 }
 
@@ -205,8 +213,8 @@ std::optional<Breach> crossing_breach(const PartPair& pair, const PartPair& midd
 
 class StretchComparer {
  public:
-  StretchComparer(const StretchSide& before, const StretchSide& after, double tolerance_mm)
-      : before_(before), after_(after), tolerance_(tolerance_mm) {}
+  StretchComparer(const StretchSide& before, const StretchSide& after, const Promise& promise)
+      : before_(before), after_(after), promise_(promise), tolerance_(promise.tolerance_mm) {}
 
   StretchResult run() {
     const std::vector<Part> old_parts = parts_of_one_feed(before_);
@@ -251,8 +259,8 @@ class StretchComparer {
   void compare_part(const PartPair& pair) {
     const PartPair middle = without_same_ends(pair);
     if (middle.before.size() == 0 && middle.after.size() == 0) return;
-    PathComparison comparison = compare(middle, tolerance_);
-    if (comparison.verdict == Verdict::kProved) {
+    geometry::BandComparison comparison = compare(middle, promise_);
+    if (comparison.paths.verdict == Verdict::kProved) {
       result_.stretches.push_back(stretch_of(middle, std::move(comparison)));
       // Of the whole, for a new part may also cross one that is the same.
       if (auto breach = crossing_breach(pair, middle, tolerance_)) {
@@ -261,16 +269,16 @@ class StretchComparer {
       return;
     }
     // The same ends may be passed otherwise than together: only the whole is a refutation.
-    comparison = compare(pair, tolerance_);
-    if (comparison.verdict != Verdict::kProved) {
-      result_.breaches.push_back(distance_breach(pair, comparison, tolerance_));
+    comparison = compare(pair, promise_);
+    if (comparison.paths.verdict != Verdict::kProved) {
+      result_.breaches.push_back(distance_breach(pair, comparison.paths, tolerance_));
     }
     result_.stretches.push_back(stretch_of(pair, std::move(comparison)));
   }
 
   // Parts that break the tolerance of a path that keeps it: a feed begins at another place.
   void look_for_moved_feed() {
-    const PathComparison whole = compare_whole_path(before_, after_, tolerance_);
+    const PathComparison whole = compare_whole_path(before_, after_, promise_);
     if (whole.verdict != Verdict::kProved) return;
     for (Breach& breach : result_.breaches) {
       breach.kind = BreachKind::kFeed;
@@ -294,20 +302,21 @@ class StretchComparer {
 
   const StretchSide& before_;
   const StretchSide& after_;
-  double tolerance_;
+  Promise promise_;
+  double tolerance_;  // of the promise
   StretchResult result_;
 };
 
 }  // namespace
 
 StretchResult compare_stretch(const StretchSide& before, const StretchSide& after,
-                              double tolerance_mm) {
-  return StretchComparer(before, after, tolerance_mm).run();
+                              const Promise& promise) {
+  return StretchComparer(before, after, promise).run();
 }
 
 geometry::PathComparison compare_whole_path(const StretchSide& before, const StretchSide& after,
-                                            double tolerance_mm) {
-  return compare({all_of(before), all_of(after)}, tolerance_mm);
+                                            const Promise& promise) {
+  return compare({all_of(before), all_of(after)}, promise).paths;
 }
 
 }  // namespace batten::postproc

@@ -28,11 +28,11 @@ struct StretchResult {
 // Neighbouring cuts of one feed are taken together. The feeds must come in the same order, and
 // the path of each must keep the tolerance by itself: so a feed begins where it began.
 [[nodiscard]] StretchResult compare_stretch(const StretchSide& before, const StretchSide& after,
-                                            double tolerance_mm);
+                                            const Promise& promise);
 
 // Only the path, whatever the feeds are.
 [[nodiscard]] geometry::PathComparison compare_whole_path(const StretchSide& before,
                                                           const StretchSide& after,
-                                                          double tolerance_mm);
+                                                          const Promise& promise);
 
 }  // namespace batten::postproc

@@ -78,10 +78,10 @@ class Follower {
 
 class Verifier {
  public:
-  Verifier(const ReadProgram& before, const ReadProgram& after, double tolerance_mm)
+  Verifier(const ReadProgram& before, const ReadProgram& after, const Promise& promise)
       : old_(before),
         new_(after),
-        tolerance_(tolerance_mm),
+        promise_(promise),
         old_list_(list_events(before)),
         new_list_(list_events(after)),
         old_follower_(old_, old_list_),
@@ -140,7 +140,7 @@ class Verifier {
         (geometry::end_point(old_motion.piece) - geometry::end_point(new_motion.piece)).norm();
     // Rounding of the printed decimals is far above, that of doubles far below this share.
     constexpr double kRounding = 1e-9;
-    if (std::max(start, end) <= tolerance_ * (1 + kRounding)) return;
+    if (std::max(start, end) <= promise_.tolerance_mm * (1 + kRounding)) return;
     breaches_.push_back(rapid_breach(before, old_, after, new_));
   }
 
@@ -160,7 +160,7 @@ class Verifier {
     if (!can_compare) return flush_stretch();
     Compared now{before, after, {}, same, false};
     if (!before.cuts.empty() || !after.cuts.empty()) {
-      now.result = compare_stretch(before, after, tolerance_);
+      now.result = compare_stretch(before, after, promise_);
     }
     if (no_gap && last_ && last_->joins_next) join_if_event_moved(*last_, now);
     flush_stretch();
@@ -175,7 +175,7 @@ class Verifier {
     if (first.result.breaches.empty() || second.result.breaches.empty()) return;
     const StretchSide before = joined(first.before, second.before);
     const StretchSide after = joined(first.after, second.after);
-    if (compare_whole_path(before, after, tolerance_).verdict != Verdict::kProved) return;
+    if (compare_whole_path(before, after, promise_).verdict != Verdict::kProved) return;
     const double moved = first.result.breaches.front().deviation_mm;
     first.result.breaches = {moved_event_breach(old_list_.events[first.event.before], old_,
                                                 new_list_.events[first.event.after], new_, moved)};
@@ -199,6 +199,7 @@ class Verifier {
 
   void add_stretch(Stretch stretch) {
     const geometry::PathComparison& found = stretch.comparison;
+    result_.corner_mm = std::max(result_.corner_mm, stretch.corner_mm);
     if (found.verdict == Verdict::kProved && found.bounds.at_most > result_.deviation_mm) {
       result_.deviation_mm = found.bounds.at_most;
       result_.deviation_line = stretch.old_worst_line;
@@ -227,7 +228,7 @@ class Verifier {
 
   const ReadProgram& old_;
   const ReadProgram& new_;
-  double tolerance_;
+  Promise promise_;
   ProgramEvents old_list_;
   ProgramEvents new_list_;
   Follower old_follower_;
@@ -240,12 +241,12 @@ class Verifier {
 
 }  // namespace
 
-Verification verify(const ReadProgram& before, const ReadProgram& after, double tolerance_mm) {
-  if (!(tolerance_mm > 0) || !std::isfinite(tolerance_mm)) {
-    throw std::invalid_argument(
-        fmt::format("verify: tolerance {} mm, expected a finite number above 0", tolerance_mm));
+Verification verify(const ReadProgram& before, const ReadProgram& after, const Promise& promise) {
+  if (!(promise.tolerance_mm > 0) || !std::isfinite(promise.tolerance_mm)) {
+    throw std::invalid_argument(fmt::format(
+        "verify: tolerance {} mm, expected a finite number above 0", promise.tolerance_mm));
   }
-  return Verifier(before, after, tolerance_mm).run();
+  return Verifier(before, after, promise).run();
 }
 
 }  // namespace batten::postproc

@@ -16,6 +16,7 @@
 #include "gcode/motion.h"
 #include "gcode/program.h"
 #include "geometry/path_distance.h"
+#include "geometry/tolerance_kind.h"
 #include "postproc/program_events.h"
 
 namespace batten::postproc {
@@ -39,12 +40,23 @@ struct Breach {
   std::string message;      // found and expected
 };
 
+// What the paths must keep.
+struct Promise {
+  double tolerance_mm = 0.01;  // > 0
+  geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
+
+  // The strict reading, when nothing else is said.
+  Promise(double tolerance, geometry::ToleranceKind reading = geometry::ToleranceKind::kPath)
+      : tolerance_mm(tolerance), kind(reading) {}
+};
+
 // One stretch of cutting moves at one feed that was compared, without the moves at its ends
 // that are the same in both programs.
 struct Stretch {
   std::uint32_t old_first_block = 0, old_last_block = 0;
   std::uint32_t new_first_block = 0, new_last_block = 0;
   geometry::PathComparison comparison;
+  double corner_mm = 0;  // band reading: greatest distance of a corner that was cut; 0: none was
   std::uint32_t old_worst_line = 0;  // where the greatest distance was met
   std::uint32_t new_worst_line = 0;
 };
@@ -54,6 +66,7 @@ struct Verification {
   std::vector<Stretch> stretches;    // in order; identical ones are not listed
   double deviation_mm = 0;           // greatest proved bound
   std::uint32_t deviation_line = 0;  // of the old program
+  double corner_mm = 0;              // greatest of the stretches
   std::size_t events_compared = 0;
   [[nodiscard]] bool proved() const { return breaches.empty(); }
 };
@@ -61,6 +74,6 @@ struct Verification {
 // Feeds are the same when they differ by less than a millionth: they are printed again.
 // Requires a tolerance > 0 (throws std::invalid_argument otherwise).
 [[nodiscard]] Verification verify(const ReadProgram& before, const ReadProgram& after,
-                                  double tolerance_mm);
+                                  const Promise& promise);
 
 }  // namespace batten::postproc

@@ -31,6 +31,7 @@ struct VerifyCommand {
   std::string old_program;
   std::string new_program;
   double tolerance_mm = 0.01;
+  geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
   gcode::Units units = gcode::Units::kUnknown;
   std::string json_file;
   bool force = false;

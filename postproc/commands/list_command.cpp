@@ -89,7 +89,7 @@ Listing list_machines() {
 Listing list_methods() {
   Listing listing;
   for (const auto& method : methods()) {
-    listing.text += fmt::format("{:<8} {}\n", method.name, method.text);
+    listing.text += fmt::format("{:<16} {}\n", method.name, method.text);
     listing.json.push_back({{"name", method.name}, {"description", method.text}});
   }
   return listing;

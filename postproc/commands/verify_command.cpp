@@ -70,14 +70,20 @@ std::string summary_of(const Verification& verification, const VerifyCommand& co
                            ? "1 breach"
                            : fmt::format("{} breaches", verification.breaches.size()));
   }
+  const bool band = command.tolerance_kind == geometry::ToleranceKind::kBand;
+  const std::string corners =
+      verification.corner_mm > 0
+          ? fmt::format(", of a corner from the new path {:.4f} mm", verification.corner_mm)
+          : "";
   return fmt::format(
-      "proved: {} keeps {:g} mm to {}, both ways and in order\n"
-      "  greatest deviation {:.4f} mm{}; {} changed stretches, {} acting words and blocks the "
+      "proved: {} keeps {:g} mm to {}, {}\n"
+      "  greatest deviation {:.4f} mm{}{}; {} changed stretches, {} acting words and blocks the "
       "same\n",
-      command.new_program, command.tolerance_mm, command.old_program, verification.deviation_mm,
+      command.new_program, command.tolerance_mm, command.old_program,
+      band ? "in order, in the band reading" : "both ways and in order", verification.deviation_mm,
       verification.deviation_line > 0 ? fmt::format(" near line {}", verification.deviation_line)
                                       : "",
-      verification.stretches.size(), verification.events_compared);
+      corners, verification.stretches.size(), verification.events_compared);
 }
 
 Json json_of(const Stretch& stretch, const Read& before, const Read& after) {
@@ -115,9 +121,11 @@ std::string json_report(const Verification& verification, const VerifyCommand& c
                     {"old", command.old_program},
                     {"new", command.new_program},
                     {"tolerance_mm", command.tolerance_mm},
+                    {"tolerance_kind", postproc::name_of(command.tolerance_kind)},
                     {"proved", verification.proved()},
                     {"deviation_mm", verification.deviation_mm},
                     {"deviation_line", verification.deviation_line},
+                    {"corner_mm", verification.corner_mm},
                     {"events_compared", verification.events_compared},
                     {"breaches", std::move(breaches)},
                     {"stretches", std::move(stretches)},
@@ -168,9 +176,10 @@ int run(const VerifyCommand& command) {
     say("NOT PROVED: the new program is not understood, and the old one is");
     return static_cast<int>(ExitCode::kNotProved);
   }
-  const Verification verification = verify(
-      {.program = &before.program, .interpretation = &before.interpretation},
-      {.program = &after.program, .interpretation = &after.interpretation}, command.tolerance_mm);
+  const Verification verification =
+      verify({.program = &before.program, .interpretation = &before.interpretation},
+             {.program = &after.program, .interpretation = &after.interpretation},
+             {command.tolerance_mm, command.tolerance_kind});
   if (interrupted()) return interrupt_exit_code();
 
   for (std::size_t i = 0; i < verification.breaches.size() && i < kMostBreaches; ++i) {

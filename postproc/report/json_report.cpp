@@ -16,6 +16,7 @@ Json json_of(const SmoothOptions& options, bool strict) {
                {"machine", options.machine->name},
                {"tolerance_mm", options.tolerance_mm}};
   if (options.tolerance_inch) json["tolerance_inch"] = *options.tolerance_inch;
+  json["tolerance_kind"] = name_of(options.tolerance_kind);
   json["method"] = name_of(options.method);
   json["output"] = name_of(options.output);
   json["prefer"] = name_of(options.prefer);
@@ -30,12 +31,17 @@ Json json_of(const SmoothOptions& options, bool strict) {
 
 Json json_of(const RunReport& run) {
   const bool rewritten = run.status == RunStatus::kRewritten;
+  Json methods = Json::array();
+  for (const MethodTime& each : run.methods) {
+    methods.push_back({{"method", each.method}, {"time_s", each.time_s}});
+  }
   return {{"first_line", run.first_line},
           {"last_line", run.last_line},
           {"points", run.points},
           {"status", rewritten ? "rewritten" : "kept"},
           {"reason", run.reason},
           {"method", run.method},
+          {"methods", std::move(methods)},
           {"form", rewritten ? name_of_form(run.form) : ""},
           {"blocks_in", run.blocks_in},
           {"blocks_out", run.blocks_out},
@@ -79,6 +85,7 @@ std::string json_report(const SmoothReport& report) {
                      {"reasons", std::move(reasons)},
                      {"deviation_mm", result.deviation_mm},
                      {"deviation_line", result.deviation_line},
+                     {"corner_mm", result.corner_mm},
                      {"time_before_s", result.time_before_s},
                      {"time_after_s", result.time_after_s},
                      {"proved", result.proved},

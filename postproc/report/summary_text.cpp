@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
+#include <vector>
 
 #include "postproc/report/run_reasons.h"
 
@@ -86,6 +88,29 @@ void add_runs(const SmoothResult& result, Lines& lines) {
   }
 }
 
+// Which methods won where several were tried, and by how much. Nothing where none were.
+void add_methods(const SmoothResult& result, Lines& lines) {
+  std::vector<std::pair<std::string_view, std::size_t>> wins;
+  double lead = 0;
+  for (const RunReport& run : result.runs) {
+    if (run.status != RunStatus::kRewritten || run.methods.size() < 2) continue;
+    lead += lead_of(run.method, run.time_after_s, run.methods);
+    const auto known = std::ranges::find(wins, run.method, &decltype(wins)::value_type::first);
+    if (known == wins.end()) {
+      wins.emplace_back(run.method, 1);
+    } else {
+      ++known->second;
+    }
+  }
+  if (wins.empty()) return;
+  std::string text;
+  for (const auto& [method, runs] : wins) {
+    text += fmt::format("{}{} in {}", text.empty() ? "" : ", ", method, plural(runs, "run"));
+  }
+  lines.add("methods", fmt::format("{}: {:.2f} s {} than by the next best ones", text,
+                                   std::abs(lead), lead < 0 ? "more" : "less"));
+}
+
 void add_proof(const SmoothReport& report, bool rewritten, Lines& lines) {
   const SmoothResult& result = report.result;
   if (!rewritten) {
@@ -97,11 +122,17 @@ void add_proof(const SmoothReport& report, bool rewritten, Lines& lines) {
   lines.add("deviation",
             fmt::format("at most {}{}; allowed {}", length(result.deviation_mm, result.units),
                         place, length(report.options.tolerance_mm, result.units)));
+  if (result.corner_mm > 0) {
+    lines.add("corners",
+              fmt::format("at most {} from the new path", length(result.corner_mm, result.units)));
+  }
+  const bool band = report.options.tolerance_kind == geometry::ToleranceKind::kBand;
   lines.add("proof", result.proved
                          ? "the new text was read again: every rewritten run keeps the tolerance,"
                          : "NOT PROVED: the new text could not be shown to keep the tolerance");
   if (result.proved) {
-    lines.add_more("both ways and in order; everything else is the same, byte for byte");
+    lines.add_more(fmt::format("{}; everything else is the same, byte for byte",
+                               band ? "in order, in the band reading" : "both ways and in order"));
   }
 }
 
@@ -117,6 +148,7 @@ std::string summary_text(const SmoothReport& report) {
   lines.add("bytes", change(report.source.text().size(), result.text.size()));
   add_runs(result, lines);
   lines.add("cutting time", times(result, *report.options.machine));
+  add_methods(result, lines);
   const bool rewritten =
       std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status) > 0;
   add_proof(report, rewritten, lines);

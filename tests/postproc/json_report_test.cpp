@@ -34,19 +34,28 @@ std::vector<std::string> keys_of(const Json& json) {
 
 TEST_F(JsonReport, HasItsFieldsInAFixedOrder) {
   const Json report = json();
-  EXPECT_EQ(keys_of(report),
-            (std::vector<std::string>{"batten", "options", "input", "output", "runs", "reasons",
-                                      "deviation_mm", "deviation_line", "time_before_s",
-                                      "time_after_s", "proved", "understood", "diagnostics"}));
+  EXPECT_EQ(keys_of(report), (std::vector<std::string>{
+                                 "batten", "options", "input", "output", "runs", "reasons",
+                                 "deviation_mm", "deviation_line", "corner_mm", "time_before_s",
+                                 "time_after_s", "proved", "understood", "diagnostics"}));
   EXPECT_EQ(keys_of(report["input"]),
             (std::vector<std::string>{"file", "bytes", "blocks", "units"}));
   EXPECT_EQ(keys_of(report["output"]),
             (std::vector<std::string>{"file", "bytes", "blocks", "target"}));
   EXPECT_EQ(keys_of(report["runs"][0]),
             (std::vector<std::string>{"first_line", "last_line", "points", "status", "reason",
-                                      "method", "form", "blocks_in", "blocks_out", "deviation_mm",
-                                      "proved", "noise_mm", "max_curvature_before",
+                                      "method", "methods", "form", "blocks_in", "blocks_out",
+                                      "deviation_mm", "proved", "noise_mm", "max_curvature_before",
                                       "max_curvature_after", "time_before_s", "time_after_s"}));
+}
+
+TEST_F(JsonReport, TellsWhatEachMethodWouldTake) {
+  result_.runs[0].methods = {{"fair", 1.5}, {"guo", 1.25}};
+  const Json run = json()["runs"][0];
+  ASSERT_EQ(run["methods"].size(), 2u);
+  EXPECT_EQ(run["methods"][1]["method"], "guo");
+  EXPECT_EQ(run["methods"][1]["time_s"], 1.25);
+  EXPECT_TRUE(json()["runs"][1]["methods"].empty());
 }
 
 TEST_F(JsonReport, TellsTheFiguresOfTheResult) {

@@ -48,6 +48,19 @@ TEST_F(Summary, TellsTimesOfTheMachineModel) {
   EXPECT_TRUE(says("2 h 01 min -> 1 h 49 min  (machine linuxcnc, -10.0 %)")) << text();
 }
 
+// One run by guo, 0.5 s before fair; one by fair, 0.1 s before guo. Kept runs do not count.
+TEST_F(Summary, TellsWhichMethodsWonAndByHowMuch) {
+  EXPECT_FALSE(says("methods")) << "one method alone wins nothing";
+  result_.runs[0].method = "guo";
+  result_.runs[0].time_after_s = 1;
+  result_.runs[0].methods = {{"fair", 1.5}, {"guo", 1}};
+  result_.runs[2].time_after_s = 1;
+  result_.runs[2].methods = {{"fair", 1}, {"guo", 1.1}};
+  result_.runs[4].methods = {{"fair", 1}, {"guo", 2}};
+  EXPECT_TRUE(says("guo in 1 run, fair in 1 run: 0.60 s less than by the next best ones"))
+      << text();
+}
+
 TEST_F(Summary, TellsTheWorstDeviationWithItsLineAndTheLimit) {
   EXPECT_TRUE(says("at most 0.0098 mm, near line 120; allowed 0.0100 mm")) << text();
   EXPECT_TRUE(says("keeps the tolerance")) << text();
