@@ -30,10 +30,6 @@ constexpr double kChordShare = 0.25;
 struct Place {
   std::size_t piece = 0;
   double t = 0;
-
-  friend bool operator<(const Place& a, const Place& b) {
-    return a.piece != b.piece ? a.piece < b.piece : a.t < b.t;
-  }
 };
 
 // The joint of old pieces i and i + 1.

@@ -65,7 +65,8 @@ BsplineCurve joined(std::span<const BsplineCurve> parts) {
     }
     end = part.last();
     const std::span<const double> knots = part.basis().knots();
-    joiner.add(part.first(), knots.subspan(kDegree + 1, knots.size() - 2 * (kDegree + 1)), end,
+    constexpr std::size_t kAtEnd = kDegree + 1;  // knots of a clamped end
+    joiner.add(part.first(), knots.subspan(kAtEnd, knots.size() - 2 * kAtEnd), end,
                part.control_points());
   }
   return std::move(joiner).curve();
