@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <variant>
@@ -227,7 +228,8 @@ void Planner::plan_bent(const Chain& chain) {
   PlanGrid grid = make_plan_grid(chain.pieces, chain.bounds, limits_, options_.density);
   PlanProblem problem = make_plan_problem(chain.pieces, grid, limits_);
   PlanSolution solution = fastest_plan(problem, feasible_start(problem, grid), kRough);
-  for (const RefineRule& rule : kRefinements) {
+  const auto rounds = static_cast<std::size_t>(std::clamp(options_.refinements, 0, 4));
+  for (const RefineRule& rule : std::span(kRefinements).first(rounds)) {
     std::vector<double> start = solution.x;
     const std::size_t cut = refine_plan(chain.pieces, limits_, problem, rule, grid, start);
     const bool first = &rule == &kRefinements.front();
