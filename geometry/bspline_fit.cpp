@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "geometry/bspline_fit_adaptive.h"
+#include "geometry/bspline_fit_parts.h"
 
 namespace batten::geometry {
 
 BsplineFit fit_bspline(const FitProblem& problem, const FitOptions& options) {
-  const AdaptiveFit fit(problem, options);
+  const PartedFit fit(problem, options);
   BsplineFit result{fit.curve(), fit.ratios(problem.samples), 0};
   for (const double ratio : result.ratios) result.worst_ratio = std::max(result.worst_ratio, ratio);
   return result;

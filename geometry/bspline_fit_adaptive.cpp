@@ -12,14 +12,15 @@ namespace {
 
 // A control point that wakes is solved for so many times, whatever comes of it: a number that is
 // the same for all does not depend on rounding, and weights have found their places by then.
-constexpr std::uint8_t kSolutions = 12;
+constexpr std::uint8_t kSolutions = 14;
 
 // A solution in which it moves by less than this part of its limit counts as several.
 constexpr double kStill = 2e-4;
 constexpr std::uint8_t kStillCounts = 4;
 
-// One that rests wakes when it is moved by this part of its limit.
+// One that rests wakes when it is moved by this part of its limit, for so many solutions.
 constexpr double kMoved = 0.01;
+constexpr std::uint8_t kWoken = 5;
 
 // Control points on either side that are solved for with those that are awake: the influence of a
 // sample dies out over some of them. Where more of them move, these wake in turn.
@@ -32,8 +33,10 @@ constexpr std::size_t kWall = 3;
 // samples that weigh much less than their neighbours are left to the swing of these.
 constexpr double kStiffnessStep = 4;
 
-// After the last solution: rounding is no excess.
+// Rounding is no excess; what is left of one this small after the last solution is no reason for
+// another knot.
 constexpr double kInside = 1 + 1e-9;
+constexpr double kNearlyInside = 1.01;
 
 // Samples from `begin` on that share a span.
 std::size_t end_of_span(std::span<const FitRow> rows, std::size_t begin) {
@@ -81,6 +84,8 @@ void AdaptiveFit::refit(const FitProblem& problem, double closest) {
   std::vector<FitSample> samples = free_samples(problem);
   const SampleChanges changes = changes_of(samples_, samples);
   const auto rebuilt = changed_places(pins_, problem.pins, zones_, problem.zones);
+  for (PointState& point : points_) point.moved = 0;
+  if (!changes.any() && rebuilt.empty()) return;
   std::vector<double> breaks = breaks_of(problem, spline_.breaks, rebuilt, closest);
 
   std::vector<SampleState> states(samples.size());
@@ -100,7 +105,6 @@ void AdaptiveFit::refit(const FitProblem& problem, double closest) {
   rows_ = std::move(rows);
   zones_ = problem.zones;
   pins_ = problem.pins;
-  for (PointState& point : points_) point.moved = 0;
   set_breaks(std::move(breaks));
 
   for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -184,7 +188,8 @@ void AdaptiveFit::run() {
       continue;
     }
     settle();
-    if (last || !split_spans([](const SpanNeed& need, bool) { return need.worst > kInside; })) {
+    if (last ||
+        !split_spans([](const SpanNeed& need, bool) { return need.worst > kNearlyInside; })) {
       return;
     }
   }
@@ -218,7 +223,7 @@ void AdaptiveFit::settle() {
   for (std::size_t i = 0; i < tight_.size(); ++i) {
     if (std::exchange(tight_[i], std::uint8_t{0}) != 0) forget_limit(states_[i]);
   }
-  for (int pass = 0; pass < options_.last_passes; ++pass) {
+  for (int pass = 0; pass < kSolutions + options_.last_passes; ++pass) {
     const auto awake = ranges([&](std::size_t i) { return points_[i].left > 0; });
     if (awake.empty()) break;
     for (const IndexRange& range : awake) {
@@ -267,7 +272,7 @@ void AdaptiveFit::solve(IndexRange free, Phase phase) {
     const Point3& place = system_.place(i);
     const double move = (place - spline_.points[i]).norm();
     if (point.left == 0) {
-      if (move > kMoved * point.limit) point.left = phase == Phase::kClose ? 1 : kSolutions;
+      if (move > kMoved * point.limit) point.left = phase == Phase::kClose ? 1 : kWoken;
     } else if (phase != Phase::kDecide) {
       const std::uint8_t counts = move <= kStill * point.limit ? kStillCounts : 1;
       point.left -= std::min(point.left, counts);
@@ -288,7 +293,7 @@ void AdaptiveFit::solve(IndexRange free, Phase phase) {
 }
 
 void AdaptiveFit::reweight(IndexRange samples, Phase phase) {
-  const double part = phase == Phase::kClose ? 1 : 0.5;
+  const double part = phase == Phase::kRelax ? 0.5 : 1;
   bool inverted = false;
   for (std::size_t i = samples.begin; i < samples.end; ++i) {
     const double ratio = states_[i].distance / samples_[i].limit;
@@ -311,7 +316,8 @@ void AdaptiveFit::reweight(IndexRange samples, Phase phase) {
 // The control points of a span that start with this one.
 void AdaptiveFit::wake(std::size_t first_point) {
   for (std::size_t j = 0; j < 4; ++j) {
-    points_[first_point + j].left = kSolutions;
+    std::uint8_t& left = points_[first_point + j].left;
+    left = std::max(left, kWoken);
     points_[first_point + j].undecided = 1;
   }
 }

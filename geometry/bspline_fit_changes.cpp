@@ -55,6 +55,10 @@ std::vector<double> required_breaks(const FitProblem& problem) {
 
 }  // namespace
 
+bool SampleChanges::any() const {
+  return !gone.empty() || std::find(altered.begin(), altered.end(), true) != altered.end();
+}
+
 SampleChanges changes_of(std::span<const FitSample> before, std::span<const FitSample> after) {
   SampleChanges changes;
   changes.was.assign(after.size(), SampleChanges::kNew);

@@ -14,6 +14,8 @@ struct SampleChanges {
   std::vector<std::size_t> was;  // per sample: the old one at the same place, or kNew
   std::vector<bool> altered;     // per sample: new, or with another direction, limit or scatter
   std::vector<double> gone;      // parameters of old samples that are no more, increasing
+
+  [[nodiscard]] bool any() const;
 };
 
 // Parameters increase in both.

@@ -16,10 +16,14 @@ constexpr double kAim = 0.96;
 constexpr double kAimAgain = 0.98;
 constexpr double kLeastShare = 0.85;
 
+// Where it left an edge by more than this, no closer watch is tried: there is a corner, and a curve
+// that is forced round it inside the band would be sharper than the corner is worth.
+constexpr double kSlightly = 1.2;
+
 // Breaches of an edge after which it stays a line between kept corners, and with it, at every
 // further breach, twice as many edges around it. Fits until nothing is tried any more but the
 // polyline itself.
-constexpr int kWatched = 2;
+constexpr int kWatched = 1;
 constexpr int kAttempts = 9;
 
 // Vertices that are met are met to this part of the tolerance.
@@ -133,7 +137,7 @@ bool BandFit::mend() {
     if (off_[edge] <= options_.tolerance) continue;
     left = true;
     EdgeCare& care = care_[edge];
-    ++care.breaches;
+    care.breaches += off_[edge] < kSlightly * options_.tolerance ? 1 : kWatched + 1;
     care.share *= std::max(kLeastShare, kAimAgain * options_.tolerance / off_[edge]);
     if (care.breaches > kWatched) {
       keep_edges(edge, (std::size_t{1} << (care.breaches - kWatched - 1)) - 1);

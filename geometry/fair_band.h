@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/bspline_fit_adaptive.h"
+#include "geometry/bspline_fit_parts.h"
 #include "geometry/fair.h"
 #include "geometry/fair_measure.h"
 #include "geometry/fair_problem.h"
@@ -59,7 +59,7 @@ class BandFit {
   PathFeatures features_;
   std::vector<double> loosen_;  // per vertex
   std::vector<EdgeCare> care_;  // per edge
-  std::optional<AdaptiveFit> fit_;
+  std::optional<PartedFit> fit_;
   std::vector<double> at_;
   std::vector<double> off_;
   std::vector<double> time_;
