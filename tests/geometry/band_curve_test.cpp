@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <ctime>
 #include <random>
 #include <stdexcept>
 #include <vector>
@@ -358,6 +360,42 @@ TEST(SolveBand, NoiseInsideTheBandBecomesStraight) {
   const BandCurve found = solve_band(band, start, {});
   EXPECT_EQ(found.end, BandEnd::kLeast);
   for (double u = 0; u <= 10; u += 0.1) EXPECT_LE(found.curve.curvature_at(u), 1e-9);
+}
+
+// A wavy run with noise, three samples per span, in a band of .05 mm.
+BandProblem long_run(int spans, std::vector<Point3>& start) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> noise(-0.03, 0.03);
+  std::vector<double> breaks;
+  for (int i = 0; i <= spans; ++i) breaks.push_back(i);
+  BandProblem run = on_knots(breaks, 3);
+  start = straight(run.basis);
+  for (Point3& p : start) p += Vector3(0, 3 * std::sin(p.x() / 6) + noise(random), noise(random));
+  const BsplineCurve path(run.basis, start);
+  for (int i = 0; i < 3 * spans; ++i) {
+    const double u = (i + 0.5) / 3;
+    BandSample sample = ball(u, path.point_at(u), 0.05);
+    sample.shape = BandShape::kCylinder;
+    sample.direction = path.direction_at(u);
+    run.samples.push_back(sample);
+  }
+  return run;
+}
+
+TEST(SolveBand, LongRunsTakeHardlyMoreSteps) {
+  int few = 0;
+  for (const int spans : {100, 3000}) {
+    std::vector<Point3> start;
+    const BandProblem run = long_run(spans, start);
+    const std::clock_t before = std::clock();
+    const BandCurve found = solve_band(run, start, {});
+    const double seconds = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+    std::printf("%d samples: %d steps, %.2f us per sample and step\n", 3 * spans, found.steps,
+                1e6 * seconds / (3.0 * spans * found.steps));
+    EXPECT_EQ(found.end, BandEnd::kLeast);
+    if (spans == 100) few = found.steps;
+    EXPECT_LE(found.steps, 2 * few);
+  }
 }
 
 TEST(SolveBand, RefusesWhatItCannotUnderstand) {
