@@ -50,7 +50,7 @@ struct FitProblem {
 
 struct FitOptions {
   int max_refinements = 10;  // rounds of splitting the spans that cannot hold their samples
-  int passes = 3;            // solutions per round that tell which spans those are
+  int passes = 8;            // solutions per round that tell which spans those are
   int last_passes = 16;      // solutions, when weights have settled, to bring all inside
 };
 

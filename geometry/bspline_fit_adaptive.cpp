@@ -36,7 +36,7 @@ constexpr double kStiffnessStep = 4;
 // Rounding is no excess; what is left of one this small after the last solution is no reason for
 // another knot.
 constexpr double kInside = 1 + 1e-9;
-constexpr double kNearlyInside = 1.01;
+constexpr double kNearlyInside = 1.05;
 
 // Samples from `begin` on that share a span.
 std::size_t end_of_span(std::span<const FitRow> rows, std::size_t begin) {
@@ -293,7 +293,7 @@ void AdaptiveFit::solve(IndexRange free, Phase phase) {
 }
 
 void AdaptiveFit::reweight(IndexRange samples, Phase phase) {
-  const double part = phase == Phase::kRelax ? 0.5 : 1;
+  const double part = phase == Phase::kClose ? 1 : 0.5;
   bool inverted = false;
   for (std::size_t i = samples.begin; i < samples.end; ++i) {
     const double ratio = states_[i].distance / samples_[i].limit;
