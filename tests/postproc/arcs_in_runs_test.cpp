@@ -87,5 +87,80 @@ TEST(KinkedArcs, BecomeSmoothInNoMoreBlocks) {
   EXPECT_LT(exact_time_of(result.text), 0.95 * exact_time_of(program));
 }
 
+// A closed outline of its own for each seed.
+tests::PlaneCurve random_outline(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const double size = std::pow(10.0, 2 * unit(random));
+  const double third = 0.25 * unit(random);
+  const double fifth = 0.06 * unit(random);
+  return [=](double t) {
+    const double a = 2 * std::numbers::pi * t;
+    const double r = size * (1 + third * std::cos(3 * a) + fifth * std::sin(5 * a));
+    return Vector2(r * std::cos(a), r * std::sin(a));
+  };
+}
+
+TEST(KinkedArcs, StayInTheBandOrAsTheyAre) {
+  constexpr unsigned kOutlines = 25;
+  std::size_t rewritten = 0;
+  for (unsigned seed = 0; seed < kOutlines; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const tests::KinkedArcs written{.parts = 3 + static_cast<int>(seed % 4),
+                                    .decimals = 3 + static_cast<int>(seed % 2)};
+    const std::string program = tests::kinked_arc_program(random_outline(seed), written);
+    const SmoothResult result = smoothed(program, options_for("linuxcnc"));
+    EXPECT_TRUE(result.proved);
+    EXPECT_TRUE(verdict(program, result.text, 0.01).proved());
+    expect_rest_copied(program, result);
+    if (rewritten_runs(result) == 0) {
+      EXPECT_EQ(result.text, program);
+      continue;
+    }
+    ++rewritten;
+    EXPECT_LE(greatest_kink(result.text), greatest_kink(program));
+    EXPECT_LE(time_of(result.text), 1.01 * time_of(program));
+  }
+  RecordProperty("rewritten", std::to_string(rewritten));
+  EXPECT_GE(rewritten, kOutlines / 2);
+}
+
+TEST(KinkedArcs, ComeOutAlikeWithAnyThreadsAndOnASecondPass) {
+  const std::string program = tests::kinked_arc_program(tests::three_leaves);
+  SmoothOptions options = options_for("linuxcnc");
+  const std::string once = smoothed(program, options).text;
+  ASSERT_NE(once, program);
+  EXPECT_EQ(smoothed(once, options).text, once);
+  options.threads = 2;
+  EXPECT_EQ(smoothed(program, options).text, once);
+  // Without the mark too: the arcs are tangent now.
+  options.allowed = {std::string(gcode::reason::kAlreadySmoothed)};
+  EXPECT_EQ(smoothed(once, options).text, once);
+}
+
+// Where it cannot say arcs, the target gets what it can take, or the program stays.
+TEST(KinkedArcs, AreProvedForEveryTarget) {
+  const std::string program = tests::kinked_arc_program(tests::three_leaves);
+  for (const std::string target : {"grbl", "linuxcnc"}) {
+    for (const Form form : {Form::kAuto, Form::kArcs, Form::kLines}) {
+      SmoothOptions options = options_for(target);
+      options.output = form;
+      const SmoothResult result = smoothed(program, options);
+      EXPECT_TRUE(result.proved) << target;
+      EXPECT_TRUE(verdict(program, result.text, 0.01).proved()) << target;
+    }
+  }
+}
+
+// --- arcs that were meant ------------------------------------------------------------------------
+
+TEST(IntendedArcs, StayByteForByte) {
+  const std::string pocket =
+      "G21 G90 G17\nG0 X5 Y0 Z5\nG1 Z-1 F300\nG1 X35 F600\nG3 X40 Y5 I0 J5\nG1 Y20\n"
+      "G3 X35 Y25 I-5 J0\nG1 X5\nG3 X0 Y20 I0 J-5\nG1 Y5\nG3 X5 Y0 I5 J0\nG0 Z5\n"
+      "G0 X60 Y10\nG1 Z-1\nG2 X60 Y10 I5 J0\nG0 Z5\nM2\n";
+  EXPECT_EQ(smoothed(pocket, options_for("linuxcnc")).text, pocket);
+}
+
 }  // namespace
 }  // namespace batten::postproc
