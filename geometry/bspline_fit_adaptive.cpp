@@ -12,7 +12,7 @@ namespace {
 
 // A control point that wakes is solved for so many times, whatever comes of it: a number that is
 // the same for all does not depend on rounding, and weights have found their places by then.
-constexpr std::uint8_t kSolutions = 14;
+constexpr std::uint8_t kSolutions = 24;
 
 // A solution in which it moves by less than this part of its limit counts as several.
 constexpr double kStill = 2e-4;
@@ -20,7 +20,7 @@ constexpr std::uint8_t kStillCounts = 4;
 
 // One that rests wakes when it is moved by this part of its limit, for so many solutions.
 constexpr double kMoved = 0.01;
-constexpr std::uint8_t kWoken = 5;
+constexpr std::uint8_t kWoken = 8;
 
 // Control points on either side that are solved for with those that are awake: the influence of a
 // sample dies out over some of them. Where more of them move, these wake in turn.
