@@ -12,7 +12,7 @@ namespace {
 
 // A control point that wakes is solved for so many times, whatever comes of it: a number that is
 // the same for all does not depend on rounding, and weights have found their places by then.
-constexpr std::uint8_t kSolutions = 24;
+constexpr std::uint8_t kSolutions = 20;
 
 // A solution in which it moves by less than this part of its limit counts as several.
 constexpr double kStill = 2e-4;
