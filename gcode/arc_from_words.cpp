@@ -35,11 +35,11 @@ Vector3 unit(std::size_t axis) { return Vector3::Unit(static_cast<Eigen::Index>(
 double component(const Vector3& v, std::size_t axis) { return v[static_cast<Eigen::Index>(axis)]; }
 
 // The part of v that lies in the plane.
-Vector3 in_plane(const Vector3& v, const PlaneAxes& plane) {
+Vector3 in_plane(const Vector3& v, const ArcAxes& plane) {
   return v - component(v, plane.normal) * unit(plane.normal);
 }
 
-double angle_in_plane(const Vector3& v, const PlaneAxes& plane) {
+double angle_in_plane(const Vector3& v, const ArcAxes& plane) {
   return std::atan2(component(v, plane.axis1), component(v, plane.axis0));
 }
 
@@ -125,7 +125,7 @@ ArcReading arc_with_center(const ArcWords& words) {
 
 }  // namespace
 
-PlaneAxes axes_of(Plane plane) {
+ArcAxes axes_of(Plane plane) {
   switch (plane) {
     case Plane::kZX:
       return {2, 0, 1};

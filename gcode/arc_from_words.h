@@ -13,17 +13,17 @@ namespace batten::gcode {
 
 // The axes of a plane, and its normal: axis0 turned counter-clockwise by 90 degrees is axis1,
 // seen from the tip of the normal (XY from +Z, ZX from +Y, YZ from +X).
-struct PlaneAxes {
+struct ArcAxes {
   std::size_t axis0 = 0;
   std::size_t axis1 = 1;
   std::size_t normal = 2;
 };
-[[nodiscard]] PlaneAxes axes_of(Plane plane);  // requires a known plane
+[[nodiscard]] ArcAxes axes_of(Plane plane);  // requires a known plane
 
 struct ArcWords {
   geometry::Point3 start = geometry::Point3::Zero();  // mm
   geometry::Point3 end = geometry::Point3::Zero();    // mm
-  PlaneAxes plane;
+  ArcAxes plane;
   bool clockwise = false;                       // G2, seen from the tip of the normal
   bool center_absolute = false;                 // G90.1
   std::array<std::optional<double>, 3> center;  // I, J, K in mm

@@ -11,7 +11,7 @@ std::string_view why_arc_not_followed(const BlockWords& words, const StateEffect
   if (modal.plane == Plane::kUnknown || modal.arc_distance == DistanceMode::kUnknown) {
     return reason::kStateUnknown;
   }
-  const PlaneAxes plane = axes_of(modal.plane);
+  const ArcAxes plane = axes_of(modal.plane);
   if (!state.position.known[plane.axis0] || !state.position.known[plane.axis1]) {
     return reason::kPositionUnknown;
   }

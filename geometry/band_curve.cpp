@@ -38,7 +38,7 @@ int rates_never() { return std::numeric_limits<int>::max(); }
 class BandSolver {
  public:
   BandSolver(const BandProblem& problem, std::vector<Point3> start, int rates_from,
-             const BandOptions& options)
+             const BarrierOptions& options)
       : problem_(problem), options_(options), band_(band_rows(problem, rates_from)) {
     if (start.size() != problem.basis.size()) {
       throw std::invalid_argument("solve_band: " + std::to_string(start.size()) +
@@ -129,7 +129,7 @@ class BandSolver {
   }
 
   const BandProblem& problem_;
-  BandOptions options_;
+  BarrierOptions options_;
   BandRows band_;
   BarrierPoint at_;
   int steps_ = 0;
@@ -150,12 +150,12 @@ HeldPoint HeldPoint::on_plane(std::size_t index, const Point3& place, const Vect
 }
 
 BandCurve solve_band(const BandProblem& problem, std::vector<Point3> start,
-                     const BandOptions& options) {
+                     const BarrierOptions& options) {
   return BandSolver(problem, std::move(start), rates_never(), options).least_energy();
 }
 
 BandCurve least_ratio_in_band(const BandProblem& problem, std::vector<Point3> start,
-                              int from_derivative, const BandOptions& options) {
+                              int from_derivative, const BarrierOptions& options) {
   return BandSolver(problem, std::move(start), from_derivative, options).least_ratio();
 }
 

@@ -65,7 +65,7 @@ struct BandProblem {
   std::vector<HeldPoint> held;
 };
 
-struct BandOptions {
+struct BarrierOptions {
   int max_steps = 200;
   // Ends when the energy is known to be above the least one by this part at most.
   double gap = 1e-5;
@@ -92,13 +92,13 @@ struct BandCurve {
 // Throws std::invalid_argument when the degree is not 3, a radius is not positive, or the number
 // of points does not fit the basis.
 [[nodiscard]] BandCurve solve_band(const BandProblem& problem, std::vector<Point3> start,
-                                   const BandOptions& options);
+                                   const BarrierOptions& options);
 
 // The curve for which the greatest ratio of distance over radius is least, over the samples with
 // a derivative >= `from_derivative`; the others keep their radius (it is widened as well if the
 // start is outside). Of the energy only a trace counts. worst_ratio is that greatest ratio, and
 // `end` is kLeast when it is known to be the least to within the gap.
 [[nodiscard]] BandCurve least_ratio_in_band(const BandProblem& problem, std::vector<Point3> start,
-                                            int from_derivative, const BandOptions& options);
+                                            int from_derivative, const BarrierOptions& options);
 
 }  // namespace batten::geometry

@@ -68,7 +68,7 @@ TubeSolver::TubeSolver(const BsplineCurve& curve, const TubeOptions& options)
 BsplineCurve TubeSolver::least(int energy, std::function<EnergyWeight(double)> weight) {
   problem_.energy = energy;
   problem_.weight = std::move(weight);
-  BandOptions options;
+  BarrierOptions options;
   options.gap = kGap;
   return pulled_inside(solve_band(problem_, original_.control_points(), options).curve);
 }

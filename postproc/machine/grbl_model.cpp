@@ -66,7 +66,7 @@ class Planner {
               : junction_deviation_speed(*before_, direction, machine_.junction_deviation,
                                          machine_.max_acceleration);
     }
-    Stretch s;
+    VelocityStretch s;
     s.length = way.norm();
     s.max_velocity = std::min(velocity, limit_along(direction, machine_.max_velocity));
     s.acceleration = limit_along(direction, machine_.max_acceleration);
@@ -76,7 +76,7 @@ class Planner {
 
   const Machine& machine_;
   bool stops_at_blocks_;
-  std::vector<Stretch> chain_;
+  std::vector<VelocityStretch> chain_;
   std::optional<Vector3> before_;
 };
 

@@ -66,17 +66,17 @@ class Queue {
     rules.look_ahead = machine_.look_ahead;
     rules.ramp_time = kRampTime;
     rules.stop_time = kStopPeriods * machine_.block_period;
-    std::vector<Stretch> chain;
+    std::vector<VelocityStretch> chain;
     chain.reserve(moves_.size());
     double at_start = 0;  // mm of the move that the overlap with the one before takes
     for (std::size_t i = 0; i < moves_.size(); ++i) {
       const bool overlaps = i + 1 < moves_.size() && moves_[i].end == Joint::kParabolic;
       const double at_end = overlaps ? overlap(moves_[i], moves_[i + 1]) : 0;
-      Stretch own = stretch_of(moves_[i]);
+      VelocityStretch own = stretch_of(moves_[i]);
       own.length = std::max(own.length - at_start - at_end, geometry::kSamePlace);
       chain.push_back(own);
       if (overlaps) {
-        Stretch both = own;
+        VelocityStretch both = own;
         both.length = 2 * at_end;
         both.max_velocity = own.exit_velocity;
         chain.push_back(both);
@@ -105,8 +105,8 @@ class Queue {
     return std::min({velocity * velocity / slower / 2, before.length / 2, after.length / 2});
   }
 
-  static Stretch stretch_of(const Segment& s) {
-    Stretch stretch;
+  static VelocityStretch stretch_of(const Segment& s) {
+    VelocityStretch stretch;
     stretch.length = s.length;
     stretch.max_velocity = target_velocity(s);
     stretch.acceleration = tangential_acceleration(s);

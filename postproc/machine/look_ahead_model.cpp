@@ -21,16 +21,16 @@ constexpr double kNormalShare = std::numbers::sqrt3 / 2;
 // A Bezier piece runs on as this many parts of constant curvature.
 constexpr int kBezierParts = 32;
 
-Stretch line_stretch(const Vector3& direction, const Machine& m) {
-  Stretch s;
+VelocityStretch line_stretch(const Vector3& direction, const Machine& m) {
+  VelocityStretch s;
   s.max_velocity = limit_along(direction, m.max_velocity);
   s.acceleration = limit_along(direction, m.max_acceleration);
   return s;
 }
 
 // A bend turns through all directions of its plane, so the limits are those of one axis.
-Stretch bend_stretch(double curvature, const Machine& m) {
-  Stretch s;
+VelocityStretch bend_stretch(double curvature, const Machine& m) {
+  VelocityStretch s;
   s.curvature = curvature;
   s.acceleration = m.max_acceleration;
   s.max_velocity = m.max_velocity;
@@ -47,10 +47,10 @@ double greatest_curvature(const PathPiece& piece) {
   return most;
 }
 
-void add_stretches(const TimedPiece& timed, const Machine& m, std::vector<Stretch>& chain) {
+void add_stretches(const TimedPiece& timed, const Machine& m, std::vector<VelocityStretch>& chain) {
   const double length = geometry::length_of(timed.piece);
   const double velocity = std::min(timed.feed / 60, length / m.block_period);
-  const auto add = [&](Stretch s, double part_length) {
+  const auto add = [&](VelocityStretch s, double part_length) {
     s.length = part_length;
     s.max_velocity = std::min(s.max_velocity, velocity);
     chain.push_back(s);
@@ -73,7 +73,7 @@ void add_stretches(const TimedPiece& timed, const Machine& m, std::vector<Stretc
 
 double look_ahead_time(std::span<const TimedPiece> pieces, const Machine& machine,
                        gcode::PathMode path) {
-  std::vector<Stretch> chain;
+  std::vector<VelocityStretch> chain;
   chain.reserve(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     add_stretches(pieces[i], machine, chain);

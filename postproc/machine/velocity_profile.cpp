@@ -12,25 +12,25 @@ namespace {
 // Along a stretch, the way gained at full tangential acceleration is the difference of this
 // potential (mm) of the speeds: v^2 / 2a on a straight line, and with the share of the bend
 // ds = v dv / sqrt(a^2 - (k v^2)^2), hence asin(k v^2 / a) / 2k.
-double potential(const Stretch& s, double v) {
+double potential(const VelocityStretch& s, double v) {
   if (s.curvature == 0) return v * v / (2 * s.acceleration);
   const double share = std::min(1.0, s.curvature * v * v / s.acceleration);
   return std::asin(share) / (2 * s.curvature);
 }
 
-double velocity_of_potential(const Stretch& s, double potential) {
+double velocity_of_potential(const VelocityStretch& s, double potential) {
   if (s.curvature == 0) return std::sqrt(2 * s.acceleration * potential);
   const double angle = std::min(2 * s.curvature * potential, std::numbers::pi / 2);
   return std::sqrt(s.acceleration / s.curvature * std::sin(angle));
 }
 
 // The speed that `s` can reach over its length from the speed v.
-double reached(const Stretch& s, double v) {
+double reached(const VelocityStretch& s, double v) {
   return velocity_of_potential(s, potential(s, v) + s.length);
 }
 
 // Seconds from v0 to v1 >= v0 at full tangential acceleration.
-double speeding_up_time(const Stretch& s, double v0, double v1) {
+double speeding_up_time(const VelocityStretch& s, double v0, double v1) {
   if (s.curvature == 0) return (v1 - v0) / s.acceleration;
   // Gauss-Legendre with five points. The integrand 1 / sqrt(a^2 - (k v^2)^2) grows from 1 / a
   // to 2 / a where the bend takes sqrt(3)/2 of the acceleration, most of it near v1:
@@ -51,7 +51,7 @@ double speeding_up_time(const Stretch& s, double v0, double v1) {
 }
 
 // Seconds over the stretch, speeding up from v0 and slowing down to v1 as late as possible.
-double trapezoid_time(const Stretch& s, double v0, double v1) {
+double trapezoid_time(const VelocityStretch& s, double v0, double v1) {
   const double p0 = potential(s, v0);
   const double p1 = potential(s, v1);
   const double peak_potential = (p0 + p1 + s.length) / 2;
@@ -66,7 +66,7 @@ double trapezoid_time(const Stretch& s, double v0, double v1) {
          steady / s.max_velocity;
 }
 
-double stretch_time(const Stretch& s, double v0, double v1, const ProfileRules& rules) {
+double stretch_time(const VelocityStretch& s, double v0, double v1, const ProfileRules& rules) {
   if (s.runs_on && v1 > 0 && rules.ramp_time > 0) {
     const double ramp = 2 * s.length / (v0 + v1);
     if (ramp < rules.ramp_time) return ramp;
@@ -75,7 +75,7 @@ double stretch_time(const Stretch& s, double v0, double v1, const ProfileRules& 
 }
 
 // Greatest speed at each of the joints 0 to n, before accelerations are looked at.
-std::vector<double> joint_limits(std::span<const Stretch> chain) {
+std::vector<double> joint_limits(std::span<const VelocityStretch> chain) {
   const std::size_t n = chain.size();
   std::vector<double> limit(n + 1, 0.0);
   for (std::size_t i = 1; i < n; ++i) {
@@ -87,7 +87,7 @@ std::vector<double> joint_limits(std::span<const Stretch> chain) {
 
 // The window of a planner that sees `look_ahead` stretches beyond a joint. Bends are
 // counted as if they took no share of the acceleration.
-void limit_by_look_ahead(std::span<const Stretch> chain, int look_ahead,
+void limit_by_look_ahead(std::span<const VelocityStretch> chain, int look_ahead,
                          std::vector<double>& limit) {
   const std::size_t n = chain.size();
   const auto window = static_cast<std::size_t>(look_ahead);
@@ -104,7 +104,7 @@ void limit_by_look_ahead(std::span<const Stretch> chain, int look_ahead,
 
 }  // namespace
 
-double profile_time(std::span<const Stretch> chain, const ProfileRules& rules) {
+double profile_time(std::span<const VelocityStretch> chain, const ProfileRules& rules) {
   const std::size_t n = chain.size();
   if (n == 0) return 0;
   std::vector<double> v = joint_limits(chain);

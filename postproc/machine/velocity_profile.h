@@ -12,7 +12,7 @@ inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 // A part of the path with limits of its own. Where `curvature` is not 0, the bend takes its
 // share of the acceleration: tangential^2 + (curvature * v^2)^2 <= acceleration^2.
-struct Stretch {
+struct VelocityStretch {
   double length = 0;                // mm, above 0
   double max_velocity = 0;          // mm/s, above 0; curvature * max_velocity^2 < acceleration
   double acceleration = 0;          // mm/s^2, above 0
@@ -32,6 +32,6 @@ struct ProfileRules {
 };
 
 // Seconds from rest to rest.
-[[nodiscard]] double profile_time(std::span<const Stretch> chain, const ProfileRules& rules);
+[[nodiscard]] double profile_time(std::span<const VelocityStretch> chain, const ProfileRules& rules);
 
 }  // namespace batten::postproc

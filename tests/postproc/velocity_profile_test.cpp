@@ -9,12 +9,12 @@ namespace batten::postproc {
 namespace {
 
 // Ten millimetres, a short stretch between two joints of 50 mm/s, ten millimetres.
-std::vector<Stretch> short_stretch_between_joints(double length) {
-  Stretch wide;
+std::vector<VelocityStretch> short_stretch_between_joints(double length) {
+  VelocityStretch wide;
   wide.length = 10;
   wide.max_velocity = 50;
   wide.acceleration = 2000;
-  Stretch narrow = wide;
+  VelocityStretch narrow = wide;
   narrow.length = length;
   narrow.max_velocity = 100;
   return {wide, narrow, wide};
@@ -34,7 +34,7 @@ TEST(ProfileTime, CrossesShortStretchesEvenlyWhereTheControlDoes) {
   ProfileRules rules;
   rules.ramp_time = 0.01;
   EXPECT_NEAR(profile_time(short_stretch_between_joints(0.4), rules), kBothEnds + 0.4 / 50, 1e-12);
-  std::vector<Stretch> chain = short_stretch_between_joints(0.4);
+  std::vector<VelocityStretch> chain = short_stretch_between_joints(0.4);
   chain[1].runs_on = false;
   EXPECT_NEAR(profile_time(chain, rules), profile_time(chain, {}), 1e-12);
   chain = short_stretch_between_joints(0.6);  // 12 ms at 50 mm/s
@@ -42,7 +42,7 @@ TEST(ProfileTime, CrossesShortStretchesEvenlyWhereTheControlDoes) {
 }
 
 TEST(ProfileTime, CountsTheLossOfEveryStop) {
-  std::vector<Stretch> chain = short_stretch_between_joints(0.4);
+  std::vector<VelocityStretch> chain = short_stretch_between_joints(0.4);
   chain[0].exit_velocity = 0;
   ProfileRules rules;
   rules.stop_time = 0.25;
