@@ -13,6 +13,9 @@ namespace {
 constexpr double kSameTime = 0.01;
 constexpr double kSlower = 0.005;
 
+// A quarter of the blocks is worth a time that is just about measurable.
+constexpr double kSameTimeWhereFarSmaller = 0.025;
+
 // A form that the user asked for by name may cost this much.
 constexpr double kWantedCosts = 0.15;
 
@@ -66,13 +69,17 @@ bool gains(const Candidate& c, const SmoothedRun& run, const RunContext& context
   return faster || smaller || nearer || smoother;
 }
 
+bool far_smaller(std::size_t blocks, std::size_t others) { return 4 * blocks <= others; }
+
 // Who asks for arcs by name asks for few of them.
 bool better(const Candidate& a, const Candidate& b, const SmoothOptions& options) {
   const Prefer prefer = options.prefer;
   if (prefer == Prefer::kSize) return a.text.text.size() < b.text.text.size();
   if (prefer == Prefer::kTime) {
-    if (sum_of(a.times) < (1 - kSameTime) * sum_of(b.times)) return true;
-    if (sum_of(b.times) < (1 - kSameTime) * sum_of(a.times)) return false;
+    const auto [fewer, more] = std::minmax(a.text.blocks, b.text.blocks);
+    const double same = far_smaller(fewer, more) ? kSameTimeWhereFarSmaller : kSameTime;
+    if (sum_of(a.times) < (1 - same) * sum_of(b.times)) return true;
+    if (sum_of(b.times) < (1 - same) * sum_of(a.times)) return false;
     if (options.output == Form::kArcs) return a.text.blocks < b.text.blocks;
     if (a.times.exact_path < kFewerKinks * b.times.exact_path) return true;
     if (b.times.exact_path < kFewerKinks * a.times.exact_path) return false;
@@ -85,10 +92,10 @@ bool better(const Candidate& a, const Candidate& b, const SmoothOptions& options
 
 }  // namespace
 
-bool slower(const Times& now, const Times& before, bool far_smaller, bool wanted) {
+bool slower(const Times& now, const Times& before, bool much_smaller, bool wanted) {
   if (wanted) return now.as_set > (1 + kWantedCosts) * before.as_set;
   // With the feed turned up a text of a quarter of the blocks may cost a little.
-  const double flat_out = far_smaller ? 2.5 * kSameTime : kSameTime;
+  const double flat_out = much_smaller ? kSameTimeWhereFarSmaller : kSameTime;
   return now.as_set > (1 + kSlower) * before.as_set ||
          now.without_merging > (1 + kSlower) * before.without_merging ||
          now.flat_out > (1 + flat_out) * before.flat_out;
@@ -114,8 +121,8 @@ Choosing choose(const SmoothedRun& run, const RunContext& context, const SmoothO
   bool all_slower = true;
   for (std::size_t i = 0; i < run.candidates.size(); ++i) {
     const Candidate& c = run.candidates[i];
-    const bool far_smaller = 4 * c.text.blocks <= context.blocks;
-    if (slower(c.times, run.facts.times, far_smaller, wanted)) continue;
+    const bool much_smaller = far_smaller(c.text.blocks, context.blocks);
+    if (slower(c.times, run.facts.times, much_smaller, wanted)) continue;
     all_slower = false;
     if (gains(c, run, context, prefer)) choosing.order.push_back(i);
   }

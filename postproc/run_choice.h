@@ -14,9 +14,9 @@ struct Choosing {
   std::string_view reason;         // why there is none
 };
 
-// Whether `now` is more than the error of the estimate above `before`. `far_smaller`: in a quarter
+// Whether `now` is more than the error of the estimate above `before`. `much_smaller`: in a quarter
 // of the blocks. `wanted`: the user asked for the form by name, which may cost something.
-[[nodiscard]] bool slower(const Times& now, const Times& before, bool far_smaller, bool wanted);
+[[nodiscard]] bool slower(const Times& now, const Times& before, bool much_smaller, bool wanted);
 
 // What is known of a candidate before it is made. `blocks` may be too many by a fifth, `least_time`
 // is a bound for every way in which the control may be set.

@@ -31,7 +31,7 @@ constexpr double kArcsSpend = 0.5;
 
 // Of the share of the form, the curve may use this part too: what it leaves of it, and of its
 // own share, the form gets back.
-constexpr double kLent = 0.6;
+constexpr double kLent = 0.5;
 
 // Arcs get no more than this multiple of the form's share, however little the curve used, and
 // chords these: long ones are few, fine ones are near to the curve and keep the speed on a

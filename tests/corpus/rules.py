@@ -7,9 +7,13 @@ LINE = re.compile(rb"[^\r\n]*(?:\r\n|\n|\r)|[^\r\n]+")
 COMMENT = re.compile(rb"\([^)\r\n]*\)?|;[^\r\n]*")
 WORD = re.compile(rb"([A-Z])\s*([+-]?[\d.]+)")
 
-# Words of a line of a run, before and after. Arcs come after only.
+# Words of a line of a run: of straight moves, and those that only arcs have. New arcs have no R.
 WORDS_OF_A_RUN = set(b"NGXYZF")
+WORDS_OF_ARCS = set(b"IJKR")
 WORDS_OF_NEW_LINES = WORDS_OF_A_RUN | set(b"IJK")
+
+# With them a line with I, J, K or R is an arc; a cycle or a scaling has other codes.
+CODES_OF_ARCS = {2, 3}
 
 # G codes that forbid rewriting from their line on, with the codes that end them.
 UNSAFE_STATES = {
@@ -115,7 +119,12 @@ def runs_only_moved(before, report):
     for run in rewritten(report):
         for number in range(run["first_line"], run["last_line"] + 1):
             words = words_of(lines[number - 1])
-            if any(letter not in WORDS_OF_A_RUN or value is None for letter, value in words):
+            letters = {letter for letter, _ in words}
+            codes = {value for letter, value in words if letter == ord("G")}
+            moves = letters <= WORDS_OF_A_RUN or (
+                letters <= WORDS_OF_A_RUN | WORDS_OF_ARCS and codes <= CODES_OF_ARCS
+            )
+            if not moves or any(value is None for _, value in words):
                 wrong.append(f"line {number} was rewritten: {lines[number - 1]!r}")
     return wrong
 

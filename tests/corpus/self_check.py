@@ -35,6 +35,7 @@ PLANTED = {
     "a lost line between runs": (BEFORE, AFTER.replace(b"M8\r\n", b""), REPORT),
     "a changed line between runs": (BEFORE, AFTER.replace(b"M8", b"M08"), REPORT),
     "a line end more at the end": (BEFORE, AFTER + b"\r\n", REPORT),
+    "a rewritten cycle": (BEFORE.replace(b"X5\r\n", b"G81 X5 R1\r\n"), AFTER, REPORT),
     "a written word that acts": (BEFORE, AFTER.replace(b"G2 X6 I1", b"G2 X6 I1 M9"), REPORT),
     "changed bytes without a run": (BEFORE, AFTER, {**REPORT, "runs": []}),
     "a rewritten fourth axis": before_with(b"X2 ", b"X2 A1 "),
