@@ -42,16 +42,16 @@ struct Choice {
 
 // Decisions of `smooth`, without files and messages.
 struct SmoothOptions {
-  const gcode::Dialect* target = nullptr;       // required
-  const Machine* machine = nullptr;             // required; never null after options are checked
-  double tolerance_mm = 0.01;                   // the full distance allowed, both ways, in order
-  std::optional<double> tolerance_inch;         // as given, where it was given in inches
+  const gcode::Dialect* target = nullptr;  // required
+  const Machine* machine = nullptr;        // required; never null after options are checked
+  double tolerance_mm = 0.01;              // the full distance allowed, both ways, in order
+  std::optional<double> tolerance_inch;    // as given, where it was given in inches
   geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
   gcode::Units units = gcode::Units::kUnknown;  // --units
   Method method = Method::kBest;
   Form output = Form::kAuto;
   Prefer prefer = Prefer::kTime;
-  std::optional<Linearize> linearize;  // nothing: what serves `prefer`, see linearize_of
+  std::optional<Linearize> linearize;      // nothing: what serves `prefer`, see linearize_of
   std::optional<double> keep_corners_deg;  // turns above this stay corners
   std::vector<std::string> allowed;        // --allow
   std::size_t min_motions = 3;

@@ -49,7 +49,7 @@ struct SmoothResult {
   std::size_t blocks_out = 0;
   double deviation_mm = 0;
   std::uint32_t deviation_line = 0;
-  double corner_mm = 0;  // band reading: greatest distance of a corner that was cut
+  double corner_mm = 0;      // band reading: greatest distance of a corner that was cut
   double time_before_s = 0;  // cutting runs only
   double time_after_s = 0;
   bool proved = false;  // of the whole text

@@ -258,8 +258,8 @@ class RunSmoother {
       PlanOptions band = whole;
       band.max_deviation = part * whole.max_deviation;
       add(curve, plan_arc_spline(run_, curve.path, band), band.max_deviation);
-      const bool enough = !result_.candidates.empty() &&
-                          result_.candidates.back().text.blocks <= context_.blocks;
+      const bool enough =
+          !result_.candidates.empty() && result_.candidates.back().text.blocks <= context_.blocks;
       if (run_.arcs.empty() || enough) return;
     }
   }

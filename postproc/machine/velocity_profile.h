@@ -32,6 +32,7 @@ struct ProfileRules {
 };
 
 // Seconds from rest to rest.
-[[nodiscard]] double profile_time(std::span<const VelocityStretch> chain, const ProfileRules& rules);
+[[nodiscard]] double profile_time(std::span<const VelocityStretch> chain,
+                                  const ProfileRules& rules);
 
 }  // namespace batten::postproc

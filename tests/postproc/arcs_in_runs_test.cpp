@@ -12,6 +12,7 @@
 
 #include "gcode/reason.h"
 #include "postproc/machine/cycle_time.h"
+#include "postproc/machine/feed_plan.h"
 #include "postproc/pipeline.h"
 #include "postproc/run_grouping.h"
 #include "tests/support/kinked_arcs.h"
@@ -85,6 +86,28 @@ TEST(KinkedArcs, BecomeSmoothInNoMoreBlocks) {
   EXPECT_LE(cuts_of(result.text).size(), cuts_of(program).size());
   EXPECT_LE(time_of(result.text), 1.001 * time_of(program));
   EXPECT_LT(exact_time_of(result.text), 0.95 * exact_time_of(program));
+}
+
+// Seconds on a machine that keeps 3000 mm/s^2 and 50000 mm/s^3 on every axis, at 100 mm/s, and
+// stops in kinks where an axis would change its speed by more than its jerk can in a millisecond.
+double planned_time_of(const std::string& text) {
+  KinematicPathLimits limits;
+  limits.feed = 100;
+  limits.acceleration = Vector3::Constant(3000);
+  limits.jerk = Vector3::Constant(50000);
+  geometry::Path path;
+  for (const TimedPiece& cut : cuts_of(text)) path.push_back(cut.piece);
+  return planned_time(path, limits);
+}
+
+TEST(KinkedArcs, TakeLessTimeOnAJerkLimitedMachineWhenSmoothed) {
+  const std::string program = tests::kinked_arc_program(tests::three_leaves);
+  const SmoothResult result = smoothed(program, options_for("linuxcnc"));
+  const double before = planned_time_of(program);
+  const double after = planned_time_of(result.text);
+  RecordProperty("planned_before_s", std::to_string(before));
+  RecordProperty("planned_after_s", std::to_string(after));
+  EXPECT_LT(after, before);
 }
 
 // A closed outline of its own for each seed.
