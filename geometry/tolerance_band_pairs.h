@@ -2,7 +2,6 @@
 // Used by tolerance_band*.cpp only.
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -42,8 +41,12 @@ class FlatEdges {
 struct EdgePair {
   std::uint32_t first = 0;
   std::uint32_t second = 0;  // above `first`
-  bool operator==(const EdgePair&) const = default;
-  auto operator<=>(const EdgePair&) const = default;
+  friend bool operator==(const EdgePair& a, const EdgePair& b) {
+    return a.first == b.first && a.second == b.second;
+  }
+  friend bool operator<(const EdgePair& a, const EdgePair& b) {
+    return a.first != b.first ? a.first < b.first : a.second < b.second;
+  }
 };
 
 // All pairs of edges, neighbours too, whose distance is at most `reach` (mm), sorted. Nothing when

@@ -30,8 +30,10 @@ constexpr double kSpent = 0.25;
 constexpr double kArcsSpend = 0.5;
 
 // Of the share of the form, the curve may use this part too: what it leaves of it, and of its
-// own share, the form gets back.
-constexpr double kLent = 0.5;
+// own share, the form gets back. The fair curve comes near to all that it may use, and where many
+// arcs or chords follow it closely they need more.
+constexpr double kLent = 0.6;
+constexpr double kLentToFair = 0.5;
 
 // Arcs get no more than this multiple of the form's share, however little the curve used, and
 // chords these: long ones are few, fine ones are near to the curve and keep the speed on a
@@ -89,14 +91,14 @@ class RunSmoother {
     const double rounding = 0.5 * step_of(run_.decimals, units_);
     find_prospect();
     if (is_hopeless()) return kept(gcode::reason::kNoGain);
-    const CurveRequest request = curve_request(shares, rounding);
     const bool best = options_.method == Method::kBest;
-    const auto curve = curve_of(best ? Method::kFair : options_.method, run_.points, request);
+    const Method first = best ? Method::kFair : options_.method;
+    const auto curve = curve_of(first, run_.points, curve_request(first, shares, rounding));
     if (curve) {
       know(curve->path, rounding);
       try_curve(*curve, shares);
     }
-    if (best) try_others(request, shares);
+    if (best) try_others(shares, rounding);
     if (!fits_) return kept(gcode::reason::kNoFit);
     if (result_.candidates.empty()) {
       return kept(passed_over_ ? gcode::reason::kNoGain : gcode::reason::kTargetCannot);
@@ -105,9 +107,11 @@ class RunSmoother {
   }
 
  private:
-  [[nodiscard]] CurveRequest curve_request(const ToleranceShares& shares, double rounding) const {
+  [[nodiscard]] CurveRequest curve_request(Method method, const ToleranceShares& shares,
+                                           double rounding) const {
     CurveRequest request;
-    request.tolerance = shares.smoothing + kLent * shares.form;
+    const double lent = method == Method::kFair && !few_wanted() ? kLentToFair : kLent;
+    request.tolerance = shares.smoothing + lent * shares.form;
     request.kind = options_.tolerance_kind;
     request.rounding = rounding;
     request.keep_corner_angle = keep_corner_angle();
@@ -134,7 +138,7 @@ class RunSmoother {
   }
 
   // The other methods, where there is time left to win and they may win it.
-  void try_others(const CurveRequest& request, const ToleranceShares& shares) {
+  void try_others(const ToleranceShares& shares, double rounding) {
     const auto mean = [](const Times& t) { return 0.5 * (t.as_set + t.without_merging); };
     double time = mean(judged_.times);
     if (!context_.is_piece()) {  // else times are not those of the run alone
@@ -142,6 +146,7 @@ class RunSmoother {
     }
     const double corners = coarse_part(run_, options_.tolerance_mm);
     for (const Method method : methods_worth_trying(corners, least_time_, time)) {
+      const CurveRequest request = curve_request(method, shares, rounding);
       if (const auto curve = curve_of(method, run_.points, request)) try_curve(*curve, shares);
     }
   }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -146,10 +147,13 @@ TEST(SmoothRun, SaysACircleInFewArcs) {
   const std::vector<Candidate> candidates =
       OneRun(circle_program(200, 3)).smooth(options).candidates;
   ASSERT_FALSE(candidates.empty());
+  std::size_t fewest = 200;
   for (const Candidate& candidate : candidates) {
     EXPECT_EQ(candidate.form, OutputForm::kArcs);
-    EXPECT_LE(candidate.text.arcs, 10u);
+    EXPECT_LE(candidate.text.arcs, 15u) << "also the fine ones, which follow the curve closely";
+    fewest = std::min(fewest, candidate.text.arcs);
   }
+  EXPECT_LE(fewest, 2u) << "two halves: those in the whole band";
 }
 
 // --- what is kept -----------------------------------------------------------------------------
