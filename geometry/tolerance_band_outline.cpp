@@ -1,5 +1,6 @@
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Exact_rational.h>
 #include <CGAL/Polygon_set_2.h>
+#include <CGAL/Simple_cartesian.h>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,7 +14,7 @@
 namespace batten::geometry {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using Kernel = CGAL::Simple_cartesian<CGAL::Exact_rational>;
 using Polygon = CGAL::Polygon_2<Kernel>;
 using PolygonSet = CGAL::Polygon_set_2<Kernel>;
 using PolygonWithHoles = CGAL::Polygon_with_holes_2<Kernel>;

@@ -152,7 +152,9 @@ PlanProblem make_plan_problem(std::span<const PathPiece> pieces, const PlanGrid&
                       PlanPlace::kStart, start);
     }
     if (k + 1 == last) {
-      maker.add_bound(to_rest ? kNone : grid.bounds[k + 1], PlanPlace::kEnd, end);
+      double bound = kNone;
+      if (!to_rest) bound = grid.bounds[k + 1];
+      maker.add_bound(bound, PlanPlace::kEnd, end);
       if (to_rest) {
         const GridInterval& rest = grid.intervals.back();
         maker.add_bound(speed_after_rest(pieces[rest.piece], rest, problem.end, limits),
