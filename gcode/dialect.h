@@ -13,6 +13,8 @@
 
 namespace batten::gcode {
 
+class CurveFormat;  // gcode/curves/curve_format.h
+
 class Dialect {
  public:
   virtual ~Dialect() = default;
@@ -49,6 +51,9 @@ class Dialect {
   // Least useful arc: shorter or tighter ones are written as lines (mm).
   [[nodiscard]] virtual double min_arc_radius() const = 0;
   [[nodiscard]] virtual double max_arc_radius() const = 0;
+
+  // The curves that the control reads; nullptr: none.
+  [[nodiscard]] virtual const CurveFormat* curves() const { return nullptr; }
 
   // A comment line with this text, or empty when the text cannot be said.
   [[nodiscard]] virtual std::string comment(std::string_view text) const = 0;
