@@ -1,0 +1,50 @@
+// The numbers of curve blocks: printed, and at once as the control will read them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "gcode/curves/curve_text.h"
+#include "geometry/point.h"
+
+namespace batten::gcode {
+
+struct PrintedPlace {
+  std::array<std::string, 3> digits;               // empty for axes that are not named
+  geometry::Point3 mm = geometry::Point3::Zero();  // as read; axes not named stay at the start
+};
+
+// Prints the places of one curve. All of them in the units and axes of its setting.
+class PlacePrinter {
+ public:
+  // The setting must outlive the printer. Throws std::invalid_argument for unknown units.
+  explicit PlacePrinter(const CurveSetting& setting);
+
+  // Rounded to the decimals of places; the last place of a curve may have more.
+  [[nodiscard]] PrintedPlace place(const geometry::Point3& mm) const;
+  [[nodiscard]] PrintedPlace last_place(const geometry::Point3& mm) const;
+
+  // Where the curve starts, exactly; nothing when that needs more decimals than the last place
+  // may have.
+  [[nodiscard]] std::optional<PrintedPlace> start() const;
+
+  // Millimetres to one unit of the program.
+  [[nodiscard]] double unit() const { return unit_; }
+
+ private:
+  [[nodiscard]] PrintedPlace print(const geometry::Point3& mm, const NumberFormat& format) const;
+
+  const CurveSetting& setting_;
+  double unit_;
+};
+
+inline constexpr std::array<char, 3> kAxisNames = {'X', 'Y', 'Z'};
+
+// `F3000`, in the units of the setting; empty when no feed is to be said.
+[[nodiscard]] std::string feed_word(const CurveSetting& setting);
+
+// Adds `word` to `line`, after a blank where the setting wants one and the line is not empty.
+void add_word(std::string& line, std::string_view word, const CurveSetting& setting);
+
+}  // namespace batten::gcode

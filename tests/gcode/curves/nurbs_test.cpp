@@ -1,0 +1,547 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "gcode/curves/bezier_chain.h"
+#include "gcode/curves/nurbs_alarms.h"
+#include "gcode/curves/nurbs_read.h"
+#include "gcode/curves/nurbs_write.h"
+#include "geometry/path_distance.h"
+#include "tests/support/curve_texts.h"
+
+namespace batten::gcode {
+namespace {
+
+using curve_tests::parsed;
+using curve_tests::starting_at;
+using curve_tests::text_of;
+using geometry::BsplineBasis;
+using geometry::BsplineCurve;
+using geometry::Point3;
+
+// The proof takes each curve apart into thousands of chords; so many seeds show that it holds.
+constexpr std::uint32_t kProvedSeeds = 5;
+
+constexpr bool kPlane = false;
+constexpr bool kSpace = true;
+
+CurveSetting fanuc_setting() {
+  CurveSetting setting;
+  setting.places = {.decimals = 3, .always_point = true};
+  setting.other = {.decimals = 3, .always_point = true};
+  setting.feeds = {.decimals = 3, .always_point = true};
+  return setting;
+}
+
+CurveSetting golden_setting() {
+  CurveSetting setting = fanuc_setting();
+  setting.axes = {true, true, false};
+  setting.feed = 3000;
+  return setting;
+}
+
+NurbsRules fanuc() { return fanuc_nurbs(Units::kMillimetre); }
+
+CurveReading reading_of(const std::string& text, const Point3& start, const NurbsRules& rules) {
+  auto result = read_nurbs(parsed(text), 0, starting_at(start), rules);
+  if (const auto* refusal = std::get_if<CurveRefusal>(&result)) {
+    ADD_FAILURE() << refusal->why << "\n" << text;
+    return {};
+  }
+  return std::get<CurveReading>(std::move(result));
+}
+
+std::string refusal_of(const CurveResult& result) {
+  const auto* refusal = std::get_if<CurveRefusal>(&result);
+  return refusal != nullptr ? refusal->why : "";
+}
+
+// --- the golden curve ---------------------------------------------------------------------------
+
+constexpr const char* kGolden =
+    "G06.2 P4 K0. X0. Y0. R1. F3000.\n"
+    "K0. X10. Y0. R1.\n"
+    "K0. X20. Y10. R1.\n"
+    "K0. X30. Y10. R1.\n"
+    "K40. X40. Y0. R1.\n"
+    "K100.\n"
+    "K100.\n"
+    "K100.\n"
+    "K100.\n";
+
+TEST(Nurbs, WritesTheGoldenCurve) {
+  NurbsRules rules = fanuc();
+  rules.weights = true;
+  EXPECT_EQ(text_of(write_nurbs(curve_tests::golden_curve(), golden_setting(), rules)), kGolden);
+}
+
+TEST(Nurbs, LeavesTheWeightOutWhereItIsOne) {
+  EXPECT_EQ(text_of(write_nurbs(curve_tests::golden_curve(), golden_setting(), fanuc())),
+            "G06.2 P4 K0. X0. Y0. F3000.\n"
+            "K0. X10. Y0.\nK0. X20. Y10.\nK0. X30. Y10.\nK40. X40. Y0.\n"
+            "K100.\nK100.\nK100.\nK100.\n");
+}
+
+TEST(Nurbs, WritesTheFrameAndTheWeightsOfSyntec) {
+  const NurbsRules rules = syntec_nurbs(Units::kMillimetre);
+  EXPECT_EQ(text_of(write_nurbs(curve_tests::golden_curve(), golden_setting(), rules)),
+            "G05 P10000\n" + std::string(kGolden) + "G05 P0\n");
+}
+
+TEST(Nurbs, WritesAllThreeAxesForMitsubishi) {
+  CurveSetting setting = golden_setting();
+  setting.axes = {true, true, true};
+  EXPECT_EQ(text_of(write_nurbs(curve_tests::golden_curve(), setting, mitsubishi_nurbs())),
+            "G05 P10000\n"
+            "G06.2 P4 K0. X0. Y0. Z0. F3000.\n"
+            "K0. X10. Y0. Z0.\nK0. X20. Y10. Z0.\nK0. X30. Y10. Z0.\nK40. X40. Y0. Z0.\n"
+            "K100.\nK100.\nK100.\nK100.\n"
+            "G05 P0\n");
+}
+
+TEST(Nurbs, ReadsTheGoldenCurveAtItsFiveValues) {
+  auto read = read_nurbs_text(parsed(kGolden), 0, starting_at(Point3::Zero()), fanuc());
+  ASSERT_TRUE(std::holds_alternative<NurbsText>(read)) << std::get<CurveRefusal>(read).why;
+  const NurbsText& text = std::get<NurbsText>(read);
+  EXPECT_EQ(text.blocks, 9U);
+  EXPECT_EQ(text.feed, 3000);
+  for (const auto& [u, x, y] : curve_tests::kGoldenValues) {
+    EXPECT_LT((text.point_at(100 * u) - Point3(x, y, 0)).norm(), 1e-12) << u;
+  }
+}
+
+TEST(Nurbs, ReadsTheGoldenCurveAsItsTwoBezierPieces) {
+  const CurveReading reading = reading_of(kGolden, Point3::Zero(), fanuc());
+  ASSERT_EQ(reading.motions.size(), 2U);
+  EXPECT_EQ(reading.motions[0].block, 3U);
+  EXPECT_EQ(reading.motions[1].block, 4U);
+  const auto& a = std::get<geometry::CubicBezier>(reading.motions[0].piece);
+  const auto& b = std::get<geometry::CubicBezier>(reading.motions[1].piece);
+  // Two-fold insertion of the knot 0.4 by hand.
+  EXPECT_LT((a.control[2] - Point3(14, 4, 0)).norm(), 1e-12);
+  EXPECT_LT((a.control[3] - Point3(18, 6.4, 0)).norm(), 1e-12);
+  EXPECT_LT((b.control[1] - Point3(24, 10, 0)).norm(), 1e-12);
+  EXPECT_EQ(b.control[3], Point3(40, 0, 0));
+}
+
+// --- samples of the makers
+// ------------------------------------------------------------------------
+
+// The sample of the Syntec mill manual, p. 21: a parabola of order 3.
+constexpr const char* kSyntecSample =
+    "N001 G0 X0.0 Y0.0 Z0.0\n"
+    "N002 G05 P10000\n"
+    "N003 G06.2 P3 K0.0 X0.0 Y0.0 Z0.0 R1.0 F5000.\n"
+    "N004 K0.0 X0.0 Y5.0 Z0.0 R1.0\n"
+    "N005 K0.0 X5.0 Y5.0 Z0.0 R1.0\n"
+    "N006 K1.0\nN007 K1.0\nN008 K1.0\n"
+    "N009 G05 P0\n";
+
+TEST(Nurbs, ReadsTheSampleOfSyntec) {
+  const Program program = parsed(kSyntecSample);
+  const NurbsRules rules = syntec_nurbs(Units::kMillimetre);
+  EXPECT_EQ(curve_tests::short_forms(nurbs_alarms(program, rules)), std::vector<std::string>{});
+  auto read = read_nurbs_text(program, 1, starting_at(Point3::Zero()), rules);
+  ASSERT_TRUE(std::holds_alternative<NurbsText>(read)) << std::get<CurveRefusal>(read).why;
+  const NurbsText& text = std::get<NurbsText>(read);
+  EXPECT_EQ(text.order, 3);
+  EXPECT_EQ(text.blocks, 8U);
+  EXPECT_LT((text.point_at(0.5) - Point3(1.25, 3.75, 0)).norm(), 1e-12);
+}
+
+// The two programs of the FANUC 15i manual B-63324EN, p. 129, that give alarms.
+TEST(NurbsAlarms, AreThoseOfTheSamplesOfFanuc) {
+  const std::string points =
+      "G06.2 P4 X0. Y0. Z0. K0.\nX10. Y10. Z10. K0.\nX20. Y20. Z20. K0.\nX30. Y30. Z30. K0.\n";
+  EXPECT_EQ(
+      curve_tests::short_forms(nurbs_alarms(parsed(points + "K1.\nK1.\nK1.\nG01\n"), fanuc())),
+      std::vector<std::string>{"8 PS1004"});
+  EXPECT_EQ(curve_tests::short_forms(nurbs_alarms(parsed(points + "G01\n"), fanuc())),
+            std::vector<std::string>{"5 PS1005"});
+}
+
+// A quarter circle of radius 10 as the rational parabola of the textbooks.
+TEST(Nurbs, ReadsWeights) {
+  const Program program =
+      parsed("G06.2 P3 K0 X10 Y0 R1\nK0 X10 Y10 R.70710678118654752\nK0 X0 Y10 R1\nK1\nK1\nK1\n");
+  const CurveStart start = starting_at({10, 0, 0});
+  auto read = read_nurbs_text(program, 0, start, fanuc());
+  ASSERT_TRUE(std::holds_alternative<NurbsText>(read)) << std::get<CurveRefusal>(read).why;
+  for (const double u : {0.1, 0.3, 0.5, 0.9}) {
+    EXPECT_NEAR(std::get<NurbsText>(read).point_at(u).norm(), 10, 1e-12) << u;
+  }
+  EXPECT_EQ(refusal_of(read_nurbs(program, 0, start, fanuc())), "weights that differ");
+}
+
+// --- random curves ------------------------------------------------------------------------------
+
+struct Variant {
+  const char* name;
+  NurbsRules rules;
+  int decimals;
+};
+
+class NurbsOfRandomCurves : public testing::TestWithParam<Variant> {};
+
+// Half a step on every axis for the points, one step for the knots.
+TEST_P(NurbsOfRandomCurves, AreReadWithinTheirRounding) {
+  const auto& [name, rules, decimals] = GetParam();
+  CurveSetting setting = fanuc_setting();
+  setting.places.decimals = decimals;
+  setting.other.decimals = rules.knots.decimals;
+  setting.feed = 1500;
+  const double step = std::pow(10.0, -decimals);
+  double worst = 0;
+  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(testing::Message() << name << ", seed " << seed);
+    const BsplineCurve curve = curve_tests::random_curve(seed, seed % 2 == 0 ? kPlane : kSpace);
+    setting.start = curve.control_points().front();
+    setting.axes = {true, true, seed % 2 != 0 || rules.three_axes};
+    const std::string text = text_of(write_nurbs(curve, setting, rules));
+    ASSERT_TRUE(nurbs_alarms(parsed("G1 X" + to_text(setting.start.x(), {.decimals = 3}) + "\n" +
+                                    text + "G1\n"),
+                             rules)
+                    .empty())
+        << text;
+    const CurveReading reading = reading_of(text, setting.start, rules);
+    EXPECT_EQ(reading.blocks, curve_tests::lines_in(text));
+    EXPECT_EQ(reading.axes, setting.axes);
+    const double within = (std::sqrt(3.0) / 2 + 1) * step;
+    const double move = greatest_move(curve.bezier_pieces(), curve_tests::beziers_of(reading));
+    EXPECT_LE(move, within);
+    worst = std::max(worst, move);
+    if (seed >= kProvedSeeds) continue;
+    EXPECT_EQ(geometry::compare_paths(curve_tests::pieces_of(curve),
+                                      curve_tests::pieces_of(reading), within)
+                  .verdict,
+              geometry::Verdict::kProved);
+  }
+  EXPECT_GT(worst, 0.1 * step) << "nothing was rounded";
+}
+
+INSTANTIATE_TEST_SUITE_P(Nurbs, NurbsOfRandomCurves,
+                         testing::Values(Variant{"fanuc", fanuc_nurbs(Units::kMillimetre), 3},
+                                         Variant{"syntec", syntec_nurbs(Units::kMillimetre), 3},
+                                         Variant{"mitsubishi", mitsubishi_nurbs(), 4}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Nurbs, TooFewKnotDigitsAreADeviationOrARefusal) {
+  int refused = 0;
+  int off = 0;
+  for (std::uint32_t seed = 0; seed < 50; ++seed) {
+    const BsplineCurve curve = curve_tests::random_curve(seed, kSpace);
+    CurveSetting setting = fanuc_setting();
+    setting.start = curve.control_points().front();
+    NurbsRules rules = fanuc();
+    rules.knots = {.digits = 3, .decimals = 0};  // the range has a hundred steps
+    const CurveWriting writing = write_nurbs(curve, setting, rules);
+    if (std::holds_alternative<CurveRefusal>(writing)) {
+      ++refused;
+      EXPECT_EQ(text_of(writing), "distinct knots meet when they are rounded");
+      continue;
+    }
+    const CurveReading reading = reading_of(text_of(writing), setting.start, rules);
+    const auto compared = geometry::compare_paths(curve_tests::pieces_of(curve),
+                                                  curve_tests::pieces_of(reading), 0.01);
+    off += compared.verdict == geometry::Verdict::kBroken ? 1 : 0;
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_GT(off, 10);
+}
+
+TEST(Nurbs, WritesInches) {
+  CurveSetting setting = fanuc_setting();
+  setting.units = Units::kInch;
+  setting.places.decimals = 4;
+  setting.axes = {true, true, false};
+  setting.feed = 254;
+  std::vector<Point3> points = curve_tests::golden_curve().control_points();
+  for (Point3& point : points) point *= 2.54;
+  const BsplineCurve curve(curve_tests::golden_curve().basis(), points);
+  const std::string text = text_of(write_nurbs(curve, setting, fanuc_nurbs(Units::kInch)));
+  EXPECT_EQ(text.substr(0, text.find('\n', 40)),
+            "G06.2 P4 K0. X0. Y0. F10.\nK0. X1. Y0.\nK0. X2. Y1.");
+  auto read = read_nurbs(parsed(text), 0, starting_at(Point3::Zero(), Units::kInch),
+                         fanuc_nurbs(Units::kInch));
+  ASSERT_TRUE(std::holds_alternative<CurveReading>(read));
+  EXPECT_LT(
+      (geometry::end_point(std::get<CurveReading>(read).motions.back().piece) - Point3(101.6, 0, 0))
+          .norm(),
+      1e-9);
+}
+
+TEST(Nurbs, MeetsItsEndsWithMoreDecimalsWhereTheSourceHasThem) {
+  CurveSetting setting = golden_setting();
+  setting.start = {0.00012, 0, 0};
+  setting.last_decimals = 5;
+  std::vector<Point3> points = curve_tests::golden_curve().control_points();
+  points.back().x() = 40.00034;
+  const std::string text =
+      text_of(write_nurbs({curve_tests::golden_curve().basis(), points}, setting, fanuc()));
+  EXPECT_NE(text.find("K0. X0.00012 "), std::string::npos) << text;
+  EXPECT_NE(text.find("X40.00034 "), std::string::npos) << text;
+}
+
+// --- refusals
+// -------------------------------------------------------------------------------------
+
+struct RefusedCurve {
+  const char* name;
+  void (*change)(CurveSetting&, NurbsRules&, std::vector<Point3>&);
+  const char* why;
+};
+
+class NurbsRefusals : public testing::TestWithParam<RefusedCurve> {};
+
+TEST_P(NurbsRefusals, AreSaid) {
+  CurveSetting setting = golden_setting();
+  NurbsRules rules = fanuc();
+  std::vector<Point3> points = curve_tests::golden_curve().control_points();
+  GetParam().change(setting, rules, points);
+  const CurveWriting writing =
+      write_nurbs({curve_tests::golden_curve().basis(), points}, setting, rules);
+  ASSERT_TRUE(std::holds_alternative<CurveRefusal>(writing)) << text_of(writing);
+  EXPECT_EQ(text_of(writing), GetParam().why);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Nurbs, NurbsRefusals,
+    testing::Values(RefusedCurve{"StartBetweenTwoSteps",
+                                 [](CurveSetting& setting, NurbsRules&, std::vector<Point3>&) {
+                                   setting.start.x() = 0.0004;
+                                 },
+                                 "the start has more decimals than the control reads"},
+                    RefusedCurve{"AxisThatMovesWithoutAWord",
+                                 [](CurveSetting&, NurbsRules&, std::vector<Point3>& points) {
+                                   points[2].z() = 1;
+                                 },
+                                 "an axis moves and has no word"},
+                    RefusedCurve{"NoAxis",
+                                 [](CurveSetting& setting, NurbsRules&, std::vector<Point3>&) {
+                                   setting.axes = {false, false, false};
+                                 },
+                                 "no axis is named"},
+                    RefusedCurve{"TwoAxesOnMitsubishi",
+                                 [](CurveSetting&, NurbsRules& rules, std::vector<Point3>&) {
+                                   rules = mitsubishi_nurbs();
+                                 },
+                                 "this control's G06.2 names X, Y and Z"},
+                    RefusedCurve{"FarAway",
+                                 [](CurveSetting&, NurbsRules&, std::vector<Point3>& points) {
+                                   points[2].x() = 1e6;
+                                 },
+                                 "a place beyond 999999.999"},
+                    RefusedCurve{"KnotsThatMeet",
+                                 [](CurveSetting&, NurbsRules& rules, std::vector<Point3>&) {
+                                   rules.knots = {.digits = 1,
+                                                  .decimals = 0};  // one step from first to last
+                                 },
+                                 "distinct knots meet when they are rounded"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Nurbs, RefusesCurvesThatAreNotClamped) {
+  const BsplineCurve curve(BsplineBasis(3, {0, 1, 2, 3, 4, 5, 6, 7, 8}),
+                           curve_tests::golden_curve().control_points());
+  EXPECT_EQ(text_of(write_nurbs(curve, golden_setting(), fanuc())),
+            "G06.2 is written for clamped cubic curves only");
+}
+
+struct ForbiddenState {
+  const char* name;
+  void (*change)(ModalState&);
+  const char* part;  // of the complaint
+};
+
+class NurbsStates : public testing::TestWithParam<ForbiddenState> {};
+
+TEST_P(NurbsStates, AreComplainedAbout) {
+  ModalState state;
+  EXPECT_EQ(nurbs_complaint(state), "");
+  GetParam().change(state);
+  EXPECT_NE(nurbs_complaint(state).find(GetParam().part), std::string_view::npos)
+      << nurbs_complaint(state);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Nurbs, NurbsStates,
+    testing::Values(
+        ForbiddenState{"G41", [](ModalState& s) { s.cutter_compensation = Tri::kOn; }, "G41"},
+        ForbiddenState{"PerhapsG41", [](ModalState& s) { s.cutter_compensation = Tri::kUnknown; },
+                       "G41"},
+        ForbiddenState{"G93", [](ModalState& s) { s.feed_mode = FeedMode::kInverseTime; }, "G94"},
+        ForbiddenState{"G95", [](ModalState& s) { s.feed_mode = FeedMode::kPerRevolution; }, "G94"},
+        ForbiddenState{"G91", [](ModalState& s) { s.distance = DistanceMode::kIncremental; },
+                       "G90"},
+        ForbiddenState{"G12_1", [](ModalState& s) { s.polar = Tri::kOn; }, "G12.1"},
+        ForbiddenState{"G51", [](ModalState& s) { s.scaling = Tri::kOn; }, "scaling"},
+        ForbiddenState{"G68", [](ModalState& s) { s.rotation = Tri::kOn; }, "rotation"},
+        ForbiddenState{"G43_4", [](ModalState& s) { s.tool_center_point = Tri::kOn; },
+                       "tool centre"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+// --- reading what is wrong
+// ------------------------------------------------------------------------
+
+struct BadText {
+  const char* name;
+  const char* text;
+  const char* why;                    // of the reader
+  std::vector<std::string> alarms{};  // of the control, after a G1 X0 Y0 as line 1
+};
+
+class NurbsBadTexts : public testing::TestWithParam<BadText> {};
+
+TEST_P(NurbsBadTexts, AreRefusedByTheReader) {
+  EXPECT_EQ(
+      refusal_of(read_nurbs(parsed(GetParam().text), 0, starting_at(Point3::Zero()), fanuc())),
+      GetParam().why);
+}
+
+TEST_P(NurbsBadTexts, GiveTheAlarmsOfTheControl) {
+  const std::string text = "G1 X0 Y0\n" + std::string(GetParam().text);
+  EXPECT_EQ(curve_tests::short_forms(nurbs_alarms(parsed(text), fanuc())), GetParam().alarms);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Nurbs, NurbsBadTexts,
+    testing::Values(
+        BadText{"NoKnot",
+                "G06.2 K0 X0 Y0\nK0 X1 Y0\nX2 Y0\nK0 X3 Y0\nK1\nK1\nK1\nK1\n",
+                "a block without a knot",
+                {"4 PS1002"}},
+        BadText{"ThreeEndingKnots",
+                "G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1\nK1\nG1 X5\n",
+                "other words inside the curve",
+                {"9 PS1004"}},
+        BadText{"EndOfProgram",
+                "G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1\nK1\n",
+                "the program ends inside the curve",
+                {"8 PS1004"}},
+        BadText{"NoEndingKnot",
+                "G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nG0 X5\n",
+                "other words inside the curve",
+                {"6 PS1005"}},
+        BadText{"NotClampedAtTheStart",
+                "G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK.1 X3 Y0\nK1\nK1\nK1\nK1\n",
+                "the first or the last knots are not all the same",
+                {"2 PS1007"}},
+        BadText{"NotClampedAtTheEnd",
+                "G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1\nK1\nK2\n",
+                "the first or the last knots are not all the same",
+                {"9 PS1007"}},
+        BadText{"KnotTooOften",
+                "G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nK1 X4 Y0\nK1 X5 Y0\nK1 X6 Y0\n"
+                "K1 X7 Y0\nK1 X8 Y0\nK2\nK2\nK2\nK2\n",
+                "an inner knot stands as often as the order",
+                {"10 PS1008"}},
+        BadText{"StartsElsewhere",
+                "G06.2 K0 X.001 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1\nK1\nK1\n",
+                "the first point is not where the tool stands",
+                {"2 PS1009"}},
+        BadText{"MiscFunctionInside",
+                "G06.2 K0 X0 Y0\nK0 X1 Y0 M8\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1\nK1\nK1\n",
+                "other words inside the curve",
+                {"3 foreign-word"}},
+        BadText{"AxisTooLate",
+                "G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0 Z1\nK0 X3 Y0\nK1\nK1\nK1\nK1\n",
+                "an axis that the first block does not name",
+                {"4 axis-not-in-first-block"}},
+        BadText{"OrderFive",
+                "G06.2 P5 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1\nK1\nK1\n",
+                "P5, expected P2 to P4",
+                {"2 order"}},
+        BadText{"KnotDecreases",
+                "G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nK.6 X4 Y0\nK.5 X5 Y0\n"
+                "K1\nK1\nK1\nK1\n",
+                "a knot that decreases",
+                {"7 knot-decreases"}},
+        BadText{"FewPoints",
+                "G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK1\nK1\nK1\nK1\n",
+                "fewer points than the order",
+                {"8 few-points"}},
+        BadText{"PointBehindTheEnd",
+                "G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1 X4 Y0\nK1\nK1\nK1\n",
+                "a point behind the ending knots",
+                {"7 point-too-late", "10 PS1008"}},
+        BadText{"WeightZero",
+                "G06.2 K0 X0 Y0\nK0 X1 Y0 R0\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1\nK1\nK1\n",
+                "a weight that is not positive",
+                {"3 weight"}}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Nurbs, KnowsWhereTheToolStandsOrRefuses) {
+  const CurveStart start = {{Point3::Zero(), {true, false, true}}, Units::kMillimetre};
+  EXPECT_EQ(refusal_of(read_nurbs(parsed(kGolden), 0, start, fanuc())),
+            "where the tool stands is not known");
+}
+
+TEST(Nurbs, ReadsNothingElse) {
+  for (const char* text : {"G1 X1\n", "(c)\n", "G6.1 X1 K0\n", "", "G05 P10000\n"}) {
+    EXPECT_EQ(refusal_of(read_nurbs(parsed(text), 0, starting_at(Point3::Zero()), fanuc())),
+              *text == '\0' ? "no block" : "no G06.2")
+        << text;
+  }
+}
+
+// --- the rules of Mitsubishi
+// ----------------------------------------------------------------------
+
+struct MitsubishiAlarm {
+  const char* name;
+  const char* text;
+  std::vector<std::string> alarms;
+};
+
+class MitsubishiAlarms : public testing::TestWithParam<MitsubishiAlarm> {};
+
+TEST_P(MitsubishiAlarms, AreThoseOfItsManual) {
+  EXPECT_EQ(curve_tests::short_forms(nurbs_alarms(parsed(GetParam().text), mitsubishi_nurbs())),
+            GetParam().alarms);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Nurbs, MitsubishiAlarms,
+    testing::Values(
+        MitsubishiAlarm{
+            "None", "G5P10000\nG06.2 K0 X0 Y0 Z0\nK0 X1\nK0 X2\nK0 X3\nK1\nK1\nK1\nK1\nG5P0\n", {}},
+        MitsubishiAlarm{
+            "NoFrame", "G06.2 K0 X0 Y0 Z0\nK0 X1\nK0 X2\nK0 X3\nK1\nK1\nK1\nK1\n", {"1 frame"}},
+        MitsubishiAlarm{"TwoAxes",
+                        "G5P10000\nG06.2 K0 X0 Y0\nK0 X1\nK0 X2 Z1\nK0 X3\nK1\nK1\nK1\nK1\nG5P0\n",
+                        {"2 P32", "4 P32"}},
+        MitsubishiAlarm{"FiveDecimals",
+                        "G5P10000\nG06.2 K0 X0 Y0 Z0\nK0 X1\nK0 X2 R1.00001\nK0 X3\nK1.00001 X4\n"
+                        "K2\nK2\nK2\nK2\nG5P0\n",
+                        {"4 P33", "6 P33"}},
+        MitsubishiAlarm{"KnotDecreases",
+                        "G5P10000\nG06.2 K0 X0 Y0 Z0\nK0 X1\nK0 X2\nK0 X3\nK1 X4\nK.5 X5\n"
+                        "K2\nK2\nK2\nK2\nG5P0\n",
+                        {"7 P551"}},
+        MitsubishiAlarm{"MissingKnot",
+                        "G5P10000\nG06.2 K0 X0 Y0 Z0\nX1\nK0 X2\nK0 X3\nK1\nK1\nK1\nK1\nG5P0\n",
+                        {"3 P33"}},
+        MitsubishiAlarm{
+            "UnderG41",
+            "G41 D1\nG5P10000\nG06.2 K0 X0 Y0 Z0\nK0 X1\nK0 X2\nK0 X3\nK1\nK1\nK1\nK1\n",
+            {"3 P29"}}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+class NurbsUnderModes : public testing::TestWithParam<std::pair<const char*, bool>> {};
+
+TEST_P(NurbsUnderModes, GivePs1006) {
+  const auto& [modes, alarm] = GetParam();
+  const Program program = parsed(std::string(modes) + "\n" + kGolden + "G01\n");
+  EXPECT_EQ(curve_tests::short_forms(nurbs_alarms(program, fanuc())),
+            alarm ? std::vector<std::string>{"2 PS1006"} : std::vector<std::string>{});
+}
+
+INSTANTIATE_TEST_SUITE_P(Nurbs, NurbsUnderModes,
+                         testing::Values(std::pair("G41 D1", true), std::pair("G42", true),
+                                         std::pair("G93", true), std::pair("G95", true),
+                                         std::pair("G12.1", true), std::pair("G41 G40", false),
+                                         std::pair("G94 G90 G54", false)));
+
+}  // namespace
+}  // namespace batten::gcode
