@@ -14,6 +14,7 @@
 #include "geometry/chord_polyline.h"
 #include "geometry/in_order_matching.h"
 #include "geometry/numeric.h"
+#include "geometry/path_matching.h"
 #include "geometry/tolerance_kind.h"
 
 namespace batten::geometry {
@@ -120,13 +121,17 @@ Path part_between(std::span<const PathPiece> path, const Place& from, const Plac
 class BandComparer {
  public:
   BandComparer(std::span<const PathPiece> old_path, std::span<const PathPiece> new_path,
-               double tolerance)
-      : old_(old_path), new_(new_path), tolerance_(tolerance), corners_(corners_of(old_path)) {}
+               double tolerance, std::vector<PlacePair>* pairs = nullptr)
+      : old_(old_path),
+        new_(new_path),
+        tolerance_(tolerance),
+        corners_(corners_of(old_path)),
+        pairs_(pairs) {}
 
   BandComparison run() {
     find_cuts();
     if (cuts_.empty()) {
-      result_.paths = compare_paths(old_, new_, tolerance_);
+      result_.paths = compared(old_, new_, tolerance_, {0, 0}, {0, 0});
     } else {
       compare_parts();
     }
@@ -229,16 +234,36 @@ class BandComparer {
       const bool last = k == cuts_.size();
       const Place old_to = last ? Place{old_.size() - 1, 1} : cuts_[k].leaves;
       const Place new_to = last ? Place{new_.size() - 1, 1} : cuts_[k].passes;
-      add_part(compare_paths(part_between(old_, old_from, old_to),
-                             part_between(new_, new_from, new_to), tolerance_ - kSamePlace),
+      add_part(compared(part_between(old_, old_from, old_to), part_between(new_, new_from, new_to),
+                        tolerance_ - kSamePlace, old_from, new_from),
                old_from, new_from, all);
       if (last) break;
+      go_round(cuts_[k]);
       old_from = cuts_[k].returns;
       new_from = cuts_[k].passes;
       result_.corner_at_most = std::max(result_.corner_at_most, cuts_[k].distance + kSamePlace);
     }
     result_.cut_corners = cuts_.size();
     result_.paths = all;
+  }
+
+  // compare_paths, with its certificate where one is wanted.
+  PathComparison compared(std::span<const PathPiece> old_part, std::span<const PathPiece> new_part,
+                          double tolerance, const Place& old_from, const Place& new_from) {
+    if (pairs_ == nullptr) return compare_paths(old_part, new_part, tolerance);
+    PathMatching part = match_paths(old_part, new_part, tolerance);
+    for (PlacePair& pair : part.pairs) {
+      pair.piece_a += old_from.piece;
+      pair.piece_b += new_from.piece;
+      pairs_->push_back(pair);
+    }
+    return part.comparison;
+  }
+
+  void go_round(const Cut& cut) {
+    if (pairs_ == nullptr) return;
+    pairs_->push_back({cut.leaves.piece, cut.passes.piece, end_point(old_[cut.leaves.piece]),
+                       point_at(new_[cut.passes.piece], cut.passes.t)});
   }
 
   static void add_part(const PathComparison& part, const Place& old_from, const Place& new_from,
@@ -275,19 +300,31 @@ class BandComparer {
   std::span<const PathPiece> new_;
   double tolerance_;
   std::vector<OldCorner> corners_;
+  std::vector<PlacePair>* pairs_;  // null: not wanted
   std::vector<Cut> cuts_;
   BandComparison result_;
 };
+
+void check_tolerance(double tolerance) {
+  if (tolerance > 2 * kSamePlace && std::isfinite(tolerance)) return;
+  throw std::invalid_argument("compare_in_band: tolerance " + std::to_string(tolerance) +
+                              " mm, expected a finite number above 2e-9");
+}
 
 }  // namespace
 
 BandComparison compare_in_band(std::span<const PathPiece> old_path,
                                std::span<const PathPiece> new_path, double tolerance) {
-  if (!(tolerance > 2 * kSamePlace) || !std::isfinite(tolerance)) {
-    throw std::invalid_argument("compare_in_band: tolerance " + std::to_string(tolerance) +
-                                " mm, expected a finite number above 2e-9");
-  }
+  check_tolerance(tolerance);
   return BandComparer(old_path, new_path, tolerance).run();
+}
+
+PathMatching match_in_band(std::span<const PathPiece> old_path, std::span<const PathPiece> new_path,
+                           double tolerance) {
+  check_tolerance(tolerance);
+  PathMatching matching;
+  matching.comparison = BandComparer(old_path, new_path, tolerance, &matching.pairs).run().paths;
+  return matching;
 }
 
 }  // namespace batten::geometry

@@ -13,6 +13,7 @@
 #include "geometry/free_space.h"
 #include "geometry/in_order_matching.h"
 #include "geometry/path_distance_predicates.h"
+#include "geometry/path_matching.h"
 
 namespace batten::geometry {
 namespace {
@@ -73,6 +74,17 @@ class Comparison {
   // when there are too many already.
   [[nodiscard]] bool finer_is_useless() const {
     return too_wide_ || greatest_error(a_) + greatest_error(b_) == 0;
+  }
+
+  // The best matching that was found: the certificate where it is proved.
+  [[nodiscard]] std::vector<PlacePair> pairs() const {
+    std::vector<PlacePair> places;
+    places.reserve(best_.matching.size());
+    for (const MatchedPair& pair : best_.matching) {
+      places.push_back({a_.pieces[pair.a.edge], b_.pieces[pair.b.edge], point_at(a_, pair.a),
+                        point_at(b_, pair.b)});
+    }
+    return places;
   }
 
  private:
@@ -207,25 +219,43 @@ Path waiting_at_start_of(std::span<const PathPiece> path) {
   return {Line{start, start}};
 }
 
-}  // namespace
+// `pairs`: where the certificate is wanted, else null. Neither path is empty.
+PathComparison compare_some(std::span<const PathPiece> a, std::span<const PathPiece> b,
+                            double tolerance, std::vector<PlacePair>* pairs) {
+  PathComparison found;
+  for (const double share : kChordShares) {
+    Comparison comparison(a, b, tolerance, share * tolerance);
+    found = comparison.run();
+    if (pairs != nullptr) *pairs = comparison.pairs();
+    if (found.verdict != Verdict::kNotProved || comparison.finer_is_useless()) break;
+  }
+  return found;
+}
 
-PathComparison compare_paths(std::span<const PathPiece> a, std::span<const PathPiece> b,
-                             double tolerance) {
+PathComparison compare_any(std::span<const PathPiece> a, std::span<const PathPiece> b,
+                           double tolerance, std::vector<PlacePair>* pairs) {
   if (!(tolerance > 0) || !std::isfinite(tolerance)) {
     throw std::invalid_argument(
         fmt::format("compare_paths: tolerance {} mm, expected a finite number above 0", tolerance));
   }
   if (a.empty() && b.empty()) return both_empty();
-  if (a.empty()) return compare_paths(waiting_at_start_of(b), b, tolerance);
-  if (b.empty()) return compare_paths(a, waiting_at_start_of(a), tolerance);
+  if (a.empty()) return compare_some(waiting_at_start_of(b), b, tolerance, pairs);
+  if (b.empty()) return compare_some(a, waiting_at_start_of(a), tolerance, pairs);
+  return compare_some(a, b, tolerance, pairs);
+}
 
-  PathComparison found;
-  for (const double share : kChordShares) {
-    Comparison comparison(a, b, tolerance, share * tolerance);
-    found = comparison.run();
-    if (found.verdict != Verdict::kNotProved || comparison.finer_is_useless()) break;
-  }
-  return found;
+}  // namespace
+
+PathComparison compare_paths(std::span<const PathPiece> a, std::span<const PathPiece> b,
+                             double tolerance) {
+  return compare_any(a, b, tolerance, nullptr);
+}
+
+PathMatching match_paths(std::span<const PathPiece> a, std::span<const PathPiece> b,
+                         double tolerance) {
+  PathMatching matching;
+  matching.comparison = compare_any(a, b, tolerance, &matching.pairs);
+  return matching;
 }
 
 }  // namespace batten::geometry

@@ -7,20 +7,14 @@
 #include <array>
 
 #include "postproc/cli_commands.h"
+#include "postproc/cli_completion.h"
 #include "postproc/cli_config.h"
 #include "postproc/cli_given.h"
+#include "postproc/cli_man.h"
+#include "postproc/cli_table.h"
+#include "postproc/explain.h"
 
 namespace batten::postproc {
-
-namespace {
-
-struct CommandRow {
-  std::string_view name;
-  std::string_view description;
-  std::span<const OptionRow> rows;
-  std::vector<std::pair<std::string_view, std::string_view>> files;  // name, help
-  std::string_view example;
-};
 
 std::vector<CommandRow> command_rows() {
   return {
@@ -50,15 +44,32 @@ std::vector<CommandRow> command_rows() {
        "Example:\n  batten targets"},
       {"machines", "List the built-in machines.", list_rows(), {}, "Example:\n  batten machines"},
       {"methods", "List the ways of smoothing.", list_rows(), {}, "Example:\n  batten methods"},
+      {"explain",
+       "Say what the id of a kept run, a message or a breach means, and what to do about it.",
+       {},
+       {{"ID", "as it stands in a report; without it, all of them are listed"}},
+       "Example:\n  batten explain exact-stop"},
+      {"completion",
+       "Write the completion of commands and options for a shell.",
+       {},
+       {{"SHELL", "bash or zsh"}},
+       "Example:\n  batten completion bash > ~/.local/share/bash-completion/completions/batten"},
+      {"man", "Write the manual page.", {}, {}, "Example:\n  batten man | man -l -"},
   };
 }
 
+std::string_view short_form_of(const OptionRow& row) { return row.name == "out" ? "-o" : ""; }
+
+namespace {
+
 constexpr std::string_view kExitCodes =
     "Exit codes: 0 done, 1 wrong options, 2 program not understood, 3 not proved, 4 file error,\n"
-    "5 internal error. `batten COMMAND --help` tells more about a command.";
+    "5 internal error. `batten COMMAND --help` tells more about a command, `batten explain ID`\n"
+    "about an id in a message or a report.";
 
 void add_row(const OptionRow& row, CLI::App& command) {
-  const std::string name = (row.name == "out" ? "-o,--" : "--") + std::string(row.name);
+  const std::string_view brief = short_form_of(row);
+  const std::string name = fmt::format("{}{}--{}", brief, brief.empty() ? "" : ",", row.name);
   std::string help(row.help);
   if (row.kind == OptionKind::kFlag) {
     command.add_flag(name)->description(help);
@@ -133,6 +144,55 @@ Command smooth_or_config(Given given, const std::vector<std::string>& files, Pro
   return command;
 }
 
+void refuse_words_after(std::size_t expected, const std::vector<std::string>& words,
+                        Problems& problems) {
+  for (std::size_t i = expected; i < words.size(); ++i) {
+    problems.push_back(fmt::format("'{}': one word too many", words[i]));
+  }
+}
+
+PrintText explain_text(const std::vector<std::string>& words, Problems& problems) {
+  refuse_words_after(1, words, problems);
+  if (words.empty()) return {all_explanations()};
+  const auto ids = explained_ids();
+  const std::string text = explanation_of(words.front());
+  if (text.empty()) {
+    const std::string_view nearest = nearest_name(words.front(), ids);
+    problems.push_back(fmt::format(
+        "there is no reason, message or breach '{}'{}; batten explain lists all", words.front(),
+        nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest)));
+  }
+  return {text};
+}
+
+PrintText completion_text(const std::vector<std::string>& words, Problems& problems) {
+  refuse_words_after(1, words, problems);
+  const auto text = completion_for(words.empty() ? "" : words.front());
+  if (!text) {
+    problems.push_back(
+        words.empty()
+            ? std::string("SHELL: no shell given; possible: bash, zsh")
+            : fmt::format("there is no completion for '{}'; possible: bash, zsh", words.front()));
+  }
+  return {text.value_or("")};
+}
+
+PrintText man_text(const std::vector<std::string>& words, Problems& problems) {
+  refuse_words_after(0, words, problems);
+  return {man_page()};
+}
+
+// `batten --explain ID` is `batten explain ID`.
+std::vector<std::string> with_explain_as_command(std::vector<std::string> arguments) {
+  constexpr std::string_view kOption = "--explain";
+  if (arguments.empty() || !arguments.front().starts_with(kOption)) return arguments;
+  const std::string rest = arguments.front().substr(kOption.size());
+  if (!rest.empty() && rest.front() != '=') return arguments;
+  arguments.front() = "explain";
+  if (!rest.empty()) arguments.insert(arguments.begin() + 1, rest.substr(1));
+  return arguments;
+}
+
 Command command_of(std::string_view name, const Given& given, const std::vector<std::string>& files,
                    Problems& problems) {
   if (name == "smooth") return smooth_or_config(given, files, problems);
@@ -140,7 +200,28 @@ Command command_of(std::string_view name, const Given& given, const std::vector<
   if (name == "inspect") return inspect_command(given, files, problems);
   if (name == "targets") return list_command(BuiltIn::kTargets, given, files, problems);
   if (name == "machines") return list_command(BuiltIn::kMachines, given, files, problems);
-  return list_command(BuiltIn::kMethods, given, files, problems);
+  if (name == "methods") return list_command(BuiltIn::kMethods, given, files, problems);
+  if (name == "explain") return explain_text(files, problems);
+  if (name == "completion") return completion_text(files, problems);
+  return man_text(files, problems);
+}
+
+// The command line as one could type it again.
+std::string shell_words(const std::vector<std::string>& arguments) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./:+,@%=-";
+  std::string text = "batten";
+  for (const std::string& word : arguments) {
+    text += ' ';
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) {
+      text += word;
+      continue;
+    }
+    text += '\'';
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    text += '\'';
+  }
+  return text;
 }
 
 std::string no_command(const CLI::App& app, const std::vector<CommandRow>& rows) {
@@ -159,7 +240,8 @@ std::string no_command(const CLI::App& app, const std::vector<CommandRow>& rows)
 
 }  // namespace
 
-CommandLine read_command_line(const std::vector<std::string>& arguments) {
+CommandLine read_command_line(const std::vector<std::string>& given_arguments) {
+  const std::vector<std::string> arguments = with_explain_as_command(given_arguments);
   CLI::App app("Smooths CAM programs made of short lines and proves what it wrote.", "batten");
   app.set_version_flag("--version", std::string("batten " BATTEN_VERSION));
   app.footer(std::string(kExitCodes));
@@ -195,6 +277,9 @@ CommandLine read_command_line(const std::vector<std::string>& arguments) {
   const Given given = given_in(command, row->rows);
   const auto files = files_in(command, *row, line.problems);
   line.command = command_of(command.get_name(), given, files, line.problems);
+  if (auto* smooth = std::get_if<SmoothCommand>(&line.command)) {
+    smooth->command_line = shell_words(arguments);
+  }
   return line;
 }
 

@@ -29,12 +29,12 @@ std::string file_at(const std::vector<std::string>& files, std::size_t index) {
 }
 
 // A report must not land on a program.
-void check_report(const std::string& json_file, const std::vector<std::string>& programs,
-                  Problems& problems) {
-  if (json_file.empty() || json_file == "-") return;
+void check_report(const std::string& file, const std::vector<std::string>& programs,
+                  Problems& problems, std::string_view option = "json") {
+  if (file.empty() || file == "-") return;
   for (const std::string& program : programs) {
-    if (!program.empty() && program != "-" && same_file(json_file, program)) {
-      problems.push_back(fmt::format("--json: {} is the program {} itself", json_file, program));
+    if (!program.empty() && program != "-" && same_file(file, program)) {
+      problems.push_back(fmt::format("--{}: {} is the program {} itself", option, file, program));
     }
   }
 }
@@ -149,6 +149,18 @@ void check_outputs(const SmoothCommand& command, Problems& problems) {
   if (to_standard_output && command.json_file == "-" && !command.dry_run) {
     problems.emplace_back("--json: standard output already takes the program");
   }
+  if (to_standard_output && command.report_file == "-" && !command.dry_run) {
+    problems.emplace_back("--report: standard output already takes the program");
+  }
+  const bool same_report = command.report_file == "-"
+                               ? command.json_file == "-"
+                               : !command.report_file.empty() && !command.json_file.empty() &&
+                                     same_file(command.report_file, command.json_file);
+  if (same_report) {
+    problems.push_back(
+        fmt::format("--report: {} takes the JSON report already",
+                    command.report_file == "-" ? "standard output" : command.report_file));
+  }
   const std::string output = command.output.empty() && command.input != "-"
                                  ? default_output_path(command.input).string()
                                  : command.output;
@@ -158,6 +170,7 @@ void check_outputs(const SmoothCommand& command, Problems& problems) {
                                    command.output));
   }
   check_report(command.json_file, {command.input, output}, problems);
+  check_report(command.report_file, {command.input, output}, problems, "report");
 }
 
 }  // namespace
@@ -174,6 +187,7 @@ SmoothCommand smooth_command(const Given& given, const std::vector<std::string>&
   command.strict = given.flag("strict");
   command.dry_run = given.flag("dry-run");
   command.json_file = given.value("json").value_or("");
+  command.report_file = given.value("report").value_or("");
   command.output = given.value("out").value_or("");
   command.input = file_at(files, 0);
   check_options(command.options, problems);

@@ -19,6 +19,8 @@ struct SmoothCommand {
   std::string input;
   std::string output;  // not given: default_output_path(input), or standard output for "-"
   std::string json_file;
+  std::string report_file;   // the page for a browser
+  std::string command_line;  // as it was called, for that page; may be empty
   ProgressStyle progress = ProgressStyle::kAuto;
   bool in_place = false;
   bool force = false;    // existing files may be replaced

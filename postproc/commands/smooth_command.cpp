@@ -9,6 +9,7 @@
 #include "postproc/exit_code.h"
 #include "postproc/interrupt.h"
 #include "postproc/output_file.h"
+#include "postproc/report/html_report.h"
 #include "postproc/report/json_report.h"
 #include "postproc/report/summary_text.h"
 
@@ -71,7 +72,8 @@ int run(const SmoothCommand& command) {
   const std::string output = output_of(command);
   const bool replaces_program = command.force || command.in_place;
   if ((!command.dry_run && would_be_refused(output, replaces_program)) ||
-      would_be_refused(command.json_file, command.force)) {
+      would_be_refused(command.json_file, command.force) ||
+      would_be_refused(command.report_file, command.force)) {
     return static_cast<int>(ExitCode::kFileError);
   }
   const auto source = read_program(command.input);
@@ -101,6 +103,11 @@ int run(const SmoothCommand& command) {
   if (!command.json_file.empty() && !interrupted()) {
     const int json_code = write_result(command.json_file, json_report(report), command.force);
     if (code == 0) code = json_code;
+  }
+  if (!command.report_file.empty() && !interrupted()) {
+    const std::string page = html_report(report, {.command = command.command_line});
+    const int report_code = write_result(command.report_file, page, command.force);
+    if (code == 0) code = report_code;
   }
   return code;
 }

@@ -62,36 +62,37 @@ Json json_of(const ReasonCount& reason) {
 
 }  // namespace
 
-std::string json_report(const SmoothReport& report) {
+Json smooth_json(const SmoothReport& report) {
   const SmoothResult& result = report.result;
   Json runs = Json::array();
   for (const RunReport& run : result.runs) runs.push_back(json_of(run));
   Json reasons = Json::array();
   for (const ReasonCount& reason : count_reasons(result.runs)) reasons.push_back(json_of(reason));
 
-  const Json json = {{"batten", BATTEN_VERSION},
-                     {"options", json_of(report.options, report.strict)},
-                     {"input",
-                      {{"file", report.source.name()},
-                       {"bytes", report.source.text().size()},
-                       {"blocks", result.blocks_in},
-                       {"units", name_of(result.units)}}},
-                     {"output",
-                      {{"file", report.output_file},
-                       {"bytes", result.text.size()},
-                       {"blocks", result.blocks_out},
-                       {"target", report.options.target->name()}}},
-                     {"runs", std::move(runs)},
-                     {"reasons", std::move(reasons)},
-                     {"deviation_mm", result.deviation_mm},
-                     {"deviation_line", result.deviation_line},
-                     {"corner_mm", result.corner_mm},
-                     {"time_before_s", result.time_before_s},
-                     {"time_after_s", result.time_after_s},
-                     {"proved", result.proved},
-                     {"understood", result.understood},
-                     {"diagnostics", diagnostics_json(result.diagnostics, report.source)}};
-  return json_text(json);
+  return {{"batten", BATTEN_VERSION},
+          {"options", json_of(report.options, report.strict)},
+          {"input",
+           {{"file", report.source.name()},
+            {"bytes", report.source.text().size()},
+            {"blocks", result.blocks_in},
+            {"units", name_of(result.units)}}},
+          {"output",
+           {{"file", report.output_file},
+            {"bytes", result.text.size()},
+            {"blocks", result.blocks_out},
+            {"target", report.options.target->name()}}},
+          {"runs", std::move(runs)},
+          {"reasons", std::move(reasons)},
+          {"deviation_mm", result.deviation_mm},
+          {"deviation_line", result.deviation_line},
+          {"corner_mm", result.corner_mm},
+          {"time_before_s", result.time_before_s},
+          {"time_after_s", result.time_after_s},
+          {"proved", result.proved},
+          {"understood", result.understood},
+          {"diagnostics", diagnostics_json(result.diagnostics, report.source)}};
 }
+
+std::string json_report(const SmoothReport& report) { return json_text(smooth_json(report)); }
 
 }  // namespace batten::postproc

@@ -1,0 +1,67 @@
+#include "gcode/explained_diagnostics.h"
+
+namespace batten::gcode {
+namespace {
+
+constexpr ExplainedDiagnostic kExplained[] = {
+    // --- while reading the text ---
+    {"foreign-language", "error",
+     "The file is certainly a program in another language: Heidenhain Klartext (BEGIN PGM) or "
+     "Siemens (%_N_.., ;$PATH, DEF REAL).",
+     "Post the part again for a control of the RS-274 family."},
+    {"sixteen-bit-text", "error", "The file starts with the mark of UTF-16.",
+     "Save it as plain text or UTF-8."},
+    {"unreadable-block", "warning",
+     "A block follows no grammar that is known. It is copied; the run ends here, and what it could "
+     "have changed is unknown after it. The message names the first place that was not understood.",
+     "Write numbers without exponents, one number to each letter, and comments without comments "
+     "in them."},
+    {"unclosed-comment", "warning",
+     "A ( without ). The rest of the line is read as a comment, as grbl does; LinuxCNC refuses "
+     "such "
+     "a line.",
+     "Close the bracket."},
+    {"text-outside-marks", "warning or note",
+     "Words stand before the first % line (some controls run them, so the state after them is "
+     "unknown) or after the second. They are copied.",
+     "Cut what does not belong to the program."},
+    // --- while following the program ---
+    {"units-missing", "error",
+     "The program has motions and neither G20 nor G21 (nor G70, G71 without parameters). A "
+     "tolerance means nothing then.",
+     "Say --units mm or --units inch."},
+    {"two-words-of-one-group", "warning",
+     "G0 G1, G17 G18, M3 M5, or a code twice, in one block: controls disagree what that does.",
+     "Take one of them out."},
+    {"word-repeated", "warning", "X1 X2 in one block: some controls take the last, others refuse.",
+     "Take one of them out."},
+    {"bad-code", "warning",
+     "A G or M word that is no code (G1.25, M-3), or more codes than a block can hold.",
+     "Correct the word."},
+    {"unknown-g-code", "warning",
+     "A G code that is not known, told once for each code. It could have changed anything, so "
+     "everything is unknown after it.",
+     "Take it out, or set every mode again after it."},
+    {"arc-centre-missing", "warning",
+     "G2 or G3 without R and without I, J, K of the plane; or one centre word only under G90.1.",
+     "Correct the arc."},
+    {"arc-words-conflict", "warning",
+     "R beside I, J, K, or a centre word along the normal of the plane that is not 0.",
+     "Correct the arc; look for a plane word (G17, G18, G19) that is missing."},
+    {"arc-radius-mismatch", "warning",
+     "The radii at the start and the end differ by more than 0.0283 mm and by more than 0.1 % of "
+     "the radius, or by more than 2.83 mm. LinuxCNC refuses such arcs.",
+     "Let the CAM system write more decimals; look for G90.1, G91.1."},
+    {"arc-radius-too-small", "warning",
+     "The ends are further apart than twice R, the ends of an arc with R are one place, the centre "
+     "is one of the ends, or the arc turns by so little that controls disagree whether it is a "
+     "full "
+     "turn.",
+     "Correct the arc, or write it with I, J, K."},
+};
+
+}  // namespace
+
+std::span<const ExplainedDiagnostic> explained_diagnostics() { return kExplained; }
+
+}  // namespace batten::gcode

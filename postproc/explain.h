@@ -1,0 +1,31 @@
+// `batten explain ID`: what a reason, a message or a breach means, and what to do about it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace batten::postproc {
+
+// A breach that `batten verify` can find (Breach::id).
+struct ExplainedBreach {
+  std::string_view id;
+  std::string_view text;
+  std::string_view advice;
+};
+
+// Every id, once.
+[[nodiscard]] std::span<const ExplainedBreach> explained_breaches();
+
+// All ids that can be asked for, sorted, each once: reasons why runs are kept, messages about a
+// program, breaches. Some are both a reason and a breach.
+[[nodiscard]] std::vector<std::string_view> explained_ids();
+
+// Some lines of text for a terminal; empty where there is no such id.
+[[nodiscard]] std::string explanation_of(std::string_view id);
+
+// A line for each id.
+[[nodiscard]] std::string all_explanations();
+
+}  // namespace batten::postproc

@@ -1,0 +1,22 @@
+// The report of `batten smooth` for a browser: one page that needs nothing else, neither network
+// nor library. Its template lies in postproc/report/page/ and is part of the program.
+//
+// All figures are those of the JSON report; the path is drawn from the two texts
+// (postproc/report/page_path.h). The same input and options give the same bytes.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "postproc/report/smooth_report.h"
+
+namespace batten::postproc {
+
+struct HtmlReportOptions {
+  std::string command;                 // as it was called, for the reader; may be empty
+  std::size_t most_vertices = 400000;  // see PagePathOptions
+};
+
+[[nodiscard]] std::string html_report(const SmoothReport& report, const HtmlReportOptions& options);
+
+}  // namespace batten::postproc

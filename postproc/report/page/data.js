@@ -1,0 +1,113 @@
+'use strict';
+// The data of the page: columns of numbers as postproc/report/compact_numbers.h writes them.
+
+function bytesOf(text) {
+  const raw = atob(text);
+  const bytes = new Uint8Array(raw.length);
+  for (let i = 0; i < raw.length; i++) bytes[i] = raw.charCodeAt(i);
+  return bytes;
+}
+
+// Numbers may be as great as 2^53, so no bit operations on the whole.
+function unpacked(text) {
+  const bytes = bytesOf(text);
+  const numbers = [];
+  for (let i = 0; i < bytes.length;) {
+    let value = 0;
+    let scale = 1;
+    let byte;
+    do {
+      byte = bytes[i++];
+      value += (byte & 127) * scale;
+      scale *= 128;
+    } while (byte & 128);
+    numbers.push(value % 2 ? -(value + 1) / 2 : value / 2);
+  }
+  return numbers;
+}
+
+function summed(numbers) {
+  let sum = 0;
+  return numbers.map((step) => (sum += step));
+}
+
+function unpackedRuns(text, count) {
+  const runs = unpacked(text);
+  const numbers = new Array(count);
+  let at = 0;
+  for (let i = 0; i + 1 < runs.length; i += 2) {
+    for (let k = 0; k < runs[i + 1]; k++) numbers[at++] = runs[i];
+  }
+  return numbers;
+}
+
+const STEP = { none: 0, rapid: 1, copied: 2, rewritten: 3 };
+
+// Typed columns, and what follows from them: the deviation of each vertex (mm) and its way along
+// the cut (mm; rapids do not count).
+function readPath(columns) {
+  const n = columns.count;
+  const scaled = (numbers, unit) => Float64Array.from(numbers, (v) => v * unit);
+  const curvature = (text) => Float32Array.from(summed(unpacked(text)), (step) =>
+    step === 0 ? 0 : columns.curvature_least * 2 ** (step / columns.curvature_steps));
+  const path = {
+    n,
+    x: scaled(summed(unpacked(columns.x)), columns.unit_mm),
+    y: scaled(summed(unpacked(columns.y)), columns.unit_mm),
+    z: scaled(summed(unpacked(columns.z)), columns.unit_mm),
+    dx: new Float32Array(n), dy: new Float32Array(n), dz: new Float32Array(n),
+    deviation: new Float32Array(n),
+    step: Uint8Array.from(unpackedRuns(columns.step, n)),
+    oldLine: Uint32Array.from(summed(unpackedRuns(columns.old_line, n))),
+    newLine: Uint32Array.from(summed(unpackedRuns(columns.new_line, n))),
+    run: Int32Array.from(unpackedRuns(columns.run, n)),
+    feed: Float32Array.from(unpackedRuns(columns.feed, n), (v) => v * columns.feed_unit),
+    bendBefore: curvature(columns.curvature_before),
+    bendAfter: curvature(columns.curvature_after),
+    speedBefore: Float32Array.from(summed(unpacked(columns.speed_before)), (v) => v * columns.speed_unit),
+    speedAfter: Float32Array.from(summed(unpacked(columns.speed_after)), (v) => v * columns.speed_unit),
+    way: new Float64Array(n),
+    length: 0, worst: -1, fastest: 0,
+  };
+  const has = unpackedRuns(columns.has_offset, n);
+  const offsets = [columns.dx, columns.dy, columns.dz].map(unpacked);
+  for (let i = 0, k = 0; i < n; i++) {
+    if (has[i]) {
+      path.dx[i] = offsets[0][k] * columns.unit_mm;
+      path.dy[i] = offsets[1][k] * columns.unit_mm;
+      path.dz[i] = offsets[2][k] * columns.unit_mm;
+      k++;
+    }
+    path.deviation[i] = Math.hypot(path.dx[i], path.dy[i], path.dz[i]);
+    if (path.worst < 0 || path.deviation[i] > path.deviation[path.worst]) path.worst = i;
+    path.fastest = Math.max(path.fastest, path.speedBefore[i], path.speedAfter[i]);
+    if (path.step[i] >= STEP.copied) {
+      path.length += Math.hypot(path.x[i] - path.x[i - 1], path.y[i] - path.y[i - 1], path.z[i] - path.z[i - 1]);
+    }
+    path.way[i] = path.length;
+  }
+  return path;
+}
+
+// The first and the last vertex of each run, in the order of the report.
+function verticesOfRuns(path, count) {
+  const ranges = Array.from({ length: count }, () => null);
+  for (let i = 0; i < path.n; i++) {
+    const run = path.run[i];
+    if (run < 0 || path.step[i] === STEP.rapid) continue;
+    if (ranges[run]) ranges[run][1] = i;
+    else ranges[run] = [Math.max(0, path.step[i] === STEP.none ? i : i - 1), i];
+  }
+  return ranges;
+}
+
+// Whether much of the cut goes up and down: such a path says little from above.
+function isInSpace(path) {
+  let sloped = 0;
+  for (let i = 1; i < path.n; i++) {
+    const rise = Math.abs(path.z[i] - path.z[i - 1]);
+    const way = path.way[i] - path.way[i - 1];
+    if (path.step[i] >= STEP.copied && rise > 0.02 * way && rise < 0.98 * way) sloped += way;
+  }
+  return sloped > 0.4 * path.length;
+}

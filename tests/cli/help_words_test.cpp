@@ -1,0 +1,138 @@
+// explain, completion, man: what the program says about itself, as shells and pagers take it.
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "batten_process.h"
+#include "postproc/cli_table.h"
+
+namespace batten {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(ExplainCommand, SaysWhatAKeptRunMeansAndWhatToDo) {
+  const ProcessResult said = BattenFolder().batten("explain exact-stop");
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_TRUE(contains(said.out, "G61")) << said.out;
+  EXPECT_TRUE(contains(said.out, "--allow exact-stop")) << said.out;
+  EXPECT_EQ(said.err, "");
+}
+
+TEST(ExplainCommand, IsAnOptionToo) {
+  const BattenFolder folder;
+  EXPECT_EQ(folder.batten("--explain no-gain").out, folder.batten("explain no-gain").out);
+  EXPECT_EQ(folder.batten("--explain=no-gain").out, folder.batten("explain no-gain").out);
+}
+
+TEST(ExplainCommand, ListsAllWithoutAnId) {
+  const ProcessResult said = BattenFolder().batten("explain");
+  EXPECT_EQ(said.exit_code, 0);
+  for (const char* id : {"exact-stop", "units-missing", "feed-moved"}) {
+    EXPECT_TRUE(contains(said.out, id)) << id;
+  }
+}
+
+TEST(ExplainCommand, SuggestsWhatWasMeant) {
+  const ProcessResult said = BattenFolder().batten("explain exact-stpo");
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_TRUE(contains(said.err, "did you mean 'exact-stop'?")) << said.err;
+  EXPECT_EQ(said.out, "");
+}
+
+// --- completion ---------------------------------------------------------------------------------
+
+// What bash offers for the last of these words.
+std::string offered(const std::string& words) {
+  std::istringstream stream(words);
+  int count = -1;
+  for (std::string word; stream >> word;) ++count;
+  const ProcessResult result = BattenFolder().shell(
+      "batten completion bash > complete; bash -c 'source complete; COMP_WORDS=(" + words +
+      "); COMP_CWORD=" + std::to_string(count) +
+      "; _batten 2>/dev/null; printf \"%s \" \"${COMPREPLY[@]}\"'");
+  return " " + result.out;
+}
+
+TEST(BashCompletion, OffersTheCommands) {
+  const std::string words = offered("batten s");
+  EXPECT_EQ(words, " smooth ");
+}
+
+TEST(BashCompletion, OffersTheOptionsOfTheCommand) {
+  const std::string words = offered("batten smooth --to");
+  EXPECT_EQ(words, " --tolerance --tolerance-kind ");
+  EXPECT_EQ(offered("batten verify --th"), "  ");
+}
+
+TEST(BashCompletion, OffersTheNamesThatAnOptionTakes) {
+  EXPECT_TRUE(contains(offered("batten smooth --target l"), " linuxcnc "));
+  EXPECT_EQ(offered("batten smooth --prefer ti"), " time ");
+  EXPECT_EQ(offered("batten smooth --allow e"), " exact-stop ");
+}
+
+TEST(BashCompletion, OffersFilesAndTheIdsThatCanBeExplained) {
+  EXPECT_TRUE(contains(offered("batten smooth com"), " complete "));
+  EXPECT_TRUE(contains(offered("batten explain feed-m"), " feed-moved "));
+}
+
+TEST(Completion, OfEitherShellNamesEveryCommandAndOption) {
+  const BattenFolder folder;
+  for (const char* shell : {"bash", "zsh"}) {
+    const ProcessResult result = folder.batten(std::string("completion ") + shell);
+    EXPECT_EQ(result.exit_code, 0);
+    for (const postproc::CommandRow& command : postproc::command_rows()) {
+      EXPECT_TRUE(contains(result.out, std::string(command.name))) << command.name;
+      for (const postproc::OptionRow& row : command.rows) {
+        EXPECT_TRUE(contains(result.out, "--" + std::string(row.name))) << shell << row.name;
+      }
+    }
+  }
+}
+
+TEST(Completion, OfAnotherShellIsRefused) {
+  const BattenFolder folder;
+  EXPECT_EQ(folder.batten("completion tcsh").exit_code, 1);
+  EXPECT_EQ(folder.batten("completion").exit_code, 1);
+}
+
+TEST(ZshCompletion, IsReadByZsh) {
+  const BattenFolder folder;
+  if (folder.shell("command -v zsh").exit_code != 0) GTEST_SKIP() << "zsh is not installed";
+  const ProcessResult result = folder.shell("batten completion zsh > _batten && zsh -n _batten");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+// --- man
+// ------------------------------------------------------------------------------------------
+
+TEST(ManPage, TellsOfEveryCommandAndOption) {
+  const std::string page = BattenFolder().batten("man").out;
+  EXPECT_TRUE(contains(page, ".TH BATTEN 1"));
+  const auto roff = [](std::string_view text) {
+    std::string safe;
+    for (const char c : text) safe += c == '-' ? std::string("\\-") : std::string(1, c);
+    return safe;
+  };
+  for (const postproc::CommandRow& command : postproc::command_rows()) {
+    EXPECT_TRUE(contains(page, ".SS \\fBbatten " + roff(command.name))) << command.name;
+    for (const postproc::OptionRow& row : command.rows) {
+      EXPECT_TRUE(contains(page, "\\fB\\-\\-" + roff(row.name) + "\\fR")) << row.name;
+    }
+  }
+}
+
+TEST(ManPage, IsSetWithoutAWarning) {
+  const BattenFolder folder;
+  if (folder.shell("command -v groff").exit_code != 0) GTEST_SKIP() << "groff is not installed";
+  const ProcessResult result = folder.shell("batten man | groff -man -Tascii -ww -P-cbou > page");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "");
+  EXPECT_TRUE(contains(folder.text_of("page"), "EXIT STATUS"));
+}
+
+}  // namespace
+}  // namespace batten

@@ -1,0 +1,198 @@
+// The path that the report's page draws, against programs whose distances are known by hand.
+#include "postproc/report/page_path.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "postproc/report/page_curvature.h"
+#include "postproc/report/page_thinning.h"
+#include "tests/support/interpreted.h"
+#include "tests/support/paths.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Point3;
+using geometry::Vector3;
+
+ReadProgram read_of(const tests::Interpreted& text) { return {&text.program, &text.read}; }
+
+PagePath path_of(const std::string& before, const std::string& after, double tolerance,
+                 const std::vector<RunReport>& runs = {}, std::size_t most = 1000) {
+  const tests::Interpreted old_text(before);
+  const tests::Interpreted new_text(after);
+  const Verification found = verify(read_of(old_text), read_of(new_text), Promise(tolerance));
+  EXPECT_TRUE(found.proved());
+  return page_path(read_of(old_text), read_of(new_text), found, runs,
+                   {tolerance, geometry::ToleranceKind::kPath, most});
+}
+
+const std::string kKinked = "G21 G90\nG0 X0 Y0 Z0\nG1 X10 F600\nX20 Y0.01\nX30 Y0\nG0 X0\n";
+const std::string kStraight = "G21 G90\nG0 X0 Y0 Z0\nG1 X30 F600\nG0 X0\n";
+
+const PageVertex& worst_of(const PagePath& path) {
+  return *std::ranges::max_element(path.vertices, {},
+                                   [](const PageVertex& v) { return v.offset.norm(); });
+}
+
+TEST(PagePath, ShowsTheDistanceThatTheProofFound) {
+  const PagePath path = path_of(kKinked, kStraight, 0.02);
+  const PageVertex& worst = worst_of(path);
+  EXPECT_NEAR(worst.offset.norm(), 0.01, 1e-6);
+  EXPECT_NEAR(worst.place.x(), 20, 1e-9);
+  EXPECT_NEAR(worst.offset.y(), -0.01, 1e-6);
+  EXPECT_EQ(worst.old_line, 4U);
+  EXPECT_EQ(worst.new_line, 3U);
+  EXPECT_EQ(path.stretches, 1U);
+  EXPECT_EQ(path.stretches_not_shown, 0U);
+}
+
+TEST(PagePath, FollowsTheOldPathFromEndToEnd) {
+  const PagePath path = path_of(kKinked, kStraight, 0.02);
+  double length = 0;
+  for (std::size_t i = 1; i < path.vertices.size(); ++i) {
+    const PageVertex& v = path.vertices[i];
+    const double step = (v.place - path.vertices[i - 1].place).norm();
+    if (v.step == PageStep::kNone) {
+      EXPECT_LT(step, 1e-9);  // no gap in this program
+    } else if (v.step == PageStep::kRewritten) {
+      length += step;
+    }
+  }
+  EXPECT_NEAR(length, 10 + 2 * std::hypot(10, 0.01), 1e-6);
+  EXPECT_EQ(path.vertices.back().step, PageStep::kRapid);
+  EXPECT_EQ(path.vertices.back().place, Point3(0, 0, 0));
+}
+
+TEST(PagePath, TellsWhichRunAPlaceBelongsTo) {
+  RunReport run;
+  run.first_line = 3;
+  run.last_line = 5;
+  const PagePath path = path_of(kKinked, kStraight, 0.02, {run});
+  for (const PageVertex& v : path.vertices) {
+    EXPECT_EQ(v.run, v.old_line >= 3 && v.old_line <= 5 ? 0 : -1) << v.old_line;
+  }
+}
+
+TEST(PagePath, HasNoDeviationWhereMovesAreCopied) {
+  const PagePath path = path_of(kKinked, kKinked, 0.02);
+  EXPECT_EQ(path.stretches, 0U);
+  for (const PageVertex& v : path.vertices) {
+    EXPECT_TRUE(v.offset.isZero(0));
+    EXPECT_NE(v.step, PageStep::kRewritten);
+    EXPECT_EQ(v.new_line, v.old_line);
+  }
+}
+
+// 30 mm of the new line; the old path is as long to within 10 um.
+TEST(PagePath, TellsTheSpeedsThatArePredicted) {
+  const tests::Interpreted old_text(kKinked);
+  const tests::Interpreted new_text(kStraight);
+  const Verification found = verify(read_of(old_text), read_of(new_text), Promise(0.02));
+  PagePathOptions options{0.02, geometry::ToleranceKind::kPath};
+  options.speed_before = [](std::uint32_t, double) { return 500.0; };
+  options.speed_after = [](std::uint32_t, double share) { return 1000 * share; };
+  const PagePath path = page_path(read_of(old_text), read_of(new_text), found, {}, options);
+  for (const PageVertex& v : path.vertices) {
+    if (v.step != PageStep::kRewritten) continue;
+    EXPECT_EQ(v.speed_before, 500);
+    EXPECT_NEAR(v.speed_after, 1000 * v.place.x() / 30, 1);
+  }
+}
+
+TEST(PagePath, KeepsTheLinesOfCopiedMovesBehindARun) {
+  const std::string tail = "M8\nG1 X40 Y5\nX50 Y0\n";
+  const PagePath path = path_of(kKinked + tail, kStraight + tail, 0.02);
+  EXPECT_EQ(path.vertices.back().old_line, 9U);
+  EXPECT_EQ(path.vertices.back().new_line, 7U);
+  EXPECT_EQ(path.vertices.back().step, PageStep::kCopied);
+}
+
+TEST(PagePath, BeginsAnewWhereThePlaceIsNotKnown) {
+  const std::string text = "G21 G90\nG1 X0 Y0 Z0 F100\nX10\nG28\nG1 X50 Y50 Z0\nX60\n";
+  const PagePath path = path_of(text, text, 0.02);
+  for (std::size_t i = 1; i < path.vertices.size(); ++i) {
+    if (path.vertices[i].step == PageStep::kNone) continue;
+    EXPECT_LE((path.vertices[i].place - path.vertices[i - 1].place).norm(), 10 + 1e-9);
+  }
+}
+
+TEST(PagePath, StaysWithinTheNumberOfVertices) {
+  std::string before = "G21 G90\nG1 X0 Y0 Z0 F600\n";
+  for (int i = 1; i <= 2000; ++i) {
+    before += "X" + std::to_string(i) + " Y" + (i % 2 == 0 ? "0" : "0.5") + "\n";
+  }
+  EXPECT_LE(path_of(before, before, 0.02, {}, 500).vertices.size(), 500U);
+  EXPECT_GE(path_of(before, before, 0.02, {}, 100000).vertices.size(), 2000U);
+}
+
+// A circle of radius 5 by its chords: the circle through three neighbouring vertices is that
+// circle.
+TEST(ChainCurvature, OfAPolygonIsThatOfItsCircle) {
+  const geometry::Path chain = geometry::path_through(geometry::arc_path(5, 2, 40));
+  const ChainCurvature curvature(chain);
+  EXPECT_NEAR(curvature.at(10, geometry::start_point(chain[10])), 0.2, 1e-9);
+  EXPECT_NEAR(curvature.at(10, geometry::end_point(chain[10])), 0.2, 1e-9);
+}
+
+TEST(ChainCurvature, OfAnArcIsItsOwn) {
+  const geometry::Path chain = {geometry::Line{Point3(-3, -2, 0), Point3(0, -2, 0)},
+                                geometry::Arc{Point3(0, -2, 0), Point3(2, 0, 0), Point3(0, 0, 0),
+                                              Vector3(0, 0, 1), std::numbers::pi / 2}};
+  const ChainCurvature curvature(chain);
+  EXPECT_NEAR(curvature.at(1, Point3(std::sqrt(2), -std::sqrt(2), 0)), 0.5, 1e-12);
+  EXPECT_EQ(curvature.at(0, Point3(-3, -2, 0)), 0);
+  EXPECT_NEAR(curvature.at(0, Point3(0, -2, 0)), 0.5, 1e-12);
+}
+
+TEST(ShareOfPiece, OfAnArcGoesWithItsAngle) {
+  const double s = std::sqrt(0.5);
+  // Three quarters of a circle, clockwise from +x: -y after a third of it.
+  const geometry::PathPiece arc = geometry::Arc{Point3(1, 0, 0), Point3(0, 1, 0), Point3(0, 0, 0),
+                                                Vector3(0, 0, 1), -1.5 * std::numbers::pi};
+  EXPECT_NEAR(share_of_piece(arc, Point3(0, -1, 0)), 1.0 / 3, 1e-12);
+  EXPECT_NEAR(share_of_piece(arc, Point3(-s, s, 0)), 2.5 / 3, 1e-12);
+  EXPECT_NEAR(share_of_piece(arc, Point3(0, 1, 0)), 1, 1e-9);
+  EXPECT_NEAR(share_of_piece(arc, Point3(1, 0, 0)), 0, 1e-9);
+}
+
+PageVertex vertex(double x, double y, double speed = 0, double off = 0) {
+  PageVertex v;
+  v.place = Point3(x, y, 0);
+  v.offset = Vector3(0, off, 0);
+  v.step = PageStep::kCopied;
+  v.speed_after = speed;
+  return v;
+}
+
+TEST(Thinning, LeavesTheEndsOfAStraightWay) {
+  const std::vector<PageVertex> line = {vertex(0, 0), vertex(1, 0), vertex(2, 0), vertex(3, 0)};
+  EXPECT_EQ(thinned(line, {0.001, 1}).size(), 2U);
+}
+
+TEST(Thinning, KeepsWhatIsFurtherOffThanTheErrors) {
+  const Thinning errors{0.001, 1};
+  EXPECT_EQ(thinned({vertex(0, 0), vertex(1, 0.002), vertex(2, 0)}, errors).size(), 3U);
+  EXPECT_EQ(thinned({vertex(0, 0), vertex(1, 0, 0, 0.002), vertex(2, 0)}, errors).size(), 3U);
+  EXPECT_EQ(thinned({vertex(0, 0), vertex(1, 0, 5), vertex(2, 0)}, errors).size(), 3U);
+  EXPECT_EQ(thinned({vertex(0, 0), vertex(1, 0.0005, 0.5, 0.0005), vertex(2, 0)}, errors).size(),
+            2U);
+}
+
+TEST(Thinning, KeepsAFoldOnTheWayItCame) {
+  EXPECT_EQ(thinned({vertex(0, 0), vertex(5, 0), vertex(2, 0)}, {0.001, 1}).size(), 3U);
+}
+
+TEST(Thinning, KeepsWhereTheKindOfMoveChanges) {
+  std::vector<PageVertex> line = {vertex(0, 0), vertex(1, 0), vertex(2, 0)};
+  line[2].step = PageStep::kRewritten;
+  EXPECT_EQ(thinned(line, {0.001, 1}).size(), 3U);
+}
+
+}  // namespace
+}  // namespace batten::postproc

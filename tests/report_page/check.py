@@ -1,0 +1,248 @@
+#!/usr/bin/env python3
+"""The page of `batten smooth --report` in a real browser: no complaints on its console, nothing
+loaded from anywhere, figures equal to the JSON report, and controls that do what they say.
+
+    check.py BATTEN SOURCE_DIR            all samples' pages are checked
+    check.py BATTEN SOURCE_DIR --shots DIR [PROGRAM OPTION ..]    pictures of one page, to look at
+
+Exit code 77 (skipped) where Chromium or its driver is not installed.
+"""
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from browser import Browser, is_installed  # noqa: E402
+
+PAGE_SIZE_AT_MOST = 3_000_000
+
+
+class Failure(Exception):
+    pass
+
+
+def expect(truth, what):
+    if not truth:
+        raise Failure(what)
+
+
+def expect_equal(found, expected, what):
+    expect(found == expected, f"{what}: {found!r}, expected {expected!r}")
+
+
+def make_page(batten, program, options, folder):
+    """Returns the JSON report and the page's file."""
+    page, figures = folder / "page.html", folder / "report.json"
+    result = subprocess.run(
+        [batten, "smooth", str(program), *options, "--dry-run", "--force", "--progress", "off",
+         "--json", str(figures), "--report", str(page)], capture_output=True, text=True)
+    expect(figures.exists() and page.exists(), f"no report was written: {result.stderr}")
+    return json.loads(figures.read_text()), page
+
+
+class PageCheck:
+    def __init__(self, browser, report, page):
+        self.browser = browser
+        self.report = report
+        self.page = page
+
+    def all(self):
+        expect(self.page.stat().st_size < PAGE_SIZE_AT_MOST, f"{self.page.stat().st_size} bytes")
+        self.browser.open(self.page)
+        self.browser.wait("window.battenReport")
+        self.loads_nothing()
+        self.shows_the_figures()
+        self.lists_the_runs()
+        self.draws_the_path()
+        if self.value("battenReport.path.n") > 0:
+            self.controls_work()
+        self.browser.paper(self.page.with_suffix(".pdf"))
+        expect_equal(self.browser.complaints(), [], "console")
+
+    def value(self, expression):
+        return self.browser.run(f"return {expression}")
+
+    def loads_nothing(self):
+        expect_equal(self.value("performance.getEntriesByType('resource').length"), 0, "resources")
+
+    # --- figures ------------------------------------------------------------------------------
+
+    def shows_the_figures(self):
+        shown = self.value("Object.fromEntries([...document.querySelectorAll('[data-figure]')]"
+                           ".map((e) => [e.dataset.figure, Number(e.dataset.value)]))")
+        report = self.report
+        rewritten = [r for r in report["runs"] if r["status"] == "rewritten"]
+        expected = {
+            "time_before_s": report["time_before_s"], "time_after_s": report["time_after_s"],
+            "deviation_mm": report["deviation_mm"],
+            "input.blocks": report["input"]["blocks"], "output.blocks": report["output"]["blocks"],
+            "rewritten": len(rewritten), "kept": len(report["runs"]) - len(rewritten),
+        }
+        for name, value in shown.items():
+            expect_equal(value, expected[name], name)
+        wanted = set()
+        if report["understood"]:
+            wanted = {"input.blocks", "output.blocks", "rewritten", "kept"}
+            if report["time_before_s"] > 0:
+                wanted |= {"time_before_s", "time_after_s"}
+            if rewritten:
+                wanted |= {"deviation_mm"}
+        expect_equal(set(shown), wanted, "figures shown")
+        text = self.value("document.body.innerText")
+        if rewritten:
+            expect(f"{report['deviation_mm']:.4f}" in text or "in" in text, "the deviation is not in the text")
+        verdict = self.value("document.getElementById('verdict').className")
+        good = report["proved"] and bool(rewritten)
+        expect_equal("good" in verdict, good, "verdict")
+
+    def lists_the_runs(self):
+        rows = self.value("document.querySelectorAll('#run-table tbody tr').length")
+        expect_equal(rows, min(100, len(self.report["runs"])), "rows of runs")
+        reasons = self.value("[...document.querySelectorAll('.reason code')].map((e) => e.textContent)")
+        for reason in self.report["reasons"]:
+            expect(reason["id"] in reasons, f"{reason['id']} is not explained")
+        messages = self.value("document.querySelectorAll('#messages li').length")
+        expect_equal(messages, min(51, len(self.report["diagnostics"])), "messages")
+
+    # --- path ---------------------------------------------------------------------------------
+
+    def draws_the_path(self):
+        tolerance = self.report["options"]["tolerance_mm"]
+        greatest = self.value("Math.max(0, ...battenReport.path.deviation)")
+        # The bound of the proof counts the chords of arcs too, 1 % of the tolerance at the most, and
+        # is tight to 1 %; places on the page are rounded to 0.1 um.
+        rounding = 0.0002
+        expect(greatest <= self.report["deviation_mm"] + rounding,
+               f"deviation {greatest} on the page, proved {self.report['deviation_mm']}")
+        expect(greatest >= self.report["deviation_mm"] - 0.02 * tolerance - rounding,
+               f"deviation {greatest} on the page, proved {self.report['deviation_mm']}")
+        lines = self.value("[Math.min(...battenReport.path.oldLine), Math.max(...battenReport.path.oldLine)]")
+        for run in self.report["runs"]:
+            expect(lines[0] <= run["last_line"] and run["first_line"] <= lines[1], f"run {run} is not drawn")
+
+    def picture(self, selector):
+        return self.browser.run(
+            "return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() =>"
+            " done(document.querySelector(arguments[0]).toDataURL()))))", selector)
+
+    def changes(self, what, action, selector="#canvas"):
+        before = self.picture(selector)
+        action()
+        expect(self.picture(selector) != before, f"{what} changes nothing on {selector}")
+
+    def pressed(self, selector):
+        return self.browser.run("return document.querySelector(arguments[0]).getAttribute('aria-pressed')", selector)
+
+    def controls_work(self):
+        browser = self.browser
+        self.changes("a view", lambda: (browser.click("[data-view=side]"), browser.click("[data-view=front]")))
+        self.changes("3D", lambda: browser.click("[data-view=space]"))
+        expect_equal(self.pressed("[data-view=space]"), "true", "3D is pressed")
+        self.changes("Plan", lambda: browser.click("[data-view=plan]"))
+        self.changes("without the new path", lambda: browser.click("[data-layer=now]"))
+        self.changes("with it", lambda: browser.keys("n"))
+        self.changes("wheel", lambda: browser.wheel("#canvas", -400))
+        self.changes("drag", lambda: browser.point("#canvas", drag=(60, 30)))
+        self.changes("All", lambda: browser.click("#fit"))
+        self.changes("colour", lambda: browser.keys("c"))
+        browser.keys("cc")
+        self.changes("arrow key", lambda: browser.keys("\ue012", "#canvas"))
+        self.changes("theme", lambda: browser.keys("t"))
+        self.changes("units", lambda: browser.keys("u"), "#chart-deviation")
+        browser.keys("ut0")
+        if self.report["deviation_mm"] > 0 and any(r["status"] == "rewritten" for r in self.report["runs"]):
+            self.changes("greatest deviation", lambda: browser.click("#worst"))
+            expect("deviation" in self.value("document.getElementById('readout').textContent"), "nothing is read out")
+            self.changes("magnified", lambda: browser.keys("]]]"))
+            expect("times" in self.value("document.getElementById('magnify-text').textContent"), "not magnified")
+            self.changes("chart wheel", lambda: browser.wheel("#chart-deviation", 300), "#chart-deviation")
+            browser.keys("0")
+        if len(self.report["runs"]) > 1:
+            self.changes("a run", lambda: browser.click("#run-table tbody tr"))
+            expect_equal(self.value("battenReport.runs.chosen >= 0"), True, "a run is chosen")
+            browser.click("[data-runs=kept]")
+            kept = sum(r["status"] == "kept" for r in self.report["runs"])
+            expect_equal(self.value("document.querySelectorAll('#run-table tbody tr').length"), min(100, kept), "kept rows")
+            browser.click("[data-runs=all]")
+            browser.click("#run-table th:nth-child(5) button")
+            times = self.value("[...document.querySelectorAll('#run-table tbody tr')]"
+                               ".map((row) => battenReport.report.runs[row.dataset.run].time_before_s)")
+            expect_equal(times, sorted(times, reverse=True), "sorted by time")
+            browser.keys("0")
+        browser.keys("?")
+        expect_equal(self.value("document.getElementById('keys').open"), True, "keys are shown")
+        browser.keys("\ue00c")
+        expect_equal(self.value("document.getElementById('keys').open"), False, "keys are gone")
+
+
+def cases(source, scratch):
+    """(name, program, options)"""
+    for folder in sorted((source / "samples").iterdir()):
+        if (folder / "command").exists():
+            words = (folder / "command").read_text().split()
+            yield folder.name, folder / "program.ngc", words[3:]
+    plain = ["--target", "linuxcnc", "--tolerance", "0.01"]
+    hostile = scratch / "</script><img src=x onerror=alert(1)>.ngc".replace("/", "\u2044")
+    hostile.write_text("G21\n(</script><b>)\nG0 X0 Y0\nG1 X1 F100\nX2 Y1\nX3\nM2\n")
+    yield "a name that is markup", hostile, plain
+    for name, text in (("no units", "G0 X0\nG1 X1 F100\n"), ("empty", ""), ("no motion", "G21\nM3 S1000\nM2\n")):
+        file = scratch / f"{name}.ngc"
+        file.write_text(text)
+        yield name, file, plain
+
+
+def check_all(batten, source):
+    failed = 0
+    with tempfile.TemporaryDirectory() as name, Browser() as browser:
+        scratch = Path(name)
+        for case, program, options in cases(source, scratch):
+            try:
+                PageCheck(browser, *make_page(batten, program, options, scratch)).all()
+                print(f"ok      {case}")
+            except (Failure, RuntimeError) as problem:
+                failed += 1
+                print(f"FAILED  {case}: {problem}")
+    return 1 if failed else 0
+
+
+def shots(batten, folder, program, options):
+    folder.mkdir(parents=True, exist_ok=True)
+    _, page = make_page(batten, program, options, folder)
+    print(f"{page.stat().st_size} bytes")
+    for theme in ("light", "dark"):
+        with Browser() as browser:
+            browser.dark(theme == "dark")
+            browser.open(page)
+            browser.wait("window.battenReport", 60)
+            ready = browser.run("return [Number(document.documentElement.dataset.readyMs),"
+                                " performance.timing.loadEventEnd - performance.timing.navigationStart,"
+                                " battenReport.path.n]")
+            print(f"{theme}: usable after {ready[0]} ms of script, page loaded after {ready[1]} ms, {ready[2]} vertices")
+            browser.picture(folder / f"{theme}-page.png")
+            browser.keys("4")
+            browser.picture(folder / f"{theme}-space.png", whole=False)
+            browser.keys("1w]]]")
+            browser.picture(folder / f"{theme}-worst.png", whole=False)
+            for complaint in browser.complaints():
+                print(complaint)
+            if theme == "light":
+                browser.paper(folder / "page.pdf")
+
+
+def main(arguments):
+    if not is_installed():
+        print("skipped: needs chromium and chromedriver (apt-get install chromium chromium-driver)")
+        return 77
+    batten, source = arguments[0], Path(arguments[1])
+    if "--shots" in arguments:
+        folder, program, *options = arguments[arguments.index("--shots") + 1:]
+        shots(batten, Path(folder), program, options)
+        return 0
+    return check_all(batten, source)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
