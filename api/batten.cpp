@@ -1,0 +1,224 @@
+#include "batten/batten.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <variant>
+
+#include "gcode/interpreter.h"
+#include "gcode/parser.h"
+#include "postproc/inspect.h"
+#include "postproc/machine_file.h"
+#include "postproc/options.h"
+#include "postproc/pipeline.h"
+#include "postproc/run_grouping.h"
+#include "postproc/verification.h"
+
+namespace batten {
+namespace {
+
+gcode::Units inner(ProgramUnits units) {
+  switch (units) {
+    case ProgramUnits::kMillimetre:
+      return gcode::Units::kMillimetre;
+    case ProgramUnits::kInch:
+      return gcode::Units::kInch;
+    case ProgramUnits::kAsWritten:
+      break;
+  }
+  return gcode::Units::kUnknown;
+}
+
+Severity outer(gcode::Severity severity) {
+  switch (severity) {
+    case gcode::Severity::kNote:
+      return Severity::kNote;
+    case gcode::Severity::kWarning:
+      return Severity::kWarning;
+    case gcode::Severity::kError:
+      break;
+  }
+  return Severity::kError;
+}
+
+std::vector<Message> messages_of(const gcode::Diagnostics& found, const gcode::SourceText& source) {
+  std::vector<Message> messages;
+  for (const gcode::Diagnostic& each : found) {
+    const gcode::SourcePlace place = source.place_of(each.where.begin);
+    messages.push_back({outer(each.severity), std::string(each.id),
+                        static_cast<std::uint32_t>(place.line),
+                        static_cast<std::uint32_t>(place.column), each.message});
+  }
+  return messages;
+}
+
+// A program and what it means.
+struct Reading {
+  Reading(std::string_view text, ProgramUnits units)
+      : source("program", std::string(text)),
+        program(gcode::parse(source, found)),
+        meaning(gcode::interpret(program, {inner(units)}, found)) {}
+
+  [[nodiscard]] postproc::ReadProgram get() const { return {&program, &meaning}; }
+
+  gcode::SourceText source;
+  gcode::Diagnostics found;
+  gcode::Program program;
+  gcode::Interpretation meaning;
+};
+
+[[noreturn]] void refuse(const std::vector<std::string>& problems) {
+  std::string text;
+  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
+  throw std::invalid_argument(text);
+}
+
+template <typename Value>
+void choose(Value& place, std::string_view option, std::string_view name,
+            std::span<const postproc::Choice<Value>> choices, std::vector<std::string>& problems) {
+  const auto found = std::ranges::find(choices, name, &postproc::Choice<Value>::name);
+  if (found != choices.end()) {
+    place = found->value;
+  } else {
+    problems.push_back(std::string(option) + ": there is no '" + std::string(name) + "'");
+  }
+}
+
+// A machine from a file lives as long as this.
+struct InnerOptions {
+  postproc::SmoothOptions options;
+  std::shared_ptr<const postproc::Machine> own_machine;
+};
+
+void choose_machine(const std::string& name, InnerOptions& all,
+                    std::vector<std::string>& problems) {
+  if (name.empty()) {
+    if (all.options.target != nullptr) {
+      all.options.machine = postproc::find_machine(all.options.target->default_machine());
+    }
+    return;
+  }
+  if (name.ends_with(".toml")) {
+    all.own_machine = postproc::read_machine_file(name, problems);
+    all.options.machine = all.own_machine.get();
+    return;
+  }
+  all.options.machine = postproc::find_machine(name);
+  if (all.options.machine == nullptr) {
+    problems.push_back("machine: there is no '" + name + "'");
+  }
+}
+
+InnerOptions inner(const Options& given) {
+  InnerOptions all;
+  std::vector<std::string> problems;
+  postproc::SmoothOptions& options = all.options;
+  options.target = gcode::find_dialect(given.target);
+  if (options.target == nullptr) problems.push_back("target: there is no '" + given.target + "'");
+  choose_machine(given.machine, all, problems);
+  options.tolerance_mm = given.tolerance_mm;
+  options.tolerance_kind =
+      given.band_reading ? geometry::ToleranceKind::kBand : geometry::ToleranceKind::kPath;
+  choose(options.method, "method", given.method, postproc::methods(), problems);
+  choose(options.output, "output", given.output, postproc::forms(), problems);
+  choose(options.prefer, "prefer", given.prefer, postproc::preferences(), problems);
+  if (!given.linearize.empty()) {
+    options.linearize.emplace();
+    choose(*options.linearize, "linearize", given.linearize, postproc::linearizations(), problems);
+  }
+  options.keep_corners_deg = given.keep_corners_deg;
+  options.allowed = given.allow;
+  options.units = inner(given.units);
+  options.threads = given.threads;
+  if (problems.empty()) problems = postproc::problems_of(options);
+  if (!problems.empty()) refuse(problems);
+  return all;
+}
+
+}  // namespace
+
+std::string version() { return BATTEN_VERSION; }
+
+std::vector<std::string> target_names() {
+  std::vector<std::string> names;
+  for (const gcode::Dialect* dialect : gcode::dialects()) names.emplace_back(dialect->name());
+  return names;
+}
+
+std::vector<std::string> machine_names() {
+  std::vector<std::string> names;
+  for (const postproc::Machine& machine : postproc::built_in_machines()) {
+    names.push_back(machine.name);
+  }
+  return names;
+}
+
+ReadResult read(std::string_view program, ProgramUnits units) {
+  const Reading reading(program, units);
+  ReadResult result;
+  result.understood = !gcode::has_error(reading.found);
+  result.blocks = reading.program.blocks.size();
+  const auto sections = postproc::group_runs(reading.program, reading.meaning, {});
+  for (const auto& section : postproc::inspect(reading.program, reading.meaning, sections)) {
+    result.parts.push_back({section.first_line, section.last_line, section.cutting_moves,
+                            std::string(section.reason)});
+  }
+  result.messages = messages_of(reading.found, reading.source);
+  return result;
+}
+
+SmoothedProgram smooth(std::string_view program, const Options& options) {
+  const InnerOptions all = inner(options);
+  const gcode::SourceText source("program", std::string(program));
+  postproc::SmoothResult done = postproc::smooth_program(source, all.options);
+  SmoothedProgram result;
+  result.understood = done.understood;
+  // The same bytes need no proof.
+  result.proved = done.understood && (done.proved || done.text == program);
+  result.deviation_mm = done.deviation_mm;
+  result.seconds_before = done.time_before_s;
+  result.seconds_after = done.time_after_s;
+  result.blocks_before = done.blocks_in;
+  result.blocks_after = done.blocks_out;
+  for (const postproc::RunReport& run : done.runs) {
+    result.parts.push_back({run.first_line, run.last_line,
+                            run.status == postproc::RunStatus::kRewritten, std::string(run.reason),
+                            std::string(run.method), run.blocks_in, run.blocks_out,
+                            run.deviation_mm, run.time_before_s, run.time_after_s});
+  }
+  result.messages = messages_of(done.diagnostics, source);
+  result.text = std::move(done.text);
+  return result;
+}
+
+Proof verify(std::string_view old_program, std::string_view new_program, double tolerance_mm,
+             ProgramUnits units) {
+  if (!(tolerance_mm > 0) || !std::isfinite(tolerance_mm)) {
+    throw std::invalid_argument("tolerance_mm: expected a finite length above 0");
+  }
+  Proof proof;
+  if (old_program == new_program) {
+    proof.proved = true;
+    return proof;
+  }
+  const Reading before(old_program, units);
+  const Reading after(new_program, units);
+  for (const Reading* each : {&before, &after}) {
+    for (Message& message : messages_of(each->found, each->source)) {
+      if (message.severity == Severity::kError) proof.messages.push_back(std::move(message));
+    }
+  }
+  if (!proof.messages.empty()) return proof;
+  const postproc::Verification found = postproc::verify(before.get(), after.get(), tolerance_mm);
+  proof.proved = found.proved();
+  proof.deviation_mm = found.deviation_mm;
+  proof.deviation_line = found.deviation_line;
+  for (const postproc::Breach& breach : found.breaches) {
+    proof.differences.push_back({breach.id, breach.old_line, breach.new_line, breach.message});
+  }
+  return proof;
+}
+
+}  // namespace batten
