@@ -270,7 +270,8 @@ class SplAlarms {
       if (!known_[axis]) continue;
       const double off = std::abs(implied[axis] - place_[axis]) * unit_;
       if (off < kSplClosure) continue;
-      say("spl-closure", word.name + " starts " + to_text(off * 1000, {.decimals = 3}) +
+      say("spl-closure", word.name + " starts " +
+                             to_text(std::min(off * 1000, kGreatestEnd), {.decimals = 3}) +
                              " um from where the tool stands, expected less than 1 um");
     }
   }

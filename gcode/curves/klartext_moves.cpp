@@ -196,6 +196,11 @@ class MoveReader {
       if (block.sense == 0) return "a C without DR";
       if (block.place[2]) return "a C with Z";
       const Point3 center(center_->x(), center_->y(), place_.mm.z());
+      const double radius = (place_.mm - center).norm();
+      const double mismatch = std::abs((end - center).norm() - radius);
+      if (!(radius > 0) || mismatch > kKlartextRadiusMismatch) {
+        return "the radii at the ends of an arc differ";
+      }
       const double sweep = sweep_about(place_.mm, end, center, block.sense);
       reading_.motions.push_back({at, Arc{place_.mm, end, center, Vector3::UnitZ(), sweep}});
     }
@@ -266,8 +271,9 @@ CurveAlarms klartext_arc_alarms(const Program& program, Units units) {
     const double end_radius = std::hypot(*place[0] - center->x(), *place[1] - center->y());
     const double mismatch = std::abs(end_radius - start_radius) * unit;
     if (mismatch <= kKlartextRadiusMismatch) continue;
-    say("arc-radius",
-        "radii differ by " + to_text(mismatch, {.decimals = 4}) + " mm, expected at most 0.016 mm");
+    say("arc-radius", "radii differ by " +
+                          to_text(std::min(mismatch, kGreatestPlace), {.decimals = 4}) +
+                          " mm, expected at most 0.016 mm");
   }
   return alarms;
 }

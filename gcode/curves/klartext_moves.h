@@ -28,8 +28,8 @@ inline constexpr double kKlartextRadiusMismatch = 0.016;
 
 // Reads L, CC and C blocks from line `first` on, up to the first line that is something else or
 // that has an F of its own (after the first). R0 and a bare M mean nothing; RL, RR, FMAX,
-// incremental words and M functions end the chain. A C without a CC before it in the chain is
-// refused.
+// incremental words and M functions end the chain. A C without a CC before it in the chain, or off
+// its circle, is refused.
 [[nodiscard]] CurveResult read_klartext_moves(const Program& program, std::uint32_t first,
                                               const CurveStart& start);
 

@@ -11,6 +11,9 @@
 namespace batten::gcode {
 namespace {
 
+// No control takes such numbers.
+constexpr double kNumberLimit = 1e9;
+
 class KlartextReader {
  public:
   explicit KlartextReader(std::string_view text) : text_(text) {}
@@ -84,7 +87,7 @@ class KlartextReader {
       ++at_;
     }
     const auto number = read_number(digits);
-    if (!number) return false;
+    if (!number || std::abs(number->value) >= kNumberLimit) return false;
     word.mantissa = number->value;
     word.value = number->value;
     word.decimals = number->decimals;

@@ -194,6 +194,10 @@ class NurbsReader {
         return fail("an inner knot stands as often as the order");
       }
     }
+    // At an end, too, points would be left out.
+    for (std::size_t i = 0; i + order < t.size(); ++i) {
+      if (t[i] == t[i + order]) return fail("a knot stands more often than the order");
+    }
     return true;
   }
 

@@ -67,7 +67,9 @@ std::vector<double> knots_of(const std::vector<double>& lengths) {
     if (i < spans) knots.push_back(knots.back() + lengths[i]);
   }
   knots.insert(knots.end(), kDegree, knots.back());
-  return knots.back() > 0 ? knots : std::vector<double>{};
+  // Points would be left out where the first or the last span is empty.
+  const bool full = lengths.front() > 0 && lengths[spans - 1] > 0;
+  return full ? knots : std::vector<double>{};
 }
 
 }  // namespace

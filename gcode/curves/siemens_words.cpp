@@ -1,6 +1,7 @@
 #include "gcode/curves/siemens_words.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -9,6 +10,9 @@
 
 namespace batten::gcode {
 namespace {
+
+// No control takes such numbers.
+constexpr double kNumberLimit = 1e9;
 
 class SiemensReader {
  public:
@@ -72,7 +76,7 @@ class SiemensReader {
       ++end;
     }
     const auto number = read_number(text_.substr(at_, end - at_));
-    if (!number) return false;
+    if (!number || std::abs(number->value) >= kNumberLimit) return false;
     // 1EX3 and G1X5: the first is an exponent, the second are two words.
     if (end + 1 < text_.size() && upper(text_[end]) == 'E' && upper(text_[end + 1]) == 'X') {
       return false;

@@ -190,7 +190,8 @@ TEST(KlartextLine, IsReadAsTheManualsPrintIt) {
   EXPECT_EQ(line->words[3].exponent, 2);
   EXPECT_EQ(line->words[6].name, "RL");
   EXPECT_FALSE(line->words[7].value);
-  for (const char* bad : {"8 SPL X+", "8 L X+1 1Y+2", "8 SPL ~ X+1", "L \"T\"", "K1X+E2"}) {
+  for (const char* bad :
+       {"8 SPL X+", "8 L X+1 1Y+2", "8 SPL ~ X+1", "L \"T\"", "K1X+E2", "L X+1000000000"}) {
     EXPECT_FALSE(read_klartext_line(bad)) << bad;
   }
 }

@@ -156,6 +156,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(KlartextCase{"NoCentre", "1 C X+1 Y+1 DR+\n", "a C without a CC before it"},
                     KlartextCase{"NoSense", "1 CC X+1 Y+0\n2 C X+1 Y+1\n", "a C without DR"},
                     KlartextCase{"Helix", "1 CC X+1 Y+0\n2 C X+1 Y+1 Z+1 DR+\n", "a C with Z"},
+                    KlartextCase{"OffItsCircle", "1 CC X+5 Y+0\n2 C X+10.017 Y+0 DR+\n",
+                                 "the radii at the ends of an arc differ"},
                     KlartextCase{"HalfACentre", "1 CC X+1\n", "a CC without X and Y"},
                     KlartextCase{"Rapid", "1 L X+1 FMAX\n", "no L, CC or C"},
                     KlartextCase{"Compensation", "1 L X+1 RL F100\n", "no L, CC or C"},

@@ -87,8 +87,9 @@ TEST(Bspline, RandomCurvesAreReadWithinTheirRounding) {
 }
 
 TEST(Bspline, RefusesIntervalsThatAreNoClampedCubic) {
-  for (const char* text : {"BSPLINE SD=3 X1 PL=1\nX2 PL=0\n", "BSPLINE X1 PL=1\nX2 PL=0\nX3 PL=1\n",
-                           "BSPLINE X1 PL=0\nX2 PL=0\nX3 PL=0\n"}) {
+  for (const char* text :
+       {"BSPLINE SD=3 X1 PL=1\nX2 PL=0\n", "BSPLINE X1 PL=1\nX2 PL=0\nX3 PL=1\n",
+        "BSPLINE X1 PL=0\nX2 PL=0\nX3 PL=0\n", "BSPLINE X1 PL=0\nX2 PL=1\nX3 PL=0\nX4 PL=0\n"}) {
     EXPECT_EQ(refusal_of(read_bspline(parsed(text), 0, starting_at(Point3::Zero()), kAccepted)),
               "PL of the blocks is no clamped cubic")
         << text;

@@ -181,7 +181,7 @@ TEST(Poly, RandomCurvesAreReadWithinTheirRounding) {
     worst = std::max(worst, move);
     for (std::size_t i = 1; i < read.size(); ++i) {
       EXPECT_EQ(read[i].control[0], read[i - 1].control[3]) << "blocks that do not chain";
-      // Half a step e of a2 and a3 turns a tangent at the end by 3 e of its length, at the start by
+      // Half a step e of a2 and a3 changes the derivative at the end by 3 e, at the start by
       // 2 e, on every axis.
       const double arriving = 3 * (pieces[i - 1].control[3] - pieces[i - 1].control[2]).norm();
       const double leaving = 3 * (pieces[i].control[1] - pieces[i].control[0]).norm();
@@ -334,7 +334,7 @@ TEST(SiemensWords, AreReadWithAndWithoutBlanks) {
 
 TEST(SiemensWords, WhatIsNoPlainNumberIsNotUnderstood) {
   for (const char* block : {"X=R1", "X=AC(10)", "X1=10", "MSG(\"a\")", "X1EX3", "PO[X]=(1,2",
-                            "PO[X=(1)", "X", "LABEL:", "X--1", "PO[X]=()"}) {
+                            "PO[X=(1)", "X", "LABEL:", "X--1", "PO[X]=()", "X=1000000000"}) {
     EXPECT_FALSE(read_siemens_words(block)) << block;
   }
 }
