@@ -3,17 +3,41 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <numbers>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "gcode/modal_state.h"
 #include "gcode/number_format.h"
+#include "gcode/source_marks.h"
 #include "geometry/path.h"
 
 namespace batten::gcode {
 
-class CurveFormat;  // gcode/curves/curve_format.h
+class CurveFormat;   // gcode/curves/curve_format.h
+struct TargetTable;  // gcode/target_table.h
+
+// How an arc says where its centre is.
+enum class ArcForm : std::uint8_t {
+  kCenters,  // I J K
+  kRadius,   // R, for arcs of less than half a turn
+};
+
+// How a control that runs nothing but lines cuts arcs into chords, as far as that is coarse enough
+// to count. All 0: not known to count.
+struct ArcChords {
+  double error = 0;       // mm: chords that leave the arc by this much
+  double longest = 0;     // mm: chords of this length
+  double shortest = 0;    // mm: where there are this many chords in a circle, but none shorter
+  double per_circle = 0;  // than `shortest` and none longer than `longest`
+  bool operator==(const ArcChords&) const = default;
+};
+
+// mm: how far such chords leave an arc of this radius at the most.
+[[nodiscard]] double chord_error(const ArcChords& chords, double radius);
 
 class Dialect {
  public:
@@ -43,6 +67,39 @@ class Dialect {
   [[nodiscard]] virtual bool takes_arc_distance_mode() const = 0;  // G90.1, G91.1
   [[nodiscard]] virtual bool blanks_between_words() const = 0;
 
+  [[nodiscard]] virtual ArcForm arc_form() const { return ArcForm::kCenters; }
+
+  // Radians. Longer arcs are written as several, none longer than this; also none across one of
+  // the plane's axes as seen from the centre, where the control needs single quadrants.
+  [[nodiscard]] virtual double max_arc_sweep() const { return 2 * std::numbers::pi; }
+  [[nodiscard]] virtual bool needs_single_quadrants() const { return false; }
+
+  // The control's own chords add to our deviation: an arc that they leave too far is written as
+  // chords of ours.
+  [[nodiscard]] virtual ArcChords arc_chords() const { return {}; }
+
+  // Whether every block has to name its motion, and every arc both axes of its plane.
+  [[nodiscard]] virtual bool repeats_words() const { return false; }
+
+  // What a G word (in tenths: G38.2 is 382) does on this control that is not what the reader takes
+  // it for, with what to say instead; empty where both agree or nothing is known.
+  [[nodiscard]] virtual std::string_view other_meaning(int g_code) const {
+    (void)g_code;
+    return {};
+  }
+
+  // By which words a program may tell that it was made for this control or one like it. A program
+  // with other marks was made for others.
+  [[nodiscard]] virtual SourceMarks known_marks() const { return kAllMarks; }
+
+  // Whether the control refuses a word that most others of the RS-274 family take (M6 on grbl), as
+  // far as is known; `number` in tenths. Asked when a program is moved from one control to another.
+  [[nodiscard]] virtual bool cannot_say(char letter, int number) const {
+    (void)letter;
+    (void)number;
+    return false;
+  }
+
   // Would the control run this arc? The piece is the arc as its printed numbers say it
   // (end, centre offsets rounded). Returns the control's complaint, empty when it takes it.
   [[nodiscard]] virtual std::string_view arc_complaint(const geometry::Arc& printed,
@@ -57,6 +114,13 @@ class Dialect {
 
   // A comment line with this text, or empty when the text cannot be said.
   [[nodiscard]] virtual std::string comment(std::string_view text) const = 0;
+
+  // Lines that `batten targets --show` puts into a profile as remarks: the control's own smoothing
+  // words, and how sure they are.
+  [[nodiscard]] virtual std::span<const std::string_view> smoothing_words() const { return {}; }
+
+  // The same control with other values, as a user's profile has them. This dialect must outlive it.
+  [[nodiscard]] virtual std::unique_ptr<const Dialect> with_values(const TargetTable& table) const;
 
   // Name of the built-in machine model that runs this target when no machine is given.
   [[nodiscard]] virtual std::string_view default_machine() const = 0;

@@ -17,7 +17,7 @@ constexpr std::array<char, 3> kAxisLetters = {'X', 'Y', 'Z'};
 constexpr std::array<char, 3> kCenterLetters = {'I', 'J', 'K'};
 
 // Enough for any number of a source.
-constexpr NumberFormat kAllDecimals = {.decimals = 9};
+constexpr int kAllDecimals = 9;
 
 const PlaneAxes& arc_plane(const geometry::Vector3& axis) {
   const PlaneAxes* plane = plane_across(axis);
@@ -61,6 +61,7 @@ struct Writer::PrintedArc {
   geometry::Arc arc;  // as the printed numbers say it, about the positive axis
   Coordinates end;
   std::array<std::string, 2> center;  // of the plane's first and second axis; empty: left out
+  std::string radius;                 // empty where the centre is given
 };
 
 Writer::Writer(const Dialect& dialect, WriterState state, std::string_view line_end)
@@ -90,6 +91,7 @@ bool Writer::arc_to(const geometry::Arc& arc, double feed) {
     const std::string& digits = printed->center[axis == printed->plane.first ? 0 : 1];
     if (!digits.empty()) add(kCenterLetters[static_cast<std::size_t>(axis)], digits);
   }
+  if (!printed->radius.empty()) add('R', printed->radius);
   add_feed(feed);
   end_block();
   return true;
@@ -111,6 +113,12 @@ void Writer::restore(const ModalState& expected) {
     add_motion(expected.motion);
   }
   if (expected.feed) add_feed(*expected.feed);
+  if (block_.starts_with('F') && dialect_.repeats_words()) {
+    const bool rapid = expected.motion == MotionMode::kRapid;
+    const std::string motion = rapid ? "G0" : "G1";
+    block_ = motion + (dialect_.blanks_between_words() ? " " : "") + block_;
+    state_.modal.motion = rapid ? MotionMode::kRapid : MotionMode::kLine;
+  }
   if (!block_.empty()) end_block();
 }
 
@@ -144,7 +152,11 @@ std::optional<Writer::PrintedArc> Writer::print_arc(const geometry::Arc& arc) co
   printed.arc.end = {printed.end[0].mm, printed.end[1].mm, printed.end[2].mm};
   printed.arc.axis = geometry::Vector3::Unit(normal);
   const double sweep = arc.axis[normal] > 0 ? arc.sweep : -arc.sweep;
-  print_center(arc.center, sweep, printed);
+  if (dialect_.arc_form() == ArcForm::kCenters) {
+    print_center(arc.center, sweep, printed);
+  } else if (!print_radius(arc.center, sweep, printed)) {
+    return std::nullopt;
+  }
   if (std::abs(printed.arc.sweep - sweep) > std::numbers::pi) return std::nullopt;
   if (!dialect_.arc_complaint(printed.arc, state_.modal.units).empty()) return std::nullopt;
   return printed;
@@ -155,18 +167,30 @@ bool Writer::absolute_centers() const {
 }
 
 bool Writer::centers_understood() const {
-  return absolute_centers() || state_.modal.arc_distance == DistanceMode::kIncremental;
+  return dialect_.arc_form() == ArcForm::kRadius || absolute_centers() ||
+         state_.modal.arc_distance == DistanceMode::kIncremental;
 }
 
-// An arc needs a word of its plane even where it comes back to where it began.
+// An arc needs a word of its plane even where it comes back to where it began; some controls want
+// both words always.
 Writer::Coordinates Writer::print_arc_end(const Point3& end, const PlaneAxes& plane) const {
   Coordinates coordinates = print(end);
   Coordinate& first = coordinates[static_cast<std::size_t>(plane.first)];
-  if (!first.changes && !coordinates[static_cast<std::size_t>(plane.second)].changes) {
-    first.changes = true;
-    first.digits = to_text(first.mm / unit_, kAllDecimals);  // where it is, exactly
-  }
+  Coordinate& second = coordinates[static_cast<std::size_t>(plane.second)];
+  const bool neither = !first.changes && !second.changes;
+  if (neither || dialect_.repeats_words()) name_again(first);
+  if (dialect_.repeats_words()) name_again(second);
   return coordinates;
+}
+
+// Where the axis is, exactly.
+void Writer::name_again(Coordinate& coordinate) const {
+  if (coordinate.changes) return;
+  NumberFormat exact = coordinates_;
+  exact.decimals = kAllDecimals;
+  exact.trailing_zeros = false;
+  coordinate.changes = true;
+  coordinate.digits = to_text(coordinate.mm / unit_, exact);
 }
 
 // The centre in the program's units, from printed start and printed end; then the sweep.
@@ -193,6 +217,33 @@ void Writer::print_center(const Point3& wanted, double sweep, PrintedArc& printe
   printed.arc.center[plane.second] = center.y() * unit_;
 }
 
+// The radius in the program's units; then the centre that it says, and the sweep. False where R
+// would not say the arc: half a turn and more, or ends further apart than the printed diameter.
+bool Writer::print_radius(const Point3& wanted, double sweep, PrintedArc& printed) const {
+  if (!(std::abs(sweep) < std::numbers::pi)) return false;
+  const PlaneAxes& plane = printed.plane;
+  const PlanePoint start = in_plane(printed.arc.start, plane) / unit_;
+  const PlanePoint end = in_plane(printed.arc.end, plane) / unit_;
+  const PlanePoint half = (end - start) / 2;
+  if (!(half.norm() > 0)) return false;
+  const PlanePoint along = PlanePoint(-half.y(), half.x()).normalized();
+  const PlanePoint middle = start + half;
+  const double height = (in_plane(wanted, plane) / unit_ - middle).dot(along);
+
+  printed.radius =
+      to_text(std::hypot(height, half.norm()), dialect_.arc_offsets(state_.modal.units));
+  const double radius = read_number(printed.radius)->value;
+  if (!(radius > half.norm())) return false;
+  // The centre of a short counter-clockwise arc lies to the left of its chord.
+  const double side = sweep > 0 ? 1 : -1;
+  const PlanePoint center = middle + side * std::sqrt(radius * radius - half.squaredNorm()) * along;
+  printed.arc.sweep = sweep_between(start, end, center, sweep);
+  printed.arc.center = printed.arc.start;
+  printed.arc.center[plane.first] = center.x() * unit_;
+  printed.arc.center[plane.second] = center.y() * unit_;
+  return true;
+}
+
 void Writer::add(char letter, std::string_view digits) {
   if (!block_.empty() && dialect_.blanks_between_words()) block_ += ' ';
   block_ += letter;
@@ -206,7 +257,7 @@ void Writer::add_plane(Plane plane) {
 }
 
 void Writer::add_motion(MotionMode motion) {
-  if (motion == state_.modal.motion) return;
+  if (motion == state_.modal.motion && !dialect_.repeats_words()) return;
   constexpr std::array<std::string_view, 4> kNumbers = {"0", "1", "2", "3"};
   add('G',
       kNumbers[static_cast<std::size_t>(motion) - static_cast<std::size_t>(MotionMode::kRapid)]);

@@ -36,8 +36,9 @@ class Writer {
 
   // An arc in the plane across `arc.axis` (which must be an axis of the coordinate system;
   // throws std::invalid_argument otherwise). Starts at the writer's place; arc.start is not
-  // looked at. Selects the plane when it is not active. The printed centre offsets are computed
-  // from the printed start and end, so that both radii agree to within rounding. Returns false
+  // looked at. Selects the plane when it is not active. The printed centre offsets, or the radius
+  // where the dialect gives that, are computed from the printed start and end, so that both radii
+  // agree to within rounding. Returns false
   // and writes nothing when the dialect's rules refuse the printed arc, when rounding would make
   // it a full turn or none, or when it is not known how centres are to be given (G90.1, G91.1).
   [[nodiscard]] bool arc_to(const geometry::Arc& arc, double feed);
@@ -51,7 +52,8 @@ class Writer {
   // cannot stand alone (only G0 and G1 can) and that is not active.
   void restore(const ModalState& expected);
 
-  // Whether it is known how arc centres are to be given; arc_to refuses every arc where not.
+  // Whether it is known how arc centres are to be given, or they are not given at all; arc_to
+  // refuses every arc where not.
   [[nodiscard]] bool centers_understood() const;
 
   [[nodiscard]] const std::string& text() const { return text_; }
@@ -72,6 +74,9 @@ class Writer {
   [[nodiscard]] std::optional<PrintedArc> print_arc(const geometry::Arc& arc) const;
   [[nodiscard]] Coordinates print_arc_end(const geometry::Point3& end,
                                           const PlaneAxes& plane) const;
+  void name_again(Coordinate& coordinate) const;
+  [[nodiscard]] bool print_radius(const geometry::Point3& wanted, double sweep,
+                                  PrintedArc& printed) const;
   void print_center(const geometry::Point3& wanted, double sweep, PrintedArc& printed) const;
   [[nodiscard]] bool absolute_centers() const;
 

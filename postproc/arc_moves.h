@@ -15,7 +15,9 @@ namespace batten::postproc {
 // mm: the printed step of the ends of arcs.
 [[nodiscard]] double arc_grid(const PlanOptions& options);
 
-// Appends the piece; chords within `deviation` of it where it is an arc that the target refuses.
+// Appends the piece; an arc in as many parts as the target needs, and chords within `deviation` of
+// those parts that it refuses or that its own chords would leave further than
+// options.max_deviation.
 void append_taken(const geometry::PathPiece& piece, double deviation, const PlanOptions& options,
                   geometry::Path& path);
 

@@ -38,10 +38,12 @@ std::vector<CommandRow> command_rows() {
        {{"IN", "the program, - is standard input"}},
        "Example:\n  batten inspect part.nc --json part.json"},
       {"targets",
-       "List the controls that programs can be written for.",
-       list_rows(),
+       "List the controls that programs can be written for, or show one as a profile.",
+       target_list_rows(),
        {},
-       "Example:\n  batten targets"},
+       "Example:\n"
+       "  batten targets --show haas > mine.toml\n"
+       "prints a profile; batten smooth part.nc --target mine.toml reads it."},
       {"machines", "List the built-in machines.", list_rows(), {}, "Example:\n  batten machines"},
       {"methods", "List the ways of smoothing.", list_rows(), {}, "Example:\n  batten methods"},
       {"explain",

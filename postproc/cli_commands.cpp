@@ -6,6 +6,7 @@
 
 #include "postproc/machine_file.h"
 #include "postproc/output_file.h"
+#include "postproc/target_profile.h"
 
 namespace batten::postproc {
 
@@ -48,18 +49,62 @@ void read_units_into(gcode::Units& units, const Given& given, Problems& problems
   if (const auto text = given.value("units")) read_into(units, read_units(*text, problems));
 }
 
-void read_target(const Given& given, SmoothOptions& options, Problems& problems) {
+std::vector<std::string_view> target_names() {
   std::vector<std::string_view> names;
   for (const gcode::Dialect* dialect : gcode::dialects()) names.push_back(dialect->name());
-  const auto text = given.value("target");
-  if (!text) {
-    std::string possible;
-    for (const auto name : names) possible += (possible.empty() ? "" : ", ") + std::string(name);
-    problems.push_back("--target: no target given; possible: " + possible);
+  return names;
+}
+
+// Adds a problem where there is none of that name.
+const gcode::Dialect* built_in_target(std::string_view option, const std::string& name,
+                                      Problems& problems) {
+  const gcode::Dialect* target = gcode::find_dialect(name);
+  if (target == nullptr) problems.push_back(unknown_name(option, name, target_names()));
+  return target;
+}
+
+bool is_profile_file(const std::optional<std::string>& name) {
+  return name && name->ends_with(".toml");
+}
+
+// --target NAME, --target FILE.toml, --profile FILE.toml, or --target NAME with --profile
+// FILE.toml.
+void read_target(const Given& given, SmoothCommand& command, Problems& problems) {
+  const auto name = given.value("target");
+  const auto file = is_profile_file(name) ? name : given.value("profile");
+  if (is_profile_file(name) && given.has("profile")) {
+    problems.push_back("--profile: --target names a profile already");
     return;
   }
-  options.target = gcode::find_dialect(*text);
-  if (options.target == nullptr) problems.push_back(unknown_name("target", *text, names));
+  if (!name && !file) {
+    std::string possible;
+    for (const auto each : target_names()) {
+      possible += (possible.empty() ? "" : ", ") + std::string(each);
+    }
+    problems.push_back("--target: no target given; possible: " + possible +
+                       ", or a profile NAME.toml");
+    return;
+  }
+  const gcode::Dialect* target = nullptr;
+  if (name && !is_profile_file(name)) {
+    target = built_in_target("target", *name, problems);
+    if (target == nullptr) return;
+  }
+  command.options.target = target;
+  if (!file) return;
+  const std::size_t problems_before = problems.size();
+  command.profile = read_target_profile(*file, target, problems);
+  if (command.profile == nullptr) {
+    // What was said about the file says enough; the options are not to say it again.
+    for (std::size_t i = problems_before; i < problems.size(); ++i) {
+      problems[i] = "--target: " + problems[i];
+    }
+    command.options.target = nullptr;
+    return;
+  }
+  command.options.target = command.profile->adapted.get();
+  command.options.words = command.profile->words;
+  command.options.profile = *file;
 }
 
 // A name without a suffix is built in; anything else is a file.
@@ -100,7 +145,7 @@ void read_tolerance_kind_into(geometry::ToleranceKind& kind, const Given& given,
 
 void read_smooth_options(const Given& given, SmoothCommand& command, Problems& problems) {
   SmoothOptions& options = command.options;
-  read_target(given, options, problems);
+  read_target(given, command, problems);
   read_machine(given, command, problems);
   read_tolerance_into(given, options, problems);
   read_tolerance_kind_into(options.tolerance_kind, given, problems);
@@ -124,6 +169,7 @@ void read_smooth_options(const Given& given, SmoothCommand& command, Problems& p
     read_into(options.threads, read_integer("threads", *text, problems));
   }
   options.allowed = given.values("allow");
+  options.convert = given.flag("convert");
 }
 
 // What was missing or unreadable has been said; the check of the options would say it again.
@@ -207,6 +253,9 @@ VerifyCommand verify_command(const Given& given, const std::vector<std::string>&
   command.force = given.flag("force");
   read_units_into(command.units, given, problems);
   read_tolerance_kind_into(command.tolerance_kind, given, problems);
+  if (const auto file = given.value("profile")) {
+    command.profile = read_target_profile(*file, nullptr, problems);
+  }
   if (const auto text = given.value("tolerance")) {
     if (const auto tolerance = read_tolerance(*text, problems)) {
       command.tolerance_mm = tolerance->mm;
@@ -240,8 +289,11 @@ InspectCommand inspect_command(const Given& given, const std::vector<std::string
 ListCommand list_command(BuiltIn what, const Given& given, const std::vector<std::string>& files,
                          Problems& problems) {
   check_files(files, {}, problems);
-  return {
+  ListCommand command = {
       .what = what, .json_file = given.value("json").value_or(""), .force = given.flag("force")};
+  if (const auto name = given.value("show"))
+    command.show = built_in_target("show", *name, problems);
+  return command;
 }
 
 }  // namespace batten::postproc

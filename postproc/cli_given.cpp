@@ -35,11 +35,18 @@ constexpr OptionRow kAllow = {
     .help = "lift a rule that keeps runs, by its id in the report; may be repeated",
     .in_config = true};
 
+constexpr OptionRow kProfile = {
+    .name = "profile",
+    .value = "FILE.toml",
+    .help = "the target as your machine has it (batten targets --show NAME prints one)",
+    .in_config = true};
+
 constexpr std::array kSmoothRows = {
     OptionRow{.name = "target",
-              .value = "NAME",
-              .help = "the control that will run the program (batten targets)",
+              .value = "NAME|FILE.toml",
+              .help = "the control that will run the program (batten targets), or a profile of it",
               .in_config = true},
+    kProfile,
     kTolerance,
     kToleranceKind,
     OptionRow{.name = "machine",
@@ -72,6 +79,12 @@ constexpr std::array kSmoothRows = {
               .in_config = true},
     kUnits,
     kAllow,
+    OptionRow{
+        .name = "convert",
+        .kind = OptionKind::kFlag,
+        .help = "take a program for other controls if every block says the same on the target",
+        .default_value = "false",
+        .in_config = true},
     OptionRow{.name = "out",
               .value = "FILE",
               .help = "the new program, - is standard output; default: IN with .smooth before "
@@ -108,7 +121,11 @@ constexpr std::array kSmoothRows = {
               .help = "print the options as such a file and do nothing else"},
 };
 
-constexpr std::array kVerifyRows = {kTolerance, kToleranceKind, kUnits, kJson, kForce};
+constexpr std::array kTargetListRows = {
+    OptionRow{
+        .name = "show", .value = "NAME", .help = "print a profile of this target to start from"},
+    kJson, kForce};
+constexpr std::array kVerifyRows = {kTolerance, kProfile, kToleranceKind, kUnits, kJson, kForce};
 constexpr std::array kInspectRows = {kUnits, kAllow, kJson, kForce};
 constexpr std::array kListRows = {kJson, kForce};
 
@@ -117,6 +134,7 @@ constexpr std::array kListRows = {kJson, kForce};
 std::span<const OptionRow> smooth_rows() { return kSmoothRows; }
 std::span<const OptionRow> verify_rows() { return kVerifyRows; }
 std::span<const OptionRow> inspect_rows() { return kInspectRows; }
+std::span<const OptionRow> target_list_rows() { return kTargetListRows; }
 std::span<const OptionRow> list_rows() { return kListRows; }
 
 void Given::add(std::string_view name, std::string value) {

@@ -11,6 +11,7 @@
 #include "gcode/modal_state.h"
 #include "geometry/tolerance_kind.h"
 #include "postproc/machine/machine.h"
+#include "postproc/profile_words.h"
 
 namespace batten::postproc {
 
@@ -54,6 +55,9 @@ struct SmoothOptions {
   std::optional<Linearize> linearize;      // nothing: what serves `prefer`, see linearize_of
   std::optional<double> keep_corners_deg;  // turns above this stay corners
   std::vector<std::string> allowed;        // --allow
+  bool convert = false;  // a program of another family is taken where every block can be said
+  ProfileWords words;    // that a profile adds; its target is `target`
+  std::string profile;   // the profile's file, for reports; empty: none
   std::size_t min_motions = 3;
   int threads = 0;  // 0: all cores
 };

@@ -12,6 +12,9 @@
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
 #include "gcode/reason.h"
+#include "postproc/added_lines.h"
+#include "postproc/assembly.h"
+#include "postproc/conversion.h"
 #include "postproc/provenance.h"
 #include "postproc/run_choice.h"
 #include "postproc/run_cutting.h"
@@ -19,6 +22,7 @@
 #include "postproc/run_path.h"
 #include "postproc/run_work.h"
 #include "postproc/smoothing.h"
+#include "postproc/target_words.h"
 
 namespace batten::postproc {
 
@@ -46,6 +50,7 @@ class Smoothing {
     result_.understood = !gcode::has_error(result_.diagnostics);
     if (!result_.understood || !tell(kAfterReading)) return refused();
     prepare_runs();
+    if (!work_.empty() && !fits_target()) return refused();
     if (!smooth_runs()) return refused();
     if (!prove()) return refused();
     report();
@@ -69,6 +74,23 @@ class Smoothing {
     for (const gcode::ModalState& state : meaning_.states) {
       if (result_.units == gcode::Units::kUnknown) result_.units = state.units;
     }
+    tell_of_other_meanings(program_, *options_.target, result_.diagnostics);
+    tell_of_own_words();
+  }
+
+  // The program's own smoothing words and those of the profile would undo each other. A program
+  // that was smoothed before has both, and nothing is added to it.
+  void tell_of_own_words() {
+    additions_.comment = provenance_comment(*options_.target, options_.tolerance_mm);
+    additions_.words =
+        filled_in(options_.words, options_.tolerance_mm, result_.units, *options_.target);
+    const std::uint32_t line = line_with_words_of(program_, additions_.words);
+    if (line == 0 || (was_smoothed(program_) && !is_allowed(gcode::reason::kAlreadySmoothed))) {
+      return;
+    }
+    result_.diagnostics.push_back(
+        {gcode::Severity::kError, "profile-words-in-program", program_.blocks[line - 1].span,
+         "words that the profile would add; expected them in the program or in the profile"});
   }
 
   [[nodiscard]] static std::string_view bytes_of(const gcode::Program& program,
@@ -122,6 +144,14 @@ class Smoothing {
       if (!std::holds_alternative<Run>(sections_[i].content)) continue;
       work_.push_back({i, context_of(program_, meaning_, sections_[i])});
     }
+  }
+
+  // What is copied must say on the target what it said where it came from.
+  bool fits_target() {
+    if (!is_of_another_family(program_, *options_.target)) return true;
+    const auto tell = options_.convert ? &tell_what_cannot_be_said : &tell_of_other_family;
+    tell(program_, *options_.target, result_.diagnostics);
+    return !gcode::has_error(result_.diagnostics);
   }
 
   [[nodiscard]] const Run& run_of(const RunWork& work) const {
@@ -222,39 +252,21 @@ class Smoothing {
     return true;
   }
 
-  // The first rewritten run carries the comment that the program was smoothed.
-  [[nodiscard]] std::string assemble() const {
-    std::string text;
-    text.reserve(source_.text().size());
-    std::string told = provenance_comment(*options_.target, options_.tolerance_mm);
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < sections_.size(); ++i) {
-      const Candidate* chosen = nullptr;
-      if (next < work_.size() && work_[next].section == i) {
-        chosen = work_[next].chosen();
-        if (chosen != nullptr && !told.empty()) {
-          text += std::exchange(told, {});
-          text += work_[next].context.line_end;
-        }
-        ++next;
-      }
-      text += chosen != nullptr ? std::string_view(chosen->text.text) : bytes_of(sections_[i]);
-    }
-    return text;
-  }
-
   // Proves the text itself, read back as a control would read it. A run that does not hold its
   // tolerance tries its next candidate and in the end goes back to its original blocks, so each
   // round leaves fewer candidates and the loop ends.
   bool prove() {
     while (true) {
-      std::string text = assemble();
-      const gcode::SourceText written(source_.name(), text);
+      std::string text = assemble(program_, sections_, work_, additions_);
+      const AddedLines added = take_added_lines(program_, text, additions_.words);
+      const gcode::SourceText written(source_.name(), added.text);
       gcode::Diagnostics ignored;
       const gcode::Program program = gcode::parse(written, ignored);
       const gcode::Interpretation meaning = gcode::interpret(program, read_options_, ignored);
       Verification verification = verify({&program_, &meaning_}, {&program, &meaning},
                                          {options_.tolerance_mm, options_.tolerance_kind});
+      add_breaches(added, {&program, &meaning}, verification);
+      result_.added_lines = added.lines;
       result_.text = std::move(text);
       result_.blocks_out = program.blocks.size();
       if (!tell(kAfterSmoothing)) return false;
@@ -266,6 +278,15 @@ class Smoothing {
       verification_ = std::move(verification);
       return true;
     }
+  }
+
+  static void add_breaches(const AddedLines& added, const ReadProgram& read,
+                           Verification& verification) {
+    const auto add = [&](const std::vector<Breach>& breaches) {
+      verification.breaches.insert(verification.breaches.end(), breaches.begin(), breaches.end());
+    };
+    add(added.breaches);
+    add(events_in_brackets(read, added.brackets));
   }
 
   // The rewritten run that holds a line of the input; the nearest rewritten one before it where
@@ -432,6 +453,7 @@ class Smoothing {
   std::vector<Section> sections_;
   std::vector<RunWork> work_;
   std::vector<CutRun> cut_runs_;
+  Additions additions_;
   bool again_ = false;               // the program was smoothed before
   std::size_t points_ = 0;           // of all runs
   std::size_t smoothed_points_ = 0;  // pieces count again

@@ -47,6 +47,7 @@ struct SmoothResult {
   gcode::Units units = gcode::Units::kUnknown;
   std::size_t blocks_in = 0;
   std::size_t blocks_out = 0;
+  std::size_t added_lines = 0;  // words of the profile
   double deviation_mm = 0;
   std::uint32_t deviation_line = 0;
   double corner_mm = 0;      // band reading: greatest distance of a corner that was cut

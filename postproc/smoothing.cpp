@@ -290,7 +290,7 @@ class RunSmoother {
   // from it is not known but for their deviation.
   void add(const RunCurve& curve, const std::optional<OutputPlan>& plan, double error) {
     if (!plan) return;
-    auto text = write_run(*plan, run_, context_.program, *options_.target, context_.before,
+    auto text = write_run(*plan, run_, context_.program, *options_.target, state_before(),
                           context_.after, context_.line_end);
     if (!text) return;
     Candidate candidate;
@@ -305,6 +305,16 @@ class RunSmoother {
     candidate.text = std::move(*text);
     if (context_.is_piece()) candidate.moves = std::move(moves);
     result_.candidates.push_back(std::move(candidate));
+  }
+
+  // Behind words of a profile the run says its motion and its feed itself.
+  [[nodiscard]] gcode::ModalState state_before() const {
+    gcode::ModalState before = context_.before;
+    if (!options_.words.before_run.empty()) {
+      before.motion = gcode::MotionMode::kUnknown;
+      before.feed.reset();
+    }
+    return before;
   }
 
   SmoothedRun kept(std::string_view reason) {

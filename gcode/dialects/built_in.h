@@ -1,5 +1,6 @@
-// One dialect per family, each defined in the .cpp of its name. To add one: its .cpp, a line
-// here, its place in the list of gcode/dialect.cpp.
+// The dialects by family, each family in the .cpp of its name: a class where a control has ways of
+// its own, a row of a table (row_dialect.h) where values and known rules say all. To add one: a row
+// in its family, or its .cpp, a line here and its place in the list of gcode/dialect.cpp.
 #pragma once
 
 #include "gcode/dialect.h"
@@ -8,5 +9,10 @@ namespace batten::gcode {
 
 [[nodiscard]] const Dialect& linuxcnc_dialect();
 [[nodiscard]] const Dialect& grbl_dialect();
+[[nodiscard]] std::span<const Dialect* const> grbl_family();              // grbl first
+[[nodiscard]] std::span<const Dialect* const> printer_family();           // Marlin ..
+[[nodiscard]] std::span<const Dialect* const> pc_family();                // Mach3 ..
+[[nodiscard]] std::span<const Dialect* const> machining_center_family();  // Haas ..
+[[nodiscard]] std::span<const Dialect* const> plc_family();               // CODESYS ..
 
 }  // namespace batten::gcode

@@ -8,6 +8,7 @@
 #include "gcode/modal_state.h"
 #include "postproc/options.h"
 #include "postproc/progress.h"
+#include "postproc/target_profile.h"
 
 namespace batten::postproc {
 
@@ -15,7 +16,8 @@ namespace batten::postproc {
 
 struct SmoothCommand {
   SmoothOptions options;
-  std::shared_ptr<const Machine> own_machine;  // keeps a machine read from a file alive
+  std::shared_ptr<const Machine> own_machine;    // keeps a machine read from a file alive
+  std::shared_ptr<const TargetProfile> profile;  // and a target
   std::string input;
   std::string output;  // not given: default_output_path(input), or standard output for "-"
   std::string json_file;
@@ -35,6 +37,7 @@ struct VerifyCommand {
   double tolerance_mm = 0.01;
   geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
   gcode::Units units = gcode::Units::kUnknown;
+  std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
   std::string json_file;
   bool force = false;
 };
@@ -53,6 +56,7 @@ struct InspectCommand {
 enum class BuiltIn { kTargets, kMachines, kMethods };
 struct ListCommand {
   BuiltIn what = BuiltIn::kTargets;
+  const gcode::Dialect* show = nullptr;  // kTargets: this one's profile instead of the table
   std::string json_file;
   bool force = false;
 };

@@ -5,6 +5,7 @@
 #include "postproc/commands/files.h"
 #include "postproc/exit_code.h"
 #include "postproc/report/json_values.h"
+#include "postproc/target_profile.h"
 
 namespace batten::postproc {
 
@@ -42,12 +43,12 @@ std::string planes_of(const gcode::Dialect& target) {
 
 Listing list_targets() {
   Listing listing;
-  listing.text = fmt::format("{:<12} {:>8} {:>8} {:>5}  {:<12} {:<8} {:<12} {}\n", "target",
+  listing.text = fmt::format("{:<15} {:>8} {:>8} {:>5}  {:<12} {:<8} {:<12} {}\n", "target",
                              "mm places", "inch pl.", "line", "arcs in", "helices", "machine", "");
   for (const gcode::Dialect* target : gcode::dialects()) {
     const int mm = target->coordinates(gcode::Units::kMillimetre).decimals;
     const int inch = target->coordinates(gcode::Units::kInch).decimals;
-    listing.text += fmt::format("{:<12} {:>8} {:>8} {:>5}  {:<12} {:<8} {:<12} {}\n",
+    listing.text += fmt::format("{:<15} {:>8} {:>8} {:>5}  {:<12} {:<8} {:<12} {}\n",
                                 target->name(), mm, inch, target->max_line_length(),
                                 planes_of(*target), target->takes_helices() ? "yes" : "no",
                                 target->default_machine(), target->description());
@@ -110,6 +111,7 @@ Listing list(BuiltIn what) {
 }  // namespace
 
 int run(const ListCommand& command) {
+  if (command.show != nullptr) return write_result("-", profile_text(*command.show), false);
   const Listing listing = list(command.what);
   if (command.json_file != "-") {
     if (const int code = write_result("-", listing.text, false); code != 0) return code;

@@ -5,6 +5,7 @@
 
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
+#include "postproc/added_lines.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
 #include "postproc/exit_code.h"
@@ -157,6 +158,25 @@ int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& sou
   return write_json(command, {}, same, same);
 }
 
+// The new program without the lines that a profile may add; as it is where there is no profile.
+AddedLines without_added_lines(const VerifyCommand& command, const Read& before,
+                               const gcode::SourceText& new_source) {
+  ProfileWords words;
+  if (command.profile != nullptr) {
+    gcode::Units units = gcode::Units::kUnknown;
+    for (const gcode::ModalState& state : before.interpretation.states) {
+      if (units == gcode::Units::kUnknown) units = state.units;
+    }
+    words =
+        filled_in(command.profile->words, command.tolerance_mm, units, *command.profile->adapted);
+  }
+  return take_added_lines(before.program, new_source.text(), words);
+}
+
+void append(const std::vector<Breach>& breaches, Verification& verification) {
+  verification.breaches.insert(verification.breaches.end(), breaches.begin(), breaches.end());
+}
+
 }  // namespace
 
 int run(const VerifyCommand& command) {
@@ -167,7 +187,8 @@ int run(const VerifyCommand& command) {
   if (old_source->text() == new_source->text()) return accept_same_bytes(command, *new_source);
 
   const Read before = read(*old_source, command.units);
-  const Read after = read(*new_source, command.units);
+  const AddedLines added = without_added_lines(command, before, *new_source);
+  const Read after = read(gcode::SourceText(new_source->name(), added.text), command.units);
   if (!is_understood(before)) {
     say("the old program is not understood, so nothing can be proved about the new one");
     return static_cast<int>(ExitCode::kNotUnderstood);
@@ -176,11 +197,15 @@ int run(const VerifyCommand& command) {
     say("NOT PROVED: the new program is not understood, and the old one is");
     return static_cast<int>(ExitCode::kNotProved);
   }
-  const Verification verification =
+  Verification verification =
       verify({.program = &before.program, .interpretation = &before.interpretation},
              {.program = &after.program, .interpretation = &after.interpretation},
              {command.tolerance_mm, command.tolerance_kind});
   if (interrupted()) return interrupt_exit_code();
+  append(added.breaches, verification);
+  append(events_in_brackets({.program = &after.program, .interpretation = &after.interpretation},
+                            added.brackets),
+         verification);
 
   for (std::size_t i = 0; i < verification.breaches.size() && i < kMostBreaches; ++i) {
     std::fputs(text_of(verification.breaches[i], command).c_str(), stderr);
@@ -189,6 +214,14 @@ int run(const VerifyCommand& command) {
     say(fmt::format("{} more breaches, see --json", verification.breaches.size() - kMostBreaches));
   }
   std::fputs(summary_of(verification, command).c_str(), stderr);
+  if (added.lines > 0 && verification.proved()) {
+    std::fputs(
+        fmt::format("  besides {} lines that the profile {} adds, whose effect on the control "
+                    "is not known here\n",
+                    added.lines, command.profile->file)
+            .c_str(),
+        stderr);
+  }
   const ExitCode verdict = verification.proved() ? ExitCode::kDone : ExitCode::kNotProved;
   const int code = write_json(command, verification, before, after);
   return verdict == ExitCode::kDone ? code : static_cast<int>(verdict);

@@ -60,6 +60,13 @@ Json json_of(const ReasonCount& reason) {
           {"advice", reason.advice}, {"can_be_allowed", reason.can_be_allowed}};
 }
 
+Json profile_json(const SmoothReport& report) {
+  const ProfileWords& words = report.options.words;
+  return {{"file", report.options.profile}, {"lines_added", report.result.added_lines},
+          {"header", words.header},         {"footer", words.footer},
+          {"before_run", words.before_run}, {"after_run", words.after_run}};
+}
+
 }  // namespace
 
 Json smooth_json(const SmoothReport& report) {
@@ -69,28 +76,30 @@ Json smooth_json(const SmoothReport& report) {
   Json reasons = Json::array();
   for (const ReasonCount& reason : count_reasons(result.runs)) reasons.push_back(json_of(reason));
 
-  return {{"batten", BATTEN_VERSION},
-          {"options", json_of(report.options, report.strict)},
-          {"input",
-           {{"file", report.source.name()},
-            {"bytes", report.source.text().size()},
-            {"blocks", result.blocks_in},
-            {"units", name_of(result.units)}}},
-          {"output",
-           {{"file", report.output_file},
-            {"bytes", result.text.size()},
-            {"blocks", result.blocks_out},
-            {"target", report.options.target->name()}}},
-          {"runs", std::move(runs)},
-          {"reasons", std::move(reasons)},
-          {"deviation_mm", result.deviation_mm},
-          {"deviation_line", result.deviation_line},
-          {"corner_mm", result.corner_mm},
-          {"time_before_s", result.time_before_s},
-          {"time_after_s", result.time_after_s},
-          {"proved", result.proved},
-          {"understood", result.understood},
-          {"diagnostics", diagnostics_json(result.diagnostics, report.source)}};
+  Json json = {{"batten", BATTEN_VERSION},
+               {"options", json_of(report.options, report.strict)},
+               {"input",
+                {{"file", report.source.name()},
+                 {"bytes", report.source.text().size()},
+                 {"blocks", result.blocks_in},
+                 {"units", name_of(result.units)}}},
+               {"output",
+                {{"file", report.output_file},
+                 {"bytes", result.text.size()},
+                 {"blocks", result.blocks_out},
+                 {"target", report.options.target->name()}}},
+               {"runs", std::move(runs)},
+               {"reasons", std::move(reasons)},
+               {"deviation_mm", result.deviation_mm},
+               {"deviation_line", result.deviation_line},
+               {"corner_mm", result.corner_mm},
+               {"time_before_s", result.time_before_s},
+               {"time_after_s", result.time_after_s},
+               {"proved", result.proved},
+               {"understood", result.understood},
+               {"diagnostics", diagnostics_json(result.diagnostics, report.source)}};
+  if (!report.options.profile.empty()) json["profile"] = profile_json(report);
+  return json;
 }
 
 std::string json_report(const SmoothReport& report) { return json_text(smooth_json(report)); }

@@ -1,7 +1,7 @@
 // The report of `batten smooth` for programs: one JSON object, its fields always in the same
 // order, the same bytes for the same input and options (threads do not show).
 //
-//   batten, options, input, output, runs[], reasons[], deviation_mm, deviation_line,
+//   batten, options, input, output, profile (or null), runs[], reasons[], deviation_mm, deviation_line,
 //   time_before_s, time_after_s, proved, understood, diagnostics[]
 //
 // Bytes of names and messages that are not UTF-8 become U+FFFD; numbers that are not finite

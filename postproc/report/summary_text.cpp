@@ -136,6 +136,22 @@ void add_proof(const SmoothReport& report, bool rewritten, Lines& lines) {
   }
 }
 
+void add_profile(const SmoothReport& report, Lines& lines) {
+  if (report.options.profile.empty()) return;
+  const ProfileWords& words = report.options.words;
+  lines.add("profile", fmt::format("{}: {} added", report.options.profile,
+                                   plural(report.result.added_lines, "line")));
+  if (report.result.added_lines == 0) return;
+  for (const auto& [place, added] :
+       {std::pair("header", &words.header), std::pair("before runs", &words.before_run),
+        std::pair("after runs", &words.after_run), std::pair("footer", &words.footer)}) {
+    for (const std::string& line : *added) lines.add_more(fmt::format("{}: {}", place, line));
+  }
+  lines.add_more(
+      "what these words do on the control is not known here: where it smooths by itself,");
+  lines.add_more("its own tolerance adds to the deviation; verify needs --profile to accept them");
+}
+
 }  // namespace
 
 std::string summary_text(const SmoothReport& report) {
@@ -152,6 +168,7 @@ std::string summary_text(const SmoothReport& report) {
   const bool rewritten =
       std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status) > 0;
   add_proof(report, rewritten, lines);
+  add_profile(report, lines);
   return lines.text();
 }
 

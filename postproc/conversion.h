@@ -1,0 +1,29 @@
+// Programs that were made for another family of controls than the target's.
+//
+// Nothing is translated: what is not rewritten is copied, so a program can go to another control
+// only when every block that is copied says the same there.
+#pragma once
+
+#include "gcode/diagnostic.h"
+#include "gcode/dialect.h"
+#include "gcode/program.h"
+
+namespace batten::postproc {
+
+// Whether the program has words of controls that the target is none of.
+[[nodiscard]] bool is_of_another_family(const gcode::Program& program,
+                                        const gcode::Dialect& target);
+
+// Adds an error "other-family" for each kind of such words, at its first place.
+void tell_of_other_family(const gcode::Program& program, const gcode::Dialect& target,
+                          gcode::Diagnostics& found);
+
+// Adds an error "cannot-convert" for each block with a word that the target does not take, or not
+// for certain in the same meaning: only words that mean the same on every control of the RS-274
+// family pass (motions, planes, units, work offsets G54 to G59, G40, G43 with H, G49, G80, G90,
+// G91, G94, M0 to M6, M8, M9, M30, F, S, T, comments in the target's form), without those that the
+// target refuses. After 50 blocks one more says how many there are.
+void tell_what_cannot_be_said(const gcode::Program& program, const gcode::Dialect& target,
+                              gcode::Diagnostics& found);
+
+}  // namespace batten::postproc
