@@ -5,7 +5,10 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <stdexcept>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "gcode/dialect.h"
 #include "gcode/plane_axes.h"
