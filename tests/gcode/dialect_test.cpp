@@ -138,8 +138,14 @@ TEST(Linuxcnc, CountsEveryByte) {
 }
 
 TEST(Dialects, PutCommentsInParentheses) {
-  for (const Dialect* each : dialects()) {
-    EXPECT_EQ(each->comment("slot 2"), "(slot 2)");
+  for (const std::string_view name : {"linuxcnc", "grbl", "haas", "okuma", "mach3", "beckhoff"}) {
+    EXPECT_EQ(dialect(name).comment("slot 2"), "(slot 2)") << name;
+  }
+}
+
+TEST(Dialects, OfPrintersPutCommentsBehindASemicolon) {
+  for (const std::string_view name : {"marlin", "klipper", "reprapfirmware"}) {
+    EXPECT_EQ(dialect(name).comment("slot 2"), "; slot 2") << name;
   }
 }
 

@@ -469,7 +469,7 @@ std::string contour(std::string_view dialect, Units units) {
 }
 
 std::string expected_text(const std::string& file) {
-  const auto folder = std::filesystem::path(__FILE__).parent_path() / ".." / "cases";
+  const auto folder = std::filesystem::path(BATTEN_SOURCE_DIR) / "tests" / "cases";
   std::ifstream in(folder / "written_moves" / file, std::ios::binary);
   std::stringstream text;
   text << in.rdbuf();
