@@ -109,13 +109,13 @@ TEST_F(ProfileFile, TakesTheTargetThatIsNamedBesideIt) {
 }
 
 TEST_F(ProfileFile, ReadsWords) {
-  const auto profile = read(R"(
+  const auto profile = read(R"toml(
 based-on = "haas"
 [words]
 header = ["(smoothed within {tolerance})"]
 before-run = ["G187 P3 E{tolerance}"]
 after-run = ["G187"]
-)");
+)toml");
   ASSERT_NE(profile, nullptr) << problems_.at(0);
   const ProfileWords filled =
       filled_in(profile->words, 0.0127, gcode::Units::kInch, *profile->adapted);
