@@ -67,7 +67,9 @@ TEST_P(EveryTargetSmooths, AWaveInMillimetresProved) {
     ASSERT_TRUE(result.understood);
     EXPECT_TRUE(result.proved);
     EXPECT_LE(result.deviation_mm, 0.02);
-    if (form != Form::kArcs) EXPECT_EQ(rewritten_runs(result), 1U) << result.runs.back().reason;
+    if (form != Form::kArcs) {
+      EXPECT_EQ(rewritten_runs(result), 1U) << result.runs.back().reason;
+    }
     EXPECT_TRUE(verdict(text, result.text, 0.02).proved());
     expect_fits(text, result);
     expect_rest_copied(text, result);
