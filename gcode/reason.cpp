@@ -118,6 +118,9 @@ constexpr Explanation kExplanations[] = {
      "Two parts of the run are so near to each other that the new path would cross itself where "
      "the old one does not.",
      "A smaller tolerance may help.", false},
+    {kWrongSide,
+     "The new path could not be proved to stay on the side that --side asks for.",
+     "A larger tolerance may help, or more decimals.", false},
     {kAlreadySmoothed, "The program says that it was smoothed before; tolerances add up.",
      "Smooth the original instead, or --allow already-smoothed.", true},
     {kNoFit, "No curve inside the tolerance was found.", "A larger tolerance may help.", false},

@@ -72,6 +72,7 @@ inline constexpr std::string_view kNoGain = "no-gain";      // not faster, small
 inline constexpr std::string_view kSlower = "slower";
 inline constexpr std::string_view kNotProved = "not-proved";
 inline constexpr std::string_view kCrossesItself = "crosses-itself";
+inline constexpr std::string_view kWrongSide = "wrong-side";
 inline constexpr std::string_view kAlreadySmoothed = "already-smoothed";
 inline constexpr std::string_view kNoFit = "no-fit";  // no curve in the band was found
 inline constexpr std::string_view kTargetCannot = "target-cannot";  // the target cannot say it

@@ -26,6 +26,10 @@ constexpr double kSlightly = 1.2;
 constexpr int kWatched = 1;
 constexpr int kAttempts = 9;
 
+// Who wants the path that was meant above all gets a curve on more knots, that leaves this part of
+// what the vertices scatter. With less it would follow the noise itself.
+constexpr double kAccurate = 0.4;
+
 // Vertices that are met are met to this part of the tolerance.
 constexpr double kMetLimit = 0.01;
 
@@ -79,8 +83,9 @@ void BandFit::hold() {
 void BandFit::fit() {
   BandOptions band;
   band.limit = kAim * options_.tolerance;
-  band.least_scatter =
-      std::max(options_.scatter, std::min(options_.rounding, 0.25 * options_.tolerance));
+  const double rounding = std::min(options_.rounding, 0.25 * options_.tolerance);
+  band.noise_part = options_.accurate ? kAccurate : 1;
+  band.least_scatter = std::max(options_.scatter, band.noise_part * rounding);
   FitProblem problem = state_fair_problem(points_, features_, loosen_, care_, band);
   hold_met(problem);
   if (fit_) {

@@ -27,6 +27,10 @@ constexpr double kNoiseMargin = 1.2;
 // it would have to swing out to each vertex.
 constexpr double kTooHigh = 0.7;
 
+// A vertex turns more than by noise when it turns by so many noises over its edge: four standard
+// deviations of a second difference, sqrt(6) noises.
+constexpr double kSureTurn = 4 * 2.45;
+
 // Smooth edges whose chord may leave the curve by this part of the limit are watched between
 // their vertices; so are those whose vertices leave the curve as much room.
 constexpr double kWatchedSagitta = 0.25;
@@ -119,15 +123,37 @@ class ProblemMaker {
     return care_.empty() ? 1 : care_[edge].share;
   }
 
-  // How far a curve through the vertices would leave an edge.
+  // How far a curve through the vertices would leave an edge: the cubic that meets both ends at
+  // half of their turns.
   [[nodiscard]] double sagitta(std::size_t edge) const {
-    return length(edge) * (f_.turns[edge] + f_.turns[edge + 1]) / 16;
+    const double start = 0.5 * f_.turns[edge];
+    const double end = 0.5 * f_.turns[edge + 1];
+    if (!bends_back(edge)) return length(edge) * (start + end) / 8;
+    // It crosses the edge: the greater of its two bows.
+    double height = 0;
+    for (const double t : {0.1, 0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9}) {
+      height = std::max(height, std::abs(t * (1 - t) * (start * (1 - t) - end * t)));
+    }
+    return length(edge) * height;
+  }
+
+  // Whether the path turns to one side before an edge and to the other behind it, by more than
+  // its noise.
+  [[nodiscard]] bool bends_back(std::size_t edge) const {
+    if (edge == 0 || edge + 2 >= n_) return false;
+    const double noise = std::max(f_.noise[edge], f_.noise[edge + 1]);
+    const double by_noise = kSureTurn * noise / length(edge);
+    if (std::min(f_.turns[edge], f_.turns[edge + 1]) <= by_noise) return false;
+    const Vector3 before = direction(edge - 1).cross(direction(edge));
+    const Vector3 behind = direction(edge).cross(direction(edge + 1));
+    return before.dot(behind) < 0;
   }
 
   [[nodiscard]] double scatter(std::size_t i) const {
     const double height = std::max(sagitta(i - 1), sagitta(i));
     if (height > kTooHigh * options_.limit) return 0;
-    const double expected = std::max(kNoiseMargin * f_.noise[i], options_.least_scatter);
+    const double expected =
+        std::max(options_.noise_part * kNoiseMargin * f_.noise[i], options_.least_scatter);
     const double loose = loosen_.empty() ? 1 : loosen_[i];
     return std::isinf(loose) ? 0 : expected * loose;
   }

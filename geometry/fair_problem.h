@@ -16,6 +16,7 @@ struct BandOptions {
   // mm: a curve that passes the printed places at their rounding is as likely as one that meets
   // them; the errors of dense places on a slanting line are no white noise, but long ramps.
   double least_scatter = 5e-4;
+  double noise_part = 1;  // of the noise of the vertices that they are expected to scatter by
 };
 
 // How closely an edge is watched that an earlier curve has left.

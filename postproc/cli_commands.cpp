@@ -143,12 +143,19 @@ void read_tolerance_kind_into(geometry::ToleranceKind& kind, const Given& given,
   }
 }
 
+void read_side_into(geometry::Side& side, const Given& given, Problems& problems) {
+  if (const auto text = given.value("side")) {
+    read_into(side, read_choice("side", *text, sides(), problems));
+  }
+}
+
 void read_smooth_options(const Given& given, SmoothCommand& command, Problems& problems) {
   SmoothOptions& options = command.options;
   read_target(given, command, problems);
   read_machine(given, command, problems);
   read_tolerance_into(given, options, problems);
   read_tolerance_kind_into(options.tolerance_kind, given, problems);
+  read_side_into(options.side, given, problems);
   read_units_into(options.units, given, problems);
   if (const auto text = given.value("method")) {
     read_into(options.method, read_choice("method", *text, methods(), problems));
@@ -256,6 +263,9 @@ VerifyCommand verify_command(const Given& given, const std::vector<std::string>&
   if (const auto file = given.value("profile")) {
     command.profile = read_target_profile(*file, nullptr, problems);
   }
+  read_side_into(command.side, given, problems);
+  std::ranges::move(problems_of_side(command.side, command.tolerance_kind),
+                    std::back_inserter(problems));
   if (const auto text = given.value("tolerance")) {
     if (const auto tolerance = read_tolerance(*text, problems)) {
       command.tolerance_mm = tolerance->mm;

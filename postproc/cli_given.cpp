@@ -24,6 +24,12 @@ constexpr OptionRow kToleranceKind = {
     .help = "what the tolerance means: both ways, or corners may be further from the new path",
     .default_value = "path",
     .in_config = true};
+constexpr OptionRow kSide = {
+    .name = "side",
+    .value = "both|left|right",
+    .help = "where the new path may be, seen along the way of travel from above",
+    .default_value = "both",
+    .in_config = true};
 constexpr OptionRow kUnits = {.name = "units",
                               .value = "mm|inch",
                               .help = "units of a program that has no G20 or G21",
@@ -49,12 +55,13 @@ constexpr std::array kSmoothRows = {
     kProfile,
     kTolerance,
     kToleranceKind,
+    kSide,
     OptionRow{.name = "machine",
               .value = "NAME|FILE.toml",
               .help = "the machine whose time counts (batten machines); default: the target's",
               .in_config = true},
     OptionRow{.name = "method",
-              .value = "best|fair|naseath|guo|ozcan|none",
+              .value = "best|fair|racing|naseath|guo|ozcan|none",
               .help = "how runs are smoothed (batten methods)",
               .default_value = "best",
               .in_config = true},
@@ -125,7 +132,7 @@ constexpr std::array kTargetListRows = {
     OptionRow{
         .name = "show", .value = "NAME", .help = "print a profile of this target to start from"},
     kJson, kForce};
-constexpr std::array kVerifyRows = {kTolerance, kProfile, kToleranceKind, kUnits, kJson, kForce};
+constexpr std::array kVerifyRows = {kTolerance, kProfile, kToleranceKind, kSide, kUnits, kJson, kForce};
 constexpr std::array kInspectRows = {kUnits, kAllow, kJson, kForce};
 constexpr std::array kListRows = {kJson, kForce};
 

@@ -1,5 +1,6 @@
-// Methods that leave the lines and put a curve in the place of each vertex: guo, ozcan.
+// Methods that leave the lines and put a curve in the place of each vertex: guo, ozcan, racing.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "geometry/guo_path.h"
 #include "geometry/joined_curve.h"
 #include "geometry/ozcan_path.h"
+#include "geometry/racing_path.h"
 #include "postproc/run_curve.h"
 
 namespace batten::postproc {
@@ -34,7 +36,7 @@ std::vector<double> stations_of(std::span<const Point3> run) {
   return stations;
 }
 
-// `Path`: GuoPath or OzcanPath, `Blend` what their corners may hold.
+// `Path`: GuoPath, OzcanPath or RacingPath, `Blend` what their corners may hold.
 template <typename Blend, typename Path>
 std::optional<FairPath> as_one_curve(std::span<const Point3> run, const Path& path,
                                      geometry::ToleranceKind kind) {
@@ -51,6 +53,15 @@ std::optional<FairPath> as_one_curve(std::span<const Point3> run, const Path& pa
     }
   }
   return result;
+}
+
+// What racing_corner needs to know.
+bool can_race(const geometry::KinematicLimits& limits) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(limits.acceleration[axis]) && !std::isfinite(limits.jerk[axis]))
+      return false;
+  }
+  return std::isfinite(limits.feed) && limits.feed > 0;
 }
 
 }  // namespace
@@ -74,6 +85,18 @@ std::optional<FairPath> ozcan_curve(std::span<const Point3> run, const CurveRequ
   options.keep_corner_angle = request.keep_corner_angle;
   options.strict_sharper_than = geometry::kSharpestCut;
   return as_one_curve<geometry::OzcanBlend>(run, geometry::ozcan_path(run, options), request.kind);
+}
+
+std::optional<FairPath> racing_curve(std::span<const Point3> run, const CurveRequest& request) {
+  if (!can_race(request.limits)) return std::nullopt;
+  geometry::RacingPathOptions options;
+  options.tolerance = request.tolerance;
+  options.kind = request.kind;
+  options.limits = request.limits;
+  options.keep_corner_angle = request.keep_corner_angle;
+  options.strict_sharper_than = geometry::kSharpestCut;
+  return as_one_curve<geometry::RacingPathBlend>(run, geometry::racing_path(run, options),
+                                                 request.kind);
 }
 
 }  // namespace batten::postproc

@@ -36,6 +36,8 @@ constexpr std::array kMethods = {
     Choice<Method>{Method::kBest, "best", "every method; the result that serves --prefer is taken"},
     Choice<Method>{Method::kFair, "fair",
                    "the path that was meant, as smooth as the machine needs it"},
+    Choice<Method>{Method::kRacing, "racing",
+                   "lines, and at each corner the fastest curve on the machine; slow to compute"},
     Choice<Method>{Method::kNaseath, "naseath",
                    "a spline's control points moved inside a tube (Naseath 2007), repaired"},
     Choice<Method>{Method::kGuo, "guo",
@@ -60,6 +62,13 @@ constexpr std::array kToleranceKinds = {
     Choice<ToleranceKind>{ToleranceKind::kPath, "path", "both ways and in order, corners too"},
     Choice<ToleranceKind>{ToleranceKind::kBand, "band",
                           "new path to old one in order; corners may be further off"},
+};
+
+using geometry::Side;
+constexpr std::array kSides = {
+    Choice<Side>{Side::kBoth, "both", "the new path may be on either side of the old one"},
+    Choice<Side>{Side::kLeft, "left", "only on the left of the way of travel, seen from above"},
+    Choice<Side>{Side::kRight, "right", "only on the right of the way of travel, seen from above"},
 };
 
 constexpr std::array kLinearizations = {
@@ -125,6 +134,7 @@ std::span<const Choice<Method>> methods() { return kMethods; }
 std::span<const Choice<Prefer>> preferences() { return kPreferences; }
 std::span<const Choice<Linearize>> linearizations() { return kLinearizations; }
 std::span<const Choice<ToleranceKind>> tolerance_kinds() { return kToleranceKinds; }
+std::span<const Choice<Side>> sides() { return kSides; }
 
 std::string_view name_of(Form form) { return name_in(kForms, form); }
 std::string_view name_of(Method method) { return name_in(kMethods, method); }
@@ -136,6 +146,7 @@ Linearize linearize_of(const SmoothOptions& options) {
   return options.prefer == Prefer::kSize ? Linearize::kMinLink : Linearize::kChord;
 }
 std::string_view name_of(ToleranceKind kind) { return name_in(kToleranceKinds, kind); }
+std::string_view name_of(Side side) { return name_in(kSides, side); }
 
 std::string_view name_of(gcode::Units units) {
   switch (units) {
@@ -173,6 +184,11 @@ std::vector<std::string> problems_of_allowed(std::span<const std::string> ids) {
   return problems;
 }
 
+std::vector<std::string> problems_of_side(geometry::Side side, geometry::ToleranceKind kind) {
+  if (side == geometry::Side::kBoth || kind == geometry::ToleranceKind::kPath) return {};
+  return {"--side: left and right need --tolerance-kind path"};
+}
+
 std::vector<std::string> problems_of(const SmoothOptions& options) {
   std::vector<std::string> problems;
   if (options.target == nullptr) {
@@ -193,6 +209,8 @@ std::vector<std::string> problems_of(const SmoothOptions& options) {
         fmt::format("--keep-corners: {:g} degrees, expected more than 0 and at most 180",
                     *options.keep_corners_deg));
   }
+  std::ranges::move(problems_of_side(options.side, options.tolerance_kind),
+                    std::back_inserter(problems));
   std::ranges::move(problems_of_allowed(options.allowed), std::back_inserter(problems));
   if (options.min_motions < 2) {
     problems.push_back(

@@ -9,6 +9,7 @@
 
 #include "gcode/dialect.h"
 #include "gcode/modal_state.h"
+#include "geometry/side.h"
 #include "geometry/tolerance_kind.h"
 #include "postproc/machine/machine.h"
 #include "postproc/profile_words.h"
@@ -16,7 +17,17 @@
 namespace batten::postproc {
 
 enum class Form { kAuto, kArcs, kLines };
-enum class Method { kBest, kFair, kNaseath, kGuo, kOzcan, kNaseathLiteral, kGuoLiteral, kNone };
+enum class Method {
+  kBest,
+  kFair,
+  kRacing,
+  kNaseath,
+  kGuo,
+  kOzcan,
+  kNaseathLiteral,
+  kGuoLiteral,
+  kNone,
+};
 enum class Prefer { kTime, kAccuracy, kSize };
 enum class Linearize { kMinLink, kChord, kIlca, kBlca };
 
@@ -33,12 +44,14 @@ struct Choice {
 [[nodiscard]] std::span<const Choice<Prefer>> preferences();
 [[nodiscard]] std::span<const Choice<Linearize>> linearizations();
 [[nodiscard]] std::span<const Choice<geometry::ToleranceKind>> tolerance_kinds();
+[[nodiscard]] std::span<const Choice<geometry::Side>> sides();
 
 [[nodiscard]] std::string_view name_of(Form form);
 [[nodiscard]] std::string_view name_of(Method method);
 [[nodiscard]] std::string_view name_of(Prefer prefer);
 [[nodiscard]] std::string_view name_of(Linearize linearize);
 [[nodiscard]] std::string_view name_of(geometry::ToleranceKind kind);
+[[nodiscard]] std::string_view name_of(geometry::Side side);
 [[nodiscard]] std::string_view name_of(gcode::Units units);  // "mm", "inch", "unknown"
 
 // Decisions of `smooth`, without files and messages.
@@ -48,6 +61,7 @@ struct SmoothOptions {
   double tolerance_mm = 0.01;              // the full distance allowed, both ways, in order
   std::optional<double> tolerance_inch;    // as given, where it was given in inches
   geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
+  geometry::Side side = geometry::Side::kBoth;  // where the new path may be; needs kPath
   gcode::Units units = gcode::Units::kUnknown;  // --units
   Method method = Method::kBest;
   Form output = Form::kAuto;
@@ -68,6 +82,11 @@ struct SmoothOptions {
 
 // Every problem of the options at once, as sentences; empty when they are fine.
 [[nodiscard]] std::vector<std::string> problems_of(const SmoothOptions& options);
+
+// Those of --side alone: under the band reading corners may be cut on the inside, whatever side
+// that is.
+[[nodiscard]] std::vector<std::string> problems_of_side(geometry::Side side,
+                                                        geometry::ToleranceKind kind);
 
 // Those of --allow alone: reason ids that do not exist or that cannot be lifted.
 [[nodiscard]] std::vector<std::string> problems_of_allowed(std::span<const std::string> ids);

@@ -28,6 +28,8 @@ struct OutputPlan {
   OutputForm form = OutputForm::kLines;
   std::vector<PlannedMove> moves;
   std::vector<std::size_t> comments_after;  // those that stood on the run's last blocks
+  double error = 0;  // mm, moves to curve, as the height of equal chords with their ends on the
+                     // curve; 0: not known, max_deviation at most
 };
 
 struct PlanOptions {
@@ -39,6 +41,7 @@ struct PlanOptions {
   double max_deviation = 0.005;    // mm, moves to curve: the share of the form
   double keep_corner_angle = 3.2;  // radians: see geometry::FairOptions
   Linearize linearize = Linearize::kChord;
+  std::size_t most_moves = 0;  // lines that prefer accuracy become coarser for it; 0: any number
 };
 
 // Both plans cut the curve where the feed changes, and put each comment before the move that
@@ -49,8 +52,9 @@ struct PlanOptions {
 // vertices of minlink alone leave the curve. How fine chords are depends on the preference:
 //   time      half of max_deviation, but all of it where chords would be shorter than twice the
 //             way of one block period at the feed: the control would slow down for them;
-//   accuracy  as fine as the block period allows, down to a tenth of the rounding of the printed
-//             numbers, and all of max_deviation where even that is too much for the control;
+//   accuracy  as fine as the block period and most_moves allow, down to a tenth of the rounding of
+//             the printed numbers, and all of max_deviation where even that is too much for the
+//             control; balanced (geometry/balanced_chords.h);
 //   size      all of max_deviation.
 [[nodiscard]] OutputPlan plan_lines(const Run& run, const geometry::FairPath& fair,
                                     const PlanOptions& options);

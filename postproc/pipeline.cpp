@@ -14,6 +14,7 @@
 #include "gcode/reason.h"
 #include "postproc/added_lines.h"
 #include "postproc/assembly.h"
+#include "postproc/band_notes.h"
 #include "postproc/conversion.h"
 #include "postproc/provenance.h"
 #include "postproc/run_choice.h"
@@ -169,12 +170,21 @@ class Smoothing {
       }
     }
     if (again_) return true;
+    note_bands();
     for (const RunWork& work : work_) points_ += run_of(work).points.size();
     if (!smooth_works(whole)) return false;
     const std::vector<std::size_t> pieces = cut_runs();
     if (!smooth_works(pieces)) return false;
     for (CutRun& cut : cut_runs_) settle(cut, work_, options_);
     return true;
+  }
+
+  void note_bands() {
+    std::vector<gcode::Diagnostics> notes(work_.size());
+    in_parallel(work_.size(), [&](std::size_t i) {
+      notes[i] = band_notes(program_, meaning_, sections_[work_[i].section], options_.tolerance_mm);
+    });
+    append_band_notes(notes, result_.diagnostics);
   }
 
   bool smooth_works(const std::vector<std::size_t>& works) {
@@ -263,8 +273,9 @@ class Smoothing {
       gcode::Diagnostics ignored;
       const gcode::Program program = gcode::parse(written, ignored);
       const gcode::Interpretation meaning = gcode::interpret(program, read_options_, ignored);
-      Verification verification = verify({&program_, &meaning_}, {&program, &meaning},
-                                         {options_.tolerance_mm, options_.tolerance_kind});
+      Verification verification =
+          verify({&program_, &meaning_}, {&program, &meaning},
+                 {options_.tolerance_mm, options_.tolerance_kind, options_.side});
       add_breaches(added, {&program, &meaning}, verification);
       result_.added_lines = added.lines;
       result_.text = std::move(text);
@@ -304,11 +315,14 @@ class Smoothing {
   bool take_back(const Verification& verification) {
     std::vector<RunWork*> runs;
     std::vector<RunWork*> crossing;
+    std::vector<RunWork*> over;
     for (const Breach& breach : verification.breaches) {
-      auto& list = breach.kind == BreachKind::kCrossing ? crossing : runs;
+      const bool wrong_side = breach.kind == BreachKind::kSide;
+      auto& list = breach.kind == BreachKind::kCrossing ? crossing : wrong_side ? over : runs;
       if (RunWork* work = rewritten_run_at(breach.old_line)) list.push_back(work);
     }
     if (give_way(std::move(crossing), gcode::reason::kCrossesItself)) return true;
+    if (give_way(std::move(over), gcode::reason::kWrongSide)) return true;
     if (runs.empty()) {
       // A breach that belongs to no run: believe none of them.
       for (RunWork& work : work_) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "geometry/balanced_chords.h"
 #include "geometry/blca.h"
 #include "geometry/ilca.h"
 #include "geometry/linearize.h"
@@ -23,6 +24,12 @@ struct Fineness {
 // From one fineness to the next coarser one that is tried: chords twice as long.
 constexpr double kCoarser = 4;
 
+// Balanced chords may be so much higher: two thirds of their height are left.
+constexpr double kBalanced = 1.5;
+
+// Chords that are still too many become so much coarser at least.
+constexpr double kCoarserAgain = 1.05;
+
 // Chords of so many block periods leave the control room to look ahead; with one and a little
 // the control just holds the feed.
 constexpr double kPeriodsForTime = 2;
@@ -33,18 +40,15 @@ double length_per_block(double feed, const Machine& machine) {
   return std::min(feed / 60, machine.max_velocity) * machine.block_period;
 }
 
-Fineness fineness_for(double feed, const PlanOptions& options) {
+// `finest`: mm, of accurate chords.
+Fineness fineness_for(double feed, const PlanOptions& options, double finest) {
   const double limit = options.max_deviation;
   const double per_block = length_per_block(feed, *options.machine);
   switch (options.prefer) {
     case Prefer::kTime:
       return {limit / 2, limit, kPeriodsForTime * per_block};
-    case Prefer::kAccuracy: {
-      const double step =
-          gcode::printed_step(options.target->coordinates(options.units), options.units);
-      const double tenth_of_rounding = step / 2 / 10;
-      return {std::min(tenth_of_rounding, limit), limit, kPeriodsForAccuracy * per_block};
-    }
+    case Prefer::kAccuracy:
+      return {finest, kBalanced * limit, kPeriodsForAccuracy * per_block};
     case Prefer::kSize:
       break;
   }
@@ -90,7 +94,7 @@ Vertices on_the_curve(const BsplineCurve& curve, const std::vector<double>& para
 }
 
 Vertices vertices_on(const BsplineCurve& curve, const FeedStretch& stretch,
-                     const PlanOptions& options) {
+                     const PlanOptions& options, double finest) {
   const double deviation = options.max_deviation;
   switch (options.linearize) {
     case Linearize::kMinLink:
@@ -105,19 +109,20 @@ Vertices vertices_on(const BsplineCurve& curve, const FeedStretch& stretch,
     case Linearize::kChord:
       break;
   }
-  return on_the_curve(curve,
-                      chords(curve, stretch.from, stretch.to, fineness_for(stretch.feed, options)));
+  const std::vector<double> parameters =
+      chords(curve, stretch.from, stretch.to, fineness_for(stretch.feed, options, finest));
+  return options.prefer == Prefer::kAccuracy ? geometry::balanced_chords(curve, parameters)
+                                             : on_the_curve(curve, parameters);
 }
 
-}  // namespace
-
-OutputPlan plan_lines(const Run& run, const geometry::FairPath& fair, const PlanOptions& options) {
+OutputPlan lines_of(const Run& run, const geometry::FairPath& fair, const PlanOptions& options,
+                    double finest) {
   OutputPlan plan;
   plan.form = OutputForm::kLines;
   std::vector<double> starts;
   geometry::Point3 place = run.points.front();
   for (const FeedStretch& stretch : feed_stretches(run, fair)) {
-    const Vertices vertices = vertices_on(fair.curve, stretch, options);
+    const Vertices vertices = vertices_on(fair.curve, stretch, options, finest);
     for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
       const bool last = i + 2 == vertices.size() && stretch.to >= fair.curve.last();
       const geometry::Point3 next = last ? run.points.back() : vertices[i + 1].place;
@@ -127,6 +132,30 @@ OutputPlan plan_lines(const Run& run, const geometry::FairPath& fair, const Plan
     }
   }
   place_comments(run, fair, starts, plan);
+  return plan;
+}
+
+}  // namespace
+
+OutputPlan plan_lines(const Run& run, const geometry::FairPath& fair, const PlanOptions& options) {
+  const bool accurate =
+      options.prefer == Prefer::kAccuracy && options.linearize == Linearize::kChord;
+  if (!accurate) return lines_of(run, fair, options, 0);
+  const double step =
+      gcode::printed_step(options.target->coordinates(options.units), options.units);
+  const double tenth_of_rounding = step / 2 / 10;
+  double finest = std::min(tenth_of_rounding, kBalanced * options.max_deviation);
+  OutputPlan plan = lines_of(run, fair, options, finest);
+  // The number of chords goes with the root of their height.
+  while (options.most_moves > 0 && plan.moves.size() > options.most_moves &&
+         finest < kBalanced * options.max_deviation) {
+    const double over =
+        static_cast<double>(plan.moves.size()) / static_cast<double>(options.most_moves);
+    finest =
+        std::min(kBalanced * options.max_deviation, std::max(over * over, kCoarserAgain) * finest);
+    plan = lines_of(run, fair, options, finest);
+  }
+  plan.error = geometry::kBalancedError / geometry::kChordError * finest;
   return plan;
 }
 

@@ -101,6 +101,10 @@ bool slower(const Times& now, const Times& before, bool much_smaller, bool wante
          now.flat_out > (1 + flat_out) * before.flat_out;
 }
 
+std::size_t most_moves_for_accuracy(std::size_t blocks) {
+  return static_cast<std::size_t>(kMoreBlocks * static_cast<double>(blocks));
+}
+
 bool may_gain(const Prospect& prospect, const RunFacts& before, std::size_t blocks, Prefer prefer) {
   if (prefer == Prefer::kSize) return true;
   const double least = prospect.blocks / kEstimate / static_cast<double>(blocks);

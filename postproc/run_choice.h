@@ -30,6 +30,9 @@ struct Prospect {
 [[nodiscard]] bool may_gain(const Prospect& prospect, const RunFacts& before, std::size_t blocks,
                             Prefer prefer);
 
+// As many moves as a run of so many blocks may get for accuracy.
+[[nodiscard]] std::size_t most_moves_for_accuracy(std::size_t blocks);
+
 // A candidate is worth writing when it is not slower and gains time, blocks or accuracy by a
 // margin. Between candidates `prefer` decides. A form that the user asked for by name may be
 // somewhat slower.

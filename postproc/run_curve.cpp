@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/one_sided_fair.h"
+
 namespace batten::postproc {
 
 using geometry::FairPath;
@@ -38,15 +40,19 @@ std::optional<FairPath> fair_curve(std::span<const Point3> run, const CurveReque
   options.acceleration = request.limits.acceleration.minCoeff();
   options.scatter = request.scatter;
   options.accurate = request.accurate;
-  return geometry::fair_path(run, options);
+  if (request.side == geometry::Side::kBoth) return geometry::fair_path(run, options);
+  return geometry::one_sided_fair_path(run, {options, request.side, request.side_margin});
 }
 
 std::optional<RunCurve> curve_of(Method method, std::span<const Point3> run,
                                  const CurveRequest& request) {
+  if (request.side != geometry::Side::kBoth && method != Method::kFair) return std::nullopt;
   const auto found = [&]() -> std::optional<FairPath> {
     switch (method) {
       case Method::kFair:
         return fair_curve(run, request);
+      case Method::kRacing:
+        return racing_curve(run, request);
       case Method::kNaseath:
         return naseath_curve(run, request, false);
       case Method::kNaseathLiteral:

@@ -7,6 +7,7 @@
 #include "geometry/fair.h"
 #include "geometry/kinematic_feed.h"
 #include "geometry/point.h"
+#include "geometry/side.h"
 #include "geometry/tolerance_kind.h"
 #include "postproc/machine/machine.h"
 #include "postproc/options.h"
@@ -24,6 +25,8 @@ struct RunCurve {
 struct CurveRequest {
   double tolerance = 0.01;  // mm, curve to run
   geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
+  geometry::Side side = geometry::Side::kBoth;
+  double side_margin = 0;            // mm, see geometry::OneSidedOptions
   double rounding = 0.0005;          // mm, greatest error of one printed coordinate of the run
   double keep_corner_angle = 3.2;    // radians: vertices that turn more stay as they are
   geometry::KinematicLimits limits;  // what the machine can do at the greatest feed of the run
@@ -37,7 +40,7 @@ struct CurveRequest {
 // The ends of the run are met exactly. A closed run starts and ends in its seam vertex, where the
 // tool is put down and taken up; only `fair` has no corner there where the path has none.
 //
-// Returns nothing when the method finds no curve; throws std::invalid_argument for Method::kBest
+// Returns nothing when the method finds no curve, and with a side for all methods but `fair`; throws std::invalid_argument for Method::kBest
 // and Method::kNone, which are no methods of their own.
 [[nodiscard]] std::optional<RunCurve> curve_of(Method method, std::span<const geometry::Point3> run,
                                                const CurveRequest& request);
@@ -53,7 +56,10 @@ struct CurveRequest {
                                                               const CurveRequest& request,
                                                               bool literal);
 
-// Every vertex that is not kept gets a blend; the lines between stay.
+// Every vertex that is not kept gets a blend; the lines between stay. `racing` finds none where the
+// machine limits neither acceleration nor jerk of an axis.
+[[nodiscard]] std::optional<geometry::FairPath> racing_curve(std::span<const geometry::Point3> run,
+                                                             const CurveRequest& request);
 [[nodiscard]] std::optional<geometry::FairPath> guo_curve(std::span<const geometry::Point3> run,
                                                           const CurveRequest& request,
                                                           bool literal);

@@ -83,7 +83,7 @@ std::vector<Method> methods_worth_trying(double corners, double least_time, doub
   // The least that there must be left to win.
   constexpr double kWorthTrying = 0.02;
   if (corners < kCorners || least_time > (1 - kWorthTrying) * time) return {};
-  return {Method::kGuo, Method::kOzcan};
+  return {Method::kGuo, Method::kOzcan, Method::kRacing};
 }
 
 }  // namespace batten::postproc

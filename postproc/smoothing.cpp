@@ -98,7 +98,7 @@ class RunSmoother {
       know(curve->path, rounding);
       try_curve(*curve, shares);
     }
-    if (best) try_others(shares, rounding);
+    if (best && !one_sided()) try_others(shares, rounding);
     if (!fits_) return kept(gcode::reason::kNoFit);
     if (result_.candidates.empty()) {
       return kept(passed_over_ ? gcode::reason::kNoGain : gcode::reason::kTargetCannot);
@@ -113,6 +113,8 @@ class RunSmoother {
     const double lent = method == Method::kFair && !few_wanted() ? kLentToFair : kLent;
     request.tolerance = shares.smoothing + lent * shares.form;
     request.kind = options_.tolerance_kind;
+    request.side = options_.side;
+    request.side_margin = kFineChords * shares.form + shares.rounding;
     request.rounding = rounding;
     request.keep_corner_angle = keep_corner_angle();
     request.limits = limits_of(*options_.machine, greatest_feed(run_));
@@ -224,23 +226,28 @@ class RunSmoother {
     return hopeless;
   }
 
+  // Whether the run must not be cut on one side: then what is written follows the curve closely.
+  [[nodiscard]] bool one_sided() const { return options_.side != geometry::Side::kBoth; }
+
   // `share` of the tolerance belongs to the form; `left` is what the curve leaves.
   void add_candidates(const RunCurve& curve, double share, double left) {
     const geometry::FairPath& fair = curve.path;
     const auto plan_with = [&](double multiple) {
       return PlanOptions{
-          options_.target,       options_.machine,      units_,
-          context_.before.plane, options_.prefer,       std::min(left, multiple * share),
-          keep_corner_angle(),   linearize_of(options_)};
+          options_.target,       options_.machine,       units_,
+          context_.before.plane, options_.prefer,        std::min(left, multiple * share),
+          keep_corner_angle(),   linearize_of(options_), most_moves_for_accuracy(context_.blocks)};
     };
     if (options_.output != Form::kLines && !arcs_are_hopeless(fair)) {
-      const PlanOptions arcs = plan_with(kArcs);
+      const PlanOptions arcs = plan_with(one_sided() ? kFineArcs : kArcs);
       add(curve, plan_arcs(run_, fair, arcs), arcs.max_deviation);
-      if (lies_flat()) {
+      // Who asks for few arcs has no use for those that follow the curve closely.
+      if (lies_flat() && !few_wanted() && !one_sided()) {
         const PlanOptions fine = plan_with(kFineArcs);
         add(curve, plan_arcs(run_, fair, fine), fine.max_deviation);
       }
-      if ((few_wanted() || !run_.arcs.empty()) && curve.method == Method::kFair) {
+      const bool few = few_wanted() || !run_.arcs.empty();
+      if (few && !one_sided() && curve.method == Method::kFair) {
         PlanOptions whole = plan_with(kArcs);
         whole.max_deviation = left + fair.deviation;
         add_arc_splines(curve, whole);
@@ -249,7 +256,7 @@ class RunSmoother {
     if (options_.output == Form::kArcs) return;
     double before = 0;
     for (const double multiple : {kLongChords, kMiddleChords, kFineChords}) {
-      const PlanOptions lines = plan_with(multiple);
+      const PlanOptions lines = plan_with(one_sided() ? kFineChords : multiple);
       if (lines.max_deviation == before || is_hopeless(fair, lines)) continue;
       before = lines.max_deviation;
       add(curve, plan_lines(run_, fair, lines), lines.max_deviation);
@@ -297,6 +304,7 @@ class RunSmoother {
     candidate.method = name_of(curve.method);
     candidate.form = plan->form;
     const bool meant = curve.method == Method::kFair;
+    if (plan->error > 0) error = plan->error;
     candidate.error = known(meant ? error : error + curve.path.deviation);
     candidate.max_curvature = curvature_;
     std::vector<TimedPiece> moves = timed_pieces(*plan);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "geometry/band_comparison.h"
+#include "geometry/parallel_path.h"
 #include "geometry/tolerance_band.h"
 
 namespace batten::postproc {
@@ -211,6 +212,34 @@ std::optional<Breach> crossing_breach(const PartPair& pair, const PartPair& midd
   return breach;
 }
 
+// On one side of the old path, as far as the tolerance: within half of it of the path that is half
+// of it beside the old one. docs/algorithms/one_side.md
+std::optional<Breach> side_breach(const PartPair& pair, const Promise& promise) {
+  if (promise.side == geometry::Side::kBoth) return {};
+  const double half = promise.tolerance_mm / 2;
+  const double over = kOverSide * promise.tolerance_mm;
+  Breach breach;
+  breach.kind = BreachKind::kSide;
+  breach.id = "wrong-side";
+  const auto beside = geometry::parallel_path(pair.before.path(), promise.side, half);
+  if (!beside) {
+    breach.old_line = pair.before.line(0);
+    breach.new_line = pair.after.line(0);
+    breach.message = "the old path has arcs outside the XY plane or curves: no side of it is known";
+    return breach;
+  }
+  const PathComparison found = geometry::compare_paths(*beside, pair.after.path(), half + over);
+  if (found.verdict == Verdict::kProved) return {};
+  breach.old_line = pair.before.line_near(found.worst_a);
+  breach.new_line = pair.after.line(found.worst_piece_b);
+  breach.deviation_mm = std::max(0.0, found.bounds.at_least - half);
+  breach.message = fmt::format(
+      "the new path {} on the {} of the old one by {:.6g} mm at most",
+      found.verdict == Verdict::kBroken ? "does not stay" : "could not be proved to stay",
+      promise.side == geometry::Side::kLeft ? "left" : "right", promise.tolerance_mm);
+  return breach;
+}
+
 class StretchComparer {
  public:
   StretchComparer(const StretchSide& before, const StretchSide& after, const Promise& promise)
@@ -225,11 +254,17 @@ class StretchComparer {
       return std::move(result_);
     }
     for (std::size_t i = 0; i < old_parts.size(); ++i) compare_part({old_parts[i], new_parts[i]});
-    if (old_parts.size() > 1 && !result_.breaches.empty()) look_for_moved_feed();
+    if (old_parts.size() > 1 && std::ranges::any_of(result_.breaches, is_of_distance)) {
+      look_for_moved_feed();
+    }
     return std::move(result_);
   }
 
  private:
+  static bool is_of_distance(const Breach& breach) {
+    return breach.kind == BreachKind::kDistance || breach.kind == BreachKind::kNotProved;
+  }
+
   bool same_feeds(const std::vector<Part>& old_parts, const std::vector<Part>& new_parts) {
     const std::size_t both = std::min(old_parts.size(), new_parts.size());
     for (std::size_t i = 0; i < both; ++i) {
@@ -262,6 +297,9 @@ class StretchComparer {
     geometry::BandComparison comparison = compare(middle, promise_);
     if (comparison.paths.verdict == Verdict::kProved) {
       result_.stretches.push_back(stretch_of(middle, std::move(comparison)));
+      if (auto breach = side_breach(middle, promise_)) {
+        result_.breaches.push_back(std::move(*breach));
+      }
       // Of the whole, for a new part may also cross one that is the same.
       if (auto breach = crossing_breach(pair, middle, tolerance_)) {
         result_.breaches.push_back(std::move(*breach));
@@ -281,6 +319,7 @@ class StretchComparer {
     const PathComparison whole = compare_whole_path(before_, after_, promise_);
     if (whole.verdict != Verdict::kProved) return;
     for (Breach& breach : result_.breaches) {
+      if (!is_of_distance(breach)) continue;
       breach.kind = BreachKind::kFeed;
       breach.id = "feed-moved";
       breach.message = fmt::format(

@@ -16,6 +16,7 @@
 #include "gcode/motion.h"
 #include "gcode/program.h"
 #include "geometry/path_distance.h"
+#include "geometry/side.h"
 #include "geometry/tolerance_kind.h"
 #include "postproc/program_events.h"
 
@@ -24,6 +25,7 @@ namespace batten::postproc {
 enum class BreachKind {
   kDistance,   // a stretch leaves the tolerance
   kNotProved,  // a stretch could neither be proved nor refuted
+  kSide,       // a stretch comes over to the side that is not allowed
   kCrossing,   // a flat stretch crosses itself where the old one did not
   kFeed,       // another feed, or a feed that changes at another place
   kRapid,      // a rapid with another start or end, lost or added
@@ -44,11 +46,17 @@ struct Breach {
 struct Promise {
   double tolerance_mm = 0.01;  // > 0
   geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
+  // Where the new path may be: on the other side it may be by kOverSide of the tolerance.
+  geometry::Side side = geometry::Side::kBoth;
 
   // The strict reading, when nothing else is said.
-  Promise(double tolerance, geometry::ToleranceKind reading = geometry::ToleranceKind::kPath)
-      : tolerance_mm(tolerance), kind(reading) {}
+  Promise(double tolerance, geometry::ToleranceKind reading = geometry::ToleranceKind::kPath,
+          geometry::Side allowed = geometry::Side::kBoth)
+      : tolerance_mm(tolerance), kind(reading), side(allowed) {}
 };
+
+// Printing rounds a place on the path itself to either side of it.
+inline constexpr double kOverSide = 0.1;
 
 // One stretch of cutting moves at one feed that was compared, without the moves at its ends
 // that are the same in both programs.

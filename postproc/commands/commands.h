@@ -36,6 +36,7 @@ struct VerifyCommand {
   std::string new_program;
   double tolerance_mm = 0.01;
   geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
+  geometry::Side side = geometry::Side::kBoth;
   gcode::Units units = gcode::Units::kUnknown;
   std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
   std::string json_file;

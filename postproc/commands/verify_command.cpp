@@ -40,6 +40,8 @@ std::string_view name_of(BreachKind kind) {
       return "distance";
     case BreachKind::kNotProved:
       return "not-proved";
+    case BreachKind::kSide:
+      return "side";
     case BreachKind::kCrossing:
       return "crossing";
     case BreachKind::kFeed:
@@ -123,6 +125,7 @@ std::string json_report(const Verification& verification, const VerifyCommand& c
                     {"new", command.new_program},
                     {"tolerance_mm", command.tolerance_mm},
                     {"tolerance_kind", postproc::name_of(command.tolerance_kind)},
+                    {"side", postproc::name_of(command.side)},
                     {"proved", verification.proved()},
                     {"deviation_mm", verification.deviation_mm},
                     {"deviation_line", verification.deviation_line},
@@ -200,7 +203,7 @@ int run(const VerifyCommand& command) {
   Verification verification =
       verify({.program = &before.program, .interpretation = &before.interpretation},
              {.program = &after.program, .interpretation = &after.interpretation},
-             {command.tolerance_mm, command.tolerance_kind});
+             {command.tolerance_mm, command.tolerance_kind, command.side});
   if (interrupted()) return interrupt_exit_code();
   append(added.breaches, verification);
   append(events_in_brackets({.program = &after.program, .interpretation = &after.interpretation},

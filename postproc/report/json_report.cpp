@@ -17,6 +17,7 @@ Json json_of(const SmoothOptions& options, bool strict) {
                {"tolerance_mm", options.tolerance_mm}};
   if (options.tolerance_inch) json["tolerance_inch"] = *options.tolerance_inch;
   json["tolerance_kind"] = name_of(options.tolerance_kind);
+  json["side"] = name_of(options.side);
   json["method"] = name_of(options.method);
   json["output"] = name_of(options.output);
   json["prefer"] = name_of(options.prefer);

@@ -105,7 +105,10 @@ void compare_polyline(const Case& given) {
     for (const auto& choice : postproc::methods()) {
       if (choice.value == Method::kBest || choice.value == Method::kNone) continue;
       // The others give the same curve in both readings.
-      if (band && choice.value != Method::kGuo && choice.value != Method::kOzcan) continue;
+      if (band && choice.value != Method::kGuo && choice.value != Method::kOzcan &&
+          choice.value != Method::kRacing) {
+        continue;
+      }
       const auto made = postproc::curve_of(choice.value, given.points, request_for(given, kind));
       const std::string name = std::string(choice.name) + (band ? ", band" : "");
       if (!made) {

@@ -11,34 +11,10 @@
 #include <tuple>
 #include <vector>
 
+#include "tests/support/parabolas.h"
+
 namespace batten::geometry {
 namespace {
-
-// y = c1 x^2 + c2 x + c3 as one cubic span, x being the parameter.
-struct Parabola {
-  double c1, c2, c3, from, to;
-
-  double y(double x) const { return (c1 * x + c2) * x + c3; }
-  double slope(double x) const { return 2 * c1 * x + c2; }
-
-  BsplineCurve curve() const {
-    const double third = (to - from) / 3;
-    return BsplineCurve(BsplineBasis::clamped(3, {from, to}),
-                        {{from, y(from), 0},
-                         {from + third, y(from) + third * slope(from), 0},
-                         {to - third, y(to) - third * slope(to), 0},
-                         {to, y(to), 0}});
-  }
-
-  // Greatest distance of the curve from the chord over [a, b]: |c1| dx^2 / (4 sqrt(1 + s^2)),
-  // s the slope of the chord, which is the slope of the curve in its middle.
-  double deviation(double a, double b) const {
-    return std::abs(c1) * (b - a) * (b - a) / (4 * std::hypot(1, slope((a + b) / 2)));
-  }
-};
-
-const Parabola kFlat{-0.043, 1, 0.01, 2, 11};
-const Parabola kSteep{2, -1, 1, 1, 10};
 
 struct CountCase {
   std::string name;
@@ -73,21 +49,21 @@ TEST_P(GreedyChords, AreAsManyAsTheClosedFormGives) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Parabolas, GreedyChords,
-                         testing::Values(CountCase{"FlatCoarse", kFlat, 0.05, 4},
-                                         CountCase{"FlatFine", kFlat, 0.005, 13},
-                                         CountCase{"FlatFiner", kFlat, 0.0005, 40},
-                                         CountCase{"FlatFinest", kFlat, 0.00005, 126},
-                                         CountCase{"SteepCoarse", kSteep, 0.045, 8},
-                                         CountCase{"SteepFine", kSteep, 0.0045, 24},
-                                         CountCase{"SteepFiner", kSteep, 0.00045, 75},
-                                         CountCase{"SteepFinest", kSteep, 0.000045, 238}),
+                         testing::Values(CountCase{"FlatCoarse", kFlatParabola, 0.05, 4},
+                                         CountCase{"FlatFine", kFlatParabola, 0.005, 13},
+                                         CountCase{"FlatFiner", kFlatParabola, 0.0005, 40},
+                                         CountCase{"FlatFinest", kFlatParabola, 0.00005, 126},
+                                         CountCase{"SteepCoarse", kSteepParabola, 0.045, 8},
+                                         CountCase{"SteepFine", kSteepParabola, 0.0045, 24},
+                                         CountCase{"SteepFiner", kSteepParabola, 0.00045, 75},
+                                         CountCase{"SteepFinest", kSteepParabola, 0.000045, 238}),
                          [](const auto& test) { return test.param.name; });
 
 // The least deviation with as many chords, all equal, is .04921 for the four of the flat
 // parabola and .039244 for the eight of the steep one.
 TEST(ChordVertices, AreSpreadUntilTheLastChordIsNoRemainder) {
   for (const auto& [parabola, deviation, balanced] :
-       {std::tuple{kFlat, 0.05, 0.04921}, {kSteep, 0.045, 0.039244}}) {
+       {std::tuple{kFlatParabola, 0.05, 0.04921}, {kSteepParabola, 0.045, 0.039244}}) {
     ChordOptions options;
     options.max_deviation = deviation;
     const auto x = chord_vertices(parabola.curve(), parabola.from, parabola.to, options);

@@ -14,6 +14,7 @@
 #include "geometry/naseath_directions.h"
 #include "geometry/parameter_samples.h"
 #include "tests/support/naseath_cases.h"
+#include "tests/support/noisy_curves.h"
 
 namespace batten::geometry {
 namespace {
@@ -54,51 +55,8 @@ TEST(Naseath, TurnsWithTheCurveIntoSpace) {
   }
 }
 
-// The cubic through the points, chord-length knots, no curvature at the ends.
-BsplineCurve natural_cubic(const std::vector<Point3>& through) {
-  std::vector<double> knots = {0};
-  for (std::size_t i = 1; i < through.size(); ++i) {
-    knots.push_back(knots.back() + (through[i] - through[i - 1]).norm());
-  }
-  const BsplineBasis basis = BsplineBasis::clamped(3, knots);
-  const auto m = static_cast<Eigen::Index>(basis.size());
-  Eigen::MatrixXd equations = Eigen::MatrixXd::Zero(m, m);
-  Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(m, 3);
-  const auto set = [&](Eigen::Index row, double u, int derivative) {
-    double values[12];
-    const std::size_t span = basis.find_span(u);
-    basis.evaluate_derivatives(span, u, 2, values);
-    for (int j = 0; j < 4; ++j) {
-      equations(row, static_cast<Eigen::Index>(span) - 3 + j) = values[derivative * 4 + j];
-    }
-  };
-  for (std::size_t i = 0; i < through.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    set(row, knots[i], 0);
-    sides.row(row) = through[i].transpose();
-  }
-  set(m - 2, knots.front(), 2);
-  set(m - 1, knots.back(), 2);
-  const Eigen::MatrixXd solution = equations.partialPivLu().solve(sides);
-  std::vector<Point3> points;
-  for (Eigen::Index i = 0; i < m; ++i) points.emplace_back(solution.row(i).transpose());
-  return {basis, points};
-}
-
-// 60 points of a helix of radius 20, two of them wrong.
-BsplineCurve noisy_helix() {
-  std::vector<Point3> points;
-  for (int i = 0; i < 60; ++i) {
-    const double t = 4 * std::numbers::pi * i / 59;
-    points.emplace_back(20 * std::cos(t), 20 * std::sin(t), 3 * t);
-  }
-  points[20].z() += 0.2;
-  points[41] += Vector3(0.15, 0.1, 0);
-  return natural_cubic(points);
-}
-
 TEST(Naseath, OnANoisyHelixIsWorseLiterallyAndNotWithRepairs) {
-  const BsplineCurve helix = noisy_helix();
+  const BsplineCurve helix = helix_with_two_wrong_points();
   const double before = greatest_curvature(helix);
   EXPECT_NEAR(before, .0678, 5e-5);
   const std::vector<std::pair<double, double>> table = {{.025, .0680}, {.125, .0687}, {.25, .0696}};
@@ -111,29 +69,9 @@ TEST(Naseath, OnANoisyHelixIsWorseLiterallyAndNotWithRepairs) {
 
 // --- what the repairs promise ------------------------------------------------------------------
 
-// 30 control points on a line, 1e-6 to and fro.
-BsplineCurve sawtooth() {
-  std::vector<Point3> points;
-  for (int i = 0; i < 30; ++i) points.emplace_back(3.4 * i, i % 2 ? -1e-6 : 1e-6, 0);
-  return uniform_cubic(points);
-}
-
-BsplineCurve u_shape() {
-  return uniform_cubic({{0, 30, 0},
-                        {0, 15, 0},
-                        {0, 4, 0},
-                        {1.2, .8, 0},
-                        {4, 0, 0},
-                        {6, 0, 0},
-                        {8.8, .8, 0},
-                        {10, 4, 0},
-                        {10, 15, 0},
-                        {10, 30, 0}});
-}
-
 // After 200 passes, as the table has it; it ends after 983 with points moved by .248 mm.
 TEST(Naseath, AddsWavesToASawtoothLiterallyAndNoneWithRepairs) {
-  const BsplineCurve line = sawtooth();
+  const BsplineCurve line = line_with_sawtooth();
   NaseathOptions options = literal(.25);
   options.max_passes = 200;
   const BsplineCurve waves = smooth_naseath(line, options).curve;
@@ -147,7 +85,7 @@ TEST(Naseath, AddsWavesToASawtoothLiterallyAndNoneWithRepairs) {
 }
 
 TEST(Naseath, BendsAUShapeHarderLiterallyAndNotWithRepairs) {
-  const BsplineCurve u = u_shape();
+  const BsplineCurve u = u_shaped_curve();
   EXPECT_NEAR(greatest_curvature(u), .393, 5e-4);
   const std::vector<std::pair<double, double>> table = {
       {.25, .395}, {1, .400}, {2, .407}, {4, .416}};
@@ -170,7 +108,7 @@ BsplineCurve noisy_line(int seed, double peak) {
   std::uniform_real_distribution<double> noise(-peak, peak);
   std::vector<Point3> points;
   for (int i = 0; i < 30; ++i) points.emplace_back(3.4 * i, i > 0 && i < 29 ? noise(random) : 0, 0);
-  return natural_cubic(points);
+  return natural_cubic_through(points);
 }
 
 TEST(Naseath, EndsOnALineWithNoiseBelowTheRadius) {

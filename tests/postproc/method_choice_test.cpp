@@ -81,7 +81,8 @@ INSTANTIATE_TEST_SUITE_P(
         // LinuxCNC rounds corners itself; grbl slows down for each of them.
         MethodOnProgram{Method::kGuo, "Guo", star_program, "grbl"},
         MethodOnProgram{Method::kGuoLiteral, "GuoLiteral", star_program, "grbl", Form::kArcs},
-        MethodOnProgram{Method::kOzcan, "Ozcan", star_program, "grbl"}),
+        MethodOnProgram{Method::kOzcan, "Ozcan", star_program, "grbl"},
+        MethodOnProgram{Method::kRacing, "Racing", star_program, "grbl"}),
     [](const auto& test) { return test.param.name; });
 
 // --- which one wins -----------------------------------------------------------------------------
@@ -102,7 +103,7 @@ TEST(BestMethod, IsThreePerCentFasterThanGuoLiteralOnAStar) {
 // Times of one method that differ by less than a percent are equal, and then other merits count.
 TEST(BestMethod, IsNotSlowerThanAnyMethodOfItsOwnOnAStar) {
   const double best = time_of_star(Method::kBest, Form::kAuto);
-  for (const Method method : {Method::kFair, Method::kGuo, Method::kOzcan, Method::kNaseath}) {
+  for (const Method method : {Method::kFair, Method::kGuo, Method::kOzcan, Method::kRacing, Method::kNaseath}) {
     EXPECT_LT(best, 1.01 * time_of_star(method, Form::kAuto)) << name_of(method);
   }
 }

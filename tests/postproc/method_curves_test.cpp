@@ -49,7 +49,8 @@ class EveryMethod : public testing::TestWithParam<NamedMethod> {
   }
   [[nodiscard]] bool is_corner_method() const {
     const Method m = GetParam().method;
-    return m == Method::kGuo || m == Method::kGuoLiteral || m == Method::kOzcan;
+    return m == Method::kGuo || m == Method::kGuoLiteral || m == Method::kOzcan ||
+           m == Method::kRacing;
   }
 };
 
@@ -170,7 +171,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
                                          NamedMethod{Method::kNaseathLiteral, "NaseathLiteral"},
                                          NamedMethod{Method::kGuo, "Guo"},
                                          NamedMethod{Method::kGuoLiteral, "GuoLiteral"},
-                                         NamedMethod{Method::kOzcan, "Ozcan"}),
+                                         NamedMethod{Method::kOzcan, "Ozcan"},
+                                         NamedMethod{Method::kRacing, "Racing"}),
                          [](const auto& test) { return test.param.name; });
 
 TEST(CurveOf, RefusesWhatIsNoMethodOfItsOwn) {

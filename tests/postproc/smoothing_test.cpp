@@ -150,7 +150,7 @@ TEST(SmoothRun, SaysACircleInFewArcs) {
   std::size_t fewest = 200;
   for (const Candidate& candidate : candidates) {
     EXPECT_EQ(candidate.form, OutputForm::kArcs);
-    EXPECT_LE(candidate.text.arcs, 15u) << "also the fine ones, which follow the curve closely";
+    EXPECT_LE(candidate.text.arcs, 10u);
     fewest = std::min(fewest, candidate.text.arcs);
   }
   EXPECT_LE(fewest, 2u) << "two halves: those in the whole band";
