@@ -170,7 +170,8 @@ class RunGrouper {
 
   // The tool goes down into a cut and comes up out of it: where such a move meets the cut is a
   // corner that was meant, and rounding it would tilt the cut out of its plane. So plunges are
-  // copied, and the chain is cut there. Straight down in the midst of a surface is no plunge.
+  // copied, and the chain is cut there. Straight down in the midst of a surface is no plunge;
+  // at its begin or end it is.
   void close_stretch() {
     std::vector<std::uint32_t> whole = std::exchange(chain_, {});
     std::size_t i = 0;
@@ -205,9 +206,8 @@ class RunGrouper {
     while (before > 0 && !blocks_.moves(chain[before - 1])) {
       --before;
     }
-    const bool flat_before = before == 0 || flat(before - 1);
-    const bool flat_after = end == chain.size() || flat(end);
-    return flat_before && flat_after ? end : begin;
+    const bool outermost = before == 0 || end == chain.size();
+    return outermost || (flat(before - 1) && flat(end)) ? end : begin;
   }
 
   // Motions of no length at the ends of a chain say nothing about its path: they are copied. So are

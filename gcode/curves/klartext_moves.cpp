@@ -243,7 +243,7 @@ CurveResult read_klartext_moves(const Program& program, std::uint32_t first,
 CurveAlarms klartext_arc_alarms(const Program& program, Units units) {
   const double unit = millimetres_per(units);
   CurveAlarms alarms;
-  std::optional<PlanePoint> center;
+  std::optional<std::array<double, 2>> center;  // in the plane, as printed
   std::array<std::optional<double>, 3> place;
   for (const Block& line : program.blocks) {
     const auto say = [&](std::string_view id, std::string message) {
@@ -255,7 +255,7 @@ CurveAlarms klartext_arc_alarms(const Program& program, Units units) {
     }
     if (block.kind == MoveBlock::Kind::kCenter) {
       center.reset();
-      if (block.place[0] && block.place[1]) center = {*block.place[0], *block.place[1]};
+      if (block.place[0] && block.place[1]) center = {{*block.place[0], *block.place[1]}};
       continue;
     }
     const std::array<std::optional<double>, 3> before = place;
@@ -267,8 +267,8 @@ CurveAlarms klartext_arc_alarms(const Program& program, Units units) {
     if (!center) say("arc-no-centre", "a C without a CC before it");
     if (block.sense == 0) say("arc-no-sense", "a C without DR+ or DR-");
     if (!center || !before[0] || !before[1] || !place[0] || !place[1]) continue;
-    const double start_radius = std::hypot(*before[0] - center->x(), *before[1] - center->y());
-    const double end_radius = std::hypot(*place[0] - center->x(), *place[1] - center->y());
+    const double start_radius = std::hypot(*before[0] - (*center)[0], *before[1] - (*center)[1]);
+    const double end_radius = std::hypot(*place[0] - (*center)[0], *place[1] - (*center)[1]);
     const double mismatch = std::abs(end_radius - start_radius) * unit;
     if (mismatch <= kKlartextRadiusMismatch) continue;
     say("arc-radius", "radii differ by " +
