@@ -241,8 +241,9 @@ class RunSmoother {
     if (options_.output != Form::kLines && !arcs_are_hopeless(fair)) {
       const PlanOptions arcs = plan_with(one_sided() ? kFineArcs : kArcs);
       add(curve, plan_arcs(run_, fair, arcs), arcs.max_deviation);
-      // Who asks for few arcs has no use for those that follow the curve closely.
-      if (lies_flat() && !few_wanted() && !one_sided()) {
+      // Who asks for few arcs has no use for those that follow the fair curve closely.
+      const bool enough = few_wanted() && curve.method == Method::kFair;
+      if (lies_flat() && !enough && !one_sided()) {
         const PlanOptions fine = plan_with(kFineArcs);
         add(curve, plan_arcs(run_, fair, fine), fine.max_deviation);
       }

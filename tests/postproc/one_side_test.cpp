@@ -178,7 +178,7 @@ std::string cornered(double off) {
 
 TEST(SideProof, RefusesTheWrongSideAndAcceptsTheOther) {
   const std::string before = cornered(0);
-  const std::string left = cornered(0.03);
+  const std::string left = cornered(0.02);
   EXPECT_TRUE(verdict_of(before, left, Side::kBoth).proved());
   const Verification right_one = verdict_of(before, left, Side::kLeft);
   EXPECT_TRUE(right_one.proved()) << right_one.breaches[0].message;
