@@ -132,7 +132,8 @@ constexpr std::array kTargetListRows = {
     OptionRow{
         .name = "show", .value = "NAME", .help = "print a profile of this target to start from"},
     kJson, kForce};
-constexpr std::array kVerifyRows = {kTolerance, kProfile, kToleranceKind, kSide, kUnits, kJson, kForce};
+constexpr std::array kVerifyRows = {kTolerance, kProfile, kToleranceKind, kSide,
+                                    kUnits,     kJson,    kForce};
 constexpr std::array kInspectRows = {kUnits, kAllow, kJson, kForce};
 constexpr std::array kListRows = {kJson, kForce};
 
