@@ -15,8 +15,10 @@ class Chain {
  public:
   Chain(const Point3& start, double station) : cursor_(start) { path_.stations = {station}; }
 
+  // Blends that share a leg may overlap by the noise of the search that found them: what takes no
+  // way along the polyline is no piece, and the next one starts where this one ended.
   void line_to(const Point3& end, double station) {
-    if ((end - cursor_).norm() <= kSamePlace) return;
+    if ((end - cursor_).norm() <= kSamePlace || station <= path_.stations.back()) return;
     path_.pieces.emplace_back(Line{cursor_, end});
     reach(end, station);
   }
@@ -48,11 +50,22 @@ class Chain {
   BlendedPath path_;
 };
 
+// The middle of a blend's parameters; a knot that is there but for rounding.
+double middle_of(const BsplineCurve& blend) {
+  // Far above rounding, far below any span that a blend is made of.
+  constexpr double kSameMiddle = 1e-9;
+  const double middle = 0.5 * (blend.first() + blend.last());
+  for (const double u : blend.breakpoints()) {
+    if (std::abs(u - middle) <= kSameMiddle * (blend.last() - blend.first())) return u;
+  }
+  return middle;
+}
+
 // One side of a blend, cut at the middle of its parameters.
 class HalfBlend {
  public:
   HalfBlend(const BsplineCurve& blend, bool first_half, const Point3& vertex) {
-    const double middle = 0.5 * (blend.first() + blend.last());
+    const double middle = middle_of(blend);
     const BsplineCurve half =
         first_half ? blend.part(blend.first(), middle) : blend.part(middle, blend.last());
     pieces_ = half.bezier_pieces();

@@ -27,7 +27,7 @@ struct RacingPathOptions {
   double least_raced_turn = 0.1;
   // Corners, different ones, for which a racing line is searched; those behind them get the
   // five-point blend. Bounds the time for paths that are no paths of corners.
-  int most_raced = 200;
+  int most_raced = 40;
 };
 
 struct RacingPathBlend {

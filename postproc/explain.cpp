@@ -18,6 +18,10 @@ constexpr ExplainedBreach kBreaches[] = {
      "A stretch of cutting moves leaves the tolerance, both ways and in order. The message gives a "
      "distance that is certainly reached, the lines say where.",
      "The new program cuts something else there: do not run it."},
+    {"wrong-side",
+     "With --side: a stretch of the new path comes over to the side that is not allowed, or could "
+     "not be proved to stay on the other.",
+     "A larger tolerance or more decimals: a tenth of the tolerance is allowed for rounding."},
     {"crosses-itself",
      "A flat stretch meets itself where the old one does not: two parts of it are nearer to each "
      "other than twice the tolerance, and one came over to the other side.",

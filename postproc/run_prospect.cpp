@@ -77,12 +77,16 @@ double arcs_for(const geometry::FairPath& fair) {
   return 3.0 * static_cast<double>(pieces.straight_runs().size());
 }
 
-std::vector<Method> methods_worth_trying(double corners, double least_time, double time) {
+std::vector<Method> methods_worth_trying(double corners, std::size_t points, double least_time,
+                                         double time) {
   // A run of corners: most of its vertices are coarser than any curve through them.
   constexpr double kCorners = 0.5;
   // The least that there must be left to win.
   constexpr double kWorthTrying = 0.02;
   if (corners < kCorners || least_time > (1 - kWorthTrying) * time) return {};
+  // A racing line takes some 50 ms to find for each corner.
+  constexpr std::size_t kMostRaced = 100;
+  if (points > kMostRaced) return {Method::kGuo, Method::kOzcan};
   return {Method::kGuo, Method::kOzcan, Method::kRacing};
 }
 

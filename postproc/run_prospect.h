@@ -32,9 +32,9 @@ namespace batten::postproc {
 [[nodiscard]] double arcs_for(const geometry::FairPath& fair);
 
 // The methods beside `fair` that may win on a run, for Method::kBest. `corners` is coarse_part of
-// it, `time` (s) what its fastest form so far takes on the machine. docs/algorithms/methods.md says
-// why these.
-[[nodiscard]] std::vector<Method> methods_worth_trying(double corners, double least_time,
-                                                       double time);
+// it, `points` how many it has, `time` (s) what its fastest form so far takes on the machine.
+// docs/algorithms/methods.md says why these.
+[[nodiscard]] std::vector<Method> methods_worth_trying(double corners, std::size_t points,
+                                                       double least_time, double time);
 
 }  // namespace batten::postproc

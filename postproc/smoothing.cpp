@@ -147,7 +147,8 @@ class RunSmoother {
       for (const Candidate& c : result_.candidates) time = std::min(time, mean(c.times));
     }
     const double corners = coarse_part(run_, options_.tolerance_mm);
-    for (const Method method : methods_worth_trying(corners, least_time_, time)) {
+    for (const Method method :
+         methods_worth_trying(corners, run_.points.size(), least_time_, time)) {
       const CurveRequest request = curve_request(method, shares, rounding);
       if (const auto curve = curve_of(method, run_.points, request)) try_curve(*curve, shares);
     }

