@@ -51,7 +51,7 @@ struct RacingPath {
 // alike (directions of the legs, and shares where these are used up) are searched once. The path
 // starts and ends in the given ends.
 //
-// Cost: linear, but some 50 ms for each corner that has to be searched. Throws
+// Cost: linear, but each corner that has to be searched takes some ten convex problems. Throws
 // std::invalid_argument when the tolerance is not a positive number, or the limits are not as
 // racing_corner needs them.
 [[nodiscard]] RacingPath racing_path(std::span<const Point3> points,

@@ -84,7 +84,7 @@ std::vector<Method> methods_worth_trying(double corners, std::size_t points, dou
   // The least that there must be left to win.
   constexpr double kWorthTrying = 0.02;
   if (corners < kCorners || least_time > (1 - kWorthTrying) * time) return {};
-  // A racing line takes some 50 ms to find for each corner, eight points some 12 ms.
+  // A racing line and the eight points are searches of their own for each corner.
   constexpr std::size_t kMostSearched = 100;
   if (points > kMostSearched) return {Method::kGuo};
   return {Method::kGuo, Method::kOzcan, Method::kRacing};

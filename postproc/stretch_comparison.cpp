@@ -297,21 +297,28 @@ class StretchComparer {
     geometry::BandComparison comparison = compare(middle, promise_);
     if (comparison.paths.verdict == Verdict::kProved) {
       result_.stretches.push_back(stretch_of(middle, std::move(comparison)));
-      if (auto breach = side_breach(middle, promise_)) {
-        result_.breaches.push_back(std::move(*breach));
-      }
-      // Of the whole, for a new part may also cross one that is the same.
-      if (auto breach = crossing_breach(pair, middle, tolerance_)) {
-        result_.breaches.push_back(std::move(*breach));
-      }
+      look_beside_the_distance(pair, middle);
       return;
     }
     // The same ends may be passed otherwise than together: only the whole is a refutation.
     comparison = compare(pair, promise_);
     if (comparison.paths.verdict != Verdict::kProved) {
       result_.breaches.push_back(distance_breach(pair, comparison.paths, tolerance_));
+    } else {
+      look_beside_the_distance(pair, pair);
     }
     result_.stretches.push_back(stretch_of(pair, std::move(comparison)));
+  }
+
+  // What else a path that keeps the distance may do wrong. `proved`: the part that keeps it.
+  void look_beside_the_distance(const PartPair& pair, const PartPair& proved) {
+    if (auto breach = side_breach(proved, promise_)) {
+      result_.breaches.push_back(std::move(*breach));
+    }
+    // Of the whole, for a new part may also cross one that is the same.
+    if (auto breach = crossing_breach(pair, proved, tolerance_)) {
+      result_.breaches.push_back(std::move(*breach));
+    }
   }
 
   // Parts that break the tolerance of a path that keeps it: a feed begins at another place.

@@ -135,7 +135,7 @@ TEST_P(Truth, OfTheCurveIsFiveTimesNearerThanThatOfTheChords) {
                cam, accurate ? ", accurate" : "", rms_of(rows), found.rms, found.row_to_row);
     if (cam < 0.005 && !accurate) continue;
     EXPECT_LE(found.rms, rms_of(rows) / 5);
-    // At 0.01 mm the ends of rows, whose neighbours are cut elsewhere, are a little more apart.
+    // At 0.01 mm it is 0.0011 (printed above): more than is wished for, and not explained yet.
     if (accurate && cam < 0.01) {
       EXPECT_LE(found.row_to_row, 0.001);
     }
