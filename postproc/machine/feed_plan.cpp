@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "geometry/numeric.h"
+#include "postproc/machine/feed_estimate_parts.h"
 #include "postproc/machine/feed_plan_envelope.h"
 #include "postproc/machine/feed_plan_grid.h"
 #include "postproc/machine/feed_plan_path.h"
@@ -16,6 +17,7 @@
 #include "postproc/machine/feed_plan_refine.h"
 #include "postproc/machine/feed_plan_solver.h"
 #include "postproc/machine/feed_plan_straight.h"
+#include "postproc/machine/feed_plan_straight_nodes.h"
 
 namespace batten::postproc {
 namespace {
@@ -23,27 +25,28 @@ namespace {
 using geometry::Path;
 using geometry::PathPiece;
 
-// A joint whose speed the machine reaches from rest within this way is a stop: the way is a
-// thousandth of the last printed decimal.
-constexpr double kStopWay = 1e-6;  // mm
-
 // A straight move is not refined, so it has more nodes from the start.
 constexpr double kStraightDensity = 2;
 
-// The first solution only says where nodes are missing.
-constexpr SearchRule kRough = {0.5, 1e-3};
+// A joint so many times slower than the envelope of the speeds on both sides is passed at its speed
+// without acceleration. An acceleration there wins at most 0.15 times the square of the ratio of
+// the speeds, as part of the time of a ramp; the envelope is 1.65 times what jerk allows between
+// two rests: 1.6e-5.
+constexpr double kSlowJoint = 160;
 
-// The next start from it, slowed down to be inside of the limits.
-constexpr SearchRule kFine = {0.1, 2e-5};
-constexpr double kWarmStart = 0.9;
+// The first solution only says where nodes are missing.
+constexpr SearchRule kRough = {0.5, 1e-3, 0.2};
+
+// The next start from it, near to what they find.
+constexpr SearchRule kFine = {0.02, 2e-5, 0.02};
 
 // Intervals are cut where the jerk switches, once, and where a limit is exceeded between the places
 // that were asked, until it is so by less than half a percent; three times are rarely needed.
 constexpr std::array<RefineRule, 4> kRefinements = {RefineRule{0.002, 0.5}, RefineRule{0.004, 2},
                                                     RefineRule{0.004, 2}, RefineRule{0.004, 2}};
 
-// Times and parameters this close, as part of the whole, are the same: rounding of sums.
-constexpr double kSamePart = 1e-12;
+// Parameters this close are the same: rounding of sums.
+constexpr double kSameParameter = 1e-12;
 
 // Distances of the ends of the pieces from the start of the first.
 std::vector<double> ends_of_pieces(const Path& pieces) {
@@ -51,51 +54,6 @@ std::vector<double> ends_of_pieces(const Path& pieces) {
   double sum = 0;
   for (const PathPiece& piece : pieces) ends.push_back(sum += geometry::length_of(piece));
   return ends;
-}
-
-double time_at(const StraightMove& move, double distance) {
-  double below = 0;
-  double above = move.time();
-  while (true) {
-    const double middle = 0.5 * (below + above);
-    if (middle <= below || middle >= above) return middle;
-    (state_at(move, middle).distance < distance ? below : above) = middle;
-  }
-}
-
-// Where the jerk changes, so many places between those, and the ends of the pieces. From rest to
-// the end of the first phase, and in the last, the plan's intervals are exact; but after an end of
-// a piece there they are not, and must be short against the time from rest.
-std::vector<double> node_times(const StraightMove& move, const std::vector<double>& ends,
-                               double density) {
-  const bool jerk = move.jerk_time > 0;
-  const double first = jerk ? move.jerk_time : move.acceleration_time;
-  const double inner[] = {jerk ? move.acceleration_time : 0, jerk ? move.jerk_time : 0,
-                          move.cruise_time, jerk ? move.jerk_time : 0,
-                          jerk ? move.acceleration_time : 0};
-  const int parts = std::max(1, static_cast<int>(std::ceil(density)));
-  std::vector<double> times;
-  double start = first;
-  times.push_back(start);
-  for (const double phase : inner) {
-    const int count = phase > kSamePart * move.time() ? parts : 0;
-    for (int i = 1; i <= count; ++i) times.push_back(start + phase * i / count);
-    start += phase;
-  }
-  times.push_back(move.time());
-  double nearest_start = first;
-  double nearest_end = first;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    const double time = time_at(move, ends[i]);
-    times.push_back(time);
-    nearest_start = std::min(nearest_start, time);
-    nearest_end = std::min(nearest_end, move.time() - time);
-  }
-  const double growth = 1 + 1 / density;
-  for (double t = nearest_start * growth; t < first; t *= growth) times.push_back(t);
-  for (double t = nearest_end * growth; t < first; t *= growth) times.push_back(move.time() - t);
-  std::sort(times.begin(), times.end());
-  return times;
 }
 
 class Planner {
@@ -111,11 +69,18 @@ class Planner {
     Path pieces;
     std::vector<std::size_t> numbers;  // of the pieces in the path
     std::vector<double> bounds;        // mm/s at their ends
+    bool slow_start = false;           // at the bound, without acceleration
+    bool slow_end = false;
   };
 
-  [[nodiscard]] double joint_bound(const PathPiece& before, const PathPiece& after) const;
   void plan_chain(const Chain& chain);
+  [[nodiscard]] std::vector<std::size_t> slow_joints(const Chain& chain) const;
+  void plan_part(const Chain& chain);
   void plan_straight(const Chain& chain, double length);
+  void plan_straight_run(const Chain& chain, double length);
+  template <typename StateAt>
+  void add_straight_nodes(const Chain& chain, const std::vector<double>& ends,
+                          const std::vector<double>& times, const StateAt& state_of);
   void plan_bent(const Chain& chain);
   void start_nodes(const Chain& chain, double speed, double acceleration);
   void add_node(std::size_t piece, double t, double length, double seconds, double speed,
@@ -127,23 +92,14 @@ class Planner {
   FeedPlan plan_;
 };
 
-double Planner::joint_bound(const PathPiece& before, const PathPiece& after) const {
-  const LengthDerivatives from = derivatives_by_length(before, 1);
-  const LengthDerivatives to = derivatives_by_length(after, 0);
-  const double speed = joint_speed(from, to, limits_);
-  // Rounding of control points looks like a jump, but a tiny one.
-  if (speed >= limits_along(from.first, limits_).speed) return KinematicPathLimits::kNone;
-  const double slowest = potential_.speed(potential_.slope(from.first, limits_) * kStopWay);
-  return speed < slowest ? 0 : speed;
-}
-
 FeedPlan Planner::run(std::span<const PathPiece> path, const PlanEnds& ends) {
   Chain chain;
   chain.bounds.push_back(ends.start_speed);
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (!(geometry::length_of(path[i]) > geometry::kSamePlace)) continue;
     if (!chain.pieces.empty()) {
-      const double bound = joint_bound(chain.pieces.back(), path[i]);
+      const double bound = passing_speed(derivatives_by_length(chain.pieces.back(), 1),
+                                         derivatives_by_length(path[i], 0), potential_, limits_);
       chain.bounds.push_back(bound);
       if (bound == 0) {
         ++plan_.stops;
@@ -164,17 +120,60 @@ FeedPlan Planner::run(std::span<const PathPiece> path, const PlanEnds& ends) {
   return std::move(plan_);
 }
 
+// The joints, as numbers of the pieces after them, at which the chain falls into parts.
+std::vector<std::size_t> Planner::slow_joints(const Chain& chain) const {
+  PartChain envelope;
+  for (std::size_t i = 0; i < chain.pieces.size(); ++i) {
+    if (i > 0) envelope.parts.back().end_bound = chain.bounds[i];
+    append_parts(chain.pieces[i], i, ends_of(chain.pieces[i]), potential_, limits_, envelope.parts);
+  }
+  envelope.find_potentials(chain.bounds.front(), chain.bounds.back(), potential_);
+  std::vector<std::size_t> joints;
+  for (const std::size_t part : envelope.slow_joints(kSlowJoint, potential_)) {
+    joints.push_back(envelope.parts[part].piece);
+  }
+  return joints;
+}
+
 void Planner::plan_chain(const Chain& chain) {
-  const bool rest = chain.bounds.front() == 0 && chain.bounds.back() == 0;
+  Chain part;
+  part.bounds.push_back(chain.bounds.front());
+  std::size_t next = 0;
+  const auto add_until = [&](std::size_t end) {
+    for (; next < end; ++next) {
+      part.pieces.push_back(chain.pieces[next]);
+      part.numbers.push_back(chain.numbers[next]);
+      part.bounds.push_back(chain.bounds[next + 1]);
+    }
+  };
+  if (chain.pieces.size() > 1) {
+    for (const std::size_t joint : slow_joints(chain)) {
+      add_until(joint);
+      part.slow_end = true;
+      plan_part(part);
+      part = {};
+      part.bounds.push_back(chain.bounds[joint]);
+      part.slow_start = true;
+    }
+  }
+  add_until(chain.pieces.size());
+  plan_part(part);
+}
+
+void Planner::plan_part(const Chain& chain) {
+  const bool slow_start = chain.slow_start || chain.bounds.front() == 0;
+  const bool slow_end = chain.slow_end || chain.bounds.back() == 0;
   const bool straight = std::all_of(
       chain.pieces.begin(), chain.pieces.end(),
       [](const PathPiece& piece) { return std::holds_alternative<geometry::Line>(piece); });
   const bool runs_on = std::all_of(chain.bounds.begin() + 1, chain.bounds.end() - 1,
                                    [](double bound) { return std::isinf(bound); });
-  if (rest && straight && runs_on) {
-    plan_straight(chain, geometry::length_of(chain.pieces));
+  if (!(slow_start && slow_end && straight && runs_on)) return plan_bent(chain);
+  const double length = geometry::length_of(chain.pieces);
+  if (chain.slow_start || chain.slow_end) {
+    plan_straight_run(chain, length);
   } else {
-    plan_bent(chain);
+    plan_straight(chain, length);
   }
 }
 
@@ -206,14 +205,31 @@ void Planner::plan_straight(const Chain& chain, double length) {
   const StraightMove move = straight_move(length, limits_along(direction, limits_));
   start_nodes(chain, 0, state_at(move, 0).acceleration);
   const std::vector<double> ends = ends_of_pieces(chain.pieces);
+  add_straight_nodes(chain, ends, node_times(move, ends, kStraightDensity * options_.density),
+                     [&](double time) { return state_at(move, time); });
+}
+
+void Planner::plan_straight_run(const Chain& chain, double length) {
+  const geometry::Vector3 direction = geometry::direction_at(chain.pieces.front(), 0);
+  const LimitsAlong along = limits_along(direction, limits_);
+  const StraightRun run = straight_run(length, chain.bounds.front(), chain.bounds.back(), along);
+  start_nodes(chain, run.from, 0);
+  const std::vector<double> ends = ends_of_pieces(chain.pieces);
+  add_straight_nodes(chain, ends, node_times(run, along, ends, kStraightDensity * options_.density),
+                     [&](double time) { return state_at(run, time, along); });
+}
+
+template <typename StateAt>
+void Planner::add_straight_nodes(const Chain& chain, const std::vector<double>& ends,
+                                 const std::vector<double>& times, const StateAt& state_of) {
   std::size_t piece = 0;
   StraightState last;
   double last_time = 0;
-  for (const double time : node_times(move, ends, kStraightDensity * options_.density)) {
-    const StraightState state = state_at(move, time);
+  for (const double time : times) {
+    const StraightState state = state_of(time);
     const double from = piece > 0 ? ends[piece - 1] : 0;
     double t = (state.distance - from) / (ends[piece] - from);
-    if (t > 1 - kSamePart && piece + 1 < chain.pieces.size()) {
+    if (t > 1 - kSameParameter && piece + 1 < chain.pieces.size()) {
       ++piece;
       t = 0;
     }
@@ -226,8 +242,10 @@ void Planner::plan_straight(const Chain& chain, double length) {
 
 void Planner::plan_bent(const Chain& chain) {
   PlanGrid grid = make_plan_grid(chain.pieces, chain.bounds, limits_, options_.density);
+  grid.slow_start = chain.slow_start;
+  grid.slow_end = chain.slow_end;
   PlanProblem problem = make_plan_problem(chain.pieces, grid, limits_);
-  PlanSolution solution = fastest_plan(problem, feasible_start(problem, grid), kRough);
+  PlanSolution solution = fastest_plan(problem, rough_start(problem, grid), kRough);
   const auto rounds = static_cast<std::size_t>(std::clamp(options_.refinements, 0, 4));
   for (const RefineRule& rule : std::span(kRefinements).first(rounds)) {
     std::vector<double> start = solution.x;
@@ -235,7 +253,6 @@ void Planner::plan_bent(const Chain& chain) {
     const bool first = &rule == &kRefinements.front();
     if (cut == 0 && !first) break;
     if (cut > 0) problem = make_plan_problem(chain.pieces, grid, limits_);
-    slow_down(problem, kWarmStart, start);
     solution = fastest_plan(problem, std::move(start), kFine);
   }
   const auto& x = solution.x;

@@ -14,6 +14,10 @@ using geometry::Vector3;
 
 constexpr double kAboveFeed = 2.5;
 
+// A joint whose speed the machine reaches from rest within this way is a stop: the way is a
+// thousandth of the last printed decimal.
+constexpr double kStopWay = 1e-6;  // mm
+
 // Stands for "no limit at all in this direction"; w itself is 1e6 at 1e4 mm/s.
 constexpr double kSteep = 1e9;
 
@@ -105,6 +109,16 @@ double Potential::slope(const Vector3& direction, const KinematicPathLimits& lim
 }
 
 double Potential::rate() const { return jerk_limited_ ? 1 / std::sqrt(4.5) : 0.5; }
+
+double passing_speed(const LengthDerivatives& before, const LengthDerivatives& after,
+                     const Potential& potential, const KinematicPathLimits& limits) {
+  const double speed = joint_speed(before, after, limits);
+  if (std::isinf(speed)) return speed;
+  // Rounding of control points looks like a jump, but a tiny one.
+  if (speed >= limits_along(before.first, limits).speed) return KinematicPathLimits::kNone;
+  const double slowest = potential.speed(potential.slope(before.first, limits) * kStopWay);
+  return speed < slowest ? 0 : speed;
+}
 
 double EnvelopeStep::peak(double w0, double w1) const {
   return std::max({w0, w1, std::min(cap, 0.5 * (w0 + w1 + slope * length))});

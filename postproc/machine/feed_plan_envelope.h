@@ -15,6 +15,7 @@
 #include "geometry/path.h"
 #include "geometry/point.h"
 #include "postproc/machine/feed_plan_limits.h"
+#include "postproc/machine/feed_plan_path.h"
 
 namespace batten::postproc {
 
@@ -38,6 +39,11 @@ class Potential {
  private:
   bool jerk_limited_;
 };
+
+// What a joint allows: mm/s; 0: a stop, since the machine reaches more from rest within 1e-6 mm;
+// infinity where the path runs on, or where the joint allows what the machine can do at all.
+[[nodiscard]] double passing_speed(const LengthDerivatives& before, const LengthDerivatives& after,
+                                   const Potential& potential, const KinematicPathLimits& limits);
 
 struct EnvelopeStep {
   std::size_t piece = 0;

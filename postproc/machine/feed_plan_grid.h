@@ -23,6 +23,8 @@ struct PlanGrid {
   std::vector<GridInterval> intervals;
   std::vector<double> bounds;  // mm/s at each node: what its joint allows, mostly infinity
   std::vector<double> speeds;  // mm/s at each node: a rough upper bound
+  bool slow_start = false;     // the bound there is the speed, and the acceleration is 0
+  bool slow_end = false;
 };
 
 // Nodes for pieces of some length that are run without a stop between them. `bounds` are the

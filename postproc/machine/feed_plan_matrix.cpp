@@ -7,6 +7,8 @@ namespace batten::postproc {
 PlanMatrix::PlanMatrix(const PlanProblem& problem)
     : start_slope_(problem.start.slope()),
       end_slope_(-problem.end.slope()),
+      start_is_given_(problem.start_is_given),
+      end_is_given_(problem.end_is_given),
       rows_(problem.unknowns()) {}
 
 void PlanMatrix::set_zero() { std::fill(rows_.begin(), rows_.end(), rows_[0] = {}); }
@@ -20,6 +22,11 @@ void PlanMatrix::add(std::size_t interval, const PlanBlock& block) {
 }
 
 void PlanMatrix::fold_ends() {
+  if (start_is_given_) {
+    rows_[0] = rows_[1] = {1, 0, 0, 0};
+    rows_[2][1] = rows_[2][2] = rows_[3][2] = rows_[3][3] = 0;
+  }
+  if (end_is_given_) rows_[rows_.size() - 1] = rows_[rows_.size() - 2] = {1, 0, 0, 0};
   if (start_slope_ != 0) {
     const double k = start_slope_;
     rows_[0][0] += 2 * k * rows_[1][1] + k * k * rows_[1][0];
@@ -63,6 +70,8 @@ bool PlanMatrix::factor() {
 
 void PlanMatrix::solve(std::vector<double>& right) const {
   const std::size_t n = rows_.size();
+  if (start_is_given_) right[0] = right[1] = 0;
+  if (end_is_given_) right[n - 1] = right[n - 2] = 0;
   if (start_slope_ != 0) {
     right[0] += start_slope_ * right[1];
     right[1] = 0;

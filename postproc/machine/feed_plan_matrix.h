@@ -10,45 +10,10 @@
 
 namespace batten::postproc {
 
-// A symmetric 4 x 4 block. Its loops are written out: they are what the search spends its time in.
+// A symmetric 4 x 4 block.
 struct PlanBlock {
   std::array<double, 10> lower{};  // row by row
-
-  // Adds w c c^T.
-  void add_square(double w, const PlanWindow& c) {
-    const PlanWindow s = {w * c[0], w * c[1], w * c[2], w * c[3]};
-    add_half_product(s, c);
-  }
-
-  // Adds s c^T + c s^T.
-  void add_product(const PlanWindow& s, const PlanWindow& c) {
-    add_half_product(s, c);
-    add_half_product(c, s);
-  }
-
- private:
-  // The lower half of s c^T.
-  void add_half_product(const PlanWindow& s, const PlanWindow& c) {
-    lower[0] += s[0] * c[0];
-    lower[1] += s[1] * c[0];
-    lower[2] += s[1] * c[1];
-    lower[3] += s[2] * c[0];
-    lower[4] += s[2] * c[1];
-    lower[5] += s[2] * c[2];
-    lower[6] += s[3] * c[0];
-    lower[7] += s[3] * c[1];
-    lower[8] += s[3] * c[2];
-    lower[9] += s[3] * c[3];
-  }
 };
-
-// Adds w c.
-inline void add_scaled(PlanWindow& sum, double w, const PlanWindow& c) {
-  sum[0] += w * c[0];
-  sum[1] += w * c[1];
-  sum[2] += w * c[2];
-  sum[3] += w * c[3];
-}
 
 class PlanMatrix {
  public:
@@ -68,11 +33,14 @@ class PlanMatrix {
  private:
   static constexpr int kBands = 3;
 
-  // At an end at rest, p is a multiple of q: its row and column join those of q.
+  // At an end at rest, p is a multiple of q: its row and column join those of q. At an end that is
+  // given, neither changes.
   void fold_ends();
 
   double start_slope_;  // p / q at an end at rest, else 0
   double end_slope_;
+  bool start_is_given_;
+  bool end_is_given_;
   std::vector<std::array<double, kBands + 1>> rows_;  // diagonal first, then to the left of it
 };
 

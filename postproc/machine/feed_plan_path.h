@@ -9,9 +9,9 @@ namespace batten::postproc {
 
 // Of the place x by the length s.
 struct LengthDerivatives {
-  geometry::Vector3 first;   // unit direction
-  geometry::Vector3 second;  // 1/mm
-  geometry::Vector3 third;   // 1/mm^2
+  geometry::Vector3 first = geometry::Vector3::Zero();   // unit direction
+  geometry::Vector3 second = geometry::Vector3::Zero();  // 1/mm
+  geometry::Vector3 third = geometry::Vector3::Zero();   // 1/mm^2
 };
 
 // Exact for lines, arcs, helices, spirals and Bezier pieces. Where a Bezier piece comes to a

@@ -13,65 +13,58 @@ using geometry::Vector3;
 
 constexpr double kNone = KinematicPathLimits::kNone;
 
-PlanWindow combined(double a, const PlanWindow& x, double b, const PlanWindow& y, double c,
-                    const PlanWindow& z) {
-  PlanWindow sum;
-  for (int i = 0; i < 4; ++i) sum[i] = a * x[i] + b * y[i] + c * z[i];
-  return sum;
-}
-
+// The limits at one place after the other.
 class RowMaker {
  public:
-  RowMaker(const KinematicPathLimits& limits, std::vector<PlanRow>& rows)
-      : limits_(limits), rows_(rows) {}
+  RowMaker(const KinematicPathLimits& limits, PlanProblem& problem)
+      : limits_(limits), problem_(problem) {}
 
-  // Feed, speeds of the axes and normal acceleration are bounds on q.
-  void add_speed(const LengthDerivatives& x, PlanPlace place, const PlanWeights& at) {
-    const double speed = limits_along(x.first, limits_).speed;
-    double most = speed * speed;
-    const double curvature = x.second.norm();
-    if (curvature > 0) most = std::min(most, limits_.normal_acceleration / curvature);
-    add(PlanLimit::kUpper, place, combined(1 / most, at.q, 0, at.q, 0, at.q));
-  }
-
-  void add_bound(double speed, PlanPlace place, const PlanWeights& at) {
-    if (std::isinf(speed)) return;
-    add(PlanLimit::kUpper, place, combined(1 / (speed * speed), at.q, 0, at.q, 0, at.q));
-  }
-
-  void add_acceleration(const LengthDerivatives& x, PlanPlace place, const PlanWeights& at) {
-    const auto row = [&](double second, double first, double limit) {
-      if (std::isinf(limit) || (second == 0 && first == 0)) return;
-      add(PlanLimit::kEven, place,
-          combined(second / limit, at.q, first / (2 * limit), at.p, 0, at.r));
-    };
-    if (straight(x)) return row(0, 1, limits_along(x.first, limits_).acceleration);
-    for (int i = 0; i < 3; ++i) row(x.second[i], x.first[i], limits_.acceleration[i]);
-    row(0, 1, limits_.tangential_acceleration);
-  }
-
-  void add_jerk(const LengthDerivatives& x, PlanPlace place, const PlanWeights& at) {
-    const auto row = [&](double third, double second, double first, double limit) {
-      if (std::isinf(limit) || (third == 0 && second == 0 && first == 0)) return;
-      add(PlanLimit::kJerk, place,
-          combined(third / limit, at.q, 1.5 * second / limit, at.p, 0.5 * first / limit, at.r));
-    };
-    if (straight(x)) return row(0, 0, 1, limits_along(x.first, limits_).jerk);
-    for (int i = 0; i < 3; ++i) row(x.third[i], x.second[i], x.first[i], limits_.jerk[i]);
-    row(0, 0, 1, limits_.tangential_jerk);
+  // The jerk is asked for at both sides of a node, the rest at one.
+  void add_place(const LengthDerivatives& x, bool with_acceleration) {
+    PlanPlace place;
+    place.first_row = problem_.rows.size();
+    add_jerk(x);
+    place.jerk_rows = problem_.rows.size() - place.first_row;
+    if (with_acceleration) {
+      add_acceleration(x);
+      const double speed = limits_along(x.first, limits_).speed;
+      const double curvature = x.second.norm();
+      place.most = speed * speed;
+      if (curvature > 0) place.most = std::min(place.most, limits_.normal_acceleration / curvature);
+    }
+    place.rows = problem_.rows.size() - place.first_row;
+    problem_.places.push_back(place);
   }
 
  private:
+  void add_acceleration(const LengthDerivatives& x) {
+    if (straight(x)) return row(0, 0.5, 0, limits_along(x.first, limits_).acceleration);
+    for (int i = 0; i < 3; ++i) row(x.second[i], 0.5 * x.first[i], 0, limits_.acceleration[i]);
+    row(0, 0.5, 0, limits_.tangential_acceleration);
+  }
+
+  void add_jerk(const LengthDerivatives& x) {
+    if (straight(x)) return row(0, 0, 0.5, limits_along(x.first, limits_).jerk);
+    for (int i = 0; i < 3; ++i) {
+      row(x.third[i], 1.5 * x.second[i], 0.5 * x.first[i], limits_.jerk[i]);
+    }
+    row(0, 0, 0.5, limits_.tangential_jerk);
+  }
+
   static bool straight(const LengthDerivatives& x) {
     return x.second == Vector3::Zero() && x.third == Vector3::Zero();
   }
-  void add(PlanLimit limit, PlanPlace place, const PlanWindow& c) {
-    rows_.push_back({c, limit, place});
+
+  void row(double q, double p, double r, double limit) {
+    if (std::isinf(limit) || (q == 0 && p == 0 && r == 0)) return;
+    problem_.rows.push_back({q / limit, p / limit, r / limit});
   }
 
   const KinematicPathLimits& limits_;
-  std::vector<PlanRow>& rows_;
+  PlanProblem& problem_;
 };
+
+void lower(double& most, double speed) { most = std::min(most, speed * speed); }
 
 // The speed, one interval away from rest, at which the interval from rest keeps the jerk: its
 // terms, each at the greater end, all of one sign.
@@ -100,18 +93,14 @@ bool jerk_is_limited(const KinematicPathLimits& limits) {
 
 }  // namespace
 
-PlanWeights plan_weights(PlanPlace place, double length) {
-  const double h = length;
-  const double k = 6 / (h * h);
-  switch (place) {
-    case PlanPlace::kStart:
-      return {{1, 0, 0, 0}, {0, 1, 0, 0}, {-k, -4 / h, k, -2 / h}};
-    case PlanPlace::kEnd:
-      return {{0, 0, 1, 0}, {0, 0, 0, 1}, {k, 2 / h, -k, 4 / h}};
-    case PlanPlace::kMiddle:
-      break;
-  }
-  return {{0.5, h / 8, 0.5, -h / 8}, {-1.5 / h, -0.25, 1.5 / h, -0.25}, {0, -1 / h, 0, 1 / h}};
+std::array<PlanState, kPlanPlaces> states_at_places(const double* w, double length) {
+  const double rise = (w[2] - w[0]) / length;
+  const double turn = (w[3] - w[1]) / length;
+  const double k = 6 * rise;
+  return {PlanState{w[0], w[1], (k - 4 * w[1] - 2 * w[3]) / length},
+          PlanState{0.5 * (w[0] + w[2]) - length * length / 8 * turn,
+                    1.5 * rise - 0.25 * (w[1] + w[3]), turn},
+          PlanState{w[2], w[3], (2 * w[1] + 4 * w[3] - k) / length}};
 }
 
 PlanProblem make_plan_problem(std::span<const PathPiece> pieces, const PlanGrid& grid,
@@ -125,44 +114,29 @@ PlanProblem make_plan_problem(std::span<const PathPiece> pieces, const PlanGrid&
   if (from_rest) problem.start = {grid.intervals.front().length, power};
   if (to_rest) problem.end = {grid.intervals.back().length, power};
 
-  RowMaker maker(limits, problem.rows);
+  RowMaker maker(limits, problem);
   for (std::size_t k = first; k < last; ++k) {
     const GridInterval& interval = grid.intervals[k];
     const PathPiece& piece = pieces[interval.piece];
-    problem.first_rows.push_back(problem.rows.size());
     problem.lengths.push_back(interval.length);
-    const auto add = [&](PlanPlace place, double t, bool with_acceleration) {
-      const LengthDerivatives x = derivatives_by_length(piece, t);
-      const PlanWeights at = plan_weights(place, interval.length);
-      if (with_acceleration) maker.add_speed(x, place, at);
-      if (with_acceleration) maker.add_acceleration(x, place, at);
-      maker.add_jerk(x, place, at);
-    };
     // Speed and acceleration run on from the end of the interval before, unless the bend jumps.
     const bool new_piece = k == first || grid.intervals[k - 1].piece != interval.piece;
-    add(PlanPlace::kStart, interval.t0, new_piece);
-    add(PlanPlace::kMiddle, middle_of(piece, interval), true);
-    add(PlanPlace::kEnd, interval.t1, true);
-    const PlanWeights start = plan_weights(PlanPlace::kStart, interval.length);
-    const PlanWeights end = plan_weights(PlanPlace::kEnd, interval.length);
-    maker.add_bound(grid.bounds[k], PlanPlace::kStart, start);
-    if (k == first && from_rest) {
-      const GridInterval& rest = grid.intervals.front();
-      maker.add_bound(speed_after_rest(pieces[rest.piece], rest, problem.start, limits),
-                      PlanPlace::kStart, start);
-    }
-    if (k + 1 == last) {
-      double bound = kNone;
-      if (!to_rest) bound = grid.bounds[k + 1];
-      maker.add_bound(bound, PlanPlace::kEnd, end);
-      if (to_rest) {
-        const GridInterval& rest = grid.intervals.back();
-        maker.add_bound(speed_after_rest(pieces[rest.piece], rest, problem.end, limits),
-                        PlanPlace::kEnd, end);
-      }
-    }
+    maker.add_place(derivatives_by_length(piece, interval.t0), new_piece);
+    lower(problem.places.back().most, grid.bounds[k] > 0 ? grid.bounds[k] : kNone);
+    maker.add_place(derivatives_by_length(piece, middle_of(piece, interval)), true);
+    maker.add_place(derivatives_by_length(piece, interval.t1), true);
   }
-  problem.first_rows.push_back(problem.rows.size());
+  const auto rest_speed = [&](const GridInterval& interval, const PlanRest& rest) {
+    return speed_after_rest(pieces[interval.piece], interval, rest, limits);
+  };
+  double& start_most = problem.places.front().most;
+  double& end_most = problem.places.back().most;
+  if (from_rest) lower(start_most, rest_speed(grid.intervals.front(), problem.start));
+  lower(end_most, to_rest ? rest_speed(grid.intervals.back(), problem.end) : grid.bounds.back());
+  problem.start_is_given = grid.slow_start;
+  problem.end_is_given = grid.slow_end;
+  if (grid.slow_start) start_most = kNone;
+  if (grid.slow_end) end_most = kNone;
   return problem;
 }
 

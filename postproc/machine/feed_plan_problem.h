@@ -13,22 +13,11 @@
 #include "geometry/path.h"
 #include "postproc/machine/feed_plan_grid.h"
 #include "postproc/machine/feed_plan_limits.h"
+#include "postproc/machine/feed_plan_rows.h"
 
 namespace batten::postproc {
 
 using PlanWindow = std::array<double, 4>;
-
-// Places of an interval at which limits are asked for.
-enum class PlanPlace { kStart, kMiddle, kEnd };
-
-// q, dq/ds and d2q/ds2 at a place as sums over the window.
-struct PlanWeights {
-  PlanWindow q;
-  PlanWindow p;
-  PlanWindow r;
-};
-
-[[nodiscard]] PlanWeights plan_weights(PlanPlace place, double length);
 
 // q, dq/ds and d2q/ds2 themselves.
 struct PlanState {
@@ -40,16 +29,20 @@ struct PlanState {
 // `s` mm after the start of an interval.
 [[nodiscard]] PlanState state_in(const double* window, double length, double s);
 
-enum class PlanLimit {
-  kUpper,  // c.x <= 1
-  kEven,   // |c.x| <= 1
-  kJerk,   // |c.x| <= 1 / sqrt(q) at `place`
-};
+// Places of an interval at which limits are asked for: its start, its middle, its end.
+inline constexpr std::size_t kPlanPlaces = 3;
 
-struct PlanRow {
-  PlanWindow c;
-  PlanLimit limit;
-  PlanPlace place;
+// The states at those places.
+[[nodiscard]] std::array<PlanState, kPlanPlaces> states_at_places(const double* window,
+                                                                  double length);
+
+// The limits at one place: rows |c.(q, p, r)| <= 1, those of the jerk (<= 1 / sqrt(q)) first, and a
+// bound of q.
+struct PlanPlace {
+  std::size_t first_row = 0;
+  std::size_t jerk_rows = 0;
+  std::size_t rows = 0;
+  double most = KinematicPathLimits::kNone;  // mm^2/s^2
 };
 
 // An end of the path at rest: from there to the first unknown node, `length` mm away, the speed
@@ -70,30 +63,28 @@ struct PlanRest {
 };
 
 struct PlanProblem {
-  std::vector<double> lengths;          // mm, of the intervals
-  std::vector<PlanRow> rows;            // those of one interval side by side
-  std::vector<std::size_t> first_rows;  // of each interval; one more than intervals
+  std::vector<double> lengths;    // mm, of the intervals
+  std::vector<LimitWindow> rows;  // c of each row, those of one place side by side
+  std::vector<PlanPlace> places;  // kPlanPlaces for each interval
   PlanRest start;
   PlanRest end;
+  bool start_is_given = false;  // q and p there are those of the start of the search
+  bool end_is_given = false;
 
   [[nodiscard]] std::size_t intervals() const { return lengths.size(); }
   [[nodiscard]] std::size_t unknowns() const { return 2 * lengths.size() + 2; }
-  [[nodiscard]] std::span<const PlanRow> rows_of(std::size_t interval) const {
-    return std::span(rows).subspan(first_rows[interval],
-                                   first_rows[interval + 1] - first_rows[interval]);
-  }
 };
 
 [[nodiscard]] PlanProblem make_plan_problem(std::span<const geometry::PathPiece> pieces,
                                             const PlanGrid& grid,
                                             const KinematicPathLimits& limits);
 
-// Unknowns that keep all limits by a margin: from the grid's rough speeds, smoothed, and slowed
-// down as a whole until they do. Any q that keeps all limits keeps them times a factor below 1.
-[[nodiscard]] std::vector<double> feasible_start(const PlanProblem& problem, const PlanGrid& grid);
+// Unknowns to start the search from: the grid's rough speeds, smoothed. They exceed limits.
+[[nodiscard]] std::vector<double> rough_start(const PlanProblem& problem, const PlanGrid& grid);
 
-// The same unknowns times a factor: this part of the greatest that keeps all limits.
-void slow_down(const PlanProblem& problem, double part, std::vector<double>& x);
+// The same unknowns, slowed down as a whole until they keep all limits. Any q that keeps all limits
+// keeps them times a factor below 1.
+void slow_down(const PlanProblem& problem, std::vector<double>& x);
 
 // The parameter of the place in the middle of an interval, by length.
 [[nodiscard]] double middle_of(const geometry::PathPiece& piece, const GridInterval& interval);
@@ -101,9 +92,5 @@ void slow_down(const PlanProblem& problem, double part, std::vector<double>& x);
 // Seconds that these unknowns take, Simpson's rule on 1 / sqrt(q); of one interval, and in all.
 [[nodiscard]] double interval_seconds(double length, const double* window);
 [[nodiscard]] double planned_seconds(const PlanProblem& problem, std::span<const double> x);
-
-[[nodiscard]] inline double dot(const PlanWindow& c, const double* x) {
-  return c[0] * x[0] + c[1] * x[1] + c[2] * x[2] + c[3] * x[3];
-}
 
 }  // namespace batten::postproc

@@ -91,6 +91,8 @@ std::size_t refine_plan(std::span<const PathPiece> pieces, const KinematicPathLi
     }
     finer_x.insert(finer_x.end(), {window[2], window[3]});
   }
+  finer.slow_start = grid.slow_start;
+  finer.slow_end = grid.slow_end;
   finer.bounds.push_back(grid.bounds.back());
   finer.speeds.push_back(grid.speeds.back());
   grid = std::move(finer);

@@ -3,65 +3,79 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <utility>
 
 #include "postproc/machine/feed_plan_matrix.h"
+#include "postproc/machine/feed_plan_rows.h"
 
 namespace batten::postproc {
 namespace {
 
 // Share of the way to the nearest limit that a step goes.
-constexpr double kToLimit = 0.99;
+constexpr double kToLimit = 0.98;
 
 // q may fall to this part of itself in one step: the time, 1 / sqrt(q), is modelled by its second
 // derivative only.
 constexpr double kLeastPart = 0.2;
 
 // Paths whose allowed speed changes a hundredfold within a millimetre take up to 120.
-constexpr int kMostIterations = 150;
+constexpr int kMostSteps = 150;
 
 // While the duals do not yet explain the gradient of the time, the search keeps this much distance
 // from the limits: with less, it would creep along them.
 constexpr double kGapPerUnexplained = 0.1;
 
-// After a step shorter than this some limit is too near for its dual: the next step keeps the gap
-// and evens out the products.
-constexpr double kShortStep = 0.2;
+// The gap falls at most to this part of itself in one step.
+constexpr double kLeastGapPart = 0.08;
 
-// One side of a row: g = 1 - c.x or 1 + c.x, for kJerk with 1 / sqrt(q) for 1.
-struct Side {
-  double slack = 0;    // g
-  double inverse = 0;  // 1 / g
-  double dual = 0;     // l
-  double extra = 0;    // dg dl of the affine step, then the step of l
+// The search ends where no limit is exceeded by more than this part: a fiftieth of what is allowed
+// between the nodes.
+constexpr double kEnoughKept = 1e-4;
+
+struct PlaceState {
+  LimitWindow x{};  // q, p, r
+  double root = 0;  // 1 / sqrt(q)
+  LimitBound bound;
 };
 
-struct RowState {
-  PlanWindow c{};
-  Side plus;       // - c.x
-  Side minus;      // + c.x
-  double two = 1;  // 0 where only the first side is there: its dual stays 0
-  bool jerk = false;
-  std::uint8_t place = 0;
+// q, p and r at a place as sums over the window of the interval.
+struct PlaceWeights {
+  PlanWindow q;
+  PlanWindow p;
+  PlanWindow r;
 };
 
-// q at the three places of an interval, 1 / sqrt(q), and the derivative of that by q.
-struct Places {
-  std::array<double, 3> q{};
-  std::array<double, 3> root{};
-  std::array<double, 3> slope{};
-};
-
-// q at the places as sums over the window.
-std::array<PlanWindow, 3> place_weights(double length) {
-  return {PlanWindow{1, 0, 0, 0}, PlanWindow{0.5, length / 8, 0.5, -length / 8},
-          PlanWindow{0, 0, 1, 0}};
+std::array<PlaceWeights, kPlanPlaces> place_weights(double h) {
+  const double k = 6 / (h * h);
+  return {PlaceWeights{{1, 0, 0, 0}, {0, 1, 0, 0}, {-k, -4 / h, k, -2 / h}},
+          PlaceWeights{
+              {0.5, h / 8, 0.5, -h / 8}, {-1.5 / h, -0.25, 1.5 / h, -0.25}, {0, -1 / h, 0, 1 / h}},
+          PlaceWeights{{0, 0, 1, 0}, {0, 0, 0, 1}, {k, 2 / h, -k, 4 / h}}};
 }
 
-// The three numbers that a change of the unknowns makes of q at the places.
-std::array<double, 3> at_places(double length, const double* d) {
-  return {d[0], 0.5 * (d[0] + d[2]) + length / 8 * (d[1] - d[3]), d[2]};
+PlanWindow in_window(const PlaceWeights& weights, const LimitWindow& c) {
+  PlanWindow sum;
+  for (int i = 0; i < 4; ++i) {
+    sum[i] = c[0] * weights.q[i] + c[1] * weights.p[i] + c[2] * weights.r[i];
+  }
+  return sum;
+}
+
+// H = W^T S W for the second derivatives S by (q, p, r).
+void add_to_block(const PlaceWeights& weights, const LimitSums& sums, PlanBlock& block) {
+  const auto& s = sums.square;
+  int entry = 0;
+  for (int a = 0; a < 4; ++a) {
+    const double q = weights.q[a];
+    const double p = weights.p[a];
+    const double r = weights.r[a];
+    const double by_q = s[0] * q + s[1] * p + s[3] * r;
+    const double by_p = s[1] * q + s[2] * p + s[4] * r;
+    const double by_r = s[3] * q + s[4] * p + s[5] * r;
+    for (int b = 0; b <= a; ++b) {
+      block.lower[entry++] += by_q * weights.q[b] + by_p * weights.p[b] + by_r * weights.r[b];
+    }
+  }
 }
 
 class Search {
@@ -70,136 +84,107 @@ class Search {
   PlanSolution run(const SearchRule& rule);
 
  private:
-  void find_slacks();
-  void start_duals(double gap);
-  void assemble();
-  void add_time(std::size_t interval, PlanWindow& gradient, PlanBlock& block) const;
+  void find_states();
+  void start_slacks(const SearchRule& rule);
+  void assemble(double primal, double dual);
+  void find_step(double target);
   [[nodiscard]] double unexplained() const;
-  [[nodiscard]] double affine_gap();
-  void aim(double target);
-  [[nodiscard]] double advance(double target);
-
-  // Calls visit(row, change of its left side, change of its right side) along step_.
-  template <typename Visit>
-  void along_step(const Visit& visit);
+  [[nodiscard]] std::array<double, kPlanPlaces> time_weights(std::size_t interval) const;
+  [[nodiscard]] std::span<LimitRow> rows_of(const PlanPlace& place) {
+    return std::span(rows_).subspan(place.first_row, place.rows);
+  }
 
   const PlanProblem& problem_;
   std::vector<double> x_;
-  std::vector<RowState> rows_;
-  std::vector<Places> places_;
-  std::vector<double> gradient_;  // of the time
-  std::vector<double> residual_;  // of it, what the duals do not explain
-  std::vector<double> right_;
-  std::vector<double> step_;
+  std::vector<LimitRow> rows_;
+  std::vector<PlaceState> places_;
+  std::vector<double> base_;  // the right side, then the step
+  std::vector<double> center_;
+  std::vector<double> unexplained_;
   PlanMatrix matrix_;
-  double sides_ = 0;
-  double gap_ = 0;  // sum of slack * dual
+  LimitTally tally_;
+  double primal_share_ = 1;
+  double dual_share_ = 1;
 };
 
 Search::Search(const PlanProblem& problem, std::vector<double> start)
     : problem_(problem),
       x_(std::move(start)),
       rows_(problem.rows.size()),
-      places_(problem.intervals()),
-      gradient_(problem.unknowns()),
-      residual_(problem.unknowns()),
-      right_(problem.unknowns()),
-      step_(problem.unknowns()),
+      places_(problem.places.size()),
+      base_(problem.unknowns()),
+      center_(problem.unknowns()),
+      unexplained_(problem.unknowns()),
       matrix_(problem) {
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const PlanRow& row = problem.rows[k];
-    rows_[k].c = row.c;
-    rows_[k].two = row.limit == PlanLimit::kUpper ? 0 : 1;
-    rows_[k].jerk = row.limit == PlanLimit::kJerk;
-    rows_[k].place = static_cast<std::uint8_t>(row.place);
-    sides_ += 1 + rows_[k].two;
+  tally_.sides = 2 * static_cast<double>(rows_.size());
+  for (std::size_t k = 0; k < rows_.size(); ++k) rows_[k].c = problem.rows[k];
+  for (std::size_t k = 0; k < places_.size(); ++k) {
+    places_[k].bound.scale = 1 / problem.places[k].most;
+    tally_.sides += places_[k].bound.is_there() ? 1 : 0;
   }
 }
 
-void Search::find_slacks() {
+void Search::find_states() {
   for (std::size_t i = 0; i < problem_.intervals(); ++i) {
-    Places& at = places_[i];
-    const double* w = x_.data() + 2 * i;
-    at.q = at_places(problem_.lengths[i], w);
-    for (int p = 0; p < 3; ++p) {
-      at.root[p] = 1 / std::sqrt(at.q[p]);
-      at.slope[p] = -0.5 * at.root[p] / at.q[p];
-    }
-    for (std::size_t k = problem_.first_rows[i]; k < problem_.first_rows[i + 1]; ++k) {
-      RowState& row = rows_[k];
-      const double right = row.jerk ? at.root[row.place] : 1;
-      const double left = dot(row.c, w);
-      row.plus.slack = right - left;
-      row.minus.slack = right + left;
-      row.plus.inverse = 1 / row.plus.slack;
-      row.minus.inverse = 1 / row.minus.slack;
+    const auto states = states_at_places(x_.data() + 2 * i, problem_.lengths[i]);
+    for (std::size_t p = 0; p < kPlanPlaces; ++p) {
+      PlaceState& at = places_[kPlanPlaces * i + p];
+      at.x = {states[p].q, states[p].p, states[p].r};
+      at.root = 1 / std::sqrt(states[p].q);
     }
   }
 }
 
-// All products slack * dual alike, in sum this part of the time.
-void Search::start_duals(double gap) {
-  const double product = gap * planned_seconds(problem_, x_) / sides_;
-  for (RowState& row : rows_) {
-    row.plus.dual = product * row.plus.inverse;
-    row.minus.dual = row.two * product * row.minus.inverse;
+void Search::start_slacks(const SearchRule& rule) {
+  find_states();
+  const double product = rule.first_gap * planned_seconds(problem_, x_) / tally_.sides;
+  for (std::size_t k = 0; k < places_.size(); ++k) {
+    const PlanPlace& place = problem_.places[k];
+    PlaceState& at = places_[k];
+    start_bound(at.bound, at.x[0], rule.least_slack, product);
+    for (std::size_t i = 0; i < place.rows; ++i) {
+      start_row(rows_[place.first_row + i], at.x, i < place.jerk_rows ? at.root : 1,
+                rule.least_slack, product);
+    }
   }
 }
 
-// First and second derivatives of the time over one interval and at rest beside it.
-void Search::add_time(std::size_t interval, PlanWindow& gradient, PlanBlock& block) const {
-  const Places& at = places_[interval];
+// mm, of 1 / sqrt(q) at the places: Simpson's rule, and what an end at rest adds.
+std::array<double, kPlanPlaces> Search::time_weights(std::size_t interval) const {
   const double h = problem_.lengths[interval];
-  std::array<double, 3> weight = {h / 6, 4 * h / 6, h / 6};
-  if (interval == 0) weight[0] += problem_.start.time();
-  if (interval + 1 == problem_.intervals()) weight[2] += problem_.end.time();
-  const std::array<PlanWindow, 3> c = place_weights(h);
-  for (int p = 0; p < 3; ++p) {
-    const double slope = weight[p] * at.slope[p];
-    add_scaled(gradient, slope, c[p]);
-    block.add_square(-1.5 * slope / at.q[p], c[p]);
-  }
+  std::array<double, kPlanPlaces> weights = {h / 6, 4 * h / 6, h / 6};
+  if (interval == 0) weights[0] += problem_.start.time();
+  if (interval + 1 == problem_.intervals()) weights[2] += problem_.end.time();
+  return weights;
 }
 
-// The matrix: second derivatives of the time and, for each side with slack g, dual l and
-// gradient a of g, (l / g) a a^T. For a jerk row a = t -+ c, with t = slope * weights of its place,
-// so what has a t in it is summed by places first.
-void Search::assemble() {
+// Goes these shares of the last step and makes the system of the next.
+void Search::assemble(double primal, double dual) {
   matrix_.set_zero();
-  std::fill(gradient_.begin(), gradient_.end(), 0);
-  std::fill(residual_.begin(), residual_.end(), 0);
-  gap_ = 0;
+  std::fill(base_.begin(), base_.end(), 0);
+  std::fill(center_.begin(), center_.end(), 0);
+  std::fill(unexplained_.begin(), unexplained_.end(), 0);
+  tally_.start();
   for (std::size_t i = 0; i < problem_.intervals(); ++i) {
+    const auto weights = place_weights(problem_.lengths[i]);
+    const auto time = time_weights(i);
     PlanBlock block;
-    PlanWindow gradient{};
-    PlanWindow explained{};
-    add_time(i, gradient, block);
-    std::array<PlanWindow, 3> products{};  // by places: sums of (l / g) c and l / g, and of l
-    std::array<double, 3> squares{};
-    std::array<double, 3> duals{};
-    for (std::size_t k = problem_.first_rows[i]; k < problem_.first_rows[i + 1]; ++k) {
-      const RowState& row = rows_[k];
-      gap_ += row.plus.slack * row.plus.dual + row.minus.slack * row.minus.dual;
-      const double plus = row.plus.dual * row.plus.inverse;
-      const double minus = row.minus.dual * row.minus.inverse;
-      add_scaled(explained, row.minus.dual - row.plus.dual, row.c);
-      block.add_square(plus + minus, row.c);
-      if (!row.jerk) continue;
-      duals[row.place] += row.plus.dual + row.minus.dual;
-      squares[row.place] += plus + minus;
-      add_scaled(products[row.place], minus - plus, row.c);
-    }
-    const std::array<PlanWindow, 3> weights = place_weights(problem_.lengths[i]);
-    for (int p = 0; p < 3; ++p) {
-      PlanWindow t{};
-      add_scaled(t, places_[i].slope[p], weights[p]);
-      add_scaled(explained, duals[p], t);
-      block.add_square(squares[p], t);
-      block.add_product(t, products[p]);
-    }
-    for (int a = 0; a < 4; ++a) {
-      gradient_[2 * i + a] += gradient[a];
-      residual_[2 * i + a] += gradient[a] - explained[a];
+    for (std::size_t p = 0; p < kPlanPlaces; ++p) {
+      const PlanPlace& place = problem_.places[kPlanPlaces * i + p];
+      PlaceState& at = places_[kPlanPlaces * i + p];
+      LimitSums sums;
+      sums.add_time(time[p], at.root);
+      add_bound(at.bound, at.x[0], primal, dual, sums, tally_);
+      add_rows<true>(rows_of(place), place.jerk_rows, at.x, at.root, primal, dual, sums, tally_);
+      add_to_block(weights[p], sums, block);
+      const PlanWindow base = in_window(weights[p], sums.base);
+      const PlanWindow center = in_window(weights[p], sums.center);
+      const PlanWindow left = in_window(weights[p], sums.unexplained);
+      for (int a = 0; a < 4; ++a) {
+        base_[2 * i + a] += base[a];
+        center_[2 * i + a] += center[a];
+        unexplained_[2 * i + a] += left[a];
+      }
     }
     matrix_.add(i, block);
   }
@@ -209,134 +194,59 @@ void Search::assemble() {
 // q were 0 instead, or twice as much.
 double Search::unexplained() const {
   double sum = 0;
-  for (std::size_t i = 0; i < x_.size(); i += 2) {
-    sum += std::abs(residual_[i] * x_[i] + residual_[i + 1] * x_[i + 1]);
+  const std::size_t first = problem_.start_is_given ? 2 : 0;
+  const std::size_t last = x_.size() - (problem_.end_is_given ? 2 : 0);
+  for (std::size_t i = first; i < last; i += 2) {
+    sum += std::abs(unexplained_[i] * x_[i] + unexplained_[i + 1] * x_[i + 1]);
   }
   return sum;
 }
 
-template <typename Visit>
-void Search::along_step(const Visit& visit) {
+// The steps of slacks and duals that belong to the step of the unknowns, and how far they may go.
+void Search::find_step(double target) {
+  LimitReach reach(kToLimit);
   for (std::size_t i = 0; i < problem_.intervals(); ++i) {
-    const double* d = step_.data() + 2 * i;
-    std::array<double, 3> change = at_places(problem_.lengths[i], d);
-    for (int p = 0; p < 3; ++p) change[p] *= places_[i].slope[p];
-    for (std::size_t k = problem_.first_rows[i]; k < problem_.first_rows[i + 1]; ++k) {
-      RowState& row = rows_[k];
-      visit(row, dot(row.c, d), row.jerk ? change[row.place] : 0);
+    const auto changes = states_at_places(base_.data() + 2 * i, problem_.lengths[i]);
+    for (std::size_t p = 0; p < kPlanPlaces; ++p) {
+      const PlanPlace& place = problem_.places[kPlanPlaces * i + p];
+      PlaceState& at = places_[kPlanPlaces * i + p];
+      const LimitWindow change = {changes[p].q, changes[p].p, changes[p].r};
+      reach.primal = std::max(reach.primal, -kToLimit * change[0] / ((1 - kLeastPart) * at.x[0]));
+      step_bound(at.bound, change[0], target, reach);
+      step_rows(rows_of(place), place.jerk_rows, change, at.root, target, reach);
     }
   }
-}
-
-// Affine step: the products slack * dual all to 0 at once, dl = -l (1 + dg / g). How far it
-// gets says how much of the gap the real step may leave out.
-double Search::affine_gap() {
-  double primal = 1;  // reciprocals of the shares of the step that can be gone
-  double dual = 1;
-  double slack_dual_step = 0;  // sums of g dl, l dg, dg dl
-  double step_dual = 0;
-  double steps = 0;
-  const auto side = [&](Side& at, double dg) {
-    const double part = dg * at.inverse;
-    primal = std::max(primal, -part);
-    dual = std::max(dual, 1 + part);
-    const double dl = -at.dual * (1 + part);
-    at.extra = dg * dl;
-    slack_dual_step += at.slack * dl;
-    step_dual += at.dual * dg;
-    steps += at.extra;
-  };
-  along_step([&](RowState& row, double left, double right) {
-    side(row.plus, right - left);
-    side(row.minus, right + left);
-  });
-  return gap_ + slack_dual_step / dual + step_dual / primal + steps / (primal * dual);
-}
-
-// The right side for products slack * dual of `target`, the affine step's second order included.
-void Search::aim(double target) {
-  for (std::size_t i = 0; i < right_.size(); ++i) right_[i] = -gradient_[i];
-  for (std::size_t i = 0; i < problem_.intervals(); ++i) {
-    PlanWindow sum{};
-    std::array<double, 3> by_place{};
-    for (std::size_t k = problem_.first_rows[i]; k < problem_.first_rows[i + 1]; ++k) {
-      const RowState& row = rows_[k];
-      const double plus = (target - row.plus.extra) * row.plus.inverse;
-      const double minus = (row.two * target - row.minus.extra) * row.minus.inverse;
-      add_scaled(sum, minus - plus, row.c);
-      if (row.jerk) by_place[row.place] += plus + minus;
-    }
-    for (int p = 0; p < 3; ++p) by_place[p] *= places_[i].slope[p];
-    const double tilt = problem_.lengths[i] / 8 * by_place[1];
-    double* right = right_.data() + 2 * i;
-    right[0] += sum[0] + by_place[0] + 0.5 * by_place[1];
-    right[1] += sum[1] + tilt;
-    right[2] += sum[2] + by_place[2] + 0.5 * by_place[1];
-    right[3] += sum[3] - tilt;
-  }
-}
-
-// Goes along step_, unknowns and duals each as far as they can. Returns the unknowns' share.
-double Search::advance(double target) {
-  double primal = kToLimit;
-  double dual = kToLimit;
-  const auto side = [&](Side& at, double dg, double product) {
-    const double dl = (product - at.extra - at.dual * dg) * at.inverse - at.dual;
-    primal = std::max(primal, -dg * at.inverse);
-    if (-dl > dual * at.dual) dual = -dl / at.dual;
-    at.extra = dl;
-  };
-  along_step([&](RowState& row, double left, double right) {
-    side(row.plus, right - left, target);
-    if (row.two > 0) side(row.minus, right + left, target);
-  });
-  for (std::size_t i = 0; i < problem_.intervals(); ++i) {
-    const auto change = at_places(problem_.lengths[i], step_.data() + 2 * i);
-    for (int p = 0; p < 3; ++p) {
-      primal = std::max(primal, -change[p] / ((1 - kLeastPart) * places_[i].q[p]));
-    }
-  }
-  const double primal_share = kToLimit / primal;
-  const double dual_share = kToLimit / dual;
-  for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += primal_share * step_[i];
-  for (RowState& row : rows_) {
-    row.plus.dual += dual_share * row.plus.extra;
-    if (row.two > 0) row.minus.dual += dual_share * row.minus.extra;
-  }
-  return primal_share;
+  primal_share_ = kToLimit / reach.greatest_primal();
+  dual_share_ = kToLimit / reach.greatest_dual();
 }
 
 PlanSolution Search::run(const SearchRule& rule) {
-  PlanSolution best;
-  best.x = x_;
-  best.seconds = planned_seconds(problem_, x_);
-  find_slacks();
-  start_duals(rule.first_gap);
-  double share = 1;
-  for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
-    assemble();
-    best.gap = gap_;
-    best.iterations = iteration;
+  PlanSolution solution;
+  start_slacks(rule);
+  assemble(0, 0);
+  double share = 0.5;
+  for (int step = 1; step <= kMostSteps; ++step) {
+    solution.iterations = step;
+    const double gap = tally_.whole_gap();
+    const double part = std::max(kLeastGapPart, 1 - share);
+    const double needed = std::min(gap, kGapPerUnexplained * unexplained());
+    const double target = std::max(part * gap, needed) / tally_.sides;
+    for (std::size_t i = 0; i < base_.size(); ++i) base_[i] += target * center_[i];
     if (!matrix_.factor()) break;
-    for (std::size_t i = 0; i < step_.size(); ++i) step_[i] = -gradient_[i];
-    matrix_.solve(step_);
-    const double ratio = affine_gap() / gap_;
-    double aimed = std::max(gap_ * ratio * ratio * ratio, kGapPerUnexplained * unexplained());
-    if (share < kShortStep) aimed = std::max(aimed, gap_);
-    const double target = aimed / sides_;
-    aim(target);
-    matrix_.solve(right_);
-    step_.swap(right_);
-    share = advance(target);
-    find_slacks();
-    const double seconds = planned_seconds(problem_, x_);
-    if (seconds < best.seconds) {
-      best.seconds = seconds;
-      best.x = x_;
-    }
-    if (gap_ < rule.enough_gap * seconds && share > 0.5) break;
+    matrix_.solve(base_);
+    find_step(target);
+    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += primal_share_ * base_[i];
+    find_states();
+    assemble(primal_share_, dual_share_);
+    share = std::min(primal_share_, dual_share_);
+    const bool enough = tally_.whole_gap() < rule.enough_gap * planned_seconds(problem_, x_);
+    if (enough && tally_.excess < kEnoughKept && share > 0.5) break;
   }
-  return best;
+  if (tally_.excess > kEnoughKept) slow_down(problem_, x_);
+  solution.gap = tally_.whole_gap();
+  solution.seconds = planned_seconds(problem_, x_);
+  solution.x = std::move(x_);
+  return solution;
 }
 
 }  // namespace

@@ -8,22 +8,21 @@
 namespace batten::postproc {
 
 struct PlanSolution {
-  std::vector<double> x;  // keeps every row of the problem
+  std::vector<double> x;  // keeps every row of the problem, to 1e-4 of its limit
   double seconds = 0;
   double gap = 0;  // seconds: what the convex problem at x could still gain, as its duals say
   int iterations = 0;
 };
 
-// A primal-dual interior-point method (S. Mehrotra 1992) from unknowns that keep all limits with
-// some margin. The jerk limit |c.x| <= 1 / sqrt(q) is not convex: its right side is replaced by its
-// tangent at the present q, which is below it everywhere (1 / sqrt is convex), anew in every step;
-// so every iterate keeps every limit. Each step is one symmetric system with three sub-diagonals:
-// linear cost.
 struct SearchRule {
   double first_gap = 0.5;    // products of limits and duals at the start, as part of the time
   double enough_gap = 2e-5;  // the search ends where the duals promise no more than this part
+  double least_slack = 0.2;  // at the start, as part of the limit: more for a rough start
 };
 
+// A primal-dual interior-point method from any unknowns, also such that exceed limits. The rows are
+// those of feed_plan_rows.h. Each step is one symmetric system with three sub-diagonals: linear
+// cost. What does not come to keep its limits is slowed down as a whole until it does.
 [[nodiscard]] PlanSolution fastest_plan(const PlanProblem& problem, std::vector<double> start,
                                         const SearchRule& rule = {});
 

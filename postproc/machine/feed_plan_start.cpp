@@ -8,9 +8,6 @@
 namespace batten::postproc {
 namespace {
 
-// Of the greatest speed squared: the interior-point search must start inside of all limits.
-constexpr double kStartMargin = 0.9;
-
 // One pass takes the mean of each inner value and its neighbours. Nodes are spread by the time
 // that the machine needs for a change, so this rounds off corners of the envelope, as limited jerk
 // does, on each scale alike.
@@ -39,25 +36,30 @@ std::vector<double> unknowns_of(const PlanProblem& problem, const std::vector<do
     x[2 * i] = q[i];
     x[2 * i + 1] = i > 0 && i < n ? monotone_slope(rise(i - 1), rise(i)) : 0;
   }
+  // At ends that are not at rest without acceleration: given so, or a start as good as any.
   x[1] = problem.start.slope() * x[0];
   x[2 * n + 1] = -problem.end.slope() * x[2 * n];
   return x;
 }
 
-// The greatest factor on all unknowns that keeps the limits.
+// The greatest factor on all unknowns that keeps the limits, at most 1.
 double allowed_factor(const PlanProblem& problem, const std::vector<double>& x) {
-  double factor = std::numeric_limits<double>::infinity();
+  double factor = 1;
   for (std::size_t i = 0; i < problem.intervals(); ++i) {
-    for (const PlanRow& row : problem.rows_of(i)) {
-      const double* w = x.data() + 2 * i;
-      const double size = std::abs(dot(row.c, w));
-      if (!(size > 0)) continue;
-      if (row.limit == PlanLimit::kJerk) {
-        const double q = dot(plan_weights(row.place, problem.lengths[i]).q, w);
-        const double ratio = 1 / (std::sqrt(q) * size);
-        factor = std::min(factor, std::cbrt(ratio * ratio));
-      } else {
-        factor = std::min(factor, 1 / size);
+    const auto states = states_at_places(x.data() + 2 * i, problem.lengths[i]);
+    for (std::size_t p = 0; p < kPlanPlaces; ++p) {
+      const PlanPlace& place = problem.places[kPlanPlaces * i + p];
+      const LimitWindow state = {states[p].q, states[p].p, states[p].r};
+      factor = std::min(factor, place.most / state[0]);
+      for (std::size_t k = 0; k < place.rows; ++k) {
+        const double size = std::abs(dot(problem.rows[place.first_row + k], state));
+        if (!(size > 0)) continue;
+        if (k < place.jerk_rows) {
+          const double ratio = 1 / (std::sqrt(state[0]) * size);
+          factor = std::min(factor, std::cbrt(ratio * ratio));
+        } else {
+          factor = std::min(factor, 1 / size);
+        }
       }
     }
   }
@@ -66,33 +68,28 @@ double allowed_factor(const PlanProblem& problem, const std::vector<double>& x) 
 
 }  // namespace
 
-void slow_down(const PlanProblem& problem, double part, std::vector<double>& x) {
-  const double factor = part * allowed_factor(problem, x);
-  for (double& value : x) value *= factor;
+void slow_down(const PlanProblem& problem, std::vector<double>& x) {
+  const double factor = allowed_factor(problem, x);
+  const std::size_t first = problem.start_is_given ? 2 : 0;
+  const std::size_t last = x.size() - (problem.end_is_given ? 2 : 0);
+  for (std::size_t i = first; i < last; ++i) x[i] *= factor;
 }
 
-std::vector<double> feasible_start(const PlanProblem& problem, const PlanGrid& grid) {
+std::vector<double> rough_start(const PlanProblem& problem, const PlanGrid& grid) {
   const std::size_t first = problem.start.length > 0 ? 1 : 0;
   std::vector<double> logarithms;
   for (std::size_t i = 0; i <= problem.intervals(); ++i) {
     logarithms.push_back(2 * std::log(grid.speeds[first + i]));
   }
-  std::vector<double> best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const int passes : {4, 12, 48, 192}) {
-    smooth(logarithms, passes);
-    std::vector<double> q;
-    q.reserve(logarithms.size());
-    for (const double value : logarithms) q.push_back(std::exp(value));
-    std::vector<double> x = unknowns_of(problem, q);
-    slow_down(problem, kStartMargin, x);
-    const double time = planned_seconds(problem, x);
-    if (time < least) {
-      least = time;
-      best = std::move(x);
-    }
-  }
-  return best;
+  constexpr int kPasses = 12;  // about two changes of the speed, at the usual density
+  smooth(logarithms, kPasses);
+  std::vector<double> q;
+  q.reserve(logarithms.size());
+  for (const double value : logarithms) q.push_back(std::exp(value));
+  std::vector<double> x = unknowns_of(problem, q);
+  if (problem.start_is_given) x[0] = grid.bounds.front() * grid.bounds.front();
+  if (problem.end_is_given) x[x.size() - 2] = grid.bounds.back() * grid.bounds.back();
+  return x;
 }
 
 }  // namespace batten::postproc

@@ -34,4 +34,33 @@ struct StraightState {
 // At a time between 0 and move.time().
 [[nodiscard]] StraightState state_at(const StraightMove& move, double time);
 
+// A straight move between two speeds, with acceleration 0 at both ends: up to the peak, cruise,
+// down. Speeds above limits.speed count as that. Between rests it is straight_move().
+struct StraightRun {
+  double length = 0;  // mm
+  double from = 0;    // mm/s
+  double to = 0;      // mm/s
+  double peak = 0;    // mm/s
+  double time = 0;    // s
+
+  // mm/s, so many mm from the start.
+  [[nodiscard]] double speed_at(double way, const LimitsAlong& limits) const;
+};
+
+// At a time between 0 and run.time. Not for a run that is too short for its speeds.
+[[nodiscard]] StraightState state_at(const StraightRun& run, double time,
+                                     const LimitsAlong& limits);
+
+// Seconds of one of its ramps, from or to that speed, and of the first phase of it.
+struct RampTimes {
+  double whole = 0;
+  double growing = 0;  // in which the acceleration grows; as long as the one in which it falls
+};
+[[nodiscard]] RampTimes ramp_times(double speed, double peak, const LimitsAlong& limits);
+
+// Where the way is too short to change from the one speed to the other, the peak is the greater
+// speed and the time that of their mean over the way. Requires limits as for straight_move().
+[[nodiscard]] StraightRun straight_run(double length, double from_speed, double to_speed,
+                                       const LimitsAlong& limits);
+
 }  // namespace batten::postproc

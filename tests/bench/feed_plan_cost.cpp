@@ -1,45 +1,129 @@
-// What a feed plan costs: processor time per node on ever longer paths.
+// What a feed plan and its quick estimate cost: processor time on ever longer paths of each kind.
+//   feed_plan_cost [most pieces]        1000000 unless given; the plan stops at a hundredth of it
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <ctime>
+#include <functional>
+#include <numbers>
+#include <string_view>
 #include <vector>
 
 #include "geometry/bspline_curve.h"
+#include "geometry/path.h"
+#include "postproc/machine/feed_estimate.h"
 #include "postproc/machine/feed_plan.h"
 
 namespace {
 
-using batten::geometry::BsplineBasis;
-using batten::geometry::BsplineCurve;
-using batten::geometry::Point3;
-using batten::geometry::Vector3;
+using namespace batten;
+using geometry::BsplineBasis;
+using geometry::BsplineCurve;
+using geometry::Path;
+using geometry::Point3;
+using geometry::Vector3;
 
-// A wavy row in space: bends of all sizes, none too sharp.
-BsplineCurve wave(int points) {
+Point3 row_point(double x) {
+  return {x, 3 * std::sin(0.25 * x) + 0.6 * std::sin(1.1 * x), 1.5 * std::sin(0.4 * x)};
+}
+
+// A finishing row as a CAM system writes it: chords of 0.2 mm, three decimals.
+Path chords(int pieces) {
+  std::vector<Point3> points;
+  for (int i = 0; i <= pieces; ++i) {
+    points.emplace_back((row_point(0.2 * i) * 1e3).array().round() / 1e3);
+  }
+  return geometry::path_through(points);
+}
+
+// A smooth curve through points `piece` mm apart along x.
+Path curve(int pieces, double piece, const std::function<Point3(double)>& point) {
   std::vector<Point3> control;
   std::vector<double> knots;
-  for (int i = 0; i < points; ++i) {
-    control.emplace_back(2.0 * i, 4 * std::sin(0.7 * i) + std::sin(2.3 * i), std::sin(1.1 * i));
-    if (i + 2 < points) knots.push_back(i);
+  for (int i = 0; i < pieces + 3; ++i) {
+    control.push_back(point(piece * (i - 1)));
+    if (i + 2 < pieces + 3) knots.push_back(i);
   }
-  return {BsplineBasis::clamped(3, knots), control};
+  return postproc::path_of(BsplineCurve(BsplineBasis::clamped(3, knots), control));
+}
+
+Path row(int pieces) { return curve(pieces, 0.5, row_point); }
+
+// Bends of all sizes, each piece as long as a bend: the most expensive kind.
+Path wave(int pieces) {
+  return curve(pieces, 2, [](double x) {
+    const double i = x / 2;
+    return Point3(x, 4 * std::sin(0.7 * i) + std::sin(2.3 * i), std::sin(1.1 * i));
+  });
+}
+
+// Left and right in turn, tangent, radii from 1 to 4 mm.
+Path arcs(int pieces) {
+  Path path;
+  Point3 at = Point3::Zero();
+  double angle = 0;
+  for (int i = 0; i < pieces; ++i) {
+    const double side = i % 2 == 0 ? 1 : -1;
+    const double radius = 2.5 + 1.5 * std::sin(1.7 * i);
+    const double sweep = side * (0.8 + 0.4 * std::cos(0.9 * i));
+    const Point3 center = at + side * radius * Vector3(-std::sin(angle), std::cos(angle), 0);
+    angle += sweep;
+    const Point3 end = center - side * radius * Vector3(-std::sin(angle), std::cos(angle), 0);
+    path.emplace_back(geometry::Arc{at, end, center, {0, 0, 1}, sweep});
+    at = end;
+  }
+  return path;
+}
+
+struct Kind {
+  std::string_view name;
+  Path (*make)(int pieces);
+};
+
+constexpr Kind kKinds[] = {{"chords of .2 mm", chords},
+                           {"row, curve pieces of .5 mm", row},
+                           {"wave, curve pieces of 2 mm", wave},
+                           {"arcs", arcs}};
+
+template <typename Run>
+double seconds_of(const Run& run) {
+  const std::clock_t start = std::clock();
+  run();
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 }  // namespace
 
-int main() {
-  batten::postproc::KinematicPathLimits limits;
+int main(int argc, char** argv) {
+  const int most = argc > 1 ? std::atoi(argv[1]) : 1000000;
+  postproc::KinematicPathLimits limits;
   limits.feed = 100;
   limits.acceleration = Vector3::Constant(3000);
   limits.jerk = Vector3::Constant(50000);
-  fmt::print("{:>8} {:>8} {:>9} {:>9} {:>10}\n", "pieces", "nodes", "time s", "ms", "nodes/s");
-  for (const int points : {30, 100, 300, 1000, 3000, 10000, 30000}) {
-    const BsplineCurve curve = wave(points);
-    const std::clock_t start = std::clock();
-    const auto plan = batten::postproc::plan_feed(curve, limits);
-    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    fmt::print("{:8} {:8} {:9.4f} {:9.1f} {:10.0f}\n", points - 3, plan.nodes.size(), plan.time,
-               1e3 * seconds, static_cast<double>(plan.nodes.size()) / seconds);
+  fmt::print("{:28} {:>8} {:>10} {:>10} {:>10} {:>10} {:>11} {:>9}\n", "path", "pieces", "estimate",
+             "pieces/s", "plan", "pieces/s", "nodes/piece", "est/plan");
+  for (const Kind& kind : kKinds) {
+    for (int pieces = 100; pieces <= most; pieces *= 10) {
+      const Path path = kind.make(pieces);
+      double estimated = 0;
+      // Short paths several times, for the clock.
+      const int times = std::max(1, 20000 / pieces);
+      const double quick = seconds_of([&] {
+                             for (int i = 0; i < times; ++i) {
+                               estimated = postproc::estimated_time(path, limits);
+                             }
+                           }) /
+                           times;
+      fmt::print("{:28} {:8} {:8.2f}ms {:10.0f}", kind.name, pieces, 1e3 * quick, pieces / quick);
+      if (pieces <= most / 100) {
+        postproc::FeedPlan plan;
+        const double exact = seconds_of([&] { plan = postproc::plan_feed(path, limits); });
+        fmt::print(" {:8.1f}ms {:10.0f} {:11.1f} {:+8.2f}%", 1e3 * exact, pieces / exact,
+                   static_cast<double>(plan.nodes.size()) / pieces,
+                   100 * (estimated / plan.time - 1));
+      }
+      fmt::print("\n");
+    }
   }
 }

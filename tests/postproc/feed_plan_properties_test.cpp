@@ -115,7 +115,7 @@ TEST(FeedPlanProperties, RaisingALimitNeverCostsTime) {
       KinematicPathLimits limits = test.limits;
       change(limits);
       const double loss = planned_time(test.path, limits) / time - 1;
-      EXPECT_LE(loss, 2.5e-3);
+      EXPECT_LE(loss, 2e-3);
       worst = std::max(worst, loss);
     };
     raised([](auto& l) { l.feed *= 1.2; });
@@ -165,6 +165,62 @@ TEST(FeedPlanProperties, TheUnitOfLengthDoesNotMatter) {
   fmt::print("greatest difference {:.2e}\n", worst);
 }
 
+KinematicPathLimits divided(KinematicPathLimits limits, double speed, double acceleration,
+                            double jerk) {
+  limits.feed /= speed;
+  limits.speed /= speed;
+  limits.acceleration /= acceleration;
+  limits.normal_acceleration /= acceleration;
+  limits.tangential_acceleration /= acceleration;
+  limits.jerk /= jerk;
+  limits.tangential_jerk /= jerk;
+  return limits;
+}
+
+// The same motion at half the pace has half the speeds, a quarter of the accelerations, an eighth
+// of the jerks.
+TEST(FeedPlanProperties, AtHalfThePaceItTakesTwiceTheTime) {
+  double worst = 0;
+  for (int seed = 0; seed < kPaths; seed += 3) {
+    const Case test = random_case(seed);
+    KinematicPathLimits slow = divided(test.limits, 2, 4, 8);
+    slow.period *= 2;
+    const double ratio = planned_time(test.path, slow) / planned_time(test.path, test.limits);
+    EXPECT_NEAR(ratio / 2, 1, 1e-4) << seed;
+    worst = std::max(worst, std::abs(ratio / 2 - 1));
+  }
+  fmt::print("greatest difference {:.2e}\n", worst);
+}
+
+// All limits halved: with the cube root of 2 as pace the jerks are halved and the rest is lower
+// than needed, with 2 the speeds are halved and the rest is: in between, and where only one kind of
+// limit counts, its law exactly. A curve, so that there are no steps at joints.
+TEST(FeedPlanProperties, HalvedLimitsTakeTheirLawsTime) {
+  for (int seed = 0; seed < kPaths; seed += 5) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const Case test = random_case(seed);
+    const auto ratio = [&](const KinematicPathLimits& limits) {
+      return planned_time(test.path, divided(limits, 2, 2, 2)) / planned_time(test.path, limits);
+    };
+    const double all = ratio(test.limits);
+    EXPECT_GE(all, std::cbrt(2) * (1 - 1e-3));
+    EXPECT_LE(all, 2 * (1 + 1e-3));
+    EXPECT_NEAR(ratio(divided(test.limits, 1e-3, 1e-3, 1)) / std::cbrt(2), 1, 1e-3);
+    KinematicPathLimits without_jerk = test.limits;
+    without_jerk.jerk.setConstant(kNone);
+    without_jerk.tangential_jerk = kNone;
+    EXPECT_NEAR(ratio(divided(without_jerk, 1e-3, 1, 1)) / std::sqrt(2), 1, 1e-3);
+  }
+  // The feed alone: a circle that is entered and left at speed.
+  const Path circle = {Arc{{20, 0, 0}, {20, 0, 0}, {0, 0, 0}, {0, 0, 1}, 2 * std::numbers::pi}};
+  KinematicPathLimits feed;
+  feed.feed = 100;
+  feed.acceleration.setConstant(1e4);
+  const PlanEnds ends = {kNone, kNone};
+  EXPECT_NEAR(planned_time(circle, feed, ends), 0.4 * std::numbers::pi, 1e-4);
+  EXPECT_NEAR(planned_time(circle, divided(feed, 2, 2, 2), ends), 0.8 * std::numbers::pi, 2e-4);
+}
+
 TEST(FeedPlanProperties, TheReversedPathTakesTheSameTime) {
   double worst = 0;
   for (int seed = 0; seed < kPaths; ++seed) {
@@ -184,7 +240,7 @@ TEST(FeedPlanProperties, TheReversedPathTakesTheSameTime) {
     }
     const double time = planned_time(test.path, test.limits, {0, 20});
     const double back = planned_time(reversed, test.limits, {20, 0});
-    EXPECT_NEAR(back / time, 1, 2e-3) << seed;  // local optima again
+    EXPECT_NEAR(back / time, 1, 1e-3) << seed;  // local optima again
     worst = std::max(worst, std::abs(back / time - 1));
   }
   fmt::print("greatest difference {:.2e}\n", worst);

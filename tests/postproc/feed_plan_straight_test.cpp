@@ -82,6 +82,79 @@ TEST(StraightMove, GoesFromRestToRestWithinItsLimits) {
   }
 }
 
+// --- between two speeds --------------------------------------------------------------------------
+
+// From 10 to 20 mm/s with J 1000 takes 2 sqrt(10 / 1000) = .2 s and 3 mm; back the same.
+TEST(StraightRun, RampsUpAndDown) {
+  const LimitsAlong limits{1000, 1000, 1000};
+  const StraightRun run = straight_run(6, 10, 10, limits);
+  EXPECT_NEAR(run.peak, 20, 1e-9);
+  EXPECT_NEAR(run.time, 0.4, 1e-12);
+  // 5 mm further at 20 mm/s where that is the limit.
+  EXPECT_NEAR(straight_run(11, 10, 10, {20, 1000, 1000}).time, 0.65, 1e-12);
+  // From 0 to 10 mm/s takes .2 s and 1 mm; a peak 1e-14 higher would already take 1e-8 s.
+  EXPECT_NEAR(straight_run(1, 0, 10, limits).time, 0.2, 1e-7);
+}
+
+// A 100, J 1000, from 10 to 30 and to 0: .2 + .1 s over 6 mm, and .3 + .1 s over 6 mm.
+TEST(StraightRun, HoldsTheAccelerationLimit) {
+  const StraightRun run = straight_run(12, 10, 0, {1000, 100, 1000});
+  EXPECT_NEAR(run.peak, 30, 1e-9);
+  EXPECT_NEAR(run.time, 0.7, 1e-12);
+}
+
+TEST(StraightRun, OfTooShortAWayTakesTheMeanSpeed) {
+  EXPECT_NEAR(straight_run(1, 0, 50, {100, 1000, 1000}).time, 1 / 25.0, 1e-12);
+}
+
+TEST(StraightRun, BetweenRestsIsAStraightMove) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> exponent(-3, 3);
+  for (int i = 0; i < 300; ++i) {
+    const double length = std::pow(10, exponent(random));
+    LimitsAlong limits{std::pow(10, exponent(random)), std::pow(10, 1 + exponent(random)),
+                       std::pow(10, 2 + exponent(random))};
+    if (i % 5 == 0) limits.jerk = kNone;
+    const double time = straight_move(length, limits).time();
+    EXPECT_NEAR(straight_run(length, 0, 0, limits).time / time, 1, 1e-9) << i;
+  }
+}
+
+// Steps of constant jerk again, and the speed by the way.
+TEST(StraightRun, GoesFromSpeedToSpeedWithinItsLimits) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> exponent(-2, 2);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 300; ++i) {
+    SCOPED_TRACE(testing::Message() << "run " << i);
+    const double length = std::pow(10, exponent(random));
+    const LimitsAlong limits{std::pow(10, exponent(random)), std::pow(10, 1 + exponent(random)),
+                             std::pow(10, 2 + exponent(random))};
+    const double peak = straight_move(length, limits).speed;
+    const double from = i % 7 == 0 ? 0 : 0.3 * unit(random) * peak;
+    const StraightRun run = straight_run(length, from, 0.3 * unit(random) * peak, limits);
+    const StraightRun back = straight_run(length, run.to, run.from, limits);
+    EXPECT_NEAR(back.time / run.time, 1, 1e-9);
+    EXPECT_LE(run.time, straight_move(length, limits).time());
+    constexpr int kSteps = 1000;
+    const double h = run.time / kSteps;
+    for (int k = 0; k < kSteps; ++k) {
+      const StraightState a = state_at(run, k * h, limits);
+      const StraightState b = state_at(run, (k + 1) * h, limits);
+      EXPECT_LE(b.speed, limits.speed * (1 + 1e-9));
+      EXPECT_LE(std::abs(b.acceleration), limits.acceleration * (1 + 1e-9));
+      EXPECT_LE(std::abs(b.acceleration - a.acceleration), limits.jerk * h * (1 + 1e-6));
+      EXPECT_NEAR(b.distance - a.distance, 0.5 * (a.speed + b.speed) * h,
+                  limits.jerk * h * h * h + 1e-9 * length);
+    }
+    EXPECT_NEAR(state_at(run, 0, limits).speed, run.from, 1e-9 * peak);
+    EXPECT_NEAR(state_at(run, run.time, limits).speed, run.to, 1e-6 * peak);
+    EXPECT_NEAR(state_at(run, run.time, limits).distance / length, 1, 1e-9);
+    const StraightState middle = state_at(run, 0.37 * run.time, limits);
+    EXPECT_NEAR(run.speed_at(middle.distance, limits) / middle.speed, 1, 1e-6);
+  }
+}
+
 // No faster move exists: one limit binds at every moment (bang-bang), so each third of a percent
 // off a limit costs time.
 TEST(StraightMove, IsSlowerWithAnyLowerLimitThatItMeets) {
