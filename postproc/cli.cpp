@@ -44,7 +44,15 @@ std::vector<CommandRow> command_rows() {
        "Example:\n"
        "  batten targets --show haas > mine.toml\n"
        "prints a profile; batten smooth part.nc --target mine.toml reads it."},
-      {"machines", "List the built-in machines.", list_rows(), {}, "Example:\n  batten machines"},
+      {"machines",
+       "List the built-in machines, or print one machine as a file.",
+       machines_rows(),
+       {},
+       "Examples:\n"
+       "  batten machines\n"
+       "  batten machines --show router > my.toml\n"
+       "  batten machines --show mill.ini\n"
+       "  batten machines --grbl-settings settings.txt > my.toml"},
       {"methods", "List the ways of smoothing.", list_rows(), {}, "Example:\n  batten methods"},
       {"explain",
        "Say what the id of a kept run, a message or a breach means, and what to do about it.",
@@ -201,7 +209,7 @@ Command command_of(std::string_view name, const Given& given, const std::vector<
   if (name == "verify") return verify_command(given, files, problems);
   if (name == "inspect") return inspect_command(given, files, problems);
   if (name == "targets") return list_command(BuiltIn::kTargets, given, files, problems);
-  if (name == "machines") return list_command(BuiltIn::kMachines, given, files, problems);
+  if (name == "machines") return machines_command(given, files, problems);
   if (name == "methods") return list_command(BuiltIn::kMethods, given, files, problems);
   if (name == "explain") return explain_text(files, problems);
   if (name == "completion") return completion_text(files, problems);

@@ -23,5 +23,8 @@ namespace batten::postproc {
                                              Problems& problems);
 [[nodiscard]] ListCommand list_command(BuiltIn what, const Given& given,
                                        const std::vector<std::string>& files, Problems& problems);
+[[nodiscard]] MachinesCommand machines_command(const Given& given,
+                                               const std::vector<std::string>& files,
+                                               Problems& problems);
 
 }  // namespace batten::postproc

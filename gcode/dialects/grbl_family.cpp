@@ -38,7 +38,7 @@ TargetTable table_for(std::string_view name, std::string_view description) {
   table.centers = kCenters;
   table.max_radius = kMaxRadius;
   table.max_sweep_deg = kMaxSweepDeg;
-  table.machine = "grbl";
+  table.machine = "router";
   return table;
 }
 

@@ -16,7 +16,7 @@ namespace batten::postproc {
 
 struct SmoothCommand {
   SmoothOptions options;
-  std::shared_ptr<const Machine> own_machine;    // keeps a machine read from a file alive
+  std::shared_ptr<const Machine> own_machine;    // keeps the machine of the options alive
   std::shared_ptr<const TargetProfile> profile;  // and a target
   std::string input;
   std::string output;  // not given: default_output_path(input), or standard output for "-"
@@ -53,7 +53,7 @@ struct InspectCommand {
 [[nodiscard]] int run(const InspectCommand& command);
 
 // What is built in, as a table on standard output.
-enum class BuiltIn { kTargets, kMachines, kMethods };
+enum class BuiltIn { kTargets, kMethods };
 struct ListCommand {
   BuiltIn what = BuiltIn::kTargets;
   const gcode::Dialect* show = nullptr;  // kTargets: this one's profile instead of the table
@@ -61,5 +61,13 @@ struct ListCommand {
   bool force = false;
 };
 [[nodiscard]] int run(const ListCommand& command);
+
+// The built-in machines as a table, or one machine as a file that says everything about it.
+struct MachinesCommand {
+  std::shared_ptr<const Machine> shown;  // null: the table
+  std::string json_file;
+  bool force = false;
+};
+[[nodiscard]] int run(const MachinesCommand& command);
 
 }  // namespace batten::postproc

@@ -18,8 +18,8 @@ void require_positive(double value, std::string_view name, const Machine& machin
 }
 
 void require_usable(const Machine& machine) {
-  require_positive(machine.max_velocity, "max_velocity", machine);
-  require_positive(machine.max_acceleration, "max_acceleration", machine);
+  require_positive(machine.max_velocity(), "max_velocity", machine);
+  require_positive(machine.max_acceleration(), "max_acceleration", machine);
   require_positive(machine.block_period, "block_period", machine);
   require_positive(machine.look_ahead, "look_ahead", machine);
   if (machine.model == ControllerModel::kGrbl) {
@@ -37,7 +37,7 @@ std::vector<TimedPiece> with_length_and_feed(std::span<const TimedPiece> pieces,
       throw std::invalid_argument(fmt::format("feed is {} mm/min, expected 0 or above", p.feed));
     }
     if (geometry::length_of(p.piece) <= geometry::kSamePlace) continue;
-    const double fastest = machine.max_velocity * 60 * 2;  // above any axis diagonal (sqrt(3))
+    const double fastest = machine.max_velocity() * 60 * 2;  // above any axis diagonal (sqrt(3))
     moving.push_back({p.piece, p.feed > 0 ? p.feed : fastest});
   }
   return moving;

@@ -64,12 +64,12 @@ class Planner {
           stops_at_blocks_ && first_of_block
               ? 0
               : junction_deviation_speed(*before_, direction, machine_.junction_deviation,
-                                         machine_.max_acceleration);
+                                         machine_.max_acceleration());
     }
     VelocityStretch s;
     s.length = way.norm();
-    s.max_velocity = std::min(velocity, limit_along(direction, machine_.max_velocity));
-    s.acceleration = limit_along(direction, machine_.max_acceleration);
+    s.max_velocity = std::min(velocity, limit_along(direction, machine_.max_velocity()));
+    s.acceleration = limit_along(direction, machine_.max_acceleration());
     chain_.push_back(s);
     before_ = direction;
   }

@@ -175,13 +175,13 @@ std::optional<BlendArc> blend_arc(const Segment& before, const Segment& after,
 
   BlendArc arc;
   arc.turn = pi - 2 * theta;
-  arc.acceleration = plane_limit(binormal, machine.max_acceleration);
+  arc.acceleration = plane_limit(binormal, machine.max_acceleration());
   const double normal_acceleration = kNormalShare * arc.acceleration;
   const double allowed = blend_tolerance(before, after, tolerance);
   const double reach =
       std::min({reach1.length, reach2.length, std::cos(theta) * allowed / (1 - std::sin(theta))});
   const double radius = std::tan(theta) * reach;
-  const double feed = std::min(std::max(before.feed, after.feed), machine.max_velocity);
+  const double feed = std::min(std::max(before.feed, after.feed), machine.max_velocity());
   arc.velocity = std::min(std::sqrt(normal_acceleration * radius), feed);
 
   // The arc is as long as a parabolic blend of the same corner would be, so that long moves

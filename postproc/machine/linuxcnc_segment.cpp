@@ -32,9 +32,9 @@ void set_bend(Segment& s, double radius, double rise, double flat_length, const 
   s.shape = Shape::kArc;
   s.radius = radius;
   s.speed_radius = radius + rise * rise / radius;
-  s.acceleration = m.max_acceleration * stretch;
+  s.acceleration = m.max_acceleration() * stretch;
   s.max_velocity =
-      std::min(m.max_velocity, std::sqrt(kNormalShare * m.max_acceleration * radius)) * stretch;
+      std::min(m.max_velocity(), std::sqrt(kNormalShare * m.max_acceleration() * radius)) * stretch;
   s.sweep = flat_length / radius;
 }
 
@@ -61,8 +61,8 @@ Segment segment_of(const TimedPiece& timed, const Machine& machine, Joint end) {
   s.end = end;
   const double curvature = greatest_curvature(timed.piece);
   if (curvature <= kStraight) {
-    s.max_velocity = limit_along(s.start_direction, machine.max_velocity);
-    s.acceleration = limit_along(s.start_direction, machine.max_acceleration);
+    s.max_velocity = limit_along(s.start_direction, machine.max_velocity());
+    s.acceleration = limit_along(s.start_direction, machine.max_acceleration());
   } else if (const auto* arc = std::get_if<geometry::Arc>(&timed.piece)) {
     set_arc(s, *arc, machine);
   } else {
@@ -70,7 +70,7 @@ Segment segment_of(const TimedPiece& timed, const Machine& machine, Joint end) {
   }
   // The path as a whole has the limit of one axis too ([TRAJ]MAX_LINEAR_VELOCITY).
   s.max_velocity =
-      std::min({s.max_velocity, machine.max_velocity, s.length / machine.block_period});
+      std::min({s.max_velocity, machine.max_velocity(), s.length / machine.block_period});
   return s;
 }
 
@@ -106,7 +106,7 @@ double kink_at_full_speed(const Segment& before, const Segment& after, const Mac
   const double velocity = std::min(target_velocity(before), target_velocity(after));
   const double step = velocity / machine.block_period + after.acceleration;
   const Vector3 turn = after.start_direction - before.end_direction;
-  const double share = step * turn.cwiseAbs().maxCoeff() / machine.max_acceleration;
+  const double share = step * turn.cwiseAbs().maxCoeff() / machine.max_acceleration();
   const bool bend = before.shape == Shape::kArc || after.shape == Shape::kArc;
   return bend ? share / kTangentialShare : share;
 }

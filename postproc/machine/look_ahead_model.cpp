@@ -23,8 +23,8 @@ constexpr int kBezierParts = 32;
 
 VelocityStretch line_stretch(const Vector3& direction, const Machine& m) {
   VelocityStretch s;
-  s.max_velocity = limit_along(direction, m.max_velocity);
-  s.acceleration = limit_along(direction, m.max_acceleration);
+  s.max_velocity = limit_along(direction, m.max_velocity());
+  s.acceleration = limit_along(direction, m.max_acceleration());
   return s;
 }
 
@@ -32,11 +32,11 @@ VelocityStretch line_stretch(const Vector3& direction, const Machine& m) {
 VelocityStretch bend_stretch(double curvature, const Machine& m) {
   VelocityStretch s;
   s.curvature = curvature;
-  s.acceleration = m.max_acceleration;
-  s.max_velocity = m.max_velocity;
+  s.acceleration = m.max_acceleration();
+  s.max_velocity = m.max_velocity();
   if (curvature > 0) {
     s.max_velocity =
-        std::min(s.max_velocity, std::sqrt(kNormalShare * m.max_acceleration / curvature));
+        std::min(s.max_velocity, std::sqrt(kNormalShare * m.max_acceleration() / curvature));
   }
   return s;
 }
@@ -83,7 +83,7 @@ double look_ahead_time(std::span<const TimedPiece> pieces, const Machine& machin
             ? 0
             : velocity_step_speed(geometry::direction_at(pieces[i].piece, 1),
                                   geometry::direction_at(pieces[i + 1].piece, 0),
-                                  machine.max_acceleration, machine.block_period);
+                                  machine.max_acceleration(), machine.block_period);
   }
   ProfileRules rules;
   rules.look_ahead = machine.look_ahead;

@@ -153,8 +153,8 @@ int main(int argument_count, char** argument_words) {
   if (!understood(program, meaning)) return 2;
 
   postproc::Machine machine = *known;
-  machine.max_velocity = arguments->max_velocity.value_or(machine.max_velocity);
-  machine.max_acceleration = arguments->max_acceleration.value_or(machine.max_acceleration);
+  machine.set_max_velocity(arguments->max_velocity.value_or(machine.max_velocity()));
+  machine.set_max_acceleration(arguments->max_acceleration.value_or(machine.max_acceleration()));
   const std::vector<Chain> chains = chains_of(program, meaning, arguments->feed);
   for (const Mode& mode : kModes) {
     machine.blend_tolerance = mode.blend_tolerance;

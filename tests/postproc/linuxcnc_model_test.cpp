@@ -24,8 +24,8 @@ using Chain = std::vector<TimedPiece>;
 
 Machine bench_machine(double tolerance) {
   Machine m = *find_machine("linuxcnc");
-  m.max_velocity = 400;
-  m.max_acceleration = 4000;
+  m.set_max_velocity(400);
+  m.set_max_acceleration(4000);
   m.block_period = 0.001;
   m.blend_tolerance = tolerance;
   m.naive_cam_tolerance = tolerance;
