@@ -16,8 +16,8 @@ struct PrintText {
   std::string text;
 };
 
-using Command = std::variant<PrintText, SmoothCommand, VerifyCommand, InspectCommand, ListCommand,
-                             MachinesCommand>;
+using Command = std::variant<PrintText, SmoothCommand, VerifyCommand, InspectCommand, TimeCommand,
+                             ListCommand, MachinesCommand>;
 
 struct CommandLine {
   Command command;

@@ -137,6 +137,21 @@ constexpr std::array kTargetListRows = {
     kJson, kForce};
 constexpr std::array kVerifyRows = {kTolerance, kProfile, kToleranceKind, kUnits, kJson, kForce};
 constexpr std::array kInspectRows = {kUnits, kAllow, kJson, kForce};
+constexpr std::array kTimeRows = {
+    kMachine,
+    kGrblSettings,
+    OptionRow{.name = "target",
+              .value = "NAME",
+              .help = "the control the program is written for (batten targets): what G4 P means"},
+    kUnits,
+    OptionRow{
+        .name = "from", .value = "X,Y,Z", .help = "where the tool stands before the program, mm"},
+    kJson,
+    OptionRow{.name = "profile",
+              .value = "FILE.csv",
+              .help = "write place, feed, acceleration and jerk each millisecond"},
+    kForce,
+};
 constexpr std::array kListRows = {kJson, kForce};
 constexpr std::array kMachinesRows = {
     OptionRow{.name = "show",
@@ -150,6 +165,7 @@ std::span<const OptionRow> smooth_rows() { return kSmoothRows; }
 std::span<const OptionRow> verify_rows() { return kVerifyRows; }
 std::span<const OptionRow> inspect_rows() { return kInspectRows; }
 std::span<const OptionRow> target_list_rows() { return kTargetListRows; }
+std::span<const OptionRow> time_rows() { return kTimeRows; }
 std::span<const OptionRow> list_rows() { return kListRows; }
 std::span<const OptionRow> machines_rows() { return kMachinesRows; }
 

@@ -31,6 +31,7 @@ struct OptionRow {
 [[nodiscard]] std::span<const OptionRow> verify_rows();
 [[nodiscard]] std::span<const OptionRow> inspect_rows();
 [[nodiscard]] std::span<const OptionRow> target_list_rows();
+[[nodiscard]] std::span<const OptionRow> time_rows();
 [[nodiscard]] std::span<const OptionRow> list_rows();
 [[nodiscard]] std::span<const OptionRow> machines_rows();
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "gcode/modal_state.h"
+#include "geometry/point.h"
 #include "postproc/options.h"
 #include "postproc/progress.h"
 #include "postproc/target_profile.h"
@@ -51,6 +53,18 @@ struct InspectCommand {
   bool force = false;
 };
 [[nodiscard]] int run(const InspectCommand& command);
+
+struct TimeCommand {
+  std::string input;
+  std::shared_ptr<const Machine> machine;  // required
+  const gcode::Dialect* target = nullptr;  // not given: the dwell units of the machine's control
+  gcode::Units units = gcode::Units::kUnknown;
+  std::optional<geometry::Point3> start;  // mm: where the tool stands before the program
+  std::string json_file;
+  std::string profile_file;
+  bool force = false;
+};
+[[nodiscard]] int run(const TimeCommand& command);
 
 // What is built in, as a table on standard output.
 enum class BuiltIn { kTargets, kMethods };

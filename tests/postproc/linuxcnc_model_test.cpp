@@ -221,7 +221,7 @@ TEST(NaiveCam, JoinsLinesWithinTheTolerance) {
   EXPECT_EQ(joined_count(p.chain(), 0.01), 1u);
   EXPECT_EQ(joined_count(p.chain(), 0.001), 3u);
   EXPECT_EQ(joined_count(p.chain(), 0), 3u);
-  const Chain joined = linuxcnc::join_within(p.chain(), 0.01);
+  const auto joined = linuxcnc::join_within(p.chain(), 0.01);
   EXPECT_EQ(geometry::start_point(joined[0].piece), Point3(0, 0, 0));
   EXPECT_EQ(geometry::end_point(joined[0].piece), Point3(3, 0.009, 0));
 }
