@@ -10,7 +10,7 @@
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
 #include "postproc/inspect.h"
-#include "postproc/machine_file.h"
+#include "postproc/machine_choice.h"
 #include "postproc/options.h"
 #include "postproc/pipeline.h"
 #include "postproc/run_grouping.h"
@@ -86,7 +86,7 @@ void choose(Value& place, std::string_view option, std::string_view name,
   }
 }
 
-// A machine from a file lives as long as this.
+// The machine lives as long as this.
 struct InnerOptions {
   postproc::SmoothOptions options;
   std::shared_ptr<const postproc::Machine> own_machine;
@@ -94,21 +94,11 @@ struct InnerOptions {
 
 void choose_machine(const std::string& name, InnerOptions& all,
                     std::vector<std::string>& problems) {
-  if (name.empty()) {
-    if (all.options.target != nullptr) {
-      all.options.machine = postproc::find_machine(all.options.target->default_machine());
-    }
-    return;
-  }
-  if (name.ends_with(".toml")) {
-    all.own_machine = postproc::read_machine_file(name, problems);
-    all.options.machine = all.own_machine.get();
-    return;
-  }
-  all.options.machine = postproc::find_machine(name);
-  if (all.options.machine == nullptr) {
-    problems.push_back("machine: there is no '" + name + "'");
-  }
+  if (name.empty() && all.options.target == nullptr) return;
+  all.own_machine = postproc::choose_machine(
+      name.empty() ? std::string(all.options.target->default_machine()) : name, "machine",
+      problems);
+  all.options.machine = all.own_machine.get();
 }
 
 InnerOptions inner(const Options& given) {

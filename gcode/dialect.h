@@ -39,6 +39,13 @@ struct ArcChords {
 // mm: how far such chords leave an arc of this radius at the most.
 [[nodiscard]] double chord_error(const ArcChords& chords, double radius);
 
+// What the number of G4 P means.
+enum class DwellUnit {
+  kSeconds,       // RS-274: LinuxCNC, grbl
+  kMilliseconds,  // FANUC
+  kByPoint,       // P.5 is half a second; P500 is taken for milliseconds
+};
+
 class Dialect {
  public:
   virtual ~Dialect() = default;
@@ -121,6 +128,8 @@ class Dialect {
 
   // The same control with other values, as a user's profile has them. This dialect must outlive it.
   [[nodiscard]] virtual std::unique_ptr<const Dialect> with_values(const TargetTable& table) const;
+
+  [[nodiscard]] virtual DwellUnit dwell_unit() const { return DwellUnit::kByPoint; }
 
   // Name of the built-in machine model that runs this target when no machine is given.
   [[nodiscard]] virtual std::string_view default_machine() const = 0;

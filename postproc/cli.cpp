@@ -37,6 +37,17 @@ std::vector<CommandRow> command_rows() {
        inspect_rows(),
        {{"IN", "the program, - is standard input"}},
        "Example:\n  batten inspect part.nc --json part.json"},
+      {"time",
+       "Tell how long a machine needs for a program, and where the time goes.",
+       time_rows(),
+       {{"FILE", "the program, - is standard input"}},
+       "Examples:\n"
+       "  batten time part.nc --machine linuxcnc\n"
+       "  batten time part.nc --machine mill --json part.json --from 0,0,50\n"
+       "  batten time part.nc --machine router.toml --profile part.csv\n"
+       "The profile has a row for each millisecond: t_s, line, x_mm, y_mm, z_mm,\n"
+       "feed_mm_per_min, then acceleration (mm/s2) and jerk (mm/s3) of X, Y and Z.\n"
+       "Times are those of the control's model; what the text does not tell is listed."},
       {"targets",
        "List the controls that programs can be written for, or show one as a profile.",
        target_list_rows(),
@@ -44,7 +55,15 @@ std::vector<CommandRow> command_rows() {
        "Example:\n"
        "  batten targets --show haas > mine.toml\n"
        "prints a profile; batten smooth part.nc --target mine.toml reads it."},
-      {"machines", "List the built-in machines.", list_rows(), {}, "Example:\n  batten machines"},
+      {"machines",
+       "List the built-in machines, or print one machine as a file.",
+       machines_rows(),
+       {},
+       "Examples:\n"
+       "  batten machines\n"
+       "  batten machines --show router > my.toml\n"
+       "  batten machines --show mill.ini\n"
+       "  batten machines --grbl-settings settings.txt > my.toml"},
       {"methods", "List the ways of smoothing.", list_rows(), {}, "Example:\n  batten methods"},
       {"explain",
        "Say what the id of a kept run, a message or a breach means, and what to do about it.",
@@ -200,8 +219,9 @@ Command command_of(std::string_view name, const Given& given, const std::vector<
   if (name == "smooth") return smooth_or_config(given, files, problems);
   if (name == "verify") return verify_command(given, files, problems);
   if (name == "inspect") return inspect_command(given, files, problems);
+  if (name == "time") return time_command(given, files, problems);
   if (name == "targets") return list_command(BuiltIn::kTargets, given, files, problems);
-  if (name == "machines") return list_command(BuiltIn::kMachines, given, files, problems);
+  if (name == "machines") return machines_command(given, files, problems);
   if (name == "methods") return list_command(BuiltIn::kMethods, given, files, problems);
   if (name == "explain") return explain_text(files, problems);
   if (name == "completion") return completion_text(files, problems);

@@ -16,7 +16,8 @@ struct PrintText {
   std::string text;
 };
 
-using Command = std::variant<PrintText, SmoothCommand, VerifyCommand, InspectCommand, ListCommand>;
+using Command = std::variant<PrintText, SmoothCommand, VerifyCommand, InspectCommand, TimeCommand,
+                             ListCommand, MachinesCommand>;
 
 struct CommandLine {
   Command command;
@@ -24,8 +25,8 @@ struct CommandLine {
   std::string help_hint;  // what to call for help on it
 };
 
-// `arguments` without the program's own name. Reads the files of --config and --machine and
-// touches no other.
+// `arguments` without the program's own name. Reads the files of --config, --machine and
+// --grbl-settings and touches no other.
 [[nodiscard]] CommandLine read_command_line(const std::vector<std::string>& arguments);
 
 }  // namespace batten::postproc

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "postproc/machine_file.h"
+#include "postproc/cli_machine.h"
 #include "postproc/output_file.h"
 #include "postproc/target_profile.h"
 
@@ -107,24 +107,11 @@ void read_target(const Given& given, SmoothCommand& command, Problems& problems)
   command.options.profile = *file;
 }
 
-// A name without a suffix is built in; anything else is a file.
 void read_machine(const Given& given, SmoothCommand& command, Problems& problems) {
   const gcode::Dialect* target = command.options.target;
-  const auto text = given.value("machine");
-  if (!text) {
-    if (target != nullptr) command.options.machine = find_machine(target->default_machine());
-    return;
-  }
-  if (text->ends_with(".toml")) {
-    command.own_machine = read_machine_file(*text, problems);
-    command.options.machine = command.own_machine.get();
-    return;
-  }
-  command.options.machine = find_machine(*text);
-  if (command.options.machine != nullptr) return;
-  std::vector<std::string_view> names;
-  for (const Machine& machine : built_in_machines()) names.emplace_back(machine.name);
-  problems.push_back(unknown_name("machine", *text, names) + ", or a file NAME.toml");
+  command.own_machine =
+      machine_given(given, target == nullptr ? "" : target->default_machine(), problems);
+  command.options.machine = command.own_machine.get();
 }
 
 void read_tolerance_into(const Given& given, SmoothOptions& options, Problems& problems) {
@@ -180,12 +167,14 @@ void read_smooth_options(const Given& given, SmoothCommand& command, Problems& p
 }
 
 // What was missing or unreadable has been said; the check of the options would say it again.
-void check_options(const SmoothOptions& options, Problems& problems) {
+void check_options(const SmoothOptions& options, const Given& given, Problems& problems) {
   for (std::string& problem : problems_of(options)) {
     const std::string option = problem.substr(0, problem.find(':'));
     const bool said = std::ranges::any_of(
         problems, [&](const std::string& other) { return other.starts_with(option + ":"); });
-    const bool follows = option == "--machine" && options.target == nullptr;
+    const bool follows =
+        option == "--machine" &&
+        (options.target == nullptr || given.has("machine") || given.has("grbl-settings"));
     if (!said && !follows) problems.push_back(std::move(problem));
   }
 }
@@ -243,7 +232,7 @@ SmoothCommand smooth_command(const Given& given, const std::vector<std::string>&
   command.report_file = given.value("report").value_or("");
   command.output = given.value("out").value_or("");
   command.input = file_at(files, 0);
-  check_options(command.options, problems);
+  check_options(command.options, given, problems);
   if (!given.flag("print-config")) {
     check_files(files, {"IN"}, problems);
     check_outputs(command, problems);
@@ -296,6 +285,70 @@ InspectCommand inspect_command(const Given& given, const std::vector<std::string
   return command;
 }
 
+namespace {
+
+std::optional<geometry::Point3> read_place(std::string_view option, const std::string& text,
+                                           Problems& problems) {
+  geometry::Point3 place = geometry::Point3::Zero();
+  std::size_t begin = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t comma = axis < 2 ? text.find(',', begin) : text.size();
+    if (comma == std::string::npos) {
+      problems.push_back(
+          fmt::format("--{}: '{}', expected X,Y,Z in mm, such as 0,0,50", option, text));
+      return std::nullopt;
+    }
+    const auto value = read_decimal(option, text.substr(begin, comma - begin), problems);
+    if (!value) return std::nullopt;
+    place[axis] = *value;
+    begin = comma + 1;
+  }
+  return place;
+}
+
+void check_time_outputs(const TimeCommand& command, Problems& problems) {
+  check_report(command.json_file, {command.input}, problems);
+  if (command.profile_file.empty()) return;
+  if (command.profile_file == "-") {
+    if (command.json_file == "-") {
+      problems.emplace_back("--profile: standard output already takes the JSON report");
+    }
+    return;
+  }
+  for (const std::string& other : {command.input, command.json_file}) {
+    if (!other.empty() && other != "-" && same_file(command.profile_file, other)) {
+      problems.push_back(fmt::format("--profile: {} is another file of this command: {}",
+                                     command.profile_file, other));
+    }
+  }
+}
+
+}  // namespace
+
+TimeCommand time_command(const Given& given, const std::vector<std::string>& files,
+                         Problems& problems) {
+  TimeCommand command;
+  command.input = file_at(files, 0);
+  command.json_file = given.value("json").value_or("");
+  command.profile_file = given.value("profile").value_or("");
+  command.force = given.flag("force");
+  read_units_into(command.units, given, problems);
+  if (const auto text = given.value("target")) {
+    command.target = built_in_target("target", *text, problems);
+  }
+  const std::size_t problems_before = problems.size();
+  command.machine = machine_given(
+      given, command.target == nullptr ? "" : command.target->default_machine(), problems);
+  if (command.machine == nullptr && problems.size() == problems_before) {
+    problems.emplace_back(
+        "--machine: no machine given; `batten machines` lists them, a file NAME.toml is your own");
+  }
+  if (const auto text = given.value("from")) command.start = read_place("from", *text, problems);
+  check_files(files, {"FILE"}, problems);
+  check_time_outputs(command, problems);
+  return command;
+}
+
 ListCommand list_command(BuiltIn what, const Given& given, const std::vector<std::string>& files,
                          Problems& problems) {
   check_files(files, {}, problems);
@@ -303,6 +356,20 @@ ListCommand list_command(BuiltIn what, const Given& given, const std::vector<std
       .what = what, .json_file = given.value("json").value_or(""), .force = given.flag("force")};
   if (const auto name = given.value("show"))
     command.show = built_in_target("show", *name, problems);
+  return command;
+}
+
+MachinesCommand machines_command(const Given& given, const std::vector<std::string>& files,
+                                 Problems& problems) {
+  check_files(files, {}, problems);
+  MachinesCommand command;
+  command.json_file = given.value("json").value_or("");
+  command.force = given.flag("force");
+  const auto shown = given.value("show");
+  if (!shown && !given.has("grbl-settings")) return command;
+  Given machine = given;
+  if (shown) machine.add("machine", *shown);
+  command.shown = machine_given(machine, "", problems);
   return command;
 }
 

@@ -21,7 +21,12 @@ namespace batten::postproc {
 [[nodiscard]] InspectCommand inspect_command(const Given& given,
                                              const std::vector<std::string>& files,
                                              Problems& problems);
+[[nodiscard]] TimeCommand time_command(const Given& given, const std::vector<std::string>& files,
+                                       Problems& problems);
 [[nodiscard]] ListCommand list_command(BuiltIn what, const Given& given,
                                        const std::vector<std::string>& files, Problems& problems);
+[[nodiscard]] MachinesCommand machines_command(const Given& given,
+                                               const std::vector<std::string>& files,
+                                               Problems& problems);
 
 }  // namespace batten::postproc

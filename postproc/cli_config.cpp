@@ -4,7 +4,8 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <sstream>
+
+#include "postproc/toml_text.h"
 
 namespace batten::postproc {
 
@@ -66,29 +67,21 @@ void add_value(const OptionRow& row, const toml::node& node, const std::string& 
   }
 }
 
-std::string quoted(const std::string& text) {
-  std::ostringstream stream;
-  const toml::value<std::string> value(text);
-  stream << toml::toml_formatter(
-      value, toml::toml_formatter::default_flags & ~toml::format_flags::allow_literal_strings);
-  return stream.str();
-}
-
 std::string line_of(const OptionRow& row, const Given& given) {
   const auto values = given.values(row.name);
   if (row.kind == OptionKind::kList) {
     std::string list;
-    for (const std::string& value : values) list += (list.empty() ? "" : ", ") + quoted(value);
+    for (const std::string& value : values) list += (list.empty() ? "" : ", ") + toml_quoted(value);
     return fmt::format("{} = [{}]", row.name, list);
   }
   if (row.kind == OptionKind::kFlag) {
     return fmt::format("{} = {}", row.name, given.flag(row.name));
   }
-  if (!values.empty()) return fmt::format("{} = {}", row.name, quoted(values.front()));
+  if (!values.empty()) return fmt::format("{} = {}", row.name, toml_quoted(values.front()));
   if (!row.default_value.empty()) {
-    return fmt::format("{} = {}", row.name, quoted(std::string(row.default_value)));
+    return fmt::format("{} = {}", row.name, toml_quoted(row.default_value));
   }
-  return fmt::format("# {} = {}", row.name, quoted(std::string(row.value)));
+  return fmt::format("# {} = {}", row.name, toml_quoted(row.value));
 }
 
 }  // namespace

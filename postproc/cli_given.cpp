@@ -46,6 +46,18 @@ constexpr OptionRow kProfile = {
     .value = "FILE.toml",
     .help = "the target as your machine has it (batten targets --show NAME prints one)",
     .in_config = true};
+// Of every command that tells times.
+constexpr OptionRow kMachine = {
+    .name = "machine",
+    .value = "NAME|FILE",
+    .help =
+        "the machine whose time counts: built in (batten machines), a NAME.toml, or the "
+        "NAME.ini of a LinuxCNC machine; default: the target's",
+    .in_config = true};
+constexpr OptionRow kGrblSettings = {.name = "grbl-settings",
+                                     .value = "FILE",
+                                     .help = "limits from what grbl answers to $$, saved as text",
+                                     .in_config = true};
 
 constexpr std::array kSmoothRows = {
     OptionRow{.name = "target",
@@ -56,10 +68,8 @@ constexpr std::array kSmoothRows = {
     kTolerance,
     kToleranceKind,
     kSide,
-    OptionRow{.name = "machine",
-              .value = "NAME|FILE.toml",
-              .help = "the machine whose time counts (batten machines); default: the target's",
-              .in_config = true},
+    kMachine,
+    kGrblSettings,
     OptionRow{.name = "method",
               .value = "best|fair|racing|naseath|guo|ozcan|none",
               .help = "how runs are smoothed (batten methods)",
@@ -135,7 +145,27 @@ constexpr std::array kTargetListRows = {
 constexpr std::array kVerifyRows = {kTolerance, kProfile, kToleranceKind, kSide,
                                     kUnits,     kJson,    kForce};
 constexpr std::array kInspectRows = {kUnits, kAllow, kJson, kForce};
+constexpr std::array kTimeRows = {
+    kMachine,
+    kGrblSettings,
+    OptionRow{.name = "target",
+              .value = "NAME",
+              .help = "the control the program is written for (batten targets): what G4 P means"},
+    kUnits,
+    OptionRow{
+        .name = "from", .value = "X,Y,Z", .help = "where the tool stands before the program, mm"},
+    kJson,
+    OptionRow{.name = "profile",
+              .value = "FILE.csv",
+              .help = "write place, feed, acceleration and jerk each millisecond"},
+    kForce,
+};
 constexpr std::array kListRows = {kJson, kForce};
+constexpr std::array kMachinesRows = {
+    OptionRow{.name = "show",
+              .value = "NAME|FILE",
+              .help = "print this machine as a file for --machine, with everything in it"},
+    kGrblSettings, kJson, kForce};
 
 }  // namespace
 
@@ -143,7 +173,9 @@ std::span<const OptionRow> smooth_rows() { return kSmoothRows; }
 std::span<const OptionRow> verify_rows() { return kVerifyRows; }
 std::span<const OptionRow> inspect_rows() { return kInspectRows; }
 std::span<const OptionRow> target_list_rows() { return kTargetListRows; }
+std::span<const OptionRow> time_rows() { return kTimeRows; }
 std::span<const OptionRow> list_rows() { return kListRows; }
+std::span<const OptionRow> machines_rows() { return kMachinesRows; }
 
 void Given::add(std::string_view name, std::string value) {
   values_[std::string(name)].push_back(std::move(value));

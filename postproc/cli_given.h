@@ -31,7 +31,9 @@ struct OptionRow {
 [[nodiscard]] std::span<const OptionRow> verify_rows();
 [[nodiscard]] std::span<const OptionRow> inspect_rows();
 [[nodiscard]] std::span<const OptionRow> target_list_rows();
+[[nodiscard]] std::span<const OptionRow> time_rows();
 [[nodiscard]] std::span<const OptionRow> list_rows();
+[[nodiscard]] std::span<const OptionRow> machines_rows();
 
 // Option names to the values given for them; a flag that was given has the value "true".
 class Given {

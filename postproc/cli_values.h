@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gcode/modal_state.h"
+#include "postproc/nearest_name.h"
 #include "postproc/options.h"
 
 namespace batten::postproc {
@@ -31,10 +32,6 @@ struct Tolerance {
                                               Problems& problems);
 
 [[nodiscard]] std::optional<gcode::Units> read_units(std::string_view text, Problems& problems);
-
-// The name nearest to `text` when it is likely a slip of the finger; else empty.
-[[nodiscard]] std::string_view nearest_name(std::string_view text,
-                                            std::span<const std::string_view> names);
 
 // "--output: there is no 'arc'; did you mean arcs? Possible: auto, arcs, lines"
 [[nodiscard]] std::string unknown_name(std::string_view option, std::string_view text,

@@ -1,19 +1,8 @@
-// A machine of the user's own, from a TOML file. It starts as one of the built-in machines and
-// changes what differs:
-//
-//   based-on = "linuxcnc"          # batten machines; required
-//   name = "router"
-//   max-velocity = 200             # mm/s on every axis
-//   max-acceleration = 1500        # mm/s2 on every axis
-//   rapid-velocity = 250           # mm/s
-//   block-period = 0.001           # s
-//   look-ahead = 2000              # blocks
-//   junction-deviation = 0.01      # mm (grbl's $11)
-//   arc-tolerance = 0.002          # mm (grbl's $12)
-//   blend-tolerance = 0.01         # mm (LinuxCNC's G64 P)
-//   naive-cam-tolerance = 0        # mm (LinuxCNC's G64 Q)
+// A machine of the user's own as a TOML file, and any machine written as one. The keys, their units
+// and an example: docs/machine_file.md.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,9 +11,17 @@
 
 namespace batten::postproc {
 
-// Adds a sentence to `problems` for everything that is wrong, each with file and line, and then
-// returns nothing.
-[[nodiscard]] std::shared_ptr<const Machine> read_machine_file(const std::string& file,
-                                                               std::vector<std::string>& problems);
+// A file says what it is based on (a built-in machine or another file) and what differs; or it
+// says everything. Its name is that of the file when it says none.
+//
+// Adds a sentence to `problems` for everything that is wrong, each with file, line, column, key,
+// the value and what is allowed, and then returns nothing. `being_read`: files that are based on
+// this one, which it must not be based on in turn.
+[[nodiscard]] std::shared_ptr<const Machine> read_machine_file(
+    const std::string& file, std::vector<std::string>& problems,
+    const std::vector<std::filesystem::path>& being_read = {});
+
+// The text of a file that says everything: read again, it is the same machine.
+[[nodiscard]] std::string machine_file_text(const Machine& machine);
 
 }  // namespace batten::postproc

@@ -101,7 +101,7 @@ WriteResult exists_already(const fs::path& target) {
 WriteResult write_in_place(const fs::path& target, const WriteRequest& request) {
   const Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
   if (!file.is_open()) return failed(target, "cannot be opened for writing", errno);
-  return write_to_descriptor(file.number(), target.string(), request.bytes, request.stop);
+  return write_request_to_descriptor(file.number(), target.string(), request);
 }
 
 // Renames without replacing where that is asked, in one step where the file system can do so.
@@ -141,8 +141,7 @@ WriteResult write_beside_and_rename(const fs::path& target, const struct stat* e
       return failed(target, "its permissions cannot be kept", errno);
     }
   }
-  WriteResult result =
-      write_to_descriptor(file.number(), target.string(), request.bytes, request.stop);
+  WriteResult result = write_request_to_descriptor(file.number(), target.string(), request);
   if (result.status != WriteStatus::kWritten) return result;
   if (::fsync(file.number()) != 0) return failed(target, "cannot be flushed to the disk", errno);
   if (!file.close_now()) return failed(target, "cannot be closed", errno);
@@ -185,6 +184,19 @@ WriteResult write_file(const WriteRequest& request) {
   if (exists && !S_ISREG(existing.st_mode)) return write_in_place(target, request);
   if (exists && !request.replace_existing) return exists_already(target);
   return write_beside_and_rename(target, exists ? &existing : nullptr, request);
+}
+
+WriteResult write_request_to_descriptor(int descriptor, std::string_view name,
+                                        const WriteRequest& request) {
+  if (!request.parts) return write_to_descriptor(descriptor, name, request.bytes, request.stop);
+  WriteResult result;
+  request.parts([&](std::string_view part) {
+    if (result.status == WriteStatus::kWritten) {
+      result = write_to_descriptor(descriptor, name, part, request.stop);
+    }
+    return result.status == WriteStatus::kWritten;
+  });
+  return result;
 }
 
 WriteResult write_to_descriptor(int descriptor, std::string_view name, std::string_view bytes,

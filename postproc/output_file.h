@@ -32,11 +32,17 @@ struct WriteResult {
   std::string message;  // empty when written; else the file's name and the reason
 };
 
+// Takes the next part of a file; false: it could not be written, make no more.
+using PartWriter = std::function<bool(std::string_view)>;
+
 struct WriteRequest {
   std::filesystem::path target;  // links are followed: the file they lead to is replaced
   std::string_view bytes;
   bool replace_existing = false;
   std::function<bool()> stop = {};  // asked between parts of the file; true: give up
+  // For files too long to be held in memory: hands one part after the other to the writer, in
+  // place of `bytes`.
+  std::function<void(const PartWriter&)> parts = {};
 };
 
 // An existing target keeps its permissions (and its owner, where the system lets us). A target
@@ -47,5 +53,9 @@ struct WriteRequest {
 [[nodiscard]] WriteResult write_to_descriptor(int descriptor, std::string_view name,
                                               std::string_view bytes,
                                               const std::function<bool()>& stop = {});
+
+// The same for the bytes or the parts of a request.
+[[nodiscard]] WriteResult write_request_to_descriptor(int descriptor, std::string_view name,
+                                                      const WriteRequest& request);
 
 }  // namespace batten::postproc

@@ -37,7 +37,7 @@ constexpr double kPeriodsForAccuracy = 1.1;
 
 // The way of one block period at this feed, mm.
 double length_per_block(double feed, const Machine& machine) {
-  return std::min(feed / 60, machine.max_velocity) * machine.block_period;
+  return std::min(feed / 60, machine.max_velocity()) * machine.block_period;
 }
 
 // `finest`: mm, of accurate chords.

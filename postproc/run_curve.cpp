@@ -24,9 +24,9 @@ constexpr double kSecondsPerMinute = 60;
 
 geometry::KinematicLimits limits_of(const Machine& machine, double feed) {
   geometry::KinematicLimits limits;
-  limits.feed = std::min(feed / kSecondsPerMinute, machine.max_velocity);
-  limits.speed.setConstant(machine.max_velocity);
-  limits.acceleration.setConstant(machine.max_acceleration);
+  limits.feed = std::min(feed / kSecondsPerMinute, machine.max_velocity());
+  limits.speed.setConstant(machine.max_velocity());
+  limits.acceleration.setConstant(machine.max_acceleration());
   limits.jerk.setConstant(std::numeric_limits<double>::infinity());
   return limits;
 }

@@ -32,10 +32,10 @@ double least_time(const Run& run, double tolerance, const Machine& machine,
   const auto& p = run.points;
   double time = 0;
   std::size_t next = 0;
-  double speed = machine.max_velocity;
+  double speed = machine.max_velocity();
   for (std::size_t i = 0; i + 1 < p.size(); ++i) {
     while (next < run.feeds.size() && run.feeds[next].vertex <= i) {
-      speed = std::min(run.feeds[next++].feed / 60, machine.max_velocity);
+      speed = std::min(run.feeds[next++].feed / 60, machine.max_velocity());
     }
     double length = (p[i + 1] - p[i]).norm();
     if (i > 0) length -= saved_at(p[i] - p[i - 1], p[i + 1] - p[i], tolerance, kind);

@@ -208,7 +208,7 @@ class RunSmoother {
   }
 
   [[nodiscard]] bool is_hopeless(const geometry::FairPath& fair, const PlanOptions& lines) {
-    const double step = std::min(greatest_feed(run_) / 60, options_.machine->max_velocity) *
+    const double step = std::min(greatest_feed(run_) / 60, options_.machine->max_velocity()) *
                         options_.machine->block_period;
     judged_.error = result_.facts.error;
     const Prospect chords{least_time_, chords_for(fair, 0.5 * lines.max_deviation, 2 * step),

@@ -38,7 +38,7 @@ TargetTable table_for(std::string_view name, std::string_view description) {
   table.centers = kCenters;
   table.max_radius = kMaxRadius;
   table.max_sweep_deg = kMaxSweepDeg;
-  table.machine = "grbl";
+  table.machine = "router";
   return table;
 }
 
@@ -48,6 +48,7 @@ TargetRow grbl() {
   // The line buffer is 80 bytes with its terminator, filled after blanks and comments are gone.
   table.max_line_length = 79;
   TargetRow row{table, LineCount::kWithoutBlanksAndComments, kObeyed, &grbl_arc_rule};
+  row.dwell_unit = DwellUnit::kSeconds;
   row.known_marks = mark(SourceMark::kDollarLine);
   row.refused = "M6 G43 H";
   return row;
@@ -61,6 +62,7 @@ TargetRow grblhal() {
   TargetTable table =
       table_for("grblhal", "grblHAL: arcs and helices in G17, G18, G19; lines of 255 characters");
   TargetRow row{table, LineCount::kAll, kObeyed, &grbl_arc_rule};
+  row.dwell_unit = DwellUnit::kSeconds;
   row.known_marks = kProgramming;
   return row;
 }
@@ -69,6 +71,7 @@ TargetRow fluidnc() {
   TargetTable table =
       table_for("fluidnc", "FluidNC: arcs and helices in G17, G18, G19; lines of 255 characters");
   TargetRow row{table, LineCount::kAll, kObeyed, &grbl_arc_rule};
+  row.dwell_unit = DwellUnit::kSeconds;
   row.known_marks = kProgramming;
   row.refused = "G43 H";  // not read of it
   return row;
@@ -84,6 +87,7 @@ TargetRow g2core() {
   table.min_radius = 0.2;
   table.centers = {5, 6};
   TargetRow row{table, LineCount::kAll, "$!~%{", &tinyg_arc_rule};
+  row.dwell_unit = DwellUnit::kSeconds;
   row.known_marks = mark(SourceMark::kDollarLine);
   row.refused = "M6 G43 G49 H";  // not read of it
   return row;

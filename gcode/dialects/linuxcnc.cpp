@@ -65,6 +65,8 @@ class LinuxCnc final : public Rs274Dialect {
   // Flatter arcs are lines to within 0.001 mm over 9 mm; their centres cost digits.
   double max_arc_radius() const override { return 1e4; }
 
+  DwellUnit dwell_unit() const override { return DwellUnit::kSeconds; }
+
   SourceMarks known_marks() const override {
     return mark(SourceMark::kSubWords) | mark(SourceMark::kNamedParameters) |
            mark(SourceMark::kBlendTolerance) | mark(SourceMark::kUniformNurbs);

@@ -33,7 +33,7 @@ TargetTable table_for(std::string_view name, std::string_view description) {
   table.centers = {4, 5};
   table.max_radius = 1000;
   table.max_sweep_deg = 180;
-  table.machine = "grbl";
+  table.machine = "router";
   return table;
 }
 

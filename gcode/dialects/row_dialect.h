@@ -35,6 +35,7 @@ struct TargetRow {
   SourceMarks known_marks = 0;
   // Words that most others take: "M6 G43 T", a letter alone for any number behind it.
   std::string_view refused = {};
+  DwellUnit dwell_unit = DwellUnit::kByPoint;
 };
 
 class RowDialect final : public TableValues {
@@ -53,6 +54,8 @@ class RowDialect final : public TableValues {
 
   [[nodiscard]] SourceMarks known_marks() const override { return row_.known_marks; }
   [[nodiscard]] bool cannot_say(char letter, int number) const override;
+
+  [[nodiscard]] DwellUnit dwell_unit() const override { return row_.dwell_unit; }
 
   // A row with the same rules: they are asked about the new values.
   [[nodiscard]] std::unique_ptr<const Dialect> with_values(const TargetTable& table) const override;

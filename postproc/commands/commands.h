@@ -3,9 +3,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "gcode/modal_state.h"
+#include "geometry/point.h"
 #include "postproc/options.h"
 #include "postproc/progress.h"
 #include "postproc/target_profile.h"
@@ -16,7 +18,7 @@ namespace batten::postproc {
 
 struct SmoothCommand {
   SmoothOptions options;
-  std::shared_ptr<const Machine> own_machine;    // keeps a machine read from a file alive
+  std::shared_ptr<const Machine> own_machine;    // keeps the machine of the options alive
   std::shared_ptr<const TargetProfile> profile;  // and a target
   std::string input;
   std::string output;  // not given: default_output_path(input), or standard output for "-"
@@ -53,8 +55,20 @@ struct InspectCommand {
 };
 [[nodiscard]] int run(const InspectCommand& command);
 
+struct TimeCommand {
+  std::string input;
+  std::shared_ptr<const Machine> machine;  // required
+  const gcode::Dialect* target = nullptr;  // not given: the dwell units of the machine's control
+  gcode::Units units = gcode::Units::kUnknown;
+  std::optional<geometry::Point3> start;  // mm: where the tool stands before the program
+  std::string json_file;
+  std::string profile_file;
+  bool force = false;
+};
+[[nodiscard]] int run(const TimeCommand& command);
+
 // What is built in, as a table on standard output.
-enum class BuiltIn { kTargets, kMachines, kMethods };
+enum class BuiltIn { kTargets, kMethods };
 struct ListCommand {
   BuiltIn what = BuiltIn::kTargets;
   const gcode::Dialect* show = nullptr;  // kTargets: this one's profile instead of the table
@@ -62,5 +76,13 @@ struct ListCommand {
   bool force = false;
 };
 [[nodiscard]] int run(const ListCommand& command);
+
+// The built-in machines as a table, or one machine as a file that says everything about it.
+struct MachinesCommand {
+  std::shared_ptr<const Machine> shown;  // null: the table
+  std::string json_file;
+  bool force = false;
+};
+[[nodiscard]] int run(const MachinesCommand& command);
 
 }  // namespace batten::postproc

@@ -67,6 +67,19 @@ int write_result(const std::string& name, std::string_view bytes, bool replace_e
       {.target = name, .bytes = bytes, .replace_existing = replace_existing, .stop = interrupted}));
 }
 
+int write_parts(const std::string& name, const std::function<void(const PartWriter&)>& parts,
+                bool replace_existing) {
+  WriteRequest request;
+  request.target = name;
+  request.replace_existing = replace_existing;
+  request.stop = interrupted;
+  request.parts = parts;
+  if (name == "-") {
+    return exit_code_of(write_request_to_descriptor(STDOUT_FILENO, "<stdout>", request));
+  }
+  return exit_code_of(write_file(request));
+}
+
 void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source) {
   std::size_t remarks = 0;
   for (const gcode::Diagnostic& diagnostic : diagnostics) {

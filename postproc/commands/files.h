@@ -2,12 +2,14 @@
 // error.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "gcode/diagnostic.h"
 #include "gcode/source_text.h"
+#include "postproc/output_file.h"
 
 namespace batten::postproc {
 
@@ -17,6 +19,11 @@ namespace batten::postproc {
 // 0 when written; else says why and returns the exit code.
 [[nodiscard]] int write_result(const std::string& name, std::string_view bytes,
                                bool replace_existing);
+
+// The same for a file that is made part by part.
+[[nodiscard]] int write_parts(const std::string& name,
+                              const std::function<void(const PartWriter&)>& parts,
+                              bool replace_existing);
 
 // file:line:column lines on standard error: errors all, notes and warnings up to a readable
 // number.

@@ -16,18 +16,6 @@ struct Listing {
   Json json = Json::array();
 };
 
-std::string_view name_of(ControllerModel model) {
-  switch (model) {
-    case ControllerModel::kLinuxcnc:
-      return "linuxcnc";
-    case ControllerModel::kGrbl:
-      return "grbl";
-    case ControllerModel::kLookAhead:
-      break;
-  }
-  return "look-ahead";
-}
-
 std::string planes_of(const gcode::Dialect& target) {
   std::string planes;
   const auto add = [&](gcode::Plane plane, std::string_view name) {
@@ -64,29 +52,6 @@ Listing list_targets() {
   return listing;
 }
 
-Listing list_machines() {
-  Listing listing;
-  listing.text = fmt::format("{:<12} {:<11} {:>6} {:>7} {:>9} {:>10}  {}\n", "machine", "control",
-                             "mm/s", "mm/s^2", "blocks/s", "look-ahead", "");
-  for (const Machine& machine : built_in_machines()) {
-    listing.text +=
-        fmt::format("{:<12} {:<11} {:>6g} {:>7g} {:>9.0f} {:>10}  {}\n", machine.name,
-                    name_of(machine.model), machine.max_velocity, machine.max_acceleration,
-                    1 / machine.block_period, machine.look_ahead, machine.description);
-    listing.json.push_back({{"name", machine.name},
-                            {"description", machine.description},
-                            {"model", name_of(machine.model)},
-                            {"max_velocity_mm_per_s", machine.max_velocity},
-                            {"max_acceleration_mm_per_s2", machine.max_acceleration},
-                            {"rapid_velocity_mm_per_s", machine.rapid_velocity},
-                            {"block_period_s", machine.block_period},
-                            {"look_ahead_blocks", machine.look_ahead},
-                            {"junction_deviation_mm", machine.junction_deviation},
-                            {"blend_tolerance_mm", machine.blend_tolerance}});
-  }
-  return listing;
-}
-
 Listing list_methods() {
   Listing listing;
   for (const auto& method : methods()) {
@@ -100,8 +65,6 @@ Listing list(BuiltIn what) {
   switch (what) {
     case BuiltIn::kTargets:
       return list_targets();
-    case BuiltIn::kMachines:
-      return list_machines();
     case BuiltIn::kMethods:
       break;
   }

@@ -2,21 +2,52 @@
 // `pieces` have a length above 0 and a feed above 0.
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "gcode/modal_state.h"
+#include "geometry/path.h"
 #include "postproc/machine/cycle_time.h"
 #include "postproc/machine/machine.h"
+#include "postproc/machine/velocity_profile.h"
 
 namespace batten::postproc {
 
-[[nodiscard]] double look_ahead_time(std::span<const TimedPiece> pieces, const Machine& machine,
-                                     gcode::PathMode path);
+// Where a stretch runs. The way along the stretch goes evenly with the parameter of `path`.
+struct StretchPlace {
+  std::uint32_t first_piece = 0;  // of the chain; the stretch serves all from the first to the
+  std::uint32_t last_piece = 0;   // last: lines that a control joins, the two sides of a corner
+  bool is_corner = false;         // a bend that the control puts into the joint of the two
+  geometry::PathPiece path;
+};
 
-[[nodiscard]] double grbl_time(std::span<const TimedPiece> pieces, const Machine& machine,
-                               gcode::PathMode path);
+struct StretchChain {
+  std::vector<VelocityStretch> stretches;
+  std::vector<StretchPlace> places;  // one for each stretch, or none when they are not wanted
+  ProfileRules rules;
+};
 
-[[nodiscard]] double linuxcnc_time(std::span<const TimedPiece> pieces, const Machine& machine,
-                                   gcode::PathMode path, ChainEnd end);
+enum class WantPlaces { kNo, kYes };
+
+[[nodiscard]] StretchChain look_ahead_stretches(std::span<const TimedPiece> pieces,
+                                                const Machine& machine, gcode::PathMode path,
+                                                WantPlaces places);
+
+[[nodiscard]] StretchChain grbl_stretches(std::span<const TimedPiece> pieces,
+                                          const Machine& machine, gcode::PathMode path,
+                                          WantPlaces places);
+
+[[nodiscard]] StretchChain linuxcnc_stretches(std::span<const TimedPiece> pieces,
+                                              const Machine& machine, gcode::PathMode path,
+                                              ChainEnd end, WantPlaces places);
+
+// The pieces that have a length, each with a feed above 0. Throws as cutting_time does.
+[[nodiscard]] std::vector<TimedPiece> with_length_and_feed(std::span<const TimedPiece> pieces,
+                                                           const Machine& machine);
+
+// That of the machine's model. Throws as cutting_time does.
+[[nodiscard]] StretchChain stretches_of(std::span<const TimedPiece> pieces, const Machine& machine,
+                                        gcode::PathMode path, ChainEnd end, WantPlaces places);
 
 }  // namespace batten::postproc

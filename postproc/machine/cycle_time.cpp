@@ -7,6 +7,8 @@
 
 #include "geometry/numeric.h"
 #include "postproc/machine/controller_models.h"
+#include "postproc/machine/junction_speed.h"
+#include "postproc/machine/stream_limit.h"
 
 namespace batten::postproc {
 namespace {
@@ -18,46 +20,71 @@ void require_positive(double value, std::string_view name, const Machine& machin
 }
 
 void require_usable(const Machine& machine) {
-  require_positive(machine.max_velocity, "max_velocity", machine);
-  require_positive(machine.max_acceleration, "max_acceleration", machine);
+  require_positive(machine.max_velocity(), "max_velocity", machine);
+  require_positive(machine.rapid_velocity(), "rapid_velocity", machine);
+  require_positive(machine.max_acceleration(), "max_acceleration", machine);
+  require_positive(machine.path_feed, "path_feed", machine);
+  require_positive(machine.path_acceleration, "path_acceleration", machine);
   require_positive(machine.block_period, "block_period", machine);
+  require_positive(machine.stream_rate, "stream_rate", machine);
   require_positive(machine.look_ahead, "look_ahead", machine);
-  if (machine.model == ControllerModel::kGrbl) {
+  if (machine.model != ControllerModel::kGrbl) {
+    require_positive(machine.servo_period, "servo_period", machine);
+  } else {
     require_positive(machine.junction_deviation, "junction_deviation", machine);
     require_positive(machine.arc_tolerance, "arc_tolerance", machine);
   }
 }
+
+// Above any diagonal of the axes (sqrt(3)), so that it limits nothing; mm/min.
+double feed_of(const TimedPiece& p, const Machine& machine) {
+  if (!p.rapid && p.feed > 0) return p.feed;
+  return axis_velocities(machine, p.rapid).maxCoeff() * 60 * 2;
+}
+
+bool has_length(const TimedPiece& p) { return geometry::length_of(p.piece) > geometry::kSamePlace; }
+
+void require_feed(const TimedPiece& p) {
+  if (p.feed >= 0) return;
+  throw std::invalid_argument(fmt::format("feed is {} mm/min, expected 0 or above", p.feed));
+}
+
+}  // namespace
 
 std::vector<TimedPiece> with_length_and_feed(std::span<const TimedPiece> pieces,
                                              const Machine& machine) {
   std::vector<TimedPiece> moving;
   moving.reserve(pieces.size());
   for (const TimedPiece& p : pieces) {
-    if (!(p.feed >= 0)) {
-      throw std::invalid_argument(fmt::format("feed is {} mm/min, expected 0 or above", p.feed));
-    }
-    if (geometry::length_of(p.piece) <= geometry::kSamePlace) continue;
-    const double fastest = machine.max_velocity * 60 * 2;  // above any axis diagonal (sqrt(3))
-    moving.push_back({p.piece, p.feed > 0 ? p.feed : fastest});
+    require_feed(p);
+    if (!has_length(p)) continue;
+    moving.push_back(p);
+    moving.back().feed = feed_of(p, machine);
   }
+  limit_by_stream(moving, machine);
   return moving;
 }
 
-}  // namespace
+StretchChain stretches_of(std::span<const TimedPiece> pieces, const Machine& machine,
+                          gcode::PathMode path, ChainEnd end, WantPlaces places) {
+  require_usable(machine);
+  switch (machine.model) {
+    case ControllerModel::kLinuxcnc:
+      return linuxcnc_stretches(pieces, machine, path, end, places);
+    case ControllerModel::kGrbl:
+      return grbl_stretches(pieces, machine, path, places);
+    case ControllerModel::kLookAhead:
+      break;
+  }
+  return look_ahead_stretches(pieces, machine, path, places);
+}
 
 double cutting_time(std::span<const TimedPiece> pieces, const Machine& machine,
                     gcode::PathMode path, ChainEnd end) {
   require_usable(machine);
   const std::vector<TimedPiece> moving = with_length_and_feed(pieces, machine);
-  switch (machine.model) {
-    case ControllerModel::kLinuxcnc:
-      return linuxcnc_time(moving, machine, path, end);
-    case ControllerModel::kGrbl:
-      return grbl_time(moving, machine, path);
-    case ControllerModel::kLookAhead:
-      break;
-  }
-  return look_ahead_time(moving, machine, path);
+  const StretchChain chain = stretches_of(moving, machine, path, end, WantPlaces::kNo);
+  return profile_time(chain.stretches, chain.rules);
 }
 
 }  // namespace batten::postproc

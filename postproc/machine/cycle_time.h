@@ -13,7 +13,9 @@ namespace batten::postproc {
 
 struct TimedPiece {
   geometry::PathPiece piece;
-  double feed = 0;  // mm/min; 0: as fast as the machine cuts
+  double feed = 0;     // mm/min; 0: as fast as the machine cuts
+  bool rapid = false;  // at the rapid rate; `feed` means nothing then
+  int bytes = 0;       // of its block, for a control that is fed by a line; 0: not known
 };
 
 // What stands behind the chain. It matters on LinuxCNC alone, which brakes with half the

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <vector>
+#include <utility>
 
 #include "geometry/numeric.h"
 #include "postproc/machine/controller_models.h"
@@ -34,58 +34,71 @@ int chords_of(const geometry::PathPiece& piece, double tolerance) {
 
 class Planner {
  public:
-  Planner(const Machine& machine, bool stops_at_blocks)
-      : machine_(machine), stops_at_blocks_(stops_at_blocks) {}
+  Planner(const Machine& machine, bool stops_at_blocks, WantPlaces places)
+      : machine_(machine), stops_at_blocks_(stops_at_blocks), places_(places) {}
 
-  void add_block(const TimedPiece& timed) {
+  void add_block(const TimedPiece& timed, std::uint32_t index) {
     const double length = geometry::length_of(timed.piece);
-    const double velocity = std::min(timed.feed / 60, length / machine_.block_period);
+    const double velocity =
+        std::min({timed.feed / 60, machine_.path_feed, length / machine_.block_period});
+    const Vector3 axis_velocity = axis_velocities(machine_, timed.rapid);
     const int chords = chords_of(timed.piece, machine_.arc_tolerance);
     Point3 from = geometry::start_point(timed.piece);
     for (int i = 1; i <= chords; ++i) {
       const Point3 to = geometry::point_at(timed.piece, double(i) / chords);
-      add_chord(to - from, velocity, i == 1);
+      if (add_chord(to - from, velocity, axis_velocity, i == 1) && places_ == WantPlaces::kYes) {
+        chain_.places.push_back({index, index, false, geometry::Line{from, to}});
+      }
       from = to;
     }
   }
 
-  [[nodiscard]] double time() const {
-    ProfileRules rules;
-    rules.look_ahead = machine_.look_ahead;
-    return profile_time(chain_, rules);
+  StretchChain finish() {
+    // The block that runs keeps its place in the planner until it has ended: beyond the joint
+    // behind it there is one block less.
+    chain_.rules.look_ahead = std::max(1, machine_.look_ahead - 1);
+    return std::move(chain_);
   }
 
  private:
-  void add_chord(const Vector3& way, double velocity, bool first_of_block) {
-    if (way.norm() <= geometry::kSamePlace) return;
+  // False where the chord has no length.
+  bool add_chord(const Vector3& way, double velocity, const Vector3& axis_velocity,
+                 bool first_of_block) {
+    if (way.norm() <= geometry::kSamePlace) return false;
     const Vector3 direction = way.normalized();
     if (before_) {
-      chain_.back().exit_velocity =
+      chain_.stretches.back().exit_velocity =
           stops_at_blocks_ && first_of_block
               ? 0
               : junction_deviation_speed(*before_, direction, machine_.junction_deviation,
-                                         machine_.max_acceleration);
+                                         axis_accelerations(machine_));
     }
     VelocityStretch s;
     s.length = way.norm();
-    s.max_velocity = std::min(velocity, limit_along(direction, machine_.max_velocity));
-    s.acceleration = limit_along(direction, machine_.max_acceleration);
-    chain_.push_back(s);
+    s.max_velocity = std::min(velocity, limit_along(direction, axis_velocity));
+    s.acceleration =
+        std::min(limit_along(direction, axis_accelerations(machine_)), machine_.path_acceleration);
+    chain_.stretches.push_back(s);
     before_ = direction;
+    return true;
   }
 
   const Machine& machine_;
   bool stops_at_blocks_;
-  std::vector<VelocityStretch> chain_;
+  WantPlaces places_;
+  StretchChain chain_;
   std::optional<Vector3> before_;
 };
 
 }  // namespace
 
-double grbl_time(std::span<const TimedPiece> pieces, const Machine& machine, gcode::PathMode path) {
-  Planner planner(machine, path == gcode::PathMode::kExactStop);
-  for (const TimedPiece& timed : pieces) planner.add_block(timed);
-  return planner.time();
+StretchChain grbl_stretches(std::span<const TimedPiece> pieces, const Machine& machine,
+                            gcode::PathMode path, WantPlaces places) {
+  Planner planner(machine, path == gcode::PathMode::kExactStop, places);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    planner.add_block(pieces[i], static_cast<std::uint32_t>(i));
+  }
+  return planner.finish();
 }
 
 }  // namespace batten::postproc

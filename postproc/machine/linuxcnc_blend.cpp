@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "geometry/numeric.h"
+#include "postproc/machine/junction_speed.h"
 
 namespace batten::postproc::linuxcnc {
 namespace {
@@ -58,13 +59,6 @@ Reach reach_after(const Segment& s, const Vector3& binormal, double half_angle) 
 
 bool in_plane(const Segment& s, const Vector3& binormal) {
   return s.shape != Shape::kArc || s.axis.cross(binormal).norm() < kParallel;
-}
-
-// The acceleration that every direction of the plane across `binormal` has.
-double plane_limit(const Vector3& binormal, double axis_limit) {
-  double most = 0;
-  for (int i = 0; i < 3; ++i) most = std::max(most, std::sqrt(1 - std::pow(binormal[i], 2)));
-  return axis_limit / most;
 }
 
 double blend_tolerance(const Segment& before, const Segment& after, double tolerance) {
@@ -175,13 +169,14 @@ std::optional<BlendArc> blend_arc(const Segment& before, const Segment& after,
 
   BlendArc arc;
   arc.turn = pi - 2 * theta;
-  arc.acceleration = plane_limit(binormal, machine.max_acceleration);
+  arc.acceleration = limit_across(binormal, axis_accelerations(machine));
   const double normal_acceleration = kNormalShare * arc.acceleration;
   const double allowed = blend_tolerance(before, after, tolerance);
   const double reach =
       std::min({reach1.length, reach2.length, std::cos(theta) * allowed / (1 - std::sin(theta))});
   const double radius = std::tan(theta) * reach;
-  const double feed = std::min(std::max(before.feed, after.feed), machine.max_velocity);
+  const double feed = std::min({std::max(before.feed, after.feed), machine.path_feed,
+                                limit_across(binormal, axis_velocities(machine, false))});
   arc.velocity = std::min(std::sqrt(normal_acceleration * radius), feed);
 
   // The arc is as long as a parabolic blend of the same corner would be, so that long moves

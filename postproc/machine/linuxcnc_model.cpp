@@ -16,6 +16,7 @@ namespace linuxcnc {
 namespace {
 
 using gcode::PathMode;
+using geometry::Point3;
 
 // A line that a corner leaves shorter than this many periods joins the blend arc.
 constexpr double kGapPeriods = 4;
@@ -49,41 +50,48 @@ class Queue {
  public:
   Queue(const Machine& machine, PathMode path) : machine_(machine), joint_(joint_of(path)) {}
 
-  void add(const TimedPiece& timed) {
+  void add(const JoinedPiece& timed) {
     Segment next = segment_of(timed, machine_, joint_);
+    next.first_piece = timed.first_piece;
+    next.last_piece = timed.last_piece;
     if (!moves_.empty()) {
       connect(next);
-      finish_segment(moves_.back(), machine_.block_period);
+      finish_segment(moves_.back(), machine_.servo_period);
     }
     moves_.push_back(next);
   }
 
-  [[nodiscard]] double time(ChainEnd end) {
-    if (moves_.empty()) return 0;
+  [[nodiscard]] StretchChain finish(ChainEnd end, WantPlaces places) {
+    StretchChain chain;
+    chain.rules.look_ahead = machine_.look_ahead;
+    chain.rules.ramp_time = kRampTime;
+    chain.rules.stop_time = kStopPeriods * machine_.servo_period;
+    if (moves_.empty()) return chain;
     if (end == ChainEnd::kEndOfMotion) enter_last_move_slowly();
     if (end == ChainEnd::kStop || joint_ != Joint::kParabolic) moves_.back().end = Joint::kStop;
-    ProfileRules rules;
-    rules.look_ahead = machine_.look_ahead;
-    rules.ramp_time = kRampTime;
-    rules.stop_time = kStopPeriods * machine_.block_period;
-    std::vector<VelocityStretch> chain;
-    chain.reserve(moves_.size());
+    chain.stretches.reserve(moves_.size());
     double at_start = 0;  // mm of the move that the overlap with the one before takes
     for (std::size_t i = 0; i < moves_.size(); ++i) {
       const bool overlaps = i + 1 < moves_.size() && moves_[i].end == Joint::kParabolic;
       const double at_end = overlaps ? overlap(moves_[i], moves_[i + 1]) : 0;
       VelocityStretch own = stretch_of(moves_[i]);
       own.length = std::max(own.length - at_start - at_end, geometry::kSamePlace);
-      chain.push_back(own);
+      chain.stretches.push_back(own);
+      if (places == WantPlaces::kYes) {
+        chain.places.push_back(place_of(moves_[i], at_start, at_end));
+      }
       if (overlaps) {
         VelocityStretch both = own;
         both.length = 2 * at_end;
         both.max_velocity = own.exit_velocity;
-        chain.push_back(both);
+        chain.stretches.push_back(both);
+        if (places == WantPlaces::kYes) {
+          chain.places.push_back(overlap_place(moves_[i], moves_[i + 1], at_end));
+        }
       }
       at_start = at_end;
     }
-    return profile_time(chain, rules);
+    return chain;
   }
 
  private:
@@ -103,6 +111,45 @@ class Queue {
     const double velocity = before.kink_velocity;
     const double slower = std::min(tangential_acceleration(before), tangential_acceleration(after));
     return std::min({velocity * velocity / slower / 2, before.length / 2, after.length / 2});
+  }
+
+  // The place `cut` mm before the end of what corners leave of the move, or after its start.
+  static Point3 place_before_end(const Segment& s, double cut) {
+    return point_at(s.path, std::clamp(1 - (s.cut_at_end + cut) / s.nominal_length, 0.0, 1.0));
+  }
+  static Point3 place_after_start(const Segment& s, double cut) {
+    return point_at(s.path, std::clamp((s.cut_at_start + cut) / s.nominal_length, 0.0, 1.0));
+  }
+
+  static StretchPlace place_of(const Segment& s, double at_start, double at_end) {
+    StretchPlace place{s.first_piece, s.last_piece, s.shape == Shape::kBlendArc, s.path};
+    // Rounding may leave nothing between the two cuts: a millionth of the move stands for it.
+    constexpr double kLeastPart = 1e-6;
+    const double t0 = std::min((s.cut_at_start + at_start) / s.nominal_length, 1 - kLeastPart);
+    const double t1 = std::max(1 - (s.cut_at_end + at_end) / s.nominal_length, t0 + kLeastPart);
+    if (t0 > 0 || t1 < 1) place.path = geometry::sub_piece(s.path, t0, std::min(t1, 1.0));
+    return place;
+  }
+
+  // The parabola of a point that one move brings to rest while the next one speeds it up.
+  static StretchPlace overlap_place(const Segment& before, const Segment& after, double way) {
+    return {before.last_piece, after.first_piece, true,
+            bend_through(place_before_end(before, way), end_point(before.path),
+                         place_after_start(after, way))};
+  }
+
+  // From one place to another, tangent at both to the lines through the corner.
+  static geometry::CubicBezier bend_through(const Point3& from, const Point3& corner,
+                                            const Point3& to) {
+    return {{from, from + 2.0 / 3 * (corner - from), to + 2.0 / 3 * (corner - to), to}};
+  }
+
+  // A bend of this length between two places and directions, along which the way goes nearly
+  // evenly with the parameter; a circle to within a few per cent of its rise.
+  static geometry::CubicBezier bend_of(const Point3& from, const geometry::Vector3& leaving,
+                                       const Point3& to, const geometry::Vector3& arriving,
+                                       double length) {
+    return {{from, from + length / 3 * leaving, to - length / 3 * arriving, to}};
   }
 
   static VelocityStretch stretch_of(const Segment& s) {
@@ -156,7 +203,7 @@ class Queue {
     double arc_worth = 0;
     if (arc) {
       const double left = takes_rest_of_last(*arc) ? last.length - arc->trim_before : 0;
-      arc_worth = std::min(arc->velocity, (arc->radius * arc->turn + left) / machine_.block_period);
+      arc_worth = std::min(arc->velocity, (arc->radius * arc->turn + left) / machine_.servo_period);
     }
     if (arc_worth > std::max(parabolic_worth, last.kink_velocity)) {
       insert(*arc, next);
@@ -173,7 +220,7 @@ class Queue {
   [[nodiscard]] bool takes_rest_of_last(const BlendArc& arc) const {
     const Segment& last = moves_.back();
     if (last.shape != Shape::kLine || last.after_parabolic) return false;
-    return last.length - arc.trim_before < kGapPeriods * machine_.block_period * arc.velocity;
+    return last.length - arc.trim_before < kGapPeriods * machine_.servo_period * arc.velocity;
   }
 
   void insert(const BlendArc& arc, Segment& next) {
@@ -189,19 +236,27 @@ class Queue {
     bend.max_velocity = arc.velocity;
     bend.acceleration = arc.acceleration;
     bend.end = Joint::kTangent;
-    shorten(next, arc.trim_after);
+    bend.first_piece = takes_rest ? last.first_piece : last.last_piece;
+    bend.last_piece = next.first_piece;
+    const Point3 from =
+        takes_rest ? place_after_start(last, 0) : place_before_end(last, arc.trim_before);
+    bend.path = bend_of(from, last.end_direction, place_after_start(next, arc.trim_after),
+                        next.start_direction, bend.length);
+    cut(next, arc.trim_after);
+    next.cut_at_start += arc.trim_after;
     if (takes_rest) {
       moves_.pop_back();
     } else {
-      shorten(last, arc.trim_before);
+      cut(last, arc.trim_before);
+      last.cut_at_end += arc.trim_before;
       last.end = Joint::kTangent;
-      finish_segment(last, machine_.block_period);
+      finish_segment(last, machine_.servo_period);
     }
-    finish_segment(bend, machine_.block_period);
+    finish_segment(bend, machine_.servo_period);
     moves_.push_back(bend);
   }
 
-  static void shorten(Segment& s, double by) {
+  static void cut(Segment& s, double by) {
     // The corners take half of a line and two thirds and one third of an arc at most;
     // rounding must not leave less than nothing.
     const double left = std::max(s.length - by, geometry::kSamePlace);
@@ -217,24 +272,25 @@ class Queue {
 }  // namespace
 }  // namespace linuxcnc
 
-double linuxcnc_time(std::span<const TimedPiece> pieces, const Machine& machine,
-                     gcode::PathMode path, ChainEnd end) {
+StretchChain linuxcnc_stretches(std::span<const TimedPiece> pieces, const Machine& machine,
+                                gcode::PathMode path, ChainEnd end, WantPlaces places) {
   const bool blends = path == gcode::PathMode::kBlending || path == gcode::PathMode::kUnknown;
-  const std::vector<TimedPiece> joined =
+  const std::vector<linuxcnc::JoinedPiece> joined =
       linuxcnc::join_within(pieces, blends ? machine.naive_cam_tolerance : 0);
   linuxcnc::Queue queue(machine, path);
-  for (const TimedPiece& timed : joined) {
+  for (const linuxcnc::JoinedPiece& timed : joined) {
     if (!std::holds_alternative<geometry::CubicBezier>(timed.piece)) {
       queue.add(timed);
       continue;
     }
     for (int i = 0; i < linuxcnc::kArcsPerBezier; ++i) {
-      const auto part = geometry::sub_piece(timed.piece, double(i) / linuxcnc::kArcsPerBezier,
-                                            double(i + 1) / linuxcnc::kArcsPerBezier);
-      if (geometry::length_of(part) > 0) queue.add({part, timed.feed});
+      linuxcnc::JoinedPiece part = timed;
+      part.piece = geometry::sub_piece(timed.piece, double(i) / linuxcnc::kArcsPerBezier,
+                                       double(i + 1) / linuxcnc::kArcsPerBezier);
+      if (geometry::length_of(part.piece) > 0) queue.add(part);
     }
   }
-  return queue.time(end);
+  return queue.finish(end, places);
 }
 
 }  // namespace batten::postproc

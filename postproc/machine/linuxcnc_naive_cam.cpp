@@ -31,21 +31,23 @@ class Joiner {
  public:
   explicit Joiner(double tolerance) : tolerance_(tolerance) {}
 
-  void add_line(const Point3& from, const Point3& to, double feed) {
-    if (!points_.empty() && (feed != feed_ || !can_reach(to))) flush();
+  void add_line(const Point3& from, const Point3& to, const TimedPiece& piece,
+                std::uint32_t index) {
+    if (!points_.empty() && (piece.feed != open_.feed || !can_reach(to))) flush();
     if (points_.empty()) {
       start_ = from;
-      feed_ = feed;
+      open_ = {piece, index, index};
     }
     points_.push_back(to);
+    open_.last_piece = index;
   }
 
-  void add_other(const TimedPiece& piece) {
+  void add_other(const TimedPiece& piece, std::uint32_t index) {
     flush();
-    joined_.push_back(piece);
+    joined_.push_back({piece, index, index});
   }
 
-  std::vector<TimedPiece> finish() {
+  std::vector<JoinedPiece> finish() {
     flush();
     return std::move(joined_);
   }
@@ -62,15 +64,16 @@ class Joiner {
 
   void flush() {
     if (points_.empty()) return;
-    joined_.push_back({Line{start_, points_.back()}, feed_});
+    open_.piece = Line{start_, points_.back()};
+    joined_.push_back(open_);
     points_.clear();
   }
 
   double tolerance_;
   Point3 start_ = Point3::Zero();
-  double feed_ = 0;
+  JoinedPiece open_;  // its line ends at the last of the points
   std::vector<Point3> points_;
-  std::vector<TimedPiece> joined_;
+  std::vector<JoinedPiece> joined_;
 };
 
 // Distance of the middle of the arc from the middle of its chord.
@@ -86,19 +89,22 @@ bool becomes_lines(const Arc& arc, double tolerance) {
 
 }  // namespace
 
-std::vector<TimedPiece> join_within(std::span<const TimedPiece> pieces, double tolerance) {
-  if (!(tolerance > 0)) return {pieces.begin(), pieces.end()};
+std::vector<JoinedPiece> join_within(std::span<const TimedPiece> pieces, double tolerance) {
   Joiner joiner(tolerance);
-  for (const TimedPiece& timed : pieces) {
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const TimedPiece& timed = pieces[i];
+    const auto index = static_cast<std::uint32_t>(i);
+    const bool joins = tolerance > 0 && !timed.rapid;
     const auto* arc = std::get_if<Arc>(&timed.piece);
-    if (const auto* line = std::get_if<Line>(&timed.piece)) {
-      joiner.add_line(line->start, line->end, timed.feed);
-    } else if (arc != nullptr && becomes_lines(*arc, tolerance)) {
+    const auto* line = std::get_if<Line>(&timed.piece);
+    if (joins && line != nullptr) {
+      joiner.add_line(line->start, line->end, timed, index);
+    } else if (joins && arc != nullptr && becomes_lines(*arc, tolerance)) {
       const Point3 middle = geometry::point_at(*arc, 0.5);
-      joiner.add_line(arc->start, middle, timed.feed);
-      joiner.add_line(middle, arc->end, timed.feed);
+      joiner.add_line(arc->start, middle, timed, index);
+      joiner.add_line(middle, arc->end, timed, index);
     } else {
-      joiner.add_other(timed);
+      joiner.add_other(timed, index);
     }
   }
   return joiner.finish();

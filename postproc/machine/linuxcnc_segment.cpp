@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/numeric.h"
 #include "postproc/machine/junction_speed.h"
 
 namespace batten::postproc::linuxcnc {
@@ -24,28 +25,47 @@ double triangle_velocity(double acceleration, double length) {
   return std::sqrt(acceleration * length);
 }
 
+// What the axes can do while they turn through all directions of a bend.
+struct BendLimits {
+  double velocity = 0;      // mm/s
+  double acceleration = 0;  // mm/s^2
+};
+
 // Limits on a bend of radius r in its plane; a helix has the speed and acceleration of its
 // projection. The control takes r + h^2 / r for the radius of curvature, with h the whole
 // rise of the move and not the rise per radian, so that steep helices speed up faster.
-void set_bend(Segment& s, double radius, double rise, double flat_length, const Machine& m) {
+void set_bend(Segment& s, double radius, double rise, double flat_length,
+              const BendLimits& limits) {
   const double stretch = s.length / flat_length;
   s.shape = Shape::kArc;
   s.radius = radius;
   s.speed_radius = radius + rise * rise / radius;
-  s.acceleration = m.max_acceleration * stretch;
+  s.acceleration = limits.acceleration * stretch;
   s.max_velocity =
-      std::min(m.max_velocity, std::sqrt(kNormalShare * m.max_acceleration * radius)) * stretch;
+      std::min(limits.velocity, std::sqrt(kNormalShare * limits.acceleration * radius)) * stretch;
   s.sweep = flat_length / radius;
 }
 
-void set_arc(Segment& s, const geometry::Arc& arc, const Machine& m) {
+// The third axis limits a helix by its share of the way.
+void limit_by_rise(Segment& s, const Vector3& rise, const Vector3& velocity,
+                   const Vector3& acceleration) {
+  if (rise.norm() <= geometry::kSamePlace) return;
+  const Vector3 share = rise / s.length;
+  s.max_velocity = std::min(s.max_velocity, limit_along(share, velocity));
+  s.acceleration = std::min(s.acceleration, limit_along(share, acceleration));
+}
+
+void set_arc(Segment& s, const geometry::Arc& arc, const Vector3& velocity,
+             const Vector3& acceleration) {
   const double rise = arc.axis.dot(arc.end - arc.start);
   const Vector3 start = arc.start - arc.center;
   const Vector3 end = arc.end - arc.center;
   const double r0 = (start - arc.axis.dot(start) * arc.axis).norm();
   const double r1 = (end - arc.axis.dot(end) * arc.axis).norm();
   const double flat_length = std::sqrt(std::max(0.0, s.length * s.length - rise * rise));
-  set_bend(s, std::min(r0, r1), rise, flat_length, m);
+  set_bend(s, std::min(r0, r1), rise, flat_length,
+           {limit_across(arc.axis, velocity), limit_across(arc.axis, acceleration)});
+  limit_by_rise(s, rise * arc.axis, velocity, acceleration);
   s.axis = arc.sweep > 0 ? arc.axis : Vector3(-arc.axis);
   s.sweep = std::abs(arc.sweep);
 }
@@ -59,18 +79,20 @@ Segment segment_of(const TimedPiece& timed, const Machine& machine, Joint end) {
   s.start_direction = geometry::direction_at(timed.piece, 0);
   s.end_direction = geometry::direction_at(timed.piece, 1);
   s.end = end;
+  s.path = timed.piece;
+  const Vector3 velocity = axis_velocities(machine, timed.rapid);
+  const Vector3 acceleration = axis_accelerations(machine);
   const double curvature = greatest_curvature(timed.piece);
   if (curvature <= kStraight) {
-    s.max_velocity = limit_along(s.start_direction, machine.max_velocity);
-    s.acceleration = limit_along(s.start_direction, machine.max_acceleration);
+    s.max_velocity = limit_along(s.start_direction, velocity);
+    s.acceleration = limit_along(s.start_direction, acceleration);
   } else if (const auto* arc = std::get_if<geometry::Arc>(&timed.piece)) {
-    set_arc(s, *arc, machine);
+    set_arc(s, *arc, velocity, acceleration);
   } else {
-    set_bend(s, 1 / curvature, 0, s.length, machine);
+    set_bend(s, 1 / curvature, 0, s.length, {velocity.minCoeff(), acceleration.minCoeff()});
   }
-  // The path as a whole has the limit of one axis too ([TRAJ]MAX_LINEAR_VELOCITY).
-  s.max_velocity =
-      std::min({s.max_velocity, machine.max_velocity, s.length / machine.block_period});
+  const double period = std::max(machine.block_period, machine.servo_period);
+  s.max_velocity = std::min({s.max_velocity, machine.path_feed, s.length / period});
   return s;
 }
 
@@ -104,9 +126,9 @@ void finish_segment(Segment& s, double period) {
 
 double kink_at_full_speed(const Segment& before, const Segment& after, const Machine& machine) {
   const double velocity = std::min(target_velocity(before), target_velocity(after));
-  const double step = velocity / machine.block_period + after.acceleration;
+  const double step = velocity / machine.servo_period + after.acceleration;
   const Vector3 turn = after.start_direction - before.end_direction;
-  const double share = step * turn.cwiseAbs().maxCoeff() / machine.max_acceleration;
+  const double share = step * turn.cwiseAbs().cwiseQuotient(axis_accelerations(machine)).maxCoeff();
   const bool bend = before.shape == Shape::kArc || after.shape == Shape::kArc;
   return bend ? share / kTangentialShare : share;
 }

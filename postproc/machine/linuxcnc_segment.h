@@ -1,6 +1,9 @@
 // A move in the queue of LinuxCNC's planner, and the rules that need one move or two.
 #pragma once
 
+#include <cstdint>
+
+#include "geometry/path.h"
 #include "geometry/point.h"
 #include "postproc/machine/cycle_time.h"
 #include "postproc/machine/machine.h"
@@ -47,6 +50,13 @@ struct Segment {
   double kink_velocity = kNoLimit;  // mm/s at the end
   double kink_share_at_start = 0;   // of the acceleration, taken by the joint
   double kink_share_at_end = 0;
+
+  // Where it runs: `path`, with its ends cut off (mm of the nominal length).
+  geometry::PathPiece path;
+  double cut_at_start = 0;
+  double cut_at_end = 0;
+  std::uint32_t first_piece = 0;  // of the program's chain
+  std::uint32_t last_piece = 0;
 };
 
 // A line or an arc as it comes from the program. Bends that are not arcs count as arcs of

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "postproc/machine/jerk_motion.h"
+
 namespace batten::postproc {
 namespace {
 
@@ -29,7 +31,12 @@ double reached(const VelocityStretch& s, double v) {
   return velocity_of_potential(s, potential(s, v) + s.length);
 }
 
-// Seconds from v0 to v1 >= v0 at full tangential acceleration.
+}  // namespace
+
+double speeding_up_way(const VelocityStretch& s, double v0, double v1) {
+  return potential(s, v1) - potential(s, v0);
+}
+
 double speeding_up_time(const VelocityStretch& s, double v0, double v1) {
   if (s.curvature == 0) return (v1 - v0) / s.acceleration;
   // Gauss-Legendre with five points. The integrand 1 / sqrt(a^2 - (k v^2)^2) grows from 1 / a
@@ -50,6 +57,19 @@ double speeding_up_time(const VelocityStretch& s, double v0, double v1) {
   return (v1 - v0) * sum;
 }
 
+double peak_velocity(const VelocityStretch& s, double v0, double v1) {
+  const double peak_potential = (potential(s, v0) + potential(s, v1) + s.length) / 2;
+  if (peak_potential >= potential(s, s.max_velocity)) return s.max_velocity;
+  // Rounding must not put the peak below the ends.
+  return std::max({velocity_of_potential(s, peak_potential), v0, v1});
+}
+
+bool is_even_ramp(const VelocityStretch& s, double v0, double v1, const ProfileRules& rules) {
+  return s.runs_on && v1 > 0 && 2 * s.length < rules.ramp_time * (v0 + v1);
+}
+
+namespace {
+
 // Seconds over the stretch, speeding up from v0 and slowing down to v1 as late as possible.
 double trapezoid_time(const VelocityStretch& s, double v0, double v1) {
   const double p0 = potential(s, v0);
@@ -57,21 +77,12 @@ double trapezoid_time(const VelocityStretch& s, double v0, double v1) {
   const double peak_potential = (p0 + p1 + s.length) / 2;
   const double limit_potential = potential(s, s.max_velocity);
   if (peak_potential < limit_potential) {
-    // Rounding must not put the peak below the ends.
     const double peak = std::max({velocity_of_potential(s, peak_potential), v0, v1});
     return speeding_up_time(s, v0, peak) + speeding_up_time(s, v1, peak);
   }
   const double steady = s.length - (limit_potential - p0) - (limit_potential - p1);
   return speeding_up_time(s, v0, s.max_velocity) + speeding_up_time(s, v1, s.max_velocity) +
          steady / s.max_velocity;
-}
-
-double stretch_time(const VelocityStretch& s, double v0, double v1, const ProfileRules& rules) {
-  if (s.runs_on && v1 > 0 && rules.ramp_time > 0) {
-    const double ramp = 2 * s.length / (v0 + v1);
-    if (ramp < rules.ramp_time) return ramp;
-  }
-  return trapezoid_time(s, v0, v1);
 }
 
 // Greatest speed at each of the joints 0 to n, before accelerations are looked at.
@@ -104,20 +115,34 @@ void limit_by_look_ahead(std::span<const VelocityStretch> chain, int look_ahead,
 
 }  // namespace
 
-double profile_time(std::span<const VelocityStretch> chain, const ProfileRules& rules) {
+double stretch_time(const VelocityStretch& s, double v0, double v1, const ProfileRules& rules) {
+  const double moving =
+      is_even_ramp(s, v0, v1, rules) ? 2 * s.length / (v0 + v1) : trapezoid_time(s, v0, v1);
+  return v1 == 0 ? moving + rules.stop_time : moving;
+}
+
+std::vector<double> joint_velocities(std::span<const VelocityStretch> chain,
+                                     const ProfileRules& rules) {
   const std::size_t n = chain.size();
-  if (n == 0) return 0;
   std::vector<double> v = joint_limits(chain);
   if (rules.look_ahead > 0) limit_by_look_ahead(chain, rules.look_ahead, v);
   for (std::size_t i = n; i-- > 0;) v[i] = std::min(v[i], reached(chain[i], v[i + 1]));
   for (std::size_t i = 0; i < n; ++i) v[i + 1] = std::min(v[i + 1], reached(chain[i], v[i]));
+  return v;
+}
 
+double profile_time(std::span<const VelocityStretch> chain, const ProfileRules& rules) {
+  const std::vector<double> v = joint_velocities(chain, rules);
+  if (has_jerk_limit(chain)) return JerkMotion(chain, v, rules).duration();
   double time = 0;
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < chain.size(); ++i) {
     time += stretch_time(chain[i], v[i], v[i + 1], rules);
-    if (v[i + 1] == 0) time += rules.stop_time;
   }
   return time;
+}
+
+bool has_jerk_limit(std::span<const VelocityStretch> chain) {
+  return std::ranges::any_of(chain, [](const VelocityStretch& s) { return s.jerk < kNoLimit; });
 }
 
 }  // namespace batten::postproc

@@ -1,10 +1,11 @@
-// The fastest run along a chain of stretches whose speeds and accelerations are limited,
-// without a limit on jerk: one pass backward, one pass forward, then the time of each
-// stretch. Method: docs/algorithms/cycle_time.md.
+// The fastest run along a chain of stretches whose speeds and accelerations are limited:
+// one pass backward, one pass forward, then the time of each stretch. A limit on jerk comes on
+// top of it. Method: docs/algorithms/cycle_time.md.
 #pragma once
 
 #include <limits>
 #include <span>
+#include <vector>
 
 namespace batten::postproc {
 
@@ -17,6 +18,7 @@ struct VelocityStretch {
   double max_velocity = 0;          // mm/s, above 0; curvature * max_velocity^2 < acceleration
   double acceleration = 0;          // mm/s^2, above 0
   double curvature = 0;             // 1/mm
+  double jerk = kNoLimit;           // mm/s^3 along the path; no limit unless the control has one
   double exit_velocity = kNoLimit;  // mm/s at its end; 0: the path stops there
   bool runs_on = true;              // a short stretch may take one constant acceleration
 };
@@ -34,5 +36,31 @@ struct ProfileRules {
 // Seconds from rest to rest.
 [[nodiscard]] double profile_time(std::span<const VelocityStretch> chain,
                                   const ProfileRules& rules);
+
+// Is there a stretch with a limit on jerk? Its changes of speed are S-curves then (jerk_motion.h).
+[[nodiscard]] bool has_jerk_limit(std::span<const VelocityStretch> chain);
+
+// mm/s at the joints 0 to n of the fastest run from rest to rest; n + 1 of them.
+[[nodiscard]] std::vector<double> joint_velocities(std::span<const VelocityStretch> chain,
+                                                   const ProfileRules& rules);
+
+// Seconds over one stretch between the speeds of its joints, with the loss of a stop at its end.
+[[nodiscard]] double stretch_time(const VelocityStretch& stretch, double v0, double v1,
+                                  const ProfileRules& rules);
+
+// --- for one stretch, as its time is computed ---------------------------------------------
+
+// Does the speed change evenly from the one end to the other (ProfileRules::ramp_time)?
+[[nodiscard]] bool is_even_ramp(const VelocityStretch& stretch, double v0, double v1,
+                                const ProfileRules& rules);
+
+// The greatest speed between its ends (mm/s).
+[[nodiscard]] double peak_velocity(const VelocityStretch& stretch, double v0, double v1);
+
+// mm between two speeds v0 <= v1 at full tangential acceleration.
+[[nodiscard]] double speeding_up_way(const VelocityStretch& stretch, double v0, double v1);
+
+// Seconds for the same.
+[[nodiscard]] double speeding_up_time(const VelocityStretch& stretch, double v0, double v1);
 
 }  // namespace batten::postproc

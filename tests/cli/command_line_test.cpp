@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "batten_process.h"
@@ -43,13 +44,15 @@ TEST_P(Help, OfEachCommandHasAnExample) {
 }
 
 INSTANTIATE_TEST_SUITE_P(CommandLine, Help,
-                         Values("smooth", "verify", "inspect", "targets", "machines", "methods"),
+                         Values("smooth", "verify", "inspect", "time", "targets", "machines",
+                                "methods"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST_F(CommandLine, HelpListsTheCommandsAndExitCodes) {
   const ProcessResult help = batten("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"smooth", "verify", "inspect", "targets", "machines", "methods"}) {
+  for (const char* command :
+       {"smooth", "verify", "inspect", "time", "targets", "machines", "methods"}) {
     EXPECT_TRUE(contains(help.out, command)) << command;
   }
   EXPECT_TRUE(contains(help.out, "3 not proved")) << help.out;
@@ -102,6 +105,10 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"UnknownTarget", "smooth part.nc --target linuxcn", "did you mean 'linuxcnc'?"},
         WrongUsage{"UnknownMachine", "smooth part.nc --target grbl --machine x", "--machine"},
         WrongUsage{"MissingMachineFile", "smooth part.nc --target grbl --machine x.toml", "x.toml"},
+        WrongUsage{"MissingIni", "smooth part.nc --target grbl --machine x.ini", "x.ini"},
+        WrongUsage{"MissingGrblSettings", "smooth part.nc --target grbl --grbl-settings x.txt",
+                   "x.txt"},
+        WrongUsage{"ShowOfNoMachine", "machines --show mil", "did you mean 'mill'?"},
         WrongUsage{"UnknownOption", "smooth part.nc --target grbl --tolerence 1",
                    "did you mean --tolerance?"},
         WrongUsage{"UnknownForm", "smooth part.nc --target grbl --output curves",
@@ -336,9 +343,62 @@ TEST_F(CommandLine, TakesAMachineFromAFile) {
   const ProcessResult bad = batten(std::string(kSmooth) + "--machine bad.toml --force");
   EXPECT_EQ(bad.exit_code, 1);
   EXPECT_TRUE(contains(bad.err, "there is no machine 'linuxcn'")) << bad.err;
-  EXPECT_TRUE(contains(bad.err, "bad.toml:2: max-acceleration: expected a number above 0"))
+  EXPECT_TRUE(contains(bad.err, "bad.toml:2:20: max-acceleration: -1, expected above 0 (mm/s2)"))
       << bad.err;
-  EXPECT_TRUE(contains(bad.err, "bad.toml:3: max-speed: expected one of")) << bad.err;
+  EXPECT_TRUE(contains(bad.err, "bad.toml:3:1: max-speed: there is no such key")) << bad.err;
+  EXPECT_FALSE(contains(bad.err, "no machine given")) << bad.err;
+}
+
+TEST_F(CommandLine, TakesAMachineFromTheIniOfLinuxcnc) {
+  folder_.put("mill.ini",
+              "[TRAJ]\nCOORDINATES = X Y\nLINEAR_UNITS = inch\n"
+              "[AXIS_X]\nMAX_VELOCITY = 2\nMAX_ACCELERATION = 20\n"
+              "[AXIS_Y]\nMAX_VELOCITY = 2\nMAX_ACCELERATION = 20\n");
+  const ProcessResult result = batten(std::string(kSmooth) + "--machine mill.ini");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "machine mill")) << result.err;
+  const auto shown = nlohmann::json::parse(batten("machines --show mill.ini --json -").out);
+  EXPECT_NEAR(shown["axes"]["x"]["velocity_mm_per_s"], 50.8, 1e-9);
+  EXPECT_TRUE(shown["axes"]["x"]["jerk_mm_per_s3"].is_null()) << "no such limit";
+}
+
+constexpr const char* kGrblDump =
+    "$11=0.010\n$12=0.002\n$110=6000\n$111=6000\n$112=600\n$120=500\n$121=500\n$122=60\nok\n";
+
+TEST_F(CommandLine, TakesTheSettingsOfGrbl) {
+  folder_.put("shapeoko.txt", kGrblDump);
+  const ProcessResult result = batten("smooth part.nc --target grbl --grbl-settings shapeoko.txt");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "machine shapeoko")) << result.err;
+  folder_.put("bad.txt", "error:8\n");
+  const ProcessResult bad = batten("smooth part.nc --target grbl --grbl-settings bad.txt --force");
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_TRUE(contains(bad.err, "bad.txt:1:1: 'error:8'")) << bad.err;
+  const ProcessResult other =
+      batten(std::string(kSmooth) + "--machine mill --grbl-settings shapeoko.txt --force");
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_TRUE(contains(other.err, "the control of machine mill is look-ahead")) << other.err;
+}
+
+TEST_F(CommandLine, PrintsAMachineAsAFileThatIsReadAgain) {
+  folder_.put("shapeoko.txt", kGrblDump);
+  const ProcessResult first = batten("machines --show router --grbl-settings shapeoko.txt");
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  folder_.put("mine.toml", first.out);
+  const ProcessResult second = batten("machines --show mine.toml");
+  EXPECT_EQ(second.exit_code, 0) << second.err;
+  EXPECT_EQ(second.out, first.out);
+  EXPECT_TRUE(contains(first.out, "[axis.z]\nvelocity = 10  # mm/s")) << first.out;
+}
+
+TEST_F(CommandLine, ListsTheMachinesInOneTable) {
+  const auto machines = nlohmann::json::parse(batten("machines --json -").out);
+  const std::string table = batten("machines").out;
+  ASSERT_GE(machines.size(), 6u);
+  for (const auto& machine : machines) {
+    EXPECT_TRUE(contains(table, "\n" + std::string(machine["name"]) + " ")) << table;
+  }
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), static_cast<long>(machines.size()) + 2);
 }
 
 // --- progress and interrupts ---------------------------------------------------------------------

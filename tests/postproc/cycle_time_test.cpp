@@ -31,13 +31,28 @@ Machine machine_of(ControllerModel model) {
   Machine m;
   m.name = "test";
   m.model = model;
-  m.max_velocity = 200;
-  m.max_acceleration = 1000;
+  m.set_max_velocity(200);
+  m.set_max_acceleration(1000);
   m.block_period = 0.001;
   m.look_ahead = 1000;
   m.blend_tolerance = 0.01;
   return m;
 }
+
+// A limit that a test turns.
+struct Limit {
+  double (*get)(const Machine&);
+  void (*set)(Machine&, double);
+};
+constexpr Limit kVelocity = {[](const Machine& m) { return m.max_velocity(); },
+                             [](Machine& m, double value) { m.set_max_velocity(value); }};
+constexpr Limit kAcceleration = {[](const Machine& m) { return m.max_acceleration(); },
+                                 [](Machine& m, double value) { m.set_max_acceleration(value); }};
+constexpr Limit kBlockPeriod = {[](const Machine& m) { return m.block_period; },
+                                [](Machine& m, double value) { m.block_period = value; }};
+constexpr Limit kJunctionDeviation = {
+    [](const Machine& m) { return m.junction_deviation; },
+    [](Machine& m, double value) { m.junction_deviation = value; }};
 
 constexpr ControllerModel kModels[] = {ControllerModel::kLookAhead, ControllerModel::kLinuxcnc,
                                        ControllerModel::kGrbl};
@@ -152,12 +167,11 @@ TEST_P(EveryModel, BrakesForTheEndOfTheLookAhead) {
 
 TEST_P(EveryModel, RefusesLimitsThatCannotMove) {
   const std::vector<TimedPiece> one = {line({0, 0, 0}, {1, 0, 0})};
-  for (double Machine::*limit :
-       {&Machine::max_velocity, &Machine::max_acceleration, &Machine::block_period}) {
+  for (const Limit& limit : {kVelocity, kAcceleration, kBlockPeriod}) {
     Machine m = machine_of(GetParam());
-    m.*limit = 0;
+    limit.set(m, 0);
     EXPECT_THROW((void)time_of(one, m), std::invalid_argument);
-    m.*limit = std::numeric_limits<double>::quiet_NaN();
+    limit.set(m, std::numeric_limits<double>::quiet_NaN());
     EXPECT_THROW((void)time_of(one, m), std::invalid_argument);
   }
   const Machine m = machine_of(GetParam());
@@ -318,17 +332,15 @@ INSTANTIATE_TEST_SUITE_P(CuttingTime, MonotoneModel,
                          testing::Values(ControllerModel::kLookAhead, ControllerModel::kGrbl));
 
 TEST_P(MonotoneModel, NeverTakesLongerWhenALimitRises) {
-  constexpr double Machine::*kLimits[] = {&Machine::max_velocity, &Machine::max_acceleration,
-                                          &Machine::junction_deviation};
   const Machine m = machine_of(GetParam());
   for (unsigned seed = 0; seed < kChains; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     std::vector<TimedPiece> chain = random_chain(seed);
     const double time = time_of(chain, m);
-    for (double Machine::*limit : kLimits) {
+    for (const Limit& limit : {kVelocity, kAcceleration, kJunctionDeviation}) {
       for (const double factor : {1.01, 1.5, 4.0}) {
         Machine better = m;
-        better.*limit *= factor;
+        limit.set(better, factor * limit.get(m));
         EXPECT_LE(time_of(chain, better), time + 1e-9);
       }
     }
@@ -364,9 +376,10 @@ TEST_P(EveryModel, TakesTheSameTimeInAnyUnitOfLength) {
   const Machine m = machine_of(GetParam());
   constexpr double kBy = 25.4;
   Machine big = m;
-  for (double Machine::*length :
-       {&Machine::max_velocity, &Machine::max_acceleration, &Machine::junction_deviation,
-        &Machine::arc_tolerance, &Machine::blend_tolerance, &Machine::naive_cam_tolerance}) {
+  big.set_max_velocity(kBy * m.max_velocity());
+  big.set_max_acceleration(kBy * m.max_acceleration());
+  for (double Machine::*length : {&Machine::junction_deviation, &Machine::arc_tolerance,
+                                  &Machine::blend_tolerance, &Machine::naive_cam_tolerance}) {
     big.*length *= kBy;
   }
   for (unsigned seed = 0; seed < kChains; ++seed) {

@@ -34,10 +34,11 @@ std::vector<std::string> keys_of(const Json& json) {
 
 TEST_F(JsonReport, HasItsFieldsInAFixedOrder) {
   const Json report = json();
-  EXPECT_EQ(keys_of(report), (std::vector<std::string>{
-                                 "batten", "options", "input", "output", "runs", "reasons",
-                                 "deviation_mm", "deviation_line", "corner_mm", "time_before_s",
-                                 "time_after_s", "proved", "understood", "diagnostics"}));
+  EXPECT_EQ(keys_of(report),
+            (std::vector<std::string>{"batten", "options", "input", "output", "machine", "runs",
+                                      "reasons", "deviation_mm", "deviation_line", "corner_mm",
+                                      "time_before_s", "time_after_s", "proved", "understood",
+                                      "diagnostics"}));
   EXPECT_EQ(keys_of(report["input"]),
             (std::vector<std::string>{"file", "bytes", "blocks", "units"}));
   EXPECT_EQ(keys_of(report["output"]),
@@ -47,6 +48,13 @@ TEST_F(JsonReport, HasItsFieldsInAFixedOrder) {
                                       "method", "methods", "form", "blocks_in", "blocks_out",
                                       "deviation_mm", "proved", "noise_mm", "max_curvature_before",
                                       "max_curvature_after", "time_before_s", "time_after_s"}));
+}
+
+TEST_F(JsonReport, TellsWhoseTimesItsTimesAre) {
+  const Json machine = json()["machine"];
+  EXPECT_EQ(machine["name"], "linuxcnc");
+  EXPECT_EQ(machine["model"], "linuxcnc");
+  EXPECT_EQ(machine["description"], find_machine("linuxcnc")->description);
 }
 
 TEST_F(JsonReport, TellsWhatEachMethodWouldTake) {

@@ -24,8 +24,8 @@ using Chain = std::vector<TimedPiece>;
 
 Machine bench_machine(double tolerance) {
   Machine m = *find_machine("linuxcnc");
-  m.max_velocity = 400;
-  m.max_acceleration = 4000;
+  m.set_max_velocity(400);
+  m.set_max_acceleration(4000);
   m.block_period = 0.001;
   m.blend_tolerance = tolerance;
   m.naive_cam_tolerance = tolerance;
@@ -221,7 +221,7 @@ TEST(NaiveCam, JoinsLinesWithinTheTolerance) {
   EXPECT_EQ(joined_count(p.chain(), 0.01), 1u);
   EXPECT_EQ(joined_count(p.chain(), 0.001), 3u);
   EXPECT_EQ(joined_count(p.chain(), 0), 3u);
-  const Chain joined = linuxcnc::join_within(p.chain(), 0.01);
+  const auto joined = linuxcnc::join_within(p.chain(), 0.01);
   EXPECT_EQ(geometry::start_point(joined[0].piece), Point3(0, 0, 0));
   EXPECT_EQ(geometry::end_point(joined[0].piece), Point3(3, 0.009, 0));
 }

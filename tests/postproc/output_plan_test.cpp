@@ -48,7 +48,7 @@ Smoothed wave(double feed = 1000) {
 
 Machine machine_with(double block_period) {
   Machine machine;
-  machine.max_velocity = 400;
+  machine.set_max_velocity(400);
   machine.block_period = block_period;
   return machine;
 }

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "gcode/interpreter.h"
+#include "gcode/parser.h"
+#include "postproc/commands/commands.h"
+#include "postproc/commands/files.h"
+#include "postproc/exit_code.h"
+#include "postproc/interrupt.h"
+#include "postproc/program_time.h"
+#include "postproc/program_time_profile.h"
+#include "postproc/report/time_report.h"
+
+namespace batten::postproc {
+namespace {
+
+constexpr double kProfilePeriod = 0.001;  // s
+
+// Bytes that are collected before they are written: enough for a disk to be quick.
+constexpr std::size_t kPartSize = std::size_t{1} << 16;
+
+constexpr std::string_view kProfileHead =
+    "t_s,line,x_mm,y_mm,z_mm,feed_mm_per_min,ax_mm_per_s2,ay_mm_per_s2,az_mm_per_s2,"
+    "jx_mm_per_s3,jy_mm_per_s3,jz_mm_per_s3\n";
+
+// LinuxCNC and grbl count dwells in seconds, whatever the program was written for.
+gcode::DwellUnit dwell_unit_of(const TimeCommand& command) {
+  if (command.target != nullptr) return command.target->dwell_unit();
+  return command.machine->model == ControllerModel::kLookAhead ? gcode::DwellUnit::kByPoint
+                                                               : gcode::DwellUnit::kSeconds;
+}
+
+void append_row(const ProfileSample& s, std::string& text) {
+  fmt::format_to(
+      std::back_inserter(text),
+      "{:.3f},{},{:.6f},{:.6f},{:.6f},{:.3f},{:.3f},{:.3f},{:.3f},{:.1f},{:.1f},{:.1f}\n", s.time,
+      s.line, s.place.x(), s.place.y(), s.place.z(), s.feed, s.acceleration.x(), s.acceleration.y(),
+      s.acceleration.z(), s.jerk.x(), s.jerk.y(), s.jerk.z());
+}
+
+int write_profile(const TimeCommand& command, const gcode::Program& program,
+                  const ProgramSteps& steps) {
+  const auto parts = [&](const PartWriter& write) {
+    std::string text(kProfileHead);
+    const auto take = [&](const ProfileSample& sample) {
+      append_row(sample, text);
+      if (text.size() < kPartSize) return true;
+      const bool written = write(text);
+      text.clear();
+      return written;
+    };
+    if (sample_program(program, steps, *command.machine, kProfilePeriod, take)) (void)write(text);
+  };
+  return write_parts(command.profile_file, parts, command.force);
+}
+
+}  // namespace
+
+int run(const TimeCommand& command) {
+  const auto source = read_program(command.input);
+  if (interrupted()) return interrupt_exit_code();
+  if (!source) return static_cast<int>(ExitCode::kFileError);
+
+  gcode::Diagnostics found;
+  const gcode::Program program = gcode::parse(*source, found);
+  const gcode::Interpretation meaning = gcode::interpret(program, {.units = command.units}, found);
+  print(found, *source);
+  if (gcode::has_error(found)) return static_cast<int>(ExitCode::kNotUnderstood);
+
+  const ProgramSteps steps =
+      read_steps(program, meaning, {.dwell_unit = dwell_unit_of(command), .start = command.start});
+  const ProgramTime time = time_steps(program, steps, *command.machine);
+  const TimeReport report{program, *command.machine, time, found};
+  const bool standard_output_taken = command.json_file == "-" || command.profile_file == "-";
+  if (!standard_output_taken) {
+    if (const int code = write_result("-", time_text(report), false); code != 0) return code;
+  }
+  if (!command.json_file.empty()) {
+    const int code = write_result(command.json_file, time_json(report), command.force);
+    if (code != 0) return code;
+  }
+  if (!command.profile_file.empty()) return write_profile(command, program, steps);
+  return static_cast<int>(ExitCode::kDone);
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,229 @@
+#include "postproc/machine/machine_fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+namespace batten::postproc {
+namespace {
+
+constexpr double kInch = 25.4;        // mm
+constexpr double kMinute = 60;        // s
+constexpr double kGravity = 9806.65;  // mm/s^2
+constexpr double kTurn = 360;         // degrees
+constexpr double kBitsPerByte = 10;   // of a serial line: a start bit, eight of data, a stop bit
+constexpr double kRadian = 180 / std::numbers::pi;  // degrees
+
+constexpr std::array kLengths = {Unit{"mm", 1}, Unit{"um", 1e-3}, Unit{"in", kInch},
+                                 Unit{"inch", kInch}};
+constexpr std::array kVelocities = {Unit{"mm/s", 1},
+                                    Unit{"mm/min", 1 / kMinute},
+                                    Unit{"m/min", 1000 / kMinute},
+                                    Unit{"m/s", 1000},
+                                    Unit{"in/s", kInch},
+                                    Unit{"in/min", kInch / kMinute},
+                                    Unit{"ipm", kInch / kMinute}};
+constexpr std::array kAccelerations = {
+    Unit{"mm/s2", 1},    Unit{"mm/s^2", 1},    Unit{"m/s2", 1000},   Unit{"m/s^2", 1000},
+    Unit{"g", kGravity}, Unit{"in/s2", kInch}, Unit{"in/s^2", kInch}};
+constexpr std::array kJerks = {Unit{"mm/s3", 1},    Unit{"mm/s^3", 1},    Unit{"m/s3", 1000},
+                               Unit{"m/s^3", 1000}, Unit{"in/s3", kInch}, Unit{"in/s^3", kInch}};
+constexpr std::array kAngularVelocities = {Unit{"deg/s", 1}, Unit{"deg/min", 1 / kMinute},
+                                           Unit{"rpm", kTurn / kMinute}, Unit{"rad/s", kRadian}};
+constexpr std::array kAngularAccelerations = {Unit{"deg/s2", 1}, Unit{"deg/s^2", 1},
+                                              Unit{"rad/s2", kRadian}, Unit{"rad/s^2", kRadian}};
+constexpr std::array kAngularJerks = {Unit{"deg/s3", 1}, Unit{"deg/s^3", 1},
+                                      Unit{"rad/s3", kRadian}, Unit{"rad/s^3", kRadian}};
+constexpr std::array kTimes = {Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6},
+                               Unit{"min", kMinute}};
+constexpr std::array kBlockRates = {Unit{"blocks/s", 1}, Unit{"blocks/min", 1 / kMinute}};
+constexpr std::array kByteRates = {Unit{"bytes/s", 1}, Unit{"baud", 1 / kBitsPerByte}};
+
+constexpr std::array kMachineFields = {
+    MachineField{.key = "path-feed",
+                 .quantity = Quantity::kVelocity,
+                 .place = &Machine::path_feed,
+                 .text = "greatest speed along the path of X Y Z",
+                 .may_be_infinite = true},
+    MachineField{.key = "path-acceleration",
+                 .quantity = Quantity::kAcceleration,
+                 .place = &Machine::path_acceleration,
+                 .text = "greatest acceleration along the path",
+                 .may_be_infinite = true},
+    MachineField{.key = "path-jerk",
+                 .quantity = Quantity::kJerk,
+                 .place = &Machine::path_jerk,
+                 .text = "greatest jerk along the path",
+                 .may_be_infinite = true},
+    MachineField{.key = "block-period",
+                 .quantity = Quantity::kTime,
+                 .place = &Machine::block_period,
+                 .text = "no block is passed faster"},
+    MachineField{.key = "stream-rate",
+                 .quantity = Quantity::kByteRate,
+                 .place = &Machine::stream_rate,
+                 .text = "of the line that feeds the control; inf: it reads a file",
+                 .may_be_infinite = true},
+    MachineField{.key = "servo-period",
+                 .quantity = Quantity::kTime,
+                 .place = &Machine::servo_period,
+                 .text = "how often the axes get a new place"},
+    MachineField{.key = "junction-deviation",
+                 .quantity = Quantity::kLength,
+                 .place = &Machine::junction_deviation,
+                 .text = "grbl's $11",
+                 .may_be_zero = true},
+    MachineField{.key = "arc-tolerance",
+                 .quantity = Quantity::kLength,
+                 .place = &Machine::arc_tolerance,
+                 .text = "arcs become chords this near to them: grbl's $12"},
+    MachineField{.key = "blend-tolerance",
+                 .quantity = Quantity::kLength,
+                 .place = &Machine::blend_tolerance,
+                 .text = "LinuxCNC's G64 P when the program sets none; 0: no P",
+                 .may_be_zero = true},
+    MachineField{.key = "naive-cam-tolerance",
+                 .quantity = Quantity::kLength,
+                 .place = &Machine::naive_cam_tolerance,
+                 .text = "LinuxCNC's G64 Q when the program sets none; 0: no lines are joined",
+                 .may_be_zero = true},
+    MachineField{.key = "tool-change-time",
+                 .quantity = Quantity::kTime,
+                 .place = &Machine::tool_change_time,
+                 .text = "for each tool change",
+                 .may_be_zero = true},
+    MachineField{.key = "spindle-start-time",
+                 .quantity = Quantity::kTime,
+                 .place = &Machine::spindle_start_time,
+                 .text = "until a spindle that was started or turned round is up",
+                 .may_be_zero = true},
+    MachineField{.key = "extra-dwell-time",
+                 .quantity = Quantity::kTime,
+                 .place = &Machine::extra_dwell_time,
+                 .text = "that each dwell takes beyond what it says",
+                 .may_be_zero = true},
+};
+
+constexpr std::array kAxisFields = {
+    AxisField{.key = "velocity",
+              .key_of_xyz = "max-velocity",
+              .linear = Quantity::kVelocity,
+              .rotary = Quantity::kAngularVelocity,
+              .place = &AxisLimits::velocity,
+              .text = "while cutting"},
+    AxisField{.key = "acceleration",
+              .key_of_xyz = "max-acceleration",
+              .linear = Quantity::kAcceleration,
+              .rotary = Quantity::kAngularAcceleration,
+              .place = &AxisLimits::acceleration,
+              .text = "always"},
+    AxisField{.key = "jerk",
+              .key_of_xyz = "max-jerk",
+              .linear = Quantity::kJerk,
+              .rotary = Quantity::kAngularJerk,
+              .place = &AxisLimits::jerk,
+              .text = "inf: no limit",
+              .may_be_infinite = true},
+    AxisField{.key = "rapid-velocity",
+              .key_of_xyz = "rapid-velocity",
+              .linear = Quantity::kVelocity,
+              .rotary = Quantity::kAngularVelocity,
+              .place = &AxisLimits::rapid_velocity,
+              .text = "in a rapid move"},
+};
+
+struct Allowed {
+  bool zero = false;
+  bool infinite = false;
+};
+
+bool is_within(double value, Allowed allowed) {
+  if (std::isinf(value)) return allowed.infinite && value > 0;
+  return value > 0 || (value == 0 && allowed.zero);
+}
+
+std::string words_of(Allowed allowed, Quantity quantity) {
+  return fmt::format("{}{} ({})", allowed.zero ? "0 or more" : "above 0",
+                     allowed.infinite ? ", or inf" : "", units_of(quantity).front().name);
+}
+
+void check(double value, Allowed allowed, Quantity quantity, std::string key,
+           std::vector<MachineProblem>& problems) {
+  if (is_within(value, allowed)) return;
+  problems.push_back({std::move(key), value, words_of(allowed, quantity)});
+}
+
+}  // namespace
+
+std::span<const Unit> units_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::kLength:
+      return kLengths;
+    case Quantity::kVelocity:
+      return kVelocities;
+    case Quantity::kAcceleration:
+      return kAccelerations;
+    case Quantity::kJerk:
+      return kJerks;
+    case Quantity::kAngularVelocity:
+      return kAngularVelocities;
+    case Quantity::kAngularAcceleration:
+      return kAngularAccelerations;
+    case Quantity::kAngularJerk:
+      return kAngularJerks;
+    case Quantity::kTime:
+      return kTimes;
+    case Quantity::kBlockRate:
+      return kBlockRates;
+    case Quantity::kByteRate:
+      break;
+  }
+  return kByteRates;
+}
+
+std::optional<double> read_quantity(std::string_view text, Quantity quantity) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || !std::isfinite(value)) return std::nullopt;
+  std::string_view name = text.substr(static_cast<std::size_t>(end - text.data()));
+  while (name.starts_with(' ')) name.remove_prefix(1);
+  const auto units = units_of(quantity);
+  const auto unit = std::ranges::find(units, name, &Unit::name);
+  if (unit == units.end()) return std::nullopt;
+  return value * unit->factor;
+}
+
+std::span<const MachineField> machine_fields() { return kMachineFields; }
+std::span<const AxisField> axis_fields() { return kAxisFields; }
+
+std::string axis_key(Axis axis, const AxisField& field) {
+  return fmt::format("axis.{}.{}", name_of(axis), field.key);
+}
+
+std::vector<MachineProblem> problems_of(const Machine& machine) {
+  std::vector<MachineProblem> problems;
+  for (const MachineField& field : machine_fields()) {
+    // A corner within 0 would stop grbl at every joint; its model needs something to go by.
+    const bool stops =
+        machine.model == ControllerModel::kGrbl && field.place == &Machine::junction_deviation;
+    check(machine.*field.place, {field.may_be_zero && !stops, field.may_be_infinite},
+          field.quantity, std::string(field.key), problems);
+  }
+  for (std::size_t i = 0; i < kAxes; ++i) {
+    const auto axis = static_cast<Axis>(i);
+    for (const AxisField& field : axis_fields()) {
+      check(machine.axis(axis).*field.place, {false, field.may_be_infinite},
+            i < kLinearAxes ? field.linear : field.rotary, axis_key(axis, field), problems);
+    }
+  }
+  if (machine.look_ahead < 1) {
+    problems.push_back({std::string(kLookAheadKey), static_cast<double>(machine.look_ahead),
+                        "1 or more (blocks)"});
+  }
+  return problems;
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,33 @@
+// What the reports of `batten time` are made from.
+#pragma once
+
+#include <string>
+
+#include "gcode/diagnostic.h"
+#include "gcode/program.h"
+#include "postproc/machine/machine.h"
+#include "postproc/program_time.h"
+
+namespace batten::postproc {
+
+struct TimeReport {
+  const gcode::Program& program;
+  const Machine& machine;
+  const ProgramTime& time;
+  const gcode::Diagnostics& diagnostics;
+};
+
+// For people:
+//
+//   part.nc on linuxcnc: 12 min 34 s
+//     cutting       10 min 02 s  80 %   31.24 m in 15163 moves; 9 min 50 s at the programmed feeds
+//     rapids        ...
+//     slow          12.3 % of the cutting time is below half of the programmed feed
+//     lines 120-180     2.10 s for 12.3 mm, 351 of 2000 mm/min: 1.73 s lost
+//     not timed     3 place-unknown, first in line 45: ...
+[[nodiscard]] std::string time_text(const TimeReport& report);
+
+// Seconds, millimetres and mm/min; the fields are named in docs/algorithms/cycle_time.md.
+[[nodiscard]] std::string time_json(const TimeReport& report);
+
+}  // namespace batten::postproc

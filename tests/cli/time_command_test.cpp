@@ -1,0 +1,141 @@
+// `batten time` as a user's shell sees it.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "batten_process.h"
+
+namespace batten {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// 50 mm from rest to rest, a dwell, a rapid; as they stand in the help.
+constexpr const char* kProgram = "G21 G90\nT1 M6\nG1 X50 F6000\nG4 X0.5\nG0 X0\nM2\n";
+
+class TimeCommandLine : public testing::Test {
+ protected:
+  void SetUp() override { folder_.put("part.nc", kProgram); }
+
+  [[nodiscard]] ProcessResult time(const std::string& arguments) const {
+    return folder_.batten("time part.nc " + arguments);
+  }
+
+  BattenFolder folder_;
+};
+
+TEST_F(TimeCommandLine, HelpHasExamplesAndTheColumnsOfTheProfile) {
+  const ProcessResult help = folder_.batten("time --help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_TRUE(contains(help.out, "batten time part.nc --machine linuxcnc")) << help.out;
+  EXPECT_TRUE(contains(help.out, "t_s, line, x_mm")) << help.out;
+}
+
+TEST_F(TimeCommandLine, SaysWhereTheTimeGoes) {
+  const ProcessResult result = time("--machine mill --from 0,0,0");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  for (const char* words :
+       {"part.nc on mill:", "cutting", "rapids", "dwells", "below half of the programmed feed"}) {
+    EXPECT_TRUE(contains(result.out, words)) << words << "\n" << result.out;
+  }
+}
+
+TEST_F(TimeCommandLine, WritesJsonWhosePartsSumToTheWhole) {
+  const ProcessResult result = time("--machine mill --from 0,0,0 --json -");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  double sum = 0;
+  for (const char* part :
+       {"cutting_s", "rapid_s", "dwell_s", "tool_change_s", "spindle_s", "rotary_s"}) {
+    sum += json.at(part).get<double>();
+  }
+  EXPECT_NEAR(json.at("time_s").get<double>(), sum, 1e-9);
+  EXPECT_EQ(json.at("dwell_s"), 0.5);
+  EXPECT_EQ(json.at("cuts"), 1);
+  EXPECT_EQ(json.at("machine"), "mill");
+  EXPECT_EQ(json.at("tools").back().at("tool"), 1);
+  EXPECT_TRUE(json.at("slowest").is_array());
+  EXPECT_TRUE(json.at("not_timed").is_array());
+}
+
+TEST_F(TimeCommandLine, SaysWhatItDoesNotKnow) {
+  const ProcessResult result = time("--machine mill");
+  EXPECT_TRUE(contains(result.out, "place-unknown")) << result.out;
+  EXPECT_FALSE(contains(time("--machine mill --from 0,0,0").out, "place-unknown"));
+}
+
+TEST_F(TimeCommandLine, WritesAProfileOfOneRowPerMillisecond) {
+  const ProcessResult result =
+      time("--machine mill --from 0,0,0 --profile part.csv --json part.json");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  std::istringstream csv(folder_.text_of("part.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_TRUE(line.starts_with("t_s,line,x_mm,y_mm,z_mm,feed_mm_per_min,ax_mm_per_s2")) << line;
+  int rows = 0;
+  double last = -1;
+  while (std::getline(csv, line)) {
+    EXPECT_NEAR(std::atof(line.c_str()), 0.001 * rows, 1e-9);
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 11);
+    last = std::atof(line.c_str());
+    ++rows;
+  }
+  const auto json = nlohmann::json::parse(folder_.text_of("part.json"));
+  EXPECT_NEAR(last, json.at("time_s").get<double>(), 0.001);
+}
+
+TEST_F(TimeCommandLine, OverwritesNothingWithoutForce) {
+  folder_.put("part.csv", "mine");
+  EXPECT_EQ(time("--machine mill --profile part.csv").exit_code, 4);
+  EXPECT_EQ(folder_.text_of("part.csv"), "mine");
+  EXPECT_EQ(time("--machine mill --profile part.csv --force").exit_code, 0);
+  EXPECT_TRUE(folder_.text_of("part.csv").starts_with("t_s,"));
+}
+
+struct WrongTime {
+  const char* name;
+  const char* arguments;
+  const char* message;
+};
+
+class WrongTimeUsage : public testing::TestWithParam<WrongTime> {};
+
+TEST_P(WrongTimeUsage, IsExplained) {
+  const BattenFolder folder;
+  folder.put("part.nc", kProgram);
+  const ProcessResult result = folder.batten(std::string("time ") + GetParam().arguments);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.err, GetParam().message)) << result.err;
+  EXPECT_EQ(folder.text_of("part.nc"), kProgram);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    TimeCommandLine, WrongTimeUsage,
+    testing::Values(
+        WrongTime{"NoMachine", "part.nc", "--machine: no machine given"},
+        WrongTime{"UnknownMachine", "part.nc --machine mil", "did you mean mill"},
+        WrongTime{"UnknownTarget", "part.nc --machine mill --target linuxcn", "linuxcnc"},
+        WrongTime{"NoFile", "--machine mill", "FILE: no file given"},
+        WrongTime{"NoPlace", "part.nc --machine mill --from 1,2", "expected X,Y,Z in mm"},
+        WrongTime{"TwoReportsOnOneStream", "part.nc --machine mill --json - --profile -",
+                  "standard output already takes"},
+        WrongTime{"TheProgramAsProfile", "part.nc --machine mill --profile part.nc --force",
+                  "--profile: part.nc"},
+        WrongTime{"TheProgramAsReport", "part.nc --machine mill --json part.nc --force",
+                  "--json: part.nc"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST_F(TimeCommandLine, AsksForTheUnitsOfAProgramWithoutThem) {
+  folder_.put("bare.nc", "G90\nG1 X1 F100\nM2\n");
+  EXPECT_EQ(folder_.batten("time bare.nc --machine mill").exit_code, 2);
+  EXPECT_EQ(folder_.batten("time bare.nc --machine mill --units inch").exit_code, 0);
+}
+
+}  // namespace
+}  // namespace batten
