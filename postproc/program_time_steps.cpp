@@ -313,13 +313,12 @@ class StepReader {
   // --- steps --------------------------------------------------------------------------------
 
   ProgramStep& add_step(StepKind kind) {
-    ProgramStep step;
+    ProgramStep& step = read_.steps.emplace_back();
     step.kind = kind;
     step.control = control_;
     step.tool = tool_;
     step.block = static_cast<std::uint32_t>(index_);
-    read_.steps.push_back(step);
-    return read_.steps.back();
+    return step;
   }
 
   void add_wait(StepKind kind, double seconds) { add_step(kind).seconds = seconds; }
