@@ -16,7 +16,8 @@ struct PrintText {
   std::string text;
 };
 
-using Command = std::variant<PrintText, SmoothCommand, VerifyCommand, InspectCommand, ListCommand>;
+using Command = std::variant<PrintText, SmoothCommand, VerifyCommand, InspectCommand, BatchCommand,
+                             FreecadCommand, ListCommand>;
 
 struct CommandLine {
   Command command;

@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
 
+#include "postproc/batch/program_tree.h"
 #include "postproc/machine_file.h"
 #include "postproc/output_file.h"
 #include "postproc/target_profile.h"
@@ -219,6 +223,49 @@ void check_outputs(const SmoothCommand& command, Problems& problems) {
   check_report(command.report_file, {command.input, output}, problems, "report");
 }
 
+// All that the bytes of a result depend on: the version, the options, and what a file that an
+// option names holds.
+std::string settings_text(const Given& given) {
+  std::string text = "batten " BATTEN_VERSION "\n";
+  for (const OptionRow& row : batch_rows()) {
+    if (!row.in_config) continue;
+    text += fmt::format("{} = {}", row.name, given.has(row.name) ? "" : row.default_value);
+    for (const std::string& value : given.values(row.name)) text += value + " ";
+    text += '\n';
+  }
+  std::ifstream machine(given.value("machine").value_or(""), std::ios::binary);
+  text.append(std::istreambuf_iterator<char>(machine), {});
+  return text;
+}
+
+void read_shard_into(Shard& shard, const std::string& text, Problems& problems) {
+  const std::size_t slash = text.find('/');
+  Problems ignored;
+  const auto index = read_integer("shard", text.substr(0, slash), ignored);
+  const auto count =
+      slash == std::string::npos ? index : read_integer("shard", text.substr(slash + 1), ignored);
+  if (slash == std::string::npos || !index || !count || *index < 1 || *index > *count) {
+    problems.push_back(
+        fmt::format("--shard: '{}', expected I/N with I from 1 to N, such as 2/8", text));
+    return;
+  }
+  shard = {*index, *count};
+}
+
+void check_trees(const std::vector<std::string>& files, Problems& problems) {
+  constexpr std::array<std::string_view, 2> kTrees = {"IN_TREE", "OUT_TREE"};
+  for (std::size_t i = files.size(); i < kTrees.size(); ++i) {
+    problems.push_back(fmt::format("{}: no folder given", kTrees[i]));
+  }
+  for (std::size_t i = kTrees.size(); i < files.size(); ++i) {
+    problems.push_back(fmt::format("'{}': one folder too many", files[i]));
+  }
+  if (files.size() != kTrees.size()) return;
+  for (std::string& problem : problems_of_trees(files[0], files[1])) {
+    problems.push_back(std::move(problem));
+  }
+}
+
 }  // namespace
 
 SmoothCommand smooth_command(const Given& given, const std::vector<std::string>& files,
@@ -284,6 +331,52 @@ InspectCommand inspect_command(const Given& given, const std::vector<std::string
   check_files(files, {"IN"}, problems);
   check_report(command.json_file, files, problems);
   return command;
+}
+
+BatchCommand batch_command(const Given& given, const std::vector<std::string>& files,
+                           Problems& problems) {
+  SmoothCommand one;
+  read_smooth_options(given, one, problems);
+  check_options(one.options, problems);
+  BatchCommand command;
+  command.options = one.options;
+  command.own_machine = one.own_machine;
+  command.settings = settings_text(given);
+  command.strict = given.flag("strict");
+  command.force = given.flag("force");
+  command.fail_fast = given.flag("fail-fast");
+  command.suffixes = given.values("suffix");
+  if (command.suffixes.empty()) {
+    const auto usual = default_program_suffixes();
+    command.suffixes.assign(usual.begin(), usual.end());
+  }
+  if (const auto text = given.value("jobs")) {
+    read_into(command.jobs, read_integer("jobs", *text, problems));
+    if (command.jobs < 0) {
+      problems.push_back(fmt::format("--jobs: '{}', expected 0 or more", *text));
+    }
+  }
+  if (const auto text = given.value("shard")) read_shard_into(command.shard, *text, problems);
+  if (const auto text = given.value("progress")) {
+    // All but the lines for LinuxCNC, which stand last.
+    const auto styles = progress_styles();
+    read_into(command.progress,
+              read_choice("progress", *text, styles.first(styles.size() - 1), problems));
+  }
+  command.input_tree = file_at(files, 0);
+  command.output_tree = file_at(files, 1);
+  check_trees(files, problems);
+  return command;
+}
+
+FreecadCommand freecad_command(const Given& given, const std::vector<std::string>& files,
+                               Problems& problems) {
+  if (files.size() != 1 || files.front() != "install") {
+    problems.emplace_back("freecad: expected one word, install");
+  }
+  return {.freecad = given.value("freecad").value_or(""),
+          .folder = given.value("folder").value_or(""),
+          .force = given.flag("force")};
 }
 
 ListCommand list_command(BuiltIn what, const Given& given, const std::vector<std::string>& files,

@@ -31,6 +31,9 @@ struct OptionRow {
 [[nodiscard]] std::span<const OptionRow> verify_rows();
 [[nodiscard]] std::span<const OptionRow> inspect_rows();
 [[nodiscard]] std::span<const OptionRow> target_list_rows();
+// Those of `smooth` that a configuration file may hold, and own ones.
+[[nodiscard]] std::span<const OptionRow> batch_rows();
+[[nodiscard]] std::span<const OptionRow> freecad_rows();
 [[nodiscard]] std::span<const OptionRow> list_rows();
 
 // Option names to the values given for them; a flag that was given has the value "true".
