@@ -15,8 +15,10 @@ class Chain {
  public:
   Chain(const Point3& start, double station) : cursor_(start) { path_.stations = {station}; }
 
+  // Blends that share a leg may overlap by the noise of the search that found them. What takes no
+  // way along the polyline is no piece: the next one starts where this one ended.
   void line_to(const Point3& end, double station) {
-    if ((end - cursor_).norm() <= kSamePlace) return;
+    if ((end - cursor_).norm() <= kSamePlace || station <= path_.stations.back()) return;
     path_.pieces.emplace_back(Line{cursor_, end});
     reach(end, station);
   }
