@@ -13,28 +13,32 @@ namespace batten::postproc {
 namespace {
 
 ProgramRecord smoothed(const std::string& program) {
-  return {.program = program,
-          .status = ProgramStatus::kSmoothed,
-          .input_sha256 = "aa",
-          .settings_sha256 = "bb",
-          .output_sha256 = "cc",
-          .report_sha256 = "dd",
-          .bytes_in = 1000,
-          .bytes_out = 400,
-          .blocks_in = 100,
-          .blocks_out = 30,
-          .runs_rewritten = 2,
-          .runs_kept = 1,
-          .time_before_s = 3.5,
-          .time_after_s = 2.25,
-          .deviation_mm = 0.0098};
+  ProgramRecord record;
+  record.program = program;
+  record.status = ProgramStatus::kSmoothed;
+  record.input_sha256 = "aa";
+  record.settings_sha256 = "bb";
+  record.output_sha256 = "cc";
+  record.report_sha256 = "dd";
+  record.bytes_in = 1000;
+  record.bytes_out = 400;
+  record.blocks_in = 100;
+  record.blocks_out = 30;
+  record.runs_rewritten = 2;
+  record.runs_kept = 1;
+  record.time_before_s = 3.5;
+  record.time_after_s = 2.25;
+  record.deviation_mm = 0.0098;
+  return record;
 }
 
 ProgramRecord refused(const std::string& program) {
-  return {.program = program,
-          .status = ProgramStatus::kNotUnderstood,
-          .exit_code = 2,
-          .message = program + ":1:1: error: \"quoted\", and a comma"};
+  ProgramRecord record;
+  record.program = program;
+  record.status = ProgramStatus::kNotUnderstood;
+  record.exit_code = 2;
+  record.message = program + ":1:1: error: \"quoted\", and a comma";
+  return record;
 }
 
 TEST(BatchRecord, ReadsBackTheSame) {
