@@ -6,9 +6,28 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <system_error>
+#include <thread>
 
 namespace batten::postproc {
+
+namespace {
+
+// The processes of a run that was killed end with it, but on a busy machine not at once.
+constexpr int kTries = 20;
+constexpr std::chrono::milliseconds kBetweenTries{100};
+
+// False when somebody else holds it.
+bool lock_file(int descriptor, int operation) {
+  for (int i = 0; i < kTries; ++i) {
+    if (::flock(descriptor, operation | LOCK_NB) == 0 || errno != EWOULDBLOCK) return true;
+    std::this_thread::sleep_for(kBetweenTries);
+  }
+  return false;
+}
+
+}  // namespace
 
 BatchLock::BatchLock(const std::filesystem::path& folder, const Shard& shard) {
   const bool whole_tree = shard.count == 1;
@@ -28,7 +47,7 @@ void BatchLock::take(const std::filesystem::path& file, int operation) {
     return;
   }
   descriptors_.push_back(descriptor);
-  if (::flock(descriptor, operation | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+  if (!lock_file(descriptor, operation)) {
     problem_ = file.string() + ": another run of this batch is at work on these programs";
   }
 }
