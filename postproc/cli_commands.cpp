@@ -233,8 +233,10 @@ std::string settings_text(const Given& given) {
     for (const std::string& value : given.values(row.name)) text += value + " ";
     text += '\n';
   }
-  std::ifstream machine(given.value("machine").value_or(""), std::ios::binary);
-  text.append(std::istreambuf_iterator<char>(machine), {});
+  for (const char* option : {"machine", "target", "profile"}) {
+    std::ifstream file(given.value(option).value_or(""), std::ios::binary);
+    text.append(std::istreambuf_iterator<char>(file), {});
+  }
   return text;
 }
 
@@ -341,6 +343,7 @@ BatchCommand batch_command(const Given& given, const std::vector<std::string>& f
   BatchCommand command;
   command.options = one.options;
   command.own_machine = one.own_machine;
+  command.profile = one.profile;
   command.settings = settings_text(given);
   command.strict = given.flag("strict");
   command.force = given.flag("force");

@@ -58,6 +58,7 @@ struct InspectCommand {
 struct BatchCommand {
   SmoothOptions options;
   std::shared_ptr<const Machine> own_machine;
+  std::shared_ptr<const TargetProfile> profile;
   std::string settings;  // everything that the bytes of a result depend on, as text
   std::string input_tree;
   std::string output_tree;
