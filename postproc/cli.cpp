@@ -48,6 +48,20 @@ std::vector<CommandRow> command_rows() {
        "The profile has a row for each millisecond: t_s, line, x_mm, y_mm, z_mm,\n"
        "feed_mm_per_min, then acceleration (mm/s2) and jerk (mm/s3) of X, Y and Z.\n"
        "Times are those of the control's model; what the text does not tell is listed."},
+      {"batch",
+       "Smooth all programs of a folder tree into another one; a run that was stopped goes on.",
+       batch_rows(),
+       {{"IN_TREE", "the folder with the programs, never written to"},
+        {"OUT_TREE", "the folder for the new ones, with reports in OUT_TREE/batten-batch"}},
+       "Example:\n"
+       "  batten batch programs smooth --target linuxcnc --tolerance 0.01"},
+      {"freecad",
+       "Put the post script for FreeCAD where FreeCAD looks for posts.",
+       freecad_rows(),
+       {{"ACTION", "install"}},
+       "Example:\n"
+       "  batten freecad install\n"
+       "asks the installed FreeCAD for the folder of your macros and writes batten_post.py there."},
       {"targets",
        "List the controls that programs can be written for, or show one as a profile.",
        target_list_rows(),
@@ -214,12 +228,22 @@ std::vector<std::string> with_explain_as_command(std::vector<std::string> argume
   return arguments;
 }
 
+BatchCommand batch_with_config(Given given, const std::vector<std::string>& files,
+                               Problems& problems) {
+  if (const auto file = given.value("config")) {
+    given.complete_from(read_config(*file, problems));
+  }
+  return batch_command(given, files, problems);
+}
+
 Command command_of(std::string_view name, const Given& given, const std::vector<std::string>& files,
                    Problems& problems) {
   if (name == "smooth") return smooth_or_config(given, files, problems);
   if (name == "verify") return verify_command(given, files, problems);
   if (name == "inspect") return inspect_command(given, files, problems);
   if (name == "time") return time_command(given, files, problems);
+  if (name == "batch") return batch_with_config(given, files, problems);
+  if (name == "freecad") return freecad_command(given, files, problems);
   if (name == "targets") return list_command(BuiltIn::kTargets, given, files, problems);
   if (name == "machines") return machines_command(given, files, problems);
   if (name == "methods") return list_command(BuiltIn::kMethods, given, files, problems);

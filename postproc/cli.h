@@ -17,7 +17,7 @@ struct PrintText {
 };
 
 using Command = std::variant<PrintText, SmoothCommand, VerifyCommand, InspectCommand, TimeCommand,
-                             ListCommand, MachinesCommand>;
+                             BatchCommand, FreecadCommand, ListCommand, MachinesCommand>;
 
 struct CommandLine {
   Command command;

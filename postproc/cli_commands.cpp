@@ -3,181 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
+#include "postproc/cli_arguments.h"
 #include "postproc/cli_machine.h"
+#include "postproc/cli_smooth_options.h"
 #include "postproc/output_file.h"
 #include "postproc/target_profile.h"
 
 namespace batten::postproc {
 
 namespace {
-
-void check_files(const std::vector<std::string>& files,
-                 const std::vector<std::string_view>& expected, Problems& problems) {
-  for (std::size_t i = files.size(); i < expected.size(); ++i) {
-    problems.push_back(fmt::format("{}: no file given (- is standard input)", expected[i]));
-  }
-  for (std::size_t i = expected.size(); i < files.size(); ++i) {
-    problems.push_back(fmt::format("'{}': one file too many", files[i]));
-  }
-  if (std::ranges::count(files, "-") > 1) {
-    problems.emplace_back("-: standard input can be read only once");
-  }
-}
-
-std::string file_at(const std::vector<std::string>& files, std::size_t index) {
-  return index < files.size() ? files[index] : std::string();
-}
-
-// A report must not land on a program.
-void check_report(const std::string& file, const std::vector<std::string>& programs,
-                  Problems& problems, std::string_view option = "json") {
-  if (file.empty() || file == "-") return;
-  for (const std::string& program : programs) {
-    if (!program.empty() && program != "-" && same_file(file, program)) {
-      problems.push_back(fmt::format("--{}: {} is the program {} itself", option, file, program));
-    }
-  }
-}
-
-template <typename Value>
-void read_into(Value& place, std::optional<Value> value) {
-  if (value) place = *value;
-}
-
-void read_units_into(gcode::Units& units, const Given& given, Problems& problems) {
-  if (const auto text = given.value("units")) read_into(units, read_units(*text, problems));
-}
-
-std::vector<std::string_view> target_names() {
-  std::vector<std::string_view> names;
-  for (const gcode::Dialect* dialect : gcode::dialects()) names.push_back(dialect->name());
-  return names;
-}
-
-// Adds a problem where there is none of that name.
-const gcode::Dialect* built_in_target(std::string_view option, const std::string& name,
-                                      Problems& problems) {
-  const gcode::Dialect* target = gcode::find_dialect(name);
-  if (target == nullptr) problems.push_back(unknown_name(option, name, target_names()));
-  return target;
-}
-
-bool is_profile_file(const std::optional<std::string>& name) {
-  return name && name->ends_with(".toml");
-}
-
-// --target NAME, --target FILE.toml, --profile FILE.toml, or --target NAME with --profile
-// FILE.toml.
-void read_target(const Given& given, SmoothCommand& command, Problems& problems) {
-  const auto name = given.value("target");
-  const auto file = is_profile_file(name) ? name : given.value("profile");
-  if (is_profile_file(name) && given.has("profile")) {
-    problems.push_back("--profile: --target names a profile already");
-    return;
-  }
-  if (!name && !file) {
-    std::string possible;
-    for (const auto each : target_names()) {
-      possible += (possible.empty() ? "" : ", ") + std::string(each);
-    }
-    problems.push_back("--target: no target given; possible: " + possible +
-                       ", or a profile NAME.toml");
-    return;
-  }
-  const gcode::Dialect* target = nullptr;
-  if (name && !is_profile_file(name)) {
-    target = built_in_target("target", *name, problems);
-    if (target == nullptr) return;
-  }
-  command.options.target = target;
-  if (!file) return;
-  const std::size_t problems_before = problems.size();
-  command.profile = read_target_profile(*file, target, problems);
-  if (command.profile == nullptr) {
-    // What was said about the file says enough; the options are not to say it again.
-    for (std::size_t i = problems_before; i < problems.size(); ++i) {
-      problems[i] = "--target: " + problems[i];
-    }
-    command.options.target = nullptr;
-    return;
-  }
-  command.options.target = command.profile->adapted.get();
-  command.options.words = command.profile->words;
-  command.options.profile = *file;
-}
-
-void read_machine(const Given& given, SmoothCommand& command, Problems& problems) {
-  const gcode::Dialect* target = command.options.target;
-  command.own_machine =
-      machine_given(given, target == nullptr ? "" : target->default_machine(), problems);
-  command.options.machine = command.own_machine.get();
-}
-
-void read_tolerance_into(const Given& given, SmoothOptions& options, Problems& problems) {
-  const auto text = given.value("tolerance");
-  if (!text) return;
-  const auto tolerance = read_tolerance(*text, problems);
-  if (!tolerance) return;
-  options.tolerance_mm = tolerance->mm;
-  options.tolerance_inch = tolerance->inch;
-}
-
-void read_tolerance_kind_into(geometry::ToleranceKind& kind, const Given& given,
-                              Problems& problems) {
-  if (const auto text = given.value("tolerance-kind")) {
-    read_into(kind, read_choice("tolerance-kind", *text, tolerance_kinds(), problems));
-  }
-}
-
-void read_side_into(geometry::Side& side, const Given& given, Problems& problems) {
-  if (const auto text = given.value("side")) {
-    read_into(side, read_choice("side", *text, sides(), problems));
-  }
-}
-
-void read_smooth_options(const Given& given, SmoothCommand& command, Problems& problems) {
-  SmoothOptions& options = command.options;
-  read_target(given, command, problems);
-  read_machine(given, command, problems);
-  read_tolerance_into(given, options, problems);
-  read_tolerance_kind_into(options.tolerance_kind, given, problems);
-  read_side_into(options.side, given, problems);
-  read_units_into(options.units, given, problems);
-  if (const auto text = given.value("method")) {
-    read_into(options.method, read_choice("method", *text, methods(), problems));
-  }
-  if (const auto text = given.value("output")) {
-    read_into(options.output, read_choice("output", *text, forms(), problems));
-  }
-  if (const auto text = given.value("prefer")) {
-    read_into(options.prefer, read_choice("prefer", *text, preferences(), problems));
-  }
-  if (const auto text = given.value("linearize")) {
-    options.linearize = read_choice("linearize", *text, linearizations(), problems);
-  }
-  if (const auto text = given.value("keep-corners")) {
-    options.keep_corners_deg = read_decimal("keep-corners", *text, problems);
-  }
-  if (const auto text = given.value("threads")) {
-    read_into(options.threads, read_integer("threads", *text, problems));
-  }
-  options.allowed = given.values("allow");
-  options.convert = given.flag("convert");
-}
-
-// What was missing or unreadable has been said; the check of the options would say it again.
-void check_options(const SmoothOptions& options, const Given& given, Problems& problems) {
-  for (std::string& problem : problems_of(options)) {
-    const std::string option = problem.substr(0, problem.find(':'));
-    const bool said = std::ranges::any_of(
-        problems, [&](const std::string& other) { return other.starts_with(option + ":"); });
-    const bool follows =
-        option == "--machine" &&
-        (options.target == nullptr || given.has("machine") || given.has("grbl-settings"));
-    if (!said && !follows) problems.push_back(std::move(problem));
-  }
-}
 
 void check_outputs(const SmoothCommand& command, Problems& problems) {
   const bool to_standard_output =
@@ -285,68 +121,14 @@ InspectCommand inspect_command(const Given& given, const std::vector<std::string
   return command;
 }
 
-namespace {
-
-std::optional<geometry::Point3> read_place(std::string_view option, const std::string& text,
-                                           Problems& problems) {
-  geometry::Point3 place = geometry::Point3::Zero();
-  std::size_t begin = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t comma = axis < 2 ? text.find(',', begin) : text.size();
-    if (comma == std::string::npos) {
-      problems.push_back(
-          fmt::format("--{}: '{}', expected X,Y,Z in mm, such as 0,0,50", option, text));
-      return std::nullopt;
-    }
-    const auto value = read_decimal(option, text.substr(begin, comma - begin), problems);
-    if (!value) return std::nullopt;
-    place[axis] = *value;
-    begin = comma + 1;
+FreecadCommand freecad_command(const Given& given, const std::vector<std::string>& files,
+                               Problems& problems) {
+  if (files.size() != 1 || files.front() != "install") {
+    problems.emplace_back("freecad: expected one word, install");
   }
-  return place;
-}
-
-void check_time_outputs(const TimeCommand& command, Problems& problems) {
-  check_report(command.json_file, {command.input}, problems);
-  if (command.profile_file.empty()) return;
-  if (command.profile_file == "-") {
-    if (command.json_file == "-") {
-      problems.emplace_back("--profile: standard output already takes the JSON report");
-    }
-    return;
-  }
-  for (const std::string& other : {command.input, command.json_file}) {
-    if (!other.empty() && other != "-" && same_file(command.profile_file, other)) {
-      problems.push_back(fmt::format("--profile: {} is another file of this command: {}",
-                                     command.profile_file, other));
-    }
-  }
-}
-
-}  // namespace
-
-TimeCommand time_command(const Given& given, const std::vector<std::string>& files,
-                         Problems& problems) {
-  TimeCommand command;
-  command.input = file_at(files, 0);
-  command.json_file = given.value("json").value_or("");
-  command.profile_file = given.value("profile").value_or("");
-  command.force = given.flag("force");
-  read_units_into(command.units, given, problems);
-  if (const auto text = given.value("target")) {
-    command.target = built_in_target("target", *text, problems);
-  }
-  const std::size_t problems_before = problems.size();
-  command.machine = machine_given(
-      given, command.target == nullptr ? "" : command.target->default_machine(), problems);
-  if (command.machine == nullptr && problems.size() == problems_before) {
-    problems.emplace_back(
-        "--machine: no machine given; `batten machines` lists them, a file NAME.toml is your own");
-  }
-  if (const auto text = given.value("from")) command.start = read_place("from", *text, problems);
-  check_files(files, {"FILE"}, problems);
-  check_time_outputs(command, problems);
-  return command;
+  return {.freecad = given.value("freecad").value_or(""),
+          .folder = given.value("folder").value_or(""),
+          .force = given.flag("force")};
 }
 
 ListCommand list_command(BuiltIn what, const Given& given, const std::vector<std::string>& files,

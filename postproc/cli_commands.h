@@ -23,6 +23,11 @@ namespace batten::postproc {
                                              Problems& problems);
 [[nodiscard]] TimeCommand time_command(const Given& given, const std::vector<std::string>& files,
                                        Problems& problems);
+[[nodiscard]] BatchCommand batch_command(const Given& given, const std::vector<std::string>& files,
+                                         Problems& problems);
+[[nodiscard]] FreecadCommand freecad_command(const Given& given,
+                                             const std::vector<std::string>& files,
+                                             Problems& problems);
 [[nodiscard]] ListCommand list_command(BuiltIn what, const Given& given,
                                        const std::vector<std::string>& files, Problems& problems);
 [[nodiscard]] MachinesCommand machines_command(const Given& given,

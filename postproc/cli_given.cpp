@@ -1,5 +1,6 @@
 #include "postproc/cli_given.h"
 
+#include <algorithm>
 #include <array>
 
 namespace batten::postproc {
@@ -160,6 +161,62 @@ constexpr std::array kTimeRows = {
               .help = "write place, feed, acceleration and jerk each millisecond"},
     kForce,
 };
+// A worker has one thread, and LinuxCNC does not look at a batch.
+constexpr std::array<std::string_view, 2> kNotForBatch = {"threads", "progress"};
+
+constexpr std::array kOwnBatchRows = {
+    OptionRow{.name = "jobs",
+              .value = "N",
+              .help = "programs at a time, each in a process with one thread; 0: a processor each",
+              .default_value = "0"},
+    OptionRow{.name = "shard",
+              .value = "I/N",
+              .help = "only every N-th program from the I-th on, for several machines",
+              .default_value = "1/1"},
+    OptionRow{.name = "suffix",
+              .kind = OptionKind::kList,
+              .value = "SUFFIX",
+              .help =
+                  "what is a program, in place of nc, ngc, tap, cnc, gcode, ncc, eia, iso; none: "
+                  "names without a suffix, all: every file; may be repeated"},
+    OptionRow{.name = "fail-fast",
+              .kind = OptionKind::kFlag,
+              .help = "stop at the first program that cannot be written; otherwise carry on"},
+    OptionRow{.name = "force",
+              .kind = OptionKind::kFlag,
+              .help = "replace programs in OUT_TREE that no batch wrote"},
+    OptionRow{.name = "progress",
+              .value = "auto|on|off",
+              .help = "a line with rate and time left on standard error; auto: on a terminal",
+              .default_value = "auto"},
+    OptionRow{.name = "config",
+              .value = "FILE.toml",
+              .help = "read options of smooth from a file; the command line goes first"},
+};
+
+std::vector<OptionRow> make_batch_rows() {
+  std::vector<OptionRow> rows;
+  for (const OptionRow& row : kSmoothRows) {
+    if (row.in_config && std::ranges::find(kNotForBatch, row.name) == kNotForBatch.end()) {
+      rows.push_back(row);
+    }
+  }
+  rows.insert(rows.end(), kOwnBatchRows.begin(), kOwnBatchRows.end());
+  return rows;
+}
+
+constexpr std::array kFreecadRows = {
+    OptionRow{.name = "freecad",
+              .value = "PROGRAM",
+              .help = "the FreeCAD without a window that is asked; default: the one in PATH"},
+    OptionRow{.name = "folder",
+              .value = "DIR",
+              .help = "write into this folder of macros and ask nobody"},
+    OptionRow{.name = "force",
+              .kind = OptionKind::kFlag,
+              .help = "replace a batten_post.py that is not ours"},
+};
+
 constexpr std::array kListRows = {kJson, kForce};
 constexpr std::array kMachinesRows = {
     OptionRow{.name = "show",
@@ -174,6 +231,11 @@ std::span<const OptionRow> verify_rows() { return kVerifyRows; }
 std::span<const OptionRow> inspect_rows() { return kInspectRows; }
 std::span<const OptionRow> target_list_rows() { return kTargetListRows; }
 std::span<const OptionRow> time_rows() { return kTimeRows; }
+std::span<const OptionRow> batch_rows() {
+  static const std::vector<OptionRow> rows = make_batch_rows();
+  return rows;
+}
+std::span<const OptionRow> freecad_rows() { return kFreecadRows; }
 std::span<const OptionRow> list_rows() { return kListRows; }
 std::span<const OptionRow> machines_rows() { return kMachinesRows; }
 

@@ -32,6 +32,9 @@ struct OptionRow {
 [[nodiscard]] std::span<const OptionRow> inspect_rows();
 [[nodiscard]] std::span<const OptionRow> target_list_rows();
 [[nodiscard]] std::span<const OptionRow> time_rows();
+// Those of `smooth` that a configuration file may hold, and own ones.
+[[nodiscard]] std::span<const OptionRow> batch_rows();
+[[nodiscard]] std::span<const OptionRow> freecad_rows();
 [[nodiscard]] std::span<const OptionRow> list_rows();
 [[nodiscard]] std::span<const OptionRow> machines_rows();
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -30,7 +31,11 @@ ProgressStyle resolved(ProgressStyle style) {
   return ::isatty(STDERR_FILENO) == 1 ? ProgressStyle::kOn : ProgressStyle::kOff;
 }
 
-// Writes each whole percentage once, never a smaller one after a greater one.
+// The windows of LinuxCNC look at a filter's standard error every 100 ms and read one line then:
+// more lines would show what was long ago.
+constexpr std::chrono::milliseconds kBetweenFilterLines{100};
+
+// Writes each whole percentage once, never a smaller one after a greater one, and 100 always.
 class Display {
  public:
   explicit Display(ProgressStyle style) : style_(style) {}
@@ -43,7 +48,7 @@ class Display {
   void show(double part) {
     const int percent = static_cast<int>(100 * std::clamp(part, 0.0, 1.0));
     const std::lock_guard lock(mutex_);
-    if (percent <= shown_) return;
+    if (percent <= shown_ || (percent < 100 && is_too_soon())) return;
     shown_ = percent;
     const std::string text = style_ == ProgressStyle::kLinuxcnc
                                  ? fmt::format("FILTER_PROGRESS={}\n", percent)
@@ -53,9 +58,20 @@ class Display {
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
+  [[nodiscard]] bool is_too_soon() {
+    if (style_ != ProgressStyle::kLinuxcnc) return false;
+    const Clock::time_point now = Clock::now();
+    if (shown_ >= 0 && now - last_line_ < kBetweenFilterLines) return true;
+    last_line_ = now;
+    return false;
+  }
+
   ProgressStyle style_;
   std::mutex mutex_;
   int shown_ = -1;
+  Clock::time_point last_line_;
 };
 
 }  // namespace

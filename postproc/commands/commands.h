@@ -5,9 +5,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gcode/modal_state.h"
 #include "geometry/point.h"
+#include "postproc/batch/program_tree.h"
 #include "postproc/options.h"
 #include "postproc/progress.h"
 #include "postproc/target_profile.h"
@@ -66,6 +68,31 @@ struct TimeCommand {
   bool force = false;
 };
 [[nodiscard]] int run(const TimeCommand& command);
+// All programs of a folder tree (postproc/batch/).
+struct BatchCommand {
+  SmoothOptions options;
+  std::shared_ptr<const Machine> own_machine;
+  std::shared_ptr<const TargetProfile> profile;
+  std::string settings;  // everything that the bytes of a result depend on, as text
+  std::string input_tree;
+  std::string output_tree;
+  std::vector<std::string> suffixes;
+  int jobs = 0;  // 0: as many as there are processors
+  Shard shard;
+  ProgressStyle progress = ProgressStyle::kAuto;
+  bool fail_fast = false;
+  bool force = false;
+  bool strict = false;
+};
+[[nodiscard]] int run(const BatchCommand& command);
+
+// Puts the post script where FreeCAD looks for it (postproc/plugins/freecad_post.h).
+struct FreecadCommand {
+  std::string freecad;  // the program to ask, not given: the one in PATH
+  std::string folder;   // given: nobody is asked
+  bool force = false;
+};
+[[nodiscard]] int run(const FreecadCommand& command);
 
 // What is built in, as a table on standard output.
 enum class BuiltIn { kTargets, kMethods };

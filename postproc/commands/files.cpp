@@ -12,6 +12,7 @@
 #include "postproc/exit_code.h"
 #include "postproc/interrupt.h"
 #include "postproc/output_file.h"
+#include "postproc/valid_utf8.h"
 
 namespace batten::postproc {
 
@@ -85,15 +86,15 @@ void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& sourc
   for (const gcode::Diagnostic& diagnostic : diagnostics) {
     const bool remark = diagnostic.severity != gcode::Severity::kError;
     if (remark && ++remarks > kMostRemarks) continue;
-    std::fputs((gcode::to_text(diagnostic, source) + "\n").c_str(), stderr);
+    say_lines(gcode::to_text(diagnostic, source) + "\n");
   }
   if (remarks > kMostRemarks) {
     say(fmt::format("{} more notes and warnings, see --json", remarks - kMostRemarks));
   }
 }
 
-void say(std::string_view message) {
-  std::fputs(fmt::format("batten: {}\n", message).c_str(), stderr);
-}
+void say(std::string_view message) { say_lines(fmt::format("batten: {}\n", message)); }
+
+void say_lines(std::string_view text) { std::fputs(as_valid_utf8(text).c_str(), stderr); }
 
 }  // namespace batten::postproc

@@ -32,4 +32,8 @@ void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& sourc
 // "batten: message" on standard error.
 void say(std::string_view message);
 
+// Whole lines on standard error, as they are but for bytes that are not UTF-8
+// (postproc/valid_utf8.h).
+void say_lines(std::string_view text);
+
 }  // namespace batten::postproc

@@ -1,9 +1,6 @@
-#include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <system_error>
 
-#include "gcode/reason.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
 #include "postproc/exit_code.h"
@@ -12,6 +9,7 @@
 #include "postproc/report/html_report.h"
 #include "postproc/report/json_report.h"
 #include "postproc/report/summary_text.h"
+#include "postproc/smooth_verdict.h"
 
 namespace batten::postproc {
 
@@ -33,37 +31,12 @@ bool would_be_refused(const std::string& file, bool replace_existing) {
   return true;
 }
 
-bool has_unproved_run(const SmoothResult& result) {
-  return std::ranges::any_of(result.runs, [](const RunReport& run) {
-    return run.status == RunStatus::kKept && run.reason == gcode::reason::kNotProved;
-  });
-}
-
 // The progress line is gone when this returns.
 SmoothResult smooth_with_progress(const gcode::SourceText& source, const SmoothCommand& command) {
   const Progress progress = show_progress(command.progress);
   SmoothResult result = smooth_program(source, command.options, progress);
   (void)progress(1);
   return result;
-}
-
-// What the result means before anything is written.
-ExitCode judge(const SmoothCommand& command, const gcode::SourceText& source,
-               const SmoothResult& result) {
-  if (!result.understood) return ExitCode::kNotUnderstood;
-  // The same bytes need no proof: programs with words that cannot be followed come out as they
-  // were.
-  const bool proved = result.proved || result.text == source.text();
-  if (!proved || (command.strict && has_unproved_run(result))) return ExitCode::kNotProved;
-  return ExitCode::kDone;
-}
-
-std::string complaint(const SmoothCommand& command, ExitCode verdict) {
-  if (verdict == ExitCode::kNotUnderstood) {
-    return "the program is not understood well enough to be rewritten; nothing was written";
-  }
-  return command.strict ? "--strict: not every run could be proved; nothing was written"
-                        : "the new program could not be proved; nothing was written";
 }
 
 }  // namespace
@@ -87,7 +60,7 @@ int run(const SmoothCommand& command) {
   }
   print(result.diagnostics, *source);
 
-  const ExitCode verdict = judge(command, *source, result);
+  const ExitCode verdict = judge(result, source->text(), command.strict);
   const bool writes = verdict == ExitCode::kDone && !command.dry_run;
   const SmoothReport report = {
       .source = *source,
@@ -98,8 +71,8 @@ int run(const SmoothCommand& command) {
   };
   int code = static_cast<int>(verdict);
   if (writes) code = write_result(output, result.text, replaces_program);
-  if (result.understood) std::fputs(summary_text(report).c_str(), stderr);
-  if (verdict != ExitCode::kDone) say(complaint(command, verdict));
+  if (result.understood) say_lines(summary_text(report));
+  if (verdict != ExitCode::kDone) say(complaint(verdict, command.strict));
   if (!command.json_file.empty() && !interrupted()) {
     const int json_code = write_result(command.json_file, json_report(report), command.force);
     if (code == 0) code = json_code;

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
@@ -153,10 +152,8 @@ int write_json(const VerifyCommand& command, const Verification& verification, c
 // The same bytes do the same on every control, in any unit, and whether they are understood here
 // or not.
 int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& source) {
-  std::fputs(fmt::format("proved: {} and {} are the same, byte for byte\n", command.new_program,
-                         command.old_program)
-                 .c_str(),
-             stderr);
+  say_lines(fmt::format("proved: {} and {} are the same, byte for byte\n", command.new_program,
+                        command.old_program));
   const Read same = read(source, command.units);
   return write_json(command, {}, same, same);
 }
@@ -211,19 +208,17 @@ int run(const VerifyCommand& command) {
          verification);
 
   for (std::size_t i = 0; i < verification.breaches.size() && i < kMostBreaches; ++i) {
-    std::fputs(text_of(verification.breaches[i], command).c_str(), stderr);
+    say_lines(text_of(verification.breaches[i], command));
   }
   if (verification.breaches.size() > kMostBreaches) {
     say(fmt::format("{} more breaches, see --json", verification.breaches.size() - kMostBreaches));
   }
-  std::fputs(summary_of(verification, command).c_str(), stderr);
+  say_lines(summary_of(verification, command));
   if (added.lines > 0 && verification.proved()) {
-    std::fputs(
+    say_lines(
         fmt::format("  besides {} lines that the profile {} adds, whose effect on the control "
                     "is not known here\n",
-                    added.lines, command.profile->file)
-            .c_str(),
-        stderr);
+                    added.lines, command.profile->file));
   }
   const ExitCode verdict = verification.proved() ? ExitCode::kDone : ExitCode::kNotProved;
   const int code = write_json(command, verification, before, after);

@@ -44,15 +44,15 @@ TEST_P(Help, OfEachCommandHasAnExample) {
 }
 
 INSTANTIATE_TEST_SUITE_P(CommandLine, Help,
-                         Values("smooth", "verify", "inspect", "time", "targets", "machines",
-                                "methods"),
+                         Values("smooth", "verify", "inspect", "time", "batch", "freecad",
+                                "targets", "machines", "methods"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST_F(CommandLine, HelpListsTheCommandsAndExitCodes) {
   const ProcessResult help = batten("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command :
-       {"smooth", "verify", "inspect", "time", "targets", "machines", "methods"}) {
+  for (const char* command : {"smooth", "verify", "inspect", "time", "batch", "freecad", "targets",
+                              "machines", "methods"}) {
     EXPECT_TRUE(contains(help.out, command)) << command;
   }
   EXPECT_TRUE(contains(help.out, "3 not proved")) << help.out;

@@ -1,0 +1,41 @@
+// The table of a batch: a row per program, and what it comes to. In the order of the programs'
+// names, and without anything that depends on how or in how many runs it was made.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "postproc/batch/manifest.h"
+
+namespace batten::postproc {
+
+struct BatchTotals {
+  std::size_t programs = 0;
+  std::size_t smoothed = 0;
+  std::size_t unchanged = 0;
+  std::size_t not_understood = 0;
+  std::size_t not_proved = 0;
+  std::size_t failed = 0;
+  std::size_t not_done = 0;
+  // Of the programs that were written:
+  std::size_t bytes_in = 0;
+  std::size_t bytes_out = 0;
+  std::size_t blocks_in = 0;
+  std::size_t blocks_out = 0;
+  double time_before_s = 0;
+  double time_after_s = 0;
+  double deviation_mm = 0;  // greatest
+  int exit_code = 0;        // the worst of all programs, by postproc/exit_code.h
+};
+
+[[nodiscard]] BatchTotals totals_of(std::span<const ProgramRecord> records);
+
+// For people; ends with the line of the totals.
+[[nodiscard]] std::string summary_table(std::span<const ProgramRecord> records);
+
+// RFC 4180 with a row of names, LF line ends.
+[[nodiscard]] std::string summary_csv(std::span<const ProgramRecord> records);
+
+[[nodiscard]] std::string summary_json(std::span<const ProgramRecord> records);
+
+}  // namespace batten::postproc

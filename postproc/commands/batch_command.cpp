@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <set>
+#include <system_error>
+
+#include "postproc/batch/batch_lock.h"
+#include "postproc/batch/batch_run.h"
+#include "postproc/batch/batch_summary.h"
+#include "postproc/batch/content_hash.h"
+#include "postproc/batch/leftovers.h"
+#include "postproc/batch/process_pool.h"
+#include "postproc/commands/commands.h"
+#include "postproc/commands/files.h"
+#include "postproc/exit_code.h"
+#include "postproc/interrupt.h"
+
+namespace batten::postproc {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// The progress line, and a message for each program that was not written.
+class BatchDisplay {
+ public:
+  explicit BatchDisplay(ProgressStyle style)
+      : shows_line_(style == ProgressStyle::kOn ||
+                    (style == ProgressStyle::kAuto && ::isatty(STDERR_FILENO) == 1)) {}
+  BatchDisplay(const BatchDisplay&) = delete;
+  BatchDisplay& operator=(const BatchDisplay&) = delete;
+  ~BatchDisplay() { clear(); }
+
+  void show(const BatchCount& count, const ProgramRecord* ended) {
+    if (ended != nullptr && ended->exit_code != 0) {
+      clear();
+      const bool names_it = ended->message.find(ended->program) != std::string::npos;
+      say(names_it ? ended->message : ended->program + ": " + ended->message);
+    }
+    if (!shows_line_) return;
+    const std::string line = progress_line(count);
+    if (line == line_) return;
+    clear();
+    line_ = line;
+    say_lines(line_);
+    std::fflush(stderr);
+  }
+
+ private:
+  void clear() {
+    if (line_.empty()) return;
+    say_lines("\r" + std::string(line_.size(), ' ') + "\r");
+    line_.clear();
+  }
+
+  bool shows_line_;
+  std::string line_;
+};
+
+// "summary" for the whole tree, "summary-2-of-8" for a shard.
+fs::path summary_path(const fs::path& batch, const Shard& shard, std::string_view suffix) {
+  return batch / (shard.count == 1
+                      ? fmt::format("summary.{}", suffix)
+                      : fmt::format("summary-{}-of-{}.{}", shard.index, shard.count, suffix));
+}
+
+std::set<fs::path> all_targets(const BatchRequest& request, const fs::path& batch,
+                               const Shard& shard) {
+  std::set<fs::path> targets;
+  for (const TreeProgram& program : request.programs) {
+    const ProgramPlaces places = places_of(request.plan.output_tree, program.name);
+    targets.insert({places.output, places.report, places.record});
+  }
+  for (const char* suffix : {"txt", "csv", "json"}) {
+    targets.insert(summary_path(batch, shard, suffix));
+  }
+  return targets;
+}
+
+// 0, or why a file could not be written.
+int write_summary(const std::vector<ProgramRecord>& records, const fs::path& batch,
+                  const Shard& shard) {
+  const std::string table = summary_table(records);
+  int code = write_result(summary_path(batch, shard, "txt"), table, true);
+  if (code == 0) code = write_result(summary_path(batch, shard, "csv"), summary_csv(records), true);
+  if (code == 0) {
+    code = write_result(summary_path(batch, shard, "json"), summary_json(records), true);
+  }
+  const int table_code = write_result("-", table, false);
+  return code != 0 ? code : table_code;
+}
+
+BatchRequest request_of(const BatchCommand& command, const ProgramTree& tree) {
+  return {.plan = {.input_tree = fs::path(command.input_tree).lexically_normal(),
+                   .output_tree = fs::path(command.output_tree).lexically_normal(),
+                   .options = command.options,
+                   .settings_sha256 = sha256(command.settings),
+                   .strict = command.strict,
+                   .force = command.force},
+          .programs = programs_of(command.shard, tree.programs),
+          .jobs = command.jobs > 0 ? static_cast<std::size_t>(command.jobs) : usable_processors(),
+          .fail_fast = command.fail_fast};
+}
+
+void tell_what_was_left_out(const ProgramTree& tree) {
+  for (const std::string& problem : tree.problems) say(problem);
+  if (tree.other_files > 0) {
+    say(fmt::format("other files left alone: {} (--suffix says what is a program)",
+                    tree.other_files));
+  }
+  if (tree.folder_links > 0) {
+    say(fmt::format("links to folders not followed: {}", tree.folder_links));
+  }
+}
+
+int work_through(const BatchCommand& command, const BatchRequest& request, const fs::path& batch) {
+  if (const auto removed =
+          remove_half_written(request.plan.output_tree, all_targets(request, batch, command.shard));
+      removed > 0) {
+    say(fmt::format("half-written files of an earlier run removed: {}", removed));
+  }
+  BatchResult result;
+  {
+    BatchDisplay display(command.progress);
+    result = run_batch(request, [&](const BatchCount& count, const ProgramRecord* ended) {
+      display.show(count, ended);
+    });
+  }
+  if (result.were_done > 0) {
+    say(fmt::format("done already: {} of {} programs", result.were_done,
+                    result.records.size()));
+  }
+  if (interrupted()) {
+    say("interrupted; the same command goes on where it stopped");
+    return interrupt_exit_code();
+  }
+  const int written = write_summary(result.records, batch, command.shard);
+  return std::max(written, totals_of(result.records).exit_code);
+}
+
+}  // namespace
+
+int run(const BatchCommand& command) {
+  std::error_code error;
+  if (!fs::is_directory(command.input_tree, error)) {
+    say(command.input_tree + ": is no folder that can be read");
+    return static_cast<int>(ExitCode::kFileError);
+  }
+  const ProgramTree tree = list_programs(fs::path(command.input_tree), command.suffixes);
+  tell_what_was_left_out(tree);
+  const BatchRequest request = request_of(command, tree);
+  const fs::path batch = request.plan.output_tree / kBatchFolder;
+  fs::create_directories(batch, error);
+  if (error) {
+    say(batch.string() + ": cannot be made: " + error.message());
+    return static_cast<int>(ExitCode::kFileError);
+  }
+  const BatchLock lock(batch, command.shard);
+  if (!lock.problem().empty()) {
+    say(lock.problem());
+    return static_cast<int>(ExitCode::kFileError);
+  }
+  const int code = work_through(command, request, batch);
+  const bool tree_was_read = tree.problems.empty();
+  return tree_was_read ? code : std::max(code, static_cast<int>(ExitCode::kFileError));
+}
+
+}  // namespace batten::postproc

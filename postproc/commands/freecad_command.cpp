@@ -1,0 +1,78 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "postproc/commands/commands.h"
+#include "postproc/commands/files.h"
+#include "postproc/exit_code.h"
+#include "postproc/interrupt.h"
+#include "postproc/plugins/freecad_post.h"
+
+namespace batten::postproc {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Where FreeCAD looks for posts; nothing, and a message, when it cannot be found out.
+std::optional<fs::path> folder_for(const FreecadCommand& command) {
+  std::error_code error;
+  if (!command.folder.empty()) {
+    if (fs::is_directory(command.folder, error)) return command.folder;
+    say(command.folder + ": is no folder");
+    return std::nullopt;
+  }
+  const std::string program = command.freecad.empty() ? find_freecad() : command.freecad;
+  if (program.empty()) {
+    say("no FreeCAD was found in PATH; --freecad names the program without a window (FreeCADCmd), "
+        "--folder the folder of your macros");
+    return std::nullopt;
+  }
+  std::string trouble;
+  const auto answer = ask_freecad(program, trouble);
+  if (!answer) {
+    say(trouble);
+    return std::nullopt;
+  }
+  // FreeCAD makes this folder itself when the first macro is saved.
+  fs::create_directories(answer->folder, error);
+  if (error) {
+    say(answer->folder.string() + ": cannot be made: " + error.message());
+    return std::nullopt;
+  }
+  say_lines(fmt::format("FreeCAD {} keeps macros and posts in {}\n", answer->version,
+                        answer->folder.string()));
+  return answer->folder;
+}
+
+bool holds_something_else(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return false;
+  return !is_freecad_post(std::string(std::istreambuf_iterator<char>(stream), {}));
+}
+
+}  // namespace
+
+int run(const FreecadCommand& command) {
+  const auto folder = folder_for(command);
+  if (interrupted()) return interrupt_exit_code();
+  if (!folder) return static_cast<int>(ExitCode::kFileError);
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path target = *folder / kFreecadPostName;
+  const bool replace = command.force || !holds_something_else(target);
+  const int code = write_result(target.string(), freecad_post_calling(program), replace);
+  if (code != 0) return code;
+  say_lines(fmt::format(
+      "{} written; it calls {}\n"
+      "In FreeCAD, choose the post \"batten\" in the output page of a job, with arguments such as\n"
+      "  --target linuxcnc --tolerance 0.01 -- --no-header\n",
+      target.string(), program.string()));
+  return static_cast<int>(ExitCode::kDone);
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,5 @@
+"""A post that gives nothing back."""
+
+
+def export(objectslist, filename, argstring):
+    return None

@@ -1,0 +1,98 @@
+"""real_check.py BATTEN ROOT   From a fresh home to a smoothed program, with the installed FreeCAD.
+
+`batten freecad install` asks freecadcmd for the place, freecadcmd makes and posts the job of
+real_job.py. Exits with 77 where there is no freecadcmd, or one of 1.0 or later (its posts are asked
+by other means)."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+SKIPPED = 77
+TOLERANCE = "0.01"
+HANGS = 300  # s
+wrong = []
+
+
+def expect(truth, what, *details):
+    if not truth:
+        wrong.append(what)
+        print("WRONG:", what, *(str(d)[-1500:] for d in details))
+
+
+def rs274_accepts(program, folder):
+    (folder / "tool.tbl").write_text("".join(f"T{i} P{i} D6 Z0\n" for i in range(1, 10)))
+    (folder / "parameters.var").write_text("")
+    done = subprocess.run(["rs274", "-g", "-n", "2", "-t", "tool.tbl", "-v", "parameters.var",
+                           program], cwd=folder, env={**os.environ, "HOME": str(folder)},
+                          stdin=subprocess.DEVNULL, capture_output=True)
+    return done.returncode == 0 and not [line for line in done.stderr.splitlines()
+                                         if line.strip() != b"executing"]
+
+
+def run_freecad(home, script, **environment):
+    return subprocess.run(["freecadcmd", script], env={**home, **environment}, timeout=HANGS,
+                          stdin=subprocess.DEVNULL, capture_output=True, text=True)
+
+
+def check(batten, root, folder):
+    home = {k: v for k, v in os.environ.items() if not k.startswith(("XDG_", "FREECAD"))}
+    home.update(HOME=str(folder / "home"), QT_QPA_PLATFORM="offscreen")
+    (folder / "home").mkdir()
+    out = folder / "out"
+    out.mkdir()
+    installed = subprocess.run([batten, "freecad", "install"], env=home, capture_output=True,
+                               text=True)
+    expect(installed.returncode == 0, "installed", installed.stderr)
+    print(installed.stderr.splitlines()[0])
+    posts = list((folder / "home").rglob("batten_post.py"))
+    expect(len(posts) == 1, "one post", posts)
+    expect(not [p for p in (folder / "home").rglob("Mod")], "no Mod folder of the user's")
+
+    run = run_freecad(home, str(root / "tests/freecad/real_job.py"), REAL_JOB=str(out),
+                      REAL_JOB_ARGUMENTS=f"--target linuxcnc --tolerance {TOLERANCE} --json "
+                                         f"{out}/report.json --force")
+    told = out / "told.txt"
+    expect(not told.exists(), "job made and posted", told.exists() and told.read_text(), run.stdout)
+    if wrong:
+        return
+    check_programs(batten, out)
+    expect(not (out / "refused.nc").exists(), "nothing is written after a refusal")
+    expect("there is no 'nonesuch'" in (out / "refusal.txt").read_text(), "the reason is told")
+
+
+def check_programs(batten, out):
+    verified = subprocess.run([batten, "verify", out / "old.nc", out / "new.nc", "--tolerance",
+                               TOLERANCE], capture_output=True, text=True)
+    expect(verified.returncode == 0, "proved", verified.stderr)
+    report = json.loads((out / "report.json").read_text())
+    rewritten = [run for run in report["runs"] if run["status"] == "rewritten"]
+    expect(rewritten, "runs are rewritten")
+    blocks = [report[side]["blocks"] for side in ("input", "output")]
+    seconds = [report["time_before_s"], report["time_after_s"]]
+    expect(blocks[1] < blocks[0], "fewer blocks", blocks)
+    expect(seconds[1] <= seconds[0], "no more time", seconds)
+    if shutil.which("rs274"):
+        expect(rs274_accepts("old.nc", out), "rs274 takes FreeCAD's program")
+        expect(rs274_accepts("new.nc", out), "rs274 takes the smoothed program")
+    print(f"FreeCAD {(out / 'version.txt').read_text()}: {len(rewritten)} of {len(report['runs'])} runs "
+          f"rewritten, {blocks[0]} -> {blocks[1]} blocks, "
+          f"{seconds[0]:.2f} -> {seconds[1]:.2f} s of cutting, within {report['deviation_mm']:.4f} mm")
+
+
+def main(batten, root):
+    if shutil.which("freecadcmd") is None:
+        print("FreeCAD is not installed")
+        return SKIPPED
+    with tempfile.TemporaryDirectory(prefix="batten-real-freecad-") as folder:
+        check(batten, root, pathlib.Path(folder))
+    return 1 if wrong else 0
+
+
+if len(sys.argv) != 3:
+    sys.exit(__doc__)
+sys.exit(main(str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()))
