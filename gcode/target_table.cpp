@@ -63,7 +63,7 @@ TargetTable table_of(const Dialect& dialect) {
 }
 
 std::string comment_in(CommentStyle style, std::string_view text) {
-  const std::string in_parentheses = "(" + std::string(text) + ")";
+  std::string in_parentheses = "(" + std::string(text) + ")";
   if (!std::ranges::all_of(text, can_stand_in_comment) || is_active_comment(in_parentheses)) {
     return {};
   }

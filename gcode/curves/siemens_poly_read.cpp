@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <string>
 #include <utility>
 
@@ -20,7 +21,7 @@ constexpr std::array<char, 3> kAxes = {'X', 'Y', 'Z'};
 
 double value_of(const std::vector<double>& coefficients, double p) {
   double value = 0;
-  for (auto it = coefficients.rbegin(); it != coefficients.rend(); ++it) value = value * p + *it;
+  for (const double each : coefficients | std::views::reverse) value = value * p + each;
   return value;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -26,8 +27,7 @@ struct Setting {
 };
 
 std::string_view without_blanks_before(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  return first == std::string_view::npos ? std::string_view() : text.substr(first);
+  return text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
 }
 
 // What controls and senders write beside settings: "ok", "[MSG:..]", "<Idle|..>", ">>> $$", the

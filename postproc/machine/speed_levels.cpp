@@ -28,7 +28,7 @@ class LevelBuilder {
 
   void add(const MotionPhase& phase, double jerk) {
     const double end = phase.velocity + phase.acceleration * phase.duration;
-    const double way = phase.duration * (phase.velocity + end) / 2;
+    const double way = phase.length;
     const double change = end - phase.velocity;
     if (std::abs(change) <= kSameSpeed * std::max(end, phase.velocity)) {
       close_change(phase.velocity);
@@ -50,12 +50,20 @@ class LevelBuilder {
  private:
   void close_change(double velocity) {
     if (!changing_) return;
-    change_.acceleration = std::abs(end_ - start_) / time_;
+    change_.acceleration = even_acceleration();
     levels_.back().after = change_;
     levels_.push_back({velocity, 0, {}});
     change_ = {0, 0, kNoLimit};
     time_ = 0;
     changing_ = false;
+  }
+
+  // The way that an even acceleration loses against the faster speed is (change of speed)^2 / 2a;
+  // that of the change is what its stretches, each with its own acceleration, have lost.
+  [[nodiscard]] double even_acceleration() const {
+    const double change = end_ - start_;
+    const double lost = std::max(start_, end_) * time_ - change_.way;
+    return change * change / (2 * lost);
   }
 
   std::vector<SpeedLevel>& levels_;

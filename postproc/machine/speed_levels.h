@@ -11,7 +11,7 @@ namespace batten::postproc {
 // A change of speed without a limit on jerk.
 struct SpeedChange {
   double way = 0;           // mm
-  double acceleration = 0;  // mm/s^2, the mean in time
+  double acceleration = 0;  // mm/s^2, the even one that costs as much time
   double jerk = 0;          // mm/s^3 that it may have; infinite: no limit
 };
 

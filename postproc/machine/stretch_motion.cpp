@@ -10,6 +10,9 @@ namespace {
 // falls to half of its first value there: 32 steps of it are 2 % each.
 constexpr int kBendPhases = 32;
 
+// Of the length of a stretch: less is what rounding leaves of nothing.
+constexpr double kNoWay = 1e-12;
+
 }  // namespace
 
 StretchMotion::StretchMotion(const VelocityStretch& stretch, double v0, double v1,
@@ -29,10 +32,11 @@ StretchMotion::StretchMotion(const VelocityStretch& stretch, double v0, double v
 
 void StretchMotion::add_phase(double way, double from_velocity, double to_velocity,
                               double duration) {
-  if (!(duration > 0)) return;  // rounding leaves nothing, or a little less
+  if (!(way > kNoWay * length_)) return;
   phases_.push_back({.start = moving_,
                      .duration = duration,
                      .way = way_,
+                     .length = way,
                      .velocity = from_velocity,
                      .acceleration = (to_velocity - from_velocity) / duration});
   moving_ += duration;
@@ -71,8 +75,13 @@ double StretchMotion::way_at(double time) const {
   const auto after = std::upper_bound(phases_.begin(), phases_.end(), time,
                                       [](double t, const MotionPhase& p) { return t < p.start; });
   const MotionPhase& phase = after == phases_.begin() ? *after : *(after - 1);
-  const double t = std::max(0.0, time - phase.start);
-  return std::clamp(phase.way + t * (phase.velocity + phase.acceleration * t / 2), 0.0, length_);
+  // On a bend the duration is that of the profile, the way that of even acceleration: they differ
+  // by the error of the profile's integral, which no place is to show as a step.
+  const auto way_after = [&](double t) {
+    return t * (phase.velocity + phase.acceleration * t / 2);
+  };
+  const double part = way_after(std::max(0.0, time - phase.start)) / way_after(phase.duration);
+  return std::min(phase.way + part * phase.length, length_);
 }
 
 double StretchMotion::time_below(double velocity) const {

@@ -12,6 +12,7 @@ struct MotionPhase {
   double start = 0;         // s
   double duration = 0;      // s
   double way = 0;           // mm at its start
+  double length = 0;        // mm
   double velocity = 0;      // mm/s at its start
   double acceleration = 0;  // mm/s^2
 };

@@ -47,7 +47,8 @@ TEST_F(Profiles, OfUnknownTargetsAreNotShown) {
 
 TEST_F(Profiles, AddWordsThatVerifyWantsToBeTold) {
   const ProcessResult done = folder_.batten(
-      "smooth part.nc --target vf2.toml --tolerance 0.01 -o new.nc --json report.json");
+      "smooth part.nc --target vf2.toml --tolerance 0.01 --output arcs -o new.nc --json "
+      "report.json");
   ASSERT_EQ(done.exit_code, 0) << done.err;
   EXPECT_TRUE(contains(done.err, "vf2.toml: 3 lines added")) << done.err;
   EXPECT_TRUE(contains(done.err, "before runs: G187 P3 E{tolerance}")) << done.err;

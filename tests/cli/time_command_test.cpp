@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(
     TimeCommandLine, WrongTimeUsage,
     testing::Values(
         WrongTime{"NoMachine", "part.nc", "--machine: no machine given"},
-        WrongTime{"UnknownMachine", "part.nc --machine mil", "did you mean mill"},
+        WrongTime{"UnknownMachine", "part.nc --machine mil", "did you mean 'mill'?"},
         WrongTime{"UnknownTarget", "part.nc --machine mill --target linuxcn", "linuxcnc"},
         WrongTime{"NoFile", "--machine mill", "FILE: no file given"},
         WrongTime{"NoPlace", "part.nc --machine mill --from 1,2", "expected X,Y,Z in mm"},

@@ -352,9 +352,10 @@ TEST(ProgramTimeOfCycles, PecksAndDwells) {
   const ProgramTime pecks = timed(head + "G83 X0 Y0 Z-5 R2 Q3 F600\nG80\nM2\n", m);
   // 2 to -1, up to 2, down to -.746, to -4, up, down to -3.746, to -5, up.
   EXPECT_NEAR(pecks.cutting_mm, 3 + 3.254 + 1.254, 1e-9);
-  EXPECT_NEAR(pecks.rapid_mm, 3 + 2.746 + 6 + 5.746 + 7, 1e-9);
+  // The first rapid to Z2 too.
+  EXPECT_NEAR(pecks.rapid_mm, 2 + 3 + 2.746 + 6 + 5.746 + 7, 1e-9);
   const ProgramTime chips = timed(head + "G73 X0 Y0 Z-5 R2 Q3 F600\nG80\nM2\n", m);
-  EXPECT_NEAR(chips.rapid_mm, 0.254 + 0.254 + 7, 1e-9);
+  EXPECT_NEAR(chips.rapid_mm, 2 + 0.254 + 0.254 + 7, 1e-9);
   const ProgramTime dwells = timed(head + "G82 X0 Y0 Z-5 R2 P1.5 F600\nX5\nX10\nG80\nM2\n", m);
   EXPECT_NEAR(dwells.seconds.dwells, 4.5, 1e-12);
   const ProgramTime bores = timed(head + "G85 X0 Y0 Z-5 R2 F600\nG80\nM2\n", m);
