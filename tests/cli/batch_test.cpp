@@ -230,7 +230,7 @@ TEST_F(Batch, RemovesWhatAKilledRunLeftHalfWrittenAndNothingElse) {
 TEST_F(Batch, GoesOnAfterAnInterrupt) {
   const ProcessResult result =
       folder_.shell("( '" BATTEN_BINARY
-                    "' batch in out --target linuxcnc --jobs 1 & work=$!\n"
+                    "' batch in out --target linuxcnc --tolerance 0.05 --jobs 1 & work=$!\n"
                     "while [ ! -e out/batten-batch/manifest ]; do sleep 0.01; done\n"
                     "kill -TERM $work; wait $work )");
   EXPECT_EQ(result.exit_code, 143) << result.err;
