@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <variant>
@@ -13,6 +14,8 @@
 #include "postproc/machine_choice.h"
 #include "postproc/options.h"
 #include "postproc/pipeline.h"
+#include "postproc/program_time.h"
+#include "postproc/program_time_dwell.h"
 #include "postproc/run_grouping.h"
 #include "postproc/verification.h"
 
@@ -209,6 +212,39 @@ Proof verify(std::string_view old_program, std::string_view new_program, double 
     proof.differences.push_back({breach.id, breach.old_line, breach.new_line, breach.message});
   }
   return proof;
+}
+
+ProgramTime time(std::string_view program, const TimeOptions& options) {
+  std::vector<std::string> problems;
+  const auto machine = postproc::choose_machine(options.machine, "machine", problems);
+  const gcode::Dialect* target = nullptr;
+  if (!options.target.empty()) {
+    target = gcode::find_dialect(options.target);
+    if (target == nullptr) problems.push_back("target: there is no '" + options.target + "'");
+  }
+  if (!problems.empty()) refuse(problems);
+  const Reading reading(program, options.units);
+  ProgramTime result;
+  result.messages = messages_of(reading.found, reading.source);
+  result.understood = !gcode::has_error(reading.found);
+  if (!result.understood) return result;
+  const postproc::ProgramTime found =
+      postproc::time_program(reading.program, reading.meaning, *machine,
+                             {.dwell_unit = postproc::dwell_unit_of(target, *machine),
+                              .start = std::nullopt});
+  result.seconds = found.seconds.sum();
+  result.cutting = found.seconds.cutting;
+  result.rapids = found.seconds.rapids;
+  result.dwells = found.seconds.dwells;
+  result.tool_changes = found.seconds.tool_changes;
+  result.spindle = found.seconds.spindle;
+  result.rotary = found.seconds.rotary;
+  result.below_half_feed = found.below_half_feed;
+  for (const postproc::NotTimed& each : found.not_timed) {
+    result.not_timed.push_back(
+        {std::string(each.id), each.first_line, each.count, std::string(each.text)});
+  }
+  return result;
 }
 
 }  // namespace batten

@@ -23,7 +23,6 @@ namespace {
 
 using geometry::BandCusp;
 using geometry::BandOverlap;
-using geometry::BandStructure;
 using geometry::Point2;
 using geometry::Point3;
 

@@ -39,6 +39,19 @@ void read_units_into(gcode::Units& units, const Given& given, Problems& problems
   if (const auto text = given.value("units")) read_into(units, read_units(*text, problems));
 }
 
+LogLevel read_log_level(const Given& given, Problems& problems) {
+  const auto text = given.value("log-level");
+  if (given.flag("quiet")) {
+    if (text && *text != "error") {
+      problems.push_back(fmt::format("--quiet: --log-level {} says something else", *text));
+    }
+    return LogLevel::kError;
+  }
+  LogLevel level = LogLevel::kInfo;
+  if (text) read_into(level, read_choice("log-level", *text, log_levels(), problems));
+  return level;
+}
+
 std::vector<std::string_view> target_names() {
   std::vector<std::string_view> names;
   for (const gcode::Dialect* dialect : gcode::dialects()) names.push_back(dialect->name());

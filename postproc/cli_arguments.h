@@ -11,6 +11,7 @@
 #include "gcode/modal_state.h"
 #include "postproc/cli_given.h"
 #include "postproc/cli_values.h"
+#include "postproc/log_level.h"
 
 namespace batten::postproc {
 
@@ -31,6 +32,9 @@ void read_into(Value& place, std::optional<Value> value) {
 }
 
 void read_units_into(gcode::Units& units, const Given& given, Problems& problems);
+
+// --quiet, --log-level
+[[nodiscard]] LogLevel read_log_level(const Given& given, Problems& problems);
 
 [[nodiscard]] std::vector<std::string_view> target_names();
 

@@ -60,6 +60,10 @@ SmoothCommand smooth_command(const Given& given, const std::vector<std::string>&
   if (const auto text = given.value("progress")) {
     read_into(command.progress, read_choice("progress", *text, progress_styles(), problems));
   }
+  command.log_level = read_log_level(given, problems);
+  // A bar is said too, but lines for LinuxCNC are not for people.
+  const bool bar = command.progress == ProgressStyle::kAuto && !given.has("progress");
+  if (bar && command.log_level < LogLevel::kInfo) command.progress = ProgressStyle::kOff;
   command.in_place = given.flag("in-place");
   command.force = given.flag("force");
   command.strict = given.flag("strict");
@@ -83,6 +87,7 @@ VerifyCommand verify_command(const Given& given, const std::vector<std::string>&
   command.new_program = file_at(files, 1);
   command.json_file = given.value("json").value_or("");
   command.force = given.flag("force");
+  command.log_level = read_log_level(given, problems);
   read_units_into(command.units, given, problems);
   read_tolerance_kind_into(command.tolerance_kind, given, problems);
   if (const auto file = given.value("profile")) {
@@ -111,6 +116,7 @@ InspectCommand inspect_command(const Given& given, const std::vector<std::string
   command.input = file_at(files, 0);
   command.json_file = given.value("json").value_or("");
   command.force = given.flag("force");
+  command.log_level = read_log_level(given, problems);
   read_units_into(command.units, given, problems);
   command.allowed = given.values("allow");
   for (std::string& problem : problems_of_allowed(command.allowed)) {

@@ -60,6 +60,15 @@ constexpr OptionRow kGrblSettings = {.name = "grbl-settings",
                                      .help = "limits from what grbl answers to $$, saved as text",
                                      .in_config = true};
 
+constexpr OptionRow kQuiet = {
+    .name = "quiet",
+    .kind = OptionKind::kFlag,
+    .help = "say nothing but what ends or stops the work, as --log-level error"};
+constexpr OptionRow kLogLevel = {.name = "log-level",
+                                 .value = "error|warning|info",
+                                 .help = "how much is said on standard error",
+                                 .default_value = "info"};
+
 constexpr std::array kSmoothRows = {
     OptionRow{.name = "target",
               .value = "NAME|FILE.toml",
@@ -131,6 +140,8 @@ constexpr std::array kSmoothRows = {
               .help = "how far the work is, on standard error",
               .default_value = "auto",
               .in_config = true},
+    kQuiet,
+    kLogLevel,
     OptionRow{.name = "config",
               .value = "FILE.toml",
               .help = "read options from a file; the command line goes first"},
@@ -143,9 +154,9 @@ constexpr std::array kTargetListRows = {
     OptionRow{
         .name = "show", .value = "NAME", .help = "print a profile of this target to start from"},
     kJson, kForce};
-constexpr std::array kVerifyRows = {kTolerance, kProfile, kToleranceKind, kSide,
-                                    kUnits,     kJson,    kForce};
-constexpr std::array kInspectRows = {kUnits, kAllow, kJson, kForce};
+constexpr std::array kVerifyRows = {kTolerance, kProfile, kToleranceKind, kSide,    kUnits,
+                                    kJson,      kForce,   kQuiet,         kLogLevel};
+constexpr std::array kInspectRows = {kUnits, kAllow, kJson, kForce, kQuiet, kLogLevel};
 constexpr std::array kTimeRows = {
     kMachine,
     kGrblSettings,
@@ -160,6 +171,8 @@ constexpr std::array kTimeRows = {
               .value = "FILE.csv",
               .help = "write place, feed, acceleration and jerk each millisecond"},
     kForce,
+    kQuiet,
+    kLogLevel,
 };
 // A worker has one thread, and LinuxCNC does not look at a batch.
 constexpr std::array<std::string_view, 2> kNotForBatch = {"threads", "progress"};

@@ -56,6 +56,7 @@ TimeCommand time_command(const Given& given, const std::vector<std::string>& fil
   command.json_file = given.value("json").value_or("");
   command.profile_file = given.value("profile").value_or("");
   command.force = given.flag("force");
+  command.log_level = read_log_level(given, problems);
   read_units_into(command.units, given, problems);
   if (const auto text = given.value("target")) {
     command.target = built_in_target("target", *text, problems);

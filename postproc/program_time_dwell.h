@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "gcode/block_words.h"
+#include "postproc/machine/machine.h"
 #include "postproc/program_time_steps.h"
 
 namespace batten::postproc {
@@ -17,5 +18,9 @@ struct DwellTime {
 // X, U: seconds (FANUC). F: seconds, S: turns of the spindle (Sinumerik). P: by `unit`.
 [[nodiscard]] DwellTime dwell_of(const gcode::BlockWords& words, gcode::DwellUnit unit,
                                  std::optional<double> spindle_speed);
+
+// What P means in the programs of a control; nullptr: LinuxCNC and grbl count in seconds, whatever
+// the program was written for.
+[[nodiscard]] gcode::DwellUnit dwell_unit_of(const gcode::Dialect* target, const Machine& machine);
 
 }  // namespace batten::postproc

@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "postproc/interrupt.h"
+#include "postproc/progress_text.h"
 
 namespace batten::postproc {
 
@@ -38,11 +39,11 @@ constexpr std::chrono::milliseconds kBetweenFilterLines{100};
 // Writes each whole percentage once, never a smaller one after a greater one, and 100 always.
 class Display {
  public:
-  explicit Display(ProgressStyle style) : style_(style) {}
+  Display(ProgressStyle style, std::size_t bytes) : style_(style), bytes_(bytes) {}
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
   ~Display() {
-    if (style_ == ProgressStyle::kOn && shown_ >= 0) std::fputs("\r        \r", stderr);
+    if (style_ == ProgressStyle::kOn && shown_ >= 0) std::fputs("\r\x1b[K", stderr);
   }
 
   void show(double part) {
@@ -52,13 +53,17 @@ class Display {
     shown_ = percent;
     const std::string text = style_ == ProgressStyle::kLinuxcnc
                                  ? fmt::format("FILTER_PROGRESS={}\n", percent)
-                                 : fmt::format("\r{:4} %", percent);
+                                 : "\r" + progress_line(part, bytes_, seconds()) + "\x1b[K";
     std::fputs(text.c_str(), stderr);
     std::fflush(stderr);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(Clock::now() - start_).count();
+  }
 
   [[nodiscard]] bool is_too_soon() {
     if (style_ != ProgressStyle::kLinuxcnc) return false;
@@ -69,6 +74,8 @@ class Display {
   }
 
   ProgressStyle style_;
+  std::size_t bytes_;
+  Clock::time_point start_ = Clock::now();
   std::mutex mutex_;
   int shown_ = -1;
   Clock::time_point last_line_;
@@ -78,10 +85,20 @@ class Display {
 
 std::span<const Choice<ProgressStyle>> progress_styles() { return kStyles; }
 
-Progress show_progress(ProgressStyle style) {
+std::string progress_line(double part, std::size_t bytes, double seconds) {
+  // Sooner the rate says more of the start than of the work.
+  constexpr double kFirstSeconds = 1;
+  std::string line = fmt::format("{:3} %", static_cast<int>(100 * std::clamp(part, 0.0, 1.0)));
+  if (seconds < kFirstSeconds || !(part > 0)) return line;
+  line += "  " + rate_text(part * static_cast<double>(bytes) / seconds);
+  if (part < 1) line += fmt::format("  about {} left", rough_time(seconds * (1 - part) / part));
+  return line;
+}
+
+Progress show_progress(ProgressStyle style, std::size_t bytes) {
   const ProgressStyle shown = resolved(style);
   if (shown == ProgressStyle::kOff) return [](double) { return !interrupted(); };
-  return [display = std::make_shared<Display>(shown)](double part) {
+  return [display = std::make_shared<Display>(shown, bytes)](double part) {
     display->show(part);
     return !interrupted();
   };

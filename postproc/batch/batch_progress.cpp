@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include "postproc/progress_text.h"
 
 namespace batten::postproc {
 
@@ -13,11 +13,6 @@ constexpr std::size_t kBarWidth = 20;  // characters, so that the line fits into
 std::string bar_of(std::size_t part, std::size_t whole) {
   const std::size_t full = whole > 0 ? kBarWidth * part / whole : kBarWidth;
   return "[" + std::string(full, '#') + std::string(kBarWidth - full, '-') + "]";
-}
-
-std::string rate_text(double bytes_per_second) {
-  if (bytes_per_second >= 1e6) return fmt::format("{:.1f} MB/s", bytes_per_second / 1e6);
-  return fmt::format("{:.0f} kB/s", bytes_per_second / 1e3);
 }
 
 }  // namespace
@@ -34,13 +29,6 @@ std::string progress_line(const BatchCount& count) {
                         rough_time(static_cast<double>(count.bytes - count.bytes_over) / rate));
   }
   return line;
-}
-
-std::string rough_time(double seconds) {
-  if (seconds <= 60) return fmt::format("{:.0f} s", std::ceil(seconds));
-  const auto minutes = static_cast<long long>(std::ceil(seconds / 60));
-  if (minutes < 60) return fmt::format("{} min", minutes);
-  return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
 }
 
 }  // namespace batten::postproc

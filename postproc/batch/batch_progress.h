@@ -21,7 +21,4 @@ struct BatchCount {
 // one is done.
 [[nodiscard]] std::string progress_line(const BatchCount& count);
 
-// "40 s", "2 min", "3 h 20 min": rounded up, since it is a guess.
-[[nodiscard]] std::string rough_time(double seconds);
-
 }  // namespace batten::postproc

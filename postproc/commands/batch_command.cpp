@@ -129,8 +129,7 @@ int work_through(const BatchCommand& command, const BatchRequest& request, const
     });
   }
   if (result.were_done > 0) {
-    say(fmt::format("done already: {} of {} programs", result.were_done,
-                    result.records.size()));
+    say(fmt::format("done already: {} of {} programs", result.were_done, result.records.size()));
   }
   if (interrupted()) {
     say("interrupted; the same command goes on where it stopped");

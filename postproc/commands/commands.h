@@ -10,6 +10,7 @@
 #include "gcode/modal_state.h"
 #include "geometry/point.h"
 #include "postproc/batch/program_tree.h"
+#include "postproc/log_level.h"
 #include "postproc/options.h"
 #include "postproc/progress.h"
 #include "postproc/target_profile.h"
@@ -28,6 +29,7 @@ struct SmoothCommand {
   std::string report_file;   // the page for a browser
   std::string command_line;  // as it was called, for that page; may be empty
   ProgressStyle progress = ProgressStyle::kAuto;
+  LogLevel log_level = LogLevel::kInfo;
   bool in_place = false;
   bool force = false;    // existing files may be replaced
   bool strict = false;   // a run that could not be proved is an error, not a reason to keep it
@@ -44,6 +46,7 @@ struct VerifyCommand {
   gcode::Units units = gcode::Units::kUnknown;
   std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
   std::string json_file;
+  LogLevel log_level = LogLevel::kInfo;
   bool force = false;
 };
 [[nodiscard]] int run(const VerifyCommand& command);
@@ -53,6 +56,7 @@ struct InspectCommand {
   gcode::Units units = gcode::Units::kUnknown;
   std::vector<std::string> allowed;
   std::string json_file;
+  LogLevel log_level = LogLevel::kInfo;
   bool force = false;
 };
 [[nodiscard]] int run(const InspectCommand& command);
@@ -65,6 +69,7 @@ struct TimeCommand {
   std::optional<geometry::Point3> start;  // mm: where the tool stands before the program
   std::string json_file;
   std::string profile_file;
+  LogLevel log_level = LogLevel::kInfo;
   bool force = false;
 };
 [[nodiscard]] int run(const TimeCommand& command);

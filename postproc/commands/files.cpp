@@ -12,6 +12,7 @@
 #include "postproc/exit_code.h"
 #include "postproc/interrupt.h"
 #include "postproc/output_file.h"
+#include "postproc/terminal_colour.h"
 #include "postproc/valid_utf8.h"
 
 namespace batten::postproc {
@@ -50,6 +51,29 @@ int exit_code_of(const WriteResult& result) {
   return static_cast<int>(ExitCode::kFileError);
 }
 
+LogLevel level_of(gcode::Severity severity) {
+  switch (severity) {
+    case gcode::Severity::kNote:
+      return LogLevel::kInfo;
+    case gcode::Severity::kWarning:
+      return LogLevel::kWarning;
+    case gcode::Severity::kError:
+      break;
+  }
+  return LogLevel::kError;
+}
+
+// The severity in colour, behind the place: part.nc:2:6: warning: ..
+std::string with_colour(std::string text, gcode::Severity severity) {
+  const bool error = severity == gcode::Severity::kError;
+  const bool note = severity == gcode::Severity::kNote;
+  const std::string_view word = error ? "error" : note ? "note" : "warning";
+  const std::size_t at = text.find(": " + std::string(word) + ": ");
+  if (at == std::string::npos) return text;
+  const Ink ink = error ? Ink::kError : note ? Ink::kNote : Ink::kWarning;
+  return text.replace(at + 2, word.size(), inked(word, ink, true));
+}
+
 }  // namespace
 
 std::optional<gcode::SourceText> read_program(const std::string& name) {
@@ -81,12 +105,16 @@ int write_parts(const std::string& name, const std::function<void(const PartWrit
   return exit_code_of(write_file(request));
 }
 
-void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source) {
+void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source, LogLevel level) {
+  const bool colour = shows_colour();
   std::size_t remarks = 0;
   for (const gcode::Diagnostic& diagnostic : diagnostics) {
+    if (level_of(diagnostic.severity) > level) continue;
     const bool remark = diagnostic.severity != gcode::Severity::kError;
     if (remark && ++remarks > kMostRemarks) continue;
-    say_lines(gcode::to_text(diagnostic, source) + "\n");
+    std::string text = gcode::to_text(diagnostic, source);
+    if (colour) text = with_colour(std::move(text), diagnostic.severity);
+    say_lines(text + "\n");
   }
   if (remarks > kMostRemarks) {
     say(fmt::format("{} more notes and warnings, see --json", remarks - kMostRemarks));

@@ -9,6 +9,7 @@
 
 #include "gcode/diagnostic.h"
 #include "gcode/source_text.h"
+#include "postproc/log_level.h"
 #include "postproc/output_file.h"
 
 namespace batten::postproc {
@@ -26,8 +27,9 @@ namespace batten::postproc {
                               bool replace_existing);
 
 // file:line:column lines on standard error: errors all, notes and warnings up to a readable
-// number.
-void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source);
+// number and as far as `level` wants them. On a terminal with colours.
+void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source,
+           LogLevel level = LogLevel::kInfo);
 
 // "batten: message" on standard error.
 void say(std::string_view message);

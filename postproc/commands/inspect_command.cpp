@@ -145,7 +145,7 @@ int run(const InspectCommand& command) {
   const auto sections =
       inspect(program, interpretation, group_runs(program, interpretation, grouping));
 
-  print(found, *source);
+  print(found, *source, command.log_level);
   if (command.json_file != "-") {
     const std::string text = fmt::format("{}: {} blocks\n", source->name(), program.blocks.size()) +
                              runs_table(sections) + kept_table(sections);

@@ -33,7 +33,7 @@ bool would_be_refused(const std::string& file, bool replace_existing) {
 
 // The progress line is gone when this returns.
 SmoothResult smooth_with_progress(const gcode::SourceText& source, const SmoothCommand& command) {
-  const Progress progress = show_progress(command.progress);
+  const Progress progress = show_progress(command.progress, source.text().size());
   SmoothResult result = smooth_program(source, command.options, progress);
   (void)progress(1);
   return result;
@@ -58,7 +58,7 @@ int run(const SmoothCommand& command) {
     say("interrupted; nothing was written");
     return interrupt_exit_code();
   }
-  print(result.diagnostics, *source);
+  print(result.diagnostics, *source, command.log_level);
 
   const ExitCode verdict = judge(result, source->text(), command.strict);
   const bool writes = verdict == ExitCode::kDone && !command.dry_run;
@@ -71,7 +71,7 @@ int run(const SmoothCommand& command) {
   };
   int code = static_cast<int>(verdict);
   if (writes) code = write_result(output, result.text, replaces_program);
-  if (result.understood) say_lines(summary_text(report));
+  if (result.understood && command.log_level >= LogLevel::kInfo) say_lines(summary_text(report));
   if (verdict != ExitCode::kDone) say(complaint(verdict, command.strict));
   if (!command.json_file.empty() && !interrupted()) {
     const int json_code = write_result(command.json_file, json_report(report), command.force);

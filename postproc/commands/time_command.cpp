@@ -9,6 +9,7 @@
 #include "postproc/exit_code.h"
 #include "postproc/interrupt.h"
 #include "postproc/program_time.h"
+#include "postproc/program_time_dwell.h"
 #include "postproc/program_time_profile.h"
 #include "postproc/report/time_report.h"
 
@@ -23,13 +24,6 @@ constexpr std::size_t kPartSize = std::size_t{1} << 16;
 constexpr std::string_view kProfileHead =
     "t_s,line,x_mm,y_mm,z_mm,feed_mm_per_min,ax_mm_per_s2,ay_mm_per_s2,az_mm_per_s2,"
     "jx_mm_per_s3,jy_mm_per_s3,jz_mm_per_s3\n";
-
-// LinuxCNC and grbl count dwells in seconds, whatever the program was written for.
-gcode::DwellUnit dwell_unit_of(const TimeCommand& command) {
-  if (command.target != nullptr) return command.target->dwell_unit();
-  return command.machine->model == ControllerModel::kLookAhead ? gcode::DwellUnit::kByPoint
-                                                               : gcode::DwellUnit::kSeconds;
-}
 
 void append_row(const ProfileSample& s, std::string& text) {
   fmt::format_to(
@@ -65,11 +59,12 @@ int run(const TimeCommand& command) {
   gcode::Diagnostics found;
   const gcode::Program program = gcode::parse(*source, found);
   const gcode::Interpretation meaning = gcode::interpret(program, {.units = command.units}, found);
-  print(found, *source);
+  print(found, *source, command.log_level);
   if (gcode::has_error(found)) return static_cast<int>(ExitCode::kNotUnderstood);
 
-  const ProgramSteps steps =
-      read_steps(program, meaning, {.dwell_unit = dwell_unit_of(command), .start = command.start});
+  const ProgramSteps steps = read_steps(
+      program, meaning,
+      {.dwell_unit = dwell_unit_of(command.target, *command.machine), .start = command.start});
   const ProgramTime time = time_steps(program, steps, *command.machine);
   const TimeReport report{program, *command.machine, time, found};
   const bool standard_output_taken = command.json_file == "-" || command.profile_file == "-";

@@ -136,8 +136,8 @@ std::string json_report(const Verification& verification, const VerifyCommand& c
 }
 
 // Moves without a unit are an error among the diagnostics: a tolerance means nothing then.
-bool is_understood(const Read& read) {
-  print(read.diagnostics, read.source);
+bool is_understood(const Read& read, LogLevel level) {
+  print(read.diagnostics, read.source, level);
   return !gcode::has_error(read.diagnostics);
 }
 
@@ -152,8 +152,10 @@ int write_json(const VerifyCommand& command, const Verification& verification, c
 // The same bytes do the same on every control, in any unit, and whether they are understood here
 // or not.
 int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& source) {
-  say_lines(fmt::format("proved: {} and {} are the same, byte for byte\n", command.new_program,
-                        command.old_program));
+  if (command.log_level >= LogLevel::kInfo) {
+    say_lines(fmt::format("proved: {} and {} are the same, byte for byte\n", command.new_program,
+                          command.old_program));
+  }
   const Read same = read(source, command.units);
   return write_json(command, {}, same, same);
 }
@@ -189,11 +191,11 @@ int run(const VerifyCommand& command) {
   const Read before = read(*old_source, command.units);
   const AddedLines added = without_added_lines(command, before, *new_source);
   const Read after = read(gcode::SourceText(new_source->name(), added.text), command.units);
-  if (!is_understood(before)) {
+  if (!is_understood(before, command.log_level)) {
     say("the old program is not understood, so nothing can be proved about the new one");
     return static_cast<int>(ExitCode::kNotUnderstood);
   }
-  if (!is_understood(after)) {
+  if (!is_understood(after, command.log_level)) {
     say("NOT PROVED: the new program is not understood, and the old one is");
     return static_cast<int>(ExitCode::kNotProved);
   }
@@ -213,7 +215,9 @@ int run(const VerifyCommand& command) {
   if (verification.breaches.size() > kMostBreaches) {
     say(fmt::format("{} more breaches, see --json", verification.breaches.size() - kMostBreaches));
   }
-  say_lines(summary_of(verification, command));
+  if (!verification.proved() || command.log_level >= LogLevel::kInfo) {
+    say_lines(summary_of(verification, command));
+  }
   if (added.lines > 0 && verification.proved()) {
     say_lines(
         fmt::format("  besides {} lines that the profile {} adds, whose effect on the control "

@@ -43,6 +43,14 @@ execute_process(
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "the example ends with ${result}:\n${said}")
 endif()
+execute_process(
+  COMMAND ${SCRATCH}/installed/bin/batten time ${SCRATCH}/smooth.ngc --machine linuxcnc --json -
+  OUTPUT_VARIABLE times COMMAND_ERROR_IS_FATAL ANY)
+string(JSON seconds GET "${times}" time_s)
+string(SUBSTRING "${seconds}" 0 5 seconds)
+if(NOT said MATCHES "the whole program: ${seconds}[0-9]* s")
+  message(FATAL_ERROR "the library does not say ${seconds} s:\n${said}")
+endif()
 # The program of the command line says of it what the library said.
 must_run(${SCRATCH}/installed/bin/batten verify ${ROOT}/samples/noisy_line_arc/program.ngc
          ${SCRATCH}/smooth.ngc --tolerance 0.05)

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "postproc/batch/batch_progress.h"
+#include "postproc/progress_text.h"
 #include "postproc/batch/leftovers.h"
 
 namespace batten::postproc {

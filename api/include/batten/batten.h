@@ -1,5 +1,5 @@
 // Batten as a library: read a CNC program, smooth it within a tolerance, prove that two programs do
-// the same.
+// the same, predict how long a machine needs for one.
 //
 //   find_package(batten REQUIRED)
 //   target_link_libraries(my_program PRIVATE batten::batten)
@@ -136,5 +136,39 @@ struct Proof {
 // both ways and in order?
 [[nodiscard]] Proof verify(std::string_view old_program, std::string_view new_program,
                            double tolerance_mm, ProgramUnits units = ProgramUnits::kAsWritten);
+
+// --- time --------------------------------------------------------------------------------------
+
+struct TimeOptions {
+  // Required: see machine_names, or a file ending in .toml, or the .ini of a LinuxCNC machine.
+  std::string machine;
+  std::string target;  // see target_names: what G4 P means; empty: as the machine's control has it
+  ProgramUnits units = ProgramUnits::kAsWritten;
+};
+
+// What the time leaves out or had to assume. `id` as in `batten time`.
+struct NotTimed {
+  std::string id;
+  std::uint32_t first_line = 0;
+  std::size_t count = 0;
+  std::string text;
+};
+
+// Seconds that the machine is predicted to need. The parts sum to the whole.
+struct ProgramTime {
+  bool understood = false;  // no time otherwise
+  double seconds = 0;
+  double cutting = 0;
+  double rapids = 0;
+  double dwells = 0;
+  double tool_changes = 0;
+  double spindle = 0;          // until it is up to speed
+  double rotary = 0;           // moves of rotary axes alone
+  double below_half_feed = 0;  // of `cutting`: at less than half of the programmed feed
+  std::vector<NotTimed> not_timed;
+  std::vector<Message> messages;
+};
+
+[[nodiscard]] ProgramTime time(std::string_view program, const TimeOptions& options);
 
 }  // namespace batten

@@ -1,0 +1,18 @@
+// Colour in messages: on a terminal, unless the user does not want it.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace batten::postproc {
+
+enum class Ink { kError, kWarning, kNote, kGood };
+
+// Whether standard error is a terminal that shows colours, and NO_COLOR (https://no-color.org) is
+// empty or not set.
+[[nodiscard]] bool shows_colour();
+
+// The text in a colour, as terminals take it (ECMA-48); as it is when `colour` is false.
+[[nodiscard]] std::string inked(std::string_view text, Ink ink, bool colour);
+
+}  // namespace batten::postproc
