@@ -121,7 +121,8 @@ class StretchMaker {
       emit(part, from + middle, end - start, rise.potential_at(middle));
       start = end;
     }
-    intervals.back().end_bound = to == part.length ? part.end_bound : KinematicPathLimits::kNone;
+    intervals.back().end_bound = KinematicPathLimits::kNone;
+    if (to == part.length) intervals.back().end_bound = part.end_bound;
   }
 
   void close() {

@@ -184,9 +184,9 @@ void PartChain::find_potentials(double start_speed, double end_speed, const Pote
   for (std::size_t i = 0; i < n; ++i) {
     const bool last = i + 1 == n;
     const double bound = potential.of_speed(last ? end_speed : parts[i].end_bound);
-    const double next = last ? KinematicPathLimits::kNone : parts[i + 1].cap;
     const double rising = w[i] + parts[i].slope * parts[i].length;
-    w[i + 1] = std::min({parts[i].cap, next, bound, rising});
+    w[i + 1] = std::min({parts[i].cap, bound, rising});
+    if (!last) w[i + 1] = std::min(w[i + 1], parts[i + 1].cap);
   }
   for (std::size_t i = n; i-- > 0;) {
     w[i] = std::min(w[i], w[i + 1] + parts[i].slope * parts[i].length);

@@ -122,7 +122,7 @@ PlanProblem make_plan_problem(std::span<const PathPiece> pieces, const PlanGrid&
     // Speed and acceleration run on from the end of the interval before, unless the bend jumps.
     const bool new_piece = k == first || grid.intervals[k - 1].piece != interval.piece;
     maker.add_place(derivatives_by_length(piece, interval.t0), new_piece);
-    lower(problem.places.back().most, grid.bounds[k] > 0 ? grid.bounds[k] : kNone);
+    if (grid.bounds[k] > 0) lower(problem.places.back().most, grid.bounds[k]);
     maker.add_place(derivatives_by_length(piece, middle_of(piece, interval)), true);
     maker.add_place(derivatives_by_length(piece, interval.t1), true);
   }
