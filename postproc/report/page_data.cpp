@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
 #include "postproc/report/compact_numbers.h"
 #include "postproc/report/json_report.h"
+#include "postproc/report/page_speed.h"
 #include "postproc/verification.h"
 
 namespace batten::postproc {
@@ -70,6 +72,11 @@ Json columns_of(const Json& runs) {
   return columns;
 }
 
+SpeedAlong speed_along(const ReadProgram& read, const Machine& machine) {
+  const auto speeds = std::make_shared<ProgramSpeeds>(read, list_events(read), machine);
+  return [speeds](std::uint32_t motion, double share) { return speeds->at(motion, share); };
+}
+
 Json path_of(const SmoothReport& report, std::size_t most_vertices) {
   const SmoothResult& result = report.result;
   if (!result.understood) return path_columns({});
@@ -85,9 +92,13 @@ Json path_of(const SmoothReport& report, std::size_t most_vertices) {
   const SmoothOptions& options = report.options;
   const Verification verification =
       verify(old_program, new_program, {options.tolerance_mm, options.tolerance_kind});
+  PagePathOptions drawing = {options.tolerance_mm, options.tolerance_kind, most_vertices};
+  if (options.machine != nullptr) {
+    drawing.speed_before = speed_along(old_program, *options.machine);
+    drawing.speed_after = speed_along(new_program, *options.machine);
+  }
   Json columns =
-      path_columns(page_path(old_program, new_program, verification, result.runs,
-                             {options.tolerance_mm, options.tolerance_kind, most_vertices}));
+      path_columns(page_path(old_program, new_program, verification, result.runs, drawing));
   columns["events"] = verification.events_compared;
   return columns;
 }
