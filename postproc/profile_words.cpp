@@ -129,6 +129,7 @@ std::string with_tolerance(std::string line, std::string_view tolerance) {
 std::vector<std::string> filled_in(const std::vector<std::string>& lines,
                                    std::string_view tolerance) {
   std::vector<std::string> filled;
+  filled.reserve(lines.size());
   for (const std::string& line : lines) filled.push_back(with_tolerance(line, tolerance));
   return filled;
 }

@@ -148,13 +148,12 @@ class StepReader {
         return add_wait(StepKind::kSpindle, 0);
       case 6:
         return change_tool(selected_);
-      case 0:
+      case 0:  // at the end of the block
       case 1:
       case 2:
       case 30:
       case 60:
-        return;  // at the end of the block
-      case 48:   // override switches
+      case 48:  // override switches
       case 49:
       case 97:  // calls: said with their own reason
       case 98:

@@ -75,6 +75,7 @@ std::string python_string(const std::string& text) {
 std::optional<int> run_silently(const std::vector<std::string>& words, std::string& error) {
   std::vector<std::string> copies = words;
   std::vector<char*> arguments;
+  arguments.reserve(copies.size() + 1);
   for (std::string& word : copies) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;
