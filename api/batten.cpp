@@ -97,10 +97,12 @@ struct InnerOptions {
 
 void choose_machine(const std::string& name, InnerOptions& all,
                     std::vector<std::string>& problems) {
-  if (name.empty() && all.options.target == nullptr) return;
-  all.own_machine = postproc::choose_machine(
-      name.empty() ? std::string(all.options.target->default_machine()) : name, "machine",
-      problems);
+  std::string choice = name;
+  if (choice.empty()) {
+    if (all.options.target == nullptr) return;
+    choice = all.options.target->default_machine();
+  }
+  all.own_machine = postproc::choose_machine(choice, "machine", problems);
   all.options.machine = all.own_machine.get();
 }
 

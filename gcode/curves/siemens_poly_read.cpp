@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <string>
 #include <utility>
 
@@ -21,7 +20,7 @@ constexpr std::array<char, 3> kAxes = {'X', 'Y', 'Z'};
 
 double value_of(const std::vector<double>& coefficients, double p) {
   double value = 0;
-  for (const double each : coefficients | std::views::reverse) value = value * p + each;
+  for (std::size_t i = coefficients.size(); i-- > 0;) value = value * p + coefficients[i];
   return value;
 }
 
