@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "geometry/arc_spline.h"
 #include "geometry/bspline_curve.h"
 #include "geometry/path.h"
 
@@ -20,6 +21,7 @@ struct ArcFitOptions {
   // printed ends are the ends that the arcs were made for. 0: no rounding. The first and the
   // last place are met exactly and are not rounded.
   double grid = 0;
+  ArcEffort effort = ArcEffort::kQuick;  // of a flat curve
 };
 
 // Lines and arcs along `curve` between two parameters. The pieces chain exactly; where the

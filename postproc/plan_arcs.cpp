@@ -56,6 +56,7 @@ geometry::ArcFitOptions fit_options(const PlanOptions& options, const PlaneAxes&
   fit.min_radius = options.target->min_arc_radius();
   fit.max_radius = options.target->max_arc_radius();
   fit.grid = arc_grid(options);
+  fit.effort = options.arc_effort;
   return fit;
 }
 

@@ -233,11 +233,18 @@ class RunSmoother {
   // `share` of the tolerance belongs to the form; `left` is what the curve leaves.
   void add_candidates(const RunCurve& curve, double share, double left) {
     const geometry::FairPath& fair = curve.path;
+    const auto effort = few_wanted() ? geometry::ArcEffort::kQuick : geometry::ArcEffort::kBrief;
     const auto plan_with = [&](double multiple) {
-      return PlanOptions{
-          options_.target,       options_.machine,       units_,
-          context_.before.plane, options_.prefer,        std::min(left, multiple * share),
-          keep_corner_angle(),   linearize_of(options_), most_moves_for_accuracy(context_.blocks)};
+      return PlanOptions{options_.target,
+                         options_.machine,
+                         units_,
+                         context_.before.plane,
+                         options_.prefer,
+                         std::min(left, multiple * share),
+                         keep_corner_angle(),
+                         linearize_of(options_),
+                         most_moves_for_accuracy(context_.blocks),
+                         effort};
     };
     if (options_.output != Form::kLines && !arcs_are_hopeless(fair)) {
       const PlanOptions arcs = plan_with(one_sided() ? kFineArcs : kArcs);
