@@ -241,7 +241,8 @@ double about_chords(const CurvePieces& pieces, double deviation) {
 std::size_t most_pieces(const CurvePieces& pieces, std::size_t stretches,
                         const ArcFitOptions& options, bool flat) {
   if (flat) return std::numeric_limits<std::size_t>::max();
-  return stretches + static_cast<std::size_t>(about_chords(pieces, options.max_deviation));
+  const auto chords = static_cast<std::size_t>(about_chords(pieces, options.max_deviation));
+  return std::min(stretches + chords, options.at_most);
 }
 
 void check(const ArcFitOptions& options) {
