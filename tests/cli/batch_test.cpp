@@ -161,6 +161,26 @@ TEST_F(Batch, DoesAgainWhatChanged) {
   EXPECT_FALSE(contains(other.err, "done already")) << other.err;
 }
 
+// A machine file holds only what differs from the file that it is based on.
+TEST_F(Batch, DoesAgainWhatAMachineFileBehindItsOwnChanged) {
+  fs::remove_all(file("in/mill"));
+  const std::string with_machine = "--machine mine.toml";
+  put("mine.toml", "based-on = \"shop.toml\"\n");
+  put("shop.toml", "based-on = \"linuxcnc\"\nmax-acceleration = 500\n");
+  ASSERT_EQ(batch("out", with_machine).exit_code, 0);
+  const ProcessResult same = batch("out", with_machine);
+  EXPECT_TRUE(contains(same.err, "done already: 4 of 4 programs")) << same.err;
+
+  const double slow = record_of("out", "inch_ellipse.ngc")["time_before_s"];
+  put("shop.toml", "based-on = \"linuxcnc\"\nmax-acceleration = 5000\n");
+  const ProcessResult again = batch("out", with_machine);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_FALSE(contains(again.err, "done already")) << again.err;
+  EXPECT_LT(record_of("out", "inch_ellipse.ngc")["time_before_s"], slow);
+  ASSERT_EQ(batch("fresh", with_machine).exit_code, 0);
+  expect_same(files_below(file("out")), files_below(file("fresh")));
+}
+
 // --- killed and begun again ----------------------------------------------------------------------
 
 // Kills it as soon as `files` files are in the new tree and some milliseconds went by, which is
