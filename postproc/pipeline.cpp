@@ -16,6 +16,7 @@
 #include "postproc/assembly.h"
 #include "postproc/band_notes.h"
 #include "postproc/conversion.h"
+#include "postproc/joined_times.h"
 #include "postproc/provenance.h"
 #include "postproc/run_choice.h"
 #include "postproc/run_cutting.h"

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "postproc/joined_times.h"
 #include "postproc/method_times.h"
 #include "tests/support/method_cases.h"
 #include "wavy_programs.h"
