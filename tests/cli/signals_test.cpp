@@ -138,7 +138,7 @@ class Signals : public testing::Test {
   }
 
   BattenFolder folder_;
-  std::string old_ = long_program(2000);
+  std::string old_ = long_program(1000);
   std::string new_;
   Counts counts_;
 };
@@ -214,7 +214,7 @@ struct Change {
 class ChangedInput : public testing::TestWithParam<Change> {};
 
 TEST_P(ChangedInput, IsNotReplacedInPlace) {
-  const std::string old = long_program(6000);
+  const std::string old = long_program(3000);
   std::mt19937 random(3);
   int caught = 0;
   double longest = 400'000;  // microseconds
