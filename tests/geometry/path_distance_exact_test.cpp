@@ -112,6 +112,7 @@ struct AskedPair {
   Chain a;
   Chain b;
   std::vector<std::int64_t> tolerances;  // 1e-9 mm, above 0
+  std::int64_t shift = 0;  // 1e-9 mm: the second is the first, so far away; 0: it is not
 };
 
 class PairMaker {
@@ -133,7 +134,7 @@ class PairMaker {
         pair.b = shaken(pair.a);
         break;
       case 2:
-        pair.b = shifted(pair.a);
+        pair.b = shifted(pair);
         break;
       case 3:
         pair.a = zig_zag();
@@ -186,7 +187,8 @@ class PairMaker {
   }
 
   // By a vector whose length is a whole number, in some order and with some signs.
-  Chain shifted(Chain chain) {
+  Chain shifted(AskedPair& pair) {
+    Chain chain = pair.a;
     constexpr int kWhole[][3] = {{0, 0, 1}, {0, 3, 4}, {1, 2, 2}, {2, 3, 6}, {0, 5, 12},
                                  {1, 4, 8}, {4, 4, 7}, {2, 6, 9}, {6, 6, 7}, {0, 8, 15}};
     const auto& whole = kWhole[below(10)];
@@ -196,6 +198,10 @@ class PairMaker {
     for (Place& place : chain) {
       for (std::size_t k = 0; k < 3; ++k) place[k] += times * by[k];
     }
+    const auto length = std::llround(std::sqrt(
+        static_cast<double>(whole[0] * whole[0] + whole[1] * whole[1] + whole[2] * whole[2])));
+    pair.shift = times * length * kNanometresPerThousandth;
+    pair.tolerances.push_back(pair.shift);
     return chain;
   }
 
@@ -309,6 +315,8 @@ struct Met {
   int proved = 0;
   int broken = 0;
   int open = 0;
+  int shifts = 0;  // by exactly the tolerance
+  int shifts_open = 0;
   int at_the_tolerance = 0;  // d is the tolerance, and proved
   int a_digit_beside = 0;    // d is within 2e-9 mm of the tolerance, and decided
 };
@@ -328,6 +336,10 @@ void check(const AskedPair& pair, std::int64_t nanometres, bool with_bounds, Met
   SCOPED_TRACE(testing::Message() << "tolerance " << nanometres << "e-9, a " << text_of(pair.a)
                                   << "b " << text_of(pair.b) << "bounds " << found.bounds.at_least
                                   << " " << found.bounds.at_most);
+  if (nanometres == pair.shift) {
+    ++met.shifts;
+    met.shifts_open += found.verdict == Verdict::kNotProved ? 1 : 0;
+  }
   switch (found.verdict) {
     case Verdict::kProved:
       ++met.proved;
@@ -369,13 +381,18 @@ TEST(PathDistanceExact, NeverProvesOrRefutesWhatIsNotSoAndLeavesOpenOnlyWhatIsAt
     }
     if (HasFailure()) break;
   }
-  std::printf("%d pairs: %d proved, %d broken, %d open; %d at the tolerance, %d within 2e-9 mm\n",
-              pairs, met.proved, met.broken, met.open, met.at_the_tolerance, met.a_digit_beside);
+  std::printf(
+      "%d pairs: %d proved, %d broken, %d open; %d at the tolerance, %d within 2e-9 mm; of %d "
+      "shifts "
+      "by the tolerance %d open\n",
+      pairs, met.proved, met.broken, met.open, met.at_the_tolerance, met.a_digit_beside, met.shifts,
+      met.shifts_open);
   // The seeds are fixed, so the mix is too: a quarter of it at least on each side, and the edge
   // often.
   EXPECT_GT(met.proved, pairs);
   EXPECT_GT(met.broken, pairs);
-  EXPECT_GT(met.at_the_tolerance, pairs / kPairsPerBounds / 20);
+  EXPECT_GT(met.shifts - met.shifts_open, pairs / 20);
+  EXPECT_GT(met.at_the_tolerance, pairs / kPairsPerBounds / 10);
   EXPECT_GT(met.a_digit_beside, pairs / kPairsPerBounds / 10);
 }
 
