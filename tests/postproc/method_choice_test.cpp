@@ -104,7 +104,8 @@ TEST(BestMethod, IsThreePerCentFasterThanGuoLiteralOnAStar) {
 // Times of one method that differ by less than a percent are equal, and then other merits count.
 TEST(BestMethod, IsNotSlowerThanAnyMethodOfItsOwnOnAStar) {
   const double best = time_of_star(Method::kBest, Form::kAuto);
-  for (const Method method : {Method::kFair, Method::kGuo, Method::kOzcan, Method::kRacing, Method::kNaseath}) {
+  for (const Method method :
+       {Method::kFair, Method::kGuo, Method::kOzcan, Method::kRacing, Method::kNaseath}) {
     EXPECT_LT(best, 1.01 * time_of_star(method, Form::kAuto)) << name_of(method);
   }
 }
