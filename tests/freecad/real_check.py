@@ -14,6 +14,7 @@ import tempfile
 
 SKIPPED = 77
 TOLERANCE = "0.01"
+SAME_TIME = 0.005  # what smooth itself takes for no slower: the error of its estimate
 HANGS = 300  # s
 wrong = []
 
@@ -84,7 +85,7 @@ def check_other_forms(batten, out):
     blocks, seconds = smoothed(batten, out, "old.nc", "--target", "linuxcnc", "--output", "arcs")
     print(f"--output arcs: {blocks[0]} -> {blocks[1]} blocks, {seconds[0]:.2f} -> {seconds[1]:.2f} s")
     expect(blocks[1] < 0.75 * blocks[0], "a quarter fewer blocks as arcs", blocks)
-    expect(seconds[1] < 1.005 * seconds[0], "no more time as arcs", seconds)
+    expect(seconds[1] < (1 + SAME_TIME) * seconds[0], "no more time as arcs", seconds)
     (out / "fast.nc").write_text((out / "old.nc").read_text().replace("F1500", "F6000"))
     blocks, seconds = smoothed(batten, out, "fast.nc", "--target", "grbl")
     print(f"F6000, grbl: {blocks[0]} -> {blocks[1]} blocks, {seconds[0]:.2f} -> {seconds[1]:.2f} s")
@@ -100,7 +101,7 @@ def check_programs(batten, out):
     expect(rewritten, "runs are rewritten")
     blocks, seconds = figures(report)
     expect(blocks[1] < blocks[0], "fewer blocks", blocks)
-    expect(seconds[1] <= seconds[0], "no more time", seconds)
+    expect(seconds[1] < (1 + SAME_TIME) * seconds[0], "no more time", seconds)
     if shutil.which("rs274"):
         expect(rs274_accepts("old.nc", out), "rs274 takes FreeCAD's program")
         expect(rs274_accepts("new.nc", out), "rs274 takes the smoothed program")
