@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "geometry/bezier_halves.h"
 
@@ -75,7 +76,7 @@ bool ChordProof::near_end(const Point3& p) const {
 }
 
 bool chord_proved(const CurvePieces& pieces, double from, double to, ChordProof proof) {
-  return chord_proved(pieces, pieces.index_of(from), from, to, proof);
+  return chord_proved(pieces, pieces.index_of(from), from, to, std::move(proof));
 }
 
 bool chord_proved(const CurvePieces& pieces, std::size_t first, double from, double to,
