@@ -180,12 +180,12 @@ Point3 end_point(const PathPiece& piece) {
       piece);
 }
 
-Point3 point_at(const CubicBezier& b, double t) {
-  if (t <= 0) return b.control[0];
-  if (t >= 1) return b.control[3];
+Point3 point_at(const CubicBezier& piece, double t) {
+  const Point3* p = piece.control;
+  if (t <= 0) return p[0];
+  if (t >= 1) return p[3];
   const double s = 1 - t;
-  return s * s * s * b.control[0] + 3 * s * s * t * b.control[1] + 3 * s * t * t * b.control[2] +
-         t * t * t * b.control[3];
+  return s * s * s * p[0] + 3 * s * s * t * p[1] + 3 * s * t * t * p[2] + t * t * t * p[3];
 }
 
 Point3 point_at(const PathPiece& piece, double t) {
@@ -272,19 +272,20 @@ double second_derivative_bound(const PathPiece& piece) {
       piece);
 }
 
-CubicBezier sub_piece(const CubicBezier& b, double t0, double t1) {
+CubicBezier sub_piece(const CubicBezier& piece, double t0, double t1) {
+  const Point3* p = piece.control;
   // The blossom of the cubic at (t0,t0,t0), (t0,t0,t1), (t0,t1,t1), (t1,t1,t1).
-  const auto blossom = [&b](double u, double v, double w) -> Point3 {
+  const auto blossom = [p](double u, double v, double w) -> Point3 {
     Point3 d[3];
-    for (int i = 0; i < 3; ++i) d[i] = (1 - u) * b.control[i] + u * b.control[i + 1];
+    for (int i = 0; i < 3; ++i) d[i] = (1 - u) * p[i] + u * p[i + 1];
     for (int i = 0; i < 2; ++i) d[i] = (1 - v) * d[i] + v * d[i + 1];
     return (1 - w) * d[0] + w * d[1];
   };
   CubicBezier part;
-  part.control[0] = t0 > 0 ? blossom(t0, t0, t0) : b.control[0];
+  part.control[0] = t0 > 0 ? blossom(t0, t0, t0) : p[0];
   part.control[1] = blossom(t0, t0, t1);
   part.control[2] = blossom(t0, t1, t1);
-  part.control[3] = t1 < 1 ? blossom(t1, t1, t1) : b.control[3];
+  part.control[3] = t1 < 1 ? blossom(t1, t1, t1) : p[3];
   return part;
 }
 
