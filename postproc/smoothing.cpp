@@ -233,18 +233,11 @@ class RunSmoother {
   // `share` of the tolerance belongs to the form; `left` is what the curve leaves.
   void add_candidates(const RunCurve& curve, double share, double left) {
     const geometry::FairPath& fair = curve.path;
-    const auto effort = few_wanted() ? geometry::ArcEffort::kQuick : geometry::ArcEffort::kBrief;
     const auto plan_with = [&](double multiple) {
-      return PlanOptions{options_.target,
-                         options_.machine,
-                         units_,
-                         context_.before.plane,
-                         options_.prefer,
-                         std::min(left, multiple * share),
-                         keep_corner_angle(),
-                         linearize_of(options_),
-                         most_moves_for_accuracy(context_.blocks),
-                         effort};
+      return PlanOptions{
+          options_.target,       options_.machine,       units_,
+          context_.before.plane, options_.prefer,        std::min(left, multiple * share),
+          keep_corner_angle(),   linearize_of(options_), most_moves_for_accuracy(context_.blocks)};
     };
     if (options_.output != Form::kLines && !arcs_are_hopeless(fair)) {
       const PlanOptions arcs = plan_with(one_sided() ? kFineArcs : kArcs);
@@ -252,7 +245,8 @@ class RunSmoother {
       // Who asks for few arcs has no use for those that follow the fair curve closely.
       const bool enough = few_wanted() && curve.method == Method::kFair;
       if (lies_flat() && !enough && !one_sided()) {
-        const PlanOptions fine = plan_with(kFineArcs);
+        PlanOptions fine = plan_with(kFineArcs);
+        fine.arc_effort = geometry::ArcEffort::kBrief;  // they are there to be near, not few
         add(curve, plan_arcs(run_, fair, fine), fine.max_deviation);
       }
       const bool few = few_wanted() || !run_.arcs.empty();
