@@ -246,7 +246,8 @@ class RunSmoother {
       const bool enough = few_wanted() && curve.method == Method::kFair;
       if (lies_flat() && !enough && !one_sided()) {
         PlanOptions fine = plan_with(kFineArcs);
-        fine.arc_effort = geometry::ArcEffort::kBrief;  // they are there to be near, not few
+        // They are there to be near, not few.
+        if (!few_wanted()) fine.arc_effort = geometry::ArcEffort::kBrief;
         add(curve, plan_arcs(run_, fair, fine), fine.max_deviation);
       }
       const bool few = few_wanted() || !run_.arcs.empty();
