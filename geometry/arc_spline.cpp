@@ -28,11 +28,14 @@ struct Effort {
   std::span<const double> parts;
   // The arcs to one end, by their place in the range of curvatures.
   std::span<const double> in_range;
+  // `PlaneBand::reach` looks at each so many-th sample: what lies between them closes a fan by
+  // little more, and an arc that is taken is held against all of them in the end.
+  std::size_t stride = 1;
 };
 
 constexpr std::array kBriefParts = {1.0, 0.9, 0.75, 0.5};
 constexpr std::array kBriefInRange = {0.1, 0.5, 0.9};
-constexpr Effort kBrief = {5, 2, kBriefParts, kBriefInRange};
+constexpr Effort kBrief = {5, 2, kBriefParts, kBriefInRange, 4};
 
 constexpr std::array kQuickParts = {1.0, 0.93, 0.84, 0.74, 0.6, 0.4};
 constexpr std::array kQuickInRange = {0.05, 0.3, 0.5, 0.7, 0.95};
@@ -101,7 +104,8 @@ class Search {
          std::size_t at_most = kNone - 1)
       : options_(options),
         effort_(effort_for(options.effort)),
-        band_(points, {options.tolerance, 1 / options.min_radius, options.max_sweep}),
+        band_(points,
+              {options.tolerance, 1 / options.min_radius, options.max_sweep, effort_.stride}),
         count_(band_.samples().size()),
         best_arcs_(at_most + 1) {}
 

@@ -54,6 +54,7 @@ class PlaneBand {
     double tolerance = 0;      // mm, > 0
     double max_curvature = 0;  // 1/mm, > 0
     double max_sweep = 0;      // radians, below pi
+    std::size_t stride = 1;    // `reach` looks at each so many-th sample as long as it may
   };
 
   // Requires two points or more, neighbours apart.
@@ -63,7 +64,7 @@ class PlaneBand {
   [[nodiscard]] const Limits& limits() const { return limits_; }
 
   [[nodiscard]] ArcFan fan(const BandEntry& entry) const;
-  // The end of that fan, quickly: narrow places between samples may be overlooked.
+  // The end of that fan; with a stride narrow places between the samples may be overlooked.
   [[nodiscard]] ArcReach reach(const BandEntry& entry) const;
 
   // Whether the arc (or line) from `entry` stays within the tolerance of the polyline, and the

@@ -77,7 +77,10 @@ TEST(PlaneBand, ReachIsTheEndOfTheFan) {
     const double x = 0.05 * i;
     points.push_back({x, 3 * std::sin(0.4 * x) + 0.5 * std::sin(1.7 * x)});
   }
-  const PlaneBand band(points, limits());
+  PlaneBand::Limits strides = limits();
+  strides.stride = 4;
+  const PlaneBand band(points, strides);
+  const PlaneBand exact(points, limits());
   const auto& samples = band.samples();
   for (std::size_t next = 1; next + 1 < samples.size(); next += 7) {
     for (const double off : {0.0, 0.004, -0.004}) {
@@ -86,6 +89,7 @@ TEST(PlaneBand, ReachIsTheEndOfTheFan) {
       const std::size_t reach = band.reach(entry).end;
       EXPECT_GE(reach, end);
       EXPECT_LE(reach, end + 4);
+      EXPECT_EQ(exact.reach(entry).end, end);
     }
   }
 }
