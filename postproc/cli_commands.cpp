@@ -252,6 +252,12 @@ VerifyCommand verify_command(const Given& given, const std::vector<std::string>&
   command.json_file = given.value("json").value_or("");
   command.force = given.flag("force");
   read_units_into(command.units, given, problems);
+  if (const auto text = given.value("target")) {
+    command.target = gcode::find_dialect(*text);
+    if (command.target == nullptr) {
+      problems.push_back(unknown_name("target", *text, target_names()));
+    }
+  }
   read_tolerance_kind_into(command.tolerance_kind, given, problems);
   if (const auto file = given.value("profile")) {
     command.profile = read_target_profile(*file, nullptr, problems);

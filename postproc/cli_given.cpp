@@ -59,7 +59,7 @@ constexpr std::array kSmoothRows = {
               .default_value = "best",
               .in_config = true},
     OptionRow{.name = "output",
-              .value = "auto|arcs|lines",
+              .value = "auto|curves|arcs|lines",
               .help = "what rewritten runs are made of",
               .default_value = "auto",
               .in_config = true},
@@ -125,7 +125,12 @@ constexpr std::array kTargetListRows = {
     OptionRow{
         .name = "show", .value = "NAME", .help = "print a profile of this target to start from"},
     kJson, kForce};
-constexpr std::array kVerifyRows = {kTolerance, kProfile, kToleranceKind, kUnits, kJson, kForce};
+constexpr OptionRow kCurvesOf = {
+    .name = "target",
+    .value = "NAME",
+    .help = "the control whose own curves (G06.2, POLY, G5 ..) are to be read in both programs"};
+
+constexpr std::array kVerifyRows = {kTolerance, kProfile, kCurvesOf, kToleranceKind, kUnits, kJson, kForce};
 constexpr std::array kInspectRows = {kUnits, kAllow, kJson, kForce};
 constexpr std::array kListRows = {kJson, kForce};
 

@@ -15,7 +15,7 @@
 
 namespace batten::postproc {
 
-enum class Form { kAuto, kArcs, kLines };
+enum class Form { kAuto, kArcs, kLines, kCurves };
 enum class Method { kBest, kFair, kNaseath, kGuo, kOzcan, kNaseathLiteral, kGuoLiteral, kNone };
 enum class Prefer { kTime, kAccuracy, kSize };
 enum class Linearize { kMinLink, kChord, kIlca, kBlca };
