@@ -31,15 +31,27 @@ bool all_known(const std::array<bool, 3>& axes, const Position& position) {
   return true;
 }
 
-// The curve that the control reads in these lines; nothing when it reads them as anything else.
-std::optional<CurveReading> read_again(const std::string& text, std::size_t lines,
-                                       const CurveFormat& format, const CurveStart& start) {
+// Where the curve ends that the control reads in these lines, and its feed.
+struct ReadAgain {
+  Position end;
+  std::optional<double> feed;
+};
+
+// Nothing when the control reads the lines as anything else than curves that follow each other.
+std::optional<ReadAgain> read_again(const std::string& text, std::size_t lines,
+                                    const CurveFormat& format, const CurveStart& start) {
   Diagnostics ignored;
   const Program program = parse(SourceText("", text), ignored);
-  CurveResult result = format.read(program, 0, start);
-  auto* reading = std::get_if<CurveReading>(&result);
-  if (reading == nullptr || reading->blocks != lines || reading->motions.empty()) return {};
-  return std::move(*reading);
+  ReadAgain read{start.position, {}};
+  for (std::uint32_t block = 0; block < lines;) {
+    const CurveResult result = format.read(program, block, {read.end, start.units});
+    const auto* reading = std::get_if<CurveReading>(&result);
+    if (reading == nullptr || reading->blocks == 0 || reading->motions.empty()) return {};
+    read.end.mm = geometry::end_point(reading->motions.back().piece);
+    if (reading->feed) read.feed = reading->feed;
+    block += reading->blocks;
+  }
+  return read;
 }
 
 }  // namespace
@@ -68,12 +80,12 @@ bool Writer::curve_to(const geometry::BsplineCurve& curve, double feed, int last
     text += line;
     text += line_end_;
   }
-  const auto reading = read_again(text, lines->size(), *format, {state_.position, setting.units});
-  if (!reading) return false;
+  const auto read = read_again(text, lines->size(), *format, {state_.position, setting.units});
+  if (!read) return false;
   text_ += text;
-  state_.position.mm = geometry::end_point(reading->motions.back().piece);
+  state_.position = read->end;
   state_.modal.motion = MotionMode::kOther;
-  if (reading->feed) state_.modal.feed = *reading->feed * unit_;
+  if (read->feed) state_.modal.feed = *read->feed * unit_;
   return true;
 }
 

@@ -130,7 +130,8 @@ constexpr OptionRow kCurvesOf = {
     .value = "NAME",
     .help = "the control whose own curves (G06.2, POLY, G5 ..) are to be read in both programs"};
 
-constexpr std::array kVerifyRows = {kTolerance, kProfile, kCurvesOf, kToleranceKind, kUnits, kJson, kForce};
+constexpr std::array kVerifyRows = {kTolerance, kProfile, kCurvesOf, kToleranceKind,
+                                    kUnits,     kJson,    kForce};
 constexpr std::array kInspectRows = {kUnits, kAllow, kJson, kForce};
 constexpr std::array kListRows = {kJson, kForce};
 

@@ -93,8 +93,9 @@ class CurvePlanner {
     const CurvePieces pieces(curve_, stretch.from, stretch.to);
     std::vector<CurvePart> parts;
     double done = stretch.from;
+    const double noise = geometry::kSameKnot * (curve_.last() - curve_.first());
     const auto bend_to = [&](double end) {
-      if (end > done) parts.push_back({done, end, false});
+      if (end > done + noise) parts.push_back({done, end, false});
       done = std::max(done, end);
     };
     const std::vector<double> corners = pieces.corners();
@@ -145,6 +146,7 @@ class CurvePlanner {
   }
 
   void add_curve(const BsplineCurve& curve, double from, double to) {
+    if (!(from < to)) return;
     BsplineCurve part = curve.part(from, to);
     const std::vector<CubicBezier> pieces = part.bezier_pieces();
     const std::vector<double> breaks = part.breakpoints();

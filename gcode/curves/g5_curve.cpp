@@ -127,6 +127,7 @@ CurveResult read_g5(const Program& program, std::uint32_t first, const CurveStar
 }
 
 bool bends_one_way(const CubicBezier& piece) {
+  if (!is_flat(piece, piece.control[0].z(), geometry::kSamePlace)) return false;
   const geometry::PathPiece path = piece;
   Vector3 before = geometry::direction_at(path, 0);
   double sum = 0;

@@ -22,9 +22,10 @@ namespace batten::gcode {
 [[nodiscard]] CurveResult read_g5(const Program& program, std::uint32_t first,
                                   const CurveStart& start);
 
-// Whether LinuxCNC's arcs follow the piece: they are two for each sixteenth of it, found by
-// tangents, and a sixteenth whose tangents are parallel gives no arcs or wild ones. So each must
-// turn, all to one side, by `kLeastTurn` (radians) at least, and together by less than half a turn.
+// Whether the piece lies in a plane of XY and LinuxCNC's arcs follow it: they are two for each
+// sixteenth of it, found by tangents, and a sixteenth whose tangents are parallel gives no arcs or
+// wild ones. So each must turn, all to one side, by `kLeastTurn` (radians) at least, and together
+// by less than half a turn.
 [[nodiscard]] bool bends_one_way(const geometry::CubicBezier& piece);
 
 }  // namespace batten::gcode

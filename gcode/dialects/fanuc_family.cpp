@@ -1,4 +1,5 @@
-// FANUC and the controls that read its curves: Syntec, Mitsubishi. Facts: docs/controllers/fanuc.md.
+// FANUC and the controls that read its curves: Syntec, Mitsubishi. Facts:
+// docs/controllers/fanuc.md.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -73,9 +74,9 @@ class Fanuc final : public Rs274Dialect {
 std::span<const Dialect* const> fanuc_family() {
   static const Fanuc kFanuc("fanuc", "FANUC: arcs and helices; G06.2 under --output curves",
                             fanuc_curves());
-  static const Fanuc kSyntec(
-      "syntec", "Syntec: arcs and helices; G06.2 in G05 P10000 under --output curves",
-      syntec_curves());
+  static const Fanuc kSyntec("syntec",
+                             "Syntec: arcs and helices; G06.2 in G05 P10000 under --output curves",
+                             syntec_curves());
   static const Fanuc kMitsubishi(
       "mitsubishi", "Mitsubishi M700V: arcs and helices; G06.2 in G05 P10000 under --output curves",
       mitsubishi_curves());

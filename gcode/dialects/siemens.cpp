@@ -1,5 +1,4 @@
 // Siemens Sinumerik 840D, 828D, ONE. Facts: docs/controllers/siemens.md.
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -49,10 +48,8 @@ class Siemens final : public Rs274Dialect {
 
   // "; text": parentheses belong to functions there.
   std::string comment(std::string_view text) const override {
-    const bool printable =
-        std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
-    std::string line = "; " + std::string(text);
-    return printable && line_length(line) <= max_line_length() ? line : std::string();
+    if (Rs274Dialect::comment(text).empty()) return {};
+    return "; " + std::string(text);
   }
 
   const CurveFormat* curves() const override { return &siemens_poly(); }

@@ -30,8 +30,7 @@ struct Read {
 Read read(const gcode::SourceText& source, const VerifyCommand& command) {
   gcode::Diagnostics found;
   gcode::Program program = gcode::parse(source, found);
-  const gcode::CurveFormat* curves =
-      command.target != nullptr ? command.target->curves() : nullptr;
+  const gcode::CurveFormat* curves = command.target != nullptr ? command.target->curves() : nullptr;
   gcode::Interpretation interpretation =
       gcode::interpret(program, {.units = command.units, .curves = curves}, found);
   return {source, std::move(program), std::move(interpretation), std::move(found)};

@@ -20,21 +20,6 @@ inline geometry::BsplineCurve golden_curve() {
       {Point3(0, 0, 0), Point3(10, 0, 0), Point3(20, 10, 0), Point3(30, 10, 0), Point3(40, 0, 0)}};
 }
 
-// The values at the parameters that the golden curve is given with.
-struct GoldenPlace {
-  double parameter;
-  double x;
-  double y;
-};
-inline const std::vector<GoldenPlace>& golden_places() {
-  static const std::vector<GoldenPlace> kPlaces = {{0.2, 11.25, 2.3},
-                                                   {0.4, 18, 6.4},
-                                                   {0.55, 22.5625, 8.325},
-                                                   {0.7, 27.5, 8.3},
-                                                   {0.85, 33.1875, 5.725}};
-  return kPlaces;
-}
-
 // Starts at a place with three decimals. Legs of 0.5 to 8 mm; the direction turns by 0.9 radians
 // per leg at the most. In the plane: at a height of -1.
 inline geometry::BsplineCurve random_curve(unsigned seed, bool in_space) {
