@@ -38,7 +38,7 @@ struct VerifyCommand {
   geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
   gcode::Units units = gcode::Units::kUnknown;
   std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
-  const gcode::Dialect* target = nullptr;  // whose curves are read; nullptr: none are
+  const gcode::Dialect* target = nullptr;        // whose curves are read; nullptr: none are
   std::string json_file;
   bool force = false;
 };
