@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "gcode/curves/curve_format.h"
 #include "gcode/reason.h"
 #include "geometry/numeric.h"
 #include "postproc/machine/cycle_time.h"
@@ -38,6 +39,7 @@ constexpr double kLentToFair = 0.5;
 // Arcs get no more than this multiple of the form's share, however little the curve used, and
 // chords these: long ones are few, fine ones are near to the curve and keep the speed on a
 // control that rounds each of their corners.
+// Curves are as arcs here.
 constexpr double kArcs = 1.5;
 constexpr double kFineArcs = 0.25;
 constexpr double kLongChords = 1.5;
@@ -239,6 +241,10 @@ class RunSmoother {
           context_.before.plane, options_.prefer,        std::min(left, multiple * share),
           keep_corner_angle(),   linearize_of(options_), most_moves_for_accuracy(context_.blocks)};
     };
+    if (curves_wanted() && (curve.method == Method::kFair || options_.method != Method::kBest)) {
+      add_curves(curve, plan_with);
+    }
+    if (options_.output == Form::kCurves && has_curves()) return;
     if (options_.output != Form::kLines && !arcs_are_hopeless(fair)) {
       const PlanOptions arcs = plan_with(one_sided() ? kFineArcs : kArcs);
       add(curve, plan_arcs(run_, fair, arcs), arcs.max_deviation);
@@ -262,6 +268,27 @@ class RunSmoother {
       if (lines.max_deviation == before || is_hopeless(fair, lines)) continue;
       before = lines.max_deviation;
       add(curve, plan_lines(run_, fair, lines), lines.max_deviation);
+    }
+  }
+
+  [[nodiscard]] bool curves_wanted() const {
+    const gcode::CurveFormat* format = options_.target->curves();
+    if (format == nullptr || !format->complaint(context_.before).empty()) return false;
+    return options_.output == Form::kCurves ||
+           (options_.output == Form::kAuto && format->is_default());
+  }
+
+  [[nodiscard]] bool has_curves() const {
+    return std::ranges::any_of(result_.candidates,
+                               [](const Candidate& c) { return c.form == OutputForm::kCurves; });
+  }
+
+  // With all that the curve leaves of the tolerance, and nearer to the path that was meant.
+  template <typename PlanWith>
+  void add_curves(const RunCurve& curve, const PlanWith& plan_with) {
+    for (const double multiple : {kArcs, kFineArcs}) {
+      const PlanOptions options = plan_with(multiple);
+      add(curve, plan_curves(run_, curve.path, options), options.max_deviation);
     }
   }
 

@@ -26,10 +26,12 @@ struct Read {
   gcode::Diagnostics diagnostics;
 };
 
-Read read(const gcode::SourceText& source, gcode::Units units) {
+Read read(const gcode::SourceText& source, const VerifyCommand& command) {
   gcode::Diagnostics found;
   gcode::Program program = gcode::parse(source, found);
-  gcode::Interpretation interpretation = gcode::interpret(program, {.units = units}, found);
+  const gcode::CurveFormat* curves = command.target != nullptr ? command.target->curves() : nullptr;
+  gcode::Interpretation interpretation =
+      gcode::interpret(program, {.units = command.units, .curves = curves}, found);
   return {source, std::move(program), std::move(interpretation), std::move(found)};
 }
 
@@ -156,7 +158,7 @@ int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& sou
     say_lines(fmt::format("proved: {} and {} are the same, byte for byte\n", command.new_program,
                           command.old_program));
   }
-  const Read same = read(source, command.units);
+  const Read same = read(source, command);
   return write_json(command, {}, same, same);
 }
 
@@ -188,9 +190,9 @@ int run(const VerifyCommand& command) {
   if (!old_source || !new_source) return static_cast<int>(ExitCode::kFileError);
   if (old_source->text() == new_source->text()) return accept_same_bytes(command, *new_source);
 
-  const Read before = read(*old_source, command.units);
+  const Read before = read(*old_source, command);
   const AddedLines added = without_added_lines(command, before, *new_source);
-  const Read after = read(gcode::SourceText(new_source->name(), added.text), command.units);
+  const Read after = read(gcode::SourceText(new_source->name(), added.text), command);
   if (!is_understood(before, command.log_level)) {
     say("the old program is not understood, so nothing can be proved about the new one");
     return static_cast<int>(ExitCode::kNotUnderstood);
