@@ -10,6 +10,8 @@ namespace fs = std::filesystem;
 
 std::optional<std::string> intended_name(std::string_view half_written) {
   constexpr std::string_view kEnd = ".batten-part";
+  // The point before the name and the one of the ending are two.
+  if (half_written.size() <= kEnd.size()) return std::nullopt;
   if (!half_written.starts_with('.') || !half_written.ends_with(kEnd)) return std::nullopt;
   half_written.remove_prefix(1);
   half_written.remove_suffix(kEnd.size());

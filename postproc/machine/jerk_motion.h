@@ -23,8 +23,8 @@ struct JerkPhase {
 class JerkMotion {
  public:
   // `velocities` are those of joint_velocities(chain, rules); of the stretches that a change of
-  // speed runs over, the least jerk counts. It is never faster than the profile anywhere on the
-  // way.
+  // speed runs over, the least jerk counts. It takes no less time than
+  // the profile without a limit.
   JerkMotion(std::span<const VelocityStretch> chain, std::span<const double> velocities,
              const ProfileRules& rules);
 
