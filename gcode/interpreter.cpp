@@ -86,11 +86,12 @@ class Interpreter {
     auto next = curve.motions.begin();
     for (std::uint32_t i = first; i < first + curve.blocks; ++i) {
       meaning_ = BlockMeaning{};
-      meaning_.kind = BlockKind::kMotion;
+      meaning_.kind = BlockKind::kSettings;  // it says a knot, or that the curve begins
       meaning_.barrier = reason::kSpline;
       meaning_.of_curve = true;
       meaning_.state_after = static_cast<std::uint32_t>(read_.states.size() - 1);
       if (next != curve.motions.end() && next->block == i) {
+        meaning_.kind = BlockKind::kMotion;
         meaning_.motion = static_cast<std::int32_t>(read_.motions.size());
         read_.motions.push_back(motion_of(*next++, curve));
       }

@@ -58,7 +58,9 @@ int run(const TimeCommand& command) {
 
   gcode::Diagnostics found;
   const gcode::Program program = gcode::parse(*source, found);
-  const gcode::Interpretation meaning = gcode::interpret(program, {.units = command.units}, found);
+  const gcode::CurveFormat* curves = command.target != nullptr ? command.target->curves() : nullptr;
+  const gcode::Interpretation meaning =
+      gcode::interpret(program, {.units = command.units, .curves = curves}, found);
   print(found, *source, command.log_level);
   if (gcode::has_error(found)) return static_cast<int>(ExitCode::kNotUnderstood);
 

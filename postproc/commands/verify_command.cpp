@@ -26,12 +26,17 @@ struct Read {
   gcode::Diagnostics diagnostics;
 };
 
+// Those of the target that is named, or of the one that the profile adapts.
+const gcode::CurveFormat* curves_of(const VerifyCommand& command) {
+  if (command.target != nullptr) return command.target->curves();
+  return command.profile != nullptr ? command.profile->adapted->curves() : nullptr;
+}
+
 Read read(const gcode::SourceText& source, const VerifyCommand& command) {
   gcode::Diagnostics found;
   gcode::Program program = gcode::parse(source, found);
-  const gcode::CurveFormat* curves = command.target != nullptr ? command.target->curves() : nullptr;
   gcode::Interpretation interpretation =
-      gcode::interpret(program, {.units = command.units, .curves = curves}, found);
+      gcode::interpret(program, {.units = command.units, .curves = curves_of(command)}, found);
   return {source, std::move(program), std::move(interpretation), std::move(found)};
 }
 

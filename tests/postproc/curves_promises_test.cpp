@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -157,20 +156,6 @@ TEST_P(Curves, ProgramsOfRandomOnesAreProvedAndASecondPassChangesNothing) {
   EXPECT_GT(with_curves, 4);
 }
 
-// A wave that bends one way for long, so that every format has curves to say.
-std::string bend_program(const std::string& middle = "") {
-  std::string text = "G21 G90 G17\nG0 X40 Y0 Z5\nG1 Z-1 F300\n";
-  constexpr int kLines = 240;
-  for (int i = 1; i <= kLines; ++i) {
-    const double angle = 1.5 * std::numbers::pi * i / kLines;
-    const double radius = 40 + 3 * std::sin(2 * angle);
-    text += fmt::format("{}X{:.4f} Y{:.4f}{}\n", i == 1 ? "G1 " : "", radius * std::cos(angle),
-                        radius * std::sin(angle), i == 1 ? " F2000" : "");
-    if (i == kLines / 2) text += middle;
-  }
-  return text + "G0 Z50\nM2\n";
-}
-
 // Whether the program has a curve that its control reads.
 std::size_t curve_blocks(const std::string& text, const gcode::CurveFormat& format) {
   gcode::Diagnostics found;
@@ -244,8 +229,7 @@ TEST_P(Curves, OfAnotherPathAreABreach) {
   EXPECT_FALSE(verdict_on(joined(lines, "\n")).proved());
 }
 
-// --- too few digits
-// -------------------------------------------------------------------------------
+// --- too few digits -------------------------------------------------------------------------
 
 // The same format with no digit behind the point of knots, coefficients and offsets.
 class CoarseFormat final : public gcode::CurveFormat {
