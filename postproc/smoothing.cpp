@@ -46,6 +46,10 @@ constexpr double kLongChords = 1.5;
 constexpr double kMiddleChords = 0.6;
 constexpr double kFineChords = 0.25;
 
+// Radians: vertices that turn more are bends so tight, where they are none of the path that was
+// meant, that curves may rather end there.
+constexpr double kSharpCorner = 45 * std::numbers::pi / 180;
+
 // Parts of the band around a run of arcs in which few arcs are looked for.
 constexpr double kBands[] = {1, 0.97, 0.94};
 
@@ -100,6 +104,7 @@ class RunSmoother {
       know(curve->path, rounding);
       try_curve(*curve, shares);
     }
+    if (curve && has_curves()) try_kept_corners(shares, rounding);
     if (best && !one_sided()) try_others(shares, rounding);
     if (!fits_) return kept(gcode::reason::kNoFit);
     if (result_.candidates.empty()) {
@@ -139,6 +144,24 @@ class RunSmoother {
     fits_ = true;
     curvature_ = greatest_curvature(curve.path.curve);
     add_candidates(curve, shares.form, left);
+  }
+
+  // A bend of the tolerance's size in the place of a corner takes a curve some thirty control
+  // points. Its end in the corner and the start of the next one are fewer blocks, and often as
+  // quick.
+  void try_kept_corners(const ToleranceShares& shares, double rounding) {
+    if (options_.output != Form::kCurves || options_.keep_corners_deg) return;
+    const auto& points = run_.points;
+    bool sharp = false;
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+      const geometry::Vector3 in = points[i] - points[i - 1];
+      const geometry::Vector3 out = points[i + 1] - points[i];
+      sharp = sharp || std::atan2(in.cross(out).norm(), in.dot(out)) > kSharpCorner;
+    }
+    if (!sharp) return;
+    CurveRequest request = curve_request(Method::kFair, shares, rounding);
+    request.keep_corner_angle = kSharpCorner;
+    if (const auto curve = curve_of(Method::kFair, run_.points, request)) try_curve(*curve, shares);
   }
 
   // The other methods, where there is time left to win and they may win it.

@@ -60,6 +60,10 @@ class Fanuc final : public Rs274Dialect {
     return line;
   }
 
+  SourceMarks known_marks() const override {
+    return mark(SourceMark::kMacroFlow) | mark(SourceMark::kHighSpeedMode);
+  }
+
   const CurveFormat* curves() const override { return &curves_; }
   std::string_view default_machine() const override { return "mill"; }
 

@@ -52,6 +52,8 @@ class Siemens final : public Rs274Dialect {
     return "; " + std::string(text);
   }
 
+  SourceMarks known_marks() const override { return 0; }
+
   const CurveFormat* curves() const override { return &siemens_poly(); }
   std::string_view default_machine() const override { return "mill"; }
 };
