@@ -21,6 +21,14 @@ constexpr int kSamplesPerSpan = 4;
 // Between samples the curve may be this much further off than at them.
 constexpr double kAtSamples = 0.95;
 
+// Fits with ever smaller limits, until the distance that is measured is small enough.
+constexpr int kTries = 3;
+
+constexpr int kMeasuredPerSpan = 8;
+
+// Towards the nearest place of a curve whose speed is nearly even: each step leaves a few percent.
+constexpr int kSteps = 3;
+
 class Reducer {
  public:
   Reducer(const BsplineCurve& curve, const FewerKnotsOptions& options)
@@ -31,13 +39,46 @@ class Reducer {
     add_zones();
     add_samples();
     add_breakpoints();
-    BsplineFit fit = fit_bspline(problem_, {});
-    if (!(fit.worst_ratio <= 1 / kAtSamples)) return std::nullopt;
-    if (fit.curve.control_points().size() >= curve_.control_points().size()) return std::nullopt;
-    return std::move(fit.curve);
+    for (int i = 0; i < kTries; ++i) {
+      BsplineFit fit = fit_bspline(problem_, {});
+      if (!(fit.worst_ratio <= 1 / kAtSamples)) return std::nullopt;
+      if (fit.curve.control_points().size() >= curve_.control_points().size()) return std::nullopt;
+      const double off = greatest_distance(fit.curve);
+      if (off <= options_.max_deviation) return std::move(fit.curve);
+      for (FitSample& sample : problem_.samples) {
+        sample.limit *= kAtSamples * options_.max_deviation / off;
+      }
+    }
+    return std::nullopt;
   }
 
  private:
+  // Of places of the old curve from the new one. The fit measures across the old curve's tangents:
+  // where the new one has run ahead in a bend, that is less.
+  [[nodiscard]] double greatest_distance(const BsplineCurve& fewer) const {
+    double most = 0;
+    const auto& breaks = pieces_.breaks();
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      for (int k = 0; k < kMeasuredPerSpan; ++k) {
+        const double u = breaks[i] + (breaks[i + 1] - breaks[i]) * k / kMeasuredPerSpan;
+        most = std::max(most, distance_near(fewer, u, pieces_.point_at(u)));
+      }
+    }
+    return most;
+  }
+
+  // From `place` to the curve about its parameter u.
+  static double distance_near(const BsplineCurve& curve, double u, const Point3& place) {
+    for (int i = 0; i < kSteps; ++i) {
+      const Vector3 along = curve.derivative_at(u, 1);
+      const double speed = along.squaredNorm();
+      if (!(speed > 0)) break;
+      u += along.dot(place - curve.point_at(u)) / speed;
+      u = std::clamp(u, curve.first(), curve.last());
+    }
+    return (curve.point_at(u) - place).norm();
+  }
+
   void add_pins() {
     problem_.pins.push_back({curve_.first(), curve_.control_points().front()});
     for (const double u : pieces_.corners()) problem_.pins.push_back({u, pieces_.point_at(u)});
