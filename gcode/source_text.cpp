@@ -70,16 +70,13 @@ std::string too_large(const std::string& name) {
 }
 
 // Pipes and devices have no size and cannot be mapped. False on an error or above 4 GiB,
-// with `error` set.
+// with `error` set. A signal with a handler is an error: who waits for a pipe can be ended.
 bool read_all(int descriptor, const std::string& name, std::string& text, std::string& error) {
   std::array<char, 1 << 16> part{};
   for (;;) {
     const ssize_t count = ::read(descriptor, part.data(), part.size());
     if (count == 0) {
       return true;
-    }
-    if (count < 0 && errno == EINTR) {
-      continue;
     }
     if (count < 0) {
       error = system_message(name);

@@ -24,6 +24,11 @@ constexpr double kStumble = 0.5;
 // What is left after a step, relative to it, that would make a last step too short.
 constexpr double kRemainder = 0.3;
 
+// Behind a fifth of the way a chain that has used up half as much again as its share of the pieces
+// will not do with them.
+constexpr double kPaceKnown = 0.2;
+constexpr double kHopelessPace = 1.5;
+
 // Kink (radians) of a single arc at a fixed tangent that is noise of a fitted curve.
 constexpr double kKinkNoise = 1e-5;
 
@@ -371,6 +376,7 @@ std::optional<std::vector<ChainPiece>> ArcChain::greedy(const ChainNode& start,
                                                         const ChainNode& end,
                                                         std::size_t at_most) const {
   std::vector<ChainPiece> pieces;
+  const auto most = static_cast<double>(at_most);
   ChainNode at = start;
   double guess = end.u - start.u;
   while (at.u < end.u) {
@@ -384,6 +390,10 @@ std::optional<std::vector<ChainPiece>> ArcChain::greedy(const ChainNode& start,
     pieces.insert(pieces.end(), step->pieces.begin(), step->pieces.end());
     guess = step->end.u - at.u;
     at = step->end;
+    const double done = (at.u - start.u) / (end.u - start.u);
+    if (done > kPaceKnown && static_cast<double>(pieces.size()) > kHopelessPace * done * most) {
+      return std::nullopt;
+    }
   }
   return pieces;
 }

@@ -12,8 +12,8 @@
 
 #include "geometry/arc_chain.h"
 #include "geometry/arc_spline.h"
+#include "geometry/chord_polyline.h"
 #include "geometry/curve_pieces.h"
-#include "geometry/linearize.h"
 #include "geometry/numeric.h"
 #include "geometry/plane_curve.h"
 
@@ -174,20 +174,28 @@ class PathBuilder {
 };
 
 // In the plane the curve is held against chords that leave it by no more than this part of
-// the deviation.
-constexpr double kChordPart = 0.02;
+// the deviation: below what the band takes for one edge without places between (plane_band.cpp).
+constexpr double kChordPart = 0.018;
+
+Path between(const CurvePieces& pieces, double from, double to) {
+  Path path;
+  for (std::size_t i = pieces.index_of(from); i < pieces.size() && pieces.breaks()[i] < to; ++i) {
+    path.emplace_back(pieces.part(i, from, to));
+  }
+  return path;
+}
 
 // The fewest arcs found for one smooth stretch of a flat curve; nothing when the search finds
 // no tangent chain.
-std::optional<std::vector<ChainPiece>> spline_between(const BsplineCurve& curve,
+std::optional<std::vector<ChainPiece>> spline_between(const CurvePieces& curve,
                                                       const PlaneFrame& frame,
                                                       const ChainNode& start, const ChainNode& end,
-                                                      const ArcChainLimits& limits) {
-  ChordOptions chords;
-  chords.max_deviation = kChordPart * limits.deviation;
+                                                      const ArcChainLimits& limits,
+                                                      ArcEffort effort) {
+  const Path stretch = between(curve, start.u, end.u);
   std::vector<Point2> points;
-  for (const double u : chord_vertices(curve, start.u, end.u, chords)) {
-    const Point2 p = frame.local(curve.point_at(u)).head<2>();
+  for (const Point3& place : cut_into_chords(stretch, kChordPart * limits.deviation).points) {
+    const Point2 p = frame.local(place).head<2>();
     if (points.empty() || (p - points.back()).norm() > kSamePlace) points.push_back(p);
   }
   if (points.size() < 2) return std::nullopt;
@@ -202,6 +210,7 @@ std::optional<std::vector<ChainPiece>> spline_between(const BsplineCurve& curve,
   options.start_angle = start.angle;
   options.end_angle = end.angle;
   options.kinks = false;
+  options.effort = effort;
   const auto spline = fit_arc_spline(points, options);
   if (!spline) return std::nullopt;
   std::vector<ChainPiece> pieces;
@@ -211,14 +220,29 @@ std::optional<std::vector<ChainPiece>> spline_between(const BsplineCurve& curve,
   return pieces;
 }
 
+// About how many chords the curve takes: the integral of sqrt(curvature / 8 deviation) along it.
+double about_chords(const CurvePieces& pieces, double deviation) {
+  constexpr int kParts = 3;
+  double chords = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const CubicBezier& piece = pieces.piece(i);
+    for (int k = 0; k < kParts; ++k) {
+      const double from = static_cast<double>(k) / kParts;
+      const double to = static_cast<double>(k + 1) / kParts;
+      const double length = (point_at(piece, to) - point_at(piece, from)).norm();
+      chords += length * std::sqrt(curvature_at(piece, (from + to) / 2) / (8 * deviation));
+    }
+  }
+  return chords;
+}
+
 // Off the plane most curves are no helices: arcs that are more than chords would be do not
 // pay. In the plane arcs are worth more than chords, since their tangents agree.
-std::size_t most_pieces(const BsplineCurve& curve, double from, double to,
+std::size_t most_pieces(const CurvePieces& pieces, std::size_t stretches,
                         const ArcFitOptions& options, bool flat) {
   if (flat) return std::numeric_limits<std::size_t>::max();
-  ChordOptions chords;
-  chords.max_deviation = options.max_deviation;
-  return chord_vertices(curve, from, to, chords).size() - 1;
+  const auto chords = static_cast<std::size_t>(about_chords(pieces, options.max_deviation));
+  return std::min(stretches + chords, options.at_most);
 }
 
 void check(const ArcFitOptions& options) {
@@ -252,12 +276,12 @@ std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
   limits.flat = flat;
   const ArcChain chain(plane_curve, limits);
 
-  const std::vector<Stretch> stretches =
-      Cutter(plane_curve, chain, options.grid).cut(CurvePieces(curve, from, to));
+  const CurvePieces all(curve, from, to);
+  const std::vector<Stretch> stretches = Cutter(plane_curve, chain, options.grid).cut(all);
   const std::vector<Stop> stops = stops_of(plane_curve, chain, stretches, flat);
 
   PathBuilder builder(frame, options.axis, curve.point_at(from));
-  std::size_t left = most_pieces(curve, from, to, options, flat);
+  std::size_t left = most_pieces(all, stretches.size(), options, flat);
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const Stretch& stretch = stretches[i];
     if (stretch.straight) {
@@ -266,7 +290,8 @@ std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
     }
     const ChainNode start{stretch.from, stops[i].place, stops[i].leaving};
     const ChainNode end{stretch.to, stops[i + 1].place, stops[i + 1].arriving};
-    auto pieces = flat ? spline_between(curve, frame, start, end, limits) : std::nullopt;
+    auto pieces =
+        flat ? spline_between(all, frame, start, end, limits, options.effort) : std::nullopt;
     if (!pieces) pieces = chain.between(start, end, left);
     if (!pieces) return std::nullopt;
     left -= pieces->size();

@@ -2,8 +2,11 @@
 // Method: docs/algorithms/arc_fit.md.
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <optional>
 
+#include "geometry/arc_spline.h"
 #include "geometry/bspline_curve.h"
 #include "geometry/path.h"
 
@@ -20,6 +23,9 @@ struct ArcFitOptions {
   // printed ends are the ends that the arcs were made for. 0: no rounding. The first and the
   // last place are met exactly and are not rounded.
   double grid = 0;
+  ArcEffort effort = ArcEffort::kQuick;  // of a flat curve
+  // Chains off the plane that take more pieces are not looked for.
+  std::size_t at_most = std::numeric_limits<std::size_t>::max();
 };
 
 // Lines and arcs along `curve` between two parameters. The pieces chain exactly; where the

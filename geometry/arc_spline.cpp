@@ -30,6 +30,10 @@ struct Effort {
   std::span<const double> in_range;
 };
 
+constexpr std::array kBriefParts = {1.0, 0.9, 0.75, 0.5};
+constexpr std::array kBriefInRange = {0.1, 0.5, 0.9};
+constexpr Effort kBrief = {5, 2, kBriefParts, kBriefInRange};
+
 constexpr std::array kQuickParts = {1.0, 0.93, 0.84, 0.74, 0.6, 0.4};
 constexpr std::array kQuickInRange = {0.05, 0.3, 0.5, 0.7, 0.95};
 constexpr Effort kQuick = {8, 2, kQuickParts, kQuickInRange};
@@ -37,6 +41,18 @@ constexpr Effort kQuick = {8, 2, kQuickParts, kQuickInRange};
 constexpr std::array kManyParts = {1.0, 0.95, 0.9, 0.84, 0.77, 0.7, 0.6, 0.5, 0.35};
 constexpr std::array kManyInRange = {0.03, 0.15, 0.3, 0.42, 0.5, 0.58, 0.7, 0.85, 0.97};
 constexpr Effort kThorough = {12, 3, kManyParts, kManyInRange};
+
+const Effort& effort_for(ArcEffort effort) {
+  switch (effort) {
+    case ArcEffort::kBrief:
+      return kBrief;
+    case ArcEffort::kThorough:
+      return kThorough;
+    case ArcEffort::kQuick:
+      break;
+  }
+  return kQuick;
+}
 
 // Directions in which a chain may start, about the given one, radians.
 constexpr std::array kStarts = {0.0,   1e-4, -1e-4, 3e-4, -3e-4, 1e-3, -1e-3, 3e-3,
@@ -84,7 +100,7 @@ class Search {
   Search(std::span<const Point2> points, const ArcSplineOptions& options,
          std::size_t at_most = kNone - 1)
       : options_(options),
-        effort_(options.thorough ? kThorough : kQuick),
+        effort_(effort_for(options.effort)),
         band_(points, {options.tolerance, 1 / options.min_radius, options.max_sweep}),
         count_(band_.samples().size()),
         best_arcs_(at_most + 1) {}

@@ -59,8 +59,9 @@ double CurvePieces::local(std::size_t i, double u) const {
   return std::clamp((u - breaks_[i]) / (breaks_[i + 1] - breaks_[i]), 0.0, 1.0);
 }
 
-Point3 CurvePieces::point_at(double u) const {
-  const std::size_t i = index_of(u);
+Point3 CurvePieces::point_at(double u) const { return point_in(index_of(u), u); }
+
+Point3 CurvePieces::point_in(std::size_t i, double u) const {
   return geometry::point_at(pieces_[i], local(i, u));
 }
 
@@ -79,7 +80,7 @@ CubicBezier CurvePieces::part(std::size_t i, double from, double to) const {
   const double t0 = local(i, from);
   const double t1 = local(i, to);
   if (t0 == 0 && t1 == 1) return pieces_[i];
-  return std::get<CubicBezier>(geometry::sub_piece(pieces_[i], t0, t1));
+  return geometry::sub_piece(pieces_[i], t0, t1);
 }
 
 std::vector<double> CurvePieces::corners() const {

@@ -40,6 +40,8 @@ class CurvePieces {
   [[nodiscard]] std::size_t index_of(double u) const;
 
   [[nodiscard]] Point3 point_at(double u) const;
+  // The same for who knows the piece that holds u.
+  [[nodiscard]] Point3 point_in(std::size_t i, double u) const;
 
   // Unit tangents at u, seen from below and from above; they differ at corners only.
   [[nodiscard]] Vector3 arriving(double u) const;

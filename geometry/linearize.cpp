@@ -41,34 +41,143 @@ Limits scaled(const Limits& limits, double chord_length) {
   return {limits.deviation * chord_length * chord_length, limits.max_length * chord_length};
 }
 
-bool chord_holds(const CurvePieces& pieces, double from, double to, const Limits& limits) {
-  const Point3 start = pieces.point_at(from);
-  const Point3 end = pieces.point_at(to);
-  if ((end - start).norm() > limits.max_length * (1 + kLengthNoise)) return false;
-  return chord_proved(pieces, from, to, ChordProof(start, end, limits.deviation));
+// The chords from one place of the curve on: which ends hold.
+class ChordsFrom {
+ public:
+  ChordsFrom(const CurvePieces& pieces, double from, const Limits& limits)
+      : pieces_(pieces),
+        from_(from),
+        first_(pieces.index_of(from)),
+        start_(pieces.point_at(from)),
+        limits_(limits) {}
+
+  [[nodiscard]] const Point3& start() const { return start_; }
+  [[nodiscard]] std::size_t first_piece() const { return first_; }
+
+  [[nodiscard]] bool proved(double end) const {
+    const Point3 place = pieces_.point_in(piece_at(end, first_), end);
+    if ((place - start_).norm() > limits_.max_length * (1 + kLengthNoise)) return false;
+    return chord_proved(pieces_, first_, from_, end, ChordProof(start_, place, limits_.deviation));
+  }
+
+  // As `proved`, but what lies before an end that held or behind one that did not is not asked
+  // again: a longer chord is farther off.
+  bool holds(double end) {
+    if (end <= held_) return true;
+    if (end >= failed_) return false;
+    const bool held = proved(end);
+    (held ? held_ : failed_) = end;
+    return held;
+  }
+
+  // As `holds`, for ends that may hold although nearer ones do not: behind a turning point.
+  bool holds_beyond(double end) {
+    if (end < failed_) return holds(end);
+    if (!proved(end)) return false;
+    held_ = end;
+    failed_ = std::numeric_limits<double>::infinity();
+    return true;
+  }
+
+  // Whether this end itself was asked for, and held.
+  [[nodiscard]] bool held(double end) const { return end == held_; }
+
+  // Makes the doubt small before it is halved: by the height of the chords that begin here, which
+  // grows with the square of their length. `guess` is some end behind `from`.
+  void narrow(double guess, double limit);
+
+  // Leaves nothing but what is asked.
+  void forget() {
+    held_ = -std::numeric_limits<double>::infinity();
+    failed_ = std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  // The piece that holds `u`, at or after `piece`.
+  [[nodiscard]] std::size_t piece_at(double u, std::size_t piece) const {
+    while (piece + 1 < pieces_.size() && pieces_.breaks()[piece + 1] <= u) ++piece;
+    return piece;
+  }
+
+  [[nodiscard]] double height(double end) const;
+
+  const CurvePieces& pieces_;
+  double from_;
+  std::size_t first_;
+  Point3 start_;
+  Limits limits_;
+  double held_ = -std::numeric_limits<double>::infinity();
+  double failed_ = std::numeric_limits<double>::infinity();
+};
+
+// The curve's greatest distance from the chord to `end`, mm: of places between, and of the
+// parabola through the farthest and its neighbours.
+double ChordsFrom::height(double end) const {
+  constexpr int kPlaces = 6;
+  const Vector3 chord = pieces_.point_in(piece_at(end, first_), end) - start_;
+  const double squared = chord.squaredNorm();
+  if (squared == 0) return 0;
+  double heights[kPlaces + 1] = {};
+  std::size_t piece = first_;
+  int farthest = 1;
+  for (int k = 1; k < kPlaces; ++k) {
+    const double u = from_ + (end - from_) * k / kPlaces;
+    piece = piece_at(u, piece);
+    const Vector3 off = pieces_.point_in(piece, u) - start_;
+    heights[k] = (off - off.dot(chord) / squared * chord).norm();
+    if (heights[k] > heights[farthest]) farthest = k;
+  }
+  const double before = heights[farthest - 1];
+  const double after = heights[farthest + 1];
+  const double bend = 2 * heights[farthest] - before - after;
+  if (!(bend > 0)) return heights[farthest];
+  return heights[farthest] + (after - before) * (after - before) / (8 * bend);
+}
+
+void ChordsFrom::narrow(double guess, double limit) {
+  constexpr int kSteps = 4;
+  constexpr double kSettled = 5e-3;  // the error of a step goes with the square of the one before
+  constexpr double kWidest = 4;      // a step changes the length by this factor at most
+  double length = std::min(guess, limit) - from_;
+  const double longest = limit - from_;
+  for (int step = 0; step < kSteps; ++step) {
+    const double away = height(from_ + length);
+    const double wanted = away > 0 ? std::sqrt(limits_.deviation / away) : kWidest;
+    const double next = std::min(length * std::clamp(wanted, 1 / kWidest, kWidest), longest);
+    const bool settled = std::abs(next - length) < kSettled * length;
+    length = next;
+    if (settled) break;
+  }
+  for (double doubt = kEndPrecision; doubt < 1; doubt *= kWidest) {
+    if (holds(from_ + length * (1 - doubt))) break;
+  }
+  for (double doubt = kEndPrecision; doubt < 1; doubt *= kWidest) {
+    const double end = from_ + length * (1 + doubt);
+    if (end >= limit || !holds(end)) break;
+  }
 }
 
 // Where the distance from `from` reaches `length`, between `good` (nearer) and `bad`.
-double end_at_length(const CurvePieces& pieces, double from, double good, double bad,
+double end_at_length(const CurvePieces& pieces, const Point3& start, double good, double bad,
                      double length) {
-  const Point3 start = pieces.point_at(from);
   for (double middle = (good + bad) / 2; middle > good && middle < bad; middle = (good + bad) / 2) {
     ((pieces.point_at(middle) - start).norm() <= length ? good : bad) = middle;
   }
   return good;
 }
 
-// The farthest end of a chord from `from` on, at most `limit`: doubling the number of
-// pieces under it, then halving the doubt.
-double farthest_end(const CurvePieces& pieces, double from, double limit, const Limits& limits) {
+// The farthest end of the chords, at most `limit`: doubling the number of pieces under them, then
+// halving the doubt.
+double farthest_end(const CurvePieces& pieces, double from, double limit, const Limits& limits,
+                    ChordsFrom& chords) {
   const auto& breaks = pieces.breaks();
-  const std::size_t first = pieces.index_of(from);
+  const std::size_t first = chords.first_piece();
   double good = from;
   double bad = limit;
   for (std::size_t step = 1;; step *= 2) {
     const std::size_t at = std::min(first + step, breaks.size() - 1);
     const double end = std::min(breaks[at], limit);
-    if (!chord_holds(pieces, from, end, limits)) {
+    if (!chords.holds_beyond(end)) {
       bad = end;
       break;
     }
@@ -78,13 +187,24 @@ double farthest_end(const CurvePieces& pieces, double from, double limit, const 
   while (bad - good > kEndPrecision * (bad - from)) {
     const double middle = (good + bad) / 2;
     if (middle <= good || middle >= bad) break;  // the doubles are used up
-    (chord_holds(pieces, from, middle, limits) ? good : bad) = middle;
+    (chords.holds(middle) ? good : bad) = middle;
   }
   if (std::isfinite(limits.max_length)) {  // lengths divide evenly: meet them exactly
-    const double end = end_at_length(pieces, from, good, bad, limits.max_length);
-    if (end > good && chord_holds(pieces, from, end, limits)) good = end;
+    const double end = end_at_length(pieces, chords.start(), good, bad, limits.max_length);
+    if (end > good && chords.proved(end)) good = end;
   }
   return good > from ? good : bad;  // a chord so short that rounding hides its proof
+}
+
+// The same end as without a guess, and proved as it is.
+double farthest_end(const CurvePieces& pieces, double from, double limit, const Limits& limits,
+                    double guess) {
+  ChordsFrom chords(pieces, from, limits);
+  chords.narrow(guess, limit);
+  const double end = farthest_end(pieces, from, limit, limits, chords);
+  if (chords.held(end) || chords.proved(end)) return end;
+  chords.forget();
+  return farthest_end(pieces, from, limit, limits, chords);
 }
 
 // Vertices after `from` up to `to`, greedily: no sequence of such chords gets farther with
@@ -92,8 +212,12 @@ double farthest_end(const CurvePieces& pieces, double from, double limit, const 
 std::vector<double> greedy_ends(const CurvePieces& pieces, double from, double to,
                                 const Limits& limits, std::size_t at_most) {
   std::vector<double> ends;
+  const std::size_t first = pieces.index_of(from);
+  double last_step = pieces.breaks()[first + 1] - pieces.breaks()[first];
   for (double at = from; at < to && ends.size() < at_most;) {
-    at = farthest_end(pieces, at, to, limits);
+    const double end = farthest_end(pieces, at, to, limits, at + last_step);
+    last_step = end - at;
+    at = end;
     ends.push_back(at);
   }
   return ends;

@@ -137,7 +137,7 @@ class Stretch {
   bool prove_link(const LinkVertex& end, int cuts, Vertices& proved) const {
     const LinkVertex start = proved.back();
     if (chord_proved(pieces_, start.parameter, end.parameter,
-                     ChordProof(start.place, end.place, options_.tolerance, kSharpProofHalvings))) {
+                     ChordProof(start.place, end.place, options_.tolerance, kSharpProofCuts))) {
       proved.push_back(end);
       return true;
     }

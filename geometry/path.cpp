@@ -78,12 +78,6 @@ class ArcFrame {
   Vector3 forward_;
 };
 
-Point3 bezier_point(const CubicBezier& b, double t) {
-  const double s = 1 - t;
-  return s * s * s * b.control[0] + 3 * s * s * t * b.control[1] + 3 * s * t * t * b.control[2] +
-         t * t * t * b.control[3];
-}
-
 Vector3 bezier_first(const CubicBezier& b, double t) {
   const double s = 1 - t;
   return 3 * (s * s * (b.control[1] - b.control[0]) + 2 * s * t * (b.control[2] - b.control[1]) +
@@ -155,22 +149,6 @@ double integrate_speed(const Speed& speed) {
   return integrate(speed, 0.0, 1.0, whole, kRelativeError * whole, kDepth);
 }
 
-CubicBezier bezier_part(const CubicBezier& b, double t0, double t1) {
-  // The blossom of the cubic at (t0,t0,t0), (t0,t0,t1), (t0,t1,t1), (t1,t1,t1).
-  const auto blossom = [&b](double u, double v, double w) -> Point3 {
-    Point3 d[3];
-    for (int i = 0; i < 3; ++i) d[i] = (1 - u) * b.control[i] + u * b.control[i + 1];
-    for (int i = 0; i < 2; ++i) d[i] = (1 - v) * d[i] + v * d[i + 1];
-    return (1 - w) * d[0] + w * d[1];
-  };
-  CubicBezier part;
-  part.control[0] = t0 > 0 ? blossom(t0, t0, t0) : b.control[0];
-  part.control[1] = blossom(t0, t0, t1);
-  part.control[2] = blossom(t0, t1, t1);
-  part.control[3] = t1 < 1 ? blossom(t1, t1, t1) : b.control[3];
-  return part;
-}
-
 template <typename T>
 inline constexpr bool is_line = std::is_same_v<std::decay_t<T>, Line>;
 template <typename T>
@@ -202,6 +180,14 @@ Point3 end_point(const PathPiece& piece) {
       piece);
 }
 
+Point3 point_at(const CubicBezier& piece, double t) {
+  const Point3* p = piece.control;
+  if (t <= 0) return p[0];
+  if (t >= 1) return p[3];
+  const double s = 1 - t;
+  return s * s * s * p[0] + 3 * s * s * t * p[1] + 3 * s * t * t * p[2] + t * t * t * p[3];
+}
+
 Point3 point_at(const PathPiece& piece, double t) {
   if (t <= 0) return start_point(piece);
   if (t >= 1) return end_point(piece);
@@ -212,7 +198,7 @@ Point3 point_at(const PathPiece& piece, double t) {
         } else if constexpr (is_arc<decltype(p)>) {
           return ArcFrame(p).point(t);
         } else {
-          return bezier_point(p, t);
+          return point_at(p, t);
         }
       },
       piece);
@@ -286,6 +272,23 @@ double second_derivative_bound(const PathPiece& piece) {
       piece);
 }
 
+CubicBezier sub_piece(const CubicBezier& piece, double t0, double t1) {
+  const Point3* p = piece.control;
+  // The blossom of the cubic at (t0,t0,t0), (t0,t0,t1), (t0,t1,t1), (t1,t1,t1).
+  const auto blossom = [p](double u, double v, double w) -> Point3 {
+    Point3 d[3];
+    for (int i = 0; i < 3; ++i) d[i] = (1 - u) * p[i] + u * p[i + 1];
+    for (int i = 0; i < 2; ++i) d[i] = (1 - v) * d[i] + v * d[i + 1];
+    return (1 - w) * d[0] + w * d[1];
+  };
+  CubicBezier part;
+  part.control[0] = t0 > 0 ? blossom(t0, t0, t0) : p[0];
+  part.control[1] = blossom(t0, t0, t1);
+  part.control[2] = blossom(t0, t1, t1);
+  part.control[3] = t1 < 1 ? blossom(t1, t1, t1) : p[3];
+  return part;
+}
+
 PathPiece sub_piece(const PathPiece& piece, double t0, double t1) {
   return std::visit(
       [&piece, t0, t1](const auto& p) -> PathPiece {
@@ -295,7 +298,7 @@ PathPiece sub_piece(const PathPiece& piece, double t0, double t1) {
           return Arc{point_at(piece, t0), point_at(piece, t1), p.center, p.axis,
                      p.sweep * (t1 - t0)};
         } else {
-          return bezier_part(p, t0, t1);
+          return sub_piece(p, t0, t1);
         }
       },
       piece);

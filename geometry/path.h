@@ -39,6 +39,7 @@ using Path = std::vector<PathPiece>;
 [[nodiscard]] Point3 start_point(const PathPiece& piece);
 [[nodiscard]] Point3 end_point(const PathPiece& piece);
 [[nodiscard]] Point3 point_at(const PathPiece& piece, double t);
+[[nodiscard]] Point3 point_at(const CubicBezier& piece, double t);
 
 // Unit direction of travel at t; the zero vector where the piece has none (zero length).
 [[nodiscard]] Vector3 direction_at(const PathPiece& piece, double t);
@@ -57,6 +58,7 @@ using Path = std::vector<PathPiece>;
 
 // The part of `piece` between two parameters, 0 <= t0 < t1 <= 1, again for t in [0, 1].
 [[nodiscard]] PathPiece sub_piece(const PathPiece& piece, double t0, double t1);
+[[nodiscard]] CubicBezier sub_piece(const CubicBezier& piece, double t0, double t1);
 
 // The straight chain through `points`, as pieces. Neighbours that are one place are joined.
 [[nodiscard]] Path path_through(std::span<const Point3> points);

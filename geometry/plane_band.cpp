@@ -26,6 +26,10 @@ constexpr double kTightTurn = 0.1;
 constexpr double kNearest = 0.5;
 constexpr double kRoomForTight = 10;  // tolerances: a shorter edge is no leg of a corner
 
+// `reach` looks at each so many-th sample as long as it may: what lies between them closes a fan
+// by little more, and an arc that is taken is held against all of them in the end.
+constexpr std::size_t kStride = 4;
+
 double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
 double angle_of(const Vector2& v) { return std::atan2(v.y(), v.x()); }
@@ -194,8 +198,10 @@ ArcFan PlaneBand::fan(const BandEntry& entry) const {
 
 ArcReach PlaneBand::reach(const BandEntry& entry) const {
   ClosingFan closing(entry, limits_, steepest_);
-  std::size_t i = entry.next;
-  while (i < samples_.size() && closing.narrow(samples_[i].place)) ++i;
+  std::size_t i = entry.next;  // the first sample that is not known to be passed
+  for (std::size_t step = kStride; step > 0; step /= kStride) {
+    while (i + step <= samples_.size() && closing.narrow(samples_[i + step - 1].place)) i += step;
+  }
   return {i, closing.width()};
 }
 

@@ -63,6 +63,7 @@ class PlaneBand {
   [[nodiscard]] const Limits& limits() const { return limits_; }
 
   [[nodiscard]] ArcFan fan(const BandEntry& entry) const;
+  // The end of that fan, quickly: narrow places between samples may be overlooked.
   [[nodiscard]] ArcReach reach(const BandEntry& entry) const;
 
   // Whether the arc (or line) from `entry` stays within the tolerance of the polyline, and the

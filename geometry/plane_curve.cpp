@@ -95,8 +95,8 @@ void PlaneCurve::append(const CubicBezier& piece, double from, double to, int ha
   const Turning turning = turning_of(piece);
   const double middle = (from + to) / 2;
   if (turning.total > kLargestTurn && halvings > 0 && from < middle && middle < to) {
-    append(std::get<CubicBezier>(sub_piece(piece, 0, 0.5)), from, middle, halvings - 1);
-    append(std::get<CubicBezier>(sub_piece(piece, 0.5, 1)), middle, to, halvings - 1);
+    append(sub_piece(piece, 0, 0.5), from, middle, halvings - 1);
+    append(sub_piece(piece, 0.5, 1), middle, to, halvings - 1);
     return;
   }
   const Vector2 start = plane_direction(piece, 0);
@@ -123,7 +123,7 @@ CubicBezier PlaneCurve::part(std::size_t i, double from, double to) const {
   const double t0 = local(i, from);
   const double t1 = local(i, to);
   if (t0 == 0 && t1 == 1) return pieces_[i];
-  return std::get<CubicBezier>(sub_piece(pieces_[i], t0, t1));
+  return sub_piece(pieces_[i], t0, t1);
 }
 
 Point3 PlaneCurve::place_at(double u) const {

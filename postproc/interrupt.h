@@ -1,18 +1,21 @@
-// Ctrl-C and the request to end (SIGINT, SIGTERM) as a flag that the work asks for, so that it
-// stops at a place where nothing is half done.
+// Ctrl-C, the request to end and a terminal that was closed (SIGINT, SIGTERM, SIGHUP) as a flag
+// that the work asks for, so that it stops at a place where nothing is half done.
 #pragma once
 
 namespace batten::postproc {
 
 // From now on the first signal sets the flag; system calls that wait return with EINTR. A second
-// signal ends the program at once, after the file named by `remove_when_killed` is removed.
-// A broken pipe no longer ends the program: writing to it fails instead.
+// signal ends the program at once, after the file named by `remove_when_killed` is removed. So do,
+// with a message: a mapped file that becomes shorter than it was (SIGBUS), with the code of a file
+// error, and an exception that nobody may catch, with the code of an internal error. A broken pipe
+// and a file beyond the size that is allowed (ulimit -f) no longer end the program: writing fails
+// instead. SIGHUP stays ignored where it is, as under nohup.
 void install_interrupt_handlers();
 
 [[nodiscard]] bool interrupted();
 
-// 128 + the signal's number, as shells expect it: 130 after SIGINT, 143 after SIGTERM.
-// Requires interrupted().
+// 128 + the signal's number, as shells expect it: 130 after SIGINT, 143 after SIGTERM, 129 after
+// SIGHUP. Requires interrupted().
 [[nodiscard]] int interrupt_exit_code();
 
 // Names the half-written file that the second signal removes; an empty name: none. Names longer

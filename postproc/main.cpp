@@ -1,7 +1,11 @@
 // batten: smooths CAM programs made of short lines and proves what it wrote.
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
 #include <variant>
 #include <vector>
@@ -22,6 +26,18 @@ int done(const AnyCommand& command) {
   return run(command);
 }
 
+// A standard stream that was closed (`2>&-`) would give its number to the next file that is opened,
+// and messages would go into that file. Input and output become streams on which reading and
+// writing fail, as they do on a closed one; what is said on a closed standard error is lost.
+void fill_closed_streams() {
+  constexpr int kModes[] = {O_WRONLY, O_RDONLY, O_WRONLY};
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    if (::fcntl(stream, F_GETFD) >= 0) continue;
+    // The lowest free number is that of the stream.
+    if (::open("/dev/null", kModes[stream]) != stream) return;
+  }
+}
+
 int run_command_line(const std::vector<std::string>& arguments) {
   const CommandLine line = read_command_line(arguments);
   if (!line.problems.empty()) {
@@ -35,9 +51,13 @@ int run_command_line(const std::vector<std::string>& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  fill_closed_streams();
   install_interrupt_handlers();
   try {
     return run_command_line(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+  } catch (const std::bad_alloc&) {
+    // Plain text: there may be no memory for more.
+    std::fputs("batten: not enough memory, nothing was written\n", stderr);
   } catch (const std::exception& error) {
     say(std::string("internal error, nothing was written: ") + error.what());
     say("please report it with the program and the options that led to it");

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <cstdio>
 #include <system_error>
+#include <utility>
 
 #include "postproc/interrupt.h"
 
@@ -88,9 +90,11 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
+// A name that is nearly as long as a name may be is cut.
 fs::path half_written_path(const fs::path& target) {
+  const std::string end = "." + std::to_string(::getpid()) + ".batten-part";
   return folder_of(target) /
-         ("." + target.filename().string() + "." + std::to_string(::getpid()) + ".batten-part");
+         ("." + target.filename().string().substr(0, NAME_MAX - 1 - end.size()) + end);
 }
 
 WriteResult exists_already(const fs::path& target) {
@@ -100,7 +104,12 @@ WriteResult exists_already(const fs::path& target) {
 
 WriteResult write_in_place(const fs::path& target, const WriteRequest& request) {
   const Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
-  if (!file.is_open()) return failed(target, "cannot be opened for writing", errno);
+  // A pipe is opened when its reader has come; a signal ends the waiting.
+  const int error = errno;
+  if (!file.is_open() && error == EINTR && request.stop && request.stop()) {
+    return {WriteStatus::kInterrupted, target.string() + ": interrupted"};
+  }
+  if (!file.is_open()) return failed(target, "cannot be opened for writing", error);
   return write_request_to_descriptor(file.number(), target.string(), request);
 }
 
@@ -147,6 +156,9 @@ WriteResult write_beside_and_rename(const fs::path& target, const struct stat* e
   if (!file.close_now()) return failed(target, "cannot be closed", errno);
   if (request.stop && request.stop()) {
     return {WriteStatus::kInterrupted, target.string() + ": interrupted, nothing was written"};
+  }
+  if (std::string objection = request.objection ? request.objection() : ""; !objection.empty()) {
+    return {WriteStatus::kFailed, std::move(objection)};
   }
   if (rename_to_target(half_written.path(), target, request.replace_existing) != 0) {
     if (errno == EEXIST) return exists_already(target);

@@ -3,7 +3,8 @@
 // A file is written beside its target under a name of its own, flushed to the disk, and renamed
 // over the target. Whoever reads the target, and whenever the program is killed, finds the old
 // bytes or the new ones, never a part. Only a killed program (SIGKILL, power) leaves the other
-// file behind: `.NAME.PID.batten-part` in the same folder, safe to remove.
+// file behind: `.NAME.PID.batten-part` in the same folder, safe to remove (NAME is cut where the
+// name would be too long).
 #pragma once
 
 #include <filesystem>
@@ -43,6 +44,9 @@ struct WriteRequest {
   // For files too long to be held in memory: hands one part after the other to the writer, in
   // place of `bytes`.
   std::function<void(const PartWriter&)> parts = {};
+  // Asked last of all, before a file takes its place: a message that is not empty is the reason why
+  // it may not (kFailed).
+  std::function<std::string()> objection = {};
 };
 
 // An existing target keeps its permissions (and its owner, where the system lets us). A target

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gcode/dialect.h"
+#include "geometry/arc_spline.h"
 #include "geometry/fair.h"
 #include "geometry/path.h"
 #include "postproc/machine/cycle_time.h"
@@ -50,6 +51,7 @@ struct PlanOptions {
   double keep_corner_angle = 3.2;  // radians: see geometry::FairOptions
   Linearize linearize = Linearize::kChord;
   std::size_t most_moves = 0;  // lines that prefer accuracy become coarser for it; 0: any number
+  geometry::ArcEffort arc_effort = geometry::ArcEffort::kQuick;  // of plan_arcs
 };
 
 // All plans cut the curve where the feed changes, and put each comment before the move that

@@ -16,6 +16,7 @@
 #include "postproc/assembly.h"
 #include "postproc/band_notes.h"
 #include "postproc/conversion.h"
+#include "postproc/joined_times.h"
 #include "postproc/provenance.h"
 #include "postproc/run_choice.h"
 #include "postproc/run_cutting.h"
@@ -376,8 +377,13 @@ class Smoothing {
       before += piece->smoothed.facts.times;
       after += chosen != nullptr ? chosen->times : piece->smoothed.facts.times;
     }
-    if (before.as_set > 0) r.time_before_s *= cut.before.as_set / before.as_set;
-    if (after.as_set > 0) r.time_after_s *= cut.after.as_set / after.as_set;
+    const double share_before = before.as_set > 0 ? cut.before.as_set / before.as_set : 1;
+    const double share_after = after.as_set > 0 ? cut.after.as_set / after.as_set : 1;
+    r.time_before_s *= share_before;
+    r.time_after_s *= share_after;
+    for (MethodTime& each : r.methods) {
+      each.time_s *= r.status == RunStatus::kKept ? share_before : share_after;
+    }
     if (all_kept && cut.facts) {
       r.reason = cut.reason;
       r.noise_mm = cut.facts->noise;
@@ -391,6 +397,8 @@ class Smoothing {
       return;
     }
     RunReport& before_it = result_.runs.back();
+    before_it.methods = joined_times({before_it.methods, before_it.time_before_s},
+                                     {std::move(r.methods), r.time_before_s});
     before_it.last_line = r.last_line;
     before_it.points += r.points - 1;
     before_it.blocks_in += r.blocks_in;

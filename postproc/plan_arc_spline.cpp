@@ -122,7 +122,7 @@ class ArcSplinePlanner {
     fit.min_radius = options_.target->min_arc_radius();
     fit.max_radius = options_.target->max_arc_radius();
     fit.grid = arc_grid(options_);
-    fit.thorough = true;
+    fit.effort = geometry::ArcEffort::kThorough;
     const geometry::Vector2 first = points[1] - points[0];
     fit.direction = std::atan2(first.y(), first.x());
     if (stretch.tangent_start) fit.start_angle = angle_of(fair_.vertex_parameters[stretch.first]);

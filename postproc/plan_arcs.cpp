@@ -56,6 +56,7 @@ geometry::ArcFitOptions fit_options(const PlanOptions& options, const PlaneAxes&
   fit.min_radius = options.target->min_arc_radius();
   fit.max_radius = options.target->max_arc_radius();
   fit.grid = arc_grid(options);
+  fit.effort = options.arc_effort;
   return fit;
 }
 
@@ -92,6 +93,19 @@ std::optional<OutputPlan> plan_in(const Run& run, const geometry::FairPath& fair
   return plan;
 }
 
+// By how far the run reaches across the plane.
+std::vector<PlaneAxes> flattest_first(const Run& run, std::vector<PlaneAxes> planes) {
+  geometry::Point3 low = run.points.front();
+  geometry::Point3 high = low;
+  for (const geometry::Point3& point : run.points) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  std::ranges::stable_sort(
+      planes, {}, [&](const PlaneAxes& plane) { return high[plane.normal] - low[plane.normal]; });
+  return planes;
+}
+
 }  // namespace
 
 std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fair,
@@ -107,13 +121,15 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fa
   }
   if (flat_somewhere || !options.target->takes_helices()) return std::nullopt;
   // In space the planes differ much: the rows of a raster along X are arcs in G18, and in G17 they
-  // are lines and steep little helices. The fewest moves win, the active plane among equals.
-  // More moves than the run has motions are chords in all but name, and plan_lines does those
-  // better.
+  // are lines and steep little helices. The fewest moves win; the plane in which the run is
+  // flattest comes first, so that the others are soon given up. More moves than the run has motions
+  // are chords in all but name, and plan_lines does those better.
   std::optional<OutputPlan> best;
   std::size_t most = motion_count(run);
-  for (const PlaneAxes& plane : planes) {
-    auto plan = plan_in(run, fair, fair.curve, fit_options(options, plane, true), options);
+  for (const PlaneAxes& plane : flattest_first(run, planes)) {
+    geometry::ArcFitOptions fit = fit_options(options, plane, true);
+    fit.at_most = most;
+    auto plan = plan_in(run, fair, fair.curve, fit, options);
     if (!plan || plan->moves.size() >= most) continue;
     most = plan->moves.size();
     best = std::move(plan);

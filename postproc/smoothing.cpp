@@ -274,7 +274,9 @@ class RunSmoother {
       // Who asks for few arcs has no use for those that follow the fair curve closely.
       const bool enough = few_wanted() && curve.method == Method::kFair;
       if (lies_flat() && !enough && !one_sided()) {
-        const PlanOptions fine = plan_with(kFineArcs);
+        PlanOptions fine = plan_with(kFineArcs);
+        // They are there to be near, not few.
+        if (!few_wanted()) fine.arc_effort = geometry::ArcEffort::kBrief;
         add(curve, plan_arcs(run_, fair, fine), fine.max_deviation);
       }
       const bool few = few_wanted() || !run_.arcs.empty();

@@ -38,6 +38,9 @@ class NurbsAlarms {
   CurveAlarms all() {
     for (const Block& block : program_.blocks) follow(block);
     if (in_curve_) cut_short(program_.blocks.empty() ? 1 : program_.blocks.back().line, "the end");
+    // What is wrong with the first and inner knots is known at the end of the curve only.
+    std::stable_sort(alarms_.begin(), alarms_.end(),
+                     [](const CurveAlarm& a, const CurveAlarm& b) { return a.line < b.line; });
     return std::move(alarms_);
   }
 

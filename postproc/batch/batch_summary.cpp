@@ -60,14 +60,13 @@ std::string csv_field(std::string_view text) {
 }
 
 Json json_of(const BatchTotals& totals) {
-  return {{"programs", totals.programs},         {"smoothed", totals.smoothed},
-          {"unchanged", totals.unchanged},       {"not_understood", totals.not_understood},
-          {"not_proved", totals.not_proved},     {"failed", totals.failed},
-          {"not_done", totals.not_done},         {"bytes_in", totals.bytes_in},
-          {"bytes_out", totals.bytes_out},       {"blocks_in", totals.blocks_in},
-          {"blocks_out", totals.blocks_out},     {"time_before_s", totals.time_before_s},
-          {"time_after_s", totals.time_after_s}, {"deviation_mm", totals.deviation_mm},
-          {"exit_code", totals.exit_code}};
+  Json json = {{"programs", totals.programs},     {"smoothed", totals.smoothed},
+               {"unchanged", totals.unchanged},   {"not_understood", totals.not_understood},
+               {"not_proved", totals.not_proved}, {"failed", totals.failed},
+               {"not_done", totals.not_done}};
+  each_figure(totals, [&](const char* name, const auto& value) { json[name] = value; });
+  json["exit_code"] = totals.exit_code;
+  return json;
 }
 
 }  // namespace
@@ -95,7 +94,8 @@ std::string summary_table(std::span<const ProgramRecord> records) {
   for (const ProgramRecord& record : records) width = std::max(width, record.program.size());
   std::string text = fmt::format("{:<{}}  {:<14}  {:>18}  {:>22}  {:>22}  {:>9}\n", "program",
                                  width, "status", "blocks", "bytes", "cutting time s", "within mm");
-  const auto add_row = [&](std::string_view name, std::string_view status, const auto& row) {
+  const auto add_row = [&](std::string_view name, std::string_view status,
+                           const ProgramFigures& row) {
     fmt::format_to(
         std::back_inserter(text), "{:<{}}  {:<14}  {:>18}  {:>22}  {:>22}  {:>9.4f}\n", name, width,
         status, arrow(row.blocks_in, row.blocks_out), arrow(row.bytes_in, row.bytes_out),

@@ -9,7 +9,8 @@
 
 namespace batten::postproc {
 
-struct BatchTotals {
+// The figures are those of the programs that were written: sums, and the greatest deviation.
+struct BatchTotals : ProgramFigures {
   std::size_t programs = 0;
   std::size_t smoothed = 0;
   std::size_t unchanged = 0;
@@ -17,15 +18,7 @@ struct BatchTotals {
   std::size_t not_proved = 0;
   std::size_t failed = 0;
   std::size_t not_done = 0;
-  // Of the programs that were written:
-  std::size_t bytes_in = 0;
-  std::size_t bytes_out = 0;
-  std::size_t blocks_in = 0;
-  std::size_t blocks_out = 0;
-  double time_before_s = 0;
-  double time_after_s = 0;
-  double deviation_mm = 0;  // greatest
-  int exit_code = 0;        // the worst of all programs, by postproc/exit_code.h
+  int exit_code = 0;  // the worst of all programs, by postproc/exit_code.h
 };
 
 [[nodiscard]] BatchTotals totals_of(std::span<const ProgramRecord> records);

@@ -26,6 +26,20 @@ std::optional<ProgramStatus> status_named(std::string_view name) {
   return std::nullopt;
 }
 
+// What a record says besides whose it is and its status.
+template <typename Record, typename Take>
+void each_field(Record& record, const Take& take) {
+  take("exit_code", record.exit_code);
+  take("message", record.message);
+  take("input_sha256", record.input_sha256);
+  take("settings_sha256", record.settings_sha256);
+  take("output_sha256", record.output_sha256);
+  take("report_sha256", record.report_sha256);
+  take("runs_rewritten", record.runs_rewritten);
+  take("runs_kept", record.runs_kept);
+  each_figure(record, take);
+}
+
 }  // namespace
 
 std::string_view name_of(ProgramStatus status) {
@@ -36,23 +50,9 @@ std::string_view name_of(ProgramStatus status) {
 }
 
 std::string record_text(const ProgramRecord& record) {
-  return json_text({{"program", record.program},
-                    {"status", name_of(record.status)},
-                    {"exit_code", record.exit_code},
-                    {"message", record.message},
-                    {"input_sha256", record.input_sha256},
-                    {"settings_sha256", record.settings_sha256},
-                    {"output_sha256", record.output_sha256},
-                    {"report_sha256", record.report_sha256},
-                    {"bytes_in", record.bytes_in},
-                    {"bytes_out", record.bytes_out},
-                    {"blocks_in", record.blocks_in},
-                    {"blocks_out", record.blocks_out},
-                    {"runs_rewritten", record.runs_rewritten},
-                    {"runs_kept", record.runs_kept},
-                    {"time_before_s", record.time_before_s},
-                    {"time_after_s", record.time_after_s},
-                    {"deviation_mm", record.deviation_mm}});
+  Json json = {{"program", record.program}, {"status", name_of(record.status)}};
+  each_field(record, [&](const char* name, const auto& value) { json[name] = value; });
+  return json_text(json);
 }
 
 std::optional<ProgramRecord> read_record(std::string_view text) {
@@ -62,23 +62,8 @@ std::optional<ProgramRecord> read_record(std::string_view text) {
     if (!status) return std::nullopt;
     ProgramRecord record;
     record.status = *status;
-    const auto read = [&](const char* name, auto& place) { json.at(name).get_to(place); };
-    read("program", record.program);
-    read("exit_code", record.exit_code);
-    read("message", record.message);
-    read("input_sha256", record.input_sha256);
-    read("settings_sha256", record.settings_sha256);
-    read("output_sha256", record.output_sha256);
-    read("report_sha256", record.report_sha256);
-    read("bytes_in", record.bytes_in);
-    read("bytes_out", record.bytes_out);
-    read("blocks_in", record.blocks_in);
-    read("blocks_out", record.blocks_out);
-    read("runs_rewritten", record.runs_rewritten);
-    read("runs_kept", record.runs_kept);
-    read("time_before_s", record.time_before_s);
-    read("time_after_s", record.time_after_s);
-    read("deviation_mm", record.deviation_mm);
+    json.at("program").get_to(record.program);
+    each_field(record, [&](const char* name, auto& place) { json.at(name).get_to(place); });
     return record;
   } catch (const Json::exception&) {
     return std::nullopt;

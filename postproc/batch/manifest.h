@@ -29,7 +29,30 @@ enum class ProgramStatus {
 };
 [[nodiscard]] std::string_view name_of(ProgramStatus status);
 
-struct ProgramRecord {
+// What a program, or all written programs of a batch together, had and came to.
+struct ProgramFigures {
+  std::size_t bytes_in = 0;
+  std::size_t bytes_out = 0;
+  std::size_t blocks_in = 0;
+  std::size_t blocks_out = 0;
+  double time_before_s = 0;  // cutting runs, predicted for the machine of the settings
+  double time_after_s = 0;
+  double deviation_mm = 0;  // proved bound
+};
+
+// take("bytes_in", figures.bytes_in) and so on, by the names that they have in JSON.
+template <typename Figures, typename Take>
+void each_figure(Figures& figures, const Take& take) {
+  take("bytes_in", figures.bytes_in);
+  take("bytes_out", figures.bytes_out);
+  take("blocks_in", figures.blocks_in);
+  take("blocks_out", figures.blocks_out);
+  take("time_before_s", figures.time_before_s);
+  take("time_after_s", figures.time_after_s);
+  take("deviation_mm", figures.deviation_mm);
+}
+
+struct ProgramRecord : ProgramFigures {
   std::string program;  // path in the tree
   ProgramStatus status = ProgramStatus::kNotDone;
   int exit_code = 0;    // of postproc/exit_code.h
@@ -38,15 +61,8 @@ struct ProgramRecord {
   std::string settings_sha256;
   std::string output_sha256;  // empty: no program was written
   std::string report_sha256;
-  std::size_t bytes_in = 0;
-  std::size_t bytes_out = 0;
-  std::size_t blocks_in = 0;
-  std::size_t blocks_out = 0;
   std::size_t runs_rewritten = 0;
   std::size_t runs_kept = 0;
-  double time_before_s = 0;  // cutting runs, predicted for the machine of the settings
-  double time_after_s = 0;
-  double deviation_mm = 0;  // proved bound
 };
 
 [[nodiscard]] std::string record_text(const ProgramRecord& record);

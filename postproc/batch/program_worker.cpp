@@ -15,6 +15,7 @@
 #include "postproc/pipeline.h"
 #include "postproc/report/json_report.h"
 #include "postproc/smooth_verdict.h"
+#include "postproc/watched_file.h"
 
 namespace batten::postproc {
 
@@ -72,10 +73,14 @@ class Worker {
   WorkerResult work() {
     const fs::path input = plan_.input_tree / record_.program;
     std::string error;
+    const WatchedFile watched(input);
     const auto mapped = gcode::SourceText::map_file(input, error);
     if (!mapped) return failed(error);
     // Messages and reports name the program by its place in the tree.
     const gcode::SourceText source(record_.program, std::string(mapped->text()));
+    if (watched.now() == FileNow::kChanged) {
+      return failed(input.string() + ": was changed while it was read; nothing was written");
+    }
     record_.input_sha256 = sha256(source.text());
     record_.bytes_in = source.text().size();
     if (const auto bytes = bytes_of(places_.record)) before_ = read_record(*bytes);

@@ -25,6 +25,10 @@ constexpr std::size_t kMostRemarks = 20;
 // Positions in a source are 32 bits wide (gcode/source_text.h).
 constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
 
+constexpr const char* kWasChanged = ": was changed while it was read; nothing was written";
+constexpr const char* kWasReplaced =
+    ": was replaced or removed while it was read; nothing was written";
+
 std::optional<gcode::SourceText> read_standard_input() {
   std::string text;
   std::array<char, 1 << 16> part;
@@ -84,12 +88,43 @@ std::optional<gcode::SourceText> read_program(const std::string& name) {
   return source;
 }
 
+bool changed_while_read(const WatchedFile& file) {
+  if (file.now() != FileNow::kChanged) return false;
+  say(file.path().string() + kWasChanged);
+  return true;
+}
+
+int end_interrupted() {
+  say("interrupted; nothing was written");
+  return interrupt_exit_code();
+}
+
 int write_result(const std::string& name, std::string_view bytes, bool replace_existing) {
   if (name == "-") {
     return exit_code_of(write_to_descriptor(STDOUT_FILENO, "<stdout>", bytes, interrupted));
   }
   return exit_code_of(write_file(
       {.target = name, .bytes = bytes, .replace_existing = replace_existing, .stop = interrupted}));
+}
+
+int write_in_place_of(const WatchedFile& input, std::string_view bytes) {
+  WriteRequest request;
+  request.target = input.path();
+  request.bytes = bytes;
+  request.replace_existing = true;
+  request.stop = interrupted;
+  request.objection = [&input]() -> std::string {
+    switch (input.now()) {
+      case FileNow::kChanged:
+        return input.path().string() + kWasChanged;
+      case FileNow::kReplaced:
+        return input.path().string() + kWasReplaced;
+      case FileNow::kSame:
+        break;
+    }
+    return "";
+  };
+  return exit_code_of(write_file(request));
 }
 
 int write_parts(const std::string& name, const std::function<void(const PartWriter&)>& parts,

@@ -11,15 +11,28 @@
 #include "gcode/source_text.h"
 #include "postproc/log_level.h"
 #include "postproc/output_file.h"
+#include "postproc/watched_file.h"
 
 namespace batten::postproc {
 
 // Reads a file, or standard input to its end. On failure says why and returns nothing.
 [[nodiscard]] std::optional<gcode::SourceText> read_program(const std::string& name);
 
+// Was the file written into since it is watched? Then what was made of it is worth nothing, and
+// this says so. To be asked when all was read.
+[[nodiscard]] bool changed_while_read(const WatchedFile& file);
+
+// Says that a signal ended the work before anything was written, and returns its exit code.
+// Requires interrupted() (postproc/interrupt.h).
+[[nodiscard]] int end_interrupted();
+
 // 0 when written; else says why and returns the exit code.
 [[nodiscard]] int write_result(const std::string& name, std::string_view bytes,
                                bool replace_existing);
+
+// The same for a program in the place of the one that it was made of: not where that one was
+// written into, put away or replaced meanwhile.
+[[nodiscard]] int write_in_place_of(const WatchedFile& input, std::string_view bytes);
 
 // The same for a file that is made part by part.
 [[nodiscard]] int write_parts(const std::string& name,

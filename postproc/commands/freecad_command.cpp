@@ -59,7 +59,7 @@ bool holds_something_else(const fs::path& file) {
 
 int run(const FreecadCommand& command) {
   const auto folder = folder_for(command);
-  if (interrupted()) return interrupt_exit_code();
+  if (interrupted()) return end_interrupted();
   if (!folder) return static_cast<int>(ExitCode::kFileError);
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);

@@ -132,8 +132,9 @@ std::string json_report(const std::vector<InspectedSection>& sections,
 }  // namespace
 
 int run(const InspectCommand& command) {
+  const WatchedFile watched(command.input);
   const auto source = read_program(command.input);
-  if (interrupted()) return interrupt_exit_code();
+  if (interrupted()) return end_interrupted();
   if (!source) return static_cast<int>(ExitCode::kFileError);
 
   gcode::Diagnostics found;
@@ -145,6 +146,7 @@ int run(const InspectCommand& command) {
   const auto sections =
       inspect(program, interpretation, group_runs(program, interpretation, grouping));
 
+  if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
   print(found, *source, command.log_level);
   if (command.json_file != "-") {
     const std::string text = fmt::format("{}: {} blocks\n", source->name(), program.blocks.size()) +

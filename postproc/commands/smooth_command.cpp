@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <string>
 #include <system_error>
 
 #include "postproc/commands/commands.h"
@@ -49,15 +50,14 @@ int run(const SmoothCommand& command) {
       would_be_refused(command.report_file, command.force)) {
     return static_cast<int>(ExitCode::kFileError);
   }
+  const WatchedFile watched(command.input);
   const auto source = read_program(command.input);
-  if (interrupted()) return interrupt_exit_code();
+  if (interrupted()) return end_interrupted();
   if (!source) return static_cast<int>(ExitCode::kFileError);
 
   const SmoothResult result = smooth_with_progress(*source, command);
-  if (interrupted()) {
-    say("interrupted; nothing was written");
-    return interrupt_exit_code();
-  }
+  if (interrupted()) return end_interrupted();
+  if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
   print(result.diagnostics, *source, command.log_level);
 
   const ExitCode verdict = judge(result, source->text(), command.strict);
@@ -69,16 +69,23 @@ int run(const SmoothCommand& command) {
       .output_file = writes ? output : "",
       .strict = command.strict,
   };
+  // All that takes memory before anything is written: what ends here has written nothing.
+  const bool tells = result.understood && command.log_level >= LogLevel::kInfo;
+  const std::string summary = tells ? summary_text(report) : "";
+  const std::string json = command.json_file.empty() ? "" : json_report(report);
+  const std::string page =
+      command.report_file.empty() ? "" : html_report(report, {.command = command.command_line});
+
   int code = static_cast<int>(verdict);
-  if (writes) code = write_result(output, result.text, replaces_program);
-  if (result.understood && command.log_level >= LogLevel::kInfo) say_lines(summary_text(report));
+  if (writes && command.in_place) code = write_in_place_of(watched, result.text);
+  if (writes && !command.in_place) code = write_result(output, result.text, replaces_program);
+  say_lines(summary);
   if (verdict != ExitCode::kDone) say(complaint(verdict, command.strict));
-  if (!command.json_file.empty() && !interrupted()) {
-    const int json_code = write_result(command.json_file, json_report(report), command.force);
+  if (!command.json_file.empty()) {
+    const int json_code = write_result(command.json_file, json, command.force);
     if (code == 0) code = json_code;
   }
-  if (!command.report_file.empty() && !interrupted()) {
-    const std::string page = html_report(report, {.command = command.command_line});
+  if (!command.report_file.empty()) {
     const int report_code = write_result(command.report_file, page, command.force);
     if (code == 0) code = report_code;
   }

@@ -52,8 +52,9 @@ int write_profile(const TimeCommand& command, const gcode::Program& program,
 }  // namespace
 
 int run(const TimeCommand& command) {
+  const WatchedFile watched(command.input);
   const auto source = read_program(command.input);
-  if (interrupted()) return interrupt_exit_code();
+  if (interrupted()) return end_interrupted();
   if (!source) return static_cast<int>(ExitCode::kFileError);
 
   gcode::Diagnostics found;
@@ -61,6 +62,7 @@ int run(const TimeCommand& command) {
   const gcode::CurveFormat* curves = command.target != nullptr ? command.target->curves() : nullptr;
   const gcode::Interpretation meaning =
       gcode::interpret(program, {.units = command.units, .curves = curves}, found);
+  if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
   print(found, *source, command.log_level);
   if (gcode::has_error(found)) return static_cast<int>(ExitCode::kNotUnderstood);
 

@@ -156,6 +156,12 @@ int write_json(const VerifyCommand& command, const Verification& verification, c
                       command.force);
 }
 
+// Both are told.
+bool either_changed(const WatchedFile& one, const WatchedFile& other) {
+  const bool one_changed = changed_while_read(one);
+  return changed_while_read(other) || one_changed;
+}
+
 // The same bytes do the same on every control, in any unit, and whether they are understood here
 // or not.
 int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& source) {
@@ -189,15 +195,21 @@ void append(const std::vector<Breach>& breaches, Verification& verification) {
 }  // namespace
 
 int run(const VerifyCommand& command) {
+  const WatchedFile old_watched(command.old_program);
+  const WatchedFile new_watched(command.new_program);
   const auto old_source = read_program(command.old_program);
   const auto new_source = read_program(command.new_program);
-  if (interrupted()) return interrupt_exit_code();
+  if (interrupted()) return end_interrupted();
   if (!old_source || !new_source) return static_cast<int>(ExitCode::kFileError);
-  if (old_source->text() == new_source->text()) return accept_same_bytes(command, *new_source);
+  if (old_source->text() == new_source->text()) {
+    if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
+    return accept_same_bytes(command, *new_source);
+  }
 
   const Read before = read(*old_source, command);
   const AddedLines added = without_added_lines(command, before, *new_source);
   const Read after = read(gcode::SourceText(new_source->name(), added.text), command);
+  if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
   if (!is_understood(before, command.log_level)) {
     say("the old program is not understood, so nothing can be proved about the new one");
     return static_cast<int>(ExitCode::kNotUnderstood);
@@ -210,7 +222,8 @@ int run(const VerifyCommand& command) {
       verify({.program = &before.program, .interpretation = &before.interpretation},
              {.program = &after.program, .interpretation = &after.interpretation},
              {command.tolerance_mm, command.tolerance_kind, command.side});
-  if (interrupted()) return interrupt_exit_code();
+  if (interrupted()) return end_interrupted();
+  if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
   append(added.breaches, verification);
   append(events_in_brackets({.program = &after.program, .interpretation = &after.interpretation},
                             added.brackets),

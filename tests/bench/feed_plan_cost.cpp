@@ -1,4 +1,5 @@
-// What a feed plan and its quick estimate cost: processor time on ever longer paths of each kind.
+// What a feed plan and its quick estimate cost, and the models of controls by which `smooth`
+// chooses between forms: processor time on ever longer paths of each kind.
 //   feed_plan_cost [most pieces]        1000000 unless given; the plan stops at a hundredth of it
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 
 #include "geometry/bspline_curve.h"
 #include "geometry/path.h"
+#include "postproc/machine/cycle_time.h"
 #include "postproc/machine/feed_estimate.h"
 #include "postproc/machine/feed_plan.h"
 
@@ -93,10 +95,35 @@ double seconds_of(const Run& run) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
+// The pieces per second of each control's model, on what programs are made of.
+void print_controls(int most) {
+  fmt::print("{:28} {:>8} {:>14} {:>14} {:>14}  pieces/s\n", "path", "pieces", "linuxcnc", "grbl",
+             "high-speed");
+  for (const Kind& kind : {kKinds[0], kKinds[3]}) {
+    for (int pieces = 1000; pieces <= most; pieces *= 10) {
+      std::vector<postproc::TimedPiece> chain;
+      for (const geometry::PathPiece& piece : kind.make(pieces)) chain.push_back({piece, 6000});
+      fmt::print("{:28} {:8}", kind.name, pieces);
+      for (const std::string_view name : {"linuxcnc", "grbl", "high-speed"}) {
+        const postproc::Machine& machine = *postproc::find_machine(name);
+        const int times = std::max(1, 20000 / pieces);
+        const double seconds = seconds_of([&] {
+          for (int i = 0; i < times; ++i) {
+            (void)postproc::cutting_time(chain, machine, gcode::PathMode::kBlending);
+          }
+        });
+        fmt::print(" {:14.0f}", pieces * times / seconds);
+      }
+      fmt::print("\n");
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const int most = argc > 1 ? std::atoi(argv[1]) : 1000000;
+  print_controls(most);
   postproc::KinematicPathLimits limits;
   limits.feed = 100;
   limits.acceleration = Vector3::Constant(3000);

@@ -161,6 +161,26 @@ TEST_F(Batch, DoesAgainWhatChanged) {
   EXPECT_FALSE(contains(other.err, "done already")) << other.err;
 }
 
+// A machine file holds only what differs from the file that it is based on.
+TEST_F(Batch, DoesAgainWhatAMachineFileBehindItsOwnChanged) {
+  fs::remove_all(file("in/mill"));
+  const std::string with_machine = "--machine mine.toml";
+  put("mine.toml", "based-on = \"shop.toml\"\n");
+  put("shop.toml", "based-on = \"linuxcnc\"\nmax-acceleration = 500\n");
+  ASSERT_EQ(batch("out", with_machine).exit_code, 0);
+  const ProcessResult same = batch("out", with_machine);
+  EXPECT_TRUE(contains(same.err, "done already: 4 of 4 programs")) << same.err;
+
+  const double slow = record_of("out", "inch_ellipse.ngc")["time_before_s"];
+  put("shop.toml", "based-on = \"linuxcnc\"\nmax-acceleration = 5000\n");
+  const ProcessResult again = batch("out", with_machine);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_FALSE(contains(again.err, "done already")) << again.err;
+  EXPECT_LT(record_of("out", "inch_ellipse.ngc")["time_before_s"], slow);
+  ASSERT_EQ(batch("fresh", with_machine).exit_code, 0);
+  expect_same(files_below(file("out")), files_below(file("fresh")));
+}
+
 // --- killed and begun again ----------------------------------------------------------------------
 
 // Kills it as soon as `files` files are in the new tree and some milliseconds went by, which is
@@ -258,6 +278,70 @@ TEST_F(Batch, ShardsTogetherAreOneRun) {
   EXPECT_TRUE(contains(closing.err, "done already: 12 of 12 programs")) << closing.err;
   EXPECT_EQ(bytes_of(file("out/batten-batch/summary.json")),
             expected.at("batten-batch/summary.json"));
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at)) {
+    text.replace(at, what.size(), by);
+  }
+  return text;
+}
+
+// The block of docs/batch.md with this word, for the trees of the test.
+std::string from_the_page(const std::string& word) {
+  const std::string page = bytes_of(fs::path(BATTEN_SOURCE_DIR) / "docs/batch.md");
+  const std::string fence = "```\n";
+  std::size_t begin = page.find(fence);
+  while (begin != std::string::npos) {
+    begin += fence.size();
+    const std::size_t end = page.find(fence, begin);
+    const std::string block = page.substr(begin, end - begin);
+    if (contains(block, word)) {
+      return replaced(replaced(block, "/shop/programs", "in"), "/shop/smooth", "out");
+    }
+    begin = page.find(fence, end + fence.size());
+  }
+  throw std::runtime_error("docs/batch.md has no block with " + word);
+}
+
+class BatchOnSeveralMachines : public Batch {
+ protected:
+  void SetUp() override {
+    Batch::SetUp();
+    fs::create_directory(file("bin"));
+    fs::create_symlink(BATTEN_BINARY, file("bin/batten"));
+    ASSERT_EQ(run("batten batch in expected --target linuxcnc --tolerance 0.01").exit_code, 0);
+  }
+
+  // With `batten` in PATH, for programs that start it.
+  [[nodiscard]] ProcessResult run(const std::string& commands) const {
+    return folder_.shell("unset -f batten; export HOME=\"$PWD\" PATH=\"$PWD/bin:$PATH\"\n" +
+                         commands);
+  }
+};
+
+TEST_F(BatchOnSeveralMachines, IsOneRunUnderGnuParallelAsThePageSays) {
+  if (run("parallel --version | grep -q GNU").exit_code != 0) GTEST_SKIP() << "no GNU parallel";
+  const std::string four_machines = "--sshlogin a,b,c,d --jobs 1";
+  const std::string page = from_the_page("parallel");
+  ASSERT_TRUE(contains(page, four_machines)) << page;
+  const std::string commands = replaced(page, four_machines, "--jobs 4");
+  const ProcessResult result = run(commands);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "done already: 12 of 12 programs")) << result.err;
+  const Files expected = files_below(file("expected"));
+  expect_same(without_summaries(files_below(file("out"))), without_summaries(expected));
+  EXPECT_EQ(bytes_of(file("out/batten-batch/summary.json")),
+            expected.at("batten-batch/summary.json"));
+}
+
+TEST_F(BatchOnSeveralMachines, IsOneRunAsTheSlurmArrayOfThePage) {
+  put("shards.sh", from_the_page("SLURM_ARRAY_TASK_ID"));
+  const ProcessResult tasks =
+      run("for i in 1 2 3 4 5 6 7 8; do SLURM_ARRAY_TASK_ID=$i bash shards.sh & done; wait");
+  EXPECT_TRUE(fs::exists(file("out/batten-batch/summary-8-of-8.json"))) << tasks.err;
+  expect_same(without_summaries(files_below(file("out"))),
+              without_summaries(files_below(file("expected"))));
 }
 
 TEST_F(Batch, DoesNotRunTwiceAtATimeOnTheSamePrograms) {

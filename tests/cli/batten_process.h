@@ -3,14 +3,14 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <stdexcept>
 #include <string>
+
+#include "tests/support/scratch_folder.h"
 
 namespace batten {
 
@@ -23,23 +23,11 @@ struct ProcessResult {
 // A temporary folder to run commands in, removed at the end.
 class BattenFolder {
  public:
-  BattenFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "batten-cli-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder " + name);
-    folder_ = name;
-  }
-  BattenFolder(const BattenFolder&) = delete;
-  BattenFolder& operator=(const BattenFolder&) = delete;
-  ~BattenFolder() {
-    std::error_code error;
-    std::filesystem::remove_all(folder_, error);
+  [[nodiscard]] std::filesystem::path file(const std::string& name) const {
+    return folder_.path() / name;
   }
 
-  [[nodiscard]] std::filesystem::path file(const std::string& name) const { return folder_ / name; }
-
-  void put(const std::string& name, const std::string& text) const {
-    std::ofstream(file(name), std::ios::binary) << text;
-  }
+  void put(const std::string& name, const std::string& text) const { folder_.put(name, text); }
 
   [[nodiscard]] std::string text_of(const std::string& name) const {
     std::ifstream stream(file(name), std::ios::binary);
@@ -52,7 +40,7 @@ class BattenFolder {
 
   // Any shell command in this folder; `batten` is the program under test.
   [[nodiscard]] ProcessResult shell(const std::string& command) const {
-    const std::string line = "cd '" + folder_.string() +
+    const std::string line = "cd '" + folder_.path().string() +
                              "' && batten() { '" BATTEN_BINARY "' \"$@\"; }; { " + command +
                              "\n} >.out 2>.err";
     const int status = std::system(line.c_str());
@@ -70,7 +58,7 @@ class BattenFolder {
   }
 
  private:
-  std::filesystem::path folder_;
+  ScratchFolder folder_;
 };
 
 // A wave in 0.2 mm steps: one run that any target can make smoother.

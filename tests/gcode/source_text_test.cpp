@@ -1,7 +1,6 @@
 #include "gcode/source_text.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "gcode/line_cursor.h"
+#include "tests/support/scratch_folder.h"
 
 namespace batten::gcode {
 namespace {
@@ -94,19 +94,12 @@ TEST(SourceText, ThePlaceAfterALastLineEndIsTheNextLine) {
 
 class MapFile : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("source_text_test_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
+  [[nodiscard]] std::filesystem::path file_with(const std::string& text) const {
+    return scratch_.put("part.nc", text);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  std::filesystem::path file_with(const std::string& text) {
-    const auto file = folder_ / "part.nc";
-    std::ofstream(file, std::ios::binary) << text;
-    return file;
-  }
-  std::filesystem::path folder_;
+  ScratchFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST_F(MapFile, GivesTheBytesOfTheFile) {

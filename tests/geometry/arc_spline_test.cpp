@@ -152,7 +152,7 @@ TEST(ArcSpline, ABluntCornerIsRoundedInTheBand) {
   const double turn = 20 * kPi / 180;
   const std::vector<Point2> points = {{0, 0}, {10, 0}, Point2(10, 0) + 10 * unit_vector(turn)};
   ArcSplineOptions options = options_for(points);
-  options.thorough = true;
+  options.effort = ArcEffort::kThorough;
   const auto spline = fit_arc_spline(points, options);
   ASSERT_TRUE(spline);
   expect_sound(*spline, points, options);
@@ -195,20 +195,28 @@ TEST(ArcSpline, NeedsFewMoreArcsThanTheLeast) {
       {"ellipse 30 by 5", [](double u) { return Point2(30 * std::cos(u), 5 * std::sin(u)); }, 0.3,
        0.3 + 2 * kPi},
   };
+  struct Looks {
+    ArcEffort effort;
+    const char* name;
+    double more;
+  };
+  const Looks efforts[] = {{ArcEffort::kBrief, "brief", 1.35},
+                           {ArcEffort::kQuick, "quick", 1.25},
+                           {ArcEffort::kThorough, "thorough", 1.15}};
   for (const Row& row : rows) {
     const auto points = along(row.shape, row.from, row.to, 20000);
     ArcSplineOptions options = options_for(points);
     options.tolerance = 0.005;
     const double least = least_arcs(row.shape, row.from, row.to, options.tolerance);
     std::cout << row.name << ": least " << least;
-    for (const bool thorough : {false, true}) {
-      options.thorough = thorough;
+    for (const auto& [effort, name, more] : efforts) {
+      options.effort = effort;
       const auto spline = fit_arc_spline(points, options);
       ASSERT_TRUE(spline) << row.name;
       expect_sound(*spline, points, options);
-      std::cout << (thorough ? ", thorough " : ", quick ") << spline->pieces.size();
+      std::cout << ", " << name << " " << spline->pieces.size();
       EXPECT_EQ(spline->kinks, 0) << row.name;
-      const double most = (thorough ? 1.15 : 1.25) * least + 2;
+      const double most = more * least + 2;
       EXPECT_LE(static_cast<double>(spline->pieces.size()), most) << row.name;
     }
     std::cout << "\n";
@@ -230,7 +238,7 @@ TEST(ArcSpline, HoldsTheBandOfNoisyRandomPaths) {
                           a * std::sin(u / 4) + b * std::cos(u / 7) + noise * any(random));
     }
     ArcSplineOptions options = options_for(points);
-    options.thorough = round % 2 == 0;
+    options.effort = round % 2 == 0 ? ArcEffort::kThorough : ArcEffort::kBrief;
     const auto spline = fit_arc_spline(points, options);
     ASSERT_TRUE(spline) << round;
     expect_sound(*spline, points, options);

@@ -70,6 +70,26 @@ TEST(PlaneBand, ReachEndsAtACorner) {
   EXPECT_NEAR(band.samples()[reach.end].station, 5, 3 * kTolerance);
 }
 
+// The quick look skips samples: it ends at the fan's end or a few samples behind it.
+TEST(PlaneBand, ReachIsTheEndOfTheFan) {
+  std::vector<Point2> points;
+  for (int i = 0; i <= 2000; ++i) {
+    const double x = 0.05 * i;
+    points.push_back({x, 3 * std::sin(0.4 * x) + 0.5 * std::sin(1.7 * x)});
+  }
+  const PlaneBand band(points, limits());
+  const auto& samples = band.samples();
+  for (std::size_t next = 1; next + 1 < samples.size(); next += 7) {
+    for (const double off : {0.0, 0.004, -0.004}) {
+      const BandEntry entry{samples[next - 1].place, samples[next].edge_angle + off, next};
+      const std::size_t end = next + band.fan(entry).ranges.size();
+      const std::size_t reach = band.reach(entry).end;
+      EXPECT_GE(reach, end);
+      EXPECT_LE(reach, end + 4);
+    }
+  }
+}
+
 TEST(PlaneBand, AnArcWithinTheToleranceIsPassed) {
   const PlaneBand band(on_circle(20, 200, 2.5), limits());
   const double offs[] = {0, 0.0095, -0.0090};  // the chords' sagitta is 0.0004

@@ -7,7 +7,6 @@ Exits with 77 where LinuxCNC is not installed."""
 
 import os
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
@@ -27,21 +26,6 @@ def expect(truth, what, *details):
         print("WRONG:", what, *(str(d)[:500] for d in details))
 
 
-def snippet(page):
-    """The one ini block of the page with a [FILTER] section."""
-    blocks = re.findall(r"```ini\n(.*?)```", page.read_text(), re.DOTALL)
-    return next(b for b in blocks if "[FILTER]" in b)
-
-
-def ini_file(folder, batten, root):
-    import linuxcnc
-    text = snippet(root / "docs/linuxcnc_filter.md")
-    expect("/usr/bin/batten" in text, "the page names the program with its full path")
-    file = folder / "machine.ini"
-    file.write_text(text.replace("/usr/bin/batten", batten))
-    return linuxcnc.ini(str(file))
-
-
 def rs274_accepts(program, folder):
     (folder / "tool.tbl").write_text("".join(f"T{i} P{i} D0.2 Z0\n" for i in range(1, 10)))
     (folder / "parameters.var").write_text("")
@@ -56,7 +40,7 @@ def rs274_accepts(program, folder):
 class Check:
     def __init__(self, batten, root, folder):
         self.batten, self.folder = batten, folder
-        self.ini = ini_file(folder, batten, root)
+        self.ini = installed_filters.ini_of_the_page(root, batten, folder)
         self.rewritten = 0
 
     def ask(self, call, program):

@@ -70,6 +70,18 @@ def system(seen):
             "_": str, "t": Quiet(), "Progress": lambda *_: Shown(seen)}
 
 
+def ini_of_the_page(root, batten, folder):
+    """The [FILTER] section that docs/linuxcnc_filter.md shows, with this program, as LinuxCNC reads it."""
+    import linuxcnc
+    page = (root / "docs/linuxcnc_filter.md").read_text()
+    text = next(b for b in re.findall(r"```ini\n(.*?)```", page, re.DOTALL) if "[FILTER]" in b)
+    if "/usr/bin/batten" not in text:
+        raise LookupError("the page does not name the program with its full path")
+    file = folder / "machine.ini"
+    file.write_text(text.replace("/usr/bin/batten", batten))
+    return linuxcnc.ini(str(file))
+
+
 def axis_filter_for(ini, program):
     space = definitions(AXIS, ["get_filter"], {"os": os, "inifile": ini})
     return space["get_filter"](str(program))

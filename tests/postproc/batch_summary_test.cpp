@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "postproc/batch/batch_progress.h"
-#include "postproc/progress_text.h"
 #include "postproc/batch/leftovers.h"
+#include "postproc/progress_text.h"
 
 namespace batten::postproc {
 namespace {
@@ -53,6 +53,15 @@ TEST(BatchRecord, ReadsBackTheSame) {
     EXPECT_EQ(again->exit_code, record.exit_code);
     EXPECT_EQ(again->deviation_mm, record.deviation_mm);
   }
+}
+
+TEST(BatchRecord, SaysAllOfAProgram) {
+  EXPECT_EQ(nlohmann::json::parse(record_text(smoothed("a/b.nc"))), nlohmann::json::parse(R"({
+    "program": "a/b.nc", "status": "smoothed", "exit_code": 0, "message": "",
+    "input_sha256": "aa", "settings_sha256": "bb", "output_sha256": "cc", "report_sha256": "dd",
+    "bytes_in": 1000, "bytes_out": 400, "blocks_in": 100, "blocks_out": 30,
+    "runs_rewritten": 2, "runs_kept": 1,
+    "time_before_s": 3.5, "time_after_s": 2.25, "deviation_mm": 0.0098})"));
 }
 
 TEST(BatchRecord, OfOtherTextIsNone) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "postproc/joined_times.h"
 #include "postproc/method_times.h"
 #include "tests/support/method_cases.h"
 #include "wavy_programs.h"
@@ -103,7 +104,8 @@ TEST(BestMethod, IsThreePerCentFasterThanGuoLiteralOnAStar) {
 // Times of one method that differ by less than a percent are equal, and then other merits count.
 TEST(BestMethod, IsNotSlowerThanAnyMethodOfItsOwnOnAStar) {
   const double best = time_of_star(Method::kBest, Form::kAuto);
-  for (const Method method : {Method::kFair, Method::kGuo, Method::kOzcan, Method::kRacing, Method::kNaseath}) {
+  for (const Method method :
+       {Method::kFair, Method::kGuo, Method::kOzcan, Method::kRacing, Method::kNaseath}) {
     EXPECT_LT(best, 1.01 * time_of_star(method, Form::kAuto)) << name_of(method);
   }
 }
@@ -141,6 +143,20 @@ TEST(MethodTimes, AreThoseOfTheFastestCandidateOfEachMethod) {
   EXPECT_EQ(times[0].time_s, 2);
   EXPECT_EQ(times[1].method, "guo");
   EXPECT_EQ(times[1].time_s, 2.5);
+}
+
+// 3 + 1 s, tried as 2.5 + 0.75 s with fair; guo was tried on the second stretch only.
+TEST(MethodTimes, OfTwoStretchesAreSumsAndLeaveWhatWasNotTriedAsItWas) {
+  const TriedStretch first = {{{"fair", 2.5}, {"racing", 2.75}}, 3};
+  const TriedStretch second = {{{"fair", 0.75}, {"guo", 0.5}}, 1};
+  const std::vector<MethodTime> times = joined_times(first, second);
+  ASSERT_EQ(times.size(), 3u);
+  EXPECT_EQ(times[0].method, "fair");
+  EXPECT_DOUBLE_EQ(times[0].time_s, 3.25);
+  EXPECT_EQ(times[1].method, "racing");
+  EXPECT_DOUBLE_EQ(times[1].time_s, 3.75);
+  EXPECT_EQ(times[2].method, "guo");
+  EXPECT_DOUBLE_EQ(times[2].time_s, 3.5);
 }
 
 TEST(MethodTimes, SayHowFarTheChosenOneLeads) {

@@ -10,6 +10,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/support/scratch_folder.h"
+
 namespace batten::postproc {
 namespace {
 
@@ -17,18 +19,9 @@ namespace fs = std::filesystem;
 
 class OutputFile : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "batten-output-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   [[nodiscard]] fs::path file(const std::string& name) const { return folder_ / name; }
 
-  void put(const std::string& name, const std::string& text) const {
-    std::ofstream(file(name), std::ios::binary) << text;
-  }
+  void put(const std::string& name, const std::string& text) const { scratch_.put(name, text); }
 
   [[nodiscard]] std::string text_of(const std::string& name) const {
     std::ifstream stream(file(name), std::ios::binary);
@@ -40,7 +33,8 @@ class OutputFile : public testing::Test {
         std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
 
-  fs::path folder_;
+  ScratchFolder scratch_;
+  const fs::path folder_ = scratch_.path();
 };
 
 TEST(DefaultOutputPath, PutsSmoothBeforeTheSuffix) {

@@ -3,12 +3,11 @@
 #include "postproc/batch/program_tree.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
 #include <set>
-#include <stdexcept>
+
+#include "tests/support/scratch_folder.h"
 
 namespace batten::postproc {
 namespace {
@@ -17,20 +16,10 @@ namespace fs = std::filesystem;
 
 class ProgramTrees : public testing::Test {
  protected:
-  ProgramTrees() {
-    std::string name = (fs::temp_directory_path() / "batten-tree-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder " + name);
-    root_ = name;
-    fs::create_directories(root_ / "in/sub");
-  }
-  ~ProgramTrees() override {
-    std::error_code error;
-    fs::remove_all(root_, error);
-  }
+  ProgramTrees() { fs::create_directories(root_ / "in/sub"); }
 
   void put(const std::string& name, const std::string& text = "G21\n") const {
-    fs::create_directories((root_ / name).parent_path());
-    std::ofstream(root_ / name, std::ios::binary) << text;
+    scratch_.put(name, text);
   }
 
   [[nodiscard]] std::vector<std::string> names(const std::vector<std::string>& suffixes) const {
@@ -45,7 +34,8 @@ class ProgramTrees : public testing::Test {
     return !problems_of_trees(root_ / in, root_ / out).empty();
   }
 
-  fs::path root_;
+  ScratchFolder scratch_;
+  const fs::path root_ = scratch_.path();
 };
 
 using Names = std::vector<std::string>;

@@ -2,26 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 
 #include "gcode/target_table.h"
+#include "tests/support/scratch_folder.h"
 
 namespace batten::postproc {
 namespace {
 
-namespace fs = std::filesystem;
-
 class ProfileFile : public testing::Test {
  protected:
-  ProfileFile()
-      : file_((fs::temp_directory_path() /
-               ("batten-profile-" +
-                std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "-" +
-                testing::UnitTest::GetInstance()->current_test_info()->name() + ".toml"))
-                  .string()) {}
-  ~ProfileFile() override { fs::remove(file_); }
-
   std::shared_ptr<const TargetProfile> read(const std::string& text,
                                             const gcode::Dialect* target = nullptr) {
     std::ofstream(file_) << text;
@@ -36,7 +26,8 @@ class ProfileFile : public testing::Test {
     EXPECT_EQ(problems_[0], file_ + sentence);
   }
 
-  std::string file_;
+  ScratchFolder folder_;
+  const std::string file_ = folder_.file("profile.toml");
   std::vector<std::string> problems_;
 };
 

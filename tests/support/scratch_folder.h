@@ -26,8 +26,10 @@ class ScratchFolder {
     std::filesystem::remove_all(folder_, error);
   }
 
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
+
   // Writes a file, in folders of its own where the name has some, and gives its whole name.
-  [[nodiscard]] std::string put(const std::string& name, std::string_view text) const {
+  std::string put(const std::string& name, std::string_view text) const {
     const std::filesystem::path file = folder_ / name;
     std::filesystem::create_directories(file.parent_path());
     std::ofstream(file, std::ios::binary) << text;

@@ -1,19 +1,16 @@
 // LinuxCNC's own interpreter reads what is written for it. Skipped where it is not installed.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 
 #include "dialect_arcs.h"
+#include "tests/support/scratch_folder.h"
 
 namespace batten::gcode {
 namespace {
-
-namespace fs = std::filesystem;
 
 bool is_installed() { return std::system("command -v rs274 >/dev/null 2>&1") == 0; }
 
@@ -32,24 +29,22 @@ std::string ten_thousand_arcs(Units units) {
 
 TEST(Rs274, TakesTenThousandArcsInEitherUnit) {
   if (!is_installed()) GTEST_SKIP() << "no rs274 here";
-  std::string name = (fs::temp_directory_path() / "batten-rs274-XXXXXX").string();
-  ASSERT_NE(::mkdtemp(name.data()), nullptr);
-  const fs::path folder = name;
-  std::ofstream(folder / "tool.tbl") << "T1 P1 D0.2 Z0\n";
-  std::ofstream(folder / "parameters.var") << "";
+  const ScratchFolder folder;
+  const std::string name = folder.path().string();
+  folder.put("tool.tbl", "T1 P1 D0.2 Z0\n");
+  folder.put("parameters.var", "");
   for (const Units units : {Units::kMillimetre, Units::kInch}) {
-    std::ofstream(folder / "arcs.ngc") << ten_thousand_arcs(units);
+    folder.put("arcs.ngc", ten_thousand_arcs(units));
     const std::string command = "cd '" + name + "' && HOME='" + name +
                                 "' rs274 -g -n 2 -t tool.tbl -v parameters.var arcs.ngc "
                                 "</dev/null >/dev/null 2>complaints";
     EXPECT_EQ(std::system(command.c_str()), 0);
     // Its exit code is 0 even after some errors.
-    std::ifstream said(folder / "complaints");
+    std::ifstream said(folder.file("complaints"));
     for (std::string line; std::getline(said, line);) {
       EXPECT_TRUE(line.empty() || line == "executing") << line;
     }
   }
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -1,0 +1,21 @@
+// The readers of curve words (G06.2, POLY, BSPLINE, SPL, Klartext), for libFuzzer; see
+// docs/development.md.
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "tests/fuzz/curves_promises.h"
+#include "tests/fuzz/program_mutator.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string broken =
+      batten::gcode::promises::broken_curves(batten::fuzz::text_of(data, size));
+  if (!broken.empty()) {
+    std::fprintf(stderr, "broken promise: %s\n", broken.c_str());
+    std::abort();
+  }
+  return 0;
+}

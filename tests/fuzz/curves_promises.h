@@ -1,0 +1,105 @@
+// What the readers of curve words promise for any program whatever, from any of its blocks on. Used
+// by the fuzzer and by the unit tests.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "gcode/curves/heidenhain_spl.h"
+#include "gcode/curves/klartext_moves.h"
+#include "gcode/curves/nurbs_alarms.h"
+#include "gcode/curves/nurbs_read.h"
+#include "gcode/curves/siemens_bspline.h"
+#include "gcode/curves/siemens_poly.h"
+#include "gcode/parser.h"
+#include "geometry/path.h"
+
+namespace batten::gcode::promises {
+
+// Pieces of blocks of the program, each behind the one before it, at places that are some.
+inline std::string broken_reading(const CurveResult& result, std::uint32_t first,
+                                  const Program& program) {
+  if (const auto* refusal = std::get_if<CurveRefusal>(&result)) {
+    return refusal->why.empty() ? "a refusal without a reason" : "";
+  }
+  const auto& reading = std::get<CurveReading>(result);
+  if (reading.blocks > program.blocks.size() - first) return "blocks that are not there";
+  std::uint32_t from = first;
+  for (const CurveMotion& motion : reading.motions) {
+    if (motion.block < from || motion.block >= first + reading.blocks) {
+      return "a piece of a block that does not say the curve";
+    }
+    from = motion.block + 1;
+    for (const double t : {0.0, 0.37, 1.0}) {
+      if (!geometry::point_at(motion.piece, t).allFinite()) return "a piece to no place";
+    }
+  }
+  return "";
+}
+
+inline std::string broken_alarms(const CurveAlarms& alarms, const Program& program) {
+  std::uint32_t line = 0;
+  for (const CurveAlarm& alarm : alarms) {
+    if (alarm.line < std::max(1U, line) || alarm.line > program.blocks.size()) {
+      return "an alarm of a line that is not there, or out of order";
+    }
+    if (alarm.id.empty() || alarm.message.empty()) return "an alarm without a name";
+    line = alarm.line;
+  }
+  return "";
+}
+
+inline std::string broken_readers_at(const Program& program, std::uint32_t first,
+                                     const CurveStart& start) {
+  for (const NurbsRules& rules :
+       {fanuc_nurbs(start.units), syntec_nurbs(start.units), mitsubishi_nurbs()}) {
+    std::string broken = broken_reading(read_nurbs(program, first, start, rules), first, program);
+    if (!broken.empty()) return "G06.2: " + broken;
+    const auto text = read_nurbs_text(program, first, start, rules);
+    const auto* curve = std::get_if<NurbsText>(&text);
+    if (curve == nullptr) continue;
+    const double last = curve->knots.back();
+    if (!curve->point_at(curve->knots.front() + 0.4 * (last - curve->knots.front())).allFinite()) {
+      return "G06.2: a curve through no place";
+    }
+  }
+  std::string broken = broken_reading(read_poly(program, first, start), first, program);
+  if (!broken.empty()) return "POLY: " + broken;
+  const auto bspline = read_bspline(program, first, start, BsplineUse::kAcceptedUnverified);
+  broken = broken_reading(bspline, first, program);
+  if (!broken.empty()) return "BSPLINE: " + broken;
+  broken = broken_reading(read_spl(program, first, start), first, program);
+  if (!broken.empty()) return "SPL: " + broken;
+  broken = broken_reading(read_klartext_moves(program, first, start), first, program);
+  return broken.empty() ? "" : "Klartext: " + broken;
+}
+
+// The promise that does not hold for this text; empty when all do.
+inline std::string broken_curves(std::string_view text) {
+  Diagnostics found;
+  const Program program = parse(SourceText("fuzz", std::string(text)), found);
+  // Each reader goes on to the end of its curve: many blocks times all of them would take long.
+  constexpr std::size_t kMostBlocks = 200;
+  const std::size_t blocks = std::min(program.blocks.size(), kMostBlocks);
+  CurveStart start;
+  start.position.known = {true, true, true};
+  for (std::uint32_t first = 0; first < blocks; ++first) {
+    start.units = first % 5 == 4 ? Units::kInch : Units::kMillimetre;
+    std::string broken = broken_readers_at(program, first, start);
+    if (!broken.empty()) return broken;
+  }
+  for (const CurveAlarms& alarms : {nurbs_alarms(program, fanuc_nurbs(Units::kMillimetre)),
+                                    nurbs_alarms(program, syntec_nurbs(Units::kInch)),
+                                    nurbs_alarms(program, mitsubishi_nurbs()), poly_alarms(program),
+                                    spl_alarms(program, Units::kMillimetre),
+                                    klartext_arc_alarms(program, Units::kMillimetre)}) {
+    std::string broken = broken_alarms(alarms, program);
+    if (!broken.empty()) return broken;
+  }
+  return "";
+}
+
+}  // namespace batten::gcode::promises

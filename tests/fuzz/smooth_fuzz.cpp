@@ -1,0 +1,22 @@
+// The whole pipeline, for libFuzzer; see docs/development.md. The options are those that the first
+// line of the program stands for.
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "tests/fuzz/program_mutator.h"
+#include "tests/fuzz/smooth_promises.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text = batten::fuzz::text_of(data, size);
+  const auto options = batten::postproc::promises::options_for_text(text);
+  const std::string broken = batten::postproc::promises::broken_by(text, options);
+  if (!broken.empty()) {
+    std::fprintf(stderr, "broken promise: %s\n", broken.c_str());
+    std::abort();
+  }
+  return 0;
+}

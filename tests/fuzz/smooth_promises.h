@@ -1,0 +1,110 @@
+// What the pipeline promises for any program whatever. Used by the fuzzer and by the unit tests.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "gcode/dialect.h"
+#include "gcode/interpreter.h"
+#include "gcode/parser.h"
+#include "postproc/machine/machine.h"
+#include "postproc/options.h"
+#include "postproc/pipeline.h"
+#include "postproc/run_grouping.h"
+#include "postproc/verification.h"
+
+namespace batten::postproc::promises {
+
+// FNV-1a: different first lines, different options; the same ones for the same program.
+inline std::uint32_t hash_of(std::string_view text) {
+  std::uint32_t hash = 2166136261U;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+  return hash;
+}
+
+// Options that the first line of a program stands for.
+inline SmoothOptions options_for_text(std::string_view text) {
+  constexpr std::array<double, 5> kTolerances = {0.01, 0.01, 0.002, 0.05, 1};
+  constexpr std::array kForms = {Form::kAuto, Form::kAuto, Form::kArcs, Form::kLines};
+  constexpr std::array kPrefer = {Prefer::kTime, Prefer::kAccuracy, Prefer::kSize};
+  constexpr std::array kMethods = {Method::kBest,    Method::kFair, Method::kRacing,
+                                   Method::kNaseath, Method::kGuo,  Method::kOzcan};
+  const std::uint32_t hash = hash_of(text.substr(0, text.find('\n')));
+  const auto targets = gcode::dialects();
+  SmoothOptions options;
+  options.target = targets[hash % targets.size()];
+  options.machine = find_machine(options.target->default_machine());
+  options.tolerance_mm = kTolerances[hash / 64 % kTolerances.size()];
+  options.output = kForms[hash / 512 % kForms.size()];
+  options.prefer = kPrefer[hash / 4096 % kPrefer.size()];
+  options.method = kMethods[hash / 32768 % kMethods.size()];
+  options.tolerance_kind =
+      hash / 262144 % 4 == 0 ? geometry::ToleranceKind::kBand : geometry::ToleranceKind::kPath;
+  options.units = gcode::Units::kMillimetre;
+  options.threads = 1;
+  return options;
+}
+
+struct TextAsRead {
+  explicit TextAsRead(std::string_view text, gcode::Units units)
+      : program(gcode::parse(gcode::SourceText("fuzz", std::string(text)), found)),
+        meaning(gcode::interpret(program, {.units = units}, found)) {}
+  gcode::Diagnostics found;
+  gcode::Program program;
+  gcode::Interpretation meaning;
+};
+
+// Byte where line `line` (from 1) begins; the size of the text behind the last one.
+inline std::size_t begin_of_line(const gcode::Program& program, std::uint32_t line) {
+  return line <= program.blocks.size() ? program.blocks[line - 1].span.begin
+                                       : program.source.text().size();
+}
+
+// Does everything outside rewritten runs stand in the new text, unchanged and in order? The first
+// part begins it and the last part ends it, where they are not runs.
+inline bool rest_is_copied(const gcode::Program& before, const SmoothResult& result) {
+  const std::string_view text = result.text;
+  std::size_t from = 0;  // in the new text
+  std::uint32_t next = 1;
+  const auto kept_up_to = [&](std::uint32_t end) {
+    const std::size_t begin = begin_of_line(before, next);
+    return before.source.text().substr(begin, begin_of_line(before, end) - begin);
+  };
+  for (const RunReport& run : result.runs) {
+    if (run.status != RunStatus::kRewritten) continue;
+    const std::string_view part = kept_up_to(run.first_line);
+    const std::size_t at = text.find(part, from);
+    if (at == std::string_view::npos || (next == 1 && at != 0)) return false;
+    from = at + part.size();
+    next = run.last_line + 1;
+  }
+  const std::string_view last = kept_up_to(static_cast<std::uint32_t>(before.blocks.size() + 1));
+  if (next == 1) return text == last;
+  return text.ends_with(last) && text.size() - last.size() >= from;
+}
+
+// The promise that does not hold for this program; empty when all do.
+inline std::string broken_by(std::string_view text, const SmoothOptions& options) {
+  const gcode::SourceText source("fuzz", std::string(text));
+  const SmoothResult result = smooth_program(source, options);
+  const TextAsRead before(text, options.units);
+  if (!result.understood) return "";
+  if (!result.proved) return "the new program is not proved by its maker";
+  if (!(result.deviation_mm <= options.tolerance_mm)) return "a deviation above the tolerance";
+  const TextAsRead after(result.text, options.units);
+  const Promise promise(options.tolerance_mm, options.tolerance_kind, options.side);
+  const Verification found =
+      verify({&before.program, &before.meaning}, {&after.program, &after.meaning}, promise);
+  if (!found.proved()) return "not proved: " + found.breaches.front().message;
+  if (!rest_is_copied(before.program, result)) return "something that was kept is not the same";
+  for (const RunReport& run : result.runs) {
+    if (run.reason.empty() != (run.status == RunStatus::kRewritten)) return "kept without a reason";
+  }
+  const SmoothResult again = smooth_program(gcode::SourceText("fuzz", result.text), options);
+  return again.text == result.text ? "" : "a second pass changes something";
+}
+
+}  // namespace batten::postproc::promises

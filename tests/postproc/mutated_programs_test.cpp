@@ -1,0 +1,108 @@
+// The promises that the fuzzers ask for (tests/fuzz), on programs of samples/ and tests/cases/ that
+// were changed by blocks and words: repeated, swapped, dropped, spliced, with other digits and
+// words. Seeded.
+//
+// BATTEN_MUTATIONS=10000 postproc_tests --gtest_filter='MutatedPrograms.*' tries more of them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "tests/fuzz/curves_promises.h"
+#include "tests/fuzz/interpret_promises.h"
+#include "tests/fuzz/parse_promises.h"
+#include "tests/fuzz/program_mutation.h"
+#include "tests/fuzz/smooth_promises.h"
+
+namespace batten::postproc {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Programs that are tried of each kind when nobody asks for more.
+constexpr int kPrograms = 150;
+
+// The pipeline is asked about one in so many: it takes a hundred times as long.
+constexpr int kProgramsPerPipeline = 5;
+
+// Bytes of a program: a run of some dozen blocks is as good as a longer one.
+constexpr std::size_t kMostBytes = 3000;
+
+int programs_to_try() {
+  const char* given = std::getenv("BATTEN_MUTATIONS");
+  return given == nullptr ? kPrograms : std::atoi(given);
+}
+
+// Some lines out of each program, in the order of their names.
+std::vector<std::string> seeds() {
+  std::vector<fs::path> files;
+  for (const char* folder : {"/samples", "/tests/cases"}) {
+    for (const auto& entry :
+         fs::recursive_directory_iterator(BATTEN_SOURCE_DIR + std::string(folder))) {
+      const std::string kind = entry.path().extension().string();
+      if (kind == ".nc" || kind == ".ngc" || kind == ".mpf" || kind == ".h") {
+        files.push_back(entry.path());
+      }
+    }
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<std::string> texts;
+  for (const fs::path& file : files) {
+    std::ifstream stream(file, std::ios::binary);
+    std::string text(std::istreambuf_iterator<char>(stream), {});
+    if (text.size() > kMostBytes) text.resize(text.rfind('\n', kMostBytes) + 1);
+    texts.push_back(std::move(text));
+  }
+  return texts;
+}
+
+// Program `number` of the endless row.
+std::string mutated_program(const std::vector<std::string>& texts, int number) {
+  const auto seed = static_cast<std::uint32_t>(number);
+  std::mt19937 random(seed);
+  std::string text = texts[random() % texts.size()];
+  fuzz::ProgramMutator mutator(seed);
+  const auto times = 1 + random() % 4;
+  for (unsigned i = 0; i < times; ++i) {
+    const std::string& other = texts[random() % texts.size()];
+    text = random() % 6 == 0 ? mutator.crossed(text, other) : mutator.mutated(text, other);
+  }
+  text.resize(std::min(text.size(), kMostBytes));
+  return text;
+}
+
+TEST(MutatedPrograms, AreReadAsTheReadersPromise) {
+  const auto texts = seeds();
+  ASSERT_GE(texts.size(), 50u);
+  for (int number = 0; number < programs_to_try(); ++number) {
+    const std::string text = mutated_program(texts, number);
+    SCOPED_TRACE(testing::Message() << "program " << number << "\n" << text);
+    ASSERT_EQ(gcode::promises::broken_by(text), "");
+    ASSERT_EQ(promises::broken_meaning(text), "");
+    ASSERT_EQ(gcode::promises::broken_curves(text), "");
+  }
+}
+
+TEST(MutatedPrograms, AreSmoothedProvedAndOtherwiseCopied) {
+  const auto texts = seeds();
+  int rewritten = 0;
+  for (int number = 0; number < programs_to_try(); number += kProgramsPerPipeline) {
+    const std::string text = mutated_program(texts, number);
+    const SmoothOptions options = promises::options_for_text(text);
+    SCOPED_TRACE(testing::Message()
+                 << "program " << number << " for " << options.target->name() << "\n"
+                 << text);
+    ASSERT_EQ(promises::broken_by(text, options), "");
+    const SmoothResult result = smooth_program(gcode::SourceText("test.nc", text), options);
+    rewritten += result.text == text ? 0 : 1;
+  }
+  EXPECT_GT(rewritten, programs_to_try() / kProgramsPerPipeline / 20);
+}
+
+}  // namespace
+}  // namespace batten::postproc
