@@ -8,6 +8,7 @@
 #include "gcode/arc_from_words.h"
 #include "gcode/block_words.h"
 #include "gcode/control_state.h"
+#include "gcode/curves/curve_in_program.h"
 #include "gcode/motion_words.h"
 #include "gcode/opaque_blocks.h"
 #include "gcode/program_flow.h"
@@ -23,7 +24,7 @@ constexpr std::size_t kMostTold = 50;  // of one id
 class Interpreter {
  public:
   Interpreter(const Program& program, const ReadOptions& options, Diagnostics& found)
-      : program_(program), found_(found) {
+      : program_(program), curves_(options.curves), found_(found) {
     now_.modal.units = options.units;
     read_.unit_word_seen = options.units != Units::kUnknown;
     read_.states.push_back(now_.modal);
@@ -33,8 +34,15 @@ class Interpreter {
 
   Interpretation run() {
     const std::vector<BlockFlow> flow = find_flow(program_);
-    for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
-      read_block(static_cast<std::uint32_t>(i), flow[i]);
+    const auto count = static_cast<std::uint32_t>(program_.blocks.size());
+    for (std::uint32_t i = 0; i < count;) {
+      if (const auto curve = curve_at(program_, i, now_, curves_, flow)) {
+        add_curve(i, *curve);
+        i += curve->blocks;
+      } else {
+        read_block(i, flow[i]);
+        ++i;
+      }
     }
     tell_untold();
     report_missing_units();
@@ -63,6 +71,34 @@ class Interpreter {
     }
     meaning_.state_after = static_cast<std::uint32_t>(read_.states.size() - 1);
     read_.blocks.push_back(meaning_);
+  }
+
+  // The blocks of a curve together. Until it is over nothing but the curve happens.
+  void add_curve(std::uint32_t first, const CurveReading& curve) {
+    now_.modal.motion = MotionMode::kOther;
+    now_.other_motion = reason::kSpline;
+    if (curve.feed) {
+      now_.modal.feed = *curve.feed * (now_.modal.units == Units::kInch ? kMillimetresPerInch : 1);
+    }
+    if (read_.states.back() != now_.modal) {
+      read_.states.push_back(now_.modal);
+    }
+    auto next = curve.motions.begin();
+    for (std::uint32_t i = first; i < first + curve.blocks; ++i) {
+      meaning_ = BlockMeaning{};
+      meaning_.kind = BlockKind::kSettings;  // it says a knot, or that the curve begins
+      meaning_.barrier = reason::kSpline;
+      meaning_.of_curve = true;
+      meaning_.state_after = static_cast<std::uint32_t>(read_.states.size() - 1);
+      if (next != curve.motions.end() && next->block == i) {
+        meaning_.kind = BlockKind::kMotion;
+        meaning_.motion = static_cast<std::int32_t>(read_.motions.size());
+        read_.motions.push_back(motion_of(*next++, curve));
+      }
+      read_.blocks.push_back(meaning_);
+    }
+    // It started where the place was known, and so it ends.
+    now_.position.mm = geometry::end_point(read_.motions.back().piece);
   }
 
   // The operator chooses whether the block is executed: what it changes is unknown afterwards.
@@ -364,6 +400,7 @@ class Interpreter {
   }
 
   const Program& program_;
+  const CurveFormat* curves_;
   Diagnostics& found_;
   ControlState now_;
   Interpretation read_;

@@ -7,8 +7,13 @@
 
 namespace batten::gcode {
 
+class CurveFormat;  // gcode/curves/curve_format.h
+
 struct ReadOptions {
   Units units = Units::kUnknown;  // --units: what a program that names no unit means
+  // The curves of the control that the program is for; all others are motions that cannot be
+  // followed. nullptr: none are read.
+  const CurveFormat* curves = nullptr;
 };
 
 // Follows the program from its first block to its last, as a control would, without loops

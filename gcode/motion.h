@@ -17,6 +17,7 @@ enum class MotionKind : std::uint8_t {
   kRapid,  // G0
   kLine,   // G1
   kArc,    // G2, G3
+  kCurve,  // a cubic piece of a curve that is read exactly: ReadOptions::curves
 };
 
 struct Motion {
@@ -29,7 +30,8 @@ struct Motion {
   // Every axis that the block names is known after it. False in G91 from an unknown place.
   bool end_known = false;
   std::array<bool, 3> axes_named = {false, false, false};  // X, Y, Z stand in the block
-  geometry::PathPiece piece;  // a Line for kRapid and kLine, an Arc for kArc; absolute mm
+  // A Line for kRapid and kLine, an Arc for kArc, a CubicBezier for kCurve; absolute mm.
+  geometry::PathPiece piece;
 };
 
 // What a block is, as far as grouping and checking are concerned.
@@ -55,6 +57,9 @@ struct BlockMeaning {
   // Before this block the state and place are not what the block before it left: control can
   // come from elsewhere (a label that is jumped to).
   bool entered_from_elsewhere = false;
+  // One of the blocks that say a curve together, which is read exactly. Each of its pieces is the
+  // motion of one of them. `barrier` is reason::kSpline: curves are copied.
+  bool of_curve = false;
 };
 
 struct Interpretation {

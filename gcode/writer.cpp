@@ -103,6 +103,7 @@ void Writer::copy_line(std::string_view text) {
 }
 
 void Writer::restore(const ModalState& expected) {
+  if (expected.motion == MotionMode::kUnknown) end_curve();
   if (expected.plane != Plane::kUnknown) add_plane(expected.plane);
   if (expected.motion != MotionMode::kUnknown && expected.motion != state_.modal.motion) {
     if (expected.motion != MotionMode::kLine && expected.motion != MotionMode::kRapid) {
@@ -274,11 +275,16 @@ void Writer::add_coordinates(const Coordinates& coordinates) {
   }
 }
 
-void Writer::add_feed(double feed) {
-  if (state_.modal.feed == feed) return;
+bool Writer::feed_is_said(double feed) const {
+  if (state_.modal.feed == feed) return true;
   const NumberFormat format = dialect_.feeds(state_.modal.units);
-  const std::string digits = to_text(feed / unit_, format);
-  if (state_.modal.feed && to_text(*state_.modal.feed / unit_, format) == digits) return;
+  return state_.modal.feed &&
+         to_text(*state_.modal.feed / unit_, format) == to_text(feed / unit_, format);
+}
+
+void Writer::add_feed(double feed) {
+  if (feed_is_said(feed)) return;
+  const std::string digits = to_text(feed / unit_, dialect_.feeds(state_.modal.units));
   add('F', digits);
   state_.modal.feed = read_number(digits)->value * unit_;
 }

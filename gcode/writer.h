@@ -10,6 +10,7 @@
 #include "gcode/dialect.h"
 #include "gcode/modal_state.h"
 #include "gcode/plane_axes.h"
+#include "geometry/bspline_curve.h"
 #include "geometry/path.h"
 
 namespace batten::gcode {
@@ -42,6 +43,20 @@ class Writer {
   // and writes nothing when the dialect's rules refuse the printed arc, when rounding would make
   // it a full turn or none, or when it is not known how centres are to be given (G90.1, G91.1).
   [[nodiscard]] bool arc_to(const geometry::Arc& arc, double feed);
+
+  // A clamped cubic curve in the dialect's own words (Dialect::curves), from the writer's place,
+  // which is the curve's first point but for rounding. Axes that it does not move are not named,
+  // unless the control wants them. `last_decimals`: the last place may have so many, where they are
+  // more than coordinates have. What is written is read again: the writer's place is where the
+  // printed curve ends. Returns false and writes nothing where the dialect has no curves, refuses
+  // this one or the state, or does not read what it wrote.
+  //
+  // Afterwards the motion mode is MotionMode::kOther: what follows says its motion word.
+  [[nodiscard]] bool curve_to(const geometry::BsplineCurve& curve, double feed, int last_decimals);
+
+  // Ends a curve that the control takes as going on: the motion word of lines, on a line of its
+  // own. Writes nothing when no curve was written last.
+  void end_curve();
 
   // A line of its own, copied as it is (a comment of the source).
   void copy_line(std::string_view text);
@@ -86,6 +101,7 @@ class Writer {
   void add_motion(MotionMode motion);
   void add_coordinates(const Coordinates& coordinates);
   void add_feed(double feed);
+  [[nodiscard]] bool feed_is_said(double feed) const;
   void end_block();
 
   const Dialect& dialect_;

@@ -89,6 +89,9 @@ VerifyCommand verify_command(const Given& given, const std::vector<std::string>&
   command.force = given.flag("force");
   command.log_level = read_log_level(given, problems);
   read_units_into(command.units, given, problems);
+  if (const auto text = given.value("target")) {
+    command.target = built_in_target("target", *text, problems);
+  }
   read_tolerance_kind_into(command.tolerance_kind, given, problems);
   if (const auto file = given.value("profile")) {
     command.profile = read_target_profile(*file, nullptr, problems);

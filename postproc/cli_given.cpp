@@ -86,7 +86,7 @@ constexpr std::array kSmoothRows = {
               .default_value = "best",
               .in_config = true},
     OptionRow{.name = "output",
-              .value = "auto|arcs|lines",
+              .value = "auto|curves|arcs|lines",
               .help = "what rewritten runs are made of",
               .default_value = "auto",
               .in_config = true},
@@ -154,8 +154,13 @@ constexpr std::array kTargetListRows = {
     OptionRow{
         .name = "show", .value = "NAME", .help = "print a profile of this target to start from"},
     kJson, kForce};
-constexpr std::array kVerifyRows = {kTolerance, kProfile, kToleranceKind, kSide,    kUnits,
-                                    kJson,      kForce,   kQuiet,         kLogLevel};
+constexpr OptionRow kCurvesOf = {
+    .name = "target",
+    .value = "NAME",
+    .help = "the control whose own curves (G06.2, POLY, G5 ..) are to be read in both programs"};
+
+constexpr std::array kVerifyRows = {kTolerance, kProfile, kCurvesOf, kToleranceKind, kSide,
+                                    kUnits,     kJson,    kForce,    kQuiet,         kLogLevel};
 constexpr std::array kInspectRows = {kUnits, kAllow, kJson, kForce, kQuiet, kLogLevel};
 constexpr std::array kTimeRows = {
     kMachine,

@@ -27,7 +27,10 @@ constexpr double kProofLooseness = 0.02;
 constexpr double kFormPart = 1.0 / 3;
 
 constexpr std::array kForms = {
-    Choice<Form>{Form::kAuto, "auto", "arcs or lines, whichever serves --prefer on the machine"},
+    Choice<Form>{Form::kAuto, "auto",
+                 "curves that the target surely reads, arcs or lines, as --prefer says"},
+    Choice<Form>{Form::kCurves, "curves",
+                 "the target's own curves; arcs or lines for runs that are none"},
     Choice<Form>{Form::kArcs, "arcs", "G02/G03 where a run lies in a plane of the target"},
     Choice<Form>{Form::kLines, "lines", "G01 along the smoothed curve"},
 };
@@ -202,6 +205,12 @@ std::vector<std::string> problems_of(const SmoothOptions& options) {
       !takes_any_arcs(*options.target)) {
     problems.push_back(fmt::format("--output: target {} takes no arcs; possible: auto, lines",
                                    options.target->name()));
+  }
+  if (options.target != nullptr && options.output == Form::kCurves &&
+      options.target->curves() == nullptr) {
+    problems.push_back(fmt::format("--output: target {} reads no curves; possible: auto, {}lines",
+                                   options.target->name(),
+                                   takes_any_arcs(*options.target) ? "arcs, " : ""));
   }
   if (options.keep_corners_deg &&
       !(*options.keep_corners_deg > 0 && *options.keep_corners_deg <= 180)) {

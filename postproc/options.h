@@ -16,7 +16,7 @@
 
 namespace batten::postproc {
 
-enum class Form { kAuto, kArcs, kLines };
+enum class Form { kAuto, kArcs, kLines, kCurves };
 enum class Method {
   kBest,
   kFair,

@@ -1,5 +1,5 @@
-// How a smoothed run is said in the target's words: lines or arcs along its curve, cut where
-// the feed changes, with the run's comments at their places.
+// How a smoothed run is said in the target's words: lines, arcs or curves along its curve, cut
+// where the feed changes, with the run's comments at their places.
 #pragma once
 
 #include <optional>
@@ -16,18 +16,26 @@
 
 namespace batten::postproc {
 
-enum class OutputForm { kArcs, kLines };
+enum class OutputForm { kArcs, kLines, kCurves };
 
 struct PlannedMove {
-  geometry::PathPiece piece;                 // Line or Arc
+  geometry::PathPiece piece;                 // a CubicBezier only as part of a PlannedCurve
   double feed = 0;                           // mm/min
   std::vector<std::size_t> comments_before;  // indices into Run::comments
+};
+
+// Moves that are written together as one curve of the target: the curve's Bezier pieces.
+struct PlannedCurve {
+  std::size_t first = 0;         // index into OutputPlan::moves
+  std::size_t count = 0;         // as many as the curve has pieces
+  geometry::BsplineCurve curve;  // a clamped cubic
 };
 
 // The moves chain to within kSamePlace, from the run's first point to its last.
 struct OutputPlan {
   OutputForm form = OutputForm::kLines;
   std::vector<PlannedMove> moves;
+  std::vector<PlannedCurve> curves;         // in order
   std::vector<std::size_t> comments_after;  // those that stood on the run's last blocks
   double error = 0;  // mm, moves to curve, as the height of equal chords with their ends on the
                      // curve; 0: not known, max_deviation at most
@@ -46,8 +54,8 @@ struct PlanOptions {
   geometry::ArcEffort arc_effort = geometry::ArcEffort::kQuick;  // of plan_arcs
 };
 
-// Both plans cut the curve where the feed changes, and put each comment before the move that
-// starts at or first after the comment's vertex. Both throw std::invalid_argument when `fair`
+// All plans cut the curve where the feed changes, and put each comment before the move that
+// starts at or first after the comment's vertex. All throw std::invalid_argument when `fair`
 // does not have one parameter per point of the run.
 
 // Lines along the curve, as `linearize` says. minlink, ilca and blca take all of max_deviation; the
@@ -76,5 +84,11 @@ struct PlanOptions {
 [[nodiscard]] std::optional<OutputPlan> plan_arc_spline(const Run& run,
                                                         const geometry::FairPath& fair,
                                                         const PlanOptions& options);
+
+// Curves of the target, on few control points: the curve is fitted anew within max_deviation where
+// that takes fewer. Long straight parts are lines, and so is what the target does not take as a
+// curve. Curves end at corners. Nothing when the target has no curves or none serves here.
+[[nodiscard]] std::optional<OutputPlan> plan_curves(const Run& run, const geometry::FairPath& fair,
+                                                    const PlanOptions& options);
 
 }  // namespace batten::postproc

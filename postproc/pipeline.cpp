@@ -71,6 +71,7 @@ class Smoothing {
   void read() {
     program_ = gcode::parse(source_, result_.diagnostics);
     read_options_.units = options_.units;
+    read_options_.curves = options_.target->curves();
     meaning_ = gcode::interpret(program_, read_options_, result_.diagnostics);
     result_.blocks_in = program_.blocks.size();
     for (const gcode::ModalState& state : meaning_.states) {

@@ -92,6 +92,11 @@ class Lister {
     block_index_ = index;
     const Block& block = program_.blocks[index];
     const BlockMeaning& meaning = interpretation_.blocks[index];
+    if (meaning.of_curve) {
+      // What the interpreter follows exactly, it follows only where the path alone counts.
+      if (meaning.motion >= 0) add_cut(meaning);
+      return;
+    }
     if (block.opacity != gcode::Opacity::kNone || block.block_delete) {
       add_text(std::string(program_.source.text(block.span)));
     } else {
@@ -118,7 +123,7 @@ class Lister {
       ProgramEvent& event = add_event(EventKind::kRapid);
       event.motion = meaning.motion;
     } else if (has_length(motion.piece)) {
-      list_.cuts.push_back({static_cast<std::uint32_t>(meaning.motion), state_after().feed});
+      add_cut(meaning);
     }
     if (acts_with_motion_) {
       // Controls differ in whether such a word acts before or after the motion of its block:
@@ -126,6 +131,10 @@ class Lister {
       add_event(EventKind::kWord).text = "end of motion with words";
       acts_with_motion_ = false;
     }
+  }
+
+  void add_cut(const BlockMeaning& meaning) {
+    list_.cuts.push_back({static_cast<std::uint32_t>(meaning.motion), state_after().feed});
   }
 
   [[nodiscard]] bool must_stand_as_text(const Block& block, const BlockMeaning& meaning) const {

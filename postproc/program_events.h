@@ -60,6 +60,8 @@ struct ProgramEvents {
 // in/min for 1000 mm/min.
 [[nodiscard]] bool same_feed(const std::optional<double>& a, const std::optional<double>& b);
 
+// The pieces of curves that are read exactly (gcode::ReadOptions::curves) are cuts as lines are.
+//
 // No events are: comments that do not act, N words that nothing refers to, F (a property of the
 // cuts), motion words, plane and arc distance words (they only say how arcs are written), and
 // words of other modal groups and S that repeat what a word has set before.

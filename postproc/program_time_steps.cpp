@@ -64,6 +64,7 @@ class StepReader {
 
   void read_block() {
     const gcode::BlockMeaning& m = block_meaning();
+    if (m.of_curve) return add_curve_piece();
     switch (m.kind) {
       case BlockKind::kEmpty:
         return;
@@ -363,6 +364,22 @@ class StepReader {
     step.piece = placed.piece;
     if (!rapid) step.feed = feed_along(placed.piece);
     move_to_end(place_, placed, words, state());
+  }
+
+  // Of a curve that was read exactly: the place before it is known.
+  void add_curve_piece() {
+    cycle_.reset();
+    if (block_meaning().motion < 0) return;
+    const gcode::Motion& motion =
+        meaning_.motions[static_cast<std::size_t>(block_meaning().motion)];
+    ProgramStep& step = add_step(StepKind::kCut);
+    step.piece = motion.piece;
+    step.feed = feed_along(motion.piece);
+    const geometry::Point3 end = geometry::end_point(motion.piece);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!motion.axes_named[axis]) continue;
+      place_.set_axis(axis, end[static_cast<Eigen::Index>(axis)], Certainty::kKnown);
+    }
   }
 
   // mm/min; 0 where it is not known.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gcode/curves/curve_format.h"
 #include "gcode/writer.h"
 #include "geometry/numeric.h"
 
@@ -35,6 +36,15 @@ class RunWriter {
       writer_.line_to(geometry::end_point(move.piece), move.feed);
     }
     count_from(begin);
+  }
+
+  // Curves of many blocks follow each other with the end of the one between them.
+  [[nodiscard]] bool write(const PlannedCurve& curve, double feed, int last_decimals) {
+    const std::size_t begin = writer_.text().size();
+    if (!target_.curves()->is_block_per_piece()) writer_.end_curve();
+    if (!writer_.curve_to(curve.curve, feed, last_decimals)) return false;
+    count_from(begin);
+    return true;
   }
 
   void restore(const gcode::ModalState& after) {
@@ -111,12 +121,26 @@ std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
       out.writer().copy_line(program.source.text(run.comments[i].text));
     }
   };
-  NumberFormat format = plan.form == OutputForm::kArcs ? target.arc_ends(before.units)
-                                                       : target.coordinates(before.units);
+  NumberFormat format = plan.form == OutputForm::kLines ? target.coordinates(before.units)
+                                                        : target.arc_ends(before.units);
   out.writer().use_coordinates(format);
-  for (const PlannedMove& move : plan.moves) {
+  auto curve = plan.curves.begin();
+  for (std::size_t i = 0; i < plan.moves.size();) {
+    const PlannedMove& move = plan.moves[i];
     copy_comments(move.comments_before);
-    if (&move == &plan.moves.back()) {
+    if (curve != plan.curves.end() && curve->first == i) {
+      if (target.curves() == nullptr) return std::nullopt;
+      const std::size_t end = i + curve->count;
+      const bool last = end == plan.moves.size();
+      if (!out.write(*curve, move.feed, last ? std::min(run.decimals, kMostDecimals) : 0)) {
+        return std::nullopt;
+      }
+      // Nothing stands inside a curve.
+      for (++i; i < end; ++i) copy_comments(plan.moves[i].comments_before);
+      ++curve;
+      continue;
+    }
+    if (++i == plan.moves.size()) {
       format.decimals = std::min(std::max(format.decimals, run.decimals), kMostDecimals);
       out.writer().use_coordinates(format);
     }

@@ -27,9 +27,12 @@ struct RunText {
 // The run's first and last point are met exactly: the last move is printed with as many decimals
 // as the run was. Comments are copied, each on a line of its own.
 //
-// Nothing when arcs are planned and it is not known how their centres are to be given, when a
-// line would be too long, or when the last point has more decimals than can be printed. An arc
-// that the dialect refuses once it is printed is written as chords.
+// The comments of moves inside a curve stand behind it.
+//
+// Nothing when a curve is planned that the target cannot say, when arcs are planned and it is not
+// known how their centres are to be given, when a line would be too long, or when the last point
+// has more decimals than can be printed. An arc that the dialect refuses once it is printed is
+// written as chords.
 [[nodiscard]] std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
                                                const gcode::Program& program,
                                                const gcode::Dialect& target,

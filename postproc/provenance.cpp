@@ -20,9 +20,14 @@ std::string provenance_comment(const gcode::Dialect& target, double tolerance_mm
   return target.comment(std::string(kSmoothed) + gcode::to_text(tolerance_mm, kTolerance) + " mm");
 }
 
+// Some controls have no small letters.
 bool was_smoothed(const gcode::Program& program) {
+  const auto capital = [](char c) {
+    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  };
   return std::ranges::any_of(program.comments, [&](const gcode::Comment& comment) {
-    return program.source.text(comment.span).find(kSmoothed) != std::string_view::npos;
+    const std::string_view text = program.source.text(comment.span);
+    return !std::ranges::search(text, kSmoothed, {}, capital, capital).empty();
   });
 }
 

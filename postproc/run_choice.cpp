@@ -71,16 +71,22 @@ bool gains(const Candidate& c, const SmoothedRun& run, const RunContext& context
 
 bool far_smaller(std::size_t blocks, std::size_t others) { return 4 * blocks <= others; }
 
-// Who asks for arcs by name asks for few of them.
+// Who asks for arcs or curves by name asks for few of them.
 bool better(const Candidate& a, const Candidate& b, const SmoothOptions& options) {
   const Prefer prefer = options.prefer;
+  const bool a_is_curves = a.form == OutputForm::kCurves;
+  if (options.output == Form::kCurves && a_is_curves != (b.form == OutputForm::kCurves)) {
+    return a_is_curves;
+  }
   if (prefer == Prefer::kSize) return a.text.text.size() < b.text.text.size();
   if (prefer == Prefer::kTime) {
     const auto [fewer, more] = std::minmax(a.text.blocks, b.text.blocks);
     const double same = far_smaller(fewer, more) ? kSameTimeWhereFarSmaller : kSameTime;
     if (sum_of(a.times) < (1 - same) * sum_of(b.times)) return true;
     if (sum_of(b.times) < (1 - same) * sum_of(a.times)) return false;
-    if (options.output == Form::kArcs) return a.text.blocks < b.text.blocks;
+    if (options.output == Form::kArcs || options.output == Form::kCurves) {
+      return a.text.blocks < b.text.blocks;
+    }
     if (a.times.exact_path < kFewerKinks * b.times.exact_path) return true;
     if (b.times.exact_path < kFewerKinks * a.times.exact_path) return false;
     if (a.error * kSameError < b.error) return true;

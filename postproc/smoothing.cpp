@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "gcode/curves/curve_format.h"
 #include "gcode/reason.h"
 #include "geometry/numeric.h"
 #include "postproc/machine/cycle_time.h"
@@ -38,11 +39,16 @@ constexpr double kLentToFair = 0.5;
 // Arcs get no more than this multiple of the form's share, however little the curve used, and
 // chords these: long ones are few, fine ones are near to the curve and keep the speed on a
 // control that rounds each of their corners.
+// Curves are as arcs here.
 constexpr double kArcs = 1.5;
 constexpr double kFineArcs = 0.25;
 constexpr double kLongChords = 1.5;
 constexpr double kMiddleChords = 0.6;
 constexpr double kFineChords = 0.25;
+
+// Radians: vertices that turn more are bends so tight, where they are none of the path that was
+// meant, that curves may rather end there.
+constexpr double kSharpCorner = 45 * std::numbers::pi / 180;
 
 // Parts of the band around a run of arcs in which few arcs are looked for.
 constexpr double kBands[] = {1, 0.97, 0.94};
@@ -98,6 +104,7 @@ class RunSmoother {
       know(curve->path, rounding);
       try_curve(*curve, shares);
     }
+    if (curve && has_curves()) try_kept_corners(shares, rounding);
     if (best && !one_sided()) try_others(shares, rounding);
     if (!fits_) return kept(gcode::reason::kNoFit);
     if (result_.candidates.empty()) {
@@ -137,6 +144,24 @@ class RunSmoother {
     fits_ = true;
     curvature_ = greatest_curvature(curve.path.curve);
     add_candidates(curve, shares.form, left);
+  }
+
+  // A bend of the tolerance's size in the place of a corner takes a curve some thirty control
+  // points. Its end in the corner and the start of the next one are fewer blocks, and often as
+  // quick.
+  void try_kept_corners(const ToleranceShares& shares, double rounding) {
+    if (options_.output != Form::kCurves || options_.keep_corners_deg) return;
+    const auto& points = run_.points;
+    bool sharp = false;
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+      const geometry::Vector3 in = points[i] - points[i - 1];
+      const geometry::Vector3 out = points[i + 1] - points[i];
+      sharp = sharp || std::atan2(in.cross(out).norm(), in.dot(out)) > kSharpCorner;
+    }
+    if (!sharp) return;
+    CurveRequest request = curve_request(Method::kFair, shares, rounding);
+    request.keep_corner_angle = kSharpCorner;
+    if (const auto curve = curve_of(Method::kFair, run_.points, request)) try_curve(*curve, shares);
   }
 
   // The other methods, where there is time left to win and they may win it.
@@ -239,6 +264,10 @@ class RunSmoother {
           context_.before.plane, options_.prefer,        std::min(left, multiple * share),
           keep_corner_angle(),   linearize_of(options_), most_moves_for_accuracy(context_.blocks)};
     };
+    if (curves_wanted() && (curve.method == Method::kFair || options_.method != Method::kBest)) {
+      add_curves(curve, plan_with);
+    }
+    if (options_.output == Form::kCurves && has_curves()) return;
     if (options_.output != Form::kLines && !arcs_are_hopeless(fair)) {
       const PlanOptions arcs = plan_with(one_sided() ? kFineArcs : kArcs);
       add(curve, plan_arcs(run_, fair, arcs), arcs.max_deviation);
@@ -264,6 +293,27 @@ class RunSmoother {
       if (lines.max_deviation == before || is_hopeless(fair, lines)) continue;
       before = lines.max_deviation;
       add(curve, plan_lines(run_, fair, lines), lines.max_deviation);
+    }
+  }
+
+  [[nodiscard]] bool curves_wanted() const {
+    const gcode::CurveFormat* format = options_.target->curves();
+    if (format == nullptr || !format->complaint(context_.before).empty()) return false;
+    return options_.output == Form::kCurves ||
+           (options_.output == Form::kAuto && format->is_default());
+  }
+
+  [[nodiscard]] bool has_curves() const {
+    return std::ranges::any_of(result_.candidates,
+                               [](const Candidate& c) { return c.form == OutputForm::kCurves; });
+  }
+
+  // With all that the curve leaves of the tolerance, and nearer to the path that was meant.
+  template <typename PlanWith>
+  void add_curves(const RunCurve& curve, const PlanWith& plan_with) {
+    for (const double multiple : {kArcs, kFineArcs}) {
+      const PlanOptions options = plan_with(multiple);
+      add(curve, plan_curves(run_, curve.path, options), options.max_deviation);
     }
   }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -32,7 +33,9 @@ bool same_piece(const PathPiece& a, const PathPiece& b) {
     return arc->start == other.start && arc->end == other.end && arc->center == other.center &&
            arc->axis == other.axis && arc->sweep == other.sweep;
   }
-  return false;
+  const auto& control = std::get<geometry::CubicBezier>(a).control;
+  return std::equal(std::begin(control), std::end(control),
+                    std::begin(std::get<geometry::CubicBezier>(b).control));
 }
 
 const gcode::Motion& motion_of(const Cut& cut, const ReadProgram& read) {

@@ -35,6 +35,9 @@ class CurveFormat {
   // pieces, and short curves are not worth them.
   [[nodiscard]] virtual bool is_block_per_piece() const = 0;
 
+  // Whether the control wants X, Y and Z in every curve, moved or not.
+  [[nodiscard]] virtual bool names_all_axes() const { return false; }
+
   // The most control points of one curve.
   [[nodiscard]] virtual std::size_t max_control_points() const = 0;
 

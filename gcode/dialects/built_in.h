@@ -14,5 +14,7 @@ namespace batten::gcode {
 [[nodiscard]] std::span<const Dialect* const> pc_family();                // Mach3 ..
 [[nodiscard]] std::span<const Dialect* const> machining_center_family();  // Haas ..
 [[nodiscard]] std::span<const Dialect* const> plc_family();               // CODESYS ..
+[[nodiscard]] std::span<const Dialect* const> fanuc_family();  // FANUC, Syntec, Mitsubishi
+[[nodiscard]] const Dialect& siemens_dialect();
 
 }  // namespace batten::gcode

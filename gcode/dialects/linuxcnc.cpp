@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gcode/curves/g5_format.h"
 #include "gcode/dialects/built_in.h"
 #include "gcode/dialects/rs274_family.h"
 
@@ -71,6 +72,8 @@ class LinuxCnc final : public Rs274Dialect {
     return mark(SourceMark::kSubWords) | mark(SourceMark::kNamedParameters) |
            mark(SourceMark::kBlendTolerance) | mark(SourceMark::kUniformNurbs);
   }
+
+  const CurveFormat* curves() const override { return &linuxcnc_g5(); }
 
   std::string_view default_machine() const override { return "linuxcnc"; }
 };

@@ -45,6 +45,7 @@ struct VerifyCommand {
   geometry::Side side = geometry::Side::kBoth;
   gcode::Units units = gcode::Units::kUnknown;
   std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
+  const gcode::Dialect* target = nullptr;        // whose curves are read; nullptr: none are
   std::string json_file;
   LogLevel log_level = LogLevel::kInfo;
   bool force = false;

@@ -59,7 +59,9 @@ int run(const TimeCommand& command) {
 
   gcode::Diagnostics found;
   const gcode::Program program = gcode::parse(*source, found);
-  const gcode::Interpretation meaning = gcode::interpret(program, {.units = command.units}, found);
+  const gcode::CurveFormat* curves = command.target != nullptr ? command.target->curves() : nullptr;
+  const gcode::Interpretation meaning =
+      gcode::interpret(program, {.units = command.units, .curves = curves}, found);
   if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
   print(found, *source, command.log_level);
   if (gcode::has_error(found)) return static_cast<int>(ExitCode::kNotUnderstood);

@@ -26,10 +26,17 @@ struct Read {
   gcode::Diagnostics diagnostics;
 };
 
-Read read(const gcode::SourceText& source, gcode::Units units) {
+// Those of the target that is named, or of the one that the profile adapts.
+const gcode::CurveFormat* curves_of(const VerifyCommand& command) {
+  if (command.target != nullptr) return command.target->curves();
+  return command.profile != nullptr ? command.profile->adapted->curves() : nullptr;
+}
+
+Read read(const gcode::SourceText& source, const VerifyCommand& command) {
   gcode::Diagnostics found;
   gcode::Program program = gcode::parse(source, found);
-  gcode::Interpretation interpretation = gcode::interpret(program, {.units = units}, found);
+  gcode::Interpretation interpretation =
+      gcode::interpret(program, {.units = command.units, .curves = curves_of(command)}, found);
   return {source, std::move(program), std::move(interpretation), std::move(found)};
 }
 
@@ -162,7 +169,7 @@ int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& sou
     say_lines(fmt::format("proved: {} and {} are the same, byte for byte\n", command.new_program,
                           command.old_program));
   }
-  const Read same = read(source, command.units);
+  const Read same = read(source, command);
   return write_json(command, {}, same, same);
 }
 
@@ -199,9 +206,9 @@ int run(const VerifyCommand& command) {
     return accept_same_bytes(command, *new_source);
   }
 
-  const Read before = read(*old_source, command.units);
+  const Read before = read(*old_source, command);
   const AddedLines added = without_added_lines(command, before, *new_source);
-  const Read after = read(gcode::SourceText(new_source->name(), added.text), command.units);
+  const Read after = read(gcode::SourceText(new_source->name(), added.text), command);
   if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
   if (!is_understood(before, command.log_level)) {
     say("the old program is not understood, so nothing can be proved about the new one");

@@ -8,7 +8,15 @@ namespace batten::postproc {
 namespace {
 
 std::string_view name_of_form(OutputForm form) {
-  return form == OutputForm::kArcs ? "arcs" : "lines";
+  switch (form) {
+    case OutputForm::kCurves:
+      return "curves";
+    case OutputForm::kArcs:
+      return "arcs";
+    case OutputForm::kLines:
+      break;
+  }
+  return "lines";
 }
 
 Json json_of(const SmoothOptions& options, bool strict) {

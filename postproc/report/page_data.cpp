@@ -81,7 +81,8 @@ Json path_of(const SmoothReport& report, std::size_t most_vertices) {
   const SmoothResult& result = report.result;
   if (!result.understood) return path_columns({});
   const gcode::SourceText written(report.source.name(), result.text);
-  const gcode::ReadOptions reading{report.options.units};
+  gcode::ReadOptions reading{report.options.units};
+  if (report.options.target != nullptr) reading.curves = report.options.target->curves();
   gcode::Diagnostics ignored;
   const gcode::Program before = gcode::parse(report.source, ignored);
   const gcode::Interpretation old_meaning = gcode::interpret(before, reading, ignored);

@@ -10,6 +10,7 @@
 #include "postproc/report/json_report.h"
 #include "postproc/report/page_files.h"
 #include "report_words.h"
+#include "wavy_programs.h"
 
 namespace batten::postproc {
 namespace {
@@ -85,6 +86,19 @@ TEST_F(HtmlReport, NamesAndMessagesCannotLeaveTheirPlace) {
 }
 
 TEST_F(HtmlReport, IsTheSameForTheSameResult) { EXPECT_EQ(page(), page()); }
+
+// A page that did not read the curves could match no stretch of the new path with the old one.
+TEST_F(HtmlReport, DrawsCurvesOfTheTarget) {
+  options_.target = gcode::find_dialect("fanuc");
+  options_.output = Form::kCurves;
+  const std::string before = bend_program();
+  source_ = gcode::SourceText("part.nc", before);
+  result_ = smooth_program(source_, options_, {});
+  ASSERT_NE(result_.text.find("G06.2"), std::string::npos);
+  const Json path = data()["path"];
+  EXPECT_EQ(path["stretches"], 1);
+  EXPECT_EQ(path["stretches_not_shown"], 0);
+}
 
 TEST_F(HtmlReport, IsMadeOfAProgramThatIsNotUnderstoodToo) {
   result_ = SmoothResult();

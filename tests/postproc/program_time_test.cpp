@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "gcode/dialect.h"
+#include "gcode/interpreter.h"
+#include "gcode/parser.h"
 #include "geometry/path.h"
 #include "postproc/machine/cycle_time.h"
 #include "tests/support/interpreted.h"
@@ -437,6 +440,24 @@ TEST(ProgramTimePlaces, FollowSetCoordinates) {
   const ProgramTime time = timed("G21 G90\nG0 X100\nG92 X0\nG0 X200\nM2\n", m);
   EXPECT_NEAR(time.rapid_mm, 300, 1e-9);
   EXPECT_EQ(count_of(time, "place-assumed"), 0u);
+}
+
+// --- curves of the control ----------------------------------------------------------------------
+
+// y = x - x^2 / 20 from 0 to 10: its length is 5 (sqrt 2 + asinh 1). The line behind it is 5 mm.
+TEST(ProgramTimeOfCurves, IsThatOfTheirLengthWhereTheirControlIsNamed) {
+  const Machine m = machine_of(ControllerModel::kLookAhead);
+  const std::string text =
+      "G21 G90\nG0 X0 Y0 Z0\nG1 F600\nPOLY PO[X]=(10) PO[Y]=(5,-5)\nG1 Y10\nM2\n";
+  gcode::Diagnostics found;
+  const gcode::Program program = gcode::parse(gcode::SourceText("test.mpf", text), found);
+  const gcode::ReadOptions siemens = {.curves = gcode::find_dialect("siemens")->curves()};
+  const auto followed = gcode::interpret(program, siemens, found);
+  const ProgramTime time = time_program(program, followed, m, from_zero());
+  EXPECT_NEAR(time.cutting_mm, 5 * (std::sqrt(2.0) + std::asinh(1.0)) + 5, 1e-6);
+  EXPECT_TRUE(time.not_timed.empty());
+  const auto unknown = gcode::interpret(program, {}, found);
+  EXPECT_FALSE(time_program(program, unknown, m, from_zero()).not_timed.empty());
 }
 
 // --- tools, slow places -------------------------------------------------------------------------

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 #include <string_view>
@@ -64,6 +65,21 @@ inline std::string tail(const std::string& line_end = "\n") {
 // From a rapid down into the cut, along the wave, up again.
 inline std::string wave_program(const Wave& wave = {}, const std::string& units = "G21") {
   return head(units, wave.line_end) + joined(wave_lines(wave), wave.line_end) + tail(wave.line_end);
+}
+
+// A wave around a circle that bends one way for long, so that every control has curves to say it.
+// `middle`: lines that stand in the midst of it.
+inline std::string bend_program(const std::string& middle = "") {
+  std::string text = "G21 G90 G17\nG0 X40 Y0 Z5\nG1 Z-1 F300\n";
+  constexpr int kLines = 240;
+  for (int i = 1; i <= kLines; ++i) {
+    const double angle = 1.5 * std::numbers::pi * i / kLines;
+    const double radius = 40 + 3 * std::sin(2 * angle);
+    text += fmt::format("{}X{:.4f} Y{:.4f}{}\n", i == 1 ? "G1 " : "", radius * std::cos(angle),
+                        radius * std::sin(angle), i == 1 ? " F2000" : "");
+    if (i == kLines / 2) text += middle;
+  }
+  return text + "G0 Z50\nM2\n";
 }
 
 inline SmoothOptions options_for(std::string_view target) {

@@ -1,0 +1,57 @@
+#include "gcode/curves/curve_in_program.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "gcode/curves/curve_format.h"
+
+namespace batten::gcode {
+namespace {
+
+bool may_be_followed(const ModalState& state) {
+  return is_known(state) && state.distance == DistanceMode::kAbsolute &&
+         state.feed_mode == FeedMode::kPerMinute && state.cutter_compensation == Tri::kOff &&
+         state.tool_center_point == Tri::kOff && state.tilted_plane == Tri::kOff &&
+         state.scaling == Tri::kOff && state.rotation == Tri::kOff && state.mirror == Tri::kOff &&
+         state.polar == Tri::kOff && state.cylindrical == Tri::kOff &&
+         state.control_smoothing == Tri::kOff && state.modal_macro == Tri::kOff &&
+         state.constant_surface_speed == Tri::kOff && state.lathe_diameter == Tri::kOff;
+}
+
+bool is_certain(const Program& program, const Block& block, const BlockFlow& flow) {
+  return !block.block_delete && !block.has_checksum && !flow.jump_target &&
+         !flow.label_referenced && !flow.in_body &&
+         std::ranges::none_of(program.comments_of(block), [](const Comment& comment) {
+           return comment.kind == CommentKind::kActive;
+         });
+}
+
+}  // namespace
+
+std::optional<CurveReading> curve_at(const Program& program, std::uint32_t first,
+                                     const ControlState& state, const CurveFormat* format,
+                                     std::span<const BlockFlow> flow) {
+  if (format == nullptr || !may_be_followed(state.modal)) return std::nullopt;
+  CurveResult result = format->read(program, first, {state.position, state.modal.units});
+  auto* curve = std::get_if<CurveReading>(&result);
+  if (curve == nullptr || curve->blocks == 0 || curve->motions.empty()) return std::nullopt;
+  if (!format->complaint(state.modal).empty()) return std::nullopt;
+  for (std::uint32_t i = first; i < first + curve->blocks; ++i) {
+    if (!is_certain(program, program.blocks[i], flow[i])) return std::nullopt;
+  }
+  return std::move(*curve);
+}
+
+Motion motion_of(const CurveMotion& piece, const CurveReading& curve) {
+  Motion motion;
+  motion.block = piece.block;
+  motion.kind = MotionKind::kCurve;
+  motion.start_known = true;
+  motion.end_known = true;
+  motion.axes_named = curve.axes;
+  motion.piece = piece.piece;
+  return motion;
+}
+
+}  // namespace batten::gcode

@@ -1,0 +1,28 @@
+// A curve in the midst of a program: whether its blocks may be followed as one.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "gcode/control_state.h"
+#include "gcode/curves/curve_text.h"
+#include "gcode/motion.h"
+#include "gcode/program_flow.h"
+
+namespace batten::gcode {
+
+class CurveFormat;
+
+// The curve that starts in block `first`. Nothing where `format` is nullptr or reads none there, in
+// states in which the path is not what the words say or in which the control refuses curves, and
+// when one of its blocks may be left out, is jumped to or stands in a loop.
+[[nodiscard]] std::optional<CurveReading> curve_at(const Program& program, std::uint32_t first,
+                                                   const ControlState& state,
+                                                   const CurveFormat* format,
+                                                   std::span<const BlockFlow> flow);
+
+// One of the curve's pieces as a motion.
+[[nodiscard]] Motion motion_of(const CurveMotion& piece, const CurveReading& curve);
+
+}  // namespace batten::gcode

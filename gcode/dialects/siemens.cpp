@@ -1,0 +1,68 @@
+// Siemens Sinumerik 840D, 828D, ONE. Facts: docs/controllers/siemens.md.
+#include <cmath>
+#include <numbers>
+
+#include "gcode/curves/poly_format.h"
+#include "gcode/dialects/built_in.h"
+#include "gcode/dialects/rs274_family.h"
+
+namespace batten::gcode {
+namespace {
+
+constexpr double kLeastSweep = 0.5 * std::numbers::pi / 180;
+constexpr double kGreatestSweep = 350 * std::numbers::pi / 180;
+
+class Siemens final : public Rs274Dialect {
+ public:
+  std::string_view name() const override { return "siemens"; }
+  std::string_view description() const override {
+    return "Siemens 840D, 828D, ONE: POLY, arcs; lines of 512 characters";
+  }
+
+  // The control computes to a micrometre by default and reads more.
+  NumberFormat coordinates(Units units) const override {
+    return {.decimals = units == Units::kInch ? 5 : 4};
+  }
+  NumberFormat arc_offsets(Units units) const override { return coordinates(units); }
+
+  std::size_t max_line_length() const override { return 512; }
+
+  // A helix wants words of its own (TURN) where it is more than a turn; it is not written.
+  bool takes_helices() const override { return false; }
+
+  // The radii may differ by a machine datum of the builder's. Two steps of the last digit are
+  // what rounding alone can make.
+  std::string_view arc_complaint(const geometry::Arc& printed, Units units) const override {
+    const EndRadii radii = end_radii(printed);
+    const double sweep = std::abs(printed.sweep);
+    if (radii.start < min_arc_radius()) return "arc radius below 0.1 mm";
+    if (radii.mismatch() > 2 * printed_step(coordinates(units), units)) {
+      return "radius at the start differs from radius at the end";
+    }
+    if (sweep < kLeastSweep) return "arc of less than 0.5 degrees";
+    if (sweep > kGreatestSweep) return "arc of more than 350 degrees";
+    return {};
+  }
+  double min_arc_radius() const override { return 0.1; }
+  double max_arc_radius() const override { return 1000; }
+
+  // "; text": parentheses belong to functions there.
+  std::string comment(std::string_view text) const override {
+    if (Rs274Dialect::comment(text).empty()) return {};
+    return "; " + std::string(text);
+  }
+
+  SourceMarks known_marks() const override { return 0; }
+
+  const CurveFormat* curves() const override { return &siemens_poly(); }
+  std::string_view default_machine() const override { return "mill"; }
+};
+
+}  // namespace
+
+const Dialect& siemens_dialect() {
+  static const Siemens kDialect;
+  return kDialect;
+}
+
+}  // namespace batten::gcode
