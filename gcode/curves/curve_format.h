@@ -31,6 +31,11 @@ class CurveFormat {
   // Whether the control runs this piece of a curve. What it does not is written as lines.
   [[nodiscard]] virtual bool takes(const geometry::CubicBezier& piece) const = 0;
 
+  // Whether the control runs curves as chords of its own that count. They leave a piece by
+  // chords_error (mm) at the most.
+  [[nodiscard]] virtual bool is_run_as_chords() const { return false; }
+  [[nodiscard]] virtual double chords_error(const geometry::CubicBezier&) const { return 0; }
+
   // Whether every piece is a block for itself. Otherwise a curve has blocks beside those of its
   // pieces, and short curves are not worth them.
   [[nodiscard]] virtual bool is_block_per_piece() const = 0;
