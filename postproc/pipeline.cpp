@@ -16,6 +16,7 @@
 #include "postproc/assembly.h"
 #include "postproc/band_notes.h"
 #include "postproc/conversion.h"
+#include "postproc/curve_caution.h"
 #include "postproc/joined_times.h"
 #include "postproc/provenance.h"
 #include "postproc/run_choice.h"
@@ -357,6 +358,9 @@ class Smoothing {
       } else {
         result_.runs.push_back(report_of(work));
       }
+    }
+    if (auto told = curve_caution(result_.runs, program_, *options_.target)) {
+      result_.diagnostics.push_back(std::move(*told));
     }
   }
 

@@ -24,6 +24,10 @@ class CurveFormat {
   // the user has to own, and runs them as they are meant.
   [[nodiscard]] virtual bool is_default() const = 0;
 
+  // What a user has to be told when such curves were written, since it is not verified; empty where
+  // there is nothing.
+  [[nodiscard]] virtual std::string_view caution() const { return {}; }
+
   // Why no curve may start in this state (cutter compensation, feed mode, plane ..); empty where it
   // may. Units, absolute distances and feed per minute are known already.
   [[nodiscard]] virtual std::string_view complaint(const ModalState& state) const = 0;
