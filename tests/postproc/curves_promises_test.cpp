@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "gcode/curves/curve_format.h"
+#include "gcode/curves/nurbs_alarms.h"
 #include "gcode/curves/nurbs_write.h"
+#include "gcode/curves/siemens_poly.h"
 #include "gcode/dialects/rs274_family.h"
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
@@ -145,6 +147,28 @@ std::string cam_program(const BsplineCurve& curve) {
   return text + "G0 Z50\nM2\n";
 }
 
+gcode::NurbsRules rules_of(const std::string& target) {
+  if (target == "syntec") return gcode::syntec_nurbs(gcode::Units::kMillimetre);
+  if (target == "mitsubishi") return gcode::mitsubishi_nurbs();
+  return gcode::fanuc_nurbs(gcode::Units::kMillimetre);
+}
+
+// What the control would say to the whole program; its text for people, empty where there is
+// nothing.
+std::string alarms_of(const std::string& text, const std::string& target) {
+  gcode::Diagnostics found;
+  const gcode::Program program = gcode::parse(gcode::SourceText("test.nc", text), found);
+  gcode::CurveAlarms alarms;
+  if (target == "siemens") {
+    alarms = gcode::poly_alarms(program);
+  } else if (gcode::find_dialect(target)->curves()->name() == "G06.2") {
+    alarms = gcode::nurbs_alarms(program, rules_of(target));
+  }
+  std::string all;
+  for (const gcode::CurveAlarm& alarm : alarms) all += fmt::format("{}\n", alarm.id);
+  return all;
+}
+
 TEST_P(Curves, ProgramsOfRandomOnesAreProvedAndASecondPassChangesNothing) {
   int with_curves = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
@@ -158,6 +182,7 @@ TEST_P(Curves, ProgramsOfRandomOnesAreProvedAndASecondPassChangesNothing) {
       EXPECT_NE(run.reason, gcode::reason::kNotProved);
     }
     EXPECT_EQ(smoothed(result.text, options()).text, result.text);
+    EXPECT_EQ(alarms_of(result.text, GetParam()), "") << result.text;
   }
   EXPECT_GT(with_curves, 2);
 }
@@ -314,12 +339,6 @@ class CoarseFormat final : public gcode::CurveFormat {
   const gcode::CurveFormat& fine_;
   gcode::NurbsRules rules_;
 };
-
-gcode::NurbsRules rules_of(const std::string& target) {
-  if (target == "syntec") return gcode::syntec_nurbs(gcode::Units::kMillimetre);
-  if (target == "mitsubishi") return gcode::mitsubishi_nurbs();
-  return gcode::fanuc_nurbs(gcode::Units::kMillimetre);
-}
 
 class CoarseTarget final : public gcode::Rs274Dialect {
  public:
