@@ -267,7 +267,7 @@ class RunSmoother {
     if (curves_wanted() && (curve.method == Method::kFair || options_.method != Method::kBest)) {
       add_curves(curve, plan_with);
     }
-    if (options_.output == Form::kCurves && has_curves()) return;
+    if (options_.output == Form::kCurves && has_quick_curves()) return;
     if (options_.output != Form::kLines && !arcs_are_hopeless(fair)) {
       const PlanOptions arcs = plan_with(one_sided() ? kFineArcs : kArcs);
       add(curve, plan_arcs(run_, fair, arcs), arcs.max_deviation);
@@ -306,6 +306,13 @@ class RunSmoother {
   [[nodiscard]] bool has_curves() const {
     return std::ranges::any_of(result_.candidates,
                                [](const Candidate& c) { return c.form == OutputForm::kCurves; });
+  }
+
+  // Curves that cost no more time than who asks for them by name accepts.
+  [[nodiscard]] bool has_quick_curves() const {
+    return std::ranges::any_of(result_.candidates, [&](const Candidate& c) {
+      return c.form == OutputForm::kCurves && !slower(c.times, result_.facts.times, true, true);
+    });
   }
 
   // With all that the curve leaves of the tolerance, and nearer to the path that was meant.

@@ -205,6 +205,24 @@ TEST_P(Curves, AreWrittenWhereTheyAreAskedFor) {
   EXPECT_LT(result.blocks_out, result.blocks_in / 3);
 }
 
+// Twenty waves around a small circle: a G5 for each bend, and LinuxCNC runs each as 32 short arcs.
+TEST(CurvesOfLinuxcnc, GiveWayWhereTheyWouldBeSlow) {
+  std::string text = "G21 G90 G17\nG0 X10 Y0 Z5\nG1 Z-1 F12000\n";
+  for (int i = 1; i <= 2000; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 2000;
+    const double radius = 10 + 0.15 * std::sin(20 * angle);
+    text += fmt::format("X{:.4f} Y{:.4f}\n", radius * std::cos(angle), radius * std::sin(angle));
+  }
+  text += "G0 Z50\nM2\n";
+  SmoothOptions wanted = options_for("linuxcnc");
+  wanted.output = Form::kCurves;
+  const SmoothResult result = smoothed(text, wanted);
+  EXPECT_TRUE(result.proved);
+  ASSERT_EQ(rewritten_runs(result), 1U);
+  EXPECT_NE(result.runs.back().form, OutputForm::kCurves);
+  EXPECT_LT(result.blocks_out, result.blocks_in / 4);
+}
+
 // A quarter of a wavy circle to X0 Y40, and another one from there on, to the other side.
 std::string cornered_program() {
   std::string text = "G21 G90 G17\nG0 X40 Y0 Z5\nG1 Z-1 F2000\n";
