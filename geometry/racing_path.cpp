@@ -20,12 +20,30 @@ constexpr double kAlike = 1e-6;
 // Measured deviations of one blend at two places differ by rounding.
 constexpr double kMeasuringNoise = 1e-9;
 
+// A racing line that bends this many times as hard as the five points do is none: where there is
+// hardly any room (teeth of noise), the search ends with one that stands still on its way.
+constexpr double kSharper = 2;
+
+// Places of a racing line at which its curvature is looked at, to each of its spans.
+constexpr int kPlacesPerSpan = 8;
+
 using Directions = std::array<long long, 6>;
 
 Directions directions_of(const CornerFrame& frame) {
   const auto steps = [](double x) { return std::llround(x / kAlike); };
   return {steps(frame.a.x()), steps(frame.a.y()), steps(frame.a.z()),
           steps(frame.b.x()), steps(frame.b.y()), steps(frame.b.z())};
+}
+
+bool bends_more_than(const BsplineCurve& curve, double curvature) {
+  const std::vector<double> breaks = curve.breakpoints();
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+    for (int k = 0; k < kPlacesPerSpan; ++k) {
+      const double u = breaks[i] + (k + 0.5) / kPlacesPerSpan * (breaks[i + 1] - breaks[i]);
+      if (!(curve.curvature_at(u) <= curvature)) return true;
+    }
+  }
+  return false;
 }
 
 // A blend that was found, with the vertex and the shares it was found for.
@@ -58,11 +76,16 @@ class RacingBlender {
     if (const auto* reason = std::get_if<NoBlend>(&framed)) return *reason;
     const auto& frame = std::get<CornerFrame>(framed);
     const ToleranceKind kind = kind_at(shared.corner, options_.kind, options_.strict_sharper_than);
-    if (turns_more(shared.corner, options_.least_raced_turn)) {
-      if (auto raced = raced_blend(shared, frame, kind)) return std::move(*raced);
-    }
     const GuoRule rule{options_.tolerance, kind, GuoApex::kAllowed};
     auto five = guo_corner(shared.corner, rule, shared.share_before, shared.share_after);
+    if (turns_more(shared.corner, options_.least_raced_turn)) {
+      auto raced = raced_blend(shared, frame, kind);
+      const auto* other = std::get_if<GuoBlend>(&five);
+      if (raced && (other == nullptr ||
+                    !bends_more_than(raced->blend.curve, kSharper * other->greatest_curvature))) {
+        return std::move(*raced);
+      }
+    }
     if (const auto* reason = std::get_if<NoBlend>(&five)) return *reason;
     return RacingPathBlend{std::move(std::get<GuoBlend>(five).blend), false};
   }

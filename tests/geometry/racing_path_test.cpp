@@ -12,6 +12,7 @@
 #include "geometry/path_distance.h"
 #include "geometry/racing_corner.h"
 #include "tests/support/method_cases.h"
+#include "tests/support/paths.h"
 
 namespace batten::geometry {
 namespace {
@@ -117,6 +118,21 @@ TEST(RacingPath, GentleCornersAndThoseBeyondTheMostGetTheFivePoints) {
   EXPECT_LT(raced_in(path), 10);
   for (const RacingPathCorner& corner : path.corners) {
     EXPECT_TRUE(std::holds_alternative<RacingPathBlend>(corner.outcome));
+  }
+}
+
+// Teeth of noise: room for a tenth of a millimetre, and the search finds nothing there.
+TEST(RacingPath, TakesTheFivePointsWhereARacingLineWouldStandStill) {
+  const std::vector<Point3> points = zigzag_line(20, 0.5, 0.03);
+  const RacingPath path = racing_path(points, with_tolerance(0.05));
+  for (const RacingPathCorner& corner : path.corners) {
+    const auto* blend = std::get_if<RacingPathBlend>(&corner.outcome);
+    if (blend == nullptr) continue;
+    for (double u = blend->blend.curve.first(); u < blend->blend.curve.last();
+         u += 0.013 * (blend->blend.curve.last() - blend->blend.curve.first())) {
+      // The five points bend by 1.3 / mm there (docs/algorithms/methods.md).
+      EXPECT_LE(blend->blend.curve.curvature_at(u), 4);
+    }
   }
 }
 
