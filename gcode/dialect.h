@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "gcode/language.h"
 #include "gcode/modal_state.h"
 #include "gcode/number_format.h"
 #include "gcode/source_marks.h"
@@ -52,6 +53,9 @@ class Dialect {
 
   [[nodiscard]] virtual std::string_view name() const = 0;         // "linuxcnc"
   [[nodiscard]] virtual std::string_view description() const = 0;  // one line, for `batten targets`
+
+  // The language that the control reads, and in which its programs are proved.
+  [[nodiscard]] virtual Language language() const { return Language::kRs274; }
 
   // How coordinates, arc centres and feeds are printed in these units.
   [[nodiscard]] virtual NumberFormat coordinates(Units units) const = 0;

@@ -14,6 +14,7 @@ class ProfiledDialect final : public TableValues {
  public:
   ProfiledDialect(const Dialect& base, TargetTable table);
 
+  [[nodiscard]] Language language() const override { return base_.language(); }
   [[nodiscard]] std::size_t line_length(std::string_view line) const override;
   [[nodiscard]] std::string_view arc_complaint(const geometry::Arc& printed,
                                                Units units) const override;

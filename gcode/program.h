@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gcode/language.h"
 #include "gcode/source_text.h"
 
 namespace batten::gcode {
@@ -71,6 +72,7 @@ struct Program {
   std::vector<Block> blocks;  // every byte of the source belongs to exactly one block
   std::vector<Word> words;
   std::vector<Comment> comments;
+  Language language = Language::kRs274;  // in which it was read
 
   [[nodiscard]] std::span<const Word> words_of(const Block& block) const {
     return {words.data() + block.first_word, block.word_count};

@@ -19,6 +19,8 @@ class Siemens final : public Rs274Dialect {
     return "Siemens 840D, 828D, ONE: POLY, arcs; lines of 512 characters";
   }
 
+  Language language() const override { return Language::kSiemens; }
+
   // The control computes to a micrometre by default and reads more.
   NumberFormat coordinates(Units units) const override {
     return {.decimals = units == Units::kInch ? 5 : 4};

@@ -63,8 +63,10 @@ struct ReadResult {
   std::vector<Message> messages;
 };
 
+// `source`: for which control it was written: auto, ngc, fanuc, haas, grbl, siemens, heidenhain.
 [[nodiscard]] ReadResult read(std::string_view program,
-                              ProgramUnits units = ProgramUnits::kAsWritten);
+                              ProgramUnits units = ProgramUnits::kAsWritten,
+                              std::string_view source = "auto");
 
 // --- smooth ------------------------------------------------------------------------------------
 
@@ -81,6 +83,7 @@ struct Options {
   std::optional<double> keep_corners_deg;
   std::vector<std::string> allow;
   ProgramUnits units = ProgramUnits::kAsWritten;
+  std::string source = "auto";
   int threads = 0;  // 0: all cores; the result is the same for any number
 };
 
@@ -135,7 +138,8 @@ struct Proof {
 // Does the new program do what the old one did, with paths no further apart than the tolerance,
 // both ways and in order?
 [[nodiscard]] Proof verify(std::string_view old_program, std::string_view new_program,
-                           double tolerance_mm, ProgramUnits units = ProgramUnits::kAsWritten);
+                           double tolerance_mm, ProgramUnits units = ProgramUnits::kAsWritten,
+                           std::string_view source = "auto");
 
 // --- time --------------------------------------------------------------------------------------
 
@@ -144,6 +148,7 @@ struct TimeOptions {
   std::string machine;
   std::string target;  // see target_names: what G4 P means; empty: as the machine's control has it
   ProgramUnits units = ProgramUnits::kAsWritten;
+  std::string source = "auto";
 };
 
 // What the time leaves out or had to assume. `id` as in `batten time`.
