@@ -18,6 +18,8 @@ std::span<const Dialect* const> dialects() {
       all.insert(all.end(), family.begin(), family.end());
     }
     all.push_back(&siemens_dialect());
+    const auto klartext = heidenhain_family();
+    all.insert(all.end(), klartext.begin(), klartext.end());
     return all;
   }();
   return kAll;

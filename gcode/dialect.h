@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "gcode/block_spelling.h"
 #include "gcode/language.h"
 #include "gcode/modal_state.h"
 #include "gcode/number_format.h"
@@ -88,6 +89,9 @@ class Dialect {
   // The control's own chords add to our deviation: an arc that they leave too far is written as
   // chords of ours.
   [[nodiscard]] virtual ArcChords arc_chords() const { return {}; }
+
+  // How blocks are spelt.
+  [[nodiscard]] virtual const BlockSpelling& spelling() const { return rs274_spelling(); }
 
   // Whether every block has to name its motion, and every arc both axes of its plane.
   [[nodiscard]] virtual bool repeats_words() const { return false; }

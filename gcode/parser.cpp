@@ -7,6 +7,7 @@
 
 #include "gcode/active_comment.h"
 #include "gcode/characters.h"
+#include "gcode/klartext_parser.h"
 #include "gcode/language_marks.h"
 #include "gcode/lexer.h"
 #include "gcode/line_cursor.h"
@@ -367,6 +368,7 @@ class Parser {
 }  // namespace
 
 Program parse(const SourceText& source, Language language, Diagnostics& found) {
+  if (language == Language::kKlartext) return parse_klartext(source, found);
   return Parser(source, language, found).run();
 }
 

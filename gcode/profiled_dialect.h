@@ -23,6 +23,7 @@ class ProfiledDialect final : public TableValues {
   [[nodiscard]] SourceMarks known_marks() const override;
   [[nodiscard]] bool cannot_say(char letter, int number) const override;
   [[nodiscard]] std::span<const std::string_view> smoothing_words() const override;
+  [[nodiscard]] const BlockSpelling& spelling() const override { return base_.spelling(); }
   [[nodiscard]] DwellUnit dwell_unit() const override { return base_.dwell_unit(); }
 
   // The base's own comment while the style is the base's; what the base cannot say in a comment is

@@ -21,7 +21,7 @@ struct Word {
   bool is_number =
       true;  // false: an expression, a parameter, or nothing; `value` means nothing then
   double value = 0;
-  SourceSpan span;
+  SourceSpan span;  // in its block; a centre of Klartext stands in the block of the CC
 };
 
 enum class CommentKind {
@@ -49,6 +49,7 @@ enum class Opacity {
   kProgramMark,  // a % line; text outside the % marks; the program's own number (O1000 before
                  // any other word); a line of NUL or 0x1A: controls do nothing here
   kCornerWord,   // ,R2 ,C1 ,A45: the path does not reach the point that the words name
+  kContinued,    // a line that belongs to the statement of the lines before it
 };
 
 // One line of the source.

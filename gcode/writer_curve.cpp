@@ -91,7 +91,7 @@ bool Writer::curve_to(const geometry::BsplineCurve& curve, double feed, int last
 }
 
 void Writer::end_curve() {
-  if (state_.modal.motion != MotionMode::kOther) return;
+  if (state_.modal.motion != MotionMode::kOther || !dialect_.spelling().motion_stays()) return;
   add_motion(MotionMode::kLine);
   end_block();
 }

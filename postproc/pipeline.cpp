@@ -122,7 +122,8 @@ class Smoothing {
             state_after(section.last_block),
             program.source.text({first.span.end, first.end}),
             section.last_block - section.first_block + 1,
-            bytes_of(program, section).size()};
+            bytes_of(program, section).size(),
+            number_room(program, section.first_block, section.last_block)};
   }
 
   [[nodiscard]] bool is_allowed(std::string_view id) const {

@@ -16,5 +16,6 @@ namespace batten::gcode {
 [[nodiscard]] std::span<const Dialect* const> plc_family();               // CODESYS ..
 [[nodiscard]] std::span<const Dialect* const> fanuc_family();  // FANUC, Syntec, Mitsubishi
 [[nodiscard]] const Dialect& siemens_dialect();
+[[nodiscard]] std::span<const Dialect* const> heidenhain_family();  // Klartext
 
 }  // namespace batten::gcode
