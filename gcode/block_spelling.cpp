@@ -42,9 +42,7 @@ class Rs274Spelling final : public BlockSpelling {
                     std::string_view line_end) const override {
     WordLine line(blanks);
     if (block.plane) {
-      line.add('G', *block.plane == Plane::kXY   ? "17"
-                    : *block.plane == Plane::kZX ? "18"
-                                                 : "19");
+      line.add('G', *block.plane == Plane::kXY ? "17" : *block.plane == Plane::kZX ? "18" : "19");
     }
     if (block.motion) line.add('G', number_of(*block.motion));
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -13,10 +13,10 @@ namespace batten::gcode {
 // What one block is to say. Empty and nothing: not said.
 struct SpokenBlock {
   std::optional<Plane> plane;
-  std::optional<MotionMode> motion;     // G0 to G3
-  std::array<std::string, 3> places;    // X Y Z
-  std::array<std::string, 3> centers;   // I J K
-  std::string radius;                   // R
+  std::optional<MotionMode> motion;    // G0 to G3
+  std::array<std::string, 3> places;   // X Y Z
+  std::array<std::string, 3> centers;  // I J K
+  std::string radius;                  // R
   std::string feed;
 
   [[nodiscard]] bool is_empty() const;

@@ -414,7 +414,8 @@ class Interpreter {
       return;
     }
     const Block& block = program_.blocks[read_.motions.front().block];
-    const std::string_view missing = is_klartext() ? "no BEGIN PGM with MM or INCH" : "no G20 or G21";
+    const std::string_view missing =
+        is_klartext() ? "no BEGIN PGM with MM or INCH" : "no G20 or G21";
     found_.push_back({Severity::kError, "units-missing", block.span,
                       fmt::format("{} in the whole program; without a unit a tolerance means "
                                   "nothing. Say --units mm or --units inch",

@@ -112,7 +112,7 @@ class KlartextFlow {
   const Program& program_;
   std::vector<BlockFlow> flow_;
   std::vector<Label> labels_;
-  std::vector<std::size_t> ends_;  // LBL 0
+  std::vector<std::size_t> ends_;                            // LBL 0
   std::unordered_map<std::string, std::size_t> references_;  // the last block that names it
   std::size_t any_reference_ = 0;  // behind the last block that names a computed label
 };

@@ -157,8 +157,8 @@ class KlartextParser {
 
   void read_move(KlartextKind kind, const KlartextParts& parts, Block& block) {
     const std::size_t first = program_.words.size();
-    const bool plain = !parts.continues &&
-                       read_klartext_move(kind, text_, parts.content, program_.words);
+    const bool plain =
+        !parts.continues && read_klartext_move(kind, text_, parts.content, program_.words);
     if (!plain) {
       program_.words.resize(first);
       block.opacity = Opacity::kForeign;
@@ -185,9 +185,7 @@ class KlartextParser {
   }
 
   // The centre is a part of what the block says.
-  void add_centre() {
-    program_.words.insert(program_.words.end(), centre_.begin(), centre_.end());
-  }
+  void add_centre() { program_.words.insert(program_.words.end(), centre_.begin(), centre_.end()); }
 
   // The motion before stops short of its end, or another one depends on its direction.
   void end_last_move() {

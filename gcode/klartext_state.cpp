@@ -52,8 +52,8 @@ class StatementWords {
 
   void apply_compensation(std::string_view token) {
     if (is_same_word(token, "R0")) modal().cutter_compensation = Tri::kOff;
-    const bool on = is_same_word(token, "RL") || is_same_word(token, "RR") || token == "R+" ||
-                    token == "R-";
+    const bool on =
+        is_same_word(token, "RL") || is_same_word(token, "RR") || token == "R+" || token == "R-";
     if (on) modal().cutter_compensation = Tri::kOn;
   }
 

@@ -11,10 +11,10 @@ namespace batten::gcode {
 
 // `/12 L X+10 ~ ; text`
 struct KlartextParts {
-  SourceSpan number;      // the block number; empty: none
-  SourceSpan content;     // without number, comment, ~ and blanks around it
-  SourceSpan comment;     // from ; or from the * of a structure block on; empty: none
-  bool skipped = false;   // hidden by a /
+  SourceSpan number;       // the block number; empty: none
+  SourceSpan content;      // without number, comment, ~ and blanks around it
+  SourceSpan comment;      // from ; or from the * of a structure block on; empty: none
+  bool skipped = false;    // hidden by a /
   bool continues = false;  // ends with ~: the next line belongs to it
 };
 
@@ -37,16 +37,16 @@ enum class KlartextKind : std::uint8_t {
   kToolCall,
   kCycleDef,
   kCycleCall,
-  kDefinition,   // BLK FORM, TOOL DEF, PATTERN DEF, SEL ..: nothing moves, no mode changes
-  kAssignment,   // Q1 = .., FN 0 to FN 8, FN 13, FN 18
-  kJump,         // FN 9 to FN 12: IF .. GOTO LBL
-  kLabel,        // LBL 1, LBL 0
-  kCallLabel,    // CALL LBL 1, CALL LBL 1 REP 5
-  kCallProgram,  // CALL PGM
-  kPlane,        // PLANE ..
+  kDefinition,    // BLK FORM, TOOL DEF, PATTERN DEF, SEL ..: nothing moves, no mode changes
+  kAssignment,    // Q1 = .., FN 0 to FN 8, FN 13, FN 18
+  kJump,          // FN 9 to FN 12: IF .. GOTO LBL
+  kLabel,         // LBL 1, LBL 0
+  kCallLabel,     // CALL LBL 1, CALL LBL 1 REP 5
+  kCallProgram,   // CALL PGM
+  kPlane,         // PLANE ..
   kFunctionTcpm,  // FUNCTION TCPM, FUNCTION RESET TCPM
   kStop,
-  kProbe,   // TCH PROBE
+  kProbe,  // TCH PROBE
   kUnknown,
 };
 

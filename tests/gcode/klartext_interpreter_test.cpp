@@ -4,6 +4,7 @@
 #include <string>
 
 #include "gcode/curves/spl_format.h"
+#include "gcode/program_flow.h"
 #include "gcode/reason.h"
 #include "tests/support/klartext_programs.h"
 
@@ -69,8 +70,8 @@ TEST(KlartextMotions, OffTheCircleAreNotFollowed) {
 
 struct EffectCase {
   std::string name;
-  std::string lines;      // from line 4 on
-  bool place_known;       // X and Y, before `L Z-1` behind them
+  std::string lines;  // from line 4 on
+  bool place_known;   // X and Y, before `L Z-1` behind them
   bool state_known;
   bool feed_known = true;
 };
@@ -122,7 +123,8 @@ INSTANTIATE_TEST_SUITE_P(
         EffectCase{"RotationOfNothing", "3 CYCL DEF 10.0 ROTATION\n4 CYCL DEF 10.1 ROT+0", false,
                    true},
         EffectCase{"ScalingByOne", "3 CYCL DEF 11.0 SCALING\n4 CYCL DEF 11.1 SCL1", false, true},
-        EffectCase{"Spline", "3 SPL X+5 Y+5 ~\n  K3X0 K2X0 K1X-5 ~\n  K3Y0 K2Y0 K1Y-5", false, true},
+        EffectCase{"Spline", "3 SPL X+5 Y+5 ~\n  K3X0 K2X0 K1X-5 ~\n  K3Y0 K2Y0 K1Y-5", false,
+                   true},
         EffectCase{"FeedOfTheToolCall", "3 L X+5 Y+5 F AUTO", false, true, false}),
     [](const auto& test) { return test.param.name; });
 
@@ -172,8 +174,8 @@ INSTANTIATE_TEST_SUITE_P(
         SwitchCase{"TcpmEnds", "3 FUNCTION RESET TCPM", &ModalState::tool_center_point, Tri::kOff},
         SwitchCase{"Plane", "3 PLANE SPATIAL SPA+0 SPB+30 SPC+0 MOVE", &ModalState::tilted_plane,
                    Tri::kOn},
-        SwitchCase{"Cycle19", "3 CYCL DEF 19.0 W\n4 CYCL DEF 19.1 A+0 B+5", &ModalState::tilted_plane,
-                   Tri::kOn},
+        SwitchCase{"Cycle19", "3 CYCL DEF 19.0 W\n4 CYCL DEF 19.1 A+0 B+5",
+                   &ModalState::tilted_plane, Tri::kOn},
         SwitchCase{"Cycle19Ends", "3 CYCL DEF 19.1 A+1\n4 CYCL DEF 19.0 W\n5 CYCL DEF 19.1",
                    &ModalState::tilted_plane, Tri::kOff},
         SwitchCase{"Mirror", "3 CYCL DEF 8.0 MIRROR\n4 CYCL DEF 8.1 X", &ModalState::mirror,
@@ -190,17 +192,31 @@ INSTANTIATE_TEST_SUITE_P(
 
 // A feed in a comment of a spline's lines is none.
 TEST(KlartextEffects, CommentsAreNotRead) {
-  const KlartextProgram p = program_with("3 SPL X+5 Y+5 ~\n  K3X0 K2X0 K1X-5 ; F900 RL\n4 L X+9 Y+1\n");
+  const KlartextProgram p =
+      program_with("3 SPL X+5 Y+5 ~\n  K3X0 K2X0 K1X-5 ; F900 RL\n4 L X+9 Y+1\n");
   EXPECT_EQ(p.state_after(6).feed, 500);
   EXPECT_EQ(p.state_after(6).cutter_compensation, Tri::kOff);
 }
 
-TEST(KlartextEffects, BodiesOfLabelsAreKept) {
-  const KlartextProgram p = program_with(
-      "3 L X+1\n4 LBL 1\n5 L X+2 Y+1\n6 LBL 0\n7 L X+3 Y+1\n8 CALL LBL 1\n9 L X+4 Y+4\n");
-  EXPECT_TRUE(p.line(4).barrier.empty());
-  EXPECT_TRUE(p.line(5).entered_from_elsewhere);
-  EXPECT_EQ(p.line(6).barrier, reason::kLoopBody);
+// Which lines of these are bodies.
+std::string bodies_in(const std::string& lines) {
+  std::string found;
+  for (const BlockFlow& each : find_flow(KlartextProgram(lines).program)) {
+    found += each.jump_target ? 'T' : each.in_body ? 'b' : '.';
+  }
+  return found;
+}
+
+TEST(KlartextFlow, BodiesReachFromTheLabelToItsEndOrItsLastCall) {
+  EXPECT_EQ(bodies_in("L X1\nLBL 1\nL X2\nLBL 0\nL X3\nCALL LBL 1\nL X4\n"), ".Tbbbb.");
+  EXPECT_EQ(bodies_in("LBL 1\nL X2\nCALL LBL 1 REP 5\nL X4\n"), "Tbb.");
+  EXPECT_EQ(bodies_in("CALL LBL 1\nL X1\nLBL 1\nL X2\nLBL 0\nL X3\n"), "..Tbb.");
+  EXPECT_EQ(bodies_in("LBL \"A\"\nL X2\nFN 9: IF +Q1 EQU +Q2 GOTO LBL \"A\"\nL X4\n"), "Tbb.");
+  EXPECT_EQ(bodies_in("LBL 1\nL X2\nCALL LBL Q5\nL X4\n"), "Tbb.");
+}
+
+TEST(KlartextFlow, LabelsThatNothingNamesAreNone) {
+  EXPECT_EQ(bodies_in("LBL 1\nL X2\nCALL LBL 2\nLBL 0\nL X4\n"), ".....");
 }
 
 // The golden curve of fanuc_curves.md: where it ends is (40, 0).

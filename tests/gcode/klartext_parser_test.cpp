@@ -53,8 +53,7 @@ INSTANTIATE_TEST_SUITE_P(
     Moves, KlartextLines,
     testing::Values(
         LineCase{"Line", "12 L X+1.5 Y-2 R0 F500 M3", "N12 G1 X1.5 Y-2 G40 F500 M3"},
-        LineCase{"NoNumber", "L Z-5", "G1 Z-5"},
-        LineCase{"Comma", "12 L X+1,25", "N12 G1 X1.25"},
+        LineCase{"NoNumber", "L Z-5", "G1 Z-5"}, LineCase{"Comma", "12 L X+1,25", "N12 G1 X1.25"},
         LineCase{"SmallLetters", "12 l x+1 fmax", "N12 G0 X1"},
         LineCase{"NoSign", "12 L X1. Y.5", "N12 G1 X1 Y0.5"},
         LineCase{"BlankBeforeTheNumber", "12 L X +1 Y -2", "N12 G1 X1 Y-2"},
@@ -70,6 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
         LineCase{"ArcAboutTheCentreBefore", "5 CC X+10 Y-1.5\n12 C X+20 Y+0 DR-",
                  "N12 G2 X20 Y0 I10 J-1.5"},
         LineCase{"ArcTheOtherWay", "CC Y+1 X+10\nC X+20 DR+ R0 F10 M", "G3 X20 G40 F10 J1 I10"},
+        LineCase{"ArcWithoutCentre", "12 C X+1 Y+1 DR+", "N12 G3 X1 Y1"},
         LineCase{"ArcWithRadius", "12 CR X+5 Y+0 R+20.5 DR+ R0 F9", "N12 G3 X5 Y0 R20.5 G40 F9"},
         LineCase{"GreaterArcWithRadius", "12 CR X+5 Y+0 R-20 DR-", "N12 G2 X5 Y0 R-20"}),
     [](const auto& test) { return test.param.name; });
@@ -96,7 +96,6 @@ INSTANTIATE_TEST_SUITE_P(
         LineCase{"MachineCoordinates", "12 L X+1 M91", "N12", Opacity::kForeign},
         LineCase{"TiltedTool", "12 M128 F500", "N12", Opacity::kForeign},
         LineCase{"LookAhead", "12 L X+1 RL M120 LA5", "N12", Opacity::kForeign},
-        LineCase{"ArcWithoutCentre", "12 C X+1 Y+1 DR+", "N12 G3 X1 Y1", Opacity::kForeign},
         LineCase{"ArcWithoutSense", "CC X+0 Y+0\n12 C X+1 Y+1", "N12 I0 J0", Opacity::kForeign},
         LineCase{"ArcWithZ", "CC X+0 Y+0\n12 C X+1 Z+1 DR+", "N12 I0 J0", Opacity::kForeign},
         LineCase{"RadiusArcWithoutRadius", "12 CR X+5 DR+", "N12", Opacity::kForeign},
@@ -154,7 +153,8 @@ TEST(KlartextParser, KnowsHiddenBlocks) {
 // The line before does not reach its end, or gives the next one its direction.
 TEST(KlartextParser, MarksMovesThatLaterBlocksDependOn) {
   for (const std::string next : {"RND R2", "CHF 1", "CT X+5 Y+5", "DEP LT LEN5", "FCT DR- R5"}) {
-    const Program program = parsed("1 L X+0 Y+0\n2 L X+9 ; a\n3 ; b\n4 " + next + "\n5 L X+9 Y+9\n");
+    const Program program =
+        parsed("1 L X+0 Y+0\n2 L X+9 ; a\n3 ; b\n4 " + next + "\n5 L X+9 Y+9\n");
     EXPECT_EQ(program.blocks[0].opacity, Opacity::kNone) << next;
     EXPECT_EQ(program.blocks[1].opacity, Opacity::kCornerWord) << next;
     EXPECT_EQ(program.blocks[4].opacity, Opacity::kNone) << next;
@@ -178,7 +178,8 @@ const std::string& every_construct() {
       "9 RND R2\n10 APPR LT X+0 Y+0 LEN5 RL\n11 DEP LT LEN5\n12 LBL 1\n13 CALL LBL 1 REP 2\n"
       "14 FN 9: IF +Q1 EQU +Q2 GOTO LBL \"N\"\n15 Q1 = Q2 * 3\n16 M140 MB MAX\n"
       "17 SPL X+18 Y+6.4 ~\n  K3X-6 K2X+0 K1X-1.2E+001 ~\n  K3Y+5.6 K2Y-4.8 K1Y-7.2 F3000\n"
-      "18 PLANE RESET STAY\n/19 L X+Q5 IY-2 F AUTO\n20 * - TEXT\n21 STOP M6\n22 END PGM PART MM\n\x1A";
+      "18 PLANE RESET STAY\n/19 L X+Q5 IY-2 F AUTO\n20 * - TEXT\n21 STOP M6\n22 END PGM PART "
+      "MM\n\x1A";
   return kText;
 }
 

@@ -6,12 +6,15 @@
 #include <fstream>
 #include <iterator>
 #include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "gcode/curves/heidenhain_spl.h"
 #include "gcode/curves/klartext_moves.h"
-#include "gcode/reason.h"
+#include "gcode/writer.h"
+#include "geometry/path_distance.h"
+#include "postproc/block_numbers.h"
 #include "postproc/verification.h"
 #include "tests/postproc/wavy_programs.h"
 #include "tests/support/klartext_programs.h"
@@ -50,7 +53,8 @@ Verification proof_of(const std::string& before, const std::string& after,
                       const SmoothOptions& options) {
   const KlartextProgram old_program(before, options.target->curves());
   const KlartextProgram new_program(after, options.target->curves());
-  return verify({&old_program.program, &old_program.read}, {&new_program.program, &new_program.read},
+  return verify({&old_program.program, &old_program.read},
+                {&new_program.program, &new_program.read},
                 {options.tolerance_mm, options.tolerance_kind, options.side});
 }
 
@@ -67,7 +71,8 @@ std::string without_provenance(const std::string& text) {
   return rest;
 }
 
-// --- promises -------------------------------------------------------------------------------------
+// --- promises
+// -------------------------------------------------------------------------------------
 
 void expect_promises(const std::string& before, const SmoothOptions& options,
                      const SmoothResult& result) {
@@ -131,11 +136,11 @@ TEST(Klartext, TwoHundredRandomCurvesAreWrittenReadAndProved) {
     modal.feed = 1000;
     gcode::Writer writer(target, {modal, {start, {true, true, true}}}, "\n");
     ASSERT_TRUE(writer.curve_to(curve, 2000, 0));
-    const std::string text = with_numbers(
-        fmt::format("BEGIN PGM A MM\nL X{:+.9f} Y{:+.9f} Z{:+.9f} R0 F1000\n", start.x(), start.y(),
-                    start.z()) +
-            writer.text() + "END PGM A MM\n",
-        0);
+    const std::string text =
+        with_numbers(fmt::format("BEGIN PGM A MM\nL X{:+.9f} Y{:+.9f} Z{:+.9f} R0 F1000\n",
+                                 start.x(), start.y(), start.z()) +
+                         writer.text() + "END PGM A MM\n",
+                     0);
     const KlartextProgram read(text, target.curves());
     geometry::Path path;
     for (std::size_t i = 1; i < read.read.motions.size(); ++i) {
@@ -150,7 +155,32 @@ TEST(Klartext, TwoHundredRandomCurvesAreWrittenReadAndProved) {
   }
 }
 
-// --- byte for byte --------------------------------------------------------------------------------
+// Signs of the text are changed, lost and doubled: what is still read is proved, and nothing else
+// is touched.
+TEST(Klartext, DamagedProgramsAreProvedOrLeftAlone) {
+  std::mt19937 random(11);
+  const SmoothOptions options = klartext_options("heidenhain");
+  const std::string sound = numbered_from_zero(klartext_program_of(tests::random_curve(4, false)));
+  const std::string signs = "+-.,;~*/0189XYZLCRFM \n";
+  for (int round = 0; round < 12; ++round) {
+    std::string text = sound;
+    for (int change = 0; change < 3; ++change) {
+      const std::size_t at = random() % text.size();
+      if (random() % 2 == 0) {
+        text[at] = signs[random() % signs.size()];
+      } else {
+        text.erase(at, random() % 9);
+      }
+    }
+    const SmoothResult result = smoothed(text, options);
+    if (!result.understood) continue;
+    EXPECT_TRUE(result.proved) << text;
+    EXPECT_TRUE(rewritten_runs(result) > 0 || result.text == text);
+  }
+}
+
+// --- byte for byte
+// --------------------------------------------------------------------------------
 
 std::string case_text(const std::string& name) {
   const std::string file = std::string(BATTEN_SOURCE_DIR) + "/tests/cases/heidenhain/" + name;
@@ -164,6 +194,21 @@ TEST(Klartext, CasesAreByteForByte) {
   EXPECT_EQ(smoothed(before, klartext_options("heidenhain")).text, case_text("pocket.arcs.h"));
   EXPECT_EQ(smoothed(before, klartext_options("itnc530", Form::kCurves)).text,
             case_text("pocket.spl.h"));
+}
+
+// heidenhain_curves.md.
+TEST(Klartext, GoldenCurveIsWrittenAsTheManualSays) {
+  gcode::ModalState modal;
+  modal.units = gcode::Units::kMillimetre;
+  modal.feed = 1000;
+  gcode::Writer writer(*gcode::find_dialect("itnc530"),
+                       {modal, {geometry::Point3::Zero(), {true, true, true}}}, "\n");
+  ASSERT_TRUE(writer.curve_to(tests::golden_curve(), 3000, 0));
+  writer.line_to({50, 0, 0}, 3000);
+  EXPECT_EQ(with_numbers(writer.text(), 8),
+            "8 SPL X+18 Y+6.4 ~\n  K3X-6 K2X+0 K1X-1.2E+001 ~\n  K3Y+5.6 K2Y-4.8 K1Y-7.2 F3000\n"
+            "9 SPL X+40 Y+0 ~\n  K3X-4 K2X+1.2E+001 K1X-3E+001 ~\n"
+            "  K3Y+6.4 K2Y-3E+001 K1Y+3E+001\n10 L X+50\n");
 }
 
 TEST(Klartext, EveryOtherConstructIsCopied) {
@@ -211,30 +256,31 @@ TEST_P(KlartextKeeps, EveryByte) {
 
 INSTANTIATE_TEST_SUITE_P(
     Klartext, KlartextKeeps,
-    testing::Values(
-        KeptWave{"TiltedPlane", {"PLANE SPATIAL SPA+0 SPB+45 SPC+0 STAY"}},
-        KeptWave{"Cycle19", {"CYCL DEF 19.0 W", "CYCL DEF 19.1 A+0 B+5 C+0"}},
-        KeptWave{"TiltedTool", {"M128"}}, KeptWave{"Tcpm", {"FUNCTION TCPM F TCP"}},
-        KeptWave{"Mirror", {"CYCL DEF 8.0 M", "CYCL DEF 8.1 X"}},
-        KeptWave{"Rotation", {"CYCL DEF 10.0 R", "CYCL DEF 10.1 ROT+30"}},
-        KeptWave{"Scaling", {"CYCL DEF 11.0 S", "CYCL DEF 11.1 SCL 0.5"}},
-        KeptWave{"ScalingByAxis", {"CYCL DEF 26.0 S", "CYCL DEF 26.1 X0.5 Y1"}},
-        KeptWave{"CycleAtEachPlace", {"CYCL CALL M89"}}, KeptWave{"PointFilter", {"M124 T0.01"}},
-        KeptWave{"FeedPerTurn", {"M136"}}, KeptWave{"AfterACall", {"CALL LBL 9"}},
-        KeptWave{"AfterAProgram", {"CALL PGM OTHER"}}, KeptWave{"AfterAnUnknownCycle", {"CYCL DEF 491"}},
-        KeptWave{"AfterSomethingUnknown", {"WHATEVER"}},
-        KeptWave{"InABody", {"LBL 1"}, {"LBL 0", "CALL LBL 1"}},
-        KeptWave{"Repeated", {"LBL 1"}, {"CALL LBL 1 REP 5"}}),
+    testing::Values(KeptWave{"TiltedPlane", {"PLANE SPATIAL SPA+0 SPB+45 SPC+0 STAY"}},
+                    KeptWave{"Cycle19", {"CYCL DEF 19.0 W", "CYCL DEF 19.1 A+0 B+5 C+0"}},
+                    KeptWave{"TiltedTool", {"M128"}}, KeptWave{"Tcpm", {"FUNCTION TCPM F TCP"}},
+                    KeptWave{"Mirror", {"CYCL DEF 8.0 M", "CYCL DEF 8.1 X"}},
+                    KeptWave{"Rotation", {"CYCL DEF 10.0 R", "CYCL DEF 10.1 ROT+30"}},
+                    KeptWave{"Scaling", {"CYCL DEF 11.0 S", "CYCL DEF 11.1 SCL 0.5"}},
+                    KeptWave{"ScalingByAxis", {"CYCL DEF 26.0 S", "CYCL DEF 26.1 X0.5 Y1"}},
+                    KeptWave{"CycleAtEachPlace", {"CYCL CALL M89"}},
+                    KeptWave{"PointFilter", {"M124 T0.01"}}, KeptWave{"FeedPerTurn", {"M136"}},
+                    KeptWave{"AfterACall", {"CALL LBL 9"}},
+                    KeptWave{"AfterAProgram", {"CALL PGM OTHER"}},
+                    KeptWave{"AfterAnUnknownCycle", {"CYCL DEF 491"}},
+                    KeptWave{"AfterSomethingUnknown", {"WHATEVER"}},
+                    KeptWave{"InABody", {"LBL 1"}, {"LBL 0", "CALL LBL 1"}},
+                    KeptWave{"Repeated", {"LBL 1"}, {"CALL LBL 1 REP 5"}}),
     [](const auto& test) { return test.param.name; });
 
-// --- what is written ------------------------------------------------------------------------------
+// --- what is written
+// ------------------------------------------------------------------------------
 
 std::vector<std::string> circle_chords(double from, double to, int count) {
   std::vector<std::string> lines;
   for (int i = 1; i <= count; ++i) {
     const double angle = (from + (to - from) * i / count) * std::numbers::pi / 180;
-    lines.push_back(
-        fmt::format("L X{:+.3f} Y{:+.3f}", 30 * std::cos(angle), 30 * std::sin(angle)));
+    lines.push_back(fmt::format("L X{:+.3f} Y{:+.3f}", 30 * std::cos(angle), 30 * std::sin(angle)));
   }
   return lines;
 }
@@ -289,7 +335,8 @@ TEST(Klartext, LaterArcsKeepTheirCentre) {
   EXPECT_FALSE(proof_of(before, moved, options).proved());
 }
 
-// --- what a proof must find ------------------------------------------------------------------------
+// --- what a proof must find
+// ------------------------------------------------------------------------
 
 struct DamageCase {
   std::string name;
@@ -319,8 +366,7 @@ INSTANTIATE_TEST_SUITE_P(
                     DamageCase{"RapidMadeSlow", " R0 FMAX M3", " R0 M3"},
                     DamageCase{"ToolCall", "TOOL CALL 3", "TOOL CALL 4"},
                     DamageCase{"Unit", "BEGIN PGM POCKET MM", "BEGIN PGM POCKET INCH"},
-                    DamageCase{"Function", "M8", "M9"},
-                    DamageCase{"LineOfACycle", "T0.02", "T0.2"},
+                    DamageCase{"Function", "M8", "M9"}, DamageCase{"LineOfACycle", "T0.02", "T0.2"},
                     DamageCase{"Feed", "F800", "F900"}),
     [](const auto& test) { return test.param.name; });
 
