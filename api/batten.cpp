@@ -10,6 +10,7 @@
 
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
+#include "gcode/source_kind.h"
 #include "postproc/inspect.h"
 #include "postproc/machine_choice.h"
 #include "postproc/options.h"
@@ -59,11 +60,25 @@ std::vector<Message> messages_of(const gcode::Diagnostics& found, const gcode::S
 
 // A program and what it means.
 struct Reading {
-  Reading(std::string_view text, ProgramUnits units, const gcode::Dialect* target = nullptr)
+  // `language`: what a text without certain marks is read in; nothing: as `target` reads.
+  Reading(std::string_view text, ProgramUnits units, gcode::SourceKind kind,
+          const gcode::Dialect* target = nullptr,
+          std::optional<gcode::Language> language = std::nullopt)
       : source("program", std::string(text)),
-        program(gcode::parse(source, found)),
+        program(gcode::parse(
+            source,
+            gcode::source_language(source, kind, language ? language : language_of(target), found)
+                .value_or(gcode::Language::kRs274),
+            found)),
         meaning(gcode::interpret(
-            program, {inner(units), target == nullptr ? nullptr : target->curves()}, found)) {}
+            program, {inner(units), target == nullptr ? nullptr : target->curves()}, found)) {
+    gcode::tell_of_contradictions(program, kind, found);
+  }
+
+  [[nodiscard]] static std::optional<gcode::Language> language_of(const gcode::Dialect* target) {
+    if (target == nullptr) return std::nullopt;
+    return target->language();
+  }
 
   [[nodiscard]] postproc::ReadProgram get() const { return {&program, &meaning}; }
 
@@ -88,6 +103,14 @@ void choose(Value& place, std::string_view option, std::string_view name,
   } else {
     problems.push_back(std::string(option) + ": there is no '" + std::string(name) + "'");
   }
+}
+
+gcode::SourceKind source_kind(std::string_view name) {
+  gcode::SourceKind kind = gcode::SourceKind::kAuto;
+  std::vector<std::string> problems;
+  choose(kind, "source", name, postproc::sources(), problems);
+  if (!problems.empty()) refuse(problems);
+  return kind;
 }
 
 // The machine lives as long as this.
@@ -120,6 +143,7 @@ InnerOptions inner(const Options& given) {
   choose(options.method, "method", given.method, postproc::methods(), problems);
   choose(options.output, "output", given.output, postproc::forms(), problems);
   choose(options.prefer, "prefer", given.prefer, postproc::preferences(), problems);
+  choose(options.source, "source", given.source, postproc::sources(), problems);
   if (!given.linearize.empty()) {
     options.linearize.emplace();
     choose(*options.linearize, "linearize", given.linearize, postproc::linearizations(), problems);
@@ -151,8 +175,8 @@ std::vector<std::string> machine_names() {
   return names;
 }
 
-ReadResult read(std::string_view program, ProgramUnits units) {
-  const Reading reading(program, units);
+ReadResult read(std::string_view program, ProgramUnits units, std::string_view source) {
+  const Reading reading(program, units, source_kind(source));
   ReadResult result;
   result.understood = !gcode::has_error(reading.found);
   result.blocks = reading.program.blocks.size();
@@ -190,7 +214,8 @@ SmoothedProgram smooth(std::string_view program, const Options& options) {
 }
 
 Proof verify(std::string_view old_program, std::string_view new_program, double tolerance_mm,
-             ProgramUnits units, std::string_view target) {
+             ProgramUnits units, std::string_view target, std::string_view source) {
+  const gcode::SourceKind kind = source_kind(source);
   if (!(tolerance_mm > 0) || !std::isfinite(tolerance_mm)) {
     throw std::invalid_argument("tolerance_mm: expected a finite length above 0");
   }
@@ -203,8 +228,8 @@ Proof verify(std::string_view old_program, std::string_view new_program, double 
     proof.proved = true;
     return proof;
   }
-  const Reading before(old_program, units, control);
-  const Reading after(new_program, units, control);
+  const Reading before(old_program, units, kind, control);
+  const Reading after(new_program, units, kind, control, before.program.language);
   for (const Reading* each : {&before, &after}) {
     for (Message& message : messages_of(each->found, each->source)) {
       if (message.severity == Severity::kError) proof.messages.push_back(std::move(message));
@@ -230,7 +255,7 @@ ProgramTime time(std::string_view program, const TimeOptions& options) {
     if (target == nullptr) problems.push_back("target: there is no '" + options.target + "'");
   }
   if (!problems.empty()) refuse(problems);
-  const Reading reading(program, options.units, target);
+  const Reading reading(program, options.units, source_kind(options.source), target);
   ProgramTime result;
   result.messages = messages_of(reading.found, reading.source);
   result.understood = !gcode::has_error(reading.found);

@@ -15,7 +15,7 @@ std::span<const Dialect* const> dialects() {
     std::vector<const Dialect*> all = {&linuxcnc_dialect()};
     for (const auto family :
          {grbl_family(), printer_family(), pc_family(), machining_center_family(), fanuc_family(),
-          plc_family(), siemens_family()}) {
+          plc_family(), siemens_family(), heidenhain_family()}) {
       all.insert(all.end(), family.begin(), family.end());
     }
     return all;

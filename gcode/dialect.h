@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "gcode/block_spelling.h"
+#include "gcode/language.h"
 #include "gcode/modal_state.h"
 #include "gcode/number_format.h"
 #include "gcode/source_marks.h"
@@ -53,6 +55,9 @@ class Dialect {
   [[nodiscard]] virtual std::string_view name() const = 0;         // "linuxcnc"
   [[nodiscard]] virtual std::string_view description() const = 0;  // one line, for `batten targets`
 
+  // The language that the control reads, and in which its programs are proved.
+  [[nodiscard]] virtual Language language() const { return Language::kRs274; }
+
   // How coordinates, arc centres and feeds are printed in these units.
   [[nodiscard]] virtual NumberFormat coordinates(Units units) const = 0;
   [[nodiscard]] virtual NumberFormat arc_offsets(Units units) const = 0;
@@ -84,6 +89,9 @@ class Dialect {
   // The control's own chords add to our deviation: an arc that they leave too far is written as
   // chords of ours.
   [[nodiscard]] virtual ArcChords arc_chords() const { return {}; }
+
+  // How blocks are spelt.
+  [[nodiscard]] virtual const BlockSpelling& spelling() const { return rs274_spelling(); }
 
   // Whether every block has to name its motion, and every arc both axes of its plane.
   [[nodiscard]] virtual bool repeats_words() const { return false; }

@@ -6,9 +6,16 @@ namespace {
 constexpr ExplainedDiagnostic kExplained[] = {
     // --- while reading the text ---
     {"foreign-language", "error",
-     "The file is certainly a program in another language: Heidenhain Klartext (BEGIN PGM) or "
-     "Siemens (%_N_.., ;$PATH, DEF REAL).",
-     "Post the part again for a control of the RS-274 family."},
+     "The file is certainly a program in another language than the target's: Heidenhain Klartext "
+     "(BEGIN PGM) or Siemens (%_N_.., ;$PATH, DEF REAL).",
+     "Choose a target that reads this language, or post the part again for this one."},
+    {"source-ambiguous", "error",
+     "The text has marks that only programs in one language have, and marks that only those in "
+     "another have: it is not certain how to read it.",
+     "Take out what does not belong to the program, or say --source."},
+    {"source-contradicted", "error",
+     "--source names a control, and the program has words that programs for it do not have.",
+     "Name the control that it was written for, or leave --source out."},
     {"sixteen-bit-text", "error", "The file starts with the mark of UTF-16.",
      "Save it as plain text or UTF-8."},
     {"unreadable-block", "warning",

@@ -9,6 +9,7 @@
 #include "gcode/block_words.h"
 #include "gcode/control_state.h"
 #include "gcode/curves/curve_in_program.h"
+#include "gcode/klartext_state.h"
 #include "gcode/motion_words.h"
 #include "gcode/opaque_blocks.h"
 #include "gcode/program_flow.h"
@@ -26,6 +27,7 @@ class Interpreter {
   Interpreter(const Program& program, const ReadOptions& options, Diagnostics& found)
       : program_(program), curves_(options.curves), found_(found) {
     now_.modal.units = options.units;
+    if (is_klartext()) start_klartext(now_);
     read_.unit_word_seen = options.units != Units::kUnknown;
     read_.states.push_back(now_.modal);
     read_.blocks.reserve(program.blocks.size());
@@ -58,7 +60,7 @@ class Interpreter {
     meaning_.label_referenced = flow.label_referenced;
     if (flow.jump_target) {
       meaning_.entered_from_elsewhere = true;
-      forget_everything(now_);
+      is_klartext() ? forget_klartext(now_) : forget_everything(now_);
     }
     if (block.block_delete) {
       read_deletable(block);
@@ -66,6 +68,7 @@ class Interpreter {
       read_words_or_text(block);
     }
     add_barriers_of_place(block, flow);
+    forget_motion_word();
     if (read_.states.back() != now_.modal) {
       read_.states.push_back(now_.modal);
     }
@@ -77,6 +80,7 @@ class Interpreter {
   void add_curve(std::uint32_t first, const CurveReading& curve) {
     now_.modal.motion = MotionMode::kOther;
     now_.other_motion = reason::kSpline;
+    forget_motion_word();
     if (curve.feed) {
       now_.modal.feed = *curve.feed * (now_.modal.units == Units::kInch ? kMillimetresPerInch : 1);
     }
@@ -125,10 +129,26 @@ class Interpreter {
         drop_motion();
         forget_position(now_);
         return make_opaque(reason::kCornerWord);
+      case Opacity::kContinued:
+        return make_opaque(opacity_reason(block.opacity));
       default:
+        if (is_klartext()) return read_klartext();
         apply_opaque(block.opacity, program_.source.text(block.span), now_);
         return make_opaque(opacity_reason(block.opacity));
     }
+  }
+
+  [[nodiscard]] bool is_klartext() const { return program_.language == Language::kKlartext; }
+
+  void read_klartext() {
+    const std::string_view text = klartext_statement_text(program_, block_index_);
+    make_opaque(apply_klartext(text, now_));
+    read_.unit_word_seen |= now_.modal.units != Units::kUnknown;
+  }
+
+  // Every block of Klartext that moves says how.
+  void forget_motion_word() {
+    if (is_klartext()) now_.modal.motion = MotionMode::kUnknown;
   }
 
   void make_opaque(std::string_view why) {
@@ -394,9 +414,12 @@ class Interpreter {
       return;
     }
     const Block& block = program_.blocks[read_.motions.front().block];
+    const std::string_view missing =
+        is_klartext() ? "no BEGIN PGM with MM or INCH" : "no G20 or G21";
     found_.push_back({Severity::kError, "units-missing", block.span,
-                      "no G20 or G21 in the whole program; without a unit a tolerance means "
-                      "nothing. Say --units mm or --units inch"});
+                      fmt::format("{} in the whole program; without a unit a tolerance means "
+                                  "nothing. Say --units mm or --units inch",
+                                  missing)});
   }
 
   const Program& program_;

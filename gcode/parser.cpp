@@ -7,7 +7,8 @@
 
 #include "gcode/active_comment.h"
 #include "gcode/characters.h"
-#include "gcode/foreign_language.h"
+#include "gcode/klartext_parser.h"
+#include "gcode/language_marks.h"
 #include "gcode/lexer.h"
 #include "gcode/line_cursor.h"
 #include "gcode/program_marks.h"
@@ -58,8 +59,8 @@ struct Flood {
 // One pass over the source, line by line.
 class Parser {
  public:
-  Parser(const SourceText& source, Diagnostics& found)
-      : program_{source, {}, {}, {}}, text_(source.text()), found_(found) {}
+  Parser(const SourceText& source, Language language, Diagnostics& found)
+      : program_{source, {}, {}, {}, language}, text_(source.text()), found_(found) {}
 
   Program run() {
     reserve();
@@ -308,14 +309,14 @@ class Parser {
     if (foreign_told_) {
       return;
     }
-    const auto language = foreign_language_of(text_.substr(where.begin, where.size()));
-    if (!language) {
+    const auto language = language_of_line(text_.substr(where.begin, where.size()));
+    if (!language || language->language == program_.language) {
       return;
     }
     foreign_told_ = true;
     tell(Severity::kError, "foreign-language", where,
          "found " + std::string(language->evidence) + ", so this is a program in " +
-             std::string(language->name) +
+             std::string(describe(language->language)) +
              "; expected a program of the RS-274 family (G01 X.. Y..): this language is not read");
   }
 
@@ -373,6 +374,13 @@ class Parser {
 
 }  // namespace
 
-Program parse(const SourceText& source, Diagnostics& found) { return Parser(source, found).run(); }
+Program parse(const SourceText& source, Language language, Diagnostics& found) {
+  if (language == Language::kKlartext) return parse_klartext(source, found);
+  return Parser(source, language, found).run();
+}
+
+Program parse(const SourceText& source, Diagnostics& found) {
+  return parse(source, Language::kRs274, found);
+}
 
 }  // namespace batten::gcode

@@ -14,6 +14,7 @@ class ProfiledDialect final : public TableValues {
  public:
   ProfiledDialect(const Dialect& base, TargetTable table);
 
+  [[nodiscard]] Language language() const override { return base_.language(); }
   [[nodiscard]] std::size_t line_length(std::string_view line) const override;
   [[nodiscard]] std::string_view arc_complaint(const geometry::Arc& printed,
                                                Units units) const override;
@@ -22,6 +23,7 @@ class ProfiledDialect final : public TableValues {
   [[nodiscard]] SourceMarks known_marks() const override;
   [[nodiscard]] bool cannot_say(char letter, int number) const override;
   [[nodiscard]] std::span<const std::string_view> smoothing_words() const override;
+  [[nodiscard]] const BlockSpelling& spelling() const override { return base_.spelling(); }
   [[nodiscard]] DwellUnit dwell_unit() const override { return base_.dwell_unit(); }
 
   // The base's own comment while the style is the base's; what the base cannot say in a comment is

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gcode/language.h"
 #include "gcode/source_text.h"
 
 namespace batten::gcode {
@@ -20,7 +21,7 @@ struct Word {
   bool is_number =
       true;  // false: an expression, a parameter, or nothing; `value` means nothing then
   double value = 0;
-  SourceSpan span;
+  SourceSpan span;  // in its block; a centre of Klartext stands in the block of the CC
 };
 
 enum class CommentKind {
@@ -48,6 +49,7 @@ enum class Opacity {
   kProgramMark,  // a % line; text outside the % marks; the program's own number (O1000 before
                  // any other word); a line of NUL or 0x1A: controls do nothing here
   kCornerWord,   // ,R2 ,C1 ,A45: the path does not reach the point that the words name
+  kContinued,    // a line that belongs to the statement of the lines before it
 };
 
 // One line of the source.
@@ -71,6 +73,7 @@ struct Program {
   std::vector<Block> blocks;  // every byte of the source belongs to exactly one block
   std::vector<Word> words;
   std::vector<Comment> comments;
+  Language language = Language::kRs274;  // in which it was read
 
   [[nodiscard]] std::span<const Word> words_of(const Block& block) const {
     return {words.data() + block.first_word, block.word_count};

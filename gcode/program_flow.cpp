@@ -7,6 +7,8 @@
 #include <string>
 #include <unordered_set>
 
+#include "gcode/klartext_flow.h"
+
 namespace batten::gcode {
 namespace {
 
@@ -283,7 +285,10 @@ class FlowFinder {
 
 }  // namespace
 
-std::vector<BlockFlow> find_flow(const Program& program) { return FlowFinder(program).find(); }
+std::vector<BlockFlow> find_flow(const Program& program) {
+  if (program.language == Language::kKlartext) return find_klartext_flow(program);
+  return FlowFinder(program).find();
+}
 
 FlowEffect flow_effect(std::string_view text) {
   const std::string bare = bare_words(text);

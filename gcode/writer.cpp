@@ -13,9 +13,6 @@ namespace {
 
 using geometry::Point3;
 
-constexpr std::array<char, 3> kAxisLetters = {'X', 'Y', 'Z'};
-constexpr std::array<char, 3> kCenterLetters = {'I', 'J', 'K'};
-
 // Enough for any number of a source.
 constexpr int kAllDecimals = 9;
 
@@ -86,12 +83,9 @@ bool Writer::arc_to(const geometry::Arc& arc, double feed) {
   add_plane(printed->plane.plane);
   add_motion(printed->arc.sweep > 0 ? MotionMode::kCounterclockwise : MotionMode::kClockwise);
   add_coordinates(printed->end);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (axis == printed->plane.normal) continue;
-    const std::string& digits = printed->center[axis == printed->plane.first ? 0 : 1];
-    if (!digits.empty()) add(kCenterLetters[static_cast<std::size_t>(axis)], digits);
-  }
-  if (!printed->radius.empty()) add('R', printed->radius);
+  block_.centers[static_cast<std::size_t>(printed->plane.first)] = printed->center[0];
+  block_.centers[static_cast<std::size_t>(printed->plane.second)] = printed->center[1];
+  block_.radius = printed->radius;
   add_feed(feed);
   end_block();
   return true;
@@ -105,7 +99,10 @@ void Writer::copy_line(std::string_view text) {
 void Writer::restore(const ModalState& expected) {
   if (expected.motion == MotionMode::kUnknown) end_curve();
   if (expected.plane != Plane::kUnknown) add_plane(expected.plane);
-  if (expected.motion != MotionMode::kUnknown && expected.motion != state_.modal.motion) {
+  const bool wants_motion = expected.motion != MotionMode::kUnknown &&
+                            expected.motion != state_.modal.motion &&
+                            dialect_.spelling().motion_stays();
+  if (wants_motion) {
     if (expected.motion != MotionMode::kLine && expected.motion != MotionMode::kRapid) {
       throw std::invalid_argument(
           "Writer::restore: a motion word that cannot stand alone, "
@@ -114,13 +111,11 @@ void Writer::restore(const ModalState& expected) {
     add_motion(expected.motion);
   }
   if (expected.feed) add_feed(*expected.feed);
-  if (block_.starts_with('F') && dialect_.repeats_words()) {
+  if (block_.says_only_feed() && dialect_.repeats_words()) {
     const bool rapid = expected.motion == MotionMode::kRapid;
-    const std::string motion = rapid ? "G0" : "G1";
-    block_ = motion + (dialect_.blanks_between_words() ? " " : "") + block_;
-    state_.modal.motion = rapid ? MotionMode::kRapid : MotionMode::kLine;
+    add_motion(rapid ? MotionMode::kRapid : MotionMode::kLine);
   }
-  if (!block_.empty()) end_block();
+  if (!block_.is_empty()) end_block();
 }
 
 Writer::Coordinate Writer::print(int axis, double mm) const {
@@ -164,6 +159,7 @@ std::optional<Writer::PrintedArc> Writer::print_arc(const geometry::Arc& arc) co
 }
 
 bool Writer::absolute_centers() const {
+  if (dialect_.spelling().centers_are_places()) return true;
   return state_.modal.arc_distance == DistanceMode::kAbsolute && dialect_.takes_arc_distance_mode();
 }
 
@@ -245,23 +241,15 @@ bool Writer::print_radius(const Point3& wanted, double sweep, PrintedArc& printe
   return true;
 }
 
-void Writer::add(char letter, std::string_view digits) {
-  if (!block_.empty() && dialect_.blanks_between_words()) block_ += ' ';
-  block_ += letter;
-  block_ += digits;
-}
-
 void Writer::add_plane(Plane plane) {
   if (plane == state_.modal.plane) return;
-  add('G', plane == Plane::kXY ? "17" : (plane == Plane::kZX ? "18" : "19"));
+  block_.plane = plane;
   state_.modal.plane = plane;
 }
 
 void Writer::add_motion(MotionMode motion) {
   if (motion == state_.modal.motion && !dialect_.repeats_words()) return;
-  constexpr std::array<std::string_view, 4> kNumbers = {"0", "1", "2", "3"};
-  add('G',
-      kNumbers[static_cast<std::size_t>(motion) - static_cast<std::size_t>(MotionMode::kRapid)]);
+  block_.motion = motion;
   state_.modal.motion = motion;
 }
 
@@ -269,7 +257,7 @@ void Writer::add_coordinates(const Coordinates& coordinates) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
     if (!coordinates[i].changes) continue;
-    add(kAxisLetters[i], coordinates[i].digits);
+    block_.places[i] = coordinates[i].digits;
     state_.position.mm[axis] = coordinates[i].mm;
     state_.position.known[i] = true;
   }
@@ -285,14 +273,13 @@ bool Writer::feed_is_said(double feed) const {
 void Writer::add_feed(double feed) {
   if (feed_is_said(feed)) return;
   const std::string digits = to_text(feed / unit_, dialect_.feeds(state_.modal.units));
-  add('F', digits);
+  block_.feed = digits;
   state_.modal.feed = read_number(digits)->value * unit_;
 }
 
 void Writer::end_block() {
-  text_ += block_;
-  text_ += line_end_;
-  block_.clear();
+  text_ += dialect_.spelling().lines(block_, dialect_.blanks_between_words(), line_end_);
+  block_ = {};
 }
 
 }  // namespace batten::gcode

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "gcode/block_spelling.h"
 #include "gcode/dialect.h"
 #include "gcode/modal_state.h"
 #include "gcode/plane_axes.h"
@@ -96,7 +97,6 @@ class Writer {
   [[nodiscard]] bool absolute_centers() const;
 
   // The words of one block, gathered until it ends.
-  void add(char letter, std::string_view digits);
   void add_plane(Plane plane);
   void add_motion(MotionMode motion);
   void add_coordinates(const Coordinates& coordinates);
@@ -109,7 +109,7 @@ class Writer {
   std::string line_end_;
   double unit_;  // mm
   NumberFormat coordinates_;
-  std::string block_;
+  SpokenBlock block_;
   std::string text_;
 };
 

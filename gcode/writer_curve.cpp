@@ -39,9 +39,10 @@ struct ReadAgain {
 
 // Nothing when the control reads the lines as anything else than curves that follow each other.
 std::optional<ReadAgain> read_again(const std::string& text, std::size_t lines,
-                                    const CurveFormat& format, const CurveStart& start) {
+                                    const Dialect& dialect, const CurveStart& start) {
   Diagnostics ignored;
-  const Program program = parse(SourceText("", text), ignored);
+  const CurveFormat& format = *dialect.curves();
+  const Program program = parse(SourceText("", text), dialect.language(), ignored);
   ReadAgain read{start.position, {}};
   for (std::uint32_t block = 0; block < lines;) {
     const CurveResult result = format.read(program, block, {read.end, start.units});
@@ -80,7 +81,7 @@ bool Writer::curve_to(const geometry::BsplineCurve& curve, double feed, int last
     text += line;
     text += line_end_;
   }
-  const auto read = read_again(text, lines->size(), *format, {state_.position, setting.units});
+  const auto read = read_again(text, lines->size(), dialect_, {state_.position, setting.units});
   if (!read) return false;
   text_ += text;
   state_.position = read->end;
@@ -90,7 +91,7 @@ bool Writer::curve_to(const geometry::BsplineCurve& curve, double feed, int last
 }
 
 void Writer::end_curve() {
-  if (state_.modal.motion != MotionMode::kOther) return;
+  if (state_.modal.motion != MotionMode::kOther || !dialect_.spelling().motion_stays()) return;
   add_motion(MotionMode::kLine);
   end_block();
 }

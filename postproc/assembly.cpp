@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -63,12 +64,20 @@ class Assembler {
     const bool starts_program =
         header_at_ >= begin && header_at_ < program_.blocks[section.last_block].end;
     if (starts_program) add_lines(additions_.words.header, line_end_);
-    if (!comment_.empty()) {
-      text_ += std::exchange(comment_, {});
-      text_ += line_end_;
-    }
+    std::string text = chosen->text.text;
+    if (!comment_.empty()) add_comment(work->context.numbers.first, text);
     if (!std::exchange(in_runs_, true)) add_lines(additions_.words.before_run, line_end_);
-    text_ += chosen->text.text;
+    text_ += text;
+  }
+
+  // Where blocks have numbers it takes the first one, and those of `text` follow it.
+  void add_comment(const std::optional<std::uint32_t>& number, std::string& text) {
+    std::string comment = std::exchange(comment_, {}) + std::string(line_end_);
+    if (number) {
+      comment = with_numbers(comment, *number);
+      text = with_numbers(text, *number + 1);
+    }
+    text_ += comment;
   }
 
   void copy(const Section& section) {

@@ -39,6 +39,12 @@ void read_units_into(gcode::Units& units, const Given& given, Problems& problems
   if (const auto text = given.value("units")) read_into(units, read_units(*text, problems));
 }
 
+void read_source_into(gcode::SourceKind& source, const Given& given, Problems& problems) {
+  if (const auto text = given.value("source")) {
+    read_into(source, read_choice("source", *text, sources(), problems));
+  }
+}
+
 LogLevel read_log_level(const Given& given, Problems& problems) {
   const auto text = given.value("log-level");
   if (given.flag("quiet")) {

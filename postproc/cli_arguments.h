@@ -9,6 +9,7 @@
 
 #include "gcode/dialect.h"
 #include "gcode/modal_state.h"
+#include "gcode/source_kind.h"
 #include "postproc/cli_given.h"
 #include "postproc/cli_values.h"
 #include "postproc/log_level.h"
@@ -32,6 +33,8 @@ void read_into(Value& place, std::optional<Value> value) {
 }
 
 void read_units_into(gcode::Units& units, const Given& given, Problems& problems);
+
+void read_source_into(gcode::SourceKind& source, const Given& given, Problems& problems);
 
 // --quiet, --log-level
 [[nodiscard]] LogLevel read_log_level(const Given& given, Problems& problems);

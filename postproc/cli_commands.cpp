@@ -89,6 +89,7 @@ VerifyCommand verify_command(const Given& given, const std::vector<std::string>&
   command.force = given.flag("force");
   command.log_level = read_log_level(given, problems);
   read_units_into(command.units, given, problems);
+  read_source_into(command.source, given, problems);
   if (const auto text = given.value("target")) {
     command.target = built_in_target("target", *text, problems);
   }
@@ -121,6 +122,7 @@ InspectCommand inspect_command(const Given& given, const std::vector<std::string
   command.force = given.flag("force");
   command.log_level = read_log_level(given, problems);
   read_units_into(command.units, given, problems);
+  read_source_into(command.source, given, problems);
   command.allowed = given.values("allow");
   for (std::string& problem : problems_of_allowed(command.allowed)) {
     problems.push_back(std::move(problem));

@@ -35,6 +35,12 @@ constexpr OptionRow kUnits = {.name = "units",
                               .value = "mm|inch",
                               .help = "units of a program that has no G20 or G21",
                               .in_config = true};
+constexpr OptionRow kSource = {
+    .name = "source",
+    .value = "auto|ngc|fanuc|haas|grbl|siemens|heidenhain",
+    .help = "for which control the program was written; auto: what its marks and the target say",
+    .default_value = "auto",
+    .in_config = true};
 constexpr OptionRow kAllow = {
     .name = "allow",
     .kind = OptionKind::kList,
@@ -105,6 +111,7 @@ constexpr std::array kSmoothRows = {
               .help = "turns of more degrees than this stay corners",
               .in_config = true},
     kUnits,
+    kSource,
     kAllow,
     OptionRow{
         .name = "convert",
@@ -159,9 +166,10 @@ constexpr OptionRow kCurvesOf = {
     .value = "NAME",
     .help = "the control whose own curves (G06.2, POLY, G5 ..) are to be read in both programs"};
 
-constexpr std::array kVerifyRows = {kTolerance, kProfile, kCurvesOf, kToleranceKind, kSide,
-                                    kUnits,     kJson,    kForce,    kQuiet,         kLogLevel};
-constexpr std::array kInspectRows = {kUnits, kAllow, kJson, kForce, kQuiet, kLogLevel};
+constexpr std::array kVerifyRows = {kTolerance, kProfile, kCurvesOf, kToleranceKind,
+                                    kSide,      kUnits,   kSource,   kJson,
+                                    kForce,     kQuiet,   kLogLevel};
+constexpr std::array kInspectRows = {kUnits, kSource, kAllow, kJson, kForce, kQuiet, kLogLevel};
 constexpr std::array kTimeRows = {
     kMachine,
     kGrblSettings,
@@ -169,6 +177,7 @@ constexpr std::array kTimeRows = {
               .value = "NAME",
               .help = "the control the program is written for (batten targets): what G4 P means"},
     kUnits,
+    kSource,
     OptionRow{
         .name = "from", .value = "X,Y,Z", .help = "where the tool stands before the program, mm"},
     kJson,

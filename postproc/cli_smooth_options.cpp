@@ -95,6 +95,7 @@ void read_smooth_options(const Given& given, SmoothCommand& command, Problems& p
   read_tolerance_kind_into(options.tolerance_kind, given, problems);
   read_side_into(options.side, given, problems);
   read_units_into(options.units, given, problems);
+  read_source_into(options.source, given, problems);
   if (const auto text = given.value("method")) {
     read_into(options.method, read_choice("method", *text, methods(), problems));
   }

@@ -58,6 +58,7 @@ TimeCommand time_command(const Given& given, const std::vector<std::string>& fil
   command.force = given.flag("force");
   command.log_level = read_log_level(given, problems);
   read_units_into(command.units, given, problems);
+  read_source_into(command.source, given, problems);
   if (const auto text = given.value("target")) {
     command.target = built_in_target("target", *text, problems);
   }

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "gcode/language_marks.h"
+#include "gcode/source_kind.h"
 #include "gcode/source_marks.h"
 #include "postproc/profile_words.h"
 
@@ -143,7 +145,36 @@ std::string first_line(std::string_view text) {
                                    : std::string(text.substr(0, kMostShown)) + "..";
 }
 
+// Where the program says its language, if it does: the place to tell about.
+gcode::SourceSpan place_of(gcode::Language language, const gcode::SourceText& source) {
+  for (const gcode::LanguageMark& each : gcode::language_marks(source)) {
+    if (each.language == language) return each.where;
+  }
+  return {};
+}
+
+std::string evidence_of(gcode::Language language, const gcode::SourceText& source) {
+  for (const gcode::LanguageMark& each : gcode::language_marks(source)) {
+    if (each.language == language) return fmt::format("found {}, so this is", each.evidence);
+  }
+  return "--source says that this is";
+}
+
 }  // namespace
+
+std::optional<gcode::Language> language_read(const gcode::SourceText& source,
+                                             const SmoothOptions& options,
+                                             gcode::Diagnostics& found) {
+  const gcode::Language of_target = options.target->language();
+  const auto language = gcode::source_language(source, options.source, of_target, found);
+  if (!language || *language == of_target || options.convert) return language;
+  found.push_back({gcode::Severity::kError, "foreign-language", place_of(*language, source),
+                   fmt::format("{} a program in {}; target {} reads {}; --convert tells which "
+                               "blocks could not be said there",
+                               evidence_of(*language, source), gcode::describe(*language),
+                               options.target->name(), gcode::describe(of_target))});
+  return std::nullopt;
+}
 
 bool is_of_another_family(const gcode::Program& program, const gcode::Dialect& target) {
   return std::ranges::any_of(gcode::source_marks(program), [&](const gcode::FoundMark& found) {

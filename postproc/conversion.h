@@ -4,11 +4,23 @@
 // only when every block that is copied says the same there.
 #pragma once
 
+#include <optional>
+
 #include "gcode/diagnostic.h"
 #include "gcode/dialect.h"
+#include "gcode/language.h"
 #include "gcode/program.h"
+#include "gcode/source_text.h"
+#include "postproc/options.h"
 
 namespace batten::postproc {
+
+// The language to read the program in (gcode/source_kind.h). Nothing, and an error, where that is
+// not certain; and an error "foreign-language" where it is not the target's and --convert is not
+// given.
+[[nodiscard]] std::optional<gcode::Language> language_read(const gcode::SourceText& source,
+                                                           const SmoothOptions& options,
+                                                           gcode::Diagnostics& found);
 
 // Whether the program has words of controls that the target is none of.
 [[nodiscard]] bool is_of_another_family(const gcode::Program& program,

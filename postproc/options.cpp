@@ -74,6 +74,18 @@ constexpr std::array kSides = {
     Choice<Side>{Side::kRight, "right", "only on the right of the way of travel, seen from above"},
 };
 
+using gcode::SourceKind;
+constexpr std::array kSources = {
+    Choice<SourceKind>{SourceKind::kAuto, "auto",
+                       "what the program's marks say; without any, as the target reads"},
+    Choice<SourceKind>{SourceKind::kNgc, "ngc", "LinuxCNC and the RS274/NGC standard"},
+    Choice<SourceKind>{SourceKind::kFanuc, "fanuc", "FANUC and controls like it, with macro B"},
+    Choice<SourceKind>{SourceKind::kHaas, "haas", "Haas, with macro B"},
+    Choice<SourceKind>{SourceKind::kGrbl, "grbl", "grbl and its kin"},
+    Choice<SourceKind>{SourceKind::kSiemens, "siemens", "Siemens Sinumerik"},
+    Choice<SourceKind>{SourceKind::kHeidenhain, "heidenhain", "Heidenhain Klartext"},
+};
+
 constexpr std::array kLinearizations = {
     Choice<Linearize>{Linearize::kMinLink, "minlink",
                       "the fewest lines: ends anywhere inside the tolerance"},
@@ -138,6 +150,7 @@ std::span<const Choice<Prefer>> preferences() { return kPreferences; }
 std::span<const Choice<Linearize>> linearizations() { return kLinearizations; }
 std::span<const Choice<ToleranceKind>> tolerance_kinds() { return kToleranceKinds; }
 std::span<const Choice<Side>> sides() { return kSides; }
+std::span<const Choice<SourceKind>> sources() { return kSources; }
 
 std::string_view name_of(Form form) { return name_in(kForms, form); }
 std::string_view name_of(Method method) { return name_in(kMethods, method); }
@@ -150,6 +163,7 @@ Linearize linearize_of(const SmoothOptions& options) {
 }
 std::string_view name_of(ToleranceKind kind) { return name_in(kToleranceKinds, kind); }
 std::string_view name_of(Side side) { return name_in(kSides, side); }
+std::string_view name_of(SourceKind source) { return name_in(kSources, source); }
 
 std::string_view name_of(gcode::Units units) {
   switch (units) {

@@ -9,6 +9,7 @@
 
 #include "gcode/dialect.h"
 #include "gcode/modal_state.h"
+#include "gcode/source_kind.h"
 #include "geometry/side.h"
 #include "geometry/tolerance_kind.h"
 #include "postproc/machine/machine.h"
@@ -45,6 +46,7 @@ struct Choice {
 [[nodiscard]] std::span<const Choice<Linearize>> linearizations();
 [[nodiscard]] std::span<const Choice<geometry::ToleranceKind>> tolerance_kinds();
 [[nodiscard]] std::span<const Choice<geometry::Side>> sides();
+[[nodiscard]] std::span<const Choice<gcode::SourceKind>> sources();
 
 [[nodiscard]] std::string_view name_of(Form form);
 [[nodiscard]] std::string_view name_of(Method method);
@@ -52,6 +54,7 @@ struct Choice {
 [[nodiscard]] std::string_view name_of(Linearize linearize);
 [[nodiscard]] std::string_view name_of(geometry::ToleranceKind kind);
 [[nodiscard]] std::string_view name_of(geometry::Side side);
+[[nodiscard]] std::string_view name_of(gcode::SourceKind source);
 [[nodiscard]] std::string_view name_of(gcode::Units units);  // "mm", "inch", "unknown"
 
 // Decisions of `smooth`, without files and messages.
@@ -61,8 +64,9 @@ struct SmoothOptions {
   double tolerance_mm = 0.01;              // the full distance allowed, both ways, in order
   std::optional<double> tolerance_inch;    // as given, where it was given in inches
   geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
-  geometry::Side side = geometry::Side::kBoth;  // where the new path may be; needs kPath
-  gcode::Units units = gcode::Units::kUnknown;  // --units
+  geometry::Side side = geometry::Side::kBoth;          // where the new path may be; needs kPath
+  gcode::Units units = gcode::Units::kUnknown;          // --units
+  gcode::SourceKind source = gcode::SourceKind::kAuto;  // --source
   Method method = Method::kBest;
   Form output = Form::kAuto;
   Prefer prefer = Prefer::kTime;

@@ -12,6 +12,7 @@
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
 #include "gcode/reason.h"
+#include "gcode/source_kind.h"
 #include "postproc/added_lines.h"
 #include "postproc/assembly.h"
 #include "postproc/band_notes.h"
@@ -70,7 +71,10 @@ class Smoothing {
   }
 
   void read() {
-    program_ = gcode::parse(source_, result_.diagnostics);
+    const auto language = language_read(source_, options_, result_.diagnostics);
+    if (!language) return;
+    program_ = gcode::parse(source_, *language, result_.diagnostics);
+    gcode::tell_of_contradictions(program_, options_.source, result_.diagnostics);
     read_options_.units = options_.units;
     read_options_.curves = options_.target->curves();
     meaning_ = gcode::interpret(program_, read_options_, result_.diagnostics);
@@ -119,7 +123,8 @@ class Smoothing {
             state_after(section.last_block),
             program.source.text({first.span.end, first.end}),
             section.last_block - section.first_block + 1,
-            bytes_of(program, section).size()};
+            bytes_of(program, section).size(),
+            number_room(program, section.first_block, section.last_block)};
   }
 
   [[nodiscard]] bool is_allowed(std::string_view id) const {
@@ -274,7 +279,7 @@ class Smoothing {
       const AddedLines added = take_added_lines(program_, text, additions_.words);
       const gcode::SourceText written(source_.name(), added.text);
       gcode::Diagnostics ignored;
-      const gcode::Program program = gcode::parse(written, ignored);
+      const gcode::Program program = gcode::parse(written, program_.language, ignored);
       const gcode::Interpretation meaning = gcode::interpret(program, read_options_, ignored);
       Verification verification =
           verify({&program_, &meaning_}, {&program, &meaning},
@@ -475,7 +480,7 @@ class Smoothing {
   const Progress& progress_;
   SmoothResult result_;
   gcode::ReadOptions read_options_;
-  gcode::Program program_{source_, {}, {}, {}};
+  gcode::Program program_{source_, {}, {}, {}, {}};
   gcode::Interpretation meaning_;
   std::vector<Section> sections_;
   std::vector<RunWork> work_;

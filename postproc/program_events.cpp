@@ -98,7 +98,7 @@ class Lister {
       return;
     }
     if (block.opacity != gcode::Opacity::kNone || block.block_delete) {
-      add_text(std::string(program_.source.text(block.span)));
+      add_text(text_of_block(block));
     } else {
       list_words(block, meaning);
       list_active_comments(block);
@@ -238,6 +238,26 @@ class Lister {
     for (const Word& word : program_.words_of(block)) {
       if (word.letter != 'N' || with_label) append_word(text, program_.source.text(word.span));
     }
+    return text;
+  }
+
+  // Controls number the blocks of Klartext anew, so the number is left out there. A centre that
+  // stands in an earlier block is a part of what this one says.
+  [[nodiscard]] std::string text_of_block(const Block& block) const {
+    gcode::SourceSpan span = block.span;
+    if (program_.language != gcode::Language::kKlartext) {
+      return std::string(program_.source.text(span));
+    }
+    std::string from_elsewhere;
+    for (const Word& word : program_.words_of(block)) {
+      if (word.letter == 'N') span.begin = word.span.end;
+      if (word.span.begin < block.span.begin) {
+        append_word(from_elsewhere, program_.source.text(word.span));
+      }
+    }
+    std::string text(program_.source.text(span));
+    if (block.block_delete) text += " hidden";
+    if (!from_elsewhere.empty()) text += " about " + from_elsewhere;
     return text;
   }
 

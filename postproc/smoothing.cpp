@@ -360,7 +360,7 @@ class RunSmoother {
     if (!plan) return;
     auto text = write_run(*plan, run_, context_.program, *options_.target, state_before(),
                           context_.after, context_.line_end);
-    if (!text) return;
+    if (!text || !take_numbers(text->text)) return;
     Candidate candidate;
     candidate.method = name_of(curve.method);
     candidate.form = plan->form;
@@ -374,6 +374,15 @@ class RunSmoother {
     candidate.text = std::move(*text);
     if (context_.is_piece()) candidate.moves = std::move(moves);
     result_.candidates.push_back(std::move(candidate));
+  }
+
+  // False where there are not enough of them. The comment that says what was done takes one too.
+  [[nodiscard]] bool take_numbers(std::string& text) const {
+    const NumberRoom& numbers = context_.numbers;
+    if (!numbers.first) return true;
+    if (numbered_lines(text) + 1 > numbers.blocks) return false;
+    text = with_numbers(text, *numbers.first);
+    return true;
   }
 
   // Behind words of a profile the run says its motion and its feed itself.

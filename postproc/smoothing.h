@@ -6,6 +6,7 @@
 
 #include "gcode/modal_state.h"
 #include "gcode/program.h"
+#include "postproc/block_numbers.h"
 #include "postproc/machine/cycle_time.h"
 #include "postproc/options.h"
 #include "postproc/output_plan.h"
@@ -22,6 +23,7 @@ struct RunContext {
   std::string_view line_end;
   std::size_t blocks = 0;  // of the run, as they were
   std::size_t bytes = 0;
+  NumberRoom numbers = {};  // for the blocks that take their place
   // What is cut right before and after it, where it is a piece of a longer run: a piece is not
   // run from rest to rest.
   std::vector<TimedPiece> lead = {};

@@ -14,7 +14,8 @@ namespace batten::gcode {
 [[nodiscard]] std::span<const Dialect* const> pc_family();                // Mach3 ..
 [[nodiscard]] std::span<const Dialect* const> machining_center_family();  // Haas ..
 [[nodiscard]] std::span<const Dialect* const> plc_family();               // CODESYS ..
-[[nodiscard]] std::span<const Dialect* const> fanuc_family();  // FANUC, Syntec, Mitsubishi
-[[nodiscard]] std::span<const Dialect* const> siemens_family();  // by curve words
+[[nodiscard]] std::span<const Dialect* const> fanuc_family();       // FANUC, Syntec, Mitsubishi
+[[nodiscard]] std::span<const Dialect* const> siemens_family();     // by curve words
+[[nodiscard]] std::span<const Dialect* const> heidenhain_family();  // Klartext
 
 }  // namespace batten::gcode

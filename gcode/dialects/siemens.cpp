@@ -22,6 +22,8 @@ class Siemens final : public Rs274Dialect {
   std::string_view name() const override { return name_; }
   std::string_view description() const override { return description_; }
 
+  Language language() const override { return Language::kSiemens; }
+
   // The control computes to a micrometre by default and reads more.
   NumberFormat coordinates(Units units) const override {
     return {.decimals = units == Units::kInch ? 5 : 4};

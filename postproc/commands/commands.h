@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gcode/modal_state.h"
+#include "gcode/source_kind.h"
 #include "geometry/point.h"
 #include "postproc/batch/program_tree.h"
 #include "postproc/log_level.h"
@@ -44,6 +45,7 @@ struct VerifyCommand {
   geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
   geometry::Side side = geometry::Side::kBoth;
   gcode::Units units = gcode::Units::kUnknown;
+  gcode::SourceKind source = gcode::SourceKind::kAuto;
   std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
   const gcode::Dialect* target = nullptr;        // whose curves are read; nullptr: none are
   std::string json_file;
@@ -55,6 +57,7 @@ struct VerifyCommand {
 struct InspectCommand {
   std::string input;
   gcode::Units units = gcode::Units::kUnknown;
+  gcode::SourceKind source = gcode::SourceKind::kAuto;
   std::vector<std::string> allowed;
   std::string json_file;
   LogLevel log_level = LogLevel::kInfo;
@@ -67,6 +70,7 @@ struct TimeCommand {
   std::shared_ptr<const Machine> machine;  // required
   const gcode::Dialect* target = nullptr;  // not given: the dwell units of the machine's control
   gcode::Units units = gcode::Units::kUnknown;
+  gcode::SourceKind source = gcode::SourceKind::kAuto;
   std::optional<geometry::Point3> start;  // mm: where the tool stands before the program
   std::string json_file;
   std::string profile_file;

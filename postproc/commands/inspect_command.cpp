@@ -2,10 +2,12 @@
 
 #include <cstdio>
 #include <map>
+#include <optional>
 
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
 #include "gcode/reason.h"
+#include "gcode/source_kind.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
 #include "postproc/exit_code.h"
@@ -138,7 +140,13 @@ int run(const InspectCommand& command) {
   if (!source) return static_cast<int>(ExitCode::kFileError);
 
   gcode::Diagnostics found;
-  const gcode::Program program = gcode::parse(*source, found);
+  const auto language = gcode::source_language(*source, command.source, std::nullopt, found);
+  if (!language) {
+    print(found, *source, command.log_level);
+    return static_cast<int>(ExitCode::kNotUnderstood);
+  }
+  const gcode::Program program = gcode::parse(*source, *language, found);
+  gcode::tell_of_contradictions(program, command.source, found);
   const gcode::Interpretation interpretation =
       gcode::interpret(program, {.units = command.units}, found);
   GroupingOptions grouping;

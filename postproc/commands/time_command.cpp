@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <optional>
 
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
+#include "gcode/source_kind.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
 #include "postproc/exit_code.h"
@@ -58,7 +60,15 @@ int run(const TimeCommand& command) {
   if (!source) return static_cast<int>(ExitCode::kFileError);
 
   gcode::Diagnostics found;
-  const gcode::Program program = gcode::parse(*source, found);
+  const auto of_target = command.target != nullptr ? std::optional(command.target->language())
+                                                   : std::optional<gcode::Language>();
+  const auto language = gcode::source_language(*source, command.source, of_target, found);
+  if (!language) {
+    print(found, *source, command.log_level);
+    return static_cast<int>(ExitCode::kNotUnderstood);
+  }
+  const gcode::Program program = gcode::parse(*source, *language, found);
+  gcode::tell_of_contradictions(program, command.source, found);
   const gcode::CurveFormat* curves = command.target != nullptr ? command.target->curves() : nullptr;
   const gcode::Interpretation meaning =
       gcode::interpret(program, {.units = command.units, .curves = curves}, found);

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
+#include "gcode/source_kind.h"
 #include "postproc/added_lines.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
@@ -32,9 +34,21 @@ const gcode::CurveFormat* curves_of(const VerifyCommand& command) {
   return command.profile != nullptr ? command.profile->adapted->curves() : nullptr;
 }
 
-Read read(const gcode::SourceText& source, const VerifyCommand& command) {
+// The language of the target that is named, or of the one that the profile adapts.
+std::optional<gcode::Language> language_of_target(const VerifyCommand& command) {
+  if (command.target != nullptr) return command.target->language();
+  if (command.profile != nullptr) return command.profile->adapted->language();
+  return std::nullopt;
+}
+
+// `language`: what a text without certain marks is read in; nothing: as the target reads.
+Read read(const gcode::SourceText& source, const VerifyCommand& command,
+          std::optional<gcode::Language> language) {
   gcode::Diagnostics found;
-  gcode::Program program = gcode::parse(source, found);
+  const auto own = gcode::source_language(source, command.source,
+                                          language ? language : language_of_target(command), found);
+  gcode::Program program = gcode::parse(source, own.value_or(gcode::Language::kRs274), found);
+  gcode::tell_of_contradictions(program, command.source, found);
   gcode::Interpretation interpretation =
       gcode::interpret(program, {.units = command.units, .curves = curves_of(command)}, found);
   return {source, std::move(program), std::move(interpretation), std::move(found)};
@@ -169,7 +183,7 @@ int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& sou
     say_lines(fmt::format("proved: {} and {} are the same, byte for byte\n", command.new_program,
                           command.old_program));
   }
-  const Read same = read(source, command);
+  const Read same = read(source, command, std::nullopt);
   return write_json(command, {}, same, same);
 }
 
@@ -206,9 +220,10 @@ int run(const VerifyCommand& command) {
     return accept_same_bytes(command, *new_source);
   }
 
-  const Read before = read(*old_source, command);
+  const Read before = read(*old_source, command, std::nullopt);
   const AddedLines added = without_added_lines(command, before, *new_source);
-  const Read after = read(gcode::SourceText(new_source->name(), added.text), command);
+  const Read after =
+      read(gcode::SourceText(new_source->name(), added.text), command, before.program.language);
   if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
   if (!is_understood(before, command.log_level)) {
     say("the old program is not understood, so nothing can be proved about the new one");

@@ -8,6 +8,7 @@
 
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
+#include "postproc/conversion.h"
 #include "postproc/report/compact_numbers.h"
 #include "postproc/report/json_report.h"
 #include "postproc/report/page_speed.h"
@@ -84,9 +85,11 @@ Json path_of(const SmoothReport& report, std::size_t most_vertices) {
   gcode::ReadOptions reading{report.options.units};
   if (report.options.target != nullptr) reading.curves = report.options.target->curves();
   gcode::Diagnostics ignored;
-  const gcode::Program before = gcode::parse(report.source, ignored);
+  const auto language = language_read(report.source, report.options, ignored);
+  if (!language) return path_columns({});
+  const gcode::Program before = gcode::parse(report.source, *language, ignored);
   const gcode::Interpretation old_meaning = gcode::interpret(before, reading, ignored);
-  const gcode::Program after = gcode::parse(written, ignored);
+  const gcode::Program after = gcode::parse(written, *language, ignored);
   const gcode::Interpretation new_meaning = gcode::interpret(after, reading, ignored);
   const ReadProgram old_program{&before, &old_meaning};
   const ReadProgram new_program{&after, &new_meaning};

@@ -63,8 +63,10 @@ struct ReadResult {
   std::vector<Message> messages;
 };
 
+// `source`: for which control it was written: auto, ngc, fanuc, haas, grbl, siemens, heidenhain.
 [[nodiscard]] ReadResult read(std::string_view program,
-                              ProgramUnits units = ProgramUnits::kAsWritten);
+                              ProgramUnits units = ProgramUnits::kAsWritten,
+                              std::string_view source = "auto");
 
 // --- smooth ------------------------------------------------------------------------------------
 
@@ -81,6 +83,7 @@ struct Options {
   std::optional<double> keep_corners_deg;
   std::vector<std::string> allow;
   ProgramUnits units = ProgramUnits::kAsWritten;
+  std::string source = "auto";
   int threads = 0;  // 0: all cores; the result is the same for any number
 };
 
@@ -137,7 +140,7 @@ struct Proof {
 // G5) are read in both; empty: none are.
 [[nodiscard]] Proof verify(std::string_view old_program, std::string_view new_program,
                            double tolerance_mm, ProgramUnits units = ProgramUnits::kAsWritten,
-                           std::string_view target = {});
+                           std::string_view target = {}, std::string_view source = "auto");
 
 // --- time --------------------------------------------------------------------------------------
 
@@ -148,6 +151,7 @@ struct TimeOptions {
   // control has it, and none.
   std::string target;
   ProgramUnits units = ProgramUnits::kAsWritten;
+  std::string source = "auto";
 };
 
 // What the time leaves out or had to assume. `id` as in `batten time`.

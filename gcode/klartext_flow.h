@@ -1,0 +1,16 @@
+// Where control can come from elsewhere in a Klartext program: labels that are called or jumped to,
+// and the blocks behind them.
+#pragma once
+
+#include <vector>
+
+#include "gcode/program_flow.h"
+
+namespace batten::gcode {
+
+// One entry per block. A label that nothing names changes nothing. From one that is named on,
+// blocks are a body up to LBL 0, or up to the last statement that names it, whichever comes later.
+// A label that is named by a parameter may be any.
+[[nodiscard]] std::vector<BlockFlow> find_klartext_flow(const Program& program);
+
+}  // namespace batten::gcode

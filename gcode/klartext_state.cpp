@@ -1,0 +1,339 @@
+#include "gcode/klartext_state.h"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string_view>
+
+#include "gcode/characters.h"
+#include "gcode/klartext_statement.h"
+#include "gcode/line_cursor.h"
+#include "gcode/number_format.h"
+#include "gcode/reason.h"
+
+namespace batten::gcode {
+namespace {
+
+constexpr double kNumberLimit = 1e9;
+
+bool starts_with_word(std::string_view text, std::string_view upper_case) {
+  return text.size() >= upper_case.size() &&
+         is_same_word(text.substr(0, upper_case.size()), upper_case);
+}
+
+// The number behind `prefix` letters of the token, as `+1,5` or `20`.
+std::optional<double> number_in(std::string_view token, std::size_t prefix) {
+  std::string digits(token.substr(prefix));
+  std::ranges::replace(digits, ',', '.');
+  const auto number = read_number(digits);
+  if (!number || !(number->value > -kNumberLimit && number->value < kNumberLimit)) return {};
+  return number->value;
+}
+
+// What the words of a copied statement set beside its path.
+class StatementWords {
+ public:
+  explicit StatementWords(ControlState& state) : state_(state) {}
+
+  void apply(std::string_view content) {
+    KlartextTokens tokens(content);
+    for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
+      const std::string_view next = tokens.peek();
+      apply_compensation(token);
+      if (upper(token[0]) == 'F') apply_feed(token, next);
+      if (upper(token[0]) == 'M' && token.size() > 1 && is_digit(token[1])) {
+        if (const auto code = number_in(token, 1)) apply_function(*code);
+      }
+    }
+  }
+
+ private:
+  ModalState& modal() { return state_.modal; }
+
+  void apply_compensation(std::string_view token) {
+    if (is_same_word(token, "R0")) modal().cutter_compensation = Tri::kOff;
+    const bool on =
+        is_same_word(token, "RL") || is_same_word(token, "RR") || token == "R+" || token == "R-";
+    if (on) modal().cutter_compensation = Tri::kOn;
+  }
+
+  // FMAX counts in its block only; a plain number is modal; others are not followed.
+  void apply_feed(std::string_view token, std::string_view next) {
+    if (is_same_word(token, "FMAX") || (token.size() == 1 && is_same_word(next, "MAX"))) return;
+    const auto number = token.size() == 1 ? number_in(next, 0) : number_in(token, 1);
+    modal().feed.reset();
+    const bool plain = number && *number > 0 && modal().feed_mode == FeedMode::kPerMinute;
+    if (plain && modal().units != Units::kUnknown) {
+      modal().feed = *number * (modal().units == Units::kInch ? kMillimetresPerInch : 1);
+    }
+  }
+
+  void apply_function(double code) {
+    if (code == 128 || code == 114 || code == 144) modal().tool_center_point = Tri::kOn;
+    if (code == 129 || code == 115 || code == 145) modal().tool_center_point = Tri::kOff;
+    if (code == 136 || code == 137) {
+      modal().feed_mode = code == 136 ? FeedMode::kPerRevolution : FeedMode::kPerMinute;
+      modal().feed.reset();
+    }
+    if (code == 112 || code == 124) modal().control_smoothing = Tri::kOn;
+    if (code == 113) modal().control_smoothing = Tri::kOff;
+    if (code == 89) modal().modal_macro = Tri::kOn;  // a cycle at each place from now on
+    if (code == 99) modal().modal_macro = Tri::kOff;
+    if (code == 2 || code == 30) forget_klartext(state_);
+  }
+
+  ControlState& state_;
+};
+
+// 19.1 of `CYCL DEF 19.1 A+0`: 19 and 1.
+struct CycleNumber {
+  int major = -1;
+  int minor = -1;
+};
+
+CycleNumber cycle_number(std::string_view token) {
+  CycleNumber number;
+  const char* end = token.data() + token.size();
+  const auto major = std::from_chars(token.data(), end, number.major);
+  if (major.ec == std::errc{} && major.ptr != end && *major.ptr == '.') {
+    std::from_chars(major.ptr + 1, end, number.minor);
+  }
+  return number;
+}
+
+class CycleEffect {
+ public:
+  CycleEffect(std::string_view content, ControlState& state) : tokens_(content), state_(state) {}
+
+  std::string_view apply() {
+    (void)tokens_.next();  // CYCL
+    (void)tokens_.next();  // DEF
+    number_ = cycle_number(tokens_.next());
+    value_ = tokens_.next();
+    switch (number_.major) {
+      case 7:    // datum shift
+      case 247:  // preset
+        forget_position(state_);
+        return reason::kCoordinateChange;
+      case 8:
+        return set_frame(state_.modal.mirror, value_.empty() ? Tri::kOff : Tri::kOn,
+                         reason::kMirror);
+      case 10:
+        return set_frame(state_.modal.rotation, says("ROT", 0) ? Tri::kOff : Tri::kOn,
+                         reason::kRotation);
+      case 11:
+        return apply_scaling();
+      case 26:  // a factor for each axis: 11 does not end it
+        state_.modal.scaling = Tri::kUnknown;
+        forget_position(state_);
+        return reason::kScaling;
+      case 19:
+        return set_frame(state_.modal.tilted_plane, value_.empty() ? Tri::kOff : Tri::kOn,
+                         reason::kTiltedPlane);
+      case 9:
+        return reason::kDwell;
+      case 32:  // TOLERANCE: how far the control may round, not where the path is
+        return reason::kControlSmoothing;
+      default:
+        return apply_other();
+    }
+  }
+
+ private:
+  // The first line (8.0, 10.0) only says the name; the values follow in the next.
+  std::string_view set_frame(Tri& item, Tri value, std::string_view why) {
+    forget_position(state_);
+    if (number_.minor == 1) item = value;
+    if (number_.minor > 1 || number_.minor < 0) item = Tri::kUnknown;
+    return why;
+  }
+
+  std::string_view apply_scaling() {
+    const bool by_axis = state_.modal.scaling == Tri::kUnknown;
+    const std::string_view why =
+        set_frame(state_.modal.scaling, says("SCL", 1) ? Tri::kOff : Tri::kOn, reason::kScaling);
+    if (by_axis) state_.modal.scaling = Tri::kUnknown;
+    return why;
+  }
+
+  // `ROT+0` or `ROT +0`.
+  [[nodiscard]] bool says(std::string_view name, double value) {
+    if (!starts_with_word(value_, name)) return false;
+    if (value_.size() == name.size()) return number_in(tokens_.peek(), 0) == value;
+    return number_in(value_, name.size()) == value;
+  }
+
+  // Cycles that wait for their call change nothing until then. Patterns run at once, probing sets
+  // coordinates, others are not known.
+  std::string_view apply_other() {
+    const int n = number_.major;
+    const bool waits = (n >= 1 && n <= 6) || n == 17 || n == 18 || (n >= 200 && n <= 215) ||
+                       (n >= 225 && n <= 241) || (n >= 251 && n <= 277);
+    if (waits) return reason::kCannedCycle;
+    if (n == 220 || n == 221) {
+      forget_position(state_);
+      state_.modal.feed.reset();
+      return reason::kCannedCycle;
+    }
+    forget_klartext(state_);
+    return reason::kCannedCycle;
+  }
+
+  KlartextTokens tokens_;
+  ControlState& state_;
+  CycleNumber number_;
+  std::string_view value_;
+};
+
+// TOOL CALL 5 Z S5000: the tool axis is across the plane of arcs. TOOL CALL S3000 keeps it.
+void apply_tool_call(std::string_view content, ControlState& state) {
+  forget_position(state);
+  state.modal.spindle_speed.reset();
+  state.modal.feed.reset();
+  KlartextTokens tokens(content);
+  for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
+    if (is_same_word(token, "Z")) state.modal.plane = Plane::kXY;
+    if (is_same_word(token, "Y")) state.modal.plane = Plane::kZX;
+    if (is_same_word(token, "X")) state.modal.plane = Plane::kYZ;
+    if (is_same_word(token, "U") || is_same_word(token, "V") || is_same_word(token, "W")) {
+      state.modal.plane = Plane::kUnknown;
+    }
+  }
+}
+
+// BEGIN PGM name MM
+void apply_begin(std::string_view content, ControlState& state) {
+  KlartextTokens tokens(content);
+  std::string_view last;
+  for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) last = token;
+  if (is_same_word(last, "MM")) set_units(state, Units::kMillimetre);
+  if (is_same_word(last, "INCH")) set_units(state, Units::kInch);
+}
+
+std::string_view apply_plane(std::string_view content, ControlState& state) {
+  KlartextTokens tokens(content);
+  (void)tokens.next();  // PLANE
+  state.modal.tilted_plane = is_same_word(tokens.next(), "RESET") ? Tri::kOff : Tri::kOn;
+  forget_position(state);
+  return reason::kTiltedPlane;
+}
+
+// FUNCTION TCPM .., FUNCTION RESET TCPM
+std::string_view apply_tcpm(std::string_view content, ControlState& state) {
+  KlartextTokens tokens(content);
+  (void)tokens.next();
+  const bool resets = is_same_word(tokens.next(), "RESET");
+  if (resets && !is_same_word(tokens.next(), "TCPM")) {
+    forget_klartext(state);
+    return reason::kForeignWords;
+  }
+  state.modal.tool_center_point = resets ? Tri::kOff : Tri::kOn;
+  forget_position(state);
+  return reason::kToolCenterPoint;
+}
+
+// CALL LBL, LBL, FN 9: a label that control can come to is known to program_flow.
+std::string_view apply_flow(KlartextKind kind, ControlState& state) {
+  if (kind == KlartextKind::kCallLabel || kind == KlartextKind::kCallProgram) {
+    forget_klartext(state);
+    return reason::kSubprogram;
+  }
+  return reason::kProgramFlow;
+}
+
+// The tool is somewhere else afterwards.
+std::string_view apply_path(KlartextKind kind, std::string_view content, std::string_view statement,
+                            ControlState& state) {
+  const bool of_contour = starts_with_word(content, "APPR") || starts_with_word(content, "DEP");
+  if (of_contour) state.modal.cutter_compensation = Tri::kUnknown;
+  forget_position(state);
+  LineCursor lines(statement);
+  while (const auto line = lines.next()) {
+    const SourceSpan span = klartext_parts(statement, {line->begin, line->text_end}).content;
+    StatementWords(state).apply(statement.substr(span.begin, span.size()));
+  }
+  return kind == KlartextKind::kSpline ? reason::kSpline : reason::kForeignWords;
+}
+
+}  // namespace
+
+void start_klartext(ControlState& state) { state.modal.arc_distance = DistanceMode::kAbsolute; }
+
+void forget_klartext(ControlState& state) {
+  const Units units = state.modal.units;
+  forget_everything(state);
+  state.modal.units = units;
+  state.modal.distance = DistanceMode::kAbsolute;
+  state.modal.path = PathMode::kBlending;
+  state.modal.lathe_diameter = Tri::kOff;
+  start_klartext(state);
+}
+
+std::string_view klartext_statement_text(const Program& program, std::uint32_t first) {
+  std::uint32_t last = first;
+  while (last + 1 < program.blocks.size() &&
+         program.blocks[last + 1].opacity == Opacity::kContinued) {
+    ++last;
+  }
+  const SourceSpan whole{program.blocks[first].span.begin, program.blocks[last].span.end};
+  return program.source.text(whole);
+}
+
+std::string_view apply_klartext(std::string_view statement, ControlState& state) {
+  LineCursor lines(statement);
+  const auto first = lines.next();
+  if (!first) return reason::kNotUnderstood;
+  const SourceSpan span = klartext_parts(statement, {first->begin, first->text_end}).content;
+  const std::string_view content = statement.substr(span.begin, span.size());
+  const KlartextKind kind = klartext_kind(content);
+  switch (kind) {
+    case KlartextKind::kNothing:
+    case KlartextKind::kEnd:
+      return reason::kProgramMark;
+    case KlartextKind::kBegin:
+      apply_begin(content, state);
+      return reason::kProgramMark;
+    case KlartextKind::kAssignment:
+      return reason::kAssignment;
+    case KlartextKind::kDefinition:
+      return reason::kForeignWords;
+    case KlartextKind::kStop:
+      forget_position(state);  // M6 may stand there
+      return reason::kProgramEnd;
+    case KlartextKind::kToolCall:
+      apply_tool_call(content, state);
+      return reason::kToolChange;
+    case KlartextKind::kCycleDef:
+      return CycleEffect(content, state).apply();
+    case KlartextKind::kCycleCall:
+      forget_position(state);
+      state.modal.feed.reset();
+      StatementWords(state).apply(content);
+      return reason::kCannedCycle;
+    case KlartextKind::kProbe:
+      forget_klartext(state);
+      return reason::kProbe;
+    case KlartextKind::kPlane:
+      return apply_plane(content, state);
+    case KlartextKind::kFunctionTcpm:
+      return apply_tcpm(content, state);
+    case KlartextKind::kJump:
+    case KlartextKind::kLabel:
+    case KlartextKind::kCallLabel:
+    case KlartextKind::kCallProgram:
+      return apply_flow(kind, state);
+    case KlartextKind::kUnknown:
+      forget_klartext(state);
+      return reason::kNotUnderstood;
+    case KlartextKind::kCentre:
+      return reason::kArc;
+    case KlartextKind::kFunctions:
+      forget_position(state);
+      StatementWords(state).apply(content);
+      return reason::kMiscFunction;
+    default:
+      return apply_path(kind, content, statement, state);
+  }
+}
+
+}  // namespace batten::gcode

@@ -1,0 +1,127 @@
+#include "gcode/language_marks.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "gcode/characters.h"
+#include "gcode/line_cursor.h"
+
+namespace batten::gcode {
+namespace {
+
+constexpr std::array<std::string_view, 7> kSiemensTypes = {"REAL",   "INT",  "BOOL", "CHAR",
+                                                           "STRING", "AXIS", "FRAME"};
+
+// Takes the next word (letters, digits and _) off the front of the line.
+std::string_view next_word(std::string_view& line) {
+  while (!line.empty() && is_blank(line.front())) {
+    line.remove_prefix(1);
+  }
+  std::size_t length = 0;
+  while (length < line.size() &&
+         (is_letter(line[length]) || is_digit(line[length]) || line[length] == '_')) {
+    ++length;
+  }
+  const std::string_view word = line.substr(0, length);
+  line.remove_prefix(length);
+  return word;
+}
+
+bool is_number(std::string_view word) {
+  return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+bool same(std::string_view word, std::string_view upper_case) {
+  if (word.size() != upper_case.size()) {
+    return false;
+  }
+  for (std::size_t i = 0; i < word.size(); ++i) {
+    if (upper(word[i]) != upper_case[i]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool is_type(std::string_view word) {
+  for (const std::string_view type : kSiemensTypes) {
+    if (same(word, type)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+// The line's place without the blanks before it.
+SourceSpan without_blanks(std::string_view text, const LineBounds& line) {
+  std::uint32_t begin = line.begin;
+  if (begin == 0 && text.starts_with(kByteOrderMark)) {
+    begin = std::min(line.text_end, static_cast<std::uint32_t>(kByteOrderMark.size()));
+  }
+  while (begin < line.text_end && is_blank(text[begin])) {
+    ++begin;
+  }
+  return {begin, line.text_end};
+}
+
+// Most lines of a long program are none, and are seen to be so at their first letter.
+bool may_be_mark(std::string_view line) {
+  std::size_t at = 0;
+  if (!line.empty() && upper(line.front()) == 'N') {
+    ++at;
+  }
+  while (at < line.size() && (is_digit(line[at]) || is_blank(line[at]))) {
+    ++at;
+  }
+  return at < line.size() &&
+         (line[at] == '%' || line[at] == ';' || upper(line[at]) == 'B' || upper(line[at]) == 'D');
+}
+
+}  // namespace
+
+std::optional<LanguageEvidence> language_of_line(std::string_view line) {
+  if (line.starts_with("%_N_")) {
+    return LanguageEvidence{Language::kSiemens, "%_N_"};
+  }
+  if (line.starts_with(";$PATH")) {
+    return LanguageEvidence{Language::kSiemens, ";$PATH"};
+  }
+  std::string_view first = next_word(line);
+  if (is_number(first) ||
+      (first.size() > 1 && upper(first[0]) == 'N' && is_number(first.substr(1)))) {
+    first = next_word(line);
+  }
+  const std::string_view second = next_word(line);
+  if (same(first, "BEGIN") && same(second, "PGM")) {
+    return LanguageEvidence{Language::kKlartext, "BEGIN PGM"};
+  }
+  if (same(first, "DEF") && is_type(second)) {
+    return LanguageEvidence{Language::kSiemens, "DEF with a type"};
+  }
+  return std::nullopt;
+}
+
+std::vector<LanguageMark> language_marks(const SourceText& source) {
+  std::vector<LanguageMark> marks;
+  LineCursor lines(source.text());
+  while (const auto line = lines.next()) {
+    const SourceSpan span = without_blanks(source.text(), *line);
+    const std::string_view text = source.text(span);
+    if (!may_be_mark(text)) {
+      continue;
+    }
+    const auto found = language_of_line(text);
+    const bool known = !found || std::ranges::any_of(marks, [&](const LanguageMark& each) {
+      return each.language == found->language;
+    });
+    if (!known) {
+      marks.push_back({found->language, found->evidence, span});
+    }
+  }
+  return marks;
+}
+
+}  // namespace batten::gcode

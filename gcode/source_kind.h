@@ -1,0 +1,52 @@
+// For which control a program was written: as the user says, or as its text shows.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "gcode/diagnostic.h"
+#include "gcode/language.h"
+#include "gcode/program.h"
+#include "gcode/source_marks.h"
+#include "gcode/source_text.h"
+
+namespace batten::gcode {
+
+enum class SourceKind : std::uint8_t {
+  kAuto,
+  kNgc,
+  kFanuc,
+  kHaas,
+  kGrbl,
+  kSiemens,
+  kHeidenhain,
+};
+
+// What a kind of source is read in, and which marks such programs may have.
+struct SourceFamily {
+  SourceKind kind = SourceKind::kAuto;
+  std::string_view name;      // "ngc"
+  std::string_view controls;  // for people: "LinuxCNC"
+  Language language = Language::kRs274;
+  SourceMarks marks = 0;
+};
+
+// All kinds but kAuto.
+[[nodiscard]] std::span<const SourceFamily> source_families();
+
+// The language in which to read this text. With kAuto: that of its certain marks, which only one
+// language has; without any, that of the target (RS-274 where there is none). Nothing, and an error
+// in `found`, when
+//   source-ambiguous: the text has certain marks of two languages;
+//   source-contradicted: a kind was given, and the text has a certain mark of another language.
+// Linear in the text.
+[[nodiscard]] std::optional<Language> source_language(const SourceText& source, SourceKind kind,
+                                                      std::optional<Language> target,
+                                                      Diagnostics& found);
+
+// Adds an error source-contradicted for each kind of mark (gcode/source_marks.h) that programs of
+// the given kind do not have. None for kAuto.
+void tell_of_contradictions(const Program& program, SourceKind kind, Diagnostics& found);
+
+}  // namespace batten::gcode
