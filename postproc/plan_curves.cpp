@@ -93,12 +93,16 @@ class CurvePlanner {
     return way.norm() >= kLongLine;
   }
 
+  [[nodiscard]] double knot_noise() const {
+    return geometry::kSameKnot * (curve_.last() - curve_.first());
+  }
+
   // Cut at corners and at lines.
   [[nodiscard]] std::vector<CurvePart> parts_of(const FeedStretch& stretch) const {
     const CurvePieces pieces(curve_, stretch.from, stretch.to);
     std::vector<CurvePart> parts;
     double done = stretch.from;
-    const double noise = geometry::kSameKnot * (curve_.last() - curve_.first());
+    const double noise = knot_noise();
     const auto bend_to = [&](double end) {
       if (end > done + noise) parts.push_back({done, end, false});
       done = std::max(done, end);
@@ -148,6 +152,7 @@ class CurvePlanner {
 
   // Within one span.
   void add_taken(const BsplineCurve& curve, double from, double to, int halvings) {
+    if (to - from <= knot_noise()) return;  // two knots that rounding has parted
     const std::vector<CubicBezier> piece = curve.part(from, to).bezier_pieces();
     if (piece.size() == 1 && is_taken(piece.front())) return add_curve(curve, from, to);
     if (halvings == 0) return add_chords(curve, from, to);
