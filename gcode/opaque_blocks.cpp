@@ -39,6 +39,7 @@ std::string_view opacity_reason(Opacity opacity) {
     case Opacity::kFlow:
       return reason::kProgramFlow;
     case Opacity::kForeign:
+    case Opacity::kNamedWords:
       return reason::kForeignWords;
     case Opacity::kProgramMark:
       return reason::kProgramMark;
