@@ -48,8 +48,9 @@ enum class Opacity {
   kForeign,      // strings, $, {, !, @ lines, and words of other languages (DEF, CALL, ..)
   kProgramMark,  // a % line; text outside the % marks; the program's own number (O1000 before
                  // any other word); a line of NUL or 0x1A: controls do nothing here
-  kNamedWords,   // Siemens: words of several letters beside those that are listed (siemens_names.h)
   kCornerWord,   // ,R2 ,C1 ,A45: the path does not reach the point that the words name
+  kNamedWords,   // Siemens: words of several letters beside those that are listed
+                 // (gcode/siemens_names.h)
 };
 
 // One line of the source.
