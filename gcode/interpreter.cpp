@@ -14,6 +14,7 @@
 #include "gcode/opaque_blocks.h"
 #include "gcode/program_flow.h"
 #include "gcode/reason.h"
+#include "gcode/siemens_names.h"
 #include "gcode/state_changes.h"
 
 namespace batten::gcode {
@@ -123,6 +124,8 @@ class Interpreter {
       case Opacity::kNone:
       case Opacity::kExpression:
         return read_words(block);
+      case Opacity::kNamedWords:
+        return read_named(block);
       case Opacity::kCornerWord:
         // The block's motion stops short of its end, and the next one starts beside it.
         read_words(block);
@@ -218,6 +221,38 @@ class Interpreter {
       drop_motion();
       make_opaque(effect.barrier);
     }
+  }
+
+  // Siemens: the block is copied; what it does to the state is known where all its names are.
+  void read_named(const Block& block) {
+    const BlockWords words(program_.words_of(block));
+    if (words.problem() != BlockWords::Problem::kNone) {
+      return refuse_words(words);
+    }
+    const NamedEffect named = apply_names(program_.source.text(block.span), words, now_);
+    if (!named.understood) {
+      forget_everything(now_);
+      return make_opaque(reason::kForeignWords);
+    }
+    StateEffect effect = apply_words(words, now_);
+    read_.unit_word_seen |= effect.unit_word || named.unit_word;
+    if (effect.motion >= 0) {
+      set_motion_mode(effect.motion);
+    }
+    effect.takes_axes |= named.takes_axes;
+    const bool moves = words.has_any("XYZIJKR") && !effect.takes_axes;
+    if (moves && now_.modal.motion != MotionMode::kOther &&
+        why_not_followed(words, effect, now_).empty()) {
+      now_.position = end_of_motion(words, now_);
+    } else if (moves) {
+      forget_position(now_);
+    }
+    forget_increments(words);
+    if (named.loses_place || !words.all_numbers()) {
+      forget_position(now_);
+    }
+    apply_late_words(words, now_);
+    make_opaque(named.barrier);
   }
 
   void refuse_words(const BlockWords& words) {

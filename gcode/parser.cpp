@@ -12,6 +12,7 @@
 #include "gcode/lexer.h"
 #include "gcode/line_cursor.h"
 #include "gcode/program_marks.h"
+#include "gcode/siemens_block.h"
 
 namespace batten::gcode {
 namespace {
@@ -109,6 +110,8 @@ class Parser {
     } else if (content.size() > kLongestLine) {
       make_unreadable(block, content, "a line of more than 1 MiB");
       words_seen_ = true;
+    } else if (program_.language == Language::kSiemens) {
+      read_siemens(block, content);
     } else {
       read_tokens(block, content);
     }
@@ -213,6 +216,40 @@ class Parser {
       make_unreadable(block, content, "a parameter that is set beside other words");
     }
     words_seen_ = words_seen_ || has_words(block);
+  }
+
+  void read_siemens(Block& block, SourceSpan content) {
+    const SiemensBlock line = read_siemens_block(text_, content, program_.words);
+    block.block_delete = line.skip;
+    if (block.opacity != Opacity::kProgramMark) {
+      block.opacity = line.opacity == Opacity::kUnreadable ? Opacity::kNone : line.opacity;
+    }
+    if (line.opacity == Opacity::kUnreadable) {
+      make_unreadable(block, line.trouble_at, line.trouble);
+    }
+    if (line.comment) {
+      program_.comments.push_back({CommentKind::kSemicolon, *line.comment});
+      note_foreign_language(*line.comment);
+    }
+    follow_iso_mode(block);
+    words_seen_ = words_seen_ || has_words(block);
+  }
+
+  // G291: words of the ISO mode up to G290, which are not read.
+  void follow_iso_mode(Block& block) {
+    const std::string_view text = text_.substr(block.span.begin, block.span.size());
+    if (text.find("290") != std::string_view::npos) {
+      iso_mode_ = false;
+    }
+    iso_mode_ = iso_mode_ || (block.opacity == Opacity::kNamedWords && is_iso_mode(text));
+    if (iso_mode_ && has_words(block)) {
+      block.opacity = Opacity::kForeign;
+    }
+  }
+
+  static bool is_iso_mode(std::string_view text) {
+    const std::size_t at = text.find("291");
+    return at != std::string_view::npos && at > 0 && upper(text[at - 1]) == 'G';
   }
 
   // Is there anything in the block that a control acts on?
@@ -370,6 +407,7 @@ class Parser {
   bool words_seen_ = false;
   bool told_in_block_ = false;
   bool foreign_told_ = false;
+  bool iso_mode_ = false;
 };
 
 }  // namespace

@@ -99,6 +99,8 @@ class Lister {
     }
     if (block.opacity != gcode::Opacity::kNone || block.block_delete) {
       add_text(text_of_block(block));
+      // Its names may have changed any group.
+      if (block.opacity == gcode::Opacity::kNamedWords) set_by_word_.fill(kNotSet);
     } else {
       list_words(block, meaning);
       list_active_comments(block);
