@@ -59,10 +59,11 @@ std::vector<Message> messages_of(const gcode::Diagnostics& found, const gcode::S
 
 // A program and what it means.
 struct Reading {
-  Reading(std::string_view text, ProgramUnits units)
+  Reading(std::string_view text, ProgramUnits units, const gcode::Dialect* target = nullptr)
       : source("program", std::string(text)),
         program(gcode::parse(source, found)),
-        meaning(gcode::interpret(program, {inner(units)}, found)) {}
+        meaning(gcode::interpret(
+            program, {inner(units), target == nullptr ? nullptr : target->curves()}, found)) {}
 
   [[nodiscard]] postproc::ReadProgram get() const { return {&program, &meaning}; }
 
@@ -189,17 +190,21 @@ SmoothedProgram smooth(std::string_view program, const Options& options) {
 }
 
 Proof verify(std::string_view old_program, std::string_view new_program, double tolerance_mm,
-             ProgramUnits units) {
+             ProgramUnits units, std::string_view target) {
   if (!(tolerance_mm > 0) || !std::isfinite(tolerance_mm)) {
     throw std::invalid_argument("tolerance_mm: expected a finite length above 0");
+  }
+  const gcode::Dialect* control = target.empty() ? nullptr : gcode::find_dialect(target);
+  if (!target.empty() && control == nullptr) {
+    refuse({"target: there is no '" + std::string(target) + "'"});
   }
   Proof proof;
   if (old_program == new_program) {
     proof.proved = true;
     return proof;
   }
-  const Reading before(old_program, units);
-  const Reading after(new_program, units);
+  const Reading before(old_program, units, control);
+  const Reading after(new_program, units, control);
   for (const Reading* each : {&before, &after}) {
     for (Message& message : messages_of(each->found, each->source)) {
       if (message.severity == Severity::kError) proof.messages.push_back(std::move(message));
@@ -225,15 +230,14 @@ ProgramTime time(std::string_view program, const TimeOptions& options) {
     if (target == nullptr) problems.push_back("target: there is no '" + options.target + "'");
   }
   if (!problems.empty()) refuse(problems);
-  const Reading reading(program, options.units);
+  const Reading reading(program, options.units, target);
   ProgramTime result;
   result.messages = messages_of(reading.found, reading.source);
   result.understood = !gcode::has_error(reading.found);
   if (!result.understood) return result;
-  const postproc::ProgramTime found =
-      postproc::time_program(reading.program, reading.meaning, *machine,
-                             {.dwell_unit = postproc::dwell_unit_of(target, *machine),
-                              .start = std::nullopt});
+  const postproc::ProgramTime found = postproc::time_program(
+      reading.program, reading.meaning, *machine,
+      {.dwell_unit = postproc::dwell_unit_of(target, *machine), .start = std::nullopt});
   result.seconds = found.seconds.sum();
   result.cutting = found.seconds.cutting;
   result.rapids = found.seconds.rapids;

@@ -13,11 +13,11 @@ namespace batten::gcode {
 std::span<const Dialect* const> dialects() {
   static const std::vector<const Dialect*> kAll = [] {
     std::vector<const Dialect*> all = {&linuxcnc_dialect()};
-    for (const auto family : {grbl_family(), printer_family(), pc_family(),
-                              machining_center_family(), fanuc_family(), plc_family()}) {
+    for (const auto family :
+         {grbl_family(), printer_family(), pc_family(), machining_center_family(), fanuc_family(),
+          plc_family(), siemens_family()}) {
       all.insert(all.end(), family.begin(), family.end());
     }
-    all.push_back(&siemens_dialect());
     return all;
   }();
   return kAll;

@@ -27,6 +27,10 @@ constexpr std::string_view kUnclosedComment = "unclosed-comment";
 
 constexpr std::uint8_t kMostDecimals = 255;
 
+// No control takes lines of more than some thousand bytes. What is longer than this is no line of
+// a program, and its words would take many times its size of memory.
+constexpr std::uint32_t kLongestLine = 1U << 20;
+
 bool is_sixteen_bit_text(std::string_view text) {
   return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
 }
@@ -86,6 +90,9 @@ class Parser {
     const SourceSpan content = without_filling(block);
     if (content.size() > 0 && text_[content.begin] == '%') {
       read_mark(block, content);
+    } else if (content.size() > kLongestLine) {
+      make_unreadable(block, content, "a line of more than 1 MiB");
+      carry_.words_seen = true;
     } else {
       read_tokens(block, content);
     }

@@ -126,6 +126,17 @@ void AdaptiveFit::set_breaks(std::vector<double> breaks) {
   points_ = std::move(points);
   set_rows(now_at);
   set_stiffness();
+  measure_fixed();
+}
+
+// Nothing is solved for between zones that leave no control point free: what is off there is known
+// beforehand, and asks for knots.
+void AdaptiveFit::measure_fixed() {
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const std::uint8_t* fixed = &spline_.fixed[rows_[i].first];
+    if (!std::all_of(fixed, fixed + 4, [](std::uint8_t one) { return one != 0; })) continue;
+    measure(samples_[i], place_of(rows_[i], spline_.points), states_[i]);
+  }
 }
 
 void AdaptiveFit::set_rows(const std::vector<std::size_t>& now_at) {

@@ -54,6 +54,7 @@ class AdaptiveFit {
   void set_breaks(std::vector<double> breaks);
   void set_rows(const std::vector<std::size_t>& now_at);
   void set_stiffness();
+  void measure_fixed();
   void run();
   void decide_spans();
   void settle();

@@ -7,8 +7,8 @@
 // its chord is a known, small part of the tolerance. The distance of two linear motions is
 // greatest at an end, so the chain is a certificate: the Fréchet distance is at most the
 // greatest pair distance plus the chord errors. Pairs of printed decimals are compared with
-// the tolerance by CGAL's exact arithmetic: a copy shifted by exactly the tolerance is proved,
-// one shifted by a last digit more is broken.
+// the tolerance by CGAL's exact arithmetic: a copy shifted by exactly the tolerance is never
+// broken and nearly always proved, one shifted by a last digit more is broken.
 //
 // What is left open (kNotProved): a distance that is the tolerance to within rounding but
 // met at places that are no decimals, as where a fold is waited for; and paths that

@@ -6,6 +6,7 @@
 
 #include "gcode/explained_diagnostics.h"
 #include "gcode/reason.h"
+#include "postproc/explained_notes.h"
 
 namespace batten::postproc {
 namespace {
@@ -59,6 +60,16 @@ constexpr ExplainedBreach kBreaches[] = {
      "Plane, units, a mode or the feed are different where a copied block depends on them, or only "
      "assumed where a word had set them.",
      "Look for a plane that was selected for arcs and not restored."},
+    {"profile-words-open",
+     "Words of a profile before a run without those behind it, or its header without its footer.",
+     "Something was taken out by hand: put it back."},
+    {"profile-words-around-event",
+     "Between the words before and behind a run something acts that is no cutting move.",
+     "The words were moved by hand: put them back."},
+    {"profile-words-in-program",
+     "The old program has words of the profile itself, so none in the new one are taken for the "
+     "profile's.",
+     "Verify without the profile, or take them out of it."},
     {"too-many-differences", "More than 50 places differ: the rest was not compared.",
      "The files do not belong together."},
 };
@@ -99,8 +110,15 @@ std::string of_reason(std::string_view id) {
   return text;
 }
 
+std::vector<gcode::ExplainedDiagnostic> explained_messages() {
+  std::vector<gcode::ExplainedDiagnostic> all;
+  for (const auto& each : gcode::explained_diagnostics()) all.push_back(each);
+  for (const auto& each : explained_notes()) all.push_back(each);
+  return all;
+}
+
 std::string of_diagnostic(std::string_view id) {
-  const auto all = gcode::explained_diagnostics();
+  const auto all = explained_messages();
   const auto found = std::ranges::find(all, id, &gcode::ExplainedDiagnostic::id);
   if (found == all.end()) return "";
   return part(fmt::format("{}: a message about a program ({})", id, found->severity), found->text,
@@ -138,7 +156,7 @@ std::span<const ExplainedBreach> explained_breaches() { return kBreaches; }
 std::vector<std::string_view> explained_ids() {
   std::vector<std::string_view> ids;
   for (const auto& each : gcode::reason::explanations()) ids.push_back(each.id);
-  for (const auto& each : gcode::explained_diagnostics()) ids.push_back(each.id);
+  for (const auto& each : explained_messages()) ids.push_back(each.id);
   for (const auto& each : explained_breaches()) ids.push_back(each.id);
   std::ranges::sort(ids);
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
@@ -159,7 +177,7 @@ std::string all_explanations() {
   add_list(text, "Why blocks are kept as they are:");
   for (const auto& each : gcode::reason::explanations()) add_row(text, each.id, each.text);
   add_list(text, "\nMessages about a program:");
-  for (const auto& each : gcode::explained_diagnostics()) add_row(text, each.id, each.text);
+  for (const auto& each : explained_messages()) add_row(text, each.id, each.text);
   add_list(text, "\nBreaches found by batten verify:");
   for (const auto& each : explained_breaches()) add_row(text, each.id, each.text);
   return text;

@@ -9,6 +9,7 @@
 #include "postproc/assembly.h"
 #include "postproc/band_notes.h"
 #include "postproc/conversion.h"
+#include "postproc/curve_caution.h"
 #include "postproc/part_proof.h"
 #include "postproc/part_runs.h"
 #include "postproc/program_part.h"
@@ -110,6 +111,9 @@ class Smoothing {
     result_.corner_mm = verification.corner_mm;
     result_.runs = report_runs({part_.program, part_.meaning, runs_.sections, runs_.works,
                                 runs_.cut_runs, verification.stretches, result_.proved});
+    if (auto told = curve_caution(result_.runs, part_.program, *options_.target)) {
+      result_.diagnostics.push_back(std::move(*told));
+    }
     return true;
   }
 

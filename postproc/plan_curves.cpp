@@ -26,6 +26,10 @@ constexpr double kLongLine = 5;
 // take. There are few of them.
 constexpr double kPartForChords = 0.1;
 
+// The part that is kept for the control's own chords, where it runs curves so: half of it, since
+// with less the pieces get short, and with more the curve hardly bends.
+constexpr double kPartForControl = 0.5;
+
 // A piece that the target does not take is halved so often before it is chords: where it bends the
 // one way first and then the other, all of it but a sixteenth can still be curves.
 constexpr int kHalvings = 4;
@@ -73,7 +77,8 @@ class CurvePlanner {
  private:
   [[nodiscard]] BsplineCurve curve_for(const Run& run, const geometry::FairPath& fair) const {
     geometry::FewerKnotsOptions fewer;
-    fewer.max_deviation = (1 - kPartForChords) * options_.max_deviation;
+    const double for_control = format_.is_run_as_chords() ? kPartForControl : 0;
+    fewer.max_deviation = (1 - kPartForChords - for_control) * options_.max_deviation;
     fewer.long_line = kLongLine;
     for (const FeedFrom& change : run.feeds) {
       fewer.places.push_back(fair.vertex_parameters.at(change.vertex));
@@ -117,7 +122,7 @@ class CurvePlanner {
     const BsplineCurve curve = curve_.part(part.from, part.to);
     const std::vector<CubicBezier> pieces = curve.bezier_pieces();
     const bool all_taken =
-        std::ranges::all_of(pieces, [&](const CubicBezier& piece) { return format_.takes(piece); });
+        std::ranges::all_of(pieces, [&](const CubicBezier& piece) { return is_taken(piece); });
     if (!all_taken) return add_piece_by_piece(curve);
     const std::vector<double> breaks = curve.breakpoints();
     const std::size_t most = std::max<std::size_t>(format_.max_control_points(), 8) - 3;
@@ -126,6 +131,12 @@ class CurvePlanner {
       add_curve(curve, breaks[i], breaks[end]);
       i = end;
     }
+  }
+
+  // The control takes it, and runs it near enough.
+  [[nodiscard]] bool is_taken(const CubicBezier& piece) const {
+    return format_.takes(piece) &&
+           format_.chords_error(piece) <= kPartForControl * options_.max_deviation;
   }
 
   void add_piece_by_piece(const BsplineCurve& curve) {
@@ -138,7 +149,7 @@ class CurvePlanner {
   // Within one span.
   void add_taken(const BsplineCurve& curve, double from, double to, int halvings) {
     const std::vector<CubicBezier> piece = curve.part(from, to).bezier_pieces();
-    if (piece.size() == 1 && format_.takes(piece.front())) return add_curve(curve, from, to);
+    if (piece.size() == 1 && is_taken(piece.front())) return add_curve(curve, from, to);
     if (halvings == 0) return add_chords(curve, from, to);
     const double middle = 0.5 * (from + to);
     add_taken(curve, from, middle, halvings - 1);

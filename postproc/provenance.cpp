@@ -27,7 +27,9 @@ bool was_smoothed(const gcode::Program& program) {
   };
   return std::ranges::any_of(program.comments, [&](const gcode::Comment& comment) {
     const std::string_view text = program.source.text(comment.span);
-    return !std::ranges::search(text, kSmoothed, {}, capital, capital).empty();
+    const auto found = std::search(text.begin(), text.end(), kSmoothed.begin(), kSmoothed.end(),
+                                   [&](char a, char b) { return capital(a) == capital(b); });
+    return found != text.end();
   });
 }
 

@@ -6,6 +6,7 @@
 #include "gcode/part_reading.h"
 #include "gcode/reason.h"
 #include "postproc/band_notes.h"
+#include "postproc/curve_caution.h"
 #include "postproc/part_proof.h"
 #include "postproc/part_runs.h"
 #include "postproc/program_part.h"
@@ -53,6 +54,7 @@ class Windows {
       if (outcome == Outcome::kStopped) return std::move(result_);
     }
     notes_.tell_rest(result_.diagnostics);
+    if (caution_) result_.diagnostics.push_back(std::move(*caution_));
     result_.understood = true;
     result_.proved = true;
     return std::move(result_);
@@ -114,6 +116,7 @@ class Windows {
     }
     auto reports = report_runs({part.program, part.meaning, runs.sections, runs.works,
                                 runs.cut_runs, verification.stretches, true});
+    if (!caution_) caution_ = curve_caution(reports, part.program, *options_.target);
     for (RunReport& run : reports) {
       result_.time_before_s += run.time_before_s;
       result_.time_after_s += run.time_after_s;
@@ -144,6 +147,7 @@ class Windows {
   TextBefore new_;
   bool starts_alike_ = true;  // the next window, in the old and in the new text
   BandNoteTally notes_;
+  std::optional<gcode::Diagnostic> caution_;
   SmoothResult result_;
 };
 

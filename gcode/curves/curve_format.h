@@ -24,12 +24,21 @@ class CurveFormat {
   // the user has to own, and runs them as they are meant.
   [[nodiscard]] virtual bool is_default() const = 0;
 
+  // What a user has to be told when such curves were written, since it is not verified; empty where
+  // there is nothing.
+  [[nodiscard]] virtual std::string_view caution() const { return {}; }
+
   // Why no curve may start in this state (cutter compensation, feed mode, plane ..); empty where it
   // may. Units, absolute distances and feed per minute are known already.
   [[nodiscard]] virtual std::string_view complaint(const ModalState& state) const = 0;
 
   // Whether the control runs this piece of a curve. What it does not is written as lines.
   [[nodiscard]] virtual bool takes(const geometry::CubicBezier& piece) const = 0;
+
+  // Whether the control runs curves as chords of its own that count. They leave a piece by
+  // chords_error (mm) at the most.
+  [[nodiscard]] virtual bool is_run_as_chords() const { return false; }
+  [[nodiscard]] virtual double chords_error(const geometry::CubicBezier&) const { return 0; }
 
   // Whether every piece is a block for itself. Otherwise a curve has blocks beside those of its
   // pieces, and short curves are not worth them.

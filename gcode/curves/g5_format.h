@@ -8,4 +8,8 @@ namespace batten::gcode {
 // LinuxCNC 2.9: only under --output curves. Pieces that bend one way, in G17, not under G41, G42.
 [[nodiscard]] const CurveFormat& linuxcnc_g5();
 
+// grblHAL and Marlin: only under --output curves, since arcs are run with far finer chords. Pieces
+// in G17, none of them straight.
+[[nodiscard]] const CurveFormat& chopped_g5();
+
 }  // namespace batten::gcode

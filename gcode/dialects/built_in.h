@@ -15,6 +15,6 @@ namespace batten::gcode {
 [[nodiscard]] std::span<const Dialect* const> machining_center_family();  // Haas ..
 [[nodiscard]] std::span<const Dialect* const> plc_family();               // CODESYS ..
 [[nodiscard]] std::span<const Dialect* const> fanuc_family();  // FANUC, Syntec, Mitsubishi
-[[nodiscard]] const Dialect& siemens_dialect();
+[[nodiscard]] std::span<const Dialect* const> siemens_family();  // by curve words
 
 }  // namespace batten::gcode

@@ -2,6 +2,7 @@
 // docs/controllers/grbl_family.md.
 #include <array>
 
+#include "gcode/curves/g5_format.h"
 #include "gcode/dialects/built_in.h"
 #include "gcode/dialects/row_dialect.h"
 
@@ -64,6 +65,7 @@ TargetRow grblhal() {
   TargetRow row{table, LineCount::kAll, kObeyed, &grbl_arc_rule};
   row.dwell_unit = DwellUnit::kSeconds;
   row.known_marks = kProgramming;
+  row.curves = &chopped_g5();
   return row;
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "gcode/curves/g5_format.h"
 #include "gcode/dialects/built_in.h"
 #include "gcode/dialects/row_dialect.h"
 
@@ -53,7 +54,9 @@ TargetRow marlin() {
   // 96 bytes with terminator; a sender adds up to 14 for N1234567 and *123.
   table.max_line_length = 80;
   table.chords = {.longest = 1, .shortest = 0.1, .per_circle = 72};
-  return row_of(table, LineCount::kAll, {}, kMarlinMeanings);
+  TargetRow row = row_of(table, LineCount::kAll, {}, kMarlinMeanings);
+  row.curves = &chopped_g5();
+  return row;
 }
 
 TargetRow reprapfirmware() {

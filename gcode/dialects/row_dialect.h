@@ -36,6 +36,7 @@ struct TargetRow {
   // Words that most others take: "M6 G43 T", a letter alone for any number behind it.
   std::string_view refused = {};
   DwellUnit dwell_unit = DwellUnit::kByPoint;
+  const CurveFormat* curves = nullptr;
 };
 
 class RowDialect final : public TableValues {
@@ -56,6 +57,7 @@ class RowDialect final : public TableValues {
   [[nodiscard]] bool cannot_say(char letter, int number) const override;
 
   [[nodiscard]] DwellUnit dwell_unit() const override { return row_.dwell_unit; }
+  [[nodiscard]] const CurveFormat* curves() const override { return row_.curves; }
 
   // A row with the same rules: they are asked about the new values.
   [[nodiscard]] std::unique_ptr<const Dialect> with_values(const TargetTable& table) const override;

@@ -1,7 +1,9 @@
 // Siemens Sinumerik 840D, 828D, ONE. Facts: docs/controllers/siemens.md.
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "gcode/curves/bspline_format.h"
 #include "gcode/curves/poly_format.h"
 #include "gcode/dialects/built_in.h"
 #include "gcode/dialects/rs274_family.h"
@@ -14,10 +16,11 @@ constexpr double kGreatestSweep = 350 * std::numbers::pi / 180;
 
 class Siemens final : public Rs274Dialect {
  public:
-  std::string_view name() const override { return "siemens"; }
-  std::string_view description() const override {
-    return "Siemens 840D, 828D, ONE: POLY, arcs; lines of 512 characters";
-  }
+  Siemens(std::string_view name, std::string_view description, const CurveFormat& curves)
+      : name_(name), description_(description), curves_(curves) {}
+
+  std::string_view name() const override { return name_; }
+  std::string_view description() const override { return description_; }
 
   // The control computes to a micrometre by default and reads more.
   NumberFormat coordinates(Units units) const override {
@@ -54,15 +57,26 @@ class Siemens final : public Rs274Dialect {
 
   SourceMarks known_marks() const override { return 0; }
 
-  const CurveFormat* curves() const override { return &siemens_poly(); }
+  const CurveFormat* curves() const override { return &curves_; }
   std::string_view default_machine() const override { return "mill"; }
+
+ private:
+  std::string_view name_;
+  std::string_view description_;
+  const CurveFormat& curves_;
 };
 
 }  // namespace
 
-const Dialect& siemens_dialect() {
-  static const Siemens kDialect;
-  return kDialect;
+std::span<const Dialect* const> siemens_family() {
+  static const Siemens kPoly(
+      "siemens", "Siemens 840D, 828D, ONE: POLY, arcs; lines of 512 characters", siemens_poly());
+  static const Siemens kBspline(
+      "siemens-bspline",
+      "as siemens, with BSPLINE under --output curves: not verified, try it first",
+      siemens_bspline());
+  static const std::array<const Dialect*, 2> kAll = {&kPoly, &kBspline};
+  return kAll;
 }
 
 }  // namespace batten::gcode

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """targets_table.py BATTEN FOLDER [--targets a,b,..] [--forms auto,arcs,lines] [--tolerance 0.01]
-                    [--largest BYTES] [--json FILE]
+                    [--largest BYTES] [--convert] [--json FILE]
 
 Every program of FOLDER smoothed for some targets in each form: a table of blocks and bytes by target
 and form. Each result is verified once more by `batten verify`. Exits with 1 when one is not proved.
@@ -15,8 +15,8 @@ import subprocess
 import sys
 import tempfile
 
-TARGETS = "linuxcnc,grbl,haas,mazak,marlin,mach3"
-FORMS = "auto,arcs,lines"
+TARGETS = "fanuc,siemens,grbl,linuxcnc,haas"
+FORMS = "auto,curves,arcs,lines"
 NOT_PROGRAMS = {".md", ".txt", ".json"}
 HANGS = 900  # seconds, for programs of some megabytes
 
@@ -29,6 +29,8 @@ def read_options():
     parser.add_argument("--forms", default=FORMS)
     parser.add_argument("--tolerance", default="0.01")
     parser.add_argument("--largest", type=int, default=1 << 20, help="bytes; larger ones are left out")
+    parser.add_argument("--convert", action="store_true",
+                        help="programs of other families too, where every block can be said")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--json", help="all rows, one per program, target and form")
     return parser.parse_args()
@@ -55,7 +57,8 @@ def row_of(options, name, data, target, form):
         folder = pathlib.Path(folder)
         (folder / "old.nc").write_bytes(data)
         done = run(options, "smooth", folder, "old.nc", "-o", "new.nc", "--target", target,
-                   "--output", form, "--threads", "1", "--json", "report.json")
+                   "--output", form, "--threads", "1", "--json", "report.json",
+                   *(["--convert"] if options.convert else []))
         row = {"program": name, "target": target, "form": form, "exit": done.returncode}
         if done.returncode == 2:
             errors = [line for line in done.stderr.decode(errors="replace").splitlines()
@@ -71,7 +74,7 @@ def row_of(options, name, data, target, form):
                 "bytes_in": len(data), "bytes_out": len(new),
                 "rewritten": sum(r["status"] == "rewritten" for r in report["runs"]),
                 "deviation_mm": report["deviation_mm"]}
-        proof = run(options, "verify", folder, "old.nc", "new.nc")
+        proof = run(options, "verify", folder, "old.nc", "new.nc", "--target", target)
         # Programs that are not understood come out as they were.
         same = new == data
         if not same and (proof.returncode != 0 or report["proved"] is not True):

@@ -28,7 +28,7 @@ inline std::uint32_t hash_of(std::string_view text) {
 // Options that the first line of a program stands for.
 inline SmoothOptions options_for_text(std::string_view text) {
   constexpr std::array<double, 5> kTolerances = {0.01, 0.01, 0.002, 0.05, 1};
-  constexpr std::array kForms = {Form::kAuto, Form::kAuto, Form::kArcs, Form::kLines};
+  constexpr std::array kForms = {Form::kAuto, Form::kCurves, Form::kArcs, Form::kLines};
   constexpr std::array kPrefer = {Prefer::kTime, Prefer::kAccuracy, Prefer::kSize};
   constexpr std::array kMethods = {Method::kBest,    Method::kFair, Method::kRacing,
                                    Method::kNaseath, Method::kGuo,  Method::kOzcan};
@@ -49,9 +49,10 @@ inline SmoothOptions options_for_text(std::string_view text) {
 }
 
 struct TextAsRead {
-  explicit TextAsRead(std::string_view text, gcode::Units units)
+  TextAsRead(std::string_view text, const SmoothOptions& options)
       : program(gcode::parse(gcode::SourceText("fuzz", std::string(text)), found)),
-        meaning(gcode::interpret(program, {.units = units}, found)) {}
+        meaning(gcode::interpret(
+            program, {.units = options.units, .curves = options.target->curves()}, found)) {}
   gcode::Diagnostics found;
   gcode::Program program;
   gcode::Interpretation meaning;
@@ -90,11 +91,11 @@ inline bool rest_is_copied(const gcode::Program& before, const SmoothResult& res
 inline std::string broken_by(std::string_view text, const SmoothOptions& options) {
   const gcode::SourceText source("fuzz", std::string(text));
   const SmoothResult result = smooth_program(source, options);
-  const TextAsRead before(text, options.units);
+  const TextAsRead before(text, options);
   if (!result.understood) return "";
   if (!result.proved) return "the new program is not proved by its maker";
   if (!(result.deviation_mm <= options.tolerance_mm)) return "a deviation above the tolerance";
-  const TextAsRead after(result.text, options.units);
+  const TextAsRead after(result.text, options);
   const Promise promise(options.tolerance_mm, options.tolerance_kind, options.side);
   const Verification found =
       verify({&before.program, &before.meaning}, {&after.program, &after.meaning}, promise);
@@ -103,6 +104,8 @@ inline std::string broken_by(std::string_view text, const SmoothOptions& options
   for (const RunReport& run : result.runs) {
     if (run.reason.empty() != (run.status == RunStatus::kRewritten)) return "kept without a reason";
   }
+  // A control without comments has no place for the mark that a program was smoothed.
+  if (options.target->comment("mark").empty()) return "";
   const SmoothResult again = smooth_program(gcode::SourceText("fuzz", result.text), options);
   return again.text == result.text ? "" : "a second pass changes something";
 }

@@ -105,6 +105,16 @@ INSTANTIATE_TEST_SUITE_P(
                     BlockCase{"NulsOnly", std::string("\0\0", 2), "mark"}),
     [](const auto& test) { return test.param.name; });
 
+// Its words would take thirty bytes of memory for every two of it.
+TEST(Parser, ReadsNoLineThatNoControlCouldTake) {
+  std::string line = "G1";
+  while (line.size() <= (1U << 20)) line += "X1";
+  EXPECT_EQ(blocks_of("M3\n" + line + "\nM30\n"),
+            (Blocks{"words: M3", "unreadable", "words: M30"}));
+  line.resize(1U << 20);
+  EXPECT_TRUE(blocks_of(line).front().starts_with("words: G1 X1"));
+}
+
 TEST(Parser, RemembersBlockDelete) {
   const Program program = parsed("/G1\n/2G1\nN1/3G1\nG1\n").program;
   EXPECT_TRUE(program.blocks[0].block_delete);

@@ -202,6 +202,23 @@ TEST(FitBspline, KeepsStraightZonesExactly) {
   EXPECT_GT(fit.curve.point_at(5).y(), 0.4);
 }
 
+// Two zones with so few spans between them that no control point is free.
+TEST(FitBspline, SeesWhatIsOffWhereNothingIsFree) {
+  const auto bump = [](double u) {
+    return Point3(u, u > 20 && u < 40 ? std::pow(std::sin((u - 20) * M_PI / 20), 4) : 0, 0);
+  };
+  FitProblem problem = problem_of(bump, 60, 5, 0.05, 0);
+  problem.zones = {{0, 20, bump(0), bump(20)}, {40, 60, bump(40), bump(60)}};
+  problem.breakpoints = {0, 20, 30, 40, 60};
+  EXPECT_GT(fit_bspline(problem, {.max_refinements = 0}).worst_ratio, 1);
+  const BsplineFit fit = fit_bspline(problem, {});
+  EXPECT_LE(fit.worst_ratio, 1 + 1e-9);
+  EXPECT_NEAR(fit.curve.point_at(30).y(), 1, 0.06);
+  for (double u = 0; u <= 20; u += 0.7) {
+    EXPECT_LE((fit.curve.point_at(u) - bump(u)).norm(), 1e-12) << u;
+  }
+}
+
 TEST(FitBspline, PassesThroughPinsWithCorners) {
   const auto roof = [](double u) { return Point3(u, u <= 20 ? u : 40 - u, 0); };
   FitProblem problem = problem_of(roof, 40, 5, 0.01, 0);

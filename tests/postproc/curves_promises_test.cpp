@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "gcode/curves/curve_format.h"
+#include "gcode/curves/nurbs_alarms.h"
 #include "gcode/curves/nurbs_write.h"
+#include "gcode/curves/siemens_poly.h"
 #include "gcode/dialects/rs274_family.h"
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
@@ -50,7 +52,11 @@ class Curves : public testing::TestWithParam<std::string> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Targets, Curves, testing::ValuesIn(targets_with_curves()),
-                         [](const auto& test) { return test.param; });
+                         [](const auto& test) {
+                           std::string name = test.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
 
 Path path_of(const BsplineCurve& curve) {
   Path path;
@@ -141,6 +147,28 @@ std::string cam_program(const BsplineCurve& curve) {
   return text + "G0 Z50\nM2\n";
 }
 
+gcode::NurbsRules rules_of(const std::string& target) {
+  if (target == "syntec") return gcode::syntec_nurbs(gcode::Units::kMillimetre);
+  if (target == "mitsubishi") return gcode::mitsubishi_nurbs();
+  return gcode::fanuc_nurbs(gcode::Units::kMillimetre);
+}
+
+// What the control would say to the whole program; its text for people, empty where there is
+// nothing.
+std::string alarms_of(const std::string& text, const std::string& target) {
+  gcode::Diagnostics found;
+  const gcode::Program program = gcode::parse(gcode::SourceText("test.nc", text), found);
+  gcode::CurveAlarms alarms;
+  if (target == "siemens") {
+    alarms = gcode::poly_alarms(program);
+  } else if (gcode::find_dialect(target)->curves()->name() == "G06.2") {
+    alarms = gcode::nurbs_alarms(program, rules_of(target));
+  }
+  std::string all;
+  for (const gcode::CurveAlarm& alarm : alarms) all += fmt::format("{}\n", alarm.id);
+  return all;
+}
+
 TEST_P(Curves, ProgramsOfRandomOnesAreProvedAndASecondPassChangesNothing) {
   int with_curves = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
@@ -154,6 +182,7 @@ TEST_P(Curves, ProgramsOfRandomOnesAreProvedAndASecondPassChangesNothing) {
       EXPECT_NE(run.reason, gcode::reason::kNotProved);
     }
     EXPECT_EQ(smoothed(result.text, options()).text, result.text);
+    EXPECT_EQ(alarms_of(result.text, GetParam()), "") << result.text;
   }
   EXPECT_GT(with_curves, 2);
 }
@@ -284,6 +313,7 @@ class CoarseFormat final : public gcode::CurveFormat {
   gcode::CurveWriting write(const BsplineCurve& curve,
                             const gcode::CurveSetting& setting) const override {
     if (fine_.is_block_per_piece()) return fine_.write(curve, setting);
+    if (fine_.name() == "BSPLINE") return with_even_knots(fine_.write(curve, setting));
     gcode::NurbsRules rules = rules_;
     rules.knots = {.digits = 3, .decimals = 0};
     return gcode::write_nurbs(curve, setting, rules);
@@ -294,15 +324,21 @@ class CoarseFormat final : public gcode::CurveFormat {
   }
 
  private:
+  // What is left of PL where no digit of it is right.
+  static gcode::CurveWriting with_even_knots(gcode::CurveWriting written) {
+    auto* lines = std::get_if<gcode::CurveLines>(&written);
+    if (lines == nullptr) return written;
+    for (std::string& line : *lines) {
+      const auto at = line.find("PL=") + 3;
+      const auto end = std::min(line.find(' ', at), line.size());
+      if (line.substr(at, end - at) != "0") line.replace(at, end - at, "1");
+    }
+    return written;
+  }
+
   const gcode::CurveFormat& fine_;
   gcode::NurbsRules rules_;
 };
-
-gcode::NurbsRules rules_of(const std::string& target) {
-  if (target == "syntec") return gcode::syntec_nurbs(gcode::Units::kMillimetre);
-  if (target == "mitsubishi") return gcode::mitsubishi_nurbs();
-  return gcode::fanuc_nurbs(gcode::Units::kMillimetre);
-}
 
 class CoarseTarget final : public gcode::Rs274Dialect {
  public:
@@ -321,6 +357,14 @@ class CoarseTarget final : public gcode::Rs274Dialect {
  private:
   const gcode::CurveFormat& format_;
 };
+
+TEST_P(Curves, ThatAreNotVerifiedAreToldOf) {
+  const SmoothResult result = smoothed(bend_program(), options());
+  const bool told = std::ranges::any_of(result.diagnostics, [](const gcode::Diagnostic& found) {
+    return found.id == "curves-unverified" && found.severity == gcode::Severity::kWarning;
+  });
+  EXPECT_EQ(told, GetParam() == "siemens-bspline");
+}
 
 TEST_P(Curves, OfTooFewDigitsAreNotProvedAndGoBack) {
   const CoarseFormat coarse(format(), rules_of(GetParam()));

@@ -46,6 +46,7 @@ Ids ids_in_sources_of_the_reader() {
 
 Ids ids_in_sources_of_the_verifier() {
   Ids ids = {"distance"};  // one word
+  add_ids_in(source_folder() / "postproc/added_lines.cpp", ids);
   add_ids_in(source_folder() / "postproc/event_breaches.cpp", ids);
   add_ids_in(source_folder() / "postproc/stretch_comparison.cpp", ids);
   return ids;
@@ -70,6 +71,19 @@ TEST(Explain, KnowsEveryBreachOfTheVerifier) {
     EXPECT_FALSE(each.advice.empty()) << each.id;
   }
   EXPECT_EQ(explained, ids_in_sources_of_the_verifier());
+}
+
+// What the page of messages tells of and the program does not would be found by nobody who reads
+// the program's own messages.
+TEST(Explain, KnowsEveryMessageOfThePage) {
+  const std::string page = text_of(source_folder() / "docs/diagnostics.md");
+  const std::regex row("(^|\n)\\| `([a-z-]+)` \\|");
+  std::size_t rows = 0;
+  for (std::sregex_iterator found(page.begin(), page.end(), row), end; found != end; ++found) {
+    EXPECT_FALSE(explanation_of((*found)[2].str()).empty()) << (*found)[2];
+    ++rows;
+  }
+  EXPECT_GT(rows, 60U);
 }
 
 TEST(Explain, SaysForEveryIdWhatToDo) {

@@ -133,16 +133,20 @@ struct Proof {
 };
 
 // Does the new program do what the old one did, with paths no further apart than the tolerance,
-// both ways and in order?
+// both ways and in order? `target` (see target_names): the control whose curve words (G06.2, POLY,
+// G5) are read in both; empty: none are.
 [[nodiscard]] Proof verify(std::string_view old_program, std::string_view new_program,
-                           double tolerance_mm, ProgramUnits units = ProgramUnits::kAsWritten);
+                           double tolerance_mm, ProgramUnits units = ProgramUnits::kAsWritten,
+                           std::string_view target = {});
 
 // --- time --------------------------------------------------------------------------------------
 
 struct TimeOptions {
   // Required: see machine_names, or a file ending in .toml, or the .ini of a LinuxCNC machine.
   std::string machine;
-  std::string target;  // see target_names: what G4 P means; empty: as the machine's control has it
+  // See target_names: what G4 P means, and whose curve words are read; empty: as the machine's
+  // control has it, and none.
+  std::string target;
   ProgramUnits units = ProgramUnits::kAsWritten;
 };
 
