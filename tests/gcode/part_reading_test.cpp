@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
         PartsCase{"ManyBadArcs", "G21 G0 X0 Y0\n" + many("G2 X3 Y3 I9 J2 F9\nG0 X0 Y0\n", 70)},
         PartsCase{"UnclosedComments", "G21\n" + many("G0 X1 (open\n", 60)},
         PartsCase{"NoUnits", "G90\nM3\nG1 X1 F2\nX2\n"}, PartsCase{"NoMotion", "G90\n(no)\nM30\n"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& test) { return test.param.name; });
 
 TEST(PartReading, TellsOfMarksThatCloseSomething) {
   for (const std::size_t blocks : {1, 2, 100}) {
