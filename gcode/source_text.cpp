@@ -136,8 +136,12 @@ SourceText::SourceText(std::string name, std::string text) {
 }
 
 std::optional<SourceText> SourceText::map_file(const std::filesystem::path& file,
-                                               std::string& error, const std::string& name_given) {
-  const std::string name = name_given.empty() ? file.string() : name_given;
+                                               std::string& error) {
+  return map_file(file, error, file.string());
+}
+
+std::optional<SourceText> SourceText::map_file(const std::filesystem::path& file,
+                                               std::string& error, const std::string& name) {
   const OpenFile opened(file);
   struct stat status {};
   if (opened.descriptor() < 0 || ::fstat(opened.descriptor(), &status) != 0) {

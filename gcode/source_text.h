@@ -31,11 +31,13 @@ class SourceText {
   SourceText(std::string name, std::string text);
 
   // Maps the file read-only. On failure returns nothing and sets `error` to a message with
-  // the file name and the reason of the operating system. Files above 4 GiB are refused. `name`
-  // stands in messages in place of the file's, where one is given.
+  // the file name and the reason of the operating system. Files above 4 GiB are refused.
+  [[nodiscard]] static std::optional<SourceText> map_file(const std::filesystem::path& file,
+                                                          std::string& error);
+  // The same with another name in messages.
   [[nodiscard]] static std::optional<SourceText> map_file(const std::filesystem::path& file,
                                                           std::string& error,
-                                                          const std::string& name = {});
+                                                          const std::string& name);
 
   [[nodiscard]] const std::string& name() const;
   [[nodiscard]] std::string_view text() const;
