@@ -143,7 +143,7 @@ class FlowFinder {
   explicit FlowFinder(const Program& program)
       : program_(program), flow_(program.blocks.size()), labels_(program.blocks.size()) {}
 
-  std::vector<BlockFlow> find() {
+  ProgramFlow find() {
     for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
       read_block(i);
     }
@@ -152,7 +152,8 @@ class FlowFinder {
         jump_names_, [this](const std::string& name) { return !label_names_.contains(name); });
     mark_labels();
     mark_contours();
-    return std::move(flow_);
+    reaches_out_ |= !jump_targets_.empty() || any_label_ || !contours_.empty();
+    return {std::move(flow_), reaches_out_};
   }
 
  private:
@@ -190,6 +191,7 @@ class FlowFinder {
       close_segment(i);
     }
     const int step = body_step(bare);
+    reaches_out_ |= step != 0;
     flow_[i].in_body |= step != 0 || depth_ > 0;
     depth_ = std::max(0, depth_ + step);
   }
@@ -280,6 +282,7 @@ class FlowFinder {
       add_target(find_word(words, 'H'));
     }
     segment_is_subprogram_ |= ends_subprogram;
+    reaches_out_ |= ends_subprogram;
   }
 
   void add_target(const Word* word) {
@@ -355,14 +358,17 @@ class FlowFinder {
   int depth_ = 0;
   std::size_t segment_begin_ = 0;
   bool segment_is_subprogram_ = false;
+  bool reaches_out_ = false;
 };
 
 }  // namespace
 
-std::vector<BlockFlow> find_flow(const Program& program) {
-  if (program.language == Language::kKlartext) return find_klartext_flow(program);
+ProgramFlow follow_flow(const Program& program) {
+  if (program.language == Language::kKlartext) return {find_klartext_flow(program), true};
   return FlowFinder(program).find();
 }
+
+std::vector<BlockFlow> find_flow(const Program& program) { return follow_flow(program).blocks; }
 
 FlowEffect flow_effect(std::string_view text) {
   const std::string bare = bare_words(text);
