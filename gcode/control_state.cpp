@@ -25,6 +25,12 @@ void forget_named_axes(ControlState& state, const BlockWords& words) {
   }
 }
 
+bool same_knowledge(const ControlState& a, const ControlState& b) {
+  return a.modal == b.modal && a.position.known == b.position.known &&
+         a.position.mm == b.position.mm && a.other_motion == b.other_motion &&
+         a.work_offset == b.work_offset && a.set_by_word == b.set_by_word;
+}
+
 ControlState either(const ControlState& a, const ControlState& b) {
   ControlState both = a;
   both.modal = either(a.modal, b.modal);

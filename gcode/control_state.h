@@ -38,6 +38,9 @@ void forget_everything(ControlState& state);
 // The axes that the block names. U, V, W are increments of X, Y, Z on lathes.
 void forget_named_axes(ControlState& state, const BlockWords& words);
 
+// Does the control know the same in both?
+[[nodiscard]] bool same_knowledge(const ControlState& a, const ControlState& b);
+
 // What is known when either state may hold.
 [[nodiscard]] ControlState either(const ControlState& a, const ControlState& b);
 

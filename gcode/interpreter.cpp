@@ -12,30 +12,31 @@
 #include "gcode/klartext_state.h"
 #include "gcode/motion_words.h"
 #include "gcode/opaque_blocks.h"
+#include "gcode/part_reading.h"
 #include "gcode/program_flow.h"
 #include "gcode/reason.h"
+#include "gcode/siemens_names.h"
 #include "gcode/state_changes.h"
 
 namespace batten::gcode {
 namespace {
 
-// Programs of rubbish, or for a control with other arcs, must not bury their reader.
-constexpr std::size_t kMostTold = 50;  // of one id
-
 class Interpreter {
  public:
-  Interpreter(const Program& program, const ReadOptions& options, Diagnostics& found)
-      : program_(program), curves_(options.curves), found_(found) {
-    now_.modal.units = options.units;
+  Interpreter(const Program& program, const CurveFormat* curves, ControlCarry& carry,
+              Diagnostics& found)
+      : program_(program), curves_(curves), carry_(carry), found_(found), now_(carry.state) {
+    carry.is_klartext = is_klartext();
     if (is_klartext()) start_klartext(now_);
-    read_.unit_word_seen = options.units != Units::kUnknown;
+    read_.unit_word_seen = carry.unit_word_seen;
     read_.states.push_back(now_.modal);
     read_.blocks.reserve(program.blocks.size());
     read_.motions.reserve(program.blocks.size());  // nearly every block of a long program moves
   }
 
   Interpretation run() {
-    const std::vector<BlockFlow> flow = find_flow(program_);
+    const ProgramFlow whole_flow = follow_flow(program_);
+    const std::vector<BlockFlow>& flow = whole_flow.blocks;
     const auto count = static_cast<std::uint32_t>(program_.blocks.size());
     for (std::uint32_t i = 0; i < count;) {
       if (const auto curve = curve_at(program_, i, now_, curves_, flow)) {
@@ -46,8 +47,13 @@ class Interpreter {
         ++i;
       }
     }
-    tell_untold();
-    report_missing_units();
+    carry_.state = now_;
+    carry_.unit_word_seen = read_.unit_word_seen;
+    carry_.reaches_out |= whole_flow.reaches_out;
+    if (!carry_.any_motion && !read_.motions.empty()) {
+      carry_.any_motion = true;
+      carry_.first_motion = program_.blocks[read_.motions.front().block].span;
+    }
     return std::move(read_);
   }
 
@@ -123,6 +129,8 @@ class Interpreter {
       case Opacity::kNone:
       case Opacity::kExpression:
         return read_words(block);
+      case Opacity::kNamedWords:
+        return read_named(block);
       case Opacity::kCornerWord:
         // The block's motion stops short of its end, and the next one starts beside it.
         read_words(block);
@@ -218,6 +226,38 @@ class Interpreter {
       drop_motion();
       make_opaque(effect.barrier);
     }
+  }
+
+  // Siemens: the block is copied; what it does to the state is known where all its names are.
+  void read_named(const Block& block) {
+    const BlockWords words(program_.words_of(block));
+    if (words.problem() != BlockWords::Problem::kNone) {
+      return refuse_words(words);
+    }
+    const NamedEffect named = apply_names(program_.source.text(block.span), words, now_);
+    if (!named.understood) {
+      forget_everything(now_);
+      return make_opaque(reason::kForeignWords);
+    }
+    StateEffect effect = apply_words(words, now_);
+    read_.unit_word_seen |= effect.unit_word || named.unit_word;
+    if (effect.motion >= 0) {
+      set_motion_mode(effect.motion);
+    }
+    effect.takes_axes |= named.takes_axes;
+    const bool moves = words.has_any("XYZIJKR") && !effect.takes_axes;
+    if (moves && now_.modal.motion != MotionMode::kOther &&
+        why_not_followed(words, effect, now_).empty()) {
+      now_.position = end_of_motion(words, now_);
+    } else if (moves) {
+      forget_position(now_);
+    }
+    forget_increments(words);
+    if (named.loses_place || !words.all_numbers()) {
+      forget_position(now_);
+    }
+    apply_late_words(words, now_);
+    make_opaque(named.barrier);
   }
 
   void refuse_words(const BlockWords& words) {
@@ -374,34 +414,16 @@ class Interpreter {
     if (std::exchange(told_, true)) {
       return;
     }
-    const auto same_id = [id](const auto& entry) { return entry.id == id; };
-    auto counted = std::ranges::find_if(counts_, same_id);
-    if (counted == counts_.end()) {
-      counted = counts_.insert(counts_.end(), {id, 0, where});
-    }
-    if (++counted->count <= kMostTold) {
+    if (carry_.told.counts(id, where)) {
       found_.push_back({severity, id, where, std::move(message)});
-    } else if (counted->count == kMostTold + 1) {
-      counted->first_untold = where;
-    }
-  }
-
-  void tell_untold() {
-    for (const Count& counted : counts_) {
-      if (counted.count > kMostTold) {
-        found_.push_back({Severity::kWarning, counted.id, counted.first_untold,
-                          fmt::format("this and {} more blocks after it have the same trouble",
-                                      counted.count - kMostTold - 1)});
-      }
     }
   }
 
   // Once per code: a program that uses it a thousand times says nothing new.
   void tell_unknown_code(const Block& block, Code code) {
-    if (std::ranges::find(unknown_codes_, code) != unknown_codes_.end()) {
+    if (!carry_.told.is_new(code)) {
       return;
     }
-    unknown_codes_.push_back(code);
     tell(Severity::kWarning, "unknown-g-code", block.span,
          fmt::format("G{} is not known and may change anything; what follows is left alone until "
                      "the program has set every mode again",
@@ -409,40 +431,42 @@ class Interpreter {
                                     : fmt::format("{}.{}", code / 10, code % 10)));
   }
 
-  void report_missing_units() {
-    if (read_.unit_word_seen || read_.motions.empty()) {
-      return;
-    }
-    const Block& block = program_.blocks[read_.motions.front().block];
-    const std::string_view missing =
-        is_klartext() ? "no BEGIN PGM with MM or INCH" : "no G20 or G21";
-    found_.push_back({Severity::kError, "units-missing", block.span,
-                      fmt::format("{} in the whole program; without a unit a tolerance means "
-                                  "nothing. Say --units mm or --units inch",
-                                  missing)});
-  }
-
   const Program& program_;
   const CurveFormat* curves_;
+  ControlCarry& carry_;
   Diagnostics& found_;
   ControlState now_;
   Interpretation read_;
   BlockMeaning meaning_;  // of the block that is being read
   std::uint32_t block_index_ = 0;
   bool told_ = false;  // it has its diagnostic
-  struct Count {
-    std::string_view id;
-    std::size_t count = 0;
-    SourceSpan first_untold;
-  };
-  std::vector<Count> counts_;
-  std::vector<Code> unknown_codes_;
 };
 
 }  // namespace
 
 Interpretation interpret(const Program& program, const ReadOptions& options, Diagnostics& found) {
-  return Interpreter(program, options, found).run();
+  ControlCarry carry(options.units);
+  Interpretation read = interpret_part(program, options, carry, found);
+  finish_interpretation(carry, found);
+  return read;
+}
+
+Interpretation interpret_part(const Program& part, const ReadOptions& options, ControlCarry& carry,
+                              Diagnostics& found) {
+  return Interpreter(part, options.curves, carry, found).run();
+}
+
+void finish_interpretation(const ControlCarry& carry, Diagnostics& found) {
+  carry.told.tell_rest(found);
+  if (carry.unit_word_seen || !carry.any_motion) {
+    return;
+  }
+  const std::string_view missing =
+      carry.is_klartext ? "no BEGIN PGM with MM or INCH" : "no G20 or G21";
+  found.push_back({Severity::kError, "units-missing", carry.first_motion,
+                   fmt::format("{} in the whole program; without a unit a tolerance means nothing. "
+                               "Say --units mm or --units inch",
+                               missing)});
 }
 
 }  // namespace batten::gcode

@@ -17,7 +17,8 @@ struct LineBounds {
 // Linear in the text as a whole, whatever its line ends are.
 class LineCursor {
  public:
-  explicit LineCursor(std::string_view text) : text_(text) {}
+  // `from`: the begin of a line.
+  explicit LineCursor(std::string_view text, std::size_t from = 0) : text_(text), at_(from) {}
 
   // The next line; nothing after the last one. An empty text has no line, and a line end at
   // the end of the text starts no further line.
@@ -56,7 +57,7 @@ class LineCursor {
 
   static constexpr std::size_t kNotSearched = std::string_view::npos;
   std::string_view text_;
-  std::size_t at_ = 0;
+  std::size_t at_;
   std::size_t next_feed_ = kNotSearched;
   std::size_t next_return_ = kNotSearched;
 };

@@ -40,6 +40,7 @@ std::string_view opacity_reason(Opacity opacity) {
       return reason::kProgramFlow;
     case Opacity::kForeign:
     case Opacity::kContinued:
+    case Opacity::kNamedWords:
       return reason::kForeignWords;
     case Opacity::kProgramMark:
       return reason::kProgramMark;

@@ -11,7 +11,9 @@
 #include "gcode/language_marks.h"
 #include "gcode/lexer.h"
 #include "gcode/line_cursor.h"
+#include "gcode/part_reading.h"
 #include "gcode/program_marks.h"
+#include "gcode/siemens_block.h"
 
 namespace batten::gcode {
 namespace {
@@ -21,9 +23,6 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 // What the tape and file ends of old systems are filled with. Controls skip both.
 constexpr char kNul = '\0';
 constexpr char kEndOfFile = '\x1A';
-
-// A program of rubbish must not bury the reader in lines that all say the same.
-constexpr std::size_t kMostTold = 50;
 
 constexpr std::string_view kUnreadableBlock = "unreadable-block";
 constexpr std::string_view kUnclosedComment = "unclosed-comment";
@@ -38,51 +37,36 @@ bool is_sixteen_bit_text(std::string_view text) {
   return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
 }
 
-// Counts diagnostics of one id.
-struct Flood {
-  std::size_t told = 0;
-  std::size_t untold = 0;
-  SourceSpan first_untold;
-
-  // May one more be told?
-  bool counts(SourceSpan where) {
-    if (told < kMostTold) {
-      ++told;
-      return true;
-    }
-    first_untold = untold == 0 ? where : first_untold;
-    ++untold;
-    return false;
-  }
-};
-
 // One pass over the source, line by line.
 class Parser {
  public:
-  Parser(const SourceText& source, Language language, Diagnostics& found)
-      : program_{source, {}, {}, {}, language}, text_(source.text()), found_(found) {}
+  Parser(const SourceText& source, Language language, const PartEnd& end, TextCarry& carry,
+         Diagnostics& found)
+      : program_{source, {}, {}, {}, language},
+        text_(source.text()),
+        end_(end),
+        carry_(carry),
+        found_(found) {}
 
   Program run() {
     reserve();
-    const std::size_t before = found_.size();
-    const std::size_t last_of_content =
-        text_.find_last_not_of(std::string_view("\0\x1A\r\n \t", 6));
-    content_end_ = last_of_content == std::string_view::npos ? 0 : last_of_content + 1;
-    if (is_sixteen_bit_text(text_)) {
+    if (!carry_.content_end) {
+      const std::size_t last = text_.find_last_not_of(std::string_view("\0\x1A\r\n \t", 6));
+      carry_.content_end = last == std::string_view::npos ? 0 : last + 1;
+    }
+    if (carry_.begin == 0 && is_sixteen_bit_text(text_)) {
       tell(Severity::kError, "sixteen-bit-text", SourceSpan{0, 2},
            "the file is text of 16 bits per character (UTF-16); expected bytes of ASCII. Save it "
            "as plain text or UTF-8");
     }
-    LineCursor lines(text_);
-    while (const auto line = lines.next()) {
+    LineCursor lines(text_.substr(0, end_.byte), carry_.begin);
+    while (program_.blocks.size() < end_.blocks) {
+      const auto line = lines.next();
+      if (!line) break;
       read_block(*line);
+      carry_.begin = line->end;
     }
-    tell_flood(kUnreadableBlock);
-    tell_flood(kUnclosedComment);
-    close_marks();
-    std::stable_sort(
-        found_.begin() + static_cast<std::ptrdiff_t>(before), found_.end(),
-        [](const Diagnostic& a, const Diagnostic& b) { return a.where.begin < b.where.begin; });
+    carry_.blocks += static_cast<std::uint32_t>(program_.blocks.size());
     return std::move(program_);
   }
 
@@ -91,16 +75,19 @@ class Parser {
   // everything. Room that is not used takes no memory.
   void reserve() {
     constexpr std::size_t kBytesPerBlock = 16;
+    constexpr std::size_t kMostBytesPerBlock = 48;  // where a part ends behind so many blocks
     constexpr std::size_t kBytesPerWord = 6;
-    program_.blocks.reserve(text_.size() / kBytesPerBlock + 1);
-    program_.words.reserve(text_.size() / kBytesPerWord + 1);
+    const std::size_t bytes = std::min<std::size_t>(text_.size(), end_.byte) - carry_.begin;
+    const std::size_t blocks = std::min(bytes / kBytesPerBlock, end_.blocks);
+    program_.blocks.reserve(blocks + 1);
+    program_.words.reserve(std::min(bytes, blocks * kMostBytesPerBlock) / kBytesPerWord + 1);
   }
 
   void read_block(const LineBounds& line) {
     Block block;
     block.span = {line.begin, line.text_end};
     block.end = line.end;
-    block.line = static_cast<std::uint32_t>(program_.blocks.size()) + 1;
+    block.line = carry_.blocks + static_cast<std::uint32_t>(program_.blocks.size()) + 1;
     block.first_word = static_cast<std::uint32_t>(program_.words.size());
     block.first_comment = static_cast<std::uint32_t>(program_.comments.size());
     const SourceSpan content = without_filling(block);
@@ -108,7 +95,9 @@ class Parser {
       read_mark(block, content);
     } else if (content.size() > kLongestLine) {
       make_unreadable(block, content, "a line of more than 1 MiB");
-      words_seen_ = true;
+      carry_.words_seen = true;
+    } else if (program_.language == Language::kSiemens) {
+      read_siemens(block, content);
     } else {
       read_tokens(block, content);
     }
@@ -145,7 +134,7 @@ class Parser {
     if (is_blank(c)) {
       return true;
     }
-    const bool sign = c == kNul || (c == kEndOfFile && at >= content_end_);
+    const bool sign = c == kNul || (c == kEndOfFile && at >= *carry_.content_end);
     filled = filled || sign;
     return sign;
   }
@@ -212,7 +201,41 @@ class Parser {
     if (block.opacity == Opacity::kAssignment && !only_n) {
       make_unreadable(block, content, "a parameter that is set beside other words");
     }
-    words_seen_ = words_seen_ || has_words(block);
+    carry_.words_seen = carry_.words_seen || has_words(block);
+  }
+
+  void read_siemens(Block& block, SourceSpan content) {
+    const SiemensBlock line = read_siemens_block(text_, content, program_.words);
+    block.block_delete = line.skip;
+    if (block.opacity != Opacity::kProgramMark) {
+      block.opacity = line.opacity == Opacity::kUnreadable ? Opacity::kNone : line.opacity;
+    }
+    if (line.opacity == Opacity::kUnreadable) {
+      make_unreadable(block, line.trouble_at, line.trouble);
+    }
+    if (line.comment) {
+      program_.comments.push_back({CommentKind::kSemicolon, *line.comment});
+      note_foreign_language(*line.comment);
+    }
+    follow_iso_mode(block);
+    carry_.words_seen = carry_.words_seen || has_words(block);
+  }
+
+  // G291: words of the ISO mode up to G290, which are not read.
+  void follow_iso_mode(Block& block) {
+    const std::string_view text = text_.substr(block.span.begin, block.span.size());
+    if (text.find("290") != std::string_view::npos) {
+      iso_mode_ = false;
+    }
+    iso_mode_ = iso_mode_ || (block.opacity == Opacity::kNamedWords && is_iso_mode(text));
+    if (iso_mode_ && has_words(block)) {
+      block.opacity = Opacity::kForeign;
+    }
+  }
+
+  static bool is_iso_mode(std::string_view text) {
+    const std::size_t at = text.find("291");
+    return at != std::string_view::npos && at > 0 && upper(text[at - 1]) == 'G';
   }
 
   // Is there anything in the block that a control acts on?
@@ -292,8 +315,8 @@ class Parser {
   // begin subprograms.
   void read_program_number(Block& block) {
     const bool alone = program_.words.size() == block.first_word && !block.block_delete;
-    block.opacity = alone && !words_seen_ ? Opacity::kProgramMark : Opacity::kFlow;
-    words_seen_ = true;
+    block.opacity = alone && !carry_.words_seen ? Opacity::kProgramMark : Opacity::kFlow;
+    carry_.words_seen = true;
   }
 
   void make_unreadable(Block& block, SourceSpan where, std::string_view trouble) {
@@ -306,14 +329,14 @@ class Parser {
   }
 
   void note_foreign_language(SourceSpan where) {
-    if (foreign_told_) {
+    if (carry_.foreign_told) {
       return;
     }
     const auto language = language_of_line(text_.substr(where.begin, where.size()));
     if (!language || language->language == program_.language) {
       return;
     }
-    foreign_told_ = true;
+    carry_.foreign_told = true;
     tell(Severity::kError, "foreign-language", where,
          "found " + std::string(language->evidence) + ", so this is a program in " +
              std::string(describe(language->language)) +
@@ -335,52 +358,79 @@ class Parser {
     told_in_block_ = true;
   }
 
-  Flood& flood(std::string_view id) { return id == kUnclosedComment ? unclosed_ : unreadable_; }
-
-  void tell_flood(std::string_view id) {
-    const Flood& flood_of_id = flood(id);
-    if (flood_of_id.untold > 0) {
-      found_.push_back(
-          {Severity::kWarning, id, flood_of_id.first_untold,
-           "from here on " + std::to_string(flood_of_id.untold) + " more blocks of this kind"});
-    }
-  }
-
-  // The marks are closed when all blocks are read; their lines may have been told of already.
-  void close_marks() {
-    Diagnostics at_marks;
-    close_program_marks(program_, at_marks);
-    for (Diagnostic& diagnostic : at_marks) {
-      const SourceSpan line = diagnostic.where;
-      const bool told = std::any_of(found_.begin(), found_.end(), [&](const Diagnostic& other) {
-        return other.where.begin >= line.begin && other.where.begin < line.end;
-      });
-      if (!told) {
-        found_.push_back(std::move(diagnostic));
-      }
-    }
+  ToldCount& flood(std::string_view id) {
+    return id == kUnclosedComment ? carry_.unclosed : carry_.unreadable;
   }
 
   Program program_;
   std::string_view text_;
+  PartEnd end_;
+  TextCarry& carry_;
   Diagnostics& found_;
-  std::size_t content_end_ = 0;  // nothing but filling and line ends from here on
-  Flood unreadable_;
-  Flood unclosed_;
-  bool words_seen_ = false;
   bool told_in_block_ = false;
-  bool foreign_told_ = false;
+  bool iso_mode_ = false;
 };
+
+void tell_flood(std::string_view id, const ToldCount& flood, Diagnostics& found) {
+  if (flood.untold > 0) {
+    found.push_back({Severity::kWarning, id, flood.first_untold,
+                     "from here on " + std::to_string(flood.untold) + " more blocks of this kind"});
+  }
+}
+
+void put_in_order(Diagnostics& found, std::size_t first) {
+  std::stable_sort(
+      found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
+      [](const Diagnostic& a, const Diagnostic& b) { return a.where.begin < b.where.begin; });
+}
+
+// The marks are closed when all blocks are read; their lines may have been told of already.
+void close_marks(Program& program, Diagnostics& found) {
+  Diagnostics at_marks;
+  close_program_marks(program, at_marks);
+  for (Diagnostic& diagnostic : at_marks) {
+    const SourceSpan line = diagnostic.where;
+    const bool told = std::any_of(found.begin(), found.end(), [&](const Diagnostic& other) {
+      return other.where.begin >= line.begin && other.where.begin < line.end;
+    });
+    if (!told) {
+      found.push_back(std::move(diagnostic));
+    }
+  }
+}
+
+void tell_floods(const TextCarry& carry, Diagnostics& found) {
+  tell_flood(kUnreadableBlock, carry.unreadable, found);
+  tell_flood(kUnclosedComment, carry.unclosed, found);
+}
 
 }  // namespace
 
 Program parse(const SourceText& source, Language language, Diagnostics& found) {
   if (language == Language::kKlartext) return parse_klartext(source, found);
-  return Parser(source, language, found).run();
+  const std::size_t before = found.size();
+  TextCarry carry;
+  Program program = Parser(source, language, {}, carry, found).run();
+  tell_floods(carry, found);
+  close_marks(program, found);
+  put_in_order(found, before);
+  return program;
 }
 
 Program parse(const SourceText& source, Diagnostics& found) {
   return parse(source, Language::kRs274, found);
+}
+
+Program parse_part(const SourceText& source, const PartEnd& end, TextCarry& carry,
+                   Diagnostics& found) {
+  Program part = Parser(source, Language::kRs274, end, carry, found).run();
+  carry.marks.see(part);
+  return part;
+}
+
+void finish_text(const TextCarry& carry, Diagnostics& found) {
+  tell_floods(carry, found);
+  put_in_order(found, 0);
 }
 
 }  // namespace batten::gcode

@@ -50,6 +50,8 @@ enum class Opacity {
                  // any other word); a line of NUL or 0x1A: controls do nothing here
   kCornerWord,   // ,R2 ,C1 ,A45: the path does not reach the point that the words name
   kContinued,    // a line that belongs to the statement of the lines before it
+  kNamedWords,   // Siemens: words of several letters beside those that are listed
+                 // (gcode/siemens_names.h)
 };
 
 // One line of the source.

@@ -26,7 +26,17 @@ struct BlockFlow {
   bool in_body = false;           // of a loop, a subprogram, or a contour that a cycle names
 };
 
-// One entry per block. A jump to a computed label makes every block with an N number a target.
+struct ProgramFlow {
+  std::vector<BlockFlow> blocks;  // one per block
+  // Something of it could be meant for blocks elsewhere: the target of a jump, the begin or the end
+  // of a body, a contour, the end of a subprogram. Where no part of a program reaches out, nothing
+  // is said of any block.
+  bool reaches_out = false;
+};
+[[nodiscard]] ProgramFlow follow_flow(const Program& program);
+
+// The blocks of follow_flow. A jump to a computed label makes every block with an N number a
+// target.
 [[nodiscard]] std::vector<BlockFlow> find_flow(const Program& program);
 
 }  // namespace batten::gcode

@@ -72,4 +72,17 @@ void close_program_marks(Program& program, Diagnostics& found) {
   }
 }
 
+// Only marks with words behind them are the first: others end what began without one.
+void MarkWatch::see(const Program& part) {
+  for (const Block& block : part.blocks) {
+    if (is_mark(part, block)) {
+      ++marks_;
+    } else if (has_words(block)) {
+      words_before_ |= marks_ == 0;
+      words_behind_first_ |= marks_ > 0;
+      words_behind_second_ |= marks_ > 1;
+    }
+  }
+}
+
 }  // namespace batten::gcode

@@ -1,6 +1,8 @@
 // The % lines that bound a program on tape: what stands outside them is not its text.
 #pragma once
 
+#include <cstddef>
+
 #include "gcode/diagnostic.h"
 #include "gcode/program.h"
 
@@ -11,5 +13,22 @@ namespace batten::gcode {
 //
 // The first % line begins the program when blocks with words follow it; otherwise it ends it.
 void close_program_marks(Program& program, Diagnostics& found);
+
+// Sees a program part by part, from its begin, before any marks are closed.
+class MarkWatch {
+ public:
+  void see(const Program& part);
+
+  // Whether close_program_marks would leave all blocks seen so far that say anything as they are.
+  [[nodiscard]] bool closes_nothing() const {
+    return !(words_before_ && words_behind_first_) && !words_behind_second_;
+  }
+
+ private:
+  std::size_t marks_ = 0;
+  bool words_before_ = false;
+  bool words_behind_first_ = false;
+  bool words_behind_second_ = false;
+};
 
 }  // namespace batten::gcode

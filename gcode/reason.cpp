@@ -94,8 +94,12 @@ constexpr Explanation kExplanations[] = {
      "Let the CAM system mirror the part.", false},
     {kExactStop, "The program asks for the exact path or for a stop at each point (G61, G61.1).",
      "--allow exact-stop lifts it for G61; or take G61 out of the program.", true},
-    {kControlSmoothing, "The control fits a curve of its own here (G5.1 Q2, G5 P10000, G131).",
-     "Switch the control's smoothing off in the program, or leave this one off.", false},
+    {kControlSmoothing,
+     "The control fits a curve of its own here (G5.1 Q2, G5 P10000, G131, COMPCAD): its tolerance "
+     "would come on top.",
+     "Switch the control's smoothing off in the program, leave this one off, or --allow "
+     "control-smoothing.",
+     true},
     {kModalMacro, "A macro runs after each motion (G66).", kCopied, false},
     {kLatheDiameter, "X is a diameter (G7).", "Lathe programs in diameters are not smoothed.",
      false},
@@ -118,8 +122,7 @@ constexpr Explanation kExplanations[] = {
      "Two parts of the run are so near to each other that the new path would cross itself where "
      "the old one does not.",
      "A smaller tolerance may help.", false},
-    {kWrongSide,
-     "The new path could not be proved to stay on the side that --side asks for.",
+    {kWrongSide, "The new path could not be proved to stay on the side that --side asks for.",
      "A larger tolerance may help, or more decimals.", false},
     {kAlreadySmoothed, "The program says that it was smoothed before; tolerances add up.",
      "Smooth the original instead, or --allow already-smoothed.", true},

@@ -90,11 +90,16 @@ bool read_all(int descriptor, const std::string& name, std::string& text, std::s
   }
 }
 
+// Lines between two that the table of lines knows: the table of a long text stays small.
+constexpr std::size_t kLinesApart = 64;
+
+// The begins of the lines 1, 1 + kLinesApart ..
 std::vector<std::uint32_t> line_begins(std::string_view text) {
   std::vector<std::uint32_t> begins = {0};
+  std::size_t ends = 0;
   LineCursor lines(text);
   while (const auto line = lines.next()) {
-    if (line->end > line->text_end) {
+    if (line->end > line->text_end && ++ends % kLinesApart == 0) {
       begins.push_back(line->end);
     }
   }
@@ -132,7 +137,11 @@ SourceText::SourceText(std::string name, std::string text) {
 
 std::optional<SourceText> SourceText::map_file(const std::filesystem::path& file,
                                                std::string& error) {
-  const std::string name = file.string();
+  return map_file(file, error, file.string());
+}
+
+std::optional<SourceText> SourceText::map_file(const std::filesystem::path& file,
+                                               std::string& error, const std::string& name) {
   const OpenFile opened(file);
   struct stat status {};
   if (opened.descriptor() < 0 || ::fstat(opened.descriptor(), &status) != 0) {
@@ -169,10 +178,32 @@ std::string_view SourceText::text(SourceSpan span) const {
   return bytes_->text.substr(span.begin, span.size());
 }
 
+void SourceText::set_aside(SourceSpan span) const {
+  if (bytes_->mapped == nullptr) {
+    return;
+  }
+  const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
+  const auto base = reinterpret_cast<std::uintptr_t>(bytes_->text.data());
+  const std::uintptr_t begin = (base + span.begin + page - 1) / page * page;
+  const std::uintptr_t end = (base + span.end) / page * page;
+  if (begin < end) {
+    // What the system does with the advice changes no byte.
+    (void)::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
+  }
+}
+
 SourcePlace SourceText::place_of(std::uint32_t offset) const {
   const std::vector<std::uint32_t>& begins = bytes_->lines();
   const auto after = std::upper_bound(begins.begin(), begins.end(), offset);
-  return {static_cast<std::uint32_t>(after - begins.begin()), offset - *(after - 1) + 1};
+  auto line = static_cast<std::uint32_t>((after - begins.begin() - 1) * kLinesApart + 1);
+  std::uint32_t begin = *(after - 1);
+  LineCursor lines(bytes_->text, begin);
+  for (auto next = lines.next(); next && next->end > next->text_end && next->end <= offset;
+       next = lines.next()) {
+    begin = next->end;
+    ++line;
+  }
+  return {line, offset - begin + 1};
 }
 
 }  // namespace batten::gcode

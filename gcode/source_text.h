@@ -34,10 +34,18 @@ class SourceText {
   // the file name and the reason of the operating system. Files above 4 GiB are refused.
   [[nodiscard]] static std::optional<SourceText> map_file(const std::filesystem::path& file,
                                                           std::string& error);
+  // The same with another name in messages.
+  [[nodiscard]] static std::optional<SourceText> map_file(const std::filesystem::path& file,
+                                                          std::string& error,
+                                                          const std::string& name);
 
   [[nodiscard]] const std::string& name() const;
   [[nodiscard]] std::string_view text() const;
   [[nodiscard]] std::string_view text(SourceSpan span) const;
+
+  // These bytes will not be read for a while: a mapped file then takes no memory for them. They may
+  // be read again, which costs time only.
+  void set_aside(SourceSpan span) const;
 
   // Logarithmic in the number of lines. A line ends after LF, or after a CR that no LF follows.
   [[nodiscard]] SourcePlace place_of(std::uint32_t offset) const;

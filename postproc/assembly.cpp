@@ -27,7 +27,7 @@ class Assembler {
       : program_(program), sections_(sections), works_(works), additions_(additions) {}
 
   std::string run() {
-    const std::string_view source = program_.source.text();
+    const std::string_view source = bytes();
     text_.reserve(source.size());
     if (!anything_rewritten()) return std::string(source);
     comment_ = additions_.comment;
@@ -41,7 +41,7 @@ class Assembler {
       add(sections_[i], work);
     }
     leave_runs(line_end_);
-    if (footer_at_ == source.size()) {
+    if (footer_at_ == end()) {
       if (!additions_.words.footer.empty() && !text_.ends_with('\n') && !text_.ends_with('\r')) {
         text_ += line_end_;
       }
@@ -51,6 +51,14 @@ class Assembler {
   }
 
  private:
+  [[nodiscard]] std::uint32_t end() const {
+    return program_.blocks.empty() ? 0 : program_.blocks.back().end;
+  }
+  [[nodiscard]] std::string_view bytes() const {
+    const std::uint32_t begin = program_.blocks.empty() ? 0 : program_.blocks.front().span.begin;
+    return program_.source.text({begin, end()});
+  }
+
   [[nodiscard]] bool anything_rewritten() const {
     return std::ranges::any_of(works_,
                                [](const RunWork& work) { return work.chosen() != nullptr; });
@@ -139,7 +147,7 @@ class Assembler {
         program_.blocks.back().opacity == gcode::Opacity::kProgramMark) {
       return program_.blocks.back().span.begin;
     }
-    return static_cast<std::uint32_t>(program_.source.text().size());
+    return end();
   }
 
   const gcode::Program& program_;

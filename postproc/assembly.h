@@ -17,8 +17,8 @@ struct Additions {
   ProfileWords words;   // with the tolerance filled in
 };
 
-// The source's bytes where nothing is rewritten; additions then are left out too. `works` in the
-// order of their sections. Added lines end as the lines around them do.
+// The bytes of the program's blocks where nothing is rewritten; additions then are left out too.
+// `works` in the order of their sections. Added lines end as the lines around them do.
 //
 // The header goes before the first block that says anything but a program mark, the footer before
 // the last M2, M30 or M99 outside runs, before the closing % where there is none, or at the end.

@@ -123,23 +123,29 @@ gcode::Diagnostics band_notes(const gcode::Program& program, const gcode::Interp
   return std::move(notes).take();
 }
 
-void append_band_notes(std::span<const gcode::Diagnostics> of_runs, gcode::Diagnostics& found) {
-  std::size_t told = 0;
-  std::size_t untold = 0;
-  gcode::SourceSpan first_untold;
+void BandNoteTally::add(std::span<const gcode::Diagnostics> of_runs, gcode::Diagnostics& found) {
   for (const gcode::Diagnostics& notes : of_runs) {
     for (const gcode::Diagnostic& note : notes) {
-      if (told < kMostBandNotes) {
-        ++told;
+      if (told_ < kMostBandNotes) {
+        ++told_;
         found.push_back(note);
-      } else if (++untold == 1) {
-        first_untold = note.where;
+      } else if (++untold_ == 1) {
+        first_untold_ = note.where;
       }
     }
   }
-  if (untold == 0) return;
-  found.push_back({gcode::Severity::kNote, "band-overlap", first_untold,
-                   fmt::format("{} more notes on bands that overlap or have cusps", untold)});
+}
+
+void BandNoteTally::tell_rest(gcode::Diagnostics& found) const {
+  if (untold_ == 0) return;
+  found.push_back({gcode::Severity::kNote, "band-overlap", first_untold_,
+                   fmt::format("{} more notes on bands that overlap or have cusps", untold_)});
+}
+
+void append_band_notes(std::span<const gcode::Diagnostics> of_runs, gcode::Diagnostics& found) {
+  BandNoteTally tally;
+  tally.add(of_runs, found);
+  tally.tell_rest(found);
 }
 
 }  // namespace batten::postproc

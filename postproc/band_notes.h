@@ -23,11 +23,24 @@ namespace batten::postproc {
                                             const gcode::Interpretation& meaning,
                                             const Section& section, double tolerance_mm);
 
-// The notes of all runs in order, but no more than kMostBandNotes of them; then one that says how
-// many more there are.
-void append_band_notes(std::span<const gcode::Diagnostics> of_runs, gcode::Diagnostics& found);
-
 // As many as the messages of one id about the text.
 inline constexpr std::size_t kMostBandNotes = 50;
+
+// The notes of all runs in order, but no more than kMostBandNotes of them; then one that says how
+// many more there are.
+class BandNoteTally {
+ public:
+  void add(std::span<const gcode::Diagnostics> of_runs, gcode::Diagnostics& found);
+  // At the end of the program.
+  void tell_rest(gcode::Diagnostics& found) const;
+
+ private:
+  std::size_t told_ = 0;
+  std::size_t untold_ = 0;
+  gcode::SourceSpan first_untold_;
+};
+
+// Of a whole program.
+void append_band_notes(std::span<const gcode::Diagnostics> of_runs, gcode::Diagnostics& found);
 
 }  // namespace batten::postproc

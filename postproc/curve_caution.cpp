@@ -17,7 +17,7 @@ std::optional<gcode::Diagnostic> curve_caution(std::span<const RunReport> runs,
   });
   if (first == runs.end()) return std::nullopt;
   return gcode::Diagnostic{gcode::Severity::kWarning, "curves-unverified",
-                           program.blocks[first->first_line - 1].span,
+                           program.blocks[first->first_line - program.blocks.front().line].span,
                            std::string(target.curves()->caution())};
 }
 

@@ -4,40 +4,14 @@
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "gcode/diagnostic.h"
 #include "gcode/source_text.h"
-#include "postproc/method_times.h"
 #include "postproc/options.h"
-#include "postproc/output_plan.h"
-#include "postproc/verification.h"
+#include "postproc/run_report.h"
 
 namespace batten::postproc {
-
-enum class RunStatus { kRewritten, kKept };
-
-// One run of the report. Also verbatim chains of cutting moves appear, kept, with their reason.
-struct RunReport {
-  std::uint32_t first_line = 0;
-  std::uint32_t last_line = 0;
-  std::size_t points = 0;
-  RunStatus status = RunStatus::kKept;
-  std::string_view reason;          // why it was kept; empty when rewritten
-  std::string_view method;          // that made what stands there now; empty where it was kept
-  std::vector<MethodTime> methods;  // all that were tried, whether it was rewritten or not
-  OutputForm form = OutputForm::kLines;
-  std::size_t blocks_in = 0;
-  std::size_t blocks_out = 0;
-  double deviation_mm = 0;  // proved bound
-  bool proved = false;
-  double noise_mm = 0;
-  double max_curvature_before = 0;  // 1/mm, circle through three neighbouring vertices
-  double max_curvature_after = 0;
-  double time_before_s = 0;
-  double time_after_s = 0;
-};
 
 struct SmoothResult {
   std::string text;  // the new program; the input's bytes where nothing was rewritten
@@ -54,6 +28,9 @@ struct SmoothResult {
   double time_before_s = 0;  // cutting runs only
   double time_after_s = 0;
   bool proved = false;  // of the whole text
+  // Of a text that was handed on window by window (postproc/windows.h), in place of `text`.
+  std::size_t bytes_handed_on = 0;
+  [[nodiscard]] std::size_t bytes_out() const { return text.size() + bytes_handed_on; }
 };
 
 // Called now and then with the part that is done, 0..1. Returning false stops the work: the

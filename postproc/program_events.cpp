@@ -79,12 +79,40 @@ bool has_length(const geometry::PathPiece& piece) {
 class Lister {
  public:
   explicit Lister(const ReadProgram& read)
-      : program_(*read.program), interpretation_(*read.interpretation) {}
+      : program_(*read.program),
+        interpretation_(*read.interpretation),
+        set_by_word_(read.before.set_by_word) {}
 
   ProgramEvents run() {
     for (std::uint32_t i = 0; i < program_.blocks.size(); ++i) list_block(i);
     list_.cuts_before.push_back(list_.cuts.size());
     return std::move(list_);
+  }
+
+  // The words that are set at the end, without a list of events.
+  std::array<Code, kCodeGroups> words_set() {
+    for (block_index_ = 0; block_index_ < program_.blocks.size(); ++block_index_) {
+      const Block& block = program_.blocks[block_index_];
+      if (interpretation_.blocks[block_index_].of_curve) continue;
+      if (block.opacity == gcode::Opacity::kNone && !block.block_delete) remember_words(block);
+      forget_words_in_unknown_state();
+    }
+    return set_by_word_;
+  }
+
+  [[nodiscard]] bool is_plain_rapid(std::uint32_t index) {
+    block_index_ = index;
+    const Block& block = program_.blocks[index];
+    const BlockMeaning& meaning = interpretation_.blocks[index];
+    if (meaning.barrier != reason::kRapid || meaning.motion < 0 || meaning.of_curve) return false;
+    if (block.opacity != gcode::Opacity::kNone || block.block_delete) return false;
+    constexpr std::string_view kLetters = "NGXYZF";
+    const auto is_plain = [&](const Word& word) {
+      return kLetters.find(word.letter) != std::string_view::npos &&
+             (word.letter != 'G' || word.value == 0);
+    };
+    return std::ranges::all_of(program_.words_of(block), is_plain) &&
+           !must_stand_as_text(block, meaning);
   }
 
  private:
@@ -99,11 +127,17 @@ class Lister {
     }
     if (block.opacity != gcode::Opacity::kNone || block.block_delete) {
       add_text(text_of_block(block));
+      // Its names may have changed any group.
+      if (block.opacity == gcode::Opacity::kNamedWords) set_by_word_.fill(kNotSet);
     } else {
       list_words(block, meaning);
       list_active_comments(block);
     }
-    // Where nothing is known any more, no word is a repetition.
+    forget_words_in_unknown_state();
+  }
+
+  // Where nothing is known any more, no word is a repetition.
+  void forget_words_in_unknown_state() {
     if (state_after().distance == gcode::DistanceMode::kUnknown) set_by_word_.fill(kNotSet);
   }
 
@@ -308,19 +342,12 @@ class Lister {
   }
 
   static constexpr Code kNotSet = -1;
-  static constexpr std::size_t kGroups = static_cast<std::size_t>(CodeGroup::kModalMacro) + 1;
-
-  static std::array<Code, kGroups> nothing_set() {
-    std::array<Code, kGroups> none;
-    none.fill(kNotSet);
-    return none;
-  }
 
   const gcode::Program& program_;
   const gcode::Interpretation& interpretation_;
   ProgramEvents list_;
   std::uint32_t block_index_ = 0;
-  std::array<Code, kGroups> set_by_word_ = nothing_set();  // the last word of each group
+  std::array<Code, kCodeGroups> set_by_word_;  // the last word of each group
   bool acts_with_motion_ = false;
 };
 
@@ -333,5 +360,21 @@ bool same_feed(const std::optional<double>& a, const std::optional<double>& b) {
 }
 
 ProgramEvents list_events(const ReadProgram& read) { return Lister(read).run(); }
+
+bool is_plain_rapid(const ReadProgram& read, std::uint32_t block) {
+  return Lister(read).is_plain_rapid(block);
+}
+
+EventsBefore events_before_next(const ReadProgram& read) {
+  EventsBefore next;
+  next.set_by_word = Lister(read).words_set();
+  next.place = read.before.place;
+  const auto& motions = read.interpretation->motions;
+  if (motions.empty()) return next;
+  const Motion& last = motions.back();
+  if (last.end_known) next.place = geometry::end_point(last.piece);
+  if (!last.end_known) next.place.reset();
+  return next;
+}
 
 }  // namespace batten::postproc

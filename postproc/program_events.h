@@ -2,6 +2,7 @@
 // The verifier's view of a program; it knows nothing of runs.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -9,14 +10,36 @@
 #include <string_view>
 #include <vector>
 
+#include "gcode/code_groups.h"
 #include "gcode/motion.h"
 #include "gcode/program.h"
+#include "geometry/point.h"
 
 namespace batten::postproc {
+
+// The modal groups of the words that the reader knows.
+inline constexpr std::size_t kCodeGroups =
+    static_cast<std::size_t>(gcode::CodeGroup::kModalMacro) + 1;
+
+// What a part of a program takes over from the parts before it, beside the state of the control.
+struct EventsBefore {
+  // The last word of each modal group, in tenths; -1: none has set it.
+  std::array<gcode::Code, kCodeGroups> set_by_word = nothing_set();
+  std::optional<geometry::Point3> place;  // mm: where the last motion ends, if that is known
+
+  bool operator==(const EventsBefore&) const = default;
+
+  static constexpr std::array<gcode::Code, kCodeGroups> nothing_set() {
+    std::array<gcode::Code, kCodeGroups> none{};
+    none.fill(-1);
+    return none;
+  }
+};
 
 struct ReadProgram {
   const gcode::Program* program = nullptr;
   const gcode::Interpretation* interpretation = nullptr;
+  EventsBefore before = {};  // of a part that begins behind a rapid; the whole begins with nothing
 };
 
 enum class EventKind : std::uint8_t {
@@ -70,5 +93,11 @@ struct ProgramEvents {
 // understood, other axes, motions from unknown places, loops, labels that are referred to, and
 // motions in states where the text is not the path (cutter compensation, inverse time ..).
 [[nodiscard]] ProgramEvents list_events(const ReadProgram& read);
+
+// What the next part takes over.
+[[nodiscard]] EventsBefore events_before_next(const ReadProgram& read);
+
+// Whether the block is a rapid whose place is known, and says nothing else.
+[[nodiscard]] bool is_plain_rapid(const ReadProgram& read, std::uint32_t block);
 
 }  // namespace batten::postproc

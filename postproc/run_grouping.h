@@ -31,7 +31,8 @@ struct GroupingOptions {
 
 // Why no motion may be rewritten in this state; empty where it may: one row per unsafe state.
 // G61 (exact path) is lifted by --allow exact-stop; G61.1 and G60 are not, their user asked for
-// the stops. Ask with the state after the motion's block, which is the one it moves in.
+// the stops. --allow control-smoothing lifts that state. Ask with the state after the motion's
+// block, which is the one it moves in.
 [[nodiscard]] std::string_view unsafe_state(const gcode::ModalState& state,
                                             const GroupingOptions& options);
 

@@ -43,6 +43,14 @@ void RunWork::give_way(std::string_view why) {
   if (chosen() == nullptr) went_back = why;
 }
 
+void RunWork::drop_what_is_not_written() {
+  for (std::size_t i = 0; i < smoothed.candidates.size(); ++i) {
+    if (std::ranges::find(choosing.order, i) != choosing.order.end()) continue;
+    smoothed.candidates[i].text.text = {};
+    smoothed.candidates[i].moves = {};
+  }
+}
+
 void settle(CutRun& cut, std::vector<RunWork>& works, const SmoothOptions& options) {
   // So many pieces give way at once that a long run is timed a few times only.
   constexpr std::size_t kShare = 4;

@@ -28,6 +28,8 @@ struct RunWork {
 
   [[nodiscard]] const Candidate* chosen() const;
   void give_way(std::string_view why);  // to its next candidate
+  // Texts and moves of candidates that were not chosen take room for nothing.
+  void drop_what_is_not_written();
 };
 
 // A run that was cut into pieces, which follow each other in the list of works.

@@ -56,12 +56,14 @@ class Follower {
 
   // The end of the last motion that happened before or in the block of the last event.
   [[nodiscard]] std::optional<geometry::Point3> place() const {
-    if (!block_) return {};
+    if (!block_) return read_.before.place;
     const auto& motions = read_.interpretation->motions;
     const auto next = std::upper_bound(
         motions.begin(), motions.end(), *block_,
         [](std::uint32_t block, const gcode::Motion& m) { return block < m.block; });
-    if (next == motions.begin()) return {};
+    if (next == motions.begin()) {
+      return lost_after_ ? std::nullopt : read_.before.place;
+    }
     const gcode::Motion& last = *(next - 1);
     if (!last.end_known || (lost_after_ && last.block <= *lost_after_)) return {};
     return geometry::end_point(last.piece);

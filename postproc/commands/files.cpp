@@ -8,10 +8,12 @@
 #include <cstdio>
 #include <limits>
 #include <system_error>
+#include <utility>
 
 #include "postproc/exit_code.h"
 #include "postproc/interrupt.h"
 #include "postproc/output_file.h"
+#include "postproc/spool_file.h"
 #include "postproc/terminal_colour.h"
 #include "postproc/valid_utf8.h"
 
@@ -29,30 +31,61 @@ constexpr const char* kWasChanged = ": was changed while it was read; nothing wa
 constexpr const char* kWasReplaced =
     ": was replaced or removed while it was read; nothing was written";
 
+// More than this of standard input goes to a file, so that it takes no memory.
+constexpr std::size_t kMostBytesInMemory = std::size_t{1} << 23;
+
+// What is read of standard input: in memory while it is short, then in a file.
+class InputBuffer {
+ public:
+  // False: it cannot be kept; the reason was said.
+  bool append(std::string_view part) {
+    bytes_ += part.size();
+    if (bytes_ > kMostBytes) {
+      say(fmt::format("<stdin>: more than {} bytes", kMostBytes));
+      return false;
+    }
+    text_ += part;
+    return text_.size() <= kMostBytesInMemory || spool();
+  }
+
+  std::optional<gcode::SourceText> take() {
+    if (!file_) return gcode::SourceText("<stdin>", std::move(text_));
+    if (!spool()) return std::nullopt;
+    auto text = file_->as_text("<stdin>");
+    if (!text) say(file_->error());
+    return text;
+  }
+
+ private:
+  bool spool() {
+    std::string error;
+    if (!file_) {
+      if (auto made = SpoolFile::make(error)) file_.emplace(std::move(*made));
+    }
+    if (file_ && !file_->append(text_)) error = file_->error();
+    if (!error.empty()) say("<stdin>: cannot be kept: " + error);
+    text_.clear();
+    return error.empty();
+  }
+
+  std::size_t bytes_ = 0;
+  std::string text_;
+  std::optional<SpoolFile> file_;
+};
+
 std::optional<gcode::SourceText> read_standard_input() {
-  std::string text;
+  InputBuffer buffer;
   std::array<char, 1 << 16> part;
   for (;;) {
     const ssize_t count = ::read(STDIN_FILENO, part.data(), part.size());
-    if (count == 0) return gcode::SourceText("<stdin>", std::move(text));
+    if (count == 0) return buffer.take();
     if (count < 0 && errno == EINTR && !interrupted()) continue;
     if (count < 0) {
       say("<stdin>: cannot be read: " + std::generic_category().message(errno));
       return std::nullopt;
     }
-    text.append(part.data(), static_cast<std::size_t>(count));
-    if (text.size() > kMostBytes) {
-      say(fmt::format("<stdin>: more than {} bytes", kMostBytes));
-      return std::nullopt;
-    }
+    if (!buffer.append({part.data(), static_cast<std::size_t>(count)})) return std::nullopt;
   }
-}
-
-int exit_code_of(const WriteResult& result) {
-  if (result.status == WriteStatus::kWritten) return static_cast<int>(ExitCode::kDone);
-  say(result.message);
-  if (result.status == WriteStatus::kInterrupted) return interrupt_exit_code();
-  return static_cast<int>(ExitCode::kFileError);
 }
 
 LogLevel level_of(gcode::Severity severity) {
@@ -107,23 +140,32 @@ int write_result(const std::string& name, std::string_view bytes, bool replace_e
       {.target = name, .bytes = bytes, .replace_existing = replace_existing, .stop = interrupted}));
 }
 
+int exit_code_of(const WriteResult& result) {
+  if (result.status == WriteStatus::kWritten) return static_cast<int>(ExitCode::kDone);
+  say(result.message);
+  if (result.status == WriteStatus::kInterrupted) return interrupt_exit_code();
+  return static_cast<int>(ExitCode::kFileError);
+}
+
+std::string objection_to_place_of(const WatchedFile& input) {
+  switch (input.now()) {
+    case FileNow::kChanged:
+      return input.path().string() + kWasChanged;
+    case FileNow::kReplaced:
+      return input.path().string() + kWasReplaced;
+    case FileNow::kSame:
+      break;
+  }
+  return "";
+}
+
 int write_in_place_of(const WatchedFile& input, std::string_view bytes) {
   WriteRequest request;
   request.target = input.path();
   request.bytes = bytes;
   request.replace_existing = true;
   request.stop = interrupted;
-  request.objection = [&input]() -> std::string {
-    switch (input.now()) {
-      case FileNow::kChanged:
-        return input.path().string() + kWasChanged;
-      case FileNow::kReplaced:
-        return input.path().string() + kWasReplaced;
-      case FileNow::kSame:
-        break;
-    }
-    return "";
-  };
+  request.objection = [&input] { return objection_to_place_of(input); };
   return exit_code_of(write_file(request));
 }
 

@@ -34,6 +34,12 @@ namespace batten::postproc {
 // written into, put away or replaced meanwhile.
 [[nodiscard]] int write_in_place_of(const WatchedFile& input, std::string_view bytes);
 
+// Why no program may be put in the place of this one, which it was made of; empty: it may.
+[[nodiscard]] std::string objection_to_place_of(const WatchedFile& input);
+
+// The same of something that was written: 0, or the exit code, with the reason said.
+[[nodiscard]] int exit_code_of(const WriteResult& result);
+
 // The same for a file that is made part by part.
 [[nodiscard]] int write_parts(const std::string& name,
                               const std::function<void(const PartWriter&)>& parts,

@@ -1,16 +1,22 @@
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
 #include "postproc/exit_code.h"
 #include "postproc/interrupt.h"
+#include "postproc/log_level.h"
 #include "postproc/output_file.h"
 #include "postproc/report/html_report.h"
 #include "postproc/report/json_report.h"
 #include "postproc/report/summary_text.h"
 #include "postproc/smooth_verdict.h"
+#include "postproc/spool_file.h"
+#include "postproc/watched_file.h"
+#include "postproc/windows.h"
 
 namespace batten::postproc {
 
@@ -32,13 +38,187 @@ bool would_be_refused(const std::string& file, bool replace_existing) {
   return true;
 }
 
-// The progress line is gone when this returns.
-SmoothResult smooth_with_progress(const gcode::SourceText& source, const SmoothCommand& command) {
-  const Progress progress = show_progress(command.progress, source.text().size());
-  SmoothResult result = smooth_program(source, command.options, progress);
-  (void)progress(1);
-  return result;
-}
+// From this size on a program is smoothed window by window where that can be. It is read twice
+// then, and takes some 60 MB; as a whole one of this size takes about 350 MB.
+constexpr std::size_t kBytesForWindows = std::size_t{1} << 23;
+
+class SmoothWork {
+ public:
+  SmoothWork(const SmoothCommand& command, std::string output)
+      : command_(command), output_(std::move(output)), watched_(command.input) {}
+
+  int run() {
+    source_ = read_program(command_.input);
+    if (interrupted()) return end_interrupted();
+    if (!source_) return static_cast<int>(ExitCode::kFileError);
+    // The page draws the whole path.
+    const bool in_windows =
+        source_->text().size() >= kBytesForWindows && command_.report_file.empty();
+    if (in_windows) {
+      if (const auto code = smooth_in_windows_to_output()) return *code;
+    }
+    return smooth_whole();
+  }
+
+ private:
+  // --- as a whole ---------------------------------------------------------------------------
+
+  int smooth_whole() {
+    const Progress progress = show_progress(command_.progress, source_->text().size());
+    result_ = smooth_program(*source_, command_.options, progress);
+    (void)progress(1);  // the progress line is gone
+    if (const auto code = cannot_be_told()) return *code;
+    tell_of_result();
+    int code = static_cast<int>(verdict_);
+    if (writes() && command_.in_place) code = write_in_place_of(watched_, result_.text);
+    if (writes() && !command_.in_place) code = write_result(output_, result_.text, replaces());
+    return finish(code);
+  }
+
+  // --- window by window ---------------------------------------------------------------------
+
+  // The exit code; nothing where the program must be smoothed as a whole, with nothing written.
+  std::optional<int> smooth_in_windows_to_output() {
+    if (command_.dry_run) return smooth_windows_only();
+    return is_seen_at_once() ? write_from_spool() : write_beside();
+  }
+
+  // What is written there is seen before all of it is.
+  [[nodiscard]] bool is_seen_at_once() const {
+    std::error_code error;
+    return output_ == "-" || (std::filesystem::exists(output_, error) &&
+                              !std::filesystem::is_regular_file(output_, error));
+  }
+
+  // False: nothing is to be written, `code_` says why; or the whole is needed.
+  bool smooth_windows(const TextSink& sink) {
+    const Progress progress = show_progress(command_.progress, source_->text().size());
+    auto result = smooth_in_windows(*source_, command_.options, sink, progress);
+    (void)progress(1);
+    needs_whole_ = !result;
+    if (!result) return false;
+    result_ = std::move(*result);
+    return true;
+  }
+
+  // Behind the windows. False: nothing is to be written.
+  bool tell_of_windows() {
+    code_ = cannot_be_told();
+    if (code_) return false;
+    tell_of_result();
+    return verdict_ == ExitCode::kDone;
+  }
+
+  std::optional<int> smooth_windows_only() {
+    if (!smooth_windows([](std::string_view) { return true; })) return std::nullopt;
+    if (!tell_of_windows() && code_) return code_;
+    return finish(static_cast<int>(verdict_));
+  }
+
+  std::optional<int> write_beside() {
+    WriteRequest request;
+    request.target = output_;
+    request.replace_existing = replaces();
+    request.stop = interrupted;
+    bool may_be_told = false;
+    request.parts = [&](const PartWriter& writer) {
+      bool written = true;
+      const bool done = smooth_windows([&](std::string_view part) {
+        written = writer(part);
+        return written;
+      });
+      may_be_told = done && written;
+    };
+    request.objection = [&]() -> std::string {
+      if (!may_be_told || !tell_of_windows()) return kNotWanted;
+      return command_.in_place ? objection_to_place_of(watched_) : "";
+    };
+    const WriteResult written = write_file(request);
+    if (needs_whole_) return std::nullopt;
+    if (code_) return code_;
+    if (interrupted()) return end_interrupted();
+    if (!told_) return exit_code_of(written);
+    const bool refused = written.message == kNotWanted;
+    return finish(refused ? static_cast<int>(verdict_) : exit_code_of(written));
+  }
+
+  std::optional<int> write_from_spool() {
+    std::string error;
+    auto spool = SpoolFile::make(error);
+    if (!spool) return std::nullopt;  // as a whole no file is needed
+    const bool done = smooth_windows([&](std::string_view part) { return spool->append(part); });
+    if (needs_whole_) return std::nullopt;
+    if (!spool->error().empty()) {
+      say(spool->error());
+      return static_cast<int>(ExitCode::kFileError);
+    }
+    if (!done || !tell_of_windows()) return code_ ? code_ : finish(static_cast<int>(verdict_));
+    const auto parts = [&](const PartWriter& writer) { spool->hand_to(writer); };
+    return finish(write_parts(output_, parts, replaces()));
+  }
+
+  // --- what is told -------------------------------------------------------------------------
+
+  // The exit code where the result is worth nothing.
+  [[nodiscard]] std::optional<int> cannot_be_told() const {
+    if (interrupted()) return end_interrupted();
+    if (changed_while_read(watched_)) return static_cast<int>(ExitCode::kFileError);
+    return std::nullopt;
+  }
+
+  // All that takes memory before anything is in its place: what ends here has written nothing.
+  void tell_of_result() {
+    told_ = true;
+    print(result_.diagnostics, *source_, command_.log_level);
+    verdict_ = judge(result_, source_->text(), command_.strict);
+    const SmoothReport report = {
+        .source = *source_,
+        .options = command_.options,
+        .result = result_,
+        .output_file = writes() ? output_ : "",
+        .strict = command_.strict,
+    };
+    const bool tells = result_.understood && command_.log_level >= LogLevel::kInfo;
+    if (tells) summary_ = summary_text(report);
+    if (!command_.json_file.empty()) json_ = json_report(report);
+    if (!command_.report_file.empty()) {
+      page_ = html_report(report, {.command = command_.command_line});
+    }
+  }
+
+  // `code`: of the program's own file.
+  int finish(int code) const {
+    say_lines(summary_);
+    if (verdict_ != ExitCode::kDone) say(complaint(verdict_, command_.strict));
+    if (!command_.json_file.empty()) {
+      const int json_code = write_result(command_.json_file, json_, command_.force);
+      if (code == 0) code = json_code;
+    }
+    if (!command_.report_file.empty()) {
+      const int report_code = write_result(command_.report_file, page_, command_.force);
+      if (code == 0) code = report_code;
+    }
+    return code;
+  }
+
+  [[nodiscard]] bool writes() const { return verdict_ == ExitCode::kDone && !command_.dry_run; }
+  [[nodiscard]] bool replaces() const { return command_.force || command_.in_place; }
+
+  static constexpr const char* kNotWanted = "not wanted";
+
+  const SmoothCommand& command_;
+  std::string output_;
+  WatchedFile watched_;
+  std::optional<gcode::SourceText> source_;
+  SmoothResult result_;
+  ExitCode verdict_ = ExitCode::kDone;
+  std::string summary_;
+  std::string json_;
+  std::string page_;
+  bool told_ = false;
+  bool needs_whole_ = false;
+  std::optional<int> code_;  // of a result that is worth nothing
+};
 
 }  // namespace
 
@@ -50,46 +230,7 @@ int run(const SmoothCommand& command) {
       would_be_refused(command.report_file, command.force)) {
     return static_cast<int>(ExitCode::kFileError);
   }
-  const WatchedFile watched(command.input);
-  const auto source = read_program(command.input);
-  if (interrupted()) return end_interrupted();
-  if (!source) return static_cast<int>(ExitCode::kFileError);
-
-  const SmoothResult result = smooth_with_progress(*source, command);
-  if (interrupted()) return end_interrupted();
-  if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
-  print(result.diagnostics, *source, command.log_level);
-
-  const ExitCode verdict = judge(result, source->text(), command.strict);
-  const bool writes = verdict == ExitCode::kDone && !command.dry_run;
-  const SmoothReport report = {
-      .source = *source,
-      .options = command.options,
-      .result = result,
-      .output_file = writes ? output : "",
-      .strict = command.strict,
-  };
-  // All that takes memory before anything is written: what ends here has written nothing.
-  const bool tells = result.understood && command.log_level >= LogLevel::kInfo;
-  const std::string summary = tells ? summary_text(report) : "";
-  const std::string json = command.json_file.empty() ? "" : json_report(report);
-  const std::string page =
-      command.report_file.empty() ? "" : html_report(report, {.command = command.command_line});
-
-  int code = static_cast<int>(verdict);
-  if (writes && command.in_place) code = write_in_place_of(watched, result.text);
-  if (writes && !command.in_place) code = write_result(output, result.text, replaces_program);
-  say_lines(summary);
-  if (verdict != ExitCode::kDone) say(complaint(verdict, command.strict));
-  if (!command.json_file.empty()) {
-    const int json_code = write_result(command.json_file, json, command.force);
-    if (code == 0) code = json_code;
-  }
-  if (!command.report_file.empty()) {
-    const int report_code = write_result(command.report_file, page, command.force);
-    if (code == 0) code = report_code;
-  }
-  return code;
+  return SmoothWork(command, output).run();
 }
 
 }  // namespace batten::postproc

@@ -94,7 +94,7 @@ Json smooth_json(const SmoothReport& report) {
                  {"units", name_of(result.units)}}},
                {"output",
                 {{"file", report.output_file},
-                 {"bytes", result.text.size()},
+                 {"bytes", result.bytes_out()},
                  {"blocks", result.blocks_out},
                  {"target", report.options.target->name()}}},
                {"machine",

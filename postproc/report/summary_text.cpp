@@ -161,7 +161,7 @@ std::string summary_text(const SmoothReport& report) {
                              report.output_file.empty() ? "nothing written" : report.output_file,
                              report.options.target->name()));
   lines.add("blocks", change(result.blocks_in, result.blocks_out));
-  lines.add("bytes", change(report.source.text().size(), result.text.size()));
+  lines.add("bytes", change(report.source.text().size(), result.bytes_out()));
   add_runs(result, lines);
   lines.add("cutting time", times(result, *report.options.machine));
   add_methods(result, lines);

@@ -5,7 +5,8 @@ Writes programs of N blocks (default 1,000,000) with steps of about 0.1 mm, for 
 
   spiral    one run: a planar spiral whose radius waves
   circles   concentric circles as chords, a rapid between two of them
-  raster3d  a zigzag in XZ planes over a wavy surface, one run a row
+  raster3d  a zigzag in XZ planes over a wavy surface, one run
+  relief    the same surface in rows of 200 blocks, a retract and a rapid between two of them
 
 Coordinates have four decimals (mm), as a CAM system writes them. Same bytes every time."""
 import argparse
@@ -40,13 +41,14 @@ def circles(blocks):
         left, radius = left - chords, radius + 0.5
 
 
+def height(x, y):
+    """A wavy surface."""
+    return 2 * math.sin(0.15 * x) * math.cos(0.1 * y) + 0.5 * math.sin(0.7 * x + 0.3 * y)
+
+
 def raster3d(blocks):
     """Rows of 1000 blocks along X, 0.2 mm apart, there and back."""
     row_blocks = 1000
-
-    def height(x, y):
-        return 2 * math.sin(0.15 * x) * math.cos(0.1 * y) + 0.5 * math.sin(0.7 * x + 0.3 * y)
-
     yield f"G0 X0 Y0\nG1 Z{height(0, 0):.4f} F3000\n"
     written, row = 0, 0
     while written < blocks:
@@ -57,7 +59,20 @@ def raster3d(blocks):
         written, row = written + row_blocks, row + 1
 
 
-KINDS = {"spiral": spiral, "circles": circles, "raster3d": raster3d}
+def relief(blocks):
+    """Rows of 200 blocks with all that belongs to them, 0.2 mm apart, all in one direction."""
+    row_blocks = 200
+    for row in range(blocks // row_blocks):
+        y = 0.2 * (row % 1000)
+        rows = [f"G0 X0.0000 Y{y:.4f}\nG1 Z{height(0, y):.4f} F1500\n"]
+        for i in range(1, row_blocks - 2):
+            x = STEP * i
+            rows.append(f"X{x:.4f} Y{y:.4f} Z{height(x, y):.4f}\n")
+        rows.append("G0 Z5\n")
+        yield "".join(rows)
+
+
+KINDS = {"spiral": spiral, "circles": circles, "raster3d": raster3d, "relief": relief}
 
 
 def main():

@@ -92,6 +92,26 @@ TEST(SourceText, ThePlaceAfterALastLineEndIsTheNextLine) {
   expect_place(SourceText("p", ""), 0, 1, 1);
 }
 
+// The table of lines knows only some of them.
+TEST(SourceText, PlacesOfALongTextAreCountedByHand) {
+  std::string text;
+  for (int i = 0; i < 1000; ++i) {
+    text += std::string(static_cast<std::size_t>(i * 7 % 5), 'x');
+    text += i % 3 == 0 ? "\n" : i % 3 == 1 ? "\r\n" : "\r";
+  }
+  const SourceText source("part.nc", text);
+  std::uint32_t line = 1;
+  std::uint32_t column = 1;
+  for (std::uint32_t at = 0; at < text.size(); ++at) {
+    const SourcePlace place = source.place_of(at);
+    ASSERT_EQ(place.line, line) << "offset " << at;
+    ASSERT_EQ(place.column, column) << "offset " << at;
+    const bool ends = text[at] == '\n' || (text[at] == '\r' && text[at + 1] != '\n');
+    line += ends ? 1 : 0;
+    column = ends ? 1 : column + 1;
+  }
+}
+
 class MapFile : public testing::Test {
  protected:
   [[nodiscard]] std::filesystem::path file_with(const std::string& text) const {
@@ -110,6 +130,18 @@ TEST_F(MapFile, GivesTheBytesOfTheFile) {
   EXPECT_EQ(source->text(), text);
   EXPECT_EQ(source->name(), (folder_ / "part.nc").string());
   expect_place(*source, 7, 2, 1);
+}
+
+TEST_F(MapFile, GivesBytesThatWereSetAsideAgain) {
+  std::string text;
+  for (int i = 0; i < 5000; ++i) text += std::to_string(i) + "\n";
+  std::string error;
+  const auto source = SourceText::map_file(file_with(text), error, "a name");
+  ASSERT_TRUE(source) << error;
+  EXPECT_EQ(source->name(), "a name");
+  source->set_aside({5, static_cast<std::uint32_t>(text.size() - 7)});
+  EXPECT_EQ(source->text(), text);
+  SourceText("short", text).set_aside({0, 10000});  // not mapped: nothing to do
 }
 
 TEST_F(MapFile, TakesAnEmptyFile) {

@@ -1,0 +1,198 @@
+#include "gcode/siemens_block.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+
+#include "gcode/characters.h"
+#include "gcode/siemens_lexer.h"
+
+namespace batten::gcode {
+namespace {
+
+// G20 and G21 belong to the ISO mode of these controls; they are no other words elsewhere.
+constexpr std::array kCommonG = {0,  1,  2,  3,  4,  9,  17, 18, 19, 20, 21, 33, 40, 41, 42,
+                                 53, 54, 55, 56, 57, 60, 64, 90, 91, 93, 94, 95, 96, 97};
+
+constexpr std::array<std::string_view, 20> kFlowNames = {
+    "IF",    "ELSE",    "ENDIF", "WHILE", "ENDWHILE", "FOR",     "ENDFOR",
+    "LOOP",  "ENDLOOP", "UNTIL", "CASE",  "REPEAT",   "REPEATB", "GOTO",
+    "GOTOF", "GOTOB",   "GOTOC", "GOTOS", "REPEATP",  "DEFAULT"};
+
+constexpr std::string_view kLetters = "NGXYZIJKFSTDMHABCUVW";
+
+std::string upper_text(std::string_view text) {
+  std::string all;
+  for (const char c : text) {
+    all.push_back(upper(c));
+  }
+  return all;
+}
+
+// R5, not RND.
+bool is_r_parameter(std::string_view name) {
+  return name.size() > 1 && name[0] == 'R' &&
+         std::ranges::all_of(name.substr(1), [](char c) { return is_digit(c); });
+}
+
+class BlockReader {
+ public:
+  BlockReader(std::string_view source, SourceSpan line, std::vector<Word>& words)
+      : source_(source), lexer_(source, line), words_(words) {}
+
+  SiemensBlock read() {
+    for (;;) {
+      const SiemensToken token = lexer_.next();
+      switch (token.kind) {
+        case SiemensTokenKind::kEnd:
+          return finished();
+        case SiemensTokenKind::kComment:
+          block_.comment = token.span;
+          break;
+        case SiemensTokenKind::kSkip:
+          if (block_.skip || anything_) return unreadable(token, "a second '/'");
+          block_.skip = true;
+          break;
+        case SiemensTokenKind::kLabel:
+          label_ = true;
+          break;
+        case SiemensTokenKind::kWord:
+        case SiemensTokenKind::kValueWord:
+          take_word(token);
+          break;
+        case SiemensTokenKind::kName:
+          if (is_flow(token)) {
+            block_.opacity = Opacity::kFlow;
+            return block_;
+          }
+          take_name(token);
+          if (is_declaration(token)) return finished();
+          break;
+        case SiemensTokenKind::kUnreadable:
+          return unreadable(token, token.trouble);
+      }
+    }
+  }
+
+ private:
+  SiemensBlock unreadable(const SiemensToken& token, std::string_view trouble) {
+    block_.opacity = Opacity::kUnreadable;
+    block_.trouble = trouble;
+    block_.trouble_at = token.span;
+    return block_;
+  }
+
+  [[nodiscard]] std::string name_of(const SiemensToken& token) const {
+    return upper_text(source_.substr(token.name.begin, token.name.size()));
+  }
+
+  [[nodiscard]] bool is_flow(const SiemensToken& token) const {
+    return std::ranges::find(kFlowNames, name_of(token)) != kFlowNames.end();
+  }
+
+  // What follows is a list of names, which no word of a block looks like.
+  [[nodiscard]] bool is_declaration(const SiemensToken& token) const {
+    const std::string name = name_of(token);
+    return name == "DEF" || name == "EXTERN";
+  }
+
+  void add_word(const SiemensToken& token, char letter) {
+    Word& word = words_.emplace_back();
+    word.letter = letter;
+    word.span = token.span;
+    word.is_number = token.kind == SiemensTokenKind::kWord;
+    if (word.is_number) {
+      constexpr int kMostDecimals = std::numeric_limits<std::uint8_t>::max();
+      word.decimals = static_cast<std::uint8_t>(std::min(token.number.decimals, kMostDecimals));
+      word.has_point = token.number.has_point;
+      word.value = token.number.value;
+    }
+  }
+
+  void take_word(const SiemensToken& token) {
+    const bool number = token.kind == SiemensTokenKind::kWord;
+    anything_ = anything_ || token.letter != 'N';
+    words_beside_ = words_beside_ || token.letter != 'N';
+    if (token.letter == 'G' && number && !is_common_siemens_g(token.number.value)) {
+      named_ = true;
+      return;
+    }
+    if (kLetters.find(token.letter) == std::string_view::npos ||
+        (token.letter == 'M' && number && token.number.value == 17)) {
+      foreign_ = true;  // L100 P3: a subprogram; M17: the end of one
+      return;
+    }
+    named_ = named_ || token.letter == 'D';  // a tool offset at once
+    expression_ = expression_ || !number;
+    add_word(token, token.letter);
+  }
+
+  void take_name(const SiemensToken& token) {
+    anything_ = true;
+    const std::string name = name_of(token);
+    if (is_r_parameter(name) && token.assigned) {
+      assigns_ = true;
+      return;
+    }
+    words_beside_ = true;
+    if (name == "CR" && token.assigned) {
+      return take_radius(token);
+    }
+    named_ = true;
+  }
+
+  // CR=10 is the R of other controls.
+  void take_radius(SiemensToken token) {
+    const std::size_t equals = source_.find('=', token.name.end);
+    const auto number = read_number(source_.substr(equals + 1, token.span.end - equals - 1));
+    constexpr double kNumberLimit = 1e9;
+    const bool plain = number && number->value < kNumberLimit && number->value > -kNumberLimit;
+    token.kind = plain ? SiemensTokenKind::kWord : SiemensTokenKind::kValueWord;
+    if (plain) {
+      token.number = *number;
+    }
+    expression_ = expression_ || !plain;
+    add_word(token, 'R');
+  }
+
+  SiemensBlock finished() {
+    if (label_) {
+      block_.opacity = Opacity::kFlow;
+    } else if (foreign_) {
+      block_.opacity = Opacity::kForeign;
+    } else if (assigns_ && !words_beside_) {
+      block_.opacity = Opacity::kAssignment;
+    } else if (named_ || assigns_) {
+      block_.opacity = Opacity::kNamedWords;
+    } else if (expression_) {
+      block_.opacity = Opacity::kExpression;
+    }
+    return block_;
+  }
+
+  std::string_view source_;
+  SiemensLexer lexer_;
+  std::vector<Word>& words_;
+  SiemensBlock block_;
+  bool anything_ = false;      // but N
+  bool words_beside_ = false;  // something that is neither N nor sets an R parameter
+  bool label_ = false;
+  bool named_ = false;
+  bool foreign_ = false;
+  bool assigns_ = false;
+  bool expression_ = false;
+};
+
+}  // namespace
+
+bool is_common_siemens_g(double value) {
+  return std::ranges::any_of(kCommonG, [value](int code) { return value == code; });
+}
+
+SiemensBlock read_siemens_block(std::string_view source, SourceSpan line,
+                                std::vector<Word>& words) {
+  return BlockReader(source, line, words).read();
+}
+
+}  // namespace batten::gcode

@@ -1,0 +1,62 @@
+// One line of a Siemens program to tokens: addresses with values (`X10`, `X=10`), and names with
+// what belongs to them (`CR=5`, `R1=R2*3`, `MSG("..")`, `PO[X]=(1,2)`, `SOFT`).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "gcode/number_format.h"
+#include "gcode/source_text.h"
+
+namespace batten::gcode {
+
+enum class SiemensTokenKind : std::uint8_t {
+  kWord,        // one letter and a plain number: X10, X=-.5
+  kValueWord,   // one letter and a value that is computed: X=R1, X=AC(10)
+  kName,        // anything longer, with its index, its value and its arguments
+  kLabel,       // NAME: at the beginning of the block
+  kComment,     // ; to the end of the line
+  kSkip,        // / or /0 to /9
+  kUnreadable,  // see `trouble`: the rest of the line is not split
+  kEnd,
+};
+
+struct SiemensToken {
+  SiemensTokenKind kind = SiemensTokenKind::kEnd;
+  char letter = 0;         // upper case: kWord, kValueWord
+  ReadNumber number;       // kWord
+  bool assigned = false;   // an = stands behind the name
+  bool arguments = false;  // kName: parentheses with something in them
+  SourceSpan span;
+  SourceSpan name;  // kName, kLabel: without index, value and arguments
+  std::string_view trouble;
+};
+
+class SiemensLexer {
+ public:
+  // `line` is a span of `source`, without its line end.
+  SiemensLexer(std::string_view source, SourceSpan line)
+      : text_(source.substr(0, line.end)), begin_(line.begin), at_(line.begin) {}
+
+  // kEnd after the last token. Linear in the line as a whole.
+  [[nodiscard]] SiemensToken next();
+
+ private:
+  [[nodiscard]] SiemensToken address();
+  [[nodiscard]] SiemensToken named(std::size_t name_end);
+  [[nodiscard]] SiemensToken assigned_letter(std::size_t value_at);
+
+  SiemensToken token(SiemensTokenKind kind, std::size_t end);
+  SiemensToken unreadable(std::string_view trouble);
+
+  [[nodiscard]] char peek(std::size_t at) const { return at < text_.size() ? text_[at] : '\0'; }
+  [[nodiscard]] std::size_t after_blanks(std::size_t at) const;
+
+  std::string_view text_;
+  std::size_t begin_;
+  std::size_t at_;
+  bool anything_ = false;  // a token that is no block number, skip sign or label
+};
+
+}  // namespace batten::gcode

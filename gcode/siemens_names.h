@@ -1,0 +1,25 @@
+// What the words of several letters of a Siemens block do to the control: SOFT, COMPCAD, TRAORI,
+// ROT, CYCLE832(..), G641 .. Which of them leave path and state alone: docs/controllers/siemens.md.
+#pragma once
+
+#include <string_view>
+
+#include "gcode/block_words.h"
+#include "gcode/control_state.h"
+
+namespace batten::gcode {
+
+struct NamedEffect {
+  bool understood = true;    // false: a name is not known; it could have changed anything
+  bool takes_axes = false;   // X, Y, Z belong to a name (TRANS X10), not to a motion
+  bool loses_place = false;  // where the tool is after the block is not known
+  bool unit_word = false;
+  std::string_view barrier;  // why the block is copied
+};
+
+// `text` is a block of Opacity::kNamedWords, `words` its words of one letter. Applies what is known
+// to the state.
+[[nodiscard]] NamedEffect apply_names(std::string_view text, const BlockWords& words,
+                                      ControlState& state);
+
+}  // namespace batten::gcode

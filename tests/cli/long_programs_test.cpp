@@ -1,0 +1,106 @@
+// Programs of many megabytes, from files and streams: written window by window, and the same bytes,
+// messages and reports as where the whole is asked for (`--report` needs it).
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "batten_process.h"
+#include "tests/postproc/wavy_programs.h"
+
+namespace batten {
+namespace {
+
+constexpr const char* kSmooth = "smooth part.nc --target linuxcnc --method fair --progress off ";
+
+// A pass that is rewritten.
+std::string pass() {
+  return "G0 X0 Y0 Z5\nG1 Z-1 F300\n" +
+         postproc::joined(postproc::wave_lines({.lines = 80}), "\n") + "G0 Z5\n";
+}
+
+// Two passes, nine megabytes of comments apart: read as fast as bytes, and above the size from
+// which programs are smoothed in windows.
+std::string long_program(const std::string& end = "M30\n") {
+  const std::string line = "(" + std::string(998, 'x') + ")\n";
+  std::string text = "G21 G90 G17\nM3 S9000\n" + pass() + "M9\n";
+  for (int i = 0; i < 9000; ++i) text += line;
+  for (int i = 0; i < 40000; ++i) text += "M8\nG0 Z5\n";
+  return text + pass() + end;
+}
+
+class LongProgram : public testing::Test {
+ protected:
+  void SetUp() override { folder_.put("part.nc", long_program()); }
+
+  // The bytes as the whole gives them.
+  [[nodiscard]] std::string whole() const {
+    const ProcessResult done =
+        folder_.batten(std::string(kSmooth) + "-o whole.nc --report page.html --json whole.json");
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    return folder_.text_of("whole.nc");
+  }
+
+  BattenFolder folder_;
+};
+
+TEST_F(LongProgram, GivesTheBytesAndTheReportOfTheWhole) {
+  const std::string expected = whole();
+  EXPECT_NE(expected, folder_.text_of("part.nc"));
+  const ProcessResult done = folder_.batten(std::string(kSmooth) + "-o new.nc --json new.json");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(folder_.text_of("new.nc") == expected);
+  std::string report = folder_.text_of("new.json");
+  const std::size_t name = report.find("new.nc");
+  ASSERT_NE(name, std::string::npos);
+  report.replace(name, 6, "whole.nc");
+  EXPECT_EQ(report, folder_.text_of("whole.json"));
+}
+
+TEST_F(LongProgram, GoesFromStandardInputToStandardOutput) {
+  const std::string expected = whole();
+  const ProcessResult done = folder_.shell(
+      "cat part.nc | batten smooth - --target linuxcnc --method fair --progress off > new.nc");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(folder_.text_of("new.nc") == expected);
+}
+
+TEST_F(LongProgram, IsReplacedInPlace) {
+  const std::string expected = whole();
+  const ProcessResult done = folder_.batten(std::string(kSmooth) + "--in-place");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(folder_.text_of("part.nc") == expected);
+}
+
+TEST_F(LongProgram, IsNotWrittenInADryRunNorOverAnExistingFile) {
+  const ProcessResult dry = folder_.batten(std::string(kSmooth) + "-o new.nc --dry-run");
+  EXPECT_EQ(dry.exit_code, 0) << dry.err;
+  EXPECT_FALSE(folder_.has("new.nc"));
+  folder_.put("new.nc", "old\n");
+  EXPECT_EQ(folder_.batten(std::string(kSmooth) + "-o new.nc").exit_code, 4);
+  EXPECT_EQ(folder_.text_of("new.nc"), "old\n");
+}
+
+// What needs the whole may stand at the very end.
+TEST_F(LongProgram, ThatNeedsTheWholeIsWrittenOnce) {
+  folder_.put("part.nc", long_program("M99\n"));
+  const std::string expected = whole();
+  const ProcessResult done = folder_.batten(std::string(kSmooth) + "-o new.nc");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(folder_.text_of("new.nc") == expected);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.file("."))) {
+    EXPECT_EQ(entry.path().filename().string().find("batten-part"), std::string::npos);
+  }
+}
+
+TEST_F(LongProgram, ThatDoesNotFitOnTheDiskLeavesNothing) {
+  const ProcessResult done =
+      folder_.shell("ulimit -f 1024; batten smooth part.nc -o new.nc --target linuxcnc");
+  EXPECT_EQ(done.exit_code, 4) << done.err;
+  EXPECT_NE(done.err.find("new.nc"), std::string::npos) << done.err;
+  EXPECT_FALSE(folder_.has("new.nc"));
+}
+
+}  // namespace
+}  // namespace batten

@@ -1,0 +1,227 @@
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "gcode/interpreter.h"
+#include "gcode/parser.h"
+#include "gcode/siemens_value.h"
+
+namespace batten::gcode {
+namespace {
+
+Program siemens(const std::string& text, Diagnostics& found) {
+  return parse(SourceText("part.mpf", text), Language::kSiemens, found);
+}
+
+// "X10 R5" for the words with plain numbers, "X?" for others.
+std::string words_of(const Program& program) {
+  std::string text;
+  for (const Word& word : program.words) {
+    if (!text.empty()) text += ' ';
+    text.push_back(word.letter);
+    text += word.is_number ? to_text(word.value, {.decimals = 3}) : "?";
+  }
+  return text;
+}
+
+struct LineCase {
+  const char* name;
+  const char* line;
+  Opacity opacity;
+  const char* words;
+};
+
+class SiemensLine : public testing::TestWithParam<LineCase> {};
+
+TEST_P(SiemensLine, IsReadAsTheControlReadsIt) {
+  Diagnostics found;
+  const Program program = siemens(GetParam().line, found);
+  ASSERT_EQ(program.blocks.size(), 1U);
+  EXPECT_EQ(program.blocks[0].opacity, GetParam().opacity);
+  EXPECT_EQ(words_of(program), GetParam().words);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Constructs, SiemensLine,
+    testing::Values(
+        LineCase{"Plain", "N10 G1 X10 Y-2.5 F1000", Opacity::kNone, "N10 G1 X10 Y-2.5 F1000"},
+        LineCase{"WithoutBlanks", "N10G1X10Y.5", Opacity::kNone, "N10 G1 X10 Y0.5"},
+        LineCase{"Assigned", "G1 X=10 Y = -.5", Opacity::kNone, "G1 X10 Y-0.5"},
+        LineCase{"LowerCase", "g1 x1 ; text", Opacity::kNone, "G1 X1"},
+        LineCase{"Radius", "G2 X10 Y0 CR=5", Opacity::kNone, "G2 X10 Y0 R5"},
+        LineCase{"NegativeRadius", "G3 X10 CR=-5.5", Opacity::kNone, "G3 X10 R-5.5"},
+        LineCase{"ComputedRadius", "G3 X10 CR=R1*2", Opacity::kExpression, "G3 X10 R?"},
+        LineCase{"AbsoluteCentre", "G2 X1 Y1 I=AC(5) J=AC(3)", Opacity::kExpression,
+                 "G2 X1 Y1 I? J?"},
+        LineCase{"IncrementOfOneAxis", "G1 X=IC(5) Y3", Opacity::kExpression, "G1 X? Y3"},
+        LineCase{"Parameter", "X=R1 Y=R2+3*SIN(R3) Z1", Opacity::kExpression, "X? Y? Z1"},
+        LineCase{"SetsParameters", "N10 R1=5 R2=R1*2", Opacity::kAssignment, "N10"},
+        LineCase{"SetsBesideAMove", "G1 X10 R1=5", Opacity::kNamedWords, "G1 X10"},
+        LineCase{"Message", "MSG(\"a ; b ) X1\")", Opacity::kNamedWords, ""},
+        LineCase{"HighSpeedCycle", "N5 CYCLE832(0.01,_FINISH,1)", Opacity::kNamedWords, "N5"},
+        LineCase{"Modes", "G90 G94 G642 SOFT FFWON COMPOF", Opacity::kNamedWords, "G90 G94"},
+        LineCase{"MetricUnits", "G71 G90 X1", Opacity::kNamedWords, "G90 X1"},
+        LineCase{"ExtendedAddress", "M1=3 S1=5000", Opacity::kNamedWords, ""},
+        LineCase{"NumberedAxis", "G1 X1=10", Opacity::kNamedWords, "G1"},
+        LineCase{"ToolOffset", "D1", Opacity::kNamedWords, "D1"},
+        LineCase{"ToolByName", "T=\"MILL 6\" M6", Opacity::kExpression, "T? M6"},
+        LineCase{"Polynomial", "POLY PO[X]=(18,-18,6) PO[Y]=(6.4)", Opacity::kNamedWords, ""},
+        LineCase{"Declaration", "DEF REAL A, B = 5", Opacity::kNamedWords, ""},
+        LineCase{"Jump", "N10 GOTOF END_OF_IT", Opacity::kFlow, "N10"},
+        LineCase{"Condition", "IF R1 == 5 GOTOB N100", Opacity::kFlow, ""},
+        LineCase{"Label", "AGAIN: G1 X1", Opacity::kFlow, "G1 X1"},
+        LineCase{"LabelOfOneLetter", "A1: X1", Opacity::kFlow, "X1"},
+        LineCase{"Repeat", "REPEAT AGAIN P=3", Opacity::kFlow, ""},
+        LineCase{"Subprogram", "L100 P3", Opacity::kForeign, ""},
+        LineCase{"EndOfSubprogram", "M17", Opacity::kForeign, ""},
+        LineCase{"ProgramHead", "%_N_PART_MPF", Opacity::kProgramMark, ""},
+        LineCase{"PathOfThePart", ";$PATH=/_N_WKS_DIR", Opacity::kNone, ""},
+        LineCase{"Exponent", "G1 X1EX-3", Opacity::kUnreadable, "G1"},
+        LineCase{"TwoPoints", "X1.2.3", Opacity::kUnreadable, ""},
+        LineCase{"BlankInANumber", "X1 2", Opacity::kUnreadable, "X1"},
+        LineCase{"Parenthesis", "G1 (no comment)", Opacity::kUnreadable, "G1"},
+        LineCase{"OpenBracket", "MSG(\"a", Opacity::kUnreadable, ""},
+        LineCase{"Skipped", "/3 G1 X1", Opacity::kNone, "G1 X1"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(SiemensParser, TheIsoModeIsNotReadUntilItEnds) {
+  Diagnostics found;
+  const Program program = siemens("G291\nG1 X1\nG290\nG1 X2\n", found);
+  EXPECT_EQ(program.blocks[1].opacity, Opacity::kForeign);
+  EXPECT_EQ(program.blocks[3].opacity, Opacity::kNone);
+}
+
+TEST(SiemensValue, EndsWhereTheNextWordStarts) {
+  const std::string_view text = "R1*(2+SIN(R3)) DIV 3 Y5";
+  EXPECT_EQ(after_siemens_expression(text, 0), text.find(" Y5"));
+  EXPECT_EQ(after_siemens_expression("1+", 0), std::nullopt);
+  EXPECT_EQ(after_siemens_number("1.5EX3", 0), std::nullopt);
+}
+
+// What is known of the state after a line, from a state in which all is known.
+struct EffectCase {
+  const char* name;
+  const char* line;
+  const char*
+      after;  // "place", "state" (all but the place is known), "nothing", or the reason's id
+};
+
+Interpretation read_program(const std::string& text) {
+  Diagnostics found;
+  return interpret(siemens(text, found), {}, found);
+}
+
+class SiemensEffect : public testing::TestWithParam<EffectCase> {};
+
+TEST_P(SiemensEffect, IsForgottenAsFarAsItReaches) {
+  const std::string text =
+      "G71 G90 G17 G40 G64 G94 F500\nG1 X0 Y0 Z0\n" + std::string(GetParam().line) + "\nG1 X1 Y1\n";
+  const Interpretation read = read_program(text);
+  ASSERT_EQ(read.blocks.size(), 4U);
+  EXPECT_FALSE(read.blocks[2].barrier.empty());
+  const ModalState& state = read.states[read.blocks[3].state_after];
+  const bool known = is_known(state);
+  const std::int32_t motion = read.blocks[3].motion;
+  const bool placed = motion >= 0 && read.motions[static_cast<std::size_t>(motion)].start_known;
+  const bool plain = state.tool_center_point == Tri::kOff && state.tilted_plane == Tri::kOff &&
+                     state.scaling == Tri::kOff && state.rotation == Tri::kOff &&
+                     state.mirror == Tri::kOff && state.polar == Tri::kOff &&
+                     state.cylindrical == Tri::kOff && state.control_smoothing == Tri::kOff;
+  const std::string_view after = !known ? "nothing" : !plain ? "bent" : placed ? "place" : "state";
+  EXPECT_EQ(after, GetParam().after);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Names, SiemensEffect,
+    testing::Values(
+        EffectCase{"Soft", "SOFT FFWON", "place"},
+        EffectCase{"HighSpeed", "CYCLE832(0.01,1,1)", "place"},
+        EffectCase{"CompressorOff", "COMPOF", "place"},
+        EffectCase{"CompressorOn", "COMPCAD", "bent"},
+        EffectCase{"CompressorOnAndOff", "COMPCAD COMPOF", "place"},
+        EffectCase{"Blending", "G642", "place"}, EffectCase{"Message", "MSG(\"ROT X45\")", "place"},
+        EffectCase{"Parameter", "R1=5", "place"}, EffectCase{"MoveWithName", "G1 X5 SOFT", "place"},
+        EffectCase{"Offset", "TRANS X10", "state"}, EffectCase{"Rotation", "ROT Z45", "bent"},
+        EffectCase{"RotationInThePlane", "ROT RPL=45", "bent"},
+        EffectCase{"AddedRotation", "AROT", "bent"}, EffectCase{"Scaling", "SCALE X2", "bent"},
+        EffectCase{"Mirror", "MIRROR X0", "bent"}, EffectCase{"FramesOff", "ROT", "state"},
+        EffectCase{"TiltedPlane", "CYCLE800(1,\"TC1\",0,57,0,0,0,0,0,0,0,0,0,-1)", "bent"},
+        EffectCase{"TiltedPlaneOff", "CYCLE800()", "state"},
+        EffectCase{"Orientation", "TRAORI", "bent"}, EffectCase{"Polar", "TRANSMIT", "nothing"},
+        EffectCase{"Cylinder", "TRACYL(40)", "bent"},
+        EffectCase{"TransformationOff", "TRAFOOF", "state"},
+        EffectCase{"WorkOffset", "G505", "state"}, EffectCase{"WorkOffsetOff", "G500", "state"},
+        EffectCase{"FixedPoint", "G75 X1=0", "nothing"}, EffectCase{"Reference", "G74 Z0", "state"},
+        EffectCase{"Pole", "G111 X5 Y5", "place"}, EffectCase{"ToolOffset", "D2", "state"},
+        EffectCase{"Spline", "BSPLINE X5 Y5", "state"},
+        EffectCase{"Circle", "CIP X5 Y5 I1=2 J1=3", "state"},
+        EffectCase{"Rounding", "G1 X5 RND=2", "state"},
+        EffectCase{"PolarEnd", "G1 AP=45 RP=10", "state"},
+        EffectCase{"UnknownName", "MY_CYCLE(1,2)", "nothing"},
+        EffectCase{"UnknownAssignment", "$P_UIFR[1]=5", "nothing"},
+        EffectCase{"Subprogram", "L10", "nothing"}, EffectCase{"UnknownG", "G810", "nothing"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(SiemensInterpreter, FollowsArcsWithCr) {
+  // From (0,0) to (10,0) clockwise, radius 5: half a circle over (5,5).
+  const Interpretation read = read_program("G71 G90 G17 F100\nG1 X0 Y0 Z0\nG2 X10 Y0 CR=5.001\n");
+  ASSERT_EQ(read.motions.size(), 2U);
+  const auto& arc = std::get<geometry::Arc>(read.motions[1].piece);
+  EXPECT_NEAR(std::abs(arc.sweep), 3.1416, 0.05);
+}
+
+TEST(SiemensFlow, OnlyLabelsThatAreNamedAreEntered) {
+  const Interpretation read = read_program("N10 G1 X1\nN20 X2\nIF R1>5 GOTOB N10\n");
+  EXPECT_TRUE(read.blocks[0].entered_from_elsewhere);
+  EXPECT_FALSE(read.blocks[1].entered_from_elsewhere);
+  const Interpretation named = read_program("N10 G1 X1\nGOTOF LAST\nN20 X2\nLAST: M30\n");
+  EXPECT_FALSE(named.blocks[0].entered_from_elsewhere);
+  const Interpretation computed = read_program("N10 G1 X1\nGOTOF TARGET\nN20 X2\n");
+  EXPECT_TRUE(computed.blocks[0].entered_from_elsewhere);
+}
+
+TEST(SiemensParser, AnyBytesAreReadAndEveryByteIsInOneBlock) {
+  const std::string sample =
+      "%_N_P_MPF\n;$PATH=/_N_MPF_DIR\nN10 G71 G90 DEF REAL A\nN20 CYCLE832(0.01,1,1) MSG(\"a\")\n"
+      "N30 G1 X=10 Y=R1*2 F=1000\nL1: G2 X10 CR=5 I=AC(5)\nIF (R1>5) AND (R2==3) GOTOF L1\n"
+      "POLY PO[X]=(1,2,3) PL=2\r\nTRANS X1\n/1 G0 Z5 D1 T=\"A\"\nG291\nG1 (c)\nG290\nM30\n";
+  constexpr std::string_view kBytes = "GX1=.()[];\"/:%&$_N \n\r\tR9EA-+*<>,\0\xFF";
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    std::mt19937 random(seed);
+    std::string text = sample;
+    for (unsigned i = 0; i < 1 + seed % 9; ++i) {
+      const std::size_t at = random() % text.size();
+      const char c = kBytes[random() % kBytes.size()];
+      switch (random() % 3) {
+        case 0:
+          text[at] = c;
+          break;
+        case 1:
+          text.insert(at, 1, c);
+          break;
+        default:
+          text.erase(at, 1 + random() % 5);
+      }
+      if (text.empty()) text = "X";
+    }
+    Diagnostics found;
+    const Program program = siemens(text, found);
+    std::uint32_t at = 0;
+    for (const Block& block : program.blocks) {
+      ASSERT_EQ(block.span.begin, at) << "seed " << seed;
+      ASSERT_LE(block.span.end, block.end) << "seed " << seed;
+      at = block.end;
+      for (const Word& word : program.words_of(block)) {
+        ASSERT_GE(word.span.begin, block.span.begin) << "seed " << seed;
+        ASSERT_LE(word.span.end, block.span.end) << "seed " << seed;
+      }
+    }
+    ASSERT_EQ(at, text.size()) << "seed " << seed;
+    (void)interpret(program, {}, found);
+  }
+}
+
+}  // namespace
+}  // namespace batten::gcode
