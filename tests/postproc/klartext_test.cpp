@@ -59,19 +59,6 @@ Verification proof_of(const std::string& before, const std::string& after,
                 {options.tolerance_mm, options.tolerance_kind, options.side});
 }
 
-// Without its comment, which alone would keep it.
-std::string without_provenance(const std::string& text) {
-  std::string rest;
-  std::size_t at = 0;
-  while (at < text.size()) {
-    const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
-    const std::string line = text.substr(at, end - at);
-    if (line.find("Batten: smoothed") == std::string::npos) rest += line;
-    at = end;
-  }
-  return rest;
-}
-
 // --- promises
 // -------------------------------------------------------------------------------------
 
@@ -214,7 +201,9 @@ TEST(Klartext, BothRunsOfAPocketAreRewritten) {
     EXPECT_EQ(rewritten_runs(result), 2U);
     EXPECT_LT(3 * result.blocks_out, result.blocks_in);
     for (const RunReport& run : result.runs) {
-      if (run.status == RunStatus::kRewritten) EXPECT_EQ(run.form, wanted);
+      if (run.status == RunStatus::kRewritten) {
+        EXPECT_EQ(run.form, wanted);
+      }
     }
     for (const char* kept :
          {"\n3 ; POCKET WITH A WAVY WALL\n4 * - FINISH\n5 CYCL DEF 32.0 TOLERANCE\n",
