@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gcode/characters.h"
 #include "gcode/curves/curve_format.h"
 #include "gcode/writer.h"
 #include "geometry/numeric.h"
@@ -80,7 +81,8 @@ class RunWriter {
       const std::size_t end = written.find_first_of("\r\n");
       const std::string_view line = written.substr(0, end);
       every_line_fits_ = every_line_fits_ && target_.line_length(line) <= target_.max_line_length();
-      ++result_.blocks;
+      // SPL has lines that go on with the block.
+      if (!gcode::is_blank(line.front())) ++result_.blocks;
       const std::size_t next = written.find_first_not_of("\r\n", end);
       written = next == std::string_view::npos ? std::string_view() : written.substr(next);
     }

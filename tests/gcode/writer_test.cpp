@@ -255,11 +255,12 @@ TEST(Writer, CannotRestoreAMotionThatCannotStandAlone) {
 
 // --- what the control reads ---------------------------------------------------------------------
 
-// A reader of its own: letters and the numbers after them.
+// A reader of its own: letters and the numbers after them. A letter alone has none (L of Klartext).
 std::map<char, double> words_of(const std::string& line) {
   std::map<char, double> words;
   std::istringstream in(line);
   for (std::string word; in >> word;) {
+    if (word.size() == 1) continue;
     if (word[0] == 'G') {
       words[std::stod(word.substr(1)) < 17 ? 'G' : 'P'] = std::stod(word.substr(1));
     } else {

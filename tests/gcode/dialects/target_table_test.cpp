@@ -161,8 +161,8 @@ std::string contour(const Dialect& dialect, Units units) {
 }
 
 TEST(Contours, AreByteForByteTheCases) {
-  for (const auto family :
-       {grbl_family(), printer_family(), pc_family(), machining_center_family(), plc_family()}) {
+  for (const auto family : {grbl_family(), printer_family(), pc_family(), machining_center_family(),
+                            plc_family(), heidenhain_family()}) {
     for (const Dialect* each : family) {
       for (const auto& [units, file] : {std::pair(Units::kMillimetre, "contour_mm.nc"),
                                         std::pair(Units::kInch, "contour_inch.nc")}) {
