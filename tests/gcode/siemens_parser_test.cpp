@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(SiemensParser, TheIsoModeIsNotReadUntilItEnds) {
   Diagnostics found;
-  const Program program = siemens("G291\nG1 X1\nG290\nG1 X2\n", found);
+  const Program program = siemens("G291\nG1 X290\nG290\nG1 X2\n", found);
   EXPECT_EQ(program.blocks[1].opacity, Opacity::kForeign);
   EXPECT_EQ(program.blocks[3].opacity, Opacity::kNone);
 }
@@ -149,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(
         EffectCase{"Mirror", "MIRROR X0", "bent"}, EffectCase{"FramesOff", "ROT", "state"},
         EffectCase{"TiltedPlane", "CYCLE800(1,\"TC1\",0,57,0,0,0,0,0,0,0,0,0,-1)", "bent"},
         EffectCase{"TiltedPlaneOff", "CYCLE800()", "state"},
-        EffectCase{"Orientation", "TRAORI", "bent"}, EffectCase{"Polar", "TRANSMIT", "nothing"},
+        EffectCase{"Orientation", "TRAORI", "bent"}, EffectCase{"Polar", "TRANSMIT", "bent"},
         EffectCase{"Cylinder", "TRACYL(40)", "bent"},
         EffectCase{"TransformationOff", "TRAFOOF", "state"},
         EffectCase{"WorkOffset", "G505", "state"}, EffectCase{"WorkOffsetOff", "G500", "state"},
