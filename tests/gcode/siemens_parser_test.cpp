@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gcode/interpreter.h"
+#include "gcode/number_format.h"
 #include "gcode/parser.h"
 #include "gcode/siemens_value.h"
 
@@ -21,7 +22,7 @@ std::string words_of(const Program& program) {
   for (const Word& word : program.words) {
     if (!text.empty()) text += ' ';
     text.push_back(word.letter);
-    text += word.is_number ? to_text(word.value, {.decimals = 3}) : "?";
+    text += word.is_number ? to_text(word.value, NumberFormat{.decimals = 3}) : "?";
   }
   return text;
 }
