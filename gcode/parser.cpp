@@ -223,19 +223,24 @@ class Parser {
 
   // G291: words of the ISO mode up to G290, which are not read.
   void follow_iso_mode(Block& block) {
-    const std::string_view text = text_.substr(block.span.begin, block.span.size());
-    if (text.find("290") != std::string_view::npos) {
-      iso_mode_ = false;
+    if (block.opacity == Opacity::kNamedWords) {
+      const std::string_view text = text_.substr(block.span.begin, block.span.size());
+      if (has_g_word(text, "290")) {
+        iso_mode_ = false;
+      } else if (has_g_word(text, "291")) {
+        iso_mode_ = true;
+      }
     }
-    iso_mode_ = iso_mode_ || (block.opacity == Opacity::kNamedWords && is_iso_mode(text));
     if (iso_mode_ && has_words(block)) {
       block.opacity = Opacity::kForeign;
     }
   }
 
-  static bool is_iso_mode(std::string_view text) {
-    const std::size_t at = text.find("291");
-    return at != std::string_view::npos && at > 0 && upper(text[at - 1]) == 'G';
+  static bool has_g_word(std::string_view text, std::string_view code) {
+    const std::size_t at = text.find(code);
+    const std::size_t end = at + code.size();
+    return at != std::string_view::npos && at > 0 && upper(text[at - 1]) == 'G' &&
+           (end >= text.size() || !is_digit(text[end]));
   }
 
   // Is there anything in the block that a control acts on?

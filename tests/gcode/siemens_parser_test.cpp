@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gcode/interpreter.h"
+#include "gcode/number_format.h"
 #include "gcode/parser.h"
 #include "gcode/siemens_value.h"
 
@@ -21,7 +22,7 @@ std::string words_of(const Program& program) {
   for (const Word& word : program.words) {
     if (!text.empty()) text += ' ';
     text.push_back(word.letter);
-    text += word.is_number ? to_text(word.value, {.decimals = 3}) : "?";
+    text += word.is_number ? to_text(word.value, NumberFormat{.decimals = 3}) : "?";
   }
   return text;
 }
@@ -88,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(SiemensParser, TheIsoModeIsNotReadUntilItEnds) {
   Diagnostics found;
-  const Program program = siemens("G291\nG1 X1\nG290\nG1 X2\n", found);
+  const Program program = siemens("G291\nG1 X290\nG290\nG1 X2\n", found);
   EXPECT_EQ(program.blocks[1].opacity, Opacity::kForeign);
   EXPECT_EQ(program.blocks[3].opacity, Opacity::kNone);
 }
@@ -149,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(
         EffectCase{"Mirror", "MIRROR X0", "bent"}, EffectCase{"FramesOff", "ROT", "state"},
         EffectCase{"TiltedPlane", "CYCLE800(1,\"TC1\",0,57,0,0,0,0,0,0,0,0,0,-1)", "bent"},
         EffectCase{"TiltedPlaneOff", "CYCLE800()", "state"},
-        EffectCase{"Orientation", "TRAORI", "bent"}, EffectCase{"Polar", "TRANSMIT", "nothing"},
+        EffectCase{"Orientation", "TRAORI", "bent"}, EffectCase{"Polar", "TRANSMIT", "bent"},
         EffectCase{"Cylinder", "TRACYL(40)", "bent"},
         EffectCase{"TransformationOff", "TRAFOOF", "state"},
         EffectCase{"WorkOffset", "G505", "state"}, EffectCase{"WorkOffsetOff", "G500", "state"},
