@@ -182,13 +182,13 @@ void SourceText::set_aside(SourceSpan span) const {
   if (bytes_->mapped == nullptr) {
     return;
   }
-  const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
-  const auto base = reinterpret_cast<std::uintptr_t>(bytes_->text.data());
-  const std::uintptr_t begin = (base + span.begin + page - 1) / page * page;
-  const std::uintptr_t end = (base + span.end) / page * page;
+  // A mapping begins with a page.
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t begin = (span.begin + page - 1) / page * page;
+  const std::size_t end = std::min<std::size_t>(span.end, bytes_->text.size()) / page * page;
   if (begin < end) {
     // What the system does with the advice changes no byte.
-    (void)::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
+    (void)::madvise(const_cast<char*>(bytes_->text.data()) + begin, end - begin, MADV_DONTNEED);
   }
 }
 

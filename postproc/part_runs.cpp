@@ -58,9 +58,9 @@ RunContext context_of(const gcode::Program& program, const gcode::Interpretation
           number_room(program, section.first_block, section.last_block)};
 }
 
-class RunSmoother {
+class PartSmoother {
  public:
-  RunSmoother(const ProgramPart& part, const SmoothOptions& options, const Tell& tell,
+  PartSmoother(const ProgramPart& part, const SmoothOptions& options, const Tell& tell,
               PartRuns& runs)
       : part_(part), options_(options), tell_(tell), runs_(runs) {}
 
@@ -207,7 +207,7 @@ void keep_as_smoothed(PartRuns& runs) {
 
 bool smooth_runs(const ProgramPart& part, const SmoothOptions& options, const Tell& tell,
                  PartRuns& runs) {
-  return RunSmoother(part, options, tell, runs).run();
+  return PartSmoother(part, options, tell, runs).run();
 }
 
 }  // namespace batten::postproc

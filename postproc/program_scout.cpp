@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "gcode/part_reading.h"
@@ -18,6 +19,11 @@ namespace {
 
 // Blocks that are held at once: some megabytes, and much more than what a part costs by itself.
 constexpr std::size_t kBlocksAtOnce = 16384;
+
+// Bytes of a part, but for the rest of its last line. Without a bound, a search for a kind of line
+// end that the text does not have would go through all of it, part for part.
+constexpr std::size_t kBytesAtOnce = std::size_t{1} << 19;
+constexpr std::size_t kLongestRest = std::size_t{1} << 20;
 
 class Scout {
  public:
@@ -36,8 +42,10 @@ class Scout {
     const auto size = static_cast<double>(source_.text().size());
     while (text_.begin < source_.text().size()) {
       const std::uint32_t begin = text_.begin;
+      const auto end = end_of_part();
+      if (!end) return std::move(report_);
       const gcode::Program part =
-          gcode::parse_part(source_, {.blocks = kBlocksAtOnce}, text_, of_text_);
+          gcode::parse_part(source_, {.byte = *end, .blocks = kBlocksAtOnce}, text_, of_text_);
       const gcode::Interpretation meaning =
           gcode::interpret_part(part, read_options_, control_, of_meaning_);
       if (needs_whole(part, meaning)) return std::move(report_);
@@ -54,6 +62,16 @@ class Scout {
   }
 
  private:
+  // Behind a line feed; nothing where lines are too long or have none.
+  [[nodiscard]] std::optional<std::uint32_t> end_of_part() const {
+    const std::string_view text = source_.text();
+    if (text.size() - text_.begin <= kBytesAtOnce) return static_cast<std::uint32_t>(text.size());
+    const std::size_t from = text_.begin + kBytesAtOnce;
+    const std::size_t feed = text.substr(from, kLongestRest).find('\n');
+    if (feed == std::string_view::npos) return std::nullopt;
+    return static_cast<std::uint32_t>(from + feed + 1);
+  }
+
   [[nodiscard]] bool needs_whole(const gcode::Program& part, const gcode::Interpretation& meaning) {
     if (control_.reaches_out || !text_.marks.closes_nothing()) return true;
     gcode::Diagnostics others;

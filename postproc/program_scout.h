@@ -36,7 +36,8 @@ struct ScoutReport {
 //
 // Only as a whole: programs that are not understood or that the target takes otherwise than the
 // reader, with jumps, loops or subprograms, with words outside the % marks, with words of another
-// family, with curves that the target's reader follows, and without any place for a cut.
+// family, with curves that the target's reader follows, with lines of more than 1 MiB or without
+// line feeds, and without any place for a cut.
 //
 // Holds a bounded number of blocks. `tell` is told the share of the bytes that was seen.
 [[nodiscard]] ScoutReport scout(const gcode::SourceText& source, const SmoothOptions& options,
