@@ -56,7 +56,9 @@ std::optional<Language> source_language(const SourceText& source, SourceKind kin
                      other->evidence, describe(other->language), family->controls, family->name)});
     return std::nullopt;
   }
-  if (marks.empty()) return target.value_or(Language::kRs274);
+  // Many programs for Siemens controls are plain words that both languages have. The plainer
+  // reading copies what it does not know.
+  if (marks.empty()) return target == Language::kKlartext ? *target : Language::kRs274;
   if (marks.size() == 1) return marks.front().language;
   found.push_back(
       {Severity::kError, "source-ambiguous", marks[1].where,

@@ -36,8 +36,8 @@ struct SourceFamily {
 [[nodiscard]] std::span<const SourceFamily> source_families();
 
 // The language in which to read this text. With kAuto: that of its certain marks, which only one
-// language has; without any, that of the target (RS-274 where there is none). Nothing, and an error
-// in `found`, when
+// language has; without any, Klartext where the target reads that, else RS-274. Nothing, and an
+// error in `found`, when
 //   source-ambiguous: the text has certain marks of two languages;
 //   source-contradicted: a kind was given, and the text has a certain mark of another language.
 // Linear in the text.

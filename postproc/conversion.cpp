@@ -167,10 +167,12 @@ std::optional<gcode::Language> language_read(const gcode::SourceText& source,
                                              gcode::Diagnostics& found) {
   const gcode::Language of_target = options.target->language();
   const auto language = gcode::source_language(source, options.source, of_target, found);
-  if (!language || *language == of_target || options.convert) return language;
+  const bool plain = language == gcode::Language::kRs274 && of_target == gcode::Language::kSiemens;
+  if (!language || *language == of_target || plain) return language;
+  // Also with --convert: the same words mean other things in other languages.
   found.push_back({gcode::Severity::kError, "foreign-language", place_of(*language, source),
-                   fmt::format("{} a program in {}; target {} reads {}; --convert tells which "
-                               "blocks could not be said there",
+                   fmt::format("{} a program in {}; target {} reads {}, and nothing is translated "
+                               "from one language to another",
                                evidence_of(*language, source), gcode::describe(*language),
                                options.target->name(), gcode::describe(of_target))});
   return std::nullopt;

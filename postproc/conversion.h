@@ -16,8 +16,8 @@
 namespace batten::postproc {
 
 // The language to read the program in (gcode/source_kind.h). Nothing, and an error, where that is
-// not certain; and an error "foreign-language" where it is not the target's and --convert is not
-// given.
+// not certain; and an error "foreign-language" where the target reads another one. Plain words
+// (RS-274) are read for Siemens targets too.
 [[nodiscard]] std::optional<gcode::Language> language_read(const gcode::SourceText& source,
                                                            const SmoothOptions& options,
                                                            gcode::Diagnostics& found);
