@@ -97,9 +97,7 @@ constexpr Explanation kExplanations[] = {
     {kControlSmoothing,
      "The control fits a curve of its own here (G5.1 Q2, G5 P10000, G131, COMPCAD): its tolerance "
      "would come on top.",
-     "Switch the control's smoothing off in the program, leave this one off, or --allow "
-     "control-smoothing.",
-     true},
+     "Switch the control's smoothing off in the program, or leave this one off.", false},
     {kModalMacro, "A macro runs after each motion (G66).", kCopied, false},
     {kLatheDiameter, "X is a diameter (G7).", "Lathe programs in diameters are not smoothed.",
      false},

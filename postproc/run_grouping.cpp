@@ -42,11 +42,9 @@ constexpr UnsafeSwitch kUnsafeSwitches[] = {
 };
 
 // States that stand for themselves, before anything is said about what is unknown.
-std::string_view unsafe_mode(const ModalState& state, bool exact_path_allowed,
-                             bool control_smoothing_allowed) {
+std::string_view unsafe_mode(const ModalState& state, bool exact_path_allowed) {
   for (const UnsafeSwitch& unsafe : kUnsafeSwitches) {
-    const bool lifted = control_smoothing_allowed && unsafe.reason == reason::kControlSmoothing;
-    if (state.*unsafe.item == Tri::kOn && !lifted) {
+    if (state.*unsafe.item == Tri::kOn) {
       return unsafe.reason;
     }
   }
@@ -311,11 +309,9 @@ std::vector<Section> group_runs(const gcode::Program& program,
 }
 
 std::string_view unsafe_state(const ModalState& state, const GroupingOptions& options) {
-  const auto is_allowed = [&](std::string_view id) {
-    return std::ranges::find(options.allowed, id) != options.allowed.end();
-  };
-  const std::string_view mode =
-      unsafe_mode(state, is_allowed(reason::kExactStop), is_allowed(reason::kControlSmoothing));
+  const bool exact_path_allowed =
+      std::ranges::find(options.allowed, reason::kExactStop) != options.allowed.end();
+  const std::string_view mode = unsafe_mode(state, exact_path_allowed);
   return mode.empty() ? unknown_state(state) : mode;
 }
 

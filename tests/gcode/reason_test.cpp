@@ -44,10 +44,9 @@ TEST(Reason, EveryDeclaredIdIsExplainedOnce) {
   EXPECT_EQ(explained, declared);
 }
 
-TEST(Reason, OnlyTheExactPathTheControlsOwnFitAndASecondPassCanBeAllowed) {
+TEST(Reason, OnlyTheExactPathAndASecondPassCanBeAllowed) {
   for (const Explanation& explanation : explanations()) {
-    const bool safe = explanation.id == kExactStop || explanation.id == kControlSmoothing ||
-                      explanation.id == kAlreadySmoothed;
+    const bool safe = explanation.id == kExactStop || explanation.id == kAlreadySmoothed;
     EXPECT_EQ(explanation.can_be_allowed, safe) << explanation.id;
   }
 }

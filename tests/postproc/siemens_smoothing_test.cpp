@@ -6,7 +6,6 @@
 #include <numbers>
 #include <string>
 
-#include "gcode/reason.h"
 #include "tests/postproc/wavy_programs.h"
 
 namespace batten::postproc {
@@ -59,14 +58,6 @@ TEST(SiemensProgramsUnder, FramesTransformationsAndCompressorsStayAsTheyAre) {
     EXPECT_EQ(result.text, before);
     EXPECT_EQ(rewritten_runs(result), 0U);
   }
-}
-
-TEST(SiemensProgramsUnder, CompressorsAreSmoothedWhereThatIsAllowed) {
-  SmoothOptions wanted = options_for("siemens");
-  wanted.allowed.emplace_back(gcode::reason::kControlSmoothing);
-  const SmoothResult result = smoothed(program_with("N65 COMPCAD\n"), wanted);
-  EXPECT_TRUE(result.proved);
-  EXPECT_EQ(rewritten_runs(result), 1U);
 }
 
 TEST(SiemensProgramsUnder, AnotherTargetAreRefused) {
