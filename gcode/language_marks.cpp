@@ -80,6 +80,35 @@ bool may_be_mark(std::string_view line) {
          (line[at] == '%' || line[at] == ';' || upper(line[at]) == 'B' || upper(line[at]) == 'D');
 }
 
+// Bytes that are looked at before they are given back: a long program is not held for its marks.
+constexpr std::size_t kAtOnce = std::size_t{1} << 23;
+
+// Behind a line feed where there is one, so that lines are whole.
+std::size_t end_of_part(std::string_view text, std::size_t begin) {
+  if (text.size() - begin <= kAtOnce) return text.size();
+  const std::size_t feed = text.rfind('\n', begin + kAtOnce);
+  return feed == std::string_view::npos || feed < begin ? text.size() : feed + 1;
+}
+
+void add_marks_of(const SourceText& source, SourceSpan part, std::vector<LanguageMark>& marks) {
+  LineCursor lines(source.text(part));
+  while (const auto line = lines.next()) {
+    SourceSpan span = without_blanks(source.text(part), *line);
+    span = {span.begin + part.begin, span.end + part.begin};
+    const std::string_view text = source.text(span);
+    if (!may_be_mark(text)) {
+      continue;
+    }
+    const auto found = language_of_line(text);
+    const bool known = !found || std::ranges::any_of(marks, [&](const LanguageMark& each) {
+      return each.language == found->language;
+    });
+    if (!known) {
+      marks.push_back({found->language, found->evidence, span});
+    }
+  }
+}
+
 }  // namespace
 
 std::optional<LanguageEvidence> language_of_line(std::string_view line) {
@@ -106,20 +135,13 @@ std::optional<LanguageEvidence> language_of_line(std::string_view line) {
 
 std::vector<LanguageMark> language_marks(const SourceText& source) {
   std::vector<LanguageMark> marks;
-  LineCursor lines(source.text());
-  while (const auto line = lines.next()) {
-    const SourceSpan span = without_blanks(source.text(), *line);
-    const std::string_view text = source.text(span);
-    if (!may_be_mark(text)) {
-      continue;
-    }
-    const auto found = language_of_line(text);
-    const bool known = !found || std::ranges::any_of(marks, [&](const LanguageMark& each) {
-      return each.language == found->language;
-    });
-    if (!known) {
-      marks.push_back({found->language, found->evidence, span});
-    }
+  const std::size_t size = source.text().size();
+  for (std::size_t begin = 0; begin < size;) {
+    const std::size_t end = end_of_part(source.text(), begin);
+    const SourceSpan part{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+    add_marks_of(source, part, marks);
+    source.set_aside(part);
+    begin = end;
   }
   return marks;
 }
