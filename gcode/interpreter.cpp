@@ -9,13 +9,13 @@
 #include "gcode/block_words.h"
 #include "gcode/control_state.h"
 #include "gcode/curves/curve_in_program.h"
-#include "gcode/klartext_state.h"
+#include "gcode/klartext/state.h"
 #include "gcode/motion_words.h"
 #include "gcode/opaque_blocks.h"
 #include "gcode/part_reading.h"
 #include "gcode/program_flow.h"
 #include "gcode/reason.h"
-#include "gcode/siemens_names.h"
+#include "gcode/siemens/names.h"
 #include "gcode/state_changes.h"
 
 namespace batten::gcode {

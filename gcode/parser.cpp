@@ -7,13 +7,13 @@
 
 #include "gcode/active_comment.h"
 #include "gcode/characters.h"
-#include "gcode/klartext_parser.h"
+#include "gcode/klartext/parser.h"
 #include "gcode/language_marks.h"
 #include "gcode/lexer.h"
 #include "gcode/line_cursor.h"
 #include "gcode/part_reading.h"
 #include "gcode/program_marks.h"
-#include "gcode/siemens_block.h"
+#include "gcode/siemens/block.h"
 
 namespace batten::gcode {
 namespace {

@@ -51,7 +51,7 @@ enum class Opacity {
   kCornerWord,   // ,R2 ,C1 ,A45: the path does not reach the point that the words name
   kContinued,    // a line that belongs to the statement of the lines before it
   kNamedWords,   // Siemens: words of several letters beside those that are listed
-                 // (gcode/siemens_names.h)
+                 // (gcode/siemens/names.h)
 };
 
 // One line of the source.

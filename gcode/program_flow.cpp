@@ -8,7 +8,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "gcode/klartext_flow.h"
+#include "gcode/klartext/flow.h"
 
 namespace batten::gcode {
 namespace {

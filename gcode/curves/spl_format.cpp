@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "gcode/curves/heidenhain_spl.h"
-#include "gcode/klartext_statement.h"
+#include "gcode/klartext/statement.h"
 
 namespace batten::gcode {
 namespace {

@@ -1,4 +1,4 @@
-#include "gcode/klartext_statement.h"
+#include "gcode/klartext/statement.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "gcode/siemens_block.h"
+#include "gcode/siemens/block.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <string>
 
 #include "gcode/characters.h"
-#include "gcode/siemens_lexer.h"
+#include "gcode/siemens/lexer.h"
 
 namespace batten::gcode {
 namespace {

@@ -1,4 +1,4 @@
-#include "gcode/klartext_flow.h"
+#include "gcode/klartext/flow.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "gcode/characters.h"
-#include "gcode/klartext_statement.h"
+#include "gcode/klartext/statement.h"
 
 namespace batten::gcode {
 namespace {

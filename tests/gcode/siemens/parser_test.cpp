@@ -1,3 +1,5 @@
+#include "gcode/parser.h"
+
 #include <gtest/gtest.h>
 
 #include <random>
@@ -6,8 +8,7 @@
 
 #include "gcode/interpreter.h"
 #include "gcode/number_format.h"
-#include "gcode/parser.h"
-#include "gcode/siemens_value.h"
+#include "gcode/siemens/value.h"
 
 namespace batten::gcode {
 namespace {

@@ -9,7 +9,7 @@
 //   16 CR X+0 Y+0 R+20 DR+      N16 G3 X0 Y0 R20
 //
 // RL and RR are G41 and G42. Everything else is copied: such blocks are opaque, and
-// klartext_state.h says what they may have changed. Where a later block bends the end of a motion
+// state.h says what they may have changed. Where a later block bends the end of a motion
 // (RND, CHF) or takes its direction (CT, DEP), the motion before it is Opacity::kCornerWord.
 #pragma once
 

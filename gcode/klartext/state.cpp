@@ -1,4 +1,4 @@
-#include "gcode/klartext_state.h"
+#include "gcode/klartext/state.h"
 
 #include <algorithm>
 #include <charconv>
@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "gcode/characters.h"
-#include "gcode/klartext_statement.h"
+#include "gcode/klartext/statement.h"
 #include "gcode/line_cursor.h"
 #include "gcode/number_format.h"
 #include "gcode/reason.h"

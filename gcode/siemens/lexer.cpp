@@ -1,10 +1,10 @@
-#include "gcode/siemens_lexer.h"
+#include "gcode/siemens/lexer.h"
 
 #include <cmath>
 #include <optional>
 
 #include "gcode/characters.h"
-#include "gcode/siemens_value.h"
+#include "gcode/siemens/value.h"
 
 namespace batten::gcode {
 namespace {

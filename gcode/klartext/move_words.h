@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/klartext_statement.h"
+#include "gcode/klartext/statement.h"
 #include "gcode/program.h"
 
 namespace batten::gcode {

@@ -1,5 +1,5 @@
 // Heidenhain Klartext as blocks and words: a row for each construct, and what no text can break.
-#include "gcode/klartext_parser.h"
+#include "gcode/klartext/parser.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "gcode/klartext_statement.h"
+#include "gcode/klartext/statement.h"
 #include "gcode/number_format.h"
 
 namespace batten::gcode {

@@ -1,4 +1,4 @@
-#include "gcode/klartext_parser.h"
+#include "gcode/klartext/parser.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "gcode/characters.h"
-#include "gcode/klartext_move_words.h"
-#include "gcode/klartext_statement.h"
+#include "gcode/klartext/move_words.h"
+#include "gcode/klartext/statement.h"
 #include "gcode/line_cursor.h"
 #include "gcode/number_format.h"
 

@@ -1,4 +1,4 @@
-#include "gcode/klartext_move_words.h"
+#include "gcode/klartext/move_words.h"
 
 #include <algorithm>
 #include <cmath>

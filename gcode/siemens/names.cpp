@@ -1,4 +1,4 @@
-#include "gcode/siemens_names.h"
+#include "gcode/siemens/names.h"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 
 #include "gcode/characters.h"
 #include "gcode/reason.h"
-#include "gcode/siemens_block.h"
-#include "gcode/siemens_lexer.h"
+#include "gcode/siemens/block.h"
+#include "gcode/siemens/lexer.h"
 
 namespace batten::gcode {
 namespace {

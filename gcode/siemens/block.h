@@ -20,7 +20,7 @@ struct SiemensBlock {
 
 // Adds the words of the line, which is a span of `source` without its line end, to `words`: those
 // of one letter, and CR= as R. With Opacity::kNamedWords the others are to be looked up
-// (gcode/siemens_names.h).
+// (gcode/siemens/names.h).
 [[nodiscard]] SiemensBlock read_siemens_block(std::string_view source, SourceSpan line,
                                               std::vector<Word>& words);
 

@@ -1,4 +1,4 @@
-#include "gcode/siemens_value.h"
+#include "gcode/siemens/value.h"
 
 #include <algorithm>
 #include <array>
