@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "gcode/byte_order_mark.h"
 #include "gcode/characters.h"
 #include "gcode/line_cursor.h"
 
@@ -52,8 +53,6 @@ bool is_type(std::string_view word) {
   }
   return false;
 }
-
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 // The line's place without the blanks before it.
 SourceSpan without_blanks(std::string_view text, const LineBounds& line) {

@@ -6,6 +6,7 @@
 
 #include "gcode/characters.h"
 #include "gcode/expression.h"
+#include "gcode/number_limit.h"
 
 namespace batten::gcode {
 namespace {
@@ -29,9 +30,6 @@ bool is_flow_word(std::string_view word) {
                       [](char a, char b) { return a == upper(b); });
   });
 }
-
-// No control takes numbers as great as this, and none that we write is (number_format).
-constexpr double kValueLimit = 1e9;
 
 SourceSpan span_of(std::size_t begin, std::size_t end) {
   return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
@@ -156,7 +154,7 @@ const Token& LineLexer::number_word(char letter, std::size_t value_at) {
   if (!scanned) {
     return unreadable(at_, "a letter without a number that can be read");
   }
-  if (std::abs(scanned->number.value) >= kValueLimit) {
+  if (std::abs(scanned->number.value) >= kNumberLimit) {
     return unreadable(at_, "a number of a thousand million or more");
   }
   const std::size_t end = value_at + scanned->length;

@@ -7,11 +7,11 @@
 #include <stdexcept>
 
 #include "gcode/characters.h"
+#include "gcode/number_limit.h"
 
 namespace batten::gcode {
 namespace {
 
-constexpr double kValueLimit = 1e9;
 constexpr int kMostDecimals = 9;
 
 // A double has at most 17 significant digits in its shortest decimal.
@@ -84,7 +84,7 @@ void round_to(Decimal& decimal, int decimals) {
 }
 
 void check(double value, int decimals) {
-  if (!(std::abs(value) < kValueLimit)) {
+  if (!(std::abs(value) < kNumberLimit)) {
     throw std::invalid_argument("number_format: " + std::to_string(value) +
                                 ", expected a number below 1e9");
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gcode/active_comment.h"
+#include "gcode/byte_order_mark.h"
 #include "gcode/characters.h"
 #include "gcode/klartext/parser.h"
 #include "gcode/language_marks.h"
@@ -18,8 +19,6 @@
 namespace batten::gcode {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 // What the tape and file ends of old systems are filled with. Controls skip both.
 constexpr char kNul = '\0';
 constexpr char kEndOfFile = '\x1A';
@@ -27,7 +26,7 @@ constexpr char kEndOfFile = '\x1A';
 constexpr std::string_view kUnreadableBlock = "unreadable-block";
 constexpr std::string_view kUnclosedComment = "unclosed-comment";
 
-constexpr std::uint8_t kMostDecimals = 255;
+constexpr std::uint8_t kMostCounted = 255;
 
 // No control takes lines of more than some thousand bytes. What is longer than this is no line of
 // a program, and its words would take many times its size of memory.
@@ -255,8 +254,7 @@ class Parser {
     word.span = token.span;
     word.is_number = token.has_value;
     if (token.has_value) {
-      word.decimals =
-          static_cast<std::uint8_t>(std::min<int>(token.number.decimals, kMostDecimals));
+      word.decimals = static_cast<std::uint8_t>(std::min<int>(token.number.decimals, kMostCounted));
       word.has_point = token.number.has_point;
       word.value = token.number.value;
     }

@@ -4,12 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/angle.h"
 #include "geometry/numeric.h"
 
 namespace batten::geometry {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // A step's end is searched to this part of its length: a hundred pieces lose a third of one.
 constexpr double kReachPrecision = 3e-3;
@@ -50,14 +49,12 @@ constexpr double kSlopeError = 5e-3;
 
 // The deviation is narrowed by halving the doubt so often; only for chains so short that
 // the last step can be a remainder that is worth spreading.
-constexpr int kBalancingRounds = 5;
+constexpr int kArcBalancingRounds = 5;
 constexpr std::size_t kBalancedPieces = 60;
 
 // Shortest step, in grid units: below, rounding turns a tangent by a tenth of a radian.
 constexpr double kShortestInGrids = 10;
 constexpr double kShortest = 1e-5;  // mm, without a grid
-
-double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
 Point2 in_plane(const Point3& p) { return p.head<2>(); }
 
@@ -412,7 +409,7 @@ std::optional<std::vector<ChainPiece>> ArcChain::balanced(
   // With as many pieces, how much smaller can the deviation be?
   double good = 1;
   double small = 0;
-  for (int round = 0; round < kBalancingRounds && best->size() > 2; ++round) {
+  for (int round = 0; round < kArcBalancingRounds && best->size() > 2; ++round) {
     const double part = (good + small) / 2;
     ArcChainLimits narrower = limits_;
     narrower.deviation *= part;

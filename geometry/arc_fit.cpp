@@ -45,9 +45,9 @@ struct Stretch {
 };
 
 // The curve cut into straight runs and smooth stretches between corners.
-class Cutter {
+class ArcCutter {
  public:
-  Cutter(const PlaneCurve& curve, const ArcChain& chain, double grid)
+  ArcCutter(const PlaneCurve& curve, const ArcChain& chain, double grid)
       : curve_(curve), chain_(chain), grid_(grid) {}
 
   std::vector<Stretch> cut(const CurvePieces& pieces) const {
@@ -277,7 +277,7 @@ std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
   const ArcChain chain(plane_curve, limits);
 
   const CurvePieces all(curve, from, to);
-  const std::vector<Stretch> stretches = Cutter(plane_curve, chain, options.grid).cut(all);
+  const std::vector<Stretch> stretches = ArcCutter(plane_curve, chain, options.grid).cut(all);
   const std::vector<Stop> stops = stops_of(plane_curve, chain, stretches, flat);
 
   PathBuilder builder(frame, options.axis, curve.point_at(from));

@@ -11,13 +11,12 @@
 #include <string>
 #include <utility>
 
+#include "geometry/angle.h"
 #include "geometry/numeric.h"
 #include "geometry/plane_band.h"
 
 namespace batten::geometry {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // How much is looked at. Half of it all gives some percent more arcs.
 struct Effort {
@@ -78,15 +77,13 @@ constexpr std::array kBalances = {1.0, 0.7, 1.4, 0.5, 2.0, 0.3, 3.0};
 
 // An angle that differs less is the same tangent; rounding of an end by a grid step turns the
 // tangent by two steps over the arc's length.
-constexpr double kSameAngle = 1e-6;
+constexpr double kSameTurn = 1e-6;
 
 // Chains of no more arcs than this are tried again with a part of the tolerance: circles and
 // fillets come out with their own radius.
 constexpr std::size_t kFew = 8;
 constexpr double kNearer = 0.3;
 constexpr int kNearerRounds = 3;
-
-double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
 struct Node {
   BandEntry entry;
@@ -298,7 +295,7 @@ class Search {
     node.before = static_cast<std::ptrdiff_t>(i);
     node.entry = {end, node.arc.start_angle() + node.arc.sweep, count_};
     if (!allowed(node.arc)) return false;
-    const double sharp = kSameAngle + 2 * options_.grid / node.arc.length();
+    const double sharp = kSameTurn + 2 * options_.grid / node.arc.length();
     if (node.arc.is_line() && std::abs(wrapped(node.arc.start_angle() - entry.angle)) > sharp) {
       return false;
     }

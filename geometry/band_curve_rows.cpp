@@ -9,8 +9,8 @@ namespace batten::geometry {
 
 namespace {
 
-constexpr int kDegree = 3;
-constexpr std::size_t kFunctions = kDegree + 1;  // that are not zero on a span
+constexpr int kRowDegree = 3;
+constexpr std::size_t kFunctions = kRowDegree + 1;  // that are not zero on a span
 
 // The derivative-th derivative of the curve at u.
 BandCombination combination_at(const BsplineBasis& basis, double u, int derivative) {
@@ -19,7 +19,7 @@ BandCombination combination_at(const BsplineBasis& basis, double u, int derivati
   std::array<double, kFunctions * kFunctions> values{};
   basis.evaluate_derivatives(span, inside, derivative, values.data());
   BandCombination made;
-  made.first = span - kDegree;
+  made.first = span - kRowDegree;
   for (std::size_t j = 0; j < 4; ++j) {
     made.weights[j] = values[static_cast<std::size_t>(derivative) * kFunctions + j];
   }
@@ -74,7 +74,7 @@ std::vector<EnergyTerm> energy_terms(const BandProblem& problem) {
   const auto& t = problem.basis.knots();
   const auto places = gauss_places(problem);
   std::vector<EnergyTerm> terms;
-  for (std::size_t k = kDegree; k < problem.basis.size(); ++k) {
+  for (std::size_t k = kRowDegree; k < problem.basis.size(); ++k) {
     if (!(t[k] < t[k + 1])) continue;
     const double width = t[k + 1] - t[k];
     for (const GaussPlace& place : places) {
@@ -139,7 +139,7 @@ double BandRows::worst_ratio(const std::vector<Point3>& points, bool rates) cons
 }
 
 BandRows band_rows(const BandProblem& problem, int rates_from) {
-  require(problem.basis.degree() == kDegree,
+  require(problem.basis.degree() == kRowDegree,
           "degree " + std::to_string(problem.basis.degree()) + ", expected 3");
   require(problem.energy == 2 || problem.energy == 3,
           "energy of derivative " + std::to_string(problem.energy) + ", expected 2 or 3");
@@ -147,7 +147,7 @@ BandRows band_rows(const BandProblem& problem, int rates_from) {
   made.terms = energy_terms(problem);
   for (const BandSample& sample : problem.samples) {
     require(sample.radius > 0, "radius " + std::to_string(sample.radius) + ", expected above 0");
-    require(sample.derivative >= 0 && sample.derivative <= kDegree,
+    require(sample.derivative >= 0 && sample.derivative <= kRowDegree,
             "derivative " + std::to_string(sample.derivative) + ", expected 0 to 3");
     BandRow row;
     row.value = combination_at(problem.basis, sample.parameter, sample.derivative);

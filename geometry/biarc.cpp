@@ -5,18 +5,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/angle.h"
 #include "geometry/bezier_halves.h"
 #include "geometry/numeric.h"
 
 namespace batten::geometry {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // Halvings of a piece whose bounds are not sharp; each one quarters what they have too much.
 constexpr int kHalvings = 6;
-
-double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
 double angle_of(const Vector2& v) { return std::atan2(v.y(), v.x()); }
 

@@ -37,9 +37,9 @@ std::optional<Pin> border_at(const FitProblem& problem, double u) {
 }
 
 // Walks along a problem and cuts off one part after the other.
-class Cutter {
+class SplineCutter {
  public:
-  explicit Cutter(const FitProblem& problem) : whole_(problem) {}
+  explicit SplineCutter(const FitProblem& problem) : whole_(problem) {}
 
   FitProblem cut(const Pin& from, const Pin& to) {
     FitProblem part;
@@ -123,7 +123,7 @@ void PartedFit::refit(const FitProblem& problem, double closest) {
 std::vector<FitProblem> PartedFit::parted(const FitProblem& problem) const {
   std::vector<FitProblem> parts;
   parts.reserve(borders_.size() - 1);
-  Cutter cutter(problem);
+  SplineCutter cutter(problem);
   std::optional<Pin> from = border_at(problem, borders_.front());
   for (std::size_t i = 1; i < borders_.size(); ++i) {
     const std::optional<Pin> to = border_at(problem, borders_[i]);

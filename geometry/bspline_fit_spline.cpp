@@ -8,7 +8,7 @@ namespace batten::geometry {
 
 namespace {
 
-constexpr std::size_t kDegree = 3;
+constexpr std::size_t kSplineDegree = 3;
 
 // Knots, and the control point at each pin: the one whose Greville abscissa is the pin.
 std::vector<std::size_t> make_knots(FitSpline& spline, std::span<const Pin> pins) {
@@ -20,7 +20,7 @@ std::vector<std::size_t> make_knots(FitSpline& spline, std::span<const Pin> pins
     const std::size_t pin = points.size();
     if (pin < pins.size() && u == pins[pin].parameter) {
       const bool end = pin == 0 || pin + 1 == pins.size();
-      copies = end ? kDegree + 1 : kDegree;
+      copies = end ? kSplineDegree + 1 : kSplineDegree;
       points.push_back(knots.empty() ? 0 : knots.size() - 1);
     }
     knots.insert(knots.end(), copies, u);
@@ -41,7 +41,7 @@ void fix_zones(FitSpline& spline, std::span<const StraightZone> zones) {
       throw std::invalid_argument("fit_bspline: a straight zone is no span");
     }
     const Vector3 per_unit = (zone.end - zone.start) / (zone.to - zone.from);
-    for (std::size_t i = span - kDegree; i <= span; ++i) {
+    for (std::size_t i = span - kSplineDegree; i <= span; ++i) {
       const double greville = (t[i + 1] + t[i + 2] + t[i + 3]) / 3;
       spline.points[i] = zone.start + (greville - zone.from) * per_unit;
       spline.fixed[i] = 1;
@@ -64,12 +64,12 @@ std::array<double, 4> third_derivatives(const double* t) {
 void make_energy(FitSpline& spline) {
   const std::vector<double>& t = spline.knots;
   spline.energy.assign(spline.size(), {});
-  for (std::size_t span = kDegree; span < spline.size(); ++span) {
+  for (std::size_t span = kSplineDegree; span < spline.size(); ++span) {
     const double width = t[span + 1] - t[span];
     if (!(width > 0)) continue;
     const std::array<double, 4> third = third_derivatives(&t[span]);
     for (std::size_t j = 0; j < 4; ++j) {
-      std::array<double, 4>& row = spline.energy[span - kDegree + j];
+      std::array<double, 4>& row = spline.energy[span - kSplineDegree + j];
       for (std::size_t k = 0; k <= j; ++k) row[j - k] += width * third[j] * third[k];
     }
   }
@@ -82,7 +82,7 @@ FitSpline spline_on(std::vector<double> breaks, std::span<const Pin> pins,
   FitSpline spline;
   spline.breaks = std::move(breaks);
   const std::vector<std::size_t> pinned = make_knots(spline, pins);
-  const std::size_t size = spline.knots.size() - kDegree - 1;
+  const std::size_t size = spline.knots.size() - kSplineDegree - 1;
   spline.points.assign(size, Point3::Zero());
   spline.fixed.assign(size, 0);
   fix_zones(spline, zones);
@@ -95,7 +95,7 @@ FitSpline spline_on(std::vector<double> breaks, std::span<const Pin> pins,
 }
 
 std::vector<std::size_t> carry_points(const FitSpline& before, FitSpline& after) {
-  constexpr std::ptrdiff_t kSupport = kDegree + 2;  // knots of one control point
+  constexpr std::ptrdiff_t kSupport = kSplineDegree + 2;  // knots of one control point
   std::vector<std::size_t> now_at(before.size(), kNotCarried);
   std::size_t j = 0;
   for (std::size_t i = 0; i < before.size() && j < after.size(); ++i) {
@@ -119,7 +119,7 @@ FitRow row_at(const FitSpline& spline, double u, std::size_t& span) {
   const std::vector<double>& knots = spline.knots;
   while (span + 1 < spline.size() && knots[span + 1] <= u) ++span;
   FitRow row;
-  row.first = span - kDegree;
+  row.first = span - kSplineDegree;
   // Piegl and Tiller, The NURBS Book, algorithm A2.2, written out for degree 3.
   const double* t = &knots[span];
   const double left1 = u - t[0];

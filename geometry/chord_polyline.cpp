@@ -33,9 +33,9 @@ double chords_for(double bend, double max_error) {
   return std::max(1.0, std::ceil(std::sqrt(bend / (8 * max_error))));
 }
 
-class Cutter {
+class ChordCutter {
  public:
-  Cutter(std::span<const PathPiece> path, double max_error) {
+  ChordCutter(std::span<const PathPiece> path, double max_error) {
     const double wanted = chords_wanted(path, max_error);
     // Halving the number of chords makes their error four times as large.
     const double coarser = std::max(1.0, wanted / kMostChords);
@@ -99,7 +99,7 @@ class Cutter {
 }  // namespace
 
 ChordPolyline cut_into_chords(std::span<const PathPiece> path, double max_error) {
-  return Cutter(path, max_error).take();
+  return ChordCutter(path, max_error).take();
 }
 
 double greatest_coordinate(const ChordPolyline& polyline) {

@@ -21,13 +21,13 @@ double distance_to_line(const Point3& p, const Point3& on_line, const Vector3& d
 bool is_straight(const CubicBezier& piece) {
   const Vector3 chord = piece.control[3] - piece.control[0];
   const double length = chord.norm();
-  if (length <= kStraight) return false;
+  if (length <= kOnLine) return false;
   const Vector3 along = chord / length;
   double before = 0;
   for (int i = 1; i < 4; ++i) {
     const double at = along.dot(piece.control[i] - piece.control[0]);
-    if (at < before - kStraight) return false;
-    if (distance_to_line(piece.control[i], piece.control[0], along) > kStraight) return false;
+    if (at < before - kOnLine) return false;
+    if (distance_to_line(piece.control[i], piece.control[0], along) > kOnLine) return false;
     before = at;
   }
   return true;
@@ -110,17 +110,17 @@ std::vector<StraightRun> CurvePieces::straight_runs() const {
     while (end < pieces_.size() && is_straight(pieces_[end])) {
       const Point3& next = pieces_[end].control[3];
       const double onward = along.dot(next - start);
-      const double allowed = kStraight * std::max(1.0, (onward - reach) / reach);
+      const double allowed = kOnLine * std::max(1.0, (onward - reach) / reach);
       if (onward < reach || distance_to_line(next, start, along) > allowed) break;
       const Vector3 aimed = (next - start).normalized();
-      if (distance_to_line(pieces_[end].control[0], start, aimed) > kStraight) break;
+      if (distance_to_line(pieces_[end].control[0], start, aimed) > kOnLine) break;
       along = aimed;
       reach = onward;
       ++end;
     }
     // Many tiny pieces of a bend can each pass; together they are no line.
     const auto on_line = [&](const CubicBezier& piece) {
-      return distance_to_line(piece.control[3], start, along) <= 2 * kStraight;
+      return distance_to_line(piece.control[3], start, along) <= 2 * kOnLine;
     };
     const auto first = pieces_.begin() + static_cast<std::ptrdiff_t>(i);
     const auto last = pieces_.begin() + static_cast<std::ptrdiff_t>(end);

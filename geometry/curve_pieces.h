@@ -16,9 +16,9 @@ inline constexpr double kCornerAngle = 2e-3;
 
 // A piece whose control points are this close (mm) to its chord is straight: above the
 // noise of solved control points, below the last decimal that a program carries.
-inline constexpr double kStraight = 1e-7;
+inline constexpr double kOnLine = 1e-7;
 
-// Parameters of a stretch that is one straight line to within kStraight.
+// Parameters of a stretch that is one straight line to within kOnLine.
 struct StraightRun {
   double from;
   double to;

@@ -8,7 +8,7 @@ namespace batten::geometry {
 
 namespace {
 
-constexpr std::size_t kDegree = 3;
+constexpr std::size_t kFairDegree = 3;
 
 // Samples of a piece of the curve beside an edge; four times as many where one of them is further
 // off than this part of the limit.
@@ -47,7 +47,7 @@ double worst_of_piece(SplineWalk& curve, std::span<const Point3> points, std::si
 }  // namespace
 
 SplineWalk::SplineWalk(std::span<const double> knots, std::span<const Point3> control_points)
-    : t_(knots), p_(control_points), span_(kDegree) {
+    : t_(knots), p_(control_points), span_(kFairDegree) {
   while (span_ + 1 < p_.size() && t_[span_ + 1] <= t_[span_]) ++span_;
   take_span();
 }
@@ -58,10 +58,10 @@ void SplineWalk::go_to(double u) {
   if (u >= t_[span_] && (span_ + kNear >= p_.size() || u < t_[span_ + kNear])) {
     while (span_ + 1 < p_.size() && t_[span_ + 1] <= u) ++span_;
   } else {
-    const auto begin = t_.begin() + kDegree;
+    const auto begin = t_.begin() + kFairDegree;
     const auto end = t_.begin() + static_cast<std::ptrdiff_t>(p_.size());
     const auto above = std::upper_bound(begin, end, u);
-    span_ = std::max(static_cast<std::size_t>(above - t_.begin()), kDegree + 1) - 1;
+    span_ = std::max(static_cast<std::size_t>(above - t_.begin()), kFairDegree + 1) - 1;
   }
   take_span();
 }

@@ -27,7 +27,7 @@ constexpr int kTries = 3;
 constexpr int kMeasuredPerSpan = 8;
 
 // Towards the nearest place of a curve whose speed is nearly even: each step leaves a few percent.
-constexpr int kSteps = 3;
+constexpr int kMoveSteps = 3;
 
 class Reducer {
  public:
@@ -69,7 +69,7 @@ class Reducer {
 
   // From `place` to the curve about its parameter u.
   static double distance_near(const BsplineCurve& curve, double u, const Point3& place) {
-    for (int i = 0; i < kSteps; ++i) {
+    for (int i = 0; i < kMoveSteps; ++i) {
       const Vector3 along = curve.derivative_at(u, 1);
       const double speed = along.squaredNorm();
       if (!(speed > 0)) break;

@@ -102,9 +102,10 @@ double reach_from_opposite(const Interval& side, double entered) {
 }
 
 // Visits the reachable cells row by row and keeps them.
-class Sweep {
+class FreeSpaceSweep {
  public:
-  Sweep(const FreeSpace& space, std::size_t most_cells) : space_(space), most_cells_(most_cells) {
+  FreeSpaceSweep(const FreeSpace& space, std::size_t most_cells)
+      : space_(space), most_cells_(most_cells) {
     row_begin_.reserve(space.rows() + 1);
     row_begin_.push_back(0);
   }
@@ -242,7 +243,7 @@ class Sweep {
 // it can have been entered, and there to the place nearest to the vertex.
 class WayBack {
  public:
-  WayBack(const FreeSpace& space, const Sweep& sweep, const ChordPolyline& a,
+  WayBack(const FreeSpace& space, const FreeSpaceSweep& sweep, const ChordPolyline& a,
           const ChordPolyline& b)
       : space_(space), sweep_(sweep), a_(a), b_(b) {}
 
@@ -311,7 +312,7 @@ class WayBack {
   }
 
   const FreeSpace& space_;
-  const Sweep& sweep_;
+  const FreeSpaceSweep& sweep_;
   const ChordPolyline& a_;
   const ChordPolyline& b_;
 };
@@ -321,7 +322,7 @@ class WayBack {
 FreeSpaceAnswer find_passage(const ChordPolyline& a, const ChordPolyline& b, double distance,
                              ChordErrors errors, std::size_t most_cells) {
   const FreeSpace space(a, b, distance, errors);
-  Sweep sweep(space, most_cells);
+  FreeSpaceSweep sweep(space, most_cells);
   FreeSpaceAnswer answer;
   answer.passage = sweep.run();
   if (answer.passage == Passage::kFound) answer.way = WayBack(space, sweep, a, b).run();

@@ -9,11 +9,11 @@
 namespace batten::geometry {
 namespace {
 
-constexpr int kDegree = 3;
+constexpr int kJoinedDegree = 3;
 
 bool is_clamped_cubic(const BsplineCurve& part) {
   const auto& t = part.basis().knots();
-  return part.degree() == kDegree && t.front() == part.first() && t.back() == part.last();
+  return part.degree() == kJoinedDegree && t.front() == part.first() && t.back() == part.last();
 }
 
 CubicBezier as_bezier(const PathPiece& piece) {
@@ -30,17 +30,17 @@ class Joiner {
   void add(double from, std::span<const double> inner_knots, double to,
            std::span<const Point3> points) {
     if (knots_.empty()) {
-      knots_.assign(kDegree + 1, from);
+      knots_.assign(kJoinedDegree + 1, from);
       points_.assign(points.begin(), points.begin() + 1);
     }
     knots_.insert(knots_.end(), inner_knots.begin(), inner_knots.end());
-    knots_.insert(knots_.end(), kDegree, to);
+    knots_.insert(knots_.end(), kJoinedDegree, to);
     points_.insert(points_.end(), points.begin() + 1, points.end());
   }
 
   [[nodiscard]] BsplineCurve curve() && {
     knots_.push_back(knots_.back());
-    return {BsplineBasis(kDegree, std::move(knots_)), std::move(points_)};
+    return {BsplineBasis(kJoinedDegree, std::move(knots_)), std::move(points_)};
   }
 
  private:
@@ -65,7 +65,7 @@ BsplineCurve joined(std::span<const BsplineCurve> parts) {
     }
     end = part.last();
     const std::span<const double> knots = part.basis().knots();
-    constexpr std::size_t kAtEnd = kDegree + 1;  // knots of a clamped end
+    constexpr std::size_t kAtEnd = kJoinedDegree + 1;  // knots of a clamped end
     joiner.add(part.first(), knots.subspan(kAtEnd, knots.size() - 2 * kAtEnd), end,
                part.control_points());
   }

@@ -22,7 +22,7 @@ constexpr double kEndPrecision = 1e-4;
 constexpr double kLengthNoise = 1e-9;
 
 // How often the limits are narrowed to let the last chord grow to the size of the others.
-constexpr int kBalancingRounds = 8;
+constexpr int kChordBalancingRounds = 8;
 
 // The last chord is no remainder when it is this part of a full one.
 constexpr double kFullChord = 0.98;
@@ -246,7 +246,7 @@ std::vector<double> balanced(const CurvePieces& pieces, double from, std::vector
   const auto count = static_cast<double>(ends.size());
   double good = 1;   // chord lengths relative to the greedy ones
   double small = 0;  // too small: needs more chords
-  for (int round = 0; round < kBalancingRounds && ends.size() > 1; ++round) {
+  for (int round = 0; round < kChordBalancingRounds && ends.size() > 1; ++round) {
     const double part = part_of_full_chord(pieces, ends[ends.size() - 2], to, scaled(limits, good));
     if (part >= kFullChord) break;
     const double wanted = good * (count - 1 + part) / count;

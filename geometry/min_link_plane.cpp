@@ -45,9 +45,9 @@ struct Place {
   double offset = 0;
 };
 
-class Sweep {
+class GateSweep {
  public:
-  Sweep(const GateChain& gates, const Vector3& normal, const Point3& start, double width)
+  GateSweep(const GateChain& gates, const Vector3& normal, const Point3& start, double width)
       : chain_(gates), width_(width * (1 - 2 * kWayNoise)), noise_(width * kWayNoise) {
     const Vector3 first = gates[0].along - gates[0].along.dot(normal) * normal;
     axes_.row(0) = first.normalized();
@@ -220,7 +220,7 @@ class Sweep {
 std::optional<std::vector<LinkVertex>> min_link_in_plane(const GateChain& gates,
                                                          const Vector3& normal, const Point3& start,
                                                          double width) {
-  return Sweep(gates, normal, start, width).fewest_links(start);
+  return GateSweep(gates, normal, start, width).fewest_links(start);
 }
 
 }  // namespace batten::geometry

@@ -14,8 +14,6 @@ namespace batten::geometry {
 
 namespace {
 
-constexpr std::size_t kDegree = kNaseathDegree;
-
 // A bound on the displacement may exceed it by this part of what `accuracy` resolves: while
 // passes are made, and in the end.
 constexpr double kSlack = 0.1;
@@ -43,7 +41,7 @@ bool is_clamped(const BsplineBasis& basis) {
 
 bool has_single_inner_knots(const BsplineBasis& basis) {
   const auto& t = basis.knots();
-  for (std::size_t i = kDegree; i < basis.size(); ++i) {
+  for (std::size_t i = kNaseathDegree; i < basis.size(); ++i) {
     if (!(t[i] < t[i + 1])) return false;
   }
   return true;
@@ -78,13 +76,14 @@ double sampled_displacement(const BsplineCurve& displacement, int precision) {
 bool is_periodic_ring(const BsplineCurve& curve) {
   const auto& t = curve.basis().knots();
   const auto& points = curve.control_points();
-  if (curve.degree() != static_cast<int>(kDegree) || points.size() < 2 * kDegree) return false;
-  const std::size_t m = points.size() - kDegree;
+  if (curve.degree() != static_cast<int>(kNaseathDegree) || points.size() < 2 * kNaseathDegree)
+    return false;
+  const std::size_t m = points.size() - kNaseathDegree;
   const double period = curve.last() - curve.first();
-  for (std::size_t i = 0; i < kDegree; ++i) {
+  for (std::size_t i = 0; i < kNaseathDegree; ++i) {
     if ((points[i] - points[m + i]).norm() > kSamePlace) return false;
   }
-  for (std::size_t i = 0; i <= 2 * kDegree; ++i) {
+  for (std::size_t i = 0; i <= 2 * kNaseathDegree; ++i) {
     if (std::abs(t[m + i] - t[i] - period) > kSameKnot * period) return false;
   }
   return true;
@@ -92,7 +91,7 @@ bool is_periodic_ring(const BsplineCurve& curve) {
 
 BsplineCurve NaseathSetting::curve_of(std::vector<Point3> points) const {
   if (original.closed) {
-    for (std::size_t i = 0; i < kDegree; ++i) points.push_back(points[i]);
+    for (std::size_t i = 0; i < kNaseathDegree; ++i) points.push_back(points[i]);
   }
   return {basis, std::move(points)};
 }
@@ -105,13 +104,13 @@ bool NaseathSetting::is_held(std::size_t i) const {
 NaseathSetting naseath_setting(const BsplineCurve& curve, const NaseathOptions& options) {
   check(options);
   const bool ring = is_periodic_ring(curve);
-  if (curve.degree() != static_cast<int>(kDegree) || !has_single_inner_knots(curve.basis()) ||
-      !(ring || is_clamped(curve.basis()))) {
+  if (curve.degree() != static_cast<int>(kNaseathDegree) ||
+      !has_single_inner_knots(curve.basis()) || !(ring || is_clamped(curve.basis()))) {
     throw std::invalid_argument("smooth_naseath: degree " + std::to_string(curve.degree()) +
                                 ", expected a cubic, clamped or a ring, with single inner knots");
   }
   ControlPolygon polygon{curve.control_points(), ring};
-  if (ring) polygon.points.resize(polygon.size() - kDegree);
+  if (ring) polygon.points.resize(polygon.size() - kNaseathDegree);
   const std::size_t m = polygon.size();
   const EndLegs legs = end_legs(polygon);
   return {curve.basis(), std::move(polygon), legs, parameters_of_influence(curve.basis(), m),
@@ -134,7 +133,7 @@ NaseathRoom naseath_room(const NaseathSetting& setting, const ControlPolygon& po
   room.per_point.assign(m, kInside * (options.repairs.local_stop ? radius : room.least));
   if (!options.repairs.local_stop) return room;
   for (std::size_t j = 0; j < bounds.size(); ++j) {
-    for (std::size_t i = j; i <= j + kDegree; ++i) {
+    for (std::size_t i = j; i <= j + kNaseathDegree; ++i) {
       double& left = room.per_point[i % m];
       left = std::min(left, kInside * (radius - bounds[j]));
     }

@@ -4,12 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/angle.h"
 #include "geometry/numeric.h"
 
 namespace batten::geometry {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // What a curve with the polyline's turns does between two samples is at most this part of the
 // tolerance.
@@ -25,8 +24,6 @@ constexpr int kPartsOfLong = 4;
 constexpr double kTightTurn = 0.1;
 constexpr double kNearest = 0.5;
 constexpr double kRoomForTight = 10;  // tolerances: a shorter edge is no leg of a corner
-
-double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
 double angle_of(const Vector2& v) { return std::atan2(v.y(), v.x()); }
 

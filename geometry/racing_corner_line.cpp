@@ -16,7 +16,7 @@ namespace {
 constexpr double kGrowth = 1.05;
 
 // Places per span where the band is watched.
-constexpr int kWatched = 4;
+constexpr int kWatchedBetween = 4;
 
 // The speed may be above the feed by this part: the planner that runs the curve caps it, which
 // costs no more than that, and the ends, which have the feed itself, are strictly inside.
@@ -120,8 +120,8 @@ void RacingLine::add_band(BandProblem& made, const std::vector<double>& breaks,
   sample.foot = frame_.vertex;
   sample.radius = tolerance;
   for (std::size_t span = 0; span + 1 < breaks.size(); ++span) {
-    for (int i = span == 0 ? 1 : 0; i < kWatched; ++i) {
-      const double part = static_cast<double>(i) / kWatched;
+    for (int i = span == 0 ? 1 : 0; i < kWatchedBetween; ++i) {
+      const double part = static_cast<double>(i) / kWatchedBetween;
       sample.parameter = breaks[span] + part * (breaks[span + 1] - breaks[span]);
       sample.shape = BandShape::kCylinder;
       if (sample.parameter <= apex) {
@@ -162,8 +162,8 @@ void RacingLine::add_limits(BandProblem& made) const {
     BandSample speed;
     speed.derivative = 1;
     speed.radius = limits.feed * (1 + kOverspeed);
-    for (int i = k == 3 ? 1 : 0; i < kWatched; ++i) {
-      speed.parameter = t[k] + (t[k + 1] - t[k]) * i / kWatched;
+    for (int i = k == 3 ? 1 : 0; i < kWatchedBetween; ++i) {
+      speed.parameter = t[k] + (t[k + 1] - t[k]) * i / kWatchedBetween;
       made.samples.push_back(speed);
     }
     if (k == 3) continue;

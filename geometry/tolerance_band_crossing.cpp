@@ -14,7 +14,7 @@
 namespace batten::geometry {
 namespace {
 
-using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 2, std::size_t>;
+using CrossingBox = CGAL::Box_intersection_d::Box_with_info_d<double, 2, std::size_t>;
 
 // Chords may be this part of the tolerance off the pieces they stand for.
 constexpr double kChordPart = 0.01;
@@ -86,8 +86,8 @@ class OldLayer {
     return false;
   }
 
-  [[nodiscard]] std::vector<Box> boxes() const {
-    std::vector<Box> result;
+  [[nodiscard]] std::vector<CrossingBox> boxes() const {
+    std::vector<CrossingBox> result;
     const double margin = kSameLoop * tolerance_;
     for (std::size_t i = 0; i < edges_.size(); ++i) {
       const Point2 low = edges_.from(i).cwiseMin(edges_.to(i));
@@ -151,16 +151,17 @@ std::optional<Meeting> first_new(const std::vector<Meeting>& met, const FlatEdge
                                  double tolerance) {
   const auto old = OldLayer::made_of(before, tolerance);
   if (!old) return {};
-  std::vector<Box> places;
+  std::vector<CrossingBox> places;
   for (std::size_t i = 0; i < met.size(); ++i) {
     const Point2& p = met[i].place;
     places.emplace_back(CGAL::Bbox_2(p.x(), p.y(), p.x(), p.y()), i);
   }
   std::vector<std::vector<std::size_t>> near(met.size());
-  std::vector<Box> edges = old->boxes();
-  CGAL::box_intersection_d(
-      places.begin(), places.end(), edges.begin(), edges.end(),
-      [&](const Box& place, const Box& edge) { near[place.info()].push_back(edge.info()); });
+  std::vector<CrossingBox> edges = old->boxes();
+  CGAL::box_intersection_d(places.begin(), places.end(), edges.begin(), edges.end(),
+                           [&](const CrossingBox& place, const CrossingBox& edge) {
+                             near[place.info()].push_back(edge.info());
+                           });
   for (std::size_t i = 0; i < met.size(); ++i) {
     std::sort(near[i].begin(), near[i].end());
     if (!old->meets_itself_at(met[i].place, near[i])) return met[i];

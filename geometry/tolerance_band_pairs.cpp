@@ -14,7 +14,7 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Segment = Kernel::Segment_2;
-using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 2, std::uint32_t>;
+using PairBox = CGAL::Box_intersection_d::Box_with_info_d<double, 2, std::uint32_t>;
 
 Kernel::Point_2 to_cgal(const Point2& p) { return {p.x(), p.y()}; }
 
@@ -22,9 +22,9 @@ Segment segment_of(const FlatEdges& edges, std::size_t edge) {
   return {to_cgal(edges.from(edge)), to_cgal(edges.to(edge))};
 }
 
-Box box_around(const FlatEdges& edges, std::uint32_t edge, double margin) {
+PairBox box_around(const FlatEdges& edges, std::uint32_t edge, double margin) {
   const CGAL::Bbox_2 b = segment_of(edges, edge).bbox();
-  return Box(
+  return PairBox(
       CGAL::Bbox_2(b.xmin() - margin, b.ymin() - margin, b.xmax() + margin, b.ymax() + margin),
       edge);
 }
@@ -148,12 +148,12 @@ std::optional<std::size_t> FlatEdges::after(std::size_t edge) const {
 
 std::optional<std::vector<EdgePair>> near_pairs(const FlatEdges& edges, double reach) {
   std::vector<EdgePair> pairs;
-  std::vector<Box> boxes;
+  std::vector<PairBox> boxes;
   boxes.reserve(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
     boxes.push_back(box_around(edges, static_cast<std::uint32_t>(i), 0.5 * reach));
   }
-  const auto found = [&](const Box& a, const Box& b) {
+  const auto found = [&](const PairBox& a, const PairBox& b) {
     const EdgePair pair{std::min(a.info(), b.info()), std::max(a.info(), b.info())};
     if (edge_distance(edges, pair) > reach) return;
     pairs.push_back(pair);

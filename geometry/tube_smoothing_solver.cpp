@@ -13,7 +13,7 @@ namespace {
 
 // Places per span where the band is watched. What is missed between them, under a percent, is
 // taken back by pulled_inside.
-constexpr int kWatched = 6;
+constexpr int kWatchedInTube = 6;
 
 // Energies need not be nearer to the least than what is taken back.
 constexpr double kGap = 1e-3;
@@ -39,7 +39,7 @@ std::vector<HeldPoint> held_ends(const BsplineCurve& curve, int held_points) {
 
 std::vector<BandSample> tube_samples(const BsplineCurve& curve, double radius) {
   std::vector<BandSample> samples;
-  for (const ParameterSample& place : parameter_samples(curve, kWatched)) {
+  for (const ParameterSample& place : parameter_samples(curve, kWatchedInTube)) {
     BandSample sample;
     sample.parameter = place.parameter;
     sample.foot = curve.point_at(place.parameter);

@@ -13,13 +13,13 @@
 
 #include "gcode/parser.h"
 #include "postproc/ini_file.h"
+#include "postproc/machine/unit_sizes.h"
 #include "postproc/machine/value_origin.h"
 
 namespace batten::postproc {
 
 namespace {
 
-constexpr double kInch = 25.4;  // mm
 constexpr double kNanosecond = 1e-9;
 
 struct NamedUnit {
@@ -33,7 +33,6 @@ constexpr std::array kLengthUnits = {NamedUnit{"mm", 1}, NamedUnit{"metric", 1},
                                      NamedUnit{"imperial", kInch}};
 
 // Degrees.
-constexpr double kRadian = 180 / std::numbers::pi;
 constexpr std::array kAngleUnits = {NamedUnit{"deg", 1},         NamedUnit{"degree", 1},
                                     NamedUnit{"degrees", 1},     NamedUnit{"grad", 0.9},
                                     NamedUnit{"gon", 0.9},       NamedUnit{"rad", kRadian},

@@ -28,7 +28,7 @@ constexpr int kHoldPlace = 1;
 constexpr int kHoldCurvature = 3;
 
 // A part of the fit between two cuts.
-struct Stretch {
+struct NaseathStretch {
   double from;
   double to;
   bool straight;        // a line of the program: it stays
@@ -48,7 +48,7 @@ std::vector<double> corners_of(const BsplineCurve& curve) {
   return corners;
 }
 
-std::vector<Stretch> stretches_of(const BsplineCurve& curve, bool closed) {
+std::vector<NaseathStretch> stretches_of(const BsplineCurve& curve, bool closed) {
   const auto lines = geometry::CurvePieces(curve, curve.first(), curve.last()).straight_runs();
   const std::vector<double> corners = corners_of(curve);
   std::vector<double> cuts = {curve.first(), curve.last()};
@@ -63,7 +63,7 @@ std::vector<Stretch> stretches_of(const BsplineCurve& curve, bool closed) {
     if (u == curve.first() || u == curve.last()) return closed;
     return !std::binary_search(corners.begin(), corners.end(), u);
   };
-  std::vector<Stretch> stretches;
+  std::vector<NaseathStretch> stretches;
   std::size_t line = 0;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     while (line < lines.size() && lines[line].to <= cuts[i]) ++line;
@@ -92,7 +92,7 @@ std::optional<FairPath> naseath_curve(std::span<const Point3> run, const CurveRe
   const bool closed = (run.front() - run.back()).norm() <= geometry::kSamePlace;
   double moved = 0;
   std::vector<BsplineCurve> parts;
-  for (const Stretch& stretch : stretches_of(path->curve, closed)) {
+  for (const NaseathStretch& stretch : stretches_of(path->curve, closed)) {
     BsplineCurve part = path->curve.part(stretch.from, stretch.to);
     if (!stretch.straight) {
       options.held_points = stretch.meets_smoothly ? kHoldCurvature : kHoldPlace;

@@ -19,7 +19,7 @@ using geometry::Vector3;
 
 // The part of the deviation that is kept for chords in place of arcs that the target refuses
 // after rounding. There are few of them.
-constexpr double kPartForChords = 0.03;
+constexpr double kPartForArcSplineChords = 0.03;
 
 // Turns beyond this stay as they are: see geometry::find_features.
 constexpr double kReversal = 170 * std::numbers::pi / 180;
@@ -28,7 +28,7 @@ constexpr double kReversal = 170 * std::numbers::pi / 180;
 constexpr double kNoCorner = 1e-3;
 
 // A part of the run that is one chain of arcs: between changes of feed and kept corners.
-struct Stretch {
+struct ArcStretch {
   std::size_t first;  // vertices of the run
   std::size_t last;
   double feed;
@@ -55,7 +55,7 @@ class ArcSplinePlanner {
 
   std::optional<OutputPlan> plan() {
     plan_.form = OutputForm::kArcs;
-    for (const Stretch& stretch : stretches()) {
+    for (const ArcStretch& stretch : stretches()) {
       if (!add(stretch)) return std::nullopt;
     }
     place_comments(run_, fair_, starts_, plan_);
@@ -79,10 +79,10 @@ class ArcSplinePlanner {
     return std::abs(std::remainder(off, 2 * std::numbers::pi)) < kNoCorner;
   }
 
-  [[nodiscard]] std::vector<Stretch> stretches() const {
+  [[nodiscard]] std::vector<ArcStretch> stretches() const {
     const std::size_t end = run_.points.size() - 1;
     const bool round = goes_round();
-    std::vector<Stretch> all = {{0, end, run_.feeds.front().feed, round, round}};
+    std::vector<ArcStretch> all = {{0, end, run_.feeds.front().feed, round, round}};
     std::size_t next = 0;
     for (std::size_t i = 0; i < end; ++i) {
       double feed = all.back().feed;
@@ -99,7 +99,7 @@ class ArcSplinePlanner {
     return all;
   }
 
-  bool add(const Stretch& stretch) {
+  bool add(const ArcStretch& stretch) {
     std::vector<Point2> points;
     std::vector<std::size_t> vertices;
     for (std::size_t i = stretch.first; i <= stretch.last; ++i) {
@@ -115,10 +115,10 @@ class ArcSplinePlanner {
     return true;
   }
 
-  [[nodiscard]] geometry::ArcSplineOptions fit_options(const Stretch& stretch,
+  [[nodiscard]] geometry::ArcSplineOptions fit_options(const ArcStretch& stretch,
                                                        const std::vector<Point2>& points) const {
     geometry::ArcSplineOptions fit;
-    fit.tolerance = (1 - kPartForChords) * options_.max_deviation;
+    fit.tolerance = (1 - kPartForArcSplineChords) * options_.max_deviation;
     fit.min_radius = options_.target->min_arc_radius();
     fit.max_radius = options_.target->max_arc_radius();
     fit.grid = arc_grid(options_);
@@ -134,7 +134,7 @@ class ArcSplinePlanner {
     return frame_.global({p.x(), p.y(), height_});
   }
 
-  void append(const geometry::ArcSpline& spline, const Stretch& stretch,
+  void append(const geometry::ArcSpline& spline, const ArcStretch& stretch,
               const std::vector<Point2>& points, const std::vector<std::size_t>& vertices) {
     std::size_t at = 0;  // the vertex before the start of the piece
     double passed = 0;   // station of that vertex
@@ -158,7 +158,7 @@ class ArcSplinePlanner {
     geometry::PathPiece piece = geometry::Line{from, to};
     if (!arc.is_line()) piece = geometry::Arc{from, to, placed(arc.center), axis_, arc.sweep};
     geometry::Path taken;
-    append_taken(piece, kPartForChords * options_.max_deviation, options_, taken);
+    append_taken(piece, kPartForArcSplineChords * options_.max_deviation, options_, taken);
     for (const geometry::PathPiece& each : taken) {
       plan_.moves.push_back({each, feed, {}});
       starts_.push_back(start);

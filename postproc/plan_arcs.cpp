@@ -20,7 +20,7 @@ using geometry::PathPiece;
 
 // The part of the deviation that is kept for chords in place of arcs that the target refuses:
 // too tight, too short. There are few of them.
-constexpr double kPartForChords = 0.1;
+constexpr double kPartForArcChords = 0.1;
 
 // With Prefer::kAccuracy arcs are this much nearer to the curve. An arc's deviation falls with
 // the third power of its length, so it costs little more than twice the arcs.
@@ -42,9 +42,9 @@ std::optional<BsplineCurve> laid_flat(const Run& run, const BsplineCurve& curve,
 
 double fit_deviation(const PlanOptions& options) {
   const double limit = options.max_deviation;
-  if (options.prefer != Prefer::kAccuracy) return limit * (1 - kPartForChords);
+  if (options.prefer != Prefer::kAccuracy) return limit * (1 - kPartForArcChords);
   const double worth_it = arc_grid(options);  // finer than that is lost in print
-  return std::min(std::max(kAccuratePart * limit, worth_it), limit * (1 - kPartForChords));
+  return std::min(std::max(kAccuratePart * limit, worth_it), limit * (1 - kPartForArcChords));
 }
 
 geometry::ArcFitOptions fit_options(const PlanOptions& options, const PlaneAxes& plane,
@@ -85,7 +85,7 @@ std::optional<OutputPlan> plan_in(const Run& run, const geometry::FairPath& fair
     if (!arcs) return std::nullopt;
     Path taken;
     for (const PathPiece& piece : *arcs) {
-      append_taken(piece, kPartForChords * options.max_deviation, options, taken);
+      append_taken(piece, kPartForArcChords * options.max_deviation, options, taken);
     }
     append_stretch(taken, stretch, plan, starts);
   }

@@ -24,7 +24,7 @@ constexpr double kLongLine = 5;
 
 // The part of the deviation that is kept for chords in place of pieces that the target does not
 // take. There are few of them.
-constexpr double kPartForChords = 0.1;
+constexpr double kPartForCurveChords = 0.1;
 
 // The part that is kept for the control's own chords, where it runs curves so: half of it, since
 // with less the pieces get short, and with more the curve hardly bends.
@@ -78,7 +78,7 @@ class CurvePlanner {
   [[nodiscard]] BsplineCurve curve_for(const Run& run, const geometry::FairPath& fair) const {
     geometry::FewerKnotsOptions fewer;
     const double for_control = format_.is_run_as_chords() ? kPartForControl : 0;
-    fewer.max_deviation = (1 - kPartForChords - for_control) * options_.max_deviation;
+    fewer.max_deviation = (1 - kPartForCurveChords - for_control) * options_.max_deviation;
     fewer.long_line = kLongLine;
     for (const FeedFrom& change : run.feeds) {
       fewer.places.push_back(fair.vertex_parameters.at(change.vertex));
@@ -176,7 +176,7 @@ class CurvePlanner {
   }
 
   void add_chords(const BsplineCurve& curve, double from, double to) {
-    const double deviation = kPartForChords * options_.max_deviation;
+    const double deviation = kPartForCurveChords * options_.max_deviation;
     const std::vector<double> vertices =
         geometry::chord_vertices(curve, from, to, {.max_deviation = deviation});
     for (std::size_t i = 0; i + 1 < vertices.size(); ++i) add_line(vertices[i], vertices[i + 1]);

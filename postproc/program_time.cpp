@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "postproc/machine/chain_motion.h"
+#include "postproc/machine/unit_sizes.h"
 #include "postproc/program_time_chains.h"
 
 namespace batten::postproc {
@@ -19,8 +20,6 @@ constexpr int kBlocksAtSpeed = 5;
 
 // Slow places beyond these are not worth a look.
 constexpr std::size_t kMostSlowPlaces = 50;
-
-constexpr double kMinute = 60;  // s
 
 double& part_of(TimeParts& parts, StepKind kind) {
   switch (kind) {

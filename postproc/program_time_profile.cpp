@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "postproc/machine/chain_motion.h"
+#include "postproc/machine/unit_sizes.h"
 #include "postproc/program_time_chains.h"
 
 namespace batten::postproc {
@@ -12,8 +13,6 @@ namespace {
 
 using geometry::Point3;
 using geometry::Vector3;
-
-constexpr double kMinute = 60;  // s
 
 // Places further apart than this, where one chain ends and the next begins, are a jump: the
 // program's text does not say how the tool came there (mm). Printed places differ by less.

@@ -8,6 +8,7 @@
 
 #include "gcode/curves/bezier_chain.h"
 #include "gcode/curves/curve_print.h"
+#include "gcode/curves/spl_limits.h"
 #include "gcode/dialect.h"
 
 namespace batten::gcode {
@@ -16,10 +17,6 @@ namespace {
 using geometry::CubicBezier;
 using geometry::Point3;
 using geometry::Vector3;
-
-constexpr double kGreatestMantissa = 9.99999999;
-constexpr int kMantissaDecimals = 8;
-constexpr double kGreatestEnd = 99999.9999;
 
 std::string with_sign(const std::string& digits) {
   return digits.starts_with('-') ? digits : "+" + digits;

@@ -7,6 +7,7 @@
 #include "gcode/curves/bezier_chain.h"
 #include "gcode/curves/heidenhain_spl.h"
 #include "gcode/curves/klartext_words.h"
+#include "gcode/curves/spl_limits.h"
 #include "gcode/dialect.h"
 
 namespace batten::gcode {
@@ -17,10 +18,7 @@ using geometry::Point3;
 using geometry::Vector3;
 
 constexpr std::string_view kSplineAxes = "XYZUVWABC";
-constexpr double kGreatestMantissa = 9.99999999;
-constexpr int kMantissaDecimals = 8;
 constexpr int kGreatestExponent = 255;
-constexpr double kGreatestEnd = 99999.9999;
 
 // Decimals of the same number, as doubles, differ by less (mm).
 constexpr double kDecimalNoise = 1e-9;

@@ -7,12 +7,10 @@
 
 #include "gcode/characters.h"
 #include "gcode/number_format.h"
+#include "gcode/number_limit.h"
 
 namespace batten::gcode {
 namespace {
-
-// No control takes such numbers.
-constexpr double kNumberLimit = 1e9;
 
 class KlartextReader {
  public:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "gcode/curves/clamped_cubic.h"
 #include "gcode/curves/curve_print.h"
 #include "gcode/dialect.h"
 
@@ -16,12 +17,7 @@ using geometry::Point3;
 constexpr std::size_t kOrder = 4;
 
 // Six digits before the point: what nine digits in the least increment leave in millimetres.
-constexpr double kGreatestPlace = 999999.999;
-
-bool is_clamped_cubic(const BsplineCurve& curve) {
-  const auto& t = curve.basis().knots();
-  return curve.degree() == 3 && t[0] == t[kOrder - 1] && t[t.size() - kOrder] == t.back();
-}
+constexpr double kGreatestNurbsPlace = 999999.999;
 
 bool only_named_axes_move(const std::vector<Point3>& points, const CurveSetting& setting) {
   const double step = printed_step(setting.places, setting.units);
@@ -53,7 +49,7 @@ Points print_points(const std::vector<Point3>& points, const CurveSetting& setti
   for (std::size_t i = 1; i < points.size(); ++i) {
     result.printed.push_back(i + 1 < points.size() ? printer.place(points[i])
                                                    : printer.last_place(points[i]));
-    if (result.printed.back().mm.cwiseAbs().maxCoeff() > kGreatestPlace * printer.unit()) {
+    if (result.printed.back().mm.cwiseAbs().maxCoeff() > kGreatestNurbsPlace * printer.unit()) {
       result.trouble = "a place beyond 999999.999";
       return result;
     }

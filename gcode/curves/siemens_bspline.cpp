@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "gcode/curves/clamped_cubic.h"
 #include "gcode/curves/curve_print.h"
 #include "gcode/curves/knot_rounding.h"
 #include "gcode/curves/siemens_words.h"
@@ -22,11 +23,6 @@ constexpr std::size_t kDegree = 3;
 
 // PL is a length like X; nine digits in all, as for other lengths of the control.
 constexpr int kDigits = 9;
-
-bool is_clamped_cubic(const BsplineCurve& curve) {
-  const auto& t = curve.basis().knots();
-  return curve.degree() == 3 && t[0] == t[kDegree] && t[t.size() - kDegree - 1] == t.back();
-}
 
 // One block: places and PL.
 struct BsplineBlock {

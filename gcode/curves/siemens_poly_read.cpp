@@ -16,7 +16,7 @@ using geometry::Point3;
 constexpr double kShortestLength = 0.0001;
 constexpr double kLongestLength = 99999.9999;
 constexpr std::size_t kMostCoefficients = 5;  // the end and a2 .. a5
-constexpr std::array<char, 3> kAxes = {'X', 'Y', 'Z'};
+constexpr std::array<char, 3> kPolyAxes = {'X', 'Y', 'Z'};
 
 double value_of(const std::vector<double>& coefficients, double p) {
   double value = 0;
@@ -95,11 +95,11 @@ struct PolyWords {
 
 bool take_axis_word(const SiemensWord& word, PolyWords& sorted) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (word.name == std::string(1, kAxes[axis])) {
+    if (word.name == std::string(1, kPolyAxes[axis])) {
       sorted.straight[axis] = &word;
       return true;
     }
-    if (word.name == std::string("PO[") + kAxes[axis] + "]") {
+    if (word.name == std::string("PO[") + kPolyAxes[axis] + "]") {
       sorted.polynomial[axis] = &word;
       return !word.values.empty() && word.values.size() <= kMostCoefficients;
     }

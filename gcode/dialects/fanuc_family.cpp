@@ -13,8 +13,8 @@ namespace batten::gcode {
 namespace {
 
 // An arc of less is a matter of the last digit, and one of nearly a full turn of none.
-constexpr double kLeastSweep = 0.5 * std::numbers::pi / 180;
-constexpr double kGreatestSweep = 350 * std::numbers::pi / 180;
+constexpr double kLeastFanucSweep = 0.5 * std::numbers::pi / 180;
+constexpr double kGreatestFanucSweep = 350 * std::numbers::pi / 180;
 
 char capital(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
@@ -46,8 +46,8 @@ class Fanuc final : public Rs274Dialect {
     if (radii.mismatch() > 2 * printed_step(coordinates(units), units)) {
       return "radius at the start differs from radius at the end";
     }
-    if (sweep < kLeastSweep) return "arc of less than 0.5 degrees";
-    if (sweep > kGreatestSweep) return "arc of more than 350 degrees";
+    if (sweep < kLeastFanucSweep) return "arc of less than 0.5 degrees";
+    if (sweep > kGreatestFanucSweep) return "arc of more than 350 degrees";
     return {};
   }
   double min_arc_radius() const override { return 0.1; }

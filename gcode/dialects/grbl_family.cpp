@@ -30,7 +30,7 @@ constexpr double kMaxSweepDeg = 350;
 // that starts with $ is an order.
 constexpr std::string_view kObeyed = "$!~?";
 
-TargetTable table_for(std::string_view name, std::string_view description) {
+TargetTable grbl_table(std::string_view name, std::string_view description) {
   TargetTable table;
   table.name = name;
   table.description = description;
@@ -45,7 +45,7 @@ TargetTable table_for(std::string_view name, std::string_view description) {
 
 TargetRow grbl() {
   TargetTable table =
-      table_for("grbl", "grbl 1.1: arcs and helices in G17, G18, G19; lines of 79 characters");
+      grbl_table("grbl", "grbl 1.1: arcs and helices in G17, G18, G19; lines of 79 characters");
   // The line buffer is 80 bytes with its terminator, filled after blanks and comments are gone.
   table.max_line_length = 79;
   TargetRow row{table, LineCount::kWithoutBlanksAndComments, kObeyed, &grbl_arc_rule};
@@ -61,7 +61,7 @@ constexpr SourceMarks kProgramming = mark(SourceMark::kDollarLine) | mark(Source
 
 TargetRow grblhal() {
   TargetTable table =
-      table_for("grblhal", "grblHAL: arcs and helices in G17, G18, G19; lines of 255 characters");
+      grbl_table("grblhal", "grblHAL: arcs and helices in G17, G18, G19; lines of 255 characters");
   TargetRow row{table, LineCount::kAll, kObeyed, &grbl_arc_rule};
   row.dwell_unit = DwellUnit::kSeconds;
   row.known_marks = kProgramming;
@@ -71,7 +71,7 @@ TargetRow grblhal() {
 
 TargetRow fluidnc() {
   TargetTable table =
-      table_for("fluidnc", "FluidNC: arcs and helices in G17, G18, G19; lines of 255 characters");
+      grbl_table("fluidnc", "FluidNC: arcs and helices in G17, G18, G19; lines of 255 characters");
   TargetRow row{table, LineCount::kAll, kObeyed, &grbl_arc_rule};
   row.dwell_unit = DwellUnit::kSeconds;
   row.known_marks = kProgramming;
@@ -80,7 +80,7 @@ TargetRow fluidnc() {
 }
 
 TargetRow g2core() {
-  TargetTable table = table_for(
+  TargetTable table = grbl_table(
       "g2core", "g2core and TinyG: arcs and helices in G17, G18, G19; lines of 250 characters");
   // 255 bytes in one of its line buffers, fewer by the comment in others.
   table.max_line_length = 250;

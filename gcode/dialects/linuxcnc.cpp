@@ -12,11 +12,11 @@ namespace {
 // The interpreter refuses an arc whose radii differ by more than this (mm, measured) and by
 // more than this part of the radius; never more than the last number (mm).
 constexpr double kRadiusMismatch = 0.0283;
-constexpr double kRelativeMismatch = 1e-3;
-constexpr double kGreatestMismatch = 2.83;
+constexpr double kRelativeCenterError = 1e-3;
+constexpr double kGreatestCenterError = 2.83;
 
 // Sweeps below 1e-6 rad are read as a full turn. Ten times that keeps clear of rounding.
-constexpr double kLeastSweep = 1e-5;
+constexpr double kLeastLinuxcncSweep = 1e-5;
 
 class LinuxCnc final : public Rs274Dialect {
  public:
@@ -53,10 +53,11 @@ class LinuxCnc final : public Rs274Dialect {
     const EndRadii radii = end_radii(printed);
     const double shorter = std::min(radii.start, radii.end);
     const double allowed =
-        std::min(std::max(kRadiusMismatch, kRelativeMismatch * shorter), kGreatestMismatch);
+        std::min(std::max(kRadiusMismatch, kRelativeCenterError * shorter), kGreatestCenterError);
     if (!(shorter > 0)) return "arc with a radius of zero";
     if (radii.mismatch() > allowed) return "radius at the start differs from radius at the end";
-    if (std::abs(printed.sweep) < kLeastSweep) return "arc so short that it is read as a full turn";
+    if (std::abs(printed.sweep) < kLeastLinuxcncSweep)
+      return "arc so short that it is read as a full turn";
     return {};
   }
 

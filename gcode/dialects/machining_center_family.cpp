@@ -12,7 +12,7 @@ namespace {
 
 // Least increments of 0.001 mm and 0.0001 in: more digits are cut off or an alarm. The point is
 // always written, since X5 may be 5 increments. Half turns at the most, as posts write them.
-TargetTable table_for(std::string_view name, std::string_view description) {
+TargetTable machining_center_table(std::string_view name, std::string_view description) {
   TargetTable table;
   table.name = name;
   table.description = description;
@@ -44,7 +44,8 @@ constexpr std::array<std::string_view, 3> kHaasSmoothing = {
     "(bare G187: back to setting 191 and 85)"};
 
 TargetRow haas() {
-  return row_of(table_for("haas", "Haas: arcs and helices in G17, G18, G19; decimal point always"),
+  return row_of(machining_center_table(
+                    "haas", "Haas: arcs and helices in G17, G18, G19; decimal point always"),
                 kMacro | mark(SourceMark::kHaasSmoothness), kHaasSmoothing);
 }
 
@@ -53,9 +54,9 @@ constexpr std::array<std::string_view, 2> kMazakSmoothing = {
     "after-run = [\"G64\"]"};
 
 TargetRow mazak() {
-  return row_of(
-      table_for("mazak", "Mazak EIA: arcs and helices in G17, G18, G19; decimal point always"),
-      kFanucLike, kMazakSmoothing);
+  return row_of(machining_center_table(
+                    "mazak", "Mazak EIA: arcs and helices in G17, G18, G19; decimal point always"),
+                kFanucLike, kMazakSmoothing);
 }
 
 constexpr std::array<std::string_view, 2> kOkumaSmoothing = {
@@ -63,10 +64,11 @@ constexpr std::array<std::string_view, 2> kOkumaSmoothing = {
     "after-run = [\"G130\"]"};
 
 TargetRow okuma() {
-  return row_of(
-      table_for("okuma", "Okuma OSP: arcs and helices in G17, G18, G19; decimal point always"),
-      // G54 to G59 are tool lengths there, work offsets are G15 H.
-      mark(SourceMark::kSuperNurbs), kOkumaSmoothing, "G43 G49 G54 G55 G56 G57 G58 G59 H");
+  return row_of(machining_center_table(
+                    "okuma", "Okuma OSP: arcs and helices in G17, G18, G19; decimal point always"),
+                // G54 to G59 are tool lengths there, work offsets are G15 H.
+                mark(SourceMark::kSuperNurbs), kOkumaSmoothing,
+                "G43 G49 G54 G55 G56 G57 G58 G59 H");
 }
 
 constexpr std::array<std::string_view, 2> kBrotherSmoothing = {
@@ -75,13 +77,13 @@ constexpr std::array<std::string_view, 2> kBrotherSmoothing = {
 
 TargetRow brother() {
   return row_of(
-      table_for("brother",
-                "Brother Speedio: arcs and helices in G17, G18, G19; decimal point always"),
+      machining_center_table(
+          "brother", "Brother Speedio: arcs and helices in G17, G18, G19; decimal point always"),
       kFanucLike, kBrotherSmoothing);
 }
 
 // ISNC takes I J K as offsets, BNC as places: R is the same in both.
-TargetTable by_radius(TargetTable table) {
+TargetTable arcs_by_radius(TargetTable table) {
   table.arc_form = ArcForm::kRadius;
   table.max_sweep_deg = 90;
   return table;
@@ -93,8 +95,8 @@ constexpr std::array<std::string_view, 2> kHurcoSmoothing = {
 
 TargetRow hurco() {
   return row_of(
-      by_radius(table_for("hurco",
-                          "Hurco: arcs by R and helices in G17, G18, G19; decimal point always")),
+      arcs_by_radius(machining_center_table(
+          "hurco", "Hurco: arcs by R and helices in G17, G18, G19; decimal point always")),
       kMacro, kHurcoSmoothing);
 }
 
@@ -106,8 +108,8 @@ constexpr std::array kFagorMeanings = {
     OtherMeaning{210, "no millimetre word on Fagor, whose units are G70 and G71"}};
 
 TargetRow fagor() {
-  TargetTable table =
-      table_for("fagor", "Fagor 8055 to 8070: arcs and helices in G17, G18, G19; G70 and G71");
+  TargetTable table = machining_center_table(
+      "fagor", "Fagor 8055 to 8070: arcs and helices in G17, G18, G19; G70 and G71");
   table.decimal_point = false;
   TargetRow row = row_of(table, mark(SourceMark::kHashCommand), {}, kLengthByD);
   row.other_meanings = kFagorMeanings;
@@ -122,8 +124,8 @@ constexpr std::array kNumMeanings = {
 
 // I J K are places under G90 there, offsets to the reader: R says the same to both.
 TargetRow num() {
-  TargetTable table =
-      by_radius(table_for("num", "NUM: arcs by R and helices in G17, G18, G19; G70 and G71"));
+  TargetTable table = arcs_by_radius(
+      machining_center_table("num", "NUM: arcs by R and helices in G17, G18, G19; G70 and G71"));
   table.decimal_point = false;
   TargetRow row = row_of(table, 0, {}, kLengthByD);
   row.other_meanings = kNumMeanings;

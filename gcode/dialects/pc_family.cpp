@@ -9,7 +9,7 @@ namespace batten::gcode {
 namespace {
 
 // Numbers are doubles; how many digits are kept was not read for any of them but by their posts.
-TargetTable table_for(std::string_view name, std::string_view description) {
+TargetTable pc_table(std::string_view name, std::string_view description) {
   TargetTable table;
   table.name = name;
   table.description = description;
@@ -32,31 +32,31 @@ TargetTable by_radius(TargetTable table) {
 }
 
 TargetRow mach3() {
-  return {by_radius(table_for("mach3", "Mach3: arcs by R in G17, G18, G19; helices"))};
+  return {by_radius(pc_table("mach3", "Mach3: arcs by R in G17, G18, G19; helices"))};
 }
 
 TargetRow mach4() {
-  return {by_radius(table_for("mach4", "Mach4: arcs by R in G17, G18, G19; helices"))};
+  return {by_radius(pc_table("mach4", "Mach4: arcs by R in G17, G18, G19; helices"))};
 }
 
 TargetRow uccnc() {
-  return {by_radius(table_for("uccnc", "UCCNC: arcs by R in G17, G18, G19; helices"))};
+  return {by_radius(pc_table("uccnc", "UCCNC: arcs by R in G17, G18, G19; helices"))};
 }
 
 TargetRow edingcnc() {
-  TargetRow row{table_for("edingcnc", "EdingCNC: arcs and helices in G17, G18, G19")};
+  TargetRow row{pc_table("edingcnc", "EdingCNC: arcs and helices in G17, G18, G19")};
   row.known_marks = mark(SourceMark::kBlendTolerance);
   return row;
 }
 
 TargetRow planetcnc() {
-  TargetRow row{table_for("planetcnc", "PlanetCNC: arcs and helices in G17, G18, G19")};
+  TargetRow row{pc_table("planetcnc", "PlanetCNC: arcs and helices in G17, G18, G19")};
   row.known_marks = mark(SourceMark::kBlendTolerance) | mark(SourceMark::kUniformNurbs);
   return row;
 }
 
 TargetRow masso() {
-  TargetTable table = table_for("masso", "Masso: arcs and helices in G17, G18, G19");
+  TargetTable table = pc_table("masso", "Masso: arcs and helices in G17, G18, G19");
   table.places = {3, 4};
   table.arc_ends = {3, 4};
   table.centers = {3, 4};
@@ -65,7 +65,7 @@ TargetRow masso() {
 
 TargetRow centroid() {
   TargetTable table =
-      table_for("centroid", "Centroid: arcs and helices in G17, G18, G19; decimal point always");
+      pc_table("centroid", "Centroid: arcs and helices in G17, G18, G19; decimal point always");
   table.places = {3, 4};
   table.arc_ends = {3, 4};
   table.centers = {3, 4};

@@ -8,7 +8,7 @@
 namespace batten::gcode {
 namespace {
 
-TargetTable table_for(std::string_view name, std::string_view description) {
+TargetTable plc_table(std::string_view name, std::string_view description) {
   TargetTable table;
   table.name = name;
   table.description = description;
@@ -30,7 +30,7 @@ constexpr std::array kCodesysMeanings = {
 // Parentheses are comments only where the project says so.
 TargetRow codesys() {
   TargetTable table =
-      table_for("codesys", "CODESYS SoftMotion: arcs by R in G17, G18, G19; blanks between words");
+      plc_table("codesys", "CODESYS SoftMotion: arcs by R in G17, G18, G19; blanks between words");
   table.arc_form = ArcForm::kRadius;
   table.max_sweep_deg = 90;
   table.comments = CommentStyle::kNone;
@@ -49,7 +49,7 @@ constexpr std::array<std::string_view, 2> kBeckhoffSmoothing = {
     "after-run = [\"#HSC OFF\"]                                 # is 0.2 or 1 mm"};
 
 TargetRow beckhoff() {
-  TargetTable table = table_for(
+  TargetTable table = plc_table(
       "beckhoff", "Beckhoff TwinCAT CNC, ISG kernel: arcs and helices in G17, G18, G19; G70, G71");
   table.max_line_length = 4000;
   TargetRow row{table};

@@ -25,7 +25,7 @@ TargetRow row_of(TargetTable table, LineCount count, std::string_view not_in_com
 
 // As grbl: 32-bit numbers (doubles on Klipper and RepRapFirmware's faster boards), steps of a few
 // micrometres, a serial line.
-TargetTable table_for(std::string_view name, std::string_view description) {
+TargetTable printer_table(std::string_view name, std::string_view description) {
   TargetTable table;
   table.name = name;
   table.description = description;
@@ -45,7 +45,7 @@ constexpr std::array kMarlinMeanings = {
 
 // One command to a line: a plane word would take the arc's place, so arcs in G17 alone.
 TargetRow marlin() {
-  TargetTable table = table_for(
+  TargetTable table = printer_table(
       "marlin",
       "Marlin: arcs and helices in G17 where its own chords are fine enough; millimetres");
   table.planes = {true, false, false};
@@ -60,9 +60,10 @@ TargetRow marlin() {
 }
 
 TargetRow reprapfirmware() {
-  TargetTable table = table_for("reprapfirmware",
-                                "RepRapFirmware 3: arcs and helices in G17, G18, G19 where its own "
-                                "chords are fine enough");
+  TargetTable table =
+      printer_table("reprapfirmware",
+                    "RepRapFirmware 3: arcs and helices in G17, G18, G19 where its own "
+                    "chords are fine enough");
   table.comments = CommentStyle::kSemicolon;
   table.repeats_words = true;
   table.max_line_length = 255;
@@ -75,7 +76,7 @@ constexpr std::array kKlipperMeanings = {
 
 // G18 and G19 came late, and their directions are not those of other controls: G17 alone.
 TargetRow klipper() {
-  TargetTable table = table_for(
+  TargetTable table = printer_table(
       "klipper",
       "Klipper: lines; arcs in G17 where [gcode_arcs] is set up and fine enough; millimetres");
   table.planes = {true, false, false};
@@ -86,7 +87,7 @@ TargetRow klipper() {
 }
 
 TargetRow smoothieware() {
-  TargetTable table = table_for(
+  TargetTable table = printer_table(
       "smoothieware",
       "Smoothieware: arcs and helices in G17, G18, G19 where its own chords are fine enough");
   table.repeats_words = true;

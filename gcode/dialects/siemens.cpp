@@ -11,8 +11,8 @@
 namespace batten::gcode {
 namespace {
 
-constexpr double kLeastSweep = 0.5 * std::numbers::pi / 180;
-constexpr double kGreatestSweep = 350 * std::numbers::pi / 180;
+constexpr double kLeastSiemensSweep = 0.5 * std::numbers::pi / 180;
+constexpr double kGreatestSiemensSweep = 350 * std::numbers::pi / 180;
 
 class Siemens final : public Rs274Dialect {
  public:
@@ -44,8 +44,8 @@ class Siemens final : public Rs274Dialect {
     if (radii.mismatch() > 2 * printed_step(coordinates(units), units)) {
       return "radius at the start differs from radius at the end";
     }
-    if (sweep < kLeastSweep) return "arc of less than 0.5 degrees";
-    if (sweep > kGreatestSweep) return "arc of more than 350 degrees";
+    if (sweep < kLeastSiemensSweep) return "arc of less than 0.5 degrees";
+    if (sweep > kGreatestSiemensSweep) return "arc of more than 350 degrees";
     return {};
   }
   double min_arc_radius() const override { return 0.1; }

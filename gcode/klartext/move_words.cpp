@@ -16,9 +16,9 @@ constexpr double kTooGreat = 1e9;
 
 constexpr int kGreatestDecimals = 255;
 
-constexpr std::string_view kAxes = "XYZABCUVW";
+constexpr std::string_view kKlartextAxes = "XYZABCUVW";
 
-bool is_axis(char letter) { return kAxes.find(letter) != std::string_view::npos; }
+bool is_axis(char letter) { return kKlartextAxes.find(letter) != std::string_view::npos; }
 
 bool is_parameter(std::string_view letters) {
   return letters == "Q" || letters == "QL" || letters == "QR" || letters == "QS";

@@ -9,12 +9,11 @@
 #include "gcode/klartext/statement.h"
 #include "gcode/line_cursor.h"
 #include "gcode/number_format.h"
+#include "gcode/number_limit.h"
 #include "gcode/reason.h"
 
 namespace batten::gcode {
 namespace {
-
-constexpr double kNumberLimit = 1e9;
 
 bool starts_with_word(std::string_view text, std::string_view upper_case) {
   return text.size() >= upper_case.size() &&

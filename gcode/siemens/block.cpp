@@ -6,6 +6,7 @@
 #include <string>
 
 #include "gcode/characters.h"
+#include "gcode/number_limit.h"
 #include "gcode/siemens/lexer.h"
 
 namespace batten::gcode {
@@ -146,7 +147,6 @@ class BlockReader {
   void take_radius(SiemensToken token) {
     const std::size_t equals = source_.find('=', token.name.end);
     const auto number = read_number(source_.substr(equals + 1, token.span.end - equals - 1));
-    constexpr double kNumberLimit = 1e9;
     const bool plain = number && number->value < kNumberLimit && number->value > -kNumberLimit;
     token.kind = plain ? SiemensTokenKind::kWord : SiemensTokenKind::kValueWord;
     if (plain) {

@@ -4,13 +4,11 @@
 #include <optional>
 
 #include "gcode/characters.h"
+#include "gcode/number_limit.h"
 #include "gcode/siemens/value.h"
 
 namespace batten::gcode {
 namespace {
-
-// No control takes numbers as great as this.
-constexpr double kNumberLimit = 1e9;
 
 SourceSpan bytes(std::size_t begin, std::size_t end) {
   return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};

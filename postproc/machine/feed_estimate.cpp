@@ -31,7 +31,7 @@ constexpr double kDensity = 3;
 // without acceleration: what an acceleration there wins on one side it loses on the other, and
 // the difference is 0.15 times the square of the ratio at the most, as part of the time of a ramp.
 // The envelope is 1.65 times the speed that jerk allows between two rests.
-constexpr double kSlowJoint = 16;
+constexpr double kSlowEstimateJoint = 16;
 
 // A longer stretch is searched in windows of so many intervals. The last ones of a window, which
 // do not see what follows, are searched again with the next: the machine changes its speed several
@@ -126,7 +126,7 @@ void Estimator::finish_chain(double end_bound, bool free_end) {
     start = end;
     first = last;
   };
-  for (const std::size_t joint : chain_.slow_joints(kSlowJoint, potential_)) {
+  for (const std::size_t joint : chain_.slow_joints(kSlowEstimateJoint, potential_)) {
     close(joint, {EstimateEnd::Kind::kSlow, potential_.speed(chain_.w[joint]), 0, 0});
   }
   EstimateEnd end;

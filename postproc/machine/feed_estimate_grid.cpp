@@ -15,7 +15,7 @@ constexpr double kArcShare = 0.35 / 8;
 constexpr double kArcStart = 0.3;
 
 // Nodes for a bend whose share of a limit goes from nothing to all, whatever the time it takes.
-constexpr double kNodesPerBend = 1;
+constexpr double kEstimateNodesPerBend = 1;
 
 // A group of parts is complete with so many nodes' worth.
 constexpr double kFullGroup = 0.75;
@@ -102,7 +102,7 @@ class StretchMaker {
   void add(const EstimatePart& part, double from, double to, double w0, double w1) {
     const double length = to - from;
     const PartRise rise = rise_over(length, part.cap, part.slope, w0, w1);
-    const double nodes = nodes_per_measure_ * rise.measure() + kNodesPerBend * part.bend;
+    const double nodes = nodes_per_measure_ * rise.measure() + kEstimateNodesPerBend * part.bend;
     if (group_nodes_ > 0 && (group_nodes_ + nodes > 1 || part.straight != group_straight_)) close();
     if (nodes < kFullGroup) {
       join(part, from + 0.5 * length, length, 0.5 * (w0 + w1), nodes);

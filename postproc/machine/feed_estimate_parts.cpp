@@ -11,7 +11,7 @@ using geometry::PathPiece;
 using geometry::Vector3;
 
 // Speeds this many times the feed are of no interest: bends that allow more do not matter.
-constexpr double kAboveFeed = 2;
+constexpr double kEstimateAboveFeed = 2;
 
 // On a line the feed alone is no reason for nodes, only how near a slow place is.
 constexpr double kAboveFeedOnLines = 20;
@@ -29,7 +29,7 @@ constexpr double kArcPart = 0.4;  // radians
 
 // What a place asks for.
 struct PlaceNeeds {
-  double speed;  // mm/s, if the bend were held; no more than kAboveFeed times the feed
+  double speed;  // mm/s, if the bend were held; no more than kEstimateAboveFeed times the feed
   Vector3 acceleration_share;  // of the limit, at 1 mm/s
   Vector3 jerk_share;
 };
@@ -43,7 +43,7 @@ PlaceNeeds needs_of(const LengthDerivatives& x, const KinematicPathLimits& limit
   const double squared = std::max(needs.acceleration_share.cwiseAbs().maxCoeff(),
                                   curvature / limits.normal_acceleration);
   const double cubed = needs.jerk_share.cwiseAbs().maxCoeff();
-  double v = kAboveFeed * limits_along(x.first, limits).speed;
+  double v = kEstimateAboveFeed * limits_along(x.first, limits).speed;
   if (squared * v * v > 1) v = 1 / std::sqrt(squared);
   if (cubed * v * v * v > 1) v = 1 / std::cbrt(cubed);
   needs.speed = v;

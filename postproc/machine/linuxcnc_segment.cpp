@@ -12,7 +12,7 @@ namespace {
 using geometry::Vector3;
 
 // Curvature below this (1/mm) bends a metre of path by less than 1e-4 mm: a line.
-constexpr double kStraight = 1e-9;
+constexpr double kNoCurvature = 1e-9;
 
 double greatest_curvature(const geometry::PathPiece& piece) {
   double most = 0;
@@ -83,7 +83,7 @@ Segment segment_of(const TimedPiece& timed, const Machine& machine, Joint end) {
   const Vector3 velocity = axis_velocities(machine, timed.rapid);
   const Vector3 acceleration = axis_accelerations(machine);
   const double curvature = greatest_curvature(timed.piece);
-  if (curvature <= kStraight) {
+  if (curvature <= kNoCurvature) {
     s.max_velocity = limit_along(s.start_direction, velocity);
     s.acceleration = limit_along(s.start_direction, acceleration);
   } else if (const auto* arc = std::get_if<geometry::Arc>(&timed.piece)) {

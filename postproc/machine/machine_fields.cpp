@@ -7,15 +7,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "postproc/machine/unit_sizes.h"
+
 namespace batten::postproc {
 namespace {
 
-constexpr double kInch = 25.4;        // mm
-constexpr double kMinute = 60;        // s
 constexpr double kGravity = 9806.65;  // mm/s^2
 constexpr double kTurn = 360;         // degrees
 constexpr double kBitsPerByte = 10;   // of a serial line: a start bit, eight of data, a stop bit
-constexpr double kRadian = 180 / std::numbers::pi;  // degrees
 
 constexpr std::array kLengths = {Unit{"mm", 1}, Unit{"um", 1e-3}, Unit{"in", kInch},
                                  Unit{"inch", kInch}};

@@ -10,12 +10,11 @@
 #include "postproc/machine/controller_models.h"
 #include "postproc/machine/cycle_time.h"
 #include "postproc/machine/jerk_motion.h"
+#include "postproc/machine/unit_sizes.h"
 #include "postproc/machine/velocity_profile.h"
 
 namespace batten::postproc {
 namespace {
-
-constexpr double kMinute = 60;  // s
 
 double between(double share, double from, double to) { return (1 - share) * from + share * to; }
 

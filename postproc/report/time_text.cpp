@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string>
 
+#include "postproc/machine/unit_sizes.h"
 #include "postproc/report/time_report.h"
 
 namespace batten::postproc {
@@ -12,8 +13,6 @@ namespace {
 
 // Places beyond these are small ones; the JSON report has more.
 constexpr std::size_t kMostPlaces = 8;
-
-constexpr double kMinute = 60;  // s
 
 std::string seconds_text(double time) {
   if (time < 10) return fmt::format("{:.3f} s", time);
