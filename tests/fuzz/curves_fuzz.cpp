@@ -8,14 +8,17 @@
 #include <string_view>
 
 #include "tests/fuzz/curves_promises.h"
+#include "tests/fuzz/parse_promises.h"
 #include "tests/fuzz/program_mutator.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string broken =
-      batten::gcode::promises::broken_curves(batten::fuzz::text_of(data, size));
-  if (!broken.empty()) {
-    std::fprintf(stderr, "broken promise: %s\n", broken.c_str());
-    std::abort();
+  const std::string_view text = batten::fuzz::text_of(data, size);
+  for (const auto language : batten::gcode::promises::kLanguages) {
+    const std::string broken = batten::gcode::promises::broken_curves(text, language);
+    if (!broken.empty()) {
+      std::fprintf(stderr, "broken promise: %s\n", broken.c_str());
+      std::abort();
+    }
   }
   return 0;
 }

@@ -77,10 +77,10 @@ inline std::string broken_readers_at(const Program& program, std::uint32_t first
   return broken.empty() ? "" : "Klartext: " + broken;
 }
 
-// The promise that does not hold for this text; empty when all do.
-inline std::string broken_curves(std::string_view text) {
+// The promise that does not hold for this text in this language; empty when all do.
+inline std::string broken_curves(std::string_view text, Language language) {
   Diagnostics found;
-  const Program program = parse(SourceText("fuzz", std::string(text)), found);
+  const Program program = parse(SourceText("fuzz", std::string(text)), language, found);
   // Each reader goes on to the end of its curve: many blocks times all of them would take long.
   constexpr std::size_t kMostBlocks = 200;
   const std::size_t blocks = std::min(program.blocks.size(), kMostBlocks);

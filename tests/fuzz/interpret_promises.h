@@ -51,10 +51,11 @@ inline std::string broken_sections(const gcode::Program& program,
   return next == program.blocks.size() ? "" : "a block in no section";
 }
 
-// The promise that does not hold for this text; empty when all do.
-inline std::string broken_meaning(std::string_view text) {
+// The promise that does not hold for this text in this language; empty when all do.
+inline std::string broken_meaning(std::string_view text, gcode::Language language) {
   gcode::Diagnostics found;
-  const gcode::Program program = gcode::parse(gcode::SourceText("fuzz", std::string(text)), found);
+  const gcode::Program program =
+      gcode::parse(gcode::SourceText("fuzz", std::string(text)), language, found);
   const gcode::Interpretation meaning =
       gcode::interpret(program, {.units = gcode::Units::kMillimetre}, found);
   if (std::string broken = broken_motions(program, meaning); !broken.empty()) return broken;

@@ -1,6 +1,7 @@
 // What the reader promises for any bytes whatever. Used by the fuzzer and by the unit tests.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -11,6 +12,9 @@
 #include "gcode/parser.h"
 
 namespace batten::gcode::promises {
+
+inline constexpr std::array kLanguages = {Language::kRs274, Language::kSiemens,
+                                          Language::kKlartext};
 
 // The first block that does not continue where the one before it ended.
 inline std::string broken_cover(const Program& program) {
@@ -55,11 +59,13 @@ inline bool may_stand_between(char c, const Block& block) {
   return is_blank(c) || sign || number_of_sign || sum || skipped;
 }
 
-// Words and comments lie inside their block, apart from each other, and an understood block
-// has no byte that nobody answers for.
+// Words and comments lie inside their block, apart from each other. In RS-274 words are what their
+// bytes say, and an understood block has no byte that nobody answers for; in other languages words
+// have names and neighbours of many kinds.
 inline std::string broken_block(const Program& program, const Block& block) {
   const std::string where = " in line " + std::to_string(block.line);
   std::string owned(block.span.size(), '\0');  // by a word or comment: 1
+  const bool plain = program.language == Language::kRs274;
   const auto own = [&](SourceSpan span) {
     if (span.begin < block.span.begin || span.end > block.span.end || span.begin >= span.end) {
       return false;
@@ -74,10 +80,13 @@ inline std::string broken_block(const Program& program, const Block& block) {
     return true;
   };
   for (const Word& word : program.words_of(block)) {
-    if (!own(word.span)) {
+    // A centre of Klartext stands in the block of its CC.
+    const bool elsewhere = program.language == Language::kKlartext &&
+                           word.span.begin < word.span.end && word.span.end <= block.span.begin;
+    if (!elsewhere && !own(word.span)) {
       return "a word is not at its own place" + where;
     }
-    if (!word_is_true(word, program.source.text(word.span))) {
+    if (plain && !word_is_true(word, program.source.text(word.span))) {
       return "a word is not what its bytes say" + where;
     }
     if (block.opacity == Opacity::kNone && (!word.is_number || word.letter == ',')) {
@@ -89,7 +98,7 @@ inline std::string broken_block(const Program& program, const Block& block) {
       return "a comment is not at its own place" + where;
     }
   }
-  if (block.opacity != Opacity::kNone) {
+  if (!plain || block.opacity != Opacity::kNone) {
     return "";
   }
   const std::string_view text = program.source.text(block.span);
@@ -119,10 +128,10 @@ inline std::string broken_diagnostics(const Program& program, const Diagnostics&
   return "";
 }
 
-// The promise that does not hold for this text; empty when all do.
-inline std::string broken_by(std::string_view text) {
+// The promise that does not hold for this text in this language; empty when all do.
+inline std::string broken_by(std::string_view text, Language language = Language::kRs274) {
   Diagnostics found;
-  const Program program = parse(SourceText("fuzz", std::string(text)), found);
+  const Program program = parse(SourceText("fuzz", std::string(text)), language, found);
   std::string broken = broken_cover(program);
   std::uint32_t words = 0;
   std::uint32_t comments = 0;

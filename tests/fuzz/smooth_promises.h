@@ -6,10 +6,13 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gcode/dialect.h"
 #include "gcode/interpreter.h"
+#include "gcode/language_marks.h"
 #include "gcode/parser.h"
+#include "postproc/conversion.h"
 #include "postproc/machine/machine.h"
 #include "postproc/options.h"
 #include "postproc/pipeline.h"
@@ -25,6 +28,16 @@ inline std::uint32_t hash_of(std::string_view text) {
   return hash;
 }
 
+// One of the targets that read the language of the text, where that is certain; else one of all.
+inline const gcode::Dialect* target_for_text(std::string_view text, std::uint32_t hash) {
+  const auto marks = gcode::language_marks(gcode::SourceText("fuzz", std::string(text)));
+  std::vector<const gcode::Dialect*> fitting;
+  for (const gcode::Dialect* target : gcode::dialects()) {
+    if (marks.empty() || target->language() == marks.front().language) fitting.push_back(target);
+  }
+  return fitting[hash % fitting.size()];
+}
+
 // Options that the first line of a program stands for.
 inline SmoothOptions options_for_text(std::string_view text) {
   constexpr std::array<double, 5> kTolerances = {0.01, 0.01, 0.002, 0.05, 1};
@@ -33,9 +46,8 @@ inline SmoothOptions options_for_text(std::string_view text) {
   constexpr std::array kMethods = {Method::kBest,    Method::kFair, Method::kRacing,
                                    Method::kNaseath, Method::kGuo,  Method::kOzcan};
   const std::uint32_t hash = hash_of(text.substr(0, text.find('\n')));
-  const auto targets = gcode::dialects();
   SmoothOptions options;
-  options.target = targets[hash % targets.size()];
+  options.target = target_for_text(text, hash);
   options.machine = find_machine(options.target->default_machine());
   options.tolerance_mm = kTolerances[hash / 64 % kTolerances.size()];
   options.output = kForms[hash / 512 % kForms.size()];
@@ -49,8 +61,10 @@ inline SmoothOptions options_for_text(std::string_view text) {
 }
 
 struct TextAsRead {
-  TextAsRead(std::string_view text, const SmoothOptions& options)
-      : program(gcode::parse(gcode::SourceText("fuzz", std::string(text)), found)),
+  TextAsRead(const gcode::SourceText& source, const SmoothOptions& options)
+      : program(gcode::parse(
+            source, language_read(source, options, found).value_or(gcode::Language::kRs274),
+            found)),
         meaning(gcode::interpret(
             program, {.units = options.units, .curves = options.target->curves()}, found)) {}
   gcode::Diagnostics found;
@@ -91,11 +105,11 @@ inline bool rest_is_copied(const gcode::Program& before, const SmoothResult& res
 inline std::string broken_by(std::string_view text, const SmoothOptions& options) {
   const gcode::SourceText source("fuzz", std::string(text));
   const SmoothResult result = smooth_program(source, options);
-  const TextAsRead before(text, options);
   if (!result.understood) return "";
+  const TextAsRead before(source, options);
   if (!result.proved) return "the new program is not proved by its maker";
   if (!(result.deviation_mm <= options.tolerance_mm)) return "a deviation above the tolerance";
-  const TextAsRead after(result.text, options);
+  const TextAsRead after(gcode::SourceText("fuzz", result.text), options);
   const Promise promise(options.tolerance_mm, options.tolerance_kind, options.side);
   const Verification found =
       verify({&before.program, &before.meaning}, {&after.program, &after.meaning}, promise);

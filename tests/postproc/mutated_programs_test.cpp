@@ -82,9 +82,12 @@ TEST(MutatedPrograms, AreReadAsTheReadersPromise) {
   for (int number = 0; number < programs_to_try(); ++number) {
     const std::string text = mutated_program(texts, number);
     SCOPED_TRACE(testing::Message() << "program " << number << "\n" << text);
-    ASSERT_EQ(gcode::promises::broken_by(text), "");
-    ASSERT_EQ(promises::broken_meaning(text), "");
-    ASSERT_EQ(gcode::promises::broken_curves(text), "");
+    for (const gcode::Language language : gcode::promises::kLanguages) {
+      SCOPED_TRACE(gcode::describe(language));
+      ASSERT_EQ(gcode::promises::broken_by(text, language), "");
+      ASSERT_EQ(promises::broken_meaning(text, language), "");
+      ASSERT_EQ(gcode::promises::broken_curves(text, language), "");
+    }
   }
 }
 
