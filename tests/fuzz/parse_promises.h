@@ -80,7 +80,8 @@ inline std::string broken_block(const Program& program, const Block& block) {
     return true;
   };
   for (const Word& word : program.words_of(block)) {
-    // A centre of Klartext stands in the block of its CC.
+    // A centre of Klartext stands in the block of its CC, and has no value once the coordinates
+    // may be others.
     const bool elsewhere = program.language == Language::kKlartext &&
                            word.span.begin < word.span.end && word.span.end <= block.span.begin;
     if (!elsewhere && !own(word.span)) {
@@ -89,7 +90,7 @@ inline std::string broken_block(const Program& program, const Block& block) {
     if (plain && !word_is_true(word, program.source.text(word.span))) {
       return "a word is not what its bytes say" + where;
     }
-    if (block.opacity == Opacity::kNone && (!word.is_number || word.letter == ',')) {
+    if (!elsewhere && block.opacity == Opacity::kNone && (!word.is_number || word.letter == ',')) {
       return "a word without a value in a block that is said to be understood" + where;
     }
   }
