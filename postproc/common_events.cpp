@@ -81,6 +81,9 @@ std::optional<int> datum_in(std::string_view comment) {
   return offset && rest == ": its datum is active" ? std::optional(code) : std::nullopt;
 }
 
+// What a Klartext program says where its source moves behind G49.
+constexpr std::string_view kCountsAlways = "; G49: the length of the tool counts";
+
 class CommonLister {
  public:
   explicit CommonLister(const ReadProgram& read)
@@ -126,6 +129,7 @@ class CommonLister {
       if (comment.kind == gcode::CommentKind::kActive) add_text(std::string(text));
       const auto datum = is_klartext() ? datum_in(text) : std::nullopt;
       if (datum) list_work_offset(*datum * 10);
+      if (is_klartext() && text == kCountsAlways) add_word("G49");
     }
   }
 
@@ -234,7 +238,7 @@ class CommonLister {
 
   void list_motion(std::span<const Word> words, const BlockMeaning& meaning) {
     if (fetched_) add_text(fmt::format("T{}", *std::exchange(fetched_, std::nullopt)));
-    if (std::exchange(length_is_off_, false)) add_text("G49");
+    if (std::exchange(length_is_off_, false)) add_word("G49");
     const Motion& motion = interpretation_.motions[static_cast<std::size_t>(meaning.motion)];
     moved_along_tool_ |= motion.axes_named[2];
     if (!path_alone_counts(state_after()) || !motion.end_known) {

@@ -52,6 +52,8 @@ class KlartextSpeaker {
         return text_.add_comment(act.text, line_, longest_);
       case ActKind::kWorkOffset:
         return say_work_offset(act);
+      case ActKind::kNoLength:
+        return say_no_length(act);
       case ActKind::kTool: {
         speed_is_said_ = next != nullptr && next->kind == ActKind::kSpeed;
         const std::string speed =
@@ -84,6 +86,15 @@ class KlartextSpeaker {
                           "work-offset takes the one that is active then");
     }
     text_.add_comment(datum_remark(whole(act.number)), line_, longest_);
+  }
+
+  void say_no_length(const Act& act) {
+    if (!source_.length_counts_always) {
+      return text_.refuse(act.where,
+                          "moves without the length of the tool, which always counts there; "
+                          "--allow tool-length takes it all the same");
+    }
+    text_.add_comment(kLengthRemark, line_, longest_);
   }
 
   // --- motions ------------------------------------------------------------------------------

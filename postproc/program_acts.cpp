@@ -148,9 +148,9 @@ class ActReader {
   }
 
   [[nodiscard]] std::string why_not_work_offset(int code) const {
-    if (moved_) return "names a work offset behind the first motion";
-    if (work_offset_ && work_offset_ != code) return "names another work offset";
-    return {};
+    if (work_offset_ == code) return {};
+    if (work_offset_) return "names another work offset";
+    return moved_ ? "names a work offset behind the first motion" : "";
   }
 
   // The control counts the length of a tool from its change on. That is the same as G43 behind it,
@@ -297,8 +297,8 @@ class ActReader {
       return fetched_.reset();
     }
     if (without_length_) {
-      refuse(*without_length_, "moves without the length of the tool, which always counts there");
-      return without_length_.reset();
+      (void)add(ActKind::kNoLength, *without_length_);
+      without_length_.reset();
     }
     if (state.distance == gcode::DistanceMode::kIncremental) return refuse(here, "is an increment");
     if (!path_alone_counts(state)) {

@@ -17,6 +17,7 @@ namespace batten::postproc {
 enum class ActKind : std::uint8_t {
   kComment,     // `text`, without its brackets
   kWorkOffset,  // `number`: 54 to 59; before all motions, each time the same
+  kNoLength,    // G49: what moves next does so without the length of the tool
   kTool,        // `number` is put into the spindle; its length counts from here on
   kSpeed,       // of the spindle: `number`, another one than before
   kFunction,    // M `number`: 3, 4, 5, 8, 9, 0, 1
@@ -46,7 +47,7 @@ struct ProgramActs {
 // states in which the words are not the path; M5, M9 and stops beside a motion, where controls
 // differ in what comes first; M0 and M1 with spindle or coolant on, which some controls stop then;
 // T without M6, which changes the tool on some controls; G43 but for the length of the tool that
-// was just put in; G49 where something moves without a length; G64 with a tolerance; dwells, whose
+// was just put in; G64 with a tolerance; dwells, whose
 // number is seconds or milliseconds.
 //
 // `program` was read in Language::kRs274. Views into its text.

@@ -66,12 +66,15 @@ class TranslatedSmoothing {
     return gcode::Units::kUnknown;
   }
 
+  [[nodiscard]] bool is_allowed(std::string_view id) const {
+    return std::ranges::find(options_.allowed, id) != options_.allowed.end();
+  }
+
   bool translate() {
     ProgramActs acts = acts_of(program_, meaning_);
     const gcode::Dialect& target = *options_.target;
-    const bool datum =
-        std::ranges::find(options_.allowed, gcode::reason::kWorkOffset) != options_.allowed.end();
-    const TranslationSource said{program_, meaning_, acts, datum};
+    const TranslationSource said{program_, meaning_, acts, is_allowed(gcode::reason::kWorkOffset),
+                                 is_allowed(gcode::reason::kToolLength)};
     const std::string name = program_name(source_.name());
     translation_ = target.language() == gcode::Language::kKlartext ? in_klartext(said, target, name)
                                                                    : in_siemens(said, target, name);

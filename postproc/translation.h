@@ -21,6 +21,8 @@ struct TranslationSource {
   // --allow work-offset: where the language has no word for G54, the datum that is active on the
   // control stands for it.
   bool datum_is_work_offset = false;
+  // --allow tool-length: where lengths always count, they may count behind G49, too.
+  bool length_counts_always = false;
 };
 
 struct Translation {
@@ -39,7 +41,8 @@ struct Translation {
 //   (text)        ; text
 // The unit is always the millimetre: what F means in an INCH program is not the same on all of
 // these controls. Obstacles: arcs out of the plane of X and Y, helices, arcs whose radii differ by
-// more than the control takes, places beyond its range, work offsets that are not allowed.
+// more than the control takes, places beyond its range, work offsets and motions
+// behind G49 that are not allowed.
 [[nodiscard]] Translation in_klartext(const TranslationSource& source, const gcode::Dialect& target,
                                       std::string_view name);
 
@@ -54,5 +57,8 @@ struct Translation {
 // What Klartext says in place of a work offset, so that the proof finds it and the operator sees
 // it: "G54: its datum is active".
 [[nodiscard]] std::string datum_remark(int work_offset);
+
+// The same for motions behind G49.
+inline constexpr std::string_view kLengthRemark = "G49: the length of the tool counts";
 
 }  // namespace batten::postproc

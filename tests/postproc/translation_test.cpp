@@ -111,6 +111,24 @@ TEST(Translation, TakesTheActiveDatumForAWorkOffsetOnlyWhereTheUserSaysSo) {
       << result.text;
 }
 
+// FreeCAD's first motion: up, without a length, before the tool is put in.
+TEST(Translation, CountsLengthsBehindG49OnlyWhereTheUserSaysSo) {
+  const std::string text = "G21 G90 G49\nG0 Z12\nT1 M6\nG43 H1\nG0 X1 Y2 Z3\nG1 Z0 F100\nM2\n";
+  SmoothOptions options = converting_to("heidenhain");
+  EXPECT_FALSE(smoothed(text, options).understood);
+  options.allowed = {"tool-length"};
+  const SmoothResult result = smoothed(text, options);
+  ASSERT_TRUE(result.proved) << testing::PrintToString(messages_of(result));
+  EXPECT_NE(result.text.find("1 ; G49: the length of the tool counts\n2 L Z+12 R0 FMAX\n"),
+            std::string::npos)
+      << result.text;
+  EXPECT_EQ(result.text.find("G43"), std::string::npos);
+  const std::string remark = "1 ; G49: the length of the tool counts\n";
+  std::string unsaid = result.text;
+  unsaid.erase(unsaid.find(remark), remark.size());
+  EXPECT_FALSE(verdict_for("heidenhain", text, unsaid).proved());
+}
+
 // --- smoothed in the other language -----------------------------------------------------------
 
 class TranslatedWave : public testing::TestWithParam<const char*> {};
@@ -219,7 +237,8 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedCase{"LengthTooLate", "T3 M6\nG0 Z50\nG43 H3\nG0 X0 Y0 Z5\n",
                     "G43 comes behind a motion without the length of the tool"},
         RefusedCase{"NoLength", "G49\nG0 X0 Y0 Z5\n",
-                    "G49 moves without the length of the tool, which always counts there"},
+                    "G49 moves without the length of the tool, which always counts there; --allow "
+                    "tool-length takes it all the same"},
         RefusedCase{"ActiveComment", "(MSG, hello)\n", "(MSG, hello) acts on its control"},
         RefusedCase{"FarAway", "G0 X100000\n", "G0 X100000 goes beyond the range of the control"},
         RefusedCase{"Parameter", "#1=5\nG0 X0 Y0 Z5\n", "#1=5 is no block of plain words"}),
