@@ -206,12 +206,11 @@ class CommonLister {
       case 'H':
         if (!has(words, 'G', kLengthOn)) add_own_text(word);
         return;
-      case 'D':
-      case 'P':
-      case 'Q':
-      case 'L':
-        return add_own_text(word);
       default:
+        // Tools, speeds, feeds and places are listed with what they belong to.
+        if (std::string_view("NTSFXYZIJKR").find(word.letter) == std::string_view::npos) {
+          add_own_text(word);
+        }
         return;
     }
   }

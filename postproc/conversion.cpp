@@ -158,12 +158,13 @@ std::optional<gcode::Language> language_read(const gcode::SourceText& source,
   const auto language = gcode::source_language(source, options.source, of_target, found);
   const bool plain = language == gcode::Language::kRs274 && of_target == gcode::Language::kSiemens;
   if (!language || *language == of_target || plain) return language;
-  // Also with --convert: the same words mean other things in other languages.
+  const std::string_view advice = language == gcode::Language::kRs274
+                                      ? "--convert says it there where every block can be said"
+                                      : "nothing is translated from that";
   found.push_back({gcode::Severity::kError, "foreign-language", place_of(*language, source),
-                   fmt::format("{} a program in {}; target {} reads {}, and nothing is translated "
-                               "from one language to another",
+                   fmt::format("{} a program in {}; target {} reads {}, and {}",
                                evidence_of(*language, source), gcode::describe(*language),
-                               options.target->name(), gcode::describe(of_target))});
+                               options.target->name(), gcode::describe(of_target), advice)});
   return std::nullopt;
 }
 

@@ -301,6 +301,23 @@ INSTANTIATE_TEST_SUITE_P(
         DamagedCase{"End", "19 M30\n", ""}),
     [](const auto& test) { return std::string(test.param.name); });
 
+// What the new text does not say at all.
+class UnsaidBlock : public testing::TestWithParam<const char*> {};
+
+TEST_P(UnsaidBlock, IsNotProved) {
+  const std::string text = smoothed(kPart, converting_to("heidenhain")).text;
+  std::string more = kPart;
+  more.insert(more.find("N130"), std::string(GetParam()) + "\n");
+  EXPECT_FALSE(verdict_for("heidenhain", more, text).proved());
+}
+
+INSTANTIATE_TEST_SUITE_P(Blocks, UnsaidBlock,
+                         testing::Values("G92 X0", "G1 A5", "G1 X20 A5", "G10 L2 P1 X5", "G4 P1",
+                                         "M7", "G61", "G68 X0 Y0 R10", "T9", "G55", "G52 X5",
+                                         "(MSG, wait)", "/M9", "G28 Z0", "G53 Z0", "M98 P100",
+                                         "G81 X20 Y0 Z-2 R1", "E5", "G41 D1", "M0", "#1=2",
+                                         "G51 P2", "G96 S100", "U5", "G43 H6", "G49", "M6 T7"));
+
 TEST(Translation, IsNotProvedWithoutItsDatum) {
   const std::string text = "G21 G90 G54\nG0 X1 Y2 Z3\nG1 Z0 F100\nX5\nM2\n";
   SmoothOptions options = converting_to("heidenhain");
