@@ -26,8 +26,8 @@ using gcode::MotionKind;
 using gcode::Word;
 
 // In tenths. Their effect is in the motions and in the states that are compared.
-constexpr std::array kSilent = {0,   10,  20,  30,  170, 180, 190, 200, 210,
-                                400, 800, 900, 901, 911, 940, 970, 980, 990};
+constexpr std::array kSilent = {0,   10,  20,  30,  170, 180, 190, 200, 210, 400,
+                                800, 900, 901, 910, 911, 940, 970, 980, 990};
 constexpr int kLengthOn = 430;
 constexpr int kLengthOff = 490;
 constexpr int kBlending = 640;

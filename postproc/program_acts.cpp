@@ -24,8 +24,8 @@ using gcode::Word;
 
 // In tenths: words that only say how others are read, which the interpreter has followed, or that
 // end what was refused where it began.
-constexpr std::array kSilentG = {0,   10,  20,  30,  170, 180, 190, 200, 210,
-                                 400, 800, 900, 901, 911, 940, 970, 980, 990};
+constexpr std::array kSilentG = {0,   10,  20,  30,  170, 180, 190, 200, 210, 400,
+                                 800, 900, 901, 910, 911, 940, 970, 980, 990};
 constexpr std::array kPlainM = {0, 10, 20, 30, 40, 50, 60, 80, 90, 300};
 constexpr int kToolLengthOn = 430;
 constexpr int kToolLengthOff = 490;

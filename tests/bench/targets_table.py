@@ -99,6 +99,7 @@ def summed(rows, target, form):
 
 
 def main(options):
+    options.batten = str(pathlib.Path(options.batten).resolve())  # runs in folders of its own
     programs = list(programs_in(options.folder, options.largest))
     if not programs:
         print("no programs")

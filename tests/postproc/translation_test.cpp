@@ -203,7 +203,8 @@ TEST_P(Untranslatable, IsListedAndNothingIsWritten) {
   EXPECT_EQ(messages_of(result),
             std::vector<std::string>{std::string(GetParam().told) + " (target heidenhain)"});
   for (const gcode::Diagnostic& each : result.diagnostics) {
-    if (each.severity == gcode::Severity::kError) EXPECT_EQ(each.id, "cannot-convert");
+    if (each.severity != gcode::Severity::kError) continue;
+    EXPECT_EQ(each.id, "cannot-convert");
   }
 }
 
@@ -214,7 +215,7 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedCase{"Cycle", "G81 X1 Y1 Z-1 R1 F100\nG80\nG0 X0\n",
                     "G81 may mean something else there"},
         RefusedCase{"Home", "G28\nG0 X0 Y0 Z5\n", "G28 may mean something else there"},
-        RefusedCase{"Increment", "G91\nG1 X1 F100\nG90\n", "G91 may mean something else there"},
+        RefusedCase{"Increment", "G91\nG1 X1 F100\nG90\n", "G1 X1 F100 is an increment"},
         RefusedCase{"OtherPlane", "G18\nG2 X2 Z5 I1 K0 F100\nG17\n",
                     "G2 X2 Z5 I1 K0 F100 is an arc in another plane"},
         RefusedCase{"Helix", "G2 X2 Y0 Z4 I1 J0 F100\n", "G2 X2 Y0 Z4 I1 J0 F100 is a helix"},
