@@ -1,5 +1,7 @@
 #include "gcode/reason.h"
 
+#include "gcode/conversion_reason.h"
+
 namespace batten::gcode::reason {
 namespace {
 
@@ -128,6 +130,17 @@ constexpr Explanation kExplanations[] = {
     {kTargetCannot, "The target control cannot say the new form.",
      "--output lines works with every target.", false},
     {kMethodNone, "--method none: nothing was to be smoothed.", "Choose another --method.", false},
+
+    {kWorkOffset,
+     "With --convert: the program names a work offset (G54), and the target's language has none: "
+     "the datum is set at the control.",
+     "--allow work-offset converts the program for the datum that is active when it runs.", true},
+    {kToolLength,
+     "With --convert: the program moves without the length of its tool (G49), which always counts "
+     "on the target.",
+     "--allow tool-length converts such motions as if the length counted: their Z is that of the "
+     "tip then.",
+     true},
 };
 
 }  // namespace

@@ -8,16 +8,17 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "gcode/language_marks.h"
 #include "gcode/source_kind.h"
 #include "gcode/source_marks.h"
+#include "postproc/obstacles.h"
 #include "postproc/profile_words.h"
 
 namespace batten::postproc {
 namespace {
-
-constexpr std::size_t kMostTold = 50;
 
 // In tenths. The same on every control of the family that takes them at all.
 constexpr std::array kCommonG = {0,   10,  20,  30,  170, 180, 190, 200, 210, 400, 430,
@@ -39,12 +40,6 @@ gcode::Plane plane_of(int g_code) {
       return gcode::Plane::kUnknown;
   }
 }
-
-// What a block says that the target cannot be told.
-struct Obstacle {
-  gcode::SourceSpan where;
-  std::string why;
-};
 
 class BlockCheck {
  public:
@@ -139,12 +134,6 @@ class BlockCheck {
   const gcode::Dialect& target_;
 };
 
-std::string first_line(std::string_view text) {
-  constexpr std::size_t kMostShown = 40;
-  return text.size() <= kMostShown ? std::string(text)
-                                   : std::string(text.substr(0, kMostShown)) + "..";
-}
-
 // Where the program says its language, if it does: the place to tell about.
 gcode::SourceSpan place_of(gcode::Language language, const gcode::SourceText& source) {
   for (const gcode::LanguageMark& each : gcode::language_marks(source)) {
@@ -169,13 +158,21 @@ std::optional<gcode::Language> language_read(const gcode::SourceText& source,
   const auto language = gcode::source_language(source, options.source, of_target, found);
   const bool plain = language == gcode::Language::kRs274 && of_target == gcode::Language::kSiemens;
   if (!language || *language == of_target || plain) return language;
-  // Also with --convert: the same words mean other things in other languages.
+  const std::string_view advice = language == gcode::Language::kRs274
+                                      ? "--convert says it there where every block can be said"
+                                      : "nothing is translated from that";
   found.push_back({gcode::Severity::kError, "foreign-language", place_of(*language, source),
-                   fmt::format("{} a program in {}; target {} reads {}, and nothing is translated "
-                               "from one language to another",
+                   fmt::format("{} a program in {}; target {} reads {}, and {}",
                                evidence_of(*language, source), gcode::describe(*language),
-                               options.target->name(), gcode::describe(of_target))});
+                               options.target->name(), gcode::describe(of_target), advice)});
   return std::nullopt;
+}
+
+bool is_to_be_translated(const gcode::SourceText& source, const SmoothOptions& options) {
+  if (!options.convert || options.target->language() == gcode::Language::kRs274) return false;
+  gcode::Diagnostics uncertain;
+  const auto language = gcode::source_language(source, options.source, std::nullopt, uncertain);
+  return language == gcode::Language::kRs274;
 }
 
 bool is_of_another_family(const gcode::Program& program, const gcode::Dialect& target) {
@@ -198,25 +195,11 @@ void tell_of_other_family(const gcode::Program& program, const gcode::Dialect& t
 void tell_what_cannot_be_said(const gcode::Program& program, const gcode::Dialect& target,
                               gcode::Diagnostics& found) {
   const BlockCheck check(program, target);
-  std::size_t told = 0;
-  std::size_t untold = 0;
-  gcode::SourceSpan first_untold;
+  std::vector<Obstacle> obstacles;
   for (const gcode::Block& block : program.blocks) {
-    const std::optional<Obstacle> obstacle = check.obstacle_in(block);
-    if (!obstacle) continue;
-    if (told++ < kMostTold) {
-      found.push_back(
-          {gcode::Severity::kError, "cannot-convert", obstacle->where,
-           fmt::format("{} {} (target {})", first_line(program.source.text(obstacle->where)),
-                       obstacle->why, target.name())});
-    } else if (untold++ == 0) {
-      first_untold = obstacle->where;
-    }
+    if (auto obstacle = check.obstacle_in(block)) obstacles.push_back(std::move(*obstacle));
   }
-  if (untold > 0) {
-    found.push_back({gcode::Severity::kError, "cannot-convert", first_untold,
-                     fmt::format("from here on {} more blocks of this kind", untold)});
-  }
+  tell_obstacles(obstacles, program, target, found);
 }
 
 }  // namespace batten::postproc

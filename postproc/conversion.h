@@ -1,7 +1,8 @@
 // Programs that were made for another family of controls than the target's.
 //
-// Nothing is translated: what is not rewritten is copied, so a program can go to another control
-// only when every block that is copied says the same there.
+// Within RS-274 nothing is translated: what is not rewritten is copied, so a program can go to
+// another control only when every block that is copied says the same there. From plain words to
+// Klartext or Siemens it is translated first (postproc/translated_smoothing.h).
 #pragma once
 
 #include <optional>
@@ -21,6 +22,11 @@ namespace batten::postproc {
 [[nodiscard]] std::optional<gcode::Language> language_read(const gcode::SourceText& source,
                                                            const SmoothOptions& options,
                                                            gcode::Diagnostics& found);
+
+// With --convert: whether the program is in plain words (RS-274) and the target reads another
+// language. A text without certain marks of a language counts as plain words here.
+[[nodiscard]] bool is_to_be_translated(const gcode::SourceText& source,
+                                       const SmoothOptions& options);
 
 // Whether the program has words of controls that the target is none of.
 [[nodiscard]] bool is_of_another_family(const gcode::Program& program,

@@ -16,13 +16,17 @@ constexpr std::size_t kFurthest = 400;
 // few; each costs up to kFurthest^2 comparisons.
 constexpr std::size_t kMostDifferences = 50;
 
-bool same_rapid(const gcode::Motion& before, const gcode::Motion& after) {
+// mm: half a step of what is printed where the numbers of another language are not the source's: 4
+// decimals of a millimetre, 5 of an inch, whichever is more.
+constexpr double kPrintedAnew = 0.00013;
+
+bool same_rapid(const gcode::Motion& before, const gcode::Motion& after, double same_place) {
   const geometry::Point3 old_end = geometry::end_point(before.piece);
   const geometry::Point3 new_end = geometry::end_point(after.piece);
   for (int axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
     const bool named = before.axes_named[i] || after.axes_named[i];
-    if (named && std::abs(old_end[axis] - new_end[axis]) > geometry::kSamePlace) return false;
+    if (named && std::abs(old_end[axis] - new_end[axis]) > same_place) return false;
   }
   return true;
 }
@@ -98,7 +102,9 @@ bool same_event(const ProgramEvent& before, const ReadProgram& old_program,
                 const ProgramEvent& after, const ReadProgram& new_program) {
   if (before.kind != after.kind) return false;
   if (before.kind != EventKind::kRapid) return before.text == after.text;
-  return same_rapid(motion_of(before, old_program), motion_of(after, new_program));
+  const bool printed_anew = old_program.program->language != new_program.program->language;
+  return same_rapid(motion_of(before, old_program), motion_of(after, new_program),
+                    printed_anew ? kPrintedAnew : geometry::kSamePlace);
 }
 
 EventAlignment align_events(const ProgramEvents& before, const ReadProgram& old_program,

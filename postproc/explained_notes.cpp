@@ -31,6 +31,12 @@ constexpr gcode::ExplainedDiagnostic kExplained[] = {
      "A flat run bends with a radius below the tolerance. The place is the first such bend.",
      "Nothing, or a smaller tolerance where the bend matters."},
     // --- what was written ---
+    {"smoothing-not-told", "note",
+     "The target has no comment that all its controls take, so nothing in the new program says "
+     "that "
+     "it was smoothed. Batten would smooth it again, and the tolerances would add up.",
+     "Keep the original, and smooth that. Where the control takes comments, a profile with its "
+     "`comments` says so, and the program tells it."},
     {"curves-unverified", "warning",
      "The target's curve words were written, and what its control makes of them is not known for "
      "certain. The message says what is open.",

@@ -16,6 +16,7 @@
 #include "postproc/program_part.h"
 #include "postproc/provenance.h"
 #include "postproc/target_words.h"
+#include "postproc/translated_smoothing.h"
 
 namespace batten::postproc {
 
@@ -28,7 +29,10 @@ constexpr double kAfterSmoothing = 0.7;
 class Smoothing {
  public:
   Smoothing(const gcode::SourceText& source, const SmoothOptions& options, const Progress& progress)
-      : source_(source), options_(options), progress_(progress), part_{{source, {}, {}, {}, {}}, {}} {}
+      : source_(source),
+        options_(options),
+        progress_(progress),
+        part_{{source, {}, {}, {}, {}}, {}} {}
 
   SmoothResult run() {
     read();
@@ -115,6 +119,9 @@ class Smoothing {
     result_.corner_mm = verification.corner_mm;
     result_.runs = report_runs({part_.program, part_.meaning, runs_.sections, runs_.works,
                                 runs_.cut_runs, verification.stretches, result_.proved});
+    if (auto told = untold_smoothing(result_.runs, part_.program, *options_.target)) {
+      result_.diagnostics.push_back(std::move(*told));
+    }
     if (auto told = curve_caution(result_.runs, part_.program, *options_.target)) {
       result_.diagnostics.push_back(std::move(*told));
     }
@@ -136,6 +143,7 @@ class Smoothing {
 
 SmoothResult smooth_program(const gcode::SourceText& source, const SmoothOptions& options,
                             const Progress& progress) {
+  if (is_to_be_translated(source, options)) return smooth_translated(source, options, progress);
   SmoothResult result = Smoothing(source, options, progress).run();
   for (const RunReport& run : result.runs) {
     result.time_before_s += run.time_before_s;

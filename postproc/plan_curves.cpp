@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "gcode/curves/curve_format.h"
@@ -17,6 +18,7 @@ using geometry::BsplineCurve;
 using geometry::CubicBezier;
 using geometry::CurvePieces;
 using geometry::Point3;
+using geometry::Vector3;
 
 // A straight part of this length (mm) is a line of the new program too. Where a curve is many
 // blocks, a shorter one is not worth an end and a new start of it.
@@ -30,6 +32,10 @@ constexpr double kPartForCurveChords = 0.1;
 // with less the pieces get short, and with more the curve hardly bends.
 constexpr double kPartForControl = 0.5;
 
+// Radians: a smaller turn is none. The control makes nothing of it: SPL blocks may turn by 0.1
+// degrees where they join.
+constexpr double kNoKink = 0.1 * std::numbers::pi / 180;
+
 // A piece that the target does not take is halved so often before it is chords: where it bends the
 // one way first and then the other, all of it but a sixteenth can still be curves.
 constexpr int kHalvings = 4;
@@ -39,6 +45,8 @@ struct CurvePart {
   double from = 0;
   double to = 0;
   bool straight = false;
+  bool starts_free = false;  // at a corner, or at an end of the run: any direction will do
+  bool ends_free = false;
 };
 
 // Exactly at the height of the run where all its points have one. Rounding noise of the curve
@@ -104,7 +112,7 @@ class CurvePlanner {
     double done = stretch.from;
     const double noise = knot_noise();
     const auto bend_to = [&](double end) {
-      if (end > done + noise) parts.push_back({done, end, false});
+      if (end > done + noise) parts.push_back({.from = done, .to = end});
       done = std::max(done, end);
     };
     const std::vector<double> corners = pieces.corners();
@@ -113,28 +121,57 @@ class CurvePlanner {
       if (!is_line(straight)) continue;
       for (; corner != corners.end() && *corner <= straight.from; ++corner) bend_to(*corner);
       bend_to(straight.from);
-      parts.push_back({straight.from, straight.to, true});
+      parts.push_back({.from = straight.from, .to = straight.to, .straight = true});
       done = straight.to;
     }
     for (; corner != corners.end(); ++corner) bend_to(*corner);
     bend_to(stretch.to);
+    for (CurvePart& part : parts) {
+      part.starts_free = is_free(part.from, corners);
+      part.ends_free = is_free(part.to, corners);
+    }
     return parts;
   }
 
+  [[nodiscard]] bool is_free(double place, const std::vector<double>& corners) const {
+    const double noise = knot_noise();
+    const auto here = [&](double other) { return std::abs(place - other) <= noise; };
+    return here(curve_.first()) || here(curve_.last()) || std::ranges::any_of(corners, here);
+  }
+
   void add(const CurvePart& part) {
-    if (part.straight) return add_line(part.from, part.to);
+    if (part.straight || is_as_good_as_straight(part)) return add_line(part.from, part.to);
     const BsplineCurve curve = curve_.part(part.from, part.to);
     const std::vector<CubicBezier> pieces = curve.bezier_pieces();
     const bool all_taken =
         std::ranges::all_of(pieces, [&](const CubicBezier& piece) { return is_taken(piece); });
     if (!all_taken) return add_piece_by_piece(curve);
-    const std::vector<double> breaks = curve.breakpoints();
-    const std::size_t most = std::max<std::size_t>(format_.max_control_points(), 8) - 3;
-    for (std::size_t i = 0; i + 1 < breaks.size();) {
-      const std::size_t end = std::min(i + most, breaks.size() - 1);
-      add_curve(curve, breaks[i], breaks[end]);
-      i = end;
+    add_curve(curve, curve.first(), curve.last());
+  }
+
+  // A line along the part keeps what chords have to keep, and where the part goes on smoothly it
+  // makes no kink: the noise of straight lines is no curve.
+  [[nodiscard]] bool is_as_good_as_straight(const CurvePart& part) const {
+    const Point3 start = curve_.point_at(part.from);
+    const Vector3 way = curve_.point_at(part.to) - start;
+    const double length = way.norm();
+    if (!(length > 0)) return false;
+    const Vector3 along = way / length;
+    const BsplineCurve fair = fair_.curve.part(part.from, part.to);
+    const std::vector<Point3>& points = fair.control_points();
+    double done = 0;
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+      const Vector3 offset = points[i] - start;
+      const double forward = offset.dot(along);
+      const bool in_order = forward >= done && forward <= length;
+      if (!in_order || (offset - forward * along).norm() > options_.max_deviation) return false;
+      done = forward;
     }
+    const auto bends = [&](const Point3& from, const Point3& to) {
+      return (to - from).cross(along).norm() > kNoKink * (to - from).norm();
+    };
+    return (part.starts_free || !bends(points[0], points[1])) &&
+           (part.ends_free || !bends(points[points.size() - 2], points.back()));
   }
 
   // The control takes it, and runs it near enough.

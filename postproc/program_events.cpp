@@ -6,6 +6,7 @@
 
 #include "gcode/code_groups.h"
 #include "gcode/reason.h"
+#include "postproc/path_state.h"
 
 namespace batten::postproc {
 namespace {
@@ -37,27 +38,6 @@ void append_word(std::string& text, std::string_view word) {
     if (c == ' ' || c == '\t') continue;
     text += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
   }
-}
-
-// A state in which the path in X, Y, Z is all there is to a cutting motion. Unknown is not.
-bool path_alone_counts(const ModalState& state) {
-  const std::array switches = {
-      state.cutter_compensation,
-      state.tool_center_point,
-      state.tilted_plane,
-      state.scaling,
-      state.rotation,
-      state.mirror,
-      state.polar,
-      state.cylindrical,
-      state.control_smoothing,
-      state.modal_macro,
-      state.constant_surface_speed,
-      state.lathe_diameter,
-  };
-  return std::ranges::all_of(switches, [](Tri item) { return item == Tri::kOff; }) &&
-         state.units != gcode::Units::kUnknown && state.feed_mode == gcode::FeedMode::kPerMinute &&
-         state.distance == gcode::DistanceMode::kAbsolute;
 }
 
 // Barriers of blocks that can be said word by word.

@@ -33,4 +33,18 @@ bool was_smoothed(const gcode::Program& program) {
   });
 }
 
+std::optional<gcode::Diagnostic> untold_smoothing(std::span<const RunReport> runs,
+                                                  const gcode::Program& program,
+                                                  const gcode::Dialect& target) {
+  if (!provenance_comment(target, 1).empty()) return std::nullopt;
+  const auto first = std::ranges::find(runs, RunStatus::kRewritten, &RunReport::status);
+  if (first == runs.end()) return std::nullopt;
+  return gcode::Diagnostic{
+      gcode::Severity::kNote, "smoothing-not-told",
+      program.blocks[first->first_line - program.blocks.front().line].span,
+      "target " + std::string(target.name()) +
+          " has no certain comment, so nothing in the program says that it was smoothed: smoothing "
+          "it once more would add its tolerance again"};
+}
+
 }  // namespace batten::postproc

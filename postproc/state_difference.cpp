@@ -26,6 +26,13 @@ constexpr SwitchItem kSwitches[] = {
     {&ModalState::laser_power_mode, "laser power mode"},
 };
 
+std::string_view different_switch(const ModalState& before, const ModalState& after) {
+  for (const SwitchItem& one : kSwitches) {
+    if (before.*one.item != after.*one.item) return one.name;
+  }
+  return {};
+}
+
 std::string_view different_mode(const ModalState& before, const ModalState& after) {
   if (before.units != after.units) return "units";
   if (before.plane != after.plane) return "plane";
@@ -33,9 +40,7 @@ std::string_view different_mode(const ModalState& before, const ModalState& afte
   if (before.arc_distance != after.arc_distance) return "arc distance mode";
   if (before.feed_mode != after.feed_mode) return "feed mode";
   if (before.path != after.path) return "path mode";
-  for (const SwitchItem& one : kSwitches) {
-    if (before.*one.item != after.*one.item) return one.name;
-  }
+  if (const std::string_view item = different_switch(before, after); !item.empty()) return item;
   if (before.spindle_speed != after.spindle_speed) return "spindle speed";
   return {};
 }
@@ -62,6 +67,15 @@ std::string_view different_item(const ProgramEvent& before, const ReadProgram& o
   if (old_state.motion != new_state.motion) return "motion word";
   if (!same_feed(old_state.feed, new_state.feed)) return "feed";
   return {};
+}
+
+std::string_view different_in_common(const ProgramEvent& before, const ReadProgram& old_program,
+                                     const ProgramEvent& after, const ReadProgram& new_program) {
+  const ModalState& old_state = old_program.interpretation->states[before.state_before];
+  const ModalState& new_state = new_program.interpretation->states[after.state_before];
+  if (old_state.distance != new_state.distance) return "distance mode";
+  if (old_state.feed_mode != new_state.feed_mode) return "feed mode";
+  return different_switch(old_state, new_state);
 }
 
 std::string_view different_item_at_end(const ReadProgram& old_program,

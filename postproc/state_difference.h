@@ -15,6 +15,13 @@ namespace batten::postproc {
                                               const ProgramEvent& after,
                                               const ReadProgram& new_program);
 
+// Between programs of two languages: what bends the path, or the meaning of a feed. How arcs and
+// units are read does not count, since motions are compared in millimetres.
+[[nodiscard]] std::string_view different_in_common(const ProgramEvent& before,
+                                                   const ReadProgram& old_program,
+                                                   const ProgramEvent& after,
+                                                   const ReadProgram& new_program);
+
 // The same after the last block, without motion word and feed.
 [[nodiscard]] std::string_view different_item_at_end(const ReadProgram& old_program,
                                                      const ReadProgram& new_program);

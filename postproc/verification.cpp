@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "postproc/common_events.h"
 #include "postproc/event_alignment.h"
 #include "postproc/event_breaches.h"
 #include "postproc/state_difference.h"
@@ -84,8 +85,9 @@ class Verifier {
       : old_(before),
         new_(after),
         promise_(promise),
-        old_list_(list_events(before)),
-        new_list_(list_events(after)),
+        in_common_words_(before.program->language != after.program->language),
+        old_list_(events_of(before)),
+        new_list_(events_of(after)),
         old_follower_(old_, old_list_),
         new_follower_(new_, new_list_) {}
 
@@ -110,6 +112,10 @@ class Verifier {
  private:
   // --- events -------------------------------------------------------------------------------
 
+  [[nodiscard]] ProgramEvents events_of(const ReadProgram& read) const {
+    return in_common_words_ ? list_common_events(read) : list_events(read);
+  }
+
   // Events up to `same` that stand in one program only. Returns whether the moves around them
   // can be compared as one path all the same.
   bool report_gap(const EventPair& next, const EventPair& same) {
@@ -124,7 +130,8 @@ class Verifier {
     const ProgramEvent& before = old_list_.events[same.before];
     const ProgramEvent& after = new_list_.events[same.after];
     if (before.kind == EventKind::kRapid) compare_unnamed_axes(before, after);
-    const std::string_view item = different_item(before, old_, after, new_);
+    const std::string_view item = in_common_words_ ? different_in_common(before, old_, after, new_)
+                                                   : different_item(before, old_, after, new_);
     if (!item.empty() && item != last_different_item_) {
       breaches_.push_back(state_breach(item, before, old_, after, new_));
     }
@@ -222,6 +229,8 @@ class Verifier {
     const bool no_gap = next.before == end.before && next.after == end.after;
     const bool can_compare = report_gap(next, end);
     compare_moves_before(end, can_compare, no_gap);
+    // The end of a program of another language leaves behind what that control leaves.
+    if (in_common_words_) return;
     const std::string_view item = different_item_at_end(old_, new_);
     if (!item.empty() && item != last_different_item_) {
       breaches_.push_back(end_state_breach(item, old_, new_));
@@ -231,6 +240,7 @@ class Verifier {
   const ReadProgram& old_;
   const ReadProgram& new_;
   Promise promise_;
+  bool in_common_words_ = false;  // the programs are of two languages
   ProgramEvents old_list_;
   ProgramEvents new_list_;
   Follower old_follower_;
@@ -243,6 +253,8 @@ class Verifier {
 
 }  // namespace
 
+// Programs of two languages are compared in the words that all have (postproc/common_events.h);
+// their rapids end at the same place to within what printing a place in other digits moves it.
 Verification verify(const ReadProgram& before, const ReadProgram& after, const Promise& promise) {
   if (!(promise.tolerance_mm > 0) || !std::isfinite(promise.tolerance_mm)) {
     throw std::invalid_argument(fmt::format(

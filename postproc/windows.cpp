@@ -41,6 +41,7 @@ class Windows {
 
   std::optional<SmoothResult> run(std::size_t least_blocks) {
     if (!options_.words.empty()) return std::nullopt;
+    if (is_to_be_translated(source_, options_)) return std::nullopt;
     gcode::Diagnostics of_language;
     const auto language = language_read(source_, options_, of_language);
     if (language != gcode::Language::kRs274) return std::nullopt;
@@ -58,6 +59,7 @@ class Windows {
       if (outcome == Outcome::kStopped) return std::move(result_);
     }
     notes_.tell_rest(result_.diagnostics);
+    if (untold_) result_.diagnostics.push_back(std::move(*untold_));
     if (caution_) result_.diagnostics.push_back(std::move(*caution_));
     result_.understood = true;
     result_.proved = true;
@@ -120,6 +122,7 @@ class Windows {
     }
     auto reports = report_runs({part.program, part.meaning, runs.sections, runs.works,
                                 runs.cut_runs, verification.stretches, true});
+    if (!untold_) untold_ = untold_smoothing(reports, part.program, *options_.target);
     if (!caution_) caution_ = curve_caution(reports, part.program, *options_.target);
     for (RunReport& run : reports) {
       result_.time_before_s += run.time_before_s;
@@ -151,6 +154,7 @@ class Windows {
   TextBefore new_;
   bool starts_alike_ = true;  // the next window, in the old and in the new text
   BandNoteTally notes_;
+  std::optional<gcode::Diagnostic> untold_;
   std::optional<gcode::Diagnostic> caution_;
   SmoothResult result_;
 };

@@ -1,7 +1,5 @@
 #include "gcode/curves/bspline_format.h"
 
-#include <limits>
-
 #include "gcode/curves/siemens_bspline.h"
 #include "gcode/curves/siemens_poly.h"
 
@@ -18,11 +16,7 @@ class BsplineFormat final : public CurveFormat {
   std::string_view complaint(const ModalState& state) const override {
     return poly_complaint(state);
   }
-  bool takes(const geometry::CubicBezier&) const override { return true; }
   bool is_block_per_piece() const override { return false; }
-  std::size_t max_control_points() const override {
-    return std::numeric_limits<std::size_t>::max();
-  }
 
   // PL, in the units of the curve's parameter: scaled as the knots of G06.2 are.
   NumberFormat other_numbers(Units) const override { return {.decimals = 4}; }

@@ -2,7 +2,6 @@
 // made and read by the pure functions beside this file.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -33,7 +32,7 @@ class CurveFormat {
   [[nodiscard]] virtual std::string_view complaint(const ModalState& state) const = 0;
 
   // Whether the control runs this piece of a curve. What it does not is written as lines.
-  [[nodiscard]] virtual bool takes(const geometry::CubicBezier& piece) const = 0;
+  [[nodiscard]] virtual bool takes(const geometry::CubicBezier&) const { return true; }
 
   // Whether the control runs curves as chords of its own that count. They leave a piece by
   // chords_error (mm) at the most.
@@ -46,9 +45,6 @@ class CurveFormat {
 
   // Whether the control wants X, Y and Z in every curve, moved or not.
   [[nodiscard]] virtual bool names_all_axes() const { return false; }
-
-  // The most control points of one curve.
-  [[nodiscard]] virtual std::size_t max_control_points() const = 0;
 
   // How knots, coefficients or offsets are printed.
   [[nodiscard]] virtual NumberFormat other_numbers(Units units) const = 0;

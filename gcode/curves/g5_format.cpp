@@ -1,7 +1,5 @@
 #include "gcode/curves/g5_format.h"
 
-#include <limits>
-
 #include "gcode/curves/g5_chopping.h"
 #include "gcode/curves/g5_curve.h"
 
@@ -25,9 +23,6 @@ class G5Format : public CurveFormat {
   // The pieces that LinuxCNC takes: the others have no use for pieces that are nearly straight.
   bool takes(const geometry::CubicBezier& piece) const override { return bends_one_way(piece); }
   bool is_block_per_piece() const override { return true; }
-  std::size_t max_control_points() const override {
-    return std::numeric_limits<std::size_t>::max();
-  }
 
   CurveWriting write(const geometry::BsplineCurve& curve,
                      const CurveSetting& setting) const override {

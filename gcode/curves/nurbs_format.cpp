@@ -1,7 +1,5 @@
 #include "gcode/curves/nurbs_format.h"
 
-#include <limits>
-
 #include "gcode/curves/nurbs_read.h"
 #include "gcode/curves/nurbs_rules.h"
 #include "gcode/curves/nurbs_write.h"
@@ -19,13 +17,8 @@ class NurbsFormat final : public CurveFormat {
   std::string_view complaint(const ModalState& state) const override {
     return nurbs_complaint(state);
   }
-  bool takes(const geometry::CubicBezier&) const override { return true; }
   bool is_block_per_piece() const override { return false; }
   bool names_all_axes() const override { return rules_(Units::kMillimetre).three_axes; }
-  // No manual that was read names a limit.
-  std::size_t max_control_points() const override {
-    return std::numeric_limits<std::size_t>::max();
-  }
   NumberFormat other_numbers(Units units) const override {
     return {.decimals = rules_(units).knots.decimals, .always_point = true};
   }

@@ -1,7 +1,5 @@
 #include "gcode/curves/poly_format.h"
 
-#include <limits>
-
 #include "gcode/curves/siemens_poly.h"
 
 namespace batten::gcode {
@@ -14,11 +12,7 @@ class PolyFormat final : public CurveFormat {
   std::string_view complaint(const ModalState& state) const override {
     return poly_complaint(state);
   }
-  bool takes(const geometry::CubicBezier&) const override { return true; }
   bool is_block_per_piece() const override { return true; }
-  std::size_t max_control_points() const override {
-    return std::numeric_limits<std::size_t>::max();
-  }
 
   // Of the size of the piece: half a step moves the piece by less than the rounding of its ends.
   NumberFormat other_numbers(Units) const override { return {.decimals = 6}; }

@@ -1,7 +1,5 @@
 #include "gcode/curves/spl_format.h"
 
-#include <limits>
-
 #include "gcode/curves/heidenhain_spl.h"
 #include "gcode/klartext/statement.h"
 
@@ -23,11 +21,7 @@ class SplFormat final : public CurveFormat {
   std::string_view complaint(const ModalState& state) const override {
     return spl_complaint(state);
   }
-  bool takes(const geometry::CubicBezier&) const override { return true; }
   bool is_block_per_piece() const override { return true; }
-  std::size_t max_control_points() const override {
-    return std::numeric_limits<std::size_t>::max();
-  }
 
   // Of the size of the piece; write_spl takes more where a joint would have a kink.
   NumberFormat other_numbers(Units) const override { return {.decimals = 6}; }

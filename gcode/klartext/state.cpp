@@ -184,9 +184,22 @@ class CycleEffect {
   std::string_view value_;
 };
 
+// The tool axis, S and F, and nothing else: the tool stays, and so does its length.
+bool keeps_tool(std::string_view content) {
+  KlartextTokens tokens(content);
+  (void)tokens.next();  // TOOL
+  (void)tokens.next();  // CALL
+  for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
+    const bool axis = is_same_word(token, "Z");
+    const bool value = (upper(token[0]) == 'S' || upper(token[0]) == 'F') && number_in(token, 1);
+    if (!axis && !value) return false;
+  }
+  return true;
+}
+
 // TOOL CALL 5 Z S5000: the tool axis is across the plane of arcs. TOOL CALL S3000 keeps it.
 void apply_tool_call(std::string_view content, ControlState& state) {
-  forget_position(state);
+  if (!keeps_tool(content)) forget_position(state);
   state.modal.spindle_speed.reset();
   state.modal.feed.reset();
   KlartextTokens tokens(content);

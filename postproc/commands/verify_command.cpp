@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "gcode/interpreter.h"
+#include "gcode/language_marks.h"
 #include "gcode/parser.h"
 #include "gcode/source_kind.h"
 #include "postproc/added_lines.h"
@@ -41,14 +42,30 @@ std::optional<gcode::Language> language_of_target(const VerifyCommand& command) 
   return std::nullopt;
 }
 
+// In which language the old program is, where only the new one shows its own: it was converted from
+// plain words.
+bool is_converted(const gcode::SourceText& old_source, const gcode::SourceText& new_source,
+                  const VerifyCommand& command) {
+  const auto target = language_of_target(command);
+  if (!target || *target == gcode::Language::kRs274) return false;
+  const auto shows_target = [&](const gcode::SourceText& source) {
+    const auto marks = gcode::language_marks(source);
+    return marks.size() == 1 && marks.front().language == *target;
+  };
+  gcode::Diagnostics uncertain;
+  const auto old_language =
+      gcode::source_language(old_source, command.source, std::nullopt, uncertain);
+  return old_language == gcode::Language::kRs274 && shows_target(new_source);
+}
+
 // `language`: what a text without certain marks is read in; nothing: as the target reads.
-Read read(const gcode::SourceText& source, const VerifyCommand& command,
+Read read(const gcode::SourceText& source, const VerifyCommand& command, gcode::SourceKind kind,
           std::optional<gcode::Language> language) {
   gcode::Diagnostics found;
-  const auto own = gcode::source_language(source, command.source,
+  const auto own = gcode::source_language(source, kind,
                                           language ? language : language_of_target(command), found);
   gcode::Program program = gcode::parse(source, own.value_or(gcode::Language::kRs274), found);
-  gcode::tell_of_contradictions(program, command.source, found);
+  gcode::tell_of_contradictions(program, kind, found);
   gcode::Interpretation interpretation =
       gcode::interpret(program, {.units = command.units, .curves = curves_of(command)}, found);
   return {source, std::move(program), std::move(interpretation), std::move(found)};
@@ -183,7 +200,7 @@ int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& sou
     say_lines(fmt::format("proved: {} and {} are the same, byte for byte\n", command.new_program,
                           command.old_program));
   }
-  const Read same = read(source, command, std::nullopt);
+  const Read same = read(source, command, command.source, std::nullopt);
   return write_json(command, {}, same, same);
 }
 
@@ -220,10 +237,13 @@ int run(const VerifyCommand& command) {
     return accept_same_bytes(command, *new_source);
   }
 
-  const Read before = read(*old_source, command, std::nullopt);
+  const bool converted = is_converted(*old_source, *new_source, command);
+  const Read before = read(*old_source, command, command.source,
+                           converted ? std::optional(gcode::Language::kRs274) : std::nullopt);
   const AddedLines added = without_added_lines(command, before, *new_source);
   const Read after =
-      read(gcode::SourceText(new_source->name(), added.text), command, before.program.language);
+      read(gcode::SourceText(new_source->name(), added.text), command,
+           converted ? gcode::SourceKind::kAuto : command.source, before.program.language);
   if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
   if (!is_understood(before, command.log_level)) {
     say("the old program is not understood, so nothing can be proved about the new one");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gcode/interpreter.h"
@@ -85,11 +86,14 @@ Json path_of(const SmoothReport& report, std::size_t most_vertices) {
   gcode::ReadOptions reading{report.options.units};
   if (report.options.target != nullptr) reading.curves = report.options.target->curves();
   gcode::Diagnostics ignored;
-  const auto language = language_read(report.source, report.options, ignored);
+  const bool translated = is_to_be_translated(report.source, report.options);
+  const auto language = translated ? std::optional(gcode::Language::kRs274)
+                                   : language_read(report.source, report.options, ignored);
   if (!language) return path_columns({});
   const gcode::Program before = gcode::parse(report.source, *language, ignored);
   const gcode::Interpretation old_meaning = gcode::interpret(before, reading, ignored);
-  const gcode::Program after = gcode::parse(written, *language, ignored);
+  const gcode::Program after =
+      gcode::parse(written, translated ? report.options.target->language() : *language, ignored);
   const gcode::Interpretation new_meaning = gcode::interpret(after, reading, ignored);
   const ReadProgram old_program{&before, &old_meaning};
   const ReadProgram new_program{&after, &new_meaning};

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """targets_table.py BATTEN FOLDER [--targets a,b,..] [--forms auto,arcs,lines] [--tolerance 0.01]
-                    [--largest BYTES] [--convert] [--json FILE]
+                    [--largest BYTES] [--convert] [--allow a,b,..] [--json FILE]
 
 Every program of FOLDER smoothed for some targets in each form: a table of blocks and bytes by target
 and form. Each result is verified once more by `batten verify`. Exits with 1 when one is not proved.
+Why programs were refused stands behind the table, with their first block that cannot be said.
 """
 
 import argparse
@@ -15,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-TARGETS = "fanuc,siemens,grbl,linuxcnc,haas"
+TARGETS = "fanuc,siemens,itnc530,grbl,linuxcnc,haas"
 FORMS = "auto,curves,arcs,lines"
 NOT_PROGRAMS = {".md", ".txt", ".json"}
 HANGS = 900  # seconds, for programs of some megabytes
@@ -31,6 +32,7 @@ def read_options():
     parser.add_argument("--largest", type=int, default=1 << 20, help="bytes; larger ones are left out")
     parser.add_argument("--convert", action="store_true",
                         help="programs of other families too, where every block can be said")
+    parser.add_argument("--allow", default="", help="reason ids, as for batten smooth")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--json", help="all rows, one per program, target and form")
     return parser.parse_args()
@@ -58,12 +60,15 @@ def row_of(options, name, data, target, form):
         (folder / "old.nc").write_bytes(data)
         done = run(options, "smooth", folder, "old.nc", "-o", "new.nc", "--target", target,
                    "--output", form, "--threads", "1", "--json", "report.json",
-                   *(["--convert"] if options.convert else []))
+                   *(["--convert"] if options.convert else []),
+                   *[f"--allow={reason}" for reason in options.allow.split(",") if reason])
         row = {"program": name, "target": target, "form": form, "exit": done.returncode}
         if done.returncode == 2:
             errors = [line for line in done.stderr.decode(errors="replace").splitlines()
                       if ": error: " in line]
             row["refused"] = errors[0].split(": error: ")[1].split(":")[0] if errors else "?"
+            row["told"] = errors[0].removeprefix("old.nc:") if errors else "?"
+            row["errors"] = len(errors)
             return row
         if done.returncode != 0:
             row["wrong"] = done.stderr.decode(errors="replace")[-300:]
@@ -94,6 +99,7 @@ def summed(rows, target, form):
 
 
 def main(options):
+    options.batten = str(pathlib.Path(options.batten).resolve())  # runs in folders of its own
     programs = list(programs_in(options.folder, options.largest))
     if not programs:
         print("no programs")
@@ -124,6 +130,9 @@ def main(options):
             refusals.setdefault(key, set()).add(row["program"])
     for (target, why), names in sorted(refusals.items()):
         print(f"{target}: {why}: {len(names)} programs", file=sys.stderr)
+    told = {(row["target"], row["program"]): row for row in rows if "refused" in row}
+    for (target, program), row in sorted(told.items()):
+        print(f"{target}: {program}: {row['errors']} errors, the first: {row['told']}", file=sys.stderr)
     return 1 if any("wrong" in row for row in rows) else 0
 
 

@@ -8,6 +8,8 @@
 #include <sstream>
 #include <string>
 
+#include "gcode/conversion_reason.h"
+
 namespace batten::gcode::reason {
 namespace {
 
@@ -44,10 +46,11 @@ TEST(Reason, EveryDeclaredIdIsExplainedOnce) {
   EXPECT_EQ(explained, declared);
 }
 
-TEST(Reason, OnlyTheExactPathAndASecondPassCanBeAllowed) {
+TEST(Reason, OnlyTheExactPathASecondPassAndWhatIsSetAtAControlCanBeAllowed) {
   for (const Explanation& explanation : explanations()) {
     const bool safe = explanation.id == kExactStop || explanation.id == kAlreadySmoothed;
-    EXPECT_EQ(explanation.can_be_allowed, safe) << explanation.id;
+    const bool set_at_control = explanation.id == kWorkOffset || explanation.id == kToolLength;
+    EXPECT_EQ(explanation.can_be_allowed, safe || set_at_control) << explanation.id;
   }
 }
 

@@ -323,7 +323,6 @@ class CoarseFormat final : public gcode::CurveFormat {
   bool takes(const CubicBezier& piece) const override { return fine_.takes(piece); }
   bool is_block_per_piece() const override { return fine_.is_block_per_piece(); }
   bool names_all_axes() const override { return fine_.names_all_axes(); }
-  std::size_t max_control_points() const override { return fine_.max_control_points(); }
   gcode::NumberFormat other_numbers(gcode::Units units) const override {
     gcode::NumberFormat format = fine_.other_numbers(units);
     format.decimals = 0;

@@ -1,0 +1,12 @@
+// Why a program cannot be converted to another language, where the user may say that it can: ids
+// for --allow beside those of gcode/reason.h, explained with them.
+#pragma once
+
+#include <string_view>
+
+namespace batten::gcode::reason {
+
+inline constexpr std::string_view kWorkOffset = "work-offset";  // G54, where there is none
+inline constexpr std::string_view kToolLength = "tool-length";  // G49, where lengths always count
+
+}  // namespace batten::gcode::reason

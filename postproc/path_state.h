@@ -1,0 +1,11 @@
+// In which states of the control the words of a motion are its path.
+#pragma once
+
+#include "gcode/modal_state.h"
+
+namespace batten::postproc {
+
+// A state in which the path in X, Y, Z is all there is to a cutting motion. Unknown is not.
+[[nodiscard]] bool path_alone_counts(const gcode::ModalState& state);
+
+}  // namespace batten::postproc
