@@ -178,6 +178,12 @@ std::optional<gcode::Language> language_read(const gcode::SourceText& source,
   return std::nullopt;
 }
 
+gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language) {
+  const gcode::Decimals decimals =
+      gcode::decimals_read(options.source, options.target, language, options.decimals);
+  return {.language = language, .decimals = decimals, .units = options.units};
+}
+
 bool is_of_another_family(const gcode::Program& program, const gcode::Dialect& target) {
   return std::ranges::any_of(gcode::source_marks(program), [&](const gcode::FoundMark& found) {
     return (target.known_marks() & gcode::mark(found.mark)) == 0;

@@ -9,6 +9,7 @@
 #include "gcode/diagnostic.h"
 #include "gcode/dialect.h"
 #include "gcode/language.h"
+#include "gcode/parser.h"
 #include "gcode/program.h"
 #include "gcode/source_text.h"
 #include "postproc/options.h"
@@ -21,6 +22,9 @@ namespace batten::postproc {
 [[nodiscard]] std::optional<gcode::Language> language_read(const gcode::SourceText& source,
                                                            const SmoothOptions& options,
                                                            gcode::Diagnostics& found);
+
+// How a program in this language is read with these options.
+[[nodiscard]] gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language);
 
 // Whether the program has words of controls that the target is none of.
 [[nodiscard]] bool is_of_another_family(const gcode::Program& program,

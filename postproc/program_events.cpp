@@ -39,7 +39,8 @@ void append_word(std::string& text, std::string_view word) {
   }
 }
 
-// A state in which the path in X, Y, Z is all there is to a cutting motion. Unknown is not.
+// A state in which the path in X, Y, Z is all there is to a cutting motion. Unknown is not. What a
+// control fits through the points by itself (COMPCAD) is its own deviation, in both programs.
 bool path_alone_counts(const ModalState& state) {
   const std::array switches = {
       state.cutter_compensation,
@@ -50,13 +51,13 @@ bool path_alone_counts(const ModalState& state) {
       state.mirror,
       state.polar,
       state.cylindrical,
-      state.control_smoothing,
       state.modal_macro,
       state.constant_surface_speed,
       state.lathe_diameter,
   };
   return std::ranges::all_of(switches, [](Tri item) { return item == Tri::kOff; }) &&
-         state.units != gcode::Units::kUnknown && state.feed_mode == gcode::FeedMode::kPerMinute &&
+         state.control_smoothing != Tri::kUnknown && state.units != gcode::Units::kUnknown &&
+         state.feed_mode == gcode::FeedMode::kPerMinute &&
          state.distance == gcode::DistanceMode::kAbsolute;
 }
 
@@ -168,7 +169,8 @@ class Lister {
   }
 
   void add_cut(const BlockMeaning& meaning) {
-    list_.cuts.push_back({static_cast<std::uint32_t>(meaning.motion), state_after().feed});
+    list_.cuts.push_back({static_cast<std::uint32_t>(meaning.motion), state_after().feed,
+                          state_after().feed_without_point});
   }
 
   [[nodiscard]] bool must_stand_as_text(const Block& block, const BlockMeaning& meaning) const {
@@ -357,6 +359,10 @@ bool same_feed(const std::optional<double>& a, const std::optional<double>& b) {
   constexpr double kPrinted = 1e-6;
   if (!a || !b) return a.has_value() == b.has_value();
   return std::abs(*a - *b) <= kPrinted * std::max(std::abs(*a), std::abs(*b));
+}
+
+bool same_feed(const Cut& a, const Cut& b) {
+  return same_feed(a.feed, b.feed) && a.feed_without_point == b.feed_without_point;
 }
 
 ProgramEvents list_events(const ReadProgram& read) { return Lister(read).run(); }

@@ -87,9 +87,10 @@ Json path_of(const SmoothReport& report, std::size_t most_vertices) {
   gcode::Diagnostics ignored;
   const auto language = language_read(report.source, report.options, ignored);
   if (!language) return path_columns({});
-  const gcode::Program before = gcode::parse(report.source, *language, ignored);
+  const gcode::Reading words = reading_of(report.options, *language);
+  const gcode::Program before = gcode::parse(report.source, words, ignored);
   const gcode::Interpretation old_meaning = gcode::interpret(before, reading, ignored);
-  const gcode::Program after = gcode::parse(written, *language, ignored);
+  const gcode::Program after = gcode::parse(written, words, ignored);
   const gcode::Interpretation new_meaning = gcode::interpret(after, reading, ignored);
   const ReadProgram old_program{&before, &old_meaning};
   const ReadProgram new_program{&after, &new_meaning};

@@ -44,9 +44,10 @@ TEST(Reason, EveryDeclaredIdIsExplainedOnce) {
   EXPECT_EQ(explained, declared);
 }
 
-TEST(Reason, OnlyTheExactPathAndASecondPassCanBeAllowed) {
+TEST(Reason, OnlyTheExactPathTheControlsOwnFitAndASecondPassCanBeAllowed) {
   for (const Explanation& explanation : explanations()) {
-    const bool safe = explanation.id == kExactStop || explanation.id == kAlreadySmoothed;
+    const bool safe = explanation.id == kExactStop || explanation.id == kControlSmoothing ||
+                      explanation.id == kAlreadySmoothed;
     EXPECT_EQ(explanation.can_be_allowed, safe) << explanation.id;
   }
 }
