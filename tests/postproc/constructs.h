@@ -10,7 +10,12 @@
 #include <cstdint>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "postproc/conversion.h"
+#include "postproc/inspect.h"
+#include "postproc/run_grouping.h"
 #include "tests/postproc/wavy_programs.h"
 
 namespace batten::postproc {
@@ -83,11 +88,29 @@ inline bool is_rewritten_within(const SmoothResult& result, std::uint32_t first,
   });
 }
 
-inline std::string reason_at(const SmoothResult& result, std::uint32_t line) {
-  for (const RunReport& run : result.runs) {
-    if (run.first_line <= line && line <= run.last_line) return std::string(run.reason);
+// What `batten inspect` tells of the program, read as for these options.
+inline std::vector<InspectedSection> inspected(const std::string& text,
+                                               const SmoothOptions& options) {
+  gcode::Diagnostics found;
+  const gcode::SourceText source("test.nc", text);
+  const auto language = language_read(source, options, found);
+  if (!language) return {};
+  const gcode::Program program = gcode::parse(source, reading_of(options, *language), found);
+  const gcode::Interpretation meaning =
+      gcode::interpret(program, {options.units, options.target->curves()}, found);
+  GroupingOptions grouping;
+  grouping.tolerance_mm = options.tolerance_mm;
+  grouping.allowed.assign(options.allowed.begin(), options.allowed.end());
+  return inspect(program, meaning, group_runs(program, meaning, grouping));
+}
+
+inline std::string reason_at(const std::vector<InspectedSection>& sections, std::uint32_t line) {
+  for (const InspectedSection& section : sections) {
+    if (section.first_line <= line && line <= section.last_line) {
+      return std::string(section.reason);
+    }
   }
-  return "none";
+  return "no such line";
 }
 
 inline void expect_kept_construct(const Construct& construct) {
@@ -121,11 +144,12 @@ inline void expect_kept_construct(const Construct& construct) {
     EXPECT_TRUE(is_rewritten_within(result, front.first, behind.second));
     return;
   }
-  EXPECT_EQ(reason_at(result, place), construct.reason);
+  const std::vector<InspectedSection> sections = inspected(before, options);
+  EXPECT_EQ(reason_at(sections, place), construct.reason);
   EXPECT_TRUE(is_rewritten_within(result, front.first, place - 1)) << "in front of it";
   EXPECT_EQ(is_rewritten_within(result, place, behind.second), construct.goes_on) << "behind it";
   if (!construct.goes_on) {
-    EXPECT_EQ(reason_at(result, behind.second), construct.state);
+    EXPECT_EQ(reason_at(sections, behind.second), construct.state);
     EXPECT_NE(result.text.find(lines_between(before, place, behind.second)), std::string::npos);
   }
   if (!construct.off.empty()) {

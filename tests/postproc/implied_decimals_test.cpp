@@ -11,7 +11,7 @@
 #include "gcode/reason.h"
 #include "postproc/decimals_option.h"
 #include "postproc/windows.h"
-#include "tests/postproc/wavy_programs.h"
+#include "tests/postproc/constructs.h"
 
 namespace batten::postproc {
 namespace {
@@ -86,10 +86,8 @@ TEST(ImpliedDecimals, UndeclaredProgramsStayAsTheyAreWithTheReason) {
     EXPECT_EQ(
         gcode::to_text(result.diagnostics[0], gcode::SourceText("old.nc", before)).substr(0, 12),
         "old.nc:4:10:");
-    const bool has_reason = std::ranges::any_of(result.runs, [](const RunReport& run) {
-      return run.reason == gcode::reason::kImpliedDecimals && run.blocks_in >= 200;
-    });
-    EXPECT_TRUE(has_reason);
+    EXPECT_EQ(reason_at(inspected(before, options_for(target)), 100),
+              gcode::reason::kImpliedDecimals);
   }
 }
 

@@ -171,7 +171,8 @@ TEST(LexingTableLabels, ThatAreNamedAreNeitherDroppedNorPassedOver) {
                                tail_of(gcode::Language::kRs274);
     const SmoothResult result = smoothed(before, options_for(kFanuc));
     EXPECT_TRUE(result.proved);
-    EXPECT_EQ(reason_at(result, 6 + kWaveLines), "referenced-label");
+    EXPECT_EQ(reason_at(inspected(before, options_for(kFanuc)), 6 + kWaveLines),
+              "referenced-label");
     EXPECT_TRUE(is_rewritten_within(result, 6, 5 + kWaveLines));
     EXPECT_FALSE(is_rewritten_within(result, 6 + kWaveLines, 500));
     expect_rest_copied(before, result);

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <string>
 
-#include "tests/postproc/wavy_programs.h"
+#include "tests/postproc/constructs.h"
 
 namespace batten::postproc {
 namespace {
@@ -21,6 +21,7 @@ struct SiemensCase {
   std::string name;
   std::size_t runs = 0;  // rewritten
   Form output = Form::kAuto;
+  Prefer prefer = Prefer::kTime;
   std::string allowed = {};
 };
 void PrintTo(const SiemensCase& test, std::ostream* out) { *out << test.name; }
@@ -28,6 +29,7 @@ void PrintTo(const SiemensCase& test, std::ostream* out) { *out << test.name; }
 SmoothOptions options_of(const SiemensCase& test) {
   SmoothOptions options = options_for("siemens");
   options.output = test.output;
+  options.prefer = test.prefer;
   if (!test.allowed.empty()) options.allowed = {test.allowed};
   return options;
 }
@@ -49,7 +51,7 @@ TEST_P(SiemensCases, ComeOutByteForByte) {
 
 INSTANTIATE_TEST_SUITE_P(Programs, SiemensCases,
                          testing::Values(SiemensCase{"surface", 3}, SiemensCase{"plate", 2},
-                                         SiemensCase{"compressor", 1, Form::kLines,
+                                         SiemensCase{"compressor", 1, Form::kLines, Prefer::kSize,
                                                      "control-smoothing"}),
                          [](const auto& test) { return test.param.name; });
 
@@ -57,10 +59,7 @@ TEST(SiemensCasesUnallowed, CompressedPointsStayAsTheyAre) {
   const std::string before = case_file("compressor.mpf");
   const SmoothResult result = smoothed(before, options_for("siemens"));
   EXPECT_EQ(result.text, before);
-  const bool named = std::ranges::any_of(result.runs, [](const RunReport& run) {
-    return run.reason == "control-smoothing" && run.blocks_in >= 240;
-  });
-  EXPECT_TRUE(named);
+  EXPECT_EQ(reason_at(inspected(before, options_for("siemens")), 100), "control-smoothing");
 }
 
 }  // namespace

@@ -73,10 +73,8 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     DistancesAndFeeds, UnsafeTable,
     testing::Values(
-        between("Incremental", kFanuc, "G91", "state-change", "incremental-distance",
-                "G90\nG1 X60. Y0"),
-        between("Incremental", kSiemens, "G91", "state-change", "incremental-distance",
-                "G90\nG1 X60 Y0"),
+        between("Incremental", kFanuc, "G91", "state-change", "incremental-distance", "G90"),
+        between("Incremental", kSiemens, "G91", "state-change", "incremental-distance", "G90"),
         Construct{"Increment", kHeidenhain, "L IX+1", "incremental-distance"},
         between("InverseTime", kFanuc, "G93", "state-change", "inverse-time-feed", "G94"),
         between("InverseTime", kSiemens, "G93", "state-change", "inverse-time-feed", "G94"),
@@ -127,8 +125,8 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Cycles, UnsafeTable,
     testing::Values(
-        between("Drilling", kFanuc, "G81 X31. Y0 Z-5. R2. F100.", "canned-cycle", "canned-cycle",
-                "G80"),
+        // G1 ends it there.
+        Construct{"Drilling", kFanuc, "G81 X31. Y0 Z-5. R2. F100.", "canned-cycle"},
         between("ModalMacro", kFanuc, "G66 P9010", "subprogram", "modal-macro",
                 "G67\nG21 G17 G90 G94 G40 G91.1 G64 G49 G50 G69 G50.1 X0 G15 G97 M23 G8"),
         Construct{"Drilling", kSiemens, "CYCLE81(5,0,2,-5)", "canned-cycle"},
@@ -242,7 +240,7 @@ TEST(UnsafePrograms, ThatOthersCallAreKept) {
     std::string before = head_of(language) + wave_part(language, 0) + end + "\n";
     const SmoothResult result = smoothed(before, options_for(target));
     EXPECT_EQ(result.text, before);
-    EXPECT_EQ(reason_at(result, 20), "loop-body");
+    EXPECT_EQ(reason_at(inspected(before, options_for(target)), 20), "loop-body");
   }
 }
 
@@ -251,7 +249,7 @@ TEST(UnsafePrograms, HaveAFirstMotionFromNowhere) {
   const std::string before =
       "G21 G90 G17 F2000.\nG1 X0. Y0.\n" + wave_part(gcode::Language::kRs274, 0) + "M30\n";
   const SmoothResult result = smoothed(before, options_for("fanuc"));
-  EXPECT_EQ(reason_at(result, 2), "position-unknown");
+  EXPECT_EQ(reason_at(inspected(before, options_for("fanuc")), 2), "position-unknown");
   EXPECT_TRUE(is_rewritten_within(result, 3, 200));
 }
 

@@ -173,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
         EffectCase{"CaseNotTaken", "CASE R1 OF 1 GOTOF :7 DEFAULT GOTOF :8", "place"},
         EffectCase{"IndexedParameter", "R[5]=3", "place"},
         EffectCase{"Dynamics", "DYNFINISH ACC[X]=50 LIMS=9000", "place"},
-        EffectCase{"Diameter", "DIAMON", "bent"}, EffectCase{"Radius", "DIAMOF", "place"},
+        EffectCase{"Diameter", "DIAMON", "state"}, EffectCase{"Radius", "DIAMOF", "place"},
         EffectCase{"Cycle", "CYCLE83(5,0,2,-20,,-5,,2,0,0,1,0)", "state"},
         EffectCase{"SpindlePlace", "SPOS=90", "place"},
         EffectCase{"Vector", "G1 X5 A3=0 B3=0 C3=1", "state"},
