@@ -11,6 +11,7 @@
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
 #include "gcode/source_kind.h"
+#include "postproc/decimals_option.h"
 #include "postproc/inspect.h"
 #include "postproc/machine_choice.h"
 #include "postproc/options.h"
@@ -63,13 +64,14 @@ struct Reading {
   // `language`: what a text without certain marks is read in; nothing: as `target` reads.
   Reading(std::string_view text, ProgramUnits units, gcode::SourceKind kind,
           const gcode::Dialect* target = nullptr,
+          const std::optional<gcode::Decimals>& decimals = std::nullopt,
           std::optional<gcode::Language> language = std::nullopt)
       : source("program", std::string(text)),
-        program(gcode::parse(
-            source,
-            gcode::source_language(source, kind, language ? language : language_of(target), found)
-                .value_or(gcode::Language::kRs274),
-            found)),
+        how(how_to_read(
+            kind, target, decimals,
+            gcode::source_language(source, kind, language ? language : language_of(target), found),
+            inner(units))),
+        program(gcode::parse(source, how, found)),
         meaning(gcode::interpret(
             program, {inner(units), target == nullptr ? nullptr : target->curves()}, found)) {
     gcode::tell_of_contradictions(program, kind, found);
@@ -80,10 +82,20 @@ struct Reading {
     return target->language();
   }
 
+  [[nodiscard]] static gcode::Reading how_to_read(gcode::SourceKind kind,
+                                                  const gcode::Dialect* target,
+                                                  const std::optional<gcode::Decimals>& decimals,
+                                                  std::optional<gcode::Language> certain,
+                                                  gcode::Units units) {
+    const gcode::Language language = certain.value_or(gcode::Language::kRs274);
+    return {language, gcode::decimals_read(kind, target, language, decimals), units};
+  }
+
   [[nodiscard]] postproc::ReadProgram get() const { return {&program, &meaning}; }
 
   gcode::SourceText source;
   gcode::Diagnostics found;
+  gcode::Reading how;
   gcode::Program program;
   gcode::Interpretation meaning;
 };
@@ -111,6 +123,15 @@ gcode::SourceKind source_kind(std::string_view name) {
   choose(kind, "source", name, postproc::sources(), problems);
   if (!problems.empty()) refuse(problems);
   return kind;
+}
+
+std::optional<gcode::Decimals> declared_decimals(std::string_view text, gcode::SourceKind kind,
+                                                 const gcode::Dialect* target) {
+  std::vector<std::string> problems;
+  const auto declared = postproc::read_decimals(text, problems);
+  if (problems.empty()) problems = postproc::problems_of_decimals(declared, kind, target);
+  if (!problems.empty()) refuse(problems);
+  return declared;
 }
 
 // The machine lives as long as this.
@@ -144,6 +165,7 @@ InnerOptions inner(const Options& given) {
   choose(options.output, "output", given.output, postproc::forms(), problems);
   choose(options.prefer, "prefer", given.prefer, postproc::preferences(), problems);
   choose(options.source, "source", given.source, postproc::sources(), problems);
+  options.decimals = postproc::read_decimals(given.decimals, problems);
   if (!given.linearize.empty()) {
     options.linearize.emplace();
     choose(*options.linearize, "linearize", given.linearize, postproc::linearizations(), problems);
@@ -214,7 +236,8 @@ SmoothedProgram smooth(std::string_view program, const Options& options) {
 }
 
 Proof verify(std::string_view old_program, std::string_view new_program, double tolerance_mm,
-             ProgramUnits units, std::string_view target, std::string_view source) {
+             ProgramUnits units, std::string_view target, std::string_view source,
+             std::string_view decimals) {
   const gcode::SourceKind kind = source_kind(source);
   if (!(tolerance_mm > 0) || !std::isfinite(tolerance_mm)) {
     throw std::invalid_argument("tolerance_mm: expected a finite length above 0");
@@ -223,13 +246,14 @@ Proof verify(std::string_view old_program, std::string_view new_program, double 
   if (!target.empty() && control == nullptr) {
     refuse({"target: there is no '" + std::string(target) + "'"});
   }
+  const auto declared = declared_decimals(decimals, kind, control);
   Proof proof;
   if (old_program == new_program) {
     proof.proved = true;
     return proof;
   }
-  const Reading before(old_program, units, kind, control);
-  const Reading after(new_program, units, kind, control, before.program.language);
+  const Reading before(old_program, units, kind, control, declared);
+  const Reading after(new_program, units, kind, control, declared, before.program.language);
   for (const Reading* each : {&before, &after}) {
     for (Message& message : messages_of(each->found, each->source)) {
       if (message.severity == Severity::kError) proof.messages.push_back(std::move(message));
@@ -255,7 +279,9 @@ ProgramTime time(std::string_view program, const TimeOptions& options) {
     if (target == nullptr) problems.push_back("target: there is no '" + options.target + "'");
   }
   if (!problems.empty()) refuse(problems);
-  const Reading reading(program, options.units, source_kind(options.source), target);
+  const gcode::SourceKind kind = source_kind(options.source);
+  const Reading reading(program, options.units, kind, target,
+                        declared_decimals(options.decimals, kind, target));
   ProgramTime result;
   result.messages = messages_of(reading.found, reading.source);
   result.understood = !gcode::has_error(reading.found);

@@ -137,6 +137,10 @@ class Dialect {
   // The same control with other values, as a user's profile has them. This dialect must outlive it.
   [[nodiscard]] virtual std::unique_ptr<const Dialect> with_values(const TargetTable& table) const;
 
+  // Whether a parameter of the control may make X5 five least increments, 0.005 mm. Such numbers
+  // are written with a point, and read only where the user says what they are.
+  [[nodiscard]] virtual bool may_imply_decimals() const { return false; }
+
   [[nodiscard]] virtual DwellUnit dwell_unit() const { return DwellUnit::kByPoint; }
 
   // Name of the built-in machine model that runs this target when no machine is given.

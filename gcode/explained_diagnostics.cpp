@@ -28,6 +28,14 @@ constexpr ExplainedDiagnostic kExplained[] = {
      "such "
      "a line.",
      "Close the bracket."},
+    {"implied-decimals", "warning",
+     "A length has no decimal point (X1000), in a program for a control of the FANUC kind: there "
+     "it "
+     "is 1000 mm or 1000 least increments, 1.000 mm, as a parameter of the control says. Such "
+     "blocks are copied, and the place is unknown after them. Told once, at the first; 0 is 0 in "
+     "either reading.",
+     "Say --decimals explicit where X5 is 5 mm, or --decimals implied where it is 0.005 mm "
+     "(implied:0.0001 for another increment); look the parameter up in the control's manual."},
     {"text-outside-marks", "warning or note",
      "Words stand before the first % line (some controls run them, so the state after them is "
      "unknown) or after the second. They are copied.",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "gcode/arc_from_words.h"
@@ -15,7 +16,9 @@
 #include "gcode/part_reading.h"
 #include "gcode/program_flow.h"
 #include "gcode/reason.h"
+#include "gcode/siemens/flow.h"
 #include "gcode/siemens/names.h"
+#include "gcode/siemens/variables.h"
 #include "gcode/state_changes.h"
 
 namespace batten::gcode {
@@ -75,6 +78,7 @@ class Interpreter {
     }
     add_barriers_of_place(block, flow);
     forget_motion_word();
+    remember_arc_distance();
     if (read_.states.back() != now_.modal) {
       read_.states.push_back(now_.modal);
     }
@@ -89,6 +93,7 @@ class Interpreter {
     forget_motion_word();
     if (curve.feed) {
       now_.modal.feed = *curve.feed * (now_.modal.units == Units::kInch ? kMillimetresPerInch : 1);
+      now_.modal.feed_without_point = has_feed_without_point(first, curve.blocks);
     }
     if (read_.states.back() != now_.modal) {
       read_.states.push_back(now_.modal);
@@ -109,6 +114,15 @@ class Interpreter {
     }
     // It started where the place was known, and so it ends.
     now_.position.mm = geometry::end_point(read_.motions.back().piece);
+  }
+
+  [[nodiscard]] bool has_feed_without_point(std::uint32_t first, std::uint32_t count) const {
+    const auto blocks = std::span(program_.blocks).subspan(first, count);
+    return std::ranges::any_of(blocks, [this](const Block& block) {
+      return std::ranges::any_of(program_.words_of(block), [](const Word& word) {
+        return word.letter == 'F' && word.without_point;
+      });
+    });
   }
 
   // The operator chooses whether the block is executed: what it changes is unknown afterwards.
@@ -141,12 +155,20 @@ class Interpreter {
         return make_opaque(opacity_reason(block.opacity));
       default:
         if (is_klartext()) return read_klartext();
+        if (is_siemens() && block.opacity == Opacity::kFlow) return read_siemens_flow(block);
         apply_opaque(block.opacity, program_.source.text(block.span), now_);
         return make_opaque(opacity_reason(block.opacity));
     }
   }
 
+  [[nodiscard]] bool is_siemens() const { return program_.language == Language::kSiemens; }
   [[nodiscard]] bool is_klartext() const { return program_.language == Language::kKlartext; }
+
+  void read_siemens_flow(const Block& block) {
+    const FlowEffect effect = siemens_flow_effect(program_.source.text(block.span));
+    if (effect != FlowEffect::kNothing) forget_everything(now_);
+    make_opaque(reason::kProgramFlow);
+  }
 
   void read_klartext() {
     const std::string_view text = klartext_statement_text(program_, block_index_);
@@ -157,6 +179,11 @@ class Interpreter {
   // Every block of Klartext that moves says how.
   void forget_motion_word() {
     if (is_klartext()) now_.modal.motion = MotionMode::kUnknown;
+  }
+
+  // No word of Siemens programs changes it: AC() and IC() say it of one number.
+  void remember_arc_distance() {
+    if (is_siemens()) now_.modal.arc_distance = DistanceMode::kIncremental;
   }
 
   void make_opaque(std::string_view why) {
@@ -171,7 +198,17 @@ class Interpreter {
     }
   }
 
+  // Which of two reasons it is that a value is not known.
+  void tell_expression_from_decimals(const Block& block) {
+    if (meaning_.barrier != reason::kExpression) return;
+    const bool no_point = std::ranges::any_of(program_.words_of(block), [](const Word& word) {
+      return word.without_point && !word.is_number;
+    });
+    if (no_point) meaning_.barrier = reason::kImpliedDecimals;
+  }
+
   void add_barriers_of_place(const Block& block, const BlockFlow& flow) {
+    tell_expression_from_decimals(block);
     const bool active = std::ranges::any_of(program_.comments_of(block), [](const Comment& c) {
       return c.kind == CommentKind::kActive;
     });
@@ -234,7 +271,8 @@ class Interpreter {
     if (words.problem() != BlockWords::Problem::kNone) {
       return refuse_words(words);
     }
-    const NamedEffect named = apply_names(program_.source.text(block.span), words, now_);
+    const NamedEffect named =
+        apply_names(program_.source.text(block.span), words, variables_, now_);
     if (!named.understood) {
       forget_everything(now_);
       return make_opaque(reason::kForeignWords);
@@ -436,6 +474,7 @@ class Interpreter {
   ControlCarry& carry_;
   Diagnostics& found_;
   ControlState now_;
+  SiemensVariables variables_;
   Interpretation read_;
   BlockMeaning meaning_;  // of the block that is being read
   std::uint32_t block_index_ = 0;

@@ -42,7 +42,8 @@ ModalState either(const ModalState& a, const ModalState& b) {
                 [](auto& item, auto other, auto unknown) { item = same_or(item, other, unknown); });
   both.motion = same_or(a.motion, b.motion, MotionMode::kUnknown);
   both.laser_power_mode = same_or(a.laser_power_mode, b.laser_power_mode, Tri::kUnknown);
-  both.feed = a.feed == b.feed ? a.feed : std::nullopt;
+  both.feed =
+      a.feed == b.feed && a.feed_without_point == b.feed_without_point ? a.feed : std::nullopt;
   both.spindle_speed = a.spindle_speed == b.spindle_speed ? a.spindle_speed : std::nullopt;
   return both;
 }

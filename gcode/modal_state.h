@@ -54,6 +54,8 @@ struct ModalState {
   Tri lathe_diameter = Tri::kOff;          // G7 (LinuxCNC)
   Tri laser_power_mode = Tri::kOff;  // grbl M4 with $32: never known; M4 alone does not set it
   std::optional<double> feed;  // F as last programmed, in mm/min, 1/min or mm/rev by feed_mode
+  // F1000 rather than F1000., on controls where these may be two feeds (Word::without_point).
+  bool feed_without_point = false;
   std::optional<double> spindle_speed;  // S
   bool operator==(const ModalState&) const = default;
 };

@@ -1,6 +1,7 @@
 #include "gcode/parser.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -41,7 +42,7 @@ class Parser {
  public:
   Parser(const SourceText& source, Language language, const PartEnd& end, TextCarry& carry,
          Diagnostics& found)
-      : program_{source, {}, {}, {}, language},
+      : program_{source, {}, {}, {}, language, carry.decimals.rule()},
         text_(source.text()),
         end_(end),
         carry_(carry),
@@ -101,10 +102,20 @@ class Parser {
       read_tokens(block, content);
     }
     block.word_count = static_cast<std::uint32_t>(program_.words.size()) - block.first_word;
+    read_decimals(block);
     block.comment_count =
         static_cast<std::uint32_t>(program_.comments.size()) - block.first_comment;
     program_.blocks.push_back(block);
     told_in_block_ = false;
+  }
+
+  void read_decimals(Block& block) {
+    const bool of_words = block.opacity == Opacity::kNone ||
+                          block.opacity == Opacity::kExpression ||
+                          block.opacity == Opacity::kCornerWord;
+    if (!of_words) return;
+    const std::span<Word> words(program_.words.data() + block.first_word, block.word_count);
+    if (carry_.decimals.read(words)) raise(block, Opacity::kExpression);
   }
 
   // The line without blanks, NULs and end-of-file signs at its edges. A line of nothing but
@@ -409,15 +420,23 @@ void tell_floods(const TextCarry& carry, Diagnostics& found) {
 
 }  // namespace
 
-Program parse(const SourceText& source, Language language, Diagnostics& found) {
-  if (language == Language::kKlartext) return parse_klartext(source, found);
+Program parse(const SourceText& source, const Reading& reading, Diagnostics& found) {
+  if (reading.language == Language::kKlartext) return parse_klartext(source, found);
   const std::size_t before = found.size();
   TextCarry carry;
-  Program program = Parser(source, language, {}, carry, found).run();
+  if (reading.language == Language::kRs274) {
+    carry.decimals = DecimalPoints(reading.decimals, reading.units);
+  }
+  Program program = Parser(source, reading.language, {}, carry, found).run();
   tell_floods(carry, found);
+  carry.decimals.tell(found);
   close_marks(program, found);
   put_in_order(found, before);
   return program;
+}
+
+Program parse(const SourceText& source, Language language, Diagnostics& found) {
+  return parse(source, Reading{.language = language, .decimals = {}}, found);
 }
 
 Program parse(const SourceText& source, Diagnostics& found) {
@@ -433,6 +452,7 @@ Program parse_part(const SourceText& source, const PartEnd& end, TextCarry& carr
 
 void finish_text(const TextCarry& carry, Diagnostics& found) {
   tell_floods(carry, found);
+  carry.decimals.tell(found);
   put_in_order(found, 0);
 }
 

@@ -3,15 +3,27 @@
 // the reader.
 #pragma once
 
+#include "gcode/decimals.h"
 #include "gcode/diagnostic.h"
 #include "gcode/language.h"
+#include "gcode/modal_state.h"
 #include "gcode/program.h"
 #include "gcode/source_text.h"
 
 namespace batten::gcode {
 
+// How a text is read.
+struct Reading {
+  Language language = Language::kRs274;
+  Decimals decimals = {};         // of the RS-274 family
+  Units units = Units::kUnknown;  // of a program that names none
+};
+
 // Adds to `found` what is worth telling (each id in docs/diagnostics.md): at most one
 // diagnostic per block. Linear time; one pass.
+[[nodiscard]] Program parse(const SourceText& source, const Reading& reading, Diagnostics& found);
+
+// In this language, a number without a point being what it says.
 [[nodiscard]] Program parse(const SourceText& source, Language language, Diagnostics& found);
 
 // A program of the RS-274 family.

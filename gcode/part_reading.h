@@ -1,5 +1,5 @@
-// A program of the RS-274 family read part by part, each part with what the ones before it have left behind: for
-// programs that are too long to be held as blocks.
+// A program of the RS-274 family read part by part, each part with what the ones before it have
+// left behind: for programs that are too long to be held as blocks.
 //
 // The blocks, motions and states of the parts, one part after the other, are those of the whole
 // (gcode::parse, gcode::interpret), and so are the diagnostics behind the finish_ functions, where
@@ -16,6 +16,7 @@
 #include <optional>
 
 #include "gcode/control_state.h"
+#include "gcode/decimal_points.h"
 #include "gcode/diagnostic.h"
 #include "gcode/interpreter.h"
 #include "gcode/motion.h"
@@ -42,6 +43,7 @@ struct TextCarry {
   ToldCount unreadable;
   ToldCount unclosed;
   MarkWatch marks;
+  DecimalPoints decimals;
 };
 
 // The next part; `carry` then stands behind it. No blocks: the text is at its end.

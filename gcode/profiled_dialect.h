@@ -24,6 +24,10 @@ class ProfiledDialect final : public TableValues {
   [[nodiscard]] bool cannot_say(char letter, int number) const override;
   [[nodiscard]] std::span<const std::string_view> smoothing_words() const override;
   [[nodiscard]] const BlockSpelling& spelling() const override { return base_.spelling(); }
+  // A profile that writes X5 says that it is 5 mm.
+  [[nodiscard]] bool may_imply_decimals() const override {
+    return base_.may_imply_decimals() && table().decimal_point;
+  }
   [[nodiscard]] DwellUnit dwell_unit() const override { return base_.dwell_unit(); }
 
   // The base's own comment while the style is the base's; what the base cannot say in a comment is

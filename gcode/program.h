@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gcode/decimals.h"
 #include "gcode/language.h"
 #include "gcode/source_text.h"
 
@@ -20,6 +21,9 @@ struct Word {
   bool has_point = false;     // a decimal point was written: X5. and X5 differ on old controls
   bool is_number =
       true;  // false: an expression, a parameter, or nothing; `value` means nothing then
+  // A length or a feed without a decimal point, on a control for which that may matter. Where its
+  // value is not known (Decimals), `is_number` is false.
+  bool without_point = false;
   double value = 0;
   SourceSpan span;  // in its block; a centre of Klartext stands in the block of the CC
 };
@@ -42,7 +46,8 @@ struct Comment {
 enum class Opacity {
   kNone,         // understood as words and comments
   kUnreadable,   // no grammar that is known
-  kExpression,   // a word whose value is an expression or a parameter: X[#1+2], X#5
+  kExpression,   // a word whose value is an expression or a parameter, X[#1+2], X#5, or is not
+                 // known for want of a decimal point
   kAssignment,   // #1=.., #<name>=.., R1=..; besides them only N and comments
   kFlow,         // O-words, IF, WHILE, GOTO, DO, END, labels: the order of blocks changes
   kForeign,      // strings, $, {, !, @ lines, and words of other languages (DEF, CALL, ..)
@@ -76,6 +81,7 @@ struct Program {
   std::vector<Word> words;
   std::vector<Comment> comments;
   Language language = Language::kRs274;  // in which it was read
+  Decimals decimals = {};                // with which numbers without a point were read
 
   [[nodiscard]] std::span<const Word> words_of(const Block& block) const {
     return {words.data() + block.first_word, block.word_count};

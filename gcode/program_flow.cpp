@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gcode/klartext/flow.h"
+#include "gcode/siemens/flow.h"
 
 namespace batten::gcode {
 namespace {
@@ -107,37 +108,6 @@ bool has_code(std::span<const Word> words, char letter, double low, double high)
   });
 }
 
-// Upper case, without blanks, strings, comments, skip sign and the leading N number.
-std::string bare_siemens(std::string_view text) {
-  std::string without_strings;
-  bool in_string = false;
-  for (const char c : text) {
-    in_string ^= c == '"';
-    if (!in_string && c != '"') {
-      without_strings.push_back(c == '(' ? ' ' : c);
-    }
-  }
-  return bare_words(without_strings);
-}
-
-// +1 where a body of Siemens begins, -1 where it ends. IF with a jump has none.
-int siemens_body_step(std::string_view bare) {
-  for (const std::string_view word : {"ENDIF", "ENDWHILE", "ENDFOR", "ENDLOOP", "UNTIL"}) {
-    if (bare.starts_with(word)) {
-      return -1;
-    }
-  }
-  if (bare.starts_with("IF")) {
-    return contains(bare, "GOTO") ? 0 : 1;
-  }
-  for (const std::string_view word : {"WHILE", "FOR", "LOOP"}) {
-    if (bare.starts_with(word)) {
-      return 1;
-    }
-  }
-  return bare == "REPEAT" ? 1 : 0;
-}
-
 class FlowFinder {
  public:
   explicit FlowFinder(const Program& program)
@@ -148,8 +118,6 @@ class FlowFinder {
       read_block(i);
     }
     close_segment(program_.blocks.size());
-    any_label_ |= std::ranges::any_of(
-        jump_names_, [this](const std::string& name) { return !label_names_.contains(name); });
     mark_labels();
     mark_contours();
     reaches_out_ |= !jump_targets_.empty() || any_label_ || !contours_.empty();
@@ -164,9 +132,6 @@ class FlowFinder {
     }
     const auto words = program_.words_of(block);
     labels_[i] = whole_number(find_word(words, 'N'));
-    if (program_.language == Language::kSiemens) {
-      return read_siemens(i);
-    }
     if (block.opacity != Opacity::kNone) {
       read_text(i, block.opacity == Opacity::kFlow);
     }
@@ -196,41 +161,6 @@ class FlowFinder {
     depth_ = std::max(0, depth_ + step);
   }
 
-  // Labels are names or N numbers. Any that a line of flow words names may be jumped to.
-  void read_siemens(std::size_t i) {
-    const Block& block = program_.blocks[i];
-    const std::string_view text = program_.source.text(block.span);
-    if (block.opacity == Opacity::kFlow) {
-      const std::string bare = bare_siemens(text);
-      find_jumps(bare);
-      find_named_jumps(bare);
-      const int step = siemens_body_step(bare);
-      flow_[i].in_body |= step != 0;
-      depth_ = std::max(0, depth_ + step);
-    } else if (block.opacity == Opacity::kUnreadable) {
-      find_jumps(bare_siemens(text));
-    }
-    flow_[i].in_body |= depth_ > 0;
-  }
-
-  // GOTOF NAME, and NAME: where it leads. A name that is no label may be a text with an N number.
-  void find_named_jumps(std::string_view bare) {
-    if (const std::size_t colon = bare.find(':'); colon != std::string_view::npos) {
-      label_names_.emplace(bare.substr(0, colon));
-    }
-    for (std::size_t at = bare.find("GOTO"); at != std::string_view::npos;
-         at = bare.find("GOTO", at + 1)) {
-      std::size_t to = at + 4;
-      to += to < bare.size() && contains("FBCS", bare.substr(to, 1)) ? 1U : 0U;
-      const std::string_view name = bare.substr(to);
-      const bool is_number = name.size() > 1 && name[0] == 'N' &&
-                             name.find_first_not_of("0123456789", 1) == std::string_view::npos;
-      if (!is_number) {
-        jump_names_.emplace_back(name);
-      }
-    }
-  }
-
   static std::optional<Label> leading_label(std::string_view text) {
     std::size_t at = text.find_first_not_of("/ \t");
     if (at == std::string_view::npos || std::toupper(static_cast<unsigned char>(text[at])) != 'N') {
@@ -249,13 +179,12 @@ class FlowFinder {
     return digits == 0 ? std::nullopt : std::optional(number);
   }
 
-  // GOTO 100, GOTO N100, GOTOF N100, IF [..] N100. A name is no N number and not our concern;
-  // a computed target can be any label.
+  // GOTO 100, GOTO N100, IF [..] N100. A computed target can be any label.
   void find_jumps(std::string_view bare) {
     for (std::size_t at = bare.find("GOTO"); at != std::string_view::npos;
          at = bare.find("GOTO", at + 4)) {
       std::size_t to = at + 4;
-      while (to < bare.size() && contains("FBCSN", bare.substr(to, 1))) {
+      while (to < bare.size() && bare[to] == 'N') {
         ++to;
       }
       if (const auto label = number_at(bare, to)) {
@@ -353,8 +282,6 @@ class FlowFinder {
   std::unordered_set<Label> jump_targets_;
   std::vector<std::pair<Label, Label>> contours_;
   bool any_label_ = false;
-  std::unordered_set<std::string> label_names_;  // Siemens
-  std::vector<std::string> jump_names_;
   int depth_ = 0;
   std::size_t segment_begin_ = 0;
   bool segment_is_subprogram_ = false;
@@ -365,6 +292,7 @@ class FlowFinder {
 
 ProgramFlow follow_flow(const Program& program) {
   if (program.language == Language::kKlartext) return {find_klartext_flow(program), true};
+  if (program.language == Language::kSiemens) return {find_siemens_flow(program), true};
   return FlowFinder(program).find();
 }
 

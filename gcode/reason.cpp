@@ -15,6 +15,13 @@ constexpr Explanation kExplanations[] = {
      "See the warnings: they name the words.", false},
     {kExpression, "A word's value is an expression or a parameter (X[#1+2], X#5).",
      "Let the CAM system write plain numbers.", false},
+    {kImpliedDecimals,
+     "A length has no decimal point (X1000), and such a control may take it for that many least "
+     "increments (1.000 mm).",
+     "Say --decimals explicit where X5 is 5 mm, --decimals implied where it is 0.005 mm, or let "
+     "the "
+     "CAM system write decimal points.",
+     false},
     {kAssignment, "The block sets a parameter (#1=5, R1=5).", kCopied, false},
     {kProgramFlow, "The block changes the order of blocks: O-word, IF, WHILE, GOTO, label.",
      "Smooth the straight programs that it calls, one by one.", false},
@@ -99,7 +106,9 @@ constexpr Explanation kExplanations[] = {
     {kControlSmoothing,
      "The control fits a curve of its own here (G5.1 Q2, G5 P10000, G131, COMPCAD): its tolerance "
      "would come on top.",
-     "Switch the control's smoothing off in the program, or leave this one off.", false},
+     "Switch one of the two off; or --allow control-smoothing where both tolerances together are "
+     "fine.",
+     true},
     {kModalMacro, "A macro runs after each motion (G66).", kCopied, false},
     {kLatheDiameter, "X is a diameter (G7).", "Lathe programs in diameters are not smoothed.",
      false},

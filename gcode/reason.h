@@ -10,6 +10,8 @@ namespace batten::gcode::reason {
 // --- a block that cannot be part of a run -------------------------------------------------
 inline constexpr std::string_view kNotUnderstood = "not-understood";
 inline constexpr std::string_view kExpression = "expression";
+inline constexpr std::string_view kImpliedDecimals =
+    "implied-decimals";  // X1000 without a point, where that may be 1.000
 inline constexpr std::string_view kAssignment = "parameter-assignment";
 inline constexpr std::string_view kProgramFlow = "program-flow";
 inline constexpr std::string_view kForeignWords = "foreign-words";

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "gcode/dialect.h"
 #include "gcode/language_marks.h"
 
 namespace batten::gcode {
@@ -17,9 +18,9 @@ constexpr std::array kFamilies = {
     SourceFamily{SourceKind::kNgc, "ngc", "LinuxCNC", Language::kRs274,
                  mark(SourceMark::kSubWords) | mark(SourceMark::kNamedParameters) |
                      mark(SourceMark::kBlendTolerance) | mark(SourceMark::kUniformNurbs)},
-    SourceFamily{SourceKind::kFanuc, "fanuc", "FANUC", Language::kRs274, kMacroB},
+    SourceFamily{SourceKind::kFanuc, "fanuc", "FANUC", Language::kRs274, kMacroB, true},
     SourceFamily{SourceKind::kHaas, "haas", "Haas", Language::kRs274,
-                 kMacroB | mark(SourceMark::kHaasSmoothness)},
+                 kMacroB | mark(SourceMark::kHaasSmoothness), true},
     SourceFamily{SourceKind::kGrbl, "grbl", "grbl", Language::kRs274,
                  mark(SourceMark::kDollarLine)},
     SourceFamily{SourceKind::kSiemens, "siemens", "Siemens Sinumerik", Language::kSiemens, 0},
@@ -68,6 +69,28 @@ std::optional<Language> source_language(const SourceText& source, SourceKind kin
                    describe(marks[0].language), option_for(marks[1].language),
                    option_for(marks[0].language))});
   return std::nullopt;
+}
+
+Decimals decimals_read(SourceKind kind, const Dialect* target, Language language,
+                       const std::optional<Decimals>& declared) {
+  if (language != Language::kRs274) return {};
+  if (declared) return *declared;
+  const SourceFamily* family = family_of(kind);
+  const bool may_imply = family != nullptr ? family->may_imply_decimals
+                                           : target != nullptr && target->may_imply_decimals();
+  return {.pointless = may_imply ? PointlessNumbers::kUndeclared : PointlessNumbers::kUnits};
+}
+
+std::string_view why_not_implied(SourceKind kind, const Dialect* target) {
+  const SourceFamily* family = family_of(kind);
+  if (family != nullptr && !family->may_imply_decimals) {
+    return "programs for this source have no such numbers";
+  }
+  if (target != nullptr && !target->may_imply_decimals()) {
+    return "this target takes X5 for 5 mm, and blocks are copied to it";
+  }
+  if (family == nullptr && target == nullptr) return "say --source fanuc or haas";
+  return {};
 }
 
 void tell_of_contradictions(const Program& program, SourceKind kind, Diagnostics& found) {

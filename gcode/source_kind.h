@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "gcode/decimals.h"
 #include "gcode/diagnostic.h"
 #include "gcode/language.h"
 #include "gcode/program.h"
@@ -12,6 +13,8 @@
 #include "gcode/source_text.h"
 
 namespace batten::gcode {
+
+class Dialect;
 
 enum class SourceKind : std::uint8_t {
   kAuto,
@@ -30,6 +33,7 @@ struct SourceFamily {
   std::string_view controls;  // for people: "LinuxCNC"
   Language language = Language::kRs274;
   SourceMarks marks = 0;
+  bool may_imply_decimals = false;  // X5 may be five least increments
 };
 
 // All kinds but kAuto.
@@ -44,6 +48,16 @@ struct SourceFamily {
 [[nodiscard]] std::optional<Language> source_language(const SourceText& source, SourceKind kind,
                                                       std::optional<Language> target,
                                                       Diagnostics& found);
+
+// What numbers without a point mean in a program: what the user says, where it is said; else
+// kUndeclared for controls that may take them for increments. Which control it is says the kind,
+// with kAuto the target. Other languages than the RS-274 family have no such controls.
+[[nodiscard]] Decimals decimals_read(SourceKind kind, const Dialect* target, Language language,
+                                     const std::optional<Decimals>& declared);
+
+// Why these controls do not take a number without a point for increments, for a user who says that
+// they do: empty where they may.
+[[nodiscard]] std::string_view why_not_implied(SourceKind kind, const Dialect* target);
 
 // Adds an error source-contradicted for each kind of mark (gcode/source_marks.h) that programs of
 // the given kind do not have. None for kAuto.

@@ -156,6 +156,10 @@ std::string_view describe(SourceMark mark) {
   return "";
 }
 
-std::vector<FoundMark> source_marks(const Program& program) { return Marker(program).run(); }
+std::vector<FoundMark> source_marks(const Program& program) {
+  // IF and GOTOF are words of Siemens programs too.
+  if (program.language != Language::kRs274) return {};
+  return Marker(program).run();
+}
 
 }  // namespace batten::gcode

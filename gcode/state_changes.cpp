@@ -100,7 +100,12 @@ void WordApplier::apply_feed() {
     return;
   }
   const std::optional<double> before = modal().feed;
+  // A run has one way of writing feeds.
+  if (before && modal().feed_without_point != f->without_point) {
+    block(reason::kStateChange);
+  }
   modal().feed = feed_of(*f);
+  modal().feed_without_point = f->without_point;
   effect_.feed_changed = before != modal().feed || !modal().feed;
 }
 

@@ -1,4 +1,5 @@
 // Words that say how motions are read: units, feed mode, path, offsets of the tool, cycles.
+#include "gcode/units_word.h"
 #include "gcode/word_applier.h"
 
 namespace batten::gcode {
@@ -28,8 +29,7 @@ void WordApplier::apply_feed_mode(FeedMode mode) {
 }
 
 void WordApplier::apply_units(Code code) {
-  if ((code == 700 || code == 710) && words_.has_any("PQUVWDIJKRABCEFSXYZL")) {
-    // A roughing or finishing cycle of a lathe.
+  if (is_lathe_cycle(code, words_)) {
     acts(reason::kCannedCycle);
     effect_.takes_axes = true;
     forget_position(state_);

@@ -66,7 +66,8 @@ Writer::Writer(const Dialect& dialect, WriterState state, std::string_view line_
       state_(std::move(state)),
       line_end_(line_end),
       unit_((check(state_.modal), millimetres_per(state_.modal.units))),
-      coordinates_(dialect.coordinates(state_.modal.units)) {}
+      coordinates_(dialect.coordinates(state_.modal.units)),
+      feeds_(dialect.feeds(state_.modal.units)) {}
 
 void Writer::line_to(const Point3& end, double feed) {
   const Coordinates coordinates = print(end);
@@ -265,14 +266,13 @@ void Writer::add_coordinates(const Coordinates& coordinates) {
 
 bool Writer::feed_is_said(double feed) const {
   if (state_.modal.feed == feed) return true;
-  const NumberFormat format = dialect_.feeds(state_.modal.units);
   return state_.modal.feed &&
-         to_text(*state_.modal.feed / unit_, format) == to_text(feed / unit_, format);
+         to_text(*state_.modal.feed / unit_, feeds_) == to_text(feed / unit_, feeds_);
 }
 
 void Writer::add_feed(double feed) {
   if (feed_is_said(feed)) return;
-  const std::string digits = to_text(feed / unit_, dialect_.feeds(state_.modal.units));
+  const std::string digits = to_text(feed / unit_, feeds_);
   block_.feed = digits;
   state_.modal.feed = read_number(digits)->value * unit_;
 }

@@ -30,6 +30,9 @@ class Writer {
   // From here on coordinates are printed so, rather than as Dialect::coordinates says.
   void use_coordinates(const NumberFormat& format) { coordinates_ = format; }
 
+  // From here on feeds are whole numbers without a decimal point.
+  void use_feeds_without_point() { feeds_ = {.decimals = 0}; }
+
   // A straight move at feed rate. Words of axes whose printed value does not change are left
   // out; a move that moves nothing writes nothing. `feed` in mm/min; written when it changes.
   // An axis that is already at its end to within kSamePlace stays there, even where its
@@ -109,6 +112,7 @@ class Writer {
   std::string line_end_;
   double unit_;  // mm
   NumberFormat coordinates_;
+  NumberFormat feeds_;
   SpokenBlock block_;
   std::string text_;
 };

@@ -64,7 +64,7 @@ bool Writer::curve_to(const geometry::BsplineCurve& curve, double feed, int last
   setting.units = state_.modal.units;
   setting.places = coordinates_;
   setting.other = format->other_numbers(setting.units);
-  setting.feeds = dialect_.feeds(setting.units);
+  setting.feeds = feeds_;
   setting.last_decimals = last_decimals;
   setting.start = state_.position.mm;
   setting.axes = moved_axes(curve, setting.start);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "postproc/decimals_option.h"
 #include "postproc/output_file.h"
 
 namespace batten::postproc {
@@ -43,6 +44,11 @@ void read_source_into(gcode::SourceKind& source, const Given& given, Problems& p
   if (const auto text = given.value("source")) {
     read_into(source, read_choice("source", *text, sources(), problems));
   }
+}
+
+void read_decimals_into(std::optional<gcode::Decimals>& decimals, const Given& given,
+                        Problems& problems) {
+  if (const auto text = given.value("decimals")) decimals = read_decimals(*text, problems);
 }
 
 LogLevel read_log_level(const Given& given, Problems& problems) {

@@ -35,6 +35,8 @@ void read_into(Value& place, std::optional<Value> value) {
 void read_units_into(gcode::Units& units, const Given& given, Problems& problems);
 
 void read_source_into(gcode::SourceKind& source, const Given& given, Problems& problems);
+void read_decimals_into(std::optional<gcode::Decimals>& decimals, const Given& given,
+                        Problems& problems);
 
 // --quiet, --log-level
 [[nodiscard]] LogLevel read_log_level(const Given& given, Problems& problems);

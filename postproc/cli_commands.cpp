@@ -8,6 +8,7 @@
 #include "postproc/cli_arguments.h"
 #include "postproc/cli_machine.h"
 #include "postproc/cli_smooth_options.h"
+#include "postproc/decimals_option.h"
 #include "postproc/output_file.h"
 #include "postproc/target_profile.h"
 
@@ -90,6 +91,7 @@ VerifyCommand verify_command(const Given& given, const std::vector<std::string>&
   command.log_level = read_log_level(given, problems);
   read_units_into(command.units, given, problems);
   read_source_into(command.source, given, problems);
+  read_decimals_into(command.decimals, given, problems);
   if (const auto text = given.value("target")) {
     command.target = built_in_target("target", *text, problems);
   }
@@ -97,6 +99,11 @@ VerifyCommand verify_command(const Given& given, const std::vector<std::string>&
   if (const auto file = given.value("profile")) {
     command.profile = read_target_profile(*file, nullptr, problems);
   }
+  const gcode::Dialect* adapted =
+      command.profile != nullptr ? command.profile->adapted.get() : nullptr;
+  std::ranges::move(problems_of_decimals(command.decimals, command.source,
+                                         command.target != nullptr ? command.target : adapted),
+                    std::back_inserter(problems));
   read_side_into(command.side, given, problems);
   std::ranges::move(problems_of_side(command.side, command.tolerance_kind),
                     std::back_inserter(problems));
@@ -123,6 +130,9 @@ InspectCommand inspect_command(const Given& given, const std::vector<std::string
   command.log_level = read_log_level(given, problems);
   read_units_into(command.units, given, problems);
   read_source_into(command.source, given, problems);
+  read_decimals_into(command.decimals, given, problems);
+  std::ranges::move(problems_of_decimals(command.decimals, command.source, nullptr),
+                    std::back_inserter(problems));
   command.allowed = given.values("allow");
   for (std::string& problem : problems_of_allowed(command.allowed)) {
     problems.push_back(std::move(problem));

@@ -41,6 +41,15 @@ constexpr OptionRow kSource = {
     .help = "for which control the program was written; auto: what its marks and the target say",
     .default_value = "auto",
     .in_config = true};
+constexpr OptionRow kDecimals = {
+    .name = "decimals",
+    .value = "auto|explicit|implied",
+    .help =
+        "what X5 means on controls like FANUC: explicit 5 mm, implied 0.005 mm or 0.0005 in "
+        "(implied:0.0001 for another increment in mm, a tenth of it in inches); auto: such "
+        "blocks are kept",
+    .default_value = "auto",
+    .in_config = true};
 constexpr OptionRow kAllow = {
     .name = "allow",
     .kind = OptionKind::kList,
@@ -112,6 +121,7 @@ constexpr std::array kSmoothRows = {
               .in_config = true},
     kUnits,
     kSource,
+    kDecimals,
     kAllow,
     OptionRow{
         .name = "convert",
@@ -167,9 +177,10 @@ constexpr OptionRow kCurvesOf = {
     .help = "the control whose own curves (G06.2, POLY, G5 ..) are to be read in both programs"};
 
 constexpr std::array kVerifyRows = {kTolerance, kProfile, kCurvesOf, kToleranceKind,
-                                    kSide,      kUnits,   kSource,   kJson,
-                                    kForce,     kQuiet,   kLogLevel};
-constexpr std::array kInspectRows = {kUnits, kSource, kAllow, kJson, kForce, kQuiet, kLogLevel};
+                                    kSide,      kUnits,   kSource,   kDecimals,
+                                    kJson,      kForce,   kQuiet,    kLogLevel};
+constexpr std::array kInspectRows = {kUnits, kSource, kDecimals, kAllow,
+                                     kJson,  kForce,  kQuiet,    kLogLevel};
 constexpr std::array kTimeRows = {
     kMachine,
     kGrblSettings,
@@ -178,6 +189,7 @@ constexpr std::array kTimeRows = {
               .help = "the control the program is written for (batten targets): what G4 P means"},
     kUnits,
     kSource,
+    kDecimals,
     OptionRow{
         .name = "from", .value = "X,Y,Z", .help = "where the tool stands before the program, mm"},
     kJson,

@@ -96,6 +96,7 @@ void read_smooth_options(const Given& given, SmoothCommand& command, Problems& p
   read_side_into(options.side, given, problems);
   read_units_into(options.units, given, problems);
   read_source_into(options.source, given, problems);
+  read_decimals_into(options.decimals, given, problems);
   if (const auto text = given.value("method")) {
     read_into(options.method, read_choice("method", *text, methods(), problems));
   }

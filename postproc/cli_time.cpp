@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 
 #include "postproc/cli_arguments.h"
 #include "postproc/cli_commands.h"
 #include "postproc/cli_machine.h"
+#include "postproc/decimals_option.h"
 #include "postproc/output_file.h"
 
 namespace batten::postproc {
@@ -59,9 +62,12 @@ TimeCommand time_command(const Given& given, const std::vector<std::string>& fil
   command.log_level = read_log_level(given, problems);
   read_units_into(command.units, given, problems);
   read_source_into(command.source, given, problems);
+  read_decimals_into(command.decimals, given, problems);
   if (const auto text = given.value("target")) {
     command.target = built_in_target("target", *text, problems);
   }
+  std::ranges::move(problems_of_decimals(command.decimals, command.source, command.target),
+                    std::back_inserter(problems));
   const std::size_t problems_before = problems.size();
   command.machine = machine_given(
       given, command.target == nullptr ? "" : command.target->default_machine(), problems);

@@ -175,6 +175,12 @@ bool is_to_be_translated(const gcode::SourceText& source, const SmoothOptions& o
   return language == gcode::Language::kRs274;
 }
 
+gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language) {
+  const gcode::Decimals decimals =
+      gcode::decimals_read(options.source, options.target, language, options.decimals);
+  return {.language = language, .decimals = decimals, .units = options.units};
+}
+
 bool is_of_another_family(const gcode::Program& program, const gcode::Dialect& target) {
   return std::ranges::any_of(gcode::source_marks(program), [&](const gcode::FoundMark& found) {
     return (target.known_marks() & gcode::mark(found.mark)) == 0;

@@ -10,6 +10,7 @@
 #include "gcode/diagnostic.h"
 #include "gcode/dialect.h"
 #include "gcode/language.h"
+#include "gcode/parser.h"
 #include "gcode/program.h"
 #include "gcode/source_text.h"
 #include "postproc/options.h"
@@ -27,6 +28,9 @@ namespace batten::postproc {
 // language. A text without certain marks of a language counts as plain words here.
 [[nodiscard]] bool is_to_be_translated(const gcode::SourceText& source,
                                        const SmoothOptions& options);
+
+// How a program in this language is read with these options.
+[[nodiscard]] gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language);
 
 // Whether the program has words of controls that the target is none of.
 [[nodiscard]] bool is_of_another_family(const gcode::Program& program,

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "gcode/reason.h"
+#include "postproc/decimals_option.h"
 
 namespace batten::postproc {
 
@@ -233,6 +234,8 @@ std::vector<std::string> problems_of(const SmoothOptions& options) {
                     *options.keep_corners_deg));
   }
   std::ranges::move(problems_of_side(options.side, options.tolerance_kind),
+                    std::back_inserter(problems));
+  std::ranges::move(problems_of_decimals(options.decimals, options.source, options.target),
                     std::back_inserter(problems));
   std::ranges::move(problems_of_allowed(options.allowed), std::back_inserter(problems));
   if (options.min_motions < 2) {

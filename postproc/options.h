@@ -67,6 +67,7 @@ struct SmoothOptions {
   geometry::Side side = geometry::Side::kBoth;          // where the new path may be; needs kPath
   gcode::Units units = gcode::Units::kUnknown;          // --units
   gcode::SourceKind source = gcode::SourceKind::kAuto;  // --source
+  std::optional<gcode::Decimals> decimals;              // --decimals; nothing: auto
   Method method = Method::kBest;
   Form output = Form::kAuto;
   Prefer prefer = Prefer::kTime;

@@ -103,9 +103,14 @@ class Prover {
 
   [[nodiscard]] gcode::Program read_text(const gcode::SourceText& written,
                                          gcode::Diagnostics& ignored) const {
-    if (!part_.window) return gcode::parse(written, part_.program.language, ignored);
+    if (!part_.window) {
+      const gcode::Reading reading{part_.program.language, part_.program.decimals,
+                                   read_options_.units};
+      return gcode::parse(written, reading, ignored);
+    }
     gcode::TextCarry carry;
     carry.words_seen = part_.window->words_seen;
+    carry.decimals = part_.window->decimals;
     return gcode::parse_part(written, {}, carry, ignored);
   }
 

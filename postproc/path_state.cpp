@@ -15,13 +15,13 @@ bool path_alone_counts(const gcode::ModalState& state) {
       state.mirror,
       state.polar,
       state.cylindrical,
-      state.control_smoothing,
       state.modal_macro,
       state.constant_surface_speed,
       state.lathe_diameter,
   };
   return std::ranges::all_of(switches, [](gcode::Tri item) { return item == gcode::Tri::kOff; }) &&
-         state.units != gcode::Units::kUnknown && state.feed_mode == gcode::FeedMode::kPerMinute &&
+         state.control_smoothing != gcode::Tri::kUnknown && state.units != gcode::Units::kUnknown &&
+         state.feed_mode == gcode::FeedMode::kPerMinute &&
          state.distance == gcode::DistanceMode::kAbsolute;
 }
 

@@ -57,7 +57,7 @@ class Smoothing {
   void read() {
     const auto language = language_read(source_, options_, result_.diagnostics);
     if (!language) return;
-    part_.program = gcode::parse(source_, *language, result_.diagnostics);
+    part_.program = gcode::parse(source_, reading_of(options_, *language), result_.diagnostics);
     gcode::tell_of_contradictions(part_.program, options_.source, result_.diagnostics);
     read_options_.units = options_.units;
     read_options_.curves = options_.target->curves();

@@ -148,7 +148,8 @@ class Lister {
   }
 
   void add_cut(const BlockMeaning& meaning) {
-    list_.cuts.push_back({static_cast<std::uint32_t>(meaning.motion), state_after().feed});
+    list_.cuts.push_back({static_cast<std::uint32_t>(meaning.motion), state_after().feed,
+                          state_after().feed_without_point});
   }
 
   [[nodiscard]] bool must_stand_as_text(const Block& block, const BlockMeaning& meaning) const {
@@ -337,6 +338,10 @@ bool same_feed(const std::optional<double>& a, const std::optional<double>& b) {
   constexpr double kPrinted = 1e-6;
   if (!a || !b) return a.has_value() == b.has_value();
   return std::abs(*a - *b) <= kPrinted * std::max(std::abs(*a), std::abs(*b));
+}
+
+bool same_feed(const Cut& a, const Cut& b) {
+  return same_feed(a.feed, b.feed) && a.feed_without_point == b.feed_without_point;
 }
 
 ProgramEvents list_events(const ReadProgram& read) { return Lister(read).run(); }

@@ -65,7 +65,8 @@ struct ProgramEvent {
 // A motion at feed rate whose place is known, in a state in which the path alone counts.
 struct Cut {
   std::uint32_t motion = 0;
-  std::optional<double> feed;  // as ModalState::feed
+  std::optional<double> feed;       // as ModalState::feed
+  bool feed_without_point = false;  // as ModalState::feed_without_point
 };
 
 struct ProgramEvents {
@@ -82,6 +83,9 @@ struct ProgramEvents {
 // Feeds are the same when they differ by less than a millionth: they are printed again, 39.3701
 // in/min for 1000 mm/min.
 [[nodiscard]] bool same_feed(const std::optional<double>& a, const std::optional<double>& b);
+
+// And written alike: with a point both, or without.
+[[nodiscard]] bool same_feed(const Cut& a, const Cut& b);
 
 // The pieces of curves that are read exactly (gcode::ReadOptions::curves) are cuts as lines are.
 //

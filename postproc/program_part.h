@@ -19,7 +19,8 @@ struct TextBefore {
 struct WindowStart {
   EventsBefore old_events;
   TextBefore new_text;
-  bool words_seen = false;   // gcode::TextCarry
+  bool words_seen = false;  // gcode::TextCarry
+  gcode::DecimalPoints decimals;
   bool same_as_old = false;  // all that is known of the new text is what is known of the old one
 };
 

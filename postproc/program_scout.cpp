@@ -34,6 +34,7 @@ class Scout {
         least_blocks_(least_blocks),
         tell_(tell),
         control_(options.units) {
+    text_.decimals = {reading_of(options, gcode::Language::kRs274).decimals, options.units};
     read_options_.units = options.units;
     read_options_.curves = options.target->curves();
   }

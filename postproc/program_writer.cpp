@@ -116,6 +116,7 @@ std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
                                  std::string_view line_end) {
   const gcode::Position start{run.points.front(), {true, true, true}};
   RunWriter out(target, Writer(target, {before, start}, line_end));
+  if (after.feed_without_point) out.writer().use_feeds_without_point();
   if (has_arcs(plan) && !out.writer().centers_understood()) return std::nullopt;
 
   const auto copy_comments = [&](const std::vector<std::size_t>& comments) {

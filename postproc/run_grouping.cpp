@@ -42,9 +42,14 @@ constexpr UnsafeSwitch kUnsafeSwitches[] = {
 };
 
 // States that stand for themselves, before anything is said about what is unknown.
-std::string_view unsafe_mode(const ModalState& state, bool exact_path_allowed) {
+std::string_view unsafe_mode(const ModalState& state, const GroupingOptions& options) {
+  const auto is_allowed = [&options](std::string_view id) {
+    return std::ranges::find(options.allowed, id) != options.allowed.end();
+  };
   for (const UnsafeSwitch& unsafe : kUnsafeSwitches) {
-    if (state.*unsafe.item == Tri::kOn) {
+    const bool lifted =
+        unsafe.item == &ModalState::control_smoothing && is_allowed(reason::kControlSmoothing);
+    if (state.*unsafe.item == Tri::kOn && !lifted) {
       return unsafe.reason;
     }
   }
@@ -58,7 +63,7 @@ std::string_view unsafe_mode(const ModalState& state, bool exact_path_allowed) {
     return reason::kFeedPerRevolution;
   }
   if (state.path == gcode::PathMode::kExactStop ||
-      (state.path == gcode::PathMode::kExactPath && !exact_path_allowed)) {
+      (state.path == gcode::PathMode::kExactPath && !is_allowed(reason::kExactStop))) {
     return reason::kExactStop;
   }
   return {};
@@ -309,9 +314,7 @@ std::vector<Section> group_runs(const gcode::Program& program,
 }
 
 std::string_view unsafe_state(const ModalState& state, const GroupingOptions& options) {
-  const bool exact_path_allowed =
-      std::ranges::find(options.allowed, reason::kExactStop) != options.allowed.end();
-  const std::string_view mode = unsafe_mode(state, exact_path_allowed);
+  const std::string_view mode = unsafe_mode(state, options);
   return mode.empty() ? unknown_state(state) : mode;
 }
 

@@ -65,7 +65,8 @@ std::string_view different_item(const ProgramEvent& before, const ReadProgram& o
   }
   if (before.kind != EventKind::kText) return {};
   if (old_state.motion != new_state.motion) return "motion word";
-  if (!same_feed(old_state.feed, new_state.feed)) return "feed";
+  const bool as_written = old_state.feed_without_point == new_state.feed_without_point;
+  if (!same_feed(old_state.feed, new_state.feed) || !as_written) return "feed";
   return {};
 }
 

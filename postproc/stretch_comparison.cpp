@@ -46,8 +46,10 @@ std::uint32_t line_of(const Cut& cut, const ReadProgram& read) {
   return read.program->blocks[motion_of(cut, read).block].line;
 }
 
-std::string feed_text(const std::optional<double>& feed) {
-  return feed ? fmt::format("{:.6g} mm/min", *feed) : std::string("none known");
+std::string feed_text(const Cut& cut) {
+  return cut.feed ? fmt::format("{:.6g} mm/min{}", *cut.feed,
+                                cut.feed_without_point ? " without a decimal point" : "")
+                  : std::string("none known");
 }
 
 // Some of the cuts of one side, as a path.
@@ -103,11 +105,15 @@ struct Part {
 
 Part all_of(const StretchSide& side) { return {&side, 0, side.cuts.size()}; }
 
+bool is_one_feed(const Cut& a, const Cut& b) {
+  return a.feed == b.feed && a.feed_without_point == b.feed_without_point;
+}
+
 // The longest parts that have one feed, in order.
 std::vector<Part> parts_of_one_feed(const StretchSide& side) {
   std::vector<Part> parts;
   for (std::size_t i = 0; i < side.cuts.size(); ++i) {
-    if (parts.empty() || side.cuts[parts.back().begin].feed != side.cuts[i].feed) {
+    if (parts.empty() || !is_one_feed(side.cuts[parts.back().begin], side.cuts[i])) {
       parts.push_back({&side, i, i});
     }
     parts.back().end = i + 1;
@@ -271,8 +277,8 @@ class StretchComparer {
   bool same_feeds(const std::vector<Part>& old_parts, const std::vector<Part>& new_parts) {
     const std::size_t both = std::min(old_parts.size(), new_parts.size());
     for (std::size_t i = 0; i < both; ++i) {
-      const auto& old_feed = old_parts[i].cut(0).feed;
-      const auto& new_feed = new_parts[i].cut(0).feed;
+      const Cut& old_feed = old_parts[i].cut(0);
+      const Cut& new_feed = new_parts[i].cut(0);
       if (same_feed(old_feed, new_feed)) continue;
       add_feed_breach(
           "feed-changed", old_parts[i].line(0), new_parts[i].line(0),
@@ -282,13 +288,13 @@ class StretchComparer {
     if (old_parts.size() > both) {
       const Part& lost = old_parts[both];
       add_feed_breach("feed-changed", lost.line(0), new_parts.back().line(new_parts.back().size()),
-                      fmt::format("feed {} is missing", feed_text(lost.cut(0).feed)));
+                      fmt::format("feed {} is missing", feed_text(lost.cut(0))));
       return false;
     }
     if (new_parts.size() > both) {
       const Part& added = new_parts[both];
       add_feed_breach("feed-changed", old_parts.back().line(old_parts.back().size()), added.line(0),
-                      fmt::format("feed {} was not there", feed_text(added.cut(0).feed)));
+                      fmt::format("feed {} was not there", feed_text(added.cut(0))));
       return false;
     }
     return true;

@@ -13,6 +13,7 @@
 #include "gcode/reason.h"
 #include "gcode/source_kind.h"
 #include "postproc/block_numbers.h"
+#include "postproc/conversion.h"
 #include "postproc/obstacles.h"
 #include "postproc/program_acts.h"
 #include "postproc/provenance.h"
@@ -29,7 +30,7 @@ class TranslatedSmoothing {
       : source_(source),
         options_(options),
         progress_(progress),
-        program_(gcode::parse(source, gcode::Language::kRs274, found_)) {}
+        program_(gcode::parse(source, reading_of(options, gcode::Language::kRs274), found_)) {}
 
   SmoothResult run() {
     gcode::tell_of_contradictions(program_, options_.source, found_);

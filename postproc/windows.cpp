@@ -45,6 +45,7 @@ class Windows {
     gcode::Diagnostics of_language;
     const auto language = language_read(source_, options_, of_language);
     if (language != gcode::Language::kRs274) return std::nullopt;
+    text_.decimals = {reading_of(options_, *language).decimals, options_.units};
     const Tell tell_scouting = [this](double part) { return tell(part * kAfterScouting); };
     ScoutReport facts = scout(source_, options_, least_blocks, tell_scouting);
     if (facts.outcome == Scouting::kWhole) return std::nullopt;
@@ -96,7 +97,7 @@ class Windows {
   }
 
   ProgramPart read_window(std::uint32_t end) {
-    WindowStart start{old_.events, new_, text_.words_seen, starts_alike_};
+    WindowStart start{old_.events, new_, text_.words_seen, text_.decimals, starts_alike_};
     gcode::Diagnostics told_before;
     gcode::Program program = gcode::parse_part(source_, {.byte = end}, text_, told_before);
     gcode::Interpretation meaning =

@@ -64,6 +64,9 @@ class Fanuc final : public Rs274Dialect {
     return mark(SourceMark::kMacroFlow) | mark(SourceMark::kHighSpeedMode);
   }
 
+  // DPI, No. 3401; Mitsubishi: #1078.
+  bool may_imply_decimals() const override { return true; }
+
   const CurveFormat* curves() const override { return &curves_; }
   std::string_view default_machine() const override { return "mill"; }
 

@@ -35,6 +35,7 @@ TargetRow row_of(TargetTable table, SourceMarks marks, std::span<const std::stri
   row.known_marks = marks;
   row.smoothing_words = smoothing;
   row.refused = refused;
+  row.may_imply_decimals = true;  // where the table writes the point always
   return row;
 }
 

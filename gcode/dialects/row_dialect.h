@@ -36,6 +36,7 @@ struct TargetRow {
   // Words that most others take: "M6 G43 T", a letter alone for any number behind it.
   std::string_view refused = {};
   DwellUnit dwell_unit = DwellUnit::kByPoint;
+  bool may_imply_decimals = false;
   const CurveFormat* curves = nullptr;
 };
 
@@ -56,6 +57,10 @@ class RowDialect final : public TableValues {
   [[nodiscard]] SourceMarks known_marks() const override { return row_.known_marks; }
   [[nodiscard]] bool cannot_say(char letter, int number) const override;
 
+  // A table that writes X5 says that it is 5 mm.
+  [[nodiscard]] bool may_imply_decimals() const override {
+    return row_.may_imply_decimals && table().decimal_point;
+  }
   [[nodiscard]] DwellUnit dwell_unit() const override { return row_.dwell_unit; }
   [[nodiscard]] const CurveFormat* curves() const override { return row_.curves; }
 

@@ -157,13 +157,11 @@ class BlockReader {
   }
 
   SiemensBlock finished() {
-    if (label_) {
-      block_.opacity = Opacity::kFlow;
-    } else if (foreign_) {
+    if (foreign_) {
       block_.opacity = Opacity::kForeign;
-    } else if (assigns_ && !words_beside_) {
+    } else if (assigns_ && !words_beside_ && !label_) {
       block_.opacity = Opacity::kAssignment;
-    } else if (named_ || assigns_) {
+    } else if (named_ || assigns_ || label_) {
       block_.opacity = Opacity::kNamedWords;
     } else if (expression_) {
       block_.opacity = Opacity::kExpression;

@@ -61,10 +61,25 @@ SiemensToken SiemensLexer::next() {
   if (is_letter(c) || c == '_' || c == '$') {
     return address();
   }
+  if (c == ':' && !anything_ && is_digit(peek(at_ + 1))) {
+    return main_block();
+  }
   if (c == '(') {
     return unreadable("a parenthesis without a name before it: comments start with ';' here");
   }
   return unreadable("a character that no word starts with");
+}
+
+// :10 is a number of a main block, to which a jump may go as to a label.
+SiemensToken SiemensLexer::main_block() {
+  std::size_t end = at_ + 1;
+  while (is_digit(peek(end))) {
+    ++end;
+  }
+  const SourceSpan name = bytes(at_, end);
+  SiemensToken label = token(SiemensTokenKind::kLabel, end);
+  label.name = name;
+  return label;
 }
 
 SiemensToken SiemensLexer::address() {

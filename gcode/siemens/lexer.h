@@ -15,7 +15,7 @@ enum class SiemensTokenKind : std::uint8_t {
   kWord,        // one letter and a plain number: X10, X=-.5
   kValueWord,   // one letter and a value that is computed: X=R1, X=AC(10)
   kName,        // anything longer, with its index, its value and its arguments
-  kLabel,       // NAME: at the beginning of the block
+  kLabel,       // NAME: or :10 at the beginning of the block
   kComment,     // ; to the end of the line
   kSkip,        // / or /0 to /9
   kUnreadable,  // see `trouble`: the rest of the line is not split
@@ -43,6 +43,7 @@ class SiemensLexer {
   [[nodiscard]] SiemensToken next();
 
  private:
+  [[nodiscard]] SiemensToken main_block();
   [[nodiscard]] SiemensToken address();
   [[nodiscard]] SiemensToken named(std::size_t name_end);
   [[nodiscard]] SiemensToken assigned_letter(std::size_t value_at);

@@ -1,198 +1,34 @@
 #include "gcode/siemens/names.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
-#include <optional>
 #include <string>
 
 #include "gcode/characters.h"
 #include "gcode/reason.h"
 #include "gcode/siemens/block.h"
 #include "gcode/siemens/lexer.h"
+#include "gcode/siemens/name_kinds.h"
 
 namespace batten::gcode {
 namespace {
 
-enum class NameKind : std::uint8_t {
-  kNothing,      // how the axes are driven, messages, tolerances of the control: no path, no state
-  kDeclaration,  // the rest of the line declares something
-  kRefitOn,
-  kRefitOff,
-  kToolCenterOn,
-  kTransformationOff,
-  kPolarOn,
-  kCylinderOn,
-  kTilt,  // with arguments on, without off
-  kTiltOn,
-  kOffset,  // a frame that moves the origin
-  kRotation,
-  kScaling,
-  kMirror,
-  kRotationOn,  // the additive frames: whatever stands beside them, they do not take any back
-  kScalingOn,
-  kMirrorOn,
-  kSpline,     // the motion group: splines, circles through points
-  kBlockPath,  // the path of this block, or its end, is not what X, Y, Z say
-  kBlending,
-  kInch,
-  kMillimetre,
-  kPole,      // takes axis words; nothing moves
-  kApproach,  // takes axis words; the axes go to places of the machine
-  kWorkOffset,
-  kTool,
-  kSpindle,
-  kDiameterOff,
-};
-
-struct NameRow {
-  std::string_view name;
-  NameKind kind;
-};
-
-// Not in it are words that are not known: they end the run, and nothing is known after them.
-constexpr NameRow kNames[] = {
-    {"SOFT", NameKind::kNothing},
-    {"BRISK", NameKind::kNothing},
-    {"DRIVE", NameKind::kNothing},
-    {"FFWON", NameKind::kNothing},
-    {"FFWOF", NameKind::kNothing},
-    {"STOPRE", NameKind::kNothing},
-    {"MSG", NameKind::kNothing},
-    {"CYCLE832", NameKind::kNothing},
-    {"CTOL", NameKind::kNothing},
-    {"OTOL", NameKind::kNothing},
-    {"ATOL", NameKind::kNothing},
-    {"ADIS", NameKind::kNothing},
-    {"ADISPOS", NameKind::kNothing},
-    {"NORM", NameKind::kNothing},
-    {"KONT", NameKind::kNothing},
-    {"CUT2D", NameKind::kNothing},
-    {"CUT2DF", NameKind::kNothing},
-    {"CFC", NameKind::kNothing},
-    {"CFIN", NameKind::kNothing},
-    {"CFTCP", NameKind::kNothing},
-    {"G450", NameKind::kNothing},
-    {"G451", NameKind::kNothing},
-    {"G601", NameKind::kNothing},
-    {"G602", NameKind::kNothing},
-    {"G603", NameKind::kNothing},
-    {"WORKPIECE", NameKind::kNothing},
-    {"DEF", NameKind::kDeclaration},
-    {"EXTERN", NameKind::kDeclaration},
-    {"COMPON", NameKind::kRefitOn},
-    {"COMPCURV", NameKind::kRefitOn},
-    {"COMPCAD", NameKind::kRefitOn},
-    {"COMPSURF", NameKind::kRefitOn},
-    {"COMPOF", NameKind::kRefitOff},
-    {"TRAORI", NameKind::kToolCenterOn},
-    {"TRAFOOF", NameKind::kTransformationOff},
-    {"TRANSMIT", NameKind::kPolarOn},
-    {"TRACYL", NameKind::kCylinderOn},
-    {"CYCLE800", NameKind::kTilt},
-    {"TOROT", NameKind::kTiltOn},
-    {"TOFRAME", NameKind::kTiltOn},
-    {"TRANS", NameKind::kOffset},
-    {"ATRANS", NameKind::kOffset},
-    {"ROT", NameKind::kRotation},
-    {"ROTS", NameKind::kRotation},
-    {"AROT", NameKind::kRotationOn},
-    {"AROTS", NameKind::kRotationOn},
-    {"RPL", NameKind::kRotationOn},
-    {"SCALE", NameKind::kScaling},
-    {"ASCALE", NameKind::kScalingOn},
-    {"MIRROR", NameKind::kMirror},
-    {"AMIRROR", NameKind::kMirrorOn},
-    {"ASPLINE", NameKind::kSpline},
-    {"BSPLINE", NameKind::kSpline},
-    {"CSPLINE", NameKind::kSpline},
-    {"POLY", NameKind::kSpline},
-    {"CIP", NameKind::kSpline},
-    {"CT", NameKind::kSpline},
-    {"INVCW", NameKind::kSpline},
-    {"INVCCW", NameKind::kSpline},
-    {"PO", NameKind::kBlockPath},
-    {"PL", NameKind::kBlockPath},
-    {"PW", NameKind::kBlockPath},
-    {"SD", NameKind::kBlockPath},
-    {"BAUTO", NameKind::kBlockPath},
-    {"BNAT", NameKind::kBlockPath},
-    {"BTAN", NameKind::kBlockPath},
-    {"EAUTO", NameKind::kBlockPath},
-    {"ENAT", NameKind::kBlockPath},
-    {"ETAN", NameKind::kBlockPath},
-    {"RND", NameKind::kBlockPath},
-    {"CHF", NameKind::kBlockPath},
-    {"CHR", NameKind::kBlockPath},
-    {"ANG", NameKind::kBlockPath},
-    {"AR", NameKind::kBlockPath},
-    {"AP", NameKind::kBlockPath},
-    {"RP", NameKind::kBlockPath},
-    {"TURN", NameKind::kBlockPath},
-    {"FB", NameKind::kBlockPath},
-    {"SUPA", NameKind::kBlockPath},
-    {"G153", NameKind::kBlockPath},
-    {"I1", NameKind::kBlockPath},
-    {"J1", NameKind::kBlockPath},
-    {"K1", NameKind::kBlockPath},
-    {"G641", NameKind::kBlending},
-    {"G642", NameKind::kBlending},
-    {"G643", NameKind::kBlending},
-    {"G644", NameKind::kBlending},
-    {"G645", NameKind::kBlending},
-    {"G70", NameKind::kInch},
-    {"G700", NameKind::kInch},
-    {"G71", NameKind::kMillimetre},
-    {"G710", NameKind::kMillimetre},
-    {"G110", NameKind::kPole},
-    {"G111", NameKind::kPole},
-    {"G112", NameKind::kPole},
-    {"G25", NameKind::kPole},
-    {"G26", NameKind::kPole},
-    {"G58", NameKind::kOffset},
-    {"G59", NameKind::kOffset},
-    {"G74", NameKind::kApproach},
-    {"G75", NameKind::kApproach},
-    {"G500", NameKind::kWorkOffset},
-    {"D", NameKind::kTool},
-    {"DIAMOF", NameKind::kDiameterOff},
-};
-
-// R5, S2, M1, as addresses with digits.
-bool is_address(std::string_view name, char letter) {
-  return name.size() > 1 && name[0] == letter &&
-         std::ranges::all_of(name.substr(1), [](char c) { return is_digit(c); });
-}
-
-std::optional<NameKind> kind_of(std::string_view name, bool assigned) {
-  const auto* row = std::ranges::find(kNames, name, &NameRow::name);
-  if (row != std::end(kNames)) return row->kind;
-  // G505 to G599: more work offsets.
-  if (name.size() == 4 && name.starts_with("G5") && is_digit(name[2]) && is_digit(name[3]) &&
-      name.substr(2) >= "05") {
-    return NameKind::kWorkOffset;
-  }
-  if (assigned && is_address(name, 'R')) return NameKind::kNothing;
-  if (assigned && (is_address(name, 'S') || is_address(name, 'M'))) return NameKind::kSpindle;
-  if (assigned && is_address(name, 'T')) return NameKind::kTool;
-  return std::nullopt;
-}
-
 class NameApplier {
  public:
-  NameApplier(std::string_view text, const BlockWords& words, ControlState& state)
-      : text_(text), words_(words), state_(state) {}
+  NameApplier(std::string_view text, const BlockWords& words, SiemensVariables& variables,
+              ControlState& state)
+      : text_(text), words_(words), variables_(variables), state_(state) {}
 
   NamedEffect apply() {
     SiemensLexer lexer(text_, {0, static_cast<std::uint32_t>(text_.size())});
     for (;;) {
       const SiemensToken token = lexer.next();
       if (token.kind == SiemensTokenKind::kEnd || token.kind == SiemensTokenKind::kComment) break;
+      if (token.kind == SiemensTokenKind::kLabel) block(reason::kProgramFlow);
       const std::string name = name_of(token);
       if (name.empty()) continue;
-      const auto kind = kind_of(name, token.assigned);
+      const bool own = token.assigned && variables_.contains(name);
+      const auto kind = own ? NameKind::kVariable : kind_of_siemens_name(name, token.assigned);
       if (!kind) {
         effect_.understood = false;
         block(reason::kForeignWords);
@@ -200,8 +36,10 @@ class NameApplier {
       }
       if (*kind == NameKind::kDeclaration) {
         block(reason::kForeignWords);
+        if (name == "DEF") add_declared_names(text_.substr(token.span.end), variables_);
         break;
       }
+      calls_modally_ = calls_modally_ || *kind == NameKind::kModalCall;
       apply(*kind, token.arguments);
     }
     block(reason::kStateChange);
@@ -245,7 +83,15 @@ class NameApplier {
   // With axis words the frame is set; without it all programmable frames are taken back.
   void apply_frame(Tri& item, std::string_view why) {
     add_frame(item, why);
-    if (names_axes()) return;
+    if (!names_axes()) take_frames_back();
+  }
+
+  void apply_offset() {
+    effect_.takes_axes = true;
+    lose_place(reason::kCoordinateChange);
+  }
+
+  void take_frames_back() {
     for (Tri* each : {&modal().rotation, &modal().scaling, &modal().mirror}) *each = Tri::kOff;
   }
 
@@ -267,6 +113,8 @@ class NameApplier {
       case NameKind::kNothing:
       case NameKind::kDeclaration:
         return block(reason::kStateChange);
+      case NameKind::kVariable:
+        return block(reason::kAssignment);
       case NameKind::kRefitOn:
         modal().control_smoothing = Tri::kOn;
         return block(reason::kControlSmoothing);
@@ -293,9 +141,14 @@ class NameApplier {
       case NameKind::kTiltOn:
         modal().tilted_plane = Tri::kOn;
         return lose_place(reason::kTiltedPlane);
+      case NameKind::kTiltOff:
+        modal().tilted_plane = Tri::kOff;
+        return lose_place(reason::kTiltedPlane);
       case NameKind::kOffset:
-        effect_.takes_axes = true;
-        return lose_place(reason::kCoordinateChange);
+        if (!names_axes()) take_frames_back();
+        return apply_offset();
+      case NameKind::kOffsetOn:
+        return apply_offset();
       case NameKind::kRotation:
         return apply_frame(modal().rotation, reason::kRotation);
       case NameKind::kScaling:
@@ -342,10 +195,46 @@ class NameApplier {
       case NameKind::kSpindle:
         modal().spindle_speed.reset();
         return block(reason::kSpindle);
+      case NameKind::kDiameterOn:
+        lose_place(reason::kLatheDiameter);
+        modal().lathe_diameter = Tri::kOn;
+        return;
       case NameKind::kDiameterOff:
+        block(reason::kStateChange);
         if (modal().lathe_diameter != Tri::kOff) lose_place(reason::kLatheDiameter);
         modal().lathe_diameter = Tri::kOff;
         return;
+      default:
+        return apply_motions(kind);
+    }
+  }
+
+  void apply_motions(NameKind kind) {
+    switch (kind) {
+      case NameKind::kCycle:
+        modal().motion = MotionMode::kUnknown;
+        modal().feed.reset();
+        modal().spindle_speed.reset();
+        if (calls_modally_) modal().modal_macro = Tri::kOn;
+        return lose_place(reason::kCannedCycle);
+      case NameKind::kModalCall:
+        modal().modal_macro = Tri::kOff;
+        return block(reason::kCannedCycle);
+      case NameKind::kSurfaceSpeedOn:
+        modal().constant_surface_speed = Tri::kOn;
+        return block(reason::kSpindle);
+      case NameKind::kSurfaceSpeedOff:
+        // With G971 F is per minute, with G973 what it was.
+        modal().constant_surface_speed = Tri::kOff;
+        modal().feed_mode = FeedMode::kUnknown;
+        modal().feed.reset();
+        return block(reason::kSpindle);
+      case NameKind::kThread:
+        modal().motion = MotionMode::kOther;
+        state_.other_motion = reason::kThreading;
+        return lose_place(reason::kThreading);
+      case NameKind::kOtherAxis:
+        return lose_place(reason::kOtherAxis);
       default:
         return;
     }
@@ -353,14 +242,17 @@ class NameApplier {
 
   std::string_view text_;
   const BlockWords& words_;
+  SiemensVariables& variables_;
   ControlState& state_;
   NamedEffect effect_;
+  bool calls_modally_ = false;  // MCALL stands before it in the block
 };
 
 }  // namespace
 
-NamedEffect apply_names(std::string_view text, const BlockWords& words, ControlState& state) {
-  return NameApplier(text, words, state).apply();
+NamedEffect apply_names(std::string_view text, const BlockWords& words, SiemensVariables& variables,
+                        ControlState& state) {
+  return NameApplier(text, words, variables, state).apply();
 }
 
 }  // namespace batten::gcode

@@ -6,6 +6,7 @@
 
 #include "gcode/block_words.h"
 #include "gcode/control_state.h"
+#include "gcode/siemens/variables.h"
 
 namespace batten::gcode {
 
@@ -18,8 +19,8 @@ struct NamedEffect {
 };
 
 // `text` is a block of Opacity::kNamedWords, `words` its words of one letter. Applies what is known
-// to the state.
+// to the state. `variables` are those that the program has declared so far; DEF adds to them.
 [[nodiscard]] NamedEffect apply_names(std::string_view text, const BlockWords& words,
-                                      ControlState& state);
+                                      SiemensVariables& variables, ControlState& state);
 
 }  // namespace batten::gcode

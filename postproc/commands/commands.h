@@ -46,6 +46,7 @@ struct VerifyCommand {
   geometry::Side side = geometry::Side::kBoth;
   gcode::Units units = gcode::Units::kUnknown;
   gcode::SourceKind source = gcode::SourceKind::kAuto;
+  std::optional<gcode::Decimals> decimals;       // as SmoothOptions::decimals
   std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
   const gcode::Dialect* target = nullptr;        // whose curves are read; nullptr: none are
   std::string json_file;
@@ -58,6 +59,7 @@ struct InspectCommand {
   std::string input;
   gcode::Units units = gcode::Units::kUnknown;
   gcode::SourceKind source = gcode::SourceKind::kAuto;
+  std::optional<gcode::Decimals> decimals;  // as SmoothOptions::decimals
   std::vector<std::string> allowed;
   std::string json_file;
   LogLevel log_level = LogLevel::kInfo;
@@ -71,7 +73,8 @@ struct TimeCommand {
   const gcode::Dialect* target = nullptr;  // not given: the dwell units of the machine's control
   gcode::Units units = gcode::Units::kUnknown;
   gcode::SourceKind source = gcode::SourceKind::kAuto;
-  std::optional<geometry::Point3> start;  // mm: where the tool stands before the program
+  std::optional<gcode::Decimals> decimals;  // as SmoothOptions::decimals
+  std::optional<geometry::Point3> start;    // mm: where the tool stands before the program
   std::string json_file;
   std::string profile_file;
   LogLevel log_level = LogLevel::kInfo;

@@ -145,7 +145,9 @@ int run(const InspectCommand& command) {
     print(found, *source, command.log_level);
     return static_cast<int>(ExitCode::kNotUnderstood);
   }
-  const gcode::Program program = gcode::parse(*source, *language, found);
+  const gcode::Decimals decimals =
+      gcode::decimals_read(command.source, nullptr, *language, command.decimals);
+  const gcode::Program program = gcode::parse(*source, {*language, decimals, command.units}, found);
   gcode::tell_of_contradictions(program, command.source, found);
   const gcode::Interpretation interpretation =
       gcode::interpret(program, {.units = command.units}, found);

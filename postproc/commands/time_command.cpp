@@ -67,7 +67,9 @@ int run(const TimeCommand& command) {
     print(found, *source, command.log_level);
     return static_cast<int>(ExitCode::kNotUnderstood);
   }
-  const gcode::Program program = gcode::parse(*source, *language, found);
+  const gcode::Decimals decimals =
+      gcode::decimals_read(command.source, command.target, *language, command.decimals);
+  const gcode::Program program = gcode::parse(*source, {*language, decimals, command.units}, found);
   gcode::tell_of_contradictions(program, command.source, found);
   const gcode::CurveFormat* curves = command.target != nullptr ? command.target->curves() : nullptr;
   const gcode::Interpretation meaning =

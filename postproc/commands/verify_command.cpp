@@ -29,17 +29,20 @@ struct Read {
   gcode::Diagnostics diagnostics;
 };
 
-// Those of the target that is named, or of the one that the profile adapts.
-const gcode::CurveFormat* curves_of(const VerifyCommand& command) {
-  if (command.target != nullptr) return command.target->curves();
-  return command.profile != nullptr ? command.profile->adapted->curves() : nullptr;
+// The one that is named, or that the profile adapts.
+const gcode::Dialect* target_of(const VerifyCommand& command) {
+  if (command.target != nullptr) return command.target;
+  return command.profile != nullptr ? command.profile->adapted.get() : nullptr;
 }
 
-// The language of the target that is named, or of the one that the profile adapts.
+const gcode::CurveFormat* curves_of(const VerifyCommand& command) {
+  const gcode::Dialect* target = target_of(command);
+  return target != nullptr ? target->curves() : nullptr;
+}
+
 std::optional<gcode::Language> language_of_target(const VerifyCommand& command) {
-  if (command.target != nullptr) return command.target->language();
-  if (command.profile != nullptr) return command.profile->adapted->language();
-  return std::nullopt;
+  const gcode::Dialect* target = target_of(command);
+  return target != nullptr ? std::optional(target->language()) : std::nullopt;
 }
 
 // In which language the old program is, where only the new one shows its own: it was converted from
@@ -64,7 +67,10 @@ Read read(const gcode::SourceText& source, const VerifyCommand& command, gcode::
   gcode::Diagnostics found;
   const auto own = gcode::source_language(source, kind,
                                           language ? language : language_of_target(command), found);
-  gcode::Program program = gcode::parse(source, own.value_or(gcode::Language::kRs274), found);
+  const gcode::Language certain = own.value_or(gcode::Language::kRs274);
+  const gcode::Decimals decimals =
+      gcode::decimals_read(kind, target_of(command), certain, command.decimals);
+  gcode::Program program = gcode::parse(source, {certain, decimals, command.units}, found);
   gcode::tell_of_contradictions(program, kind, found);
   gcode::Interpretation interpretation =
       gcode::interpret(program, {.units = command.units, .curves = curves_of(command)}, found);

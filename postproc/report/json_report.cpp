@@ -1,5 +1,6 @@
 #include "postproc/report/json_report.h"
 
+#include "postproc/decimals_option.h"
 #include "postproc/report/json_values.h"
 #include "postproc/report/run_reasons.h"
 
@@ -31,6 +32,7 @@ Json json_of(const SmoothOptions& options, bool strict) {
   json["prefer"] = name_of(options.prefer);
   json["linearize"] = name_of(linearize_of(options));
   json["units"] = name_of(options.units);
+  json["decimals"] = text_of(options.decimals);
   json["keep_corners_deg"] =
       options.keep_corners_deg ? Json(*options.keep_corners_deg) : Json(nullptr);
   json["allow"] = options.allowed;

@@ -90,10 +90,12 @@ Json path_of(const SmoothReport& report, std::size_t most_vertices) {
   const auto language = translated ? std::optional(gcode::Language::kRs274)
                                    : language_read(report.source, report.options, ignored);
   if (!language) return path_columns({});
-  const gcode::Program before = gcode::parse(report.source, *language, ignored);
+  const gcode::Reading words = reading_of(report.options, *language);
+  const gcode::Program before = gcode::parse(report.source, words, ignored);
   const gcode::Interpretation old_meaning = gcode::interpret(before, reading, ignored);
-  const gcode::Program after =
-      gcode::parse(written, translated ? report.options.target->language() : *language, ignored);
+  const gcode::Reading new_words =
+      translated ? reading_of(report.options, report.options.target->language()) : words;
+  const gcode::Program after = gcode::parse(written, new_words, ignored);
   const gcode::Interpretation new_meaning = gcode::interpret(after, reading, ignored);
   const ReadProgram old_program{&before, &old_meaning};
   const ReadProgram new_program{&after, &new_meaning};

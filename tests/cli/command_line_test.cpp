@@ -125,6 +125,12 @@ INSTANTIATE_TEST_SUITE_P(
                    "above 0"},
         WrongUsage{"RuleThatCannotBeLifted",
                    "smooth part.nc --target grbl --allow cutter-compensation", "cannot be lifted"},
+        WrongUsage{"UnknownDecimals", "smooth part.nc --target fanuc --decimals 0.001",
+                   "expected auto, explicit, implied"},
+        WrongUsage{"IncrementsOfAControlWithoutThem",
+                   "smooth part.nc --target grbl --decimals implied", "takes X5 for 5 mm"},
+        WrongUsage{"IncrementsOfNobody", "inspect part.nc --decimals implied",
+                   "--source fanuc or haas"},
         WrongUsage{"OutputIsTheInput", "smooth part.nc --target grbl -o ./part.nc --force",
                    "--in-place"},
         WrongUsage{"ReportIsTheInput", "smooth part.nc --target grbl --json part.nc --force",
@@ -140,6 +146,26 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"VerifyWithOneFile", "verify part.nc", "NEW: no file given"},
         WrongUsage{"VerifyStandardInputTwice", "verify - -", "only once"}),
     [](const auto& test) { return std::string(test.param.name); });
+
+// What the numbers mean is said once, to every command that reads them.
+TEST_F(CommandLine, ReadsImpliedDecimalsWhereTheUserSaysSo) {
+  const BattenFolder folder;
+  folder.put("old.nc",
+             "G21 G90\nG0 X0 Y0 Z5000\nG1 Z-1000 F300\nX10000\nX20000 Y500\nX30000\nM30\n");
+  const ProcessResult kept = folder.batten("smooth old.nc --target fanuc");
+  EXPECT_EQ(kept.exit_code, 0) << kept.err;
+  EXPECT_TRUE(contains(kept.err, "old.nc:2:10: warning: implied-decimals: Z5000 has no decimal"))
+      << kept.err;
+  EXPECT_EQ(folder.text_of("old.smooth.nc"), folder.text_of("old.nc"));
+  const ProcessResult read = folder.batten("inspect old.nc --source fanuc --decimals implied");
+  EXPECT_EQ(read.exit_code, 0) << read.err;
+  EXPECT_FALSE(contains(read.err, "implied-decimals")) << read.err;
+  folder.put("new.nc", "G21 G90\nG0 X0 Y0 Z5000\nG1 Z-1000 F300\nX10.\nX20. Y.5\nX30.\nM30\n");
+  const std::string verify = "verify old.nc new.nc --target fanuc --decimals ";
+  EXPECT_EQ(folder.batten(verify + "implied").exit_code, 0);
+  EXPECT_EQ(folder.batten(verify + "explicit").exit_code, 3);
+  EXPECT_EQ(folder.batten(verify + "auto").exit_code, 3);
+}
 
 TEST_F(CommandLine, TellsAllProblemsAtOnce) {
   const ProcessResult result = batten(

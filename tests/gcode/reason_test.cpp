@@ -46,9 +46,10 @@ TEST(Reason, EveryDeclaredIdIsExplainedOnce) {
   EXPECT_EQ(explained, declared);
 }
 
-TEST(Reason, OnlyTheExactPathASecondPassAndWhatIsSetAtAControlCanBeAllowed) {
+TEST(Reason, OnlyWhatIsSafeWhenAskedForAndWhatIsSetAtAControlCanBeAllowed) {
   for (const Explanation& explanation : explanations()) {
-    const bool safe = explanation.id == kExactStop || explanation.id == kAlreadySmoothed;
+    const bool safe = explanation.id == kExactStop || explanation.id == kControlSmoothing ||
+                      explanation.id == kAlreadySmoothed;
     const bool set_at_control = explanation.id == kWorkOffset || explanation.id == kToolLength;
     EXPECT_EQ(explanation.can_be_allowed, safe || set_at_control) << explanation.id;
   }

@@ -84,6 +84,8 @@ struct Options {
   std::vector<std::string> allow;
   ProgramUnits units = ProgramUnits::kAsWritten;
   std::string source = "auto";
+  // What X5 means on controls like FANUC: auto, explicit, implied, implied:0.0001 .. as --decimals.
+  std::string decimals = "auto";
   int threads = 0;  // 0: all cores; the result is the same for any number
 };
 
@@ -140,7 +142,8 @@ struct Proof {
 // G5) are read in both; empty: none are.
 [[nodiscard]] Proof verify(std::string_view old_program, std::string_view new_program,
                            double tolerance_mm, ProgramUnits units = ProgramUnits::kAsWritten,
-                           std::string_view target = {}, std::string_view source = "auto");
+                           std::string_view target = {}, std::string_view source = "auto",
+                           std::string_view decimals = "auto");
 
 // --- time --------------------------------------------------------------------------------------
 
@@ -152,6 +155,7 @@ struct TimeOptions {
   std::string target;
   ProgramUnits units = ProgramUnits::kAsWritten;
   std::string source = "auto";
+  std::string decimals = "auto";  // as Options::decimals
 };
 
 // What the time leaves out or had to assume. `id` as in `batten time`.

@@ -8,7 +8,9 @@
 
 #include "gcode/interpreter.h"
 #include "gcode/number_format.h"
+#include "gcode/reason.h"
 #include "gcode/siemens/value.h"
+#include "gcode/siemens/variables.h"
 
 namespace batten::gcode {
 namespace {
@@ -73,8 +75,10 @@ INSTANTIATE_TEST_SUITE_P(
         LineCase{"Declaration", "DEF REAL A, B = 5", Opacity::kNamedWords, ""},
         LineCase{"Jump", "N10 GOTOF END_OF_IT", Opacity::kFlow, "N10"},
         LineCase{"Condition", "IF R1 == 5 GOTOB N100", Opacity::kFlow, ""},
-        LineCase{"Label", "AGAIN: G1 X1", Opacity::kFlow, "G1 X1"},
-        LineCase{"LabelOfOneLetter", "A1: X1", Opacity::kFlow, "X1"},
+        LineCase{"Label", "AGAIN: G1 X1", Opacity::kNamedWords, "G1 X1"},
+        LineCase{"LabelOfOneLetter", "A1: X1", Opacity::kNamedWords, "X1"},
+        LineCase{"MainBlock", ":10 G1 X1", Opacity::kNamedWords, "G1 X1"},
+        LineCase{"ByIndex", "R[5]=R[2]*3", Opacity::kNamedWords, ""},
         LineCase{"Repeat", "REPEAT AGAIN P=3", Opacity::kFlow, ""},
         LineCase{"Subprogram", "L100 P3", Opacity::kForeign, ""},
         LineCase{"EndOfSubprogram", "M17", Opacity::kForeign, ""},
@@ -155,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(
         EffectCase{"Cylinder", "TRACYL(40)", "bent"},
         EffectCase{"TransformationOff", "TRAFOOF", "state"},
         EffectCase{"WorkOffset", "G505", "state"}, EffectCase{"WorkOffsetOff", "G500", "state"},
-        EffectCase{"FixedPoint", "G75 X1=0", "nothing"}, EffectCase{"Reference", "G74 Z0", "state"},
+        EffectCase{"FixedPoint", "G75 X1=0", "state"}, EffectCase{"Reference", "G74 Z0", "state"},
         EffectCase{"Pole", "G111 X5 Y5", "place"}, EffectCase{"ToolOffset", "D2", "state"},
         EffectCase{"Spline", "BSPLINE X5 Y5", "state"},
         EffectCase{"Circle", "CIP X5 Y5 I1=2 J1=3", "state"},
@@ -163,8 +167,43 @@ INSTANTIATE_TEST_SUITE_P(
         EffectCase{"PolarEnd", "G1 AP=45 RP=10", "state"},
         EffectCase{"UnknownName", "MY_CYCLE(1,2)", "nothing"},
         EffectCase{"UnknownAssignment", "$P_UIFR[1]=5", "nothing"},
-        EffectCase{"Subprogram", "L10", "nothing"}, EffectCase{"UnknownG", "G810", "nothing"}),
+        EffectCase{"Label", "AGAIN:", "place"}, EffectCase{"LabelledMove", "A: G1 X5", "place"},
+        EffectCase{"MainBlock", ":10 G90", "place"},
+        EffectCase{"JumpNotTaken", "IF R1>5 GOTOF :7", "place"},
+        EffectCase{"CaseNotTaken", "CASE R1 OF 1 GOTOF :7 DEFAULT GOTOF :8", "place"},
+        EffectCase{"IndexedParameter", "R[5]=3", "place"},
+        EffectCase{"Dynamics", "DYNFINISH ACC[X]=50 LIMS=9000", "place"},
+        EffectCase{"Diameter", "DIAMON", "state"}, EffectCase{"Radius", "DIAMOF", "place"},
+        EffectCase{"Cycle", "CYCLE83(5,0,2,-20,,-5,,2,0,0,1,0)", "state"},
+        EffectCase{"SpindlePlace", "SPOS=90", "place"},
+        EffectCase{"Vector", "G1 X5 A3=0 B3=0 C3=1", "state"},
+        EffectCase{"Tapping", "G331 Z-5 K1", "state"}, EffectCase{"ToolTilt", "TOROT", "bent"},
+        EffectCase{"ToolTiltOff", "TOROTOF", "state"}, EffectCase{"Subprogram", "L10", "nothing"},
+        EffectCase{"UnknownG", "G810", "nothing"}),
     [](const auto& test) { return test.param.name; });
+
+// A name that the program has declared is a value, whatever it looks like; others may be axes.
+TEST(SiemensVariables, ThatAreDeclaredChangeNothing) {
+  SiemensVariables variables;
+  add_declared_names(" REAL _A, B = 5, C[3] = SET(1,2), D=MAX(1,2) ; E", variables);
+  add_declared_names(" STRING[20] NAME=\"X, Y\"", variables);
+  add_declared_names(" CHAN INT n", variables);
+  EXPECT_EQ(variables, (SiemensVariables{"_A", "B", "C", "D", "NAME", "N"}));
+  const std::string head = "G71 G90 G17 G40 G64 G94 F500\nG1 X0 Y0 Z0\n";
+  const Interpretation read =
+      read_program(head + "DEF REAL DEPTH, W[3]\nDEPTH=R1*2\nW[2]=5\nG1 X1 Y1\n");
+  EXPECT_TRUE(read.motions.back().start_known);
+  EXPECT_EQ(read.blocks[3].barrier, reason::kAssignment);
+  EXPECT_FALSE(is_known(read_program(head + "DEPTH=R1*2\n").states.back()));
+}
+
+// What a safe beginning says brings back all that a call has made unknown.
+TEST(SiemensInterpreter, EveryModeCanBeSaidAgain) {
+  const Interpretation read = read_program(
+      "L100\nG17 G40 G90 G94 G97\nG64\nG71\nTRANS\nTRAFOOF\nCYCLE800()\nCOMPOF\nDIAMOF\nMCALL\n");
+  EXPECT_FALSE(is_known(read.states[read.blocks[0].state_after]));
+  EXPECT_TRUE(is_known(read.states.back()));
+}
 
 TEST(SiemensInterpreter, FollowsArcsWithCr) {
   // From (0,0) to (10,0) clockwise, radius 5: half a circle over (5,5).
@@ -182,6 +221,17 @@ TEST(SiemensFlow, OnlyLabelsThatAreNamedAreEntered) {
   EXPECT_FALSE(named.blocks[0].entered_from_elsewhere);
   const Interpretation computed = read_program("N10 G1 X1\nGOTOF TARGET\nN20 X2\n");
   EXPECT_TRUE(computed.blocks[0].entered_from_elsewhere);
+  const Interpretation label = read_program("IF R1>5 GOTOF LAST\nA: G1 X1\nLAST: M30\n");
+  EXPECT_FALSE(label.blocks[1].entered_from_elsewhere);
+  EXPECT_TRUE(label.blocks[2].entered_from_elsewhere);
+  const Interpretation main = read_program(":10 G1 X1\n:20 X2\nGOTOB :010\n");
+  EXPECT_TRUE(main.blocks[0].entered_from_elsewhere);
+  EXPECT_FALSE(main.blocks[1].entered_from_elsewhere);
+  const Interpretation text = read_program("A: G1 X1\nGOTOF \"A\" << R1\n");
+  EXPECT_TRUE(text.blocks[0].entered_from_elsewhere);
+  const Interpretation repeated = read_program("A: G1 X1\nB: X2\nREPEAT A P=3\n");
+  EXPECT_TRUE(repeated.blocks[0].entered_from_elsewhere);
+  EXPECT_FALSE(repeated.blocks[1].entered_from_elsewhere);
 }
 
 TEST(SiemensParser, AnyBytesAreReadAndEveryByteIsInOneBlock) {

@@ -1,0 +1,249 @@
+#include "gcode/siemens/flow.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <unordered_set>
+
+#include "gcode/characters.h"
+#include "gcode/siemens/lexer.h"
+#include "gcode/siemens/value.h"
+
+namespace batten::gcode {
+namespace {
+
+// "LABEL" for LABEL:, ":10", "N10" whatever zeros stand in front of the digits.
+using LabelName = std::string;
+
+std::string without_blanks(std::string text) {
+  std::erase_if(text, is_blank);
+  return text;
+}
+
+// Upper case, strings and comments blanked.
+std::string plain_text(std::string_view text) {
+  std::string plain;
+  bool in_string = false;
+  for (const char c : text) {
+    if (c == ';' && !in_string) break;
+    in_string ^= c == '"';
+    plain.push_back(in_string ? ' ' : upper(c));
+  }
+  return plain;
+}
+
+bool is_name_start(char c) { return is_letter(c) || c == '_' || c == '$'; }
+
+std::size_t skip_blanks(std::string_view text, std::size_t at) {
+  while (at < text.size() && is_blank(text[at])) ++at;
+  return at;
+}
+
+LabelName without_zeros(LabelName name) {
+  const bool numbered = name.size() > 1 && (name[0] == 'N' || name[0] == ':') &&
+                        name.find_first_not_of("0123456789", 1) == std::string::npos;
+  while (numbered && name.size() > 2 && name[1] == '0') name.erase(1, 1);
+  return name;
+}
+
+// The label that is named at this place; nothing where a value is computed.
+std::optional<LabelName> label_at(std::string_view text, std::size_t at) {
+  std::size_t end = at + (at < text.size() && text[at] == ':' ? 1 : 0);
+  end = after_siemens_name(text, end);
+  if (end <= at || text[at] == '$') return std::nullopt;
+  return without_zeros(LabelName(text.substr(at, end - at)));
+}
+
+// The names of a line, one after the other, with the place behind each.
+struct Name {
+  std::string_view text;
+  std::size_t end = 0;
+};
+
+std::vector<Name> names_in(std::string_view text) {
+  std::vector<Name> names;
+  for (std::size_t at = 0; at < text.size();) {
+    if (!is_name_start(text[at])) {
+      ++at;
+      continue;
+    }
+    const std::size_t end = after_siemens_name(text, at);
+    names.push_back({text.substr(at, end - at), end});
+    at = end;
+  }
+  return names;
+}
+
+bool is_jump(std::string_view name) {
+  constexpr std::array<std::string_view, 4> kJumps = {"GOTO", "GOTOF", "GOTOB", "GOTOC"};
+  return std::ranges::find(kJumps, name) != kJumps.end();
+}
+
+bool contains_jump(std::string_view plain) {
+  return std::ranges::any_of(names_in(plain), [](const Name& name) { return is_jump(name.text); });
+}
+
+// Behind block number, skip sign and label.
+std::string_view statement_in(std::string_view plain) {
+  std::size_t at = skip_blanks(plain, 0);
+  if (at < plain.size() && plain[at] == '/') at = skip_blanks(plain, at + 1);
+  for (;;) {
+    if (at >= plain.size()) return {};
+    const std::size_t end = after_siemens_name(plain, at);
+    const std::string_view name = plain.substr(at, end - at);
+    const bool number = name.size() > 1 && name[0] == 'N' &&
+                        name.find_first_not_of("0123456789", 1) == std::string_view::npos;
+    const std::size_t behind = skip_blanks(plain, end);
+    const bool label = !name.empty() && behind < plain.size() && plain[behind] == ':';
+    if (!number && !label) return plain.substr(at);
+    at = skip_blanks(plain, label ? behind + 1 : end);
+  }
+}
+
+std::string_view first_name(std::string_view statement) {
+  return statement.substr(0, after_siemens_name(statement, 0));
+}
+
+// +1 where a body begins, -1 where it ends. IF with a jump has none, nor has REPEAT with a label.
+int body_step(std::string_view statement) {
+  constexpr std::array<std::string_view, 3> kBegins = {"WHILE", "FOR", "LOOP"};
+  constexpr std::array<std::string_view, 5> kEnds = {"ENDIF", "ENDWHILE", "ENDFOR", "ENDLOOP",
+                                                     "UNTIL"};
+  const std::string_view name = first_name(statement);
+  if (std::ranges::find(kEnds, name) != kEnds.end()) return -1;
+  if (std::ranges::find(kBegins, name) != kBegins.end()) return 1;
+  if (name == "IF") return contains_jump(statement) ? 0 : 1;
+  const bool alone = skip_blanks(statement, name.size()) >= statement.size();
+  return name == "REPEAT" && alone ? 1 : 0;
+}
+
+class FlowReader {
+ public:
+  explicit FlowReader(const Program& program)
+      : program_(program), flow_(program.blocks.size()), labels_(program.blocks.size()) {}
+
+  std::vector<BlockFlow> run() {
+    for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
+      if (program_.blocks[i].opacity != Opacity::kProgramMark) read_block(i);
+    }
+    mark_targets();
+    for (BlockFlow& each : flow_) each.in_body |= is_subprogram_;
+    return std::move(flow_);
+  }
+
+ private:
+  [[nodiscard]] std::string_view text_of(const Block& block) const {
+    return program_.source.text(block.span);
+  }
+
+  void read_block(std::size_t i) {
+    const Block& block = program_.blocks[i];
+    note_labels(i);
+    if (block.opacity == Opacity::kFlow || block.opacity == Opacity::kUnreadable) {
+      const std::string plain = plain_text(text_of(block));
+      note_jumps(plain);
+      const int step = block.opacity == Opacity::kFlow ? body_step(statement_in(plain)) : 0;
+      flow_[i].in_body |= step != 0;
+      depth_ = std::max(0, depth_ + step);
+    }
+    if (block.opacity == Opacity::kForeign || block.opacity == Opacity::kNamedWords) {
+      is_subprogram_ |= ends_subprogram(block);
+    }
+    flow_[i].in_body |= depth_ > 0;
+  }
+
+  // A block may have a number and a name.
+  void note_labels(std::size_t i) {
+    const Block& block = program_.blocks[i];
+    for (const Word& word : program_.words_of(block)) {
+      if (word.letter != 'N') continue;
+      labels_[i].push_back(
+          without_zeros(without_blanks(plain_text(program_.source.text(word.span)))));
+    }
+    const bool may_have_name = block.opacity == Opacity::kNamedWords ||
+                               block.opacity == Opacity::kFlow ||
+                               block.opacity == Opacity::kForeign;
+    if (!may_have_name || text_of(block).find(':') == std::string_view::npos) return;
+    SiemensLexer lexer(program_.source.text(), block.span);
+    for (;;) {
+      const SiemensToken token = lexer.next();
+      const bool in_front = token.kind == SiemensTokenKind::kSkip || token.letter == 'N';
+      if (token.kind == SiemensTokenKind::kLabel) {
+        labels_[i].push_back(without_zeros(plain_text(program_.source.text(token.name))));
+      } else if (!in_front) {
+        return;
+      }
+    }
+  }
+
+  void note_jumps(std::string_view plain) {
+    const std::vector<Name> names = names_in(plain);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (names[k].text == "GOTOS") {
+        starts_again_ = true;
+      } else if (is_jump(names[k].text)) {
+        note_target(label_at(plain, skip_blanks(plain, names[k].end)));
+      } else if (names[k].text == "REPEAT" || names[k].text == "REPEATB") {
+        // All names behind it but P=3: the first and the last label of what is done again.
+        for (std::size_t other = k + 1; other < names.size(); ++other) {
+          if (names[other].text != "P")
+            note_target(LabelName(without_zeros(LabelName(names[other].text))));
+        }
+        if (names.size() > k + 1) return;
+      }
+    }
+  }
+
+  void note_target(const std::optional<LabelName>& label) {
+    if (label) {
+      targets_.insert(*label);
+    } else {
+      any_label_ = true;
+    }
+  }
+
+  [[nodiscard]] bool ends_subprogram(const Block& block) const {
+    const std::string plain = plain_text(text_of(block));
+    return std::ranges::any_of(names_in(plain), [](const Name& name) {
+      return name.text == "M17" || name.text == "RET" || name.text == "PROC";
+    });
+  }
+
+  void mark_targets() {
+    std::unordered_set<LabelName> all;
+    for (const auto& labels : labels_) all.insert(labels.begin(), labels.end());
+    any_label_ |= std::ranges::any_of(
+        targets_, [&all](const LabelName& target) { return !all.contains(target); });
+    for (std::size_t i = 0; i < labels_.size(); ++i) {
+      const bool named = std::ranges::any_of(
+          labels_[i], [this](const LabelName& label) { return targets_.contains(label); });
+      const bool target = named || (any_label_ && !labels_[i].empty());
+      flow_[i].label_referenced = target;
+      flow_[i].jump_target = target;
+    }
+    if (starts_again_ && !flow_.empty()) flow_.front().jump_target = true;
+  }
+
+  const Program& program_;
+  std::vector<BlockFlow> flow_;
+  std::vector<std::vector<LabelName>> labels_;
+  std::unordered_set<LabelName> targets_;
+  bool any_label_ = false;
+  bool starts_again_ = false;
+  bool is_subprogram_ = false;
+  int depth_ = 0;
+};
+
+}  // namespace
+
+std::vector<BlockFlow> find_siemens_flow(const Program& program) {
+  return FlowReader(program).run();
+}
+
+FlowEffect siemens_flow_effect(std::string_view text) {
+  // CASE too: falls through with the state that it found.
+  return contains_jump(plain_text(text)) ? FlowEffect::kNothing : FlowEffect::kEverything;
+}
+
+}  // namespace batten::gcode
