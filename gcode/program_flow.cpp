@@ -138,6 +138,11 @@ int siemens_body_step(std::string_view bare) {
   return bare == "REPEAT" ? 1 : 0;
 }
 
+// The letters of labels, calls and cycles: a block without them has no part in the flow.
+bool names_flow(const Word& word) {
+  return word.letter == 'N' || word.letter == 'M' || word.letter == 'G';
+}
+
 class FlowFinder {
  public:
   explicit FlowFinder(const Program& program)
@@ -163,6 +168,11 @@ class FlowFinder {
       return;
     }
     const auto words = program_.words_of(block);
+    if (block.opacity == Opacity::kNone && program_.language == Language::kRs274 &&
+        std::ranges::none_of(words, names_flow)) {
+      flow_[i].in_body |= depth_ > 0;
+      return;
+    }
     labels_[i] = whole_number(find_word(words, 'N'));
     if (program_.language == Language::kSiemens) {
       return read_siemens(i);
