@@ -24,7 +24,9 @@ std::size_t index_at(double from_corner, double size, std::size_t count) {
 
 }  // namespace
 
-std::size_t BoxGrid::column_of(double x) const { return index_at(x - corner_.x(), size_, columns_); }
+std::size_t BoxGrid::column_of(double x) const {
+  return index_at(x - corner_.x(), size_, columns_);
+}
 
 std::size_t BoxGrid::row_of(double y) const { return index_at(y - corner_.y(), size_, rows_); }
 

@@ -167,8 +167,7 @@ class ArcMeter {
   [[nodiscard]] bool bulges_within(double tolerance, double from, double to,
                                    const PlaneBand::Sample& sample) const {
     if (arc_.is_line()) return true;
-    const double height =
-        cross(sample.edge_way, arc_.center - sample.place) - turn_ * radius_;
+    const double height = cross(sample.edge_way, arc_.center - sample.place) - turn_ * radius_;
     if (std::abs(height) <= tolerance) return true;
     double at = wrapped(turn_ * (sample.edge_angle - arc_.start_angle()));
     if (at < 0) at += 2 * kPi;

@@ -61,7 +61,7 @@ RunContext context_of(const gcode::Program& program, const gcode::Interpretation
 class PartSmoother {
  public:
   PartSmoother(const ProgramPart& part, const SmoothOptions& options, const Tell& tell,
-              PartRuns& runs)
+               PartRuns& runs)
       : part_(part), options_(options), tell_(tell), runs_(runs) {}
 
   // False: the work was stopped.

@@ -53,9 +53,10 @@ TEST(PlainLines, MeanWhatTheyMeanBesideAComment) {
   // Among them words that end the plain way: arcs, increments, polar words, cycles, a jump, a word
   // twice, places that are not known yet, inches.
   const std::vector<std::string> kinds = {
-      "X1", "Y2.5", "Z-1", "X1 Y2", "X3 Z1", "X1 Y1 Z1", "X.5 X2", "G1", "G0", "G2 X1 Y1 I1 J0",
-      "G91", "G90", "G16", "G15", "G81 Z-1 R1", "G80", "M98 P2", "F100", "X1 F200", "G20", "G21",
-      "N7 X4", "GOTO 7", "/X9", "X1 Y#1", "G92 X0", "M3", "X1 A5", "G28 X0", "T1 M6", "Y3"};
+      "X1",     "Y2.5",           "Z-1",     "X1 Y2", "X3 Z1",  "X1 Y1 Z1", "X.5 X2",     "G1",
+      "G0",     "G2 X1 Y1 I1 J0", "G91",     "G90",   "G16",    "G15",      "G81 Z-1 R1", "G80",
+      "M98 P2", "F100",           "X1 F200", "G20",   "G21",    "N7 X4",    "GOTO 7",     "/X9",
+      "X1 Y#1", "G92 X0",         "M3",      "X1 A5", "G28 X0", "T1 M6",    "Y3"};
   for (unsigned seed = 0; seed < 300; ++seed) {
     std::mt19937 random(seed);
     std::uniform_int_distribution<std::size_t> any(0, kinds.size() - 1);

@@ -24,10 +24,9 @@ Pairs one_by_one(const std::vector<FlatBox>& boxes) {
   Pairs pairs;
   for (std::uint32_t a = 0; a < boxes.size(); ++a) {
     for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
-      const bool apart = boxes[a].high.x() < boxes[b].low.x() ||
-                         boxes[b].high.x() < boxes[a].low.x() ||
-                         boxes[a].high.y() < boxes[b].low.y() ||
-                         boxes[b].high.y() < boxes[a].low.y();
+      const bool apart =
+          boxes[a].high.x() < boxes[b].low.x() || boxes[b].high.x() < boxes[a].low.x() ||
+          boxes[a].high.y() < boxes[b].low.y() || boxes[b].high.y() < boxes[a].low.y();
       if (!apart) pairs.emplace_back(a, b);
     }
   }
