@@ -108,6 +108,11 @@ bool has_code(std::span<const Word> words, char letter, double low, double high)
   });
 }
 
+// The letters of labels, calls and cycles: a block without them has no part in the flow.
+bool names_flow(const Word& word) {
+  return word.letter == 'N' || word.letter == 'M' || word.letter == 'G';
+}
+
 class FlowFinder {
  public:
   explicit FlowFinder(const Program& program)
@@ -131,6 +136,11 @@ class FlowFinder {
       return;
     }
     const auto words = program_.words_of(block);
+    if (block.opacity == Opacity::kNone && program_.language == Language::kRs274 &&
+        std::ranges::none_of(words, names_flow)) {
+      flow_[i].in_body |= depth_ > 0;
+      return;
+    }
     labels_[i] = whole_number(find_word(words, 'N'));
     if (block.opacity != Opacity::kNone) {
       read_text(i, block.opacity == Opacity::kFlow);

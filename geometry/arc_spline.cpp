@@ -125,9 +125,11 @@ class Search {
 
  private:
   void grow(const std::vector<std::size_t>& level, std::size_t arcs) {
+    for (const std::size_t i : level) finish(i, arcs);
+    // A chain that goes on from here has two arcs more at the least: no better than the best.
+    if (arcs + 2 >= best_arcs_) return;
     std::vector<Node> found;
     for (const std::size_t i : level) {
-      finish(i, arcs);
       spread(i, found);
       if (options_.kinks) turn_at_corner(i, arcs);
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace batten::geometry {
 
@@ -72,20 +73,25 @@ void measure(const FitSample& sample, const Point3& on_curve, SampleState& state
 void reweight_scatter(std::span<const FitSample> samples, std::span<SampleState> states,
                       std::size_t begin, std::size_t end, ScatterStep step) {
   const double least = step == ScatterStep::kGrow ? 1 : kFall;
-  double sum = 0;  // of squared distances over scatter in [first, last[
+  // Squared distances over scatter, 0 where none is expected, of all that any window holds.
+  const std::size_t offset = begin < kScatterWindow ? 0 : begin - kScatterWindow;
+  std::vector<double> squares(std::min(end + kScatterWindow, samples.size()) - offset, 0);
+  for (std::size_t k = 0; k < squares.size(); ++k) {
+    const FitSample& sample = samples[offset + k];
+    if (!(sample.scatter > 0)) continue;
+    const double ratio = states[offset + k].distance / sample.scatter;
+    squares[k] = ratio * ratio;
+  }
+  double sum = 0;  // of those in [first, last[
   std::size_t count = 0;
-  std::size_t first = begin < kScatterWindow ? 0 : begin - kScatterWindow;
+  std::size_t first = offset;
   std::size_t last = first;
-  const auto square = [&](std::size_t i) {
-    const double ratio = states[i].distance / samples[i].scatter;
-    return ratio * ratio;
-  };
   for (std::size_t i = begin; i < end; ++i) {
     for (; last < samples.size() && last <= i + kScatterWindow; ++last) {
-      if (samples[last].scatter > 0) sum += square(last), ++count;
+      if (samples[last].scatter > 0) sum += squares[last - offset], ++count;
     }
     for (; first + kScatterWindow < i; ++first) {
-      if (samples[first].scatter > 0) sum -= square(first), --count;
+      if (samples[first].scatter > 0) sum -= squares[first - offset], --count;
     }
     if (!(samples[i].scatter > 0) || count == 0) continue;
     const double rms = std::sqrt(std::max(sum, 0.0) / static_cast<double>(count));

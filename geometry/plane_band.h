@@ -48,6 +48,7 @@ class PlaneBand {
     double station;     // length along the polyline, mm
     double edge_angle;  // direction of the edge that ends here or passes here, radians
     double turn;        // radians, signed, at a vertex; 0 between vertices
+    Vector2 edge_way;   // the unit vector of that direction
   };
 
   struct Limits {
@@ -74,11 +75,23 @@ class PlaneBand {
                                                   const PlaneArc& arc) const;
 
  private:
-  void add_edge(const Point2& from, const Point2& to, double turn_before, double turn_after);
+  // An edge of the polyline, with the turns at its ends.
+  struct Edge {
+    Point2 from;
+    Point2 to;
+    double angle;
+    double turn_before;
+    double turn_after;
+  };
+  void add_edge(const Edge& edge);
+  void add_sample(const Sample& sample);
 
   Limits limits_;
   double steepest_;  // a place seen at half the sweep from the tangent: the arc has turned by it
   std::vector<Sample> samples_;
+  // The places once more, for fans: many of them are asked for together.
+  std::vector<double> x_;
+  std::vector<double> y_;
 };
 
 }  // namespace batten::geometry

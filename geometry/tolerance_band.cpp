@@ -41,9 +41,11 @@ double half_turn(const FlatEdges& edges, std::size_t edge) {
 
 std::vector<BandCusp> find_cusps(const Distinct& path, double tolerance) {
   std::vector<BandCusp> cusps;
+  if (path.edges.size() < 3) return cusps;
+  double at_end = half_turn(path.edges, 0);
   for (std::size_t i = 1; i + 1 < path.edges.size(); ++i) {
-    const double at_start = half_turn(path.edges, i - 1);
-    const double at_end = half_turn(path.edges, i);
+    const double at_start = at_end;
+    at_end = half_turn(path.edges, i);
     if (!(at_start * at_end > 0)) continue;
     const double length = (path.edges.to(i) - path.edges.from(i)).norm();
     if (length > tolerance * std::abs(at_start + at_end)) continue;

@@ -45,10 +45,13 @@ bool is_flat(const ChordPolyline& chords, std::size_t edge, int axis) {
 
 Layers layers_of(const ChordPolyline& chords, int axis) {
   Layers layers;
+  auto last = layers.end();  // of the edge before: heights change seldom
   for (std::size_t i = 0; i < chords.edge_count(); ++i) {
     if (!is_flat(chords, i, axis)) continue;
     const Point3& from = chords.points[i];
-    Layer& layer = layers[rounded(from[axis])];
+    const double height = rounded(from[axis]);
+    if (last == layers.end() || last->first != height) last = layers.try_emplace(height).first;
+    Layer& layer = last->second;
     layer.height = from[axis];
     if (layer.edges.add(across(from, axis), across(chords.points[i + 1], axis))) {
       layer.pieces.push_back(chords.pieces[i]);
@@ -192,13 +195,15 @@ std::optional<NewCrossing> new_crossing(std::span<const PathPiece> before,
   if (before.empty() || after.empty()) return {};
   const ChordPolyline chords = cut_into_chords(after, kChordPart * tolerance);
   const int axis = main_axis(chords);
-  const Layers then = layers_of(cut_into_chords(before, kChordPart * tolerance), axis);
+  // Of the old path only where the new one meets itself, which is seldom.
+  std::optional<Layers> then;
   std::optional<NewCrossing> first;
   for (const auto& [key, layer] : layers_of(chords, axis)) {
-    const auto old = then.find(key);
-    if (old == then.end()) continue;
     const std::vector<Meeting> met = meetings_of(layer.edges);
     if (met.empty()) continue;
+    if (!then) then = layers_of(cut_into_chords(before, kChordPart * tolerance), axis);
+    const auto old = then->find(key);
+    if (old == then->end()) continue;
     const auto found = first_new(met, old->second.edges, tolerance);
     if (!found) continue;
     NewCrossing crossing{layer.pieces[found->edges.first], layer.pieces[found->edges.second], {}};

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/box_grid.h"
 #include "geometry/numeric.h"
 
 namespace batten::geometry {
@@ -22,11 +23,63 @@ Segment segment_of(const FlatEdges& edges, std::size_t edge) {
   return {to_cgal(edges.from(edge)), to_cgal(edges.to(edge))};
 }
 
-PairBox box_around(const FlatEdges& edges, std::uint32_t edge, double margin) {
-  const CGAL::Bbox_2 b = segment_of(edges, edge).bbox();
-  return PairBox(
-      CGAL::Bbox_2(b.xmin() - margin, b.ymin() - margin, b.xmax() + margin, b.ymax() + margin),
-      edge);
+FlatBox box_around(const FlatEdges& edges, std::size_t edge, double margin) {
+  const Point2 low = edges.from(edge).cwiseMin(edges.to(edge));
+  const Point2 high = edges.from(edge).cwiseMax(edges.to(edge));
+  return {low - Point2(margin, margin), high + Point2(margin, margin)};
+}
+
+// As BoxGrid::each_pair, for boxes of any sizes.
+template <typename Function>
+void each_pair_of_any(std::span<const FlatBox> around, const Function& found) {
+  std::vector<PairBox> boxes;
+  boxes.reserve(around.size());
+  for (std::uint32_t i = 0; i < around.size(); ++i) {
+    const auto& [low, high] = around[i];
+    boxes.emplace_back(CGAL::Bbox_2(low.x(), low.y(), high.x(), high.y()), i);
+  }
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(),
+                                [&](const PairBox& a, const PairBox& b) {
+                                  found(std::min(a.info(), b.info()), std::max(a.info(), b.info()));
+                                });
+}
+
+bool share_a_vertex(const FlatEdges& edges, std::size_t a, std::size_t b) {
+  return edges.to(a) == edges.from(b) || edges.to(b) == edges.from(a);
+}
+
+// Both places lie on one side of the line through an edge, further from it than `reach` and the
+// rounding of it.
+bool lie_beside(const FlatEdges& edges, std::size_t edge, const Point2& a, const Point2& b,
+                double reach) {
+  const Point2& from = edges.from(edge);
+  const Vector2 along = edges.to(edge) - from;
+  const double limit = (reach + kSamePlace) * along.norm();
+  const double first = cross(along, a - from);
+  const double second = cross(along, b - from);
+  return (first > limit && second > limit) || (first < -limit && second < -limit);
+}
+
+// Whether two edges are no further apart than `reach`: nearly all that are asked for are neighbours
+// or lie beside each other, which needs no exact distance.
+bool are_near(const FlatEdges& edges, const EdgePair& pair, double reach) {
+  const auto [a, b] = pair;
+  if (share_a_vertex(edges, a, b)) return true;
+  if (lie_beside(edges, a, edges.from(b), edges.to(b), reach) ||
+      lie_beside(edges, b, edges.from(a), edges.to(a), reach)) {
+    return false;
+  }
+  return edge_distance(edges, pair) <= reach;
+}
+
+// Whether a place is no further from an edge than `reach`.
+bool is_near(const FlatEdges& edges, std::size_t edge, const Point2& place, double reach) {
+  const Point2& from = edges.from(edge);
+  const Vector2 along = edges.to(edge) - from;
+  const double t = std::clamp((place - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  const double distance = (place - from - t * along).norm();
+  if (std::abs(distance - reach) > kSamePlace) return distance < reach;
+  return edge_distance(edges, edge, place) <= reach;
 }
 
 // Ends a search that finds too much.
@@ -73,10 +126,10 @@ class Grouping {
       const auto after_first = edges_.after(first);
       const auto after_second = edges_.after(second);
       if (after_first == second || after_second == first) join_beside(i);
-      if (after_first && edge_distance(edges_, second, edges_.to(first)) <= reach_) {
+      if (after_first && is_near(edges_, second, edges_.to(first), reach_)) {
         join(i, *after_first, second);
       }
-      if (after_second && edge_distance(edges_, first, edges_.to(second)) <= reach_) {
+      if (after_second && is_near(edges_, first, edges_.to(second), reach_)) {
         join(i, first, *after_second);
       }
     }
@@ -85,6 +138,7 @@ class Grouping {
 
  private:
   void join(std::size_t pair, std::size_t a, std::size_t b) {
+    if (a == b) return;
     const EdgePair wanted{static_cast<std::uint32_t>(std::min(a, b)),
                           static_cast<std::uint32_t>(std::max(a, b))};
     const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), wanted);
@@ -117,6 +171,10 @@ class Grouping {
 
 // The path turns right back at the vertex that two neighbours share.
 bool folds(const FlatEdges& edges, std::size_t before, std::size_t after) {
+  const Point2& corner = edges.to(before);
+  // Legs that point to different half planes: the angle is not acute by far more than rounding.
+  const double turned_back = (edges.from(before) - corner).dot(edges.to(after) - corner);
+  if (turned_back < -kSamePlace * (edges.from(before) - corner).norm()) return false;
   const Kernel::Point_2 start = to_cgal(edges.from(before));
   const Kernel::Point_2 vertex = to_cgal(edges.to(before));
   const Kernel::Point_2 end = to_cgal(edges.to(after));
@@ -148,19 +206,24 @@ std::optional<std::size_t> FlatEdges::after(std::size_t edge) const {
 
 std::optional<std::vector<EdgePair>> near_pairs(const FlatEdges& edges, double reach) {
   std::vector<EdgePair> pairs;
-  std::vector<PairBox> boxes;
+  if (edges.size() == 0) return pairs;
+  std::vector<FlatBox> boxes;
   boxes.reserve(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    boxes.push_back(box_around(edges, static_cast<std::uint32_t>(i), 0.5 * reach));
+    boxes.push_back(box_around(edges, i, 0.5 * reach));
   }
-  const auto found = [&](const PairBox& a, const PairBox& b) {
-    const EdgePair pair{std::min(a.info(), b.info()), std::max(a.info(), b.info())};
-    if (edge_distance(edges, pair) > reach) return;
+  const auto found = [&](std::uint32_t first, std::uint32_t second) {
+    const EdgePair pair{first, second};
+    if (!are_near(edges, pair, reach)) return;
     pairs.push_back(pair);
     if (pairs.size() > kMostPairs * edges.size()) throw TooMany{};
   };
   try {
-    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), found);
+    if (const auto grid = BoxGrid::made_of(boxes)) {
+      grid->each_pair(found);
+    } else {
+      each_pair_of_any(boxes, found);
+    }
   } catch (const TooMany&) {
     return {};
   }

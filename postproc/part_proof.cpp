@@ -8,6 +8,7 @@
 #include "gcode/parser.h"
 #include "gcode/reason.h"
 #include "postproc/added_lines.h"
+#include "postproc/parallel_verification.h"
 
 namespace batten::postproc {
 
@@ -89,8 +90,8 @@ class Prover {
       before.before = part_.window->old_events;
       after.before = part_.window->new_text.events;
     }
-    round.verification =
-        verify(before, after, {options_.tolerance_mm, options_.tolerance_kind, options_.side});
+    const Promise promise(options_.tolerance_mm, options_.tolerance_kind, options_.side);
+    round.verification = verify_in_parallel(before, after, promise, options_.threads);
     add_breaches(added, after, round.verification);
     round.added_lines = added.lines;
     round.blocks = program.blocks.size();

@@ -68,9 +68,9 @@ class PartSmoother {
   bool run() {
     std::vector<std::size_t> whole;
     for (std::size_t i = 0; i < runs_.works.size(); ++i) {
-      if (run_of(runs_.works[i]).points.size() <= kWholeAtMost) whole.push_back(i);
+      if (!is_cut_at_once(runs_.works[i])) whole.push_back(i);
     }
-    note_bands();
+    if (!nothing_asked()) note_bands();  // they warn of what new paths may do
     for (const RunWork& work : runs_.works) points_ += run_of(work).points.size();
     if (!smooth_works(whole)) return false;
     const std::vector<std::size_t> pieces = cut_runs();
@@ -86,6 +86,12 @@ class PartSmoother {
     oneapi::tbb::task_arena arena(options_.threads > 0 ? options_.threads
                                                        : oneapi::tbb::task_arena::automatic);
     arena.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, count, function); });
+  }
+
+  [[nodiscard]] bool nothing_asked() const { return options_.method == Method::kNone; }
+
+  [[nodiscard]] bool is_cut_at_once(const RunWork& work) const {
+    return run_of(work).points.size() > kWholeAtMost && !nothing_asked();
   }
 
   [[nodiscard]] const Run& run_of(const RunWork& work) const {
@@ -145,7 +151,7 @@ class PartSmoother {
 
   bool add_pieces(RunWork& work, std::vector<Section>& sections, std::vector<RunWork>& works,
                   std::vector<std::size_t>& fresh) {
-    const bool too_long = run_of(work).points.size() > kWholeAtMost;
+    const bool too_long = is_cut_at_once(work);
     const std::string_view kept = work.choosing.reason;
     const bool disappoints = kept == gcode::reason::kNoGain || kept == gcode::reason::kSlower ||
                              kept == gcode::reason::kNoFit;

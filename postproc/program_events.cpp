@@ -64,6 +64,7 @@ class Lister {
         set_by_word_(read.before.set_by_word) {}
 
   ProgramEvents run() {
+    list_.cuts.reserve(interpretation_.motions.size());
     for (std::uint32_t i = 0; i < program_.blocks.size(); ++i) list_block(i);
     list_.cuts_before.push_back(list_.cuts.size());
     return std::move(list_);
@@ -163,7 +164,17 @@ class Lister {
     }
     if (!moves) return false;
     const Motion& motion = interpretation_.motions[static_cast<std::size_t>(meaning.motion)];
-    return !motion.start_known || !motion.end_known || !path_alone_counts(state_after());
+    return !motion.start_known || !motion.end_known || !path_alone_counts_here();
+  }
+
+  // States are shared by many blocks: asked once for each.
+  [[nodiscard]] bool path_alone_counts_here() const {
+    const std::uint32_t state = interpretation_.blocks[block_index_].state_after;
+    if (asked_state_ != state) {
+      asked_state_ = state;
+      answer_ = path_alone_counts(interpretation_.states[state]);
+    }
+    return answer_;
   }
 
   // Does the word mean what it means without its neighbours? X of a line does, X of G28 not.
@@ -241,8 +252,8 @@ class Lister {
   // A block that stands as text sets modes too.
   void remember_words(const Block& block) {
     for (const Word& word : program_.words_of(block)) {
-      const std::optional<Code> code = word.is_number ? code_of(word) : std::nullopt;
-      if (word.letter == 'G' && code) {
+      if (word.letter != 'G' || !word.is_number) continue;
+      if (const std::optional<Code> code = code_of(word)) {
         set_by_word_[static_cast<std::size_t>(gcode::group_of_g(*code))] = *code;
       }
     }
@@ -330,6 +341,8 @@ class Lister {
   std::uint32_t block_index_ = 0;
   std::array<Code, kCodeGroups> set_by_word_;  // the last word of each group
   bool acts_with_motion_ = false;
+  mutable std::optional<std::uint32_t> asked_state_;
+  mutable bool answer_ = false;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/fair_measure.h"
 #include "geometry/one_sided_fair.h"
 
 namespace batten::postproc {
@@ -88,22 +89,24 @@ double greatest_curvature(std::span<const Point3> p) {
 double greatest_curvature(const geometry::BsplineCurve& curve) {
   constexpr int kParts = 8;
   double most = 0;
+  geometry::SplineWalk walk(curve.basis().knots(), curve.control_points());
   const std::vector<double> knots = curve.breakpoints();
   for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
     for (int k = 0; k < kParts; ++k) {
       const double u = knots[i] + (knots[i + 1] - knots[i]) * k / kParts;
-      most = std::max(most, curve.curvature_at(u));
+      most = std::max(most, walk.curvature_at(u));
     }
   }
-  return std::max(most, curve.curvature_at(curve.last()));
+  return std::max(most, walk.curvature_at(curve.last()));
 }
 
 double chord_error(const Run& run, const FairPath& meant, double rounding) {
   double squares = 0;
+  geometry::SplineWalk curve(meant.curve.basis().knots(), meant.curve.control_points());
   for (std::size_t i = 0; i + 1 < run.points.size(); ++i) {
     const double u = 0.5 * (meant.vertex_parameters[i] + meant.vertex_parameters[i + 1]);
     const Point3 middle = 0.5 * (run.points[i] + run.points[i + 1]);
-    const Vector3 off = meant.curve.point_at(u) - middle;
+    const Vector3 off = curve.point_at(u) - middle;
     const Vector3 along = run.points[i + 1] - run.points[i];
     const double length = along.squaredNorm();
     const double slide = length > 0 ? off.dot(along) / length : 0;

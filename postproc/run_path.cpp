@@ -109,6 +109,7 @@ bool is_end_of_motion(const Run& run, std::size_t vertex) {
 
 std::vector<RunMotion> motions_between(const Run& run, std::size_t first, std::size_t last) {
   std::vector<RunMotion> motions;
+  motions.reserve(last - first);
   auto arc = arc_not_before(run, first);
   for (std::size_t i = first; i < last;) {
     while (arc != run.arcs.end() && arc->last <= i) ++arc;

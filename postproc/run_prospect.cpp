@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/curve_pieces.h"
+#include "geometry/fair_measure.h"
 
 namespace batten::postproc {
 
@@ -59,12 +60,13 @@ double coarse_part(const Run& run, double tolerance) {
 double chords_for(const geometry::FairPath& fair, double deviation, double min_length) {
   constexpr int kParts = 3;
   double chords = 0;
+  geometry::SplineWalk curve(fair.curve.basis().knots(), fair.curve.control_points());
   const std::vector<double> breaks = fair.curve.breakpoints();
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
     const double step = (breaks[i + 1] - breaks[i]) / kParts;
     for (int k = 0; k < kParts; ++k) {
       // The parameter is about the length.
-      const double curvature = fair.curve.curvature_at(breaks[i] + (k + 0.5) * step);
+      const double curvature = curve.curvature_at(breaks[i] + (k + 0.5) * step);
       const double per_mm = std::sqrt(curvature / (8 * deviation));
       chords += step * (per_mm * min_length > 1 ? std::sqrt(0.5) * per_mm : per_mm);
     }

@@ -11,6 +11,7 @@
 #include "gcode/reason.h"
 #include "geometry/numeric.h"
 #include "postproc/machine/cycle_time.h"
+#include "postproc/machine/timed_chain.h"
 #include "postproc/run_choice.h"
 #include "postproc/run_curve.h"
 #include "postproc/run_path.h"
@@ -85,11 +86,11 @@ class RunSmoother {
 
   SmoothedRun smooth() {
     result_.facts.max_curvature = greatest_curvature(run_.points);
-    time_around_ = times_around();
     const std::vector<TimedPiece> motions = timed_pieces(run_, 0, run_.points.size() - 1);
+    if (options_.method == Method::kNone) return kept_unasked(motions);
+    time_around_ = times_around();
     result_.facts.times = times_in_place(motions);
     if (!run_.arcs.empty()) result_.facts.kink = greatest_kink(motions);
-    if (options_.method == Method::kNone) return kept(gcode::reason::kMethodNone);
 
     ToleranceShares shares = share_tolerance(options_, units_, run_.decimals);
     shares.smoothing -= run_.chord_error;  // the points are not quite where the arcs are
@@ -101,8 +102,9 @@ class RunSmoother {
     const Method first = best ? Method::kFair : options_.method;
     const auto curve = curve_of(first, run_.points, curve_request(first, shares, rounding));
     if (curve) {
+      curvature_ = greatest_curvature(curve->path.curve);
       know(curve->path, rounding);
-      try_curve(*curve, shares);
+      add_candidates_of(*curve, shares);
     }
     if (curve && has_curves()) try_kept_corners(shares, rounding);
     if (best && !one_sided()) try_others(shares, rounding);
@@ -135,14 +137,19 @@ class RunSmoother {
   void know(const geometry::FairPath& path, double rounding) {
     result_.facts.noise = path.noise;
     result_.facts.error = chord_error(run_, path, rounding);
-    result_.facts.fair_curvature = greatest_curvature(path.curve);
+    result_.facts.fair_curvature = curvature_;
   }
 
   void try_curve(const RunCurve& curve, const ToleranceShares& shares) {
+    curvature_ = greatest_curvature(curve.path.curve);
+    add_candidates_of(curve, shares);
+  }
+
+  // Where it leaves some of the tolerance.
+  void add_candidates_of(const RunCurve& curve, const ToleranceShares& shares) {
     const double left = shares.smoothing + shares.form - curve.path.deviation;
     if (!(left > 0)) return;
     fits_ = true;
-    curvature_ = greatest_curvature(curve.path.curve);
     add_candidates(curve, shares.form, left);
   }
 
@@ -395,6 +402,12 @@ class RunSmoother {
     return before;
   }
 
+  // Nothing is compared: what is told of the run is the time that it takes.
+  SmoothedRun kept_unasked(const std::vector<TimedPiece>& motions) {
+    result_.facts.times.as_set = cutting_time(motions, *options_.machine, context_.after.path);
+    return kept(gcode::reason::kMethodNone);
+  }
+
   SmoothedRun kept(std::string_view reason) {
     result_.reason = reason;
     return std::move(result_);
@@ -434,14 +447,14 @@ Times& Times::operator-=(const Times& other) {
 Times times_of(const std::vector<TimedPiece>& chain, const Machine& machine, gcode::PathMode path) {
   Machine unmerged = machine;
   unmerged.naive_cam_tolerance = 0;
+  TimedChain timed(chain, machine);
   Times times;
-  times.as_set = cutting_time(chain, machine, path);
+  times.as_set = timed.time(machine, path);
   times.without_merging =
-      machine.naive_cam_tolerance > 0 ? cutting_time(chain, unmerged, path) : times.as_set;
-  std::vector<TimedPiece> unlimited = chain;
-  for (TimedPiece& piece : unlimited) piece.feed = 0;
-  times.flat_out = cutting_time(unlimited, machine, path);
-  times.exact_path = cutting_time(chain, machine, gcode::PathMode::kExactPath);
+      machine.naive_cam_tolerance > 0 ? timed.time(unmerged, path) : times.as_set;
+  times.exact_path = timed.time(machine, gcode::PathMode::kExactPath);
+  timed.lift_feeds(machine);
+  times.flat_out = timed.time(machine, path);
   return times;
 }
 
@@ -449,6 +462,7 @@ std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::siz
   std::vector<TimedPiece> pieces;
   std::size_t next = 0;
   double feed = 0;
+  pieces.reserve(last - first);
   for (RunMotion& motion : motions_between(run, first, last)) {
     while (next < run.feeds.size() && run.feeds[next].vertex <= motion.first) {
       feed = run.feeds[next++].feed;

@@ -1,6 +1,8 @@
 #include "postproc/verification.h"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +14,7 @@
 #include "postproc/common_events.h"
 #include "postproc/event_alignment.h"
 #include "postproc/event_breaches.h"
+#include "postproc/parallel_verification.h"
 #include "postproc/state_difference.h"
 #include "postproc/stretch_comparison.h"
 
@@ -81,11 +84,12 @@ class Follower {
 
 class Verifier {
  public:
-  Verifier(const ReadProgram& before, const ReadProgram& after, const Promise& promise)
+  Verifier(const ReadProgram& before, const ReadProgram& after, const Promise& promise, int threads)
       : old_(before),
         new_(after),
         promise_(promise),
         in_common_words_(before.program->language != after.program->language),
+        threads_(threads),
         old_list_(events_of(before)),
         new_list_(events_of(after)),
         old_follower_(old_, old_list_),
@@ -93,6 +97,8 @@ class Verifier {
 
   Verification run() {
     const EventAlignment aligned = align_events(old_list_, old_, new_list_, new_);
+    find_moves(aligned);
+    compare_ahead();
     EventPair next{0, 0};  // the first events not looked at yet
     for (const EventPair& same : aligned.same) {
       const bool can_compare = report_gap(next, same);
@@ -163,13 +169,56 @@ class Verifier {
     bool joins_next = false;
   };
 
-  void compare_moves_before(const EventPair& same, bool can_compare, bool no_gap) {
+  // The moves before a pair of events, and what comparing them gives where that was done ahead.
+  struct Moves {
+    StretchSide before;
+    StretchSide after;
+    bool gap = false;  // events between stand in one program only
+    std::optional<StretchResult> result;
+
+    [[nodiscard]] bool any() const { return !before.cuts.empty() || !after.cuts.empty(); }
+  };
+
+  void find_moves(const EventAlignment& aligned) {
+    moves_.reserve(aligned.same.size() + 1);
+    EventPair next{0, 0};
+    for (const EventPair& same : aligned.same) {
+      add_moves(next, same);
+      next = {same.before + 1, same.after + 1};
+    }
+    if (aligned.complete) add_moves(next, {old_list_.events.size(), new_list_.events.size()});
+  }
+
+  void add_moves(const EventPair& next, const EventPair& same) {
+    const bool gap = next.before != same.before || next.after != same.after;
     const StretchSide before = old_follower_.move_to(same.before);
     const StretchSide after = new_follower_.move_to(same.after);
+    moves_.push_back({before, after, gap, {}});
+  }
+
+  // Around a gap it is not known yet whether there is anything to compare.
+  void compare_ahead() {
+    std::vector<Moves*> asked;
+    for (Moves& moves : moves_) {
+      if (!moves.gap && moves.any()) asked.push_back(&moves);
+    }
+    if (threads_ == 1 || asked.size() < 2) return;
+    oneapi::tbb::task_arena arena(threads_ > 0 ? threads_ : oneapi::tbb::task_arena::automatic);
+    arena.execute([&] {
+      oneapi::tbb::parallel_for(std::size_t{0}, asked.size(), [&](std::size_t i) {
+        asked[i]->result = compare_stretch(asked[i]->before, asked[i]->after, promise_);
+      });
+    });
+  }
+
+  void compare_moves_before(const EventPair& same, bool can_compare, bool no_gap) {
+    Moves& moves = moves_[next_moves_++];
     if (!can_compare) return flush_stretch();
-    Compared now{before, after, {}, same, false};
-    if (!before.cuts.empty() || !after.cuts.empty()) {
-      now.result = compare_stretch(before, after, promise_);
+    Compared now{moves.before, moves.after, {}, same, false};
+    if (moves.result) {
+      now.result = std::move(*moves.result);
+    } else if (moves.any()) {
+      now.result = compare_stretch(moves.before, moves.after, promise_);
     }
     if (no_gap && last_ && last_->joins_next) join_if_event_moved(*last_, now);
     flush_stretch();
@@ -241,12 +290,15 @@ class Verifier {
   const ReadProgram& new_;
   Promise promise_;
   bool in_common_words_ = false;  // the programs are of two languages
+  int threads_;
   ProgramEvents old_list_;
   ProgramEvents new_list_;
   Follower old_follower_;
   Follower new_follower_;
   Verification result_;
   std::vector<Breach> breaches_;
+  std::vector<Moves> moves_;  // one for each pair of events that are the same, and behind them
+  std::size_t next_moves_ = 0;
   std::optional<Compared> last_;
   std::string_view last_different_item_;
 };
@@ -256,11 +308,16 @@ class Verifier {
 // Programs of two languages are compared in the words that all have (postproc/common_events.h);
 // their rapids end at the same place to within what printing a place in other digits moves it.
 Verification verify(const ReadProgram& before, const ReadProgram& after, const Promise& promise) {
+  return verify_in_parallel(before, after, promise, 1);
+}
+
+Verification verify_in_parallel(const ReadProgram& before, const ReadProgram& after,
+                                const Promise& promise, int threads) {
   if (!(promise.tolerance_mm > 0) || !std::isfinite(promise.tolerance_mm)) {
     throw std::invalid_argument(fmt::format(
         "verify: tolerance {} mm, expected a finite number above 0", promise.tolerance_mm));
   }
-  return Verifier(before, after, promise).run();
+  return Verifier(before, after, promise, threads).run();
 }
 
 }  // namespace batten::postproc

@@ -9,6 +9,7 @@
 #include "postproc/machine/controller_models.h"
 #include "postproc/machine/junction_speed.h"
 #include "postproc/machine/stream_limit.h"
+#include "postproc/machine/timed_chain.h"
 
 namespace batten::postproc {
 namespace {
@@ -79,12 +80,27 @@ StretchChain stretches_of(std::span<const TimedPiece> pieces, const Machine& mac
   return look_ahead_stretches(pieces, machine, path, places);
 }
 
+TimedChain::TimedChain(std::span<const TimedPiece> pieces, const Machine& machine) {
+  require_usable(machine);
+  moving_ = with_length_and_feed(pieces, machine);
+}
+
+double TimedChain::time(const Machine& machine, gcode::PathMode path, ChainEnd end) const {
+  const StretchChain chain = stretches_of(moving_, machine, path, end, WantPlaces::kNo);
+  return profile_time(chain.stretches, chain.rules);
+}
+
+void TimedChain::lift_feeds(const Machine& machine) {
+  for (TimedPiece& p : moving_) {
+    p.feed = 0;
+    p.feed = feed_of(p, machine);
+  }
+  limit_by_stream(moving_, machine);
+}
+
 double cutting_time(std::span<const TimedPiece> pieces, const Machine& machine,
                     gcode::PathMode path, ChainEnd end) {
-  require_usable(machine);
-  const std::vector<TimedPiece> moving = with_length_and_feed(pieces, machine);
-  const StretchChain chain = stretches_of(moving, machine, path, end, WantPlaces::kNo);
-  return profile_time(chain.stretches, chain.rules);
+  return TimedChain(pieces, machine).time(machine, path, end);
 }
 
 }  // namespace batten::postproc

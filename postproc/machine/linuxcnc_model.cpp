@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "geometry/numeric.h"
@@ -48,7 +49,13 @@ Joint joint_of(PathMode path) {
 
 class Queue {
  public:
-  Queue(const Machine& machine, PathMode path) : machine_(machine), joint_(joint_of(path)) {}
+  Queue(const Machine& machine, PathMode path, WantPlaces places)
+      : machine_(machine), joint_(joint_of(path)), places_(places) {
+    chain_.rules.look_ahead = machine_.look_ahead;
+    chain_.rules.ramp_time = kRampTime;
+    chain_.rules.stop_time = kStopPeriods * machine_.servo_period;
+    moves_.reserve(kHeld + kHandedOn + 1);
+  }
 
   void add(const JoinedPiece& timed) {
     Segment next = segment_of(timed, machine_, joint_);
@@ -59,42 +66,47 @@ class Queue {
       finish_segment(moves_.back(), machine_.servo_period);
     }
     moves_.push_back(next);
+    if (moves_.size() >= kHeld + kHandedOn) hand_on(kHandedOn);
   }
 
-  [[nodiscard]] StretchChain finish(ChainEnd end, WantPlaces places) {
-    StretchChain chain;
-    chain.rules.look_ahead = machine_.look_ahead;
-    chain.rules.ramp_time = kRampTime;
-    chain.rules.stop_time = kStopPeriods * machine_.servo_period;
-    if (moves_.empty()) return chain;
+  [[nodiscard]] StretchChain finish(ChainEnd end) {
+    if (moves_.empty()) return std::move(chain_);
     if (end == ChainEnd::kEndOfMotion) enter_last_move_slowly();
     if (end == ChainEnd::kStop || joint_ != Joint::kParabolic) moves_.back().end = Joint::kStop;
-    chain.stretches.reserve(moves_.size());
-    double at_start = 0;  // mm of the move that the overlap with the one before takes
-    for (std::size_t i = 0; i < moves_.size(); ++i) {
+    hand_on(moves_.size());
+    return std::move(chain_);
+  }
+
+ private:
+  // Moves are big, and only the last few of them still change: those before them are stretches
+  // already, some at a time.
+  static constexpr std::size_t kHeld = 4;
+  static constexpr std::size_t kHandedOn = 28;
+
+  void hand_on(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
       const bool overlaps = i + 1 < moves_.size() && moves_[i].end == Joint::kParabolic;
       const double at_end = overlaps ? overlap(moves_[i], moves_[i + 1]) : 0;
       VelocityStretch own = stretch_of(moves_[i]);
-      own.length = std::max(own.length - at_start - at_end, geometry::kSamePlace);
-      chain.stretches.push_back(own);
-      if (places == WantPlaces::kYes) {
-        chain.places.push_back(place_of(moves_[i], at_start, at_end));
+      own.length = std::max(own.length - at_start_ - at_end, geometry::kSamePlace);
+      chain_.stretches.push_back(own);
+      if (places_ == WantPlaces::kYes) {
+        chain_.places.push_back(place_of(moves_[i], at_start_, at_end));
       }
       if (overlaps) {
         VelocityStretch both = own;
         both.length = 2 * at_end;
         both.max_velocity = own.exit_velocity;
-        chain.stretches.push_back(both);
-        if (places == WantPlaces::kYes) {
-          chain.places.push_back(overlap_place(moves_[i], moves_[i + 1], at_end));
+        chain_.stretches.push_back(both);
+        if (places_ == WantPlaces::kYes) {
+          chain_.places.push_back(overlap_place(moves_[i], moves_[i + 1], at_end));
         }
       }
-      at_start = at_end;
+      at_start_ = at_end;
     }
-    return chain;
+    moves_.erase(moves_.begin(), moves_.begin() + static_cast<std::ptrdiff_t>(count));
   }
 
- private:
   // The last move of the queue could still lose half of its length to a corner: the planner
   // enters it only as fast as it can stop on the other half.
   void enter_last_move_slowly() {
@@ -266,7 +278,10 @@ class Queue {
 
   const Machine& machine_;
   Joint joint_;
-  std::vector<Segment> moves_;
+  WantPlaces places_;
+  StretchChain chain_;
+  std::vector<Segment> moves_;  // those that may still change
+  double at_start_ = 0;  // mm of the first of them that the overlap with the one before takes
 };
 
 }  // namespace
@@ -275,22 +290,25 @@ class Queue {
 StretchChain linuxcnc_stretches(std::span<const TimedPiece> pieces, const Machine& machine,
                                 gcode::PathMode path, ChainEnd end, WantPlaces places) {
   const bool blends = path == gcode::PathMode::kBlending || path == gcode::PathMode::kUnknown;
-  const std::vector<linuxcnc::JoinedPiece> joined =
-      linuxcnc::join_within(pieces, blends ? machine.naive_cam_tolerance : 0);
-  linuxcnc::Queue queue(machine, path);
-  for (const linuxcnc::JoinedPiece& timed : joined) {
-    if (!std::holds_alternative<geometry::CubicBezier>(timed.piece)) {
-      queue.add(timed);
-      continue;
-    }
+  linuxcnc::Queue queue(machine, path, places);
+  const auto add = [&queue](const linuxcnc::JoinedPiece& timed) {
+    if (!std::holds_alternative<geometry::CubicBezier>(timed.piece)) return queue.add(timed);
     for (int i = 0; i < linuxcnc::kArcsPerBezier; ++i) {
       linuxcnc::JoinedPiece part = timed;
       part.piece = geometry::sub_piece(timed.piece, double(i) / linuxcnc::kArcsPerBezier,
                                        double(i + 1) / linuxcnc::kArcsPerBezier);
       if (geometry::length_of(part.piece) > 0) queue.add(part);
     }
+  };
+  if (blends && machine.naive_cam_tolerance > 0) {
+    for (const auto& timed : linuxcnc::join_within(pieces, machine.naive_cam_tolerance)) add(timed);
+  } else {
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const auto index = static_cast<std::uint32_t>(i);
+      add({pieces[i], index, index});
+    }
   }
-  return queue.finish(end, places);
+  return queue.finish(end);
 }
 
 }  // namespace batten::postproc

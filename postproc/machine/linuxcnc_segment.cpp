@@ -77,12 +77,13 @@ Segment segment_of(const TimedPiece& timed, const Machine& machine, Joint end) {
   s.length = s.nominal_length = geometry::length_of(timed.piece);
   s.feed = timed.feed / 60;
   s.start_direction = geometry::direction_at(timed.piece, 0);
-  s.end_direction = geometry::direction_at(timed.piece, 1);
+  const bool is_line = std::holds_alternative<geometry::Line>(timed.piece);
+  s.end_direction = is_line ? s.start_direction : geometry::direction_at(timed.piece, 1);
   s.end = end;
   s.path = timed.piece;
   const Vector3 velocity = axis_velocities(machine, timed.rapid);
   const Vector3 acceleration = axis_accelerations(machine);
-  const double curvature = greatest_curvature(timed.piece);
+  const double curvature = is_line ? 0 : greatest_curvature(timed.piece);
   if (curvature <= kNoCurvature) {
     s.max_velocity = limit_along(s.start_direction, velocity);
     s.acceleration = limit_along(s.start_direction, acceleration);
