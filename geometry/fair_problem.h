@@ -17,7 +17,15 @@ struct BandOptions {
   // them; the errors of dense places on a slanting line are no white noise, but long ramps.
   double least_scatter = 5e-4;
   double noise_part = 1;  // of the noise of the vertices that they are expected to scatter by
+
+  bool accurate = false;  // knots at once wherever chords are coarse for what is expected
+
+  // Where noise fills the band: the places that vertices were meant to have; empty: not known.
+  std::span<const Point3> meant;
 };
+
+// Whether vertices with this noise (mm) are in need of such places.
+[[nodiscard]] bool fills_the_band(double noise, const BandOptions& options);
 
 // How closely an edge is watched that an earlier curve has left.
 struct EdgeCare {
