@@ -103,9 +103,7 @@ BandOptions BandFit::band() const {
 // but for who wants a simple curve further away.
 void BandFit::find_meant() {
   if (options_.scatter > 0) return;
-  const BandOptions known = band();
-  const auto fills = [&](double noise) { return fills_the_band(noise, known); };
-  if (std::ranges::any_of(features_.noise, fills)) meant_ = meant_places(points_, features_);
+  meant_ = meant_beyond(points_, features_, band().limit);
 }
 
 void BandFit::fit() {

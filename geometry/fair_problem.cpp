@@ -40,11 +40,6 @@ constexpr double kWatchedSagitta = 0.25;
 // fails, stand elsewhere in the next row of a surface, and the curve is off elsewhere.
 constexpr double kCoarse = 4;
 
-// Noise of this part of the limit fills the band: its outermost vertices are as far from the path
-// that was meant as the limit allows, and the smoothest curve in the band swings from one of its
-// sides to the other.
-constexpr double kFillsBand = 0.4;
-
 // A vertex that was meant to be further away is drawn so much of the limit towards that place; what
 // is left is room for the curve. So much of the limit is the curve expected to pass the drawn
 // vertices at: with half of it there are more knots and corners where noise is far above the limit,
@@ -143,13 +138,12 @@ class ProblemMaker {
   }
 
   [[nodiscard]] bool noisy(std::size_t i) const {
-    return f_.kinds[i] == VertexKind::kSmooth && fills_the_band(f_.noise[i], options_);
+    return !options_.meant.empty() && options_.meant[i] != p_[i];
   }
 
   // Where noise fills the band: towards the place that the vertex was meant to have, as near as the
   // band allows and some room is left around it.
   void draw_to_meant(std::size_t i, FitSample& sample) const {
-    if (options_.meant.empty()) return;
     const Vector3 off = options_.meant[i] - p_[i];
     const double room = kTowardsMeant * sample.limit;
     sample.target += std::min(1.0, room / std::max(off.norm(), room)) * off;
@@ -381,10 +375,6 @@ class ProblemMaker {
 };
 
 }  // namespace
-
-bool fills_the_band(double noise, const BandOptions& options) {
-  return noise > kFillsBand * options.limit;
-}
 
 double closest_knots(const BandOptions& options) { return 0.25 * kFirstKnot * options.limit; }
 

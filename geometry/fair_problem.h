@@ -20,12 +20,10 @@ struct BandOptions {
 
   bool accurate = false;  // knots at once wherever chords are coarse for what is expected
 
-  // Where noise fills the band: the places that vertices were meant to have; empty: not known.
+  // The places that vertices were meant to have where noise fills the band, and their own places
+  // elsewhere; empty: nowhere.
   std::span<const Point3> meant;
 };
-
-// Whether vertices with this noise (mm) are in need of such places.
-[[nodiscard]] bool fills_the_band(double noise, const BandOptions& options);
 
 // How closely an edge is watched that an earlier curve has left.
 struct EdgeCare {

@@ -30,6 +30,17 @@ constexpr int kLowestDecade = -12;
 constexpr int kHighestDecade = 1;
 constexpr int kClosings = 6;  // of the interval around the best decade, by the golden section
 
+// A scatter (rms) of this part of the limit fills the band: every sixth vertex or so is further
+// from the meant path than the limit. A regular zig-zag inside the band stays below.
+constexpr double kFillsBand = 0.7;
+
+// Noise is told greater than it is by a factor of three at the most (that of a zig-zag): what is
+// told less than this part of the limit needs no closer look.
+constexpr double kMayFill = 0.6;
+
+// Scatter is judged over so many vertices on either side.
+constexpr std::size_t kAround = 40;
+
 bool parts_stretches(const PathFeatures& f, std::size_t i) {
   if (f.kinds[i] == VertexKind::kKeptCorner) return true;
   if (i > 0 && f.lines[i - 1]) return true;
@@ -117,11 +128,15 @@ double best_weight(StretchSpline& spline) {
   double at_b = of(b);
   for (int i = 0; i < kClosings; ++i) {
     if (at_a < at_b) {
-      high = b, b = a, at_b = at_a;
+      high = b;
+      b = a;
+      at_b = at_a;
       a = high - kGolden * (high - low);
       at_a = of(a);
     } else {
-      low = a, a = b, at_a = at_b;
+      low = a;
+      a = b;
+      at_a = at_b;
       b = low + kGolden * (high - low);
       at_b = of(b);
     }
@@ -155,6 +170,30 @@ std::vector<Point3> meant_places(std::span<const Point3> points, const PathFeatu
     }
     begin = i;
   }
+  return meant;
+}
+
+std::vector<Point3> meant_beyond(std::span<const Point3> points, const PathFeatures& features,
+                                 double limit) {
+  const auto may_fill = [&](double noise) { return noise > kMayFill * limit; };
+  if (std::ranges::none_of(features.noise, may_fill)) return {};
+  std::vector<Point3> meant = meant_places(points, features);
+  std::vector<double> sums = {0};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    sums.push_back(sums.back() + (meant[i] - points[i]).squaredNorm());
+  }
+  bool any = false;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t begin = i < kAround ? 0 : i - kAround;
+    const std::size_t end = std::min(i + kAround + 1, points.size());
+    const double mean_square = (sums[end] - sums[begin]) / static_cast<double>(end - begin);
+    if (std::sqrt(mean_square) > kFillsBand * limit) {
+      any = true;
+    } else {
+      meant[i] = points[i];
+    }
+  }
+  if (!any) meant.clear();
   return meant;
 }
 

@@ -92,21 +92,21 @@ void expect_room_at_the_ripple_only(const FairOptions& options) {
     EXPECT_LE(needy->deviation, kTolerance);
     EXPECT_GT(slowest(*needy, limits, kRippleAt - 10, kRippleAt + 10),
               1.2 * slowest(*true_to_it, limits, kRippleAt - 10, kRippleAt + 10));
-    // Three vertices beside the tight ones are given room; a sample is felt over some ten more.
-    EXPECT_LE(moved_beyond(*needy, *true_to_it, kRippleWay + 20 * kStep), 1e-4);
+    // Where the path is easy a span has up to 64 vertices, and the one beside the ripple moves.
+    EXPECT_LE(moved_beyond(*needy, *true_to_it, kRippleWay + 64 * kStep), 1e-4);
     EXPECT_GT(moved_beyond(*needy, *true_to_it, 0), 0.001);
   }
 }
 
 TEST(FairNeed, MovesARippleThatIsTooTightForTheAccelerationAndNothingElse) {
   FairOptions options = options_at(6000);
-  options.acceleration = 150;
+  options.acceleration = 60;
   expect_room_at_the_ripple_only(options);
 }
 
 TEST(FairNeed, MovesARippleThatIsTooTightForTheJerkAndNothingElse) {
   FairOptions options = options_at(6000);
-  options.jerk = 20000;
+  options.jerk = 5000;
   expect_room_at_the_ripple_only(options);
 }
 
