@@ -37,6 +37,17 @@ Vertices distinct(std::span<const Point3> input) {
   return v;
 }
 
+// Of the edges between distinct places: the least room of what is one of them.
+std::vector<double> rooms_of(const Vertices& vertices, const FairOptions& options) {
+  if (options.rooms.empty()) return {};
+  std::vector<double> rooms(vertices.points.size() - 1, 1);
+  for (std::size_t i = 0; i < options.rooms.size(); ++i) {
+    double& room = rooms[std::min(vertices.of_input[i], rooms.size() - 1)];
+    room = std::min(room, options.rooms[i]);
+  }
+  return rooms;
+}
+
 double deviation_of(const BandFit& fit) {
   return *std::max_element(fit.deviations().begin(), fit.deviations().end());
 }
@@ -70,7 +81,15 @@ FairPath result_of(Faired faired, const Vertices& vertices, const PathFeatures& 
 std::optional<FairPath> fair_closed(const Vertices& vertices, const FairOptions& options) {
   const std::size_t n = vertices.points.size();
   const std::size_t wrap = std::min(kWrap, n - 1);
-  BandFit fit(wrapped(vertices.points, wrap), options, {wrap, wrap + n - 1});
+  std::vector<double> rooms = rooms_of(vertices, options);
+  if (!rooms.empty()) {
+    const std::vector<double> once = rooms;
+    rooms.clear();
+    for (std::size_t edge = 0; edge + 1 < n + 2 * wrap; ++edge) {
+      rooms.push_back(once[(edge + once.size() - wrap) % once.size()]);
+    }
+  }
+  BandFit fit(wrapped(vertices.points, wrap), options, {wrap, wrap + n - 1}, std::move(rooms));
   if (fit.features().kinds[wrap] != VertexKind::kSmooth) return std::nullopt;
   fit.hold();
   const int rounds = options.accurate ? 0 : widen_for_feed(fit, options);
@@ -85,7 +104,7 @@ std::optional<FairPath> fair_closed(const Vertices& vertices, const FairOptions&
 }
 
 FairPath fair_open(const Vertices& vertices, const FairOptions& options) {
-  BandFit fit(vertices.points, options, {});
+  BandFit fit(vertices.points, options, {}, rooms_of(vertices, options));
   fit.hold();
   const int rounds = options.accurate ? 0 : widen_for_feed(fit, options);
   FairPath path = result_of({fit.curve(), fit.parameters()}, vertices, fit.features(), 0);
@@ -104,6 +123,8 @@ std::optional<FairPath> fair_path(std::span<const Point3> points, const FairOpti
   require(points.size() >= 2, std::to_string(points.size()) + " points, expected 2 or more");
   require(options.tolerance > 0,
           "tolerance " + std::to_string(options.tolerance) + " mm, expected more than 0");
+  require(options.rooms.empty() || options.rooms.size() + 1 == points.size(),
+          std::to_string(options.rooms.size()) + " rooms, expected one for each edge");
   const Vertices vertices = distinct(points);
   const std::size_t n = vertices.points.size();
   if (n < 2) return std::nullopt;

@@ -2,6 +2,7 @@
 // Method: docs/algorithms/fair.md.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,9 +18,13 @@ struct FairOptions {
   double keep_corner_angle = 3.2;  // radians: vertices that turn more stay as they are (> pi: none)
   double feed = 1000;              // mm/min that the machine should hold (the greatest of the run)
   double acceleration = 1000;      // mm/s^2 across the path that the machine can give
+  double jerk = std::numeric_limits<double>::infinity();  // mm/s^3, the same
   double scatter = 0;     // mm that vertices may scatter about the curve, beyond their noise:
                           // a simpler curve, further from the path that was meant
   bool accurate = false;  // spend the tolerance on noise only, never on feed
+  // Per edge, from each point to the next: the part of the tolerance that the curve may use there,
+  // above 0 and 1 at most. Empty: all of it everywhere. Has to outlive the call.
+  std::span<const double> rooms;
 };
 
 struct FairPath {

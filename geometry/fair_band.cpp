@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/meant_path.h"
+
 namespace batten::geometry {
 
 namespace {
@@ -36,17 +38,21 @@ constexpr double kMetLimit = 0.01;
 }  // namespace
 
 BandFit::BandFit(std::vector<Point3> points, const FairOptions& options,
-                 std::vector<std::size_t> met)
+                 std::vector<std::size_t> met, std::vector<double> rooms)
     : points_(std::move(points)),
       options_(options),
       met_(std::move(met)),
       features_(
           find_features(points_, {options.tolerance, options.keep_corner_angle, options.rounding})),
       loosen_(points_.size(), 1),
+      rooms_(std::move(rooms)),
       care_(points_.size() - 1),
       at_(features_.parameters),
       off_(points_.size() - 1),
-      time_(points_.size() - 1) {}
+      time_(points_.size() - 1) {
+  rooms_.resize(points_.size() - 1, 1);
+  for (std::size_t edge = 0; edge < care_.size(); ++edge) care_[edge].share = rooms_[edge];
+}
 
 void BandFit::loosen(std::vector<double> factors) {
   loosen_ = std::move(factors);
@@ -70,6 +76,7 @@ SplineWalk BandFit::walk() const { return {fit_->spline().knots, fit_->spline().
 
 // Fits, looks at the curve between the samples, and fits again where it left the band.
 void BandFit::hold() {
+  if (!fit_) find_meant();
   for (int attempt = 0; attempt <= kAttempts; ++attempt) {
     fit();
     measure();
@@ -80,16 +87,30 @@ void BandFit::hold() {
   }
 }
 
-void BandFit::fit() {
+BandOptions BandFit::band() const {
   BandOptions band;
   band.limit = kAim * options_.tolerance;
   const double rounding = std::min(options_.rounding, 0.25 * options_.tolerance);
+  band.accurate = options_.accurate;
   band.noise_part = options_.accurate ? kAccurate : 1;
   band.least_scatter = std::max(options_.scatter, band.noise_part * rounding);
-  FitProblem problem = state_fair_problem(points_, features_, loosen_, care_, band);
+  band.meant = meant_;
+  return band;
+}
+
+// Where noise fills the band, the smoothest curve in it swings from one of its sides to the other
+// and is further from the path that was meant than the vertices. So that path is estimated first,
+// but for who wants a simple curve further away.
+void BandFit::find_meant() {
+  if (options_.scatter > 0) return;
+  meant_ = meant_beyond(points_, features_, band().limit);
+}
+
+void BandFit::fit() {
+  FitProblem problem = state_fair_problem(points_, features_, loosen_, care_, band());
   hold_met(problem);
   if (fit_) {
-    fit_->refit(problem, closest_knots(band));
+    fit_->refit(problem, closest_knots(band()));
   } else {
     fit_.emplace(problem, FitOptions{});
   }
@@ -111,7 +132,7 @@ void BandFit::measure() {
   const std::vector<double>& start = features_.parameters;
   const std::size_t vertices = points_.size();
   SplineWalk curve = walk();
-  const TravelLimits limits{options_.feed / 60, options_.acceleration};
+  const TravelLimits limits{options_.feed / 60, options_.acceleration, options_.jerk};
   const auto index_of = [&](double u) {
     return static_cast<std::size_t>(std::lower_bound(start.begin(), start.end(), u) -
                                     start.begin());
@@ -128,7 +149,8 @@ void BandFit::measure() {
     const std::size_t first_edge = std::max<std::size_t>(first, 1) - 1;
     const std::size_t last_edge = std::min(last, vertices - 1);
     for (std::size_t edge = first_edge; edge < last_edge; ++edge) {
-      off_[edge] = edge_deviation(curve, path, edge, options_.tolerance);
+      off_[edge] = edge_deviation(curve, path, edge, rooms_[edge] * options_.tolerance);
+      off_[edge] /= rooms_[edge];
       time_[edge] = edge_time(curve, path, edge, limits);
     }
     done = last;

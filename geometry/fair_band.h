@@ -20,8 +20,9 @@ namespace batten::geometry {
 class BandFit {
  public:
   // `points`: two or more, neighbours apart. `met`: vertices that the curve meets closely though
-  // they are no corners.
-  BandFit(std::vector<Point3> points, const FairOptions& options, std::vector<std::size_t> met);
+  // they are no corners. `rooms`: as FairOptions has them, for these points.
+  BandFit(std::vector<Point3> points, const FairOptions& options, std::vector<std::size_t> met,
+          std::vector<double> rooms);
 
   // The first fit. What depends on the curve can be asked for after it.
   void hold();
@@ -42,11 +43,14 @@ class BandFit {
   [[nodiscard]] SplineWalk walk() const;
   [[nodiscard]] const std::vector<double>& parameters() const { return at_; }  // of the vertices
 
-  // Per edge: greatest distance between it and the curve (mm), and travel time beside it (s).
+  // Per edge: greatest distance between it and the curve (mm, over its room), and travel time
+  // beside it (s).
   [[nodiscard]] const std::vector<double>& deviations() const { return off_; }
   [[nodiscard]] const std::vector<double>& times() const { return time_; }
 
  private:
+  [[nodiscard]] BandOptions band() const;
+  void find_meant();
   void fit();
   void measure();
   [[nodiscard]] bool mend();
@@ -58,7 +62,9 @@ class BandFit {
   std::vector<std::size_t> met_;
   PathFeatures features_;
   std::vector<double> loosen_;  // per vertex
+  std::vector<double> rooms_;   // per edge
   std::vector<EdgeCare> care_;  // per edge
+  std::vector<Point3> meant_;   // per vertex, where noise fills the band; else empty
   std::optional<PartedFit> fit_;
   std::vector<double> at_;
   std::vector<double> off_;

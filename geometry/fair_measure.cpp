@@ -102,6 +102,22 @@ double SplineWalk::curvature_at(double u) {
   return speed == 0 ? 0 : first.cross(second).norm() / (speed * speed * speed);
 }
 
+double SplineWalk::third_by_length_at(double u) {
+  go_to(u);
+  const double x = u - t_[span_];
+  const Vector3 first = power_[1] + x * (2 * power_[2] + 3 * x * power_[3]);
+  const Vector3 second = 2 * power_[2] + 6 * x * power_[3];
+  const Vector3 third = 6 * power_[3];
+  const double speed = first.norm();
+  if (speed == 0) return 0;
+  // Of speed: its first and second derivative by the parameter.
+  const double faster = first.dot(second) / speed;
+  const double faster_yet = (second.squaredNorm() + first.dot(third) - faster * faster) / speed;
+  const Vector3 bend = (second - faster / speed * first) / (speed * speed);
+  const Vector3 rest = third - 3 * speed * faster * bend - faster_yet / speed * first;
+  return rest.norm() / (speed * speed * speed);
+}
+
 double SplineWalk::nearer(double u, const Point3& p) {
   go_to(u);
   const double x = u - t_[span_];
@@ -143,6 +159,16 @@ double edge_deviation(SplineWalk& curve, const VertexPlaces& path, std::size_t e
   return std::max(worst, (curve.point_at(to) - path.points[edge + 1]).norm());
 }
 
+double speed_at(SplineWalk& curve, double u, const TravelLimits& limits) {
+  const double bend = std::max(curve.curvature_at(u), 1e-9);
+  double speed = std::min(limits.speed, std::sqrt(limits.acceleration / bend));
+  if (std::isfinite(limits.jerk)) {
+    const double twist = std::max(curve.third_by_length_at(u), 1e-12);
+    speed = std::min(speed, std::cbrt(limits.jerk / twist));
+  }
+  return speed;
+}
+
 double edge_time(SplineWalk& curve, const VertexPlaces& path, std::size_t edge,
                  const TravelLimits& limits) {
   constexpr int kSteps = 4;
@@ -151,10 +177,9 @@ double edge_time(SplineWalk& curve, const VertexPlaces& path, std::size_t edge,
   double time = 0;
   Point3 before = curve.point_at(from);
   for (int k = 1; k <= kSteps; ++k) {
-    const double curvature = curve.curvature_at(from + (k - 0.5) * step);
+    const double speed = speed_at(curve, from + (k - 0.5) * step, limits);
     const Point3 here = curve.point_at(from + k * step);
-    const double allowed = std::sqrt(limits.acceleration / std::max(curvature, 1e-9));
-    time += (here - before).norm() / std::min(limits.speed, allowed);
+    time += (here - before).norm() / speed;
     before = here;
   }
   return time;

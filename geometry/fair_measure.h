@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,8 @@ class SplineWalk {
 
   [[nodiscard]] Point3 point_at(double u);
   [[nodiscard]] double curvature_at(double u);  // 1/mm; 0 where the first derivative vanishes
+  // 1/mm^2: length of the third derivative by length; 0 where the first derivative vanishes.
+  [[nodiscard]] double third_by_length_at(double u);
 
   // The parameter after one Newton step from u towards the place nearest to p.
   [[nodiscard]] double nearer(double u, const Point3& p);
@@ -54,12 +57,15 @@ struct VertexPlaces {
                                     double limit);
 
 struct TravelLimits {
-  double speed = 0;         // mm/s
-  double acceleration = 0;  // mm/s^2 across the path
+  double speed = 0;                                       // mm/s
+  double acceleration = 0;                                // mm/s^2 across the path
+  double jerk = std::numeric_limits<double>::infinity();  // mm/s^3 at a speed that is held
 };
 
-// Seconds along the curve beside an edge, at the speed that the acceleration across the path
-// allows.
+// mm/s: the speed that these limits allow at u if it is held there.
+[[nodiscard]] double speed_at(SplineWalk& curve, double u, const TravelLimits& limits);
+
+// Seconds along the curve beside an edge, at that speed.
 [[nodiscard]] double edge_time(SplineWalk& curve, const VertexPlaces& path, std::size_t edge,
                                const TravelLimits& limits);
 

@@ -24,12 +24,16 @@ constexpr std::size_t kBeside = 16;
 std::vector<bool> tight_vertices(const BandFit& fit, const FairOptions& options) {
   const double speed = options.feed / 60;
   const double allowed = options.acceleration / (speed * speed);
+  const double allowed_third = options.jerk / (speed * speed * speed);
   const std::size_t n = fit.points().size();
   std::vector<bool> tight(n, false);
   SplineWalk curve = fit.walk();
   for (std::size_t i = 1; i + 1 < n; ++i) {
     if (fit.features().kinds[i] != VertexKind::kSmooth) continue;
-    if (curve.curvature_at(fit.parameters()[i]) <= allowed) continue;
+    const double u = fit.parameters()[i];
+    const bool by_jerk =
+        std::isfinite(allowed_third) && curve.third_by_length_at(u) > allowed_third;
+    if (!by_jerk && curve.curvature_at(u) <= allowed) continue;
     constexpr std::size_t kAround = 3;
     const std::size_t last = std::min(i + kAround, n - 1);
     for (std::size_t j = i < kAround ? 0 : i - kAround; j <= last; ++j) tight[j] = true;

@@ -35,6 +35,18 @@ constexpr double kSureTurn = 4 * 2.45;
 // their vertices; so are those whose vertices leave the curve as much room.
 constexpr double kWatchedSagitta = 0.25;
 
+// Who wants to be near the path that was meant gets a knot at once at every vertex whose chords
+// leave it by so many times what the vertex may scatter. Knots that come one by one, where a span
+// fails, stand elsewhere in the next row of a surface, and the curve is off elsewhere.
+constexpr double kCoarse = 4;
+
+// A vertex that was meant to be further away is drawn so much of the limit towards that place; what
+// is left is room for the curve. So much of the limit is the curve expected to pass the drawn
+// vertices at: with half of it there are more knots and corners where noise is far above the limit,
+// with twice as much the curve is 5 % further from what was meant.
+constexpr double kTowardsMeant = 0.9;
+constexpr double kMeantScatter = 0.15;
+
 // The middle of a line edge that stays exactly straight.
 struct Straight {
   double from;
@@ -111,12 +123,33 @@ class ProblemMaker {
     }
     sample.along = (p_[i + 1] - p_[i - 1]).normalized();
     sample.scatter = inside_reach(f_.parameters[i]) ? 0 : scatter(i);
+    if (noisy(i)) draw_to_meant(i, sample);
     loose_ = !(sample.scatter > 0) || sample.scatter > kWatchedSagitta * options_.limit;
     problem_.samples.push_back(sample);
-    if (++since_break_ >= kVerticesPerSpan) {
+    if (++since_break_ >= kVerticesPerSpan || has_own_knot(i, sample)) {
       problem_.breakpoints.push_back(f_.parameters[i]);
       since_break_ = 0;
     }
+  }
+
+  [[nodiscard]] bool has_own_knot(std::size_t i, const FitSample& sample) const {
+    const double scatter = std::max(sample.scatter, options_.least_scatter);
+    return options_.accurate && std::max(sagitta(i - 1), sagitta(i)) > kCoarse * scatter;
+  }
+
+  [[nodiscard]] bool noisy(std::size_t i) const {
+    return !options_.meant.empty() && options_.meant[i] != p_[i];
+  }
+
+  // Where noise fills the band: towards the place that the vertex was meant to have, as near as the
+  // band allows and some room is left around it.
+  void draw_to_meant(std::size_t i, FitSample& sample) const {
+    const Vector3 off = options_.meant[i] - p_[i];
+    const double room = kTowardsMeant * sample.limit;
+    sample.target += std::min(1.0, room / std::max(off.norm(), room)) * off;
+    sample.limit -= (sample.target - p_[i]).norm();
+    const double loose = loosen_.empty() ? 1 : loosen_[i];
+    sample.scatter = std::isinf(loose) ? 0 : kMeantScatter * options_.limit * loose;
   }
 
   [[nodiscard]] double share(std::size_t edge) const {

@@ -17,6 +17,12 @@ struct BandOptions {
   // them; the errors of dense places on a slanting line are no white noise, but long ramps.
   double least_scatter = 5e-4;
   double noise_part = 1;  // of the noise of the vertices that they are expected to scatter by
+
+  bool accurate = false;  // knots at once wherever chords are coarse for what is expected
+
+  // The places that vertices were meant to have where noise fills the band, and their own places
+  // elsewhere; empty: nowhere.
+  std::span<const Point3> meant;
 };
 
 // How closely an edge is watched that an earlier curve has left.

@@ -35,6 +35,15 @@ constexpr double kLetThrough = 0.05;
 // further than others with it: the corner of the moved path would be far off.
 constexpr double kSharpest = 0.5;
 
+// Where the path turns to the other side, the path beside it turns round the vertex on an arc. Its
+// corner is held back by this many moves, for beyond 75 degrees the corner of the moved edges
+// would leave too little room.
+constexpr double kFurthestCorner = 1.25;
+
+// The room that a curve has at the ends of a run, where nothing is moved yet: less than what is let
+// through, in parts of the tolerance.
+constexpr double kLeastRoom = 0.8 * kLetThrough;
+
 // Places beside each edge at which the curve is looked at.
 constexpr int kPlaces = 8;
 
@@ -59,15 +68,66 @@ class OneSided {
       std::vector<double> lacking = lacking_beside(*path);
       if (*std::ranges::max_element(lacking) <= kLetThrough * options_.fair.tolerance) {
         path->deviation = deviation_of(*path);
-        if (path->deviation > options_.fair.tolerance) return std::nullopt;
+        if (path->deviation > options_.fair.tolerance) break;
         return path;
       }
       move_on(std::move(lacking));
     }
-    return std::nullopt;
+    return beside();
   }
 
  private:
+  // Where noise or corners leave no curve that is moved by less: all in the middle of the allowed
+  // half of the band.
+  [[nodiscard]] std::optional<FairPath> beside() const {
+    std::vector<Point3> points(p_.begin(), p_.end());
+    std::vector<double> free(p_.size(), 0);  // mm around the moved vertices
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) free[i] = move_beside(i, points[i]);
+    const double half = kCurvePart * options_.fair.tolerance;
+    std::vector<double> rooms(p_.size() - 1);
+    for (std::size_t edge = 0; edge < rooms.size(); ++edge) {
+      const double least = std::min(free[edge], free[edge + 1]);
+      rooms[edge] = std::clamp(least / half, kLeastRoom / kCurvePart, 1.0);
+    }
+    FairOptions fair = options_.fair;
+    fair.tolerance = half;
+    fair.scatter = std::min(fair.scatter, kCurvePart * half);
+    fair.rooms = rooms;
+    auto path = fair_path(points, fair);
+    if (!path) return std::nullopt;
+    const std::vector<double> lacking = lacking_beside(*path);
+    if (*std::ranges::max_element(lacking) > kLetThrough * options_.fair.tolerance) {
+      return std::nullopt;
+    }
+    path->deviation = deviation_of(*path);
+    if (path->deviation > options_.fair.tolerance) return std::nullopt;
+    return path;
+  }
+
+  // Moves a vertex to the middle of what is allowed and gives how far from there (mm) a curve may
+  // be: inside the discs about the path beside this one, and on its side of both edges by the
+  // margin.
+  [[nodiscard]] double move_beside(std::size_t i, Point3& place) const {
+    const Vector3& before = normals_[i - 1];
+    const Vector3& after = normals_[i];
+    const double gentle = gentle_at(stations_[i]);
+    const double move = gentle * (1 - kCurvePart) * options_.fair.tolerance;
+    const double half_cosine = std::sqrt(std::max(0.0, 0.5 * (1 + before.dot(after))));
+    const double half_sine = std::sqrt(std::max(0.0, 0.5 * (1 - before.dot(after))));
+    const Vector3 middle = 0.5 * (before + after);
+    double room = 0;
+    if (sign_ * (before.x() * after.y() - before.y() * after.x()) > 0) {
+      // The path beside this one comes back round the vertex between two places: midway of them.
+      place += move * middle;
+      room = move * std::min(1 - half_sine, half_cosine * half_cosine);
+    } else {
+      const double far = std::min(1 / std::max(half_cosine, 1e-6), kFurthestCorner);
+      if (middle.norm() > kSameDirection) place += far * move * middle.normalized();
+      room = move * std::min(2 - far, far * half_cosine);
+    }
+    return room - gentle * options_.margin;
+  }
+
   // Per edge, to the allowed side. None where no edge has a side.
   void find_normals() {
     Vector3 last = Vector3::Zero();

@@ -39,6 +39,7 @@ std::optional<FairPath> fair_curve(std::span<const Point3> run, const CurveReque
   options.keep_corner_angle = request.keep_corner_angle;
   options.feed = std::max(1.0, kSecondsPerMinute * request.limits.feed);
   options.acceleration = request.limits.acceleration.minCoeff();
+  options.jerk = request.jerk;
   options.scatter = request.scatter;
   options.accurate = request.accurate;
   if (request.side == geometry::Side::kBoth) return geometry::fair_path(run, options);

@@ -1,6 +1,7 @@
 // What a method of smoothing makes of a run: one curve, whatever the method.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -30,8 +31,9 @@ struct CurveRequest {
   double rounding = 0.0005;          // mm, greatest error of one printed coordinate of the run
   double keep_corner_angle = 3.2;    // radians: vertices that turn more stay as they are
   geometry::KinematicLimits limits;  // what the machine can do at the greatest feed of the run
-  double scatter = 0;                // mm, see geometry::FairOptions
-  bool accurate = false;             // see geometry::FairOptions
+  double jerk = std::numeric_limits<double>::infinity();  // mm/s^3, see geometry::FairOptions
+  double scatter = 0;                                     // mm, see geometry::FairOptions
+  bool accurate = false;                                  // see geometry::FairOptions
 };
 
 // `feed`: mm/min, programmed. Where the machine has no jerk limit, it is infinite.
@@ -40,8 +42,9 @@ struct CurveRequest {
 // The ends of the run are met exactly. A closed run starts and ends in its seam vertex, where the
 // tool is put down and taken up; only `fair` has no corner there where the path has none.
 //
-// Returns nothing when the method finds no curve, and with a side for all methods but `fair`; throws std::invalid_argument for Method::kBest
-// and Method::kNone, which are no methods of their own.
+// Returns nothing when the method finds no curve, and with a side for all methods but `fair`;
+// throws std::invalid_argument for Method::kBest and Method::kNone, which are no methods of their
+// own.
 [[nodiscard]] std::optional<RunCurve> curve_of(Method method, std::span<const geometry::Point3> run,
                                                const CurveRequest& request);
 

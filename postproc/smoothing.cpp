@@ -127,6 +127,7 @@ class RunSmoother {
     request.rounding = rounding;
     request.keep_corner_angle = keep_corner_angle();
     request.limits = limits_of(*options_.machine, greatest_feed(run_));
+    request.jerk = options_.machine->max_jerk();
     if (few_wanted()) request.scatter = kSpent * request.tolerance;
     const double of_arcs = std::min(arc_scatter(run_), kArcsSpend * request.tolerance);
     request.scatter = std::max(request.scatter, of_arcs);

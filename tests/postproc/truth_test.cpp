@@ -23,8 +23,9 @@ using geometry::Point3;
 constexpr int kRows = 8;
 constexpr int kParts = 40;  // places per chord at which distances are taken
 
-std::vector<std::vector<Point3>> surface_rows(double cam_tolerance, double noise = 0) {
-  std::mt19937 random(3);
+std::vector<std::vector<Point3>> surface_rows(double cam_tolerance, double noise = 0,
+                                              unsigned seed = 3) {
+  std::mt19937 random(seed);
   std::uniform_real_distribution<double> scatter(-noise, noise);
   std::vector<std::vector<Point3>> rows;
   for (int row = 0; row < kRows; ++row) {
@@ -135,10 +136,24 @@ TEST_P(Truth, OfTheCurveIsFiveTimesNearerThanThatOfTheChords) {
                cam, accurate ? ", accurate" : "", rms_of(rows), found.rms, found.row_to_row);
     if (cam < 0.005 && !accurate) continue;
     EXPECT_LE(found.rms, rms_of(rows) / 5);
-    // At 0.01 mm it is 0.0011 (printed above): more than is wished for, and not explained yet.
-    if (accurate && cam < 0.01) {
+    if (accurate) {
       EXPECT_LE(found.row_to_row, 0.001);
     }
+  }
+}
+
+// Noise of 0.02 mm is up to ten times the CAM tolerance and five times the user's: the band about
+// the noisy vertices does not even hold the surface. What is possible inside it is nearer to the
+// surface than the vertices were.
+TEST_P(Truth, OfTheCurveThroughNoiseIsNearerThanThatOfTheNoisyChords) {
+  const double cam = GetParam();
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const auto rows = surface_rows(cam, 0.02, seed);
+    const CurveTruth found = curve_truth(rows, 2 * cam, false);
+    fmt::print("CAM tolerance {}, noise 0.02, seed {}: rms chords {:.6f}, curve {:.6f} mm\n", cam,
+               seed, rms_of(rows), found.rms);
+    EXPECT_LT(found.rms, rms_of(rows));
   }
 }
 

@@ -1,0 +1,200 @@
+#include "geometry/meant_path.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "geometry/bspline_fit_spline.h"
+#include "geometry/bspline_fit_system.h"
+#include "geometry/bspline_fit_weights.h"
+
+namespace batten::geometry {
+
+namespace {
+
+// Fewer vertices than this tell nothing of their noise.
+constexpr std::size_t kFewest = 8;
+
+// A vertex that turns by so many times what its noise turns it (standard deviations) was meant to.
+constexpr double kSurelyMeant = 4;
+
+// The weight is looked for on so many vertices at the most, from the middle of a stretch: enough
+// to know it to some percent, and few enough for the search to cost little.
+constexpr std::size_t kJudged = 1000;
+
+// Decades of the weight over the stiffness of the spline that are looked at. At the lower end a
+// wave of a hundred vertices is smoothed away, at the upper one nothing is.
+constexpr int kLowestDecade = -12;
+constexpr int kHighestDecade = 1;
+constexpr int kClosings = 6;  // of the interval around the best decade, by the golden section
+
+// A scatter (rms) of this part of the limit fills the band: every sixth vertex or so is further
+// from the meant path than the limit. A regular zig-zag inside the band stays below.
+constexpr double kFillsBand = 0.7;
+
+// Noise is told greater than it is by a factor of three at the most (that of a zig-zag): what is
+// told less than this part of the limit needs no closer look.
+constexpr double kMayFill = 0.6;
+
+// Scatter is judged over so many vertices on either side.
+constexpr std::size_t kAround = 40;
+
+bool parts_stretches(const PathFeatures& f, std::size_t i) {
+  if (f.kinds[i] == VertexKind::kKeptCorner) return true;
+  if (i > 0 && f.lines[i - 1]) return true;
+  if (i < f.lines.size() && f.lines[i]) return true;
+  if (f.kinds[i] == VertexKind::kSmooth) return false;
+  const double before = f.parameters[i] - f.parameters[i - 1];
+  const double after = f.parameters[i + 1] - f.parameters[i];
+  return f.turns[i] > kSurelyMeant * f.noise[i] * (1 / before + 1 / after);
+}
+
+// The spline on a stretch of vertices; its ends are the first and the last of them.
+class StretchSpline {
+ public:
+  StretchSpline(std::span<const Point3> points, std::span<const double> parameters)
+      : spline_(spline_on({parameters.begin(), parameters.end()},
+                          std::array{Pin{parameters.front(), points.front()},
+                                     Pin{parameters.back(), points.back()}},
+                          {})) {
+    constexpr std::size_t kDegree = 3;
+    std::size_t span = kDegree;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      rows_.push_back(row_at(spline_, parameters[i], span));
+      states_.push_back({});
+      states_.back().target = points[i];
+    }
+    std::vector<double> stiffness;
+    for (const auto& row : spline_.energy) stiffness.push_back(row[0]);
+    const auto middle = stiffness.begin() + static_cast<std::ptrdiff_t>(stiffness.size() / 2);
+    std::nth_element(stiffness.begin(), middle, stiffness.end());
+    stiffness_ = *middle;
+  }
+
+  // `weight`: of the squared distances, in stiffnesses.
+  void solve(double weight) {
+    for (SampleState& state : states_) state.base = weight * stiffness_;
+    const IndexRange all{0, spline_.size()};
+    if (!system_.solve(spline_, rows_, states_, {0, rows_.size()}, all)) return;
+    for (std::size_t i = 0; i < spline_.size(); ++i) {
+      if (spline_.fixed[i] == 0) spline_.points[i] = system_.place(i);
+    }
+  }
+
+  // Generalised cross-validation (Craven and Wahba 1978): the squares that are left, over the
+  // square of the freedom that is left.
+  [[nodiscard]] double validation(double weight) {
+    solve(weight);
+    system_.invert(spline_, 0);
+    double squares = 0;
+    double freedom = 0;
+    for (std::size_t i = 1; i + 1 < rows_.size(); ++i) {
+      squares += (place(i) - states_[i].target).squaredNorm();
+      freedom += 1 - states_[i].base * system_.leverage(rows_[i]);
+    }
+    return freedom > 0 ? squares / (freedom * freedom) : HUGE_VAL;
+  }
+
+  [[nodiscard]] Point3 place(std::size_t i) const { return place_of(rows_[i], spline_.points); }
+
+ private:
+  FitSpline spline_;
+  FitSystem system_;
+  std::vector<FitRow> rows_;
+  std::vector<SampleState> states_;
+  double stiffness_ = 0;
+};
+
+// Decades of the best weight.
+double best_weight(StretchSpline& spline) {
+  const auto of = [&](double decades) { return spline.validation(std::pow(10, decades)); };
+  double best = kHighestDecade;
+  double least = of(best);
+  for (int decade = kHighestDecade - 1; decade >= kLowestDecade; --decade) {
+    const double value = of(decade);
+    if (value < least) {
+      least = value;
+      best = decade;
+    }
+  }
+  constexpr double kGolden = 0.6180339887498949;
+  double low = best - 1;
+  double high = best + 1;
+  double a = high - kGolden * (high - low);
+  double b = low + kGolden * (high - low);
+  double at_a = of(a);
+  double at_b = of(b);
+  for (int i = 0; i < kClosings; ++i) {
+    if (at_a < at_b) {
+      high = b;
+      b = a;
+      at_b = at_a;
+      a = high - kGolden * (high - low);
+      at_a = of(a);
+    } else {
+      low = a;
+      a = b;
+      at_a = at_b;
+      b = low + kGolden * (high - low);
+      at_b = of(b);
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+void place_stretch(std::span<const Point3> points, std::span<const double> parameters,
+                   std::span<Point3> meant) {
+  const std::size_t judged = std::min(points.size(), kJudged);
+  const std::size_t first = (points.size() - judged) / 2;
+  StretchSpline part(points.subspan(first, judged), parameters.subspan(first, judged));
+  const double weight = std::pow(10, best_weight(part));
+  StretchSpline whole(points, parameters);
+  whole.solve(weight);
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) meant[i] = whole.place(i);
+}
+
+}  // namespace
+
+std::vector<Point3> meant_places(std::span<const Point3> points, const PathFeatures& features) {
+  std::vector<Point3> meant(points.begin(), points.end());
+  const std::span<const double> parameters = features.parameters;
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (i + 1 < points.size() && !parts_stretches(features, i)) continue;
+    const std::size_t count = i + 1 - begin;
+    if (count >= kFewest) {
+      place_stretch(points.subspan(begin, count), parameters.subspan(begin, count),
+                    std::span(meant).subspan(begin, count));
+    }
+    begin = i;
+  }
+  return meant;
+}
+
+std::vector<Point3> meant_beyond(std::span<const Point3> points, const PathFeatures& features,
+                                 double limit) {
+  const auto may_fill = [&](double noise) { return noise > kMayFill * limit; };
+  if (std::ranges::none_of(features.noise, may_fill)) return {};
+  std::vector<Point3> meant = meant_places(points, features);
+  std::vector<double> sums = {0};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    sums.push_back(sums.back() + (meant[i] - points[i]).squaredNorm());
+  }
+  bool any = false;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t begin = i < kAround ? 0 : i - kAround;
+    const std::size_t end = std::min(i + kAround + 1, points.size());
+    const double mean_square = (sums[end] - sums[begin]) / static_cast<double>(end - begin);
+    if (std::sqrt(mean_square) > kFillsBand * limit) {
+      any = true;
+    } else {
+      meant[i] = points[i];
+    }
+  }
+  if (!any) meant.clear();
+  return meant;
+}
+
+}  // namespace batten::geometry
