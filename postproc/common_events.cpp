@@ -224,7 +224,10 @@ class CommonLister {
     }
     const Word* h = word_of(words, 'H');
     const bool of_the_tool = tool_ && !moved_along_tool_ && (h == nullptr || h->value == *tool_);
-    if (code == kLengthOn && of_the_tool) return;
+    if (code == kLengthOn && of_the_tool) {
+      length_is_off_ = false;
+      return;
+    }
     if (code == kBlending) return;  // a tolerance beside it is an event
     add_own_text(word);
   }

@@ -283,6 +283,7 @@ class ActReader {
   void add_g(const Word& word) {
     const int code = tenths_of(word);
     if (code == kToolLengthOff) without_length_ = word.span;
+    if (code == kToolLengthOn) without_length_.reset();
     if (!is_work_offset(code) || work_offset_ == code) return;
     work_offset_ = code;
     (void)add(ActKind::kWorkOffset, word.span, code / 10);

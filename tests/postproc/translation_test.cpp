@@ -129,6 +129,13 @@ TEST(Translation, CountsLengthsBehindG49OnlyWhereTheUserSaysSo) {
   EXPECT_FALSE(verdict_for("heidenhain", text, unsaid).proved());
 }
 
+TEST(Translation, HasNoUseForALengthThatIsOffAndOnAgain) {
+  const std::string text = "G21 G90\nT1 M6\nG49\nG43 H1\nG0 X1 Y2 Z3\nG1 Z0 F100\nM2\n";
+  const SmoothResult result = smoothed(text, converting_to("heidenhain"));
+  ASSERT_TRUE(result.proved) << testing::PrintToString(messages_of(result));
+  EXPECT_EQ(result.text.find("G4"), std::string::npos) << result.text;
+}
+
 // --- smoothed in the other language -----------------------------------------------------------
 
 class TranslatedWave : public testing::TestWithParam<const char*> {};
