@@ -138,7 +138,11 @@ inline void expect_kept_construct(const Construct& construct) {
   ASSERT_TRUE(result.understood);
   EXPECT_TRUE(result.proved);
   expect_rest_copied(before, result);
-  EXPECT_NE(result.text.find(construct.text), std::string::npos);
+  // Comments go with a run, words are its path.
+  const bool is_comment = construct.text.find_first_of("(;*") == 0;
+  if (!construct.reason.empty() || is_comment) {
+    EXPECT_NE(result.text.find(construct.text), std::string::npos);
+  }
   EXPECT_EQ(smoothed(result.text, options).text, result.text) << "a second pass";
   if (construct.reason.empty()) {
     EXPECT_TRUE(is_rewritten_within(result, front.first, behind.second));

@@ -50,6 +50,12 @@ std::string with_points(const std::string& increments, int decimals) {
   return text;
 }
 
+SmoothOptions undeclared(const char* target) {
+  SmoothOptions options = options_for(target);
+  options.decimals.reset();
+  return options;
+}
+
 SmoothOptions with(const char* target, const Decimals& decimals) {
   SmoothOptions options = options_for(target);
   options.decimals = decimals;
@@ -77,7 +83,7 @@ TEST(ImpliedDecimals, UndeclaredProgramsStayAsTheyAreWithTheReason) {
   for (const char* target : {"fanuc", "haas", "mitsubishi", "okuma", "brother", "mazak"}) {
     SCOPED_TRACE(target);
     const std::string before = wave_in_increments();
-    const SmoothResult result = smoothed(before, options_for(target));
+    const SmoothResult result = smoothed(before, undeclared(target));
     EXPECT_TRUE(result.understood);
     EXPECT_EQ(result.text, before);
     EXPECT_EQ(rewritten_runs(result), 0U);
@@ -86,7 +92,7 @@ TEST(ImpliedDecimals, UndeclaredProgramsStayAsTheyAreWithTheReason) {
     EXPECT_EQ(
         gcode::to_text(result.diagnostics[0], gcode::SourceText("old.nc", before)).substr(0, 12),
         "old.nc:4:10:");
-    EXPECT_EQ(reason_at(inspected(before, options_for(target)), 100),
+    EXPECT_EQ(reason_at(inspected(before, undeclared(target)), 100),
               gcode::reason::kImpliedDecimals);
   }
 }
@@ -94,7 +100,7 @@ TEST(ImpliedDecimals, UndeclaredProgramsStayAsTheyAreWithTheReason) {
 TEST(ImpliedDecimals, OtherControlsReadThemAsEver) {
   for (const char* target : {"linuxcnc", "grbl", "marlin", "mach3"}) {
     SCOPED_TRACE(target);
-    const SmoothResult result = smoothed(wave_in_increments(), options_for(target));
+    const SmoothResult result = smoothed(wave_in_increments(), undeclared(target));
     EXPECT_TRUE(result.understood);
     EXPECT_TRUE(result.diagnostics.empty());
     const bool named = std::ranges::any_of(result.runs, [](const RunReport& run) {
@@ -145,7 +151,7 @@ TEST(ImpliedDecimals, EveryWrittenLengthHasAPoint) {
 
 TEST(ImpliedDecimals, ExplicitOnesAreUnitsOnThoseControlsToo) {
   const std::string before = wave_program({.step = 2, .height = 40, .length = 120, .decimals = 0});
-  const SmoothResult kept = smoothed(before, options_for("fanuc"));
+  const SmoothResult kept = smoothed(before, undeclared("fanuc"));
   EXPECT_EQ(kept.text, before);
   const SmoothResult result = smoothed(before, with("fanuc", kExplicit));
   EXPECT_TRUE(result.diagnostics.empty());
@@ -163,7 +169,7 @@ TEST(ImpliedDecimals, WhatIsWrittenUndeclaredHoldsInEitherReading) {
       before += ++i % every == 0 ? fmt::format("X{}\n", i) : line + "\n";
     }
     before += "G0 Z5\nM30\n";
-    const SmoothResult result = smoothed(before, options_for("fanuc"));
+    const SmoothResult result = smoothed(before, undeclared("fanuc"));
     EXPECT_TRUE(result.proved);
     EXPECT_EQ(rewritten_runs(result) > 0, every > 3);
     EXPECT_TRUE(verdict_with(before, result.text, 0.01, kExplicit).proved());
@@ -177,8 +183,8 @@ TEST(ImpliedDecimals, FeedsKeepTheWayTheyWereWritten) {
   std::string feeds_with_points = points;
   feeds_with_points.replace(feeds_with_points.find("F300"), 4, "F300.");
   feeds_with_points.replace(feeds_with_points.find("F2000"), 5, "F2000.");
-  const std::string without = smoothed(points, options_for("fanuc")).text;
-  const std::string with_them = smoothed(feeds_with_points, options_for("fanuc")).text;
+  const std::string without = smoothed(points, undeclared("fanuc")).text;
+  const std::string with_them = smoothed(feeds_with_points, undeclared("fanuc")).text;
   EXPECT_NE(without, points);
   EXPECT_NE(without.find("F2000\n"), std::string::npos);
   EXPECT_EQ(without.find("F2000."), std::string::npos);
@@ -210,7 +216,7 @@ TEST(ImpliedDecimals, LongProgramsAreReadSoWindowByWindow) {
   before += "G0 Z5000\nM30\n";
   const gcode::SourceText source("test.nc", before);
   for (const bool declared : {true, false}) {
-    SmoothOptions options = options_for("fanuc");
+    SmoothOptions options = undeclared("fanuc");
     if (declared) options.decimals = kIncrements;
     std::string text;
     const auto windows = smooth_in_windows(

@@ -31,7 +31,7 @@ INSTANTIATE_TEST_SUITE_P(
         between("Right", kLinuxCnc, "G42 D1", "cutter-compensation", "cutter-compensation", "G40"),
         between("Dynamic", kLinuxCnc, "G41.1 D3", "cutter-compensation", "cutter-compensation",
                 "G40"),
-        between("Left", kSiemens, "G41 D1", "cutter-compensation", "cutter-compensation", "G40"),
+        between("Left", kSiemens, "G41 D1", "tool-change", "cutter-compensation", "G40"),
         between("Left", kHeidenhain, "L X+31 Y+0 RL", "cutter-compensation", "cutter-compensation",
                 "L X+60 Y+0 R0"),
         between("Right", kHeidenhain, "L X+31 Y+0 RR", "cutter-compensation", "cutter-compensation",
@@ -50,8 +50,7 @@ INSTANTIATE_TEST_SUITE_P(
         between("Tilted", kSiemens, "CYCLE800(1,\"TC1\",0,57,0,0,0,0,30,0,0,0,0,-1)",
                 "tilted-plane", "tilted-plane", "CYCLE800()"),
         between("TiltedByTool", kSiemens, "TOROT", "tilted-plane", "tilted-plane", "TOROTOF"),
-        between("ToolCentre", kHeidenhain, "M128", "tool-center-point", "tool-center-point",
-                "M129"),
+        between("ToolCentre", kHeidenhain, "M128", "misc-function", "tool-center-point", "M129"),
         between("Tilted", kHeidenhain, "PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY", "tilted-plane",
                 "tilted-plane", "PLANE RESET STAY")),
     &construct_name);
@@ -66,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Construct{"Numbered", kSiemens, "G1 X1=31", "other-axis"},
                     Construct{"Rotary", kHeidenhain, "L X+31 C+30", "other-axis"},
                     Construct{"Vector", kHeidenhain, "LN X+31 Y+0 Z-1 NX+0 NY+0 NZ+1",
-                              "other-axis"},
+                              "foreign-words"},
                     Construct{"Extruder", "marlin", "G1 X31. E1.", "extruder"}),
     &construct_name);
 
@@ -75,12 +74,12 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         between("Incremental", kFanuc, "G91", "state-change", "incremental-distance", "G90"),
         between("Incremental", kSiemens, "G91", "state-change", "incremental-distance", "G90"),
-        Construct{"Increment", kHeidenhain, "L IX+1", "incremental-distance"},
+        Construct{"Increment", kHeidenhain, "L IX+1", "foreign-words"},
         between("InverseTime", kFanuc, "G93", "state-change", "inverse-time-feed", "G94"),
         between("InverseTime", kSiemens, "G93", "state-change", "inverse-time-feed", "G94"),
         between("PerRevolution", kFanuc, "G95", "state-change", "feed-per-revolution", "G94"),
         between("PerRevolution", kSiemens, "G95", "state-change", "feed-per-revolution", "G94"),
-        between("PerRevolution", kHeidenhain, "M136", "feed-per-revolution", "feed-per-revolution",
+        between("PerRevolution", kHeidenhain, "M136", "misc-function", "feed-per-revolution",
                 "M137"),
         between("SurfaceSpeed", kFanuc, "G96 S100", "spindle", "constant-surface-speed", "G97"),
         between("SurfaceSpeed", kSiemens, "G96 S100", "spindle", "constant-surface-speed", "G97"),
@@ -89,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(
         Construct{"Thread", kFanuc, "G33 Z-2. F1.5", "threading"},
         Construct{"Thread", kSiemens, "G33 Z-2 K1.5", "threading"},
         Construct{"Tapping", kSiemens, "G331 Z-2 K1.5", "threading"},
-        Construct{"ThreadCycle", kFanuc, "G76 P10060 Q100 R0.1", "canned-cycle"}),
+        Construct{"ThreadCycle", kFanuc, "G76 P10060 Q100 R0.1", "threading"}),
     &construct_name);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -127,8 +126,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         // G1 ends it there.
         Construct{"Drilling", kFanuc, "G81 X31. Y0 Z-5. R2. F100.", "canned-cycle"},
-        between("ModalMacro", kFanuc, "G66 P9010", "subprogram", "modal-macro",
-                "G67\nG21 G17 G90 G94 G40 G91.1 G64 G49 G50 G69 G50.1 X0 G15 G97 M23 G8"),
+        Construct{"ModalMacro", kFanuc, "G66 P9010", "modal-macro", false, "state-unknown"},
         Construct{"Drilling", kSiemens, "CYCLE81(5,0,2,-5)", "canned-cycle"},
         between("DrillingAtEachPlace", kSiemens, "MCALL CYCLE81(5,0,2,-5)", "canned-cycle",
                 "modal-macro", "MCALL"),
@@ -187,27 +185,27 @@ INSTANTIATE_TEST_SUITE_P(
                               "control-smoothing"},
                     Construct{"Spline", kSiemens, "BSPLINE X31 Y0\nX32 Y1\nG1 X33 Y0", "spline"},
                     Construct{"Tolerance", kHeidenhain,
-                              "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.02", "state-change"},
+                              "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.02", "control-smoothing"},
                     Construct{"HighSpeedCycle", kSiemens, "CYCLE832(0.02,1,1)", "state-change"}),
     &construct_name);
 
 INSTANTIATE_TEST_SUITE_P(
     Origins, UnsafeTable,
-    testing::Values(
-        Construct{"MachinePlace", kFanuc, "G53 G0 Z0", "coordinate-change"},
-        Construct{"Home", kFanuc, "G28 Z0", "coordinate-change"},
-        Construct{"SecondHome", kFanuc, "G30 Z0", "coordinate-change"},
-        Construct{"Set", kFanuc, "G92 X0 Y0", "coordinate-change"},
-        Construct{"LocalOffset", kFanuc, "G52 X5. Y5.", "coordinate-change"},
-        Construct{"Data", kFanuc, "G10 L2 P1 X5.", "coordinate-change"},
-        Construct{"WorkOffset", kFanuc, "G55", "coordinate-change"},
-        Construct{"WorkOffset", kSiemens, "G505", "coordinate-change"},
-        Construct{"MachinePlace", kSiemens, "G0 SUPA Z0 D0", "not-understood"},
-        Construct{"Home", kSiemens, "G74 Z1=0", "coordinate-change"},
-        Construct{"Preset", kHeidenhain, "CYCL DEF 247 PRESET ~\n  Q339=+2", "coordinate-change"},
-        Construct{"Shift", kHeidenhain, "CYCL DEF 7.0 DATUM\nCYCL DEF 7.1 X+5",
-                  "coordinate-change"},
-        Construct{"MachinePlace", kHeidenhain, "L Z+0 R0 FMAX M91", "coordinate-change"}),
+    testing::Values(Construct{"MachinePlace", kFanuc, "G53 G0 Z0", "coordinate-change"},
+                    Construct{"Home", kFanuc, "G28 Z0", "coordinate-change"},
+                    Construct{"SecondHome", kFanuc, "G30 Z0", "coordinate-change"},
+                    Construct{"Set", kFanuc, "G92 X0 Y0", "coordinate-change"},
+                    Construct{"LocalOffset", kFanuc, "G52 X5. Y5.", "coordinate-change"},
+                    Construct{"Data", kFanuc, "G10 L2 P1 X5.", "coordinate-change"},
+                    Construct{"WorkOffset", kFanuc, "G55", "coordinate-change"},
+                    Construct{"WorkOffset", kSiemens, "G505", "coordinate-change"},
+                    Construct{"MachinePlace", kSiemens, "G0 SUPA Z0 D0", "not-understood"},
+                    Construct{"Home", kSiemens, "G74 Z1=0", "coordinate-change"},
+                    Construct{"Preset", kHeidenhain, "CYCL DEF 247 PRESET ~\n  Q339=+2",
+                              "coordinate-change"},
+                    Construct{"Shift", kHeidenhain, "CYCL DEF 7.0 DATUM\nCYCL DEF 7.1 X+5",
+                              "coordinate-change"},
+                    Construct{"MachinePlace", kHeidenhain, "L Z+0 R0 FMAX M91", "foreign-words"}),
     &construct_name);
 
 INSTANTIATE_TEST_SUITE_P(

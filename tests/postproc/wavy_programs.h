@@ -87,6 +87,7 @@ inline SmoothOptions options_for(std::string_view target) {
   options.target = gcode::find_dialect(target);
   options.machine = find_machine(options.target->default_machine());
   options.threads = 1;
+  options.decimals = gcode::Decimals{};  // Z5 here is 5 mm for every target
   return options;
 }
 
