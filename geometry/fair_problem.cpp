@@ -126,15 +126,14 @@ class ProblemMaker {
     if (noisy(i)) draw_to_meant(i, sample);
     loose_ = !(sample.scatter > 0) || sample.scatter > kWatchedSagitta * options_.limit;
     problem_.samples.push_back(sample);
-    if (++since_break_ >= kVerticesPerSpan || has_own_knot(i, sample)) {
+    if (++since_break_ >= kVerticesPerSpan || has_own_knot(i)) {
       problem_.breakpoints.push_back(f_.parameters[i]);
       since_break_ = 0;
     }
   }
 
-  [[nodiscard]] bool has_own_knot(std::size_t i, const FitSample& sample) const {
-    const double scatter = std::max(sample.scatter, options_.least_scatter);
-    return options_.accurate && std::max(sagitta(i - 1), sagitta(i)) > kCoarse * scatter;
+  [[nodiscard]] bool has_own_knot(std::size_t i) const {
+    return options_.accurate && std::max(sagitta(i - 1), sagitta(i)) > kCoarse * expected(i);
   }
 
   [[nodiscard]] bool noisy(std::size_t i) const {
@@ -185,10 +184,12 @@ class ProblemMaker {
   [[nodiscard]] double scatter(std::size_t i) const {
     const double height = std::max(sagitta(i - 1), sagitta(i));
     if (height > kTooHigh * options_.limit) return 0;
-    const double expected =
-        std::max(options_.noise_part * kNoiseMargin * f_.noise[i], options_.least_scatter);
     const double loose = loosen_.empty() ? 1 : loosen_[i];
-    return std::isinf(loose) ? 0 : expected * loose;
+    return std::isinf(loose) ? 0 : expected(i) * loose;
+  }
+
+  [[nodiscard]] double expected(std::size_t i) const {
+    return std::max(options_.noise_part * kNoiseMargin * f_.noise[i], options_.least_scatter);
   }
 
   // Whether a corner nearby owns this place. Vertices come in order, so the last corner seen

@@ -30,15 +30,14 @@ constexpr int kLowestDecade = -12;
 constexpr int kHighestDecade = 1;
 constexpr int kClosings = 6;  // of the interval around the best decade, by the golden section
 
-// A scatter (rms) of this part of the limit fills the band: every sixth vertex or so is further
-// from the meant path than the limit. A regular zig-zag inside the band stays below.
-constexpr double kFillsBand = 0.7;
+// Where this part of the vertices is further from the meant path than the limit, noise fills the
+// band: the curve that the others would allow has no room between these.
+constexpr double kFillsBand = 0.125;
 
-// Noise is told greater than it is by a factor of three at the most (that of a zig-zag): what is
-// told less than this part of the limit needs no closer look.
-constexpr double kMayFill = 0.6;
+// Of normal noise an eighth is beyond 1.5 standard deviations, and noise is known to a third.
+constexpr double kMayFill = 0.4;
 
-// Scatter is judged over so many vertices on either side.
+// Vertices are counted over so many on either side.
 constexpr std::size_t kAround = 40;
 
 bool parts_stretches(const PathFeatures& f, std::size_t i) {
@@ -178,16 +177,17 @@ std::vector<Point3> meant_beyond(std::span<const Point3> points, const PathFeatu
   const auto may_fill = [&](double noise) { return noise > kMayFill * limit; };
   if (std::ranges::none_of(features.noise, may_fill)) return {};
   std::vector<Point3> meant = meant_places(points, features);
-  std::vector<double> sums = {0};
+  std::vector<std::size_t> beyond = {0};  // so many of the vertices before
   for (std::size_t i = 0; i < points.size(); ++i) {
-    sums.push_back(sums.back() + (meant[i] - points[i]).squaredNorm());
+    const bool is_beyond = (meant[i] - points[i]).norm() > limit;
+    beyond.push_back(beyond.back() + (is_beyond ? 1 : 0));
   }
   bool any = false;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::size_t begin = i < kAround ? 0 : i - kAround;
     const std::size_t end = std::min(i + kAround + 1, points.size());
-    const double mean_square = (sums[end] - sums[begin]) / static_cast<double>(end - begin);
-    if (std::sqrt(mean_square) > kFillsBand * limit) {
+    const auto count = static_cast<double>(beyond[end] - beyond[begin]);
+    if (count > kFillsBand * static_cast<double>(end - begin)) {
       any = true;
     } else {
       meant[i] = points[i];

@@ -19,9 +19,8 @@ namespace batten::geometry {
 [[nodiscard]] std::vector<Point3> meant_places(std::span<const Point3> points,
                                                const PathFeatures& features);
 
-// The same, but only where the vertices around scatter about those places by so much that a band of
-// `limit` (mm) to either side does not hold them; elsewhere a vertex keeps its place. Empty where
-// that is so nowhere.
+// The same, but only where an eighth of the vertices around is further from those places than
+// `limit` (mm); elsewhere a vertex keeps its place. Empty where that is so nowhere.
 [[nodiscard]] std::vector<Point3> meant_beyond(std::span<const Point3> points,
                                                const PathFeatures& features, double limit);
 

@@ -92,9 +92,9 @@ void expect_room_at_the_ripple_only(const FairOptions& options) {
     EXPECT_LE(needy->deviation, kTolerance);
     EXPECT_GT(slowest(*needy, limits, kRippleAt - 10, kRippleAt + 10),
               1.2 * slowest(*true_to_it, limits, kRippleAt - 10, kRippleAt + 10));
-    // Where the path is easy a span has up to 64 vertices, and the one beside the ripple moves.
-    EXPECT_LE(moved_beyond(*needy, *true_to_it, kRippleWay + 64 * kStep), 1e-4);
-    EXPECT_GT(moved_beyond(*needy, *true_to_it, 0), 0.001);
+    // Beyond it the fit settles anew, within what its vertices scatter.
+    EXPECT_LE(moved_beyond(*needy, *true_to_it, kRippleWay + 20 * kStep), 0.03 * kTolerance);
+    EXPECT_GT(moved_beyond(*needy, *true_to_it, 0), 0.3 * kTolerance);
   }
 }
 
