@@ -11,15 +11,15 @@
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
 #include "gcode/source_kind.h"
-#include "postproc/decimals_option.h"
+#include "postproc/cli/decimals_option.h"
 #include "postproc/inspect.h"
-#include "postproc/machine_choice.h"
+#include "postproc/machine/machine_choice.h"
 #include "postproc/options.h"
 #include "postproc/pipeline.h"
-#include "postproc/program_time.h"
-#include "postproc/program_time_dwell.h"
-#include "postproc/run_grouping.h"
-#include "postproc/verification.h"
+#include "postproc/proof/verification.h"
+#include "postproc/runs/run_grouping.h"
+#include "postproc/time/program_time.h"
+#include "postproc/time/program_time_dwell.h"
 
 namespace batten {
 namespace {

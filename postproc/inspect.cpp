@@ -6,7 +6,7 @@
 
 #include "geometry/numeric.h"
 #include "geometry/path.h"
-#include "postproc/run_path.h"
+#include "postproc/runs/run_path.h"
 
 namespace batten::postproc {
 

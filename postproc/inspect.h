@@ -8,7 +8,7 @@
 
 #include "gcode/motion.h"
 #include "gcode/program.h"
-#include "postproc/section.h"
+#include "postproc/runs/section.h"
 
 namespace batten::postproc {
 

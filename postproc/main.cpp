@@ -11,10 +11,10 @@
 #include <variant>
 #include <vector>
 
-#include "postproc/cli.h"
+#include "postproc/cli/cli.h"
+#include "postproc/cli/exit_code.h"
+#include "postproc/cli/interrupt.h"
 #include "postproc/commands/files.h"
-#include "postproc/exit_code.h"
-#include "postproc/interrupt.h"
 
 namespace {
 

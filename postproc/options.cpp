@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "gcode/reason.h"
-#include "postproc/decimals_option.h"
+#include "postproc/cli/decimals_option.h"
 
 namespace batten::postproc {
 

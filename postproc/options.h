@@ -13,7 +13,7 @@
 #include "geometry/side.h"
 #include "geometry/tolerance_kind.h"
 #include "postproc/machine/machine.h"
-#include "postproc/profile_words.h"
+#include "postproc/profile/profile_words.h"
 
 namespace batten::postproc {
 

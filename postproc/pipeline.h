@@ -9,7 +9,7 @@
 #include "gcode/diagnostic.h"
 #include "gcode/source_text.h"
 #include "postproc/options.h"
-#include "postproc/run_report.h"
+#include "postproc/runs/run_report.h"
 
 namespace batten::postproc {
 

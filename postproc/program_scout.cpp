@@ -8,10 +8,10 @@
 #include "gcode/part_reading.h"
 #include "gcode/reason.h"
 #include "gcode/source_kind.h"
-#include "postproc/conversion.h"
-#include "postproc/program_events.h"
-#include "postproc/provenance.h"
-#include "postproc/target_words.h"
+#include "postproc/profile/target_words.h"
+#include "postproc/proof/program_events.h"
+#include "postproc/translation/conversion.h"
+#include "postproc/writing/provenance.h"
 
 namespace batten::postproc {
 

@@ -10,7 +10,7 @@
 #include "gcode/modal_state.h"
 #include "gcode/source_text.h"
 #include "postproc/options.h"
-#include "postproc/part_runs.h"
+#include "postproc/runs/part_runs.h"
 
 namespace batten::postproc {
 

@@ -11,8 +11,8 @@
 #include <memory>
 #include <mutex>
 
-#include "postproc/interrupt.h"
-#include "postproc/progress_text.h"
+#include "postproc/cli/interrupt.h"
+#include "postproc/cli/progress_text.h"
 
 namespace batten::postproc {
 

@@ -25,7 +25,7 @@ enum class ProgressStyle {
 [[nodiscard]] std::string progress_line(double part, std::size_t bytes, double seconds);
 
 // For smooth_program: shows the part of the program's bytes that is done, and returns false after
-// Ctrl-C or SIGTERM (postproc/interrupt.h). May be called from several threads.
+// Ctrl-C or SIGTERM (postproc/cli/interrupt.h). May be called from several threads.
 [[nodiscard]] Progress show_progress(ProgressStyle style, std::size_t bytes);
 
 }  // namespace batten::postproc

@@ -12,10 +12,10 @@
 #include "geometry/numeric.h"
 #include "postproc/machine/cycle_time.h"
 #include "postproc/machine/timed_chain.h"
-#include "postproc/run_choice.h"
-#include "postproc/run_curve.h"
-#include "postproc/run_path.h"
-#include "postproc/run_prospect.h"
+#include "postproc/plan/run_choice.h"
+#include "postproc/plan/run_curve.h"
+#include "postproc/plan/run_prospect.h"
+#include "postproc/runs/run_path.h"
 
 namespace batten::postproc {
 

@@ -6,12 +6,12 @@
 
 #include "gcode/modal_state.h"
 #include "gcode/program.h"
-#include "postproc/block_numbers.h"
 #include "postproc/machine/cycle_time.h"
 #include "postproc/options.h"
-#include "postproc/output_plan.h"
-#include "postproc/program_writer.h"
-#include "postproc/section.h"
+#include "postproc/plan/output_plan.h"
+#include "postproc/runs/section.h"
+#include "postproc/writing/block_numbers.h"
+#include "postproc/writing/program_writer.h"
 
 namespace batten::postproc {
 

@@ -5,14 +5,14 @@
 
 #include "gcode/part_reading.h"
 #include "gcode/reason.h"
-#include "postproc/band_notes.h"
-#include "postproc/conversion.h"
-#include "postproc/curve_caution.h"
-#include "postproc/part_proof.h"
-#include "postproc/part_runs.h"
-#include "postproc/program_part.h"
+#include "postproc/plan/curve_caution.h"
 #include "postproc/program_scout.h"
-#include "postproc/provenance.h"
+#include "postproc/proof/part_proof.h"
+#include "postproc/runs/band_notes.h"
+#include "postproc/runs/part_runs.h"
+#include "postproc/runs/program_part.h"
+#include "postproc/translation/conversion.h"
+#include "postproc/writing/provenance.h"
 
 namespace batten::postproc {
 

@@ -2,7 +2,7 @@
 // number of blocks and what is left of the last run in it), the reports of the runs, and no more.
 // The bytes, the report and the diagnostics are those of smooth_program.
 //
-// Why a program is proved when its windows are: postproc/part_proof.h.
+// Why a program is proved when its windows are: postproc/proof/part_proof.h.
 #pragma once
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "postproc/progress_text.h"
+#include "postproc/cli/progress_text.h"
 
 namespace batten::postproc {
 

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "postproc/batch/process_pool.h"
-#include "postproc/exit_code.h"
-#include "postproc/interrupt.h"
+#include "postproc/cli/exit_code.h"
+#include "postproc/cli/interrupt.h"
 #include "postproc/report/json_values.h"
 
 namespace batten::postproc {

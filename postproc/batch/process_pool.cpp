@@ -15,7 +15,7 @@
 #include <thread>
 #include <utility>
 
-#include "postproc/output_file.h"
+#include "postproc/writing/output_file.h"
 
 namespace batten::postproc {
 

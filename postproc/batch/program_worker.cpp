@@ -9,13 +9,13 @@
 
 #include "postproc/batch/content_hash.h"
 #include "postproc/batch/program_tree.h"
-#include "postproc/exit_code.h"
-#include "postproc/interrupt.h"
-#include "postproc/output_file.h"
+#include "postproc/cli/exit_code.h"
+#include "postproc/cli/interrupt.h"
 #include "postproc/pipeline.h"
 #include "postproc/report/json_report.h"
-#include "postproc/smooth_verdict.h"
-#include "postproc/watched_file.h"
+#include "postproc/runs/smooth_verdict.h"
+#include "postproc/writing/output_file.h"
+#include "postproc/writing/watched_file.h"
 
 namespace batten::postproc {
 

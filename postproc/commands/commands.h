@@ -11,10 +11,10 @@
 #include "gcode/source_kind.h"
 #include "geometry/point.h"
 #include "postproc/batch/program_tree.h"
-#include "postproc/log_level.h"
+#include "postproc/cli/log_level.h"
 #include "postproc/options.h"
+#include "postproc/profile/target_profile.h"
 #include "postproc/progress.h"
-#include "postproc/target_profile.h"
 
 namespace batten::postproc {
 

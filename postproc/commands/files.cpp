@@ -10,12 +10,12 @@
 #include <system_error>
 #include <utility>
 
-#include "postproc/exit_code.h"
-#include "postproc/interrupt.h"
-#include "postproc/output_file.h"
-#include "postproc/spool_file.h"
-#include "postproc/terminal_colour.h"
-#include "postproc/valid_utf8.h"
+#include "postproc/cli/exit_code.h"
+#include "postproc/cli/interrupt.h"
+#include "postproc/cli/terminal_colour.h"
+#include "postproc/writing/output_file.h"
+#include "postproc/writing/spool_file.h"
+#include "postproc/writing/valid_utf8.h"
 
 namespace batten::postproc {
 

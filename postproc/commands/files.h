@@ -9,9 +9,9 @@
 
 #include "gcode/diagnostic.h"
 #include "gcode/source_text.h"
-#include "postproc/log_level.h"
-#include "postproc/output_file.h"
-#include "postproc/watched_file.h"
+#include "postproc/cli/log_level.h"
+#include "postproc/writing/output_file.h"
+#include "postproc/writing/watched_file.h"
 
 namespace batten::postproc {
 
@@ -23,7 +23,7 @@ namespace batten::postproc {
 [[nodiscard]] bool changed_while_read(const WatchedFile& file);
 
 // Says that a signal ended the work before anything was written, and returns its exit code.
-// Requires interrupted() (postproc/interrupt.h).
+// Requires interrupted() (postproc/cli/interrupt.h).
 [[nodiscard]] int end_interrupted();
 
 // 0 when written; else says why and returns the exit code.
@@ -54,7 +54,7 @@ void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& sourc
 void say(std::string_view message);
 
 // Whole lines on standard error, as they are but for bytes that are not UTF-8
-// (postproc/valid_utf8.h).
+// (postproc/writing/valid_utf8.h).
 void say_lines(std::string_view text);
 
 }  // namespace batten::postproc

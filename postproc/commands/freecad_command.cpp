@@ -6,10 +6,10 @@
 #include <iterator>
 #include <system_error>
 
+#include "postproc/cli/exit_code.h"
+#include "postproc/cli/interrupt.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
-#include "postproc/exit_code.h"
-#include "postproc/interrupt.h"
 #include "postproc/plugins/freecad_post.h"
 
 namespace batten::postproc {

@@ -8,13 +8,13 @@
 #include "gcode/parser.h"
 #include "gcode/reason.h"
 #include "gcode/source_kind.h"
+#include "postproc/cli/exit_code.h"
+#include "postproc/cli/interrupt.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
-#include "postproc/exit_code.h"
 #include "postproc/inspect.h"
-#include "postproc/interrupt.h"
 #include "postproc/report/json_values.h"
-#include "postproc/run_grouping.h"
+#include "postproc/runs/run_grouping.h"
 
 namespace batten::postproc {
 

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include "gcode/dialect.h"
+#include "postproc/cli/exit_code.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
-#include "postproc/exit_code.h"
+#include "postproc/profile/target_profile.h"
 #include "postproc/report/json_values.h"
-#include "postproc/target_profile.h"
 
 namespace batten::postproc {
 

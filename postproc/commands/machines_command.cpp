@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "postproc/cli/exit_code.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
-#include "postproc/exit_code.h"
 #include "postproc/machine/machine_fields.h"
-#include "postproc/machine_file.h"
+#include "postproc/machine/machine_file.h"
 #include "postproc/report/json_values.h"
 
 namespace batten::postproc {

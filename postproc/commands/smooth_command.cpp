@@ -4,19 +4,19 @@
 #include <system_error>
 #include <utility>
 
+#include "postproc/cli/exit_code.h"
+#include "postproc/cli/interrupt.h"
+#include "postproc/cli/log_level.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
-#include "postproc/exit_code.h"
-#include "postproc/interrupt.h"
-#include "postproc/log_level.h"
-#include "postproc/output_file.h"
 #include "postproc/report/html_report.h"
 #include "postproc/report/json_report.h"
 #include "postproc/report/summary_text.h"
-#include "postproc/smooth_verdict.h"
-#include "postproc/spool_file.h"
-#include "postproc/watched_file.h"
+#include "postproc/runs/smooth_verdict.h"
 #include "postproc/windows.h"
+#include "postproc/writing/output_file.h"
+#include "postproc/writing/spool_file.h"
+#include "postproc/writing/watched_file.h"
 
 namespace batten::postproc {
 

@@ -6,14 +6,14 @@
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
 #include "gcode/source_kind.h"
+#include "postproc/cli/exit_code.h"
+#include "postproc/cli/interrupt.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
-#include "postproc/exit_code.h"
-#include "postproc/interrupt.h"
-#include "postproc/program_time.h"
-#include "postproc/program_time_dwell.h"
-#include "postproc/program_time_profile.h"
 #include "postproc/report/time_report.h"
+#include "postproc/time/program_time.h"
+#include "postproc/time/program_time_dwell.h"
+#include "postproc/time/program_time_profile.h"
 
 namespace batten::postproc {
 namespace {

@@ -7,13 +7,13 @@
 #include "gcode/language_marks.h"
 #include "gcode/parser.h"
 #include "gcode/source_kind.h"
-#include "postproc/added_lines.h"
+#include "postproc/cli/exit_code.h"
+#include "postproc/cli/interrupt.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
-#include "postproc/exit_code.h"
-#include "postproc/interrupt.h"
+#include "postproc/profile/added_lines.h"
+#include "postproc/proof/verification.h"
 #include "postproc/report/json_values.h"
-#include "postproc/verification.h"
 
 namespace batten::postproc {
 

@@ -1,6 +1,6 @@
 #include "postproc/report/json_report.h"
 
-#include "postproc/decimals_option.h"
+#include "postproc/cli/decimals_option.h"
 #include "postproc/report/json_values.h"
 #include "postproc/report/run_reasons.h"
 

@@ -9,11 +9,11 @@
 
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
-#include "postproc/conversion.h"
+#include "postproc/proof/verification.h"
 #include "postproc/report/compact_numbers.h"
 #include "postproc/report/json_report.h"
 #include "postproc/report/page_speed.h"
-#include "postproc/verification.h"
+#include "postproc/translation/conversion.h"
 
 namespace batten::postproc {
 namespace {

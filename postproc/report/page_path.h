@@ -14,8 +14,8 @@
 
 #include "geometry/point.h"
 #include "postproc/pipeline.h"
-#include "postproc/program_events.h"
-#include "postproc/verification.h"
+#include "postproc/proof/program_events.h"
+#include "postproc/proof/verification.h"
 
 namespace batten::postproc {
 

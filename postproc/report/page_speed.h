@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "postproc/machine/machine.h"
-#include "postproc/program_events.h"
+#include "postproc/proof/program_events.h"
 
 namespace batten::postproc {
 

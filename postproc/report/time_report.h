@@ -6,7 +6,7 @@
 #include "gcode/diagnostic.h"
 #include "gcode/program.h"
 #include "postproc/machine/machine.h"
-#include "postproc/program_time.h"
+#include "postproc/time/program_time.h"
 
 namespace batten::postproc {
 

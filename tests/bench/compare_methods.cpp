@@ -23,7 +23,7 @@
 #include "geometry/tube_smoothing.h"
 #include "postproc/machine/feed_plan.h"
 #include "postproc/machine/s_curve.h"
-#include "postproc/run_curve.h"
+#include "postproc/plan/run_curve.h"
 #include "tests/support/method_cases.h"
 #include "tests/support/paths.h"
 

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "batten_process.h"
-#include "postproc/cli_table.h"
+#include "postproc/cli/cli_table.h"
 
 namespace batten {
 namespace {

@@ -11,9 +11,9 @@
 #include "gcode/parser.h"
 #include "geometry/path.h"
 #include "postproc/machine/machine.h"
-#include "postproc/program_time.h"
-#include "postproc/run_grouping.h"
-#include "postproc/verification.h"
+#include "postproc/proof/verification.h"
+#include "postproc/runs/run_grouping.h"
+#include "postproc/time/program_time.h"
 
 namespace batten::postproc::promises {
 

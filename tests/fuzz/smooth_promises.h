@@ -12,12 +12,12 @@
 #include "gcode/interpreter.h"
 #include "gcode/language_marks.h"
 #include "gcode/parser.h"
-#include "postproc/conversion.h"
 #include "postproc/machine/machine.h"
 #include "postproc/options.h"
 #include "postproc/pipeline.h"
-#include "postproc/run_grouping.h"
-#include "postproc/verification.h"
+#include "postproc/proof/verification.h"
+#include "postproc/runs/run_grouping.h"
+#include "postproc/translation/conversion.h"
 
 namespace batten::postproc::promises {
 

@@ -10,7 +10,7 @@ set(may_include_geometry "geometry")
 set(may_include_gcode "geometry|gcode")
 set(may_include_postproc "geometry|gcode|postproc")
 set(where_cgal "^geometry/(path_distance|tolerance_band)[^/]*\\.cpp$")
-set(where_cli11 "^postproc/cli[^/]*\\.cpp$")
+set(where_cli11 "^postproc/cli/cli[^/]*\\.cpp$")
 
 # Sets `complaint` when `file` (from the root) may not include `header`, given with its quotes
 # or angle brackets.
@@ -25,7 +25,7 @@ function(judge file header)
   elseif(header MATCHES "^[<\"]CGAL/" AND NOT file MATCHES "${where_cgal}")
     set(complaint "CGAL belongs in geometry/path_distance*.cpp and tolerance_band*.cpp" PARENT_SCOPE)
   elseif(header MATCHES "^[<\"]CLI/" AND NOT file MATCHES "${where_cli11}")
-    set(complaint "CLI11 belongs in postproc/cli*.cpp" PARENT_SCOPE)
+    set(complaint "CLI11 belongs in postproc/cli/cli*.cpp" PARENT_SCOPE)
   endif()
 endfunction()
 

@@ -1,12 +1,12 @@
 // The words of a profile in a written program: exactly these are taken, and nothing else.
-#include "postproc/added_lines.h"
+#include "postproc/profile/added_lines.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "gcode/interpreter.h"
-#include "postproc/assembly.h"
+#include "postproc/writing/assembly.h"
 #include "wavy_programs.h"
 
 namespace batten::postproc {

@@ -14,7 +14,7 @@
 #include "postproc/machine/cycle_time.h"
 #include "postproc/machine/feed_plan.h"
 #include "postproc/pipeline.h"
-#include "postproc/run_grouping.h"
+#include "postproc/runs/run_grouping.h"
 #include "tests/support/kinked_arcs.h"
 #include "wavy_programs.h"
 

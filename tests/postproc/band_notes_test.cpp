@@ -1,5 +1,5 @@
 // What is said about the band of a tolerance around a run.
-#include "postproc/band_notes.h"
+#include "postproc/runs/band_notes.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
 #include "postproc/pipeline.h"
-#include "postproc/run_grouping.h"
+#include "postproc/runs/run_grouping.h"
 #include "tests/postproc/wavy_programs.h"
 
 namespace batten::postproc {

@@ -8,7 +8,7 @@
 
 #include "postproc/batch/batch_progress.h"
 #include "postproc/batch/leftovers.h"
-#include "postproc/progress_text.h"
+#include "postproc/cli/progress_text.h"
 
 namespace batten::postproc {
 namespace {

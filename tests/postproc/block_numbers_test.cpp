@@ -1,4 +1,4 @@
-#include "postproc/block_numbers.h"
+#include "postproc/writing/block_numbers.h"
 
 #include <gtest/gtest.h>
 

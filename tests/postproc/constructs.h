@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "postproc/conversion.h"
 #include "postproc/inspect.h"
-#include "postproc/run_grouping.h"
+#include "postproc/runs/run_grouping.h"
+#include "postproc/translation/conversion.h"
 #include "tests/postproc/wavy_programs.h"
 
 namespace batten::postproc {

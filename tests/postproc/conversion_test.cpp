@@ -1,4 +1,4 @@
-#include "postproc/conversion.h"
+#include "postproc/translation/conversion.h"
 
 #include <gtest/gtest.h>
 

@@ -19,7 +19,7 @@
 #include "gcode/reason.h"
 #include "gcode/writer.h"
 #include "geometry/path_distance.h"
-#include "postproc/output_plan.h"
+#include "postproc/plan/output_plan.h"
 #include "tests/postproc/wavy_programs.h"
 #include "tests/support/random_curves.h"
 

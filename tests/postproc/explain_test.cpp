@@ -1,4 +1,4 @@
-#include "postproc/explain.h"
+#include "postproc/cli/explain.h"
 
 #include <gtest/gtest.h>
 
@@ -46,9 +46,9 @@ Ids ids_in_sources_of_the_reader() {
 
 Ids ids_in_sources_of_the_verifier() {
   Ids ids = {"distance"};  // one word
-  add_ids_in(source_folder() / "postproc/added_lines.cpp", ids);
-  add_ids_in(source_folder() / "postproc/event_breaches.cpp", ids);
-  add_ids_in(source_folder() / "postproc/stretch_comparison.cpp", ids);
+  add_ids_in(source_folder() / "postproc/profile/added_lines.cpp", ids);
+  add_ids_in(source_folder() / "postproc/proof/event_breaches.cpp", ids);
+  add_ids_in(source_folder() / "postproc/proof/stretch_comparison.cpp", ids);
   return ids;
 }
 

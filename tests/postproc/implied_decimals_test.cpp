@@ -9,7 +9,7 @@
 
 #include "gcode/decimals.h"
 #include "gcode/reason.h"
-#include "postproc/decimals_option.h"
+#include "postproc/cli/decimals_option.h"
 #include "postproc/windows.h"
 #include "tests/postproc/constructs.h"
 

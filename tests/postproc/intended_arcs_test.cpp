@@ -1,5 +1,5 @@
 // Which arcs were meant as arcs.
-#include "postproc/intended_arcs.h"
+#include "postproc/runs/intended_arcs.h"
 
 #include <gtest/gtest.h>
 

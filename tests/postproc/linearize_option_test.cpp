@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "geometry/path_distance.h"
-#include "postproc/cli_commands.h"
-#include "postproc/cli_given.h"
-#include "postproc/output_plan.h"
+#include "postproc/cli/cli_commands.h"
+#include "postproc/cli/cli_given.h"
+#include "postproc/plan/output_plan.h"
 #include "tests/support/curve_of.h"
 
 namespace batten::postproc {

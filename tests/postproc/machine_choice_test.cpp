@@ -1,4 +1,4 @@
-#include "postproc/machine_choice.h"
+#include "postproc/machine/machine_choice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "postproc/machine_file.h"
+#include "postproc/machine/machine_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "postproc/machine_ini.h"
+#include "postproc/machine/machine_ini.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "postproc/joined_times.h"
-#include "postproc/method_times.h"
+#include "postproc/plan/method_times.h"
+#include "postproc/time/joined_times.h"
 #include "tests/support/method_cases.h"
 #include "wavy_programs.h"
 

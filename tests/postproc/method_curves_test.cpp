@@ -11,7 +11,7 @@
 
 #include "geometry/curve_pieces.h"
 #include "geometry/path_distance.h"
-#include "postproc/run_curve.h"
+#include "postproc/plan/run_curve.h"
 #include "tests/support/method_cases.h"
 #include "tests/support/paths.h"
 

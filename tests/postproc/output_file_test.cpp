@@ -1,4 +1,4 @@
-#include "postproc/output_file.h"
+#include "postproc/writing/output_file.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,4 +1,4 @@
-#include "postproc/output_plan.h"
+#include "postproc/plan/output_plan.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "postproc/plan_stretches.h"
+#include "postproc/plan/plan_stretches.h"
 #include "tests/support/curve_of.h"
 
 namespace batten::postproc {

@@ -1,5 +1,5 @@
 // Any number of threads gives the same proof, of good programs and of wrong ones.
-#include "postproc/parallel_verification.h"
+#include "postproc/proof/parallel_verification.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gcode/reason.h"
-#include "postproc/run_work.h"
+#include "postproc/runs/run_work.h"
 #include "wavy_programs.h"
 
 namespace batten::postproc {

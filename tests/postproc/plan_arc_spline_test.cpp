@@ -9,7 +9,7 @@
 
 #include "geometry/fair.h"
 #include "geometry/path_distance.h"
-#include "postproc/output_plan.h"
+#include "postproc/plan/output_plan.h"
 
 namespace batten::postproc {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "geometry/path.h"
-#include "postproc/output_plan.h"
+#include "postproc/plan/output_plan.h"
 #include "tests/support/curve_of.h"
 #include "wavy_programs.h"
 

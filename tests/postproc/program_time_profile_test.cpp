@@ -1,5 +1,5 @@
 // The samples of a program's motion against its time, its path and the limits of the machine.
-#include "postproc/program_time_profile.h"
+#include "postproc/time/program_time_profile.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "postproc/program_time.h"
+#include "postproc/time/program_time.h"
 #include "tests/support/interpreted.h"
 
 namespace batten::postproc {
@@ -64,8 +64,7 @@ INSTANTIATE_TEST_SUITE_P(ProgramProfile, ProfileOf, testing::ValuesIn(kModels),
 
 // 0 to 100 mm/s in .1 s, .4 s at it, .1 s down; the rapid behind it makes it come to rest.
 TEST_P(ProfileOf, ALineIsATrapezoid) {
-  const SampledProgram p =
-      sampled("G21 G90\nG1 X50 F6000\nG0 Z1\nM2\n", machine_of(GetParam()));
+  const SampledProgram p = sampled("G21 G90\nG1 X50 F6000\nG0 Z1\nM2\n", machine_of(GetParam()));
   ASSERT_GE(p.samples.size(), 601u);
   const auto& s = p.samples;
   EXPECT_NEAR(s[50].place.x(), 1000 * 0.05 * 0.05 / 2, 1e-6);

@@ -1,5 +1,5 @@
 // Whole programs in time: closed forms and properties.
-#include "postproc/program_time.h"
+#include "postproc/time/program_time.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "postproc/program_writer.h"
+#include "postproc/writing/program_writer.h"
 
 #include <gtest/gtest.h>
 

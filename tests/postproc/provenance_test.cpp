@@ -1,5 +1,5 @@
 // The comment that a program was smoothed: written once, found again, whatever stands around it.
-#include "postproc/provenance.h"
+#include "postproc/writing/provenance.h"
 
 #include <gtest/gtest.h>
 

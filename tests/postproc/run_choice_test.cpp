@@ -1,6 +1,6 @@
 // Which candidate replaces a run. The figures are far from the margins, so that these are
 // promises and no copy of the margins.
-#include "postproc/run_choice.h"
+#include "postproc/plan/run_choice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Where long runs are cut, and that their pieces are the run.
-#include "postproc/run_cutting.h"
+#include "postproc/runs/run_cutting.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "postproc/run_grouping.h"
+#include "postproc/runs/run_grouping.h"
 #include "wavy_programs.h"
 
 namespace batten::postproc {

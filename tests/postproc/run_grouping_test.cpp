@@ -1,5 +1,5 @@
 // What may be rewritten together, and why the rest may not.
-#include "postproc/run_grouping.h"
+#include "postproc/runs/run_grouping.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "gcode/reason.h"
-#include "postproc/run_path.h"
+#include "postproc/runs/run_path.h"
 #include "tests/support/interpreted.h"
 #include "tests/support/kinked_arcs.h"
 

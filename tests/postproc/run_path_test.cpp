@@ -1,5 +1,5 @@
 // The points of a run follow its arcs, and its pieces are the arcs themselves.
-#include "postproc/run_path.h"
+#include "postproc/runs/run_path.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // What is said about a run before it is fitted must hold for what is made of it.
-#include "postproc/run_prospect.h"
+#include "postproc/plan/run_prospect.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "postproc/output_plan.h"
-#include "postproc/run_choice.h"
+#include "postproc/plan/output_plan.h"
+#include "postproc/plan/run_choice.h"
 #include "wavy_programs.h"
 
 namespace batten::postproc {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "gcode/reason.h"
-#include "postproc/run_grouping.h"
+#include "postproc/runs/run_grouping.h"
 #include "wavy_programs.h"
 
 namespace batten::postproc {

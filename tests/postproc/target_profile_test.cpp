@@ -1,4 +1,4 @@
-#include "postproc/target_profile.h"
+#include "postproc/profile/target_profile.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "postproc/provenance.h"
+#include "postproc/writing/provenance.h"
 #include "wavy_programs.h"
 
 namespace batten::postproc {

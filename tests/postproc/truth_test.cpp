@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "geometry/fair.h"
-#include "postproc/run_curve.h"
+#include "postproc/plan/run_curve.h"
 #include "tests/postproc/wavy_programs.h"
 #include "tests/support/paths.h"
 

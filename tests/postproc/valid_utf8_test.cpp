@@ -1,6 +1,6 @@
 // Messages reach readers that stop at the first byte that is not UTF-8.
 
-#include "postproc/valid_utf8.h"
+#include "postproc/writing/valid_utf8.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The verifier on wrong outputs, each of which it must find, and on good ones, which it must
 // accept. Programs are written by hand; each wrong one differs from a good one in one thing.
-#include "postproc/verification.h"
+#include "postproc/proof/verification.h"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@
 #include "gcode/parser.h"
 #include "gcode/source_text.h"
 #include "postproc/pipeline.h"
-#include "postproc/verification.h"
+#include "postproc/proof/verification.h"
 
 namespace batten::postproc {
 

@@ -1,0 +1,32 @@
+// The command line: words to a command with checked options, or every problem at once.
+#pragma once
+
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "postproc/cli/cli_values.h"
+#include "postproc/commands/commands.h"
+
+namespace batten::postproc {
+
+// --help, --version, --print-config: for standard output, and the program is done.
+struct PrintText {
+  std::string text;
+};
+
+using Command = std::variant<PrintText, SmoothCommand, VerifyCommand, InspectCommand, TimeCommand,
+                             BatchCommand, FreecadCommand, ListCommand, MachinesCommand>;
+
+struct CommandLine {
+  Command command;
+  Problems problems;      // not empty: `command` means nothing
+  std::string help_hint;  // what to call for help on it
+};
+
+// `arguments` without the program's own name. Reads the files of --config, --machine and
+// --grbl-settings and touches no other.
+[[nodiscard]] CommandLine read_command_line(const std::vector<std::string>& arguments);
+
+}  // namespace batten::postproc

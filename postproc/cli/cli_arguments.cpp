@@ -1,0 +1,80 @@
+#include "postproc/cli/cli_arguments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "postproc/cli/decimals_option.h"
+#include "postproc/writing/output_file.h"
+
+namespace batten::postproc {
+
+void check_files(const std::vector<std::string>& files,
+                 const std::vector<std::string_view>& expected, Problems& problems) {
+  for (std::size_t i = files.size(); i < expected.size(); ++i) {
+    problems.push_back(fmt::format("{}: no file given (- is standard input)", expected[i]));
+  }
+  for (std::size_t i = expected.size(); i < files.size(); ++i) {
+    problems.push_back(fmt::format("'{}': one file too many", files[i]));
+  }
+  if (std::ranges::count(files, "-") > 1) {
+    problems.emplace_back("-: standard input can be read only once");
+  }
+}
+
+std::string file_at(const std::vector<std::string>& files, std::size_t index) {
+  return index < files.size() ? files[index] : std::string();
+}
+
+void check_report(const std::string& file, const std::vector<std::string>& programs,
+                  Problems& problems, std::string_view option) {
+  if (file.empty() || file == "-") return;
+  for (const std::string& program : programs) {
+    if (!program.empty() && program != "-" && same_file(file, program)) {
+      problems.push_back(fmt::format("--{}: {} is the program {} itself", option, file, program));
+    }
+  }
+}
+
+void read_units_into(gcode::Units& units, const Given& given, Problems& problems) {
+  if (const auto text = given.value("units")) read_into(units, read_units(*text, problems));
+}
+
+void read_source_into(gcode::SourceKind& source, const Given& given, Problems& problems) {
+  if (const auto text = given.value("source")) {
+    read_into(source, read_choice("source", *text, sources(), problems));
+  }
+}
+
+void read_decimals_into(std::optional<gcode::Decimals>& decimals, const Given& given,
+                        Problems& problems) {
+  if (const auto text = given.value("decimals")) decimals = read_decimals(*text, problems);
+}
+
+LogLevel read_log_level(const Given& given, Problems& problems) {
+  const auto text = given.value("log-level");
+  if (given.flag("quiet")) {
+    if (text && *text != "error") {
+      problems.push_back(fmt::format("--quiet: --log-level {} says something else", *text));
+    }
+    return LogLevel::kError;
+  }
+  LogLevel level = LogLevel::kInfo;
+  if (text) read_into(level, read_choice("log-level", *text, log_levels(), problems));
+  return level;
+}
+
+std::vector<std::string_view> target_names() {
+  std::vector<std::string_view> names;
+  for (const gcode::Dialect* dialect : gcode::dialects()) names.push_back(dialect->name());
+  return names;
+}
+
+const gcode::Dialect* built_in_target(std::string_view option, const std::string& name,
+                                      Problems& problems) {
+  const gcode::Dialect* target = gcode::find_dialect(name);
+  if (target == nullptr) problems.push_back(unknown_name(option, name, target_names()));
+  return target;
+}
+
+}  // namespace batten::postproc

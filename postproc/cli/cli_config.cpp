@@ -1,0 +1,117 @@
+#include "postproc/cli/cli_config.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+
+#include "postproc/profile/toml_text.h"
+
+namespace batten::postproc {
+
+namespace {
+
+std::string place_of(const std::string& file, const toml::node& node) {
+  return fmt::format("{}:{}", file, node.source().begin.line);
+}
+
+// The text of a number, string or boolean; nothing for anything else.
+std::optional<std::string> text_of(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  return std::nullopt;
+}
+
+const OptionRow* find_row(std::string_view name) {
+  const auto rows = smooth_rows();
+  const auto found = std::ranges::find(rows, name, &OptionRow::name);
+  return found == rows.end() || !found->in_config ? nullptr : &*found;
+}
+
+std::string unknown_key(const std::string& place, std::string_view key) {
+  std::vector<std::string_view> names;
+  for (const OptionRow& row : smooth_rows()) {
+    if (row.in_config) names.push_back(row.name);
+    if (row.name == key) {
+      return fmt::format("{}: '{}' is for the command line only", place, key);
+    }
+  }
+  const std::string_view nearest = nearest_name(key, names);
+  return fmt::format("{}: there is no option '{}'{}", place, key,
+                     nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest));
+}
+
+void add_value(const OptionRow& row, const toml::node& node, const std::string& file, Given& given,
+               Problems& problems) {
+  if (row.kind == OptionKind::kList && node.is_array()) {
+    for (const toml::node& element : *node.as_array()) {
+      if (const auto text = text_of(element)) {
+        given.add(row.name, *text);
+      } else {
+        problems.push_back(
+            fmt::format("{}: '{}', expected a list of strings", place_of(file, element), row.name));
+      }
+    }
+    return;
+  }
+  const auto text = text_of(node);
+  const bool fits = text && (row.kind == OptionKind::kFlag) == node.is_boolean();
+  if (fits) {
+    given.add(row.name, *text);
+  } else {
+    problems.push_back(fmt::format(
+        "{}: '{}', expected {}", place_of(file, node), row.name,
+        row.kind == OptionKind::kFlag ? "true or false" : fmt::format("a value ({})", row.value)));
+  }
+}
+
+std::string line_of(const OptionRow& row, const Given& given) {
+  const auto values = given.values(row.name);
+  if (row.kind == OptionKind::kList) {
+    std::string list;
+    for (const std::string& value : values) list += (list.empty() ? "" : ", ") + toml_quoted(value);
+    return fmt::format("{} = [{}]", row.name, list);
+  }
+  if (row.kind == OptionKind::kFlag) {
+    return fmt::format("{} = {}", row.name, given.flag(row.name));
+  }
+  if (!values.empty()) return fmt::format("{} = {}", row.name, toml_quoted(values.front()));
+  if (!row.default_value.empty()) {
+    return fmt::format("{} = {}", row.name, toml_quoted(row.default_value));
+  }
+  return fmt::format("# {} = {}", row.name, toml_quoted(row.value));
+}
+
+}  // namespace
+
+Given read_config(const std::string& file, Problems& problems) {
+  Given given;
+  try {
+    const toml::table table = toml::parse_file(file);
+    for (const auto& [key, node] : table) {
+      if (const OptionRow* row = find_row(key.str())) {
+        add_value(*row, node, file, given, problems);
+      } else {
+        problems.push_back(unknown_key(place_of(file, node), key.str()));
+      }
+    }
+  } catch (const toml::parse_error& error) {
+    const auto line = error.source().begin.line;
+    problems.push_back(line > 0 ? fmt::format("{}:{}: {}", file, line, error.description())
+                                : fmt::format("{}: {}", file, error.description()));
+  }
+  return given;
+}
+
+std::string config_text(const Given& given) {
+  std::string text = "# Options of batten smooth, for --config.\n";
+  for (const OptionRow& row : smooth_rows()) {
+    if (!row.in_config) continue;
+    text += fmt::format("\n# {}\n{}\n", row.help, line_of(row, given));
+  }
+  return text;
+}
+
+}  // namespace batten::postproc

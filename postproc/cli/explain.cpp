@@ -1,0 +1,186 @@
+#include "postproc/cli/explain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gcode/explained_diagnostics.h"
+#include "gcode/reason.h"
+#include "postproc/cli/explained_notes.h"
+
+namespace batten::postproc {
+namespace {
+
+// Columns of the text, a little less than a terminal of 80.
+constexpr std::size_t kColumns = 78;
+
+constexpr ExplainedBreach kBreaches[] = {
+    {"distance",
+     "A stretch of cutting moves leaves the tolerance, both ways and in order. The message gives a "
+     "distance that is certainly reached, the lines say where.",
+     "The new program cuts something else there: do not run it."},
+    {"wrong-side",
+     "With --side: a stretch of the new path comes over to the side that is not allowed, or could "
+     "not be proved to stay on the other.",
+     "A larger tolerance or more decimals: a tenth of the tolerance is allowed for rounding."},
+    {"crosses-itself",
+     "A flat stretch meets itself where the old one does not: two parts of it are nearer to each "
+     "other than twice the tolerance, and one came over to the other side.",
+     "Take a smaller tolerance."},
+    {"not-proved",
+     "The distance of a stretch could be bounded from both sides, but the tolerance lies between "
+     "the bounds: paths that run over themselves many times within the tolerance, or a distance "
+     "that equals it.",
+     "Ask with another tolerance."},
+    {"feed-changed",
+     "Another feed, or one that is missing or new in the order of feeds of a stretch.",
+     "F was lost, or stands on another block."},
+    {"feed-moved",
+     "The path is right, but a feed begins or ends at another place of it, further off than the "
+     "tolerance.",
+     "F stands on another block."},
+    {"rapid-changed",
+     "A rapid ends at another place on an axis that it names, or starts or ends further off than "
+     "the tolerance on one that it does not name.",
+     "Look at the two lines: the rapid itself, or where the moves before it end."},
+    {"rapid-lost", "A rapid stands in the old program only.", "Put it back."},
+    {"rapid-added", "A rapid stands in the new program only.", "Take it out."},
+    {"event-lost",
+     "A word that acts (M, S, T, H, D, a G word that sets a mode), a message, a dwell, or a block "
+     "that has to be copied stands in the old program only.",
+     "Put it back."},
+    {"event-added", "Such a word or block stands in the new program only.", "Take it out."},
+    {"event-changed",
+     "At the same place stand different words; other blanks count too in a block that is not "
+     "understood.",
+     "Look at the two lines."},
+    {"event-moved", "An event stands at another place of the path, or has moved past other events.",
+     "Look at the two lines: coolant or spindle would change at another place of the cut."},
+    {"state-changed",
+     "Plane, units, a mode or the feed are different where a copied block depends on them, or only "
+     "assumed where a word had set them.",
+     "Look for a plane that was selected for arcs and not restored."},
+    {"profile-words-open",
+     "Words of a profile before a run without those behind it, or its header without its footer.",
+     "Something was taken out by hand: put it back."},
+    {"profile-words-around-event",
+     "Between the words before and behind a run something acts that is no cutting move.",
+     "The words were moved by hand: put them back."},
+    {"profile-words-in-program",
+     "The old program has words of the profile itself, so none in the new one are taken for the "
+     "profile's.",
+     "Verify without the profile, or take them out of it."},
+    {"too-many-differences", "More than 50 places differ: the rest was not compared.",
+     "The files do not belong together."},
+};
+
+// Broken between words, every line with the same indent.
+std::string wrapped(std::string_view text, std::size_t indent) {
+  std::string lines;
+  std::string line;
+  const auto flush = [&] {
+    if (!line.empty()) lines += std::string(indent, ' ') + line + "\n";
+    line.clear();
+  };
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::string_view word = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (indent + line.size() + 1 + word.size() > kColumns) flush();
+    if (!line.empty()) line += ' ';
+    line += word;
+  }
+  flush();
+  return lines;
+}
+
+std::string part(std::string_view head, std::string_view text, std::string_view advice) {
+  return fmt::format("{}\n{}  What to do:\n{}", head, wrapped(text, 2), wrapped(advice, 4));
+}
+
+std::string of_reason(std::string_view id) {
+  const auto all = gcode::reason::explanations();
+  const auto found = std::ranges::find(all, id, &gcode::reason::Explanation::id);
+  if (found == all.end()) return "";
+  std::string text =
+      part(fmt::format("{}: why blocks are kept as they are", id), found->text, found->advice);
+  if (found->can_be_allowed) {
+    text += fmt::format("    batten smooth .. --allow {} lifts this rule.\n", id);
+  }
+  return text;
+}
+
+std::vector<gcode::ExplainedDiagnostic> explained_messages() {
+  std::vector<gcode::ExplainedDiagnostic> all;
+  for (const auto& each : gcode::explained_diagnostics()) all.push_back(each);
+  for (const auto& each : explained_notes()) all.push_back(each);
+  return all;
+}
+
+std::string of_diagnostic(std::string_view id) {
+  const auto all = explained_messages();
+  const auto found = std::ranges::find(all, id, &gcode::ExplainedDiagnostic::id);
+  if (found == all.end()) return "";
+  return part(fmt::format("{}: a message about a program ({})", id, found->severity), found->text,
+              found->advice);
+}
+
+std::string of_breach(std::string_view id) {
+  const auto all = explained_breaches();
+  const auto found = std::ranges::find(all, id, &ExplainedBreach::id);
+  if (found == all.end()) return "";
+  return part(fmt::format("{}: a breach found by batten verify", id), found->text, found->advice);
+}
+
+// Up to the end of the first sentence. A stop within brackets or an abbreviation ends none.
+std::string_view first_sentence(std::string_view text) {
+  int brackets = 0;
+  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+    if (text[i] == '(') ++brackets;
+    if (text[i] == ')') --brackets;
+    if (brackets == 0 && text[i] == '.' && text[i + 1] == ' ') return text.substr(0, i + 1);
+  }
+  return text;
+}
+
+void add_list(std::string& text, std::string_view head) { text += fmt::format("{}\n", head); }
+
+void add_row(std::string& text, std::string_view id, std::string_view meaning) {
+  text += fmt::format("  {:<24} {}\n", id, first_sentence(meaning));
+}
+
+}  // namespace
+
+std::span<const ExplainedBreach> explained_breaches() { return kBreaches; }
+
+std::vector<std::string_view> explained_ids() {
+  std::vector<std::string_view> ids;
+  for (const auto& each : gcode::reason::explanations()) ids.push_back(each.id);
+  for (const auto& each : explained_messages()) ids.push_back(each.id);
+  for (const auto& each : explained_breaches()) ids.push_back(each.id);
+  std::ranges::sort(ids);
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+std::string explanation_of(std::string_view id) {
+  std::string text;
+  for (const std::string& each : {of_reason(id), of_diagnostic(id), of_breach(id)}) {
+    if (each.empty()) continue;
+    text += (text.empty() ? "" : "\n") + each;
+  }
+  return text;
+}
+
+std::string all_explanations() {
+  std::string text;
+  add_list(text, "Why blocks are kept as they are:");
+  for (const auto& each : gcode::reason::explanations()) add_row(text, each.id, each.text);
+  add_list(text, "\nMessages about a program:");
+  for (const auto& each : explained_messages()) add_row(text, each.id, each.text);
+  add_list(text, "\nBreaches found by batten verify:");
+  for (const auto& each : explained_breaches()) add_row(text, each.id, each.text);
+  return text;
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,31 @@
+// A control as the user has it, from a TOML file: it starts as one of the built-in targets and
+// changes what the machine builder changed. `batten targets --show NAME` prints one with every key.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gcode/dialect.h"
+#include "postproc/profile/profile_words.h"
+
+namespace batten::postproc {
+
+struct TargetProfile {
+  std::string file;
+  const gcode::Dialect* base = nullptr;           // built in
+  std::unique_ptr<const gcode::Dialect> adapted;  // with the profile's values
+  ProfileWords words;
+};
+
+// Adds a sentence to `problems` for everything that is wrong, each with file, line and column, what
+// stands there and what may, and then returns nothing. `target`: the built-in target that the user
+// named beside the file; nullptr: the file names it by based-on.
+[[nodiscard]] std::shared_ptr<const TargetProfile> read_target_profile(
+    const std::string& file, const gcode::Dialect* target, std::vector<std::string>& problems);
+
+// The file that leaves this target as it is: every key with its value, its unit and what it means.
+// The control's own smoothing words stand in it as remarks.
+[[nodiscard]] std::string profile_text(const gcode::Dialect& target);
+
+}  // namespace batten::postproc

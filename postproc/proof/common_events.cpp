@@ -1,0 +1,322 @@
+#include "postproc/proof/common_events.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "gcode/klartext/statement.h"
+#include "gcode/number_format.h"
+#include "postproc/proof/path_state.h"
+
+namespace batten::postproc {
+namespace {
+
+using gcode::Block;
+using gcode::BlockMeaning;
+using gcode::Motion;
+using gcode::MotionKind;
+using gcode::Word;
+
+// In tenths. Their effect is in the motions and in the states that are compared.
+constexpr std::array kSilent = {0,   10,  20,  30,  170, 180, 190, 200, 210, 400,
+                                800, 900, 901, 910, 911, 940, 970, 980, 990};
+constexpr int kLengthOn = 430;
+constexpr int kLengthOff = 490;
+constexpr int kBlending = 640;
+
+int tenths(double value) { return static_cast<int>(std::lround(value * 10)); }
+
+bool is_work_offset(int code) { return code >= 540 && code <= 590 && code % 10 == 0; }
+
+// `TOOL CALL 5 Z S3000`, with what a program of plain words can say; nothing where there is more.
+struct ToolCall {
+  std::optional<double> tool;
+  std::optional<double> speed;
+};
+
+std::optional<double> number_of(std::string_view token) {
+  const auto number = gcode::read_number(token);
+  return number ? std::optional(number->value) : std::nullopt;
+}
+
+std::optional<ToolCall> tool_call_in(std::string_view content) {
+  gcode::KlartextTokens tokens(content);
+  (void)tokens.next();  // TOOL
+  (void)tokens.next();  // CALL
+  ToolCall call;
+  bool along_z = false;
+  for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
+    if (token == "Z") {
+      along_z = true;
+    } else if (token.starts_with('S')) {
+      call.speed = number_of(token.substr(1));
+      if (!call.speed) return std::nullopt;
+    } else if (!along_z && !call.tool) {
+      call.tool = number_of(token);
+      if (!call.tool) return std::nullopt;
+    } else {
+      return std::nullopt;
+    }
+  }
+  return along_z ? std::optional(call) : std::nullopt;
+}
+
+// 54 of "; G54: its datum is active".
+std::optional<int> datum_in(std::string_view comment) {
+  constexpr std::string_view kBegin = "; G";
+  if (!comment.starts_with(kBegin)) return std::nullopt;
+  int code = 0;
+  const char* end = comment.data() + comment.size();
+  const auto read = std::from_chars(comment.data() + kBegin.size(), end, code);
+  const std::string_view rest(read.ptr, static_cast<std::size_t>(end - read.ptr));
+  const bool offset = read.ec == std::errc{} && is_work_offset(code * 10);
+  return offset && rest == ": its datum is active" ? std::optional(code) : std::nullopt;
+}
+
+// What a Klartext program says where its source moves behind G49.
+constexpr std::string_view kCountsAlways = "; G49: the length of the tool counts";
+
+class CommonLister {
+ public:
+  explicit CommonLister(const ReadProgram& read)
+      : program_(*read.program), interpretation_(*read.interpretation) {}
+
+  ProgramEvents run() {
+    for (block_index_ = 0; block_index_ < program_.blocks.size(); ++block_index_) {
+      list_block(program_.blocks[block_index_], interpretation_.blocks[block_index_]);
+    }
+    list_.cuts_before.push_back(list_.cuts.size());
+    return std::move(list_);
+  }
+
+ private:
+  [[nodiscard]] bool is_klartext() const { return program_.language == gcode::Language::kKlartext; }
+
+  void list_block(const Block& block, const BlockMeaning& meaning) {
+    if (meaning.of_curve) {
+      if (meaning.motion >= 0) add_cut(meaning);
+      return;
+    }
+    list_comments(block);
+    if (block.opacity == gcode::Opacity::kProgramMark) return;
+    if (names_only_unit(block)) return;
+    if (is_klartext() && block.opacity == gcode::Opacity::kForeign && list_tool_call(block)) return;
+    const bool plain = block.opacity == gcode::Opacity::kNone && !block.block_delete &&
+                       meaning.kind != gcode::BlockKind::kOpaque && !meaning.label_referenced &&
+                       !meaning.entered_from_elsewhere;
+    if (!plain) return add_own_text(block);
+    list_words(program_.words_of(block), meaning);
+  }
+
+  // A block of G710 alone: Siemens has words of their own for units.
+  [[nodiscard]] bool names_only_unit(const Block& block) const {
+    constexpr std::array<std::string_view, 4> kUnits = {"G70", "G71", "G700", "G710"};
+    return program_.language == gcode::Language::kSiemens &&
+           std::ranges::find(kUnits, program_.source.text(block.span)) != kUnits.end();
+  }
+
+  void list_comments(const Block& block) {
+    for (const gcode::Comment& comment : program_.comments_of(block)) {
+      const std::string_view text = program_.source.text(comment.span);
+      if (comment.kind == gcode::CommentKind::kActive) add_text(std::string(text));
+      const auto datum = is_klartext() ? datum_in(text) : std::nullopt;
+      if (datum) list_work_offset(*datum * 10);
+      if (is_klartext() && text == kCountsAlways) add_word("G49");
+    }
+  }
+
+  bool list_tool_call(const Block& block) {
+    const gcode::SourceSpan span =
+        gcode::klartext_parts(program_.source.text(), block.span).content;
+    const std::string_view content = program_.source.text(span);
+    if (gcode::klartext_kind(content) != gcode::KlartextKind::kToolCall) return false;
+    const auto call = tool_call_in(content);
+    if (!call || block.block_delete) return false;
+    if (call->tool) list_tool(*call->tool);
+    if (call->speed) list_speed(*call->speed);
+    return true;
+  }
+
+  // --- words --------------------------------------------------------------------------------
+
+  void list_words(std::span<const Word> words, const BlockMeaning& meaning) {
+    const bool moves = meaning.motion >= 0;
+    if (const Word* t = word_of(words, 'T')) fetched_ = t->value;
+    if (has(words, 'M', 60)) list_tool(std::exchange(fetched_, std::nullopt));
+    if (const Word* s = word_of(words, 'S')) list_speed(s->value);
+    for (const int code : {30, 40, 80}) {
+      if (has(words, 'M', code)) add_function(code);
+    }
+    for (const int code : {50, 90}) {
+      if (!has(words, 'M', code)) continue;
+      // Controls differ in what comes first.
+      moves ? add_text(fmt::format("M{} in {}", code / 10, gcode::describe(program_.language)))
+            : add_function(code);
+    }
+    for (const Word& word : words) list_word(word, words);
+    if (moves) list_motion(words, meaning);
+    for (const int code : {0, 10, 20, 300}) {
+      if (has(words, 'M', code)) add_function(code);
+    }
+  }
+
+  static const Word* word_of(std::span<const Word> words, char letter) {
+    const auto found = std::ranges::find(words, letter, &Word::letter);
+    return found == words.end() ? nullptr : &*found;
+  }
+  static bool has(std::span<const Word> words, char letter, int code) {
+    return std::ranges::any_of(words, [&](const Word& word) {
+      return word.letter == letter && tenths(word.value) == code;
+    });
+  }
+
+  void list_tool(std::optional<double> tool) {
+    add_word(tool ? fmt::format("tool {}", *tool) : "tool ?");
+    tool_ = tool;
+    fetched_.reset();
+    speed_.reset();
+    length_is_off_ = false;
+    moved_along_tool_ = false;
+  }
+
+  void list_speed(double speed) {
+    if (speed_ == speed) return;
+    speed_ = speed;
+    add_word(fmt::format("speed {}", speed));
+  }
+
+  // Those of list_words, and motion words and places, are left out.
+  void list_word(const Word& word, std::span<const Word> words) {
+    switch (word.letter) {
+      case 'G':
+        return list_g(tenths(word.value), word, words);
+      case 'M': {
+        constexpr std::array kListed = {0, 10, 20, 30, 40, 50, 60, 80, 90, 300};
+        if (std::ranges::find(kListed, tenths(word.value)) == kListed.end()) add_own_text(word);
+        return;
+      }
+      case 'H':
+        if (!has(words, 'G', kLengthOn)) add_own_text(word);
+        return;
+      default:
+        // Tools, speeds, feeds and places are listed with what they belong to.
+        if (std::string_view("NTSFXYZIJKR").find(word.letter) == std::string_view::npos) {
+          add_own_text(word);
+        }
+        return;
+    }
+  }
+
+  void list_g(int code, const Word& word, std::span<const Word> words) {
+    if (std::ranges::find(kSilent, code) != kSilent.end()) return;
+    if (is_work_offset(code)) return list_work_offset(code);
+    if (code == kLengthOff) {
+      length_is_off_ = true;
+      return;
+    }
+    const Word* h = word_of(words, 'H');
+    const bool of_the_tool = tool_ && !moved_along_tool_ && (h == nullptr || h->value == *tool_);
+    if (code == kLengthOn && of_the_tool) {
+      length_is_off_ = false;
+      return;
+    }
+    if (code == kBlending) return;  // a tolerance beside it is an event
+    add_own_text(word);
+  }
+
+  void list_work_offset(int code) {
+    if (std::exchange(work_offset_, code) != code) add_word(fmt::format("G{}", code / 10));
+  }
+
+  // --- motions ------------------------------------------------------------------------------
+
+  void list_motion(std::span<const Word> words, const BlockMeaning& meaning) {
+    if (fetched_) add_text(fmt::format("T{}", *std::exchange(fetched_, std::nullopt)));
+    if (std::exchange(length_is_off_, false)) add_word("G49");
+    const Motion& motion = interpretation_.motions[static_cast<std::size_t>(meaning.motion)];
+    moved_along_tool_ |= motion.axes_named[2];
+    if (!path_alone_counts(state_after()) || !motion.end_known) {
+      for (const Word& word : words) add_own_text(word);
+      return;
+    }
+    if (!motion.start_known) return add_text(described(motion));
+    if (motion.kind == MotionKind::kRapid) {
+      ProgramEvent& event = add_event(EventKind::kRapid);
+      event.motion = meaning.motion;
+    } else if (has_length(motion.piece)) {
+      add_cut(meaning);
+    }
+  }
+
+  [[nodiscard]] std::string described(const Motion& motion) const {
+    constexpr gcode::NumberFormat kPlace = {.decimals = 4};
+    std::string text = motion.kind == MotionKind::kRapid  ? "rapid"
+                       : motion.kind == MotionKind::kLine ? "line"
+                                                          : "arc from a place that is not known";
+    const geometry::Point3 end = geometry::end_point(motion.piece);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!motion.axes_named[static_cast<std::size_t>(axis)]) continue;
+      text += fmt::format(" {}{}", "XYZ"[axis], gcode::to_text(end[axis], kPlace));
+    }
+    const std::optional<double>& feed = state_after().feed;
+    if (motion.kind != MotionKind::kRapid) text += feed ? fmt::format(" F{:.6g}", *feed) : " F?";
+    return text;
+  }
+
+  static bool has_length(const geometry::PathPiece& piece) {
+    const auto* line = std::get_if<geometry::Line>(&piece);
+    return line == nullptr || line->start != line->end;
+  }
+
+  void add_cut(const BlockMeaning& meaning) {
+    list_.cuts.push_back({static_cast<std::uint32_t>(meaning.motion), state_after().feed});
+  }
+
+  // --- events -------------------------------------------------------------------------------
+
+  void add_function(int code) { add_word(fmt::format("M{}", code / 10)); }
+  void add_word(std::string text) { add_event(EventKind::kWord).text = std::move(text); }
+  void add_text(std::string text) { add_event(EventKind::kText).text = std::move(text); }
+  void add_own_text(const Block& block) { add_text(std::string(program_.source.text(block.span))); }
+  void add_own_text(const Word& word) { add_text(std::string(program_.source.text(word.span))); }
+
+  ProgramEvent& add_event(EventKind kind) {
+    ProgramEvent event;
+    event.kind = kind;
+    event.block = block_index_;
+    event.state_before =
+        block_index_ > 0 ? interpretation_.blocks[block_index_ - 1].state_after : 0;
+    list_.cuts_before.push_back(list_.cuts.size());
+    list_.events.push_back(std::move(event));
+    return list_.events.back();
+  }
+
+  [[nodiscard]] const gcode::ModalState& state_after() const {
+    return interpretation_.states[interpretation_.blocks[block_index_].state_after];
+  }
+
+  const gcode::Program& program_;
+  const gcode::Interpretation& interpretation_;
+  ProgramEvents list_;
+  std::uint32_t block_index_ = 0;
+  std::optional<double> fetched_;  // T without its M6 yet
+  std::optional<double> tool_;
+  std::optional<double> speed_;
+  int work_offset_ = 0;  // in tenths
+  bool length_is_off_ = false;
+  bool moved_along_tool_ = false;
+};
+
+}  // namespace
+
+ProgramEvents list_common_events(const ReadProgram& read) { return CommonLister(read).run(); }
+
+}  // namespace batten::postproc

@@ -1,0 +1,153 @@
+#include "postproc/proof/event_breaches.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace batten::postproc {
+namespace {
+
+// More of one gap say nothing new.
+constexpr std::size_t kMostPerGap = 20;
+
+std::uint32_t line_of(const ProgramEvent& event, const ReadProgram& read) {
+  return read.program->blocks[event.block].line;
+}
+
+std::string describe(const ProgramEvent& event, const ReadProgram& read) {
+  if (event.kind != EventKind::kRapid) return event.text;
+  const auto& motion = read.interpretation->motions[static_cast<std::size_t>(event.motion)];
+  const geometry::Point3 end = geometry::end_point(motion.piece);
+  return fmt::format("rapid to X{:.6g} Y{:.6g} Z{:.6g} mm", end.x(), end.y(), end.z());
+}
+
+Breach make(BreachKind kind, std::string id, std::uint32_t old_line, std::uint32_t new_line,
+            std::string message) {
+  Breach breach;
+  breach.kind = kind;
+  breach.id = std::move(id);
+  breach.old_line = old_line;
+  breach.new_line = new_line;
+  breach.message = std::move(message);
+  return breach;
+}
+
+Breach one_sided(const ProgramEvent& event, const ReadProgram& read, bool lost) {
+  const bool rapid = event.kind == EventKind::kRapid;
+  const std::uint32_t line = line_of(event, read);
+  return make(rapid ? BreachKind::kRapid : BreachKind::kEvent,
+              std::string(rapid ? "rapid-" : "event-") + (lost ? "lost" : "added"), lost ? line : 0,
+              lost ? 0 : line, describe(event, read));
+}
+
+Breach changed(const ProgramEvent& before, const ReadProgram& old_program,
+               const ProgramEvent& after, const ReadProgram& new_program) {
+  const bool rapid = before.kind == EventKind::kRapid;
+  return make(rapid ? BreachKind::kRapid : BreachKind::kEvent,
+              rapid ? "rapid-changed" : "event-changed", line_of(before, old_program),
+              line_of(after, new_program),
+              fmt::format("found {}, expected {}", describe(after, new_program),
+                          describe(before, old_program)));
+}
+
+bool moves(const EventSpan& span) {
+  return std::ranges::any_of(span.events,
+                             [](const ProgramEvent& e) { return e.kind != EventKind::kWord; });
+}
+
+bool is_lost(const Breach& breach) {
+  return breach.id == "event-lost" || breach.id == "rapid-lost";
+}
+
+bool is_added(const Breach& breach) {
+  return breach.id == "event-added" || breach.id == "rapid-added";
+}
+
+}  // namespace
+
+GapReport report_events_between(const EventSpan& lost, const EventSpan& added) {
+  GapReport gap;
+  gap.only_words = !moves(lost) && !moves(added);
+  const bool one_to_one =
+      lost.events.size() == added.events.size() &&
+      std::ranges::equal(lost.events, added.events, {}, &ProgramEvent::kind, &ProgramEvent::kind);
+  if (one_to_one) {
+    for (std::size_t i = 0; i < lost.events.size() && i < kMostPerGap; ++i) {
+      gap.breaches.push_back(changed(lost.events[i], *lost.read, added.events[i], *added.read));
+    }
+    return gap;
+  }
+  for (std::size_t i = 0; i < lost.events.size() && i < kMostPerGap; ++i) {
+    gap.breaches.push_back(one_sided(lost.events[i], *lost.read, true));
+  }
+  for (std::size_t i = 0; i < added.events.size() && i < kMostPerGap; ++i) {
+    gap.breaches.push_back(one_sided(added.events[i], *added.read, false));
+  }
+  return gap;
+}
+
+void merge_moved_events(std::vector<Breach>& breaches) {
+  for (std::size_t i = 0; i < breaches.size(); ++i) {
+    if (!is_lost(breaches[i])) continue;
+    const auto twin = std::ranges::find_if(breaches, [&](const Breach& other) {
+      return is_added(other) && other.kind == breaches[i].kind &&
+             other.message == breaches[i].message;
+    });
+    if (twin == breaches.end()) continue;
+    breaches[i].id = "event-moved";
+    breaches[i].new_line = twin->new_line;
+    breaches[i].message += ": moved past other events";
+    const auto at = static_cast<std::size_t>(twin - breaches.begin());
+    breaches.erase(twin);
+    if (at < i) --i;
+  }
+}
+
+Breach rapid_breach(const ProgramEvent& before, const ReadProgram& old_program,
+                    const ProgramEvent& after, const ReadProgram& new_program) {
+  return make(BreachKind::kRapid, "rapid-changed", line_of(before, old_program),
+              line_of(after, new_program),
+              fmt::format("{} starts or ends at another place; expected {}",
+                          describe(after, new_program), describe(before, old_program)));
+}
+
+Breach moved_event_breach(const ProgramEvent& before, const ReadProgram& old_program,
+                          const ProgramEvent& after, const ReadProgram& new_program,
+                          double moved_mm) {
+  Breach breach = make(BreachKind::kEvent, "event-moved", line_of(before, old_program),
+                       line_of(after, new_program),
+                       fmt::format("{}: the path is the same, but it stands at another place of it",
+                                   describe(before, old_program)));
+  breach.deviation_mm = moved_mm;
+  return breach;
+}
+
+Breach state_breach(std::string_view item, const ProgramEvent& before,
+                    const ReadProgram& old_program, const ProgramEvent& after,
+                    const ReadProgram& new_program) {
+  return make(BreachKind::kState, "state-changed", line_of(before, old_program),
+              line_of(after, new_program),
+              fmt::format("another {} than before at {}", item, describe(before, old_program)));
+}
+
+Breach end_state_breach(std::string_view item, const ReadProgram& old_program,
+                        const ReadProgram& new_program) {
+  const auto last_line = [](const ReadProgram& read) {
+    return read.program->blocks.empty() ? 0 : read.program->blocks.back().line;
+  };
+  return make(BreachKind::kState, "state-changed", last_line(old_program), last_line(new_program),
+              fmt::format("another {} than before at the end of the program", item));
+}
+
+Breach too_many_differences(const EventSpan& before, std::size_t next_before,
+                            const EventSpan& after, std::size_t next_after) {
+  const auto line = [](const EventSpan& span, std::size_t next) {
+    return next < span.events.size() ? line_of(span.events[next], *span.read) : 0U;
+  };
+  return make(BreachKind::kEvent, "too-many-differences", line(before, next_before),
+              line(after, next_after), "the rest of the programs was not compared");
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,182 @@
+#include "postproc/proof/part_proof.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "gcode/parser.h"
+#include "gcode/reason.h"
+#include "postproc/profile/added_lines.h"
+#include "postproc/proof/parallel_verification.h"
+
+namespace batten::postproc {
+
+namespace {
+
+void add_breaches(const AddedLines& added, const ReadProgram& read, Verification& verification) {
+  const auto add = [&](const std::vector<Breach>& breaches) {
+    verification.breaches.insert(verification.breaches.end(), breaches.begin(), breaches.end());
+  };
+  add(added.breaches);
+  add(events_in_brackets(read, added.brackets));
+}
+
+// Breaches of one stretch, which no other stretch has a part in.
+bool is_of_one_stretch(const Breach& breach) {
+  return breach.kind == BreachKind::kDistance || breach.kind == BreachKind::kNotProved ||
+         breach.kind == BreachKind::kSide || breach.kind == BreachKind::kCrossing;
+}
+
+class Prover {
+ public:
+  Prover(const ProgramPart& part, const SmoothOptions& options,
+         const gcode::ReadOptions& read_options, const Additions& additions, const Tell& tell,
+         PartRuns& runs)
+      : part_(part),
+        options_(options),
+        read_options_(read_options),
+        additions_(additions),
+        tell_(tell),
+        runs_(runs) {}
+
+  std::optional<ProvedText> run() {
+    while (true) {
+      ProvedText round = anything_rewritten() ? verified_text() : part_itself();
+      if (!tell_(0)) return std::nullopt;
+      if (!round.proved && take_back(round.verification)) continue;
+      round.stands_alone = stands_alone_;
+      return round;
+    }
+  }
+
+ private:
+  [[nodiscard]] bool anything_rewritten() const {
+    return std::ranges::any_of(runs_.works,
+                               [](const RunWork& work) { return work.chosen() != nullptr; });
+  }
+
+  // Both readers know the same, and read the same bytes.
+  [[nodiscard]] bool needs_no_proof() const { return !part_.window || part_.window->same_as_old; }
+
+  ProvedText part_itself() {
+    if (!needs_no_proof()) {
+      ProvedText same = verified_text();
+      same.unchanged = true;
+      same.text.clear();
+      return same;
+    }
+    ProvedText same;
+    same.unchanged = true;
+    same.proved = true;
+    same.blocks = part_.program.blocks.size();
+    return same;
+  }
+
+  ProvedText verified_text() {
+    ProvedText round;
+    round.text = assemble(part_.program, runs_.sections, runs_.works, additions_);
+    AddedLines added = take_added_lines(part_.program, round.text, additions_.words);
+    const gcode::SourceText written(part_.program.source.name(), std::move(added.text));
+    gcode::Diagnostics ignored;
+    const gcode::Program program = read_text(written, ignored);
+    gcode::ControlCarry control =
+        part_.window ? part_.window->new_text.control : gcode::ControlCarry(read_options_.units);
+    const gcode::Interpretation meaning =
+        gcode::interpret_part(program, read_options_, control, ignored);
+    ReadProgram before{&part_.program, &part_.meaning};
+    ReadProgram after{&program, &meaning};
+    if (part_.window) {
+      before.before = part_.window->old_events;
+      after.before = part_.window->new_text.events;
+    }
+    const Promise promise(options_.tolerance_mm, options_.tolerance_kind, options_.side);
+    round.verification = verify_in_parallel(before, after, promise, options_.threads);
+    add_breaches(added, after, round.verification);
+    round.added_lines = added.lines;
+    round.blocks = program.blocks.size();
+    round.proved = round.verification.proved();
+    if (part_.window) {
+      round.behind = {std::move(control), events_before_next(after)};
+    }
+    return round;
+  }
+
+  [[nodiscard]] gcode::Program read_text(const gcode::SourceText& written,
+                                         gcode::Diagnostics& ignored) const {
+    if (!part_.window) {
+      const gcode::Reading reading{part_.program.language, part_.program.decimals,
+                                   read_options_.units};
+      return gcode::parse(written, reading, ignored);
+    }
+    gcode::TextCarry carry;
+    carry.words_seen = part_.window->words_seen;
+    carry.decimals = part_.window->decimals;
+    return gcode::parse_part(written, {}, carry, ignored);
+  }
+
+  // The rewritten run that holds a line of the input; the nearest rewritten one before it where
+  // the line stands behind a run, for a breach may be noticed late.
+  RunWork* rewritten_run_at(std::uint32_t line) {
+    RunWork* found = nullptr;
+    for (RunWork& work : runs_.works) {
+      if (part_.program.blocks[runs_.sections[work.section].first_block].line > line) break;
+      if (work.chosen() != nullptr) found = &work;
+    }
+    return found;
+  }
+
+  // Returns whether any run gave way.
+  bool take_back(const Verification& verification) {
+    std::vector<RunWork*> blamed;
+    std::vector<RunWork*> crossing;
+    std::vector<RunWork*> over;
+    for (const Breach& breach : verification.breaches) {
+      RunWork* work = rewritten_run_at(breach.old_line);
+      if (part_.window && (work == nullptr || !is_of_one_stretch(breach))) {
+        stands_alone_ = false;
+        return false;
+      }
+      const bool wrong_side = breach.kind == BreachKind::kSide;
+      auto& list = breach.kind == BreachKind::kCrossing ? crossing : wrong_side ? over : blamed;
+      if (work != nullptr) list.push_back(work);
+    }
+    if (give_way(std::move(crossing), gcode::reason::kCrossesItself)) return true;
+    if (give_way(std::move(over), gcode::reason::kWrongSide)) return true;
+    if (blamed.empty()) {
+      // A breach that belongs to no run: believe none of them.
+      for (RunWork& work : runs_.works) {
+        if (work.chosen() != nullptr) blamed.push_back(&work);
+      }
+    }
+    return give_way(std::move(blamed), gcode::reason::kNotProved);
+  }
+
+  bool give_way(std::vector<RunWork*> works, std::string_view why) {
+    std::sort(works.begin(), works.end());
+    works.erase(std::unique(works.begin(), works.end()), works.end());
+    for (RunWork* work : works) {
+      work->give_way(why);
+      if (work->cut_run) settle(runs_.cut_runs[*work->cut_run], runs_.works, options_);
+    }
+    return !works.empty();
+  }
+
+  const ProgramPart& part_;
+  const SmoothOptions& options_;
+  const gcode::ReadOptions& read_options_;
+  const Additions& additions_;
+  const Tell& tell_;
+  PartRuns& runs_;
+  bool stands_alone_ = true;  // no breach has to do with other windows
+};
+
+}  // namespace
+
+std::optional<ProvedText> prove_text(const ProgramPart& part, const SmoothOptions& options,
+                                     const gcode::ReadOptions& read_options,
+                                     const Additions& additions, const Tell& tell, PartRuns& runs) {
+  return Prover(part, options, read_options, additions, tell, runs).run();
+}
+
+}  // namespace batten::postproc

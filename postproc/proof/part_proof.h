@@ -1,0 +1,50 @@
+// The written text of a part of a program, proved.
+//
+// Windows. The verifier compares two programs stretch by stretch between events, and the state of
+// the control at each event (postproc/proof/verification.h). Beside them it looks at two things
+// only: two stretches that both break the tolerance may be joined over the event between them,
+// though never over a rapid, and the state at the end. So where old and new text are both cut
+// behind the same rapid, each reader goes on with what it knew there (WindowStart), and each window
+// is proved, every stretch and every event of the whole was compared as it would be in the whole:
+// the windows together are proved, with the same bounds. A window ends behind a plain rapid
+// (is_plain_rapid), and its end is compared as the end of a program is.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "gcode/interpreter.h"
+#include "postproc/options.h"
+#include "postproc/proof/verification.h"
+#include "postproc/runs/part_runs.h"
+#include "postproc/runs/program_part.h"
+#include "postproc/writing/assembly.h"
+
+namespace batten::postproc {
+
+struct ProvedText {
+  std::string text;        // empty where `unchanged`
+  bool unchanged = false;  // no run is rewritten: the bytes of the part, which need no proof
+  bool proved = false;
+  std::size_t blocks = 0;
+  std::size_t added_lines = 0;
+  Verification verification;  // of the text as it is
+  // Of a window whose new text was read: what the next one takes over from it.
+  std::optional<TextBefore> behind = {};
+  // False: a window that is not proved cannot be judged by itself, for something differs that none
+  // of its runs is to blame for.
+  bool stands_alone = true;
+};
+
+// Assembles the text, reads it back as a control would, and verifies it. A run that does not hold
+// its tolerance tries its next candidate and in the end goes back to its original blocks, so each
+// round leaves fewer candidates and the loop ends. Nothing where `tell` stops the work: it is
+// called before each round.
+[[nodiscard]] std::optional<ProvedText> prove_text(const ProgramPart& part,
+                                                   const SmoothOptions& options,
+                                                   const gcode::ReadOptions& read_options,
+                                                   const Additions& additions, const Tell& tell,
+                                                   PartRuns& runs);
+
+}  // namespace batten::postproc

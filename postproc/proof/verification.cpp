@@ -1,0 +1,324 @@
+#include "postproc/proof/verification.h"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "postproc/proof/common_events.h"
+#include "postproc/proof/event_alignment.h"
+#include "postproc/proof/event_breaches.h"
+#include "postproc/proof/parallel_verification.h"
+#include "postproc/proof/state_difference.h"
+#include "postproc/proof/stretch_comparison.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Verdict;
+
+// Follows one program from event to event and knows where the tool stands.
+class Follower {
+ public:
+  Follower(const ReadProgram& read, const ProgramEvents& list) : read_(read), list_(list) {}
+
+  // Goes behind event `index`, or to the end. Returns the moves on the way, with all events
+  // between left out.
+  StretchSide move_to(std::size_t index) {
+    StretchSide side = here();
+    const std::size_t begin = cut_;
+    for (; next_event_ < index; ++next_event_) pass(list_.events[next_event_]);
+    cut_ = list_.cuts_before[index];
+    side.cuts = {list_.cuts.data() + begin, cut_ - begin};
+    if (index < list_.events.size()) pass(list_.events[next_event_++]);
+    return side;
+  }
+
+ private:
+  void pass(const ProgramEvent& event) {
+    block_ = event.block;
+    line_ = read_.program->blocks[event.block].line;
+    // What is not understood may move the tool.
+    if (event.kind == EventKind::kText && read_.interpretation->blocks[event.block].motion < 0) {
+      lost_after_ = event.block;
+    }
+  }
+
+  [[nodiscard]] StretchSide here() const {
+    StretchSide side;
+    side.read = &read_;
+    side.start = place();
+    side.line = line_;
+    return side;
+  }
+
+  // The end of the last motion that happened before or in the block of the last event.
+  [[nodiscard]] std::optional<geometry::Point3> place() const {
+    if (!block_) return read_.before.place;
+    const auto& motions = read_.interpretation->motions;
+    const auto next = std::upper_bound(
+        motions.begin(), motions.end(), *block_,
+        [](std::uint32_t block, const gcode::Motion& m) { return block < m.block; });
+    if (next == motions.begin()) {
+      return lost_after_ ? std::nullopt : read_.before.place;
+    }
+    const gcode::Motion& last = *(next - 1);
+    if (!last.end_known || (lost_after_ && last.block <= *lost_after_)) return {};
+    return geometry::end_point(last.piece);
+  }
+
+  const ReadProgram& read_;
+  const ProgramEvents& list_;
+  std::size_t next_event_ = 0;
+  std::size_t cut_ = 0;
+  std::optional<std::uint32_t> block_;  // of the last event passed
+  std::uint32_t line_ = 0;
+  std::optional<std::uint32_t> lost_after_;
+};
+
+class Verifier {
+ public:
+  Verifier(const ReadProgram& before, const ReadProgram& after, const Promise& promise, int threads)
+      : old_(before),
+        new_(after),
+        promise_(promise),
+        in_common_words_(before.program->language != after.program->language),
+        threads_(threads),
+        old_list_(events_of(before)),
+        new_list_(events_of(after)),
+        old_follower_(old_, old_list_),
+        new_follower_(new_, new_list_) {}
+
+  Verification run() {
+    const EventAlignment aligned = align_events(old_list_, old_, new_list_, new_);
+    find_moves(aligned);
+    compare_ahead();
+    EventPair next{0, 0};  // the first events not looked at yet
+    for (const EventPair& same : aligned.same) {
+      const bool can_compare = report_gap(next, same);
+      compare_moves_before(same, can_compare,
+                           next.before == same.before && next.after == same.after);
+      compare_event(same);
+      next = {same.before + 1, same.after + 1};
+    }
+    finish(next, aligned.complete);
+    flush_stretch();
+    merge_moved_events(breaches_);
+    for (Breach& breach : breaches_) result_.breaches.push_back(std::move(breach));
+    result_.events_compared = aligned.same.size();
+    return std::move(result_);
+  }
+
+ private:
+  // --- events -------------------------------------------------------------------------------
+
+  [[nodiscard]] ProgramEvents events_of(const ReadProgram& read) const {
+    return in_common_words_ ? list_common_events(read) : list_events(read);
+  }
+
+  // Events up to `same` that stand in one program only. Returns whether the moves around them
+  // can be compared as one path all the same.
+  bool report_gap(const EventPair& next, const EventPair& same) {
+    const GapReport gap = report_events_between(
+        {{old_list_.events.data() + next.before, same.before - next.before}, &old_},
+        {{new_list_.events.data() + next.after, same.after - next.after}, &new_});
+    breaches_.insert(breaches_.end(), gap.breaches.begin(), gap.breaches.end());
+    return gap.only_words;
+  }
+
+  void compare_event(const EventPair& same) {
+    const ProgramEvent& before = old_list_.events[same.before];
+    const ProgramEvent& after = new_list_.events[same.after];
+    if (before.kind == EventKind::kRapid) compare_unnamed_axes(before, after);
+    const std::string_view item = in_common_words_ ? different_in_common(before, old_, after, new_)
+                                                   : different_item(before, old_, after, new_);
+    if (!item.empty() && item != last_different_item_) {
+      breaches_.push_back(state_breach(item, before, old_, after, new_));
+    }
+    last_different_item_ = item;
+  }
+
+  // A rapid starts, and stays on the axes that it does not name, where the moves before it have
+  // left the tool: within the tolerance.
+  void compare_unnamed_axes(const ProgramEvent& before, const ProgramEvent& after) {
+    const auto& old_motion = old_.interpretation->motions[static_cast<std::size_t>(before.motion)];
+    const auto& new_motion = new_.interpretation->motions[static_cast<std::size_t>(after.motion)];
+    const double start =
+        (geometry::start_point(old_motion.piece) - geometry::start_point(new_motion.piece)).norm();
+    const double end =
+        (geometry::end_point(old_motion.piece) - geometry::end_point(new_motion.piece)).norm();
+    // Rounding of the printed decimals is far above, that of doubles far below this share.
+    constexpr double kRounding = 1e-9;
+    if (std::max(start, end) <= promise_.tolerance_mm * (1 + kRounding)) return;
+    breaches_.push_back(rapid_breach(before, old_, after, new_));
+  }
+
+  // --- moves --------------------------------------------------------------------------------
+
+  struct Compared {
+    StretchSide before;
+    StretchSide after;
+    StretchResult result;
+    EventPair event;  // that ends it
+    bool joins_next = false;
+  };
+
+  // The moves before a pair of events, and what comparing them gives where that was done ahead.
+  struct Moves {
+    StretchSide before;
+    StretchSide after;
+    bool gap = false;  // events between stand in one program only
+    std::optional<StretchResult> result;
+
+    [[nodiscard]] bool any() const { return !before.cuts.empty() || !after.cuts.empty(); }
+  };
+
+  void find_moves(const EventAlignment& aligned) {
+    moves_.reserve(aligned.same.size() + 1);
+    EventPair next{0, 0};
+    for (const EventPair& same : aligned.same) {
+      add_moves(next, same);
+      next = {same.before + 1, same.after + 1};
+    }
+    if (aligned.complete) add_moves(next, {old_list_.events.size(), new_list_.events.size()});
+  }
+
+  void add_moves(const EventPair& next, const EventPair& same) {
+    const bool gap = next.before != same.before || next.after != same.after;
+    const StretchSide before = old_follower_.move_to(same.before);
+    const StretchSide after = new_follower_.move_to(same.after);
+    moves_.push_back({before, after, gap, {}});
+  }
+
+  // Around a gap it is not known yet whether there is anything to compare.
+  void compare_ahead() {
+    std::vector<Moves*> asked;
+    for (Moves& moves : moves_) {
+      if (!moves.gap && moves.any()) asked.push_back(&moves);
+    }
+    if (threads_ == 1 || asked.size() < 2) return;
+    oneapi::tbb::task_arena arena(threads_ > 0 ? threads_ : oneapi::tbb::task_arena::automatic);
+    arena.execute([&] {
+      oneapi::tbb::parallel_for(std::size_t{0}, asked.size(), [&](std::size_t i) {
+        asked[i]->result = compare_stretch(asked[i]->before, asked[i]->after, promise_);
+      });
+    });
+  }
+
+  void compare_moves_before(const EventPair& same, bool can_compare, bool no_gap) {
+    Moves& moves = moves_[next_moves_++];
+    if (!can_compare) return flush_stretch();
+    Compared now{moves.before, moves.after, {}, same, false};
+    if (moves.result) {
+      now.result = std::move(*moves.result);
+    } else if (moves.any()) {
+      now.result = compare_stretch(moves.before, moves.after, promise_);
+    }
+    if (no_gap && last_ && last_->joins_next) join_if_event_moved(*last_, now);
+    flush_stretch();
+    now.joins_next = same.before < old_list_.events.size() &&
+                     old_list_.events[same.before].kind != EventKind::kRapid;
+    last_ = std::move(now);
+  }
+
+  // Both stretches beside an event break the tolerance, but together they keep it: the path is
+  // right, and the event stands at another place of it.
+  void join_if_event_moved(Compared& first, Compared& second) const {
+    if (first.result.breaches.empty() || second.result.breaches.empty()) return;
+    const StretchSide before = joined(first.before, second.before);
+    const StretchSide after = joined(first.after, second.after);
+    if (compare_whole_path(before, after, promise_).verdict != Verdict::kProved) return;
+    const double moved = first.result.breaches.front().deviation_mm;
+    first.result.breaches = {moved_event_breach(old_list_.events[first.event.before], old_,
+                                                new_list_.events[first.event.after], new_, moved)};
+    second.result.breaches.clear();
+  }
+
+  static StretchSide joined(const StretchSide& first, const StretchSide& second) {
+    StretchSide both = first;
+    const Cut* begin = first.cuts.empty() ? second.cuts.data() : first.cuts.data();
+    both.cuts = {begin, first.cuts.size() + second.cuts.size()};
+    return both;
+  }
+
+  // The stretch before the last one can no longer turn out to be half of a moved event.
+  void flush_stretch() {
+    if (!last_) return;
+    for (Stretch& stretch : last_->result.stretches) add_stretch(std::move(stretch));
+    for (Breach& breach : last_->result.breaches) breaches_.push_back(std::move(breach));
+    last_.reset();
+  }
+
+  void add_stretch(Stretch stretch) {
+    const geometry::PathComparison& found = stretch.comparison;
+    result_.corner_mm = std::max(result_.corner_mm, stretch.corner_mm);
+    if (found.verdict == Verdict::kProved && found.bounds.at_most > result_.deviation_mm) {
+      result_.deviation_mm = found.bounds.at_most;
+      result_.deviation_line = stretch.old_worst_line;
+    }
+    result_.stretches.push_back(std::move(stretch));
+  }
+
+  // --- end ----------------------------------------------------------------------------------
+
+  void finish(const EventPair& next, bool complete) {
+    if (!complete) {
+      flush_stretch();
+      breaches_.push_back(too_many_differences({old_list_.events, &old_}, next.before,
+                                               {new_list_.events, &new_}, next.after));
+      return;
+    }
+    const EventPair end{old_list_.events.size(), new_list_.events.size()};
+    const bool no_gap = next.before == end.before && next.after == end.after;
+    const bool can_compare = report_gap(next, end);
+    compare_moves_before(end, can_compare, no_gap);
+    // The end of a program of another language leaves behind what that control leaves.
+    if (in_common_words_) return;
+    const std::string_view item = different_item_at_end(old_, new_);
+    if (!item.empty() && item != last_different_item_) {
+      breaches_.push_back(end_state_breach(item, old_, new_));
+    }
+  }
+
+  const ReadProgram& old_;
+  const ReadProgram& new_;
+  Promise promise_;
+  bool in_common_words_ = false;  // the programs are of two languages
+  int threads_;
+  ProgramEvents old_list_;
+  ProgramEvents new_list_;
+  Follower old_follower_;
+  Follower new_follower_;
+  Verification result_;
+  std::vector<Breach> breaches_;
+  std::vector<Moves> moves_;  // one for each pair of events that are the same, and behind them
+  std::size_t next_moves_ = 0;
+  std::optional<Compared> last_;
+  std::string_view last_different_item_;
+};
+
+}  // namespace
+
+// Programs of two languages are compared in the words that all have
+// (postproc/proof/common_events.h); their rapids end at the same place to within what printing a
+// place in other digits moves it.
+Verification verify(const ReadProgram& before, const ReadProgram& after, const Promise& promise) {
+  return verify_in_parallel(before, after, promise, 1);
+}
+
+Verification verify_in_parallel(const ReadProgram& before, const ReadProgram& after,
+                                const Promise& promise, int threads) {
+  if (!(promise.tolerance_mm > 0) || !std::isfinite(promise.tolerance_mm)) {
+    throw std::invalid_argument(fmt::format(
+        "verify: tolerance {} mm, expected a finite number above 0", promise.tolerance_mm));
+  }
+  return Verifier(before, after, promise, threads).run();
+}
+
+}  // namespace batten::postproc

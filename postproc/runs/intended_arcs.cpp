@@ -1,0 +1,187 @@
+#include "postproc/runs/intended_arcs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/numeric.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Arc;
+using geometry::PathPiece;
+using geometry::Vector3;
+
+// Pieces of one curve do not meet at a greater angle, however short they are.
+constexpr double kCorner = 30 * std::numbers::pi / 180;
+
+// What a piece of length l is off its curve when it alone makes a kink a: a line a l / 8, an arc
+// through the ends and the middle of its stretch a l / 20 (docs/algorithms/arcs_in_runs.md).
+constexpr double kLineOff = 1.0 / 8;
+constexpr double kArcOff = 1.0 / 20;
+
+// A curve in pieces that is less true than this many tolerances was made for another job: its
+// kinks cannot be hidden, and count as corners.
+constexpr double kCoarse = 2;
+
+// Where this part of the joints of arcs that follow each other are kinks, those that are not are
+// tangent by chance: arcs of even length along an evenly bending curve meet so.
+constexpr double kKinksOfCurve = 1.0 / 3;
+
+// A sweep this close to a full turn (radians) is one.
+constexpr double kFullTurn = 2 * std::numbers::pi - 1e-6;
+
+const Arc* arc_of(const PrintedMotion& motion) { return std::get_if<Arc>(&motion.piece); }
+
+double rise_of(const PathPiece& piece, const Vector3& axis) {
+  return (geometry::end_point(piece) - geometry::start_point(piece)).dot(axis);
+}
+
+bool is_level(const PrintedMotion& motion, const Vector3& axis) {
+  if (const Arc* arc = arc_of(motion)) {
+    // In another plane it leaves the level somewhere.
+    if (std::abs(std::abs(arc->axis.dot(axis)) - 1) > geometry::kSameDirection) return false;
+  }
+  return std::abs(rise_of(motion.piece, axis)) <= geometry::kSamePlace;
+}
+
+// The tool ramps down on one piece and cuts a floor with the next: that was meant, however little
+// it turns there.
+bool changes_level(const PrintedMotion& before, const PrintedMotion& after) {
+  for (const PrintedMotion* motion : {&before, &after}) {
+    const Arc* arc = arc_of(*motion);
+    if (arc != nullptr && is_level(before, arc->axis) != is_level(after, arc->axis)) return true;
+  }
+  return false;
+}
+
+double radius_at(const Arc& arc, bool at_end) {
+  const Vector3 out = (at_end ? arc.end : arc.start) - arc.center;
+  return std::max((out - out.dot(arc.axis) * arc.axis).norm(), geometry::kSamePlace);
+}
+
+double chord_of(const PathPiece& piece) {
+  return (geometry::end_point(piece) - geometry::start_point(piece)).norm();
+}
+
+// By how much the direction that a motion has at one end may be wrong (radians), with errors e of
+// its ends and f of its centre in two axes, sqrt(2) of the printed errors.
+double direction_error(const PrintedMotion& motion, bool at_end, const PrintedErrors& errors) {
+  const double e = std::numbers::sqrt2 * errors.place;
+  const double f = std::numbers::sqrt2 * errors.center;
+  const double chord = std::max(chord_of(motion.piece), geometry::kSamePlace);
+  const Arc* arc = arc_of(motion);
+  // Its ends turn the chord, and the whole of the piece with it.
+  const double turned = 2 * e / chord;
+  if (arc == nullptr) return turned;
+  const double radius = radius_at(*arc, at_end);
+  if (motion.by_radius) {
+    // The angle between chord and tangent is h with sin h = chord / 2 R.
+    const double half = std::min(0.5 * std::abs(arc->sweep), std::numbers::pi);
+    return turned + std::abs(std::tan(half)) * (errors.center / radius + turned);
+  }
+  // The centre is seen beside its place: from the start by its own error, from the end by those of
+  // both ends as well. And the radii at the two ends differ, by 2 e + 2 f at the most, so that the
+  // piece is a spiral.
+  const double shifted = (at_end ? 2 * e + f : f) / radius;
+  return shifted + (2 * e + 2 * f) / chord;
+}
+
+// The least that two pieces must be off one curve to meet at this angle.
+double off_by(const PrintedMotion& motion, double turn) {
+  return turn * geometry::length_of(motion.piece) *
+         (arc_of(motion) != nullptr ? kArcOff : kLineOff);
+}
+
+bool is_full_turn(const Arc& arc) { return std::abs(arc.sweep) >= kFullTurn; }
+
+class Judge {
+ public:
+  Judge(std::span<const PrintedMotion> chain, const PrintedErrors& errors, double tolerance)
+      : chain_(chain), joints_(chain.size() + 1, ArcJoint::kCorner) {
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      joints_[i] = joint_between(chain[i - 1], chain[i], errors, tolerance);
+    }
+  }
+
+  ChainJudgement judge() {
+    ChainJudgement judged;
+    judged.kept.assign(chain_.size(), false);
+    judged.starts_part.assign(chain_.size(), false);
+    for (std::size_t i = 0; i < chain_.size(); ++i) {
+      judged.starts_part[i] = joints_[i] == ArcJoint::kCorner;
+      judged.kept[i] = arc_of(chain_[i]) != nullptr && !is_kinked(i);
+    }
+    for (std::size_t i = 0; i < chain_.size();) {
+      const std::size_t end = end_of_group(i);
+      if (is_curve(i, end)) {
+        for (std::size_t k = i; k < end; ++k) judged.kept[k] = judged.kept[k] && is_fillet(k);
+      }
+      i = std::max(end, i + 1);
+    }
+    return judged;
+  }
+
+ private:
+  [[nodiscard]] bool may_be_piece(std::size_t i) const {
+    const Arc* arc = arc_of(chain_[i]);
+    return arc != nullptr && !is_full_turn(*arc);
+  }
+
+  [[nodiscard]] bool is_kinked(std::size_t i) const {
+    return may_be_piece(i) && (joints_[i] == ArcJoint::kKink || joints_[i + 1] == ArcJoint::kKink);
+  }
+
+  // Arcs that follow each other without a corner: behind the last of those that start at `begin`.
+  [[nodiscard]] std::size_t end_of_group(std::size_t begin) const {
+    std::size_t end = begin;
+    while (end < chain_.size() && may_be_piece(end) &&
+           (end == begin || joints_[end] != ArcJoint::kCorner)) {
+      ++end;
+    }
+    return end;
+  }
+
+  [[nodiscard]] bool is_curve(std::size_t begin, std::size_t end) const {
+    if (end < begin + 2) return false;
+    const auto first = joints_.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = joints_.begin() + static_cast<std::ptrdiff_t>(end);
+    const auto kinks = std::count(first + 1, last, ArcJoint::kKink);
+    return static_cast<double>(kinks) >= kKinksOfCurve * static_cast<double>(end - begin - 1);
+  }
+
+  // Between a straight line and other arcs, tangent to both.
+  [[nodiscard]] bool is_fillet(std::size_t i) const {
+    const bool behind_line = i > 0 && arc_of(chain_[i - 1]) == nullptr;
+    const bool before_line = i + 1 < chain_.size() && arc_of(chain_[i + 1]) == nullptr;
+    return (behind_line && joints_[i] == ArcJoint::kTangent) ||
+           (before_line && joints_[i + 1] == ArcJoint::kTangent);
+  }
+
+  std::span<const PrintedMotion> chain_;
+  std::vector<ArcJoint> joints_;  // before each motion; the ends of the chain are corners
+};
+
+}  // namespace
+
+ArcJoint joint_between(const PrintedMotion& before, const PrintedMotion& after,
+                       const PrintedErrors& errors, double tolerance) {
+  if (arc_of(before) == nullptr && arc_of(after) == nullptr) return ArcJoint::kNone;
+  if (changes_level(before, after)) return ArcJoint::kCorner;
+  const Vector3 a = geometry::direction_at(before.piece, 1);
+  const Vector3 b = geometry::direction_at(after.piece, 0);
+  const double turn = std::atan2(a.cross(b).norm(), a.dot(b));
+  if (turn <= direction_error(before, true, errors) + direction_error(after, false, errors)) {
+    return ArcJoint::kTangent;
+  }
+  const bool coarse = std::min(off_by(before, turn), off_by(after, turn)) > kCoarse * tolerance;
+  return turn > kCorner || coarse ? ArcJoint::kCorner : ArcJoint::kKink;
+}
+
+ChainJudgement judge_arcs(std::span<const PrintedMotion> chain, const PrintedErrors& errors,
+                          double tolerance) {
+  return Judge(chain, errors, tolerance).judge();
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,219 @@
+#include "postproc/runs/part_runs.h"
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "gcode/reason.h"
+#include "postproc/plan/run_choice.h"
+#include "postproc/runs/band_notes.h"
+#include "postproc/runs/run_cutting.h"
+#include "postproc/runs/run_grouping.h"
+#include "postproc/smoothing.h"
+#include "postproc/writing/block_numbers.h"
+
+namespace batten::postproc {
+
+namespace {
+
+// Runs are cut where they would be kept as a whole: their parts differ. Runs of more points than
+// this are cut at once, which bounds the memory; every cut costs a joint that is not smooth.
+constexpr std::size_t kWholeAtMost = 200000;
+
+// Neighbours of a piece that are timed with it: the machine looks ahead over as many blocks to
+// stop, at most.
+constexpr std::size_t kNeighbours = 100;
+
+GroupingOptions grouping_of(const SmoothOptions& options) {
+  GroupingOptions grouping;
+  grouping.min_motions = options.min_motions;
+  grouping.tolerance_mm = options.tolerance_mm;
+  for (const std::string& id : options.allowed) grouping.allowed.push_back(id);
+  return grouping;
+}
+
+std::string_view bytes_of(const gcode::Program& program, const Section& section) {
+  const std::uint32_t begin = program.blocks[section.first_block].span.begin;
+  return program.source.text({begin, program.blocks[section.last_block].end});
+}
+
+RunContext context_of(const gcode::Program& program, const gcode::Interpretation& meaning,
+                      const Section& section) {
+  const auto state_after = [&](std::uint32_t block) -> const gcode::ModalState& {
+    return meaning.states[meaning.blocks[block].state_after];
+  };
+  const gcode::Block& first = program.blocks[section.first_block];
+  return {program,
+          section.first_block == 0 ? meaning.states[0] : state_after(section.first_block - 1),
+          state_after(section.last_block),
+          program.source.text({first.span.end, first.end}),
+          section.last_block - section.first_block + 1,
+          bytes_of(program, section).size(),
+          number_room(program, section.first_block, section.last_block)};
+}
+
+class PartSmoother {
+ public:
+  PartSmoother(const ProgramPart& part, const SmoothOptions& options, const Tell& tell,
+               PartRuns& runs)
+      : part_(part), options_(options), tell_(tell), runs_(runs) {}
+
+  // False: the work was stopped.
+  bool run() {
+    std::vector<std::size_t> whole;
+    for (std::size_t i = 0; i < runs_.works.size(); ++i) {
+      if (!is_cut_at_once(runs_.works[i])) whole.push_back(i);
+    }
+    if (!nothing_asked()) note_bands();  // they warn of what new paths may do
+    for (const RunWork& work : runs_.works) points_ += run_of(work).points.size();
+    if (!smooth_works(whole)) return false;
+    const std::vector<std::size_t> pieces = cut_runs();
+    if (!smooth_works(pieces)) return false;
+    for (CutRun& cut : runs_.cut_runs) settle(cut, runs_.works, options_);
+    return true;
+  }
+
+ private:
+  // Items do not look at each other: any number of threads gives the same bytes.
+  template <typename Function>
+  void in_parallel(std::size_t count, const Function& function) const {
+    oneapi::tbb::task_arena arena(options_.threads > 0 ? options_.threads
+                                                       : oneapi::tbb::task_arena::automatic);
+    arena.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, count, function); });
+  }
+
+  [[nodiscard]] bool nothing_asked() const { return options_.method == Method::kNone; }
+
+  [[nodiscard]] bool is_cut_at_once(const RunWork& work) const {
+    return run_of(work).points.size() > kWholeAtMost && !nothing_asked();
+  }
+
+  [[nodiscard]] const Run& run_of(const RunWork& work) const {
+    return std::get<Run>(runs_.sections[work.section].content);
+  }
+
+  void note_bands() {
+    std::vector<gcode::Diagnostics> notes(runs_.works.size());
+    in_parallel(runs_.works.size(), [&](std::size_t i) {
+      notes[i] = band_notes(part_.program, part_.meaning, runs_.sections[runs_.works[i].section],
+                            options_.tolerance_mm);
+    });
+    runs_.notes = std::move(notes);
+  }
+
+  bool smooth_works(const std::vector<std::size_t>& works) {
+    std::atomic<bool> stopped = false;
+    std::mutex telling;
+    const auto one = [&](std::size_t i) {
+      if (stopped) return;
+      RunWork& work = runs_.works[works[i]];
+      work.smoothed = smooth_run(run_of(work), work.context, options_);
+      work.choosing = choose(work.smoothed, work.context, options_);
+      work.drop_what_is_not_written();
+      const std::scoped_lock lock(telling);
+      smoothed_points_ += run_of(work).points.size();
+      const double part =
+          std::min(1.0, static_cast<double>(smoothed_points_) / static_cast<double>(2 * points_));
+      if (!tell_(part)) stopped = true;
+    };
+    in_parallel(works.size(), one);
+    return !stopped;
+  }
+
+  // Puts pieces in the place of runs that are too long or that would be kept as a whole. Returns
+  // the works that are new.
+  std::vector<std::size_t> cut_runs() {
+    std::vector<std::size_t> fresh;
+    std::vector<Section> sections;
+    std::vector<RunWork> works;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < runs_.sections.size(); ++i) {
+      const bool is_run = next < runs_.works.size() && runs_.works[next].section == i;
+      if (!is_run || !add_pieces(runs_.works[next], sections, works, fresh)) {
+        if (is_run) {
+          runs_.works[next].section = sections.size();
+          works.push_back(std::move(runs_.works[next]));
+        }
+        sections.push_back(std::move(runs_.sections[i]));
+      }
+      if (is_run) ++next;
+    }
+    runs_.sections = std::move(sections);
+    runs_.works = std::move(works);
+    return fresh;
+  }
+
+  bool add_pieces(RunWork& work, std::vector<Section>& sections, std::vector<RunWork>& works,
+                  std::vector<std::size_t>& fresh) {
+    const bool too_long = is_cut_at_once(work);
+    const std::string_view kept = work.choosing.reason;
+    const bool disappoints = kept == gcode::reason::kNoGain || kept == gcode::reason::kSlower ||
+                             kept == gcode::reason::kNoFit;
+    if (!too_long && !disappoints) return false;
+    std::vector<RunPiece> pieces = cut_run(runs_.sections[work.section], part_.meaning, {});
+    if (pieces.size() < 2) return false;
+    CutRun cut;
+    cut.path = work.context.after.path;
+    if (!too_long) cut.facts = work.smoothed.facts;
+    cut.reason = work.choosing.reason;
+    cut.first_work = works.size();
+    cut.pieces = pieces.size();
+    cut.run = std::move(std::get<Run>(runs_.sections[work.section].content));
+    for (RunPiece& piece : pieces) {
+      fresh.push_back(works.size());
+      RunWork part{sections.size(), context_of(part_.program, part_.meaning, piece.section)};
+      part.cut_run = runs_.cut_runs.size();
+      part.first = piece.first;
+      part.last = piece.last;
+      const std::size_t end = cut.run.points.size() - 1;
+      part.context.lead = timed_pieces(
+          cut.run, piece.first < kNeighbours ? 0 : piece.first - kNeighbours, piece.first);
+      part.context.tail =
+          timed_pieces(cut.run, piece.last, std::min(piece.last + kNeighbours, end));
+      works.push_back(std::move(part));
+      sections.push_back(std::move(piece.section));
+    }
+    runs_.cut_runs.push_back(std::move(cut));
+    return true;
+  }
+
+  const ProgramPart& part_;
+  const SmoothOptions& options_;
+  const Tell& tell_;
+  PartRuns& runs_;
+  std::size_t points_ = 0;           // of all runs
+  std::size_t smoothed_points_ = 0;  // pieces count again
+};
+
+}  // namespace
+
+bool is_allowed(std::string_view reason, const SmoothOptions& options) {
+  return std::ranges::find(options.allowed, reason) != options.allowed.end();
+}
+
+PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options) {
+  PartRuns runs;
+  runs.sections = group_runs(part.program, part.meaning, grouping_of(options));
+  for (std::size_t i = 0; i < runs.sections.size(); ++i) {
+    if (!std::holds_alternative<Run>(runs.sections[i].content)) continue;
+    runs.works.push_back({i, context_of(part.program, part.meaning, runs.sections[i])});
+  }
+  return runs;
+}
+
+void keep_as_smoothed(PartRuns& runs) {
+  for (RunWork& work : runs.works) work.choosing.reason = gcode::reason::kAlreadySmoothed;
+}
+
+bool smooth_runs(const ProgramPart& part, const SmoothOptions& options, const Tell& tell,
+                 PartRuns& runs) {
+  return PartSmoother(part, options, tell, runs).run();
+}
+
+}  // namespace batten::postproc

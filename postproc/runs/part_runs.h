@@ -1,0 +1,39 @@
+// The runs of a part of a program: found, smoothed, and cut where they would be kept as a whole.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "gcode/diagnostic.h"
+#include "postproc/options.h"
+#include "postproc/runs/program_part.h"
+#include "postproc/runs/run_work.h"
+#include "postproc/runs/section.h"
+
+namespace batten::postproc {
+
+struct PartRuns {
+  std::vector<Section> sections;
+  std::vector<RunWork> works;  // of the sections that are runs, in order
+  std::vector<CutRun> cut_runs;
+  std::vector<gcode::Diagnostics> notes;  // on the bands of the runs (postproc/runs/band_notes.h)
+};
+
+// Whether the user has lifted this rule.
+[[nodiscard]] bool is_allowed(std::string_view reason, const SmoothOptions& options);
+
+// `part` must outlive the runs: they refer to it.
+[[nodiscard]] PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options);
+
+// Every run is kept, since the program was smoothed before.
+void keep_as_smoothed(PartRuns& runs);
+
+// Called with the share of the work that is done, 0..1; false stops it.
+using Tell = std::function<bool(double)>;
+
+// Makes candidates for all runs and chooses among them. The same for any number of threads. False:
+// the work was stopped.
+[[nodiscard]] bool smooth_runs(const ProgramPart& part, const SmoothOptions& options,
+                               const Tell& tell, PartRuns& runs);
+
+}  // namespace batten::postproc

@@ -1,0 +1,321 @@
+#include "postproc/runs/run_grouping.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "gcode/reason.h"
+#include "postproc/runs/intended_arcs.h"
+#include "postproc/runs/run_blocks.h"
+
+namespace batten::postproc {
+namespace {
+
+using gcode::BlockMeaning;
+using gcode::ModalState;
+using gcode::Motion;
+using gcode::Tri;
+namespace reason = gcode::reason;
+
+// The part of the tolerance by which a run's points may miss its arcs between them. It is taken off
+// what the smoothing may use.
+constexpr double kArcShare = 0.03;
+
+// The states of which each forbids to rewrite.
+struct UnsafeSwitch {
+  Tri ModalState::*item;
+  std::string_view reason;
+};
+constexpr UnsafeSwitch kUnsafeSwitches[] = {
+    {&ModalState::cutter_compensation, reason::kCutterCompensation},
+    {&ModalState::tool_center_point, reason::kToolCenterPoint},
+    {&ModalState::tilted_plane, reason::kTiltedPlane},
+    {&ModalState::polar, reason::kPolar},
+    {&ModalState::cylindrical, reason::kCylindrical},
+    {&ModalState::scaling, reason::kScaling},
+    {&ModalState::rotation, reason::kRotation},
+    {&ModalState::mirror, reason::kMirror},
+    {&ModalState::control_smoothing, reason::kControlSmoothing},
+    {&ModalState::modal_macro, reason::kModalMacro},
+    {&ModalState::constant_surface_speed, reason::kConstantSurfaceSpeed},
+    {&ModalState::lathe_diameter, reason::kLatheDiameter},
+};
+
+// States that stand for themselves, before anything is said about what is unknown.
+std::string_view unsafe_mode(const ModalState& state, const GroupingOptions& options) {
+  const auto is_allowed = [&options](std::string_view id) {
+    return std::ranges::find(options.allowed, id) != options.allowed.end();
+  };
+  for (const UnsafeSwitch& unsafe : kUnsafeSwitches) {
+    const bool lifted =
+        unsafe.item == &ModalState::control_smoothing && is_allowed(reason::kControlSmoothing);
+    if (state.*unsafe.item == Tri::kOn && !lifted) {
+      return unsafe.reason;
+    }
+  }
+  if (state.distance == gcode::DistanceMode::kIncremental) {
+    return reason::kIncremental;
+  }
+  if (state.feed_mode == gcode::FeedMode::kInverseTime) {
+    return reason::kInverseTime;
+  }
+  if (state.feed_mode == gcode::FeedMode::kPerRevolution) {
+    return reason::kFeedPerRevolution;
+  }
+  if (state.path == gcode::PathMode::kExactStop ||
+      (state.path == gcode::PathMode::kExactPath && !is_allowed(reason::kExactStop))) {
+    return reason::kExactStop;
+  }
+  return {};
+}
+
+std::string_view unknown_state(const ModalState& state) {
+  if (!is_known(state)) {
+    ModalState with_units = state;
+    with_units.units = gcode::Units::kMillimetre;
+    return is_known(with_units) ? reason::kUnitsUnknown : reason::kStateUnknown;
+  }
+  return state.feed ? std::string_view{} : reason::kFeedUnknown;
+}
+
+class RunGrouper {
+ public:
+  RunGrouper(const gcode::Program& program, const gcode::Interpretation& read,
+             const GroupingOptions& options)
+      : read_(read), blocks_(program, read), options_(options) {}
+
+  std::vector<Section> group() {
+    for (std::uint32_t i = 0; i < read_.blocks.size(); ++i) {
+      const BlockMeaning& block = read_.blocks[i];
+      if (!block.barrier.empty() && !is_plain_arc(block)) {
+        close_chain();
+        keep(i, block.barrier);
+      } else if (block.motion >= 0) {
+        take_motion(i, blocks_.motion(i));
+      } else if (chain_.empty()) {
+        keep_idle(i);
+      }
+      // Blocks without motion inside a chain go with it, if it goes on behind them.
+    }
+    close_chain();
+    keep_rest();
+    return std::move(sections_);
+  }
+
+ private:
+  static bool is_plain_arc(const BlockMeaning& block) {
+    return block.barrier == reason::kArc && block.motion >= 0 &&
+           block.kind == gcode::BlockKind::kMotion;
+  }
+
+  void take_motion(std::uint32_t i, const Motion& motion) {
+    std::string_view why = reason_in_state(read_.blocks[i].state_after);
+    if (why.empty() && !motion.start_known) {
+      why = reason::kPositionUnknown;
+    }
+    if (!why.empty()) {
+      close_chain();
+      keep(i, why);
+      return;
+    }
+    chain_.push_back(i);
+  }
+
+  // States are shared by many blocks: ask once for each.
+  std::string_view reason_in_state(std::uint32_t state) {
+    if (asked_state_ != state) {
+      asked_state_ = state;
+      answer_ = unsafe_state(read_.states[state], options_);
+    }
+    return answer_;
+  }
+
+  // --- arcs ---------------------------------------------------------------------------------
+
+  // Arcs that were meant are copied, and the chain is cut there and at corners beside arcs.
+  void close_chain() {
+    const std::vector<std::uint32_t> whole = std::exchange(chain_, {});
+    const bool has_arcs =
+        std::ranges::any_of(whole, [this](std::uint32_t b) { return blocks_.arc(b) != nullptr; });
+    if (!has_arcs) {
+      chain_ = whole;
+      close_stretch();
+      return;
+    }
+    std::vector<PrintedMotion> moving;
+    for (const std::uint32_t block : whole) {
+      if (blocks_.moves(block)) moving.push_back(blocks_.printed(block));
+    }
+    const ChainJudgement judged =
+        judge_arcs(moving, blocks_.errors_of(whole), options_.tolerance_mm);
+    std::size_t next = 0;
+    for (const std::uint32_t block : whole) {
+      if (!blocks_.moves(block)) {
+        chain_.push_back(block);
+        continue;
+      }
+      const std::size_t i = next++;
+      if (judged.starts_part[i] && can_start(block)) close_stretch();
+      if (judged.kept[i]) {
+        close_stretch();
+        keep(block, reason::kIntendedArc);
+      } else {
+        chain_.push_back(block);
+      }
+    }
+    close_stretch();
+  }
+
+  // An arc that takes its G2 or G3 from the block before it stays with it.
+  bool can_start(std::uint32_t block) const {
+    return blocks_.arc(block) == nullptr || blocks_.names_motion(block);
+  }
+
+  // --- plunges ------------------------------------------------------------------------------
+
+  // The tool goes down into a cut and comes up out of it: where such a move meets the cut is a
+  // corner that was meant, and rounding it would tilt the cut out of its plane. So plunges are
+  // copied, and the chain is cut there. Straight down in the midst of a surface is no plunge;
+  // at its begin or end it is.
+  void close_stretch() {
+    std::vector<std::uint32_t> whole = std::exchange(chain_, {});
+    std::size_t i = 0;
+    while (i < whole.size()) {
+      const std::size_t end = end_of_plunge(whole, i);
+      if (end == i) {
+        chain_.push_back(whole[i++]);
+        continue;
+      }
+      close_part();
+      keep(whole[end - 1], reason::kPlunge);
+      i = end;
+    }
+    close_part();
+  }
+
+  // Behind the moves along Z that start at `begin`, when they are a plunge; `begin` otherwise.
+  std::size_t end_of_plunge(const std::vector<std::uint32_t>& chain, std::size_t begin) const {
+    using Heading = RunBlocks::Heading;
+    const auto flat = [&](std::size_t k) { return blocks_.heading(chain[k]) == Heading::kInPlane; };
+    const auto along_z = [&](std::size_t k) {
+      return !blocks_.moves(chain[k]) || blocks_.heading(chain[k]) == Heading::kAlongZ;
+    };
+    std::size_t end = begin;
+    while (end < chain.size() && along_z(end)) {
+      ++end;
+    }
+    if (end == begin || !blocks_.moves(chain[begin])) {
+      return begin;
+    }
+    std::size_t before = begin;
+    while (before > 0 && !blocks_.moves(chain[before - 1])) {
+      --before;
+    }
+    const bool outermost = before == 0 || end == chain.size();
+    return outermost || (flat(before - 1) && flat(end)) ? end : begin;
+  }
+
+  // Motions of no length at the ends of a chain say nothing about its path: they are copied. So are
+  // arcs at its end whose G2 or G3 is needed behind it.
+  void close_part() {
+    const auto moving = [this](std::uint32_t block) { return blocks_.moves(block); };
+    const auto first = std::find_if(chain_.begin(), chain_.end(), moving);
+    const auto may_end = [this](std::uint32_t block) {
+      return blocks_.moves(block) && !blocks_.lends_arc_word(block);
+    };
+    const auto last = std::find_if(chain_.rbegin(), chain_.rend(), may_end).base();
+    const auto count = first < last ? std::count_if(first, last, moving) : 0;
+    if (chain_.empty()) {
+      return;
+    }
+    if (count == 0 || static_cast<std::size_t>(count) < options_.min_motions) {
+      keep_up_to(chain_.back(), reason::kTooShort);
+    } else {
+      if (first != chain_.begin()) {
+        keep_up_to(*first - 1, reason::kTooShort);
+      }
+      add_run(std::vector<std::uint32_t>(first, last));
+      if (last != chain_.end()) {
+        keep_up_to(chain_.back(), blocks_.moves(*last) ? reason::kArc : reason::kTooShort);
+      }
+    }
+    chain_.clear();
+  }
+
+  void add_run(const std::vector<std::uint32_t>& blocks) {
+    close_idle_before(blocks.front());
+    sections_.push_back(
+        {blocks.front(), blocks.back(), blocks_.run_of(blocks, kArcShare * options_.tolerance_mm)});
+    done_ = blocks.back() + 1;
+  }
+
+  // --- what is kept -------------------------------------------------------------------------
+
+  // Blocks [done_, ..] have no section yet. Those that say nothing wait for the next section.
+  void keep_idle(std::uint32_t i) {
+    if (!sections_.empty() && sections_.back().last_block + 1 == i) {
+      if (std::holds_alternative<Verbatim>(sections_.back().content)) {
+        sections_.back().last_block = i;
+        done_ = i + 1;
+      }
+    }
+  }
+
+  void keep(std::uint32_t last, std::string_view why) { keep_up_to(last, why); }
+
+  // Everything up to `last` that has no section yet, for this reason.
+  void keep_up_to(std::uint32_t last, std::string_view why) {
+    if (!sections_.empty()) {
+      auto* before = std::get_if<Verbatim>(&sections_.back().content);
+      if (before != nullptr && before->reason == why) {
+        sections_.back().last_block = last;
+        done_ = last + 1;
+        return;
+      }
+    }
+    sections_.push_back({done_, last, Verbatim{why}});
+    done_ = last + 1;
+  }
+
+  void close_idle_before(std::uint32_t block) {
+    if (done_ < block) {
+      keep_up_to(block - 1, reason::kComment);
+    }
+  }
+
+  void keep_rest() {
+    const auto count = static_cast<std::uint32_t>(read_.blocks.size());
+    if (done_ == count) {
+      return;
+    }
+    if (!sections_.empty() && std::holds_alternative<Verbatim>(sections_.back().content)) {
+      sections_.back().last_block = count - 1;
+    } else {
+      sections_.push_back({done_, count - 1, Verbatim{reason::kComment}});
+    }
+  }
+
+  const gcode::Interpretation& read_;
+  RunBlocks blocks_;
+  const GroupingOptions& options_;
+  std::vector<Section> sections_;
+  std::vector<std::uint32_t> chain_;  // motion blocks that may become a run
+  std::uint32_t done_ = 0;            // blocks before this one are in sections
+  std::optional<std::uint32_t> asked_state_;
+  std::string_view answer_;
+};
+
+}  // namespace
+
+std::vector<Section> group_runs(const gcode::Program& program,
+                                const gcode::Interpretation& interpretation,
+                                const GroupingOptions& options) {
+  return RunGrouper(program, interpretation, options).group();
+}
+
+std::string_view unsafe_state(const ModalState& state, const GroupingOptions& options) {
+  const std::string_view mode = unsafe_mode(state, options);
+  return mode.empty() ? unknown_state(state) : mode;
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,159 @@
+#include "postproc/runs/run_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Arc;
+using geometry::Line;
+using geometry::PathPiece;
+using geometry::Point3;
+using geometry::Vector3;
+
+constexpr std::size_t kLeastChords = 4;
+
+// An arc through the ends and the middle of a stretch of a curve whose curvature changes by k' per
+// mm leaves it by k' (s^3 - s l^2 / 4) / 6, s from -l/2 to l/2: k' l^3 / 174 rms.
+constexpr double kFromCurvature = 1.0 / 174;
+
+// At its ends it is k' l^2 / 12 off in direction. Two arcs share the kink between them: of a kink a
+// is a l 6 / 174.
+constexpr double kFromKink = 6.0 / 174;
+
+// The first arc that does not end before the vertex.
+std::vector<RunArc>::const_iterator arc_not_before(const Run& run, std::size_t vertex) {
+  return std::ranges::lower_bound(run.arcs, vertex, {}, &RunArc::last);
+}
+
+PathPiece part_of(const RunArc& arc, std::size_t first, std::size_t last) {
+  if (first == arc.first && last == arc.last) return arc.arc;
+  const auto steps = static_cast<double>(arc.last - arc.first);
+  return geometry::sub_piece(arc.arc, static_cast<double>(first - arc.first) / steps,
+                             static_cast<double>(last - arc.first) / steps);
+}
+
+// Towards the centre of curvature, 1/mm long.
+Vector3 curvature_vector(const PathPiece& piece, double t) {
+  const auto* arc = std::get_if<Arc>(&piece);
+  if (arc == nullptr) return Vector3::Zero();
+  Vector3 inwards = arc->center - geometry::point_at(piece, t);
+  inwards -= inwards.dot(arc->axis) * arc->axis;
+  const double radius = inwards.norm();
+  return radius > 0 ? Vector3(geometry::curvature_at(piece, t) / radius * inwards)
+                    : Vector3(Vector3::Zero());
+}
+
+double turn_between(const PathPiece& before, const PathPiece& after) {
+  const Vector3 a = geometry::direction_at(before, 1);
+  const Vector3 b = geometry::direction_at(after, 0);
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+// What two neighbouring motions say about the curve that they stand for.
+struct JointSteps {
+  double curvature = 0;  // 1/mm per mm: how fast it changes
+  double kink = 0;       // radians
+};
+
+JointSteps steps_between(const PathPiece& before, const PathPiece& after) {
+  const double way = 0.5 * (geometry::length_of(before) + geometry::length_of(after));
+  return {(curvature_vector(after, 0) - curvature_vector(before, 1)).norm() / way,
+          turn_between(before, after)};
+}
+
+// Of an arc of length l between two joints. A step of curvature on one side alone was meant: a line
+// that runs into an arc.
+double scatter_of(double l, const std::optional<JointSteps>& before,
+                  const std::optional<JointSteps>& after) {
+  if (!before && !after) return 0;
+  const JointSteps& a = before ? *before : *after;
+  const JointSteps& b = after ? *after : *before;
+  return std::hypot(kFromCurvature * l * l * l * std::min(a.curvature, b.curvature),
+                    kFromKink * l * 0.5 * (a.kink + b.kink));
+}
+
+}  // namespace
+
+void append_line(const Point3& end, Run& run) { run.points.push_back(end); }
+
+void append_arc(const Arc& arc, bool names_motion, double max_chord_error, Run& run) {
+  // Linear interpolation over 1/n of the arc is off by at most this over n^2.
+  const double whole = geometry::second_derivative_bound(arc) / 8;
+  const auto wanted = static_cast<std::size_t>(std::ceil(std::sqrt(whole / max_chord_error)));
+  const std::size_t chords = std::max(wanted, kLeastChords);
+  const std::size_t first = run.points.size() - 1;
+  for (std::size_t i = 1; i < chords; ++i) {
+    run.points.push_back(
+        geometry::point_at(arc, static_cast<double>(i) / static_cast<double>(chords)));
+  }
+  run.points.push_back(arc.end);
+  run.arcs.push_back({first, first + chords, arc, names_motion});
+  run.chord_error = std::max(run.chord_error,
+                             whole / (static_cast<double>(chords) * static_cast<double>(chords)));
+}
+
+std::size_t motion_count(const Run& run) {
+  std::size_t count = run.points.size() - 1;
+  for (const RunArc& arc : run.arcs) count -= arc.last - arc.first - 1;
+  return count;
+}
+
+bool is_end_of_motion(const Run& run, std::size_t vertex) {
+  const auto arc = arc_not_before(run, vertex);
+  return arc == run.arcs.end() || vertex <= arc->first || vertex == arc->last;
+}
+
+std::vector<RunMotion> motions_between(const Run& run, std::size_t first, std::size_t last) {
+  std::vector<RunMotion> motions;
+  motions.reserve(last - first);
+  auto arc = arc_not_before(run, first);
+  for (std::size_t i = first; i < last;) {
+    while (arc != run.arcs.end() && arc->last <= i) ++arc;
+    if (arc == run.arcs.end() || i < arc->first) {
+      motions.push_back({Line{run.points[i], run.points[i + 1]}, i});
+      ++i;
+      continue;
+    }
+    const std::size_t end = std::min(arc->last, last);
+    motions.push_back({part_of(*arc, i, end), i});
+    i = end;
+  }
+  return motions;
+}
+
+double arc_scatter(const Run& run) {
+  if (run.arcs.empty()) return 0;
+  const std::vector<RunMotion> motions = motions_between(run, 0, run.points.size() - 1);
+  double squares = 0;
+  double length = 0;
+  std::optional<JointSteps> before;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const PathPiece& piece = motions[i].piece;
+    std::optional<JointSteps> after;
+    if (i + 1 < motions.size()) after = steps_between(piece, motions[i + 1].piece);
+    const double l = geometry::length_of(piece);
+    length += l;
+    if (std::holds_alternative<Arc>(piece)) {
+      const double off = scatter_of(l, before, after);
+      squares += l * off * off;
+    }
+    before = after;
+  }
+  return length > 0 ? std::sqrt(squares / length) : 0;
+}
+
+double greatest_kink(std::span<const TimedPiece> moves) {
+  constexpr double kCorner = 30 * std::numbers::pi / 180;
+  double greatest = 0;
+  for (std::size_t i = 1; i < moves.size(); ++i) {
+    const double turn = turn_between(moves[i - 1].piece, moves[i].piece);
+    if (turn < kCorner) greatest = std::max(greatest, turn);
+  }
+  return greatest;
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,176 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "gcode/block_spelling.h"
+#include "gcode/curves/klartext_moves.h"
+#include "gcode/number_format.h"
+#include "postproc/translation/translation.h"
+#include "postproc/translation/translation_text.h"
+
+namespace batten::postproc {
+namespace {
+
+using gcode::MotionKind;
+
+// 5 digits before the point, 4 behind it (docs/controllers/heidenhain.md).
+constexpr double kFarthest = 99999.9999;
+// mm: an arc that rises by more is a helix.
+constexpr double kSameHeight = 1e-9;
+
+class KlartextSpeaker {
+ public:
+  KlartextSpeaker(const TranslationSource& source, const gcode::Dialect& target,
+                  std::string_view name)
+      : source_(source),
+        places_(target.coordinates(gcode::Units::kMillimetre)),
+        centers_(target.arc_offsets(gcode::Units::kMillimetre)),
+        feeds_(target.feeds(gcode::Units::kMillimetre)),
+        longest_(target.max_line_length()),
+        name_(name) {}
+
+  Translation say() {
+    text_.add(fmt::format("BEGIN PGM {} MM", name_), 1);
+    const auto& acts = source_.acts.acts;
+    for (std::size_t i = 0; i < acts.size(); ++i) {
+      line_ = source_.program.blocks[acts[i].block].line;
+      say_act(acts[i], i + 1 < acts.size() ? &acts[i + 1] : nullptr);
+    }
+    text_.add(fmt::format("END PGM {} MM", name_), line_);
+    return text_.take();
+  }
+
+ private:
+  void say_act(const Act& act, const Act* next) {
+    switch (act.kind) {
+      case ActKind::kComment:
+        return text_.add_comment(act.text, line_, longest_);
+      case ActKind::kWorkOffset:
+        return say_work_offset(act);
+      case ActKind::kNoLength:
+        return say_no_length(act);
+      case ActKind::kTool: {
+        speed_is_said_ = next != nullptr && next->kind == ActKind::kSpeed;
+        const std::string speed =
+            speed_is_said_ ? fmt::format(" S{}", gcode::to_text(next->number, feeds_)) : "";
+        return call_tool(fmt::format("TOOL CALL {} Z{}", whole(act.number), speed));
+      }
+      case ActKind::kSpeed:
+        if (std::exchange(speed_is_said_, false)) return;
+        return call_tool(fmt::format("TOOL CALL Z S{}", gcode::to_text(act.number, feeds_)));
+      case ActKind::kFunction:
+      case ActKind::kEnd:
+        return text_.add(fmt::format("M{}", whole(act.number)), line_);
+      case ActKind::kMotion:
+        return say_motion(act);
+    }
+  }
+
+  static int whole(double number) { return static_cast<int>(number); }
+
+  // The feed may be set there, too, and is said again.
+  void call_tool(const std::string& line) {
+    said_feed_.reset();
+    text_.add(line, line_);
+  }
+
+  void say_work_offset(const Act& act) {
+    if (!source_.datum_is_work_offset) {
+      return text_.refuse(act.where,
+                          "names a work offset, and there the datum is set at the control; --allow "
+                          "work-offset takes the one that is active then");
+    }
+    text_.add_comment(datum_remark(whole(act.number)), line_, longest_);
+  }
+
+  void say_no_length(const Act& act) {
+    if (!source_.length_counts_always) {
+      return text_.refuse(act.where,
+                          "moves without the length of the tool, which always counts there; "
+                          "--allow tool-length takes it all the same");
+    }
+    text_.add_comment(kLengthRemark, line_, longest_);
+  }
+
+  // --- motions ------------------------------------------------------------------------------
+
+  void say_motion(const Act& act) {
+    const gcode::Motion& motion = source_.meaning.motions[static_cast<std::size_t>(act.motion)];
+    if (const auto* arc = std::get_if<geometry::Arc>(&motion.piece)) return say_arc(act, *arc);
+    gcode::SpokenBlock block;
+    const geometry::Point3 end = geometry::end_point(motion.piece);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto i = static_cast<std::size_t>(axis);
+      if (motion.axes_named[i]) block.places[i] = place(act, end[axis], axis);
+    }
+    const bool rapid = motion.kind == MotionKind::kRapid;
+    std::string line = gcode::klartext_spelling().lines(block, true, "");
+    // Off is what the control begins with; said once, as posts do.
+    if (!std::exchange(compensation_is_said_, true)) line += " R0";
+    const std::string feed = rapid ? "MAX" : feed_of(act);
+    if (!feed.empty()) line += " F" + feed;
+    text_.add(line, line_);
+  }
+
+  void say_arc(const Act& act, const geometry::Arc& arc) {
+    if (std::abs(arc.axis.z()) < 1) return text_.refuse(act.where, "is an arc in another plane");
+    if (std::abs(arc.end.z() - arc.start.z()) > kSameHeight) {
+      return text_.refuse(act.where, "is a helix");
+    }
+    const double at_start = (arc.start - arc.center).head<2>().norm();
+    const double at_end = (arc.end - arc.center).head<2>().norm();
+    if (std::abs(at_start - at_end) > gcode::kKlartextRadiusMismatch) {
+      return text_.refuse(act.where, "is an arc whose radii differ");
+    }
+    gcode::SpokenBlock block;
+    const bool clockwise = (arc.axis.z() > 0) == (arc.sweep < 0);
+    block.motion = clockwise ? gcode::MotionMode::kClockwise : gcode::MotionMode::kCounterclockwise;
+    for (int axis = 0; axis < 2; ++axis) {
+      const auto i = static_cast<std::size_t>(axis);
+      block.places[i] = place(act, arc.end[axis], axis);
+      block.centers[i] = gcode::to_text(arc.center[axis], centers_);
+    }
+    block.feed = feed_of(act);
+    const std::string lines = gcode::klartext_spelling().lines(block, true, "\n");
+    const std::size_t first = lines.find('\n');
+    text_.add(std::string_view(lines).substr(0, first), line_);
+    text_.add(std::string_view(lines).substr(first + 1, lines.size() - first - 2), line_);
+  }
+
+  std::string place(const Act& act, double mm, int axis) {
+    if (std::abs(mm) > kFarthest) text_.refuse(act.where, "goes beyond the range of the control");
+    return text_.place(mm, axis, places_);
+  }
+
+  std::string feed_of(const Act& act) {
+    if (said_feed_ == act.feed) return {};
+    said_feed_ = act.feed;
+    return gcode::to_text(*act.feed, feeds_);
+  }
+
+  const TranslationSource& source_;
+  gcode::NumberFormat places_;
+  gcode::NumberFormat centers_;
+  gcode::NumberFormat feeds_;
+  std::size_t longest_;
+  std::string name_;
+  TranslationText text_;
+  std::uint32_t line_ = 1;
+  std::optional<double> said_feed_;
+  bool speed_is_said_ = false;  // in the block of the tool
+  bool compensation_is_said_ = false;
+};
+
+}  // namespace
+
+Translation in_klartext(const TranslationSource& source, const gcode::Dialect& target,
+                        std::string_view name) {
+  return KlartextSpeaker(source, target, name).say();
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,41 @@
+// The lines of a translation as they come.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "gcode/number_format.h"
+#include "geometry/point.h"
+#include "postproc/translation/translation.h"
+
+namespace batten::postproc {
+
+class TranslationText {
+ public:
+  // `source_line`: from 1.
+  void add(std::string_view line, std::uint32_t source_line) {
+    result_.text += line;
+    result_.text += '\n';
+    result_.source_lines.push_back(source_line);
+  }
+
+  // "; text", in as many lines as its length takes; characters that are no plain text become ?.
+  void add_comment(std::string_view text, std::uint32_t source_line, std::size_t longest);
+
+  void refuse(gcode::SourceSpan where, std::string why) {
+    result_.obstacles.push_back({where, std::move(why)});
+  }
+
+  // The digits of a place, whose rounding is remembered.
+  [[nodiscard]] std::string place(double mm, int axis, const gcode::NumberFormat& format);
+
+  [[nodiscard]] Translation take();
+
+ private:
+  Translation result_;
+  geometry::Point3 rounding_ = geometry::Point3::Zero();  // greatest on each axis, mm
+};
+
+}  // namespace batten::postproc
