@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(
                     opaque("Xml", kLinuxCnc, "<part>", "foreign-words"),
                     opaque("Hold", kGrbl, "!", "foreign-words"),
                     opaque("Resume", kGrbl, "~", "foreign-words"),
-                    opaque("StatusReport", kGrbl, "?", "not-understood"),
+                    opaque("StatusReport", kGrbl, "?", "foreign-words"),
                     opaque("Reset", kGrbl, "\x18", "not-understood"),
                     opaque("Statement", kHeidenhain, "WHATEVER 1 2", "not-understood")),
     &construct_name);
