@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <string>
 #include <variant>
 #include <vector>
@@ -69,62 +68,6 @@ TEST_P(PartedKnots, AreOneKnot) {
 INSTANTIATE_TEST_SUITE_P(Targets, PartedKnots,
                          testing::Values("linuxcnc", "marlin", "fanuc", "siemens", "itnc530"),
                          [](const auto& test) { return std::string(test.param); });
-
-// --- straight lines that are not quite straight
-// ---------------------------------------------------
-
-// 60 mm in some direction of space, in steps of 0.3 mm, each place off by up to `noise`.
-std::string noisy_line(unsigned seed, double noise, bool klartext) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> scatter(-noise, noise);
-  std::uniform_real_distribution<double> direction(-1, 1);
-  const Point3 along = Point3(1, direction(random), 0.3 * direction(random)).normalized();
-  const auto place = [&](double s) -> Point3 {
-    return along * s + Point3(scatter(random), scatter(random), scatter(random));
-  };
-  std::string text = klartext ? "BEGIN PGM A MM\nTOOL CALL 1 Z S3000\nL X+0 Y+0 Z+0 R0 FMAX\n"
-                              : "G21 G90 G17\nG0 X0 Y0 Z0\n";
-  constexpr int kLines = 200;
-  for (int i = 1; i <= kLines; ++i) {
-    const Point3 p = place(0.3 * i);
-    text += klartext ? fmt::format("L X{:+.4f} Y{:+.4f} Z{:+.4f}", p.x(), p.y(), p.z())
-                     : fmt::format("G1 X{:.4f} Y{:.4f} Z{:.4f}", p.x(), p.y(), p.z());
-    text += i == 1 ? " F900\n" : "\n";
-  }
-  return text + (klartext ? "L Z+50 FMAX\nM30\nEND PGM A MM\n" : "G0 Z50\nM30\n");
-}
-
-class NoisyLine : public testing::TestWithParam<const char*> {};
-
-TEST_P(NoisyLine, IsOneLineAndNoCurve) {
-  constexpr unsigned kLines = 5;
-  for (unsigned seed = 1; seed <= kLines; ++seed) {
-    for (const double noise : {0.0, 0.0005, 0.002}) {
-      for (const Form form : {Form::kAuto, Form::kCurves}) {
-        SCOPED_TRACE(testing::Message()
-                     << "seed " << seed << ", noise " << noise << " mm, " << name_of(form));
-        SmoothOptions options = options_for(GetParam());
-        options.output = form;
-        const bool klartext = options.target->language() == gcode::Language::kKlartext;
-        const SmoothResult result = smoothed(noisy_line(seed, noise, klartext), options);
-        ASSERT_TRUE(result.understood && result.proved);
-        ASSERT_EQ(rewritten_runs(result), 1U);
-        const auto run = std::ranges::find(result.runs, RunStatus::kRewritten, &RunReport::status);
-        EXPECT_EQ(run->blocks_out, 1U) << result.text;
-        EXPECT_NE(run->form, OutputForm::kCurves);
-      }
-    }
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Targets, NoisyLine,
-                         testing::Values("fanuc", "siemens", "siemens-bspline", "itnc530",
-                                         "linuxcnc", "marlin"),
-                         [](const auto& test) {
-                           std::string name = test.param;
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
 
 }  // namespace
 }  // namespace batten::postproc
