@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <span>
 #include <utility>
 
@@ -15,6 +14,7 @@
 #include "gcode/motion_words.h"
 #include "gcode/opaque_blocks.h"
 #include "gcode/part_reading.h"
+#include "gcode/plain_line.h"
 #include "gcode/program_flow.h"
 #include "gcode/reason.h"
 #include "gcode/siemens/flow.h"
@@ -43,7 +43,7 @@ class Interpreter {
     const std::vector<BlockFlow>& flow = whole_flow.blocks;
     const auto count = static_cast<std::uint32_t>(program_.blocks.size());
     for (std::uint32_t i = 0; i < count;) {
-      if (read_plain_line(i, flow[i])) {
+      if (read_plain_line(program_, i, flow[i], now_, read_)) {
         ++i;
       } else if (const auto curve = curve_at(program_, i, now_, curves_, flow)) {
         add_curve(i, *curve);
@@ -87,52 +87,6 @@ class Interpreter {
     }
     meaning_.state_after = static_cast<std::uint32_t>(read_.states.size() - 1);
     read_.blocks.push_back(meaning_);
-  }
-
-  // The way of nearly all blocks of a long program: places of X, Y and Z alone, one after the other
-  // in a straight line. Does what read_block does with such a block, and nothing with others.
-  bool read_plain_line(std::uint32_t index, const BlockFlow& flow) {
-    const Block& block = program_.blocks[index];
-    const ModalState& modal = now_.modal;
-    const bool line = modal.motion == MotionMode::kLine || modal.motion == MotionMode::kRapid;
-    if (!line || modal.distance != DistanceMode::kAbsolute || modal.polar != Tri::kOff ||
-        modal.modal_macro != Tri::kOff || program_.language != Language::kRs274) {
-      return false;
-    }
-    if (block.opacity != Opacity::kNone || block.block_delete || block.has_checksum ||
-        block.comment_count > 0 || block.word_count == 0 || flow.label_referenced ||
-        flow.jump_target || flow.in_body) {
-      return false;
-    }
-    Position end = now_.position;
-    std::array<bool, 3> named = {false, false, false};
-    for (const Word& word : program_.words_of(block)) {
-      if (word.letter < 'X' || word.letter > 'Z' || !word.is_number) return false;
-      const auto axis = static_cast<std::size_t>(word.letter - 'X');
-      if (std::exchange(named[axis], true)) return false;  // twice: read_block tells of it
-      const double unit = modal.units == Units::kInch ? kMillimetresPerInch : 1;
-      end.mm[static_cast<Eigen::Index>(axis)] = word.value * unit;
-      end.known[axis] = true;
-    }
-    BlockMeaning meaning;
-    meaning.kind = BlockKind::kMotion;
-    meaning.motion = static_cast<std::int32_t>(read_.motions.size());
-    meaning.state_after = static_cast<std::uint32_t>(read_.states.size() - 1);
-    const bool rapid = modal.motion == MotionMode::kRapid;
-    if (rapid) meaning.barrier = reason::kRapid;
-    read_.blocks.push_back(meaning);
-    Motion& motion = read_.motions.emplace_back();
-    motion.block = index;
-    motion.kind = rapid ? MotionKind::kRapid : MotionKind::kLine;
-    motion.axes_named = named;
-    motion.end_known = true;
-    motion.start_known = true;
-    for (std::size_t axis = 0; axis < named.size(); ++axis) {
-      motion.start_known &= !named[axis] || now_.position.known[axis];
-    }
-    motion.piece = geometry::Line{now_.position.mm, end.mm};
-    now_.position = end;
-    return true;
   }
 
   // The blocks of a curve together. Until it is over nothing but the curve happens.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <variant>
@@ -22,9 +23,11 @@ namespace batten::postproc {
 
 namespace {
 
-// Runs are cut where they would be kept as a whole: their parts differ. Runs of more points than
-// this are cut at once, which bounds the memory; every cut costs a joint that is not smooth.
+// Runs of more points than this are cut into runs for themselves, which bounds the memory and gives
+// each thread its own. Every cut costs a joint that is not smooth: one in some 40,000 points is
+// nothing. Their times are taken from rest to rest, which is a stop too much for as many points.
 constexpr std::size_t kWholeAtMost = 200000;
+constexpr CuttingOptions kLongParts = {.shortest = 25000, .longest = 50000};
 
 // Neighbours of a piece that are timed with it: the machine looks ahead over as many blocks to
 // stop, at most.
@@ -58,6 +61,23 @@ RunContext context_of(const gcode::Program& program, const gcode::Interpretation
           number_room(program, section.first_block, section.last_block)};
 }
 
+std::vector<Section> with_long_runs_cut(std::vector<Section> sections,
+                                        const gcode::Interpretation& meaning) {
+  std::vector<Section> cut;
+  cut.reserve(sections.size());
+  for (Section& section : sections) {
+    const Run* run = std::get_if<Run>(&section.content);
+    if (run == nullptr || run->points.size() <= kWholeAtMost) {
+      cut.push_back(std::move(section));
+      continue;
+    }
+    for (RunPiece& piece : cut_run(section, meaning, kLongParts)) {
+      cut.push_back(std::move(piece.section));
+    }
+  }
+  return cut;
+}
+
 class PartSmoother {
  public:
   PartSmoother(const ProgramPart& part, const SmoothOptions& options, const Tell& tell,
@@ -66,10 +86,8 @@ class PartSmoother {
 
   // False: the work was stopped.
   bool run() {
-    std::vector<std::size_t> whole;
-    for (std::size_t i = 0; i < runs_.works.size(); ++i) {
-      if (!is_cut_at_once(runs_.works[i])) whole.push_back(i);
-    }
+    std::vector<std::size_t> whole(runs_.works.size());
+    std::iota(whole.begin(), whole.end(), std::size_t{0});
     if (!nothing_asked()) note_bands();  // they warn of what new paths may do
     for (const RunWork& work : runs_.works) points_ += run_of(work).points.size();
     if (!smooth_works(whole)) return false;
@@ -89,10 +107,6 @@ class PartSmoother {
   }
 
   [[nodiscard]] bool nothing_asked() const { return options_.method == Method::kNone; }
-
-  [[nodiscard]] bool is_cut_at_once(const RunWork& work) const {
-    return run_of(work).points.size() > kWholeAtMost && !nothing_asked();
-  }
 
   [[nodiscard]] const Run& run_of(const RunWork& work) const {
     return std::get<Run>(runs_.sections[work.section].content);
@@ -126,8 +140,8 @@ class PartSmoother {
     return !stopped;
   }
 
-  // Puts pieces in the place of runs that are too long or that would be kept as a whole. Returns
-  // the works that are new.
+  // Puts pieces in the place of runs that would be kept as a whole: their parts differ. Returns the
+  // works that are new.
   std::vector<std::size_t> cut_runs() {
     std::vector<std::size_t> fresh;
     std::vector<Section> sections;
@@ -151,16 +165,15 @@ class PartSmoother {
 
   bool add_pieces(RunWork& work, std::vector<Section>& sections, std::vector<RunWork>& works,
                   std::vector<std::size_t>& fresh) {
-    const bool too_long = is_cut_at_once(work);
     const std::string_view kept = work.choosing.reason;
     const bool disappoints = kept == gcode::reason::kNoGain || kept == gcode::reason::kSlower ||
                              kept == gcode::reason::kNoFit;
-    if (!too_long && !disappoints) return false;
+    if (!disappoints) return false;
     std::vector<RunPiece> pieces = cut_run(runs_.sections[work.section], part_.meaning, {});
     if (pieces.size() < 2) return false;
     CutRun cut;
     cut.path = work.context.after.path;
-    if (!too_long) cut.facts = work.smoothed.facts;
+    cut.facts = work.smoothed.facts;
     cut.reason = work.choosing.reason;
     cut.first_work = works.size();
     cut.pieces = pieces.size();
@@ -200,6 +213,9 @@ bool is_allowed(std::string_view reason, const SmoothOptions& options) {
 PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options) {
   PartRuns runs;
   runs.sections = group_runs(part.program, part.meaning, grouping_of(options));
+  if (options.method != Method::kNone) {
+    runs.sections = with_long_runs_cut(std::move(runs.sections), part.meaning);
+  }
   for (std::size_t i = 0; i < runs.sections.size(); ++i) {
     if (!std::holds_alternative<Run>(runs.sections[i].content)) continue;
     runs.works.push_back({i, context_of(part.program, part.meaning, runs.sections[i])});

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "gcode/reason.h"
+#include "postproc/machine/timed_chain.h"
 
 namespace batten::postproc {
 
@@ -13,15 +14,38 @@ std::span<RunWork> pieces_of(const CutRun& cut, std::vector<RunWork>& works) {
   return std::span(works).subspan(cut.first_work, cut.pieces);
 }
 
-Times times_with(const CutRun& cut, std::span<const RunWork> pieces, const Machine& machine) {
+std::vector<TimedPiece> chain_with(const CutRun& cut, std::span<const RunWork> pieces) {
   std::vector<TimedPiece> chain;
+  chain.reserve(cut.run.points.size());
   for (const RunWork& piece : pieces) {
     const Candidate* chosen = piece.chosen();
-    const std::vector<TimedPiece> moves =
-        chosen != nullptr ? chosen->moves : timed_pieces(cut.run, piece.first, piece.last);
-    chain.insert(chain.end(), moves.begin(), moves.end());
+    if (chosen != nullptr) {
+      chain.insert(chain.end(), chosen->moves.begin(), chosen->moves.end());
+    } else {
+      const std::vector<TimedPiece> moves = timed_pieces(cut.run, piece.first, piece.last);
+      chain.insert(chain.end(), moves.begin(), moves.end());
+    }
   }
-  return times_of(chain, machine, cut.path);
+  return chain;
+}
+
+// The times of the whole with its pieces as they stand, as far as they must be known: once it is
+// slower in one way, the other ways are those of `cut.before`.
+Times times_with(const CutRun& cut, std::span<const RunWork> pieces, const Machine& machine,
+                 bool wanted) {
+  const std::vector<TimedPiece> moves = chain_with(cut, pieces);
+  TimedChain chain(moves, machine);
+  Machine unmerged = machine;
+  unmerged.naive_cam_tolerance = 0;
+  Times times = cut.before;
+  times.as_set = chain.time(machine, cut.path);
+  if (wanted || slower(times, cut.before, false, wanted)) return times;
+  times.without_merging =
+      machine.naive_cam_tolerance > 0 ? chain.time(unmerged, cut.path) : times.as_set;
+  if (slower(times, cut.before, false, wanted)) return times;
+  chain.lift_feeds(machine);
+  times.flat_out = chain.time(machine, cut.path);
+  return times;
 }
 
 // Seconds that a rewritten piece costs, summed over the settings of the control.
@@ -72,7 +96,7 @@ void settle(CutRun& cut, std::vector<RunWork>& works, const SmoothOptions& optio
   };
   std::sort(rewritten.begin(), rewritten.end(), by_cost);
   while (!rewritten.empty()) {
-    cut.after = times_with(cut, pieces, *options.machine);
+    cut.after = times_with(cut, pieces, *options.machine, wanted);
     if (!slower(cut.after, cut.before, false, wanted)) return;
     const std::size_t giving = std::max<std::size_t>(1, rewritten.size() / kShare);
     for (std::size_t i = 0; i < giving; ++i) {

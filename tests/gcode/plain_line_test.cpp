@@ -1,5 +1,7 @@
 // Blocks of X, Y and Z alone have a way of their own through the interpreter: they mean what the
 // same blocks mean that take the common way, because they have a number or a comment as well.
+#include "gcode/plain_line.h"
+
 #include <gtest/gtest.h>
 
 #include <random>
