@@ -8,6 +8,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "gcode/characters.h"
 #include "gcode/klartext/flow.h"
 #include "gcode/siemens/flow.h"
 
@@ -15,8 +16,6 @@ namespace batten::gcode {
 namespace {
 
 using Label = std::uint64_t;
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // Upper case, without blanks, comments, block delete and the leading N number.
 std::string bare_words(std::string_view text) {

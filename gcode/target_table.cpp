@@ -10,7 +10,7 @@
 namespace batten::gcode {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kOneDegree = std::numbers::pi / 180;
 
 int decimals_in(const DecimalsByUnit& decimals, Units units) {
   return units == Units::kInch ? decimals.inch : decimals.mm;
@@ -23,7 +23,7 @@ DecimalsByUnit decimals_of(const Dialect& dialect, NumberFormat (Dialect::*forma
 // Degrees as a person would write them: 180, not 179.99999999999997.
 double whole_degrees(double radians) {
   constexpr double kFine = 1e9;
-  return std::round(radians / kDegree * kFine) / kFine;
+  return std::round(radians / kOneDegree * kFine) / kFine;
 }
 
 bool can_stand_in_comment(char c) { return c >= ' ' && c <= '~' && c != '(' && c != ')'; }
@@ -110,7 +110,7 @@ bool TableValues::takes_arcs_in(Plane plane) const {
   return false;
 }
 
-double TableValues::max_arc_sweep() const { return table_.max_sweep_deg * kDegree; }
+double TableValues::max_arc_sweep() const { return table_.max_sweep_deg * kOneDegree; }
 
 std::string TableValues::comment(std::string_view text) const {
   std::string line = comment_in(table_.comments, text);

@@ -28,7 +28,7 @@ const std::array<Point2, kCorners> kCircle = [] {
 }();
 
 // How often the last place of a link is halved out: to 1e-4 of the way between two gates.
-constexpr int kEndHalvings = 13;
+constexpr int kLinkEndHalvings = 13;
 
 // Where a link may turn before the farthest place it gets to, as parts of its gates: there the
 // link after it may see more, when the curve begins to bend another way.
@@ -199,7 +199,7 @@ class Walk {
     }
     double good = 0;
     double bad = 1;
-    for (int i = 0; i < kEndHalvings; ++i) {
+    for (int i = 0; i < kLinkEndHalvings; ++i) {
       const double middle = (good + bad) / 2;
       const bool passed = view.pass(circle_of(gates_.between(stand.last, middle), width_));
       (passed ? good : bad) = middle;

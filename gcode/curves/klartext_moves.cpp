@@ -23,7 +23,7 @@ using geometry::Vector3;
 
 constexpr double kGreatestPlace = 99999.9999;
 
-std::string with_sign(const std::string& digits) {
+std::string with_klartext_sign(const std::string& digits) {
   return digits.starts_with('-') ? digits : "+" + digits;
 }
 
@@ -84,7 +84,7 @@ class MoveWriter {
     const Point3 center(read_number(x)->value * unit, read_number(y)->value * unit, place_.z());
     const double printed = sweep_about(place_, end.mm, center, sweep);
     if (std::abs(printed - sweep) > std::numbers::pi) return "an arc that is a full turn or none";
-    add_numbered("CC X" + with_sign(x) + " Y" + with_sign(y));
+    add_numbered("CC X" + with_klartext_sign(x) + " Y" + with_klartext_sign(y));
     std::string line = "C";
     add_axis(0, end, line);
     add_axis(1, end, line);
@@ -94,7 +94,7 @@ class MoveWriter {
   }
 
   static void add_axis(std::size_t axis, const PrintedPlace& place, std::string& line) {
-    line += std::string(" ") + kAxisNames[axis] + with_sign(place.digits[axis]);
+    line += std::string(" ") + kAxisNames[axis] + with_klartext_sign(place.digits[axis]);
   }
 
   // The first block that moves says the feed.

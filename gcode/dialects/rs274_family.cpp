@@ -5,12 +5,12 @@
 #include <array>
 #include <cmath>
 
+#include "gcode/characters.h"
+
 namespace batten::gcode {
 namespace {
 
-bool can_stand_in_comment(char c) { return c >= ' ' && c <= '~' && c != '(' && c != ')'; }
-
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+bool fits_in_comment(char c) { return c >= ' ' && c <= '~' && c != '(' && c != ')'; }
 
 // Comments that begin so are orders, blanks and case ignored.
 bool acts(std::string_view text) {
@@ -44,7 +44,7 @@ std::size_t Rs274Dialect::line_length(std::string_view line) const { return line
 bool Rs274Dialect::takes_arcs_in(Plane plane) const { return plane != Plane::kUnknown; }
 
 std::string Rs274Dialect::comment(std::string_view text) const {
-  if (!std::ranges::all_of(text, can_stand_in_comment) || acts(text)) return {};
+  if (!std::ranges::all_of(text, fits_in_comment) || acts(text)) return {};
   std::string line = "(" + std::string(text) + ")";
   if (line_length(line) > max_line_length()) return {};
   return line;

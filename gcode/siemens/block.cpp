@@ -104,8 +104,9 @@ class BlockReader {
     word.span = token.span;
     word.is_number = token.kind == SiemensTokenKind::kWord;
     if (word.is_number) {
-      constexpr int kMostDecimals = std::numeric_limits<std::uint8_t>::max();
-      word.decimals = static_cast<std::uint8_t>(std::min(token.number.decimals, kMostDecimals));
+      constexpr int kGreatestDecimalCount = std::numeric_limits<std::uint8_t>::max();
+      word.decimals =
+          static_cast<std::uint8_t>(std::min(token.number.decimals, kGreatestDecimalCount));
       word.has_point = token.number.has_point;
       word.value = token.number.value;
     }

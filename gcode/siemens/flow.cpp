@@ -35,7 +35,7 @@ std::string plain_text(std::string_view text) {
 
 bool is_name_start(char c) { return is_letter(c) || c == '_' || c == '$'; }
 
-std::size_t skip_blanks(std::string_view text, std::size_t at) {
+std::size_t after_blanks(std::string_view text, std::size_t at) {
   while (at < text.size() && is_blank(text[at])) ++at;
   return at;
 }
@@ -86,18 +86,18 @@ bool contains_jump(std::string_view plain) {
 
 // Behind block number, skip sign and label.
 std::string_view statement_in(std::string_view plain) {
-  std::size_t at = skip_blanks(plain, 0);
-  if (at < plain.size() && plain[at] == '/') at = skip_blanks(plain, at + 1);
+  std::size_t at = after_blanks(plain, 0);
+  if (at < plain.size() && plain[at] == '/') at = after_blanks(plain, at + 1);
   for (;;) {
     if (at >= plain.size()) return {};
     const std::size_t end = after_siemens_name(plain, at);
     const std::string_view name = plain.substr(at, end - at);
     const bool number = name.size() > 1 && name[0] == 'N' &&
                         name.find_first_not_of("0123456789", 1) == std::string_view::npos;
-    const std::size_t behind = skip_blanks(plain, end);
+    const std::size_t behind = after_blanks(plain, end);
     const bool label = !name.empty() && behind < plain.size() && plain[behind] == ':';
     if (!number && !label) return plain.substr(at);
-    at = skip_blanks(plain, label ? behind + 1 : end);
+    at = after_blanks(plain, label ? behind + 1 : end);
   }
 }
 
@@ -106,7 +106,7 @@ std::string_view first_name(std::string_view statement) {
 }
 
 // +1 where a body begins, -1 where it ends. IF with a jump has none, nor has REPEAT with a label.
-int body_step(std::string_view statement) {
+int siemens_body_step(std::string_view statement) {
   constexpr std::array<std::string_view, 3> kBegins = {"WHILE", "FOR", "LOOP"};
   constexpr std::array<std::string_view, 5> kEnds = {"ENDIF", "ENDWHILE", "ENDFOR", "ENDLOOP",
                                                      "UNTIL"};
@@ -114,7 +114,7 @@ int body_step(std::string_view statement) {
   if (std::ranges::find(kEnds, name) != kEnds.end()) return -1;
   if (std::ranges::find(kBegins, name) != kBegins.end()) return 1;
   if (name == "IF") return contains_jump(statement) ? 0 : 1;
-  const bool alone = skip_blanks(statement, name.size()) >= statement.size();
+  const bool alone = after_blanks(statement, name.size()) >= statement.size();
   return name == "REPEAT" && alone ? 1 : 0;
 }
 
@@ -143,7 +143,7 @@ class FlowReader {
     if (block.opacity == Opacity::kFlow || block.opacity == Opacity::kUnreadable) {
       const std::string plain = plain_text(text_of(block));
       note_jumps(plain);
-      const int step = block.opacity == Opacity::kFlow ? body_step(statement_in(plain)) : 0;
+      const int step = block.opacity == Opacity::kFlow ? siemens_body_step(statement_in(plain)) : 0;
       flow_[i].in_body |= step != 0;
       depth_ = std::max(0, depth_ + step);
     }
@@ -183,7 +183,7 @@ class FlowReader {
       if (names[k].text == "GOTOS") {
         starts_again_ = true;
       } else if (is_jump(names[k].text)) {
-        note_target(label_at(plain, skip_blanks(plain, names[k].end)));
+        note_target(label_at(plain, after_blanks(plain, names[k].end)));
       } else if (names[k].text == "REPEAT" || names[k].text == "REPEATB") {
         // All names behind it but P=3: the first and the last label of what is done again.
         for (std::size_t other = k + 1; other < names.size(); ++other) {

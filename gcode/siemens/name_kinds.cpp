@@ -270,8 +270,8 @@ bool is_address(std::string_view name, char letter) {
 
 // X1=10: an axis of the machine, or one of several.
 bool is_numbered_axis(std::string_view name) {
-  constexpr std::string_view kAxes = "XYZABCUVWQ";
-  return kAxes.find(name.front()) != std::string_view::npos && is_address(name, name.front());
+  constexpr std::string_view kNamedAxes = "XYZABCUVWQ";
+  return kNamedAxes.find(name.front()) != std::string_view::npos && is_address(name, name.front());
 }
 
 }  // namespace

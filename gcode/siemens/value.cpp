@@ -9,13 +9,13 @@
 namespace batten::gcode {
 namespace {
 
-constexpr std::array<std::string_view, 14> kWordOperators = {
+constexpr std::array<std::string_view, 14> kSiemensWordOperators = {
     "DIV",  "MOD",   "AND",   "OR", "XOR", "NOT", "B_AND",
     "B_OR", "B_XOR", "B_NOT", "TO", "==",  "<>",  "<<"};
 
 char char_at(std::string_view text, std::size_t at) { return at < text.size() ? text[at] : '\0'; }
 
-std::size_t skip_blanks(std::string_view text, std::size_t at) {
+std::size_t skip_siemens_blanks(std::string_view text, std::size_t at) {
   while (is_blank(char_at(text, at))) {
     ++at;
   }
@@ -30,7 +30,7 @@ std::optional<std::size_t> after_string(std::string_view text, std::size_t at) {
 }
 
 // The place after an operator, or nothing where none stands.
-std::optional<std::size_t> after_operator(std::string_view text, std::size_t at) {
+std::optional<std::size_t> after_siemens_operator(std::string_view text, std::size_t at) {
   const char c = char_at(text, at);
   if (is_letter(c)) {
     std::string word;
@@ -38,7 +38,8 @@ std::optional<std::size_t> after_operator(std::string_view text, std::size_t at)
     for (std::size_t i = at; i < end; ++i) {
       word.push_back(upper(text[i]));
     }
-    const bool known = std::ranges::find(kWordOperators, word) != kWordOperators.end();
+    const bool known =
+        std::ranges::find(kSiemensWordOperators, word) != kSiemensWordOperators.end();
     return known ? std::optional(end) : std::nullopt;
   }
   if (c == '+' || c == '-' || c == '*' || c == '/') {
@@ -54,10 +55,10 @@ std::optional<std::size_t> after_operator(std::string_view text, std::size_t at)
   return std::nullopt;
 }
 
-std::optional<std::size_t> after_operand(std::string_view text, std::size_t at) {
-  at = skip_blanks(text, at);
+std::optional<std::size_t> after_siemens_operand(std::string_view text, std::size_t at) {
+  at = skip_siemens_blanks(text, at);
   while (char_at(text, at) == '+' || char_at(text, at) == '-') {
-    at = skip_blanks(text, at + 1);
+    at = skip_siemens_blanks(text, at + 1);
   }
   const char c = char_at(text, at);
   if (is_digit(c) || c == '.') {
@@ -74,7 +75,7 @@ std::optional<std::size_t> after_operand(std::string_view text, std::size_t at) 
   }
   at = after_siemens_name(text, at);
   for (const char open : {'[', '('}) {
-    const std::size_t bracket = skip_blanks(text, at);
+    const std::size_t bracket = skip_siemens_blanks(text, at);
     if (char_at(text, bracket) != open) {
       continue;
     }
@@ -141,13 +142,13 @@ std::size_t after_siemens_name(std::string_view text, std::size_t at) {
 }
 
 std::optional<std::size_t> after_siemens_expression(std::string_view text, std::size_t at) {
-  auto end = after_operand(text, at);
+  auto end = after_siemens_operand(text, at);
   while (end) {
-    const auto next = after_operator(text, skip_blanks(text, *end));
+    const auto next = after_siemens_operator(text, skip_siemens_blanks(text, *end));
     if (!next) {
       return end;
     }
-    end = after_operand(text, *next);
+    end = after_siemens_operand(text, *next);
   }
   return std::nullopt;
 }

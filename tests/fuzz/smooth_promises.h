@@ -56,6 +56,7 @@ inline SmoothOptions options_for_text(std::string_view text) {
   options.tolerance_kind =
       hash / 262144 % 4 == 0 ? geometry::ToleranceKind::kBand : geometry::ToleranceKind::kPath;
   options.units = gcode::Units::kMillimetre;
+  if (hash / 1048576 % 4 != 0) options.decimals = gcode::Decimals{};  // X5 is 5 mm
   options.threads = 1;
   return options;
 }
@@ -63,7 +64,9 @@ inline SmoothOptions options_for_text(std::string_view text) {
 struct TextAsRead {
   TextAsRead(const gcode::SourceText& source, const SmoothOptions& options)
       : program(gcode::parse(
-            source, language_read(source, options, found).value_or(gcode::Language::kRs274),
+            source,
+            reading_of(options,
+                       language_read(source, options, found).value_or(gcode::Language::kRs274)),
             found)),
         meaning(gcode::interpret(
             program, {.units = options.units, .curves = options.target->curves()}, found)) {}

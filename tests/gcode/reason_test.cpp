@@ -20,9 +20,9 @@ std::string text_of(const std::string& file) {
   return text.str();
 }
 
-// The ids as the header declares them.
+// The ids as the headers declare them.
 std::set<std::string> declared_ids() {
-  const std::string header = text_of("gcode/reason.h");
+  const std::string header = text_of("gcode/reason.h") + text_of("gcode/conversion_reason.h");
   const std::string declaration = "string_view k";
   std::set<std::string> ids;
   for (std::size_t at = header.find(declaration); at != std::string::npos;

@@ -1,4 +1,5 @@
 // Runs that are too long to be held as one are cut into runs for themselves.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +38,7 @@ TEST(LongRuns, AreCutIntoRunsThatCoverAllBlocks) {
   for (const Section& section : runs.sections) {
     EXPECT_EQ(section.first_block, next);
     next = section.last_block + 1;
-    const auto* run = std::get_if<Run>(&section.content);
+    const auto* run = std::get_if<postproc::Run>(&section.content);
     if (run == nullptr) continue;
     EXPECT_LE(run->points.size(), 50001U);
     motions += run->points.size() - 1;
