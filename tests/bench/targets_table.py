@@ -70,6 +70,8 @@ def row_of(options, name, data, target, form):
             row["told"] = errors[0].removeprefix("old.nc:") if errors else "?"
             row["errors"] = len(errors)
             return row
+        if done.returncode == 1 and b"; possible: " in done.stderr:
+            return row | {"refused": "no such form", "told": "no such form", "errors": 1}
         if done.returncode != 0:
             row["wrong"] = done.stderr.decode(errors="replace")[-300:]
             return row
