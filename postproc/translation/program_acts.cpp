@@ -286,7 +286,7 @@ class ActReader {
     if (code == kToolLengthOn) without_length_.reset();
     if (!is_work_offset(code) || work_offset_ == code) return;
     work_offset_ = code;
-    (void)add(ActKind::kWorkOffset, word.span, code / 10);
+    (void)add(ActKind::kWorkOffset, word.span, word.value);
   }
 
   void add_motion(const BlockMeaning& meaning) {
