@@ -1,9 +1,9 @@
 #include "geometry/cubic_roots.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace batten::geometry {
 namespace {
@@ -28,7 +28,10 @@ Stretches monotone_stretches(double c1, double c2, double c3) {
     if (c3 != 0) found.add(q / (3 * c3));
     if (q != 0) found.add(c1 / q);
   }
-  std::sort(found.ends.begin() + 1, found.ends.begin() + static_cast<std::ptrdiff_t>(found.count));
+  constexpr std::size_t kWithBothTurns = 3;
+  if (found.count == kWithBothTurns && found.ends[1] > found.ends[2]) {
+    std::swap(found.ends[1], found.ends[2]);
+  }
   found.ends[found.count++] = 1;
   return found;
 }
