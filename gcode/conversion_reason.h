@@ -8,5 +8,6 @@ namespace batten::gcode::reason {
 
 inline constexpr std::string_view kWorkOffset = "work-offset";  // G54, where there is none
 inline constexpr std::string_view kToolLength = "tool-length";  // G49, where lengths always count
+inline constexpr std::string_view kBlankForm = "blank-form";    // BLK FORM, where there is none
 
 }  // namespace batten::gcode::reason

@@ -145,11 +145,16 @@ constexpr Explanation kExplanations[] = {
      "the datum is set at the control.",
      "--allow work-offset converts the program for the datum that is active when it runs.", true},
     {kToolLength,
-     "With --convert: the program moves without the length of its tool (G49), which always counts "
-     "on the target.",
+     "With --convert: the program moves without the length of its tool (G49, or along Z without "
+     "G43 "
+     "behind the tool), which always counts on the target.",
      "--allow tool-length converts such motions as if the length counted: their Z is that of the "
      "tip then.",
      true},
+    {kBlankForm,
+     "With --convert: the program draws the blank for the control's simulation (BLK FORM), and the "
+     "target's language has no word for that.",
+     "--allow blank-form leaves the block as a comment.", true},
 };
 
 }  // namespace

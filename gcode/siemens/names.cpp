@@ -1,12 +1,10 @@
 #include "gcode/siemens/names.h"
 
-#include <cmath>
 #include <cstdint>
 #include <string>
 
-#include "gcode/characters.h"
 #include "gcode/reason.h"
-#include "gcode/siemens/block.h"
+#include "gcode/siemens/block_names.h"
 #include "gcode/siemens/lexer.h"
 #include "gcode/siemens/name_kinds.h"
 
@@ -25,7 +23,7 @@ class NameApplier {
       const SiemensToken token = lexer.next();
       if (token.kind == SiemensTokenKind::kEnd || token.kind == SiemensTokenKind::kComment) break;
       if (token.kind == SiemensTokenKind::kLabel) block(reason::kProgramFlow);
-      const std::string name = name_of(token);
+      const std::string name = siemens_name(text_, token);
       if (name.empty()) continue;
       const bool own = token.assigned && variables_.contains(name);
       const auto kind = own ? NameKind::kVariable : kind_of_siemens_name(name, token.assigned);
@@ -47,26 +45,6 @@ class NameApplier {
   }
 
  private:
-  // Empty for words that the block lists and the interpreter follows.
-  [[nodiscard]] std::string name_of(const SiemensToken& token) const {
-    std::string name;
-    if (token.kind == SiemensTokenKind::kName) {
-      for (const char c : text_.substr(token.name.begin, token.name.size())) {
-        name.push_back(upper(c));
-      }
-      return name == "CR" ? std::string() : name;
-    }
-    if (token.letter == 'D') return "D";
-    if (token.kind != SiemensTokenKind::kWord || token.letter != 'G' ||
-        is_common_siemens_g(token.number.value)) {
-      return name;
-    }
-    const double code = token.number.value;
-    constexpr double kGreatestCode = 999;
-    const bool whole = code >= 0 && code <= kGreatestCode && code == std::floor(code);
-    return whole ? "G" + std::to_string(static_cast<int>(code)) : "G?";
-  }
-
   void block(std::string_view why) {
     if (effect_.barrier.empty()) effect_.barrier = why;
   }

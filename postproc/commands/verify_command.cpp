@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "gcode/interpreter.h"
-#include "gcode/language_marks.h"
 #include "gcode/parser.h"
 #include "gcode/source_kind.h"
 #include "postproc/cli/exit_code.h"
@@ -45,20 +44,18 @@ std::optional<gcode::Language> language_of_target(const VerifyCommand& command) 
   return target != nullptr ? std::optional(target->language()) : std::nullopt;
 }
 
-// In which language the old program is, where only the new one shows its own: it was converted from
-// plain words.
-bool is_converted(const gcode::SourceText& old_source, const gcode::SourceText& new_source,
-                  const VerifyCommand& command) {
+// The language of the old program, where it was converted: the target reads another one, and the
+// new program is in that. A text without certain marks counts as plain words.
+std::optional<gcode::Language> language_before(const gcode::SourceText& old_source,
+                                               const gcode::SourceText& new_source,
+                                               const VerifyCommand& command) {
   const auto target = language_of_target(command);
-  if (!target || *target == gcode::Language::kRs274) return false;
-  const auto shows_target = [&](const gcode::SourceText& source) {
-    const auto marks = gcode::language_marks(source);
-    return marks.size() == 1 && marks.front().language == *target;
-  };
+  if (!target) return std::nullopt;
   gcode::Diagnostics uncertain;
-  const auto old_language =
-      gcode::source_language(old_source, command.source, std::nullopt, uncertain);
-  return old_language == gcode::Language::kRs274 && shows_target(new_source);
+  const auto before = gcode::source_language(old_source, command.source, std::nullopt, uncertain);
+  const auto after =
+      gcode::source_language(new_source, gcode::SourceKind::kAuto, std::nullopt, uncertain);
+  return before != target && after == target ? before : std::nullopt;
 }
 
 // `language`: what a text without certain marks is read in; nothing: as the target reads.
@@ -243,13 +240,12 @@ int run(const VerifyCommand& command) {
     return accept_same_bytes(command, *new_source);
   }
 
-  const bool converted = is_converted(*old_source, *new_source, command);
-  const Read before = read(*old_source, command, command.source,
-                           converted ? std::optional(gcode::Language::kRs274) : std::nullopt);
+  const auto foreign = language_before(*old_source, *new_source, command);
+  const Read before = read(*old_source, command, command.source, foreign);
   const AddedLines added = without_added_lines(command, before, *new_source);
-  const Read after =
-      read(gcode::SourceText(new_source->name(), added.text), command,
-           converted ? gcode::SourceKind::kAuto : command.source, before.program.language);
+  const Read after = read(gcode::SourceText(new_source->name(), added.text), command,
+                          foreign ? gcode::SourceKind::kAuto : command.source,
+                          foreign ? *language_of_target(command) : before.program.language);
   if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
   if (!is_understood(before, command.log_level)) {
     say("the old program is not understood, so nothing can be proved about the new one");

@@ -12,8 +12,11 @@
 #include <string_view>
 #include <utility>
 
+#include "gcode/block_words.h"
+#include "gcode/characters.h"
 #include "gcode/klartext/statement.h"
 #include "gcode/number_format.h"
+#include "gcode/siemens/block_names.h"
 #include "postproc/proof/path_state.h"
 
 namespace batten::postproc {
@@ -59,6 +62,8 @@ std::optional<ToolCall> tool_call_in(std::string_view content) {
     } else if (token.starts_with('S')) {
       call.speed = number_of(token.substr(1));
       if (!call.speed) return std::nullopt;
+    } else if (token.starts_with('F') && number_of(token.substr(1))) {
+      continue;  // the feed is not known behind it
     } else if (!along_z && !call.tool) {
       call.tool = number_of(token);
       if (!call.tool) return std::nullopt;
@@ -81,8 +86,28 @@ std::optional<int> datum_in(std::string_view comment) {
   return offset && rest == ": its datum is active" ? std::optional(code) : std::nullopt;
 }
 
-// What a Klartext program says where its source moves behind G49.
+// What a Klartext program says where its source moves behind G49, or along Z behind a tool change
+// without G43.
 constexpr std::string_view kCountsAlways = "; G49: the length of the tool counts";
+constexpr std::string_view kCountsUnsaid = "; no G43: the length of the tool counts";
+
+// Without (), ; and the blanks at both ends; capitals alone.
+std::string capitals_of_comment(std::string_view comment) {
+  constexpr std::string_view kAround = "(); \t";
+  const std::size_t begin = comment.find_first_not_of(kAround);
+  if (begin == std::string_view::npos) return {};
+  const std::size_t end = comment.find_last_not_of(kAround) + 1;
+  std::string text;
+  for (const char c : comment.substr(begin, end - begin)) text.push_back(gcode::upper(c));
+  return text;
+}
+
+bool is_blank_form(std::string_view capitals) { return capitals.starts_with("BLK FORM "); }
+
+// What a Siemens block may name beside its words; D is a word, too. What the others end is an event
+// of its own text where it begins.
+constexpr std::array<std::string_view, 7> kReadNames = {"G71",    "G700",    "G710",  "D",
+                                                        "COMPOF", "TRAFOOF", "DIAMOF"};
 
 class CommonLister {
  public:
@@ -107,39 +132,60 @@ class CommonLister {
     }
     list_comments(block);
     if (block.opacity == gcode::Opacity::kProgramMark) return;
-    if (names_only_unit(block)) return;
-    if (is_klartext() && block.opacity == gcode::Opacity::kForeign && list_tool_call(block)) return;
-    const bool plain = block.opacity == gcode::Opacity::kNone && !block.block_delete &&
-                       meaning.kind != gcode::BlockKind::kOpaque && !meaning.label_referenced &&
-                       !meaning.entered_from_elsewhere;
+    const bool foreign = is_klartext() && block.opacity == gcode::Opacity::kForeign;
+    if (foreign && !block.block_delete && list_statement(block)) return;
+    const bool split =
+        block.opacity == gcode::Opacity::kNone && meaning.kind != gcode::BlockKind::kOpaque;
+    const bool plain = (split || names_are_read(block)) && !block.block_delete &&
+                       !meaning.label_referenced && !meaning.entered_from_elsewhere;
     if (!plain) return add_own_text(block);
     list_words(program_.words_of(block), meaning);
   }
 
-  // A block of G710 alone: Siemens has words of their own for units.
-  [[nodiscard]] bool names_only_unit(const Block& block) const {
-    constexpr std::array<std::string_view, 4> kUnits = {"G70", "G71", "G700", "G710"};
-    return program_.language == gcode::Language::kSiemens &&
-           std::ranges::find(kUnits, program_.source.text(block.span)) != kUnits.end();
+  // A Siemens block with units or D, whose motion the interpreter would not follow: it has none.
+  [[nodiscard]] bool names_are_read(const Block& block) const {
+    if (block.opacity != gcode::Opacity::kNamedWords) return false;
+    const gcode::BlockWords words(program_.words_of(block));
+    const bool plain = words.problem() == gcode::BlockWords::Problem::kNone && words.all_numbers();
+    if (!plain || words.has_any("XYZIJKRABCUVW")) return false;
+    const auto names = gcode::siemens_names_in(program_.source.text(), block.span);
+    return std::ranges::all_of(names, [](const gcode::SiemensName& each) {
+      return std::ranges::find(kReadNames, each.name) != kReadNames.end();
+    });
   }
 
   void list_comments(const Block& block) {
     for (const gcode::Comment& comment : program_.comments_of(block)) {
       const std::string_view text = program_.source.text(comment.span);
       if (comment.kind == gcode::CommentKind::kActive) add_text(std::string(text));
-      const auto datum = is_klartext() ? datum_in(text) : std::nullopt;
-      if (datum) list_work_offset(*datum * 10);
-      if (is_klartext() && text == kCountsAlways) add_word("G49");
+      const std::string capitals = capitals_of_comment(text);
+      if (is_blank_form(capitals)) add_word(capitals);
+      end_is_mark_ = capitals == "END PGM";
+      if (is_klartext()) list_remark(text);
     }
   }
 
-  bool list_tool_call(const Block& block) {
-    const gcode::SourceSpan span =
-        gcode::klartext_parts(program_.source.text(), block.span).content;
-    const std::string_view content = program_.source.text(span);
+  void list_remark(std::string_view text) {
+    if (const auto datum = datum_in(text)) list_work_offset(*datum * 10);
+    const bool counts_not = text == kCountsAlways;
+    if (!counts_not && text != kCountsUnsaid) return;
+    add_word(counts_not ? "G49" : "length not said");
+  }
+
+  // TOOL CALL, BLK FORM, PLANE RESET STAY.
+  bool list_statement(const Block& block) {
+    const gcode::KlartextParts parts = gcode::klartext_parts(program_.source.text(), block.span);
+    const std::string_view content = program_.source.text(parts.content);
+    if (parts.continues) return false;
+    const std::string capitals = capitals_of_comment(content);
+    if (is_blank_form(capitals)) {
+      add_word(capitals);
+      return true;
+    }
+    if (capitals == "PLANE RESET STAY") return true;
     if (gcode::klartext_kind(content) != gcode::KlartextKind::kToolCall) return false;
     const auto call = tool_call_in(content);
-    if (!call || block.block_delete) return false;
+    if (!call) return false;
     if (call->tool) list_tool(*call->tool);
     if (call->speed) list_speed(*call->speed);
     return true;
@@ -152,19 +198,39 @@ class CommonLister {
     if (const Word* t = word_of(words, 'T')) fetched_ = t->value;
     if (has(words, 'M', 60)) list_tool(std::exchange(fetched_, std::nullopt));
     if (const Word* s = word_of(words, 'S')) list_speed(s->value);
-    for (const int code : {30, 40, 80}) {
+    list_starts(words);
+    // In Klartext M5 and M9 come behind the motion of their block.
+    if (!moves || !is_klartext()) list_stops(words, moves);
+    for (const Word& word : words) list_word(word, words);
+    if (moves) list_motion(words, meaning);
+    if (moves && is_klartext()) list_stops(words, false);
+    for (const int code : {0, 10, 20}) {
       if (has(words, 'M', code)) add_function(code);
     }
+    // Klartext ends by END PGM alone, too; others say M30 for that, behind a comment.
+    if (has(words, 'M', 300) && (moves || !end_is_mark_)) add_function(300);
+    if (std::ranges::any_of(words, [](const Word& word) { return word.letter != 'N'; })) {
+      end_is_mark_ = false;
+    }
+  }
+
+  // In Klartext M13 and M14 are M3 and M4 with M8.
+  void list_starts(std::span<const Word> words) {
+    const bool both = is_klartext() && (has(words, 'M', 130) || has(words, 'M', 140));
+    for (const int code : {30, 40}) {
+      const bool with_coolant = is_klartext() && has(words, 'M', code + 100);
+      if (has(words, 'M', code) || with_coolant) add_function(code);
+    }
+    if (has(words, 'M', 80) || both) add_function(80);
+  }
+
+  void list_stops(std::span<const Word> words, bool beside_motion) {
     for (const int code : {50, 90}) {
       if (!has(words, 'M', code)) continue;
       // Controls differ in what comes first.
-      moves ? add_text(fmt::format("M{} in {}", code / 10, gcode::describe(program_.language)))
-            : add_function(code);
-    }
-    for (const Word& word : words) list_word(word, words);
-    if (moves) list_motion(words, meaning);
-    for (const int code : {0, 10, 20, 300}) {
-      if (has(words, 'M', code)) add_function(code);
+      beside_motion
+          ? add_text(fmt::format("M{} in {}", code / 10, gcode::describe(program_.language)))
+          : add_function(code);
     }
   }
 
@@ -184,6 +250,7 @@ class CommonLister {
     fetched_.reset();
     speed_.reset();
     length_is_off_ = false;
+    length_is_said_ = is_klartext();
     moved_along_tool_ = false;
   }
 
@@ -198,11 +265,10 @@ class CommonLister {
     switch (word.letter) {
       case 'G':
         return list_g(tenths(word.value), word, words);
-      case 'M': {
-        constexpr std::array kListed = {0, 10, 20, 30, 40, 50, 60, 80, 90, 300};
-        if (std::ranges::find(kListed, tenths(word.value)) == kListed.end()) add_own_text(word);
-        return;
-      }
+      case 'M':
+        return list_other_function(word);
+      case 'D':
+        return list_edge(word);
       case 'H':
         if (!has(words, 'G', kLengthOn)) add_own_text(word);
         return;
@@ -215,17 +281,43 @@ class CommonLister {
     }
   }
 
+  void list_other_function(const Word& word) {
+    constexpr std::array kListed = {0, 10, 20, 30, 40, 50, 60, 80, 90, 300};
+    constexpr std::array kListedInKlartext = {130, 140};
+    const int code = tenths(word.value);
+    const bool listed =
+        std::ranges::find(kListed, code) != kListed.end() ||
+        (is_klartext() && std::ranges::find(kListedInKlartext, code) != kListedInKlartext.end());
+    if (!listed) add_own_text(word);
+  }
+
+  // D1, the first edge of a Siemens tool, is its length; D0 is none.
+  void list_edge(const Word& word) {
+    const bool siemens = program_.language == gcode::Language::kSiemens && word.is_number;
+    if (siemens && word.value == 0) {
+      length_is_off_ = true;
+      length_is_said_ = true;
+    } else if (siemens && word.value == 1 && tool_ && !moved_along_tool_) {
+      length_is_off_ = false;
+      length_is_said_ = true;
+    } else {
+      add_own_text(word);
+    }
+  }
+
   void list_g(int code, const Word& word, std::span<const Word> words) {
     if (std::ranges::find(kSilent, code) != kSilent.end()) return;
     if (is_work_offset(code)) return list_work_offset(code);
     if (code == kLengthOff) {
       length_is_off_ = true;
+      length_is_said_ = true;
       return;
     }
     const Word* h = word_of(words, 'H');
     const bool of_the_tool = tool_ && !moved_along_tool_ && (h == nullptr || h->value == *tool_);
     if (code == kLengthOn && of_the_tool) {
       length_is_off_ = false;
+      length_is_said_ = true;
       return;
     }
     if (code == kBlending) return;  // a tolerance beside it is an event
@@ -242,12 +334,21 @@ class CommonLister {
     if (fetched_) add_text(fmt::format("T{}", *std::exchange(fetched_, std::nullopt)));
     if (std::exchange(length_is_off_, false)) add_word("G49");
     const Motion& motion = interpretation_.motions[static_cast<std::size_t>(meaning.motion)];
+    if (tool_ && !length_is_said_ && motion.axes_named[2]) {
+      length_is_said_ = true;
+      add_word("length not said");
+    }
     moved_along_tool_ |= motion.axes_named[2];
     if (!path_alone_counts(state_after()) || !motion.end_known) {
       for (const Word& word : words) add_own_text(word);
       return;
     }
-    if (!motion.start_known) return add_text(described(motion));
+    if (!motion.start_known) {
+      ProgramEvent& event = add_event(EventKind::kText);
+      event.text = described(motion);
+      event.motion = meaning.motion;
+      return;
+    }
     if (motion.kind == MotionKind::kRapid) {
       ProgramEvent& event = add_event(EventKind::kRapid);
       event.motion = meaning.motion;
@@ -256,15 +357,14 @@ class CommonLister {
     }
   }
 
+  // The axes that it names; where they go is compared as places of rapids are.
   [[nodiscard]] std::string described(const Motion& motion) const {
-    constexpr gcode::NumberFormat kPlace = {.decimals = 4};
-    std::string text = motion.kind == MotionKind::kRapid  ? "rapid"
-                       : motion.kind == MotionKind::kLine ? "line"
+    std::string text = motion.kind == MotionKind::kRapid  ? "rapid of"
+                       : motion.kind == MotionKind::kLine ? "line of"
                                                           : "arc from a place that is not known";
-    const geometry::Point3 end = geometry::end_point(motion.piece);
     for (int axis = 0; axis < 3; ++axis) {
-      if (!motion.axes_named[static_cast<std::size_t>(axis)]) continue;
-      text += fmt::format(" {}{}", "XYZ"[axis], gcode::to_text(end[axis], kPlace));
+      if (motion.axes_named[static_cast<std::size_t>(axis)])
+        text += fmt::format(" {}", "XYZ"[axis]);
     }
     const std::optional<double>& feed = state_after().feed;
     if (motion.kind != MotionKind::kRapid) text += feed ? fmt::format(" F{:.6g}", *feed) : " F?";
@@ -312,7 +412,9 @@ class CommonLister {
   std::optional<double> speed_;
   int work_offset_ = 0;  // in tenths
   bool length_is_off_ = false;
+  bool length_is_said_ = false;  // whether the length of the tool in the spindle counts
   bool moved_along_tool_ = false;
+  bool end_is_mark_ = false;  // the last comment stands for an END PGM
 };
 
 }  // namespace

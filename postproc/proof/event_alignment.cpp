@@ -16,9 +16,18 @@ constexpr std::size_t kFurthest = 400;
 // few; each costs up to kFurthest^2 comparisons.
 constexpr std::size_t kMostDifferences = 50;
 
-// mm: half a step of what is printed where the numbers of another language are not the source's: 4
-// decimals of a millimetre, 5 of an inch, whichever is more.
+// mm: half a step of what is printed where the numbers of another language are not the source's:
+// Klartext and Siemens words have 4 decimals of a millimetre, 5 of an inch, plain words 3 and 4.
 constexpr double kPrintedAnew = 0.00013;
+constexpr double kPrintedInPlainMillimetres = 0.0005 + 1e-6;
+constexpr double kPrintedInPlainInches = 0.00127 + 1e-6;
+
+double same_place_in(const gcode::Motion& motion, const ReadProgram& read) {
+  if (read.program->language != gcode::Language::kRs274) return kPrintedAnew;
+  const auto& block = read.interpretation->blocks[motion.block];
+  const bool inch = read.interpretation->states[block.state_after].units == gcode::Units::kInch;
+  return inch ? kPrintedInPlainInches : kPrintedInPlainMillimetres;
+}
 
 bool same_rapid(const gcode::Motion& before, const gcode::Motion& after, double same_place) {
   const geometry::Point3 old_end = geometry::end_point(before.piece);
@@ -100,11 +109,13 @@ class Aligner {
 
 bool same_event(const ProgramEvent& before, const ReadProgram& old_program,
                 const ProgramEvent& after, const ReadProgram& new_program) {
-  if (before.kind != after.kind) return false;
-  if (before.kind != EventKind::kRapid) return before.text == after.text;
+  if (before.kind != after.kind || before.text != after.text) return false;
+  if (before.motion < 0 || after.motion < 0) return before.motion == after.motion;
+  const gcode::Motion& old_motion = motion_of(before, old_program);
+  const gcode::Motion& new_motion = motion_of(after, new_program);
   const bool printed_anew = old_program.program->language != new_program.program->language;
-  return same_rapid(motion_of(before, old_program), motion_of(after, new_program),
-                    printed_anew ? kPrintedAnew : geometry::kSamePlace);
+  return same_rapid(old_motion, new_motion,
+                    printed_anew ? same_place_in(new_motion, new_program) : geometry::kSamePlace);
 }
 
 EventAlignment align_events(const ProgramEvents& before, const ReadProgram& old_program,

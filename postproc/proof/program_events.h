@@ -55,7 +55,7 @@ struct ProgramEvent {
   // which of the two comes first. kText: the whole text of a block that is not understood, else
   // its words without blanks, N and comments. Empty for rapids.
   std::string text;
-  std::int32_t motion = -1;        // of kRapid
+  std::int32_t motion = -1;  // of kRapid; of a kText that says no places: where it ends counts
   std::uint32_t state_before = 0;  // Interpretation::states before the block
   // A word has set the plane, the arc distance mode: not only assumed as after power-on.
   bool plane_set = false;

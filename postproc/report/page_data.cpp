@@ -86,9 +86,10 @@ Json path_of(const SmoothReport& report, std::size_t most_vertices) {
   gcode::ReadOptions reading{report.options.units};
   if (report.options.target != nullptr) reading.curves = report.options.target->curves();
   gcode::Diagnostics ignored;
-  const bool translated = is_to_be_translated(report.source, report.options);
-  const auto language = translated ? std::optional(gcode::Language::kRs274)
-                                   : language_read(report.source, report.options, ignored);
+  const auto foreign = language_to_translate(report.source, report.options);
+  const bool translated = foreign.has_value();
+  const auto language =
+      translated ? foreign : language_read(report.source, report.options, ignored);
   if (!language) return path_columns({});
   const gcode::Reading words = reading_of(report.options, *language);
   const gcode::Program before = gcode::parse(report.source, words, ignored);

@@ -158,21 +158,21 @@ std::optional<gcode::Language> language_read(const gcode::SourceText& source,
   const auto language = gcode::source_language(source, options.source, of_target, found);
   const bool plain = language == gcode::Language::kRs274 && of_target == gcode::Language::kSiemens;
   if (!language || *language == of_target || plain) return language;
-  const std::string_view advice = language == gcode::Language::kRs274
-                                      ? "--convert says it there where every block can be said"
-                                      : "nothing is translated from that";
-  found.push_back({gcode::Severity::kError, "foreign-language", place_of(*language, source),
-                   fmt::format("{} a program in {}; target {} reads {}, and {}",
-                               evidence_of(*language, source), gcode::describe(*language),
-                               options.target->name(), gcode::describe(of_target), advice)});
+  found.push_back(
+      {gcode::Severity::kError, "foreign-language", place_of(*language, source),
+       fmt::format("{} a program in {}; target {} reads {}, and --convert says it there "
+                   "where every block can be said",
+                   evidence_of(*language, source), gcode::describe(*language),
+                   options.target->name(), gcode::describe(of_target))});
   return std::nullopt;
 }
 
-bool is_to_be_translated(const gcode::SourceText& source, const SmoothOptions& options) {
-  if (!options.convert || options.target->language() == gcode::Language::kRs274) return false;
+std::optional<gcode::Language> language_to_translate(const gcode::SourceText& source,
+                                                     const SmoothOptions& options) {
+  if (!options.convert) return std::nullopt;
   gcode::Diagnostics uncertain;
   const auto language = gcode::source_language(source, options.source, std::nullopt, uncertain);
-  return language == gcode::Language::kRs274;
+  return language == options.target->language() ? std::nullopt : language;
 }
 
 gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language) {

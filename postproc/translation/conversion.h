@@ -1,8 +1,8 @@
 // Programs that were made for another family of controls than the target's.
 //
 // Within RS-274 nothing is translated: what is not rewritten is copied, so a program can go to
-// another control only when every block that is copied says the same there. From plain words to
-// Klartext or Siemens it is translated first (postproc/translation/translated_smoothing.h).
+// another control only when every block that is copied says the same there. Between plain words,
+// Klartext and Siemens it is translated first (postproc/translation/translated_smoothing.h).
 #pragma once
 
 #include <optional>
@@ -24,10 +24,16 @@ namespace batten::postproc {
                                                            const SmoothOptions& options,
                                                            gcode::Diagnostics& found);
 
-// With --convert: whether the program is in plain words (RS-274) and the target reads another
-// language. A text without certain marks of a language counts as plain words here.
-[[nodiscard]] bool is_to_be_translated(const gcode::SourceText& source,
-                                       const SmoothOptions& options);
+// With --convert: the language of the program, where the target reads another one. A text without
+// certain marks of a language counts as plain words (RS-274) here. Nothing where nothing is to be
+// translated.
+[[nodiscard]] std::optional<gcode::Language> language_to_translate(const gcode::SourceText& source,
+                                                                   const SmoothOptions& options);
+
+[[nodiscard]] inline bool is_to_be_translated(const gcode::SourceText& source,
+                                              const SmoothOptions& options) {
+  return language_to_translate(source, options).has_value();
+}
 
 // How a program in this language is read with these options.
 [[nodiscard]] gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language);

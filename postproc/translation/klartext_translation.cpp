@@ -39,7 +39,9 @@ class KlartextSpeaker {
     const auto& acts = source_.acts.acts;
     for (std::size_t i = 0; i < acts.size(); ++i) {
       line_ = source_.program.blocks[acts[i].block].line;
-      say_act(acts[i], i + 1 < acts.size() ? &acts[i + 1] : nullptr);
+      std::size_t next = i + 1;
+      while (next < acts.size() && acts[next].kind == ActKind::kLength) ++next;
+      say_act(acts[i], next < acts.size() ? &acts[next] : nullptr);
     }
     text_.add(fmt::format("END PGM {} MM", name_), line_);
     return text_.take();
@@ -49,11 +51,18 @@ class KlartextSpeaker {
   void say_act(const Act& act, const Act* next) {
     switch (act.kind) {
       case ActKind::kComment:
+      case ActKind::kBlank:
         return text_.add_comment(act.text, line_, longest_);
+      case ActKind::kBlending:
+      case ActKind::kLength:
+        return;  // always so there
       case ActKind::kWorkOffset:
         return say_work_offset(act);
       case ActKind::kNoLength:
-        return say_no_length(act);
+        return say_no_length(act, kLengthRemark, "without the length of the tool, which");
+      case ActKind::kLengthUnsaid:
+        return say_no_length(act, kUnsaidLengthRemark,
+                             "along Z behind a tool change without G43 or D, and the length");
       case ActKind::kTool: {
         speed_is_said_ = next != nullptr && next->kind == ActKind::kSpeed;
         const std::string speed =
@@ -88,13 +97,13 @@ class KlartextSpeaker {
     text_.add_comment(datum_remark(whole(act.number)), line_, longest_);
   }
 
-  void say_no_length(const Act& act) {
+  void say_no_length(const Act& act, std::string_view remark, std::string_view how) {
     if (!source_.length_counts_always) {
-      return text_.refuse(act.where,
-                          "moves without the length of the tool, which always counts there; "
-                          "--allow tool-length takes it all the same");
+      return text_.refuse(act.where, fmt::format("moves {} always counts there; --allow "
+                                                 "tool-length takes it all the same",
+                                                 how));
     }
-    text_.add_comment(kLengthRemark, line_, longest_);
+    text_.add_comment(remark, line_, longest_);
   }
 
   // --- motions ------------------------------------------------------------------------------

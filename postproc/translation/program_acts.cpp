@@ -10,48 +10,27 @@
 #include <utility>
 
 #include "gcode/block_words.h"
+#include "gcode/klartext/statement.h"
+#include "gcode/siemens/block_names.h"
 #include "postproc/profile/profile_words.h"
 #include "postproc/proof/path_state.h"
+#include "postproc/translation/certain_words.h"
+#include "postproc/translation/klartext_statements.h"
+#include "postproc/translation/tool_in_spindle.h"
+#include "postproc/translation/translation.h"
 
 namespace batten::postproc {
 namespace {
 
 using gcode::Block;
 using gcode::BlockMeaning;
+using gcode::Language;
 using gcode::Motion;
 using gcode::MotionKind;
 using gcode::Word;
 
-// In tenths: words that only say how others are read, which the interpreter has followed, or that
-// end what was refused where it began.
-constexpr std::array kSilentG = {0,   10,  20,  30,  170, 180, 190, 200, 210, 400,
-                                 800, 900, 901, 910, 911, 940, 970, 980, 990};
-constexpr std::array kPlainM = {0, 10, 20, 30, 40, 50, 60, 80, 90, 300};
-constexpr int kToolLengthOn = 430;
-constexpr int kToolLengthOff = 490;
-constexpr int kBlending = 640;
-constexpr std::string_view kKnownLetters = "NGMXYZIJKRFSTH";
-constexpr std::string_view kPlaceLetters = "XYZIJKR";
-constexpr std::string_view kArcLetters = "IJKR";
-
-template <std::size_t count>
-bool is_in(const std::array<int, count>& codes, int code) {
-  return std::ranges::find(codes, code) != codes.end();
-}
-
-bool is_work_offset(int code) { return code >= 540 && code <= 590 && code % 10 == 0; }
-
-std::string_view without_brackets(std::string_view comment) {
-  if (comment.starts_with('(')) {
-    comment.remove_prefix(1);
-    if (comment.ends_with(')')) comment.remove_suffix(1);
-  } else if (comment.starts_with(';')) {
-    comment.remove_prefix(1);
-  }
-  while (comment.starts_with(' ')) comment.remove_prefix(1);
-  while (comment.ends_with(' ')) comment.remove_suffix(1);
-  return comment;
-}
+// mm: an arc that rises by more is a helix.
+constexpr double kLevelArc = 1e-9;
 
 // Whether something is on, off, or not known: not set by the program.
 using Known = std::optional<bool>;
@@ -67,20 +46,25 @@ class ActReader {
   }
 
  private:
+  [[nodiscard]] bool in(Language language) const { return program_.language == language; }
+
   void read_block(std::uint32_t index) {
     block_ = index;
     told_ = false;
     const Block& block = program_.blocks[index];
     add_comments(block);
-    if (block.opacity == gcode::Opacity::kProgramMark) return;
+    if (block.opacity == gcode::Opacity::kProgramMark) return read_mark(block);
+    if (in(Language::kKlartext) && read_statement(block)) return;
     const std::span<const Word> words = program_.words_of(block);
-    const bool says_nothing =
-        std::ranges::all_of(words, [](const Word& word) { return word.letter == 'N'; });
-    if (const std::string_view why = why_not_plain(block); !why.empty()) {
+    if (const auto why = why_no_plain_block(block, meaning_.blocks[index]); !why.empty()) {
       return refuse(block.span, std::string(why));
     }
-    if (says_nothing) return;
+    if (std::ranges::all_of(words, [](const Word& word) { return word.letter == 'N'; }) &&
+        block.opacity == gcode::Opacity::kNone) {
+      return;
+    }
     if (ended_) return refuse(block.span, "stands behind the end of the program");
+    if (block.opacity == gcode::Opacity::kNamedWords) check_names(block);
     for (const Word& word : words) {
       if (std::string why = why_not(word, words); !why.empty()) refuse(word.span, std::move(why));
     }
@@ -91,16 +75,74 @@ class ActReader {
     if (!std::exchange(told_, true)) result_.obstacles.push_back({where, std::move(why)});
   }
 
+  // --- Klartext -----------------------------------------------------------------------------
+
+  // BEGIN PGM and END PGM; other marks do nothing.
+  void read_mark(const Block& block) {
+    if (!in(Language::kKlartext)) return;
+    const auto kind = gcode::klartext_kind(statement_of(program_, block));
+    const gcode::ModalState& state = meaning_.states[meaning_.blocks[block_].state_after];
+    if (kind == gcode::KlartextKind::kBegin && state.units == gcode::Units::kInch) {
+      return refuse(block.span, "is in inches, where it is not certain what F means");
+    }
+    if (kind != gcode::KlartextKind::kEnd || std::exchange(ended_, true)) return;
+    if (spindle_ != false || coolant_ == true) {
+      return refuse(block.span, "ends without M2 or M30, and spindle or coolant may be on");
+    }
+    (void)add(ActKind::kEnd, block.span);
+  }
+
+  // Whether the block is a statement that is no plain words, and was read.
+  bool read_statement(const Block& block) {
+    if (block.opacity != gcode::Opacity::kForeign || block.block_delete || ended_) return false;
+    const std::string_view statement = statement_of(program_, block);
+    if (draws_blank(statement)) {
+      add(ActKind::kBlank, block.span).text = statement;
+      return true;
+    }
+    if (ends_tilting(statement)) return true;
+    const auto called = called_tool(statement);
+    if (!called) return false;
+    if (called->number) {
+      if (!ToolInSpindle::is_number(*called->number)) return false;
+      put_in(*called->number, block.span);
+    }
+    if (called->speed) set_speed(*called->speed, block.span);
+    return true;
+  }
+
+  // A remark of a translation stands for what it says.
+  bool read_remark(std::string_view text, gcode::SourceSpan where) {
+    if (!in(Language::kKlartext)) return false;
+    const bool no_length = text == kLengthRemark;
+    if (no_length || text == kUnsaidLengthRemark) {
+      tool_.length = LengthSaid::kCountsNot;
+      (void)add(no_length ? ActKind::kNoLength : ActKind::kLengthUnsaid, where);
+      return true;
+    }
+    const auto datum = datum_of_remark(text);
+    if (!datum) return false;
+    const std::string why = why_not_work_offset(*datum * 10);
+    why.empty() ? set_work_offset(*datum * 10, where) : refuse(where, why);
+    return true;
+  }
+
   // --- what can be said ---------------------------------------------------------------------
 
-  [[nodiscard]] std::string_view why_not_plain(const Block& block) const {
-    const BlockMeaning& meaning = meaning_.blocks[block_];
-    if (block.block_delete) return "is left out by some controls, run by others";
-    if (block.has_checksum) return "has a check sum";
-    if (block.opacity != gcode::Opacity::kNone) return "is no block of plain words";
-    if (meaning.label_referenced || meaning.entered_from_elsewhere) return "is jumped to";
-    if (meaning.kind == gcode::BlockKind::kOpaque) return "is not understood";
-    return {};
+  void check_names(const Block& block) {
+    // Units, edges of tools, and ends of what was refused where it began.
+    constexpr std::array<std::string_view, 7> kSayable = {"G71",    "G700",    "G710",  "D",
+                                                          "COMPOF", "TRAFOOF", "DIAMOF"};
+    for (const gcode::SiemensName& each :
+         gcode::siemens_names_in(program_.source.text(), block.span)) {
+      if (std::ranges::find(kSayable, each.name) != kSayable.end()) continue;
+      return refuse(each.span, each.name == "G70" ? "leaves feeds in millimetres"
+                                                  : "is a word that only Siemens controls have");
+    }
+    const gcode::BlockWords words(program_.words_of(block));
+    if (words.problem() != gcode::BlockWords::Problem::kNone) {
+      refuse(block.span, "is not understood");
+    }
   }
 
   [[nodiscard]] std::string why_not(const Word& word, std::span<const Word> words) const {
@@ -109,36 +151,39 @@ class ActReader {
       case 'G':
         return why_not_g(tenths_of(word), words);
       case 'M':
-        return is_in(kPlainM, tenths_of(word)) ? "" : "may mean something else there";
+        return is_certain_function(tenths_of(word), program_.language)
+                   ? ""
+                   : "may mean something else there";
       case 'H':
-        return has_g(words, kToolLengthOn) ? "" : "may mean something else there";
+        return coded_word(words, 'G', word_code::kToolLengthOn) != nullptr
+                   ? ""
+                   : "may mean something else there";
+      case 'D':
+        if (in(Language::kSiemens)) return std::string(tool_.why_not_edge(word, words));
+        break;
       case 'T':
-        return word.value >= 1 && word.value == std::floor(word.value) ? "" : "is no tool there";
+        return ToolInSpindle::is_number(word.value) ? "" : "is no tool there";
       default:
         break;
     }
-    if (kKnownLetters.find(word.letter) == std::string_view::npos) {
-      return "may mean something else there";
-    }
-    if (kPlaceLetters.find(word.letter) != std::string_view::npos && !moves_with(word)) {
-      return "says nothing that is certain";
-    }
+    if (!is_certain_letter(word.letter, program_.language)) return "may mean something else there";
+    if (is_place_letter(word.letter) && !moves_with(word)) return "says nothing that is certain";
     return {};
   }
 
   [[nodiscard]] bool moves_with(const Word& word) const {
     const std::int32_t motion = meaning_.blocks[block_].motion;
     if (motion < 0) return false;
-    const bool of_arc = kArcLetters.find(word.letter) != std::string_view::npos;
-    return !of_arc || motion_at(motion).kind == MotionKind::kArc;
+    return !is_arc_letter(word.letter) || motion_at(motion).kind == MotionKind::kArc;
   }
 
   [[nodiscard]] std::string why_not_g(int code, std::span<const Word> words) const {
-    if (is_in(kSilentG, code)) return {};
-    if (is_work_offset(code)) return why_not_work_offset(code);
-    if (code == kToolLengthOn) return why_not_length(words);
-    if (code == kToolLengthOff) return {};
-    if (code == kBlending) {
+    if (is_silent_code(code)) return {};
+    if (names_work_offset(code)) return why_not_work_offset(code);
+    if (code == word_code::kToolLengthOn) return std::string(tool_.why_not_length(words));
+    if (code == word_code::kToolLengthOff) return {};
+    if (code == 410 || code == 420) return "moves beside the path by the radius of the tool";
+    if (code == word_code::kBlending) {
       const bool plain = std::ranges::none_of(words, [](const Word& word) {
         return std::string_view("PQRL").find(word.letter) != std::string_view::npos;
       });
@@ -153,35 +198,6 @@ class ActReader {
     return moved_ ? "names a work offset behind the first motion" : "";
   }
 
-  // The control counts the length of a tool from its change on. That is the same as G43 behind it,
-  // as long as nothing has moved along Z meanwhile.
-  [[nodiscard]] std::string why_not_length(std::span<const Word> words) const {
-    const auto h = std::ranges::find(words, 'H', &Word::letter);
-    const std::optional<double> tool = tool_behind(words);
-    if (!tool) return "names the length of a tool that no M6 has put in";
-    if (h != words.end() && h->value != *tool) return "names the length of another tool";
-    if (moved_along_tool_ && !has_m(words, 60)) {
-      return "comes behind a motion without the length of the tool";
-    }
-    return {};
-  }
-
-  // The tool in the spindle once the block's M6 is done.
-  [[nodiscard]] std::optional<double> tool_behind(std::span<const Word> words) const {
-    if (!has_m(words, 60)) return tool_;
-    const auto t = std::ranges::find(words, 'T', &Word::letter);
-    if (t != words.end()) return t->value;
-    return fetched_ ? std::optional(fetched_->number) : std::nullopt;
-  }
-
-  static bool has_g(std::span<const Word> words, int code) { return has(words, 'G', code); }
-  static bool has_m(std::span<const Word> words, int code) { return has(words, 'M', code); }
-  static bool has(std::span<const Word> words, char letter, int code) {
-    return std::ranges::any_of(words, [&](const Word& word) {
-      return word.letter == letter && word.is_number && tenths_of(word) == code;
-    });
-  }
-
   // --- acts ---------------------------------------------------------------------------------
 
   void add_comments(const Block& block) {
@@ -190,41 +206,36 @@ class ActReader {
         refuse(comment.span, "acts on its control");
         continue;
       }
-      Act& act = add(ActKind::kComment, comment.span);
-      act.text = without_brackets(program_.source.text(comment.span));
+      const std::string_view text = text_of_comment(program_.source.text(comment.span));
+      // The folder of a Siemens program.
+      if (in(Language::kSiemens) && text.starts_with("$PATH")) continue;
+      if (!read_remark(text, comment.span)) add(ActKind::kComment, comment.span).text = text;
     }
   }
 
   void add_acts(std::span<const Word> words, const BlockMeaning& meaning) {
     const bool moves = meaning.motion >= 0;
-    for (const Word& word : words) {
-      if (word.letter == 'T') fetched_ = {word.value, word.span};
+    // Klartext says of each function whether it acts before or behind the motion of its block.
+    const bool known_order = in(Language::kKlartext);
+    if (const Word* t = first_word(words, 'T')) tool_.fetched = {t->value, t->span};
+    if (const Word* change = coded_word(words, 'M', word_code::kToolChange)) change_tool(*change);
+    if (const Word* s = first_word(words, 'S')) add_speed(*s, meaning);
+    for (const int code : {30, 130, 40, 140, 80}) {
+      if (const Word* word = coded_word(words, 'M', code)) add_start(*word);
     }
-    for (const Word& word : words) {
-      if (word.letter == 'M' && tenths_of(word) == 60) add_tool(word);
-    }
-    for (const Word& word : words) {
-      if (word.letter == 'S') add_speed(word, meaning);
-    }
-    for (const int code : {30, 40, 80, 50, 90}) {
-      if (const Word* word = m_word(words, code)) add_function(*word, moves);
-    }
+    if (!moves || !known_order) add_stops(words, moves);
     for (const Word& word : words) {
       if (word.letter == 'G') add_g(word);
+      if (word.letter == 'D') add_edge(word);
     }
     if (moves) add_motion(meaning);
+    if (moves && known_order) add_stops(words, false);
     for (const int code : {0, 10}) {
-      if (const Word* word = m_word(words, code)) add_stop(*word, moves);
+      if (const Word* word = coded_word(words, 'M', code)) add_pause(*word, moves);
     }
     for (const int code : {20, 300}) {
-      if (const Word* word = m_word(words, code)) add_end(*word);
+      if (const Word* word = coded_word(words, 'M', code)) add_end(*word);
     }
-  }
-
-  static const Word* m_word(std::span<const Word> words, int code) {
-    const auto found = std::ranges::find_if(
-        words, [code](const Word& word) { return word.letter == 'M' && tenths_of(word) == code; });
-    return found == words.end() ? nullptr : &*found;
   }
 
   Act& add(ActKind kind, gcode::SourceSpan where, double number = 0) {
@@ -237,37 +248,60 @@ class ActReader {
     return result_.acts.back();
   }
 
-  void add_tool(const Word& word) {
-    if (!fetched_) return refuse(word.span, "names no tool");
-    tool_ = fetched_->number;
-    fetched_.reset();
-    without_length_.reset();
-    moved_along_tool_ = false;
+  void change_tool(const Word& word) {
+    if (!tool_.fetched) return refuse(word.span, "names no tool");
+    put_in(tool_.fetched->number, word.span);
+  }
+
+  void put_in(double tool, gcode::SourceSpan where) {
+    tool_.put_in(tool);
+    turned_at_change_ = spindle_ == true ? std::optional(where) : std::nullopt;
     spindle_.reset();
     speed_.reset();
-    (void)add(ActKind::kTool, word.span, *tool_);
+    (void)add(ActKind::kTool, where, tool);
   }
 
   void add_speed(const Word& word, const BlockMeaning& meaning) {
-    if (speed_ == word.value) return;
-    if (word.value < 0) return refuse(word.span, "is no speed there");
     const bool cuts = meaning.motion >= 0 && motion_at(meaning.motion).kind != MotionKind::kRapid;
-    if (cuts) return refuse(word.span, "changes the speed in a cutting move");
-    speed_ = word.value;
-    (void)add(ActKind::kSpeed, word.span, word.value);
-  }
-
-  void add_function(const Word& word, bool moves) {
-    const auto code = static_cast<int>(word.value);
-    const bool ends = code == 5 || code == 9;
-    if (ends && moves) {
-      return refuse(word.span, "acts before or behind the motion of its block: controls differ");
+    if (cuts && speed_ != word.value) {
+      return refuse(word.span, "changes the speed in a cutting move");
     }
-    (code == 8 || code == 9 ? coolant_ : spindle_) = !ends;
-    (void)add(ActKind::kFunction, word.span, code);
+    set_speed(word.value, word.span);
   }
 
-  void add_stop(const Word& word, bool moves) {
+  void set_speed(double speed, gcode::SourceSpan where) {
+    if (speed_ == speed) return;
+    if (speed < 0) return refuse(where, "is no speed there");
+    speed_ = speed;
+    (void)add(ActKind::kSpeed, where, speed);
+  }
+
+  // M3, M4, M8; M13 and M14 are two of them.
+  void add_start(const Word& word) {
+    const auto code = static_cast<int>(word.value);
+    if (code != 8) add_function(code % 10, word.span);
+    if (code == 8 || code > 10) add_function(8, word.span);
+  }
+
+  void add_stops(std::span<const Word> words, bool beside_motion) {
+    for (const int code : {50, 90}) {
+      const Word* word = coded_word(words, 'M', code);
+      if (word == nullptr) continue;
+      beside_motion
+          ? refuse(word->span, "acts before or behind the motion of its block: controls differ")
+          : add_function(code / 10, word->span);
+    }
+  }
+
+  void add_function(int code, gcode::SourceSpan where) {
+    const bool ends = code == 5 || code == 9;
+    const bool of_coolant = code == 8 || code == 9;
+    (of_coolant ? coolant_ : spindle_) = !ends;
+    if (!of_coolant) turned_at_change_.reset();
+    (void)add(ActKind::kFunction, where, code);
+  }
+
+  void add_pause(const Word& word, bool moves) {
     if (moves) return refuse(word.span, "acts before or behind the motion of its block");
     if (spindle_ != false || coolant_ == true) {
       return refuse(word.span, "stops spindle and coolant on some controls, and they may be on");
@@ -282,54 +316,86 @@ class ActReader {
 
   void add_g(const Word& word) {
     const int code = tenths_of(word);
-    if (code == kToolLengthOff) without_length_ = word.span;
-    if (code == kToolLengthOn) without_length_.reset();
-    if (!is_work_offset(code) || work_offset_ == code) return;
-    work_offset_ = code;
-    (void)add(ActKind::kWorkOffset, word.span, word.value);
+    if (code == word_code::kToolLengthOff) tool_.leave_length(word.span);
+    if (code == word_code::kToolLengthOn) count_length(word.span);
+    if (code == word_code::kBlending) (void)add(ActKind::kBlending, word.span);
+    if (names_work_offset(code)) set_work_offset(code, word.span);
   }
+
+  void add_edge(const Word& word) {
+    word.value == 0 ? tool_.leave_length(word.span) : count_length(word.span);
+  }
+
+  void count_length(gcode::SourceSpan where) {
+    if (tool_.count_length()) (void)add(ActKind::kLength, where, *tool_.number);
+  }
+
+  void set_work_offset(int code, gcode::SourceSpan where) {
+    if (work_offset_ == code) return;
+    work_offset_ = code;
+    (void)add(ActKind::kWorkOffset, where, code / 10);
+  }
+
+  // --- motions ------------------------------------------------------------------------------
 
   void add_motion(const BlockMeaning& meaning) {
     const gcode::SourceSpan here = program_.blocks[block_].span;
     const Motion& motion = motion_at(meaning.motion);
     const gcode::ModalState& state = meaning_.states[meaning.state_after];
-    if (fetched_) {
-      refuse(fetched_->where, "changes the tool on some controls, and on others only fetches it");
-      return fetched_.reset();
+    if (tool_.fetched) {
+      refuse(tool_.fetched->where,
+             "changes the tool on some controls, and on others only fetches it");
+      return tool_.fetched.reset();
     }
-    if (without_length_) {
-      (void)add(ActKind::kNoLength, *without_length_);
-      without_length_.reset();
+    say_length_before(motion, here);
+    if (const std::string_view why = why_not_motion(motion, state); !why.empty()) {
+      return refuse(here, std::string(why));
     }
-    if (state.distance == gcode::DistanceMode::kIncremental) return refuse(here, "is an increment");
-    if (!path_alone_counts(state)) {
-      return refuse(here, "moves in a state in which its words are not the path");
+    if (motion.kind != MotionKind::kRapid && turned_at_change_) {
+      refuse(*std::exchange(turned_at_change_, std::nullopt),
+             "finds the spindle on, and controls differ in whether it turns in the cut behind it");
     }
-    if (!motion.end_known || (motion.kind == MotionKind::kArc && !motion.start_known)) {
-      return refuse(here, "moves from a place that is not known");
-    }
-    Act act;
-    act.kind = ActKind::kMotion;
-    act.block = block_;
-    act.where = here;
+    Act& act = add(ActKind::kMotion, here);
     act.motion = meaning.motion;
-    if (motion.kind != MotionKind::kRapid) {
-      if (!state.feed) return refuse(here, "moves at a feed that is not known");
-      act.feed = state.feed;
-    }
+    if (motion.kind != MotionKind::kRapid) act.feed = state.feed;
     moved_ = true;
-    moved_along_tool_ |= motion.axes_named[2];
-    result_.acts.push_back(act);
+    tool_.moved_along |= motion.axes_named[2];
+  }
+
+  // What holds for the tool's length, before the first motion that it makes a difference to.
+  void say_length_before(const Motion& motion, gcode::SourceSpan here) {
+    if (tool_.without_length) (void)add(ActKind::kNoLength, *tool_.without_length);
+    tool_.without_length.reset();
+    if (!tool_.number || tool_.length != LengthSaid::kNot || !motion.axes_named[2]) return;
+    if (in(Language::kKlartext)) return count_length(here);
+    tool_.length = LengthSaid::kCountsNot;
+    (void)add(ActKind::kLengthUnsaid, here);
+  }
+
+  [[nodiscard]] std::string_view why_not_motion(const Motion& motion,
+                                                const gcode::ModalState& state) const {
+    if (state.distance == gcode::DistanceMode::kIncremental) return "is an increment";
+    if (!path_alone_counts(state)) return "moves in a state in which its words are not the path";
+    const bool arc = motion.kind == MotionKind::kArc;
+    if (!motion.end_known || (arc && !motion.start_known)) {
+      return "moves from a place that is not known";
+    }
+    if (motion.kind == MotionKind::kCurve) return "is a curve";
+    if (motion.kind != MotionKind::kRapid && !state.feed)
+      return "moves at a feed that is not known";
+    if (arc && in(Language::kSiemens) && rises(std::get<geometry::Arc>(motion.piece))) {
+      return "is a helix";
+    }
+    return {};
+  }
+
+  static bool rises(const geometry::Arc& arc) {
+    return std::abs(arc.axis.dot(arc.end - arc.start)) > kLevelArc;
   }
 
   [[nodiscard]] const Motion& motion_at(std::int32_t index) const {
     return meaning_.motions[static_cast<std::size_t>(index)];
   }
-
-  struct Fetched {
-    double number = 0;
-    gcode::SourceSpan where;
-  };
 
   const gcode::Program& program_;
   const gcode::Interpretation& meaning_;
@@ -338,14 +404,12 @@ class ActReader {
   bool told_ = false;  // the block has its obstacle
   bool ended_ = false;
   bool moved_ = false;
-  bool moved_along_tool_ = false;                    // along Z, since the tool was put in
-  std::optional<Fetched> fetched_;                   // T without its M6 yet
-  std::optional<double> tool_;                       // in the spindle
-  std::optional<double> speed_;                      // since the tool was put in
-  std::optional<int> work_offset_;                   // in tenths
-  std::optional<gcode::SourceSpan> without_length_;  // G49, and nothing moved since
+  ToolInSpindle tool_;
+  std::optional<double> speed_;     // since the tool was put in
+  std::optional<int> work_offset_;  // in tenths
   Known spindle_;
   Known coolant_;
+  std::optional<gcode::SourceSpan> turned_at_change_;  // of the tool; nothing said of it since
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
-// What a program of plain words (RS-274) does, act by act, so that it can be said in another
-// language. Only what every control that reads such words does for certain is an act; all else is
-// an obstacle.
+// What a program does, act by act, so that it can be said in another language: plain words
+// (RS-274), Siemens words and Klartext give the same acts. Only what every control that reads the
+// program's language does for certain is an act; all else is an obstacle.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,18 @@
 namespace batten::postproc {
 
 enum class ActKind : std::uint8_t {
-  kComment,     // `text`, without its brackets
-  kWorkOffset,  // `number`: 54 to 59; before all motions, each time the same
-  kNoLength,    // G49: what moves next does so without the length of the tool
-  kTool,        // `number` is put into the spindle; its length counts from here on
-  kSpeed,       // of the spindle: `number`, another one than before
-  kFunction,    // M `number`: 3, 4, 5, 8, 9, 0, 1
-  kMotion,      // `motion` at `feed`: a rapid, a line, an arc; what it needs is known
-  kEnd,         // M `number`: 2 or 30; nothing follows
+  kComment,       // `text`, without its brackets
+  kBlank,         // `text` draws the blank for the control's simulation: BLK FORM
+  kBlending,      // corners as the control rounds them: G64 without a tolerance
+  kWorkOffset,    // `number`: 54 to 59; before all motions, each time the same
+  kNoLength,      // G49: what moves next does so without the length of the tool
+  kLengthUnsaid,  // what moves next along Z: nothing says whether the tool's length counts
+  kTool,          // `number` is put into the spindle
+  kLength,        // from here on the length of that tool counts; nothing has moved along Z since
+  kSpeed,         // of the spindle: `number`, another one than before
+  kFunction,      // M `number`: 3, 4, 5, 8, 9, 0, 1
+  kMotion,        // `motion` at `feed`: a rapid, a line, an arc; what it needs is known
+  kEnd,           // M `number`: 2 or 30; or 0: END PGM alone; nothing follows
 };
 
 struct Act {
@@ -41,16 +45,22 @@ struct ProgramActs {
 };
 
 // In a block: tool, speed, spindle, coolant, work offset, motion, stop, end. M3, M4 and M8 beside a
-// motion come before it.
+// motion come before it; M5 and M9 of Klartext behind it.
+//
+// The length of the tool: G43 H, D1 (Siemens), or TOOL CALL (Klartext, where it always counts).
+// Remarks that a translation left in Klartext (postproc/translation/translation.h) are the acts
+// that they stand for.
 //
 // Obstacles are, besides words and blocks that are not plain: increments; compensation and other
 // states in which the words are not the path; M5, M9 and stops beside a motion, where controls
 // differ in what comes first; M0 and M1 with spindle or coolant on, which some controls stop then;
-// T without M6, which changes the tool on some controls; G43 but for the length of the tool that
-// was just put in; G64 with a tolerance; dwells, whose
-// number is seconds or milliseconds.
+// T without M6, which changes the tool on some controls; G43, D but for the length of the tool that
+// was just put in; a tool put in with the spindle on, and a cut behind it without M3 or M4 between;
+// G64 with a tolerance; dwells, whose number is seconds or milliseconds. Of
+// Siemens programs, names but G71, G700, G710, and helices; of Klartext programs, whatever is not
+// L, CC, C, CR, TOOL CALL, M functions and BLK FORM, and inches: what F means then is not certain.
 //
-// `program` was read in Language::kRs274. Views into its text.
+// Views into the program's text.
 [[nodiscard]] ProgramActs acts_of(const gcode::Program& program,
                                   const gcode::Interpretation& meaning);
 

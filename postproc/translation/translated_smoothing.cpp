@@ -30,7 +30,11 @@ class TranslatedSmoothing {
       : source_(source),
         options_(options),
         progress_(progress),
-        program_(gcode::parse(source, reading_of(options, gcode::Language::kRs274), found_)) {}
+        program_(gcode::parse(
+            source,
+            reading_of(options,
+                       language_to_translate(source, options).value_or(gcode::Language::kRs274)),
+            found_)) {}
 
   SmoothResult run() {
     gcode::tell_of_contradictions(program_, options_.source, found_);
@@ -74,11 +78,16 @@ class TranslatedSmoothing {
   bool translate() {
     ProgramActs acts = acts_of(program_, meaning_);
     const gcode::Dialect& target = *options_.target;
-    const TranslationSource said{program_, meaning_, acts, is_allowed(gcode::reason::kWorkOffset),
-                                 is_allowed(gcode::reason::kToolLength)};
+    const TranslationSource said{program_,
+                                 meaning_,
+                                 acts,
+                                 is_allowed(gcode::reason::kWorkOffset),
+                                 is_allowed(gcode::reason::kToolLength),
+                                 is_allowed(gcode::reason::kBlankForm)};
     const std::string name = program_name(source_.name());
-    translation_ = target.language() == gcode::Language::kKlartext ? in_klartext(said, target, name)
-                                                                   : in_siemens(said, target, name);
+    translation_ = target.language() == gcode::Language::kKlartext
+                       ? in_klartext(said, target, name)
+                       : in_plain_words(said, target, name);
     std::vector<Obstacle> obstacles = std::move(acts.obstacles);
     std::ranges::move(translation_.obstacles, std::back_inserter(obstacles));
     if (!options_.words.empty()) {
@@ -97,6 +106,7 @@ class TranslatedSmoothing {
     options.convert = false;
     options.units = gcode::Units::kUnknown;
     options.source = kind_of(options_.target->language());
+    options.decimals = gcode::Decimals{};
     options.tolerance_mm = options_.tolerance_mm - translation_.rounding_mm;
     if (options.tolerance_mm <= 0) options.method = Method::kNone;
     if (options.tolerance_mm <= 0) options.tolerance_mm = options_.tolerance_mm;
@@ -115,7 +125,9 @@ class TranslatedSmoothing {
     text.replace(at, said.size(), provenance_comment(*options_.target, options_.tolerance_mm));
   }
 
+  // Of plain words: as the target reads them.
   static gcode::SourceKind kind_of(gcode::Language language) {
+    if (language == gcode::Language::kRs274) return gcode::SourceKind::kAuto;
     for (const gcode::SourceFamily& family : gcode::source_families()) {
       if (family.language == language) return family.kind;
     }

@@ -15,7 +15,7 @@
 namespace batten::postproc {
 
 struct TranslationSource {
-  const gcode::Program& program;  // in Language::kRs274
+  const gcode::Program& program;  // in any language
   const gcode::Interpretation& meaning;
   const ProgramActs& acts;
   // --allow work-offset: where the language has no word for G54, the datum that is active on the
@@ -23,6 +23,8 @@ struct TranslationSource {
   bool datum_is_work_offset = false;
   // --allow tool-length: where lengths always count, they may count behind G49, too.
   bool length_counts_always = false;
+  // --allow blank-form: BLK FORM may become a comment.
+  bool blank_is_remark = false;
 };
 
 struct Translation {
@@ -41,15 +43,28 @@ struct Translation {
 //   (text)        ; text
 // The unit is always the millimetre: what F means in an INCH program is not the same on all of
 // these controls. Obstacles: arcs out of the plane of X and Y, helices, arcs whose radii differ by
-// more than the control takes, places beyond its range, work offsets and motions
-// behind G49 that are not allowed.
+// more than the control takes, places beyond its range, work offsets and motions without the length
+// of the tool that are not allowed.
 [[nodiscard]] Translation in_klartext(const TranslationSource& source, const gcode::Dialect& target,
                                       std::string_view name);
 
-// Siemens words: those of the source, with a `%_N_name_MPF` before them and comments as `; text`.
-// Obstacles: helices, G43, G49, G58 and G59, and lines longer than the target takes.
-[[nodiscard]] Translation in_siemens(const TranslationSource& source, const gcode::Dialect& target,
-                                     std::string_view name);
+// Plain words (RS-274) or Siemens words, by the target's language, in the units of the program:
+//   L X+1 Y+2 FMAX        G0 X1 Y2
+//   L X+1 F500            G1 X1 F500
+//   CC, C, CR             G2 or G3 with I J K, or R where the target has that
+//   TOOL CALL 5 Z S3000   T5 M6, G43 H5 (Siemens: D1), S3000
+//   ; text                a comment of the target
+// First the modes are said that the language of the program implies: G21 (Siemens: G710), G17, G40,
+// G90, G94. The file has the frame that controls of the FANUC kind want (%, O0001, %); its O number
+// is `name`, where that is a number of up to four digits, else 1. Arcs are cut where the target
+// takes only shorter ones; one that is too small for it is chords that leave it by a printed step
+// at the most.
+//
+// Obstacles: words that the target refuses or takes for something else, arcs that it does not take,
+// helices where it has none, G58 and G59 for Siemens, where the length of the tool is not said in a
+// Siemens program, lines longer than the target takes; for plain words a program without an end.
+[[nodiscard]] Translation in_plain_words(const TranslationSource& source,
+                                         const gcode::Dialect& target, std::string_view name);
 
 // A name that either control takes, from that of a file: capitals, digits and _.
 [[nodiscard]] std::string program_name(std::string_view file);
@@ -60,5 +75,11 @@ struct Translation {
 
 // The same for motions behind G49.
 inline constexpr std::string_view kLengthRemark = "G49: the length of the tool counts";
+
+// For motions along Z behind a tool change without G43.
+inline constexpr std::string_view kUnsaidLengthRemark = "no G43: the length of the tool counts";
+
+// What other languages say before their M30, where Klartext ends by its END PGM alone.
+inline constexpr std::string_view kEndRemark = "END PGM";
 
 }  // namespace batten::postproc

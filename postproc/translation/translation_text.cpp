@@ -9,6 +9,23 @@ namespace {
 // Letters of other alphabets are not the same bytes on all controls.
 char plain(char c) { return c >= ' ' && c <= '~' ? c : c == '\t' ? ' ' : '?'; }
 
+bool is_plain_in_comments(char c) {
+  const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  return letter || (c >= '0' && c <= '9') || std::string_view(" .,:+-=").find(c) < 7;
+}
+
+// As it is, or without what this target does not take there.
+std::string comment_said(const gcode::Dialect& target, std::string_view text) {
+  std::string line = target.comment(text);
+  if (!line.empty()) return line;
+  std::string mild(text);
+  std::ranges::replace_if(
+      mild, [](char c) { return !is_plain_in_comments(c); }, '-');
+  line = target.comment(mild);
+  // "MSG, .." acts on some controls.
+  return line.empty() ? target.comment("- " + mild) : line;
+}
+
 }  // namespace
 
 void TranslationText::add_comment(std::string_view text, std::uint32_t source_line,
@@ -26,16 +43,31 @@ void TranslationText::add_comment(std::string_view text, std::uint32_t source_li
   } while (!rest.empty());
 }
 
-std::string TranslationText::place(double mm, int axis, const gcode::NumberFormat& format) {
-  const double error = std::abs(gcode::rounded(mm, format.decimals) - mm);
+bool TranslationText::add_comment_of(const gcode::Dialect& target, std::string_view text,
+                                     std::uint32_t source_line) {
+  constexpr std::size_t kBrackets = 2;
+  const std::size_t room = target.max_line_length() - kBrackets;
+  while (!text.empty()) {
+    const std::string_view part = text.substr(0, room);
+    const std::string line = comment_said(target, part);
+    if (line.empty()) return false;
+    add(line, source_line);
+    text.remove_prefix(part.size());
+  }
+  return true;
+}
+
+std::string TranslationText::place(double mm, int axis, const gcode::NumberFormat& format,
+                                   double unit) {
+  const double error = std::abs(gcode::rounded(mm / unit, format.decimals) * unit - mm);
   // Sums of decimals are off by less than this, which is no rounding of ours.
   constexpr double kNoise = 1e-9;
   if (error > kNoise) rounding_[axis] = std::max(rounding_[axis], error);
-  return gcode::to_text(mm, format);
+  return gcode::to_text(mm / unit, format);
 }
 
 Translation TranslationText::take() {
-  result_.rounding_mm = rounding_.norm();
+  result_.rounding_mm = rounding_.norm() + beside_;
   return std::move(result_);
 }
 

@@ -1,11 +1,13 @@
 // The lines of a translation as they come.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "gcode/dialect.h"
 #include "gcode/number_format.h"
 #include "geometry/point.h"
 #include "postproc/translation/translation.h"
@@ -28,14 +30,24 @@ class TranslationText {
     result_.obstacles.push_back({where, std::move(why)});
   }
 
-  // The digits of a place, whose rounding is remembered.
-  [[nodiscard]] std::string place(double mm, int axis, const gcode::NumberFormat& format);
+  // A comment of the target, in as many lines as its length takes; characters that its comments
+  // cannot have become -. False where it has no comments, and none for an empty text.
+  [[nodiscard]] bool add_comment_of(const gcode::Dialect& target, std::string_view text,
+                                    std::uint32_t source_line);
+
+  // The digits of a place, whose rounding is remembered. `unit`: mm.
+  [[nodiscard]] std::string place(double mm, int axis, const gcode::NumberFormat& format,
+                                  double unit = 1);
+
+  // What is off by as much beside that, mm on each axis.
+  void add_rounding(double mm) { beside_ = std::max(beside_, mm); }
 
   [[nodiscard]] Translation take();
 
  private:
   Translation result_;
   geometry::Point3 rounding_ = geometry::Point3::Zero();  // greatest on each axis, mm
+  double beside_ = 0;                                     // mm
 };
 
 }  // namespace batten::postproc

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """targets_table.py BATTEN FOLDER [--targets a,b,..] [--forms auto,arcs,lines] [--tolerance 0.01]
-                    [--largest BYTES] [--convert] [--allow a,b,..] [--json FILE]
+                    [--largest BYTES] [--convert] [--via TARGET] [--allow a,b,..] [--json FILE]
 
 Every program of FOLDER smoothed for some targets in each form: a table of blocks and bytes by target
 and form. Each result is verified once more by `batten verify`. Exits with 1 when one is not proved.
+With --via each program is first converted for that target, unsmoothed, and the table is about those
+that it takes.
 Why programs were refused stands behind the table, with their first block that cannot be said.
 """
 
@@ -32,6 +34,7 @@ def read_options():
     parser.add_argument("--largest", type=int, default=1 << 20, help="bytes; larger ones are left out")
     parser.add_argument("--convert", action="store_true",
                         help="programs of other families too, where every block can be said")
+    parser.add_argument("--via", help="the target for which programs are converted first")
     parser.add_argument("--allow", default="", help="reason ids, as for batten smooth")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--json", help="all rows, one per program, target and form")
@@ -54,6 +57,21 @@ def run(options, command, folder, *arguments):
                           cwd=folder, capture_output=True, timeout=HANGS)
 
 
+def allowances(options):
+    return [f"--allow={reason}" for reason in options.allow.split(",") if reason]
+
+
+# The program for the target of --via; nothing where it is not taken there, or is one already.
+def converted(options, data):
+    with tempfile.TemporaryDirectory(prefix="batten-targets-") as folder:
+        folder = pathlib.Path(folder)
+        (folder / "old.nc").write_bytes(data)
+        done = run(options, "smooth", folder, "old.nc", "-o", "new.nc", "--target", options.via,
+                   "--method", "none", "--convert", *allowances(options))
+        new = (folder / "new.nc").read_bytes() if done.returncode == 0 else data
+        return new if new != data else None
+
+
 def row_of(options, name, data, target, form):
     with tempfile.TemporaryDirectory(prefix="batten-targets-") as folder:
         folder = pathlib.Path(folder)
@@ -61,7 +79,7 @@ def row_of(options, name, data, target, form):
         done = run(options, "smooth", folder, "old.nc", "-o", "new.nc", "--target", target,
                    "--output", form, "--threads", "1", "--json", "report.json",
                    *(["--convert"] if options.convert else []),
-                   *[f"--allow={reason}" for reason in options.allow.split(",") if reason])
+                   *allowances(options))
         row = {"program": name, "target": target, "form": form, "exit": done.returncode}
         if done.returncode == 2:
             errors = [line for line in done.stderr.decode(errors="replace").splitlines()
@@ -103,6 +121,11 @@ def summed(rows, target, form):
 def main(options):
     options.batten = str(pathlib.Path(options.batten).resolve())  # runs in folders of its own
     programs = list(programs_in(options.folder, options.largest))
+    if options.via:
+        print(f"{len(programs)} programs", end=", ")
+        programs = [(name, converted(options, data)) for name, data in programs]
+        programs = [(name, data) for name, data in programs if data is not None]
+        print(f"{len(programs)} of them converted for {options.via}")
     if not programs:
         print("no programs")
         return 77

@@ -71,18 +71,17 @@ TEST(Translation, SaysAProgramInKlartext) {
             "20 END PGM TEST MM\n");
 }
 
+// The length of the tool is that of its first edge. The control takes arcs of less than 350
+// degrees: the full turn about (15, 0) is two, (20, 0) to (10, 0) and back. N numbers are left out,
+// and so is an end that the arc does not change.
 TEST(Translation, SaysAProgramInSiemensWords) {
-  std::string text = kPart;
-  text.replace(text.find(" G49"), 4, "");
-  text.replace(text.find("N30 G43 H5\n"), 11, "");
-  const SmoothResult result = smoothed(text, converting_to("siemens"));
+  const SmoothResult result = smoothed(kPart, converting_to("siemens"));
   ASSERT_TRUE(result.understood) << testing::PrintToString(messages_of(result));
   EXPECT_TRUE(result.proved);
   EXPECT_EQ(result.text,
-            "%_N_TEST_MPF\n; part\nG710\nN10 G90 G17 G40\nN20 T5 M6\nN40 S3000 M3\nN50 M8\n"
-            "N60 G0 X0 Y0\nN70 Z5\n; down\nN80 G1 Z-1 F300\nN90 X10 F500\nN100 G2 X20 Y0 I5 J0\n"
-            "N110 G3 X20 Y0 I-5 J0\nN120 S4000\nN130 G1 X25.25\nN140 G0 Z50\nN150 M9\nN160 M5\n"
-            "N170 M30\n");
+            "%_N_TEST_MPF\nG710\nG17 G40 G90 G94\n; part\nT5 M6\nD1\nS3000 M3\nM8\nG0 X0 Y0\n"
+            "Z5\n; down\nG1 Z-1 F300\nX10 F500\nG2 X20 I5\nG3 X10 I-5\nX20 I5\nS4000\n"
+            "G1 X25.25\nG0 Z50\nM9\nM5\nM30\n");
 }
 
 // 1 inch is 25.4 mm, 12 inch/min are 304.8 mm/min; 0.3333 inch are 8.46582 mm.
@@ -240,10 +239,14 @@ INSTANTIATE_TEST_SUITE_P(
                     "S4000 changes the speed in a cutting move"},
         RefusedCase{"ToolOnly", "T3\nG0 X0 Y0 Z5\n",
                     "T3 changes the tool on some controls, and on others only fetches it"},
-        RefusedCase{"LengthOfAnotherTool", "T3 M6\nG43 H4\nG0 X0 Y0 Z5\n",
+        RefusedCase{"LengthOfAnotherTool", "T3 M6\nG43 H4\nM3\nG0 X0 Y0\n",
                     "G43 names the length of another tool"},
-        RefusedCase{"LengthTooLate", "T3 M6\nG0 Z50\nG43 H3\nG0 X0 Y0 Z5\n",
-                    "G43 comes behind a motion without the length of the tool"},
+        RefusedCase{"ToolWithSpindleOn", "T3 M6\nG43 H3\nG0 X0 Y0 Z5\n",
+                    "M6 finds the spindle on, and controls differ in whether it turns in the cut "
+                    "behind it"},
+        RefusedCase{"LengthNotSaid", "T3 M6\nM3\nG0 Z5\nX0 Y0\n",
+                    "G0 Z5 moves along Z behind a tool change without G43 or D, and the length "
+                    "always counts there; --allow tool-length takes it all the same"},
         RefusedCase{"NoLength", "G49\nG0 X0 Y0 Z5\n",
                     "G49 moves without the length of the tool, which always counts there; --allow "
                     "tool-length takes it all the same"},
@@ -251,6 +254,17 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedCase{"FarAway", "G0 X100000\n", "G0 X100000 goes beyond the range of the control"},
         RefusedCase{"Parameter", "#1=5\nG0 X0 Y0 Z5\n", "#1=5 is no block of plain words"}),
     [](const auto& test) { return std::string(test.param.name); });
+
+// The motion without the length of its tool is an obstacle as well as the length behind it.
+TEST(Translation, TakesNoLengthBehindAMotionAlongZ) {
+  const std::string text =
+      "G21 G90\nG0 X0 Y0 Z5\nT3 M6\nG0 Z50\nG43 H3\nG0 X0 Y0 Z5\nG1 X1 F100\nM2\n";
+  SmoothOptions options = converting_to("heidenhain");
+  options.allowed = {"tool-length"};
+  EXPECT_EQ(messages_of(smoothed(text, options)),
+            std::vector<std::string>{
+                "G43 comes behind a motion without the length of the tool (target heidenhain)"});
+}
 
 TEST(Translation, ListsEveryBlockThatCannotBeSaid) {
   const std::string text = "G21 G90\nG0 X0 Y0 Z5\nG4 P1\nM7\nG1 X1 F100\nG4 P2\nM2\n";
@@ -343,7 +357,7 @@ class RandomPart {
   explicit RandomPart(unsigned seed) : random_(seed) {}
 
   std::string text() {
-    std::string text = "G21 G90 G17\nT1 M6\nS1000 M3\nG0 X0 Y0 Z5\nG1 Z-1 F200\n";
+    std::string text = "G21 G90 G17\nT1 M6\nG43 H1\nS1000 M3\nG0 X0 Y0 Z5\nG1 Z-1 F200\n";
     for (int i = 0; i < 60; ++i) text += block();
     return text + "G0 Z50\nM5\nM30\n";
   }

@@ -1,0 +1,273 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "postproc/translation/plain_moves.h"
+#include "postproc/translation/translation.h"
+#include "postproc/translation/translation_text.h"
+
+namespace batten::postproc {
+namespace {
+
+constexpr gcode::NumberFormat kSpeedFormat = {.decimals = 3};
+
+class PlainSpeaker {
+ public:
+  PlainSpeaker(const TranslationSource& source, const gcode::Dialect& target, std::string_view name)
+      : source_(source),
+        target_(target),
+        siemens_(target.language() == gcode::Language::kSiemens),
+        name_(name),
+        moves_(target, text_) {}
+
+  Translation say() {
+    begin();
+    const auto& acts = source_.acts.acts;
+    for (std::size_t i = 0; i < acts.size(); ++i) {
+      line_ = line_of(acts[i]);
+      say_act(acts[i], i);
+    }
+    check_end();
+    if (is_framed()) text_.add("%", line_);
+    return text_.take();
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t line_of(const Act& act) const {
+    return source_.program.blocks[act.block].line;
+  }
+
+  [[nodiscard]] const gcode::Motion& motion_of(const Act& act) const {
+    return source_.meaning.motions[static_cast<std::size_t>(act.motion)];
+  }
+
+  [[nodiscard]] gcode::Units units_of(const Act& act) const {
+    return source_.meaning.states[source_.meaning.blocks[act.block].state_after].units;
+  }
+
+  // --- the frame ----------------------------------------------------------------------------
+
+  // Controls that read FANUC's macros read its files: %, O0001, the program, %.
+  [[nodiscard]] bool is_framed() const {
+    constexpr gcode::SourceMarks kOfFanuc = gcode::mark(gcode::SourceMark::kMacroFlow);
+    return target_.known_marks() != gcode::kAllMarks && (target_.known_marks() & kOfFanuc) != 0;
+  }
+
+  void begin() {
+    if (siemens_) text_.add(fmt::format("%_N_{}_MPF", name_), 1);
+    if (is_framed()) {
+      text_.add("%", 1);
+      text_.add(fmt::format("O{:04}", number_of_program()), 1);
+    }
+    const auto& acts = source_.acts.acts;
+    const auto first = std::ranges::find(acts, ActKind::kMotion, &Act::kind);
+    if (first == acts.end()) return;
+    say_units(*first);
+    std::string line = siemens_ ? "" : moves_.unit_word();
+    for (const int code : {170, 400, 900, 940}) {
+      // A control that refuses the word has no other mode.
+      if (target_.cannot_say('G', code)) continue;
+      line += fmt::format("{}G{}", line.empty() ? "" : " ", code / 10);
+    }
+    text_.add(line, 1);
+  }
+
+  [[nodiscard]] int number_of_program() const {
+    constexpr std::size_t kMostDigits = 4;
+    int number = 0;
+    const char* end = name_.data() + name_.size();
+    const auto read = std::from_chars(name_.data(), end, number);
+    const bool is_number = read.ec == std::errc{} && read.ptr == end && number > 0;
+    return is_number && name_.size() <= kMostDigits ? number : 1;
+  }
+
+  // Programs of plain words end by a word.
+  void check_end() {
+    const auto& acts = source_.acts.acts;
+    const auto& blocks = source_.program.blocks;
+    const bool ends = std::ranges::find(acts, ActKind::kEnd, &Act::kind) != acts.end();
+    if (siemens_ || ends || blocks.empty() || !source_.acts.obstacles.empty()) return;
+    text_.refuse(blocks.back().span, "ends the program without M2 or M30");
+  }
+
+  // Siemens words for units stand in a block of their own.
+  void say_units(const Act& act) {
+    moves_.use_units(units_of(act));
+    if (const auto meaning = moves_.other_meaning_of_units(); !meaning.empty()) {
+      text_.refuse(act.where, fmt::format("needs {}, which is {}", moves_.unit_word(), meaning));
+    }
+    if (siemens_) text_.add(moves_.unit_word(), line_);
+  }
+
+  // --- acts ---------------------------------------------------------------------------------
+
+  void say_act(const Act& act, std::size_t index) {
+    switch (act.kind) {
+      case ActKind::kComment:
+        return say_comment(act);
+      case ActKind::kBlank:
+        return say_blank(act);
+      case ActKind::kBlending:
+        if (siemens_) text_.add("G64", line_);
+        return;
+      case ActKind::kWorkOffset:
+        return say_work_offset(act);
+      case ActKind::kNoLength:
+        return say_no_length(act);
+      case ActKind::kLengthUnsaid:
+        return say_unsaid_length(act);
+      case ActKind::kTool:
+        return say_tool(act, index);
+      case ActKind::kLength:
+        return;  // said behind its tool, or in the next motion
+      case ActKind::kSpeed:
+        return say_speed(act, index);
+      case ActKind::kFunction:
+        return say_function(act);
+      case ActKind::kMotion:
+        return say_motion(act);
+      case ActKind::kEnd:
+        return say_end(act);
+    }
+  }
+
+  void say_comment(const Act& act) {
+    if (!text_.add_comment_of(target_, act.text, line_)) {
+      text_.refuse(act.where, "is no comment there");
+    }
+  }
+
+  void say_blank(const Act& act) {
+    if (!source_.blank_is_remark) {
+      return text_.refuse(act.where,
+                          "draws the blank for the simulation, which has no word there; --allow "
+                          "blank-form leaves it as a comment");
+    }
+    say_comment(act);
+  }
+
+  // Whether the target takes the word; tells where it does not.
+  bool takes(const Act& act, char letter, int tenths) {
+    if (!target_.cannot_say(letter, tenths)) return true;
+    text_.refuse(act.where,
+                 fmt::format("needs {}{}, which is not taken there", letter, tenths / 10));
+    return false;
+  }
+
+  void say_work_offset(const Act& act) {
+    const auto code = static_cast<int>(act.number);
+    if (siemens_ && code > 57) return text_.refuse(act.where, "is another offset there");
+    if (takes(act, 'G', code * 10)) text_.add(fmt::format("G{}", code), line_);
+  }
+
+  void say_no_length(const Act& act) {
+    if (siemens_) return text_.add("D0", line_);
+    if (takes(act, 'G', 490)) text_.add("G49", line_);
+  }
+
+  void say_unsaid_length(const Act& act) {
+    if (source_.program.language != gcode::Language::kSiemens) return;
+    text_.refuse(act.where,
+                 "moves along Z behind a tool change without D, where the control's data say "
+                 "whether the length of the tool counts");
+  }
+
+  void say_tool(const Act& act, std::size_t index) {
+    if (!takes(act, 'M', 60) || !takes(act, 'T', whole(act) * 10)) return;
+    text_.add(fmt::format("T{} M6", whole(act)), line_);
+    moves_.forget_modes();
+    say_length(act, index);
+  }
+
+  // Behind the tool, since nothing moves along Z before its length counts; in the first motion
+  // where that goes along Z, as controls want it that move to the length at once.
+  void say_length(const Act& tool, std::size_t index) {
+    const auto& acts = source_.acts.acts;
+    const Act* motion = nullptr;
+    for (std::size_t i = index + 1; i < acts.size() && acts[i].kind != ActKind::kTool; ++i) {
+      if (acts[i].kind == ActKind::kMotion && motion == nullptr) motion = &acts[i];
+      if (acts[i].kind != ActKind::kLength) continue;
+      if (siemens_) return text_.add("D1", line_);
+      if (!takes(tool, 'G', 430) || !takes(tool, 'H', whole(tool) * 10)) return;
+      const std::string words = fmt::format("G43 H{}", whole(tool));
+      if (motion == nullptr) motion = next_motion(i);
+      const bool along_z = motion != nullptr && motion_of(*motion).axes_named[2] &&
+                           motion_of(*motion).kind != gcode::MotionKind::kArc;
+      if (along_z) return moves_.say_before_next(words);
+      return text_.add(words, line_);
+    }
+  }
+
+  [[nodiscard]] const Act* next_motion(std::size_t index) const {
+    const auto& acts = source_.acts.acts;
+    for (std::size_t i = index; i < acts.size() && acts[i].kind != ActKind::kTool; ++i) {
+      if (acts[i].kind == ActKind::kMotion) return &acts[i];
+    }
+    return nullptr;
+  }
+
+  static int whole(const Act& act) { return static_cast<int>(act.number); }
+
+  // In the block of M3 or M4 where that comes next.
+  void say_speed(const Act& act, std::size_t index) {
+    if (!takes(act, 'S', whole(act) * 10)) return;
+    const std::string speed = "S" + gcode::to_text(act.number, kSpeedFormat);
+    const auto& acts = source_.acts.acts;
+    const bool turns = index + 1 < acts.size() && acts[index + 1].kind == ActKind::kFunction &&
+                       (acts[index + 1].number == 3 || acts[index + 1].number == 4);
+    if (turns) {
+      said_speed_ = speed + " ";
+    } else {
+      text_.add(speed, line_);
+    }
+  }
+
+  void say_function(const Act& act) {
+    if (!takes(act, 'M', whole(act) * 10)) return;
+    text_.add(fmt::format("{}M{}", said_speed_, whole(act)), line_);
+    said_speed_.clear();
+  }
+
+  void say_motion(const Act& act) {
+    if (moves_.units() != units_of(act)) {
+      say_units(act);
+      if (!siemens_) text_.add(moves_.unit_word(), line_);
+    }
+    const std::string why = moves_.say(motion_of(act), act.feed, line_);
+    if (!why.empty()) text_.refuse(act.where, why);
+  }
+
+  void say_end(const Act& act) {
+    constexpr int kEnd = 30;
+    const int code = act.number == 0 ? kEnd : whole(act);
+    if (!takes(act, 'M', code * 10)) return;
+    if (act.number == 0 && !text_.add_comment_of(target_, kEndRemark, line_)) {
+      return text_.refuse(act.where, "ends without M30, which needs a comment there");
+    }
+    text_.add(fmt::format("M{}", code), line_);
+  }
+
+  const TranslationSource& source_;
+  const gcode::Dialect& target_;
+  bool siemens_;
+  std::string name_;
+  TranslationText text_;
+  PlainMoves moves_;
+  std::uint32_t line_ = 1;
+  std::string said_speed_;  // for the M3 or M4 that comes next
+};
+
+}  // namespace
+
+Translation in_plain_words(const TranslationSource& source, const gcode::Dialect& target,
+                           std::string_view name) {
+  return PlainSpeaker(source, target, name).say();
+}
+
+}  // namespace batten::postproc
