@@ -17,18 +17,20 @@ struct Extremum {
   double value;
 };
 
+// 1e-7 of the interval: at a smooth maximum the value is then right to 1e-14 of its change.
+inline constexpr int kGoldenSteps = 34;
+
 // Narrows [low, high] around the greatest value of f, which has one maximum there, by golden
 // sections: each step keeps 0.618 of the interval.
 template <typename Function>
-[[nodiscard]] Extremum golden_maximum(const Function& f, double low, double high) {
+[[nodiscard]] Extremum golden_maximum(const Function& f, double low, double high,
+                                      int steps = kGoldenSteps) {
   constexpr double kGolden = 0.6180339887498949;
-  // 1e-7 of the interval: at a smooth maximum the value is then right to 1e-14 of its change.
-  constexpr int kSteps = 34;
   double left = high - kGolden * (high - low);
   double right = low + kGolden * (high - low);
   double at_left = f(left);
   double at_right = f(right);
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < steps; ++i) {
     if (at_left >= at_right) {
       high = right;
       right = left;

@@ -18,8 +18,12 @@ constexpr double kAim = 0.96;
 constexpr double kAimAgain = 0.98;
 constexpr double kLeastShare = 0.85;
 
-// Where it left an edge by more than this, no closer watch is tried: there is a corner, and a curve
-// that is forced round it inside the band would be sharper than the corner is worth.
+// Among vertices that noise moved out of the band, a curve that leaves an edge has come from the
+// next one: its samples bring it back, however far it was.
+constexpr int kWatchedAmongNoise = 2;
+
+// Elsewhere, where it left an edge by more than this, no closer watch is tried: there is a corner,
+// and a curve that is forced round it inside the band would be sharper than the corner is worth.
 constexpr double kSlightly = 1.2;
 
 // Breaches of an edge after which it stays a line between kept corners, and with it, at every
@@ -29,8 +33,10 @@ constexpr int kWatched = 1;
 constexpr int kAttempts = 9;
 
 // Who wants the path that was meant above all gets a curve on more knots, that leaves this part of
-// what the vertices scatter. With less it would follow the noise itself.
+// what the vertices scatter by their rounding. With less it would follow the rounding itself, and
+// so it would follow any noise that is more than so many of the greatest rounding errors.
 constexpr double kAccurate = 0.4;
+constexpr double kRoundingNoise = 2;
 
 // Vertices that are met are met to this part of the tolerance.
 constexpr double kMetLimit = 0.01;
@@ -93,6 +99,7 @@ BandOptions BandFit::band() const {
   const double rounding = std::min(options_.rounding, 0.25 * options_.tolerance);
   band.accurate = options_.accurate;
   band.noise_part = options_.accurate ? kAccurate : 1;
+  band.rounding_noise = kRoundingNoise * rounding;
   band.least_scatter = std::max(options_.scatter, band.noise_part * rounding);
   band.meant = meant_;
   return band;
@@ -164,13 +171,21 @@ bool BandFit::mend() {
     if (off_[edge] <= options_.tolerance) continue;
     left = true;
     EdgeCare& care = care_[edge];
-    care.breaches += off_[edge] < kSlightly * options_.tolerance ? 1 : kWatched + 1;
+    const int watched = is_noisy(edge) ? kWatchedAmongNoise : kWatched;
+    const bool slightly = off_[edge] < kSlightly * options_.tolerance;
+    care.breaches += slightly || is_noisy(edge) ? 1 : watched + 1;
     care.share *= std::max(kLeastShare, kAimAgain * options_.tolerance / off_[edge]);
-    if (care.breaches > kWatched) {
-      keep_edges(edge, (std::size_t{1} << (care.breaches - kWatched - 1)) - 1);
+    if (care.breaches > watched) {
+      keep_edges(edge, (std::size_t{1} << (care.breaches - watched - 1)) - 1);
     }
   }
   return left;
+}
+
+// Whether noise fills the band at an end of the edge.
+bool BandFit::is_noisy(std::size_t edge) const {
+  if (meant_.empty()) return false;
+  return meant_[edge] != points_[edge] || meant_[edge + 1] != points_[edge + 1];
 }
 
 // An edge and so many on either side stay lines between kept corners.

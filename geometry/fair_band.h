@@ -54,6 +54,7 @@ class BandFit {
   void fit();
   void measure();
   [[nodiscard]] bool mend();
+  [[nodiscard]] bool is_noisy(std::size_t edge) const;
   void keep_edges(std::size_t edge, std::size_t around);
   void hold_met(FitProblem& problem) const;
 

@@ -16,7 +16,10 @@ struct BandOptions {
   // mm: a curve that passes the printed places at their rounding is as likely as one that meets
   // them; the errors of dense places on a slanting line are no white noise, but long ramps.
   double least_scatter = 5e-4;
-  double noise_part = 1;  // of the noise of the vertices that they are expected to scatter by
+  // Of the noise of the vertices, the part that they are expected to scatter by, where less than
+  // `rounding_noise` (mm) is taken from it by that: what is more is no rounding.
+  double noise_part = 1;
+  double rounding_noise = 1e-3;
 
   bool accurate = false;  // knots at once wherever chords are coarse for what is expected
 

@@ -272,7 +272,10 @@ std::vector<double> balanced_ends(const CurvePieces& pieces, double from, double
   const auto cut = ends.begin() + static_cast<std::ptrdiff_t>(kept);
   const std::vector<double> tail =
       balanced(pieces, start, std::vector<double>(cut, ends.end()), limits);
-  std::copy(tail.begin(), tail.end(), cut);
+  // It may be shorter: where no end could be proved beyond a greedy one, a chord from elsewhere may
+  // have gone farther.
+  ends.erase(cut, ends.end());
+  ends.insert(ends.end(), tail.begin(), tail.end());
   return ends;
 }
 

@@ -9,6 +9,7 @@
 #include "geometry/bspline_fit_spline.h"
 #include "geometry/bspline_fit_system.h"
 #include "geometry/bspline_fit_weights.h"
+#include "geometry/extrema.h"
 
 namespace batten::geometry {
 
@@ -118,29 +119,8 @@ double best_weight(StretchSpline& spline) {
       best = decade;
     }
   }
-  constexpr double kGolden = 0.6180339887498949;
-  double low = best - 1;
-  double high = best + 1;
-  double a = high - kGolden * (high - low);
-  double b = low + kGolden * (high - low);
-  double at_a = of(a);
-  double at_b = of(b);
-  for (int i = 0; i < kClosings; ++i) {
-    if (at_a < at_b) {
-      high = b;
-      b = a;
-      at_b = at_a;
-      a = high - kGolden * (high - low);
-      at_a = of(a);
-    } else {
-      low = a;
-      a = b;
-      at_a = at_b;
-      b = low + kGolden * (high - low);
-      at_b = of(b);
-    }
-  }
-  return 0.5 * (low + high);
+  const auto worth = [&](double decades) { return -of(decades); };
+  return golden_maximum(worth, best - 1, best + 1, kClosings).at;
 }
 
 void place_stretch(std::span<const Point3> points, std::span<const double> parameters,

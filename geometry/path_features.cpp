@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "geometry/kink_among_noise.h"
 #include "geometry/vertex_noise.h"
 
 namespace batten::geometry {
@@ -26,6 +28,21 @@ constexpr double kLeastCorner = 2 * std::numbers::pi / 180;
 // Noise of standard deviation s turns a vertex between edges a and b by about s (1/a + 1/b);
 // a corner turns more than this many standard deviations.
 constexpr double kNoiseTurns = 4;
+
+// Noise is known to a third: where it seems less than it usually is on the path, it may be more by
+// this factor.
+constexpr double kKnown = 1.5;
+
+// What scatters by more than the tolerance and more than this part of the edges is no noise, but
+// stairs and teeth: noise of that size would turn every vertex by 35 degrees (rms).
+constexpr double kNoiseOfEdge = 0.25;
+
+// Noise above this part of the tolerance may make corners.
+constexpr double kMuchNoise = 0.25;
+
+// The sides of a corner among noise meet at so many standard deviations of what noise explains. A
+// vertex that alone is 4.5 noises off makes 3.3 of it.
+constexpr double kSureKink = 5;
 
 // A line that was cut into blocks does not turn between them, but for rounding.
 constexpr double kNoTurn = 1e-6;
@@ -51,13 +68,32 @@ double turn_around(const std::vector<double>& turns, std::size_t i) {
   return near[count / 2];
 }
 
-VertexKind kind_of(const PathFeatures& f, std::size_t i, const FeatureOptions& options) {
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// What vertices may scatter by that are no corners, mm.
+std::vector<double> cornerless_scatter(const PathFeatures& f, const FeatureOptions& options) {
+  const double usual = median_of(f.noise);
+  std::vector<double> scatter(f.noise.size(), options.rounding);
+  for (std::size_t i = 1; i + 1 < scatter.size(); ++i) {
+    const double before = f.parameters[i] - f.parameters[i - 1];
+    const double after = f.parameters[i + 1] - f.parameters[i];
+    double noise = std::max(f.noise[i], std::min(usual, kKnown * f.noise[i]));
+    if (noise > kNoiseOfEdge * std::min(before, after)) noise = std::min(noise, options.tolerance);
+    scatter[i] = std::max(noise, options.rounding);
+  }
+  return scatter;
+}
+
+VertexKind kind_of(const PathFeatures& f, std::size_t i, double scatter,
+                   const FeatureOptions& options) {
   const double turn = f.turns[i];
   if (turn > std::min(options.keep_corner_angle, kReversal)) return VertexKind::kKeptCorner;
   const double before = f.parameters[i] - f.parameters[i - 1];
   const double after = f.parameters[i + 1] - f.parameters[i];
-  // What is more than the tolerance is no noise that could be smoothed: stairs and teeth.
-  const double scatter = std::max(std::min(f.noise[i], options.tolerance), options.rounding);
   const double from_noise = kNoiseTurns * scatter * (1 / before + 1 / after);
   if (turn < std::max(kLeastCorner, from_noise)) return VertexKind::kSmooth;
   // Chords of a curve leave it by about (edge * turn / 8): if that is far more than the
@@ -65,6 +101,26 @@ VertexKind kind_of(const PathFeatures& f, std::size_t i, const FeatureOptions& o
   const bool too_coarse = turn * std::min(before, after) / 8 > 2 * options.tolerance;
   const bool stands_out = turn > kStandsOut * turn_around(f.turns, i);
   return too_coarse || stands_out ? VertexKind::kCorner : VertexKind::kSmooth;
+}
+
+// Noise makes a single vertex stand out now and then. A corner is there where the sides before and
+// behind it say so, each as far as the next vertex that may be one.
+void drop_corners_of_noise(std::span<const Point3> points, std::span<const double> scatter,
+                           double tolerance, PathFeatures& f) {
+  const std::vector<VertexKind> found = f.kinds;
+  std::size_t last = 0;
+  for (std::size_t i = 1; i + 1 < found.size(); ++i) {
+    if (found[i] == VertexKind::kSmooth) continue;
+    const std::size_t first = std::exchange(last, i);
+    if (found[i] != VertexKind::kCorner) continue;
+    if (!(scatter[i] > kMuchNoise * tolerance)) continue;
+    std::size_t end = i + 1;
+    while (end <= i + kMostBesideKink && found[end] == VertexKind::kSmooth) ++end;
+    const std::size_t count = end + 1 - first;
+    const auto kink = kink_at(points.subspan(first, count),
+                              std::span(f.parameters).subspan(first, count), i - first, scatter[i]);
+    if (kink && kink->angle < kSureKink * kink->deviation) f.kinds[i] = VertexKind::kSmooth;
+  }
 }
 
 // Which edges were meant as lines: those longer than the first edge at either end that is not
@@ -104,7 +160,9 @@ PathFeatures find_features(std::span<const Point3> points, const FeatureOptions&
   }
   f.noise = vertex_noise(points, f.parameters);
   f.kinds.assign(n, VertexKind::kKeptCorner);
-  for (std::size_t i = 1; i + 1 < n; ++i) f.kinds[i] = kind_of(f, i, options);
+  const std::vector<double> scatter = cornerless_scatter(f, options);
+  for (std::size_t i = 1; i + 1 < n; ++i) f.kinds[i] = kind_of(f, i, scatter[i], options);
+  drop_corners_of_noise(points, scatter, options.tolerance, f);
   f.lines = lines_of(f);
   return f;
 }

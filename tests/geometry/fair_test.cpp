@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <ostream>
+#include <random>
 #include <vector>
 
 #include "geometry/curve_pieces.h"
@@ -134,6 +135,55 @@ TEST(FairPath, AddsNothingToALineWithoutNoise) {
   ASSERT_TRUE(path);
   // The circle through three neighbours: 2 h / l^2, h = 2e-6, l = 0.5.
   EXPECT_LE(greatest_curvature(path->curve), 1.6e-5);
+}
+
+// A square of 20 mm in steps of 0.4 mm, normal noise across its sides that is more than twice the
+// tolerance.
+std::vector<Point3> noisy_square(double noise, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> off(0, noise);
+  std::vector<Point3> points = {Point3::Zero()};
+  Point3 corner = Point3::Zero();
+  for (int side = 0; side < 4; ++side) {
+    const Vector3 along(std::cos(90 * side * kDegree), std::sin(90 * side * kDegree), 0);
+    for (int i = 1; i <= 50; ++i) {
+      const Vector3 across(-along.y(), along.x(), 0);
+      points.emplace_back(corner + 0.4 * i * along + (i < 50 ? off(random) : 0) * across);
+    }
+    corner = points.back();
+  }
+  return points;
+}
+
+// The corners stay where they are, to within the tolerance; the sides get none. A vertex 3.5
+// deviations off between two others that far off on the other side makes 2 (3.5 + 3.5) 0.01 / 0.4^2
+// of curvature, less what the tolerance takes; a curve bends up to three times as hard.
+TEST(FairPath, OfANoisySquareHasItsFourCornersAndNoOthers) {
+  constexpr double kOff = 0.01;
+  constexpr double kTight = 0.004;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const auto points = noisy_square(kOff, seed);
+    const auto path = fair_path(points, with_tolerance(kTight));
+    ASSERT_TRUE(path);
+    EXPECT_LE(path->deviation, kTight);
+    double beside = 0;
+    for (double u = 0.05; u < path->curve.last(); u += 0.05) {
+      const Point3 place = path->curve.point_at(u);
+      double nearest = HUGE_VAL;
+      for (const Point3& corner :
+           {Point3(0, 0, 0), Point3(20, 0, 0), Point3(20, 20, 0), Point3(0, 20, 0)}) {
+        nearest = std::min(nearest, (place - corner).norm());
+      }
+      if (nearest > 0.4) beside = std::max(beside, path->curve.curvature_at(u));
+    }
+    for (const std::size_t corner : {50, 100, 150}) {
+      const double u = path->vertex_parameters[corner];
+      EXPECT_LE((path->curve.point_at(u) - points[corner]).norm(), kTight);
+      EXPECT_GE(greatest_curvature(path->curve), 1 / (10 * kTight));
+    }
+    EXPECT_LE(beside, 3 * 2 * (7 * kOff - kTight) / (0.4 * 0.4));
+  }
 }
 
 // --- corners and lines -----------------------------------------------------------------------

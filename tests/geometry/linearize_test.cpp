@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <ostream>
 #include <stdexcept>
@@ -11,7 +12,9 @@
 #include <tuple>
 #include <vector>
 
+#include "geometry/fair.h"
 #include "tests/support/parabolas.h"
+#include "tests/support/surface_programs.h"
 
 namespace batten::geometry {
 namespace {
@@ -149,6 +152,29 @@ TEST(ChordVertices, StandOnCorners) {
   ChordOptions options;
   options.max_deviation = 1;
   EXPECT_EQ(chord_vertices(corner, 0, 2, options), (std::vector<double>{0, 1, 2}));
+}
+
+// On curves through noise the chords of narrower limits may be fewer: what one chord is proved for
+// is not always proved for a part of it.
+TEST(ChordVertices, ComeInOrderAlongUnevenCurves) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    for (const auto& row : surface_rows(0.005, 0.02, seed)) {
+      FairOptions fair;
+      fair.tolerance = 0.01;
+      fair.feed = 6000;
+      const auto path = fair_path(row, fair);
+      ASSERT_TRUE(path);
+      for (const double deviation : {0.0002, 0.0004, 0.0008, 0.0016}) {
+        ChordOptions options;
+        options.max_deviation = deviation;
+        const auto u =
+            chord_vertices(path->curve, path->curve.first(), path->curve.last(), options);
+        EXPECT_TRUE(std::ranges::adjacent_find(u, std::greater_equal<>()) == u.end())
+            << "seed " << seed << ", deviation " << deviation;
+        EXPECT_EQ(u.back(), path->curve.last());
+      }
+    }
+  }
 }
 
 TEST(ChordVertices, RefuseADeviationOfZero) {

@@ -6,11 +6,12 @@
 #include <cmath>
 #include <numbers>
 #include <ostream>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "tests/support/paths.h"
+#include "tests/support/surface_programs.h"
 
 namespace batten::geometry {
 namespace {
@@ -128,6 +129,68 @@ TEST(PathFeatures, NoiseIsSmoothThoughItTurnsMoreThanCorners) {
   const auto f = find_features(noisy_half_circle(20, 400, 0.03), {0.05, 3.2});
   EXPECT_GT(f.turns[200], 30 * kDegree);
   EXPECT_EQ(kinds_of(f), std::string(399, 's'));
+}
+
+// Noise that is up to five times the tolerance, 13,000 vertices. With what one vertex turns by
+// alone, one of 36 was a corner.
+TEST(PathFeatures, NoiseBeyondTheToleranceMakesHardlyAnyCorner) {
+  std::size_t corners = 0;
+  std::size_t vertices = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    for (const double cam : {0.002, 0.005, 0.01}) {
+      for (const auto& row : surface_rows(cam, 0.02, seed)) {
+        const std::string kinds = kinds_of(find_features(row, {2 * cam, 3.2, 0.0005}));
+        corners += kinds.size() - static_cast<std::size_t>(std::ranges::count(kinds, 's'));
+        vertices += kinds.size();
+      }
+    }
+  }
+  EXPECT_GT(vertices, 10000U);
+  EXPECT_LE(corners, vertices / 5000);
+}
+
+// Corners of a polygon, its sides in steps of 0.4 mm, normal noise across them.
+struct NoisyPolygon {
+  std::vector<Point3> points;
+  std::string kinds;
+};
+
+NoisyPolygon noisy_polygon(double turn_degrees, double noise, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> off(0, noise);
+  NoisyPolygon polygon{{Point3::Zero()}, ""};
+  Point3 corner = Point3::Zero();
+  for (int side = 0; side < 4; ++side) {
+    const double heading = side * turn_degrees * kDegree;
+    const Vector3 along(std::cos(heading), std::sin(heading), 0);
+    constexpr int kEdges = 50;
+    for (int i = 1; i <= kEdges; ++i) {
+      const Vector3 across(-along.y(), along.x(), 0);
+      const bool end = i == kEdges;
+      polygon.points.emplace_back(corner + 0.4 * i * along + (end ? 0 : off(random)) * across);
+      polygon.kinds += end ? 'c' : 's';
+    }
+    corner = polygon.points.back();
+  }
+  polygon.kinds.pop_back();
+  return polygon;
+}
+
+TEST(PathFeatures, CornersStandOutAgainstNoiseBeyondTheTolerance) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    for (const double turn : {35.0, 60.0, 90.0, 135.0}) {
+      const NoisyPolygon polygon = noisy_polygon(turn, 0.01, seed);
+      const auto f = find_features(polygon.points, {0.004, 3.2, 0.0005});
+      EXPECT_EQ(kinds_of(f), polygon.kinds) << turn;
+    }
+  }
+}
+
+// Stairs scatter by more than the tolerance too, but noise would not turn them so.
+TEST(PathFeatures, StairsAreNoNoise) {
+  const auto f = find_features(staircase_path(40, 1), {});
+  EXPECT_EQ(kinds_of(f), std::string(40, 'c'));
 }
 
 }  // namespace
