@@ -89,7 +89,7 @@ class RunSmoother {
     const std::vector<TimedPiece> motions = timed_pieces(run_, 0, run_.points.size() - 1);
     if (options_.method == Method::kNone) return kept_unasked(motions);
     time_around_ = times_around();
-    result_.facts.times = times_in_place(motions);
+    result_.facts.times = times_of_run(motions);
     if (!run_.arcs.empty()) result_.facts.kink = greatest_kink(motions);
 
     ToleranceShares shares = share_tolerance(options_, units_, run_.decimals);
@@ -210,14 +210,45 @@ class RunSmoother {
     return sum;
   }
 
-  // What the moves add to the time of their neighbours.
-  [[nodiscard]] Times times_in_place(const std::vector<TimedPiece>& moves) const {
-    if (!context_.is_piece()) return times_alone(moves);
+  // The moves between their neighbours.
+  [[nodiscard]] SettingTimes times_in_place(const std::vector<TimedPiece>& moves) const {
+    const auto times = [this](const std::vector<TimedPiece>& chain) {
+      return SettingTimes(chain, *options_.machine, context_.after.path);
+    };
+    if (!context_.is_piece()) return times(moves);
     std::vector<TimedPiece> chain = context_.lead;
     chain.insert(chain.end(), moves.begin(), moves.end());
     chain.insert(chain.end(), context_.tail.begin(), context_.tail.end());
-    Times times = times_alone(chain);
-    times -= time_around_;
+    return times(chain);
+  }
+
+  // What the run adds to the time of its neighbours.
+  [[nodiscard]] Times times_of_run(const std::vector<TimedPiece>& motions) const {
+    SettingTimes in_place = times_in_place(motions);
+    Times times;
+    times.as_set = in_place.as_set() - time_around_.as_set;
+    times.without_merging = in_place.without_merging() - time_around_.without_merging;
+    times.flat_out = in_place.flat_out() - time_around_.flat_out;
+    return times;
+  }
+
+  // What a candidate adds, as far as it must be known.
+  [[nodiscard]] Times times_of_candidate(const std::vector<TimedPiece>& moves,
+                                         std::size_t blocks) const {
+    const Times& old = result_.facts.times;
+    const bool wanted = options_.output != Form::kAuto;
+    const bool much_smaller = far_smaller(blocks, context_.blocks);
+    SettingTimes in_place = times_in_place(moves);
+    Times times = old;
+    const auto is_slower = [&] { return slower(times, old, much_smaller, wanted); };
+    times.as_set = in_place.as_set() - time_around_.as_set;
+    if (is_slower()) return times;
+    times.without_merging = in_place.without_merging() - time_around_.without_merging;
+    if (is_slower()) return times;
+    if (compares_kinks(options_)) {
+      times.exact_path = in_place.exact_path() - time_around_.exact_path;
+    }
+    times.flat_out = in_place.flat_out() - time_around_.flat_out;
     return times;
   }
 
@@ -228,7 +259,10 @@ class RunSmoother {
         least_time(run_, options_.tolerance_mm, *options_.machine, options_.tolerance_kind);
     judged_ = result_.facts;
     if (context_.is_piece()) {
-      judged_.times = times_alone(timed_pieces(run_, 0, run_.points.size() - 1));
+      const std::vector<TimedPiece> alone = timed_pieces(run_, 0, run_.points.size() - 1);
+      const SettingTimes times(alone, *options_.machine, context_.after.path);
+      judged_.times.as_set = times.as_set();
+      judged_.times.without_merging = times.without_merging();
     }
   }
 
@@ -378,7 +412,7 @@ class RunSmoother {
     candidate.max_curvature = curvature_;
     std::vector<TimedPiece> moves = timed_pieces(*plan);
     if (!run_.arcs.empty()) candidate.kink = greatest_kink(moves);
-    candidate.times = times_in_place(moves);
+    candidate.times = times_of_candidate(moves, text->blocks);
     candidate.text = std::move(*text);
     if (context_.is_piece()) candidate.moves = std::move(moves);
     result_.candidates.push_back(std::move(candidate));
@@ -429,47 +463,24 @@ class RunSmoother {
 
 }  // namespace
 
-Times& Times::operator+=(const Times& other) {
-  as_set += other.as_set;
-  without_merging += other.without_merging;
-  flat_out += other.flat_out;
-  exact_path += other.exact_path;
-  return *this;
-}
-
-Times& Times::operator-=(const Times& other) {
-  as_set -= other.as_set;
-  without_merging -= other.without_merging;
-  flat_out -= other.flat_out;
-  exact_path -= other.exact_path;
-  return *this;
-}
-
-Times times_of(const std::vector<TimedPiece>& chain, const Machine& machine, gcode::PathMode path) {
-  Machine unmerged = machine;
-  unmerged.naive_cam_tolerance = 0;
-  TimedChain timed(chain, machine);
-  Times times;
-  times.as_set = timed.time(machine, path);
-  times.without_merging =
-      machine.naive_cam_tolerance > 0 ? timed.time(unmerged, path) : times.as_set;
-  times.exact_path = timed.time(machine, gcode::PathMode::kExactPath);
-  timed.lift_feeds(machine);
-  times.flat_out = timed.time(machine, path);
-  return times;
-}
-
 std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::size_t last) {
   std::vector<TimedPiece> pieces;
   std::size_t next = 0;
   double feed = 0;
   pieces.reserve(last - first);
-  for (RunMotion& motion : motions_between(run, first, last)) {
-    while (next < run.feeds.size() && run.feeds[next].vertex <= motion.first) {
+  const auto add = [&](const geometry::PathPiece& piece, std::size_t from) {
+    while (next < run.feeds.size() && run.feeds[next].vertex <= from) {
       feed = run.feeds[next++].feed;
     }
-    pieces.push_back({std::move(motion.piece), feed});
+    pieces.push_back({piece, feed});
+  };
+  if (run.arcs.empty()) {
+    for (std::size_t i = first; i < last; ++i) {
+      add(geometry::Line{run.points[i], run.points[i + 1]}, i);
+    }
+    return pieces;
   }
+  for (const RunMotion& motion : motions_between(run, first, last)) add(motion.piece, motion.first);
   return pieces;
 }
 

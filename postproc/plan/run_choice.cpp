@@ -69,8 +69,6 @@ bool gains(const Candidate& c, const SmoothedRun& run, const RunContext& context
   return faster || smaller || nearer || smoother;
 }
 
-bool far_smaller(std::size_t blocks, std::size_t others) { return 4 * blocks <= others; }
-
 // Who asks for arcs or curves by name asks for few of them.
 bool better(const Candidate& a, const Candidate& b, const SmoothOptions& options) {
   const Prefer prefer = options.prefer;
@@ -84,9 +82,7 @@ bool better(const Candidate& a, const Candidate& b, const SmoothOptions& options
     const double same = far_smaller(fewer, more) ? kSameTimeWhereFarSmaller : kSameTime;
     if (sum_of(a.times) < (1 - same) * sum_of(b.times)) return true;
     if (sum_of(b.times) < (1 - same) * sum_of(a.times)) return false;
-    if (options.output == Form::kArcs || options.output == Form::kCurves) {
-      return a.text.blocks < b.text.blocks;
-    }
+    if (!compares_kinks(options)) return a.text.blocks < b.text.blocks;
     if (a.times.exact_path < kFewerKinks * b.times.exact_path) return true;
     if (b.times.exact_path < kFewerKinks * a.times.exact_path) return false;
     if (a.error * kSameError < b.error) return true;
@@ -105,6 +101,13 @@ bool slower(const Times& now, const Times& before, bool much_smaller, bool wante
   return now.as_set > (1 + kSlower) * before.as_set ||
          now.without_merging > (1 + kSlower) * before.without_merging ||
          now.flat_out > (1 + flat_out) * before.flat_out;
+}
+
+bool far_smaller(std::size_t blocks, std::size_t others) { return 4 * blocks <= others; }
+
+bool compares_kinks(const SmoothOptions& options) {
+  return options.prefer == Prefer::kTime && options.output != Form::kArcs &&
+         options.output != Form::kCurves;
 }
 
 std::size_t most_moves_for_accuracy(std::size_t blocks) {

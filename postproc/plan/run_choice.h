@@ -18,6 +18,12 @@ struct Choosing {
 // of the blocks. `wanted`: the user asked for the form by name, which may cost something.
 [[nodiscard]] bool slower(const Times& now, const Times& before, bool much_smaller, bool wanted);
 
+// So few blocks that they are worth a little time.
+[[nodiscard]] bool far_smaller(std::size_t blocks, std::size_t others);
+
+// Whether the choice looks at Times::exact_path of candidates that are equal otherwise.
+[[nodiscard]] bool compares_kinks(const SmoothOptions& options);
+
 // What is known of a candidate before it is made. `blocks` may be too many by a fifth, `least_time`
 // is a bound for every way in which the control may be set.
 struct Prospect {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gcode/reason.h"
+#include "postproc/plan/run_choice.h"
 #include "postproc/runs/run_grouping.h"
 #include "wavy_programs.h"
 
@@ -96,13 +97,33 @@ TEST(SmoothRun, KnowsHowMuchVerticesScatter) {
 
 // 31.416 mm at 3000 mm/min take 0.628 s, and a little more to start and to stop.
 TEST(SmoothRun, KnowsTheTimeOfTheRunUnderEachSetting) {
-  const Times times = OneRun(circle_program(100)).smooth(options_for("linuxcnc")).facts.times;
+  const OneRun run(circle_program(100));
+  const SmoothOptions options = options_for("linuxcnc");
+  const Times times = run.smooth(options).facts.times;
   const double at_feed = 3.141592653589793 * 10 / 50;
   EXPECT_GE(times.as_set, at_feed);
   EXPECT_LT(times.as_set, 1.3 * at_feed);
   EXPECT_LE(times.flat_out, times.as_set);
-  EXPECT_GE(times.exact_path, times.as_set);
   EXPECT_GE(times.without_merging, at_feed);
+  const std::vector<TimedPiece> motions = timed_pieces(run.run(), 0, 100);
+  const Times all = times_of(motions, *options.machine, gcode::PathMode::kBlending);
+  EXPECT_EQ(times.as_set, all.as_set);
+  EXPECT_EQ(times.without_merging, all.without_merging);
+  EXPECT_EQ(times.flat_out, all.flat_out);
+  EXPECT_GT(all.exact_path, all.as_set) << "a hundred kinks";
+}
+
+// Kinks are what candidates of one time differ by.
+TEST(SmoothRun, TimesCandidatesThatAreNotSlowerUnderEachSetting) {
+  const SmoothedRun smoothed = OneRun(circle_program(100)).smooth(options_for("linuxcnc"));
+  int timed = 0;
+  for (const Candidate& candidate : smoothed.candidates) {
+    if (slower(candidate.times, smoothed.facts.times, false, false)) continue;
+    ++timed;
+    EXPECT_GE(candidate.times.exact_path, candidate.times.as_set * (1 - 1e-9));
+    EXPECT_LE(candidate.times.flat_out, candidate.times.as_set * (1 + 1e-9));
+  }
+  EXPECT_GE(timed, 2);
 }
 
 // --- what could be written --------------------------------------------------------------------
