@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 #include "gcode/reason.h"
 #include "geometry/numeric.h"
 #include "postproc/machine/cycle_time.h"
+#include "postproc/machine/junction_speed.h"
 #include "postproc/machine/timed_chain.h"
 #include "postproc/plan/run_choice.h"
 #include "postproc/plan/run_curve.h"
@@ -66,6 +68,12 @@ double step_of(int decimals, gcode::Units units) {
   return units == gcode::Units::kInch ? kMmPerInch * step : step;
 }
 
+double least_feed(const Run& run) {
+  double feed = std::numeric_limits<double>::infinity();
+  for (const FeedFrom& from : run.feeds) feed = std::min(feed, from.feed);
+  return feed;
+}
+
 double greatest_feed(const Run& run) {
   double feed = 0;
   for (const FeedFrom& from : run.feeds) feed = std::max(feed, from.feed);
@@ -81,8 +89,15 @@ std::vector<TimedPiece> timed_pieces(const OutputPlan& plan) {
 
 class RunSmoother {
  public:
-  RunSmoother(const Run& run, const RunContext& context, const SmoothOptions& options)
-      : run_(run), context_(context), options_(options), units_(context.before.units) {}
+  RunSmoother(const Run& run, const RunContext& context, const SmoothOptions& options,
+              Making making)
+      : run_(run),
+        context_(context),
+        options_(options),
+        may_leave_out_(making == Making::kToChoose && options.prefer == Prefer::kTime &&
+                       options.output == Form::kAuto && options.side == geometry::Side::kBoth &&
+                       run.arcs.empty() && !context.is_piece()),
+        units_(context.before.units) {}
 
   SmoothedRun smooth() {
     result_.facts.max_curvature = greatest_curvature(run_.points);
@@ -274,11 +289,16 @@ class RunSmoother {
     return !may_gain(corners, judged_, context_.blocks, options_.prefer);
   }
 
-  [[nodiscard]] bool is_hopeless(const geometry::FairPath& fair, const PlanOptions& lines) {
+  // About how many lines there will be.
+  [[nodiscard]] double chords_wanted(const geometry::FairPath& fair, double deviation) const {
     const double step = std::min(greatest_feed(run_) / 60, options_.machine->max_velocity()) *
                         options_.machine->block_period;
+    return chords_for(fair, 0.5 * deviation, 2 * step);
+  }
+
+  [[nodiscard]] bool is_hopeless(const geometry::FairPath& fair, const PlanOptions& lines) {
     judged_.error = result_.facts.error;
-    const Prospect chords{least_time_, chords_for(fair, 0.5 * lines.max_deviation, 2 * step),
+    const Prospect chords{least_time_, chords_wanted(fair, lines.max_deviation),
                           known(lines.max_deviation)};
     const bool hopeless = options_.prefer == Prefer::kTime &&
                           !may_gain(chords, judged_, context_.blocks, options_.prefer);
@@ -292,6 +312,20 @@ class RunSmoother {
                           arcs_for(fair) > static_cast<double>(context_.blocks);
     passed_over_ = passed_over_ || hopeless;
     return hopeless;
+  }
+
+  // What no form of the run takes less than, s: `least_time_`, and to start and to stop.
+  [[nodiscard]] double least_time_at_rest() const {
+    const double speed = std::min(least_feed(run_) / 60, options_.machine->max_velocity());
+    const double lost = speed / axis_accelerations(*options_.machine).norm();
+    return least_time_ > lost ? least_time_ + lost : least_time_;
+  }
+
+  // Whether the candidate would be chosen rather than any form at this deviation.
+  [[nodiscard]] bool beats_form(const std::optional<Candidate>& candidate, double deviation,
+                                double blocks) const {
+    const Rival rival{least_time_at_rest(), known(deviation), blocks};
+    return candidate && beats(*candidate, rival, result_, context_, options_);
   }
 
   // Whether the run must not be cut on one side: then what is written follows the curve closely.
@@ -310,32 +344,71 @@ class RunSmoother {
       add_curves(curve, plan_with);
     }
     if (options_.output == Form::kCurves && has_quick_curves()) return;
-    if (options_.output != Form::kLines && !arcs_are_hopeless(fair)) {
-      const PlanOptions arcs = plan_with(one_sided() ? kFineArcs : kArcs);
-      add(curve, plan_arcs(run_, fair, arcs), arcs.max_deviation);
-      // Who asks for few arcs has no use for those that follow the fair curve closely.
-      const bool enough = few_wanted() && curve.method == Method::kFair;
-      if (lies_flat() && !enough && !one_sided()) {
-        PlanOptions fine = plan_with(kFineArcs);
-        // They are there to be near, not few.
-        if (!few_wanted()) fine.arc_effort = geometry::ArcEffort::kBrief;
-        add(curve, plan_arcs(run_, fair, fine), fine.max_deviation);
-      }
-      const bool few = few_wanted() || !run_.arcs.empty();
-      if (few && !one_sided() && curve.method == Method::kFair) {
-        PlanOptions whole = plan_with(kArcs);
-        whole.max_deviation = left + fair.deviation;
-        add_arc_splines(curve, whole);
-      }
+    Ahead ahead;
+    const bool arcs_wanted = options_.output != Form::kLines && !arcs_are_hopeless(fair);
+    // Who asks for few arcs has no use for those that follow the fair curve closely.
+    const bool enough = few_wanted() && curve.method == Method::kFair;
+    if (arcs_wanted && lies_flat() && !enough && !one_sided()) {
+      PlanOptions fine = plan_with(kFineArcs);
+      // They are there to be near, not few.
+      if (!few_wanted()) fine.arc_effort = geometry::ArcEffort::kBrief;
+      ahead.arcs = candidate_of(curve, plan_arcs(run_, fair, fine), fine.max_deviation);
     }
-    if (options_.output == Form::kArcs) return;
+    const bool may_leave_out =
+        may_leave_out_ && curve.method == Method::kFair && !curves_wanted() && arcs_wanted;
+    if (may_leave_out) leave_out_forms(curve, plan_with, ahead);
+    if (arcs_wanted && !ahead.leaves_out_arcs) {
+      const PlanOptions arcs = plan_with(one_sided() ? kFineArcs : kArcs);
+      push(candidate_of(curve, plan_arcs(run_, fair, arcs), arcs.max_deviation));
+    }
+    push(std::move(ahead.arcs));
+    const bool few = few_wanted() || !run_.arcs.empty();
+    if (arcs_wanted && few && !one_sided() && curve.method == Method::kFair) {
+      PlanOptions whole = plan_with(kArcs);
+      whole.max_deviation = left + fair.deviation;
+      add_arc_splines(curve, whole);
+    }
+    if (options_.output == Form::kArcs || ahead.leaves_out_lines) return;
     double before = 0;
     for (const double multiple : {kLongChords, kMiddleChords, kFineChords}) {
       const PlanOptions lines = plan_with(one_sided() ? kFineChords : multiple);
       if (lines.max_deviation == before || is_hopeless(fair, lines)) continue;
       before = lines.max_deviation;
-      add(curve, plan_lines(run_, fair, lines), lines.max_deviation);
+      const bool made = multiple == kFineChords && ahead.lines;
+      push(made ? std::move(ahead.lines)
+                : candidate_of(curve, plan_lines(run_, fair, lines), lines.max_deviation));
     }
+  }
+
+  // Made before others, to know whether these could be chosen.
+  struct Ahead {
+    std::optional<Candidate> arcs;   // near to the curve
+    std::optional<Candidate> lines;  // near to the curve
+    bool leaves_out_arcs = false;    // those further away
+    bool leaves_out_lines = false;   // all of them
+  };
+
+  // The dearest forms are the ones that are seldom chosen: few arcs further away from the curve,
+  // where near ones or near lines are as quick, and lines where a few near arcs are.
+  template <typename PlanWith>
+  void leave_out_forms(const RunCurve& curve, const PlanWith& plan_with, Ahead& ahead) {
+    const geometry::FairPath& fair = curve.path;
+    const double far = plan_with(kArcs).max_deviation;
+    ahead.leaves_out_arcs = beats_form(ahead.arcs, far, 0);
+    const auto beats_lines = [&](double multiple) {
+      const double deviation = plan_with(multiple).max_deviation;
+      return beats_form(ahead.arcs, deviation, chords_wanted(fair, deviation));
+    };
+    ahead.leaves_out_lines = ahead.leaves_out_arcs && beats_lines(kLongChords) &&
+                             beats_lines(kMiddleChords) && beats_lines(kFineChords);
+    const PlanOptions lines = plan_with(kFineChords);
+    const bool makes_lines = !ahead.leaves_out_arcs && !is_hopeless(fair, lines) &&
+                             lines.max_deviation < plan_with(kMiddleChords).max_deviation;
+    if (makes_lines) {
+      ahead.lines = candidate_of(curve, plan_lines(run_, fair, lines), lines.max_deviation);
+      ahead.leaves_out_arcs = beats_form(ahead.lines, far, 0);
+    }
+    result_.left_out = result_.left_out || ahead.leaves_out_arcs;
   }
 
   [[nodiscard]] bool curves_wanted() const {
@@ -399,10 +472,21 @@ class RunSmoother {
   // `error`: mm, moves to curve. The fair curve is the path that was meant; how far the others are
   // from it is not known but for their deviation.
   void add(const RunCurve& curve, const std::optional<OutputPlan>& plan, double error) {
-    if (!plan) return;
+    push(candidate_of(curve, plan, error));
+  }
+
+  void push(std::optional<Candidate> candidate) {
+    if (candidate) result_.candidates.push_back(std::move(*candidate));
+  }
+
+  // Nothing where there is no plan, or the target cannot say it.
+  [[nodiscard]] std::optional<Candidate> candidate_of(const RunCurve& curve,
+                                                      const std::optional<OutputPlan>& plan,
+                                                      double error) const {
+    if (!plan) return std::nullopt;
     auto text = write_run(*plan, run_, context_.program, *options_.target, state_before(),
                           context_.after, context_.line_end);
-    if (!text || !take_numbers(text->text)) return;
+    if (!text || !take_numbers(text->text)) return std::nullopt;
     Candidate candidate;
     candidate.method = name_of(curve.method);
     candidate.form = plan->form;
@@ -415,7 +499,7 @@ class RunSmoother {
     candidate.times = times_of_candidate(moves, text->blocks);
     candidate.text = std::move(*text);
     if (context_.is_piece()) candidate.moves = std::move(moves);
-    result_.candidates.push_back(std::move(candidate));
+    return candidate;
   }
 
   // False where there are not enough of them. The comment that says what was done takes one too.
@@ -451,6 +535,7 @@ class RunSmoother {
   const Run& run_;
   const RunContext& context_;
   const SmoothOptions& options_;
+  bool may_leave_out_;
   gcode::Units units_;
   Times time_around_;
   double least_time_ = 0;
@@ -484,8 +569,9 @@ std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::siz
   return pieces;
 }
 
-SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOptions& options) {
-  return RunSmoother(run, context, options).smooth();
+SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOptions& options,
+                       Making making) {
+  return RunSmoother(run, context, options, making).smooth();
 }
 
 }  // namespace batten::postproc

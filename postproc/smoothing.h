@@ -62,9 +62,15 @@ struct SmoothedRun {
   RunFacts facts;
   std::vector<Candidate> candidates;  // none where `reason` says why
   std::string_view reason;
+  bool left_out = false;  // there are more that the choice would not prefer to the best of these
 };
 
+// Which candidates are made. Those that would not be chosen are of use where the proof of the
+// chosen one fails.
+enum class Making { kToChoose, kAll };
+
 [[nodiscard]] SmoothedRun smooth_run(const Run& run, const RunContext& context,
-                                     const SmoothOptions& options);
+                                     const SmoothOptions& options,
+                                     Making making = Making::kToChoose);
 
 }  // namespace batten::postproc

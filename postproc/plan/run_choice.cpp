@@ -123,6 +123,22 @@ bool may_gain(const Prospect& prospect, const RunFacts& before, std::size_t bloc
   return faster || least <= kFewerBlocks || nearer;
 }
 
+// As `better` of the two.
+bool beats(const Candidate& c, const Rival& rival, const SmoothedRun& run,
+           const RunContext& context, const SmoothOptions& options) {
+  const bool much_smaller = far_smaller(c.text.blocks, context.blocks);
+  const bool wanted = options.output != Form::kAuto;
+  if (!compares_kinks(options) || slower(c.times, run.facts.times, much_smaller, wanted) ||
+      !gains(c, run, context, options.prefer)) {
+    return false;
+  }
+  if (2 * rival.least_time < (1 - kSameTime) * sum_of(c.times)) return false;
+  if (rival.least_time < kFewerKinks * c.times.exact_path) return false;
+  if (c.error * kSameError < rival.error) return true;
+  if (rival.error * kSameError < c.error) return false;
+  return static_cast<double>(c.text.blocks) < rival.blocks / kEstimate;
+}
+
 Choosing choose(const SmoothedRun& run, const RunContext& context, const SmoothOptions& options) {
   const Prefer prefer = options.prefer;
   const bool wanted = options.output != Form::kAuto;

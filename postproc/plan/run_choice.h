@@ -36,6 +36,17 @@ struct Prospect {
 [[nodiscard]] bool may_gain(const Prospect& prospect, const RunFacts& before, std::size_t blocks,
                             Prefer prefer);
 
+// What is known of another candidate that is not made.
+struct Rival {
+  double least_time = 0;  // s: no way in which the control may be set takes it less
+  double error = 0;       // mm, about
+  double blocks = 0;      // may be too many by a fifth
+};
+
+// Whether `choose` prefers the candidate to such another one, whatever its time is.
+[[nodiscard]] bool beats(const Candidate& candidate, const Rival& rival, const SmoothedRun& run,
+                         const RunContext& context, const SmoothOptions& options);
+
 // As many moves as a run of so many blocks may get for accuracy.
 [[nodiscard]] std::size_t most_moves_for_accuracy(std::size_t blocks);
 

@@ -27,16 +27,17 @@ class OneRun {
 
   [[nodiscard]] const Run& run() const { return std::get<Run>(sections_.at(0).content); }
 
-  [[nodiscard]] SmoothedRun smooth(const SmoothOptions& options) const {
-    const Section& section = sections_.at(0);
-    const auto state_after = [&](std::uint32_t block) -> const gcode::ModalState& {
-      return read_.meaning.states[read_.meaning.blocks[block].state_after];
-    };
-    return smooth_run(
-        run(),
-        {read_.program, state_after(section.first_block - 1), state_after(section.last_block), "\n",
-         section.last_block - section.first_block + 1, bytes(section)},
-        options);
+  [[nodiscard]] SmoothedRun smooth(const SmoothOptions& options,
+                                   Making making = Making::kAll) const {
+    return smooth_run(run(), context(), options, making);
+  }
+
+  // What is written in its place.
+  [[nodiscard]] std::string chosen(const SmoothOptions& options, Making making) const {
+    const SmoothedRun smoothed = smooth(options, making);
+    const Choosing choosing = choose(smoothed, context(), options);
+    if (choosing.order.empty()) return std::string(choosing.reason);
+    return smoothed.candidates[choosing.order.front()].text.text;
   }
 
   // The program with the candidate in the place of the run.
@@ -47,6 +48,19 @@ class OneRun {
   }
 
  private:
+  [[nodiscard]] RunContext context() const {
+    const Section& section = sections_.at(0);
+    const auto state_after = [&](std::uint32_t block) -> const gcode::ModalState& {
+      return read_.meaning.states[read_.meaning.blocks[block].state_after];
+    };
+    return {read_.program,
+            state_after(section.first_block - 1),
+            state_after(section.last_block),
+            "\n",
+            section.last_block - section.first_block + 1,
+            bytes(section)};
+  }
+
   [[nodiscard]] std::size_t bytes(const Section& section) const {
     return read_.program.blocks[section.last_block].end -
            read_.program.blocks[section.first_block].span.begin;
@@ -144,6 +158,29 @@ TEST(SmoothRun, MakesEveryCandidateGoodEnoughToBeProved) {
       }
     }
   }
+}
+
+// What is left out for being dear would not have been chosen.
+TEST(SmoothRun, ChoosesAmongFewerCandidatesAsAmongAll) {
+  std::size_t left_out = 0;
+  std::vector<std::string> programs = {circle_program(40), circle_program(1000, 4), bend_program(),
+                                       wave_program()};
+  for (const double height : {0.05, 0.5, 4.0}) {
+    for (const double length : {6.0, 40.0, 300.0}) {
+      programs.push_back(wave_program({.lines = 600, .height = height, .length = length}));
+    }
+  }
+  programs.push_back(wave_program({.height = 0.5, .length = 40, .noise = 0.003, .decimals = 4}));
+  programs.push_back(wave_program({.lines = 800, .step = 0.5, .height = 5, .length = 900}));
+  for (const std::string& text : programs) {
+    for (const char* target : {"linuxcnc", "grbl"}) {
+      const OneRun run(text);
+      const SmoothOptions options = options_for(target);
+      if (run.smooth(options, Making::kToChoose).left_out) ++left_out;
+      EXPECT_EQ(run.chosen(options, Making::kToChoose), run.chosen(options, Making::kAll));
+    }
+  }
+  EXPECT_GE(left_out, 4u);
 }
 
 TEST(SmoothRun, WritesTheFormThatWasAskedFor) {
