@@ -255,7 +255,10 @@ class RunSmoother {
     const bool much_smaller = far_smaller(blocks, context_.blocks);
     SettingTimes in_place = times_in_place(moves);
     Times times = old;
-    const auto is_slower = [&] { return slower(times, old, much_smaller, wanted); };
+    // What a piece adds may be less than nothing: there one setting says nothing of the others.
+    const auto is_slower = [&] {
+      return !context_.is_piece() && slower(times, old, much_smaller, wanted);
+    };
     times.as_set = in_place.as_set() - time_around_.as_set;
     if (is_slower()) return times;
     times.without_merging = in_place.without_merging() - time_around_.without_merging;
