@@ -28,6 +28,9 @@ constexpr double kRemainder = 0.3;
 constexpr double kPaceKnown = 0.2;
 constexpr double kHopelessPace = 1.5;
 
+// Nor will one that has used so many pieces more than that, however short the way was.
+constexpr double kPiecesAhead = 200;
+
 // Kink (radians) of a single arc at a fixed tangent that is noise of a fitted curve.
 constexpr double kKinkNoise = 1e-5;
 
@@ -95,6 +98,11 @@ double farthest(double from, double limit, double guess, double shortest, const 
 }
 
 }  // namespace
+
+bool falls_behind(double done, std::size_t used, std::size_t most) {
+  return static_cast<double>(used) >
+         kPiecesAhead + kHopelessPace * done * static_cast<double>(most);
+}
 
 Point3 ArcChain::rounded(const Point3& place) const {
   if (limits_.grid <= 0) return place;
@@ -388,7 +396,8 @@ std::optional<std::vector<ChainPiece>> ArcChain::greedy(const ChainNode& start,
     guess = step->end.u - at.u;
     at = step->end;
     const double done = (at.u - start.u) / (end.u - start.u);
-    if (done > kPaceKnown && static_cast<double>(pieces.size()) > kHopelessPace * done * most) {
+    const bool is_behind = static_cast<double>(pieces.size()) > kHopelessPace * done * most;
+    if ((done > kPaceKnown && is_behind) || falls_behind(done, pieces.size(), at_most)) {
       return std::nullopt;
     }
   }

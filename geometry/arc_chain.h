@@ -45,6 +45,10 @@ struct ArcPair {
   ChainNode end;
 };
 
+// Whether a chain that has used so many pieces on a part of its way (`done`, 0..1) is so far behind
+// its pace that it will not do with `most` of them.
+[[nodiscard]] bool falls_behind(double done, std::size_t used, std::size_t most);
+
 class ArcChain {
  public:
   ArcChain(const PlaneCurve& curve, const ArcChainLimits& limits)

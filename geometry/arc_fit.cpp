@@ -281,7 +281,8 @@ std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
   const std::vector<Stop> stops = stops_of(plane_curve, chain, stretches, flat);
 
   PathBuilder builder(frame, options.axis, curve.point_at(from));
-  std::size_t left = most_pieces(all, stretches.size(), options, flat);
+  const std::size_t most = most_pieces(all, stretches.size(), options, flat);
+  std::size_t left = most;
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const Stretch& stretch = stretches[i];
     if (stretch.straight) {
@@ -295,6 +296,7 @@ std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
     if (!pieces) pieces = chain.between(start, end, left);
     if (!pieces) return std::nullopt;
     left -= pieces->size();
+    if (falls_behind((stretch.to - from) / (to - from), most - left, most)) return std::nullopt;
     for (const ChainPiece& piece : *pieces) builder.add(piece);
   }
   return builder.take();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 #include "gcode/reason.h"
 #include "geometry/numeric.h"
 #include "postproc/machine/cycle_time.h"
+#include "postproc/machine/junction_speed.h"
 #include "postproc/machine/timed_chain.h"
 #include "postproc/plan/run_choice.h"
 #include "postproc/plan/run_curve.h"
@@ -66,6 +68,12 @@ double step_of(int decimals, gcode::Units units) {
   return units == gcode::Units::kInch ? kMmPerInch * step : step;
 }
 
+double least_feed(const Run& run) {
+  double feed = std::numeric_limits<double>::infinity();
+  for (const FeedFrom& from : run.feeds) feed = std::min(feed, from.feed);
+  return feed;
+}
+
 double greatest_feed(const Run& run) {
   double feed = 0;
   for (const FeedFrom& from : run.feeds) feed = std::max(feed, from.feed);
@@ -81,15 +89,22 @@ std::vector<TimedPiece> timed_pieces(const OutputPlan& plan) {
 
 class RunSmoother {
  public:
-  RunSmoother(const Run& run, const RunContext& context, const SmoothOptions& options)
-      : run_(run), context_(context), options_(options), units_(context.before.units) {}
+  RunSmoother(const Run& run, const RunContext& context, const SmoothOptions& options,
+              Making making)
+      : run_(run),
+        context_(context),
+        options_(options),
+        may_leave_out_(making == Making::kToChoose && options.prefer == Prefer::kTime &&
+                       options.output == Form::kAuto && options.side == geometry::Side::kBoth &&
+                       run.arcs.empty() && !context.is_piece()),
+        units_(context.before.units) {}
 
   SmoothedRun smooth() {
     result_.facts.max_curvature = greatest_curvature(run_.points);
     const std::vector<TimedPiece> motions = timed_pieces(run_, 0, run_.points.size() - 1);
     if (options_.method == Method::kNone) return kept_unasked(motions);
     time_around_ = times_around();
-    result_.facts.times = times_in_place(motions);
+    result_.facts.times = times_of_run(motions);
     if (!run_.arcs.empty()) result_.facts.kink = greatest_kink(motions);
 
     ToleranceShares shares = share_tolerance(options_, units_, run_.decimals);
@@ -210,14 +225,48 @@ class RunSmoother {
     return sum;
   }
 
-  // What the moves add to the time of their neighbours.
-  [[nodiscard]] Times times_in_place(const std::vector<TimedPiece>& moves) const {
-    if (!context_.is_piece()) return times_alone(moves);
+  // The moves between their neighbours.
+  [[nodiscard]] SettingTimes times_in_place(const std::vector<TimedPiece>& moves) const {
+    const auto times = [this](const std::vector<TimedPiece>& chain) {
+      return SettingTimes(chain, *options_.machine, context_.after.path);
+    };
+    if (!context_.is_piece()) return times(moves);
     std::vector<TimedPiece> chain = context_.lead;
     chain.insert(chain.end(), moves.begin(), moves.end());
     chain.insert(chain.end(), context_.tail.begin(), context_.tail.end());
-    Times times = times_alone(chain);
-    times -= time_around_;
+    return times(chain);
+  }
+
+  // What the run adds to the time of its neighbours.
+  [[nodiscard]] Times times_of_run(const std::vector<TimedPiece>& motions) const {
+    SettingTimes in_place = times_in_place(motions);
+    Times times;
+    times.as_set = in_place.as_set() - time_around_.as_set;
+    times.without_merging = in_place.without_merging() - time_around_.without_merging;
+    times.flat_out = in_place.flat_out() - time_around_.flat_out;
+    return times;
+  }
+
+  // What a candidate adds, as far as it must be known.
+  [[nodiscard]] Times times_of_candidate(const std::vector<TimedPiece>& moves,
+                                         std::size_t blocks) const {
+    const Times& old = result_.facts.times;
+    const bool wanted = options_.output != Form::kAuto;
+    const bool much_smaller = far_smaller(blocks, context_.blocks);
+    SettingTimes in_place = times_in_place(moves);
+    Times times = old;
+    // What a piece adds may be less than nothing: there one setting says nothing of the others.
+    const auto is_slower = [&] {
+      return !context_.is_piece() && slower(times, old, much_smaller, wanted);
+    };
+    times.as_set = in_place.as_set() - time_around_.as_set;
+    if (is_slower()) return times;
+    times.without_merging = in_place.without_merging() - time_around_.without_merging;
+    if (is_slower()) return times;
+    if (compares_kinks(options_)) {
+      times.exact_path = in_place.exact_path() - time_around_.exact_path;
+    }
+    times.flat_out = in_place.flat_out() - time_around_.flat_out;
     return times;
   }
 
@@ -228,7 +277,10 @@ class RunSmoother {
         least_time(run_, options_.tolerance_mm, *options_.machine, options_.tolerance_kind);
     judged_ = result_.facts;
     if (context_.is_piece()) {
-      judged_.times = times_alone(timed_pieces(run_, 0, run_.points.size() - 1));
+      const std::vector<TimedPiece> alone = timed_pieces(run_, 0, run_.points.size() - 1);
+      const SettingTimes times(alone, *options_.machine, context_.after.path);
+      judged_.times.as_set = times.as_set();
+      judged_.times.without_merging = times.without_merging();
     }
   }
 
@@ -240,11 +292,16 @@ class RunSmoother {
     return !may_gain(corners, judged_, context_.blocks, options_.prefer);
   }
 
-  [[nodiscard]] bool is_hopeless(const geometry::FairPath& fair, const PlanOptions& lines) {
+  // About how many lines there will be.
+  [[nodiscard]] double chords_wanted(const geometry::FairPath& fair, double deviation) const {
     const double step = std::min(greatest_feed(run_) / 60, options_.machine->max_velocity()) *
                         options_.machine->block_period;
+    return chords_for(fair, 0.5 * deviation, 2 * step);
+  }
+
+  [[nodiscard]] bool is_hopeless(const geometry::FairPath& fair, const PlanOptions& lines) {
     judged_.error = result_.facts.error;
-    const Prospect chords{least_time_, chords_for(fair, 0.5 * lines.max_deviation, 2 * step),
+    const Prospect chords{least_time_, chords_wanted(fair, lines.max_deviation),
                           known(lines.max_deviation)};
     const bool hopeless = options_.prefer == Prefer::kTime &&
                           !may_gain(chords, judged_, context_.blocks, options_.prefer);
@@ -258,6 +315,20 @@ class RunSmoother {
                           arcs_for(fair) > static_cast<double>(context_.blocks);
     passed_over_ = passed_over_ || hopeless;
     return hopeless;
+  }
+
+  // What no form of the run takes less than, s: `least_time_`, and to start and to stop.
+  [[nodiscard]] double least_time_at_rest() const {
+    const double speed = std::min(least_feed(run_) / 60, options_.machine->max_velocity());
+    const double lost = speed / axis_accelerations(*options_.machine).norm();
+    return least_time_ > lost ? least_time_ + lost : least_time_;
+  }
+
+  // Whether the candidate would be chosen rather than any form at this deviation.
+  [[nodiscard]] bool beats_form(const std::optional<Candidate>& candidate, double deviation,
+                                double blocks) const {
+    const Rival rival{least_time_at_rest(), known(deviation), blocks};
+    return candidate && beats(*candidate, rival, result_, context_, options_);
   }
 
   // Whether the run must not be cut on one side: then what is written follows the curve closely.
@@ -276,32 +347,71 @@ class RunSmoother {
       add_curves(curve, plan_with);
     }
     if (options_.output == Form::kCurves && has_quick_curves()) return;
-    if (options_.output != Form::kLines && !arcs_are_hopeless(fair)) {
-      const PlanOptions arcs = plan_with(one_sided() ? kFineArcs : kArcs);
-      add(curve, plan_arcs(run_, fair, arcs), arcs.max_deviation);
-      // Who asks for few arcs has no use for those that follow the fair curve closely.
-      const bool enough = few_wanted() && curve.method == Method::kFair;
-      if (lies_flat() && !enough && !one_sided()) {
-        PlanOptions fine = plan_with(kFineArcs);
-        // They are there to be near, not few.
-        if (!few_wanted()) fine.arc_effort = geometry::ArcEffort::kBrief;
-        add(curve, plan_arcs(run_, fair, fine), fine.max_deviation);
-      }
-      const bool few = few_wanted() || !run_.arcs.empty();
-      if (few && !one_sided() && curve.method == Method::kFair) {
-        PlanOptions whole = plan_with(kArcs);
-        whole.max_deviation = left + fair.deviation;
-        add_arc_splines(curve, whole);
-      }
+    Ahead ahead;
+    const bool arcs_wanted = options_.output != Form::kLines && !arcs_are_hopeless(fair);
+    // Who asks for few arcs has no use for those that follow the fair curve closely.
+    const bool enough = few_wanted() && curve.method == Method::kFair;
+    if (arcs_wanted && lies_flat() && !enough && !one_sided()) {
+      PlanOptions fine = plan_with(kFineArcs);
+      // They are there to be near, not few.
+      if (!few_wanted()) fine.arc_effort = geometry::ArcEffort::kBrief;
+      ahead.arcs = candidate_of(curve, plan_arcs(run_, fair, fine), fine.max_deviation);
     }
-    if (options_.output == Form::kArcs) return;
+    const bool may_leave_out =
+        may_leave_out_ && curve.method == Method::kFair && !curves_wanted() && arcs_wanted;
+    if (may_leave_out) leave_out_forms(curve, plan_with, ahead);
+    if (arcs_wanted && !ahead.leaves_out_arcs) {
+      const PlanOptions arcs = plan_with(one_sided() ? kFineArcs : kArcs);
+      push(candidate_of(curve, plan_arcs(run_, fair, arcs), arcs.max_deviation));
+    }
+    push(std::move(ahead.arcs));
+    const bool few = few_wanted() || !run_.arcs.empty();
+    if (arcs_wanted && few && !one_sided() && curve.method == Method::kFair) {
+      PlanOptions whole = plan_with(kArcs);
+      whole.max_deviation = left + fair.deviation;
+      add_arc_splines(curve, whole);
+    }
+    if (options_.output == Form::kArcs || ahead.leaves_out_lines) return;
     double before = 0;
     for (const double multiple : {kLongChords, kMiddleChords, kFineChords}) {
       const PlanOptions lines = plan_with(one_sided() ? kFineChords : multiple);
       if (lines.max_deviation == before || is_hopeless(fair, lines)) continue;
       before = lines.max_deviation;
-      add(curve, plan_lines(run_, fair, lines), lines.max_deviation);
+      const bool made = multiple == kFineChords && ahead.lines;
+      push(made ? std::move(ahead.lines)
+                : candidate_of(curve, plan_lines(run_, fair, lines), lines.max_deviation));
     }
+  }
+
+  // Made before others, to know whether these could be chosen.
+  struct Ahead {
+    std::optional<Candidate> arcs;   // near to the curve
+    std::optional<Candidate> lines;  // near to the curve
+    bool leaves_out_arcs = false;    // those further away
+    bool leaves_out_lines = false;   // all of them
+  };
+
+  // The dearest forms are the ones that are seldom chosen: few arcs further away from the curve,
+  // where near ones or near lines are as quick, and lines where a few near arcs are.
+  template <typename PlanWith>
+  void leave_out_forms(const RunCurve& curve, const PlanWith& plan_with, Ahead& ahead) {
+    const geometry::FairPath& fair = curve.path;
+    const double far = plan_with(kArcs).max_deviation;
+    ahead.leaves_out_arcs = beats_form(ahead.arcs, far, 0);
+    const auto beats_lines = [&](double multiple) {
+      const double deviation = plan_with(multiple).max_deviation;
+      return beats_form(ahead.arcs, deviation, chords_wanted(fair, deviation));
+    };
+    ahead.leaves_out_lines = ahead.leaves_out_arcs && beats_lines(kLongChords) &&
+                             beats_lines(kMiddleChords) && beats_lines(kFineChords);
+    const PlanOptions lines = plan_with(kFineChords);
+    const bool makes_lines = !ahead.leaves_out_arcs && !is_hopeless(fair, lines) &&
+                             lines.max_deviation < plan_with(kMiddleChords).max_deviation;
+    if (makes_lines) {
+      ahead.lines = candidate_of(curve, plan_lines(run_, fair, lines), lines.max_deviation);
+      ahead.leaves_out_arcs = beats_form(ahead.lines, far, 0);
+    }
+    result_.left_out = result_.left_out || ahead.leaves_out_arcs;
   }
 
   [[nodiscard]] bool curves_wanted() const {
@@ -365,10 +475,21 @@ class RunSmoother {
   // `error`: mm, moves to curve. The fair curve is the path that was meant; how far the others are
   // from it is not known but for their deviation.
   void add(const RunCurve& curve, const std::optional<OutputPlan>& plan, double error) {
-    if (!plan) return;
+    push(candidate_of(curve, plan, error));
+  }
+
+  void push(std::optional<Candidate> candidate) {
+    if (candidate) result_.candidates.push_back(std::move(*candidate));
+  }
+
+  // Nothing where there is no plan, or the target cannot say it.
+  [[nodiscard]] std::optional<Candidate> candidate_of(const RunCurve& curve,
+                                                      const std::optional<OutputPlan>& plan,
+                                                      double error) const {
+    if (!plan) return std::nullopt;
     auto text = write_run(*plan, run_, context_.program, *options_.target, state_before(),
                           context_.after, context_.line_end);
-    if (!text || !take_numbers(text->text)) return;
+    if (!text || !take_numbers(text->text)) return std::nullopt;
     Candidate candidate;
     candidate.method = name_of(curve.method);
     candidate.form = plan->form;
@@ -378,10 +499,10 @@ class RunSmoother {
     candidate.max_curvature = curvature_;
     std::vector<TimedPiece> moves = timed_pieces(*plan);
     if (!run_.arcs.empty()) candidate.kink = greatest_kink(moves);
-    candidate.times = times_in_place(moves);
+    candidate.times = times_of_candidate(moves, text->blocks);
     candidate.text = std::move(*text);
     if (context_.is_piece()) candidate.moves = std::move(moves);
-    result_.candidates.push_back(std::move(candidate));
+    return candidate;
   }
 
   // False where there are not enough of them. The comment that says what was done takes one too.
@@ -417,6 +538,7 @@ class RunSmoother {
   const Run& run_;
   const RunContext& context_;
   const SmoothOptions& options_;
+  bool may_leave_out_;
   gcode::Units units_;
   Times time_around_;
   double least_time_ = 0;
@@ -429,52 +551,30 @@ class RunSmoother {
 
 }  // namespace
 
-Times& Times::operator+=(const Times& other) {
-  as_set += other.as_set;
-  without_merging += other.without_merging;
-  flat_out += other.flat_out;
-  exact_path += other.exact_path;
-  return *this;
-}
-
-Times& Times::operator-=(const Times& other) {
-  as_set -= other.as_set;
-  without_merging -= other.without_merging;
-  flat_out -= other.flat_out;
-  exact_path -= other.exact_path;
-  return *this;
-}
-
-Times times_of(const std::vector<TimedPiece>& chain, const Machine& machine, gcode::PathMode path) {
-  Machine unmerged = machine;
-  unmerged.naive_cam_tolerance = 0;
-  TimedChain timed(chain, machine);
-  Times times;
-  times.as_set = timed.time(machine, path);
-  times.without_merging =
-      machine.naive_cam_tolerance > 0 ? timed.time(unmerged, path) : times.as_set;
-  times.exact_path = timed.time(machine, gcode::PathMode::kExactPath);
-  timed.lift_feeds(machine);
-  times.flat_out = timed.time(machine, path);
-  return times;
-}
-
 std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::size_t last) {
   std::vector<TimedPiece> pieces;
   std::size_t next = 0;
   double feed = 0;
   pieces.reserve(last - first);
-  for (RunMotion& motion : motions_between(run, first, last)) {
-    while (next < run.feeds.size() && run.feeds[next].vertex <= motion.first) {
+  const auto add = [&](const geometry::PathPiece& piece, std::size_t from) {
+    while (next < run.feeds.size() && run.feeds[next].vertex <= from) {
       feed = run.feeds[next++].feed;
     }
-    pieces.push_back({std::move(motion.piece), feed});
+    pieces.push_back({piece, feed});
+  };
+  if (run.arcs.empty()) {
+    for (std::size_t i = first; i < last; ++i) {
+      add(geometry::Line{run.points[i], run.points[i + 1]}, i);
+    }
+    return pieces;
   }
+  for (const RunMotion& motion : motions_between(run, first, last)) add(motion.piece, motion.first);
   return pieces;
 }
 
-SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOptions& options) {
-  return RunSmoother(run, context, options).smooth();
+SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOptions& options,
+                       Making making) {
+  return RunSmoother(run, context, options, making).smooth();
 }
 
 }  // namespace batten::postproc

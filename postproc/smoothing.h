@@ -9,6 +9,7 @@
 #include "postproc/machine/cycle_time.h"
 #include "postproc/options.h"
 #include "postproc/plan/output_plan.h"
+#include "postproc/plan/setting_times.h"
 #include "postproc/runs/section.h"
 #include "postproc/writing/block_numbers.h"
 #include "postproc/writing/program_writer.h"
@@ -32,22 +33,6 @@ struct RunContext {
   [[nodiscard]] bool is_piece() const { return !lead.empty() || !tail.empty(); }
 };
 
-// Seconds on the machine under each way in which its control may be set. A program rarely says
-// how, and what is faster under one setting must not be slower under another.
-struct Times {
-  double as_set = 0;           // as the machine's model says
-  double without_merging = 0;  // LinuxCNC: G64 P with Q0, lines are not joined before planning
-  double flat_out = 0;         // whatever the F words say, as with the feed override turned up
-  double exact_path = 0;       // G61: kinks cost stops
-
-  Times& operator+=(const Times& other);
-  Times& operator-=(const Times& other);
-};
-
-// Of a chain that starts and ends at rest. `path`: as the program says.
-[[nodiscard]] Times times_of(const std::vector<TimedPiece>& chain, const Machine& machine,
-                             gcode::PathMode path);
-
 // The motions of a run between two of its vertices.
 [[nodiscard]] std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first,
                                                    std::size_t last);
@@ -57,15 +42,15 @@ struct Candidate {
   OutputForm form = OutputForm::kLines;
   RunText text;
   double error = 0;  // mm, the written form from the path that was meant, as far as it is known
-  double max_curvature = 0;  // 1/mm, greatest of the curve that it was made of
-  double kink = 0;           // radians, see greatest_kink; 0 where the run is one of lines
-  Times times;
+  double max_curvature = 0;       // 1/mm, greatest of the curve that it was made of
+  double kink = 0;                // radians, see greatest_kink; 0 where the run is one of lines
+  Times times;                    // slower in one way: the ways that were not asked are the run's
   std::vector<TimedPiece> moves;  // of a piece of a run; empty otherwise
 };
 
 // What is known of a run, whether it is rewritten or not.
 struct RunFacts {
-  Times times;
+  Times times;                // but exact_path, which nobody compares with: 0
   double max_curvature = 0;   // 1/mm, circle through three neighbouring vertices
   double noise = 0;           // mm, rms distance of the vertices from the fair curve
   double error = 0;           // mm, how far the old path is from the one that was meant
@@ -77,9 +62,15 @@ struct SmoothedRun {
   RunFacts facts;
   std::vector<Candidate> candidates;  // none where `reason` says why
   std::string_view reason;
+  bool left_out = false;  // there are more that the choice would not prefer to the best of these
 };
 
+// Which candidates are made. Those that would not be chosen are of use where the proof of the
+// chosen one fails.
+enum class Making { kToChoose, kAll };
+
 [[nodiscard]] SmoothedRun smooth_run(const Run& run, const RunContext& context,
-                                     const SmoothOptions& options);
+                                     const SmoothOptions& options,
+                                     Making making = Making::kToChoose);
 
 }  // namespace batten::postproc

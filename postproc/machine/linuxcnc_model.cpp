@@ -17,6 +17,7 @@ namespace linuxcnc {
 namespace {
 
 using gcode::PathMode;
+using geometry::PathPiece;
 using geometry::Point3;
 
 // A line that a corner leaves shorter than this many periods joins the blend arc.
@@ -50,22 +51,27 @@ Joint joint_of(PathMode path) {
 class Queue {
  public:
   Queue(const Machine& machine, PathMode path, WantPlaces places)
-      : machine_(machine), joint_(joint_of(path)), places_(places) {
+      : machine_(machine),
+        limits_(space_limits(machine)),
+        joint_(joint_of(path)),
+        wants_places_(places == WantPlaces::kYes) {
     chain_.rules.look_ahead = machine_.look_ahead;
     chain_.rules.ramp_time = kRampTime;
     chain_.rules.stop_time = kStopPeriods * machine_.servo_period;
     moves_.reserve(kHeld + kHandedOn + 1);
   }
 
-  void add(const JoinedPiece& timed) {
-    Segment next = segment_of(timed, machine_, joint_);
-    next.first_piece = timed.first_piece;
-    next.last_piece = timed.last_piece;
+  // The pieces of the program from the first to the last are one move.
+  void add(const TimedPiece& timed, std::uint32_t first_piece, std::uint32_t last_piece) {
+    Segment next = segment_of(timed, limits_, joint_);
+    next.first_piece = first_piece;
+    next.last_piece = last_piece;
     if (!moves_.empty()) {
-      connect(next);
+      connect(next, timed.piece);
       finish_segment(moves_.back(), machine_.servo_period);
     }
     moves_.push_back(next);
+    if (wants_places_) paths_.push_back(timed.piece);
     if (moves_.size() >= kHeld + kHandedOn) hand_on(kHandedOn);
   }
 
@@ -90,21 +96,19 @@ class Queue {
       VelocityStretch own = stretch_of(moves_[i]);
       own.length = std::max(own.length - at_start_ - at_end, geometry::kSamePlace);
       chain_.stretches.push_back(own);
-      if (places_ == WantPlaces::kYes) {
-        chain_.places.push_back(place_of(moves_[i], at_start_, at_end));
-      }
+      if (wants_places_) chain_.places.push_back(place_of(i, at_start_, at_end));
       if (overlaps) {
         VelocityStretch both = own;
         both.length = 2 * at_end;
         both.max_velocity = own.exit_velocity;
         chain_.stretches.push_back(both);
-        if (places_ == WantPlaces::kYes) {
-          chain_.places.push_back(overlap_place(moves_[i], moves_[i + 1], at_end));
-        }
+        if (wants_places_) chain_.places.push_back(overlap_place(i, at_end));
       }
       at_start_ = at_end;
     }
     moves_.erase(moves_.begin(), moves_.begin() + static_cast<std::ptrdiff_t>(count));
+    if (!wants_places_) return;
+    paths_.erase(paths_.begin(), paths_.begin() + static_cast<std::ptrdiff_t>(count));
   }
 
   // The last move of the queue could still lose half of its length to a corner: the planner
@@ -126,28 +130,29 @@ class Queue {
   }
 
   // The place `cut` mm before the end of what corners leave of the move, or after its start.
-  static Point3 place_before_end(const Segment& s, double cut) {
-    return point_at(s.path, std::clamp(1 - (s.cut_at_end + cut) / s.nominal_length, 0.0, 1.0));
+  static Point3 place_before_end(const Segment& s, const PathPiece& path, double cut) {
+    return point_at(path, std::clamp(1 - (s.cut_at_end + cut) / s.nominal_length, 0.0, 1.0));
   }
-  static Point3 place_after_start(const Segment& s, double cut) {
-    return point_at(s.path, std::clamp((s.cut_at_start + cut) / s.nominal_length, 0.0, 1.0));
+  static Point3 place_after_start(const Segment& s, const PathPiece& path, double cut) {
+    return point_at(path, std::clamp((s.cut_at_start + cut) / s.nominal_length, 0.0, 1.0));
   }
 
-  static StretchPlace place_of(const Segment& s, double at_start, double at_end) {
-    StretchPlace place{s.first_piece, s.last_piece, s.shape == Shape::kBlendArc, s.path};
+  [[nodiscard]] StretchPlace place_of(std::size_t i, double at_start, double at_end) const {
+    const Segment& s = moves_[i];
+    StretchPlace place{s.first_piece, s.last_piece, s.shape == Shape::kBlendArc, paths_[i]};
     // Rounding may leave nothing between the two cuts: a millionth of the move stands for it.
     constexpr double kLeastPart = 1e-6;
     const double t0 = std::min((s.cut_at_start + at_start) / s.nominal_length, 1 - kLeastPart);
     const double t1 = std::max(1 - (s.cut_at_end + at_end) / s.nominal_length, t0 + kLeastPart);
-    if (t0 > 0 || t1 < 1) place.path = geometry::sub_piece(s.path, t0, std::min(t1, 1.0));
+    if (t0 > 0 || t1 < 1) place.path = geometry::sub_piece(paths_[i], t0, std::min(t1, 1.0));
     return place;
   }
 
-  // The parabola of a point that one move brings to rest while the next one speeds it up.
-  static StretchPlace overlap_place(const Segment& before, const Segment& after, double way) {
-    return {before.last_piece, after.first_piece, true,
-            bend_through(place_before_end(before, way), end_point(before.path),
-                         place_after_start(after, way))};
+  // The parabola of a point that move i brings to rest while the next one speeds it up.
+  [[nodiscard]] StretchPlace overlap_place(std::size_t i, double way) const {
+    return {moves_[i].last_piece, moves_[i + 1].first_piece, true,
+            bend_through(place_before_end(moves_[i], paths_[i], way), end_point(paths_[i]),
+                         place_after_start(moves_[i + 1], paths_[i + 1], way))};
   }
 
   // From one place to another, tangent at both to the lines through the corner.
@@ -175,14 +180,15 @@ class Queue {
     return stretch;
   }
 
-  void connect(Segment& next) {
+  // `path`: of the next move.
+  void connect(Segment& next, const PathPiece& path) {
     Segment& last = moves_.back();
     if (last.end == Joint::kStop) return;
     if ((last.end_direction + next.start_direction).norm() < kSharpTurn) {
       last.end = Joint::kStop;
       return;
     }
-    const double kink = kink_at_full_speed(last, next, machine_);
+    const double kink = kink_at_full_speed(last, next, limits_.acceleration, machine_.servo_period);
     const double velocity = std::min(target_velocity(last), target_velocity(next));
     if (kink < kKinkShare) {
       set_kink(last, next, velocity, kink);
@@ -190,7 +196,7 @@ class Queue {
       return;
     }
     set_kink(last, next, velocity * kKinkShare / kink, kKinkShare);
-    if (last.end == Joint::kParabolic) blend(next);
+    if (last.end == Joint::kParabolic) blend(next, path);
   }
 
   static void set_kink(Segment& last, Segment& next, double velocity, double share) {
@@ -204,7 +210,7 @@ class Queue {
   // Of a blend arc, running over the kink slowly, and a parabolic blend, the control takes
   // the one that passes fastest; a parabolic blend counts half, since it halves the
   // acceleration on both sides.
-  void blend(Segment& next) {
+  void blend(Segment& next, const PathPiece& path) {
     Segment& last = moves_.back();
     const double tolerance = machine_.blend_tolerance;
     const double parabolic = parabolic_velocity(last, next, tolerance);
@@ -218,7 +224,7 @@ class Queue {
       arc_worth = std::min(arc->velocity, (arc->radius * arc->turn + left) / machine_.servo_period);
     }
     if (arc_worth > std::max(parabolic_worth, last.kink_velocity)) {
-      insert(*arc, next);
+      insert(*arc, next, path);
     } else if (last.kink_velocity > parabolic_worth) {
       last.end = Joint::kTangent;
     } else {
@@ -235,7 +241,7 @@ class Queue {
     return last.length - arc.trim_before < kGapPeriods * machine_.servo_period * arc.velocity;
   }
 
-  void insert(const BlendArc& arc, Segment& next) {
+  void insert(const BlendArc& arc, Segment& next, const PathPiece& path) {
     Segment& last = moves_.back();
     clear_kink(last, next);
     const bool takes_rest = takes_rest_of_last(arc);
@@ -250,10 +256,7 @@ class Queue {
     bend.end = Joint::kTangent;
     bend.first_piece = takes_rest ? last.first_piece : last.last_piece;
     bend.last_piece = next.first_piece;
-    const Point3 from =
-        takes_rest ? place_after_start(last, 0) : place_before_end(last, arc.trim_before);
-    bend.path = bend_of(from, last.end_direction, place_after_start(next, arc.trim_after),
-                        next.start_direction, bend.length);
+    if (wants_places_) insert_bend(arc, next, path, bend.length);
     cut(next, arc.trim_after);
     next.cut_at_start += arc.trim_after;
     if (takes_rest) {
@@ -268,6 +271,18 @@ class Queue {
     moves_.push_back(bend);
   }
 
+  // Where the arc runs, in its place among the paths. `length`: of the bend, mm.
+  void insert_bend(const BlendArc& arc, const Segment& next, const PathPiece& path, double length) {
+    const Segment& last = moves_.back();
+    const bool takes_rest = takes_rest_of_last(arc);
+    const Point3 from = takes_rest ? place_after_start(last, paths_.back(), 0)
+                                   : place_before_end(last, paths_.back(), arc.trim_before);
+    if (takes_rest) paths_.pop_back();
+    paths_.push_back(bend_of(from, last.end_direction,
+                             place_after_start(next, path, arc.trim_after), next.start_direction,
+                             length));
+  }
+
   static void cut(Segment& s, double by) {
     // The corners take half of a line and two thirds and one third of an arc at most;
     // rounding must not leave less than nothing.
@@ -277,10 +292,12 @@ class Queue {
   }
 
   const Machine& machine_;
+  SpaceLimits limits_;
   Joint joint_;
-  WantPlaces places_;
+  bool wants_places_;
   StretchChain chain_;
-  std::vector<Segment> moves_;  // those that may still change
+  std::vector<Segment> moves_;    // those that may still change
+  std::vector<PathPiece> paths_;  // of the moves, where places are wanted
   double at_start_ = 0;  // mm of the first of them that the overlap with the one before takes
 };
 
@@ -291,21 +308,25 @@ StretchChain linuxcnc_stretches(std::span<const TimedPiece> pieces, const Machin
                                 gcode::PathMode path, ChainEnd end, WantPlaces places) {
   const bool blends = path == gcode::PathMode::kBlending || path == gcode::PathMode::kUnknown;
   linuxcnc::Queue queue(machine, path, places);
-  const auto add = [&queue](const linuxcnc::JoinedPiece& timed) {
-    if (!std::holds_alternative<geometry::CubicBezier>(timed.piece)) return queue.add(timed);
+  const auto add = [&queue](const TimedPiece& timed, std::uint32_t first, std::uint32_t last) {
+    if (!std::holds_alternative<geometry::CubicBezier>(timed.piece)) {
+      return queue.add(timed, first, last);
+    }
     for (int i = 0; i < linuxcnc::kArcsPerBezier; ++i) {
-      linuxcnc::JoinedPiece part = timed;
+      TimedPiece part = timed;
       part.piece = geometry::sub_piece(timed.piece, double(i) / linuxcnc::kArcsPerBezier,
                                        double(i + 1) / linuxcnc::kArcsPerBezier);
-      if (geometry::length_of(part.piece) > 0) queue.add(part);
+      if (geometry::length_of(part.piece) > 0) queue.add(part, first, last);
     }
   };
   if (blends && machine.naive_cam_tolerance > 0) {
-    for (const auto& timed : linuxcnc::join_within(pieces, machine.naive_cam_tolerance)) add(timed);
+    for (const auto& timed : linuxcnc::join_within(pieces, machine.naive_cam_tolerance)) {
+      add(timed, timed.first_piece, timed.last_piece);
+    }
   } else {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const auto index = static_cast<std::uint32_t>(i);
-      add({pieces[i], index, index});
+      add(pieces[i], index, index);
     }
   }
   return queue.finish(end);

@@ -1,7 +1,9 @@
 #include "postproc/machine/linuxcnc_naive_cam.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <utility>
 
@@ -21,11 +23,58 @@ constexpr std::size_t kMostPoints = 100;
 // Axes this near to Z belong to arcs of G17; printed programs give them exactly.
 constexpr double kAlongZ = 1e-6;
 
-double distance_to_segment(const Point3& p, const Point3& a, const Vector3& way) {
-  const double square = way.squaredNorm();
-  const double t = square > 0 ? std::clamp(way.dot(p - a) / square, 0.0, 1.0) : 0.0;
-  return (p - a - t * way).norm();
-}
+// Places that are asked for together, without a branch between them.
+constexpr std::size_t kAskedTogether = 4;
+
+// The ends of the lines that are one so far, as ways from where that one starts.
+class JoinedEnds {
+ public:
+  void clear() { size_ = 0; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+  void add(const Vector3& end) {
+    // The rest of those that are asked for with it is the same place until it gets its own.
+    const std::size_t last = size_ % kAskedTogether == 0 ? size_ + kAskedTogether : size_ + 1;
+    for (std::size_t i = size_; i < last; ++i) {
+      x_[i] = end.x();
+      y_[i] = end.y();
+      z_[i] = end.z();
+    }
+    ++size_;
+  }
+
+  // Whether all of them are within `tolerance` of the line to `way`, which has a length.
+  [[nodiscard]] bool are_near(const Vector3& way, double tolerance) const {
+    for (std::size_t i = 0; i < size_; i += kAskedTogether) {
+      if (std::sqrt(farthest_square(i, way)) > tolerance) return false;
+    }
+    return true;
+  }
+
+ private:
+  // Squared distance of the farthest of kAskedTogether places.
+  [[nodiscard]] double farthest_square(std::size_t first, const Vector3& way) const {
+    const double square = way.squaredNorm();
+    std::array<double, kAskedTogether> squares;
+    for (std::size_t k = 0; k < kAskedTogether; ++k) {
+      const double x = x_[first + k];
+      const double y = y_[first + k];
+      const double z = z_[first + k];
+      const double along = (way.x() * x + (way.y() * y + way.z() * z)) / square;
+      const double t = along < 0 ? 0 : (along > 1 ? 1 : along);
+      const double off_x = x - t * way.x();
+      const double off_y = y - t * way.y();
+      const double off_z = z - t * way.z();
+      squares[k] = off_x * off_x + (off_y * off_y + off_z * off_z);
+    }
+    return std::max(std::max(squares[0], squares[1]), std::max(squares[2], squares[3]));
+  }
+
+  std::size_t size_ = 0;
+  std::array<double, kMostPoints + kAskedTogether> x_;
+  std::array<double, kMostPoints + kAskedTogether> y_;
+  std::array<double, kMostPoints + kAskedTogether> z_;
+};
 
 class Joiner {
  public:
@@ -33,12 +82,13 @@ class Joiner {
 
   void add_line(const Point3& from, const Point3& to, const TimedPiece& piece,
                 std::uint32_t index) {
-    if (!points_.empty() && (piece.feed != open_.feed || !can_reach(to))) flush();
-    if (points_.empty()) {
+    if (ends_.size() > 0 && (piece.feed != open_.feed || !can_reach(to))) flush();
+    if (ends_.size() == 0) {
       start_ = from;
       open_ = {piece, index, index};
     }
-    points_.push_back(to);
+    ends_.add(to - start_);
+    end_ = to;
     open_.last_piece = index;
   }
 
@@ -54,25 +104,23 @@ class Joiner {
 
  private:
   [[nodiscard]] bool can_reach(const Point3& to) const {
-    if (points_.size() > kMostPoints) return false;
+    if (ends_.size() > kMostPoints) return false;
     const Vector3 way = to - start_;
-    if (way.norm() <= geometry::kSamePlace) return false;
-    return std::all_of(points_.begin(), points_.end(), [&](const Point3& p) {
-      return distance_to_segment(p, start_, way) <= tolerance_;
-    });
+    return way.norm() > geometry::kSamePlace && ends_.are_near(way, tolerance_);
   }
 
   void flush() {
-    if (points_.empty()) return;
-    open_.piece = Line{start_, points_.back()};
+    if (ends_.size() == 0) return;
+    open_.piece = Line{start_, end_};
     joined_.push_back(open_);
-    points_.clear();
+    ends_.clear();
   }
 
   double tolerance_;
   Point3 start_ = Point3::Zero();
-  JoinedPiece open_;  // its line ends at the last of the points
-  std::vector<Point3> points_;
+  Point3 end_ = Point3::Zero();
+  JoinedPiece open_;  // what is joined so far, but for its line
+  JoinedEnds ends_;
   std::vector<JoinedPiece> joined_;
 };
 

@@ -70,30 +70,54 @@ void set_arc(Segment& s, const geometry::Arc& arc, const Vector3& velocity,
   s.sweep = std::abs(arc.sweep);
 }
 
-}  // namespace
+void set_straight(Segment& s, const Vector3& velocity, const Vector3& acceleration) {
+  s.max_velocity = limit_along(s.start_direction, velocity);
+  s.acceleration = limit_along(s.start_direction, acceleration);
+}
 
-Segment segment_of(const TimedPiece& timed, const Machine& machine, Joint end) {
-  Segment s;
-  s.length = s.nominal_length = geometry::length_of(timed.piece);
-  s.feed = timed.feed / 60;
-  s.start_direction = geometry::direction_at(timed.piece, 0);
-  const bool is_line = std::holds_alternative<geometry::Line>(timed.piece);
-  s.end_direction = is_line ? s.start_direction : geometry::direction_at(timed.piece, 1);
-  s.end = end;
-  s.path = timed.piece;
-  const Vector3 velocity = axis_velocities(machine, timed.rapid);
-  const Vector3 acceleration = axis_accelerations(machine);
-  const double curvature = is_line ? 0 : greatest_curvature(timed.piece);
+void set_line(Segment& s, const geometry::Line& line, const Vector3& velocity,
+              const Vector3& acceleration) {
+  const Vector3 way = line.end - line.start;
+  s.length = s.nominal_length = way.norm();
+  if (s.length > 0) s.start_direction = way / s.length;
+  s.end_direction = s.start_direction;
+  set_straight(s, velocity, acceleration);
+}
+
+void set_bent(Segment& s, const geometry::PathPiece& piece, const Vector3& velocity,
+              const Vector3& acceleration) {
+  s.length = s.nominal_length = geometry::length_of(piece);
+  s.start_direction = geometry::direction_at(piece, 0);
+  s.end_direction = geometry::direction_at(piece, 1);
+  const double curvature = greatest_curvature(piece);
   if (curvature <= kNoCurvature) {
-    s.max_velocity = limit_along(s.start_direction, velocity);
-    s.acceleration = limit_along(s.start_direction, acceleration);
-  } else if (const auto* arc = std::get_if<geometry::Arc>(&timed.piece)) {
+    set_straight(s, velocity, acceleration);
+  } else if (const auto* arc = std::get_if<geometry::Arc>(&piece)) {
     set_arc(s, *arc, velocity, acceleration);
   } else {
     set_bend(s, 1 / curvature, 0, s.length, {velocity.minCoeff(), acceleration.minCoeff()});
   }
-  const double period = std::max(machine.block_period, machine.servo_period);
-  s.max_velocity = std::min({s.max_velocity, machine.path_feed, s.length / period});
+}
+
+}  // namespace
+
+SpaceLimits space_limits(const Machine& machine) {
+  return {axis_velocities(machine, false), axis_velocities(machine, true),
+          axis_accelerations(machine), machine.path_feed,
+          std::max(machine.block_period, machine.servo_period)};
+}
+
+Segment segment_of(const TimedPiece& timed, const SpaceLimits& limits, Joint end) {
+  Segment s;
+  const Vector3& velocity = timed.rapid ? limits.rapid_velocity : limits.velocity;
+  s.feed = timed.feed / 60;
+  s.end = end;
+  if (const auto* line = std::get_if<geometry::Line>(&timed.piece)) {
+    set_line(s, *line, velocity, limits.acceleration);
+  } else {
+    set_bent(s, timed.piece, velocity, limits.acceleration);
+  }
+  s.max_velocity = std::min({s.max_velocity, limits.path_feed, s.length / limits.period});
   return s;
 }
 
@@ -125,11 +149,12 @@ void finish_segment(Segment& s, double period) {
   }
 }
 
-double kink_at_full_speed(const Segment& before, const Segment& after, const Machine& machine) {
+double kink_at_full_speed(const Segment& before, const Segment& after, const Vector3& acceleration,
+                          double period) {
   const double velocity = std::min(target_velocity(before), target_velocity(after));
-  const double step = velocity / machine.servo_period + after.acceleration;
+  const double step = velocity / period + after.acceleration;
   const Vector3 turn = after.start_direction - before.end_direction;
-  const double share = step * turn.cwiseAbs().cwiseQuotient(axis_accelerations(machine)).maxCoeff();
+  const double share = step * turn.cwiseAbs().cwiseQuotient(acceleration).maxCoeff();
   const bool bend = before.shape == Shape::kArc || after.shape == Shape::kArc;
   return bend ? share / kTangentialShare : share;
 }

@@ -51,17 +51,27 @@ struct Segment {
   double kink_share_at_start = 0;   // of the acceleration, taken by the joint
   double kink_share_at_end = 0;
 
-  // Where it runs: `path`, with its ends cut off (mm of the nominal length).
-  geometry::PathPiece path;
+  // Of its path the ends are cut off (mm of the nominal length).
   double cut_at_start = 0;
   double cut_at_end = 0;
   std::uint32_t first_piece = 0;  // of the program's chain
   std::uint32_t last_piece = 0;
 };
 
+// What the machine allows on X, Y and Z.
+struct SpaceLimits {
+  geometry::Vector3 velocity;        // mm/s, while cutting
+  geometry::Vector3 rapid_velocity;  // mm/s
+  geometry::Vector3 acceleration;    // mm/s^2
+  double path_feed;                  // mm/s, in any move
+  double period;                     // s: no move is shorter
+};
+
+[[nodiscard]] SpaceLimits space_limits(const Machine& machine);
+
 // A line or an arc as it comes from the program. Bends that are not arcs count as arcs of
 // their greatest curvature.
-[[nodiscard]] Segment segment_of(const TimedPiece& timed, const Machine& machine, Joint end);
+[[nodiscard]] Segment segment_of(const TimedPiece& timed, const SpaceLimits& limits, Joint end);
 
 // What kinks and parabolic blends leave of the acceleration.
 [[nodiscard]] double usable_acceleration(const Segment& s);
@@ -74,9 +84,10 @@ struct Segment {
 // Called when the length no longer changes: sets the limits that depend on it.
 void finish_segment(Segment& s, double period);
 
-// The kink at the joint as a share of the least axis acceleration, at full speed.
+// The kink at the joint as a share of the least axis acceleration, at full speed. `acceleration`:
+// of the axes; `period`: of the servo, s.
 [[nodiscard]] double kink_at_full_speed(const Segment& before, const Segment& after,
-                                        const Machine& machine);
+                                        const geometry::Vector3& acceleration, double period);
 
 // The speed at which one move hands over to the next in a parabolic blend (mm/s).
 [[nodiscard]] double parabolic_velocity(const Segment& before, const Segment& after,

@@ -72,6 +72,7 @@ namespace {
 
 // Seconds over the stretch, speeding up from v0 and slowing down to v1 as late as possible.
 double trapezoid_time(const VelocityStretch& s, double v0, double v1) {
+  if (v0 == s.max_velocity && v1 == s.max_velocity) return s.length / s.max_velocity;
   const double p0 = potential(s, v0);
   const double p1 = potential(s, v1);
   const double peak_potential = (p0 + p1 + s.length) / 2;
@@ -126,8 +127,13 @@ std::vector<double> joint_velocities(std::span<const VelocityStretch> chain,
   const std::size_t n = chain.size();
   std::vector<double> v = joint_limits(chain);
   if (rules.look_ahead > 0) limit_by_look_ahead(chain, rules.look_ahead, v);
-  for (std::size_t i = n; i-- > 0;) v[i] = std::min(v[i], reached(chain[i], v[i + 1]));
-  for (std::size_t i = 0; i < n; ++i) v[i + 1] = std::min(v[i + 1], reached(chain[i], v[i]));
+  // What is no faster than where it comes from is reached, whatever the length.
+  for (std::size_t i = n; i-- > 0;) {
+    if (v[i] > v[i + 1]) v[i] = std::min(v[i], reached(chain[i], v[i + 1]));
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (v[i + 1] > v[i]) v[i + 1] = std::min(v[i + 1], reached(chain[i], v[i]));
+  }
   return v;
 }
 

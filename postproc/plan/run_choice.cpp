@@ -69,8 +69,6 @@ bool gains(const Candidate& c, const SmoothedRun& run, const RunContext& context
   return faster || smaller || nearer || smoother;
 }
 
-bool far_smaller(std::size_t blocks, std::size_t others) { return 4 * blocks <= others; }
-
 // Who asks for arcs or curves by name asks for few of them.
 bool better(const Candidate& a, const Candidate& b, const SmoothOptions& options) {
   const Prefer prefer = options.prefer;
@@ -84,9 +82,7 @@ bool better(const Candidate& a, const Candidate& b, const SmoothOptions& options
     const double same = far_smaller(fewer, more) ? kSameTimeWhereFarSmaller : kSameTime;
     if (sum_of(a.times) < (1 - same) * sum_of(b.times)) return true;
     if (sum_of(b.times) < (1 - same) * sum_of(a.times)) return false;
-    if (options.output == Form::kArcs || options.output == Form::kCurves) {
-      return a.text.blocks < b.text.blocks;
-    }
+    if (!compares_kinks(options)) return a.text.blocks < b.text.blocks;
     if (a.times.exact_path < kFewerKinks * b.times.exact_path) return true;
     if (b.times.exact_path < kFewerKinks * a.times.exact_path) return false;
     if (a.error * kSameError < b.error) return true;
@@ -107,6 +103,13 @@ bool slower(const Times& now, const Times& before, bool much_smaller, bool wante
          now.flat_out > (1 + flat_out) * before.flat_out;
 }
 
+bool far_smaller(std::size_t blocks, std::size_t others) { return 4 * blocks <= others; }
+
+bool compares_kinks(const SmoothOptions& options) {
+  return options.prefer == Prefer::kTime && options.output != Form::kArcs &&
+         options.output != Form::kCurves;
+}
+
 std::size_t most_moves_for_accuracy(std::size_t blocks) {
   return static_cast<std::size_t>(kMoreBlocks * static_cast<double>(blocks));
 }
@@ -118,6 +121,22 @@ bool may_gain(const Prospect& prospect, const RunFacts& before, std::size_t bloc
   const bool nearer =
       prospect.error <= kNearer * before.error && least <= most_blocks_for_accuracy(prefer);
   return faster || least <= kFewerBlocks || nearer;
+}
+
+// As `better` of the two.
+bool beats(const Candidate& c, const Rival& rival, const SmoothedRun& run,
+           const RunContext& context, const SmoothOptions& options) {
+  const bool much_smaller = far_smaller(c.text.blocks, context.blocks);
+  const bool wanted = options.output != Form::kAuto;
+  if (!compares_kinks(options) || slower(c.times, run.facts.times, much_smaller, wanted) ||
+      !gains(c, run, context, options.prefer)) {
+    return false;
+  }
+  if (2 * rival.least_time < (1 - kSameTime) * sum_of(c.times)) return false;
+  if (rival.least_time < kFewerKinks * c.times.exact_path) return false;
+  if (c.error * kSameError < rival.error) return true;
+  if (rival.error * kSameError < c.error) return false;
+  return static_cast<double>(c.text.blocks) < rival.blocks / kEstimate;
 }
 
 Choosing choose(const SmoothedRun& run, const RunContext& context, const SmoothOptions& options) {

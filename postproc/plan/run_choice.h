@@ -18,6 +18,12 @@ struct Choosing {
 // of the blocks. `wanted`: the user asked for the form by name, which may cost something.
 [[nodiscard]] bool slower(const Times& now, const Times& before, bool much_smaller, bool wanted);
 
+// So few blocks that they are worth a little time.
+[[nodiscard]] bool far_smaller(std::size_t blocks, std::size_t others);
+
+// Whether the choice looks at Times::exact_path of candidates that are equal otherwise.
+[[nodiscard]] bool compares_kinks(const SmoothOptions& options);
+
 // What is known of a candidate before it is made. `blocks` may be too many by a fifth, `least_time`
 // is a bound for every way in which the control may be set.
 struct Prospect {
@@ -29,6 +35,17 @@ struct Prospect {
 // Whether such a candidate could be worth writing. `before` as for `choose`.
 [[nodiscard]] bool may_gain(const Prospect& prospect, const RunFacts& before, std::size_t blocks,
                             Prefer prefer);
+
+// What is known of another candidate that is not made.
+struct Rival {
+  double least_time = 0;  // s: no way in which the control may be set takes it less
+  double error = 0;       // mm, about
+  double blocks = 0;      // may be too many by a fifth
+};
+
+// Whether `choose` prefers the candidate to such another one, whatever its time is.
+[[nodiscard]] bool beats(const Candidate& candidate, const Rival& rival, const SmoothedRun& run,
+                         const RunContext& context, const SmoothOptions& options);
 
 // As many moves as a run of so many blocks may get for accuracy.
 [[nodiscard]] std::size_t most_moves_for_accuracy(std::size_t blocks);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "gcode/parser.h"
@@ -157,6 +158,9 @@ class Prover {
     works.erase(std::unique(works.begin(), works.end()), works.end());
     for (RunWork* work : works) {
       work->give_way(why);
+      if (work->chosen() == nullptr && work->smoothed.left_out) {
+        work->start_again(std::get<Run>(runs_.sections[work->section].content), options_);
+      }
       if (work->cut_run) settle(runs_.cut_runs[*work->cut_run], runs_.works, options_);
     }
     return !works.empty();

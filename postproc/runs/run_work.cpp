@@ -67,6 +67,14 @@ void RunWork::give_way(std::string_view why) {
   if (chosen() == nullptr) went_back = why;
 }
 
+void RunWork::start_again(const Run& run, const SmoothOptions& options) {
+  smoothed = smooth_run(run, context, options, Making::kAll);
+  choosing = choose(smoothed, context, options);
+  drop_what_is_not_written();
+  tried = 0;
+  went_back = {};
+}
+
 void RunWork::drop_what_is_not_written() {
   for (std::size_t i = 0; i < smoothed.candidates.size(); ++i) {
     if (std::ranges::find(choosing.order, i) != choosing.order.end()) continue;

@@ -28,6 +28,8 @@ struct RunWork {
 
   [[nodiscard]] const Candidate* chosen() const;
   void give_way(std::string_view why);  // to its next candidate
+  // Makes all candidates anew, those too that were left out: where none is left of the others.
+  void start_again(const Run& run, const SmoothOptions& options);
   // Texts and moves of candidates that were not chosen take room for nothing.
   void drop_what_is_not_written();
 };

@@ -4,6 +4,7 @@
 Writes programs of N blocks (default 1,000,000) with steps of about 0.1 mm, for measurements of speed:
 
   spiral    one run: a planar spiral whose radius waves
+  circle    one circle as chords, one closed run
   circles   concentric circles as chords, a rapid between two of them
   raster3d  a zigzag in XZ planes over a wavy surface, one run
   relief    the same surface in rows of 200 blocks, a retract and a rapid between two of them
@@ -26,6 +27,15 @@ def spiral(blocks):
         mean = 10 + 0.5 * angle / (2 * math.pi)
         angle += STEP / mean
         radius = mean + 0.3 * math.sin(7 * angle)
+        yield f"X{radius * math.cos(angle):.4f} Y{radius * math.sin(angle):.4f}\n"
+
+
+def circle(blocks):
+    """As wide as its chords ask for."""
+    radius = STEP * blocks / (2 * math.pi)
+    yield f"G0 X{radius:.4f} Y0\nG1 Z-1 F1500\n"
+    for i in range(1, blocks + 1):
+        angle = 2 * math.pi * i / blocks
         yield f"X{radius * math.cos(angle):.4f} Y{radius * math.sin(angle):.4f}\n"
 
 
@@ -72,7 +82,8 @@ def relief(blocks):
         yield "".join(rows)
 
 
-KINDS = {"spiral": spiral, "circles": circles, "raster3d": raster3d, "relief": relief}
+KINDS = {"spiral": spiral, "circle": circle, "circles": circles, "raster3d": raster3d,
+         "relief": relief}
 
 
 def main():

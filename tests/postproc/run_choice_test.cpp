@@ -45,6 +45,27 @@ class Choose : public testing::Test {
   SmoothOptions options_ = options_for("linuxcnc");
 };
 
+// Of another one only bounds are known: what is left to chance speaks for it.
+TEST_F(Choose, KnowsWhichRivalsACandidateBeatsWhateverTheirTime) {
+  const gcode::ModalState& state = read_.meaning.states.front();
+  const RunContext context{read_.program, state, state, "\n", 100, 2000};
+  const auto beats = [&](const Candidate& c, const Rival& rival) {
+    return postproc::beats(c, rival, run_, context, options_);
+  };
+  const Candidate good = candidate(10, 50, 0.001);
+  EXPECT_TRUE(beats(good, {10, 0.004, 1})) << "four times as near";
+  EXPECT_TRUE(beats(good, {10, 0.001, 100})) << "half the blocks";
+  EXPECT_FALSE(beats(good, {9, 0.004, 1})) << "the other may be faster";
+  EXPECT_FALSE(beats(good, {10, 0.0002, 100})) << "the other is nearer";
+  EXPECT_FALSE(beats(good, {10, 0.001, 55})) << "the other may have fewer blocks after all";
+  EXPECT_FALSE(beats(candidate(12, 50, 0.001), {12, 0.004, 1})) << "slower than the run";
+  Candidate kinked = good;
+  kinked.times.exact_path = 30;
+  EXPECT_FALSE(beats(kinked, {10, 0.004, 1})) << "the other may have fewer kinks";
+  options_.prefer = Prefer::kAccuracy;
+  EXPECT_FALSE(beats(good, {10, 0.004, 1}));
+}
+
 TEST_F(Choose, PassesOnWhyThereIsNoCandidate) {
   run_.reason = gcode::reason::kNoFit;
   const Choosing choosing = choose({});

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gcode/reason.h"
+#include "postproc/plan/run_choice.h"
 #include "postproc/runs/run_grouping.h"
 #include "wavy_programs.h"
 
@@ -26,16 +27,17 @@ class OneRun {
 
   [[nodiscard]] const Run& run() const { return std::get<Run>(sections_.at(0).content); }
 
-  [[nodiscard]] SmoothedRun smooth(const SmoothOptions& options) const {
-    const Section& section = sections_.at(0);
-    const auto state_after = [&](std::uint32_t block) -> const gcode::ModalState& {
-      return read_.meaning.states[read_.meaning.blocks[block].state_after];
-    };
-    return smooth_run(
-        run(),
-        {read_.program, state_after(section.first_block - 1), state_after(section.last_block), "\n",
-         section.last_block - section.first_block + 1, bytes(section)},
-        options);
+  [[nodiscard]] SmoothedRun smooth(const SmoothOptions& options,
+                                   Making making = Making::kAll) const {
+    return smooth_run(run(), context(), options, making);
+  }
+
+  // What is written in its place.
+  [[nodiscard]] std::string chosen(const SmoothOptions& options, Making making) const {
+    const SmoothedRun smoothed = smooth(options, making);
+    const Choosing choosing = choose(smoothed, context(), options);
+    if (choosing.order.empty()) return std::string(choosing.reason);
+    return smoothed.candidates[choosing.order.front()].text.text;
   }
 
   // The program with the candidate in the place of the run.
@@ -46,6 +48,19 @@ class OneRun {
   }
 
  private:
+  [[nodiscard]] RunContext context() const {
+    const Section& section = sections_.at(0);
+    const auto state_after = [&](std::uint32_t block) -> const gcode::ModalState& {
+      return read_.meaning.states[read_.meaning.blocks[block].state_after];
+    };
+    return {read_.program,
+            state_after(section.first_block - 1),
+            state_after(section.last_block),
+            "\n",
+            section.last_block - section.first_block + 1,
+            bytes(section)};
+  }
+
   [[nodiscard]] std::size_t bytes(const Section& section) const {
     return read_.program.blocks[section.last_block].end -
            read_.program.blocks[section.first_block].span.begin;
@@ -96,13 +111,33 @@ TEST(SmoothRun, KnowsHowMuchVerticesScatter) {
 
 // 31.416 mm at 3000 mm/min take 0.628 s, and a little more to start and to stop.
 TEST(SmoothRun, KnowsTheTimeOfTheRunUnderEachSetting) {
-  const Times times = OneRun(circle_program(100)).smooth(options_for("linuxcnc")).facts.times;
+  const OneRun run(circle_program(100));
+  const SmoothOptions options = options_for("linuxcnc");
+  const Times times = run.smooth(options).facts.times;
   const double at_feed = 3.141592653589793 * 10 / 50;
   EXPECT_GE(times.as_set, at_feed);
   EXPECT_LT(times.as_set, 1.3 * at_feed);
   EXPECT_LE(times.flat_out, times.as_set);
-  EXPECT_GE(times.exact_path, times.as_set);
   EXPECT_GE(times.without_merging, at_feed);
+  const std::vector<TimedPiece> motions = timed_pieces(run.run(), 0, 100);
+  const Times all = times_of(motions, *options.machine, gcode::PathMode::kBlending);
+  EXPECT_EQ(times.as_set, all.as_set);
+  EXPECT_EQ(times.without_merging, all.without_merging);
+  EXPECT_EQ(times.flat_out, all.flat_out);
+  EXPECT_GT(all.exact_path, all.as_set) << "a hundred kinks";
+}
+
+// Kinks are what candidates of one time differ by.
+TEST(SmoothRun, TimesCandidatesThatAreNotSlowerUnderEachSetting) {
+  const SmoothedRun smoothed = OneRun(circle_program(100)).smooth(options_for("linuxcnc"));
+  int timed = 0;
+  for (const Candidate& candidate : smoothed.candidates) {
+    if (slower(candidate.times, smoothed.facts.times, false, false)) continue;
+    ++timed;
+    EXPECT_GE(candidate.times.exact_path, candidate.times.as_set * (1 - 1e-9));
+    EXPECT_LE(candidate.times.flat_out, candidate.times.as_set * (1 + 1e-9));
+  }
+  EXPECT_GE(timed, 2);
 }
 
 // --- what could be written --------------------------------------------------------------------
@@ -123,6 +158,29 @@ TEST(SmoothRun, MakesEveryCandidateGoodEnoughToBeProved) {
       }
     }
   }
+}
+
+// What is left out for being dear would not have been chosen.
+TEST(SmoothRun, ChoosesAmongFewerCandidatesAsAmongAll) {
+  std::size_t left_out = 0;
+  std::vector<std::string> programs = {circle_program(40), circle_program(1000, 4), bend_program(),
+                                       wave_program()};
+  for (const double height : {0.05, 0.5, 4.0}) {
+    for (const double length : {6.0, 40.0, 300.0}) {
+      programs.push_back(wave_program({.lines = 600, .height = height, .length = length}));
+    }
+  }
+  programs.push_back(wave_program({.height = 0.5, .length = 40, .noise = 0.003, .decimals = 4}));
+  programs.push_back(wave_program({.lines = 800, .step = 0.5, .height = 5, .length = 900}));
+  for (const std::string& text : programs) {
+    for (const char* target : {"linuxcnc", "grbl"}) {
+      const OneRun run(text);
+      const SmoothOptions options = options_for(target);
+      if (run.smooth(options, Making::kToChoose).left_out) ++left_out;
+      EXPECT_EQ(run.chosen(options, Making::kToChoose), run.chosen(options, Making::kAll));
+    }
+  }
+  EXPECT_GE(left_out, 4u);
 }
 
 TEST(SmoothRun, WritesTheFormThatWasAskedFor) {
