@@ -1,6 +1,7 @@
 // One run, smoothed: what could be written instead of it, and what each candidate costs.
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -15,6 +16,18 @@
 
 namespace batten::postproc {
 
+// Seconds on the machine under each way in which its control may be set. A program rarely says
+// how, and what is faster under one setting must not be slower under another.
+struct Times {
+  double as_set = 0;           // as the machine's model says
+  double without_merging = 0;  // LinuxCNC: G64 P with Q0, lines are not joined before planning
+  double flat_out = 0;         // whatever the F words say, as with the feed override turned up
+  double exact_path = 0;       // G61: kinks cost stops
+
+  Times& operator+=(const Times& other);
+  Times& operator-=(const Times& other);
+};
+
 // Where a run stands.
 struct RunContext {
   const gcode::Program& program;
@@ -28,20 +41,11 @@ struct RunContext {
   // run from rest to rest.
   std::vector<TimedPiece> lead = {};
   std::vector<TimedPiece> tail = {};
+  // Of a run for itself that was cut from a longer one: what of the time with lead and tail belongs
+  // to its neighbours. Nothing of a piece: what it adds to the times of both alone is asked.
+  std::optional<Times> of_neighbours = {};
 
-  [[nodiscard]] bool is_piece() const { return !lead.empty() || !tail.empty(); }
-};
-
-// Seconds on the machine under each way in which its control may be set. A program rarely says
-// how, and what is faster under one setting must not be slower under another.
-struct Times {
-  double as_set = 0;           // as the machine's model says
-  double without_merging = 0;  // LinuxCNC: G64 P with Q0, lines are not joined before planning
-  double flat_out = 0;         // whatever the F words say, as with the feed override turned up
-  double exact_path = 0;       // G61: kinks cost stops
-
-  Times& operator+=(const Times& other);
-  Times& operator-=(const Times& other);
+  [[nodiscard]] bool is_piece() const { return !of_neighbours && (!lead.empty() || !tail.empty()); }
 };
 
 // Of a chain that starts and ends at rest. `path`: as the program says.
