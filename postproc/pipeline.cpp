@@ -28,17 +28,19 @@ constexpr double kAfterSmoothing = 0.7;
 
 class Smoothing {
  public:
-  Smoothing(const gcode::SourceText& source, const SmoothOptions& options, const Progress& progress)
+  Smoothing(const gcode::SourceText& source, const SmoothOptions& options, const Progress& progress,
+            const LongRunLimits& long_runs)
       : source_(source),
         options_(options),
         progress_(progress),
+        long_runs_(long_runs),
         part_{{source, {}, {}, {}, {}}, {}} {}
 
   SmoothResult run() {
     read();
     result_.understood = !gcode::has_error(result_.diagnostics);
     if (!result_.understood || !tell(kAfterReading)) return refused();
-    runs_ = find_runs(part_, options_);
+    runs_ = find_runs(part_, options_, long_runs_);
     if (!runs_.works.empty() && !fits_target()) return refused();
     if (!smooth()) return refused();
     if (!prove()) return refused();
@@ -131,6 +133,7 @@ class Smoothing {
   const gcode::SourceText& source_;
   const SmoothOptions& options_;
   const Progress& progress_;
+  LongRunLimits long_runs_;
   SmoothResult result_;
   gcode::ReadOptions read_options_;
   ProgramPart part_;
@@ -142,9 +145,9 @@ class Smoothing {
 }  // namespace
 
 SmoothResult smooth_program(const gcode::SourceText& source, const SmoothOptions& options,
-                            const Progress& progress) {
+                            const Progress& progress, const LongRunLimits& long_runs) {
   if (is_to_be_translated(source, options)) return smooth_translated(source, options, progress);
-  SmoothResult result = Smoothing(source, options, progress).run();
+  SmoothResult result = Smoothing(source, options, progress, long_runs).run();
   for (const RunReport& run : result.runs) {
     result.time_before_s += run.time_before_s;
     result.time_after_s += run.time_after_s;

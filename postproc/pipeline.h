@@ -9,6 +9,7 @@
 #include "gcode/diagnostic.h"
 #include "gcode/source_text.h"
 #include "postproc/options.h"
+#include "postproc/runs/long_run_cuts.h"
 #include "postproc/runs/run_report.h"
 
 namespace batten::postproc {
@@ -37,8 +38,10 @@ struct SmoothResult {
 // result then is not understood and carries no text.
 using Progress = std::function<bool(double)>;
 
+// `long_runs`: where runs are cut that are too long to be held as one.
 [[nodiscard]] SmoothResult smooth_program(const gcode::SourceText& source,
                                           const SmoothOptions& options,
-                                          const Progress& progress = {});
+                                          const Progress& progress = {},
+                                          const LongRunLimits& long_runs = {});
 
 }  // namespace batten::postproc

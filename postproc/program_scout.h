@@ -1,5 +1,5 @@
 // A light pass over a long program, part by part: what only the whole of it can say, and where it
-// may be cut into windows that are smoothed one after the other.
+// may be cut into windows that are smoothed for themselves.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,12 @@
 
 #include "gcode/diagnostic.h"
 #include "gcode/modal_state.h"
+#include "gcode/part_reading.h"
 #include "gcode/source_text.h"
 #include "postproc/options.h"
+#include "postproc/runs/long_run_cuts.h"
 #include "postproc/runs/part_runs.h"
+#include "postproc/runs/program_part.h"
 
 namespace batten::postproc {
 
@@ -20,19 +23,43 @@ enum class Scouting {
   kStopped,
 };
 
+// A place of the text where reading may begin, and all that is known there.
+struct ReadingPlace {
+  gcode::TextCarry text;
+  TextBefore before;
+};
+
+struct WindowPlace {
+  // Some blocks before the window: reading goes on from there, and gives what is known at `begin`.
+  ReadingPlace from;
+  std::uint32_t begin = 0;  // bytes
+  std::uint32_t end = 0;
+  bool begins_in_run = false;  // at a cut of a long run (postproc/runs/long_run_cuts.h)
+  bool ends_in_run = false;
+};
+
 struct ScoutReport {
   Scouting outcome = Scouting::kWhole;
-  // Bytes behind the windows, the last one behind the program.
-  std::vector<std::uint32_t> ends;
-  gcode::Diagnostics found;  // as reading the whole tells
+  std::vector<WindowPlace> windows;  // all of the program, in order; two or more
+  gcode::Diagnostics found;          // as reading the whole tells
   std::size_t blocks = 0;
   gcode::Units units = gcode::Units::kUnknown;  // the first that are known
   bool was_smoothed = false;
 };
 
+struct WindowLimits {
+  // A window ends behind rapids once it has so many blocks.
+  //
+  // As many runs as keep all threads busy, and a small part of the memory that a program may take:
+  // about 1 KB a block.
+  std::size_t least_blocks = 32768;
+  LongRunLimits long_runs = {};
+};
+
 // A window ends behind the last of some plain rapids and what says nothing behind it, where it has
 // `least_blocks` or more: no run, no stretch between two events and no section of copied blocks
-// goes on from one window to the next.
+// goes on from one window to the next. And it ends where a long run is cut, but where no method is
+// asked for: such runs are not cut.
 //
 // Only as a whole: programs that are not understood or that the target takes otherwise than the
 // reader, with jumps, loops or subprograms, with words outside the % marks, with words of another
@@ -41,6 +68,6 @@ struct ScoutReport {
 //
 // Holds a bounded number of blocks. `tell` is told the share of the bytes that was seen.
 [[nodiscard]] ScoutReport scout(const gcode::SourceText& source, const SmoothOptions& options,
-                                std::size_t least_blocks, const Tell& tell);
+                                const WindowLimits& limits, const Tell& tell);
 
 }  // namespace batten::postproc

@@ -217,8 +217,10 @@ class RunSmoother {
     return times_of(chain, *options_.machine, context_.after.path);
   }
 
-  // What the neighbours take without this piece, each from rest to rest.
+  // What the neighbours take without this piece, each from rest to rest. Of neighbours in a long
+  // run that was cut: their part of the time.
   [[nodiscard]] Times times_around() const {
+    if (context_.of_neighbours) return *context_.of_neighbours;
     Times sum;
     if (!context_.lead.empty()) sum += times_alone(context_.lead);
     if (!context_.tail.empty()) sum += times_alone(context_.tail);
@@ -230,7 +232,7 @@ class RunSmoother {
     const auto times = [this](const std::vector<TimedPiece>& chain) {
       return SettingTimes(chain, *options_.machine, context_.after.path);
     };
-    if (!context_.is_piece()) return times(moves);
+    if (context_.lead.empty() && context_.tail.empty()) return times(moves);
     std::vector<TimedPiece> chain = context_.lead;
     chain.insert(chain.end(), moves.begin(), moves.end());
     chain.insert(chain.end(), context_.tail.begin(), context_.tail.end());

@@ -1,6 +1,7 @@
 // One run, smoothed: what could be written instead of it, and what each candidate costs.
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -29,8 +30,11 @@ struct RunContext {
   // run from rest to rest.
   std::vector<TimedPiece> lead = {};
   std::vector<TimedPiece> tail = {};
+  // Of a run for itself that was cut from a longer one: what of the time with lead and tail belongs
+  // to its neighbours. Nothing of a piece: what it adds to the times of both alone is asked.
+  std::optional<Times> of_neighbours = {};
 
-  [[nodiscard]] bool is_piece() const { return !lead.empty() || !tail.empty(); }
+  [[nodiscard]] bool is_piece() const { return !of_neighbours && (!lead.empty() || !tail.empty()); }
 };
 
 // The motions of a run between two of its vertices.

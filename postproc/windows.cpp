@@ -1,18 +1,21 @@
 #include "postproc/windows.h"
 
-#include <algorithm>
-#include <utility>
+#include <oneapi/tbb/parallel_pipeline.h>
+#include <oneapi/tbb/task_arena.h>
 
-#include "gcode/part_reading.h"
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
 #include "gcode/reason.h"
-#include "postproc/plan/curve_caution.h"
-#include "postproc/program_scout.h"
-#include "postproc/proof/part_proof.h"
 #include "postproc/runs/band_notes.h"
-#include "postproc/runs/part_runs.h"
-#include "postproc/runs/program_part.h"
+#include "postproc/side_by_side.h"
 #include "postproc/translation/conversion.h"
-#include "postproc/writing/provenance.h"
+#include "postproc/window_work.h"
 
 namespace batten::postproc {
 
@@ -20,9 +23,72 @@ namespace {
 
 // Parts of the progress: the first pass only reads.
 constexpr double kAfterScouting = 0.15;
-constexpr double kAfterSmoothing = 0.7;  // of a window
 
-enum class Outcome { kDone, kStopped, kNeedsWhole };
+// How far the work is, told by many threads.
+class SharedProgress {
+ public:
+  SharedProgress(const Progress& progress, std::size_t bytes)
+      : progress_(progress), bytes_(static_cast<double>(bytes)) {}
+
+  bool tell_scouting(double part) { return !progress_ || progress_(part * kAfterScouting); }
+
+  void begin(const std::vector<WindowPlace>& windows) {
+    windows_ = &windows;
+    shares_.assign(windows.size(), 0);
+  }
+
+  // Of a window; what is done once more counts once.
+  bool tell(std::size_t window, double share) {
+    const std::scoped_lock lock(telling_);
+    const WindowPlace& place = (*windows_)[window];
+    const double gained = std::max(0.0, share - shares_[window]);
+    shares_[window] += gained;
+    done_bytes_ += gained * (place.end - place.begin);
+    const double part = std::min(1.0, done_bytes_ / bytes_);
+    return !progress_ || progress_(kAfterScouting + part * (1 - kAfterScouting));
+  }
+
+ private:
+  const Progress& progress_;
+  double bytes_;
+  const std::vector<WindowPlace>* windows_ = nullptr;
+  std::vector<double> shares_;
+  double done_bytes_ = 0;
+  std::mutex telling_;
+};
+
+// Windows that are made before the one before them is proved must guess how its new text leaves the
+// control: as the old one does, but for words that only the new text has said so far.
+class StartGuess {
+ public:
+  void learn(const TextBefore& old_behind, const TextBefore& known) {
+    const std::scoped_lock lock(learning_);
+    words_said_ = known.control.state.set_by_word & ~old_behind.control.state.set_by_word;
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      const bool more = old_behind.events.set_by_word[i] == kNone;
+      events_[i] = more ? known.events.set_by_word[i] : kNone;
+    }
+  }
+
+  // Nothing that stands before the first window says that the program was smoothed; before the
+  // others most often something does.
+  [[nodiscard]] NewTextBefore guess(const TextBefore& old_before, bool first) {
+    const std::scoped_lock lock(learning_);
+    NewTextBefore before{old_before, !first};
+    before.known.control.state.set_by_word |= words_said_;
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      auto& said = before.known.events.set_by_word[i];
+      if (said == kNone) said = events_[i];
+    }
+    return before;
+  }
+
+ private:
+  static constexpr gcode::Code kNone = -1;
+  std::mutex learning_;
+  std::uint32_t words_said_ = 0;
+  decltype(EventsBefore::set_by_word) events_ = EventsBefore::nothing_set();
+};
 
 class Windows {
  public:
@@ -30,35 +96,39 @@ class Windows {
           const Progress& progress)
       : source_(source),
         options_(options),
+        for_windows_(options),
         sink_(sink),
-        progress_(progress),
-        old_{gcode::ControlCarry(options.units)},
-        new_{gcode::ControlCarry(options.units)} {
-    read_options_.units = options.units;
-    read_options_.curves = options.target->curves();
-    additions_.comment = provenance_comment(*options.target, options.tolerance_mm);
+        progress_(progress, source.text().size()),
+        setting_{source, for_windows_, {}, {}, false},
+        known_{{gcode::ControlCarry(options.units)}, false} {
+    for_windows_.threads = kThreadsOfCaller;
+    setting_.read_options.units = options.units;
+    setting_.read_options.curves = options.target->curves();
   }
 
-  std::optional<SmoothResult> run(std::size_t least_blocks) {
+  std::optional<SmoothResult> run(const WindowLimits& limits) {
     if (!options_.words.empty()) return std::nullopt;
     if (is_to_be_translated(source_, options_)) return std::nullopt;
     gcode::Diagnostics of_language;
     const auto language = language_read(source_, options_, of_language);
     if (language != gcode::Language::kRs274) return std::nullopt;
-    text_.decimals = {reading_of(options_, *language).decimals, options_.units};
-    const Tell tell_scouting = [this](double part) { return tell(part * kAfterScouting); };
-    ScoutReport facts = scout(source_, options_, least_blocks, tell_scouting);
+    const Tell tell_scouting = [this](double part) { return progress_.tell_scouting(part); };
+    ScoutReport facts = scout(source_, options_, limits, tell_scouting);
     if (facts.outcome == Scouting::kWhole) return std::nullopt;
     result_.diagnostics = std::move(facts.found);
     result_.blocks_in = facts.blocks;
     result_.units = facts.units;
-    again_ = facts.was_smoothed && !is_allowed(gcode::reason::kAlreadySmoothed, options_);
     if (facts.outcome == Scouting::kStopped) return std::move(result_);
-    for (const std::uint32_t end : facts.ends) {
-      const Outcome outcome = smooth_window(end);
-      if (outcome == Outcome::kNeedsWhole) return std::nullopt;
-      if (outcome == Outcome::kStopped) return std::move(result_);
-    }
+    setting_.was_smoothed =
+        facts.was_smoothed && !is_allowed(gcode::reason::kAlreadySmoothed, options_);
+    setting_.long_runs = limits.long_runs;
+    windows_ = std::move(facts.windows);
+    progress_.begin(windows_);
+    oneapi::tbb::task_arena arena(options_.threads > 0 ? options_.threads
+                                                       : oneapi::tbb::task_arena::automatic);
+    arena.execute([&] { go_through(arena.max_concurrency()); });
+    if (outcome_ == WindowOutcome::kNeedsWhole) return std::nullopt;
+    if (outcome_ == WindowOutcome::kStopped) return std::move(result_);
     notes_.tell_rest(result_.diagnostics);
     if (untold_) result_.diagnostics.push_back(std::move(*untold_));
     if (caution_) result_.diagnostics.push_back(std::move(*caution_));
@@ -68,92 +138,99 @@ class Windows {
   }
 
  private:
-  bool tell(double part) { return !progress_ || progress_(part); }
+  struct Numbered {
+    std::size_t window = 0;
+    WindowDone done;
+  };
 
-  Outcome smooth_window(std::uint32_t end) {
-    const std::uint32_t begin = text_.begin;
-    const ProgramPart part = read_window(end);
-    const Tell tell_part = [&](double share) {
-      const double bytes = begin + share * kAfterSmoothing * (end - begin);
-      const double done = bytes / static_cast<double>(source_.text().size());
-      return tell(kAfterScouting + done * (1 - kAfterScouting));
+  // Texts that wait for the ones before them take little room beside windows that are worked on.
+  void go_through(int threads) {
+    using oneapi::tbb::filter_mode;
+    using oneapi::tbb::make_filter;
+    const std::size_t at_once = threads > 1 ? 2 * static_cast<std::size_t>(threads) : 1;
+    std::size_t next = 0;
+    const auto give = [&](oneapi::tbb::flow_control& flow) -> std::size_t {
+      if (next >= windows_.size() || outcome_ != WindowOutcome::kDone) flow.stop();
+      return next++;
     };
-    PartRuns runs = find_runs(part, options_);
-    if (again_) {
-      keep_as_smoothed(runs);
-    } else if (!smooth_runs(part, options_, tell_part, runs)) {
-      return Outcome::kStopped;
+    const auto work = [&](std::size_t window) {
+      const Guess guess = [&](const TextBefore& old) { return guess_.guess(old, window == 0); };
+      return std::make_shared<Numbered>(Numbered{window, smooth(window, guess)});
+    };
+    const auto append = [&](const std::shared_ptr<Numbered>& made) {
+      if (outcome_ == WindowOutcome::kDone) outcome_ = take(made->window, std::move(made->done));
+    };
+    oneapi::tbb::parallel_pipeline(
+        at_once,
+        make_filter<void, std::size_t>(filter_mode::serial_in_order, give) &
+            make_filter<std::size_t, std::shared_ptr<Numbered>>(filter_mode::parallel, work) &
+            make_filter<std::shared_ptr<Numbered>, void>(filter_mode::serial_in_order, append));
+  }
+
+  WindowDone smooth(std::size_t window, const Guess& before) {
+    const Tell tell = [this, window](double share) {
+      return outcome_ == WindowOutcome::kDone && progress_.tell(window, share);
+    };
+    return smooth_window(setting_, windows_[window], before, tell);
+  }
+
+  // One after the other, in order. What was made for another begin than the window has is made
+  // anew: nothing that was guessed is believed.
+  WindowOutcome take(std::size_t window, WindowDone made) {
+    if (made.outcome == WindowOutcome::kStopped) return made.outcome;
+    if (!was_made_for_its_begin(made)) {
+      made = smooth(window, [this](const TextBefore&) { return known_; });
     }
-    notes_.add(runs.notes, result_.diagnostics);
-    const Tell tell_round = [&](double) { return tell_part(1); };
-    auto proved = prove_text(part, options_, read_options_, additions_, tell_round, runs);
-    if (!proved) return Outcome::kStopped;
-    if (!proved->proved || !proved->stands_alone) return Outcome::kNeedsWhole;
-    if (!hand_on(part, *proved)) return Outcome::kStopped;
-    take_figures(part, runs, *proved);
-    go_on_behind(part, std::move(*proved));
-    source_.set_aside({begin, end});
-    return Outcome::kDone;
-  }
-
-  ProgramPart read_window(std::uint32_t end) {
-    WindowStart start{old_.events, new_, text_.words_seen, text_.decimals, starts_alike_};
-    gcode::Diagnostics told_before;
-    gcode::Program program = gcode::parse_part(source_, {.byte = end}, text_, told_before);
-    gcode::Interpretation meaning =
-        gcode::interpret_part(program, read_options_, old_.control, told_before);
-    return {std::move(program), std::move(meaning), std::move(start)};
-  }
-
-  bool hand_on(const ProgramPart& part, const ProvedText& proved) {
+    if (made.outcome != WindowOutcome::kDone) return made.outcome;
+    const WindowPlace& place = windows_[window];
     const std::string_view bytes =
-        proved.unchanged ? source_.text(part.extent()) : std::string_view(proved.text);
+        made.unchanged ? source_.text({place.begin, place.end}) : std::string_view(made.text);
     result_.bytes_handed_on += bytes.size();
-    if (!proved.unchanged) additions_.comment.clear();
-    return sink_(bytes);
+    if (!sink_(bytes)) return WindowOutcome::kStopped;
+    const bool says_smoothed = known_.says_smoothed || !made.unchanged;
+    known_ = std::move(made.behind);
+    known_.says_smoothed = says_smoothed;
+    guess_.learn(made.old_behind, known_.known);
+    take_figures(std::move(made));
+    return WindowOutcome::kDone;
   }
 
-  void take_figures(const ProgramPart& part, const PartRuns& runs, const ProvedText& proved) {
-    const Verification& verification = proved.verification;
-    result_.blocks_out += proved.blocks;
-    result_.corner_mm = std::max(result_.corner_mm, verification.corner_mm);
-    if (verification.deviation_mm > result_.deviation_mm) {
-      result_.deviation_mm = verification.deviation_mm;
-      result_.deviation_line = verification.deviation_line;
+  // Where nothing is rewritten nothing is said of it.
+  [[nodiscard]] bool was_made_for_its_begin(const WindowDone& made) const {
+    NewTextBefore begin = known_;
+    if (made.unchanged && made.outcome == WindowOutcome::kDone) {
+      begin.says_smoothed = made.before.says_smoothed;
     }
-    auto reports = report_runs({part.program, part.meaning, runs.sections, runs.works,
-                                runs.cut_runs, verification.stretches, true});
-    if (!untold_) untold_ = untold_smoothing(reports, part.program, *options_.target);
-    if (!caution_) caution_ = curve_caution(reports, part.program, *options_.target);
-    for (RunReport& run : reports) {
+    return same_before(made.before, begin);
+  }
+
+  void take_figures(WindowDone made) {
+    notes_.add(made.notes, result_.diagnostics);
+    result_.blocks_out += made.blocks;
+    result_.corner_mm = std::max(result_.corner_mm, made.corner_mm);
+    if (made.deviation_mm > result_.deviation_mm) {
+      result_.deviation_mm = made.deviation_mm;
+      result_.deviation_line = made.deviation_line;
+    }
+    if (!untold_) untold_ = std::move(made.untold);
+    if (!caution_) caution_ = std::move(made.caution);
+    for (RunReport& run : made.runs) {
       result_.time_before_s += run.time_before_s;
       result_.time_after_s += run.time_after_s;
       result_.runs.push_back(std::move(run));
     }
   }
 
-  void go_on_behind(const ProgramPart& part, ProvedText proved) {
-    old_.events = events_before_next({&part.program, &part.meaning, old_.events});
-    if (proved.behind) {
-      new_ = std::move(*proved.behind);
-    } else {
-      new_ = old_;
-    }
-    starts_alike_ =
-        gcode::same_knowledge(old_.control.state, new_.control.state) && old_.events == new_.events;
-  }
-
   const gcode::SourceText& source_;
   const SmoothOptions& options_;
+  SmoothOptions for_windows_;
   const TextSink& sink_;
-  const Progress& progress_;
-  gcode::ReadOptions read_options_;
-  Additions additions_;
-  bool again_ = false;  // the program was smoothed before
-  gcode::TextCarry text_;
-  TextBefore old_;
-  TextBefore new_;
-  bool starts_alike_ = true;  // the next window, in the old and in the new text
+  SharedProgress progress_;
+  WindowSetting setting_;
+  std::vector<WindowPlace> windows_;
+  std::atomic<WindowOutcome> outcome_ = WindowOutcome::kDone;
+  StartGuess guess_;
+  NewTextBefore known_;  // behind the windows that were taken
   BandNoteTally notes_;
   std::optional<gcode::Diagnostic> untold_;
   std::optional<gcode::Diagnostic> caution_;
@@ -164,8 +241,9 @@ class Windows {
 
 std::optional<SmoothResult> smooth_in_windows(const gcode::SourceText& source,
                                               const SmoothOptions& options, const TextSink& sink,
-                                              const Progress& progress, std::size_t least_blocks) {
-  return Windows(source, options, sink, progress).run(least_blocks);
+                                              const Progress& progress,
+                                              const WindowLimits& limits) {
+  return Windows(source, options, sink, progress).run(limits);
 }
 
 }  // namespace batten::postproc

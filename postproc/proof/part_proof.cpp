@@ -1,6 +1,8 @@
 #include "postproc/proof/part_proof.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -76,7 +78,8 @@ class Prover {
 
   ProvedText verified_text() {
     ProvedText round;
-    round.text = assemble(part_.program, runs_.sections, runs_.works, additions_);
+    AssembledText assembled = assemble(part_.program, runs_.sections, runs_.works, additions_);
+    round.text = std::move(assembled.text);
     AddedLines added = take_added_lines(part_.program, round.text, additions_.words);
     const gcode::SourceText written(part_.program.source.name(), std::move(added.text));
     gcode::Diagnostics ignored;
@@ -87,6 +90,13 @@ class Prover {
         gcode::interpret_part(program, read_options_, control, ignored);
     ReadProgram before{&part_.program, &part_.meaning};
     ReadProgram after{&program, &meaning};
+    std::vector<std::uint32_t> new_cuts;
+    // Between lines that a profile adds nothing is cut: these lines are gone where it is compared.
+    if (!runs_.cuts.empty() && additions_.words.empty()) {
+      new_cuts = cuts_in(program, assembled.begins);
+      before.cuts = runs_.cuts;
+      after.cuts = new_cuts;
+    }
     if (part_.window) {
       before.before = part_.window->old_events;
       after.before = part_.window->new_text.events;
@@ -101,6 +111,20 @@ class Prover {
       round.behind = {std::move(control), events_before_next(after)};
     }
     return round;
+  }
+
+  // Where the sections that begin at cuts begin in the new text. The proof does not rest on it: its
+  // pieces together are the whole, wherever they end.
+  [[nodiscard]] std::vector<std::uint32_t> cuts_in(const gcode::Program& program,
+                                                   const std::vector<std::size_t>& begins) const {
+    std::vector<std::uint32_t> cuts;
+    for (std::size_t i = 0; i < runs_.sections.size(); ++i) {
+      if (!std::ranges::binary_search(runs_.cuts, runs_.sections[i].first_block)) continue;
+      const auto block = std::ranges::lower_bound(
+          program.blocks, begins[i], {}, [](const gcode::Block& b) { return b.span.begin; });
+      cuts.push_back(static_cast<std::uint32_t>(block - program.blocks.begin()));
+    }
+    return cuts;
   }
 
   [[nodiscard]] gcode::Program read_text(const gcode::SourceText& written,

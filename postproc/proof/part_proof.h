@@ -8,6 +8,15 @@
 // is proved, every stretch and every event of the whole was compared as it would be in the whole:
 // the windows together are proved, with the same bounds. A window ends behind a plain rapid
 // (is_plain_rapid), and its end is compared as the end of a program is.
+//
+// Windows that end in a long run cut a stretch in two. Each half is held against its half of the
+// old path, from where the reader of each text knows the tool to stand: two paths that are matched
+// in order within the tolerance, and two more that begin where these end, are matched as wholes by
+// the two matchings one after the other. Where the whole is proved at once it is cut at the same
+// places (ReadProgram::cuts), so its bounds are those of the windows.
+//
+// What a window takes over from the new text before it may be a guess, when it is made; it is
+// believed once the window before it is proved and has left exactly that behind.
 #pragma once
 
 #include <cstddef>

@@ -61,11 +61,15 @@ class Lister {
   explicit Lister(const ReadProgram& read)
       : program_(*read.program),
         interpretation_(*read.interpretation),
+        cuts_(read.cuts),
         set_by_word_(read.before.set_by_word) {}
 
   ProgramEvents run() {
     list_.cuts.reserve(interpretation_.motions.size());
-    for (std::uint32_t i = 0; i < program_.blocks.size(); ++i) list_block(i);
+    for (std::uint32_t i = 0; i < program_.blocks.size(); ++i) {
+      if (!cuts_.empty() && cuts_.front() == i) list_cut(i);
+      list_block(i);
+    }
     list_.cuts_before.push_back(list_.cuts.size());
     return std::move(list_);
   }
@@ -97,6 +101,13 @@ class Lister {
   }
 
  private:
+  // It stands behind the block before it.
+  void list_cut(std::uint32_t index) {
+    cuts_ = cuts_.subspan(1);
+    block_index_ = index;
+    add_event(EventKind::kCut).block = index - 1;
+  }
+
   void list_block(std::uint32_t index) {
     block_index_ = index;
     const Block& block = program_.blocks[index];
@@ -337,6 +348,7 @@ class Lister {
 
   const gcode::Program& program_;
   const gcode::Interpretation& interpretation_;
+  std::span<const std::uint32_t> cuts_;  // that are still ahead; never block 0
   ProgramEvents list_;
   std::uint32_t block_index_ = 0;
   std::array<Code, kCodeGroups> set_by_word_;  // the last word of each group

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,13 +40,18 @@ struct EventsBefore {
 struct ReadProgram {
   const gcode::Program* program = nullptr;
   const gcode::Interpretation* interpretation = nullptr;
-  EventsBefore before = {};  // of a part that begins behind a rapid; the whole begins with nothing
+  EventsBefore before = {};  // of a part of a program; the whole begins with nothing
+  // Blocks before which the moves are compared apart, increasing; as many in both programs. Paths
+  // that keep the tolerance piece by piece, each piece from where the one before it has ended, keep
+  // it as a whole.
+  std::span<const std::uint32_t> cuts = {};
 };
 
 enum class EventKind : std::uint8_t {
   kWord,   // one word that acts: M8, T3, S1200, G54, G90
   kText,   // a block that must stand in the other program too, word for word
   kRapid,  // a rapid whose place is known
+  kCut,    // none of the program: the begin of one of ReadProgram::cuts
 };
 
 struct ProgramEvent {

@@ -1,8 +1,6 @@
 #include "postproc/proof/verification.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +15,7 @@
 #include "postproc/proof/parallel_verification.h"
 #include "postproc/proof/state_difference.h"
 #include "postproc/proof/stretch_comparison.h"
+#include "postproc/side_by_side.h"
 
 namespace batten::postproc {
 namespace {
@@ -203,11 +202,8 @@ class Verifier {
       if (!moves.gap && moves.any()) asked.push_back(&moves);
     }
     if (threads_ == 1 || asked.size() < 2) return;
-    oneapi::tbb::task_arena arena(threads_ > 0 ? threads_ : oneapi::tbb::task_arena::automatic);
-    arena.execute([&] {
-      oneapi::tbb::parallel_for(std::size_t{0}, asked.size(), [&](std::size_t i) {
-        asked[i]->result = compare_stretch(asked[i]->before, asked[i]->after, promise_);
-      });
+    side_by_side(threads_, asked.size(), [&](std::size_t i) {
+      asked[i]->result = compare_stretch(asked[i]->before, asked[i]->after, promise_);
     });
   }
 
@@ -222,9 +218,13 @@ class Verifier {
     }
     if (no_gap && last_ && last_->joins_next) join_if_event_moved(*last_, now);
     flush_stretch();
-    now.joins_next = same.before < old_list_.events.size() &&
-                     old_list_.events[same.before].kind != EventKind::kRapid;
+    now.joins_next =
+        same.before < old_list_.events.size() && may_move(old_list_.events[same.before].kind);
     last_ = std::move(now);
+  }
+
+  static bool may_move(EventKind kind) {
+    return kind == EventKind::kWord || kind == EventKind::kText;
   }
 
   // Both stretches beside an event break the tolerance, but together they keep it: the path is

@@ -1,8 +1,5 @@
 #include "postproc/runs/part_runs.h"
 
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <atomic>
 #include <mutex>
@@ -16,6 +13,8 @@
 #include "postproc/runs/band_notes.h"
 #include "postproc/runs/run_cutting.h"
 #include "postproc/runs/run_grouping.h"
+#include "postproc/runs/run_joints.h"
+#include "postproc/side_by_side.h"
 #include "postproc/smoothing.h"
 #include "postproc/writing/block_numbers.h"
 
@@ -23,23 +22,9 @@ namespace batten::postproc {
 
 namespace {
 
-// Runs of more points than this are cut into runs for themselves, which bounds the memory and gives
-// each thread its own. Every cut costs a joint that is not smooth: one in some 40,000 points is
-// nothing. Their times are taken from rest to rest, which is a stop too much for as many points.
-constexpr std::size_t kWholeAtMost = 200000;
-constexpr CuttingOptions kLongParts = {.shortest = 25000, .longest = 50000};
-
 // Neighbours of a piece that are timed with it: the machine looks ahead over as many blocks to
 // stop, at most.
 constexpr std::size_t kNeighbours = 100;
-
-GroupingOptions grouping_of(const SmoothOptions& options) {
-  GroupingOptions grouping;
-  grouping.min_motions = options.min_motions;
-  grouping.tolerance_mm = options.tolerance_mm;
-  for (const std::string& id : options.allowed) grouping.allowed.push_back(id);
-  return grouping;
-}
 
 std::string_view bytes_of(const gcode::Program& program, const Section& section) {
   const std::uint32_t begin = program.blocks[section.first_block].span.begin;
@@ -61,22 +46,89 @@ RunContext context_of(const gcode::Program& program, const gcode::Interpretation
           number_room(program, section.first_block, section.last_block)};
 }
 
+// Long runs that long_run_cuts leaves, for there are arcs in them: they are cut as wholes, and
+// their times are taken from rest to rest, which is a stop too much for many points.
 std::vector<Section> with_long_runs_cut(std::vector<Section> sections,
-                                        const gcode::Interpretation& meaning) {
+                                        const gcode::Interpretation& meaning,
+                                        const LongRunLimits& limits) {
   std::vector<Section> cut;
   cut.reserve(sections.size());
   for (Section& section : sections) {
     const Run* run = std::get_if<Run>(&section.content);
-    if (run == nullptr || run->points.size() <= kWholeAtMost) {
+    if (run == nullptr || run->points.size() <= limits.whole_at_most) {
       cut.push_back(std::move(section));
       continue;
     }
-    for (RunPiece& piece : cut_run(section, meaning, kLongParts)) {
+    for (RunPiece& piece :
+         cut_run(section, meaning, {.shortest = limits.shortest, .longest = limits.longest})) {
       cut.push_back(std::move(piece.section));
     }
   }
   return cut;
 }
+
+// Runs that were cut from one are not run from rest to rest. Each is timed with some moves of its
+// neighbours, and the time of the moves about a cut, which are in two of these times, is shared
+// between them: so the times of all are that of the whole.
+class Joints {
+ public:
+  Joints(const ProgramPart& part, const SmoothOptions& options, PartRuns& runs)
+      : part_(part), options_(options), runs_(runs) {}
+
+  void run() {
+    for (RunWork& work : runs_.works) {
+      const Section& section = runs_.sections[work.section];
+      const std::uint32_t end = section.last_block + 1;
+      const bool begins = is_cut(section.first_block);
+      const bool ends = is_cut(end);
+      if (!begins && !ends) continue;
+      Times shared;
+      if (begins) {
+        work.context.lead = before(section.first_block);
+        shared += times_about(section.first_block, work.context.after.path);
+      }
+      if (ends) {
+        work.context.tail = behind(end);
+        shared += times_about(end, work.context.after.path);
+      }
+      work.context.of_neighbours = half_of(shared);
+    }
+  }
+
+ private:
+  [[nodiscard]] bool is_cut(std::uint32_t block) const {
+    if (part_.window && block == 0) return !part_.window->moves_before.empty();
+    if (part_.window && block == part_.program.blocks.size()) {
+      return !part_.window->moves_behind.empty();
+    }
+    return std::ranges::binary_search(runs_.cuts, block);
+  }
+
+  [[nodiscard]] std::vector<TimedPiece> before(std::uint32_t block) const {
+    if (part_.window && block == 0) return part_.window->moves_before;
+    return moves_before(part_.program, part_.meaning, block);
+  }
+
+  [[nodiscard]] std::vector<TimedPiece> behind(std::uint32_t block) const {
+    if (block == part_.program.blocks.size()) return part_.window->moves_behind;
+    return moves_from(part_.program, part_.meaning, block);
+  }
+
+  [[nodiscard]] Times times_about(std::uint32_t block, gcode::PathMode path) const {
+    std::vector<TimedPiece> moves = before(block);
+    const std::vector<TimedPiece> rest = behind(block);
+    moves.insert(moves.end(), rest.begin(), rest.end());
+    return times_of(moves, *options_.machine, path);
+  }
+
+  static Times half_of(const Times& times) {
+    return {times.as_set / 2, times.without_merging / 2, times.flat_out / 2, times.exact_path / 2};
+  }
+
+  const ProgramPart& part_;
+  const SmoothOptions& options_;
+  PartRuns& runs_;
+};
 
 class PartSmoother {
  public:
@@ -98,14 +150,6 @@ class PartSmoother {
   }
 
  private:
-  // Items do not look at each other: any number of threads gives the same bytes.
-  template <typename Function>
-  void in_parallel(std::size_t count, const Function& function) const {
-    oneapi::tbb::task_arena arena(options_.threads > 0 ? options_.threads
-                                                       : oneapi::tbb::task_arena::automatic);
-    arena.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, count, function); });
-  }
-
   [[nodiscard]] bool nothing_asked() const { return options_.method == Method::kNone; }
 
   [[nodiscard]] const Run& run_of(const RunWork& work) const {
@@ -114,7 +158,7 @@ class PartSmoother {
 
   void note_bands() {
     std::vector<gcode::Diagnostics> notes(runs_.works.size());
-    in_parallel(runs_.works.size(), [&](std::size_t i) {
+    side_by_side(options_.threads, runs_.works.size(), [&](std::size_t i) {
       notes[i] = band_notes(part_.program, part_.meaning, runs_.sections[runs_.works[i].section],
                             options_.tolerance_mm);
     });
@@ -136,7 +180,7 @@ class PartSmoother {
           std::min(1.0, static_cast<double>(smoothed_points_) / static_cast<double>(2 * points_));
       if (!tell_(part)) stopped = true;
     };
-    in_parallel(works.size(), one);
+    side_by_side(options_.threads, works.size(), one);
     return !stopped;
   }
 
@@ -210,16 +254,29 @@ bool is_allowed(std::string_view reason, const SmoothOptions& options) {
   return std::ranges::find(options.allowed, reason) != options.allowed.end();
 }
 
-PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options) {
+GroupingOptions grouping_of(const SmoothOptions& options) {
+  GroupingOptions grouping;
+  grouping.min_motions = options.min_motions;
+  grouping.tolerance_mm = options.tolerance_mm;
+  for (const std::string& id : options.allowed) grouping.allowed.push_back(id);
+  return grouping;
+}
+
+PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options,
+                   const LongRunLimits& limits) {
+  const GroupingOptions grouping = grouping_of(options);
+  const bool cuts = options.method != Method::kNone;
   PartRuns runs;
-  runs.sections = group_runs(part.program, part.meaning, grouping_of(options));
-  if (options.method != Method::kNone) {
-    runs.sections = with_long_runs_cut(std::move(runs.sections), part.meaning);
+  if (cuts && !part.window) {
+    runs.cuts = long_run_cuts(part.program, part.meaning, limits, grouping);
   }
+  runs.sections = group_runs(part.program, part.meaning, grouping, runs.cuts);
+  if (cuts) runs.sections = with_long_runs_cut(std::move(runs.sections), part.meaning, limits);
   for (std::size_t i = 0; i < runs.sections.size(); ++i) {
     if (!std::holds_alternative<Run>(runs.sections[i].content)) continue;
     runs.works.push_back({i, context_of(part.program, part.meaning, runs.sections[i])});
   }
+  Joints(part, options, runs).run();
   return runs;
 }
 

@@ -1,11 +1,14 @@
 // The runs of a part of a program: found, smoothed, and cut where they would be kept as a whole.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <string_view>
 #include <vector>
 
 #include "gcode/diagnostic.h"
 #include "postproc/options.h"
+#include "postproc/runs/long_run_cuts.h"
 #include "postproc/runs/program_part.h"
 #include "postproc/runs/run_work.h"
 #include "postproc/runs/section.h"
@@ -13,6 +16,7 @@
 namespace batten::postproc {
 
 struct PartRuns {
+  std::vector<std::uint32_t> cuts;  // blocks at which long runs are cut
   std::vector<Section> sections;
   std::vector<RunWork> works;  // of the sections that are runs, in order
   std::vector<CutRun> cut_runs;
@@ -22,8 +26,12 @@ struct PartRuns {
 // Whether the user has lifted this rule.
 [[nodiscard]] bool is_allowed(std::string_view reason, const SmoothOptions& options);
 
-// `part` must outlive the runs: they refer to it.
-[[nodiscard]] PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options);
+[[nodiscard]] GroupingOptions grouping_of(const SmoothOptions& options);
+
+// `part` must outlive the runs: they refer to it. A window ends where a long run is to be cut, the
+// whole is cut here; but not where no method is asked for.
+[[nodiscard]] PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options,
+                                 const LongRunLimits& limits = {});
 
 // Every run is kept, since the program was smoothed before.
 void keep_as_smoothed(PartRuns& runs);

@@ -2,17 +2,19 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "gcode/motion.h"
 #include "gcode/part_reading.h"
 #include "gcode/program.h"
+#include "postproc/machine/cycle_time.h"
 #include "postproc/proof/program_events.h"
 
 namespace batten::postproc {
 
 // What a window takes over from the windows before it in one of the two texts.
 struct TextBefore {
-  gcode::ControlCarry control;
+  gcode::ControlCarry control{gcode::Units::kUnknown};
   EventsBefore events = {};
 };
 
@@ -22,6 +24,10 @@ struct WindowStart {
   bool words_seen = false;  // gcode::TextCarry
   gcode::DecimalPoints decimals;
   bool same_as_old = false;  // all that is known of the new text is what is known of the old one
+  // Where it begins, or ends, within a long run that is cut there: what is cut before and behind it
+  // (postproc/runs/run_joints.h). Empty elsewhere.
+  std::vector<TimedPiece> moves_before = {};
+  std::vector<TimedPiece> moves_behind = {};
 };
 
 struct ProgramPart {

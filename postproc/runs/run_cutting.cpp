@@ -1,53 +1,20 @@
 #include "postproc/runs/run_cutting.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <span>
 #include <utility>
 
 #include "geometry/numeric.h"
+#include "postproc/runs/cut_fitness.h"
 
 namespace batten::postproc {
 
 namespace {
 
 using geometry::Point3;
-using geometry::Vector3;
-
-// The machine stops at a reversal anyway.
-constexpr double kReversal = 170 * std::numbers::pi / 180;
-
-// At a corner like this the machine slows down whether it is rounded or not; raster rows end so.
-constexpr double kSharp = 60 * std::numbers::pi / 180;
-
-// A line that was cut into blocks does not turn between them, but for rounding.
-constexpr double kNoTurn = 1e-6;
-
-double turn_at(std::span<const Point3> p, std::size_t i) {
-  const Vector3 a = p[i] - p[i - 1];
-  const Vector3 b = p[i + 1] - p[i];
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-// How well a vertex serves as a cut: the greater the better.
-struct Fitness {
-  int rank = 0;
-  double within_rank = 0;
-
-  friend bool operator<(const Fitness& a, const Fitness& b) {
-    return a.rank != b.rank ? a.rank < b.rank : a.within_rank < b.within_rank;
-  }
-};
 
 // Inside an arc, or before one that takes its G2 or G3 from the block before it.
 constexpr Fitness kNoPlace{-1, 0};
-
-Fitness fitness_of(double turn) {
-  if (turn > kReversal) return {3, 0};
-  if (turn > kSharp) return {2, turn};
-  if (turn <= kNoTurn) return {1, 0};
-  return {0, -turn};
-}
 
 // The part of a run between two ends of its motions.
 Run part_of(const Run& run, std::size_t first, std::size_t last) {
@@ -115,8 +82,8 @@ std::vector<bool> cuttable(const Run& run) {
 std::vector<std::size_t> cut_places(const Run& run, const CuttingOptions& options) {
   const std::span<const Point3> points = run.points;
   const std::vector<bool> can = cuttable(run);
-  const auto fitness_at = [&](std::size_t i) {
-    return can[i] ? fitness_of(turn_at(points, i)) : kNoPlace;
+  const auto fitness_of = [&](std::size_t i) {
+    return can[i] ? fitness_at(points[i - 1], points[i], points[i + 1]) : kNoPlace;
   };
   std::vector<std::size_t> places;
   std::size_t from = 0;
@@ -124,11 +91,11 @@ std::vector<std::size_t> cut_places(const Run& run, const CuttingOptions& option
   while (points.size() - 1 - from > options.longest) {
     const std::size_t end = points.size() - 1 - options.shortest;
     std::size_t best = from + options.shortest;
-    Fitness best_fitness = fitness_at(best);
+    Fitness best_fitness = fitness_of(best);
     for (std::size_t i = best + 1; i <= end; ++i) {
       // Further than that only where nothing else can be cut.
       if (i > from + options.longest && can[best]) break;
-      const Fitness fitness = fitness_at(i);
+      const Fitness fitness = fitness_of(i);
       if (fitness < best_fitness) continue;  // of equals the last: fewer pieces
       best_fitness = fitness;
       best = i;

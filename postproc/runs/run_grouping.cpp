@@ -81,11 +81,12 @@ std::string_view unknown_state(const ModalState& state) {
 class RunGrouper {
  public:
   RunGrouper(const gcode::Program& program, const gcode::Interpretation& read,
-             const GroupingOptions& options)
-      : read_(read), blocks_(program, read), options_(options) {}
+             const GroupingOptions& options, std::span<const std::uint32_t> cuts)
+      : read_(read), blocks_(program, read), options_(options), cuts_(cuts) {}
 
   std::vector<Section> group() {
     for (std::uint32_t i = 0; i < read_.blocks.size(); ++i) {
+      if (!cuts_.empty() && cuts_.front() == i) start_anew(i);
       const BlockMeaning& block = read_.blocks[i];
       if (!block.barrier.empty() && !is_plain_arc(block)) {
         close_chain();
@@ -98,11 +99,18 @@ class RunGrouper {
       // Blocks without motion inside a chain go with it, if it goes on behind them.
     }
     close_chain();
-    keep_rest();
+    keep_rest(static_cast<std::uint32_t>(read_.blocks.size()));
     return std::move(sections_);
   }
 
  private:
+  void start_anew(std::uint32_t block) {
+    close_chain();
+    keep_rest(block);
+    anew_ = sections_.size();
+    cuts_ = cuts_.subspan(1);
+  }
+
   static bool is_plain_arc(const BlockMeaning& block) {
     return block.barrier == reason::kArc && block.motion >= 0 &&
            block.kind == gcode::BlockKind::kMotion;
@@ -251,9 +259,12 @@ class RunGrouper {
 
   // --- what is kept -------------------------------------------------------------------------
 
+  // Whether the last section may take in what follows.
+  [[nodiscard]] bool goes_on() const { return sections_.size() > anew_; }
+
   // Blocks [done_, ..] have no section yet. Those that say nothing wait for the next section.
   void keep_idle(std::uint32_t i) {
-    if (!sections_.empty() && sections_.back().last_block + 1 == i) {
+    if (goes_on() && sections_.back().last_block + 1 == i) {
       if (std::holds_alternative<Verbatim>(sections_.back().content)) {
         sections_.back().last_block = i;
         done_ = i + 1;
@@ -265,7 +276,7 @@ class RunGrouper {
 
   // Everything up to `last` that has no section yet, for this reason.
   void keep_up_to(std::uint32_t last, std::string_view why) {
-    if (!sections_.empty()) {
+    if (goes_on()) {
       auto* before = std::get_if<Verbatim>(&sections_.back().content);
       if (before != nullptr && before->reason == why) {
         sections_.back().last_block = last;
@@ -283,22 +294,25 @@ class RunGrouper {
     }
   }
 
-  void keep_rest() {
-    const auto count = static_cast<std::uint32_t>(read_.blocks.size());
-    if (done_ == count) {
+  // What is left of the blocks before `end`.
+  void keep_rest(std::uint32_t end) {
+    if (done_ == end) {
       return;
     }
-    if (!sections_.empty() && std::holds_alternative<Verbatim>(sections_.back().content)) {
-      sections_.back().last_block = count - 1;
+    if (goes_on() && std::holds_alternative<Verbatim>(sections_.back().content)) {
+      sections_.back().last_block = end - 1;
     } else {
-      sections_.push_back({done_, count - 1, Verbatim{reason::kComment}});
+      sections_.push_back({done_, end - 1, Verbatim{reason::kComment}});
     }
+    done_ = end;
   }
 
   const gcode::Interpretation& read_;
   RunBlocks blocks_;
   const GroupingOptions& options_;
+  std::span<const std::uint32_t> cuts_;  // that are still ahead
   std::vector<Section> sections_;
+  std::size_t anew_ = 0;              // sections before the last cut
   std::vector<std::uint32_t> chain_;  // motion blocks that may become a run
   std::uint32_t done_ = 0;            // blocks before this one are in sections
   std::optional<std::uint32_t> asked_state_;
@@ -309,8 +323,9 @@ class RunGrouper {
 
 std::vector<Section> group_runs(const gcode::Program& program,
                                 const gcode::Interpretation& interpretation,
-                                const GroupingOptions& options) {
-  return RunGrouper(program, interpretation, options).group();
+                                const GroupingOptions& options,
+                                std::span<const std::uint32_t> cuts) {
+  return RunGrouper(program, interpretation, options, cuts).group();
 }
 
 std::string_view unsafe_state(const ModalState& state, const GroupingOptions& options) {

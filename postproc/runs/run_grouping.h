@@ -2,6 +2,8 @@
 // everything else is copied, with a reason.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -24,10 +26,14 @@ struct GroupingOptions {
 // after them. A run is not longer than its motions: what stands around it is copied. Which arcs are
 // kept: postproc/runs/intended_arcs.h.
 //
+// `cuts`: blocks that begin a section of their own, increasing: what stands before them is grouped
+// as if the program ended there, and what follows as if it began.
+//
 // Requires: `interpretation` belongs to `program`.
 [[nodiscard]] std::vector<Section> group_runs(const gcode::Program& program,
                                               const gcode::Interpretation& interpretation,
-                                              const GroupingOptions& options);
+                                              const GroupingOptions& options,
+                                              std::span<const std::uint32_t> cuts = {});
 
 // Why no motion may be rewritten in this state; empty where it may: one row per unsafe state.
 // G61 (exact path) is lifted by --allow exact-stop; G61.1 and G60 are not, their user asked for

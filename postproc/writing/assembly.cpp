@@ -26,10 +26,16 @@ class Assembler {
             std::span<const RunWork> works, const Additions& additions)
       : program_(program), sections_(sections), works_(works), additions_(additions) {}
 
-  std::string run() {
+  AssembledText run() {
     const std::string_view source = bytes();
+    if (!anything_rewritten()) {
+      for (const Section& section : sections_) {
+        begins_.push_back(program_.blocks[section.first_block].span.begin -
+                          program_.blocks.front().span.begin);
+      }
+      return {std::string(source), std::move(begins_)};
+    }
     text_.reserve(source.size());
-    if (!anything_rewritten()) return std::string(source);
     comment_ = additions_.comment;
     header_at_ = header_place();
     footer_at_ = footer_place();
@@ -38,6 +44,7 @@ class Assembler {
       const RunWork* work =
           next < works_.size() && works_[next].section == i ? &works_[next] : nullptr;
       if (work != nullptr) ++next;
+      begins_.push_back(text_.size());
       add(sections_[i], work);
     }
     leave_runs(line_end_);
@@ -47,7 +54,7 @@ class Assembler {
       }
       add_lines(additions_.words.footer, line_end_);
     }
-    return std::move(text_);
+    return {std::move(text_), std::move(begins_)};
   }
 
  private:
@@ -155,6 +162,7 @@ class Assembler {
   std::span<const RunWork> works_;
   const Additions& additions_;
   std::string text_;
+  std::vector<std::size_t> begins_;
   std::string comment_;
   std::string_view line_end_ = "\n";  // of the last rewritten run
   std::uint32_t header_at_ = 0;
@@ -164,8 +172,8 @@ class Assembler {
 
 }  // namespace
 
-std::string assemble(const gcode::Program& program, std::span<const Section> sections,
-                     std::span<const RunWork> works, const Additions& additions) {
+AssembledText assemble(const gcode::Program& program, std::span<const Section> sections,
+                       std::span<const RunWork> works, const Additions& additions) {
   return Assembler(program, sections, works, additions).run();
 }
 

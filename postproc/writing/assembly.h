@@ -1,9 +1,10 @@
 // The written program: copied bytes, the text of rewritten runs, and what is said around them.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "gcode/program.h"
 #include "postproc/profile/profile_words.h"
@@ -17,12 +18,18 @@ struct Additions {
   ProfileWords words;   // with the tolerance filled in
 };
 
+struct AssembledText {
+  std::string text;
+  std::vector<std::size_t> begins;  // of each section
+};
+
 // The bytes of the program's blocks where nothing is rewritten; additions then are left out too.
 // `works` in the order of their sections. Added lines end as the lines around them do.
 //
 // The header goes before the first block that says anything but a program mark, the footer before
 // the last M2, M30 or M99 outside runs, before the closing % where there is none, or at the end.
-[[nodiscard]] std::string assemble(const gcode::Program& program, std::span<const Section> sections,
-                                   std::span<const RunWork> works, const Additions& additions);
+[[nodiscard]] AssembledText assemble(const gcode::Program& program,
+                                     std::span<const Section> sections,
+                                     std::span<const RunWork> works, const Additions& additions);
 
 }  // namespace batten::postproc

@@ -219,13 +219,12 @@ TEST(ImpliedDecimals, LongProgramsAreReadSoWindowByWindow) {
     SmoothOptions options = undeclared("fanuc");
     if (declared) options.decimals = kIncrements;
     std::string text;
-    const auto windows = smooth_in_windows(
-        source, options,
-        [&text](std::string_view bytes) {
-          text += bytes;
-          return true;
-        },
-        {}, 100);
+    const auto windows = smooth_in_windows(source, options,
+                                           [&text](std::string_view bytes) {
+                                             text += bytes;
+                                             return true;
+                                           },
+                                           {}, {.least_blocks = 100});
     const SmoothResult whole = smoothed(before, options);
     EXPECT_EQ(rewritten_runs(whole), declared ? 4U : 0U);
     EXPECT_TRUE(windows.has_value() || !declared);

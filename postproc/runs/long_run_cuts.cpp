@@ -1,0 +1,131 @@
+#include "postproc/runs/long_run_cuts.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "postproc/runs/run_blocks.h"
+
+namespace batten::postproc {
+
+void LongRunCuts::begin_part(const gcode::Program& program, const gcode::Interpretation& meaning) {
+  program_ = &program;
+  meaning_ = &meaning;
+  asked_state_.reset();
+}
+
+bool LongRunCuts::is_unsafe(std::uint32_t state) {
+  if (asked_state_ != state) {
+    asked_state_ = state;
+    unsafe_ = !unsafe_state(meaning_->states[state], grouping_).empty();
+  }
+  return unsafe_;
+}
+
+void LongRunCuts::take(std::uint32_t block) {
+  const gcode::BlockMeaning& meaning = meaning_->blocks[block];
+  if (!meaning.barrier.empty()) return end_run();
+  if (meaning.motion < 0) {
+    adjacent_ = false;
+    return;
+  }
+  const gcode::Motion& motion = meaning_->motions[static_cast<std::size_t>(meaning.motion)];
+  if (motion.kind != gcode::MotionKind::kLine || !motion.start_known ||
+      is_unsafe(meaning.state_after)) {
+    return end_run();
+  }
+  take_move(block, motion);
+}
+
+void LongRunCuts::take_move(std::uint32_t block, const gcode::Motion& motion) {
+  const RunBlocks blocks(*program_, *meaning_);
+  if (!blocks.moves(block)) {
+    adjacent_ = false;
+    return;
+  }
+  const RunBlocks::Heading heading = blocks.heading(block);
+  if (heading == RunBlocks::Heading::kAlongZ) {
+    if (moves_ > 0) ++plunging_;  // else it is a plunge at the begin
+    adjacent_ = false;
+    return;
+  }
+  const bool flat = heading == RunBlocks::Heading::kInPlane;
+  if (plunging_ > 0 && flat_ && flat) end_run();
+  moves_ += std::exchange(plunging_, 0);
+  add_move(block, geometry::start_point(motion.piece), geometry::end_point(motion.piece));
+  flat_ = flat;
+}
+
+void LongRunCuts::add_move(std::uint32_t block, const geometry::Point3& start,
+                           const geometry::Point3& end) {
+  if (adjacent_ && moves_ >= from_ + limits_.shortest) {
+    const gcode::Block& of_text = program_->blocks[block];
+    candidates_.push_back(
+        {moves_, fitness_at(before_, start, end), {of_text.line, of_text.span.begin}});
+  }
+  ++moves_;
+  before_ = start;
+  adjacent_ = true;
+  cut(false);
+}
+
+// As in cut_places: the best one up to `longest`, and further than that only where there is none.
+// `end`: the last vertex that leaves enough behind it.
+std::optional<LongRunCuts::Candidate> LongRunCuts::choice(std::size_t end) const {
+  std::optional<Candidate> best;
+  for (const Candidate& candidate : candidates_) {
+    if (candidate.vertex > end) break;
+    if (best && candidate.vertex > from_ + limits_.longest) break;
+    if (!best || !(candidate.fitness < best->fitness)) best = candidate;
+  }
+  return best;
+}
+
+// A cut is certain where the run goes on behind all places that could be better.
+void LongRunCuts::cut(bool run_ends) {
+  const std::size_t room = limits_.longest + (run_ends ? 0 : limits_.shortest);
+  while (moves_ - from_ > room && !candidates_.empty()) {
+    const auto best = choice(moves_ - limits_.shortest);
+    if (!best) return;
+    pending_.push_back(best->place);
+    from_ = best->vertex;
+    std::erase_if(candidates_, [&](const Candidate& candidate) {
+      return candidate.vertex < from_ + limits_.shortest;
+    });
+  }
+  if (moves_ + 1 <= limits_.whole_at_most) return;
+  found_.insert(found_.end(), pending_.begin(), pending_.end());
+  pending_.clear();
+}
+
+void LongRunCuts::end_run() {
+  if (moves_ > 0) cut(true);
+  moves_ = 0;
+  plunging_ = 0;
+  flat_ = false;
+  adjacent_ = false;
+  from_ = 0;
+  candidates_.clear();
+  pending_.clear();
+}
+
+void LongRunCuts::end() { end_run(); }
+
+std::vector<LongRunCut> LongRunCuts::found() { return std::exchange(found_, {}); }
+
+std::vector<std::uint32_t> long_run_cuts(const gcode::Program& program,
+                                         const gcode::Interpretation& meaning,
+                                         const LongRunLimits& limits,
+                                         const GroupingOptions& grouping) {
+  if (program.blocks.size() < limits.whole_at_most) return {};
+  LongRunCuts cuts(limits, grouping);
+  cuts.begin_part(program, meaning);
+  for (std::uint32_t i = 0; i < program.blocks.size(); ++i) cuts.take(i);
+  cuts.end();
+  std::vector<std::uint32_t> blocks;
+  for (const LongRunCut& cut : cuts.found()) {
+    blocks.push_back(cut.line - program.blocks.front().line);
+  }
+  return blocks;
+}
+
+}  // namespace batten::postproc

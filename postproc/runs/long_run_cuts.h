@@ -1,0 +1,90 @@
+// Where runs that are too long to be held are cut, found while a program is read from its begin:
+// each place depends on what is read up to some blocks behind it, so the whole of a program and its
+// parts find the same ones.
+//
+// Why a long run is cut, and what the joint costs: docs/long_programs.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "gcode/motion.h"
+#include "gcode/program.h"
+#include "geometry/point.h"
+#include "postproc/runs/cut_fitness.h"
+#include "postproc/runs/run_grouping.h"
+
+namespace batten::postproc {
+
+struct LongRunLimits {
+  std::size_t whole_at_most = 200000;  // points of a run that is not cut
+  std::size_t shortest = 25000;        // motions of a piece; kNeighbourBlocks or more
+  std::size_t longest = 50000;         // the same, but where it cannot be cut
+};
+
+// A block that begins a run of its own.
+struct LongRunCut {
+  std::uint32_t line = 0;   // from 1
+  std::uint32_t begin = 0;  // bytes
+};
+
+// Looks at lines between arcs and all that ends a run: of more than `whole_at_most` points they are
+// cut as cut_places (postproc/runs/run_cutting.h) cuts runs. A place is where a motion follows
+// another one in the next block, and neither goes straight along Z: at the end of a run that would
+// be a plunge.
+class LongRunCuts {
+ public:
+  LongRunCuts(const LongRunLimits& limits, const GroupingOptions& grouping)
+      : limits_(limits), grouping_(grouping) {}
+
+  // The blocks that follow are those of this part, which must outlive them.
+  void begin_part(const gcode::Program& program, const gcode::Interpretation& meaning);
+  void take(std::uint32_t block);
+  void end();  // of the program
+
+  // Those that are certain and were not given yet, in order.
+  [[nodiscard]] std::vector<LongRunCut> found();
+
+ private:
+  struct Candidate {
+    std::size_t vertex = 0;
+    Fitness fitness;
+    LongRunCut place;
+  };
+
+  void take_move(std::uint32_t block, const gcode::Motion& motion);
+  void add_move(std::uint32_t block, const geometry::Point3& start, const geometry::Point3& end);
+  void cut(bool run_ends);
+  [[nodiscard]] std::optional<Candidate> choice(std::size_t end) const;
+  void end_run();
+  [[nodiscard]] bool is_unsafe(std::uint32_t state);
+
+  LongRunLimits limits_;
+  GroupingOptions grouping_;
+  const gcode::Program* program_ = nullptr;
+  const gcode::Interpretation* meaning_ = nullptr;
+  std::optional<std::uint32_t> asked_state_;
+  bool unsafe_ = false;  // that state
+
+  // The run that goes on.
+  std::size_t moves_ = 0;     // also the index of its last vertex
+  std::size_t plunging_ = 0;  // moves along Z behind it, which may be a plunge
+  bool flat_ = false;         // its last move
+  bool adjacent_ = false;     // that move is the last block
+  geometry::Point3 before_ = geometry::Point3::Zero();  // where its last move starts
+  std::size_t from_ = 0;                                // vertex: the last cut
+  std::vector<Candidate> candidates_;                   // `shortest` and more behind it
+  std::vector<LongRunCut> pending_;                     // of a run that may still be short
+  std::vector<LongRunCut> found_;
+};
+
+// Of a whole program, as block indices.
+[[nodiscard]] std::vector<std::uint32_t> long_run_cuts(const gcode::Program& program,
+                                                       const gcode::Interpretation& meaning,
+                                                       const LongRunLimits& limits,
+                                                       const GroupingOptions& grouping);
+
+}  // namespace batten::postproc

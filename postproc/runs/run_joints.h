@@ -1,0 +1,25 @@
+// The moves on both sides of the place where a long run is cut (postproc/runs/long_run_cuts.h).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gcode/motion.h"
+#include "gcode/program.h"
+#include "postproc/machine/cycle_time.h"
+
+namespace batten::postproc {
+
+// The machine looks ahead over no more blocks to stop.
+inline constexpr std::uint32_t kNeighbourBlocks = 100;
+
+// What is cut in the last of the blocks before `block`, and in it and those behind it: no more than
+// that many blocks, and none beyond what ends a run.
+[[nodiscard]] std::vector<TimedPiece> moves_before(const gcode::Program& program,
+                                                   const gcode::Interpretation& meaning,
+                                                   std::uint32_t block);
+[[nodiscard]] std::vector<TimedPiece> moves_from(const gcode::Program& program,
+                                                 const gcode::Interpretation& meaning,
+                                                 std::uint32_t block);
+
+}  // namespace batten::postproc

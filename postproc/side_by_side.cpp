@@ -1,0 +1,19 @@
+#include "postproc/side_by_side.h"
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace batten::postproc {
+
+void side_by_side(int threads, std::size_t count, const std::function<void(std::size_t)>& one) {
+  const auto all = [&] { oneapi::tbb::parallel_for(std::size_t{0}, count, one); };
+  if (threads == kThreadsOfCaller) {
+    // A thread that waits here must not begin with other work of the caller.
+    oneapi::tbb::this_task_arena::isolate(all);
+    return;
+  }
+  oneapi::tbb::task_arena arena(threads > 0 ? threads : oneapi::tbb::task_arena::automatic);
+  arena.execute(all);
+}
+
+}  // namespace batten::postproc
