@@ -261,7 +261,7 @@ class CommonLister {
     std::string text = motion.kind == MotionKind::kRapid  ? "rapid"
                        : motion.kind == MotionKind::kLine ? "line"
                                                           : "arc from a place that is not known";
-    const geometry::Point3 end = geometry::end_point(motion.piece);
+    const geometry::Point3 end = motion.piece.end();
     for (int axis = 0; axis < 3; ++axis) {
       if (!motion.axes_named[static_cast<std::size_t>(axis)]) continue;
       text += fmt::format(" {}{}", "XYZ"[axis], gcode::to_text(end[axis], kPlace));
@@ -271,9 +271,8 @@ class CommonLister {
     return text;
   }
 
-  static bool has_length(const geometry::PathPiece& piece) {
-    const auto* line = std::get_if<geometry::Line>(&piece);
-    return line == nullptr || line->start != line->end;
+  static bool has_length(const gcode::MotionPath& path) {
+    return !path.is_line() || path.start() != path.end();
   }
 
   void add_cut(const BlockMeaning& meaning) {

@@ -19,7 +19,7 @@ std::uint32_t line_of(const ProgramEvent& event, const ReadProgram& read) {
 std::string describe(const ProgramEvent& event, const ReadProgram& read) {
   if (event.kind != EventKind::kRapid) return event.text;
   const auto& motion = read.interpretation->motions[static_cast<std::size_t>(event.motion)];
-  const geometry::Point3 end = geometry::end_point(motion.piece);
+  const geometry::Point3& end = motion.piece.end();
   return fmt::format("rapid to X{:.6g} Y{:.6g} Z{:.6g} mm", end.x(), end.y(), end.z());
 }
 

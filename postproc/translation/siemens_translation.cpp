@@ -84,12 +84,11 @@ class SiemensSpeaker {
 
   void check(const Act& act) {
     if (act.kind != ActKind::kMotion) return;
-    const auto& piece = source_.meaning.motions[static_cast<std::size_t>(act.motion)].piece;
-    const auto* arc = std::get_if<geometry::Arc>(&piece);
+    const auto* arc = source_.meaning.motions[static_cast<std::size_t>(act.motion)].piece.arc();
     if (arc == nullptr) return;
     const double rise = arc->axis.dot(arc->end - arc->start);
-    constexpr double kSameHeight = 1e-9;  // mm
-    if (std::abs(rise) > kSameHeight) text_.refuse(act.where, "is a helix");
+    constexpr double kNoRise = 1e-9;  // mm
+    if (std::abs(rise) > kNoRise) text_.refuse(act.where, "is a helix");
   }
 
   const TranslationSource& source_;
