@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gcode/curves/curve_format.h"
+#include "gcode/large_pages.h"
 #include "gcode/reason.h"
 #include "geometry/numeric.h"
 #include "postproc/machine/cycle_time.h"
@@ -463,12 +464,13 @@ std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::siz
   std::vector<TimedPiece> pieces;
   std::size_t next = 0;
   double feed = 0;
-  pieces.reserve(last - first);
-  for (RunMotion& motion : motions_between(run, first, last)) {
-    while (next < run.feeds.size() && run.feeds[next].vertex <= motion.first) {
+  gcode::reserve_in_large_pages(pieces, last - first);
+  MotionWalk walk(run, first, last);
+  while (auto motion = walk.next()) {
+    while (next < run.feeds.size() && run.feeds[next].vertex <= motion->first) {
       feed = run.feeds[next++].feed;
     }
-    pieces.push_back({std::move(motion.piece), feed});
+    pieces.push_back({std::move(motion->piece), feed});
   }
   return pieces;
 }
