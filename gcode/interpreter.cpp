@@ -11,6 +11,7 @@
 #include "gcode/control_state.h"
 #include "gcode/curves/curve_in_program.h"
 #include "gcode/klartext/state.h"
+#include "gcode/large_pages.h"
 #include "gcode/motion_words.h"
 #include "gcode/opaque_blocks.h"
 #include "gcode/part_reading.h"
@@ -27,15 +28,21 @@ namespace {
 
 class Interpreter {
  public:
-  Interpreter(const Program& program, const CurveFormat* curves, ControlCarry& carry,
+  Interpreter(const Program& program, const ReadOptions& options, ControlCarry& carry,
               Diagnostics& found)
-      : program_(program), curves_(curves), carry_(carry), found_(found), now_(carry.state) {
+      : program_(program),
+        curves_(options.curves),
+        has_plain_way_(options.short_ways && program.language == Language::kRs274),
+        carry_(carry),
+        found_(found),
+        now_(carry.state) {
     carry.is_klartext = is_klartext();
     if (is_klartext()) start_klartext(now_);
     read_.unit_word_seen = carry.unit_word_seen;
     read_.states.push_back(now_.modal);
-    read_.blocks.reserve(program.blocks.size());
-    read_.motions.reserve(program.blocks.size());  // nearly every block of a long program moves
+    reserve_in_large_pages(read_.blocks, program.blocks.size());
+    reserve_in_large_pages(read_.motions,
+                           program.blocks.size());  // nearly every block of a long program moves
   }
 
   Interpretation run() {
@@ -43,7 +50,7 @@ class Interpreter {
     const std::vector<BlockFlow>& flow = whole_flow.blocks;
     const auto count = static_cast<std::uint32_t>(program_.blocks.size());
     for (std::uint32_t i = 0; i < count;) {
-      if (read_plain_line(program_, i, flow[i], now_, read_)) {
+      if (has_plain_way_ && read_plain_line(program_, i, flow[i], now_, read_)) {
         ++i;
       } else if (const auto curve = curve_at(program_, i, now_, curves_, flow)) {
         add_curve(i, *curve);
@@ -116,7 +123,7 @@ class Interpreter {
       read_.blocks.push_back(meaning_);
     }
     // It started where the place was known, and so it ends.
-    now_.position.mm = geometry::end_point(read_.motions.back().piece);
+    now_.position.mm = read_.motions.back().piece.end();
   }
 
   [[nodiscard]] bool has_feed_without_point(std::uint32_t first, std::uint32_t count) const {
@@ -412,8 +419,9 @@ class Interpreter {
     Motion motion;
     motion.kind = now_.modal.motion == MotionMode::kRapid ? MotionKind::kRapid : MotionKind::kLine;
     motion.piece = geometry::Line{now_.position.mm, end.mm};
-    add_motion(motion, words, end);
-    if (motion.kind == MotionKind::kRapid) {
+    const bool rapid = motion.kind == MotionKind::kRapid;
+    add_motion(std::move(motion), words, end);
+    if (rapid) {
       block_run(reason::kRapid);
     }
     return true;
@@ -431,11 +439,11 @@ class Interpreter {
     Motion motion;
     motion.kind = MotionKind::kArc;
     motion.piece = *reading.arc;
-    add_motion(motion, words, end);
+    add_motion(std::move(motion), words, end);
     return true;
   }
 
-  void add_motion(Motion& motion, const BlockWords& words, const Position& end) {
+  void add_motion(Motion motion, const BlockWords& words, const Position& end) {
     motion.block = block_index_;
     motion.start_known = true;
     motion.end_known = true;
@@ -446,7 +454,7 @@ class Interpreter {
     }
     now_.position = end;
     meaning_.motion = static_cast<std::int32_t>(read_.motions.size());
-    read_.motions.push_back(motion);
+    read_.motions.push_back(std::move(motion));
   }
 
   // --- diagnostics --------------------------------------------------------------------------
@@ -474,6 +482,7 @@ class Interpreter {
 
   const Program& program_;
   const CurveFormat* curves_;
+  bool has_plain_way_;
   ControlCarry& carry_;
   Diagnostics& found_;
   ControlState now_;
@@ -495,7 +504,7 @@ Interpretation interpret(const Program& program, const ReadOptions& options, Dia
 
 Interpretation interpret_part(const Program& part, const ReadOptions& options, ControlCarry& carry,
                               Diagnostics& found) {
-  return Interpreter(part, options.curves, carry, found).run();
+  return Interpreter(part, options, carry, found).run();
 }
 
 void finish_interpretation(const ControlCarry& carry, Diagnostics& found) {

@@ -14,6 +14,7 @@ struct ReadOptions {
   // The curves of the control that the program is for; all others are motions that cannot be
   // followed. nullptr: none are read.
   const CurveFormat* curves = nullptr;
+  bool short_ways = true;  // for simple blocks (gcode/plain_line.h); they change nothing
 };
 
 // Follows the program from its first block to its last, as a control would, without loops

@@ -66,7 +66,32 @@ SourceSpan without_blanks(std::string_view text, const LineBounds& line) {
   return {begin, line.text_end};
 }
 
-// Most lines of a long program are none, and are seen to be so at their first letter.
+// A line that may be one has one of these letters: 1 for them, 0 for others. Asked without a
+// branch, so that the compiler asks many at once.
+constexpr unsigned char is_letter_of_mark(char c) {
+  const auto small = static_cast<unsigned char>(c | ('a' - 'A'));
+  return (c == '%' ? 1 : 0) | (c == ';' ? 1 : 0) | (small == 'b' ? 1 : 0) | (small == 'd' ? 1 : 0);
+}
+
+// Whether any of so many characters is one.
+constexpr std::size_t kStretch = 64;
+bool has_letter_of_mark(const char* stretch) {
+  unsigned char any = 0;
+  for (std::size_t i = 0; i < kStretch; ++i) {
+    any = static_cast<unsigned char>(any | is_letter_of_mark(stretch[i]));
+  }
+  return any != 0;
+}
+
+// The first of them at or behind `at`; the end of the text where there is none. Most of a long
+// program has none.
+std::size_t find_letter_of_mark(std::string_view text, std::size_t at) {
+  while (text.size() - at >= kStretch && !has_letter_of_mark(text.data() + at)) at += kStretch;
+  while (at < text.size() && is_letter_of_mark(text[at]) == 0) ++at;
+  return at;
+}
+
+// Most of the others are seen to be none at their first letter.
 bool may_be_mark(std::string_view line) {
   std::size_t at = 0;
   if (!line.empty() && upper(line.front()) == 'N') {
@@ -89,10 +114,22 @@ std::size_t end_of_part(std::string_view text, std::size_t begin) {
   return feed == std::string_view::npos || feed < begin ? text.size() : feed + 1;
 }
 
+std::size_t begin_of_line(std::string_view text, std::size_t at) {
+  while (at > 0 && text[at - 1] != '\n' && text[at - 1] != '\r') --at;
+  return at;
+}
+
 void add_marks_of(const SourceText& source, SourceSpan part, std::vector<LanguageMark>& marks) {
-  LineCursor lines(source.text(part));
-  while (const auto line = lines.next()) {
-    SourceSpan span = without_blanks(source.text(part), *line);
+  const std::string_view part_text = source.text(part);
+  LineCursor lines(part_text);
+  for (std::size_t at = find_letter_of_mark(part_text, 0); at < part_text.size();) {
+    lines.go_to(begin_of_line(part_text, at));
+    const auto line = lines.next();
+    if (!line) {
+      return;
+    }
+    at = find_letter_of_mark(part_text, line->end);
+    SourceSpan span = without_blanks(part_text, *line);
     span = {span.begin + part.begin, span.end + part.begin};
     const std::string_view text = source.text(span);
     if (!may_be_mark(text)) {

@@ -20,6 +20,9 @@ class LineCursor {
   // `from`: the begin of a line.
   explicit LineCursor(std::string_view text, std::size_t from = 0) : text_(text), at_(from) {}
 
+  // Goes on at the begin of a line, behind the last one.
+  void go_to(std::size_t at) { at_ = at; }
+
   // The next line; nothing after the last one. An empty text has no line, and a line end at
   // the end of the text starts no further line.
   [[nodiscard]] std::optional<LineBounds> next() {

@@ -4,12 +4,12 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include "gcode/modal_state.h"
+#include "gcode/motion_path.h"
 #include "gcode/program.h"
-#include "geometry/path.h"
+#include "gcode/reason_id.h"
 
 namespace batten::gcode {
 
@@ -31,7 +31,7 @@ struct Motion {
   bool end_known = false;
   std::array<bool, 3> axes_named = {false, false, false};  // X, Y, Z stand in the block
   // A Line for kRapid and kLine, an Arc for kArc, a CubicBezier for kCurve; absolute mm.
-  geometry::PathPiece piece;
+  MotionPath piece;
 };
 
 // What a block is, as far as grouping and checking are concerned.
@@ -50,9 +50,7 @@ struct BlockMeaning {
   // Why this block itself cannot be part of a run; empty where it can (see reason.h). The state
   // may still forbid it. Empty also for blocks without motion that may stand inside a run and
   // vanish with it: empty lines, comments, and words that change nothing or the feed only.
-  std::string_view barrier;
-  std::int32_t motion = -1;       // index into Interpretation::motions, -1: none
-  std::uint32_t state_after = 0;  // index into Interpretation::states
+  ReasonId barrier;
   bool label_referenced = false;  // its N number is the target of GOTO, P, M97, M99 ..
   // Before this block the state and place are not what the block before it left: control can
   // come from elsewhere (a label that is jumped to).
@@ -60,6 +58,8 @@ struct BlockMeaning {
   // One of the blocks that say a curve together, which is read exactly. Each of its pieces is the
   // motion of one of them. `barrier` is reason::kSpline: curves are copied.
   bool of_curve = false;
+  std::int32_t motion = -1;       // index into Interpretation::motions, -1: none
+  std::uint32_t state_after = 0;  // index into Interpretation::states
 };
 
 struct Interpretation {

@@ -11,9 +11,11 @@
 #include "gcode/characters.h"
 #include "gcode/klartext/parser.h"
 #include "gcode/language_marks.h"
+#include "gcode/large_pages.h"
 #include "gcode/lexer.h"
 #include "gcode/line_cursor.h"
 #include "gcode/part_reading.h"
+#include "gcode/plain_words.h"
 #include "gcode/program_marks.h"
 #include "gcode/siemens/block.h"
 
@@ -46,7 +48,8 @@ class Parser {
         text_(source.text()),
         end_(end),
         carry_(carry),
-        found_(found) {}
+        found_(found),
+        has_plain_way_(carry.short_ways && language == Language::kRs274) {}
 
   Program run() {
     reserve();
@@ -59,12 +62,16 @@ class Parser {
            "the file is text of 16 bits per character (UTF-16); expected bytes of ASCII. Save it "
            "as plain text or UTF-8");
     }
-    LineCursor lines(text_.substr(0, end_.byte), carry_.begin);
+    const std::string_view text = text_.substr(0, end_.byte);
+    LineCursor lines(text, carry_.begin);
     while (program_.blocks.size() < end_.blocks) {
-      const auto line = lines.next();
-      if (!line) break;
-      read_block(*line);
-      carry_.begin = line->end;
+      if (!read_plain_block(text)) {
+        lines.go_to(carry_.begin);
+        const auto line = lines.next();
+        if (!line) break;
+        read_block(*line);
+        carry_.begin = line->end;
+      }
     }
     carry_.blocks += static_cast<std::uint32_t>(program_.blocks.size());
     return std::move(program_);
@@ -79,17 +86,43 @@ class Parser {
     constexpr std::size_t kBytesPerWord = 6;
     const std::size_t bytes = std::min<std::size_t>(text_.size(), end_.byte) - carry_.begin;
     const std::size_t blocks = std::min(bytes / kBytesPerBlock, end_.blocks);
-    program_.blocks.reserve(blocks + 1);
-    program_.words.reserve(std::min(bytes, blocks * kMostBytesPerBlock) / kBytesPerWord + 1);
+    reserve_in_large_pages(program_.blocks, blocks + 1);
+    reserve_in_large_pages(program_.words,
+                           std::min(bytes, blocks * kMostBytesPerBlock) / kBytesPerWord + 1);
   }
 
-  void read_block(const LineBounds& line) {
+  // False, and nothing read, where the line at the begin of what is left is no line of plain words.
+  bool read_plain_block(std::string_view text) {
+    if (!has_plain_way_ || carry_.begin >= text.size()) return false;
+    Block block = block_here();
+    const auto line = read_plain_words(text, carry_.begin, program_.words);
+    if (!line || line->text_end - line->begin > kLongestLine) {
+      program_.words.resize(block.first_word);
+      return false;
+    }
+    block.span = {line->begin, line->text_end};
+    block.end = line->end;
+    block.word_count = static_cast<std::uint32_t>(program_.words.size()) - block.first_word;
+    carry_.words_seen = carry_.words_seen || block.word_count > 0;
+    read_decimals(block);
+    program_.blocks.push_back(block);
+    carry_.begin = line->end;
+    return true;
+  }
+
+  // The next one, without its line.
+  [[nodiscard]] Block block_here() const {
     Block block;
-    block.span = {line.begin, line.text_end};
-    block.end = line.end;
     block.line = carry_.blocks + static_cast<std::uint32_t>(program_.blocks.size()) + 1;
     block.first_word = static_cast<std::uint32_t>(program_.words.size());
     block.first_comment = static_cast<std::uint32_t>(program_.comments.size());
+    return block;
+  }
+
+  void read_block(const LineBounds& line) {
+    Block block = block_here();
+    block.span = {line.begin, line.text_end};
+    block.end = line.end;
     const SourceSpan content = without_filling(block);
     if (content.size() > 0 && text_[content.begin] == '%') {
       read_mark(block, content);
@@ -381,6 +414,7 @@ class Parser {
   PartEnd end_;
   TextCarry& carry_;
   Diagnostics& found_;
+  bool has_plain_way_;
   bool told_in_block_ = false;
   bool iso_mode_ = false;
 };
@@ -427,6 +461,7 @@ Program parse(const SourceText& source, const Reading& reading, Diagnostics& fou
   if (reading.language == Language::kRs274) {
     carry.decimals = DecimalPoints(reading.decimals, reading.units);
   }
+  carry.short_ways = reading.short_ways;
   Program program = Parser(source, reading.language, {}, carry, found).run();
   tell_floods(carry, found);
   carry.decimals.tell(found);
@@ -436,7 +471,7 @@ Program parse(const SourceText& source, const Reading& reading, Diagnostics& fou
 }
 
 Program parse(const SourceText& source, Language language, Diagnostics& found) {
-  return parse(source, Reading{.language = language, .decimals = {}}, found);
+  return parse(source, Reading{.language = language}, found);
 }
 
 Program parse(const SourceText& source, Diagnostics& found) {

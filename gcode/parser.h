@@ -17,6 +17,7 @@ struct Reading {
   Language language = Language::kRs274;
   Decimals decimals = {};         // of the RS-274 family
   Units units = Units::kUnknown;  // of a program that names none
+  bool short_ways = true;         // for simple lines (gcode/plain_words.h); they change nothing
 };
 
 // Adds to `found` what is worth telling (each id in docs/diagnostics.md): at most one

@@ -38,6 +38,7 @@ struct TextCarry {
   std::uint32_t begin = 0;                 // bytes
   std::uint32_t blocks = 0;                // lines before it
   std::optional<std::size_t> content_end;  // of the whole: only filling and line ends behind it
+  bool short_ways = true;                  // as Reading::short_ways
   bool words_seen = false;
   bool foreign_told = false;
   ToldCount unreadable;

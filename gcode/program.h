@@ -28,7 +28,7 @@ struct Word {
   SourceSpan span;  // in its block; a centre of Klartext stands in the block of the CC
 };
 
-enum class CommentKind {
+enum class CommentKind : std::uint8_t {
   kParenthesis,  // (text)
   kSemicolon,    // ; text to the end of the line
   kActive,       // (MSG,..) (DEBUG,..) (PRINT,..) (LOG..) (PROBE..): acts when it is reached
@@ -43,7 +43,7 @@ struct Comment {
 //
 // A block of kNone, kExpression or kCornerWord lists all its words. The others list the words
 // that were read before the reader stopped, so that an N number is there when it came first.
-enum class Opacity {
+enum class Opacity : std::uint8_t {
   kNone,         // understood as words and comments
   kUnreadable,   // no grammar that is known
   kExpression,   // a word whose value is an expression or a parameter, X[#1+2], X#5, or is not

@@ -112,19 +112,27 @@ bool names_flow(const Word& word) {
   return word.letter == 'N' || word.letter == 'M' || word.letter == 'G';
 }
 
+struct LabelledBlock {
+  std::size_t block = 0;
+  Label label = 0;
+};
+
 class FlowFinder {
  public:
-  explicit FlowFinder(const Program& program)
-      : program_(program), flow_(program.blocks.size()), labels_(program.blocks.size()) {}
+  explicit FlowFinder(const Program& program) : program_(program), flow_(program.blocks.size()) {}
 
   ProgramFlow find() {
     for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
       read_block(i);
     }
     close_segment(program_.blocks.size());
-    mark_labels();
-    mark_contours();
-    reaches_out_ |= !jump_targets_.empty() || any_label_ || !contours_.empty();
+    const bool refers = !jump_targets_.empty() || any_label_ || !contours_.empty();
+    reaches_out_ |= refers;
+    if (refers) {
+      find_labels();
+      mark_labels();
+      mark_contours();
+    }
     return {std::move(flow_), reaches_out_};
   }
 
@@ -140,23 +148,21 @@ class FlowFinder {
       flow_[i].in_body |= depth_ > 0;
       return;
     }
-    labels_[i] = whole_number(find_word(words, 'N'));
     if (block.opacity != Opacity::kNone) {
       read_text(i, block.opacity == Opacity::kFlow);
     }
     if (find_word(words, 'M') != nullptr) {
       read_calls(words);
     }
-    read_lathe_cycle(words);
+    if (find_word(words, 'G') != nullptr) {
+      read_lathe_cycle(words);
+    }
     flow_[i].in_body |= depth_ > 0;
   }
 
   void read_text(std::size_t i, bool is_flow) {
     const std::string_view text = program_.source.text(program_.blocks[i].span);
     const std::string bare = bare_words(text);
-    if (!labels_[i]) {
-      labels_[i] = leading_label(text);
-    }
     find_jumps(bare);
     if (!is_flow) {
       return;
@@ -259,14 +265,29 @@ class FlowFinder {
     segment_is_subprogram_ = false;
   }
 
-  void mark_labels() {
-    if (jump_targets_.empty() && !any_label_) {
-      return;
+  void find_labels() {
+    for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
+      if (const auto label = label_of(program_.blocks[i])) {
+        labels_.push_back({i, *label});
+      }
     }
-    for (std::size_t i = 0; i < labels_.size(); ++i) {
-      if (labels_[i] && (any_label_ || jump_targets_.contains(*labels_[i]))) {
-        flow_[i].label_referenced = true;
-        flow_[i].jump_target = true;
+  }
+
+  [[nodiscard]] std::optional<Label> label_of(const Block& block) const {
+    if (block.opacity == Opacity::kProgramMark) {
+      return std::nullopt;
+    }
+    const auto label = whole_number(find_word(program_.words_of(block), 'N'));
+    return label || block.opacity == Opacity::kNone
+               ? label
+               : leading_label(program_.source.text(block.span));
+  }
+
+  void mark_labels() {
+    for (const LabelledBlock& each : labels_) {
+      if (any_label_ || jump_targets_.contains(each.label)) {
+        flow_[each.block].label_referenced = true;
+        flow_[each.block].jump_target = true;
       }
     }
   }
@@ -274,9 +295,12 @@ class FlowFinder {
   void mark_contours() {
     for (const auto& [first, last] : contours_) {
       bool inside = false;
-      for (std::size_t i = 0; i < labels_.size(); ++i) {
-        const bool is_first = labels_[i] == first;
-        const bool is_last = labels_[i] == last;
+      auto next = labels_.begin();
+      for (std::size_t i = 0; i < flow_.size(); ++i) {
+        const bool labelled = next != labels_.end() && next->block == i;
+        const bool is_first = labelled && next->label == first;
+        const bool is_last = labelled && next->label == last;
+        if (labelled) ++next;
         flow_[i].label_referenced |= is_first || is_last;
         inside |= is_first;
         flow_[i].in_body |= inside;
@@ -287,7 +311,7 @@ class FlowFinder {
 
   const Program& program_;
   std::vector<BlockFlow> flow_;
-  std::vector<std::optional<Label>> labels_;
+  std::vector<LabelledBlock> labels_;  // in order; found where something refers to one
   std::unordered_set<Label> jump_targets_;
   std::vector<std::pair<Label, Label>> contours_;
   bool any_label_ = false;

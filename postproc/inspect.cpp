@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "gcode/large_pages.h"
 #include "geometry/numeric.h"
 #include "geometry/path.h"
-#include "postproc/runs/run_path.h"
 
 namespace batten::postproc {
 
@@ -25,27 +26,52 @@ double median_of(std::vector<double> values) {
          2;
 }
 
-// atan2 keeps small turns exact where acos loses half of the digits.
-double turn_in_degrees(const Vector3& from, const Vector3& to) {
-  return std::atan2(from.cross(to).norm(), from.dot(to)) * 180 / std::numbers::pi;
-}
+// The greatest turn of a chain of directions, each a unit vector or zero where there is none.
+class GreatestTurn {
+ public:
+  // `vertex`: where it is.
+  void add(const Vector3& from, const Vector3& to, std::size_t vertex) {
+    if (from.isZero() || to.isZero()) return;
+    const Vector3 across = from.cross(to);
+    const double along = from.dot(to);
+    if (along > 0 && across.squaredNorm() <= certainly_less_) return;
+    // atan2 keeps small turns exact where acos loses half of the digits.
+    const double turn = std::atan2(across.norm(), along);
+    if (!(turn > radians_)) return;
+    radians_ = turn;
+    vertex_ = vertex;
+    // Sines rise up to a right angle. Far above the rounding of unit vectors and of a sine.
+    constexpr double kRounding = 1e-9;
+    const double sine = std::sin(std::min(turn, std::numbers::pi / 2)) * (1 - kRounding);
+    certainly_less_ = sine * sine;
+  }
+
+  [[nodiscard]] double degrees() const { return radians_ * 180 / std::numbers::pi; }
+  [[nodiscard]] std::size_t vertex() const { return vertex_; }
+
+ private:
+  double radians_ = 0;
+  std::size_t vertex_ = 0;
+  double certainly_less_ = 0;  // squared sine of turns that are less than the greatest so far
+};
 
 bool moves(const gcode::Interpretation& interpretation, std::uint32_t block) {
   const std::int32_t motion = interpretation.blocks[block].motion;
   if (motion < 0) return false;
-  const auto& piece = interpretation.motions[static_cast<std::size_t>(motion)].piece;
-  return geometry::length_of(piece) > geometry::kSamePlace;
+  const gcode::MotionPath& path = interpretation.motions[static_cast<std::size_t>(motion)].piece;
+  const double length =
+      path.is_line() ? (path.end() - path.start()).norm() : geometry::length_of(path);
+  return length > geometry::kSamePlace;
 }
 
-// The lines of the blocks that move, in order: one per segment of a run.
-std::vector<std::uint32_t> lines_of_motions(const gcode::Program& program,
-                                            const gcode::Interpretation& interpretation,
-                                            const Section& section) {
-  std::vector<std::uint32_t> lines;
-  for (std::uint32_t block = section.first_block; block <= section.last_block; ++block) {
-    if (moves(interpretation, block)) lines.push_back(program.blocks[block].line);
+// The line of the section's block that moves, counted from 1 among those that do; 0 for none.
+std::uint32_t line_of_motion(std::size_t number, const gcode::Program& program,
+                             const gcode::Interpretation& interpretation, const Section& section) {
+  std::size_t left = number;
+  for (std::uint32_t b = section.first_block; left > 0 && b <= section.last_block; ++b) {
+    if (moves(interpretation, b) && --left == 0) return program.blocks[b].line;
   }
-  return lines;
+  return 0;
 }
 
 std::size_t cutting_moves_in(const gcode::Interpretation& interpretation, const Section& section) {
@@ -61,41 +87,78 @@ std::size_t cutting_moves_in(const gcode::Interpretation& interpretation, const 
   return count;
 }
 
-void describe_run(const Run& run, const std::vector<std::uint32_t>& lines,
-                  InspectedSection& section) {
+void describe_run(const Run& run, InspectedSection& section) {
   section.closed = run.closed;
   section.decimals = run.decimals;
-  section.segments = segment_statistics(run, lines);
+  section.segments = segment_statistics(run);
   if (run.feeds.empty()) return;
   const auto [least, greatest] = std::ranges::minmax(run.feeds, {}, &FeedFrom::feed);
   section.least_feed = least.feed;
   section.greatest_feed = greatest.feed;
 }
 
+// What is asked of the motions of a run, one after the other.
+class SegmentTally {
+ public:
+  explicit SegmentTally(const Run& run) {
+    gcode::reserve_in_large_pages(lengths_, run.points.size());
+  }
+
+  void add_line(const Vector3& way) {
+    const double length = way.norm();
+    const Vector3 direction = length > 0 ? Vector3(way / length) : Vector3(Vector3::Zero());
+    add(length, direction, direction);
+  }
+  void add_arc(const geometry::Arc& arc) {
+    add(geometry::length_of(arc), geometry::direction_at(arc, 0), geometry::direction_at(arc, 1));
+  }
+
+  SegmentStatistics take() {
+    SegmentStatistics statistics;
+    if (lengths_.empty()) return statistics;
+    statistics.count = lengths_.size();
+    statistics.shortest = shortest_;
+    statistics.longest = longest_;
+    statistics.length = length_;
+    statistics.greatest_turn_deg = turn_.degrees();
+    statistics.turn_motion = turn_.vertex();
+    statistics.median = median_of(std::move(lengths_));
+    return statistics;
+  }
+
+ private:
+  void add(double length, const Vector3& start, const Vector3& end) {
+    turn_.add(before_, start, lengths_.size());
+    lengths_.push_back(length);
+    length_ += length;
+    shortest_ = std::min(shortest_, length);
+    longest_ = std::max(longest_, length);
+    before_ = end;
+  }
+
+  std::vector<double> lengths_;
+  double length_ = 0;
+  double shortest_ = std::numeric_limits<double>::infinity();
+  double longest_ = 0;
+  GreatestTurn turn_;
+  Vector3 before_ = Vector3::Zero();
+};
+
 }  // namespace
 
-SegmentStatistics segment_statistics(const Run& run, const std::vector<std::uint32_t>& lines) {
-  SegmentStatistics statistics;
-  std::vector<double> lengths;
-  Vector3 before = Vector3::Zero();
-  for (const RunMotion& motion : motions_between(run, 0, run.points.size() - 1)) {
-    const Vector3 start = geometry::direction_at(motion.piece, 0);
-    const double turn = before.isZero() ? 0 : turn_in_degrees(before, start);
-    if (turn > statistics.greatest_turn_deg) {
-      statistics.greatest_turn_deg = turn;
-      const std::size_t i = lengths.size();
-      statistics.turn_line = i > 0 && i <= lines.size() ? lines[i - 1] : 0;
+SegmentStatistics segment_statistics(const Run& run) {
+  SegmentTally tally(run);
+  auto arc = run.arcs.begin();
+  for (std::size_t i = 0; i + 1 < run.points.size();) {
+    if (arc != run.arcs.end() && arc->first == i) {
+      tally.add_arc(arc->arc);
+      i = arc++->last;
+    } else {
+      tally.add_line(run.points[i + 1] - run.points[i]);
+      ++i;
     }
-    lengths.push_back(geometry::length_of(motion.piece));
-    before = geometry::direction_at(motion.piece, 1);
   }
-  if (lengths.empty()) return statistics;
-  statistics.count = lengths.size();
-  statistics.shortest = *std::ranges::min_element(lengths);
-  statistics.longest = *std::ranges::max_element(lengths);
-  for (const double length : lengths) statistics.length += length;
-  statistics.median = median_of(std::move(lengths));
-  return statistics;
+  return tally.take();
 }
 
 std::vector<InspectedSection> inspect(const gcode::Program& program,
@@ -111,8 +174,9 @@ std::vector<InspectedSection> inspect(const gcode::Program& program,
     if (const auto* verbatim = std::get_if<Verbatim>(&section.content)) {
       description.reason = verbatim->reason;
     } else {
-      describe_run(std::get<Run>(section.content),
-                   lines_of_motions(program, interpretation, section), description);
+      describe_run(std::get<Run>(section.content), description);
+      description.segments.turn_line =
+          line_of_motion(description.segments.turn_motion, program, interpretation, section);
     }
     inspected.push_back(description);
   }

@@ -19,7 +19,8 @@ struct SegmentStatistics {
   double longest = 0;            // mm
   double length = 0;             // mm, of the whole run
   double greatest_turn_deg = 0;  // at the vertices between the segments
-  std::uint32_t turn_line = 0;   // line of the block that ends at that vertex; 0: no turn
+  std::size_t turn_motion = 0;   // of the run, from 1, that ends at that vertex; 0: no turn
+  std::uint32_t turn_line = 0;   // line of its block; 0: no turn, or not asked for
 };
 
 // One section of the program; a run when `reason` is empty.
@@ -40,9 +41,7 @@ struct InspectedSection {
                                                     const gcode::Interpretation& interpretation,
                                                     const std::vector<Section>& sections);
 
-// Of the run's motions. `lines[i]` is the line of the block of motion i; may be empty when no line
-// is wanted.
-[[nodiscard]] SegmentStatistics segment_statistics(const Run& run,
-                                                   const std::vector<std::uint32_t>& lines);
+// Of the run's motions. Their lines are not known here: `turn_line` is 0.
+[[nodiscard]] SegmentStatistics segment_statistics(const Run& run);
 
 }  // namespace batten::postproc

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "gcode/curves/curve_format.h"
+#include "gcode/large_pages.h"
 #include "gcode/reason.h"
 #include "geometry/numeric.h"
 #include "postproc/machine/cycle_time.h"
@@ -557,20 +558,14 @@ std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::siz
   std::vector<TimedPiece> pieces;
   std::size_t next = 0;
   double feed = 0;
-  pieces.reserve(last - first);
-  const auto add = [&](const geometry::PathPiece& piece, std::size_t from) {
-    while (next < run.feeds.size() && run.feeds[next].vertex <= from) {
+  gcode::reserve_in_large_pages(pieces, last - first);
+  MotionWalk walk(run, first, last);
+  while (auto motion = walk.next()) {
+    while (next < run.feeds.size() && run.feeds[next].vertex <= motion->first) {
       feed = run.feeds[next++].feed;
     }
-    pieces.push_back({piece, feed});
-  };
-  if (run.arcs.empty()) {
-    for (std::size_t i = first; i < last; ++i) {
-      add(geometry::Line{run.points[i], run.points[i + 1]}, i);
-    }
-    return pieces;
+    pieces.push_back({std::move(motion->piece), feed});
   }
-  for (const RunMotion& motion : motions_between(run, first, last)) add(motion.piece, motion.first);
   return pieces;
 }
 

@@ -371,9 +371,8 @@ class CommonLister {
     return text;
   }
 
-  static bool has_length(const geometry::PathPiece& piece) {
-    const auto* line = std::get_if<geometry::Line>(&piece);
-    return line == nullptr || line->start != line->end;
+  static bool has_length(const gcode::MotionPath& path) {
+    return !path.is_line() || path.start() != path.end();
   }
 
   void add_cut(const BlockMeaning& meaning) {

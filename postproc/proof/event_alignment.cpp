@@ -30,8 +30,8 @@ double same_place_in(const gcode::Motion& motion, const ReadProgram& read) {
 }
 
 bool same_rapid(const gcode::Motion& before, const gcode::Motion& after, double same_place) {
-  const geometry::Point3 old_end = geometry::end_point(before.piece);
-  const geometry::Point3 new_end = geometry::end_point(after.piece);
+  const geometry::Point3& old_end = before.piece.end();
+  const geometry::Point3& new_end = after.piece.end();
   for (int axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
     const bool named = before.axes_named[i] || after.axes_named[i];

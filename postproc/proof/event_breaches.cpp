@@ -19,7 +19,7 @@ std::uint32_t line_of(const ProgramEvent& event, const ReadProgram& read) {
 std::string describe(const ProgramEvent& event, const ReadProgram& read) {
   if (event.motion < 0) return event.text;
   const auto& motion = read.interpretation->motions[static_cast<std::size_t>(event.motion)];
-  const geometry::Point3 end = geometry::end_point(motion.piece);
+  const geometry::Point3 end = motion.piece.end();
   const std::string what = event.kind == EventKind::kRapid ? "rapid" : event.text;
   return fmt::format("{} to X{:.6g} Y{:.6g} Z{:.6g} mm", what, end.x(), end.y(), end.z());
 }

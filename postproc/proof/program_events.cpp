@@ -51,9 +51,8 @@ bool can_be_said_in_words(std::string_view barrier) {
   return std::ranges::find(kOurs, barrier) != kOurs.end();
 }
 
-bool has_length(const geometry::PathPiece& piece) {
-  const auto* line = std::get_if<geometry::Line>(&piece);
-  return line == nullptr || line->start != line->end;
+bool has_length(const gcode::MotionPath& path) {
+  return !path.is_line() || path.start() != path.end();
 }
 
 class Lister {

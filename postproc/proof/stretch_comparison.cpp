@@ -22,20 +22,21 @@ using geometry::PathComparison;
 using geometry::PathPiece;
 using geometry::Verdict;
 
-bool same_piece(const PathPiece& a, const PathPiece& b) {
+// Of two arcs or curves.
+bool same_bend(const PathPiece& a, const PathPiece& b) {
   if (a.index() != b.index()) return false;
-  if (const auto* line = std::get_if<geometry::Line>(&a)) {
-    const auto& other = std::get<geometry::Line>(b);
-    return line->start == other.start && line->end == other.end;
-  }
   if (const auto* arc = std::get_if<geometry::Arc>(&a)) {
     const auto& other = std::get<geometry::Arc>(b);
-    return arc->start == other.start && arc->end == other.end && arc->center == other.center &&
-           arc->axis == other.axis && arc->sweep == other.sweep;
+    return arc->center == other.center && arc->axis == other.axis && arc->sweep == other.sweep;
   }
   const auto& control = std::get<geometry::CubicBezier>(a).control;
   return std::equal(std::begin(control), std::end(control),
                     std::begin(std::get<geometry::CubicBezier>(b).control));
+}
+
+bool same_piece(const gcode::MotionPath& a, const gcode::MotionPath& b) {
+  if (a.start() != b.start() || a.end() != b.end() || a.is_line() != b.is_line()) return false;
+  return a.is_line() || same_bend(a, b);
 }
 
 const gcode::Motion& motion_of(const Cut& cut, const ReadProgram& read) {
@@ -60,7 +61,7 @@ struct Part {
 
   [[nodiscard]] std::size_t size() const { return end - begin; }
   [[nodiscard]] const Cut& cut(std::size_t i) const { return side->cuts[begin + i]; }
-  [[nodiscard]] const PathPiece& piece(std::size_t i) const {
+  [[nodiscard]] const gcode::MotionPath& piece(std::size_t i) const {
     return motion_of(cut(i), *side->read).piece;
   }
   [[nodiscard]] Part without(std::size_t first, std::size_t last) const {
@@ -68,8 +69,8 @@ struct Part {
   }
   // Where the path stands before its first piece.
   [[nodiscard]] std::optional<geometry::Point3> start() const {
-    if (size() > 0) return geometry::start_point(piece(0));
-    if (begin > 0) return geometry::end_point(motion_of(side->cuts[begin - 1], *side->read).piece);
+    if (size() > 0) return piece(0).start();
+    if (begin > 0) return motion_of(side->cuts[begin - 1], *side->read).piece.end();
     return side->start;
   }
   [[nodiscard]] Path path() const {
@@ -92,8 +93,8 @@ struct Part {
     std::size_t nearest = 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < size(); ++i) {
-      const double distance = std::min((geometry::start_point(piece(i)) - place).norm(),
-                                       (geometry::end_point(piece(i)) - place).norm());
+      const double distance =
+          std::min((piece(i).start() - place).norm(), (piece(i).end() - place).norm());
       if (distance < least) {
         least = distance;
         nearest = i;

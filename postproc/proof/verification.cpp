@@ -69,7 +69,7 @@ class Follower {
     }
     const gcode::Motion& last = *(next - 1);
     if (!last.end_known || (lost_after_ && last.block <= *lost_after_)) return {};
-    return geometry::end_point(last.piece);
+    return last.piece.end();
   }
 
   const ReadProgram& read_;
@@ -148,10 +148,8 @@ class Verifier {
   void compare_unnamed_axes(const ProgramEvent& before, const ProgramEvent& after) {
     const auto& old_motion = old_.interpretation->motions[static_cast<std::size_t>(before.motion)];
     const auto& new_motion = new_.interpretation->motions[static_cast<std::size_t>(after.motion)];
-    const double start =
-        (geometry::start_point(old_motion.piece) - geometry::start_point(new_motion.piece)).norm();
-    const double end =
-        (geometry::end_point(old_motion.piece) - geometry::end_point(new_motion.piece)).norm();
+    const double start = (old_motion.piece.start() - new_motion.piece.start()).norm();
+    const double end = (old_motion.piece.end() - new_motion.piece.end()).norm();
     // Rounding of the printed decimals is far above, that of doubles far below this share.
     constexpr double kRounding = 1e-9;
     if (std::max(start, end) <= promise_.tolerance_mm * (1 + kRounding)) return;

@@ -131,10 +131,10 @@ class PagePathBuilder {
       return;
     }
     flush_copied();
-    PageVertex end = vertex_at(geometry::end_point(motion.piece), old_motion);
+    PageVertex end = vertex_at(motion.piece.end(), old_motion);
     end.new_line = same_copied_ ? new_.line(new_motion) : 0;
     end.step = PageStep::kRapid;
-    start_at(geometry::start_point(motion.piece), end);
+    start_at(motion.piece.start(), end);
     result_.vertices.push_back(end);
   }
 

@@ -51,7 +51,7 @@ void LongRunCuts::take_move(std::uint32_t block, const gcode::Motion& motion) {
   const bool flat = heading == RunBlocks::Heading::kInPlane;
   if (plunging_ > 0 && flat_ && flat) end_run();
   moves_ += std::exchange(plunging_, 0);
-  add_move(block, geometry::start_point(motion.piece), geometry::end_point(motion.piece));
+  add_move(block, motion.piece.start(), motion.piece.end());
   flat_ = flat;
 }
 

@@ -5,6 +5,7 @@
 
 #include "gcode/block_words.h"
 #include "gcode/code_groups.h"
+#include "gcode/large_pages.h"
 #include "gcode/reason.h"
 #include "geometry/numeric.h"
 #include "postproc/runs/run_path.h"
@@ -18,27 +19,28 @@ using geometry::Point3;
 
 constexpr double kMmPerInch = 25.4;
 
+// No coordinate is more than the distance: nearly always the first one that differs decides.
 bool is_one_place(const Point3& a, const Point3& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(a[axis] - b[axis]) > geometry::kSamePlace) return false;
+  }
   return (a - b).norm() <= geometry::kSamePlace;
 }
 
 }  // namespace
 
-const geometry::Arc* RunBlocks::arc(std::uint32_t block) const {
-  return std::get_if<geometry::Arc>(&motion(block).piece);
-}
+const geometry::Arc* RunBlocks::arc(std::uint32_t block) const { return motion(block).piece.arc(); }
 
 bool RunBlocks::moves(std::uint32_t block) const {
-  const geometry::PathPiece& piece = motion(block).piece;
-  return arc(block) != nullptr ||
-         !is_one_place(geometry::start_point(piece), geometry::end_point(piece));
+  const gcode::MotionPath& path = motion(block).piece;
+  return path.arc() != nullptr || !is_one_place(path.start(), path.end());
 }
 
 RunBlocks::Heading RunBlocks::heading(std::uint32_t block) const {
-  const geometry::PathPiece& piece = motion(block).piece;
-  const geometry::Vector3 way = geometry::end_point(piece) - geometry::start_point(piece);
+  const gcode::MotionPath& path = motion(block).piece;
+  const geometry::Vector3 way = path.end() - path.start();
   const bool along = std::abs(way.z()) > geometry::kSamePlace;
-  if (const geometry::Arc* bend = arc(block)) {
+  if (const geometry::Arc* bend = path.arc()) {
     const bool about_z = std::abs(bend->axis.z()) > 1 - geometry::kSameDirection;
     return about_z && !along ? Heading::kInPlane : Heading::kOther;
   }
@@ -102,8 +104,8 @@ PrintedErrors RunBlocks::errors_of(std::span<const std::uint32_t> blocks) const 
 int RunBlocks::decimals(std::uint32_t block, std::string_view letters) const {
   int most = 0;
   for (const gcode::Word& word : program_.words_of(program_.blocks[block])) {
-    if (letters.find(word.letter) != std::string_view::npos) {
-      most = std::max(most, static_cast<int>(word.decimals));
+    for (const char letter : letters) {
+      if (word.letter == letter) most = std::max(most, static_cast<int>(word.decimals));
     }
   }
   return most;
@@ -113,8 +115,8 @@ Run RunBlocks::run_of(std::span<const std::uint32_t> blocks, double max_chord_er
   Run run;
   run.state = blocks.front() == 0 ? 0 : read_.blocks[blocks.front() - 1].state_after;
   run.decimals = 0;
-  run.points.reserve(blocks.size() + 1);
-  run.points.push_back(geometry::start_point(motion(blocks.front()).piece));
+  gcode::reserve_in_large_pages(run.points, blocks.size() + 1);
+  run.points.push_back(motion(blocks.front()).piece.start());
   std::size_t next = 0;
   std::size_t placed = 0;  // comments whose vertex is known
   for (std::uint32_t i = blocks.front(); i <= blocks.back(); ++i) {
@@ -140,7 +142,7 @@ void RunBlocks::add_motion(std::uint32_t block, double max_chord_error, Run& run
   if (const geometry::Arc* bend = arc(block)) {
     append_arc(*bend, names_motion(block), max_chord_error, run);
   } else {
-    append_line(geometry::end_point(motion(block).piece), run);
+    append_line(motion(block).piece.end(), run);
   }
 }
 

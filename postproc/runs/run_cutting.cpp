@@ -45,9 +45,8 @@ Run part_of(const Run& run, std::size_t first, std::size_t last) {
 bool moves(const gcode::Interpretation& read, std::uint32_t block) {
   const std::int32_t motion = read.blocks[block].motion;
   if (motion < 0) return false;
-  const auto& piece = read.motions[static_cast<std::size_t>(motion)].piece;
-  return std::holds_alternative<geometry::Arc>(piece) ||
-         (geometry::end_point(piece) - geometry::start_point(piece)).norm() > geometry::kSamePlace;
+  const gcode::MotionPath& path = read.motions[static_cast<std::size_t>(motion)].piece;
+  return path.arc() != nullptr || (path.end() - path.start()).norm() > geometry::kSamePlace;
 }
 
 // The block that leads to each vertex of the run that ends a motion; that of vertex 0 is none of

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "gcode/reason.h"
@@ -242,7 +243,7 @@ class RunGrouper {
       if (first != chain_.begin()) {
         keep_up_to(*first - 1, reason::kTooShort);
       }
-      add_run(std::vector<std::uint32_t>(first, last));
+      add_run({first, last});
       if (last != chain_.end()) {
         keep_up_to(chain_.back(), blocks_.moves(*last) ? reason::kArc : reason::kTooShort);
       }
@@ -250,7 +251,7 @@ class RunGrouper {
     chain_.clear();
   }
 
-  void add_run(const std::vector<std::uint32_t>& blocks) {
+  void add_run(std::span<const std::uint32_t> blocks) {
     close_idle_before(blocks.front());
     sections_.push_back(
         {blocks.front(), blocks.back(), blocks_.run_of(blocks, kArcShare * options_.tolerance_mm)});

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace batten::postproc {
 namespace {
@@ -107,21 +108,26 @@ bool is_end_of_motion(const Run& run, std::size_t vertex) {
   return arc == run.arcs.end() || vertex <= arc->first || vertex == arc->last;
 }
 
+MotionWalk::MotionWalk(const Run& run, std::size_t first, std::size_t last)
+    : run_(run), arc_(arc_not_before(run, first)), at_(first), last_(last) {}
+
+std::optional<RunMotion> MotionWalk::next() {
+  if (at_ >= last_) return std::nullopt;
+  const std::size_t first = at_;
+  while (arc_ != run_.arcs.end() && arc_->last <= first) ++arc_;
+  if (arc_ == run_.arcs.end() || first < arc_->first) {
+    ++at_;
+    return RunMotion{Line{run_.points[first], run_.points[at_]}, first};
+  }
+  at_ = std::min(arc_->last, last_);
+  return RunMotion{part_of(*arc_, first, at_), first};
+}
+
 std::vector<RunMotion> motions_between(const Run& run, std::size_t first, std::size_t last) {
   std::vector<RunMotion> motions;
   motions.reserve(last - first);
-  auto arc = arc_not_before(run, first);
-  for (std::size_t i = first; i < last;) {
-    while (arc != run.arcs.end() && arc->last <= i) ++arc;
-    if (arc == run.arcs.end() || i < arc->first) {
-      motions.push_back({Line{run.points[i], run.points[i + 1]}, i});
-      ++i;
-      continue;
-    }
-    const std::size_t end = std::min(arc->last, last);
-    motions.push_back({part_of(*arc, i, end), i});
-    i = end;
-  }
+  MotionWalk walk(run, first, last);
+  while (auto motion = walk.next()) motions.push_back(std::move(*motion));
   return motions;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,7 +31,24 @@ struct RunMotion {
   std::size_t first = 0;  // vertex where it starts
 };
 
-// The path between two vertices, exactly: an arc that is cut by one of them is a part of that arc.
+// The path between two vertices, exactly, motion by motion: an arc that is cut by one of them is a
+// part of that arc.
+class MotionWalk {
+ public:
+  // The run must outlive this object.
+  MotionWalk(const Run& run, std::size_t first, std::size_t last);
+
+  // The next motion; nothing at the end.
+  [[nodiscard]] std::optional<RunMotion> next();
+
+ private:
+  const Run& run_;
+  std::vector<RunArc>::const_iterator arc_;  // the first that may not be behind
+  std::size_t at_;
+  std::size_t last_;
+};
+
+// All of them.
 [[nodiscard]] std::vector<RunMotion> motions_between(const Run& run, std::size_t first,
                                                      std::size_t last);
 

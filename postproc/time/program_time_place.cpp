@@ -77,14 +77,14 @@ PlacedMotion line_of_words(const gcode::BlockWords& words, const gcode::ModalSta
 
 PlacedMotion place_motion(const gcode::Motion& motion, const gcode::BlockWords& words,
                           const gcode::ModalState& state, const ToolPlace& place) {
-  const bool is_line = std::holds_alternative<geometry::Line>(motion.piece);
+  const bool is_line = motion.piece.is_line();
   if (!motion.start_known && is_line) return line_of_words(words, state, place);
 
   // The ends in the plane of an arc are known, or the interpreter would have no arc; an axis
   // across it that is not known stands still in `piece`, at 0.
   PlacedMotion placed{motion.piece, Certainty::kKnown};
-  const Point3 start = geometry::start_point(motion.piece);
-  const Point3 end = geometry::end_point(motion.piece);
+  const Point3& start = motion.piece.start();
+  const Point3& end = motion.piece.end();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto i = index_of(axis);
     if (place.certainty(axis) == Certainty::kUnknown) {

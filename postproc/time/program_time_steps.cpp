@@ -375,7 +375,7 @@ class StepReader {
     ProgramStep& step = add_step(StepKind::kCut);
     step.piece = motion.piece;
     step.feed = feed_along(motion.piece);
-    const geometry::Point3 end = geometry::end_point(motion.piece);
+    const geometry::Point3& end = motion.piece.end();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!motion.axes_named[axis]) continue;
       place_.set_axis(axis, end[static_cast<Eigen::Index>(axis)], Certainty::kKnown);
@@ -421,7 +421,7 @@ class StepReader {
     if (takes_axes(words)) return;
     if (cycle_ && !words.has_g(800)) return drill(words);
     if (!words.has_any("XYZ")) return add_rotary(words);
-    note(block_meaning().barrier.empty() ? reason::kCannedCycle : block_meaning().barrier);
+    note(block_meaning().barrier.empty() ? reason::kCannedCycle : block_meaning().barrier.id());
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (words.has("XYZ"[axis])) place_.forget_axis(axis);
     }

@@ -110,9 +110,9 @@ class KlartextSpeaker {
 
   void say_motion(const Act& act) {
     const gcode::Motion& motion = source_.meaning.motions[static_cast<std::size_t>(act.motion)];
-    if (const auto* arc = std::get_if<geometry::Arc>(&motion.piece)) return say_arc(act, *arc);
+    if (const auto* arc = motion.piece.arc()) return say_arc(act, *arc);
     gcode::SpokenBlock block;
-    const geometry::Point3 end = geometry::end_point(motion.piece);
+    const geometry::Point3 end = motion.piece.end();
     for (int axis = 0; axis < 3; ++axis) {
       const auto i = static_cast<std::size_t>(axis);
       if (motion.axes_named[i]) block.places[i] = place(act, end[axis], axis);

@@ -59,13 +59,13 @@ void PlainMoves::forget_modes() {
 std::string PlainMoves::say(const gcode::Motion& motion, std::optional<double> feed,
                             std::uint32_t source_line) {
   source_line_ = source_line;
-  const auto* arc = std::get_if<geometry::Arc>(&motion.piece);
+  const auto* arc = motion.piece.arc();
   return arc != nullptr ? say_arc(*arc, *feed) : say_straight(motion, feed);
 }
 
 std::string PlainMoves::say_straight(const gcode::Motion& motion, std::optional<double> feed) {
   gcode::SpokenBlock block;
-  const geometry::Point3 end = geometry::end_point(motion.piece);
+  const geometry::Point3 end = motion.piece.end();
   for (int axis = 0; axis < 3; ++axis) {
     if (motion.axes_named[static_cast<std::size_t>(axis)]) print_place(end, axis, block);
   }

@@ -383,7 +383,7 @@ class ActReader {
     if (motion.kind == MotionKind::kCurve) return "is a curve";
     if (motion.kind != MotionKind::kRapid && !state.feed)
       return "moves at a feed that is not known";
-    if (arc && in(Language::kSiemens) && rises(std::get<geometry::Arc>(motion.piece))) {
+    if (arc && in(Language::kSiemens) && rises(*motion.piece.arc())) {
       return "is a helix";
     }
     return {};

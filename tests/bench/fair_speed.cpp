@@ -107,13 +107,12 @@ std::vector<std::vector<Point3>> runs_of(const gcode::SourceText& source) {
   const gcode::Interpretation meaning = gcode::interpret(program, {}, found);
   std::vector<std::vector<Point3>> runs(1);
   for (const gcode::Motion& motion : meaning.motions) {
-    const auto* line = std::get_if<geometry::Line>(&motion.piece);
-    if (motion.kind != gcode::MotionKind::kLine || line == nullptr) {
+    if (motion.kind != gcode::MotionKind::kLine) {
       if (!runs.back().empty()) runs.emplace_back();
       continue;
     }
-    if (runs.back().empty()) runs.back().push_back(line->start);
-    runs.back().push_back(line->end);
+    if (runs.back().empty()) runs.back().push_back(motion.piece.start());
+    runs.back().push_back(motion.piece.end());
   }
   std::erase_if(runs, [](const auto& run) { return run.size() < 3; });
   return runs;

@@ -36,7 +36,7 @@ TEST_P(LastArc, IsThisOne) {
   const Interpreted it(GetParam().text);
   ASSERT_FALSE(it.read.motions.empty());
   ASSERT_EQ(it.read.motions.back().kind, MotionKind::kArc);
-  const Arc arc = std::get<Arc>(it.read.motions.back().piece);
+  const Arc arc = *it.read.motions.back().piece.arc();
   EXPECT_LT((arc.end - GetParam().end).norm(), 1e-9);
   EXPECT_LT((arc.axis - GetParam().axis).norm(), 1e-15);
   const Vector3 off = arc.center - GetParam().center;

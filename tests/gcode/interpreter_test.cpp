@@ -32,7 +32,7 @@ TEST_P(EndOfLastMotion, IsAbsoluteInMillimetres) {
   ASSERT_FALSE(it.read.motions.empty());
   const Motion& motion = it.read.motions.back();
   EXPECT_TRUE(motion.end_known);
-  EXPECT_LT((end_point(motion.piece) - GetParam().end).norm(), 1e-12);
+  EXPECT_LT((motion.piece.end() - GetParam().end).norm(), 1e-12);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -95,8 +95,8 @@ TEST(Interpreter, ChainsMotionsWithoutGaps) {
         continue;  // an arc that could not be followed stands between them
       }
       ++compared;
-      const Point3 from = end_point(it.read.motions[i - 1].piece);
-      const Point3 to = start_point(it.read.motions[i].piece);
+      const Point3 from = it.read.motions[i - 1].piece.end();
+      const Point3 to = it.read.motions[i].piece.start();
       for (int axis = 0; axis < 3; ++axis) {
         if (it.read.motions[i].axes_named[static_cast<std::size_t>(axis)]) {
           ASSERT_NEAR(from[axis], to[axis], 1e-12) << "motion " << i;

@@ -30,9 +30,10 @@ std::string words_of(const Program& program, const Block& block) {
 
 std::string words_of(const Interpretation& read, const BlockMeaning& block) {
   const ModalState& state = read.states[block.state_after];
-  std::string text = fmt::format("{} {} {} {} {} {}", static_cast<int>(block.kind), block.barrier,
-                                 static_cast<int>(state.motion), static_cast<int>(state.units),
-                                 static_cast<int>(state.plane), state.feed.value_or(-1));
+  std::string text =
+      fmt::format("{} {} {} {} {} {}", static_cast<int>(block.kind), block.barrier.id(),
+                  static_cast<int>(state.motion), static_cast<int>(state.units),
+                  static_cast<int>(state.plane), state.feed.value_or(-1));
   if (block.motion < 0) return text;
   const Motion& motion = read.motions[static_cast<std::size_t>(block.motion)];
   const geometry::Point3 from = geometry::start_point(motion.piece);

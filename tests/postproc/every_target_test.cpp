@@ -171,7 +171,7 @@ TEST(AProfile, SplitsArcsAtTheAxesOfThePlane) {
   const ReadText read(result.text);
   std::size_t arcs = 0;
   for (const gcode::Motion& motion : read.meaning.motions) {
-    const auto* arc = std::get_if<geometry::Arc>(&motion.piece);
+    const auto* arc = motion.piece.arc();
     if (arc == nullptr) continue;
     ++arcs;
     const auto quadrant = [&](double t) {

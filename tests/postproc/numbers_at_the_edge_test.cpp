@@ -126,10 +126,9 @@ std::optional<exact::Chain> cutting_chain(const std::string& text) {
   exact::Chain chain;
   for (const gcode::Motion& motion : read.meaning.motions) {
     if (motion.kind == gcode::MotionKind::kRapid) continue;
-    const auto* line = std::get_if<geometry::Line>(&motion.piece);
-    if (line == nullptr) return std::nullopt;
-    if (chain.empty()) chain.push_back(place(line->start));
-    if (place(line->end) != chain.back()) chain.push_back(place(line->end));
+    if (!motion.piece.is_line()) return std::nullopt;
+    if (chain.empty()) chain.push_back(place(motion.piece.start()));
+    if (place(motion.piece.end()) != chain.back()) chain.push_back(place(motion.piece.end()));
   }
   if (chain.size() == 1) chain.push_back(chain.front());
   return chain;

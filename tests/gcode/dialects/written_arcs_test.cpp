@@ -70,7 +70,7 @@ TEST_P(EveryTarget, WritesNoArcThatItWouldRefuse) {
     Writer out = arc_writer(target_, wanted.start, Units::kMillimetre);
     if (!out.arc_to(wanted, 1000)) continue;
     const tests::Interpreted read(program_from(wanted.start, Units::kMillimetre, out.text()));
-    const auto* arc = std::get_if<Arc>(&read.read.motions.back().piece);
+    const auto* arc = read.read.motions.back().piece.arc();
     ASSERT_NE(arc, nullptr) << out.text();
     EXPECT_EQ(target_.arc_complaint(*arc, Units::kMillimetre), "") << out.text();
   }
@@ -170,7 +170,7 @@ TEST(G2core, TakesTenThousandArcs) {
     Writer out = arc_writer(g2core, wanted.start, Units::kMillimetre);
     if (!out.arc_to(wanted, 1000)) continue;
     const tests::Interpreted read(program_from(wanted.start, Units::kMillimetre, out.text()));
-    const auto& arc = std::get<Arc>(read.read.motions.back().piece);
+    const auto& arc = *read.read.motions.back().piece.arc();
     const auto radius = [&arc](const Point3& place) {
       const Vector3 from = place - arc.center;
       return (from - from.dot(arc.axis) * arc.axis).norm();

@@ -51,7 +51,7 @@ TEST(KlartextMotions, NeedAUnit) {
 TEST(KlartextMotions, TurnAboutTheLastCentre) {
   const KlartextProgram p =
       program_with("3 CC X+10 Y+0\n4 C X+10 Y+10 DR-\n5 C X+10 Y+10 DR+\n6 CR X+20 Y+0 R+10 DR-\n");
-  const auto arc = [&](std::size_t line) { return std::get<Arc>(p.motion_of(line)->piece); };
+  const auto arc = [&](std::size_t line) { return *p.motion_of(line)->piece.arc(); };
   EXPECT_NEAR(arc(5).sweep, -std::numbers::pi / 2, 1e-12);
   EXPECT_EQ(arc(5).center, Point3(10, 0, 0));
   EXPECT_NEAR(arc(6).sweep, 2 * std::numbers::pi, 1e-12);

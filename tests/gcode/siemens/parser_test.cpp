@@ -209,8 +209,9 @@ TEST(SiemensInterpreter, FollowsArcsWithCr) {
   // From (0,0) to (10,0) clockwise, radius 5: half a circle over (5,5).
   const Interpretation read = read_program("G71 G90 G17 F100\nG1 X0 Y0 Z0\nG2 X10 Y0 CR=5.001\n");
   ASSERT_EQ(read.motions.size(), 2U);
-  const auto& arc = std::get<geometry::Arc>(read.motions[1].piece);
-  EXPECT_NEAR(std::abs(arc.sweep), 3.1416, 0.05);
+  const geometry::Arc* arc = read.motions[1].piece.arc();
+  ASSERT_NE(arc, nullptr);
+  EXPECT_NEAR(std::abs(arc->sweep), 3.1416, 0.05);
 }
 
 TEST(SiemensFlow, OnlyLabelsThatAreNamedAreEntered) {
