@@ -429,8 +429,8 @@ TEST(RunGrouping, CoversEveryBlockOnceAndRunsMeetTheirMotions) {
       };
       ASSERT_NE(motion_of(section.first_block), nullptr);
       ASSERT_NE(motion_of(section.last_block), nullptr);
-      ASSERT_EQ(run->points.front(), start_point(motion_of(section.first_block)->piece));
-      ASSERT_EQ(run->points.back(), end_point(motion_of(section.last_block)->piece));
+      ASSERT_EQ(run->points.front(), motion_of(section.first_block)->piece.start());
+      ASSERT_EQ(run->points.back(), motion_of(section.last_block)->piece.end());
       ASSERT_GE(run->points.size(), 4U);
       ASSERT_EQ(run->feeds.front().vertex, 0U);
       for (std::size_t i = 1; i < run->points.size(); ++i) {
