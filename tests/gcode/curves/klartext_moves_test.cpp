@@ -129,7 +129,9 @@ TEST(KlartextMoves, RefuseWhatTheyCannotSay) {
   Arc upright = quarter;
   upright.axis = Vector3::UnitY();
   EXPECT_EQ(refused(upright, setting), "an arc out of the plane of X and Y");
-  EXPECT_EQ(refused(geometry::CubicBezier{}, setting), "a piece that is neither line nor arc");
+  const Point3 origin = Point3::Zero();
+  const geometry::CubicBezier standing{{origin, origin, origin, origin}};
+  EXPECT_EQ(refused(standing, setting), "a piece that is neither line nor arc");
   const Arc tiny = arc_about(Point3::Zero(), {5, 0, 0}, 1e-6);
   EXPECT_EQ(refused(tiny, setting), "an arc that is a full turn or none");
   CurveSetting flat = setting;
