@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <span>
 #include <utility>
 
 #include "gcode/arc_from_words.h"
+#include "gcode/block_complaints.h"
 #include "gcode/block_words.h"
 #include "gcode/control_state.h"
 #include "gcode/curves/curve_in_program.h"
@@ -34,7 +34,7 @@ class Interpreter {
         curves_(options.curves),
         has_plain_way_(options.short_ways && program.language == Language::kRs274),
         carry_(carry),
-        found_(found),
+        complaints_(program, carry.told, found),
         now_(carry.state) {
     carry.is_klartext = is_klartext();
     if (is_klartext()) start_klartext(now_);
@@ -75,7 +75,7 @@ class Interpreter {
     const Block& block = program_.blocks[index];
     meaning_ = BlockMeaning{};
     block_index_ = index;
-    told_ = false;
+    complaints_.begin_block(index);
     meaning_.label_referenced = flow.label_referenced;
     if (flow.jump_target) {
       meaning_.entered_from_elsewhere = true;
@@ -103,7 +103,7 @@ class Interpreter {
     forget_motion_word();
     if (curve.feed) {
       now_.modal.feed = *curve.feed * (now_.modal.units == Units::kInch ? kMillimetresPerInch : 1);
-      now_.modal.feed_without_point = has_feed_without_point(first, curve.blocks);
+      now_.modal.feed_without_point = is_feed_without_point(program_, first, curve);
     }
     if (read_.states.back() != now_.modal) {
       read_.states.push_back(now_.modal);
@@ -124,15 +124,6 @@ class Interpreter {
     }
     // It started where the place was known, and so it ends.
     now_.position.mm = read_.motions.back().piece.end();
-  }
-
-  [[nodiscard]] bool has_feed_without_point(std::uint32_t first, std::uint32_t count) const {
-    const auto blocks = std::span(program_.blocks).subspan(first, count);
-    return std::ranges::any_of(blocks, [this](const Block& block) {
-      return std::ranges::any_of(program_.words_of(block), [](const Word& word) {
-        return word.letter == 'F' && word.without_point;
-      });
-    });
   }
 
   // The operator chooses whether the block is executed: what it changes is unknown afterwards.
@@ -261,7 +252,7 @@ class Interpreter {
     const StateEffect effect = apply_words(words, now_);
     read_.unit_word_seen |= effect.unit_word;
     if (effect.unknown_code >= 0) {
-      tell_unknown_code(block, effect.unknown_code);
+      complaints_.tell_unknown_code(effect.unknown_code);
     }
     meaning_.barrier = effect.barrier;
     read_motion(words, effect);
@@ -311,23 +302,7 @@ class Interpreter {
   void refuse_words(const BlockWords& words) {
     forget_everything(now_);
     make_opaque(words.all_numbers() ? reason::kNotUnderstood : reason::kExpression);
-    const auto text = [this](const Word* word) { return program_.source.text(word->span); };
-    switch (words.problem()) {
-      case BlockWords::Problem::kSameGroupTwice:
-        return tell(Severity::kWarning, "two-words-of-one-group", words.second()->span,
-                    fmt::format("{} and {} in one block; expected one word of their group",
-                                text(words.first()), text(words.second())));
-      case BlockWords::Problem::kLetterTwice:
-        return tell(Severity::kWarning, "word-repeated", words.second()->span,
-                    fmt::format("{} and {} in one block; expected one {} word", text(words.first()),
-                                text(words.second()), words.first()->letter));
-      default:
-        if (words.all_numbers()) {
-          tell(Severity::kWarning, "bad-code", words.first()->span,
-               fmt::format("{} is no code; expected a G or M number that a block can hold",
-                           text(words.first())));
-        }
-    }
+    complaints_.tell_words(words);
   }
 
   void read_motion(const BlockWords& words, const StateEffect& effect) {
@@ -431,8 +406,7 @@ class Interpreter {
     const Position end = end_of_motion(words, now_);
     const ArcReading reading = arc_from_words(arc_words(words, now_, end));
     if (!reading.arc) {
-      tell(Severity::kWarning, reading.problem, program_.blocks[block_index_].span,
-           reading.message);
+      complaints_.tell(reading.problem, reading.message);
       lose_motion(words, reason::kArc);
       return false;
     }
@@ -457,40 +431,16 @@ class Interpreter {
     read_.motions.push_back(std::move(motion));
   }
 
-  // --- diagnostics --------------------------------------------------------------------------
-
-  void tell(Severity severity, std::string_view id, SourceSpan where, std::string message) {
-    if (std::exchange(told_, true)) {
-      return;
-    }
-    if (carry_.told.counts(id, where)) {
-      found_.push_back({severity, id, where, std::move(message)});
-    }
-  }
-
-  // Once per code: a program that uses it a thousand times says nothing new.
-  void tell_unknown_code(const Block& block, Code code) {
-    if (!carry_.told.is_new(code)) {
-      return;
-    }
-    tell(Severity::kWarning, "unknown-g-code", block.span,
-         fmt::format("G{} is not known and may change anything; what follows is left alone until "
-                     "the program has set every mode again",
-                     code % 10 == 0 ? fmt::format("{}", code / 10)
-                                    : fmt::format("{}.{}", code / 10, code % 10)));
-  }
-
   const Program& program_;
   const CurveFormat* curves_;
   bool has_plain_way_;
   ControlCarry& carry_;
-  Diagnostics& found_;
+  BlockComplaints complaints_;
   ControlState now_;
   SiemensVariables variables_;
   Interpretation read_;
   BlockMeaning meaning_;  // of the block that is being read
   std::uint32_t block_index_ = 0;
-  bool told_ = false;  // it has its diagnostic
 };
 
 }  // namespace

@@ -43,6 +43,15 @@ std::optional<CurveReading> curve_at(const Program& program, std::uint32_t first
   return std::move(*curve);
 }
 
+bool is_feed_without_point(const Program& program, std::uint32_t first, const CurveReading& curve) {
+  const auto blocks = std::span(program.blocks).subspan(first, curve.blocks);
+  return std::ranges::any_of(blocks, [&](const Block& block) {
+    return std::ranges::any_of(program.words_of(block), [](const Word& word) {
+      return word.letter == 'F' && word.without_point;
+    });
+  });
+}
+
 Motion motion_of(const CurveMotion& piece, const CurveReading& curve) {
   Motion motion;
   motion.block = piece.block;

@@ -22,6 +22,10 @@ class CurveFormat;
                                                    const CurveFormat* format,
                                                    std::span<const BlockFlow> flow);
 
+// Whether the feed of the curve that starts in block `first` is written without a decimal point.
+[[nodiscard]] bool is_feed_without_point(const Program& program, std::uint32_t first,
+                                         const CurveReading& curve);
+
 // One of the curve's pieces as a motion.
 [[nodiscard]] Motion motion_of(const CurveMotion& piece, const CurveReading& curve);
 
