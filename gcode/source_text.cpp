@@ -19,6 +19,9 @@
 namespace batten::gcode {
 namespace {
 
+// Bytes: Linux maps 64 KiB about the page that is asked for, or what the disk gives at once.
+constexpr std::size_t kReadAround = std::size_t{1} << 20;
+
 // Places are 32 bit numbers, and the place after the last byte is one too.
 constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
 
@@ -182,9 +185,10 @@ void SourceText::set_aside(SourceSpan span) const {
   if (bytes_->mapped == nullptr) {
     return;
   }
-  // A mapping begins with a page.
+  // A mapping begins with a page. Who reads the first byte of a span is given pages before it too.
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-  const std::size_t begin = (span.begin + page - 1) / page * page;
+  const std::size_t begin =
+      (span.begin - std::min<std::size_t>(span.begin, kReadAround)) / page * page;
   const std::size_t end = std::min<std::size_t>(span.end, bytes_->text.size()) / page * page;
   if (begin < end) {
     // What the system does with the advice changes no byte.

@@ -187,6 +187,7 @@ class Windows {
         made.unchanged ? source_.text({place.begin, place.end}) : std::string_view(made.text);
     result_.bytes_handed_on += bytes.size();
     if (!sink_(bytes)) return WindowOutcome::kStopped;
+    if (made.unchanged) source_.set_aside({place.begin, place.end});  // they were read once more
     const bool says_smoothed = known_.says_smoothed || !made.unchanged;
     known_ = std::move(made.behind);
     known_.says_smoothed = says_smoothed;

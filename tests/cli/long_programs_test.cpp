@@ -2,6 +2,7 @@
 // messages and reports as where the whole is asked for (`--report` needs it).
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -100,6 +101,45 @@ TEST_F(LongProgram, ThatDoesNotFitOnTheDiskLeavesNothing) {
   EXPECT_EQ(done.exit_code, 4) << done.err;
   EXPECT_NE(done.err.find("new.nc"), std::string::npos) << done.err;
   EXPECT_FALSE(folder_.has("new.nc"));
+}
+
+// Rows of two hundred blocks between rapids.
+std::string relief(std::size_t rows) {
+  std::string row = "G0 X0 Y0 Z5\nG1 Z-1 F300\n";
+  for (int i = 1; i <= 200; ++i) {
+    row += "G1 X" + std::to_string(i) + ".125 Y" + std::to_string(i % 7) + ".250 F900\n";
+  }
+  std::string text = "G21 G90 G17\nM3 S9000\n";
+  for (std::size_t i = 0; i < rows; ++i) text += row + "G0 Z5\n";
+  return text + "M30\n";
+}
+
+// Runs what follows and prints the most bytes of memory that it took. This process is no measure: a
+// child counts what its parent had when it was made.
+constexpr const char* kMeasured =
+    "python3 -c 'import resource, subprocess, sys\n"
+    "code = subprocess.call(sys.argv[1:])\n"
+    "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024)\n"
+    "sys.exit(code)' '" BATTEN_BINARY "' ";
+
+// Twice the blocks, and no more memory than some bytes of each, for the report of its run: held as
+// a whole a block takes some hundred.
+TEST(MemoryOfLongPrograms, DoesNotGrowWithTheirBlocks) {
+  constexpr std::size_t kRows = 2000;
+  constexpr std::size_t kBytesOfBlock = 10;
+  const BattenFolder folder;
+  const auto memory_of = [&](std::size_t rows) {
+    folder.put("part.nc", relief(rows));
+    // What a sanitizer would keep of memory that was given back is no memory of the program.
+    const ProcessResult done = folder.shell(
+        std::string("export ASAN_OPTIONS=quarantine_size_mb=1:$ASAN_OPTIONS; ") + kMeasured +
+        "smooth part.nc -o new.nc --force --target linuxcnc --method none --threads 1 --quiet");
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    return std::stoul(done.out);
+  };
+  const std::size_t once = memory_of(kRows);
+  const std::size_t twice = memory_of(2 * kRows);
+  EXPECT_LE(twice, once + kRows * 200 * kBytesOfBlock);
 }
 
 }  // namespace
