@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -15,6 +14,7 @@
 #include "geometry/naseath.h"
 #include "geometry/parameter_samples.h"
 #include "tests/support/naseath_cases.h"
+#include "tests/support/processor_time.h"
 
 namespace batten::postproc {
 namespace {
@@ -210,11 +210,10 @@ double cost_of(int count, const NaseathRepairs& repairs) {
   const BsplineCurve curve = noisy_wave(count);
   double least = std::numeric_limits<double>::infinity();
   for (int run = 0; run < 3; ++run) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = processor_seconds();
     const auto result = smooth_naseath(curve, options);
-    const std::chrono::duration<double, std::micro> taken =
-        std::chrono::steady_clock::now() - start;
-    least = std::min(least, taken.count() / count / result.passes);
+    const double taken = 1e6 * (processor_seconds() - start);
+    least = std::min(least, taken / count / result.passes);
   }
   return least;
 }
