@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs every fuzzer of build/fuzz, two at a time, and says what each did:
+# Runs every fuzzer of build/asan-ubsan, two at a time, and says what each did:
 #
 #   tests/fuzz/run.sh SECONDS
 #
@@ -17,7 +17,7 @@ mkdir -p "$logs" build/fuzz/broken
 run() { # name
   local found=build/fuzz/found/$1
   mkdir -p "$found"
-  "build/fuzz/tests/$1_fuzz" -max_len="${longest[$1]}" -max_total_time="$seconds" -timeout=30 \
+  "build/asan-ubsan/tests/$1_fuzz" -max_len="${longest[$1]}" -max_total_time="$seconds" -timeout=30 \
     -print_final_stats=1 -artifact_prefix="build/fuzz/broken/$1-" \
     "$found" samples/*/ tests/cases/*/ >"$logs/$1" 2>&1
 }
