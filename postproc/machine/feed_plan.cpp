@@ -248,12 +248,20 @@ void Planner::plan_bent(const Chain& chain) {
   PlanSolution solution = fastest_plan(problem, rough_start(problem, grid), kRough);
   const auto rounds = static_cast<std::size_t>(std::clamp(options_.refinements, 0, 4));
   for (const RefineRule& rule : std::span(kRefinements).first(rounds)) {
+    PlanGrid finer_grid = grid;
     std::vector<double> start = solution.x;
-    const std::size_t cut = refine_plan(chain.pieces, limits_, problem, rule, grid, start);
+    const std::size_t cut = refine_plan(chain.pieces, limits_, problem, rule, finer_grid, start);
     const bool first = &rule == &kRefinements.front();
     if (cut == 0 && !first) break;
-    if (cut > 0) problem = make_plan_problem(chain.pieces, grid, limits_);
-    solution = fastest_plan(problem, std::move(start), kFine);
+    PlanProblem finer = cut > 0 ? make_plan_problem(chain.pieces, finer_grid, limits_) : problem;
+    const bool sound = raise_above_zero(finer, start);
+    PlanSolution found = sound ? fastest_plan(finer, std::move(start), kFine)
+                               : fastest_plan(finer, rough_start(finer, finer_grid), kRough);
+    // The search may lose itself where the speed is next to nothing within the path.
+    if (!std::isfinite(found.seconds)) break;
+    grid = std::move(finer_grid);
+    problem = std::move(finer);
+    solution = std::move(found);
   }
   const auto& x = solution.x;
   const std::size_t n = problem.intervals();

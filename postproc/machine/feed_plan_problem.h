@@ -82,6 +82,11 @@ struct PlanProblem {
 // Unknowns to start the search from: the grid's rough speeds, smoothed. They exceed limits.
 [[nodiscard]] std::vector<double> rough_start(const PlanProblem& problem, const PlanGrid& grid);
 
+// The search asks of its start that speed^2 is above 0 at all places. A cubic between nodes that
+// were added may not be: there the slopes at its ends become those of a monotone one. False where
+// that does not help.
+[[nodiscard]] bool raise_above_zero(const PlanProblem& problem, std::vector<double>& x);
+
 // The same unknowns, slowed down as a whole until they keep all limits. Any q that keeps all limits
 // keeps them times a factor below 1.
 void slow_down(const PlanProblem& problem, std::vector<double>& x);

@@ -75,6 +75,31 @@ void slow_down(const PlanProblem& problem, std::vector<double>& x) {
   for (std::size_t i = first; i < last; ++i) x[i] *= factor;
 }
 
+bool raise_above_zero(const PlanProblem& problem, std::vector<double>& x) {
+  const std::size_t n = problem.intervals();
+  const auto rise = [&](std::size_t i) { return (x[2 * i + 2] - x[2 * i]) / problem.lengths[i]; };
+  const auto is_above = [&](std::size_t i) {
+    const auto states = states_at_places(x.data() + 2 * i, problem.lengths[i]);
+    return std::ranges::all_of(states, [](const PlanState& state) { return state.q > 0; });
+  };
+  const auto flatten = [&](std::size_t node) {
+    if (node > 0 && node < n) x[2 * node + 1] = monotone_slope(rise(node - 1), rise(node));
+  };
+  // Flatter slopes may take the neighbours below 0, which are flattened in the next pass.
+  constexpr int kPasses = 4;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    bool above = true;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (is_above(i)) continue;
+      above = false;
+      flatten(i);
+      flatten(i + 1);
+    }
+    if (above) return true;
+  }
+  return false;
+}
+
 std::vector<double> rough_start(const PlanProblem& problem, const PlanGrid& grid) {
   const std::size_t first = problem.start.length > 0 ? 1 : 0;
   std::vector<double> logarithms;

@@ -115,6 +115,17 @@ TEST(FeedEstimate, IsNearThePlanOnRandomCurves) {
              100 * std::sqrt(spread.squares / spread.count));
 }
 
+// Curves that bend so sharply that the tool next to stops: nodes that were added there once made
+// the plan's time no number.
+TEST(FeedEstimate, IsNearThePlanWhereThePathTurnsBack) {
+  for (const unsigned seed : {9u, 387u}) {
+    std::mt19937 random(seed);
+    const Path path = path_of(random_curve(random, true));
+    const KinematicPathLimits limits = random_limits(random);
+    EXPECT_NEAR(estimated_time(path, limits) / planned_time(path, limits), 1, 0.02) << seed;
+  }
+}
+
 // Candidates for one corner: where their plans differ by a third of a percent or more, the estimate
 // puts them in the same order.
 TEST(FeedEstimate, RanksCornersAsThePlanDoes) {

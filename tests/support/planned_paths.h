@@ -6,6 +6,7 @@
 #include <random>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -86,7 +87,8 @@ inline Use greatest_use(std::span<const geometry::PathPiece> path, const FeedPla
 }
 
 // A cubic B-spline through nowhere in particular, of 5 to 14 control points, flat or in space.
-inline geometry::BsplineCurve random_curve(std::mt19937& random) {
+// `x_first`: of the numbers of a point.
+inline geometry::BsplineCurve random_curve(std::mt19937& random, bool x_first = false) {
   std::normal_distribution<double> normal;
   std::uniform_int_distribution<int> count(5, 14);
   const int n = count(random);
@@ -95,7 +97,10 @@ inline geometry::BsplineCurve random_curve(std::mt19937& random) {
   std::vector<geometry::Point3> points;
   for (int i = 0; i < n; ++i) {
     const double z = flat ? 0 : normal(random);
-    points.push_back(size * geometry::Point3(1.5 * i + normal(random), 2 * normal(random), z));
+    double x = normal(random);
+    double y = normal(random);
+    if (!x_first) std::swap(x, y);
+    points.push_back(size * geometry::Point3(1.5 * i + x, 2 * y, z));
   }
   std::vector<double> knots;
   for (int i = 0; i + 2 < n; ++i) knots.push_back(i);
