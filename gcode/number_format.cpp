@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 
 #include "gcode/characters.h"
@@ -116,6 +117,44 @@ int fraction_digits(const Decimal& decimal, const NumberFormat& format) {
   return last;
 }
 
+// Ten to the power of 0 .. 22: exact as doubles, so one division rounds once, correctly.
+constexpr std::array<double, 23> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                                 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+// The size of a number in steps of its last decimal, where it is plain: not great, and not so near
+// to the middle of two steps that the double and its shortest decimal might be rounded apart.
+std::optional<std::uint32_t> plain_steps(double value, int decimals) {
+  constexpr double kMostSteps = 1e9;  // of which a double and its decimal hold 1e-7
+  constexpr double kNearMiddle = 1e-5;
+  const double steps = std::abs(value) * kPowersOfTen[static_cast<std::size_t>(decimals)];
+  if (!(steps < kMostSteps)) return std::nullopt;
+  const auto below = static_cast<std::uint32_t>(steps);
+  const double part = steps - below;
+  if (std::abs(part - 0.5) < kNearMiddle) return std::nullopt;
+  return part > 0.5 ? below + 1 : below;
+}
+
+void append_steps(std::string& out, bool negative, std::uint32_t steps,
+                  const NumberFormat& format) {
+  std::array<char, 16> text{};
+  auto at = text.end();
+  int fraction = format.decimals;
+  bool said = format.trailing_zeros;
+  for (; fraction > 0; --fraction, steps /= 10) {
+    const auto digit = static_cast<char>(steps % 10);
+    said = said || digit != 0;
+    if (said) *--at = static_cast<char>('0' + digit);
+  }
+  if (at != text.end() || format.always_point) *--at = '.';
+  do {
+    *--at = static_cast<char>('0' + steps % 10);
+    steps /= 10;
+  } while (steps > 0);
+  if (negative) *--at = '-';
+  out.append(at, text.end());
+}
+
 // Digits and point of a number.
 struct Scan {
   std::uint64_t mantissa = 0;  // of all digits, while it is exact
@@ -189,11 +228,6 @@ Scan scan_digits(std::string_view text, std::size_t at) {
   return scan;
 }
 
-// Ten to the power of 0 .. 22: exact as doubles, so one division rounds once, correctly.
-constexpr std::array<double, 23> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                                 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-
 // The value of more digits than a double holds. Nothing when it is too great for a double.
 std::optional<double> value_of_many_digits(std::string_view digits, bool whole_part) {
   std::string plain;
@@ -225,6 +259,10 @@ std::optional<double> value_of(const Scan& scan, std::string_view digits) {
 
 void append_number(std::string& out, double value, const NumberFormat& format) {
   check(value, format.decimals);
+  if (const auto steps = plain_steps(value, format.decimals)) {
+    append_steps(out, value < 0 && *steps > 0, *steps, format);
+    return;
+  }
   Decimal decimal = shortest_decimal(value);
   round_to(decimal, format.decimals);
   if (is_zero(decimal)) {

@@ -133,6 +133,24 @@ TEST(AppendNumber, AHalfAlwaysGoesAwayFromZero) {
   }
 }
 
+// Beside the middle of two steps, by less and less: the size of what is between decides.
+TEST(AppendNumber, WhatIsBesideAHalfGoesToItsSide) {
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 100'000; ++i) {
+    const auto steps = static_cast<std::int64_t>(random() % 2'000'000);
+    const double beside = std::pow(10.0, -static_cast<double>(random() % 8)) * 0.4;
+    for (const int side : {-1, 1}) {
+      const double value = (static_cast<double>(steps) + 0.5 + side * beside) / 10000;
+      const std::int64_t expected = steps + (side > 0 ? 1 : 0);
+      std::string text = std::to_string(expected / 10000) + '.' +
+                         std::to_string(10000 + expected % 10000).substr(1);
+      ASSERT_EQ(to_text(value, {.decimals = 4, .trailing_zeros = true}), text) << beside * side;
+      if (expected != 0) text.insert(0, 1, '-');
+      ASSERT_EQ(to_text(-value, {.decimals = 4, .trailing_zeros = true}), text) << beside * side;
+    }
+  }
+}
+
 TEST(Rounded, TwiceIsOnce) {
   std::mt19937_64 random(2);
   for (int i = 0; i < 50'000; ++i) {
