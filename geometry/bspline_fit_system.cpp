@@ -1,13 +1,69 @@
 #include "geometry/bspline_fit_system.h"
 
 #include <algorithm>
-#include <array>
+#include <cstring>
 
 namespace batten::geometry {
 
 namespace {
 
 constexpr std::size_t kBands = BandedMatrix::kBands;
+
+// What the samples of one span add to the equations of its four control points.
+struct SpanSums {
+  double product[4][4];  // column, row; the lower half and the diagonal
+  double force[3][4];    // axis, row
+};
+
+// Two numbers that processors add and multiply at a time.
+using Pair = double __attribute__((vector_size(16)));
+
+Pair pair_at(const double* at) { return Pair{at[0], at[1]}; }
+
+void put(const Pair& pair, double* to) { std::memcpy(to, &pair, sizeof pair); }
+
+Pair twice(double value) { return Pair{value, value}; }
+
+SpanSums sums_of(std::span<const FitRow> rows, std::span<const SampleState> states) {
+  const Pair zero = twice(0);
+  // Columns of the products, each of rows 0 and 1 and of rows 2 and 3.
+  Pair p0low = zero, p0high = zero, p1low = zero, p1high = zero, p2high = zero, p3high = zero;
+  Pair xlow = zero, xhigh = zero, ylow = zero, yhigh = zero, zlow = zero, zhigh = zero;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Pair weight = twice(states[i].base + states[i].push);
+    const Pair low = pair_at(&rows[i].value[0]);
+    const Pair high = pair_at(&rows[i].value[2]);
+    const Pair wlow = weight * low;
+    const Pair whigh = weight * high;
+    p0low += twice(wlow[0]) * low;
+    p0high += twice(wlow[0]) * high;
+    p1low += twice(wlow[1]) * low;
+    p1high += twice(wlow[1]) * high;
+    p2high += twice(whigh[0]) * high;
+    p3high += twice(whigh[1]) * high;
+    const Point3& target = states[i].target;
+    xlow += wlow * twice(target.x());
+    xhigh += whigh * twice(target.x());
+    ylow += wlow * twice(target.y());
+    yhigh += whigh * twice(target.y());
+    zlow += wlow * twice(target.z());
+    zhigh += whigh * twice(target.z());
+  }
+  SpanSums sums;
+  put(p0low, &sums.product[0][0]);
+  put(p0high, &sums.product[0][2]);
+  put(p1low, &sums.product[1][0]);
+  put(p1high, &sums.product[1][2]);
+  put(p2high, &sums.product[2][2]);
+  put(p3high, &sums.product[3][2]);
+  put(xlow, &sums.force[0][0]);
+  put(xhigh, &sums.force[0][2]);
+  put(ylow, &sums.force[1][0]);
+  put(yhigh, &sums.force[1][2]);
+  put(zlow, &sums.force[2][0]);
+  put(zhigh, &sums.force[2][2]);
+  return sums;
+}
 
 }  // namespace
 
@@ -35,38 +91,20 @@ void FitSystem::add_samples(std::span<const FitRow> rows, std::span<const Sample
                             IndexRange samples) {
   for (std::size_t i = samples.begin; i < samples.end;) {
     const std::size_t first = rows[i].first;
-    std::array<std::array<double, 4>, 4> product{};  // [below][column]
-    std::array<Vector3, 4> force = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(),
-                                    Vector3::Zero()};
-    for (; i < samples.end && rows[i].first == first; ++i) {
-      const double weight = states[i].base + states[i].push;
-      const auto& [a, b, c, d] = rows[i].value;
-      const double wa = weight * a;
-      const double wb = weight * b;
-      const double wc = weight * c;
-      const double wd = weight * d;
-      product[0][0] += wa * a;
-      product[0][1] += wb * b;
-      product[0][2] += wc * c;
-      product[0][3] += wd * d;
-      product[1][0] += wa * b;
-      product[1][1] += wb * c;
-      product[1][2] += wc * d;
-      product[2][0] += wa * c;
-      product[2][1] += wb * d;
-      product[3][0] += wa * d;
-      const Point3& target = states[i].target;
-      force[0] += wa * target;
-      force[1] += wb * target;
-      force[2] += wc * target;
-      force[3] += wd * target;
-    }
+    const std::size_t begin = i;
+    while (i < samples.end && rows[i].first == first) ++i;
+    const SpanSums sums = sums_of(rows.subspan(begin, i - begin), states.subspan(begin, i - begin));
     const std::size_t row = first - offset_;
+#pragma GCC unroll 4
     for (std::size_t j = 0; j < 4; ++j) {
-      for (std::size_t k = 0; k + j < 4; ++k) {
-        matrix_.at(row + j + k, static_cast<int>(j)) += product[j][k];
+#pragma GCC unroll 4
+      for (std::size_t k = 0; k <= j; ++k) {
+        matrix_.at(row + j, static_cast<int>(j - k)) += sums.product[k][j];
       }
-      right_[row + j] += force[j];
+      Point3& force = right_[row + j];
+      force.x() += sums.force[0][j];
+      force.y() += sums.force[1][j];
+      force.z() += sums.force[2][j];
     }
   }
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace batten::geometry {
 
@@ -21,13 +20,6 @@ constexpr double kWeightCap = 1e4;
 // Scatter is judged over this many neighbours on either side: enough for a standard error of
 // a fifth, few enough to follow a change of noise along the path.
 constexpr std::size_t kScatterWindow = 10;
-
-// Sliding along is drawn back by this part in every solution, so that the parameter stays near
-// the place it was made for and the curve cannot fold.
-constexpr double kSlidePull = 0.05;
-
-// No sample slides further than this many limits: the path turns away from its direction.
-constexpr double kSlideRoom = 2;
 
 // In one step a weight grows by this factor at the most. Falling is quicker: distances grow no
 // faster than weights fall, so a weight that falls by the ratio does not fall too far.
@@ -62,39 +54,33 @@ void start_tight(SampleState& state) {
   state.rms = 0;
 }
 
-void measure(const FitSample& sample, const Point3& on_curve, SampleState& state) {
-  const Vector3 off = on_curve - sample.target;
-  const double room = kSlideRoom * sample.limit;
-  const Vector3 slide = std::clamp(off.dot(sample.along), -room, room) * sample.along;
-  state.target = sample.target + (1 - kSlidePull) * slide;
-  state.distance = (off - slide).norm();
-}
-
 void reweight_scatter(std::span<const FitSample> samples, std::span<SampleState> states,
                       std::size_t begin, std::size_t end, ScatterStep step) {
   const double least = step == ScatterStep::kGrow ? 1 : kFall;
-  // Squared distances over scatter, 0 where none is expected, of all that any window holds.
+  // Squared distances over scatter, in turn, of those that the window of the next sample may hold
+  // or lose; none where no scatter is expected.
+  constexpr std::size_t kRing = 32;
+  static_assert(kRing > 2 * kScatterWindow + 1);
+  double squares[kRing];
   const std::size_t offset = begin < kScatterWindow ? 0 : begin - kScatterWindow;
-  std::vector<double> squares(std::min(end + kScatterWindow, samples.size()) - offset, 0);
-  for (std::size_t k = 0; k < squares.size(); ++k) {
-    const FitSample& sample = samples[offset + k];
-    if (!(sample.scatter > 0)) continue;
-    const double ratio = states[offset + k].distance / sample.scatter;
-    squares[k] = ratio * ratio;
-  }
   double sum = 0;  // of those in [first, last[
-  std::size_t count = 0;
+  int count = 0;
   std::size_t first = offset;
   std::size_t last = first;
   for (std::size_t i = begin; i < end; ++i) {
     for (; last < samples.size() && last <= i + kScatterWindow; ++last) {
-      if (samples[last].scatter > 0) sum += squares[last - offset], ++count;
+      const double scatter = samples[last].scatter;
+      if (!(scatter > 0)) continue;
+      const double ratio = states[last].distance / scatter;
+      squares[last % kRing] = ratio * ratio;
+      sum += squares[last % kRing];
+      ++count;
     }
     for (; first + kScatterWindow < i; ++first) {
-      if (samples[first].scatter > 0) sum -= squares[first - offset], --count;
+      if (samples[first].scatter > 0) sum -= squares[first % kRing], --count;
     }
     if (!(samples[i].scatter > 0) || count == 0) continue;
-    const double rms = std::sqrt(std::max(sum, 0.0) / static_cast<double>(count));
+    const double rms = std::sqrt(std::max(sum, 0.0) / count);
     SampleState& state = states[i];
     const double factor = is_numb(rms, state.rms) ? rms * rms * rms : rms;
     state.rms = rms;

@@ -2,6 +2,7 @@
 // Method: docs/algorithms/bspline_fit.md, section Weights.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 
@@ -23,8 +24,21 @@ struct SampleState {
 // Weights close to those of the least-squares curve: they fall from there where there is room.
 void start_tight(SampleState& state);
 
+// Sliding along is drawn back by this part in every solution, so that the parameter stays near
+// the place it was made for and the curve cannot fold.
+inline constexpr double kSlidePull = 0.05;
+
+// No sample slides further than this many limits: the path turns away from its direction.
+inline constexpr double kSlideRoom = 2;
+
 // Slides the target to the foot of the curve and measures what is left.
-void measure(const FitSample& sample, const Point3& on_curve, SampleState& state);
+inline void measure(const FitSample& sample, const Point3& on_curve, SampleState& state) {
+  const Vector3 off = on_curve - sample.target;
+  const double room = kSlideRoom * sample.limit;
+  const Vector3 slide = std::clamp(off.dot(sample.along), -room, room) * sample.along;
+  state.target = sample.target + (1 - kSlidePull) * slide;
+  state.distance = (off - slide).norm();
+}
 
 // The distance that weights of limits aim at, in limits: weights approach their values from both
 // sides, and a curve that is a little outside is of no use.
