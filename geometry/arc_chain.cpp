@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "geometry/angle.h"
 #include "geometry/numeric.h"
@@ -303,7 +304,7 @@ std::optional<ArcChain::Step> ArcChain::line_step(const ChainNode& start,
   const double reach = farthest(start.u, end.u, all, 1e-9 * all, line_holds);
   if (reach <= start.u) return std::nullopt;
   const ChainNode node = reach >= end.u ? end : node_at(start, reach, Tangent::kCurve);
-  return Step{{ChainPiece{line_to(reach), node.place.z(), reach}}, node};
+  return Step{{ChainPiece{line_to(reach), node.place.z(), reach}}, node, {}};
 }
 
 // Parameters run about with the length, in whatever unit: the whole stretch tells it.
@@ -346,7 +347,7 @@ std::optional<ArcChain::Step> ArcChain::farthest_single(const ChainNode& start,
       node.angle = start.angle + piece->arc.sweep;
     }
     if (std::abs(start.angle + piece->arc.sweep - wanted) > most) return false;
-    if (!best || u > best->end.u) best = Step{{*piece}, node};
+    if (!best || u > best->end.u) best = Step{{*piece}, node, {}};
     return true;
   };
   if (least > start.u && !single_holds(least)) return std::nullopt;
@@ -371,16 +372,19 @@ std::optional<ArcChain::Step> ArcChain::next_step(const ChainNode& start, const 
   const double reach = pair->end.u - start.u;
   const double least = pair->end.u >= limit ? limit : start.u + kSingleReach * reach;
   if (auto single = farthest_single(start, end, limit, least, kSingleReach * reach)) return single;
-  const ArcPair chosen = best_pair(start, *pair);
-  return Step{{ChainPiece{chosen.first, chosen.joint_height, chosen.joint_u},
-               ChainPiece{chosen.second, chosen.end.place.z(), chosen.end.u}},
-              chosen.end};
+  return Step{pieces_of(*pair), pair->end, OpenPair{start, *pair}};
+}
+
+std::vector<ChainPiece> ArcChain::pieces_of(const ArcPair& pair) {
+  return {ChainPiece{pair.first, pair.joint_height, pair.joint_u},
+          ChainPiece{pair.second, pair.end.place.z(), pair.end.u}};
 }
 
 std::optional<std::vector<ChainPiece>> ArcChain::greedy(const ChainNode& start,
                                                         const ChainNode& end,
                                                         std::size_t at_most) const {
   std::vector<ChainPiece> pieces;
+  std::vector<std::pair<std::size_t, OpenPair>> open;  // by the place of their first piece
   const auto most = static_cast<double>(at_most);
   ChainNode at = start;
   double guess = end.u - start.u;
@@ -392,6 +396,7 @@ std::optional<std::vector<ChainPiece>> ArcChain::greedy(const ChainNode& start,
       if (auto shorter = next_step(at, end, at.u + half, half)) step = std::move(shorter);
     }
     if (!step || pieces.size() + step->pieces.size() > at_most) return std::nullopt;
+    if (step->open) open.emplace_back(pieces.size(), *step->open);
     pieces.insert(pieces.end(), step->pieces.begin(), step->pieces.end());
     guess = step->end.u - at.u;
     at = step->end;
@@ -400,6 +405,11 @@ std::optional<std::vector<ChainPiece>> ArcChain::greedy(const ChainNode& start,
     if ((done > kPaceKnown && is_behind) || falls_behind(done, pieces.size(), at_most)) {
       return std::nullopt;
     }
+  }
+  // The chain goes the same way whichever joints its pairs have, and most chains are given up.
+  for (const auto& [first, pair] : open) {
+    std::ranges::copy(pieces_of(best_pair(pair.start, pair.found)),
+                      pieces.begin() + static_cast<std::ptrdiff_t>(first));
   }
   return pieces;
 }

@@ -66,9 +66,16 @@ class ArcChain {
   [[nodiscard]] Point3 rounded(const Point3& place) const;
 
  private:
+  // A pair of arcs whose joint is still to be chosen (best_pair).
+  struct OpenPair {
+    ChainNode start;
+    ArcPair found;
+  };
+
   struct Step {
     std::vector<ChainPiece> pieces;
     ChainNode end;
+    std::optional<OpenPair> open;  // the two pieces are one
   };
 
   std::optional<std::vector<ChainPiece>> greedy(const ChainNode& start, const ChainNode& end,
@@ -94,6 +101,7 @@ class ArcChain {
   std::optional<ArcPair> pair_between(const ChainNode& start, const ChainNode& end,
                                       double balance) const;
   ArcPair best_pair(const ChainNode& start, const ArcPair& found) const;
+  static std::vector<ChainPiece> pieces_of(const ArcPair& pair);
   std::optional<ChainPiece> single_to(const ChainNode& start, const ChainNode& end) const;
 
   bool holds(ArcPair& pair, const ChainNode& start) const;  // finds where the joint is

@@ -50,13 +50,15 @@ class ArcCutter {
   ArcCutter(const PlaneCurve& curve, const ArcChain& chain, double grid)
       : curve_(curve), chain_(chain), grid_(grid) {}
 
-  std::vector<Stretch> cut(const CurvePieces& pieces) const {
-    std::vector<double> corners = pieces.corners();
-    corners.push_back(pieces.last());
-    const std::vector<StraightRun> runs = pieces.straight_runs();
+  // From the curve's start to `last`.
+  std::vector<Stretch> cut(const MarkedPieces& marked, double last) const {
+    std::vector<double> corners = marked.corners;
+    corners.erase(std::lower_bound(corners.begin(), corners.end(), last), corners.end());
+    corners.push_back(last);
+    const std::vector<StraightRun>& runs = marked.straight_runs;
     std::vector<Stretch> stretches;
     auto run = runs.begin();
-    double at = pieces.first();
+    double at = marked.pieces.first();
     for (double corner : corners) {
       const double section = at;
       for (; run != runs.end() && run->to <= corner; ++run) {
@@ -220,30 +222,116 @@ std::optional<std::vector<ChainPiece>> spline_between(const CurvePieces& curve,
   return pieces;
 }
 
-// About how many chords the curve takes: the integral of sqrt(curvature / 8 deviation) along it.
-double about_chords(const CurvePieces& pieces, double deviation) {
-  constexpr int kParts = 3;
-  double chords = 0;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const CubicBezier& piece = pieces.piece(i);
-    for (int k = 0; k < kParts; ++k) {
-      const double from = static_cast<double>(k) / kParts;
-      const double to = static_cast<double>(k + 1) / kParts;
-      const double length = (point_at(piece, to) - point_at(piece, from)).norm();
-      chords += length * std::sqrt(curvature_at(piece, (from + to) / 2) / (8 * deviation));
-    }
-  }
-  return chords;
-}
-
 // Off the plane most curves are no helices: arcs that are more than chords would be do not
 // pay. In the plane arcs are worth more than chords, since their tangents agree.
-std::size_t most_pieces(const CurvePieces& pieces, std::size_t stretches,
-                        const ArcFitOptions& options, bool flat) {
+std::size_t most_pieces(double chords, std::size_t stretches, const ArcFitOptions& options,
+                        bool flat) {
   if (flat) return std::numeric_limits<std::size_t>::max();
-  const auto chords = static_cast<std::size_t>(about_chords(pieces, options.max_deviation));
-  return std::min(stretches + chords, options.at_most);
+  return std::min(stretches + static_cast<std::size_t>(chords), options.at_most);
 }
+
+// How far the pieces reach along an axis, mm.
+double range_along(const CurvePieces& pieces, const Vector3& axis) {
+  double least = axis.dot(pieces.piece(0).control[0]);
+  double greatest = least;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    for (const Point3& control : pieces.piece(i).control) {
+      least = std::min(least, axis.dot(control));
+      greatest = std::max(greatest, axis.dot(control));
+    }
+  }
+  return greatest - least;
+}
+
+// Whether a chain off the plane falls so far behind on so many pieces that it would be given up,
+// however well it went afterwards: most are, and so only they are looked at closely.
+constexpr std::size_t kFirstPieces = 3000;
+
+// One curve, chained in one plane.
+class ArcFit {
+ public:
+  ArcFit(const BsplineCurve& curve, const MarkedPieces& marked, double chords,
+         const ArcFitOptions& options)
+      : curve_(curve),
+        marked_(marked),
+        chords_(chords),
+        options_(options),
+        frame_(PlaneFrame::across(options.axis)),
+        flat_(range_along(marked.pieces, options.axis) <= kOneHeight) {
+    limits_.deviation = options.max_deviation * (flat_ ? 1.0 : kPlaneShare);
+    limits_.height_deviation = options.max_deviation * kHeightShare;
+    limits_.min_radius = options.min_radius;
+    limits_.max_radius = options.max_radius;
+    limits_.max_sweep = options.max_sweep;
+    limits_.grid = options.grid;
+    limits_.flat = flat_;
+  }
+
+  [[nodiscard]] bool is_flat() const { return flat_; }
+
+  // Whether the first pieces already take so many arcs that the whole would be given up behind
+  // them.
+  [[nodiscard]] bool falls_behind_early() const {
+    const double end = marked_.pieces.breaks()[kFirstPieces];
+    const PlaneCurve first(curve_, curve_.first(), end, frame_);
+    const ArcChain chain(first, limits_);
+    std::vector<Stretch> stretches = ArcCutter(first, chain, options_.grid).cut(marked_, end);
+    const std::vector<Stop> stops = stops_of(first, chain, stretches, flat_);
+    // The last one ends at no corner of the curve; of the others there are no more than these.
+    stretches.pop_back();
+    const std::size_t most_stretches =
+        marked_.corners.size() + 2 * marked_.straight_runs.size() + 2;
+    const std::size_t most = most_pieces(chords_, most_stretches, options_, flat_);
+    return !path_along(chain, stretches, stops, most);
+  }
+
+  [[nodiscard]] std::optional<Path> chain() const {
+    const PlaneCurve whole(curve_, curve_.first(), curve_.last(), frame_);
+    const ArcChain chain(whole, limits_);
+    const std::vector<Stretch> stretches =
+        ArcCutter(whole, chain, options_.grid).cut(marked_, curve_.last());
+    const std::vector<Stop> stops = stops_of(whole, chain, stretches, flat_);
+    return path_along(chain, stretches, stops,
+                      most_pieces(chords_, stretches.size(), options_, flat_));
+  }
+
+ private:
+  [[nodiscard]] std::optional<Path> path_along(const ArcChain& chain,
+                                               const std::vector<Stretch>& stretches,
+                                               const std::vector<Stop>& stops,
+                                               std::size_t most) const {
+    const double from = marked_.pieces.first();
+    const double length = marked_.pieces.last() - from;
+    PathBuilder builder(frame_, options_.axis, marked_.pieces.piece(0).control[0]);
+    std::size_t left = most;
+    for (std::size_t i = 0; i < stretches.size(); ++i) {
+      const Stretch& stretch = stretches[i];
+      if (stretch.straight) {
+        builder.add_line(stops[i + 1].place);
+        continue;
+      }
+      const ChainNode start{stretch.from, stops[i].place, stops[i].leaving};
+      const ChainNode end{stretch.to, stops[i + 1].place, stops[i + 1].arriving};
+      auto pieces =
+          flat_ ? spline_between(marked_.pieces, frame_, start, end, limits_, options_.effort)
+                : std::nullopt;
+      if (!pieces) pieces = chain.between(start, end, left);
+      if (!pieces) return std::nullopt;
+      left -= pieces->size();
+      if (falls_behind((stretch.to - from) / length, most - left, most)) return std::nullopt;
+      for (const ChainPiece& piece : *pieces) builder.add(piece);
+    }
+    return builder.take();
+  }
+
+  const BsplineCurve& curve_;
+  const MarkedPieces& marked_;
+  double chords_;
+  const ArcFitOptions& options_;
+  PlaneFrame frame_;
+  bool flat_;
+  ArcChainLimits limits_;
+};
 
 void check(const ArcFitOptions& options) {
   if (!(options.max_deviation > 0)) {
@@ -261,45 +349,37 @@ void check(const ArcFitOptions& options) {
 std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
                              const ArcFitOptions& options) {
   check(options);
-  const PlaneFrame frame = PlaneFrame::across(options.axis);
-  const PlaneCurve plane_curve(curve, from, to, frame);
-  const bool flat = plane_curve.height_range() <= kOneHeight;
-  if (!flat && !options.helical) return std::nullopt;
+  const bool whole = from == curve.first() && to == curve.last();
+  const BsplineCurve part = whole ? curve : curve.part(from, to);
+  const MarkedPieces pieces(part, from, to);
+  return fit_arcs(part, pieces, chords_along(pieces.pieces, options.max_deviation), options);
+}
 
-  ArcChainLimits limits;
-  limits.deviation = options.max_deviation * (flat ? 1.0 : kPlaneShare);
-  limits.height_deviation = options.max_deviation * kHeightShare;
-  limits.min_radius = options.min_radius;
-  limits.max_radius = options.max_radius;
-  limits.max_sweep = options.max_sweep;
-  limits.grid = options.grid;
-  limits.flat = flat;
-  const ArcChain chain(plane_curve, limits);
-
-  const CurvePieces all(curve, from, to);
-  const std::vector<Stretch> stretches = ArcCutter(plane_curve, chain, options.grid).cut(all);
-  const std::vector<Stop> stops = stops_of(plane_curve, chain, stretches, flat);
-
-  PathBuilder builder(frame, options.axis, curve.point_at(from));
-  const std::size_t most = most_pieces(all, stretches.size(), options, flat);
-  std::size_t left = most;
-  for (std::size_t i = 0; i < stretches.size(); ++i) {
-    const Stretch& stretch = stretches[i];
-    if (stretch.straight) {
-      builder.add_line(stops[i + 1].place);
-      continue;
-    }
-    const ChainNode start{stretch.from, stops[i].place, stops[i].leaving};
-    const ChainNode end{stretch.to, stops[i + 1].place, stops[i + 1].arriving};
-    auto pieces =
-        flat ? spline_between(all, frame, start, end, limits, options.effort) : std::nullopt;
-    if (!pieces) pieces = chain.between(start, end, left);
-    if (!pieces) return std::nullopt;
-    left -= pieces->size();
-    if (falls_behind((stretch.to - from) / (to - from), most - left, most)) return std::nullopt;
-    for (const ChainPiece& piece : *pieces) builder.add(piece);
+std::optional<Path> fit_arcs(const BsplineCurve& curve, const MarkedPieces& pieces, double chords,
+                             const ArcFitOptions& options) {
+  check(options);
+  const ArcFit fit(curve, pieces, chords, options);
+  if (!fit.is_flat() && !options.helical) return std::nullopt;
+  if (!fit.is_flat() && pieces.pieces.size() > 2 * kFirstPieces && fit.falls_behind_early()) {
+    return std::nullopt;
   }
-  return builder.take();
+  return fit.chain();
+}
+
+double chords_along(const CurvePieces& pieces, double deviation) {
+  constexpr int kParts = 3;
+  double chords = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const CubicBezier& piece = pieces.piece(i);
+    for (int k = 0; k < kParts; ++k) {
+      const double from = static_cast<double>(k) / kParts;
+      const double to = static_cast<double>(k + 1) / kParts;
+      const double length = (point_at(piece, to) - point_at(piece, from)).norm();
+      // The integral of sqrt(curvature / 8 deviation) along the curve.
+      chords += length * std::sqrt(curvature_at(piece, (from + to) / 2) / (8 * deviation));
+    }
+  }
+  return chords;
 }
 
 }  // namespace batten::geometry

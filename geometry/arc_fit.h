@@ -8,6 +8,7 @@
 
 #include "geometry/arc_spline.h"
 #include "geometry/bspline_curve.h"
+#include "geometry/curve_pieces.h"
 #include "geometry/path.h"
 
 namespace batten::geometry {
@@ -41,5 +42,12 @@ struct ArcFitOptions {
 // Each straight span of the curve that is longer than an arc could be held on stays a Line.
 [[nodiscard]] std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
                                            const ArcFitOptions& options);
+
+// The same for all of a curve that is in its pieces already. `chords`: chords_along of them.
+[[nodiscard]] std::optional<Path> fit_arcs(const BsplineCurve& curve, const MarkedPieces& pieces,
+                                           double chords, const ArcFitOptions& options);
+
+// About how many chords within `deviation` (mm) the curve takes.
+[[nodiscard]] double chords_along(const CurvePieces& pieces, double deviation);
 
 }  // namespace batten::geometry

@@ -47,6 +47,9 @@ class CurvePieces {
   [[nodiscard]] Vector3 arriving(double u) const;
   [[nodiscard]] Vector3 leaving(double u) const;
 
+  // The piece's own parameter at u, 0..1 (clamped to the piece).
+  [[nodiscard]] double local(std::size_t i, double u) const;
+
   // The part of piece i between two parameters of the curve (clamped to the piece).
   [[nodiscard]] CubicBezier part(std::size_t i, double from, double to) const;
 
@@ -57,10 +60,19 @@ class CurvePieces {
   [[nodiscard]] std::vector<StraightRun> straight_runs() const;
 
  private:
-  [[nodiscard]] double local(std::size_t i, double u) const;
-
   std::vector<double> breaks_;
   std::vector<CubicBezier> pieces_;
+};
+
+// A stretch of curve for those who cut it more than once.
+struct MarkedPieces {
+  // As CurvePieces.
+  MarkedPieces(const BsplineCurve& curve, double from, double to)
+      : pieces(curve, from, to), corners(pieces.corners()), straight_runs(pieces.straight_runs()) {}
+
+  CurvePieces pieces;
+  std::vector<double> corners;             // as CurvePieces gives them
+  std::vector<StraightRun> straight_runs;  // the same
 };
 
 }  // namespace batten::geometry

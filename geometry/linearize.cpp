@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "geometry/chord_height.h"
 #include "geometry/chord_proof.h"
 #include "geometry/curve_pieces.h"
 
@@ -41,171 +43,131 @@ Limits scaled(const Limits& limits, double chord_length) {
   return {limits.deviation * chord_length * chord_length, limits.max_length * chord_length};
 }
 
-// The chords from one place of the curve on: which ends hold.
-class ChordsFrom {
+// The longest chord from one place of the curve.
+class LongestChord {
  public:
-  ChordsFrom(const CurvePieces& pieces, double from, const Limits& limits)
-      : pieces_(pieces),
-        from_(from),
-        first_(pieces.index_of(from)),
-        start_(pieces.point_at(from)),
-        limits_(limits) {}
+  LongestChord(const CurvePieces& pieces, double from, const Limits& limits)
+      : pieces_(pieces), chords_(pieces, from), limits_(limits) {}
 
-  [[nodiscard]] const Point3& start() const { return start_; }
-  [[nodiscard]] std::size_t first_piece() const { return first_; }
-
-  [[nodiscard]] bool proved(double end) const {
-    const Point3 place = pieces_.point_in(piece_at(end, first_), end);
-    if ((place - start_).norm() > limits_.max_length * (1 + kLengthNoise)) return false;
-    return chord_proved(pieces_, first_, from_, end, ChordProof(start_, place, limits_.deviation));
-  }
-
-  // As `proved`, but what lies before an end that held or behind one that did not is not asked
-  // again: a longer chord is farther off.
-  bool holds(double end) {
-    if (end <= held_) return true;
-    if (end >= failed_) return false;
-    const bool held = proved(end);
-    (held ? held_ : failed_) = end;
-    return held;
-  }
-
-  // As `holds`, for ends that may hold although nearer ones do not: behind a turning point.
-  bool holds_beyond(double end) {
-    if (end < failed_) return holds(end);
-    if (!proved(end)) return false;
-    held_ = end;
-    failed_ = std::numeric_limits<double>::infinity();
-    return true;
-  }
-
-  // Whether this end itself was asked for, and held.
-  [[nodiscard]] bool held(double end) const { return end == held_; }
-
-  // Makes the doubt small before it is halved: by the height of the chords that begin here, which
-  // grows with the square of their length. `guess` is some end behind `from`.
-  void narrow(double guess, double limit);
-
-  // Leaves nothing but what is asked.
-  void forget() {
-    held_ = -std::numeric_limits<double>::infinity();
-    failed_ = std::numeric_limits<double>::infinity();
+  // Where it ends, at most `limit`; `guess` is some end behind the start.
+  double end(double guess, double limit) {
+    good_ = chords_.from();
+    bad_ = std::numeric_limits<double>::infinity();
+    approach(std::min(guess, limit), limit);
+    go_beyond(limit);
+    if (std::isfinite(limits_.max_length) && good_ < limit) {  // lengths divide evenly: meet them
+      const double end = end_at_length();
+      if (end > good_ && holds(end)) good_ = end;
+    }
+    return good_ > chords_.from() ? good_ : bad_;  // so short that rounding hides its proof
   }
 
  private:
-  // The piece that holds `u`, at or after `piece`.
-  [[nodiscard]] std::size_t piece_at(double u, std::size_t piece) const {
-    while (piece + 1 < pieces_.size() && pieces_.breaks()[piece + 1] <= u) ++piece;
-    return piece;
+  // What one chord says of the best end.
+  struct Trial {
+    double end;
+    double bow;  // the root of the height, which goes about with the length
+    bool holds;
+  };
+
+  [[nodiscard]] Trial try_end(double end) const {
+    const ChordHeight chord = chords_.to(end);
+    const bool fits = chord.height <= limits_.deviation && !is_too_long(chord.chord);
+    return {end, std::sqrt(chord.height), fits && (chord.in_order || proved(end))};
   }
 
-  [[nodiscard]] double height(double end) const;
+  [[nodiscard]] bool holds(double end) const { return try_end(end).holds; }
+
+  [[nodiscard]] bool is_too_long(double length) const {
+    return length > limits_.max_length * (1 + kLengthNoise);
+  }
+
+  // Where the curve goes back and forth along its chord.
+  [[nodiscard]] bool proved(double end) const {
+    const Point3 place = pieces_.point_at(end);
+    return chord_proved(pieces_, chords_.first_piece(), chords_.from(), end,
+                        ChordProof(chords_.start(), place, limits_.deviation));
+  }
+
+  [[nodiscard]] bool is_settled() const {
+    return std::isfinite(bad_) && bad_ - good_ <= kEndPrecision * (bad_ - chords_.from());
+  }
+
+  // Narrows the doubt between an end that holds and one that does not, by the secants of the bow.
+  void approach(double end, double limit) {
+    constexpr int kSecants = 12;
+    constexpr double kWidest = 4;                  // the length changes by this factor at most
+    constexpr double kNearly = 1 - kEndPrecision;  // of the deviation: half of it, of the length
+    const double from = chords_.from();
+    const double full = std::sqrt(limits_.deviation);
+    const double aim = std::sqrt(0.5 * (1 + kNearly)) * full;
+    Trial before{from, 0, true};
+    for (int i = 0;; ++i) {
+      const Trial trial = try_end(end);
+      (trial.holds ? good_ : bad_) = end;
+      if (trial.holds && (end >= limit || trial.bow * trial.bow >= kNearly * limits_.deviation)) {
+        return;
+      }
+      if (is_settled()) return;
+      const double slope = (trial.bow - before.bow) / (trial.end - before.end);
+      const double length = end - from;
+      double next = slope > 0 ? end + (aim - trial.bow) / slope : from + kWidest * length;
+      next = std::clamp(next, from + length / kWidest, from + kWidest * length);
+      next = std::min(next, limit);
+      if (i >= kSecants || !(good_ < next && next < bad_)) {
+        if (!std::isfinite(bad_)) {
+          next = std::min(from + 2 * length, limit);
+        } else {
+          next = (good_ + bad_) / 2;
+          if (next <= good_ || next >= bad_) return;  // the doubles are used up
+        }
+      }
+      before = trial;
+      end = next;
+    }
+  }
+
+  // A chord may hold although shorter ones do not, behind a turning point: the number of pieces
+  // under it is doubled as long as that helps.
+  void go_beyond(double limit) {
+    const auto& breaks = pieces_.breaks();
+    bool farther = false;
+    for (std::size_t step = 1; good_ < limit; step *= 2) {
+      const std::size_t at = std::min(chords_.first_piece() + step, breaks.size() - 1);
+      const double end = std::min(breaks[at], limit);
+      if (end <= good_) continue;
+      if (chords_.leaves(end, limits_.deviation) || !holds(end)) {
+        bad_ = farther ? end : std::min(end, bad_);
+        break;
+      }
+      good_ = end;
+      farther = true;
+    }
+    while (farther && good_ < limit && !is_settled()) {
+      const double middle = (good_ + bad_) / 2;
+      if (middle <= good_ || middle >= bad_) return;  // the doubles are used up
+      (holds(middle) ? good_ : bad_) = middle;
+    }
+  }
+
+  // Where the distance from the start reaches the greatest length, between good and bad.
+  [[nodiscard]] double end_at_length() const {
+    double good = good_;
+    double bad = bad_;
+    for (double middle = (good + bad) / 2; middle > good && middle < bad;
+         middle = (good + bad) / 2) {
+      const double length = (pieces_.point_at(middle) - chords_.start()).norm();
+      (length <= limits_.max_length ? good : bad) = middle;
+    }
+    return good;
+  }
 
   const CurvePieces& pieces_;
-  double from_;
-  std::size_t first_;
-  Point3 start_;
+  ChordsFrom chords_;
   Limits limits_;
-  double held_ = -std::numeric_limits<double>::infinity();
-  double failed_ = std::numeric_limits<double>::infinity();
+  double good_ = 0;
+  double bad_ = 0;
 };
-
-// The curve's greatest distance from the chord to `end`, mm: of places between, and of the
-// parabola through the farthest and its neighbours.
-double ChordsFrom::height(double end) const {
-  constexpr int kPlaces = 6;
-  const Vector3 chord = pieces_.point_in(piece_at(end, first_), end) - start_;
-  const double squared = chord.squaredNorm();
-  if (squared == 0) return 0;
-  double heights[kPlaces + 1] = {};
-  std::size_t piece = first_;
-  int farthest = 1;
-  for (int k = 1; k < kPlaces; ++k) {
-    const double u = from_ + (end - from_) * k / kPlaces;
-    piece = piece_at(u, piece);
-    const Vector3 off = pieces_.point_in(piece, u) - start_;
-    heights[k] = (off - off.dot(chord) / squared * chord).norm();
-    if (heights[k] > heights[farthest]) farthest = k;
-  }
-  const double before = heights[farthest - 1];
-  const double after = heights[farthest + 1];
-  const double bend = 2 * heights[farthest] - before - after;
-  if (!(bend > 0)) return heights[farthest];
-  return heights[farthest] + (after - before) * (after - before) / (8 * bend);
-}
-
-void ChordsFrom::narrow(double guess, double limit) {
-  constexpr int kSteps = 4;
-  constexpr double kSettled = 5e-3;  // the error of a step goes with the square of the one before
-  constexpr double kWidest = 4;      // a step changes the length by this factor at most
-  double length = std::min(guess, limit) - from_;
-  const double longest = limit - from_;
-  for (int step = 0; step < kSteps; ++step) {
-    const double away = height(from_ + length);
-    const double wanted = away > 0 ? std::sqrt(limits_.deviation / away) : kWidest;
-    const double next = std::min(length * std::clamp(wanted, 1 / kWidest, kWidest), longest);
-    const bool settled = std::abs(next - length) < kSettled * length;
-    length = next;
-    if (settled) break;
-  }
-  for (double doubt = kEndPrecision; doubt < 1; doubt *= kWidest) {
-    if (holds(from_ + length * (1 - doubt))) break;
-  }
-  for (double doubt = kEndPrecision; doubt < 1; doubt *= kWidest) {
-    const double end = from_ + length * (1 + doubt);
-    if (end >= limit || !holds(end)) break;
-  }
-}
-
-// Where the distance from `from` reaches `length`, between `good` (nearer) and `bad`.
-double end_at_length(const CurvePieces& pieces, const Point3& start, double good, double bad,
-                     double length) {
-  for (double middle = (good + bad) / 2; middle > good && middle < bad; middle = (good + bad) / 2) {
-    ((pieces.point_at(middle) - start).norm() <= length ? good : bad) = middle;
-  }
-  return good;
-}
-
-// The farthest end of the chords, at most `limit`: doubling the number of pieces under them, then
-// halving the doubt.
-double farthest_end(const CurvePieces& pieces, double from, double limit, const Limits& limits,
-                    ChordsFrom& chords) {
-  const auto& breaks = pieces.breaks();
-  const std::size_t first = chords.first_piece();
-  double good = from;
-  double bad = limit;
-  for (std::size_t step = 1;; step *= 2) {
-    const std::size_t at = std::min(first + step, breaks.size() - 1);
-    const double end = std::min(breaks[at], limit);
-    if (!chords.holds_beyond(end)) {
-      bad = end;
-      break;
-    }
-    good = end;
-    if (end >= limit) return limit;
-  }
-  while (bad - good > kEndPrecision * (bad - from)) {
-    const double middle = (good + bad) / 2;
-    if (middle <= good || middle >= bad) break;  // the doubles are used up
-    (chords.holds(middle) ? good : bad) = middle;
-  }
-  if (std::isfinite(limits.max_length)) {  // lengths divide evenly: meet them exactly
-    const double end = end_at_length(pieces, chords.start(), good, bad, limits.max_length);
-    if (end > good && chords.proved(end)) good = end;
-  }
-  return good > from ? good : bad;  // a chord so short that rounding hides its proof
-}
-
-// The same end as without a guess, and proved as it is.
-double farthest_end(const CurvePieces& pieces, double from, double limit, const Limits& limits,
-                    double guess) {
-  ChordsFrom chords(pieces, from, limits);
-  chords.narrow(guess, limit);
-  const double end = farthest_end(pieces, from, limit, limits, chords);
-  if (chords.held(end) || chords.proved(end)) return end;
-  chords.forget();
-  return farthest_end(pieces, from, limit, limits, chords);
-}
 
 // Vertices after `from` up to `to`, greedily: no sequence of such chords gets farther with
 // as many, since a chord from farther on reaches farther. Stops after `at_most` chords.
@@ -213,9 +175,14 @@ std::vector<double> greedy_ends(const CurvePieces& pieces, double from, double t
                                 const Limits& limits, std::size_t at_most) {
   std::vector<double> ends;
   const std::size_t first = pieces.index_of(from);
+  // A chord is about as long as the one before, and as much longer than that as that was.
   double last_step = pieces.breaks()[first + 1] - pieces.breaks()[first];
+  double growth = 1;
+  constexpr double kMostGrowth = 1.5;
   for (double at = from; at < to && ends.size() < at_most;) {
-    const double end = farthest_end(pieces, at, to, limits, at + last_step);
+    const double guess = at + std::clamp(growth, 1 / kMostGrowth, kMostGrowth) * last_step;
+    const double end = LongestChord(pieces, at, limits).end(guess, to);
+    growth = ends.empty() ? 1 : (end - at) / last_step;
     last_step = end - at;
     at = end;
     ends.push_back(at);
@@ -225,18 +192,9 @@ std::vector<double> greedy_ends(const CurvePieces& pieces, double from, double t
 
 // How much of a full chord the last one is, 0..1, by its deviation or its length.
 double part_of_full_chord(const CurvePieces& pieces, double from, double to, const Limits& limits) {
-  constexpr int kSamples = 16;
-  const Point3 start = pieces.point_at(from);
-  const Vector3 chord = pieces.point_at(to) - start;
-  const double length = chord.norm();
-  double away = 0;
-  for (int i = 1; i < kSamples; ++i) {
-    const Vector3 to_curve = pieces.point_at(from + (to - from) * i / kSamples) - start;
-    const double along = length > 0 ? to_curve.dot(chord) / length : 0;
-    away = std::max(away, to_curve.squaredNorm() - along * along);
-  }
-  const double by_deviation = std::sqrt(std::sqrt(std::max(away, 0.0)) / limits.deviation);
-  return std::min(std::max(by_deviation, length / limits.max_length), 1.0);
+  const ChordHeight last = ChordsFrom(pieces, from).to(to);
+  const double by_deviation = std::sqrt(last.height / limits.deviation);
+  return std::min(std::max(by_deviation, last.chord / limits.max_length), 1.0);
 }
 
 // As many chords as `ends` has, but with limits narrowed until the last is no remainder.
@@ -263,10 +221,14 @@ std::vector<double> balanced(const CurvePieces& pieces, double from, std::vector
   return ends;
 }
 
-std::vector<double> balanced_ends(const CurvePieces& pieces, double from, double to,
+std::vector<double> all_ends(const CurvePieces& pieces, double from, double to,
+                             const Limits& limits) {
+  return greedy_ends(pieces, from, to, limits, std::numeric_limits<std::size_t>::max());
+}
+
+// The last of greedy chords balanced.
+std::vector<double> balanced_tail(const CurvePieces& pieces, double from, std::vector<double> ends,
                                   const Limits& limits) {
-  std::vector<double> ends =
-      greedy_ends(pieces, from, to, limits, std::numeric_limits<std::size_t>::max());
   const std::size_t kept = ends.size() > kBalancedChords ? ends.size() - kBalancedChords : 0;
   const double start = kept > 0 ? ends[kept - 1] : from;
   const auto cut = ends.begin() + static_cast<std::ptrdiff_t>(kept);
@@ -279,58 +241,114 @@ std::vector<double> balanced_ends(const CurvePieces& pieces, double from, double
   return ends;
 }
 
-// Corners, and the ends of straight runs that are about as long as the chords over them:
-// shorter ones, such as the spans of a finely cut bend, are left to the chords.
-std::vector<double> kept_places(const CurvePieces& pieces, const ChordOptions& options,
-                                const Limits& limits) {
-  std::vector<double> kept = pieces.corners();
-  const std::vector<StraightRun> runs = pieces.straight_runs();
-  if (!runs.empty()) {
-    const std::vector<double> ends = greedy_ends(pieces, pieces.first(), pieces.last(), limits,
-                                                 std::numeric_limits<std::size_t>::max());
-    std::size_t chord = 0;
-    const auto chord_length = [&](std::size_t i) {
-      const double start = i == 0 ? pieces.first() : ends[i - 1];
-      return (pieces.point_at(ends[i]) - pieces.point_at(start)).norm();
-    };
-    for (const StraightRun& run : runs) {
-      const double length = (pieces.point_at(run.to) - pieces.point_at(run.from)).norm();
-      while (ends[chord] <= run.from) ++chord;
-      double longest = chord_length(chord);
-      for (std::size_t i = chord + 1; i < ends.size() && ends[i - 1] < run.to; ++i) {
-        longest = std::max(longest, chord_length(i));
-      }
-      if (2 * length < longest || length < options.min_length) continue;
-      kept.push_back(run.from);
-      kept.push_back(run.to);
+// The chords between two corners.
+class Section {
+ public:
+  Section(const CurvePieces& pieces, double from, double to, const ChordOptions& options,
+          const Limits& limits)
+      : pieces_(pieces),
+        from_(from),
+        to_(to),
+        min_length_(options.min_length),
+        limits_(limits),
+        ends_(all_ends(pieces, from, to, limits)) {}
+
+  // Appends the places behind the section's start. `runs`: the straight ones that are in it.
+  void append(std::span<const StraightRun> runs, std::vector<double>& vertices) {
+    const std::vector<double> kept = kept_ends(runs);
+    if (kept.empty()) {
+      append_balanced(from_, std::move(ends_), vertices);
+      return;
+    }
+    double at = from_;
+    for (const double end : kept) {
+      append_balanced(at, all_ends(pieces_, at, end, limits_), vertices);
+      at = end;
     }
   }
-  kept.push_back(pieces.last());
-  std::sort(kept.begin(), kept.end());
-  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
-  return kept;
+
+ private:
+  void append_balanced(double from, std::vector<double> ends, std::vector<double>& vertices) const {
+    const std::vector<double> all = balanced_tail(pieces_, from, std::move(ends), limits_);
+    vertices.insert(vertices.end(), all.begin(), all.end());
+  }
+
+  // Ends of straight runs that are about as long as the chords over them, and the section's end:
+  // shorter ones, such as the spans of a finely cut bend, are left to the chords.
+  [[nodiscard]] std::vector<double> kept_ends(std::span<const StraightRun> runs) const {
+    std::vector<double> kept;
+    std::size_t chord = 0;
+    const auto keep = [&](double end) {
+      if (end > (kept.empty() ? from_ : kept.back())) kept.push_back(end);
+    };
+    for (const StraightRun& run : runs) {
+      if (run.from <= from_ && run.to >= to_) continue;  // its ends are kept anyway
+      const double length = (pieces_.point_at(run.to) - pieces_.point_at(run.from)).norm();
+      while (ends_[chord] <= run.from) ++chord;
+      double longest = chord_length(chord);
+      for (std::size_t i = chord + 1; i < ends_.size() && ends_[i - 1] < run.to; ++i) {
+        longest = std::max(longest, chord_length(i));
+      }
+      if (2 * length < longest || length < min_length_) continue;
+      keep(run.from);
+      keep(run.to);
+    }
+    if (!kept.empty()) keep(to_);
+    return kept;
+  }
+
+  [[nodiscard]] double chord_length(std::size_t i) const {
+    const double start = i == 0 ? from_ : ends_[i - 1];
+    return (pieces_.point_at(ends_[i]) - pieces_.point_at(start)).norm();
+  }
+
+  const CurvePieces& pieces_;
+  double from_;
+  double to_;
+  double min_length_;
+  Limits limits_;
+  std::vector<double> ends_;  // greedy ones
+};
+
+// What of the straight runs lies between two places, from the run `next` on, which is moved to the
+// last of them.
+std::vector<StraightRun> runs_between(const std::vector<StraightRun>& runs, double from, double to,
+                                      std::size_t& next) {
+  std::vector<StraightRun> found;
+  while (next < runs.size() && runs[next].to <= from) ++next;
+  for (std::size_t i = next; i < runs.size() && runs[i].from < to; ++i) {
+    found.push_back({std::max(runs[i].from, from), std::min(runs[i].to, to)});
+  }
+  return found;
 }
 
 }  // namespace
 
-std::vector<double> chord_vertices(const BsplineCurve& curve, double from, double to,
+std::vector<double> chord_vertices(const MarkedPieces& curve, double from, double to,
                                    const ChordOptions& options) {
   if (!(options.max_deviation > 0)) {
     throw std::invalid_argument("chord_vertices: max_deviation " +
                                 std::to_string(options.max_deviation) + ", expected > 0");
   }
-  const CurvePieces pieces(curve, from, to);
   const Limits limits{options.max_deviation, options.max_length > 0
                                                  ? options.max_length
                                                  : std::numeric_limits<double>::infinity()};
   std::vector<double> vertices = {from};
-  for (const double end : kept_places(pieces, options, limits)) {
-    if (end <= vertices.back()) continue;
-    const std::vector<double> ends = balanced_ends(pieces, vertices.back(), end, limits);
-    vertices.insert(vertices.end(), ends.begin(), ends.end());
+  auto corner = std::upper_bound(curve.corners.begin(), curve.corners.end(), from);
+  std::size_t run = 0;
+  for (double at = from; at < to;) {
+    const double end = corner != curve.corners.end() && *corner < to ? *corner++ : to;
+    Section(curve.pieces, at, end, options, limits)
+        .append(runs_between(curve.straight_runs, at, end, run), vertices);
+    at = end;
   }
   vertices.back() = to;
   return vertices;
+}
+
+std::vector<double> chord_vertices(const BsplineCurve& curve, double from, double to,
+                                   const ChordOptions& options) {
+  return chord_vertices(MarkedPieces(curve, from, to), from, to, options);
 }
 
 }  // namespace batten::geometry

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/bspline_curve.h"
+#include "geometry/curve_pieces.h"
 
 namespace batten::geometry {
 
@@ -23,6 +24,10 @@ struct ChordOptions {
 // Requires degree 3 or less and first() <= from < to <= last(). A corner of the curve is
 // always a vertex.
 [[nodiscard]] std::vector<double> chord_vertices(const BsplineCurve& curve, double from, double to,
+                                                 const ChordOptions& options);
+
+// The same between two places of a curve that is in its pieces already.
+[[nodiscard]] std::vector<double> chord_vertices(const MarkedPieces& curve, double from, double to,
                                                  const ChordOptions& options);
 
 }  // namespace batten::geometry

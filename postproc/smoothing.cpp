@@ -11,10 +11,12 @@
 #include "gcode/curves/curve_format.h"
 #include "gcode/large_pages.h"
 #include "gcode/reason.h"
+#include "geometry/curve_pieces.h"
 #include "geometry/numeric.h"
 #include "postproc/machine/cycle_time.h"
 #include "postproc/machine/junction_speed.h"
 #include "postproc/machine/timed_chain.h"
+#include "postproc/plan/piece_plans.h"
 #include "postproc/plan/run_choice.h"
 #include "postproc/plan/run_curve.h"
 #include "postproc/plan/run_prospect.h"
@@ -49,6 +51,9 @@ constexpr double kFineArcs = 0.25;
 constexpr double kLongChords = 1.5;
 constexpr double kMiddleChords = 0.6;
 constexpr double kFineChords = 0.25;
+
+// Chords that may be as far from the curve as this part of what others may are those again.
+constexpr double kAnother = 0.9;
 
 // Radians: vertices that turn more are bends so tight, where they are none of the path that was
 // meant, that curves may rather end there.
@@ -103,8 +108,8 @@ class RunSmoother {
   SmoothedRun smooth() {
     result_.facts.max_curvature = greatest_curvature(run_.points);
     const std::vector<TimedPiece> motions = timed_pieces(run_, 0, run_.points.size() - 1);
-    if (options_.method == Method::kNone) return kept_unasked(motions);
     time_around_ = times_around();
+    if (options_.method == Method::kNone) return kept_unasked(motions);
     result_.facts.times = times_of_run(motions);
     if (!run_.arcs.empty()) result_.facts.kink = greatest_kink(motions);
 
@@ -233,11 +238,21 @@ class RunSmoother {
     const auto times = [this](const std::vector<TimedPiece>& chain) {
       return SettingTimes(chain, *options_.machine, context_.after.path);
     };
-    if (context_.lead.empty() && context_.tail.empty()) return times(moves);
-    std::vector<TimedPiece> chain = context_.lead;
+    return has_neighbours() ? times(in_place(moves)) : times(moves);
+  }
+
+  [[nodiscard]] bool has_neighbours() const {
+    return !context_.lead.empty() || !context_.tail.empty();
+  }
+
+  [[nodiscard]] std::vector<TimedPiece> in_place(const std::vector<TimedPiece>& moves) const {
+    std::vector<TimedPiece> chain;
+    gcode::reserve_in_large_pages(chain,
+                                  context_.lead.size() + moves.size() + context_.tail.size());
+    chain.insert(chain.end(), context_.lead.begin(), context_.lead.end());
     chain.insert(chain.end(), moves.begin(), moves.end());
     chain.insert(chain.end(), context_.tail.begin(), context_.tail.end());
-    return times(chain);
+    return chain;
   }
 
   // What the run adds to the time of its neighbours.
@@ -313,9 +328,9 @@ class RunSmoother {
   }
 
   // Corners between lines, each of which would be more arcs than it has blocks: chords do as well.
-  [[nodiscard]] bool arcs_are_hopeless(const geometry::FairPath& fair) {
+  [[nodiscard]] bool arcs_are_hopeless(const geometry::MarkedPieces& curve) {
     const bool hopeless = options_.prefer == Prefer::kTime && options_.output == Form::kAuto &&
-                          arcs_for(fair) > static_cast<double>(context_.blocks);
+                          arcs_for(curve) > static_cast<double>(context_.blocks);
     passed_over_ = passed_over_ || hopeless;
     return hopeless;
   }
@@ -350,22 +365,23 @@ class RunSmoother {
       add_curves(curve, plan_with);
     }
     if (options_.output == Form::kCurves && has_quick_curves()) return;
+    const geometry::MarkedPieces pieces(fair.curve, fair.curve.first(), fair.curve.last());
     Ahead ahead;
-    const bool arcs_wanted = options_.output != Form::kLines && !arcs_are_hopeless(fair);
+    const bool arcs_wanted = options_.output != Form::kLines && !arcs_are_hopeless(pieces);
     // Who asks for few arcs has no use for those that follow the fair curve closely.
     const bool enough = few_wanted() && curve.method == Method::kFair;
     if (arcs_wanted && lies_flat() && !enough && !one_sided()) {
       PlanOptions fine = plan_with(kFineArcs);
       // They are there to be near, not few.
       if (!few_wanted()) fine.arc_effort = geometry::ArcEffort::kBrief;
-      ahead.arcs = candidate_of(curve, plan_arcs(run_, fair, fine), fine.max_deviation);
+      ahead.arcs = candidate_of(curve, plan_arcs(run_, fair, pieces, fine), fine.max_deviation);
     }
     const bool may_leave_out =
         may_leave_out_ && curve.method == Method::kFair && !curves_wanted() && arcs_wanted;
-    if (may_leave_out) leave_out_forms(curve, plan_with, ahead);
+    if (may_leave_out) leave_out_forms(curve, pieces, plan_with, ahead);
     if (arcs_wanted && !ahead.leaves_out_arcs) {
       const PlanOptions arcs = plan_with(one_sided() ? kFineArcs : kArcs);
-      push(candidate_of(curve, plan_arcs(run_, fair, arcs), arcs.max_deviation));
+      push(candidate_of(curve, plan_arcs(run_, fair, pieces, arcs), arcs.max_deviation));
     }
     push(std::move(ahead.arcs));
     const bool few = few_wanted() || !run_.arcs.empty();
@@ -375,14 +391,14 @@ class RunSmoother {
       add_arc_splines(curve, whole);
     }
     if (options_.output == Form::kArcs || ahead.leaves_out_lines) return;
-    double before = 0;
+    double before = std::numeric_limits<double>::infinity();
     for (const double multiple : {kLongChords, kMiddleChords, kFineChords}) {
       const PlanOptions lines = plan_with(one_sided() ? kFineChords : multiple);
-      if (lines.max_deviation == before || is_hopeless(fair, lines)) continue;
+      if (lines.max_deviation > kAnother * before || is_hopeless(fair, lines)) continue;
       before = lines.max_deviation;
       const bool made = multiple == kFineChords && ahead.lines;
       push(made ? std::move(ahead.lines)
-                : candidate_of(curve, plan_lines(run_, fair, lines), lines.max_deviation));
+                : candidate_of(curve, plan_lines(run_, fair, pieces, lines), lines.max_deviation));
     }
   }
 
@@ -397,7 +413,8 @@ class RunSmoother {
   // The dearest forms are the ones that are seldom chosen: few arcs further away from the curve,
   // where near ones or near lines are as quick, and lines where a few near arcs are.
   template <typename PlanWith>
-  void leave_out_forms(const RunCurve& curve, const PlanWith& plan_with, Ahead& ahead) {
+  void leave_out_forms(const RunCurve& curve, const geometry::MarkedPieces& pieces,
+                       const PlanWith& plan_with, Ahead& ahead) {
     const geometry::FairPath& fair = curve.path;
     const double far = plan_with(kArcs).max_deviation;
     ahead.leaves_out_arcs = beats_form(ahead.arcs, far, 0);
@@ -411,7 +428,7 @@ class RunSmoother {
     const bool makes_lines = !ahead.leaves_out_arcs && !is_hopeless(fair, lines) &&
                              lines.max_deviation < plan_with(kMiddleChords).max_deviation;
     if (makes_lines) {
-      ahead.lines = candidate_of(curve, plan_lines(run_, fair, lines), lines.max_deviation);
+      ahead.lines = candidate_of(curve, plan_lines(run_, fair, pieces, lines), lines.max_deviation);
       ahead.leaves_out_arcs = beats_form(ahead.lines, far, 0);
     }
     result_.left_out = result_.left_out || ahead.leaves_out_arcs;
@@ -529,7 +546,11 @@ class RunSmoother {
 
   // Nothing is compared: what is told of the run is the time that it takes.
   SmoothedRun kept_unasked(const std::vector<TimedPiece>& motions) {
-    result_.facts.times.as_set = cutting_time(motions, *options_.machine, context_.after.path);
+    const auto time = [this](const std::vector<TimedPiece>& chain) {
+      return cutting_time(chain, *options_.machine, context_.after.path);
+    };
+    result_.facts.times.as_set =
+        (has_neighbours() ? time(in_place(motions)) : time(motions)) - time_around_.as_set;
     return kept(gcode::reason::kMethodNone);
   }
 

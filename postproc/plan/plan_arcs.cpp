@@ -7,6 +7,7 @@
 #include "geometry/numeric.h"
 #include "postproc/plan/arc_moves.h"
 #include "postproc/plan/output_plan.h"
+#include "postproc/plan/piece_plans.h"
 #include "postproc/plan/plan_stretches.h"
 #include "postproc/runs/run_path.h"
 
@@ -74,14 +75,24 @@ void append_stretch(const Path& path, const FeedStretch& stretch, OutputPlan& pl
   }
 }
 
+// The run's curve in its pieces, and about how many chords it takes.
+struct WholeCurve {
+  const geometry::MarkedPieces& pieces;
+  double chords;
+};
+
+// `whole`: of that curve, or none.
 std::optional<OutputPlan> plan_in(const Run& run, const geometry::FairPath& fair,
-                                  const BsplineCurve& curve, const geometry::ArcFitOptions& fit,
-                                  const PlanOptions& options) {
+                                  const BsplineCurve& curve, const WholeCurve* whole,
+                                  const geometry::ArcFitOptions& fit, const PlanOptions& options) {
   OutputPlan plan;
   plan.form = OutputForm::kArcs;
   std::vector<double> starts;
   for (const FeedStretch& stretch : feed_stretches(run, fair)) {
-    const std::optional<Path> arcs = geometry::fit_arcs(curve, stretch.from, stretch.to, fit);
+    const bool all = stretch.from == curve.first() && stretch.to == curve.last();
+    const std::optional<Path> arcs =
+        all && whole != nullptr ? geometry::fit_arcs(curve, whole->pieces, whole->chords, fit)
+                                : geometry::fit_arcs(curve, stretch.from, stretch.to, fit);
     if (!arcs) return std::nullopt;
     Path taken;
     for (const PathPiece& piece : *arcs) {
@@ -110,13 +121,19 @@ std::vector<PlaneAxes> flattest_first(const Run& run, std::vector<PlaneAxes> pla
 
 std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fair,
                                     const PlanOptions& options) {
+  return plan_arcs(run, fair, {fair.curve, fair.curve.first(), fair.curve.last()}, options);
+}
+
+std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fair,
+                                    const geometry::MarkedPieces& pieces,
+                                    const PlanOptions& options) {
   const std::vector<PlaneAxes> planes = arc_planes(options);
   bool flat_somewhere = false;
   for (const PlaneAxes& plane : planes) {
     const auto flat = laid_flat(run, fair.curve, plane.normal, arc_grid(options));
     if (!flat) continue;
     flat_somewhere = true;
-    auto plan = plan_in(run, fair, *flat, fit_options(options, plane, false), options);
+    auto plan = plan_in(run, fair, *flat, nullptr, fit_options(options, plane, false), options);
     if (plan) return plan;
   }
   if (flat_somewhere || !options.target->takes_helices()) return std::nullopt;
@@ -124,12 +141,13 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fa
   // are lines and steep little helices. The fewest moves win; the plane in which the run is
   // flattest comes first, so that the others are soon given up. More moves than the run has motions
   // are chords in all but name, and plan_lines does those better.
+  const WholeCurve whole{pieces, geometry::chords_along(pieces.pieces, fit_deviation(options))};
   std::optional<OutputPlan> best;
   std::size_t most = motion_count(run);
   for (const PlaneAxes& plane : flattest_first(run, planes)) {
     geometry::ArcFitOptions fit = fit_options(options, plane, true);
     fit.at_most = most;
-    auto plan = plan_in(run, fair, fair.curve, fit, options);
+    auto plan = plan_in(run, fair, fair.curve, &whole, fit, options);
     if (!plan || plan->moves.size() >= most) continue;
     most = plan->moves.size();
     best = std::move(plan);

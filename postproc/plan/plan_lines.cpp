@@ -6,12 +6,14 @@
 #include "geometry/linearize.h"
 #include "geometry/min_link.h"
 #include "postproc/plan/output_plan.h"
+#include "postproc/plan/piece_plans.h"
 #include "postproc/plan/plan_stretches.h"
 
 namespace batten::postproc {
 namespace {
 
 using geometry::BsplineCurve;
+using geometry::MarkedPieces;
 using Vertices = std::vector<geometry::LinkVertex>;
 
 // How far chords may go in either direction.
@@ -57,7 +59,7 @@ Fineness fineness_for(double feed, const PlanOptions& options, double finest) {
 
 // Parameters of the vertices between two places, both included: as fine as wished for, and
 // coarser on each stretch whose chords come out too short.
-std::vector<double> chords(const BsplineCurve& curve, double from, double to,
+std::vector<double> chords(const MarkedPieces& curve, double from, double to,
                            const Fineness& fineness) {
   std::vector<double> wished =
       geometry::chord_vertices(curve, from, to, {.max_deviation = fineness.finest});
@@ -67,7 +69,7 @@ std::vector<double> chords(const BsplineCurve& curve, double from, double to,
 
   std::vector<geometry::Point3> places;
   places.reserve(wished.size());
-  for (const double u : wished) places.push_back(curve.point_at(u));
+  for (const double u : wished) places.push_back(curve.pieces.point_at(u));
   const auto is_short = [&](std::size_t i) {
     return i + 1 < wished.size() && (places[i + 1] - places[i]).norm() < fineness.min_length;
   };
@@ -86,15 +88,16 @@ std::vector<double> chords(const BsplineCurve& curve, double from, double to,
   return vertices;
 }
 
-Vertices on_the_curve(const BsplineCurve& curve, const std::vector<double>& parameters) {
+template <typename Curve>
+Vertices on_the_curve(const Curve& curve, const std::vector<double>& parameters) {
   Vertices vertices;
   vertices.reserve(parameters.size());
   for (const double u : parameters) vertices.push_back({curve.point_at(u), u});
   return vertices;
 }
 
-Vertices vertices_on(const BsplineCurve& curve, const FeedStretch& stretch,
-                     const PlanOptions& options, double finest) {
+Vertices vertices_on(const BsplineCurve& curve, const MarkedPieces& pieces,
+                     const FeedStretch& stretch, const PlanOptions& options, double finest) {
   const double deviation = options.max_deviation;
   switch (options.linearize) {
     case Linearize::kMinLink:
@@ -110,19 +113,19 @@ Vertices vertices_on(const BsplineCurve& curve, const FeedStretch& stretch,
       break;
   }
   const std::vector<double> parameters =
-      chords(curve, stretch.from, stretch.to, fineness_for(stretch.feed, options, finest));
+      chords(pieces, stretch.from, stretch.to, fineness_for(stretch.feed, options, finest));
   return options.prefer == Prefer::kAccuracy ? geometry::balanced_chords(curve, parameters)
-                                             : on_the_curve(curve, parameters);
+                                             : on_the_curve(pieces.pieces, parameters);
 }
 
-OutputPlan lines_of(const Run& run, const geometry::FairPath& fair, const PlanOptions& options,
-                    double finest) {
+OutputPlan lines_of(const Run& run, const geometry::FairPath& fair, const MarkedPieces& pieces,
+                    const PlanOptions& options, double finest) {
   OutputPlan plan;
   plan.form = OutputForm::kLines;
   std::vector<double> starts;
   geometry::Point3 place = run.points.front();
   for (const FeedStretch& stretch : feed_stretches(run, fair)) {
-    const Vertices vertices = vertices_on(fair.curve, stretch, options, finest);
+    const Vertices vertices = vertices_on(fair.curve, pieces, stretch, options, finest);
     for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
       const bool last = i + 2 == vertices.size() && stretch.to >= fair.curve.last();
       const geometry::Point3 next = last ? run.points.back() : vertices[i + 1].place;
@@ -138,14 +141,19 @@ OutputPlan lines_of(const Run& run, const geometry::FairPath& fair, const PlanOp
 }  // namespace
 
 OutputPlan plan_lines(const Run& run, const geometry::FairPath& fair, const PlanOptions& options) {
+  return plan_lines(run, fair, {fair.curve, fair.curve.first(), fair.curve.last()}, options);
+}
+
+OutputPlan plan_lines(const Run& run, const geometry::FairPath& fair, const MarkedPieces& pieces,
+                      const PlanOptions& options) {
   const bool accurate =
       options.prefer == Prefer::kAccuracy && options.linearize == Linearize::kChord;
-  if (!accurate) return lines_of(run, fair, options, 0);
+  if (!accurate) return lines_of(run, fair, pieces, options, 0);
   const double step =
       gcode::printed_step(options.target->coordinates(options.units), options.units);
   const double tenth_of_rounding = step / 2 / 10;
   double finest = std::min(tenth_of_rounding, kBalanced * options.max_deviation);
-  OutputPlan plan = lines_of(run, fair, options, finest);
+  OutputPlan plan = lines_of(run, fair, pieces, options, finest);
   // The number of chords goes with the root of their height.
   while (options.most_moves > 0 && plan.moves.size() > options.most_moves &&
          finest < kBalanced * options.max_deviation) {
@@ -153,7 +161,7 @@ OutputPlan plan_lines(const Run& run, const geometry::FairPath& fair, const Plan
         static_cast<double>(plan.moves.size()) / static_cast<double>(options.most_moves);
     finest =
         std::min(kBalanced * options.max_deviation, std::max(over * over, kCoarserAgain) * finest);
-    plan = lines_of(run, fair, options, finest);
+    plan = lines_of(run, fair, pieces, options, finest);
   }
   plan.error = geometry::kBalancedError / geometry::kChordError * finest;
   return plan;

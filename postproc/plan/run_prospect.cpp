@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/curve_pieces.h"
 #include "geometry/fair_measure.h"
 
 namespace batten::postproc {
@@ -74,9 +73,8 @@ double chords_for(const geometry::FairPath& fair, double deviation, double min_l
   return chords;
 }
 
-double arcs_for(const geometry::FairPath& fair) {
-  const geometry::CurvePieces pieces(fair.curve, fair.curve.first(), fair.curve.last());
-  return 3.0 * static_cast<double>(pieces.straight_runs().size());
+double arcs_for(const geometry::MarkedPieces& curve) {
+  return 3.0 * static_cast<double>(curve.straight_runs.size());
 }
 
 std::vector<Method> methods_worth_trying(double corners, std::size_t points, double least_time,

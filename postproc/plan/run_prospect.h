@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "geometry/curve_pieces.h"
 #include "geometry/fair.h"
 #include "postproc/machine/machine.h"
 #include "postproc/options.h"
@@ -29,7 +30,7 @@ namespace batten::postproc {
 
 // The least number of arcs and lines that the fair curve takes, by its straight parts: each is a
 // line, and what joins two of them gently takes two arcs or more.
-[[nodiscard]] double arcs_for(const geometry::FairPath& fair);
+[[nodiscard]] double arcs_for(const geometry::MarkedPieces& curve);
 
 // The methods beside `fair` that may win on a run, for Method::kBest. `corners` is coarse_part of
 // it, `points` how many it has, `time` (s) what its fastest form so far takes on the machine.

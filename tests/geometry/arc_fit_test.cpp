@@ -192,6 +192,28 @@ TEST(FitArcs, GivesNothingWhereHelicesDoNotPay) {
   EXPECT_FALSE(fit_arcs(wave, wave.first(), wave.last(), options));
 }
 
+// Thousands of pieces, of which the first tell whether it is worth looking at the others.
+TEST(FitArcs, GivesNothingWhereLongHelicesDoNotPay) {
+  ArcFitOptions options = on_grid();
+  options.helical = true;
+  const BsplineCurve wave = curve_of(
+      [](double t) { return Point3(10 * t, 5 * std::sin(t), 3 * std::sin(2 * t)); }, 0, 450, 6750);
+  EXPECT_FALSE(fit_arcs(wave, wave.first(), wave.last(), options));
+}
+
+TEST(FitArcs, FollowsALongHelixToItsEnd) {
+  ArcFitOptions options = on_grid();
+  options.helical = true;
+  constexpr int kPieces = 7000;
+  const BsplineCurve helix =
+      Drawing({10, 0, 0}).arc_about({0, 0, 0}, kPieces * kPi / 4, 0.01 * kPieces).curve();
+  const Path path = fitted(helix, options);
+  // No arc sweeps more than max_sweep; some more joints come of the grid.
+  EXPECT_GE(static_cast<double>(path.size()), kPieces * kPi / 4 / options.max_sweep);
+  EXPECT_LE(path.size(), kPieces / 2U);
+  EXPECT_LE((end_point(path.back()) - helix.point_at(helix.last())).norm(), 1e-12);
+}
+
 TEST(FitArcs, CrossesPlacesTighterThanTheLeastRadiusByShortLines) {
   const BsplineCurve bend = Drawing({0, 0, 0})
                                 .line_to({10, 0, 0})

@@ -1,0 +1,47 @@
+// How far a stretch of curve leaves the chord between two of its places.
+// Method: docs/algorithms/linearize.md, step 2.
+#pragma once
+
+#include <cstddef>
+
+#include "geometry/curve_pieces.h"
+#include "geometry/point.h"
+
+namespace batten::geometry {
+
+// A chord and the stretch of curve between its ends.
+struct ChordHeight {
+  double chord = 0;   // mm, its length
+  double height = 0;  // mm: no place of the curve is farther from the chord's line
+  // Whether the curve goes forward along the chord from its start to its end. Then each place is
+  // matched with its foot, in order, and curve and chord are within `height` of each other.
+  bool in_order = false;
+};
+
+// Chords that start at one place of the curve. The pieces must live as long.
+class ChordsFrom {
+ public:
+  ChordsFrom(const CurvePieces& pieces, double from);
+
+  // The chord to `end` > from. Its height is greater than the greatest distance of the curve by
+  // less than 1e-4 of it; by less than 1e-3 where the curve twists wildly between two knots.
+  [[nodiscard]] ChordHeight to(double end) const;
+
+  // Whether a place between two knots, or a knot, is farther than `distance` (mm) from the chord to
+  // `end`: a quick answer to whether it is hopeless.
+  [[nodiscard]] bool leaves(double end, double distance) const;
+
+  [[nodiscard]] double from() const { return from_; }
+  [[nodiscard]] const Point3& start() const { return start_; }
+  [[nodiscard]] std::size_t first_piece() const { return first_; }
+
+ private:
+  [[nodiscard]] std::size_t piece_at(double u) const;
+
+  const CurvePieces& pieces_;
+  double from_;
+  std::size_t first_;
+  Point3 start_;
+};
+
+}  // namespace batten::geometry
