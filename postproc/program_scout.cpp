@@ -97,7 +97,7 @@ class Scout {
     const ReadProgram read{&part, &meaning};
     cuts_.begin_part(part, meaning);
     for (std::uint32_t i = 0; i < part.blocks.size(); ++i) {
-      if (options_.method != Method::kNone) cuts_.take(i);
+      cuts_.take(i);
       take_cuts();
       look_behind_rapids(read, i);
     }

@@ -265,13 +265,10 @@ GroupingOptions grouping_of(const SmoothOptions& options) {
 PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options,
                    const LongRunLimits& limits) {
   const GroupingOptions grouping = grouping_of(options);
-  const bool cuts = options.method != Method::kNone;
   PartRuns runs;
-  if (cuts && !part.window) {
-    runs.cuts = long_run_cuts(part.program, part.meaning, limits, grouping);
-  }
+  if (!part.window) runs.cuts = long_run_cuts(part.program, part.meaning, limits, grouping);
   runs.sections = group_runs(part.program, part.meaning, grouping, runs.cuts);
-  if (cuts) runs.sections = with_long_runs_cut(std::move(runs.sections), part.meaning, limits);
+  runs.sections = with_long_runs_cut(std::move(runs.sections), part.meaning, limits);
   for (std::size_t i = 0; i < runs.sections.size(); ++i) {
     if (!std::holds_alternative<Run>(runs.sections[i].content)) continue;
     runs.works.push_back({i, context_of(part.program, part.meaning, runs.sections[i])});

@@ -47,10 +47,17 @@ TEST(LongRuns, AreCutIntoRunsThatCoverAllBlocks) {
   EXPECT_EQ(motions, static_cast<std::size_t>(kMotions));
 }
 
-TEST(LongRuns, StayWholeWhereNothingIsAsked) {
+// What is only copied is held piece by piece too.
+TEST(LongRuns, AreCutAtTheSamePlacesWhereNothingIsAsked) {
   SmoothOptions options = options_for("linuxcnc");
+  const PartRuns smoothed = find_runs(long_part(), options);
   options.method = Method::kNone;
-  EXPECT_EQ(find_runs(long_part(), options).works.size(), 1U);
+  const PartRuns copied = find_runs(long_part(), options);
+  ASSERT_EQ(copied.works.size(), smoothed.works.size());
+  EXPECT_GT(copied.works.size(), 1U);
+  for (std::size_t i = 0; i < copied.sections.size(); ++i) {
+    EXPECT_EQ(copied.sections[i].first_block, smoothed.sections[i].first_block);
+  }
 }
 
 }  // namespace
