@@ -137,7 +137,9 @@ Given given_in(const CLI::App& command, std::span<const OptionRow> rows) {
       given.add(row.name, "true");
       continue;
     }
-    for (const std::string& value : option->results()) given.add(row.name, value);
+    for (const std::string& value : option->results()) {
+      row.kind == OptionKind::kList ? given.add_list(row.name, value) : given.add(row.name, value);
+    }
   }
   return given;
 }

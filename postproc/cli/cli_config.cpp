@@ -48,7 +48,7 @@ void add_value(const OptionRow& row, const toml::node& node, const std::string& 
   if (row.kind == OptionKind::kList && node.is_array()) {
     for (const toml::node& element : *node.as_array()) {
       if (const auto text = text_of(element)) {
-        given.add(row.name, *text);
+        given.add_list(row.name, *text);
       } else {
         problems.push_back(
             fmt::format("{}: '{}', expected a list of strings", place_of(file, element), row.name));
@@ -58,7 +58,9 @@ void add_value(const OptionRow& row, const toml::node& node, const std::string& 
   }
   const auto text = text_of(node);
   const bool fits = text && (row.kind == OptionKind::kFlag) == node.is_boolean();
-  if (fits) {
+  if (fits && row.kind == OptionKind::kList) {
+    given.add_list(row.name, *text);
+  } else if (fits) {
     given.add(row.name, *text);
   } else {
     problems.push_back(fmt::format(

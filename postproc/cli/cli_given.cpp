@@ -53,8 +53,8 @@ constexpr OptionRow kDecimals = {
 constexpr OptionRow kAllow = {
     .name = "allow",
     .kind = OptionKind::kList,
-    .value = "REASON",
-    .help = "lift a rule that keeps runs, by its id in the report; may be repeated",
+    .value = "REASON,..",
+    .help = "lift rules that keep runs, by their ids in the report; may be repeated",
     .in_config = true};
 
 constexpr OptionRow kProfile = {
@@ -217,7 +217,7 @@ constexpr std::array kOwnBatchRows = {
               .value = "SUFFIX",
               .help =
                   "what is a program, in place of nc, ngc, tap, cnc, gcode, ncc, eia, iso; none: "
-                  "names without a suffix, all: every file; may be repeated"},
+                  "names without a suffix, all: every file; a list with commas, or repeated"},
     OptionRow{.name = "fail-fast",
               .kind = OptionKind::kFlag,
               .help = "stop at the first program that cannot be written; otherwise carry on"},
@@ -280,6 +280,18 @@ std::span<const OptionRow> machines_rows() { return kMachinesRows; }
 
 void Given::add(std::string_view name, std::string value) {
   values_[std::string(name)].push_back(std::move(value));
+}
+
+void Given::add_list(std::string_view name, std::string_view values) {
+  constexpr std::string_view kBlanks = " \t";
+  for (std::size_t begin = 0; begin <= values.size();) {
+    const std::size_t end = std::min(values.find(',', begin), values.size());
+    std::string_view part = values.substr(begin, end - begin);
+    part.remove_prefix(std::min(part.find_first_not_of(kBlanks), part.size()));
+    part = part.substr(0, part.find_last_not_of(kBlanks) + 1);
+    add(name, std::string(part));
+    begin = end + 1;
+  }
 }
 
 bool Given::has(std::string_view name) const { return values_.contains(name); }

@@ -43,6 +43,10 @@ class Given {
  public:
   void add(std::string_view name, std::string value);
 
+  // Of an option that takes a list: each part between commas, without the blanks around it. Empty
+  // parts are values, too, so that they can be told of.
+  void add_list(std::string_view name, std::string_view values);
+
   [[nodiscard]] bool has(std::string_view name) const;
   [[nodiscard]] bool flag(std::string_view name) const;
 

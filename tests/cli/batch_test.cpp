@@ -29,10 +29,6 @@ std::string bytes_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 // All but the locks, which are empty and tell who ran.
 Files files_below(const fs::path& root) {
   Files files;

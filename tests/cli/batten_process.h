@@ -14,6 +14,10 @@
 
 namespace batten {
 
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
 struct ProcessResult {
   int exit_code = -1;
   std::string out;

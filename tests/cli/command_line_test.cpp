@@ -15,10 +15,6 @@ using testing::Values;
 
 constexpr const char* kSmooth = "smooth part.nc --target linuxcnc --tolerance 0.01 ";
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 class CommandLine : public testing::Test {
  protected:
   void SetUp() override { folder_.put("part.nc", wave_program()); }
@@ -125,6 +121,11 @@ INSTANTIATE_TEST_SUITE_P(
                    "above 0"},
         WrongUsage{"RuleThatCannotBeLifted",
                    "smooth part.nc --target grbl --allow cutter-compensation", "cannot be lifted"},
+        WrongUsage{"RuleInAListThatIsNone",
+                   "smooth part.nc --target grbl --allow exact-stop,nothing",
+                   "there is no reason 'nothing'"},
+        WrongUsage{"ListWithAnEmptyPart", "smooth part.nc --target grbl --allow exact-stop,",
+                   "there is no reason ''"},
         WrongUsage{"UnknownDecimals", "smooth part.nc --target fanuc --decimals 0.001",
                    "expected auto, explicit, implied"},
         WrongUsage{"IncrementsOfAControlWithoutThem",
@@ -326,6 +327,19 @@ TEST_F(CommandLine, ConfigGivesTheSameResultAsOptions) {
   ASSERT_EQ(batten("smooth part.nc --config options.toml").exit_code, 0);
   ASSERT_EQ(batten(std::string(kSmooth) + "--allow exact-stop -o given.nc").exit_code, 0);
   EXPECT_EQ(folder_.text_of("part.smooth.nc"), folder_.text_of("given.nc"));
+}
+
+TEST_F(CommandLine, ListsTakeCommasOrAreRepeated) {
+  const char* const kBoth = "allow = [\"exact-stop\", \"work-offset\"]\n";
+  folder_.put("options.toml", "allow = \"exact-stop,work-offset\"\n");
+  for (const char* options :
+       {"--allow exact-stop --allow work-offset", "--allow exact-stop,work-offset",
+        "--allow 'exact-stop, work-offset'", "--config options.toml"}) {
+    const ProcessResult printed =
+        batten(std::string("smooth --print-config --target grbl ") + options);
+    EXPECT_EQ(printed.exit_code, 0) << printed.err;
+    EXPECT_TRUE(contains(printed.out, kBoth)) << options << printed.out;
+  }
 }
 
 TEST_F(CommandLine, PrintedConfigReadsBackTheSame) {

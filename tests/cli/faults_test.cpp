@@ -29,10 +29,6 @@ constexpr bool kCountsMemory = true;
 // A run that is rewritten.
 std::string part_program() { return postproc::wave_program(); }
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 // Files below the folder that a finished program never leaves.
 std::vector<std::string> half_written(const fs::path& folder) {
   std::vector<std::string> found;

@@ -10,10 +10,6 @@
 namespace batten {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 TEST(ExplainCommand, SaysWhatAKeptRunMeansAndWhatToDo) {
   const ProcessResult said = BattenFolder().batten("explain exact-stop");
   EXPECT_EQ(said.exit_code, 0);

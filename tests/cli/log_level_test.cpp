@@ -7,10 +7,6 @@
 namespace batten {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 // A run, and a block that gives a warning.
 std::string doubtful_program() { return wave_program() + "G0 X1 X2\n"; }
 

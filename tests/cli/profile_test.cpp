@@ -8,10 +8,6 @@
 namespace batten {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 constexpr const char* kProfile =
     "based-on = \"haas\"\nname = \"vf2\"\n[words]\nheader = [\"(vf2 {tolerance})\"]\n"
     "before-run = [\"G187 P3 E{tolerance}\"]\nafter-run = [\"G187\"]\n";

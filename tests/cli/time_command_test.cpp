@@ -12,10 +12,6 @@
 namespace batten {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 // 50 mm from rest to rest, a dwell, a rapid; as they stand in the help.
 constexpr const char* kProgram = "G21 G90\nT1 M6\nG1 X50 F6000\nG4 X0.5\nG0 X0\nM2\n";
 
