@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "gcode/block_spelling.h"
+#include "gcode/dwell_form.h"
 #include "gcode/language.h"
 #include "gcode/modal_state.h"
 #include "gcode/number_format.h"
@@ -41,7 +42,7 @@ struct ArcChords {
 // mm: how far such chords leave an arc of this radius at the most.
 [[nodiscard]] double chord_error(const ArcChords& chords, double radius);
 
-// What the number of G4 P means.
+// What the number of G4 P is taken for where a time is estimated.
 enum class DwellUnit {
   kSeconds,       // RS-274: LinuxCNC, grbl
   kMilliseconds,  // FANUC
@@ -142,6 +143,14 @@ class Dialect {
   [[nodiscard]] virtual bool may_imply_decimals() const { return false; }
 
   [[nodiscard]] virtual DwellUnit dwell_unit() const { return DwellUnit::kByPoint; }
+
+  // The word by which programs say these units, millimetres or inches.
+  [[nodiscard]] virtual std::string_view unit_word(Units units) const {
+    return units == Units::kInch ? "G20" : "G21";
+  }
+
+  // How a dwell is said so that its time is certain.
+  [[nodiscard]] virtual DwellForm dwell_form() const { return DwellForm::kUnknown; }
 
   // Name of the built-in machine model that runs this target when no machine is given.
   [[nodiscard]] virtual std::string_view default_machine() const = 0;

@@ -7,8 +7,11 @@ constexpr ExplainedDiagnostic kExplained[] = {
     // --- while reading the text ---
     {"foreign-language", "error",
      "The file is certainly a program in another language than the target's: Heidenhain Klartext "
-     "(BEGIN PGM) or Siemens (%_N_.., ;$PATH, DEF REAL).",
-     "Choose a target that reads this language, or post the part again for this one."},
+     "(BEGIN PGM), Siemens (%_N_.., ;$PATH, DEF REAL), or plain words (it begins with G21 or "
+     "another G word) for a target that reads Klartext.",
+     "Choose a target that reads this language, or say --convert: the program is then said in the "
+     "target's language, where every block can be said there. Or post the part again for this "
+     "control."},
     {"source-ambiguous", "error",
      "The text has marks that only programs in one language have, and marks that only those in "
      "another have: it is not certain how to read it.",

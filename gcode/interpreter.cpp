@@ -10,6 +10,7 @@
 #include "gcode/block_words.h"
 #include "gcode/control_state.h"
 #include "gcode/curves/curve_in_program.h"
+#include "gcode/dwell.h"
 #include "gcode/klartext/state.h"
 #include "gcode/large_pages.h"
 #include "gcode/motion_words.h"
@@ -249,6 +250,11 @@ class Interpreter {
     if (words.problem() != BlockWords::Problem::kNone) {
       return refuse_words(words);
     }
+    if (words.has_g(40) && waits_alone(block)) {
+      meaning_.kind = BlockKind::kSettings;
+      meaning_.barrier = reason::kDwell;
+      return;
+    }
     const StateEffect effect = apply_words(words, now_);
     read_.unit_word_seen |= effect.unit_word;
     if (effect.unknown_code >= 0) {
@@ -264,6 +270,13 @@ class Interpreter {
       drop_motion();
       make_opaque(effect.barrier);
     }
+  }
+
+  // A dwell whose one word is a time on every control that reads it, not a place, feed or speed.
+  [[nodiscard]] bool waits_alone(const Block& block) const {
+    const bool siemens = program_.language == Language::kSiemens;
+    const DwellForm form = siemens ? DwellForm::kSecondsF : DwellForm::kUnknown;
+    return dwell_ms(program_.words_of(block), form).has_value();
   }
 
   // Siemens: the block is copied; what it does to the state is known where all its names are.

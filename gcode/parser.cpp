@@ -463,6 +463,8 @@ Program parse(const SourceText& source, const Reading& reading, Diagnostics& fou
   }
   carry.short_ways = reading.short_ways;
   Program program = Parser(source, reading.language, {}, carry, found).run();
+  const bool siemens = reading.language == Language::kSiemens;
+  program.dwells = siemens ? DwellForm::kSecondsF : reading.dwells;
   tell_floods(carry, found);
   carry.decimals.tell(found);
   close_marks(program, found);

@@ -5,6 +5,7 @@
 
 #include "gcode/decimals.h"
 #include "gcode/diagnostic.h"
+#include "gcode/dwell_form.h"
 #include "gcode/language.h"
 #include "gcode/modal_state.h"
 #include "gcode/program.h"
@@ -15,9 +16,10 @@ namespace batten::gcode {
 // How a text is read.
 struct Reading {
   Language language = Language::kRs274;
-  Decimals decimals = {};         // of the RS-274 family
-  Units units = Units::kUnknown;  // of a program that names none
-  bool short_ways = true;         // for simple lines (gcode/plain_words.h); they change nothing
+  Decimals decimals = {};                  // of the RS-274 family
+  Units units = Units::kUnknown;           // of a program that names none
+  DwellForm dwells = DwellForm::kUnknown;  // of the RS-274 family
+  bool short_ways = true;  // for simple lines (gcode/plain_words.h); they change nothing
 };
 
 // Adds to `found` what is worth telling (each id in docs/diagnostics.md): at most one

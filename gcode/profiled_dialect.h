@@ -29,6 +29,10 @@ class ProfiledDialect final : public TableValues {
     return base_.may_imply_decimals() && table().decimal_point;
   }
   [[nodiscard]] DwellUnit dwell_unit() const override { return base_.dwell_unit(); }
+  [[nodiscard]] std::string_view unit_word(Units units) const override {
+    return base_.unit_word(units);
+  }
+  [[nodiscard]] DwellForm dwell_form() const override { return base_.dwell_form(); }
 
   // The base's own comment while the style is the base's; what the base cannot say in a comment is
   // not said in another style either.

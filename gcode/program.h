@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gcode/decimals.h"
+#include "gcode/dwell_form.h"
 #include "gcode/language.h"
 #include "gcode/source_text.h"
 
@@ -80,8 +81,9 @@ struct Program {
   std::vector<Block> blocks;  // every byte of the source belongs to exactly one block
   std::vector<Word> words;
   std::vector<Comment> comments;
-  Language language = Language::kRs274;  // in which it was read
-  Decimals decimals = {};                // with which numbers without a point were read
+  Language language = Language::kRs274;    // in which it was read
+  Decimals decimals = {};                  // with which numbers without a point were read
+  DwellForm dwells = DwellForm::kUnknown;  // what the words of its G4 mean
 
   [[nodiscard]] std::span<const Word> words_of(const Block& block) const {
     return {words.data() + block.first_word, block.word_count};

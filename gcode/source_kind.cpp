@@ -8,6 +8,7 @@
 
 #include "gcode/dialect.h"
 #include "gcode/language_marks.h"
+#include "gcode/plain_beginning.h"
 
 namespace batten::gcode {
 namespace {
@@ -17,13 +18,16 @@ constexpr SourceMarks kMacroB = mark(SourceMark::kMacroFlow) | mark(SourceMark::
 constexpr std::array kFamilies = {
     SourceFamily{SourceKind::kNgc, "ngc", "LinuxCNC", Language::kRs274,
                  mark(SourceMark::kSubWords) | mark(SourceMark::kNamedParameters) |
-                     mark(SourceMark::kBlendTolerance) | mark(SourceMark::kUniformNurbs)},
-    SourceFamily{SourceKind::kFanuc, "fanuc", "FANUC", Language::kRs274, kMacroB, true},
+                     mark(SourceMark::kBlendTolerance) | mark(SourceMark::kUniformNurbs),
+                 false, DwellForm::kSecondsP},
+    SourceFamily{SourceKind::kFanuc, "fanuc", "FANUC", Language::kRs274, kMacroB, true,
+                 DwellForm::kSecondsXOrMsP},
     SourceFamily{SourceKind::kHaas, "haas", "Haas", Language::kRs274,
-                 kMacroB | mark(SourceMark::kHaasSmoothness), true},
-    SourceFamily{SourceKind::kGrbl, "grbl", "grbl", Language::kRs274,
-                 mark(SourceMark::kDollarLine)},
-    SourceFamily{SourceKind::kSiemens, "siemens", "Siemens Sinumerik", Language::kSiemens, 0},
+                 kMacroB | mark(SourceMark::kHaasSmoothness), true, DwellForm::kSecondsByPoint},
+    SourceFamily{SourceKind::kGrbl, "grbl", "grbl", Language::kRs274, mark(SourceMark::kDollarLine),
+                 false, DwellForm::kSecondsP},
+    SourceFamily{SourceKind::kSiemens, "siemens", "Siemens Sinumerik", Language::kSiemens, 0, false,
+                 DwellForm::kSecondsF},
     SourceFamily{SourceKind::kHeidenhain, "heidenhain", "Heidenhain Klartext", Language::kKlartext,
                  0},
 };
@@ -59,7 +63,10 @@ std::optional<Language> source_language(const SourceText& source, SourceKind kin
   }
   // Many programs for Siemens controls are plain words that both languages have. The plainer
   // reading copies what it does not know.
-  if (marks.empty()) return target == Language::kKlartext ? *target : Language::kRs274;
+  if (marks.empty()) {
+    const bool klartext = target == Language::kKlartext && !plain_beginning(source);
+    return klartext ? Language::kKlartext : Language::kRs274;
+  }
   if (marks.size() == 1) return marks.front().language;
   found.push_back(
       {Severity::kError, "source-ambiguous", marks[1].where,
@@ -79,6 +86,11 @@ Decimals decimals_read(SourceKind kind, const Dialect* target, Language language
   const bool may_imply = family != nullptr ? family->may_imply_decimals
                                            : target != nullptr && target->may_imply_decimals();
   return {.pointless = may_imply ? PointlessNumbers::kUndeclared : PointlessNumbers::kUnits};
+}
+
+DwellForm dwells_of(SourceKind kind) {
+  const SourceFamily* family = family_of(kind);
+  return family != nullptr ? family->dwells : DwellForm::kUnknown;
 }
 
 std::string_view why_not_implied(SourceKind kind, const Dialect* target) {

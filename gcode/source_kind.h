@@ -7,6 +7,7 @@
 
 #include "gcode/decimals.h"
 #include "gcode/diagnostic.h"
+#include "gcode/dwell_form.h"
 #include "gcode/language.h"
 #include "gcode/program.h"
 #include "gcode/source_marks.h"
@@ -34,13 +35,15 @@ struct SourceFamily {
   Language language = Language::kRs274;
   SourceMarks marks = 0;
   bool may_imply_decimals = false;  // X5 may be five least increments
+  DwellForm dwells = DwellForm::kUnknown;
 };
 
 // All kinds but kAuto.
 [[nodiscard]] std::span<const SourceFamily> source_families();
 
 // The language in which to read this text. With kAuto: that of its certain marks, which only one
-// language has; without any, Klartext where the target reads that, else RS-274. Nothing, and an
+// language has; without any, Klartext where the target reads that and the text does
+// not begin with plain words (gcode/plain_beginning.h), else RS-274. Nothing, and an
 // error in `found`, when
 //   source-ambiguous: the text has certain marks of two languages;
 //   source-contradicted: a kind was given, and the text has a certain mark of another language.
@@ -54,6 +57,9 @@ struct SourceFamily {
 // with kAuto the target. Other languages than the RS-274 family have no such controls.
 [[nodiscard]] Decimals decimals_read(SourceKind kind, const Dialect* target, Language language,
                                      const std::optional<Decimals>& declared);
+
+// What G4 means in programs of this kind; not known for kAuto, whatever the target.
+[[nodiscard]] DwellForm dwells_of(SourceKind kind);
 
 // Why these controls do not take a number without a point for increments, for a user who says that
 // they do: empty where they may.

@@ -49,8 +49,9 @@ class Scout {
       const auto end = end_of_part();
       if (!end) return std::move(report_);
       starts_.push_back(now_);
-      const gcode::Program part =
+      gcode::Program part =
           gcode::parse_part(source_, {.byte = *end, .blocks = kBlocksAtOnce}, now_.text, of_text_);
+      part.dwells = gcode::dwells_of(options_.source);
       const gcode::Interpretation meaning =
           gcode::interpret_part(part, read_options_, now_.before.control, of_meaning_);
       if (needs_whole(part, meaning)) return std::move(report_);

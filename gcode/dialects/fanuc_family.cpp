@@ -67,6 +67,8 @@ class Fanuc final : public Rs274Dialect {
   // DPI, No. 3401; Mitsubishi: #1078.
   bool may_imply_decimals() const override { return true; }
 
+  DwellForm dwell_form() const override { return DwellForm::kSecondsXOrMsP; }
+
   const CurveFormat* curves() const override { return &curves_; }
   std::string_view default_machine() const override { return "mill"; }
 

@@ -50,6 +50,7 @@ TargetRow grbl() {
   table.max_line_length = 79;
   TargetRow row{table, LineCount::kWithoutBlanksAndComments, kObeyed, &grbl_arc_rule};
   row.dwell_unit = DwellUnit::kSeconds;
+  row.dwell_form = DwellForm::kSecondsP;
   row.known_marks = mark(SourceMark::kDollarLine);
   row.refused = "M6 G43 H";
   return row;
@@ -64,6 +65,7 @@ TargetRow grblhal() {
       grbl_table("grblhal", "grblHAL: arcs and helices in G17, G18, G19; lines of 255 characters");
   TargetRow row{table, LineCount::kAll, kObeyed, &grbl_arc_rule};
   row.dwell_unit = DwellUnit::kSeconds;
+  row.dwell_form = DwellForm::kSecondsP;
   row.known_marks = kProgramming;
   row.curves = &chopped_g5();
   return row;
@@ -74,6 +76,7 @@ TargetRow fluidnc() {
       grbl_table("fluidnc", "FluidNC: arcs and helices in G17, G18, G19; lines of 255 characters");
   TargetRow row{table, LineCount::kAll, kObeyed, &grbl_arc_rule};
   row.dwell_unit = DwellUnit::kSeconds;
+  row.dwell_form = DwellForm::kSecondsP;
   row.known_marks = kProgramming;
   row.refused = "G43 H";  // not read of it
   return row;
@@ -90,6 +93,7 @@ TargetRow g2core() {
   table.centers = {5, 6};
   TargetRow row{table, LineCount::kAll, "$!~%{", &tinyg_arc_rule};
   row.dwell_unit = DwellUnit::kSeconds;
+  row.dwell_form = DwellForm::kSecondsP;
   row.known_marks = mark(SourceMark::kDollarLine);
   row.refused = "M6 G43 G49 H";  // not read of it
   return row;

@@ -68,6 +68,7 @@ class LinuxCnc final : public Rs274Dialect {
   double max_arc_radius() const override { return 1e4; }
 
   DwellUnit dwell_unit() const override { return DwellUnit::kSeconds; }
+  DwellForm dwell_form() const override { return DwellForm::kSecondsP; }
 
   SourceMarks known_marks() const override {
     return mark(SourceMark::kSubWords) | mark(SourceMark::kNamedParameters) |

@@ -45,9 +45,12 @@ constexpr std::array<std::string_view, 3> kHaasSmoothing = {
     "(bare G187: back to setting 191 and 85)"};
 
 TargetRow haas() {
-  return row_of(machining_center_table(
-                    "haas", "Haas: arcs and helices in G17, G18, G19; decimal point always"),
-                kMacro | mark(SourceMark::kHaasSmoothness), kHaasSmoothing);
+  TargetRow row =
+      row_of(machining_center_table(
+                 "haas", "Haas: arcs and helices in G17, G18, G19; decimal point always"),
+             kMacro | mark(SourceMark::kHaasSmoothness), kHaasSmoothing);
+  row.dwell_form = DwellForm::kSecondsByPoint;
+  return row;
 }
 
 constexpr std::array<std::string_view, 2> kMazakSmoothing = {

@@ -57,6 +57,8 @@ TargetRow beckhoff() {
   row.smoothing_words = kBeckhoffSmoothing;
   row.known_marks = mark(SourceMark::kHashCommand);
   row.refused = "G43 G49 G80 M6 H";
+  row.dwell_form = DwellForm::kSecondsX;
+  row.units_by_g70 = true;
   return row;
 }
 

@@ -36,6 +36,8 @@ struct TargetRow {
   // Words that most others take: "M6 G43 T", a letter alone for any number behind it.
   std::string_view refused = {};
   DwellUnit dwell_unit = DwellUnit::kByPoint;
+  DwellForm dwell_form = DwellForm::kUnknown;
+  bool units_by_g70 = false;  // G70 inches, G71 millimetres, known for certain
   bool may_imply_decimals = false;
   const CurveFormat* curves = nullptr;
 };
@@ -62,6 +64,11 @@ class RowDialect final : public TableValues {
     return row_.may_imply_decimals && table().decimal_point;
   }
   [[nodiscard]] DwellUnit dwell_unit() const override { return row_.dwell_unit; }
+  [[nodiscard]] std::string_view unit_word(Units units) const override {
+    if (!row_.units_by_g70) return Dialect::unit_word(units);
+    return units == Units::kInch ? "G70" : "G71";
+  }
+  [[nodiscard]] DwellForm dwell_form() const override { return row_.dwell_form; }
   [[nodiscard]] const CurveFormat* curves() const override { return row_.curves; }
 
   // A row with the same rules: they are asked about the new values.

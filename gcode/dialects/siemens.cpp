@@ -60,6 +60,10 @@ class Siemens final : public Rs274Dialect {
   SourceMarks known_marks() const override { return 0; }
 
   const CurveFormat* curves() const override { return &curves_; }
+  std::string_view unit_word(Units units) const override {
+    return units == Units::kInch ? "G700" : "G710";
+  }
+  DwellForm dwell_form() const override { return DwellForm::kSecondsF; }
   std::string_view default_machine() const override { return "mill"; }
 
  private:

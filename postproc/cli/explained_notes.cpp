@@ -10,7 +10,8 @@ constexpr gcode::ExplainedDiagnostic kExplained[] = {
      "Choose another target; --convert tells which blocks could not be said."},
     {"cannot-convert", "error",
      "With --convert: the block does not say the same on the target, or not for certain.",
-     "Post the part again for this control."},
+     "Where the message names a choice (--source, --allow ..), take it if it is right for this "
+     "program; else post the part again for this control."},
     {"word-means-other", "error",
      "A G word that the target takes for something else than the reader does: G21 mirrors on a "
      "Beckhoff control, G20 is unknown to Klipper. The program was not read as its control reads "

@@ -59,15 +59,16 @@ std::optional<gcode::Language> language_before(const gcode::SourceText& old_sour
 }
 
 // `language`: what a text without certain marks is read in; nothing: as the target reads.
+// `dwells`: what its G4 means.
 Read read(const gcode::SourceText& source, const VerifyCommand& command, gcode::SourceKind kind,
-          std::optional<gcode::Language> language) {
+          std::optional<gcode::Language> language, gcode::DwellForm dwells) {
   gcode::Diagnostics found;
   const auto own = gcode::source_language(source, kind,
                                           language ? language : language_of_target(command), found);
   const gcode::Language certain = own.value_or(gcode::Language::kRs274);
   const gcode::Decimals decimals =
       gcode::decimals_read(kind, target_of(command), certain, command.decimals);
-  gcode::Program program = gcode::parse(source, {certain, decimals, command.units}, found);
+  gcode::Program program = gcode::parse(source, {certain, decimals, command.units, dwells}, found);
   gcode::tell_of_contradictions(program, kind, found);
   gcode::Interpretation interpretation =
       gcode::interpret(program, {.units = command.units, .curves = curves_of(command)}, found);
@@ -203,7 +204,8 @@ int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& sou
     say_lines(fmt::format("proved: {} and {} are the same, byte for byte\n", command.new_program,
                           command.old_program));
   }
-  const Read same = read(source, command, command.source, std::nullopt);
+  const Read same =
+      read(source, command, command.source, std::nullopt, gcode::dwells_of(command.source));
   return write_json(command, {}, same, same);
 }
 
@@ -241,11 +243,13 @@ int run(const VerifyCommand& command) {
   }
 
   const auto foreign = language_before(*old_source, *new_source, command);
-  const Read before = read(*old_source, command, command.source, foreign);
+  const Read before =
+      read(*old_source, command, command.source, foreign, gcode::dwells_of(command.source));
   const AddedLines added = without_added_lines(command, before, *new_source);
   const Read after = read(gcode::SourceText(new_source->name(), added.text), command,
                           foreign ? gcode::SourceKind::kAuto : command.source,
-                          foreign ? *language_of_target(command) : before.program.language);
+                          foreign ? *language_of_target(command) : before.program.language,
+                          foreign ? target_of(command)->dwell_form() : before.program.dwells);
   if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
   if (!is_understood(before, command.log_level)) {
     say("the old program is not understood, so nothing can be proved about the new one");

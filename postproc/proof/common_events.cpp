@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -13,10 +12,10 @@
 #include <utility>
 
 #include "gcode/block_words.h"
-#include "gcode/characters.h"
+#include "gcode/dwell.h"
 #include "gcode/klartext/statement.h"
-#include "gcode/number_format.h"
 #include "gcode/siemens/block_names.h"
+#include "postproc/proof/common_texts.h"
 #include "postproc/proof/path_state.h"
 
 namespace batten::postproc {
@@ -29,80 +28,14 @@ using gcode::MotionKind;
 using gcode::Word;
 
 // In tenths. Their effect is in the motions and in the states that are compared.
-constexpr std::array kSilent = {0,   10,  20,  30,  170, 180, 190, 200, 210, 400,
-                                800, 900, 901, 910, 911, 940, 970, 980, 990};
+constexpr std::array kSilent = {0,   10,  20,  30,  170, 180, 190, 200, 210, 400, 700,
+                                710, 800, 900, 901, 910, 911, 940, 970, 980, 990};
 constexpr int kLengthOn = 430;
 constexpr int kLengthOff = 490;
 constexpr int kBlending = 640;
+constexpr int kDwell = 40;
 
 int tenths(double value) { return static_cast<int>(std::lround(value * 10)); }
-
-bool is_work_offset(int code) { return code >= 540 && code <= 590 && code % 10 == 0; }
-
-// `TOOL CALL 5 Z S3000`, with what a program of plain words can say; nothing where there is more.
-struct ToolCall {
-  std::optional<double> tool;
-  std::optional<double> speed;
-};
-
-std::optional<double> number_of(std::string_view token) {
-  const auto number = gcode::read_number(token);
-  return number ? std::optional(number->value) : std::nullopt;
-}
-
-std::optional<ToolCall> tool_call_in(std::string_view content) {
-  gcode::KlartextTokens tokens(content);
-  (void)tokens.next();  // TOOL
-  (void)tokens.next();  // CALL
-  ToolCall call;
-  bool along_z = false;
-  for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
-    if (token == "Z") {
-      along_z = true;
-    } else if (token.starts_with('S')) {
-      call.speed = number_of(token.substr(1));
-      if (!call.speed) return std::nullopt;
-    } else if (token.starts_with('F') && number_of(token.substr(1))) {
-      continue;  // the feed is not known behind it
-    } else if (!along_z && !call.tool) {
-      call.tool = number_of(token);
-      if (!call.tool) return std::nullopt;
-    } else {
-      return std::nullopt;
-    }
-  }
-  return along_z ? std::optional(call) : std::nullopt;
-}
-
-// 54 of "; G54: its datum is active".
-std::optional<int> datum_in(std::string_view comment) {
-  constexpr std::string_view kBegin = "; G";
-  if (!comment.starts_with(kBegin)) return std::nullopt;
-  int code = 0;
-  const char* end = comment.data() + comment.size();
-  const auto read = std::from_chars(comment.data() + kBegin.size(), end, code);
-  const std::string_view rest(read.ptr, static_cast<std::size_t>(end - read.ptr));
-  const bool offset = read.ec == std::errc{} && is_work_offset(code * 10);
-  return offset && rest == ": its datum is active" ? std::optional(code) : std::nullopt;
-}
-
-// What a Klartext program says where its source moves behind G49, or along Z behind a tool change
-// without G43.
-constexpr std::string_view kCountsAlways = "; G49: the length of the tool counts";
-constexpr std::string_view kCountsUnsaid = "; no G43: the length of the tool counts";
-
-// Without (), ; and the blanks at both ends; capitals alone.
-std::string capitals_of_comment(std::string_view comment) {
-  constexpr std::string_view kAround = "(); \t";
-  const std::size_t begin = comment.find_first_not_of(kAround);
-  if (begin == std::string_view::npos) return {};
-  const std::size_t end = comment.find_last_not_of(kAround) + 1;
-  std::string text;
-  for (const char c : comment.substr(begin, end - begin)) text.push_back(gcode::upper(c));
-  return text;
-}
-
-bool is_blank_form(std::string_view capitals) { return capitals.starts_with("BLK FORM "); }
 
 // What a Siemens block may name beside its words; D is a word, too. What the others end is an event
 // of its own text where it begins.
@@ -139,6 +72,7 @@ class CommonLister {
     const bool plain = (split || names_are_read(block)) && !block.block_delete &&
                        !meaning.label_referenced && !meaning.entered_from_elsewhere;
     if (!plain) return add_own_text(block);
+    if (has(program_.words_of(block), 'G', kDwell)) return list_dwell(block);
     list_words(program_.words_of(block), meaning);
   }
 
@@ -166,7 +100,7 @@ class CommonLister {
   }
 
   void list_remark(std::string_view text) {
-    if (const auto datum = datum_in(text)) list_work_offset(*datum * 10);
+    if (const auto datum = datum_in_remark(text)) list_work_offset(*datum * 10);
     const bool counts_not = text == kCountsAlways;
     if (!counts_not && text != kCountsUnsaid) return;
     add_word(counts_not ? "G49" : "length not said");
@@ -183,12 +117,31 @@ class CommonLister {
       return true;
     }
     if (capitals == "PLANE RESET STAY") return true;
+    if (list_dwell_cycle(content)) return true;
     if (gcode::klartext_kind(content) != gcode::KlartextKind::kToolCall) return false;
     const auto call = tool_call_in(content);
     if (!call) return false;
     if (call->tool) list_tool(*call->tool);
     if (call->speed) list_speed(*call->speed);
     return true;
+  }
+
+  // Two blocks, the first of which says only that the second is a time.
+  bool list_dwell_cycle(std::string_view content) {
+    if (is_dwell_begin(content)) {
+      return block_index_ + 1 < program_.blocks.size() &&
+             dwell_time_in(content_at(block_index_ + 1)).has_value();
+    }
+    const auto ms = dwell_time_in(content);
+    if (!ms || block_index_ == 0 || !is_dwell_begin(content_at(block_index_ - 1))) return false;
+    add_dwell(*ms);
+    return true;
+  }
+
+  [[nodiscard]] std::string_view content_at(std::uint32_t block) const {
+    const Block& at = program_.blocks[block];
+    const gcode::KlartextParts parts = gcode::klartext_parts(program_.source.text(), at.span);
+    return parts.continues || at.block_delete ? "" : program_.source.text(parts.content);
   }
 
   // --- words --------------------------------------------------------------------------------
@@ -212,6 +165,11 @@ class CommonLister {
     if (std::ranges::any_of(words, [](const Word& word) { return word.letter != 'N'; })) {
       end_is_mark_ = false;
     }
+  }
+
+  void list_dwell(const Block& block) {
+    const auto ms = gcode::dwell_ms(program_.words_of(block), program_.dwells);
+    ms ? add_dwell(*ms) : add_own_text(block);
   }
 
   // In Klartext M13 and M14 are M3 and M4 with M8.
@@ -382,6 +340,7 @@ class CommonLister {
   // --- events -------------------------------------------------------------------------------
 
   void add_function(int code) { add_word(fmt::format("M{}", code / 10)); }
+  void add_dwell(std::int32_t ms) { add_word(fmt::format("dwell of {} ms", ms)); }
   void add_word(std::string text) { add_event(EventKind::kWord).text = std::move(text); }
   void add_text(std::string text) { add_event(EventKind::kText).text = std::move(text); }
   void add_own_text(const Block& block) { add_text(std::string(program_.source.text(block.span))); }

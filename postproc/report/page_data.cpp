@@ -94,8 +94,11 @@ Json path_of(const SmoothReport& report, std::size_t most_vertices) {
   const gcode::Reading words = reading_of(report.options, *language);
   const gcode::Program before = gcode::parse(report.source, words, ignored);
   const gcode::Interpretation old_meaning = gcode::interpret(before, reading, ignored);
-  const gcode::Reading new_words =
-      translated ? reading_of(report.options, report.options.target->language()) : words;
+  gcode::Reading new_words = words;
+  if (translated) {
+    new_words = reading_of(report.options, report.options.target->language());
+    new_words.dwells = report.options.target->dwell_form();
+  }
   const gcode::Program after = gcode::parse(written, new_words, ignored);
   const gcode::Interpretation new_meaning = gcode::interpret(after, reading, ignored);
   const ReadProgram old_program{&before, &old_meaning};

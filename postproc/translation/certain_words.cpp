@@ -11,8 +11,8 @@ namespace {
 using gcode::Language;
 using gcode::Word;
 
-constexpr std::array kSilentCodes = {0,   10,  20,  30,  170, 180, 190, 200, 210, 400,
-                                     800, 900, 901, 910, 911, 940, 970, 980, 990};
+constexpr std::array kSilentCodes = {0,   10,  20,  30,  170, 180, 190, 200, 210, 400, 700,
+                                     710, 800, 900, 901, 910, 911, 940, 970, 980, 990};
 constexpr std::array kCertainFunctions = {0, 10, 20, 30, 40, 50, 60, 80, 90, 300};
 // M3 and M4, each with M8.
 constexpr std::array kKlartextFunctions = {130, 140};
@@ -67,6 +67,17 @@ std::string_view why_no_plain_block(const gcode::Block& block, const gcode::Bloc
   if (meaning.label_referenced || meaning.entered_from_elsewhere) return "is jumped to";
   if (meaning.kind == gcode::BlockKind::kOpaque && !named) return "is not understood";
   return {};
+}
+
+std::string_view why_no_certain_dwell(std::span<const Word> words, gcode::DwellForm form) {
+  if (form == gcode::DwellForm::kSecondsF && first_word(words, 'S') != nullptr) {
+    return "waits for turns of the spindle, which is no time";
+  }
+  if (form == gcode::DwellForm::kUnknown && first_word(words, 'P') != nullptr) {
+    return "waits for seconds on some controls and for milliseconds on others; --source ngc, grbl, "
+           "fanuc or haas says which";
+  }
+  return "waits for a time that is not certain";
 }
 
 std::string_view text_of_comment(std::string_view comment) {

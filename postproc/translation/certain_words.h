@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "gcode/dwell_form.h"
 #include "gcode/language.h"
 #include "gcode/motion.h"
 #include "gcode/program.h"
@@ -17,6 +18,7 @@ inline constexpr int kToolLengthOn = 430;
 inline constexpr int kToolLengthOff = 490;
 inline constexpr int kBlending = 640;
 inline constexpr int kToolChange = 60;
+inline constexpr int kDwell = 40;
 }  // namespace word_code
 
 // G words that only say how others are read, which the interpreter has followed, or that end what
@@ -44,6 +46,10 @@ inline constexpr int kToolChange = 60;
 // block of named words counts as plain here.
 [[nodiscard]] std::string_view why_no_plain_block(const gcode::Block& block,
                                                   const gcode::BlockMeaning& meaning);
+
+// Why a block with G4 is no dwell of a certain time; gcode::dwell_ms says nothing of it.
+[[nodiscard]] std::string_view why_no_certain_dwell(std::span<const gcode::Word> words,
+                                                    gcode::DwellForm form);
 
 // The text of a comment without its brackets, or what it begins with.
 [[nodiscard]] std::string_view text_of_comment(std::string_view comment);

@@ -11,10 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "gcode/dwell.h"
 #include "gcode/language_marks.h"
+#include "gcode/plain_beginning.h"
 #include "gcode/source_kind.h"
 #include "gcode/source_marks.h"
 #include "postproc/profile/profile_words.h"
+#include "postproc/translation/certain_words.h"
 #include "postproc/translation/obstacles.h"
 
 namespace batten::postproc {
@@ -58,6 +61,10 @@ class BlockCheck {
                       fmt::format("is longer than {} characters", target_.max_line_length())};
     }
     const std::span<const gcode::Word> words = program_.words_of(block);
+    if (const gcode::Word* dwell = coded_word(words, 'G', word_code::kDwell)) {
+      const std::string why = why_not_dwell(words);
+      return why.empty() ? std::nullopt : std::optional(Obstacle{dwell->span, why});
+    }
     for (const gcode::Word& word : words) {
       if (std::string why = why_not(word, words); !why.empty()) return Obstacle{word.span, why};
     }
@@ -72,6 +79,17 @@ class BlockCheck {
   }
 
  private:
+  // A dwell that waits as long on the target.
+  std::string why_not_dwell(std::span<const gcode::Word> words) const {
+    const auto ms = gcode::dwell_ms(words, program_.dwells);
+    if (!ms) return std::string(why_no_certain_dwell(words, program_.dwells));
+    const auto there = target_.dwell_form() == gcode::DwellForm::kUnknown
+                           ? std::nullopt
+                           : gcode::dwell_ms(words, target_.dwell_form());
+    if (!there) return "waits for a time that is not certain there";
+    return there == ms ? "" : "waits for another time there";
+  }
+
   std::string why_not(const gcode::Word& word, std::span<const gcode::Word> words) const {
     if (!word.is_number) return "has no plain number";
     if (target_.cannot_say(word.letter, tenths_of(word))) return "is not taken there";
@@ -134,17 +152,46 @@ class BlockCheck {
   const gcode::Dialect& target_;
 };
 
+// A dwell that waits for another time on the target.
+struct OtherDwell {
+  gcode::SourceSpan where;
+  std::int32_t ms = 0;
+  std::int32_t ms_there = 0;
+};
+
+// The first one. What G4 P means is known only where the user has named the source.
+std::optional<OtherDwell> other_dwell(const gcode::Program& program, const gcode::Dialect& target) {
+  const gcode::DwellForm there = target.dwell_form();
+  if (program.dwells == gcode::DwellForm::kUnknown || there == gcode::DwellForm::kUnknown ||
+      program.dwells == there) {
+    return std::nullopt;
+  }
+  for (const gcode::Block& block : program.blocks) {
+    const auto words = program.words_of(block);
+    if (coded_word(words, 'G', word_code::kDwell) == nullptr) continue;
+    const auto ms = gcode::dwell_ms(words, program.dwells);
+    const auto ms_there = gcode::dwell_ms(words, there);
+    if (ms && ms_there && ms != ms_there) return OtherDwell{block.span, *ms, *ms_there};
+  }
+  return std::nullopt;
+}
+
 // Where the program says its language, if it does: the place to tell about.
 gcode::SourceSpan place_of(gcode::Language language, const gcode::SourceText& source) {
   for (const gcode::LanguageMark& each : gcode::language_marks(source)) {
     if (each.language == language) return each.where;
   }
-  return {};
+  return gcode::plain_beginning(source).value_or(gcode::SourceSpan{});
 }
 
-std::string evidence_of(gcode::Language language, const gcode::SourceText& source) {
+std::string evidence_of(gcode::Language language, const gcode::SourceText& source,
+                        const SmoothOptions& options) {
   for (const gcode::LanguageMark& each : gcode::language_marks(source)) {
     if (each.language == language) return fmt::format("found {}, so this is", each.evidence);
+  }
+  const auto plain = gcode::plain_beginning(source);
+  if (options.source == gcode::SourceKind::kAuto && plain) {
+    return fmt::format("found {}, so this is", source.text(*plain));
   }
   return "--source says that this is";
 }
@@ -162,7 +209,7 @@ std::optional<gcode::Language> language_read(const gcode::SourceText& source,
       {gcode::Severity::kError, "foreign-language", place_of(*language, source),
        fmt::format("{} a program in {}; target {} reads {}, and --convert says it there "
                    "where every block can be said",
-                   evidence_of(*language, source), gcode::describe(*language),
+                   evidence_of(*language, source, options), gcode::describe(*language),
                    options.target->name(), gcode::describe(of_target))});
   return std::nullopt;
 }
@@ -178,13 +225,17 @@ std::optional<gcode::Language> language_to_translate(const gcode::SourceText& so
 gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language) {
   const gcode::Decimals decimals =
       gcode::decimals_read(options.source, options.target, language, options.decimals);
-  return {.language = language, .decimals = decimals, .units = options.units};
+  return {.language = language,
+          .decimals = decimals,
+          .units = options.units,
+          .dwells = gcode::dwells_of(options.source)};
 }
 
 bool is_of_another_family(const gcode::Program& program, const gcode::Dialect& target) {
-  return std::ranges::any_of(gcode::source_marks(program), [&](const gcode::FoundMark& found) {
-    return (target.known_marks() & gcode::mark(found.mark)) == 0;
-  });
+  return other_dwell(program, target) ||
+         std::ranges::any_of(gcode::source_marks(program), [&](const gcode::FoundMark& found) {
+           return (target.known_marks() & gcode::mark(found.mark)) == 0;
+         });
 }
 
 void tell_of_other_family(const gcode::Program& program, const gcode::Dialect& target,
@@ -195,6 +246,15 @@ void tell_of_other_family(const gcode::Program& program, const gcode::Dialect& t
                      fmt::format("{}: a program for other controls than target {}; --convert tells "
                                  "which blocks could not be said there",
                                  gcode::describe(each.mark), target.name())});
+  }
+  if (const auto dwell = other_dwell(program, target)) {
+    found.push_back(
+        {gcode::Severity::kError, "other-family", dwell->where,
+         fmt::format("{} waits for {} s on the control that --source names, and for {} s "
+                     "on target {}; --convert tells which blocks could not be said "
+                     "there",
+                     program.source.text(dwell->where), gcode::dwell_seconds(dwell->ms, false),
+                     gcode::dwell_seconds(dwell->ms_there, false), target.name())});
   }
 }
 

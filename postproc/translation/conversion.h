@@ -38,7 +38,8 @@ namespace batten::postproc {
 // How a program in this language is read with these options.
 [[nodiscard]] gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language);
 
-// Whether the program has words of controls that the target is none of.
+// Whether the program has words of controls that the target is none of, or a dwell that, as its
+// source reads it, waits for another time than the target does.
 [[nodiscard]] bool is_of_another_family(const gcode::Program& program,
                                         const gcode::Dialect& target);
 

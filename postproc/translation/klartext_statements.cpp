@@ -1,5 +1,9 @@
 #include "postproc/translation/klartext_statements.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "gcode/dwell.h"
 #include "gcode/klartext/statement.h"
 #include "gcode/number_format.h"
 #include "postproc/translation/translation.h"
@@ -10,6 +14,26 @@ namespace {
 std::optional<double> plain_value(std::string_view digits) {
   const auto number = gcode::read_number(digits);
   return number ? std::optional(number->value) : std::nullopt;
+}
+
+// The words behind `CYCL DEF 9.0`; nothing where the statement is another.
+std::optional<gcode::KlartextTokens> behind_cycle_part(std::string_view statement,
+                                                       std::string_view part) {
+  gcode::KlartextTokens tokens(statement);
+  for (const std::string_view word : {std::string_view("CYCL"), std::string_view("DEF"), part}) {
+    if (!gcode::is_same_word(tokens.next(), word)) return std::nullopt;
+  }
+  return tokens;
+}
+
+std::optional<std::int32_t> whole_ms(std::optional<double> seconds) {
+  if (!seconds) return std::nullopt;
+  constexpr double kMsPerSecond = 1000;
+  constexpr double kRounding = 1e-6;
+  const double ms = std::round(*seconds * kMsPerSecond);
+  const bool fits = ms >= 1 && ms <= gcode::kLongestDwellMs;
+  if (!fits || std::abs(*seconds * kMsPerSecond - ms) > kRounding) return std::nullopt;
+  return static_cast<std::int32_t>(ms);
 }
 
 }  // namespace
@@ -49,6 +73,23 @@ bool ends_tilting(std::string_view statement) {
     if (!gcode::is_same_word(tokens.next(), word)) return false;
   }
   return tokens.next().empty();
+}
+
+std::optional<std::int32_t> dwell_begun_in(const gcode::Program& program, std::uint32_t block) {
+  if (block + 1 >= program.blocks.size()) return std::nullopt;
+  const gcode::Block& first = program.blocks[block];
+  const gcode::Block& second = program.blocks[block + 1];
+  for (const gcode::Block* each : {&first, &second}) {
+    if (each->opacity != gcode::Opacity::kForeign || each->block_delete) return std::nullopt;
+  }
+  if (!behind_cycle_part(statement_of(program, first), "9.0")) return std::nullopt;
+  auto words = behind_cycle_part(statement_of(program, second), "9.1");
+  if (!words) return std::nullopt;
+  const std::string_view label = words->next();
+  const std::string_view seconds = words->next();
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (std::ranges::any_of(label, is_digit) || !words->next().empty()) return std::nullopt;
+  return whole_ms(plain_value(seconds));
 }
 
 std::string_view statement_of(const gcode::Program& program, const gcode::Block& block) {

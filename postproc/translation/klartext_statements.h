@@ -1,6 +1,7 @@
 // Statements of Klartext that are no words of a motion, and what a translation left in comments.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -23,6 +24,11 @@ struct CalledTool {
 
 // `PLANE RESET STAY`: nothing moves, and no plane is tilted behind it.
 [[nodiscard]] bool ends_tilting(std::string_view statement);
+
+// Milliseconds, where the block is the first of two that say a dwell: `CYCL DEF 9.0 DWELL TIME` and
+// `CYCL DEF 9.1 DWELL 1.5`, in seconds, with these or the words of another dialog language.
+[[nodiscard]] std::optional<std::int32_t> dwell_begun_in(const gcode::Program& program,
+                                                         std::uint32_t block);
 
 // A block's statement, without number and comment; empty where other lines continue it.
 [[nodiscard]] std::string_view statement_of(const gcode::Program& program,

@@ -9,6 +9,7 @@
 
 #include "gcode/block_spelling.h"
 #include "gcode/curves/klartext_moves.h"
+#include "gcode/dwell.h"
 #include "gcode/number_format.h"
 #include "postproc/translation/translation.h"
 #include "postproc/translation/translation_text.h"
@@ -72,6 +73,11 @@ class KlartextSpeaker {
       case ActKind::kSpeed:
         if (std::exchange(speed_is_said_, false)) return;
         return call_tool(fmt::format("TOOL CALL Z S{}", gcode::to_text(act.number, feeds_)));
+      case ActKind::kDwell:
+        text_.add("CYCL DEF 9.0 DWELL TIME", line_);
+        return text_.add(
+            fmt::format("CYCL DEF 9.1 DWELL {}", gcode::dwell_seconds(whole(act.number), false)),
+            line_);
       case ActKind::kFunction:
       case ActKind::kEnd:
         return text_.add(fmt::format("M{}", whole(act.number)), line_);

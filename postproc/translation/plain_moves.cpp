@@ -40,15 +40,12 @@ void PlainMoves::use_units(gcode::Units units) {
   modal_.feed.reset();
 }
 
-std::string PlainMoves::unit_word() const {
-  const bool inch = modal_.units == gcode::Units::kInch;
-  if (target_.language() == gcode::Language::kSiemens) return inch ? "G700" : "G710";
-  return inch ? "G20" : "G21";
-}
+std::string_view PlainMoves::unit_word() const { return target_.unit_word(modal_.units); }
 
 std::string_view PlainMoves::other_meaning_of_units() const {
-  if (target_.language() == gcode::Language::kSiemens) return {};
-  return target_.other_meaning(modal_.units == gcode::Units::kInch ? 200 : 210);
+  const std::string_view word = unit_word();
+  if (word == "G20") return target_.other_meaning(200);
+  return word == "G21" ? target_.other_meaning(210) : "";
 }
 
 void PlainMoves::forget_modes() {

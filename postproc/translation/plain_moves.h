@@ -24,8 +24,8 @@ class PlainMoves {
   void use_units(gcode::Units units);
   [[nodiscard]] gcode::Units units() const { return modal_.units; }
 
-  // G21, G20; for Siemens G710, G700.
-  [[nodiscard]] std::string unit_word() const;
+  // G21, G20; or the target's own words for them.
+  [[nodiscard]] std::string_view unit_word() const;
 
   // What the target takes its unit word for instead; empty where it is its own.
   [[nodiscard]] std::string_view other_meaning_of_units() const;

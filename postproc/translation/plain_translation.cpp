@@ -8,6 +8,7 @@
 #include <string_view>
 #include <variant>
 
+#include "gcode/dwell.h"
 #include "postproc/translation/plain_moves.h"
 #include "postproc/translation/translation.h"
 #include "postproc/translation/translation_text.h"
@@ -69,7 +70,7 @@ class PlainSpeaker {
     const auto first = std::ranges::find(acts, ActKind::kMotion, &Act::kind);
     if (first == acts.end()) return;
     say_units(*first);
-    std::string line = siemens_ ? "" : moves_.unit_word();
+    std::string line(siemens_ ? "" : moves_.unit_word());
     for (const int code : {170, 400, 900, 940}) {
       // A control that refuses the word has no other mode.
       if (target_.cannot_say('G', code)) continue;
@@ -100,7 +101,7 @@ class PlainSpeaker {
   void say_units(const Act& act) {
     moves_.use_units(units_of(act));
     if (const auto meaning = moves_.other_meaning_of_units(); !meaning.empty()) {
-      text_.refuse(act.where, fmt::format("needs {}, which is {}", moves_.unit_word(), meaning));
+      text_.refuse(act.where, fmt::format("needs {}: {}", moves_.unit_word(), meaning));
     }
     if (siemens_) text_.add(moves_.unit_word(), line_);
   }
@@ -128,6 +129,8 @@ class PlainSpeaker {
         return;  // said behind its tool, or in the next motion
       case ActKind::kSpeed:
         return say_speed(act, index);
+      case ActKind::kDwell:
+        return say_dwell(act);
       case ActKind::kFunction:
         return say_function(act);
       case ActKind::kMotion:
@@ -232,6 +235,17 @@ class PlainSpeaker {
     if (!takes(act, 'M', whole(act) * 10)) return;
     text_.add(fmt::format("{}M{}", said_speed_, whole(act)), line_);
     said_speed_.clear();
+  }
+
+  void say_dwell(const Act& act) {
+    const std::string block = gcode::dwell_block(whole(act), target_.dwell_form());
+    if (block.empty()) {
+      return text_.refuse(act.where,
+                          fmt::format("waits for {} s, and how that is said there is not "
+                                      "certain",
+                                      gcode::dwell_seconds(whole(act), false)));
+    }
+    text_.add(block, line_);
   }
 
   void say_motion(const Act& act) {

@@ -10,12 +10,14 @@
 #include <utility>
 
 #include "gcode/block_words.h"
+#include "gcode/dwell.h"
 #include "gcode/klartext/statement.h"
 #include "gcode/siemens/block_names.h"
 #include "postproc/profile/profile_words.h"
-#include "postproc/proof/path_state.h"
+#include "postproc/translation/certain_motions.h"
 #include "postproc/translation/certain_words.h"
 #include "postproc/translation/klartext_statements.h"
+#include "postproc/translation/running_functions.h"
 #include "postproc/translation/tool_in_spindle.h"
 #include "postproc/translation/translation.h"
 
@@ -28,12 +30,6 @@ using gcode::Language;
 using gcode::Motion;
 using gcode::MotionKind;
 using gcode::Word;
-
-// mm: an arc that rises by more is a helix.
-constexpr double kLevelArc = 1e-9;
-
-// Whether something is on, off, or not known: not set by the program.
-using Known = std::optional<bool>;
 
 class ActReader {
  public:
@@ -64,6 +60,7 @@ class ActReader {
       return;
     }
     if (ended_) return refuse(block.span, "stands behind the end of the program");
+    if (coded_word(words, 'G', word_code::kDwell) != nullptr) return read_dwell(block, words);
     if (block.opacity == gcode::Opacity::kNamedWords) check_names(block);
     for (const Word& word : words) {
       if (std::string why = why_not(word, words); !why.empty()) refuse(word.span, std::move(why));
@@ -73,6 +70,13 @@ class ActReader {
 
   void refuse(gcode::SourceSpan where, std::string why) {
     if (!std::exchange(told_, true)) result_.obstacles.push_back({where, std::move(why)});
+  }
+
+  void read_dwell(const Block& block, std::span<const Word> words) {
+    const auto ms = gcode::dwell_ms(words, program_.dwells);
+    const bool plain = block.opacity == gcode::Opacity::kNone;
+    if (plain && ms) return (void)add(ActKind::kDwell, block.span, *ms);
+    refuse(block.span, std::string(why_no_certain_dwell(words, program_.dwells)));
   }
 
   // --- Klartext -----------------------------------------------------------------------------
@@ -86,7 +90,7 @@ class ActReader {
       return refuse(block.span, "is in inches, where it is not certain what F means");
     }
     if (kind != gcode::KlartextKind::kEnd || std::exchange(ended_, true)) return;
-    if (spindle_ != false || coolant_ == true) {
+    if (running_.may_be_on()) {
       return refuse(block.span, "ends without M2 or M30, and spindle or coolant may be on");
     }
     (void)add(ActKind::kEnd, block.span);
@@ -101,6 +105,11 @@ class ActReader {
       return true;
     }
     if (ends_tilting(statement)) return true;
+    if (const auto ms = dwell_begun_in(program_, block_)) {
+      (void)add(ActKind::kDwell, block.span, *ms);
+      return true;
+    }
+    if (block_ > 0 && dwell_begun_in(program_, block_ - 1)) return true;
     const auto called = called_tool(statement);
     if (!called) return false;
     if (called->number) {
@@ -255,24 +264,22 @@ class ActReader {
 
   void put_in(double tool, gcode::SourceSpan where) {
     tool_.put_in(tool);
-    turned_at_change_ = spindle_ == true ? std::optional(where) : std::nullopt;
-    spindle_.reset();
-    speed_.reset();
+    running_.change_tool(where);
     (void)add(ActKind::kTool, where, tool);
   }
 
   void add_speed(const Word& word, const BlockMeaning& meaning) {
     const bool cuts = meaning.motion >= 0 && motion_at(meaning.motion).kind != MotionKind::kRapid;
-    if (cuts && speed_ != word.value) {
+    if (cuts && running_.speed != word.value) {
       return refuse(word.span, "changes the speed in a cutting move");
     }
     set_speed(word.value, word.span);
   }
 
   void set_speed(double speed, gcode::SourceSpan where) {
-    if (speed_ == speed) return;
+    if (running_.speed == speed) return;
     if (speed < 0) return refuse(where, "is no speed there");
-    speed_ = speed;
+    running_.speed = speed;
     (void)add(ActKind::kSpeed, where, speed);
   }
 
@@ -294,16 +301,13 @@ class ActReader {
   }
 
   void add_function(int code, gcode::SourceSpan where) {
-    const bool ends = code == 5 || code == 9;
-    const bool of_coolant = code == 8 || code == 9;
-    (of_coolant ? coolant_ : spindle_) = !ends;
-    if (!of_coolant) turned_at_change_.reset();
+    running_.switch_by(code);
     (void)add(ActKind::kFunction, where, code);
   }
 
   void add_pause(const Word& word, bool moves) {
     if (moves) return refuse(word.span, "acts before or behind the motion of its block");
-    if (spindle_ != false || coolant_ == true) {
+    if (running_.may_be_on()) {
       return refuse(word.span, "stops spindle and coolant on some controls, and they may be on");
     }
     (void)add(ActKind::kFunction, word.span, word.value);
@@ -348,11 +352,11 @@ class ActReader {
       return tool_.fetched.reset();
     }
     say_length_before(motion, here);
-    if (const std::string_view why = why_not_motion(motion, state); !why.empty()) {
+    if (const auto why = why_no_certain_motion(motion, state, program_.language); !why.empty()) {
       return refuse(here, std::string(why));
     }
-    if (motion.kind != MotionKind::kRapid && turned_at_change_) {
-      refuse(*std::exchange(turned_at_change_, std::nullopt),
+    if (motion.kind != MotionKind::kRapid && running_.turned_at_change) {
+      refuse(*std::exchange(running_.turned_at_change, std::nullopt),
              "finds the spindle on, and controls differ in whether it turns in the cut behind it");
     }
     Act& act = add(ActKind::kMotion, here);
@@ -372,27 +376,6 @@ class ActReader {
     (void)add(ActKind::kLengthUnsaid, here);
   }
 
-  [[nodiscard]] std::string_view why_not_motion(const Motion& motion,
-                                                const gcode::ModalState& state) const {
-    if (state.distance == gcode::DistanceMode::kIncremental) return "is an increment";
-    if (!path_alone_counts(state)) return "moves in a state in which its words are not the path";
-    const bool arc = motion.kind == MotionKind::kArc;
-    if (!motion.end_known || (arc && !motion.start_known)) {
-      return "moves from a place that is not known";
-    }
-    if (motion.kind == MotionKind::kCurve) return "is a curve";
-    if (motion.kind != MotionKind::kRapid && !state.feed)
-      return "moves at a feed that is not known";
-    if (arc && in(Language::kSiemens) && rises(*motion.piece.arc())) {
-      return "is a helix";
-    }
-    return {};
-  }
-
-  static bool rises(const geometry::Arc& arc) {
-    return std::abs(arc.axis.dot(arc.end - arc.start)) > kLevelArc;
-  }
-
   [[nodiscard]] const Motion& motion_at(std::int32_t index) const {
     return meaning_.motions[static_cast<std::size_t>(index)];
   }
@@ -405,11 +388,8 @@ class ActReader {
   bool ended_ = false;
   bool moved_ = false;
   ToolInSpindle tool_;
-  std::optional<double> speed_;     // since the tool was put in
+  RunningFunctions running_;
   std::optional<int> work_offset_;  // in tenths
-  Known spindle_;
-  Known coolant_;
-  std::optional<gcode::SourceSpan> turned_at_change_;  // of the tool; nothing said of it since
 };
 
 }  // namespace

@@ -24,6 +24,7 @@ enum class ActKind : std::uint8_t {
   kTool,          // `number` is put into the spindle
   kLength,        // from here on the length of that tool counts; nothing has moved along Z since
   kSpeed,         // of the spindle: `number`, another one than before
+  kDwell,         // waits for `number` milliseconds
   kFunction,      // M `number`: 3, 4, 5, 8, 9, 0, 1
   kMotion,        // `motion` at `feed`: a rapid, a line, an arc; what it needs is known
   kEnd,           // M `number`: 2 or 30; or 0: END PGM alone; nothing follows
@@ -44,8 +45,8 @@ struct ProgramActs {
   std::vector<Obstacle> obstacles;  // at most one for each block
 };
 
-// In a block: tool, speed, spindle, coolant, work offset, motion, stop, end. M3, M4 and M8 beside a
-// motion come before it; M5 and M9 of Klartext behind it.
+// In a block: dwell alone; or tool, speed, spindle, coolant, work offset, motion, stop, end. M3, M4
+// and M8 beside a motion come before it; M5 and M9 of Klartext behind it.
 //
 // The length of the tool: G43 H, D1 (Siemens), or TOOL CALL (Klartext, where it always counts).
 // Remarks that a translation left in Klartext (postproc/translation/translation.h) are the acts
@@ -56,9 +57,10 @@ struct ProgramActs {
 // differ in what comes first; M0 and M1 with spindle or coolant on, which some controls stop then;
 // T without M6, which changes the tool on some controls; G43, D but for the length of the tool that
 // was just put in; a tool put in with the spindle on, and a cut behind it without M3 or M4 between;
-// G64 with a tolerance; dwells, whose number is seconds or milliseconds. Of
+// G64 with a tolerance; dwells whose number may be seconds or milliseconds (gcode/dwell.h). Of
 // Siemens programs, names but G71, G700, G710, and helices; of Klartext programs, whatever is not
-// L, CC, C, CR, TOOL CALL, M functions and BLK FORM, and inches: what F means then is not certain.
+// L, CC, C, CR, TOOL CALL, cycle 9, M functions and BLK FORM, and inches: what F means then is not
+// certain.
 //
 // Views into the program's text.
 [[nodiscard]] ProgramActs acts_of(const gcode::Program& program,

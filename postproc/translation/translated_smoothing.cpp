@@ -177,7 +177,9 @@ class TranslatedSmoothing {
         language == gcode::Language::kKlartext ? with_numbers(result.text, 0) : result.text;
     const gcode::SourceText text(source_.name(), written);
     gcode::Diagnostics found;
-    const gcode::Program program = gcode::parse(text, language, found);
+    const gcode::DwellForm dwells = options_.target->dwell_form();
+    const gcode::Program program =
+        gcode::parse(text, gcode::Reading{.language = language, .dwells = dwells}, found);
     const gcode::Interpretation meaning =
         gcode::interpret(program, {.curves = options_.target->curves()}, found);
     const Verification verification =

@@ -8,10 +8,6 @@
 namespace batten {
 namespace {
 
-bool says(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 constexpr const char* kKlartextProgram =
     "0 BEGIN PGM 1234 MM\n1 TOOL CALL 5 Z S3000\n2 L X+0 Y+0 R0 FMAX M3\n3 L Z+5 FMAX\n"
     "4 L Z-1 F200\n5 L X+10 F500\n6 CC X+15 Y+0\n7 C X+20 Y+0 DR-\n8 L Z+50 FMAX M5\n9 M30\n"
@@ -26,8 +22,8 @@ class Conversions : public testing::Test {
 TEST_F(Conversions, AreRefusedUnlessTheyAreAskedFor) {
   const ProcessResult refused = folder_.batten("smooth 1234.h --target fanuc -o new.nc");
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_TRUE(says(refused.err, "1234.h:1:1: error: foreign-language")) << refused.err;
-  EXPECT_TRUE(says(refused.err, "--convert says it there")) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "1234.h:1:1: error: foreign-language")) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "--convert says it there")) << refused.err;
   EXPECT_FALSE(folder_.has("new.nc"));
 }
 
@@ -58,13 +54,41 @@ TEST_F(Conversions, ThroughAllThreeLanguagesAreProvedAtEachStep) {
             "11 M30\n12 END PGM B MM\n");
 }
 
+TEST_F(Conversions, OfPlainWordsForKlartextAreAskedFor) {
+  folder_.put("plain.nc", "%\nO1\n(part)\nN10 G21 G90\nN20 G0 X0 Y0 Z5\nG1 X5 F100\nM30\n%\n");
+  const ProcessResult refused = folder_.batten("smooth plain.nc --target heidenhain -o new.h");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(contains(refused.err, "plain.nc:4:1: error: foreign-language: found N10 G21 G90"))
+      << refused.err;
+  EXPECT_FALSE(folder_.has("new.h"));
+  EXPECT_EQ(folder_.batten("smooth plain.nc --target heidenhain --convert -o new.h").exit_code, 0);
+  const ProcessResult told = folder_.batten("explain foreign-language");
+  EXPECT_TRUE(contains(told.out, "--convert")) << told.out;
+}
+
+// What P means says --source alone, to smooth and to verify.
+TEST_F(Conversions, OfDwellsAskForTheirSource) {
+  folder_.put("plain.nc", "G21 G90\nG0 X0 Y0 Z5\nG4 P0.5\nG1 X5 F100\nM30\n");
+  const ProcessResult refused = folder_.batten("smooth plain.nc --target siemens --convert");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(contains(refused.err, "--source ngc, grbl, fanuc or haas says which")) << refused.err;
+  const ProcessResult done =
+      folder_.batten("smooth plain.nc --target siemens --convert --source ngc -o new.mpf");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(contains(folder_.text_of("new.mpf"), "\nG4 F0.5\n"));
+  EXPECT_EQ(folder_.batten("verify plain.nc new.mpf --target siemens --source ngc").exit_code, 0);
+  EXPECT_EQ(folder_.batten("verify plain.nc new.mpf --target siemens --source haas").exit_code, 0);
+  EXPECT_EQ(folder_.batten("verify plain.nc new.mpf --target siemens").exit_code, 3);
+  EXPECT_EQ(folder_.batten("verify plain.nc new.mpf --target siemens --source fanuc").exit_code, 3);
+}
+
 TEST_F(Conversions, TellTheLineAndTheWordThatCannotBeSaid) {
   std::string text = kKlartextProgram;
   text.replace(text.find("4 L Z-1"), 7, "4 L Z-1 RL");
   folder_.put("part.h", text);
   const ProcessResult told = folder_.batten("smooth part.h --target haas --convert -o new.nc");
   EXPECT_EQ(told.exit_code, 2);
-  EXPECT_TRUE(says(told.err, "part.h:5:9: error: cannot-convert: RL moves beside the path"))
+  EXPECT_TRUE(contains(told.err, "part.h:5:9: error: cannot-convert: RL moves beside the path"))
       << told.err;
   EXPECT_FALSE(folder_.has("new.nc"));
 }

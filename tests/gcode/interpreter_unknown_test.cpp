@@ -41,6 +41,8 @@ INSTANTIATE_TEST_SUITE_P(
                     PlaceCase{"Spindle", "M3 S100", true, true, true},
                     PlaceCase{"Dwell", "G4 P1", true, true, true},
                     PlaceCase{"DwellWithX", "G4 X1", false, true, true},
+                    PlaceCase{"DwellOfSeconds", "G4 X1.5", true, true, true},
+                    PlaceCase{"DwellAndAPlace", "G4 P1. X1.5", false, true, true},
                     PlaceCase{"SameOffset", "G54", true, true, true},
                     PlaceCase{"OtherOffset", "G55", false, false, false},
                     PlaceCase{"ExtendedOffset", "G54.1 P3", false, false, false},
