@@ -41,10 +41,9 @@ constexpr std::array<std::string_view, 10> kPlainNames = {
 constexpr std::string_view kCycle32 = "CYCL DEF 32.";
 
 constexpr std::string_view kAllowed =
-    "expected a comment of the target, a word that sets how the control smooths (G5.1 Q, G5 P, G8 "
-    "P, G61.1, G64, G131, G187, CYCLE832(..), COMPCAD .., CYCL DEF 32.., #HSC ..) or an M word "
-    "from "
-    "M100 on";
+    "expected a comment of the target, a word that sets how this control smooths (G5.1 Q, G5 P, G8 "
+    "P, G61.1, G64, G131, G187; Siemens: CYCLE832(..), COMPCAD ..; Klartext: CYCL DEF 32..; ISG: "
+    "#HSC ..) or an M word from M100 on";
 
 const SettingWord* setting_word(const gcode::Word& word) {
   const auto found = std::ranges::find(kSettingWords, tenths_of(word), &SettingWord::g_code);
@@ -111,11 +110,21 @@ bool is_siemens(std::string_view line) {
   return true;
 }
 
-bool is_other_language(std::string_view line) {
-  if (line.starts_with(kCycle32)) return only(line, " .:-");
-  if (line == "#HSC OFF") return true;
-  if (line.starts_with("#HSC ON")) return only(line.substr(1), " .,=_[]-");
-  return is_siemens(line);
+// A word that is none of plain words: of Klartext, of the ISG kernel or of Siemens controls. Those
+// of another language than the target's would be an alarm there.
+bool is_own_word(std::string_view line, const gcode::Dialect& target) {
+  const gcode::Language language = target.language();
+  if (line.starts_with(kCycle32)) {
+    return language == gcode::Language::kKlartext && only(line, " .:-");
+  }
+  if (line.starts_with("#HSC")) {
+    constexpr gcode::SourceMarks kHash = gcode::mark(gcode::SourceMark::kHashCommand);
+    const bool reads_it =
+        language == gcode::Language::kRs274 && (target.known_marks() & kHash) != 0;
+    const bool on = line.starts_with("#HSC ON") && only(line.substr(1), " .,=_[]-");
+    return reads_it && (on || line == "#HSC OFF");
+  }
+  return language == gcode::Language::kSiemens && is_siemens(line);
 }
 
 std::string with_tolerance(std::string line, std::string_view tolerance) {
@@ -202,7 +211,7 @@ std::string why_not_in_profile(const std::string& line, const gcode::Dialect& ta
   const gcode::Block& block = program.blocks.front();
   const bool plain = block.opacity == gcode::Opacity::kNone && block.comment_count == 0 &&
                      block.word_count > 0 && !block.block_delete && !block.has_checksum;
-  if (plain ? is_setting(program.words_of(block)) : is_other_language(filled)) return {};
+  if (plain ? is_setting(program.words_of(block)) : is_own_word(filled, target)) return {};
   return std::string(kAllowed);
 }
 

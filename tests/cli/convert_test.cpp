@@ -77,7 +77,7 @@ TEST_F(Conversions, OfDwellsAskForTheirSource) {
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_TRUE(contains(folder_.text_of("new.mpf"), "\nG4 F0.5\n"));
   EXPECT_EQ(folder_.batten("verify plain.nc new.mpf --target siemens --source ngc").exit_code, 0);
-  EXPECT_EQ(folder_.batten("verify plain.nc new.mpf --target siemens --source haas").exit_code, 0);
+  EXPECT_EQ(folder_.batten("verify plain.nc new.mpf --target siemens --source grbl").exit_code, 0);
   EXPECT_EQ(folder_.batten("verify plain.nc new.mpf --target siemens").exit_code, 3);
   EXPECT_EQ(folder_.batten("verify plain.nc new.mpf --target siemens --source fanuc").exit_code, 3);
 }

@@ -1,8 +1,11 @@
 #include "postproc/profile/target_profile.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <string>
+#include <string_view>
 
 #include "gcode/target_table.h"
 #include "tests/support/scratch_folder.h"
@@ -201,6 +204,25 @@ TEST_F(ProfileFile, TakesNoWordThatMovesOrStops) {
                                  "G64 P0.1 X1", "/G187",    "N10 G187",
                                  "G4 P1",       "{feed}",   "#HSC ON X=1;G91"}) {
     EXPECT_EQ(read(head + line + "\"]\n"), nullptr) << line;
+  }
+}
+
+// Each word of a language is taken by the targets that read it, and by no other.
+TEST_F(ProfileFile, TakesNoWordOfAnotherLanguage) {
+  struct OwnWord {
+    std::string_view base;
+    std::string_view line;
+  };
+  const OwnWord kWords[] = {{"siemens", "CYCLE832(0.01,1,1)"},
+                            {"siemens", "COMPCAD"},
+                            {"itnc530", "CYCL DEF 32.0 TOLERANCE"},
+                            {"beckhoff", "#HSC OFF"}};
+  for (const OwnWord& word : kWords) {
+    for (const std::string_view target : {"siemens", "itnc530", "beckhoff", "fanuc", "linuxcnc"}) {
+      const auto profile =
+          read(fmt::format("based-on = \"{}\"\n[words]\nfooter = [\"{}\"]\n", target, word.line));
+      EXPECT_EQ(profile != nullptr, target == word.base) << target << ": " << word.line;
+    }
   }
 }
 
