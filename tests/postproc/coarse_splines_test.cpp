@@ -2,6 +2,7 @@
 // proof finds, and the run goes back.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <variant>
