@@ -32,12 +32,6 @@ constexpr double kSlightly = 1.2;
 constexpr int kWatched = 1;
 constexpr int kAttempts = 9;
 
-// Who wants the path that was meant above all gets a curve on more knots, that leaves this part of
-// what the vertices scatter by their rounding. With less it would follow the rounding itself, and
-// so it would follow any noise that is more than so many of the greatest rounding errors.
-constexpr double kAccurate = 0.4;
-constexpr double kRoundingNoise = 2;
-
 // Vertices that are met are met to this part of the tolerance.
 constexpr double kMetLimit = 0.01;
 
@@ -96,11 +90,9 @@ void BandFit::hold() {
 BandOptions BandFit::band() const {
   BandOptions band;
   band.limit = kAim * options_.tolerance;
-  const double rounding = std::min(options_.rounding, 0.25 * options_.tolerance);
+  band.rounding = std::min(options_.rounding, 0.25 * options_.tolerance);
+  band.scatter = options_.scatter;
   band.accurate = options_.accurate;
-  band.noise_part = options_.accurate ? kAccurate : 1;
-  band.rounding_noise = kRoundingNoise * rounding;
-  band.least_scatter = std::max(options_.scatter, band.noise_part * rounding);
   band.meant = meant_;
   return band;
 }

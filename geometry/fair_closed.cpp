@@ -1,6 +1,7 @@
 #include "geometry/fair_closed.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "geometry/fair_measure.h"
@@ -8,6 +9,24 @@
 namespace batten::geometry {
 
 namespace {
+
+// A knot that is nearer to a cut than this part of the spans beside it is put on the cut. Left
+// where it is, it would make a span of next to no length, and what is done to the control points at
+// the seam would bend the curve there as hard as that span is short.
+constexpr double kOnCut = 0.1;
+
+// The same control points, with a knot at u where one is as good as there: the curve slides along
+// itself by a thirtieth of a span at the most.
+BsplineCurve with_near_knot_at(const BsplineCurve& curve, double u) {
+  std::vector<double> knots = curve.basis().knots();
+  const auto above = std::lower_bound(knots.begin(), knots.end(), u);
+  for (const auto knot : {above, above - 1}) {
+    if (knot <= knots.begin() || knot + 1 >= knots.end()) continue;
+    const double room = std::min(*knot - *(knot - 1), *(knot + 1) - *knot);
+    if (std::abs(*knot - u) < kOnCut * room) *knot = u;
+  }
+  return {BsplineBasis(curve.degree(), std::move(knots)), curve.control_points()};
+}
 
 // The period moved at both ends so that it starts and ends at `seam`: three control points are
 // shifted alike, so that tangent and curvature stay as they are there.
@@ -76,7 +95,8 @@ std::vector<Point3> wrapped(std::span<const Point3> points, std::size_t wrap) {
 Faired one_period(const Faired& all, std::size_t wrap, std::size_t count) {
   const auto begin = all.parameters.begin() + static_cast<std::ptrdiff_t>(wrap);
   std::vector<double> at(begin, begin + static_cast<std::ptrdiff_t>(count));
-  BsplineCurve part = all.curve.part(at.front(), at.back());
+  const BsplineCurve cut = with_near_knot_at(with_near_knot_at(all.curve, at.front()), at.back());
+  BsplineCurve part = cut.part(at.front(), at.back());
   return {std::move(part), std::move(at)};
 }
 

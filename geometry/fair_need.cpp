@@ -41,18 +41,19 @@ std::vector<bool> tight_vertices(const BandFit& fit, const FairOptions& options)
   return tight;
 }
 
-// More scatter for vertices where the curve is too tight for the feed; nothing when there are none
-// that could still be given more. `settled`: those that have gained nothing by it.
+// More scatter for vertices where the curve is too tight for the feed, beyond what was tried
+// before; nothing when there are none that could still be given more.
 std::optional<std::vector<double>> widened(const BandFit& fit, const FairOptions& options,
-                                           const std::vector<bool>& settled) {
+                                           std::vector<double>& tried) {
   const std::vector<bool> tight = tight_vertices(fit, options);
   std::vector<double> loosen = fit.loosened();
   bool any = false;
   for (std::size_t i = 0; i < tight.size(); ++i) {
-    if (!tight[i] || settled[i] || std::isinf(loosen[i])) continue;
-    loosen[i] *= kWiden;
-    const double scatter = std::max(fit.features().noise[i], options.rounding) * loosen[i];
-    if (scatter > 0.5 * options.tolerance) loosen[i] = std::numeric_limits<double>::infinity();
+    if (!tight[i] || std::isinf(tried[i])) continue;
+    tried[i] *= kWiden;
+    const double scatter = std::max(fit.features().noise[i], options.rounding) * tried[i];
+    if (scatter > 0.5 * options.tolerance) tried[i] = std::numeric_limits<double>::infinity();
+    loosen[i] = tried[i];
     any = true;
   }
   if (!any) return std::nullopt;
@@ -101,19 +102,17 @@ bool is_inside(const BandFit& fit, double tolerance) {
 }  // namespace
 
 int widen_for_feed(BandFit& fit, const FairOptions& options) {
-  std::vector<bool> settled(fit.points().size(), false);
+  std::vector<double> tried(fit.points().size(), 1);
   int rounds = 0;
   for (int round = 0; round < kRounds; ++round) {
-    auto loosen = widened(fit, options, settled);
+    auto loosen = widened(fit, options, tried);
     if (!loosen) break;
     BandFit next = fit;
     next.loosen(std::move(*loosen));
     const std::vector<IndexRange> stretches = stretches_apart(fit, next);
     std::vector<IndexRange> in_vain;
     for (const IndexRange& stretch : stretches) {
-      if (is_worth_it(fit, next, stretch, options.tolerance)) continue;
-      in_vain.push_back(stretch);
-      for (std::size_t i = stretch.begin; i < stretch.end; ++i) settled[i] = true;
+      if (!is_worth_it(fit, next, stretch, options.tolerance)) in_vain.push_back(stretch);
     }
     if (in_vain.size() == stretches.size()) continue;
     if (!in_vain.empty()) next.take_back(fit, in_vain);

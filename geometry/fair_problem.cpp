@@ -35,10 +35,21 @@ constexpr double kSureTurn = 4 * 2.45;
 // their vertices; so are those whose vertices leave the curve as much room.
 constexpr double kWatchedSagitta = 0.25;
 
-// Who wants to be near the path that was meant gets a knot at once at every vertex whose chords
-// leave it by so many times what the vertex may scatter. Knots that come one by one, where a span
-// fails, stand elsewhere in the next row of a surface, and the curve is off elsewhere.
+// A vertex whose chords leave the path by so many times what it may scatter has a knot at once.
+// Knots that come one by one, where a span fails, stand elsewhere in the next row of a surface, and
+// the curve is off elsewhere.
 constexpr double kCoarse = 4;
+
+// Printed places scatter by their rounding, 0.58 of its greatest error (rms of a coordinate), and
+// the curve leaves this part of that error: with less it would follow the rounding itself. So near
+// a curve is worth its knots only where chords leave the path by more than the rounding does: it
+// may leave so many greatest errors squared, over that height, and one of them at the most.
+constexpr double kLeftOfRounding = 0.4;
+constexpr double kWorthKnots = 1.6;
+
+// Noise that is more than so many of the greatest rounding errors is no rounding: no more of it is
+// taken away, for a curve that leaves less follows the noise.
+constexpr double kRoundingNoise = 2;
 
 // A vertex that was meant to be further away is drawn so much of the limit towards that place; what
 // is left is room for the curve. With more of it the curve is nearer to what was meant, and bends
@@ -127,15 +138,17 @@ class ProblemMaker {
     if (noisy(i)) draw_to_meant(i, sample);
     loose_ = !(sample.scatter > 0) || sample.scatter > kWatchedSagitta * options_.limit;
     problem_.samples.push_back(sample);
-    if (++since_break_ >= kVerticesPerSpan || has_own_knot(i)) {
-      problem_.breakpoints.push_back(f_.parameters[i]);
-      since_break_ = 0;
-    }
+    // A vertex's own knot does not move those that come by number: what is fitted further on is the
+    // same with and without it.
+    const bool by_number = ++since_break_ >= kVerticesPerSpan;
+    if (by_number) since_break_ = 0;
+    if (by_number || has_own_knot(i)) problem_.breakpoints.push_back(f_.parameters[i]);
   }
 
   [[nodiscard]] bool has_own_knot(std::size_t i) const {
     if (noisy(i)) return true;  // a curve among them turns at each
-    return options_.accurate && std::max(sagitta(i - 1), sagitta(i)) > kCoarse * expected(i);
+    if (!wants_near(i)) return false;
+    return std::max(sagitta(i - 1), sagitta(i)) > kCoarse * expected(i);
   }
 
   [[nodiscard]] bool noisy(std::size_t i) const {
@@ -149,9 +162,11 @@ class ProblemMaker {
     const double room = kTowardsMeant * sample.limit;
     sample.target += std::min(1.0, room / std::max(off.norm(), room)) * off;
     sample.limit -= (sample.target - p_[i]).norm();
-    const double loose = loosen_.empty() ? 1 : loosen_[i];
+    const double loose = looseness(i);
     sample.scatter = std::isinf(loose) ? 0 : kMeantScatter * options_.limit * loose;
   }
+
+  [[nodiscard]] double looseness(std::size_t i) const { return loosen_.empty() ? 1 : loosen_[i]; }
 
   [[nodiscard]] double share(std::size_t edge) const {
     return care_.empty() ? 1 : care_[edge].share;
@@ -186,14 +201,31 @@ class ProblemMaker {
   [[nodiscard]] double scatter(std::size_t i) const {
     const double height = std::max(sagitta(i - 1), sagitta(i));
     if (height > kTooHigh * options_.limit) return 0;
-    const double loose = loosen_.empty() ? 1 : loosen_[i];
+    const double loose = looseness(i);
     return std::isinf(loose) ? 0 : expected(i) * loose;
   }
 
   [[nodiscard]] double expected(std::size_t i) const {
     const double noise = f_.noise[i];
-    const double left = std::max(options_.noise_part * noise, noise - options_.rounding_noise);
-    return std::max(kNoiseMargin * left, options_.least_scatter);
+    const double part = left_of_rounding(i);
+    const double left = std::max(part * noise, noise - kRoundingNoise * options_.rounding);
+    return std::max({kNoiseMargin * left, part * options_.rounding, options_.scatter});
+  }
+
+  // Whether the curve shall be as near to vertex i as its decimals tell the place: not where its
+  // noise is more than rounding, where the feed asks for room, or where a simple curve is wanted.
+  [[nodiscard]] bool wants_near(std::size_t i) const {
+    if (options_.accurate) return true;
+    return !(options_.scatter > 0) && looseness(i) == 1 && f_.noise[i] <= options_.rounding;
+  }
+
+  // Of what vertex i scatters by, the part that the curve may leave.
+  [[nodiscard]] double left_of_rounding(std::size_t i) const {
+    if (!wants_near(i)) return 1;
+    if (options_.accurate) return kLeftOfRounding;
+    const double height = std::min(sagitta(i - 1), sagitta(i));
+    const double least = kWorthKnots * options_.rounding;
+    return height > least ? std::max(least / height, kLeftOfRounding) : 1;
   }
 
   // Whether a corner nearby owns this place. Vertices come in order, so the last corner seen

@@ -12,16 +12,10 @@
 namespace batten::geometry {
 
 struct BandOptions {
-  double limit = 0.01;  // mm, full distance allowed
-  // mm: a curve that passes the printed places at their rounding is as likely as one that meets
-  // them; the errors of dense places on a slanting line are no white noise, but long ramps.
-  double least_scatter = 5e-4;
-  // Of the noise of the vertices, the part that they are expected to scatter by, where less than
-  // `rounding_noise` (mm) is taken from it by that: what is more is no rounding.
-  double noise_part = 1;
-  double rounding_noise = 1e-3;
-
-  bool accurate = false;  // knots at once wherever chords are coarse for what is expected
+  double limit = 0.01;     // mm, full distance allowed
+  double rounding = 5e-4;  // mm, greatest error of a printed coordinate
+  double scatter = 0;      // mm, as FairOptions
+  bool accurate = false;   // as FairOptions
 
   // The places that vertices were meant to have where noise fills the band, and their own places
   // elsewhere; empty: nowhere.

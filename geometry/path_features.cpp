@@ -21,6 +21,10 @@ constexpr double kReversal = 170 * std::numbers::pi / 180;
 // have turns that change slowly from one to the next.
 constexpr double kStandsOut = 4;
 
+// But vertices of a bend turn gradually, by no more than this many times what their neighbours do,
+// however tight the bend is for the chords along it.
+constexpr double kGradual = 6;
+
 // A turn below this is no corner, whatever its neighbours: where a line meets an arc of chords
 // the turn is that of half a chord.
 constexpr double kLeastCorner = 2 * std::numbers::pi / 180;
@@ -88,8 +92,27 @@ std::vector<double> cornerless_scatter(const PathFeatures& f, const FeatureOptio
   return scatter;
 }
 
-VertexKind kind_of(const PathFeatures& f, std::size_t i, double scatter,
-                   const FeatureOptions& options) {
+// Whether the path turns on at vertex i as it does at the one before it, in the same sense and
+// neither much more nor much less.
+bool turns_on(std::span<const Point3> p, const PathFeatures& f, std::size_t i) {
+  if (f.turns[i] > kGradual * f.turns[i - 1] || f.turns[i - 1] > kGradual * f.turns[i])
+    return false;
+  const Vector3 before = (p[i - 1] - p[i - 2]).cross(p[i] - p[i - 1]);
+  const Vector3 here = (p[i] - p[i - 1]).cross(p[i + 1] - p[i]);
+  return before.dot(here) > 0;
+}
+
+// Whether vertex i is the middle of a bend: two vertices on either side belong to it.
+bool is_bend(std::span<const Point3> p, const PathFeatures& f, std::size_t i) {
+  if (i < 3 || i + 3 >= p.size()) return false;
+  for (std::size_t j = i - 1; j <= i + 2; ++j) {
+    if (!turns_on(p, f, j)) return false;
+  }
+  return true;
+}
+
+VertexKind kind_of(std::span<const Point3> points, const PathFeatures& f, std::size_t i,
+                   double scatter, const FeatureOptions& options) {
   const double turn = f.turns[i];
   if (turn > std::min(options.keep_corner_angle, kReversal)) return VertexKind::kKeptCorner;
   const double before = f.parameters[i] - f.parameters[i - 1];
@@ -99,7 +122,7 @@ VertexKind kind_of(const PathFeatures& f, std::size_t i, double scatter,
   // Chords of a curve leave it by about (edge * turn / 8): if that is far more than the
   // tolerance, these edges are no chords that a CAM system would have written for it.
   const bool too_coarse = turn * std::min(before, after) / 8 > 2 * options.tolerance;
-  const bool stands_out = turn > kStandsOut * turn_around(f.turns, i);
+  const bool stands_out = turn > kStandsOut * turn_around(f.turns, i) && !is_bend(points, f, i);
   return too_coarse || stands_out ? VertexKind::kCorner : VertexKind::kSmooth;
 }
 
@@ -161,7 +184,9 @@ PathFeatures find_features(std::span<const Point3> points, const FeatureOptions&
   f.noise = vertex_noise(points, f.parameters);
   f.kinds.assign(n, VertexKind::kKeptCorner);
   const std::vector<double> scatter = cornerless_scatter(f, options);
-  for (std::size_t i = 1; i + 1 < n; ++i) f.kinds[i] = kind_of(f, i, scatter[i], options);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    f.kinds[i] = kind_of(points, f, i, scatter[i], options);
+  }
   drop_corners_of_noise(points, scatter, options.tolerance, f);
   f.lines = lines_of(f);
   return f;

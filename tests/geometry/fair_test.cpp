@@ -316,6 +316,33 @@ INSTANTIATE_TEST_SUITE_P(FairPath, ClosedRun,
                                          ClosedCase{"WavyRing", wavy_ring(), 0.01}),
                          [](const auto& test) { return test.param.name; });
 
+// Rings of radius 1 to 30 with chords of 0.1 mm and four decimals, their seam at a knot or beside
+// one. Vertices that the rounding, e, moves up, down and up again lie on a circle of curvature
+// 4 e / chord^2 = 0.02; three times that is allowed beyond the ring's own.
+TEST(ClosedRunOfManyChords, BendsNoHarderAtItsSeamThanItsVerticesDo) {
+  constexpr double kChord = 0.1;
+  constexpr double kRounding = 5e-5;
+  for (int radius = 1; radius <= 30; ++radius) {
+    const int chords = static_cast<int>(2 * std::numbers::pi * radius / kChord);
+    std::vector<Point3> points;
+    for (int i = 0; i < chords; ++i) {
+      const double angle = 2 * std::numbers::pi * i / chords;
+      points.push_back(printed(radius * Point3(std::cos(angle), std::sin(angle), 0), 4));
+    }
+    points.push_back(points.front());
+    FairOptions options = with_tolerance(0.01);
+    options.rounding = kRounding;
+    for (const bool accurate : {false, true}) {
+      options.accurate = accurate;
+      const auto path = fair_path(points, options);
+      ASSERT_TRUE(path);
+      EXPECT_LE(greatest_curvature(path->curve),
+                1.0 / radius + 3 * 4 * kRounding / (kChord * kChord))
+          << "radius " << radius << (accurate ? ", accurate" : "");
+    }
+  }
+}
+
 // --- small runs ------------------------------------------------------------------------------
 
 TEST(FairPath, OfTwoPointsIsTheLine) {

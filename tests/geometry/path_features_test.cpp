@@ -119,6 +119,21 @@ TEST(PathFeatures, ACornerInAnArcStandsOut) {
   EXPECT_EQ(kinds_of(f), std::string(11, 's') + "c" + std::string(12, 's'));
 }
 
+// Chords of 0.2 mm round a hairpin of radius 0.28 mm: nearly all of its turn is in two vertices,
+// but it comes and goes gradually. Where it comes at once it is a corner.
+TEST(PathFeatures, AHairpinInFewChordsIsNoCorner) {
+  const auto kinds = [](const std::vector<double>& turns) {
+    std::vector<std::pair<double, double>> steps;
+    for (const double turn : turns) steps.emplace_back(turn, 0.2);
+    FeatureOptions options;
+    options.tolerance = 0.025;
+    return kinds_of(find_features(turtle(steps), options));
+  };
+  EXPECT_EQ(kinds({0, 1, 1, 2, 2, 5, 11, 39, 45, 18, 5, 2, 2, 1, 1}), "ssssssssssssss");
+  EXPECT_EQ(kinds({0, 1, 1, 2, 2, 2, 2, 5, 45, 5, 2, 2, 2, 1, 1}), "ssssssscssssss");
+  EXPECT_EQ(kinds({0, 1, 1, 2, 2, -5, -11, 39, 45, 18, 5, 2, 2, 1, 1}), "ssssssscssssss");
+}
+
 TEST(PathFeatures, NoiseMakesNoCornersAndNoLines) {
   const auto f = find_features(zigzag_line(100, 0.5, 0.03), {0.05, 3.2});
   EXPECT_EQ(kinds_of(f), std::string(199, 's'));

@@ -85,8 +85,9 @@ CurveTruth curve_truth(const std::vector<std::vector<Point3>>& rows, double tole
 
 class Truth : public testing::TestWithParam<double> {};
 
-// A coordinate of three decimals is off by 0.0003 mm (rms) of itself. That is a fifth of the
-// chords' error at a CAM tolerance of 0.002 mm, so there it takes the wish for accuracy.
+// A coordinate of three decimals is off by 0.0003 mm (rms) of itself, which is a fifth of the
+// chords' error at a CAM tolerance of 0.002 mm: there the curve has to be nearer to the surface
+// than the printed places that it is made from.
 TEST_P(Truth, OfTheCurveIsFiveTimesNearerThanThatOfTheChords) {
   const double cam = GetParam();
   const auto rows = surface_rows(cam);
@@ -94,11 +95,8 @@ TEST_P(Truth, OfTheCurveIsFiveTimesNearerThanThatOfTheChords) {
     const CurveTruth found = curve_truth(rows, 2 * cam, accurate);
     fmt::print("CAM tolerance {}{}: rms chords {:.6f}, curve {:.6f} mm; row to row, 95 %: {:.6f}\n",
                cam, accurate ? ", accurate" : "", rms_of_rows(rows), found.rms, found.row_to_row);
-    if (cam < 0.005 && !accurate) continue;
     EXPECT_LE(found.rms, rms_of_rows(rows) / 5);
-    if (accurate) {
-      EXPECT_LE(found.row_to_row, 0.001);
-    }
+    EXPECT_LE(found.row_to_row, 0.001);
   }
 }
 
@@ -219,17 +217,23 @@ TEST_P(Truth, OfNoisyRowsIsCutNearerAndFasterAtAHighFeed) {
   expect_faster_and_nearer(GetParam(), 6000, 0.75);
 }
 
-// At a feed that noise does not let the machine hold.
+// At a feed that noise does not let the machine hold, on a control that rounds corners itself, with
+// six times the CAM tolerance to spend: in less time, and nearer to the surface than the noise put
+// the vertices (0.02 / sqrt(3), rms).
 TEST(NoisyTruth, IsCutFaster) {
-  const std::string before = surface_program(surface_rows(0.005, 0.02), 10000);
-  SmoothOptions options = options_for("linuxcnc");
-  options.tolerance_mm = 0.03;
-  const SmoothResult result = smoothed(before, options);
-  EXPECT_TRUE(result.proved);
-  EXPECT_EQ(rewritten_runs(result), static_cast<std::size_t>(kSurfaceRows));
-  fmt::print("noise 0.02: rms {:.6f} -> {:.6f} mm, time {:.3f} -> {:.3f} s\n", rms_of(before),
-             rms_of(result.text), result.time_before_s, result.time_after_s);
-  EXPECT_LT(result.time_after_s, 0.95 * result.time_before_s);
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const std::string before = surface_program(surface_rows(0.005, kNoise, seed), 10000);
+    SmoothOptions options = options_for("linuxcnc");
+    options.tolerance_mm = 0.03;
+    const SmoothResult result = smoothed(before, options);
+    EXPECT_TRUE(result.proved);
+    EXPECT_EQ(rewritten_runs(result), static_cast<std::size_t>(kSurfaceRows));
+    fmt::print("noise 0.02, seed {}: rms {:.6f} -> {:.6f} mm, time {:.3f} -> {:.3f} s\n", seed,
+               rms_of(before), rms_of(result.text), result.time_before_s, result.time_after_s);
+    EXPECT_LT(result.time_after_s, 0.95 * result.time_before_s);
+    EXPECT_LT(rms_of(result.text), kNoise / std::sqrt(3.0));
+  }
 }
 
 }  // namespace
