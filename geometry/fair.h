@@ -22,6 +22,9 @@ struct FairOptions {
   double scatter = 0;     // mm that vertices may scatter about the curve, beyond their noise:
                           // a simpler curve, further from the path that was meant
   bool accurate = false;  // spend the tolerance on noise only, never on feed
+  // Pass vertices as near as their decimals tell their places, which takes more control points;
+  // else as near as their rounding lets them scatter.
+  bool near = true;
   // Per edge, from each point to the next: the part of the tolerance that the curve may use there,
   // above 0 and 1 at most. Empty: all of it everywhere. Has to outlive the call.
   std::span<const double> rooms;

@@ -93,6 +93,7 @@ BandOptions BandFit::band() const {
   band.rounding = std::min(options_.rounding, 0.25 * options_.tolerance);
   band.scatter = options_.scatter;
   band.accurate = options_.accurate;
+  band.near = options_.near;
   band.meant = meant_;
   return band;
 }

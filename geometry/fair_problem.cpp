@@ -216,7 +216,8 @@ class ProblemMaker {
   // noise is more than rounding, where the feed asks for room, or where a simple curve is wanted.
   [[nodiscard]] bool wants_near(std::size_t i) const {
     if (options_.accurate) return true;
-    return !(options_.scatter > 0) && looseness(i) == 1 && f_.noise[i] <= options_.rounding;
+    return options_.near && !(options_.scatter > 0) && looseness(i) == 1 &&
+           f_.noise[i] <= options_.rounding;
   }
 
   // Of what vertex i scatters by, the part that the curve may leave.

@@ -16,6 +16,7 @@ struct BandOptions {
   double rounding = 5e-4;  // mm, greatest error of a printed coordinate
   double scatter = 0;      // mm, as FairOptions
   bool accurate = false;   // as FairOptions
+  bool near = true;        // the same
 
   // The places that vertices were meant to have where noise fills the band, and their own places
   // elsewhere; empty: nowhere.

@@ -153,6 +153,8 @@ class RunSmoother {
     const double of_arcs = std::min(arc_scatter(run_), kArcsSpend * request.tolerance);
     request.scatter = std::max(request.scatter, of_arcs);
     request.accurate = options_.prefer == Prefer::kAccuracy;
+    // Who writes curves wants few control points.
+    request.near = !curves_wanted();
     return request;
   }
 

@@ -42,6 +42,7 @@ std::optional<FairPath> fair_curve(std::span<const Point3> run, const CurveReque
   options.jerk = request.jerk;
   options.scatter = request.scatter;
   options.accurate = request.accurate;
+  options.near = request.near;
   if (request.side == geometry::Side::kBoth) return geometry::fair_path(run, options);
   return geometry::one_sided_fair_path(run, {options, request.side, request.side_margin});
 }

@@ -34,6 +34,7 @@ struct CurveRequest {
   double jerk = std::numeric_limits<double>::infinity();  // mm/s^3, see geometry::FairOptions
   double scatter = 0;                                     // mm, see geometry::FairOptions
   bool accurate = false;                                  // see geometry::FairOptions
+  bool near = true;                                       // the same
 };
 
 // `feed`: mm/min, programmed. Where the machine has no jerk limit, it is infinite.
