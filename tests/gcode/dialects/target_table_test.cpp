@@ -11,7 +11,6 @@
 #include <sstream>
 
 #include "dialect_arcs.h"
-#include "gcode/dialects/built_in.h"
 #include "gcode/dialects/row_dialect.h"
 #include "gcode/profiled_dialect.h"
 
@@ -161,15 +160,12 @@ std::string contour(const Dialect& dialect, Units units) {
 }
 
 TEST(Contours, AreByteForByteTheCases) {
-  for (const auto family : {grbl_family(), printer_family(), pc_family(), machining_center_family(),
-                            plc_family(), heidenhain_family()}) {
-    for (const Dialect* each : family) {
-      for (const auto& [units, file] : {std::pair(Units::kMillimetre, "contour_mm.nc"),
-                                        std::pair(Units::kInch, "contour_inch.nc")}) {
-        const fs::path expected =
-            fs::path(BATTEN_SOURCE_DIR) / "tests" / "cases" / std::string(each->name()) / file;
-        EXPECT_EQ(contour(*each, units), text_of(expected)) << expected;
-      }
+  for (const Dialect* each : dialects()) {
+    for (const auto& [units, file] : {std::pair(Units::kMillimetre, "contour_mm.nc"),
+                                      std::pair(Units::kInch, "contour_inch.nc")}) {
+      const fs::path expected =
+          fs::path(BATTEN_SOURCE_DIR) / "tests" / "cases" / std::string(each->name()) / file;
+      EXPECT_EQ(contour(*each, units), text_of(expected)) << expected;
     }
   }
 }
