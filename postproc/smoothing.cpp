@@ -13,13 +13,13 @@
 #include "gcode/reason.h"
 #include "geometry/curve_pieces.h"
 #include "geometry/numeric.h"
-#include "postproc/machine/cycle_time.h"
 #include "postproc/machine/junction_speed.h"
 #include "postproc/machine/timed_chain.h"
 #include "postproc/plan/piece_plans.h"
 #include "postproc/plan/run_choice.h"
 #include "postproc/plan/run_curve.h"
 #include "postproc/plan/run_prospect.h"
+#include "postproc/plan/run_times.h"
 #include "postproc/runs/run_path.h"
 
 namespace batten::postproc {
@@ -103,14 +103,14 @@ class RunSmoother {
         may_leave_out_(making == Making::kToChoose && options.prefer == Prefer::kTime &&
                        options.output == Form::kAuto && options.side == geometry::Side::kBoth &&
                        run.arcs.empty() && !context.is_piece()),
-        units_(context.before.units) {}
+        units_(context.before.units),
+        times_(context, *options.machine) {}
 
   SmoothedRun smooth() {
     result_.facts.max_curvature = greatest_curvature(run_.points);
     const std::vector<TimedPiece> motions = timed_pieces(run_, 0, run_.points.size() - 1);
-    time_around_ = times_around();
     if (options_.method == Method::kNone) return kept_unasked(motions);
-    result_.facts.times = times_of_run(motions);
+    result_.facts.times = times_.of_run(motions);
     if (!run_.arcs.empty()) result_.facts.kink = greatest_kink(motions);
 
     ToleranceShares shares = share_tolerance(options_, units_, run_.decimals);
@@ -121,11 +121,13 @@ class RunSmoother {
     if (is_hopeless()) return kept(gcode::reason::kNoGain);
     const bool best = options_.method == Method::kBest;
     const Method first = best ? Method::kFair : options_.method;
-    const auto curve = curve_of(first, run_.points, curve_request(first, shares, rounding));
+    const CurveRequest request = curve_request(first, shares, rounding);
+    const auto curve = curve_of(first, run_.points, request);
     if (curve) {
       curvature_ = greatest_curvature(curve->path.curve);
       know(curve->path, rounding);
       add_candidates_of(*curve, shares);
+      if (first == Method::kFair && request.near) try_simpler(request, shares);
     }
     if (curve && has_curves()) try_kept_corners(shares, rounding);
     if (best && !one_sided()) try_others(shares, rounding);
@@ -153,8 +155,8 @@ class RunSmoother {
     const double of_arcs = std::min(arc_scatter(run_), kArcsSpend * request.tolerance);
     request.scatter = std::max(request.scatter, of_arcs);
     request.accurate = options_.prefer == Prefer::kAccuracy;
-    // Who writes curves wants few control points.
-    request.near = !curves_wanted();
+    // Who asks for curves by name asks for few control points.
+    request.near = options_.output != Form::kCurves;
     return request;
   }
 
@@ -162,6 +164,15 @@ class RunSmoother {
     result_.facts.noise = path.noise;
     result_.facts.error = chord_error(run_, path, rounding);
     result_.facts.fair_curvature = curvature_;
+  }
+
+  // Where the near curve is worth nothing, one that leaves of the vertices what their decimals do
+  // may be. Pieces of a run are fitted alike.
+  void try_simpler(CurveRequest request, const ToleranceShares& shares) {
+    if (request.accurate || request.scatter > 0 || context_.is_piece()) return;
+    if (!choose(result_, context_, options_).order.empty()) return;
+    request.near = false;
+    if (const auto curve = curve_of(Method::kFair, run_.points, request)) try_curve(*curve, shares);
   }
 
   void try_curve(const RunCurve& curve, const ToleranceShares& shares) {
@@ -219,75 +230,6 @@ class RunSmoother {
   [[nodiscard]] double keep_corner_angle() const {
     if (!options_.keep_corners_deg) return geometry::FairOptions{}.keep_corner_angle;
     return *options_.keep_corners_deg * std::numbers::pi / 180;
-  }
-
-  [[nodiscard]] Times times_alone(const std::vector<TimedPiece>& chain) const {
-    return times_of(chain, *options_.machine, context_.after.path);
-  }
-
-  // What the neighbours take without this piece, each from rest to rest. Of neighbours in a long
-  // run that was cut: their part of the time.
-  [[nodiscard]] Times times_around() const {
-    if (context_.of_neighbours) return *context_.of_neighbours;
-    Times sum;
-    if (!context_.lead.empty()) sum += times_alone(context_.lead);
-    if (!context_.tail.empty()) sum += times_alone(context_.tail);
-    return sum;
-  }
-
-  // The moves between their neighbours.
-  [[nodiscard]] SettingTimes times_in_place(const std::vector<TimedPiece>& moves) const {
-    const auto times = [this](const std::vector<TimedPiece>& chain) {
-      return SettingTimes(chain, *options_.machine, context_.after.path);
-    };
-    return has_neighbours() ? times(in_place(moves)) : times(moves);
-  }
-
-  [[nodiscard]] bool has_neighbours() const {
-    return !context_.lead.empty() || !context_.tail.empty();
-  }
-
-  [[nodiscard]] std::vector<TimedPiece> in_place(const std::vector<TimedPiece>& moves) const {
-    std::vector<TimedPiece> chain;
-    gcode::reserve_in_large_pages(chain,
-                                  context_.lead.size() + moves.size() + context_.tail.size());
-    chain.insert(chain.end(), context_.lead.begin(), context_.lead.end());
-    chain.insert(chain.end(), moves.begin(), moves.end());
-    chain.insert(chain.end(), context_.tail.begin(), context_.tail.end());
-    return chain;
-  }
-
-  // What the run adds to the time of its neighbours.
-  [[nodiscard]] Times times_of_run(const std::vector<TimedPiece>& motions) const {
-    SettingTimes in_place = times_in_place(motions);
-    Times times;
-    times.as_set = in_place.as_set() - time_around_.as_set;
-    times.without_merging = in_place.without_merging() - time_around_.without_merging;
-    times.flat_out = in_place.flat_out() - time_around_.flat_out;
-    return times;
-  }
-
-  // What a candidate adds, as far as it must be known.
-  [[nodiscard]] Times times_of_candidate(const std::vector<TimedPiece>& moves,
-                                         std::size_t blocks) const {
-    const Times& old = result_.facts.times;
-    const bool wanted = options_.output != Form::kAuto;
-    const bool much_smaller = far_smaller(blocks, context_.blocks);
-    SettingTimes in_place = times_in_place(moves);
-    Times times = old;
-    // What a piece adds may be less than nothing: there one setting says nothing of the others.
-    const auto is_slower = [&] {
-      return !context_.is_piece() && slower(times, old, much_smaller, wanted);
-    };
-    times.as_set = in_place.as_set() - time_around_.as_set;
-    if (is_slower()) return times;
-    times.without_merging = in_place.without_merging() - time_around_.without_merging;
-    if (is_slower()) return times;
-    if (compares_kinks(options_)) {
-      times.exact_path = in_place.exact_path() - time_around_.exact_path;
-    }
-    times.flat_out = in_place.flat_out() - time_around_.flat_out;
-    return times;
   }
 
   // Times of a piece leave out what its neighbours need to stop and start; what it could gain is
@@ -521,7 +463,8 @@ class RunSmoother {
     candidate.max_curvature = curvature_;
     std::vector<TimedPiece> moves = timed_pieces(*plan);
     if (!run_.arcs.empty()) candidate.kink = greatest_kink(moves);
-    candidate.times = times_of_candidate(moves, text->blocks);
+    candidate.times = times_.of_candidate(moves, text->blocks, result_.facts.times,
+                                          compares_kinks(options_), options_.output != Form::kAuto);
     candidate.text = std::move(*text);
     if (context_.is_piece()) candidate.moves = std::move(moves);
     return candidate;
@@ -548,11 +491,7 @@ class RunSmoother {
 
   // Nothing is compared: what is told of the run is the time that it takes.
   SmoothedRun kept_unasked(const std::vector<TimedPiece>& motions) {
-    const auto time = [this](const std::vector<TimedPiece>& chain) {
-      return cutting_time(chain, *options_.machine, context_.after.path);
-    };
-    result_.facts.times.as_set =
-        (has_neighbours() ? time(in_place(motions)) : time(motions)) - time_around_.as_set;
+    result_.facts.times.as_set = times_.as_set_of_run(motions);
     return kept(gcode::reason::kMethodNone);
   }
 
@@ -566,7 +505,7 @@ class RunSmoother {
   const SmoothOptions& options_;
   bool may_leave_out_;
   gcode::Units units_;
-  Times time_around_;
+  RunTimes times_;
   double least_time_ = 0;
   RunFacts judged_;           // what a gain is measured by before the candidates are there
   bool passed_over_ = false;  // a candidate that could not gain was not made

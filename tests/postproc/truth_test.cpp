@@ -153,13 +153,15 @@ INSTANTIATE_TEST_SUITE_P(Surface, Truth, testing::Values(0.002, 0.005, 0.01));
 
 // --- as written --------------------------------------------------------------------------------
 
-// Of all cutting moves of a program.
-double rms_of(const std::string& text) {
+// Of all cutting moves of a program, with the curve blocks of a target.
+double rms_of(const std::string& text, std::string_view target = "linuxcnc") {
   const gcode::SourceText source("rows.nc", text);
   gcode::Diagnostics ignored;
   const gcode::Program program = gcode::parse(source, ignored);
   SurfaceDistances distances;
-  for (const gcode::Motion& motion : gcode::interpret(program, {}, ignored).motions) {
+  gcode::ReadOptions reading;
+  reading.curves = gcode::find_dialect(target)->curves();
+  for (const gcode::Motion& motion : gcode::interpret(program, reading, ignored).motions) {
     if (motion.kind == gcode::MotionKind::kRapid) continue;
     const double step = geometry::length_of(motion.piece) / kPlacesPerEdge;
     for (int k = 0; k < kPlacesPerEdge; ++k) {
@@ -186,6 +188,25 @@ TEST_P(Truth, OfLinesThatPreferAccuracyIsThreeTimesThatOfTheChords) {
              rms_after, result.blocks_in, result.blocks_out);
   EXPECT_LE(rms_after, rms_before / 3);
   EXPECT_LE(static_cast<double>(result.blocks_out), 1.5 * static_cast<double>(result.blocks_in));
+}
+
+// POLY, which a Siemens control takes without being asked for curves: the path that was meant, as
+// it is where arcs and lines are written.
+TEST_P(Truth, OfCurveBlocksIsFourTimesNearerThanThatOfTheChords) {
+  const double cam = GetParam();
+  const std::string before = surface_program(surface_rows(cam), 2000);
+  SmoothOptions options = options_for("siemens");
+  options.tolerance_mm = 2 * cam;
+  for (const Prefer prefer : {Prefer::kTime, Prefer::kAccuracy}) {
+    options.prefer = prefer;
+    const SmoothResult result = smoothed(before, options);
+    EXPECT_TRUE(result.proved);
+    const double rms_before = rms_of(before);
+    const double rms_after = rms_of(result.text, "siemens");
+    fmt::print("CAM tolerance {}: rms {:.6f} -> {:.6f} mm, blocks {} -> {}\n", cam, rms_before,
+               rms_after, result.blocks_in, result.blocks_out);
+    EXPECT_LE(rms_after, rms_before / 4);
+  }
 }
 
 // Rows that a machine with limits on acceleration and jerk cannot run at their feed for noise.

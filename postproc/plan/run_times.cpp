@@ -1,0 +1,78 @@
+#include "postproc/plan/run_times.h"
+
+#include "gcode/large_pages.h"
+#include "postproc/machine/cycle_time.h"
+#include "postproc/plan/run_choice.h"
+
+namespace batten::postproc {
+
+RunTimes::RunTimes(const RunContext& context, const Machine& machine)
+    : context_(context), machine_(machine), around_(of_neighbours()) {}
+
+Times RunTimes::of_run(const std::vector<TimedPiece>& motions) const {
+  SettingTimes place = in_place(motions);
+  Times times;
+  times.as_set = place.as_set() - around_.as_set;
+  times.without_merging = place.without_merging() - around_.without_merging;
+  times.flat_out = place.flat_out() - around_.flat_out;
+  return times;
+}
+
+double RunTimes::as_set_of_run(const std::vector<TimedPiece>& motions) const {
+  const auto time = [this](const std::vector<TimedPiece>& chain) {
+    return cutting_time(chain, machine_, context_.after.path);
+  };
+  return (has_neighbours() ? time(with_neighbours(motions)) : time(motions)) - around_.as_set;
+}
+
+Times RunTimes::of_candidate(const std::vector<TimedPiece>& moves, std::size_t blocks,
+                             const Times& old, bool exact_path, bool wanted) const {
+  const bool much_smaller = far_smaller(blocks, context_.blocks);
+  SettingTimes place = in_place(moves);
+  Times times = old;
+  // What a piece adds may be less than nothing: there one setting says nothing of the others.
+  const auto is_slower = [&] {
+    return !context_.is_piece() && slower(times, old, much_smaller, wanted);
+  };
+  times.as_set = place.as_set() - around_.as_set;
+  if (is_slower()) return times;
+  times.without_merging = place.without_merging() - around_.without_merging;
+  if (is_slower()) return times;
+  if (exact_path) times.exact_path = place.exact_path() - around_.exact_path;
+  times.flat_out = place.flat_out() - around_.flat_out;
+  return times;
+}
+
+Times RunTimes::alone(const std::vector<TimedPiece>& chain) const {
+  return times_of(chain, machine_, context_.after.path);
+}
+
+// What the neighbours take without this piece, each from rest to rest. Of neighbours in a long run
+// that was cut: their part of the time.
+Times RunTimes::of_neighbours() const {
+  if (context_.of_neighbours) return *context_.of_neighbours;
+  Times sum;
+  if (!context_.lead.empty()) sum += alone(context_.lead);
+  if (!context_.tail.empty()) sum += alone(context_.tail);
+  return sum;
+}
+
+SettingTimes RunTimes::in_place(const std::vector<TimedPiece>& moves) const {
+  const auto times = [this](const std::vector<TimedPiece>& chain) {
+    return SettingTimes(chain, machine_, context_.after.path);
+  };
+  return has_neighbours() ? times(with_neighbours(moves)) : times(moves);
+}
+
+bool RunTimes::has_neighbours() const { return !context_.lead.empty() || !context_.tail.empty(); }
+
+std::vector<TimedPiece> RunTimes::with_neighbours(const std::vector<TimedPiece>& moves) const {
+  std::vector<TimedPiece> chain;
+  gcode::reserve_in_large_pages(chain, context_.lead.size() + moves.size() + context_.tail.size());
+  chain.insert(chain.end(), context_.lead.begin(), context_.lead.end());
+  chain.insert(chain.end(), moves.begin(), moves.end());
+  chain.insert(chain.end(), context_.tail.begin(), context_.tail.end());
+  return chain;
+}
+
+}  // namespace batten::postproc
