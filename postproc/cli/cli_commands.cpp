@@ -8,8 +8,8 @@
 #include "postproc/cli/cli_arguments.h"
 #include "postproc/cli/cli_machine.h"
 #include "postproc/cli/cli_smooth_options.h"
+#include "postproc/cli/cli_target.h"
 #include "postproc/cli/decimals_option.h"
-#include "postproc/profile/target_profile.h"
 #include "postproc/writing/output_file.h"
 
 namespace batten::postproc {
@@ -92,13 +92,10 @@ VerifyCommand verify_command(const Given& given, const std::vector<std::string>&
   read_units_into(command.units, given, problems);
   read_source_into(command.source, given, problems);
   read_decimals_into(command.decimals, given, problems);
-  if (const auto text = given.value("target")) {
-    command.target = built_in_target("target", *text, problems);
-  }
+  GivenTarget target = target_given(given, problems);
+  command.target = target.built_in;
+  command.profile = std::move(target.profile);
   read_tolerance_kind_into(command.tolerance_kind, given, problems);
-  if (const auto file = given.value("profile")) {
-    command.profile = read_target_profile(*file, nullptr, problems);
-  }
   const gcode::Dialect* adapted =
       command.profile != nullptr ? command.profile->adapted.get() : nullptr;
   std::ranges::move(problems_of_decimals(command.decimals, command.source,

@@ -173,8 +173,10 @@ constexpr std::array kTargetListRows = {
     kJson, kForce};
 constexpr OptionRow kCurvesOf = {
     .name = "target",
-    .value = "NAME",
-    .help = "the control whose own curves (G06.2, POLY, G5 ..) are to be read in both programs"};
+    .value = "NAME|FILE.toml",
+    .help =
+        "the control whose own curves (G06.2, POLY, G5 ..) are to be read in both programs, or "
+        "a profile of it"};
 
 constexpr std::array kVerifyRows = {kTolerance, kProfile, kCurvesOf, kToleranceKind,
                                     kSide,      kUnits,   kSource,   kDecimals,

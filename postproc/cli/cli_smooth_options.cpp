@@ -3,57 +3,33 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "postproc/cli/cli_arguments.h"
 #include "postproc/cli/cli_machine.h"
-#include "postproc/profile/target_profile.h"
+#include "postproc/cli/cli_target.h"
 
 namespace batten::postproc {
 
 namespace {
 
-bool is_profile_file(const std::optional<std::string>& name) {
-  return name && name->ends_with(".toml");
-}
-
-// --target NAME, --target FILE.toml, --profile FILE.toml, or --target NAME with --profile
-// FILE.toml.
 void read_target(const Given& given, SmoothCommand& command, Problems& problems) {
-  const auto name = given.value("target");
-  const auto file = is_profile_file(name) ? name : given.value("profile");
-  if (is_profile_file(name) && given.has("profile")) {
-    problems.push_back("--profile: --target names a profile already");
-    return;
+  GivenTarget target = target_given(given, problems);
+  if (target.is_wrong) return;
+  command.options.target = target.built_in;
+  if (target.profile != nullptr) {
+    command.profile = std::move(target.profile);
+    command.options.target = command.profile->adapted.get();
+    command.options.words = command.profile->words;
+    command.options.profile = command.profile->file;
   }
-  if (!name && !file) {
-    std::string possible;
-    for (const auto each : target_names()) {
-      possible += (possible.empty() ? "" : ", ") + std::string(each);
-    }
-    problems.push_back("--target: no target given; possible: " + possible +
-                       ", or a profile NAME.toml");
-    return;
+  if (command.options.target != nullptr) return;
+  std::string possible;
+  for (const auto each : target_names()) {
+    possible += (possible.empty() ? "" : ", ") + std::string(each);
   }
-  const gcode::Dialect* target = nullptr;
-  if (name && !is_profile_file(name)) {
-    target = built_in_target("target", *name, problems);
-    if (target == nullptr) return;
-  }
-  command.options.target = target;
-  if (!file) return;
-  const std::size_t problems_before = problems.size();
-  command.profile = read_target_profile(*file, target, problems);
-  if (command.profile == nullptr) {
-    // What was said about the file says enough; the options are not to say it again.
-    for (std::size_t i = problems_before; i < problems.size(); ++i) {
-      problems[i] = "--target: " + problems[i];
-    }
-    command.options.target = nullptr;
-    return;
-  }
-  command.options.target = command.profile->adapted.get();
-  command.options.words = command.profile->words;
-  command.options.profile = *file;
+  problems.push_back("--target: no target given; possible: " + possible +
+                     ", or a profile NAME.toml");
 }
 
 void read_machine(const Given& given, SmoothCommand& command, Problems& problems) {

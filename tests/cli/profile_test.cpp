@@ -56,9 +56,12 @@ TEST_F(Profiles, AddWordsThatVerifyWantsToBeTold) {
 
   const std::string verify = "verify part.nc new.nc --tolerance 0.01";
   EXPECT_EQ(folder_.batten(verify).exit_code, 3);
-  const ProcessResult told = folder_.batten(verify + " --profile vf2.toml");
-  EXPECT_EQ(told.exit_code, 0) << told.err;
-  EXPECT_TRUE(contains(told.err, "besides 3 lines that the profile vf2.toml adds")) << told.err;
+  for (const std::string option : {" --profile vf2.toml", " --target vf2.toml"}) {
+    const ProcessResult told = folder_.batten(verify + option);
+    EXPECT_EQ(told.exit_code, 0) << told.err;
+    EXPECT_TRUE(contains(told.err, "besides 3 lines that the profile vf2.toml adds")) << told.err;
+  }
+  EXPECT_EQ(folder_.batten(verify + " --target vf2.toml --profile vf2.toml").exit_code, 1);
 
   folder_.put("changed.nc", [this] {
     std::string text = folder_.text_of("new.nc");
