@@ -17,6 +17,15 @@ void forget_everything(ControlState& state) {
   state.set_by_word = 0;
 }
 
+void forget_what_calls_change(ControlState& state) {
+  if (!state.calls_keep_modes) return forget_everything(state);
+  state.modal.motion = MotionMode::kUnknown;
+  state.modal.feed.reset();
+  state.modal.spindle_speed.reset();
+  forget_position(state);
+  state.other_motion = {};
+}
+
 void forget_named_axes(ControlState& state, const BlockWords& words) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (words.has("XYZ"[axis]) || words.has("UVW"[axis])) {

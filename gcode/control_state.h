@@ -21,6 +21,7 @@ struct ControlState {
   // Groups (bit = CodeGroup) that a word has set. A word that repeats what is only assumed of
   // the control at power-on is no repetition: it must stay.
   std::uint32_t set_by_word = 0;
+  bool calls_keep_modes = false;  // ReadOptions
 
   [[nodiscard]] bool is_set(CodeGroup group) const { return (set_by_word & bit(group)) != 0; }
   void mark_set(CodeGroup group) { set_by_word |= bit(group); }
@@ -34,6 +35,9 @@ void forget_position(ControlState& state);
 
 // State and place: the block could have changed anything.
 void forget_everything(ControlState& state);
+
+// What a subprogram or a macro could have changed.
+void forget_what_calls_change(ControlState& state);
 
 // The axes that the block names. U, V, W are increments of X, Y, Z on lathes.
 void forget_named_axes(ControlState& state, const BlockWords& words);

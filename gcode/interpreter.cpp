@@ -37,6 +37,7 @@ class Interpreter {
         carry_(carry),
         complaints_(program, carry.told, found),
         now_(carry.state) {
+    now_.calls_keep_modes = options.calls_keep_modes;
     carry.is_klartext = is_klartext();
     if (is_klartext()) start_klartext(now_);
     read_.unit_word_seen = carry.unit_word_seen;
@@ -158,9 +159,15 @@ class Interpreter {
       default:
         if (is_klartext()) return read_klartext();
         if (is_siemens() && block.opacity == Opacity::kFlow) return read_siemens_flow(block);
-        apply_opaque(block.opacity, program_.source.text(block.span), now_);
-        return make_opaque(opacity_reason(block.opacity));
+        return read_opaque(block);
     }
+  }
+
+  void read_opaque(const Block& block) {
+    const std::string_view text = program_.source.text(block.span);
+    apply_opaque(block.opacity, text, now_);
+    const bool calls = block.opacity == Opacity::kFlow && flow_effect(text) == FlowEffect::kCall;
+    make_opaque(calls ? reason::kSubprogram : opacity_reason(block.opacity));
   }
 
   [[nodiscard]] bool is_siemens() const { return program_.language == Language::kSiemens; }

@@ -14,6 +14,9 @@ struct ReadOptions {
   // The curves of the control that the program is for; all others are motions that cannot be
   // followed. nullptr: none are read.
   const CurveFormat* curves = nullptr;
+  // Subprograms and macros leave all modes as they find them (M97, M98, M198, G65, O-word calls,
+  // CALL LBL, CALL PGM): behind a call only place, feed, speed and kind of motion are unknown.
+  bool calls_keep_modes = false;
   bool short_ways = true;  // for simple blocks (gcode/plain_line.h); they change nothing
 };
 

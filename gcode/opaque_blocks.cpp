@@ -26,6 +26,18 @@ bool assigns_only_variables(std::string_view text) {
   return true;
 }
 
+void apply_flow(FlowEffect effect, ControlState& state) {
+  switch (effect) {
+    case FlowEffect::kNothing:
+      return;
+    case FlowEffect::kCall:
+      return forget_what_calls_change(state);
+    case FlowEffect::kProgramNumber:
+    case FlowEffect::kEverything:
+      return forget_everything(state);
+  }
+}
+
 }  // namespace
 
 std::string_view opacity_reason(Opacity opacity) {
@@ -60,10 +72,7 @@ void apply_opaque(Opacity opacity, std::string_view text, ControlState& state) {
       }
       return;
     case Opacity::kFlow:
-      if (flow_effect(text) != FlowEffect::kNothing) {
-        forget_everything(state);
-      }
-      return;
+      return apply_flow(flow_effect(text), state);
     default:
       forget_everything(state);
   }

@@ -57,6 +57,19 @@ bool is_program_number(std::string_view bare) {
          std::all_of(bare.begin() + 1, bare.end(), is_digit);
 }
 
+// Behind the number or name of an O-word: CALL, SUB, ENDIF .. Nothing where it is none.
+std::string_view o_word_keyword(std::string_view bare) {
+  if (bare.empty() || bare[0] != 'O') return {};
+  std::size_t at = 1;
+  if (at < bare.size() && bare[at] == '#') ++at;
+  if (at < bare.size() && (bare[at] == '<' || bare[at] == '[')) {
+    const std::size_t end = bare.find(bare[at] == '<' ? '>' : ']', at);
+    return end == std::string_view::npos ? std::string_view{} : bare.substr(end + 1);
+  }
+  while (at < bare.size() && is_digit(bare[at])) ++at;
+  return bare.substr(at);
+}
+
 // +1 where a body begins, -1 where it ends.
 int body_step(std::string_view bare) {
   if (starts_with_word_and_digit(bare, "END")) {
@@ -68,22 +81,16 @@ int body_step(std::string_view bare) {
   if (bare.starts_with("WHILE") && contains(bare, "]DO")) {
     return 1;
   }
-  if (bare.empty() || bare[0] != 'O') {
-    return 0;
-  }
+  const std::string_view keyword = o_word_keyword(bare);
   for (const std::string_view word : {"ENDSUB", "ENDWHILE", "ENDREPEAT", "ENDIF"}) {
-    if (contains(bare, word)) {
-      return -1;
-    }
+    if (keyword.starts_with(word)) return -1;
   }
   // `O1 do` .. `O1 while [..]` and `O1 while [..]` .. `O1 endwhile` cannot be told apart by one
   // line; the end of the first looks like the begin of the second. Bodies then last longer.
-  for (const std::string_view word : {"SUB", "WHILE", "REPEAT", "DO"}) {
-    if (contains(bare, word)) {
-      return 1;
-    }
+  for (const std::string_view word : {"SUB", "WHILE", "REPEAT", "DO", "IF"}) {
+    if (keyword.starts_with(word)) return 1;
   }
-  return contains(bare, "IF") && !contains(bare, "ELSEIF") ? 1 : 0;
+  return 0;
 }
 
 std::optional<Label> whole_number(const Word* word) {
@@ -338,6 +345,7 @@ FlowEffect flow_effect(std::string_view text) {
   }
   const bool jumps = bare.starts_with("GOTO") || (bare.starts_with("IF") && contains(bare, "GOTO"));
   const bool assigns = bare.starts_with("IF") && contains(bare, "THEN#");
+  if (o_word_keyword(bare).starts_with("CALL")) return FlowEffect::kCall;
   return jumps || assigns ? FlowEffect::kNothing : FlowEffect::kEverything;
 }
 

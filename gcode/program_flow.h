@@ -14,7 +14,8 @@ namespace batten::gcode {
 enum class FlowEffect : std::uint8_t {
   kNothing,        // GOTO, IF .. GOTO: falls through with the state that it found
   kProgramNumber,  // O1234: the beginning of a program
-  kEverything,     // calls, loops, branches: the state after it depends on what was executed
+  kCall,           // LinuxCNC: o100 call, o<name> call
+  kEverything,     // loops, branches: the state after it depends on what was executed
 };
 
 // `text` is a line of Opacity::kFlow.

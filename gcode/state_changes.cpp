@@ -209,12 +209,14 @@ void apply_late_words(const BlockWords& words, ControlState& state) {
       case 2:
       case 30:  // what follows is no part of this program, or one of its subprograms
       case 72:  // LinuxCNC: back to a saved state
-      case 97:
-      case 98:
       case 99:
-      case 198:
         forget_everything(state);
         return;
+      case 97:
+      case 98:
+      case 198:
+        forget_what_calls_change(state);
+        break;
       case 6:
       case 60:
       case 61:  // before or after the motion of its block: controls differ
@@ -227,11 +229,12 @@ void apply_late_words(const BlockWords& words, ControlState& state) {
   if (words.has('T')) {
     forget_position(state);
   }
-  if (words.has_g(650) || words.has_g(660) || words.has_g(661)) {
+  if (words.has_g(650)) {
+    forget_what_calls_change(state);
+  }
+  if (words.has_g(660) || words.has_g(661)) {
     forget_everything(state);
-    if (!words.has_g(650)) {
-      state.modal.modal_macro = Tri::kOn;
-    }
+    state.modal.modal_macro = Tri::kOn;
   }
 }
 

@@ -178,6 +178,18 @@ std::string_view name_of(gcode::Units units) {
   return "unknown";
 }
 
+bool calls_keep_modes(std::span<const std::string> allowed) {
+  return std::ranges::find(allowed, gcode::reason::kSubprogram) != allowed.end();
+}
+
+gcode::ReadOptions read_options_of(const SmoothOptions& options) {
+  gcode::ReadOptions reading;
+  reading.units = options.units;
+  if (options.target != nullptr) reading.curves = options.target->curves();
+  reading.calls_keep_modes = calls_keep_modes(options.allowed);
+  return reading;
+}
+
 std::vector<std::string> problems_of_allowed(std::span<const std::string> ids) {
   std::vector<std::string> problems;
   const auto all = gcode::reason::explanations();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gcode/dialect.h"
+#include "gcode/interpreter.h"
 #include "gcode/modal_state.h"
 #include "gcode/source_kind.h"
 #include "geometry/side.h"
@@ -84,6 +85,12 @@ struct SmoothOptions {
 // How lines are laid along a curve: as the user said, otherwise minlink for the fewest bytes and
 // chords, whose ends are nearer to the path that was meant, for time and accuracy.
 [[nodiscard]] Linearize linearize_of(const SmoothOptions& options);
+
+// Whether they say that what is called leaves all modes as it finds them (reason `subprogram`).
+[[nodiscard]] bool calls_keep_modes(std::span<const std::string> allowed);
+
+// How programs are read under these options.
+[[nodiscard]] gcode::ReadOptions read_options_of(const SmoothOptions& options);
 
 // Every problem of the options at once, as sentences; empty when they are fine.
 [[nodiscard]] std::vector<std::string> problems_of(const SmoothOptions& options);

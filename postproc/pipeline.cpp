@@ -61,8 +61,7 @@ class Smoothing {
     if (!language) return;
     part_.program = gcode::parse(source_, reading_of(options_, *language), result_.diagnostics);
     gcode::tell_of_contradictions(part_.program, options_.source, result_.diagnostics);
-    read_options_.units = options_.units;
-    read_options_.curves = options_.target->curves();
+    read_options_ = read_options_of(options_);
     part_.meaning = gcode::interpret(part_.program, read_options_, result_.diagnostics);
     result_.blocks_in = part_.program.blocks.size();
     for (const gcode::ModalState& state : part_.meaning.states) {

@@ -38,8 +38,7 @@ class Scout {
         tell_(tell),
         now_{{}, {gcode::ControlCarry(options.units)}} {
     now_.text.decimals = {reading_of(options, gcode::Language::kRs274).decimals, options.units};
-    read_options_.units = options.units;
-    read_options_.curves = options.target->curves();
+    read_options_ = read_options_of(options);
   }
 
   ScoutReport run() {

@@ -102,8 +102,7 @@ class Windows {
         setting_{source, for_windows_, {}, {}, false},
         known_{{gcode::ControlCarry(options.units)}, false} {
     for_windows_.threads = kThreadsOfCaller;
-    setting_.read_options.units = options.units;
-    setting_.read_options.curves = options.target->curves();
+    setting_.read_options = read_options_of(options);
   }
 
   std::optional<SmoothResult> run(const WindowLimits& limits) {

@@ -247,7 +247,7 @@ std::string_view apply_tcpm(std::string_view content, ControlState& state) {
 // CALL LBL, LBL, FN 9: a label that control can come to is known to program_flow.
 std::string_view apply_flow(KlartextKind kind, ControlState& state) {
   if (kind == KlartextKind::kCallLabel || kind == KlartextKind::kCallProgram) {
-    forget_klartext(state);
+    state.calls_keep_modes ? forget_what_calls_change(state) : forget_klartext(state);
     return reason::kSubprogram;
   }
   return reason::kProgramFlow;

@@ -52,6 +52,11 @@ void check_outputs(const SmoothCommand& command, Problems& problems) {
   check_report(command.report_file, {command.input, output}, problems, "report");
 }
 
+void read_allowed_into(std::vector<std::string>& allowed, const Given& given, Problems& problems) {
+  allowed = given.values("allow");
+  std::ranges::move(problems_of_allowed(allowed), std::back_inserter(problems));
+}
+
 }  // namespace
 
 SmoothCommand smooth_command(const Given& given, const std::vector<std::string>& files,
@@ -101,6 +106,7 @@ VerifyCommand verify_command(const Given& given, const std::vector<std::string>&
   std::ranges::move(problems_of_decimals(command.decimals, command.source,
                                          command.target != nullptr ? command.target : adapted),
                     std::back_inserter(problems));
+  read_allowed_into(command.allowed, given, problems);
   read_side_into(command.side, given, problems);
   std::ranges::move(problems_of_side(command.side, command.tolerance_kind),
                     std::back_inserter(problems));
@@ -130,10 +136,7 @@ InspectCommand inspect_command(const Given& given, const std::vector<std::string
   read_decimals_into(command.decimals, given, problems);
   std::ranges::move(problems_of_decimals(command.decimals, command.source, nullptr),
                     std::back_inserter(problems));
-  command.allowed = given.values("allow");
-  for (std::string& problem : problems_of_allowed(command.allowed)) {
-    problems.push_back(std::move(problem));
-  }
+  read_allowed_into(command.allowed, given, problems);
   check_files(files, {"IN"}, problems);
   check_report(command.json_file, files, problems);
   return command;

@@ -178,9 +178,9 @@ constexpr OptionRow kCurvesOf = {
         "the control whose own curves (G06.2, POLY, G5 ..) are to be read in both programs, or "
         "a profile of it"};
 
-constexpr std::array kVerifyRows = {kTolerance, kProfile, kCurvesOf, kToleranceKind,
-                                    kSide,      kUnits,   kSource,   kDecimals,
-                                    kJson,      kForce,   kQuiet,    kLogLevel};
+constexpr std::array kVerifyRows = {kTolerance, kProfile, kCurvesOf, kToleranceKind, kSide,
+                                    kUnits,     kSource,  kDecimals, kAllow,         kJson,
+                                    kForce,     kQuiet,   kLogLevel};
 constexpr std::array kInspectRows = {kUnits, kSource, kDecimals, kAllow,
                                      kJson,  kForce,  kQuiet,    kLogLevel};
 constexpr std::array kTimeRows = {

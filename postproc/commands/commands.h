@@ -49,6 +49,7 @@ struct VerifyCommand {
   std::optional<gcode::Decimals> decimals;       // as SmoothOptions::decimals
   std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
   const gcode::Dialect* target = nullptr;        // whose curves are read; nullptr: none are
+  std::vector<std::string> allowed;              // of these only `subprogram` changes what is read
   std::string json_file;
   LogLevel log_level = LogLevel::kInfo;
   bool force = false;

@@ -149,8 +149,9 @@ int run(const InspectCommand& command) {
       gcode::decimals_read(command.source, nullptr, *language, command.decimals);
   const gcode::Program program = gcode::parse(*source, {*language, decimals, command.units}, found);
   gcode::tell_of_contradictions(program, command.source, found);
-  const gcode::Interpretation interpretation =
-      gcode::interpret(program, {.units = command.units}, found);
+  const gcode::Interpretation interpretation = gcode::interpret(
+      program, {.units = command.units, .calls_keep_modes = calls_keep_modes(command.allowed)},
+      found);
   GroupingOptions grouping;
   grouping.allowed.assign(command.allowed.begin(), command.allowed.end());
   const auto sections =

@@ -71,7 +71,11 @@ Read read(const gcode::SourceText& source, const VerifyCommand& command, gcode::
   gcode::Program program = gcode::parse(source, {certain, decimals, command.units, dwells}, found);
   gcode::tell_of_contradictions(program, kind, found);
   gcode::Interpretation interpretation =
-      gcode::interpret(program, {.units = command.units, .curves = curves_of(command)}, found);
+      gcode::interpret(program,
+                       {.units = command.units,
+                        .curves = curves_of(command),
+                        .calls_keep_modes = calls_keep_modes(command.allowed)},
+                       found);
   return {source, std::move(program), std::move(interpretation), std::move(found)};
 }
 

@@ -83,8 +83,7 @@ Json path_of(const SmoothReport& report, std::size_t most_vertices) {
   const SmoothResult& result = report.result;
   if (!result.understood) return path_columns({});
   const gcode::SourceText written(report.source.name(), result.text);
-  gcode::ReadOptions reading{report.options.units};
-  if (report.options.target != nullptr) reading.curves = report.options.target->curves();
+  const gcode::ReadOptions reading = read_options_of(report.options);
   gcode::Diagnostics ignored;
   const auto foreign = language_to_translate(report.source, report.options);
   const bool translated = foreign.has_value();

@@ -68,6 +68,10 @@ std::string times(const SmoothResult& result, const Machine& machine) {
 }
 
 void add_runs(const SmoothResult& result, Lines& lines) {
+  if (result.runs.empty()) {
+    lines.add("runs", "none found: batten inspect says of each block why it is copied");
+    return;
+  }
   const auto rewritten = static_cast<std::size_t>(
       std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status));
   lines.add("runs",

@@ -102,6 +102,54 @@ INSTANTIATE_TEST_SUITE_P(
                     ForgetCase{"DeletableCall", "/M98 P1"}, ForgetCase{"TwoOfOneGroup", "G90 G91"}),
     [](const auto& test) { return test.param.name; });
 
+// --- calls that keep modes ---------------------------------------------------------------------
+
+class KeptModes : public testing::TestWithParam<ForgetCase> {};
+
+TEST_P(KeptModes, AreKnownBehindACall) {
+  const Interpreted it(std::string(kStart) + GetParam().block + "\nX5 Y5 Z5\nG1 X5 Y5 Z5\nX6\n",
+                       ReadOptions{.calls_keep_modes = true});
+  ModalState expected = it.state_after_line(4);
+  expected.motion = MotionMode::kUnknown;
+  expected.feed.reset();
+  EXPECT_EQ(it.state_after_line(5), expected);
+  EXPECT_EQ(it.motion_of_line(6), nullptr);  // which kind of motion, only the program called knows
+  EXPECT_FALSE(it.motion_of_line(7)->start_known);
+  EXPECT_TRUE(it.motion_of_line(8)->start_known);
+}
+
+INSTANTIATE_TEST_SUITE_P(Interpreter, KeptModes,
+                         testing::Values(ForgetCase{"Call", "M98 P1000"},
+                                         ForgetCase{"LocalCall", "M97 P10"},
+                                         ForgetCase{"FromTheCard", "M198 P1"},
+                                         ForgetCase{"CallBesideMotion", "G1 X1 M98 P1"},
+                                         ForgetCase{"Macro", "G65 P9010 A1."},
+                                         ForgetCase{"OWord", "o100 call"},
+                                         ForgetCase{"OWordByName", "N5 o<do_if_sub> call [1] [#2]"},
+                                         ForgetCase{"OWordByParameter", "o#1 call"}),
+                         [](const auto& test) { return test.param.name; });
+
+class NotKeptModes : public testing::TestWithParam<ForgetCase> {};
+
+TEST_P(NotKeptModes, AreUnknownAllTheSame) {
+  const Interpreted it(std::string(kStart) + GetParam().block + "\n",
+                       ReadOptions{.calls_keep_modes = true});
+  ModalState state = it.last_state();
+  state.modal_macro = Tri::kUnknown;
+  EXPECT_EQ(state, unknown_modal_state());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Interpreter, NotKeptModes,
+    testing::Values(ForgetCase{"Return", "M99"}, ForgetCase{"ModalMacro", "G66 P9010"},
+                    ForgetCase{"OWordIf", "o1 if [#1 GT 2]"},
+                    ForgetCase{"Subprogram", "o<call> sub"},
+                    ForgetCase{"Loop", "WHILE [#1 LT 2] DO1"}, ForgetCase{"NextProgram", "O1234"},
+                    ForgetCase{"End", "M30"}, ForgetCase{"SavedState", "M72"},
+                    ForgetCase{"CallAndEnd", "M98 P5 M30"}, ForgetCase{"UnknownG", "G777"},
+                    ForgetCase{"Unreadable", "G1 X"}),
+    [](const auto& test) { return test.param.name; });
+
 TEST(InterpreterUnknown, AJumpThatIsNotTakenChangesNothing) {
   const Interpreted it(std::string(kStart) + "IF [#1 GT 2] GOTO 900\nG1 X5\n");
   EXPECT_TRUE(it.motion_of_line(6)->start_known);

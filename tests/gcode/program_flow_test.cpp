@@ -57,6 +57,9 @@ INSTANTIATE_TEST_SUITE_P(
         FlowCase{"ReturnTo", "N10 X1\nM30\nO5\nX1\nM99 P10\n", {1}, {1}, {3, 4, 5}},
         FlowCase{"SubprogramFile", "X1\nX2\nM99\n", {}, {}, {1, 2, 3}},
         FlowCase{"MainBeforeSubprogram", "O1\nX1\nM30\nO2\nX1\nM99\n", {}, {}, {4, 5, 6}},
+        FlowCase{
+            "NamesThatLookLikeWords", "o<subdo> call\nX1\no<endif> call [1]\nX2\n", {}, {}, {}},
+        FlowCase{"NamedSubprogram", "o<call> sub\nX1\no<call> endsub\nX2\n", {}, {}, {1, 2, 3}},
         FlowCase{"MacroLoop", "X1\nWHILE [#1 LT 3] DO1\nX2\nEND1\nX3\n", {}, {}, {2, 3, 4}},
         FlowCase{"NestedLoops",
                  "WHILE[#1LT3]DO1\nX1\nDO2\nX2\nEND2\nX3\nEND1\nX4\n",

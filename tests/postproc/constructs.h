@@ -97,7 +97,7 @@ inline std::vector<InspectedSection> inspected(const std::string& text,
   if (!language) return {};
   const gcode::Program program = gcode::parse(source, reading_of(options, *language), found);
   const gcode::Interpretation meaning =
-      gcode::interpret(program, {options.units, options.target->curves()}, found);
+      gcode::interpret(program, read_options_of(options), found);
   GroupingOptions grouping;
   grouping.tolerance_mm = options.tolerance_mm;
   grouping.allowed.assign(options.allowed.begin(), options.allowed.end());

@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(
         opaque("ProgramNumber", kFanuc, "O2000", "program-flow"),
         Construct{"SecondProgram", kSiemens, "%_N_NEXT_SPF", "program-mark", false, "program-mark"},
         opaque("Sub", kLinuxCnc, "o100 sub\no100 endsub", "program-flow"),
-        opaque("NamedCall", kLinuxCnc, "o<name> call [1] [2]", "program-flow"),
+        opaque("NamedCall", kLinuxCnc, "o<name> call [1] [2]", "subprogram"),
         opaque("If", kLinuxCnc, "o101 if [#1 GT 2]\no101 endif", "program-flow"),
         opaque("While", kLinuxCnc, "o102 while [#1 LT 2]\no102 endwhile", "program-flow"),
         opaque("Call", kFanuc, "M98 P1000", "subprogram"),
@@ -57,6 +57,22 @@ INSTANTIATE_TEST_SUITE_P(
         opaque("OwnCycle", kSiemens, "MY_CYCLE(1,2)", "foreign-words"),
         opaque("Program", kHeidenhain, "CALL PGM OTHER", "subprogram"),
         Construct{"Number", kLinuxCnc, "N500"}, Construct{"Number", kSiemens, "N500"}),
+    &construct_name);
+
+// A call, and the tool back in front of the next wave.
+Construct call(const char* name, const char* target, const std::string& text) {
+  const std::string back = std::string(target) == kHeidenhain
+                               ? "\nL X+30 Y+0 Z+5 R0 FMAX\nL Z-1 F300"
+                               : "\nG0 X30. Y0. Z5.\nG1 Z-1. F300.";
+  return {name, target, text + back, "subprogram", true, {}, {}, "subprogram"};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CallsThatKeepModes, LexingTable,
+    testing::Values(call("Named", kLinuxCnc, "o<do_it> call [1] [2]"),
+                    call("Numbered", kLinuxCnc, "o100 call"), call("Call", kFanuc, "M98 P1000 L3"),
+                    call("Macro", kFanuc, "G65 P9010 A1."), call("Local", "haas", "M97 P700"),
+                    call("Program", kHeidenhain, "CALL PGM OTHER")),
     &construct_name);
 
 INSTANTIATE_TEST_SUITE_P(

@@ -14,6 +14,10 @@ struct Interpreted {
       : program(gcode::parse(gcode::SourceText("test.nc", std::move(text)), found)),
         read(gcode::interpret(program, {units}, found)) {}
 
+  Interpreted(std::string text, const gcode::ReadOptions& options)
+      : program(gcode::parse(gcode::SourceText("test.nc", std::move(text)), found)),
+        read(gcode::interpret(program, options, found)) {}
+
   // Lines count from 1.
   [[nodiscard]] const gcode::BlockMeaning& line(std::size_t number) const {
     return read.blocks.at(number - 1);

@@ -1,0 +1,60 @@
+// Programs that call others, as a user meets them.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "batten_process.h"
+#include "tests/postproc/wavy_programs.h"
+
+namespace batten {
+namespace {
+
+using postproc::joined;
+using postproc::wave_lines;
+
+// A wave behind a call.
+class Calls : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_.put("part.nc", "G21 G90 G17\nS12000 M3\nM98 P1000\nG0 X0. Y0. Z5.\nG1 Z-1. F300.\n" +
+                               joined(wave_lines({}), "\n") + "G0 Z5.\nM30\n");
+  }
+  BattenFolder folder_;
+};
+
+TEST_F(Calls, LeaveNothingKnownUnlessTheUserKnowsBetter) {
+  const std::string smooth = "smooth part.nc --target haas --tolerance 0.01 -o ";
+  const ProcessResult kept = folder_.batten(smooth + "kept.nc");
+  EXPECT_EQ(kept.exit_code, 0) << kept.err;
+  EXPECT_TRUE(contains(kept.err, "none found: batten inspect says")) << kept.err;
+  EXPECT_EQ(folder_.text_of("kept.nc"), folder_.text_of("part.nc"));
+
+  const ProcessResult done = folder_.batten(smooth + "new.nc --allow subprogram");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(contains(done.err, "1 rewritten")) << done.err;
+}
+
+TEST_F(Calls, AreReadByVerifyAsTheUserSays) {
+  ASSERT_EQ(folder_
+                .batten("smooth part.nc --target haas --tolerance 0.01 --allow subprogram -o "
+                        "new.nc")
+                .exit_code,
+            0);
+  const std::string verify = "verify part.nc new.nc --tolerance 0.01";
+  EXPECT_EQ(folder_.batten(verify).exit_code, 3);
+  const ProcessResult proved = folder_.batten(verify + " --allow subprogram");
+  EXPECT_EQ(proved.exit_code, 0) << proved.err;
+  std::string damaged = folder_.text_of("new.nc");
+  damaged.replace(damaged.find("G1 Z-1."), 7, "G1 Z-2.");
+  folder_.put("new.nc", damaged);
+  EXPECT_EQ(folder_.batten(verify + " --allow subprogram").exit_code, 3);
+  EXPECT_EQ(folder_.batten(verify + " --allow cutter-compensation").exit_code, 1);
+}
+
+TEST_F(Calls, ShowInInspectWhatTheyLeaveKnown) {
+  EXPECT_TRUE(contains(folder_.batten("inspect part.nc").out, "state-unknown"));
+  EXPECT_FALSE(contains(folder_.batten("inspect part.nc --allow subprogram").out, "state-unknown"));
+}
+
+}  // namespace
+}  // namespace batten
