@@ -20,7 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-#if defined(__SANITIZE_ADDRESS__)
+#if !defined(__has_feature)  // GCC says it by a macro, Clang by this
+#define __has_feature(feature) 0
+#endif
+#if defined(__SANITIZE_ADDRESS__) || __has_feature(address_sanitizer)
 constexpr bool kCountsMemory = false;  // the sanitizer needs terabytes of addresses
 #else
 constexpr bool kCountsMemory = true;
