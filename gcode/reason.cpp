@@ -80,7 +80,9 @@ constexpr Explanation kExplanations[] = {
      "Write G20 or G21 before the first motion, or say --units mm or --units inch.", false},
     {kStateUnknown,
      "A block before this one could have changed any mode, and not every mode was set again.",
-     "Look for the call, jump or unknown word above; set the modes again after it.", false},
+     "Look for the call, jump or unknown word above; set the modes again after it. Behind "
+     "calls that keep all modes: --allow subprogram.",
+     false},
     {kPositionUnknown, "The tool's place before this motion is not known.",
      "The first motion after a call, tool change or offset change is always kept.", false},
     {kCutterCompensation, "Cutter compensation is on (G41, G42): the path is not the tool's.",
