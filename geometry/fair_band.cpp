@@ -98,12 +98,13 @@ BandOptions BandFit::band() const {
   return band;
 }
 
-// Where noise fills the band, the smoothest curve in it swings from one of its sides to the other
-// and is further from the path that was meant than the vertices. So that path is estimated first,
-// but for who wants a simple curve further away.
+// Where noise takes much of the band, the smoothest curve in it swings from one of its sides to the
+// other and is further from the path that was meant than the vertices. So that path is estimated
+// first, but for who wants a simple curve further away.
 void BandFit::find_meant() {
   if (options_.scatter > 0) return;
-  meant_ = meant_beyond(points_, features_, band().limit);
+  const BandOptions asked = band();
+  meant_ = meant_among_noise(points_, features_, asked.limit, asked.rounding);
 }
 
 void BandFit::fit() {
@@ -175,7 +176,7 @@ bool BandFit::mend() {
   return left;
 }
 
-// Whether noise fills the band at an end of the edge.
+// Whether noise takes much of the band at an end of the edge.
 bool BandFit::is_noisy(std::size_t edge) const {
   if (meant_.empty()) return false;
   return meant_[edge] != points_[edge] || meant_[edge + 1] != points_[edge + 1];

@@ -65,7 +65,7 @@ class BandFit {
   std::vector<double> loosen_;  // per vertex
   std::vector<double> rooms_;   // per edge
   std::vector<EdgeCare> care_;  // per edge
-  std::vector<Point3> meant_;   // per vertex, where noise fills the band; else empty
+  std::vector<Point3> meant_;   // per vertex, where noise takes much of the band; else empty
   std::optional<PartedFit> fit_;
   std::vector<double> at_;
   std::vector<double> off_;

@@ -51,11 +51,11 @@ constexpr double kWorthKnots = 1.6;
 // taken away, for a curve that leaves less follows the noise.
 constexpr double kRoundingNoise = 2;
 
-// A vertex that was meant to be further away is drawn so much of the limit towards that place; what
-// is left is room for the curve. With more of it the curve is nearer to what was meant, and bends
-// harder: with nine tenths it takes 4 % longer, with half it is 3 % further away. So much of the
-// limit is the curve expected to pass the drawn vertices at: with less of it edges are kept, with
-// more the curve is no smoother.
+// A noisy vertex is drawn towards the place that it was meant to have, by so much of the limit at
+// the most; what is left is room for the curve. With more of it the curve is nearer to what was
+// meant, and bends harder: with nine tenths it takes 4 % longer, with half it is 3 % further away.
+// So much of the limit is the curve expected to pass the drawn vertices at: with less of it edges
+// are kept, with more the curve is no smoother.
 constexpr double kTowardsMeant = 0.7;
 constexpr double kMeantScatter = 0.3;
 
@@ -134,20 +134,22 @@ class ProblemMaker {
       return;
     }
     sample.along = (p_[i + 1] - p_[i - 1]).normalized();
-    sample.scatter = inside_reach(f_.parameters[i]) ? 0 : scatter(i);
-    if (noisy(i)) draw_to_meant(i, sample);
+    const bool rounded = inside_reach(f_.parameters[i]);
+    sample.scatter = rounded ? 0 : scatter(i);
+    const bool drawn = noisy(i) && (!rounded || noise_fills_band(i));
+    if (drawn) draw_to_meant(i, sample);
     loose_ = !(sample.scatter > 0) || sample.scatter > kWatchedSagitta * options_.limit;
     problem_.samples.push_back(sample);
     // A vertex's own knot does not move those that come by number: what is fitted further on is the
     // same with and without it.
     const bool by_number = ++since_break_ >= kVerticesPerSpan;
     if (by_number) since_break_ = 0;
-    if (by_number || has_own_knot(i)) problem_.breakpoints.push_back(f_.parameters[i]);
+    // A curve among noise turns at each.
+    if (by_number || drawn || has_own_knot(i)) problem_.breakpoints.push_back(f_.parameters[i]);
   }
 
   [[nodiscard]] bool has_own_knot(std::size_t i) const {
-    if (noisy(i)) return true;  // a curve among them turns at each
-    if (!wants_near(i)) return false;
+    if (!wants_near(i) || noisy(i)) return false;
     return std::max(sagitta(i - 1), sagitta(i)) > kCoarse * expected(i);
   }
 
@@ -155,13 +157,16 @@ class ProblemMaker {
     return !options_.meant.empty() && options_.meant[i] != p_[i];
   }
 
-  // Where noise fills the band: towards the place that the vertex was meant to have, as near as the
-  // band allows and some room is left around it.
+  [[nodiscard]] bool noise_fills_band(std::size_t i) const { return f_.noise[i] > options_.limit; }
+
+  // Where noise takes much of the band: towards the place that the vertex was meant to have, as
+  // near as the band allows, with some room around it. Where noise fills the band, with all that is
+  // left: the neighbours leave little of it.
   void draw_to_meant(std::size_t i, FitSample& sample) const {
     const Vector3 off = options_.meant[i] - p_[i];
     const double room = kTowardsMeant * sample.limit;
     sample.target += std::min(1.0, room / std::max(off.norm(), room)) * off;
-    sample.limit -= (sample.target - p_[i]).norm();
+    sample.limit -= noise_fills_band(i) ? (sample.target - p_[i]).norm() : room;
     const double loose = looseness(i);
     sample.scatter = std::isinf(loose) ? 0 : kMeantScatter * options_.limit * loose;
   }

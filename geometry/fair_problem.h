@@ -18,8 +18,8 @@ struct BandOptions {
   bool accurate = false;   // as FairOptions
   bool near = true;        // the same
 
-  // The places that vertices were meant to have where noise fills the band, and their own places
-  // elsewhere; empty: nowhere.
+  // The places that vertices were meant to have where noise takes much of the band, and their own
+  // places elsewhere; empty: nowhere.
   std::span<const Point3> meant;
 };
 

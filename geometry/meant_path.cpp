@@ -35,6 +35,13 @@ constexpr int kClosings = 6;  // of the interval around the best decade, by the 
 // band: the curve that the others would allow has no room between these.
 constexpr double kFillsBand = 0.125;
 
+// Vertices that scatter by more than this part of the limit, and by more than so many of the
+// greatest rounding errors, are drawn to their places. A curve that is only expected to leave their
+// scatter leaves some of the path, too, where they are coarse, and would find room for the feed on
+// any side of it.
+constexpr double kMuch = 0.2;
+constexpr double kRoundingNoise = 2;
+
 // Of normal noise an eighth is beyond 1.5 standard deviations, and noise is known to a third.
 constexpr double kMayFill = 0.4;
 
@@ -134,27 +141,48 @@ void place_stretch(std::span<const Point3> points, std::span<const double> param
   for (std::size_t i = 1; i + 1 < points.size(); ++i) meant[i] = whole.place(i);
 }
 
+// Calls `found` with the first and the last vertex of each stretch.
+template <typename Function>
+void each_stretch(std::size_t vertices, const PathFeatures& features, const Function& found) {
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < vertices; ++i) {
+    if (i + 1 < vertices && !parts_stretches(features, i)) continue;
+    found(begin, i);
+    begin = i;
+  }
+}
+
+// A straight line from its first to its last vertex would do: nothing is smoother, and the ends
+// stay where they are.
+bool is_straight_within(std::span<const Point3> stretch, double limit) {
+  const Vector3 way = stretch.back() - stretch.front();
+  const double length = way.norm();
+  if (!(length > 0)) return false;
+  return std::ranges::all_of(stretch, [&](const Point3& p) {
+    return way.cross(p - stretch.front()).norm() <= limit * length;
+  });
+}
+
 }  // namespace
 
 std::vector<Point3> meant_places(std::span<const Point3> points, const PathFeatures& features) {
   std::vector<Point3> meant(points.begin(), points.end());
   const std::span<const double> parameters = features.parameters;
-  std::size_t begin = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    if (i + 1 < points.size() && !parts_stretches(features, i)) continue;
-    const std::size_t count = i + 1 - begin;
-    if (count >= kFewest) {
-      place_stretch(points.subspan(begin, count), parameters.subspan(begin, count),
-                    std::span(meant).subspan(begin, count));
-    }
-    begin = i;
-  }
+  each_stretch(points.size(), features, [&](std::size_t first, std::size_t last) {
+    const std::size_t count = last + 1 - first;
+    if (count < kFewest) return;
+    place_stretch(points.subspan(first, count), parameters.subspan(first, count),
+                  std::span(meant).subspan(first, count));
+  });
   return meant;
 }
 
-std::vector<Point3> meant_beyond(std::span<const Point3> points, const PathFeatures& features,
-                                 double limit) {
-  const auto may_fill = [&](double noise) { return noise > kMayFill * limit; };
+std::vector<Point3> meant_among_noise(std::span<const Point3> points, const PathFeatures& features,
+                                      double limit, double rounding) {
+  const auto is_much = [&](double noise) {
+    return noise > kMuch * limit && noise > kRoundingNoise * rounding;
+  };
+  const auto may_fill = [&](double noise) { return is_much(noise) || noise > kMayFill * limit; };
   if (std::ranges::none_of(features.noise, may_fill)) return {};
   std::vector<Point3> meant = meant_places(points, features);
   std::vector<std::size_t> beyond = {0};  // so many of the vertices before
@@ -167,12 +195,16 @@ std::vector<Point3> meant_beyond(std::span<const Point3> points, const PathFeatu
     const std::size_t begin = i < kAround ? 0 : i - kAround;
     const std::size_t end = std::min(i + kAround + 1, points.size());
     const auto count = static_cast<double>(beyond[end] - beyond[begin]);
-    if (count > kFillsBand * static_cast<double>(end - begin)) {
+    if (is_much(features.noise[i]) || count > kFillsBand * static_cast<double>(end - begin)) {
       any = true;
     } else {
       meant[i] = points[i];
     }
   }
+  each_stretch(points.size(), features, [&](std::size_t first, std::size_t last) {
+    const auto stretch = points.subspan(first, last + 1 - first);
+    if (is_straight_within(stretch, limit)) std::ranges::copy(stretch, &meant[first]);
+  });
   if (!any) meant.clear();
   return meant;
 }

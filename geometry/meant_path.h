@@ -1,5 +1,5 @@
 // Where noisy vertices were meant to be, as far as their neighbours tell: an estimate that no
-// band holds. Method: docs/algorithms/fair.md, section Noise that fills the band.
+// band holds. Method: docs/algorithms/fair.md, section Noise that takes much of the band.
 #pragma once
 
 #include <span>
@@ -19,9 +19,13 @@ namespace batten::geometry {
 [[nodiscard]] std::vector<Point3> meant_places(std::span<const Point3> points,
                                                const PathFeatures& features);
 
-// The same, but only where an eighth of the vertices around is further from those places than
-// `limit` (mm); elsewhere a vertex keeps its place. Empty where that is so nowhere.
-[[nodiscard]] std::vector<Point3> meant_beyond(std::span<const Point3> points,
-                                               const PathFeatures& features, double limit);
+// The same, but only where noise takes a good part of the `limit` (mm): where vertices scatter by a
+// fifth of it and by more than two of the greatest errors of `rounding` (mm), or an eighth of those
+// around is further from their places than it. Elsewhere, and in stretches that a straight line
+// between their ends follows within the limit, a vertex keeps its place. Empty where that is so
+// nowhere.
+[[nodiscard]] std::vector<Point3> meant_among_noise(std::span<const Point3> points,
+                                                    const PathFeatures& features, double limit,
+                                                    double rounding);
 
 }  // namespace batten::geometry
