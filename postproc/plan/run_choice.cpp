@@ -51,6 +51,8 @@ double most_blocks_for_accuracy(Prefer prefer) {
   return prefer == Prefer::kAccuracy ? kMoreBlocks : 1;
 }
 
+bool is_smoother(double kink, double before) { return before > 0 && kink <= kSmoother * before; }
+
 bool gains(const Candidate& c, const SmoothedRun& run, const RunContext& context, Prefer prefer) {
   const RunFacts& old = run.facts;
   const auto blocks = static_cast<double>(c.text.blocks);
@@ -63,10 +65,14 @@ bool gains(const Candidate& c, const SmoothedRun& run, const RunContext& context
       c.error <= kNearer * old.error && blocks <= most_blocks_for_accuracy(prefer) * blocks_before;
   const bool quicker_flat_out = c.times.flat_out < (1 - kLessTimeForMore) * old.times.flat_out;
   const double more = quicker_flat_out ? std::max(1.0, kMoreForSmoother * blocks_before) : 0;
-  const bool smoother =
-      old.kink > 0 && c.kink <= kSmoother * old.kink && blocks <= blocks_before + more;
+  const bool smoother = is_smoother(c.kink, old.kink) && blocks <= blocks_before + more;
   if (prefer == Prefer::kSize) return bytes <= kFewerBytes * static_cast<double>(context.bytes);
   return faster || smaller || nearer || smoother;
+}
+
+bool is_much_better(const Candidate& c, const RunFacts& old, const RunContext& context) {
+  return far_smaller(c.text.blocks, context.blocks) ||
+         (is_smoother(c.kink, old.kink) && c.text.blocks <= context.blocks);
 }
 
 // Who asks for arcs or curves by name asks for few of them.
@@ -94,10 +100,10 @@ bool better(const Candidate& a, const Candidate& b, const SmoothOptions& options
 
 }  // namespace
 
-bool slower(const Times& now, const Times& before, bool much_smaller, bool wanted) {
+bool slower(const Times& now, const Times& before, bool much_better, bool wanted) {
   if (wanted) return now.as_set > (1 + kWantedCosts) * before.as_set;
-  // With the feed turned up a text of a quarter of the blocks may cost a little.
-  const double flat_out = much_smaller ? kSameTimeWhereFarSmaller : kSameTime;
+  // With the feed turned up that may cost a little.
+  const double flat_out = much_better ? kSameTimeWhereFarSmaller : kSameTime;
   return now.as_set > (1 + kSlower) * before.as_set ||
          now.without_merging > (1 + kSlower) * before.without_merging ||
          now.flat_out > (1 + flat_out) * before.flat_out;
@@ -126,9 +132,9 @@ bool may_gain(const Prospect& prospect, const RunFacts& before, std::size_t bloc
 // As `better` of the two.
 bool beats(const Candidate& c, const Rival& rival, const SmoothedRun& run,
            const RunContext& context, const SmoothOptions& options) {
-  const bool much_smaller = far_smaller(c.text.blocks, context.blocks);
   const bool wanted = options.output != Form::kAuto;
-  if (!compares_kinks(options) || slower(c.times, run.facts.times, much_smaller, wanted) ||
+  if (!compares_kinks(options) ||
+      slower(c.times, run.facts.times, is_much_better(c, run.facts, context), wanted) ||
       !gains(c, run, context, options.prefer)) {
     return false;
   }
@@ -150,8 +156,7 @@ Choosing choose(const SmoothedRun& run, const RunContext& context, const SmoothO
   bool all_slower = true;
   for (std::size_t i = 0; i < run.candidates.size(); ++i) {
     const Candidate& c = run.candidates[i];
-    const bool much_smaller = far_smaller(c.text.blocks, context.blocks);
-    if (slower(c.times, run.facts.times, much_smaller, wanted)) continue;
+    if (slower(c.times, run.facts.times, is_much_better(c, run.facts, context), wanted)) continue;
     all_slower = false;
     if (gains(c, run, context, prefer)) choosing.order.push_back(i);
   }

@@ -14,9 +14,10 @@ struct Choosing {
   std::string_view reason;         // why there is none
 };
 
-// Whether `now` is more than the error of the estimate above `before`. `much_smaller`: in a quarter
-// of the blocks. `wanted`: the user asked for the form by name, which may cost something.
-[[nodiscard]] bool slower(const Times& now, const Times& before, bool much_smaller, bool wanted);
+// Whether `now` is more than the error of the estimate above `before`. `much_better`: in a quarter
+// of the blocks, or without the kinks that there were and in no more blocks. `wanted`: the user
+// asked for the form by name, which may cost something.
+[[nodiscard]] bool slower(const Times& now, const Times& before, bool much_better, bool wanted);
 
 // So few blocks that they are worth a little time.
 [[nodiscard]] bool far_smaller(std::size_t blocks, std::size_t others);

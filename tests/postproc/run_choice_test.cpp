@@ -66,6 +66,27 @@ TEST_F(Choose, KnowsWhichRivalsACandidateBeatsWhateverTheirTime) {
   EXPECT_FALSE(beats(good, {10, 0.004, 1}));
 }
 
+// What a control could not hold its feed for before it can hold now: with the feed turned up, two
+// hundredths are a fair price, for no more blocks. As the program has it nothing may be slower.
+TEST_F(Choose, TakesWhatHasNoKinksWhereOnlyAFeedTurnedUpCostsALittle) {
+  run_.facts.kink = 0.02;
+  Candidate smooth = candidate(10, 100, 0.004);
+  smooth.times.flat_out = 10.2;
+  EXPECT_EQ(choose({smooth}).order, Order{0});
+  Candidate kinked = smooth;
+  kinked.kink = 0.01;
+  EXPECT_TRUE(choose({kinked}).order.empty()) << "half the kink is no tenth";
+  Candidate longer = smooth;
+  longer.text.blocks = 101;
+  EXPECT_TRUE(choose({longer}).order.empty());
+  Candidate dear = smooth;
+  dear.times.flat_out = 10.4;
+  EXPECT_TRUE(choose({dear}).order.empty());
+  Candidate slower = smooth;
+  slower.times.as_set = 10.2;
+  EXPECT_TRUE(choose({slower}).order.empty());
+}
+
 TEST_F(Choose, PassesOnWhyThereIsNoCandidate) {
   run_.reason = gcode::reason::kNoFit;
   const Choosing choosing = choose({});
