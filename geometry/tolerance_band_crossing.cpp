@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "geometry/chord_polyline.h"
 #include "geometry/numeric.h"
 #include "geometry/tolerance_band.h"
 #include "geometry/tolerance_band_pairs.h"
+#include "geometry/tolerance_band_parts.h"
 
 namespace batten::geometry {
 namespace {
@@ -149,11 +153,13 @@ std::vector<Meeting> meetings_of(const FlatEdges& edges) {
   return met;
 }
 
-// The first meeting of the new path that the old one does not excuse.
-std::optional<Meeting> first_new(const std::vector<Meeting>& met, const FlatEdges& before,
-                                 double tolerance) {
+// Calls `found` with each meeting of the new path that the old one does not excuse, and with the
+// edges of the old one that may be less than kSameLoop tolerances from it; until it returns false.
+template <typename Function>
+void each_new(const std::vector<Meeting>& met, const FlatEdges& before, double tolerance,
+              const Function& found) {
   const auto old = OldLayer::made_of(before, tolerance);
-  if (!old) return {};
+  if (!old) return;
   std::vector<CrossingBox> places;
   for (std::size_t i = 0; i < met.size(); ++i) {
     const Point2& p = met[i].place;
@@ -167,9 +173,50 @@ std::optional<Meeting> first_new(const std::vector<Meeting>& met, const FlatEdge
                            });
   for (std::size_t i = 0; i < met.size(); ++i) {
     std::sort(near[i].begin(), near[i].end());
-    if (!old->meets_itself_at(met[i].place, near[i])) return met[i];
+    if (!old->meets_itself_at(met[i].place, near[i]) && !found(met[i], near[i])) return;
   }
-  return {};
+}
+
+std::optional<Meeting> first_new(const std::vector<Meeting>& met, const FlatEdges& before,
+                                 double tolerance) {
+  std::optional<Meeting> first;
+  each_new(met, before, tolerance, [&](const Meeting& meeting, std::span<const std::size_t>) {
+    first = meeting;
+    return false;
+  });
+  return first;
+}
+
+// Edges of parts in one plane.
+struct PartLayer {
+  FlatEdges edges;
+  std::vector<PartEdge> parts;  // for each edge
+};
+
+std::map<double, PartLayer> part_layers(std::span<const PartEdge> edges) {
+  std::map<double, PartLayer> layers;
+  for (const PartEdge& edge : edges) {
+    PartLayer& layer = layers[edge.height];
+    if (layer.edges.add(edge.from, edge.to)) layer.parts.push_back(edge);
+  }
+  return layers;
+}
+
+// Of the old edges about the meeting of two new ones, in their parts.
+PartCrossing crossing_of(const PartLayer& old, const PartEdge& first, const PartEdge& second,
+                         const Point2& place, std::span<const std::size_t> near, double tolerance) {
+  PartCrossing crossing{{}, place};
+  for (const std::size_t edge : near) {
+    const std::uint32_t part = old.parts[edge].part;
+    if (part != first.part && part != second.part) continue;
+    if (edge_distance(old.edges, edge, place) > kSameLoop * tolerance) continue;
+    crossing.labels.push_back(old.parts[edge].label);
+  }
+  if (crossing.labels.empty()) crossing.labels = {first.label, second.label};
+  std::ranges::sort(crossing.labels);
+  const auto same = std::ranges::unique(crossing.labels);
+  crossing.labels.erase(same.begin(), same.end());
+  return crossing;
 }
 
 // The axis across which most of the chords lie; Z before Y before X.
@@ -213,6 +260,44 @@ std::optional<NewCrossing> new_crossing(std::span<const PathPiece> before,
     if (!first || crossing.first_piece < first->first_piece) first = crossing;
   }
   return first;
+}
+
+std::vector<PartEdge> flat_edges(std::span<const PathPiece> path, int axis, double tolerance,
+                                 std::uint32_t label, std::uint32_t part) {
+  std::vector<PartEdge> edges;
+  if (path.empty()) return edges;
+  const ChordPolyline chords = cut_into_chords(path, kChordPart * tolerance);
+  for (std::size_t i = 0; i < chords.edge_count(); ++i) {
+    if (!is_flat(chords, i, axis)) continue;
+    const Point3& from = chords.points[i];
+    edges.push_back(
+        {across(from, axis), across(chords.points[i + 1], axis), rounded(from[axis]), label, part});
+  }
+  return edges;
+}
+
+std::vector<PartCrossing> new_crossings_of_parts(std::span<const PartEdge> before,
+                                                 std::span<const PartEdge> after,
+                                                 double tolerance) {
+  std::vector<PartCrossing> crossings;
+  const auto then = part_layers(before);
+  for (const auto& [height, layer] : part_layers(after)) {
+    std::vector<Meeting> met = meetings_of(layer.edges);
+    const auto& parts = layer.parts;
+    std::erase_if(met, [&](const Meeting& meeting) {
+      return parts[meeting.edges.first].part == parts[meeting.edges.second].part;
+    });
+    const auto old = then.find(height);
+    if (met.empty() || old == then.end()) continue;
+    each_new(met, old->second.edges, tolerance,
+             [&](const Meeting& meeting, std::span<const std::size_t> near) {
+               crossings.push_back(crossing_of(old->second, parts[meeting.edges.first],
+                                               parts[meeting.edges.second], meeting.place, near,
+                                               tolerance));
+               return true;
+             });
+  }
+  return crossings;
 }
 
 }  // namespace batten::geometry

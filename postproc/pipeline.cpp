@@ -1,6 +1,11 @@
 #include "postproc/pipeline.h"
 
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
@@ -9,6 +14,7 @@
 #include "postproc/plan/curve_caution.h"
 #include "postproc/profile/added_lines.h"
 #include "postproc/profile/target_words.h"
+#include "postproc/proof/part_crossings.h"
 #include "postproc/proof/part_proof.h"
 #include "postproc/runs/band_notes.h"
 #include "postproc/runs/part_runs.h"
@@ -26,6 +32,8 @@ namespace {
 constexpr double kAfterReading = 0.1;
 constexpr double kAfterSmoothing = 0.7;
 
+constexpr std::uint32_t kLastLine = std::numeric_limits<std::uint32_t>::max();
+
 class Smoothing {
  public:
   Smoothing(const gcode::SourceText& source, const SmoothOptions& options, const Progress& progress,
@@ -42,9 +50,13 @@ class Smoothing {
     if (!result_.understood || !tell(kAfterReading)) return refused();
     runs_ = find_runs(part_, options_, long_runs_);
     if (!runs_.works.empty() && !fits_target()) return refused();
-    if (!smooth()) return refused();
-    if (!prove()) return refused();
-    return std::move(result_);
+    while (true) {
+      if (!smooth()) return refused();
+      auto proved = prove();
+      if (!proved) return refused();
+      if (!copy_where_parts_cross(*proved)) return told(std::move(*proved));
+      runs_ = find_runs(part_, options_, long_runs_, facts_);
+    }
   }
 
  private:
@@ -101,20 +113,33 @@ class Smoothing {
     const Tell tell_part = [this](double part) {
       return tell(kAfterReading + part * (kAfterSmoothing - kAfterReading));
     };
-    if (!smooth_runs(part_, options_, tell_part, runs_)) return false;
-    append_band_notes(runs_.notes, result_.diagnostics);
-    return true;
+    return smooth_runs(part_, options_, tell_part, runs_);
   }
 
-  bool prove() {
+  std::optional<ProvedText> prove() {
     const Tell tell_round = [this](double) { return tell(kAfterSmoothing); };
-    auto proved = prove_text(part_, options_, read_options_, additions_, tell_round, runs_);
-    if (!proved) return false;
-    const Verification& verification = proved->verification;
-    result_.text = proved->unchanged ? std::string(source_.text()) : std::move(proved->text);
-    result_.proved = proved->proved;
-    result_.blocks_out = proved->blocks;
-    result_.added_lines = proved->added_lines;
+    return prove_text(part_, options_, read_options_, additions_, tell_round, runs_);
+  }
+
+  // Whether parts of long runs cross each other where they did not: then more is to be copied.
+  bool copy_where_parts_cross(ProvedText& proved) {
+    PartCrossings crossings(*runs_.near, options_.tolerance_mm);
+    crossings.take(std::move(proved.near_edges));
+    crossings.look_up_to(kLastLine);
+    const std::vector<LineRange> found = crossings.found();
+    if (found.empty()) return false;
+    const std::size_t lines = lines_in(facts_.copied);
+    facts_.copied = more_to_copy(facts_.copied, found, *runs_.near);
+    return lines_in(facts_.copied) > lines;
+  }
+
+  SmoothResult told(ProvedText proved) {
+    append_band_notes(runs_.notes, result_.diagnostics);
+    const Verification& verification = proved.verification;
+    result_.text = proved.unchanged ? std::string(source_.text()) : std::move(proved.text);
+    result_.proved = proved.proved;
+    result_.blocks_out = proved.blocks;
+    result_.added_lines = proved.added_lines;
     result_.deviation_mm = verification.deviation_mm;
     result_.deviation_line = verification.deviation_line;
     result_.corner_mm = verification.corner_mm;
@@ -126,7 +151,7 @@ class Smoothing {
     if (auto told = curve_caution(result_.runs, part_.program, *options_.target)) {
       result_.diagnostics.push_back(std::move(*told));
     }
-    return true;
+    return std::move(result_);
   }
 
   const gcode::SourceText& source_;
@@ -137,6 +162,7 @@ class Smoothing {
   gcode::ReadOptions read_options_;
   ProgramPart part_;
   PartRuns runs_;
+  LongRunFacts facts_;
   Additions additions_;
   bool again_ = false;  // the program was smoothed before
 };

@@ -27,6 +27,11 @@ constexpr std::size_t kBlocksAtOnce = 4096;
 constexpr std::size_t kBytesAtOnce = std::size_t{1} << 19;
 constexpr std::size_t kLongestRest = std::size_t{1} << 20;
 
+LongRunLimits limits_of(LongRunLimits limits, const SmoothOptions& options) {
+  limits.rewritten = options.method != Method::kNone;
+  return limits;
+}
+
 class Scout {
  public:
   Scout(const gcode::SourceText& source, const SmoothOptions& options, const WindowLimits& limits,
@@ -34,7 +39,7 @@ class Scout {
       : source_(source),
         options_(options),
         least_blocks_(limits.least_blocks),
-        cuts_(limits.long_runs, grouping_of(options)),
+        cuts_(limits_of(limits.long_runs, options), grouping_of(options)),
         tell_(tell),
         now_{{}, {gcode::ControlCarry(options.units)}} {
     now_.text.decimals = {reading_of(options, gcode::Language::kRs274).decimals, options.units};
@@ -153,6 +158,7 @@ class Scout {
   void finish() {
     cuts_.end();
     take_cuts();
+    report_.near = cuts_.near_parts();
     gcode::finish_text(now_.text, of_text_);
     gcode::finish_interpretation(now_.before.control, of_meaning_);
     report_.found = std::move(of_text_);

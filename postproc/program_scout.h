@@ -12,6 +12,7 @@
 #include "gcode/source_text.h"
 #include "postproc/options.h"
 #include "postproc/runs/long_run_cuts.h"
+#include "postproc/runs/near_parts.h"
 #include "postproc/runs/part_runs.h"
 #include "postproc/runs/program_part.h"
 
@@ -42,6 +43,7 @@ struct ScoutReport {
   Scouting outcome = Scouting::kWhole;
   std::vector<WindowPlace> windows;  // all of the program, in order; two or more
   gcode::Diagnostics found;          // as reading the whole tells
+  std::vector<NearParts> near;       // of its long runs
   std::size_t blocks = 0;
   gcode::Units units = gcode::Units::kUnknown;  // the first that are known
   bool was_smoothed = false;

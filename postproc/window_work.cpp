@@ -27,7 +27,7 @@ class WindowWork {
 
   WindowDone run() {
     const ProgramPart part = read();
-    PartRuns runs = find_runs(part, setting_.options, setting_.long_runs);
+    PartRuns runs = find_runs(part, setting_.options, setting_.long_runs, setting_.facts);
     const Tell tell_runs = [this](double share) { return tell_(share * kAfterWindowsRuns); };
     if (setting_.was_smoothed) {
       keep_as_smoothed(runs);
@@ -112,6 +112,8 @@ class WindowWork {
     done_.untold = untold_smoothing(done_.runs, part.program, *setting_.options.target);
     done_.caution = curve_caution(done_.runs, part.program, *setting_.options.target);
     done_.notes = std::move(runs.notes);
+    done_.near_edges = std::move(proved.near_edges);
+    if (!part.program.blocks.empty()) done_.last_line = part.program.blocks.back().line;
   }
 
   const WindowSetting& setting_;

@@ -13,6 +13,7 @@
 #include "gcode/source_text.h"
 #include "postproc/options.h"
 #include "postproc/program_scout.h"
+#include "postproc/proof/part_crossings.h"
 #include "postproc/runs/part_runs.h"
 #include "postproc/runs/program_part.h"
 #include "postproc/runs/run_report.h"
@@ -26,6 +27,7 @@ struct WindowSetting {
   gcode::ReadOptions read_options;
   LongRunLimits long_runs = {};
   bool was_smoothed = false;  // the program: all runs are kept
+  LongRunFacts facts = {};
 };
 
 // What a window takes over from the new text before it.
@@ -51,6 +53,8 @@ struct WindowDone {
   std::optional<gcode::Diagnostic> untold;   // postproc/writing/provenance.h
   std::optional<gcode::Diagnostic> caution;  // postproc/plan/curve_caution.h
   TextBefore old_behind;
+  std::vector<NearEdges> near_edges;
+  std::uint32_t last_line = 0;
 };
 
 // What the new text before a window may have told the control, by what the old text told it there.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gcode/reason.h"
+#include "postproc/proof/part_crossings.h"
 #include "postproc/runs/band_notes.h"
 #include "postproc/side_by_side.h"
 #include "postproc/translation/conversion.h"
@@ -93,12 +94,13 @@ class StartGuess {
 class Windows {
  public:
   Windows(const gcode::SourceText& source, const SmoothOptions& options, const TextSink& sink,
-          const Progress& progress)
+          const Progress& progress, std::vector<LineRange>* copied)
       : source_(source),
         options_(options),
         for_windows_(options),
         sink_(sink),
         progress_(progress, source.text().size()),
+        copied_(copied),
         setting_{source, for_windows_, {}, {}, false},
         known_{{gcode::ControlCarry(options.units)}, false} {
     for_windows_.threads = kThreadsOfCaller;
@@ -122,12 +124,17 @@ class Windows {
         facts.was_smoothed && !is_allowed(gcode::reason::kAlreadySmoothed, options_);
     setting_.long_runs = limits.long_runs;
     windows_ = std::move(facts.windows);
+    near_ = std::make_shared<const std::vector<NearParts>>(std::move(facts.near));
+    setting_.facts.near = near_;
+    if (copied_ != nullptr) setting_.facts.copied = *copied_;
+    crossings_.emplace(*near_, options_.tolerance_mm);
     progress_.begin(windows_);
     oneapi::tbb::task_arena arena(options_.threads > 0 ? options_.threads
                                                        : oneapi::tbb::task_arena::automatic);
     arena.execute([&] { go_through(arena.max_concurrency()); });
     if (outcome_ == WindowOutcome::kNeedsWhole) return std::nullopt;
     if (outcome_ == WindowOutcome::kStopped) return std::move(result_);
+    if (parts_cross()) return std::nullopt;
     notes_.tell_rest(result_.diagnostics);
     if (untold_) result_.diagnostics.push_back(std::move(*untold_));
     if (caution_) result_.diagnostics.push_back(std::move(*caution_));
@@ -191,6 +198,8 @@ class Windows {
     known_ = std::move(made.behind);
     known_.says_smoothed = says_smoothed;
     guess_.learn(made.old_behind, known_.known);
+    crossings_->take(std::move(made.near_edges));
+    crossings_->look_up_to(made.last_line);
     take_figures(std::move(made));
     return WindowOutcome::kDone;
   }
@@ -202,6 +211,14 @@ class Windows {
       begin.says_smoothed = made.before.says_smoothed;
     }
     return same_before(made.before, begin);
+  }
+
+  // Whether parts of long runs cross each other where they did not.
+  bool parts_cross() {
+    const std::vector<LineRange> found = crossings_->found();
+    if (found.empty()) return false;
+    if (copied_ != nullptr) *copied_ = more_to_copy(*copied_, found, *near_);
+    return true;
   }
 
   void take_figures(WindowDone made) {
@@ -226,7 +243,10 @@ class Windows {
   SmoothOptions for_windows_;
   const TextSink& sink_;
   SharedProgress progress_;
+  std::vector<LineRange>* copied_;
   WindowSetting setting_;
+  std::shared_ptr<const std::vector<NearParts>> near_;
+  std::optional<PartCrossings> crossings_;
   std::vector<WindowPlace> windows_;
   std::atomic<WindowOutcome> outcome_ = WindowOutcome::kDone;
   StartGuess guess_;
@@ -241,9 +261,9 @@ class Windows {
 
 std::optional<SmoothResult> smooth_in_windows(const gcode::SourceText& source,
                                               const SmoothOptions& options, const TextSink& sink,
-                                              const Progress& progress,
-                                              const WindowLimits& limits) {
-  return Windows(source, options, sink, progress).run(limits);
+                                              const Progress& progress, const WindowLimits& limits,
+                                              std::vector<LineRange>* copied) {
+  return Windows(source, options, sink, progress, copied).run(limits);
 }
 
 }  // namespace batten::postproc

@@ -8,11 +8,13 @@
 #include <functional>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "gcode/source_text.h"
 #include "postproc/options.h"
 #include "postproc/pipeline.h"
 #include "postproc/program_scout.h"
+#include "postproc/runs/near_parts.h"
 
 namespace batten::postproc {
 
@@ -23,10 +25,13 @@ using TextSink = std::function<bool(std::string_view)>;
 // profile, and where something differs that no run of a window is to blame for): what the sink was
 // given is worth nothing then. Otherwise the result without its text; where the work was stopped,
 // it is not understood.
-[[nodiscard]] std::optional<SmoothResult> smooth_in_windows(const gcode::SourceText& source,
-                                                            const SmoothOptions& options,
-                                                            const TextSink& sink,
-                                                            const Progress& progress = {},
-                                                            const WindowLimits& limits = {});
+//
+// `copied`: stretches of long runs that are left as they are. Where the new paths of two parts
+// cross nothing is returned and it has grown: the windows are to be made anew with it. Without it
+// the program needs the whole then.
+[[nodiscard]] std::optional<SmoothResult> smooth_in_windows(
+    const gcode::SourceText& source, const SmoothOptions& options, const TextSink& sink,
+    const Progress& progress = {}, const WindowLimits& limits = {},
+    std::vector<LineRange>* copied = nullptr);
 
 }  // namespace batten::postproc

@@ -3,6 +3,7 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "postproc/cli/exit_code.h"
 #include "postproc/cli/interrupt.h"
@@ -12,6 +13,7 @@
 #include "postproc/report/html_report.h"
 #include "postproc/report/json_report.h"
 #include "postproc/report/summary_text.h"
+#include "postproc/runs/near_parts.h"
 #include "postproc/runs/smooth_verdict.h"
 #include "postproc/windows.h"
 #include "postproc/writing/output_file.h"
@@ -54,8 +56,9 @@ class SmoothWork {
     // The page draws the whole path.
     const bool in_windows =
         source_->text().size() >= kBytesForWindows && command_.report_file.empty();
-    if (in_windows) {
+    while (in_windows) {
       if (const auto code = smooth_in_windows_to_output()) return *code;
+      if (!again_) break;
     }
     return smooth_whole();
   }
@@ -77,7 +80,8 @@ class SmoothWork {
 
   // --- window by window ---------------------------------------------------------------------
 
-  // The exit code; nothing where the program must be smoothed as a whole, with nothing written.
+  // The exit code; nothing where the program must be smoothed as a whole, or `again_`, with nothing
+  // written.
   std::optional<int> smooth_in_windows_to_output() {
     if (command_.dry_run) return smooth_windows_only();
     return is_seen_at_once() ? write_from_spool() : write_beside();
@@ -93,9 +97,11 @@ class SmoothWork {
   // False: nothing is to be written, `code_` says why; or the whole is needed.
   bool smooth_windows(const TextSink& sink) {
     const Progress progress = show_progress(command_.progress, source_->text().size());
-    auto result = smooth_in_windows(*source_, command_.options, sink, progress);
+    const std::size_t copied = lines_in(copied_);
+    auto result = smooth_in_windows(*source_, command_.options, sink, progress, {}, &copied_);
     (void)progress(1);
     needs_whole_ = !result;
+    again_ = !result && lines_in(copied_) > copied;
     if (!result) return false;
     result_ = std::move(*result);
     return true;
@@ -217,7 +223,9 @@ class SmoothWork {
   std::string page_;
   bool told_ = false;
   bool needs_whole_ = false;
-  std::optional<int> code_;  // of a result that is worth nothing
+  bool again_ = false;             // more is to be copied
+  std::vector<LineRange> copied_;  // where parts of long runs crossed each other
+  std::optional<int> code_;        // of a result that is worth nothing
 };
 
 }  // namespace

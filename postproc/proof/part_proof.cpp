@@ -49,6 +49,7 @@ class Prover {
       if (!tell_(0)) return std::nullopt;
       if (!round.proved && take_back(round.verification)) continue;
       round.stands_alone = stands_alone_;
+      if (round.unchanged) round.near_edges = near_edges(std::nullopt);
       return round;
     }
   }
@@ -74,6 +75,12 @@ class Prover {
     same.proved = true;
     same.blocks = part_.program.blocks.size();
     return same;
+  }
+
+  [[nodiscard]] std::vector<NearEdges> near_edges(const std::optional<WrittenSections>& written) {
+    if (!runs_.near || runs_.near->empty()) return {};
+    return near_edges_of({&part_.program, &part_.meaning}, runs_.sections, written, *runs_.near,
+                         options_.tolerance_mm);
   }
 
   ProvedText verified_text() {
@@ -107,6 +114,10 @@ class Prover {
     round.added_lines = added.lines;
     round.blocks = program.blocks.size();
     round.proved = round.verification.proved();
+    // Lines of a profile stand between the sections; such a program is proved in one.
+    if (round.proved && additions_.words.empty()) {
+      round.near_edges = near_edges(WrittenSections{after, assembled.begins});
+    }
     if (part_.window) {
       round.behind = {std::move(control), events_before_next(after)};
     }

@@ -15,6 +15,10 @@
 // the two matchings one after the other. Where the whole is proved at once it is cut at the same
 // places (ReadProgram::cuts), so its bounds are those of the windows.
 //
+// Only that the pieces do not cross each other is not said by the proof of each. It is asked when
+// all of them are proved (postproc/proof/part_crossings.h): where they do, the stretches about it
+// are copied, and the program is smoothed anew.
+//
 // What a window takes over from the new text before it may be a guess, when it is made; it is
 // believed once the window before it is proved and has left exactly that behind.
 #pragma once
@@ -22,9 +26,11 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gcode/interpreter.h"
 #include "postproc/options.h"
+#include "postproc/proof/part_crossings.h"
 #include "postproc/proof/verification.h"
 #include "postproc/runs/part_runs.h"
 #include "postproc/runs/program_part.h"
@@ -41,6 +47,8 @@ struct ProvedText {
   Verification verification;  // of the text as it is
   // Of a window whose new text was read: what the next one takes over from it.
   std::optional<TextBefore> behind = {};
+  // Of long runs, what parts that are proved one by one must be asked for together.
+  std::vector<NearEdges> near_edges = {};
   // False: a window that is not proved cannot be judged by itself, for something differs that none
   // of its runs is to blame for.
   bool stands_alone = true;

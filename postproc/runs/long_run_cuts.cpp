@@ -62,6 +62,7 @@ void LongRunCuts::add_move(std::uint32_t block, const geometry::Point3& start,
     candidates_.push_back(
         {moves_, fitness_at(before_, start, end), {of_text.line, of_text.span.begin}});
   }
+  if (limits_.rewritten) strands_.add(start, end, program_->blocks[block].line);
   ++moves_;
   before_ = start;
   adjacent_ = true;
@@ -87,6 +88,7 @@ void LongRunCuts::cut(bool run_ends) {
     const auto best = choice(moves_ - limits_.shortest);
     if (!best) return;
     pending_.push_back(best->place);
+    cut_lines_.push_back(best->place.line);
     from_ = best->vertex;
     std::erase_if(candidates_, [&](const Candidate& candidate) {
       return candidate.vertex < from_ + limits_.shortest;
@@ -99,6 +101,11 @@ void LongRunCuts::cut(bool run_ends) {
 
 void LongRunCuts::end_run() {
   if (moves_ > 0) cut(true);
+  if (moves_ + 1 > limits_.whole_at_most && !cut_lines_.empty() && limits_.rewritten) {
+    if (auto near = strands_.near_parts(cut_lines_)) near_.push_back(std::move(*near));
+  }
+  strands_.clear();
+  cut_lines_.clear();
   moves_ = 0;
   plunging_ = 0;
   flat_ = false;
@@ -112,20 +119,28 @@ void LongRunCuts::end() { end_run(); }
 
 std::vector<LongRunCut> LongRunCuts::found() { return std::exchange(found_, {}); }
 
-std::vector<std::uint32_t> long_run_cuts(const gcode::Program& program,
-                                         const gcode::Interpretation& meaning,
-                                         const LongRunLimits& limits,
-                                         const GroupingOptions& grouping) {
+std::vector<NearParts> LongRunCuts::near_parts() { return std::exchange(near_, {}); }
+
+LongRuns find_long_runs(const gcode::Program& program, const gcode::Interpretation& meaning,
+                        const LongRunLimits& limits, const GroupingOptions& grouping) {
   if (program.blocks.size() < limits.whole_at_most) return {};
   LongRunCuts cuts(limits, grouping);
   cuts.begin_part(program, meaning);
   for (std::uint32_t i = 0; i < program.blocks.size(); ++i) cuts.take(i);
   cuts.end();
-  std::vector<std::uint32_t> blocks;
+  LongRuns long_runs;
   for (const LongRunCut& cut : cuts.found()) {
-    blocks.push_back(cut.line - program.blocks.front().line);
+    long_runs.cuts.push_back(cut.line - program.blocks.front().line);
   }
-  return blocks;
+  long_runs.near = cuts.near_parts();
+  return long_runs;
+}
+
+std::vector<std::uint32_t> long_run_cuts(const gcode::Program& program,
+                                         const gcode::Interpretation& meaning,
+                                         const LongRunLimits& limits,
+                                         const GroupingOptions& grouping) {
+  return find_long_runs(program, meaning, limits, grouping).cuts;
 }
 
 }  // namespace batten::postproc

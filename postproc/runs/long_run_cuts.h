@@ -15,6 +15,7 @@
 #include "gcode/program.h"
 #include "geometry/point.h"
 #include "postproc/runs/cut_fitness.h"
+#include "postproc/runs/near_parts.h"
 #include "postproc/runs/run_grouping.h"
 
 namespace batten::postproc {
@@ -23,6 +24,7 @@ struct LongRunLimits {
   std::size_t whole_at_most = 200000;  // points of a run that is not cut
   std::size_t shortest = 25000;        // motions of a piece; kNeighbourBlocks or more
   std::size_t longest = 50000;         // the same, but where it cannot be cut
+  bool rewritten = true;               // else nothing can come near to anything
 };
 
 // A block that begins a run of its own.
@@ -38,7 +40,7 @@ struct LongRunCut {
 class LongRunCuts {
  public:
   LongRunCuts(const LongRunLimits& limits, const GroupingOptions& grouping)
-      : limits_(limits), grouping_(grouping) {}
+      : limits_(limits), grouping_(grouping), strands_(grouping.tolerance_mm) {}
 
   // The blocks that follow are those of this part, which must outlive them.
   void begin_part(const gcode::Program& program, const gcode::Interpretation& meaning);
@@ -47,6 +49,9 @@ class LongRunCuts {
 
   // Those that are certain and were not given yet, in order.
   [[nodiscard]] std::vector<LongRunCut> found();
+
+  // Of the runs that were cut and have ended, and that were not given yet, in order.
+  [[nodiscard]] std::vector<NearParts> near_parts();
 
  private:
   struct Candidate {
@@ -79,9 +84,21 @@ class LongRunCuts {
   std::vector<Candidate> candidates_;                   // `shortest` and more behind it
   std::vector<LongRunCut> pending_;                     // of a run that may still be short
   std::vector<LongRunCut> found_;
+  std::vector<std::uint32_t> cut_lines_;  // all cuts of the run that goes on
+  RunStrands strands_;                    // its own
+  std::vector<NearParts> near_;
 };
 
-// Of a whole program, as block indices.
+struct LongRuns {
+  std::vector<std::uint32_t> cuts;  // block indices
+  std::vector<NearParts> near;
+};
+
+[[nodiscard]] LongRuns find_long_runs(const gcode::Program& program,
+                                      const gcode::Interpretation& meaning,
+                                      const LongRunLimits& limits, const GroupingOptions& grouping);
+
+// The cuts alone.
 [[nodiscard]] std::vector<std::uint32_t> long_run_cuts(const gcode::Program& program,
                                                        const gcode::Interpretation& meaning,
                                                        const LongRunLimits& limits,

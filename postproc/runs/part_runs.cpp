@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <iterator>
 #include <mutex>
 #include <numeric>
 #include <string>
@@ -101,17 +102,34 @@ class Joints {
     if (part_.window && block == part_.program.blocks.size()) {
       return !part_.window->moves_behind.empty();
     }
+    return is_cut_of_long_run(block) || std::ranges::binary_search(runs_.copied_cuts, block);
+  }
+
+  [[nodiscard]] bool is_cut_of_long_run(std::uint32_t block) const {
     return std::ranges::binary_search(runs_.cuts, block);
+  }
+
+  // The whole looks no further than a window that ends at the cuts of long runs.
+  [[nodiscard]] std::uint32_t window_begin(std::uint32_t block) const {
+    if (is_cut_of_long_run(block)) return 0;
+    const auto next = std::ranges::upper_bound(runs_.cuts, block);
+    return next == runs_.cuts.begin() ? 0 : *std::prev(next);
+  }
+
+  [[nodiscard]] std::uint32_t window_end(std::uint32_t block) const {
+    const auto next = std::ranges::upper_bound(runs_.cuts, block);
+    const bool is_last = is_cut_of_long_run(block) || next == runs_.cuts.end();
+    return is_last ? static_cast<std::uint32_t>(part_.program.blocks.size()) : *next;
   }
 
   [[nodiscard]] std::vector<TimedPiece> before(std::uint32_t block) const {
     if (part_.window && block == 0) return part_.window->moves_before;
-    return moves_before(part_.program, part_.meaning, block);
+    return moves_before(part_.program, part_.meaning, block, window_begin(block));
   }
 
   [[nodiscard]] std::vector<TimedPiece> behind(std::uint32_t block) const {
     if (block == part_.program.blocks.size()) return part_.window->moves_behind;
-    return moves_from(part_.program, part_.meaning, block);
+    return moves_from(part_.program, part_.meaning, block, window_end(block));
   }
 
   [[nodiscard]] Times times_about(std::uint32_t block, gcode::PathMode path) const {
@@ -130,6 +148,25 @@ class Joints {
   PartRuns& runs_;
 };
 
+// Blocks at which stretches that are copied begin or end, but where runs are cut anyway.
+std::vector<std::uint32_t> cuts_about(std::span<const LineRange> copied,
+                                      const gcode::Program& program,
+                                      const std::vector<std::uint32_t>& cuts) {
+  std::vector<std::uint32_t> blocks;
+  if (program.blocks.empty()) return blocks;
+  const std::uint32_t first = program.blocks.front().line;
+  const std::uint32_t last = program.blocks.back().line;
+  for (const LineRange& range : copied) {
+    for (const std::uint32_t line : {range.first, range.last + 1}) {
+      if (line <= first || line > last) continue;
+      if (!std::ranges::binary_search(cuts, line - first)) blocks.push_back(line - first);
+    }
+  }
+  const auto same = std::ranges::unique(blocks);
+  blocks.erase(same.begin(), same.end());
+  return blocks;
+}
+
 class PartSmoother {
  public:
   PartSmoother(const ProgramPart& part, const SmoothOptions& options, const Tell& tell,
@@ -138,8 +175,10 @@ class PartSmoother {
 
   // False: the work was stopped.
   bool run() {
-    std::vector<std::size_t> whole(runs_.works.size());
-    std::iota(whole.begin(), whole.end(), std::size_t{0});
+    std::vector<std::size_t> whole;
+    for (std::size_t i = 0; i < runs_.works.size(); ++i) {
+      if (runs_.works[i].choosing.reason.empty()) whole.push_back(i);
+    }
     if (!nothing_asked()) note_bands();  // they warn of what new paths may do
     for (const RunWork& work : runs_.works) points_ += run_of(work).points.size();
     if (!smooth_works(whole)) return false;
@@ -263,15 +302,28 @@ GroupingOptions grouping_of(const SmoothOptions& options) {
 }
 
 PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options,
-                   const LongRunLimits& limits) {
+                   const LongRunLimits& limits, const LongRunFacts& facts) {
   const GroupingOptions grouping = grouping_of(options);
   PartRuns runs;
-  if (!part.window) runs.cuts = long_run_cuts(part.program, part.meaning, limits, grouping);
-  runs.sections = group_runs(part.program, part.meaning, grouping, runs.cuts);
+  runs.near = facts.near;
+  if (!part.window) {
+    LongRunLimits asked = limits;
+    asked.rewritten = options.method != Method::kNone;
+    LongRuns found = find_long_runs(part.program, part.meaning, asked, grouping);
+    runs.cuts = std::move(found.cuts);
+    runs.near = std::make_shared<const std::vector<NearParts>>(std::move(found.near));
+  }
+  runs.copied_cuts = cuts_about(facts.copied, part.program, runs.cuts);
+  std::vector<std::uint32_t> all_cuts;
+  std::ranges::merge(runs.cuts, runs.copied_cuts, std::back_inserter(all_cuts));
+  runs.sections = group_runs(part.program, part.meaning, grouping, all_cuts);
   runs.sections = with_long_runs_cut(std::move(runs.sections), part.meaning, limits);
   for (std::size_t i = 0; i < runs.sections.size(); ++i) {
     if (!std::holds_alternative<Run>(runs.sections[i].content)) continue;
     runs.works.push_back({i, context_of(part.program, part.meaning, runs.sections[i])});
+    const std::uint32_t line = part.program.blocks[runs.sections[i].first_block].line;
+    if (holds(facts.copied, line))
+      runs.works.back().choosing.reason = gcode::reason::kCrossesItself;
   }
   Joints(part, options, runs).run();
   return runs;

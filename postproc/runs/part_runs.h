@@ -3,20 +3,32 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string_view>
 #include <vector>
 
 #include "gcode/diagnostic.h"
 #include "postproc/options.h"
 #include "postproc/runs/long_run_cuts.h"
+#include "postproc/runs/near_parts.h"
 #include "postproc/runs/program_part.h"
 #include "postproc/runs/run_work.h"
 #include "postproc/runs/section.h"
 
 namespace batten::postproc {
 
+// What is known of the parts of a program's long runs before they are smoothed.
+struct LongRunFacts {
+  // Of a window: those of the whole program. The whole finds its own.
+  std::shared_ptr<const std::vector<NearParts>> near = {};
+  // Stretches that are copied, for the new paths of parts crossed there. As `joined` gives them.
+  std::vector<LineRange> copied = {};
+};
+
 struct PartRuns {
-  std::vector<std::uint32_t> cuts;  // blocks at which long runs are cut
+  std::vector<std::uint32_t> cuts;         // blocks at which long runs are cut
+  std::vector<std::uint32_t> copied_cuts;  // others, where a stretch that is copied begins or ends
+  std::shared_ptr<const std::vector<NearParts>> near;  // of the long runs of the program; or none
   std::vector<Section> sections;
   std::vector<RunWork> works;  // of the sections that are runs, in order
   std::vector<CutRun> cut_runs;
@@ -31,7 +43,7 @@ struct PartRuns {
 // `part` must outlive the runs: they refer to it. A window ends where a long run is to be cut, the
 // whole is cut here; but not where no method is asked for.
 [[nodiscard]] PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options,
-                                 const LongRunLimits& limits = {});
+                                 const LongRunLimits& limits = {}, const LongRunFacts& facts = {});
 
 // Every run is kept, since the program was smoothed before.
 void keep_as_smoothed(PartRuns& runs);

@@ -25,20 +25,23 @@ void add_move_of(std::uint32_t block, const gcode::Program& program,
 }  // namespace
 
 std::vector<TimedPiece> moves_before(const gcode::Program& program,
-                                     const gcode::Interpretation& meaning, std::uint32_t block) {
+                                     const gcode::Interpretation& meaning, std::uint32_t block,
+                                     std::uint32_t from) {
   std::uint32_t first = block;
-  while (first > 0 && block - first < kNeighbourBlocks && !ends_chain(meaning, first - 1)) --first;
+  while (first > from && block - first < kNeighbourBlocks && !ends_chain(meaning, first - 1))
+    --first;
   std::vector<TimedPiece> moves;
   for (std::uint32_t i = first; i < block; ++i) add_move_of(i, program, meaning, moves);
   return moves;
 }
 
 std::vector<TimedPiece> moves_from(const gcode::Program& program,
-                                   const gcode::Interpretation& meaning, std::uint32_t block) {
+                                   const gcode::Interpretation& meaning, std::uint32_t block,
+                                   std::uint32_t end) {
   const auto all = static_cast<std::uint32_t>(program.blocks.size());
-  const std::uint32_t end = std::min(all, block + kNeighbourBlocks);
+  const std::uint32_t last = std::min({all, end, block + kNeighbourBlocks});
   std::vector<TimedPiece> moves;
-  for (std::uint32_t i = block; i < end && !ends_chain(meaning, i); ++i) {
+  for (std::uint32_t i = block; i < last && !ends_chain(meaning, i); ++i) {
     add_move_of(i, program, meaning, moves);
   }
   return moves;

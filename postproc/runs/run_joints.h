@@ -14,12 +14,13 @@ namespace batten::postproc {
 inline constexpr std::uint32_t kNeighbourBlocks = 100;
 
 // What is cut in the last of the blocks before `block`, and in it and those behind it: no more than
-// that many blocks, and none beyond what ends a run.
+// that many blocks, none beyond what ends a run, and none before `from` or from `end` on.
 [[nodiscard]] std::vector<TimedPiece> moves_before(const gcode::Program& program,
                                                    const gcode::Interpretation& meaning,
-                                                   std::uint32_t block);
+                                                   std::uint32_t block, std::uint32_t from = 0);
 [[nodiscard]] std::vector<TimedPiece> moves_from(const gcode::Program& program,
                                                  const gcode::Interpretation& meaning,
-                                                 std::uint32_t block);
+                                                 std::uint32_t block,
+                                                 std::uint32_t end = UINT32_MAX);
 
 }  // namespace batten::postproc

@@ -34,7 +34,14 @@ inline InWindows in_windows(const std::string& text, const SmoothOptions& option
     return true;
   };
   const gcode::SourceText source("part.nc", text);
-  done.result = smooth_in_windows(source, options, sink, {}, limits);
+  std::vector<LineRange> copied;
+  for (bool again = true; again;) {
+    const std::size_t before = lines_in(copied);
+    done.text.clear();
+    done.parts = 0;
+    done.result = smooth_in_windows(source, options, sink, {}, limits, &copied);
+    again = !done.result && lines_in(copied) > before;
+  }
   return done;
 }
 

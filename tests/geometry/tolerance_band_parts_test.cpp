@@ -1,0 +1,184 @@
+// Long flat paths in parts: the strands that cover them, which of these are near to other parts,
+// and where parts cross.
+#include "geometry/tolerance_band_parts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "geometry/path.h"
+
+namespace batten::geometry {
+namespace {
+
+constexpr double kTolerance = 0.01;
+
+double from_segment(const Point2& place, const Point2& a, const Point2& b) {
+  const Point2 along = b - a;
+  const double t = std::clamp((place - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (place - a - t * along).norm();
+}
+
+// By many places on both: good to a part of the step.
+double apart(const Strand& a, const Strand& b) {
+  double least = HUGE_VAL;
+  for (int i = 0; i <= 400; ++i) {
+    const Point2 place = a.from + i / 400.0 * (a.to - a.from);
+    least = std::min(least, from_segment(place, b.from, b.to));
+  }
+  return least;
+}
+
+// A path that wanders and turns, sometimes sharply and sometimes straight back.
+std::vector<Point2> wandering(unsigned seed, int edges) {
+  std::mt19937 random(seed);
+  const auto part = [&] { return static_cast<double>(random() % 10001) / 10000; };
+  std::vector<Point2> points{{0, 0}};
+  double heading = 0;
+  double bend = 0.05;
+  for (int i = 0; i < edges; ++i) {
+    if (random() % 40 == 0) bend = 0.2 * (part() - 0.5);
+    if (random() % 60 == 0) heading += 3.1 * part();
+    heading += bend;
+    const double step = 0.02 + 0.3 * part();
+    points.push_back(points.back() + step * Point2(std::cos(heading), std::sin(heading)));
+  }
+  return points;
+}
+
+std::vector<Strand> cover_of(const std::vector<Point2>& points, double width) {
+  StrandCover cover(2, width);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    cover.add({points[i].x(), points[i].y(), 1}, {points[i + 1].x(), points[i + 1].y(), 1},
+              static_cast<std::uint32_t>(i));
+  }
+  EXPECT_EQ(cover.edges(), points.size() - 1);
+  return cover.strands().value_or(std::vector<Strand>{});
+}
+
+TEST(StrandCover, HoldsEveryEdgeWithinItsWidth) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const std::vector<Point2> points = wandering(seed, 2000);
+    const std::vector<Strand> strands = cover_of(points, kTolerance);
+    std::uint32_t next = 0;
+    for (const Strand& strand : strands) {
+      EXPECT_EQ(strand.first, next) << "each edge is in one";
+      EXPECT_EQ(strand.height, 1);
+      for (std::size_t i = strand.first; i <= strand.last + 1; ++i) {
+        EXPECT_LE(from_segment(points[i], strand.from, strand.to), kTolerance * (1 + 1e-9));
+      }
+      next = strand.last + 1;
+    }
+    EXPECT_EQ(next, points.size() - 1);
+    EXPECT_LT(strands.size(), points.size() / 2) << "or it would be no coarser than the path";
+  }
+}
+
+TEST(StrandCover, LeavesOutWhatIsNotFlat) {
+  StrandCover cover(2, kTolerance);
+  cover.add({0, 0, 0}, {1, 0, 0}, 1);
+  cover.add({1, 0, 0}, {2, 0, 1}, 2);
+  cover.add({2, 0, 1}, {3, 0, 1}, 3);
+  const auto strands = cover.strands();
+  ASSERT_TRUE(strands);
+  ASSERT_EQ(strands->size(), 2U);
+  EXPECT_EQ((*strands)[0].last, 1U);
+  EXPECT_EQ((*strands)[1].first, 3U);
+}
+
+TEST(StrandsNearOtherParts, AreThoseThatComparingAllFinds) {
+  const double reach = reach_between_parts(kTolerance, kTolerance);
+  std::size_t near_ones = 0;
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    const std::vector<Strand> strands = cover_of(wandering(seed, 1200), kTolerance);
+    const std::vector<std::uint32_t> cuts = {300, 700, 1000};
+    std::vector<std::uint32_t> found;
+    for (const Strand& strand : strands_near_other_parts(strands, cuts, reach)) {
+      found.push_back(strand.first);
+    }
+    for (const Strand& strand : strands) {
+      double least = HUGE_VAL;
+      for (const Strand& other : strands) {
+        if (part_of(other.first, cuts) == part_of(strand.first, cuts)) continue;
+        least = std::min(least, std::min(apart(strand, other), apart(other, strand)));
+      }
+      const bool in_two = part_of(strand.first, cuts) != part_of(strand.last, cuts);
+      if (!in_two && std::abs(least - reach) < 1e-3) continue;  // too near to call by places
+      EXPECT_EQ(std::ranges::binary_search(found, strand.first), in_two || least < reach)
+          << "seed " << seed << ", strand from " << strand.first << ", " << least << " mm";
+    }
+    near_ones += found.size();
+  }
+  EXPECT_GE(near_ones, 60U) << "or nothing was asked";
+}
+
+// --- crossings -----------------------------------------------------------------------------------
+
+// Along y = 0, round a wide loop, and back above the first pass by `gap`.
+std::vector<Point2> there_and_back(double gap) {
+  std::vector<Point2> points;
+  for (int i = 0; i <= 20; ++i) points.emplace_back(0.5 * i, 0);
+  points.emplace_back(12, -3);
+  points.emplace_back(16, 0);
+  points.emplace_back(12, 3);
+  for (int i = 20; i >= 0; --i) points.emplace_back(0.5 * i, gap);
+  return points;
+}
+
+std::vector<PartEdge> edges_of(const std::vector<Point2>& points, std::uint32_t cut) {
+  std::vector<PartEdge> edges;
+  for (std::uint32_t i = 0; i + 1 < points.size(); ++i) {
+    const Point3 from(points[i].x(), points[i].y(), 2);
+    const Point3 to(points[i + 1].x(), points[i + 1].y(), 2);
+    const PathPiece piece = Line{from, to};
+    const std::uint32_t cuts[] = {cut};
+    for (const PartEdge& edge : flat_edges({&piece, 1}, 2, kTolerance, i, part_of(i, cuts))) {
+      edges.push_back(edge);
+    }
+  }
+  return edges;
+}
+
+TEST(NewCrossingsOfParts, AreThoseOfTheWholePathWhereTwoPartsMeet) {
+  const std::vector<Point2> old = there_and_back(0.015);
+  std::vector<Point2> over = old;
+  over[10].y() = 0.009;
+  over[34].y() = 0.006;
+  const auto found = new_crossings_of_parts(edges_of(old, 22), edges_of(over, 22), kTolerance);
+  ASSERT_EQ(found.size(), 2U) << "it comes over and goes back";
+  for (const PartCrossing& crossing : found) {
+    EXPECT_TRUE(std::ranges::any_of(crossing.labels, [](std::uint32_t i) { return i < 22; }));
+    EXPECT_TRUE(std::ranges::any_of(crossing.labels, [](std::uint32_t i) { return i >= 22; }));
+  }
+  EXPECT_TRUE(new_crossings_of_parts(edges_of(old, 22), edges_of(old, 22), kTolerance).empty());
+  // What one part does to itself is looked at where it is proved.
+  EXPECT_TRUE(new_crossings_of_parts(edges_of(old, 99), edges_of(over, 99), kTolerance).empty());
+}
+
+TEST(NewCrossingsOfParts, MayBeWhereTheOldPartsMet) {
+  const std::vector<Point2> old = there_and_back(0);
+  std::vector<Point2> wavy = old;
+  for (std::size_t i = 1; i <= 19; ++i) wavy[i].y() = i % 2 == 0 ? 0.004 : -0.004;
+  EXPECT_TRUE(new_crossings_of_parts(edges_of(old, 22), edges_of(wavy, 22), kTolerance).empty());
+}
+
+TEST(NewCrossingsOfParts, AreNotMadeByPlanesAboveEachOther) {
+  const std::vector<Point2> old = there_and_back(0.015);
+  std::vector<Point2> over = old;
+  over[10].y() = 0.009;
+  over[34].y() = 0.006;
+  std::vector<PartEdge> before = edges_of(old, 22);
+  std::vector<PartEdge> after = edges_of(over, 22);
+  for (std::vector<PartEdge>* edges : {&before, &after}) {
+    for (PartEdge& edge : *edges) edge.height = edge.part;
+  }
+  EXPECT_TRUE(new_crossings_of_parts(before, after, kTolerance).empty());
+}
+
+}  // namespace
+}  // namespace batten::geometry
