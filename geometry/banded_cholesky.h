@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "geometry/point.h"
@@ -19,8 +20,15 @@ class BandedMatrix {
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
   void set_zero();
 
+  // A row: the diagonal first, then the entries below it.
+  using Row = std::array<double, kBands + 1>;
+
   // All zero and of another size; memory is kept for the next one.
   void reset(std::size_t size) { rows_.assign(size, Row{}); }
+
+  // These rows; memory is kept. Of the first ones, entries that would be left of the matrix count
+  // for nothing.
+  void set_rows(std::span<const Row> rows) { rows_.assign(rows.begin(), rows.end()); }
 
   // Entry (i, i - below), 0 <= below <= kBands, below <= i. The matrix is symmetric: only
   // the lower half is kept.
@@ -45,7 +53,11 @@ class BandedMatrix {
   void inverse_band(BandedMatrix& inverse, std::size_t first) const;
 
  private:
-  using Row = std::array<double, kBands + 1>;  // diagonal first, then below
+  template <int kBefore>
+  [[nodiscard]] bool eliminate(std::size_t i, std::vector<Point3>& right);
+  template <int kBehind>
+  void put_in(std::size_t i, std::vector<Point3>& right) const;
+
   std::vector<Row> rows_;
 };
 

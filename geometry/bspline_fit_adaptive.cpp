@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -46,16 +47,14 @@ std::size_t end_of_span(std::span<const FitRow> rows, std::size_t begin) {
 }
 
 // The samples outside the zones.
-std::vector<FitSample> free_samples(const FitProblem& problem) {
-  std::vector<FitSample> free;
-  free.reserve(problem.samples.size());
+std::vector<FitSample> free_samples(std::vector<FitSample> samples,
+                                    std::span<const StraightZone> zones) {
   std::size_t zone = 0;
-  for (const FitSample& sample : problem.samples) {
-    while (zone < problem.zones.size() && problem.zones[zone].to <= sample.parameter) ++zone;
-    const bool inside = zone < problem.zones.size() && sample.parameter >= problem.zones[zone].from;
-    if (!inside) free.push_back(sample);
-  }
-  return free;
+  std::erase_if(samples, [&](const FitSample& sample) {
+    while (zone < zones.size() && zones[zone].to <= sample.parameter) ++zone;
+    return zone < zones.size() && sample.parameter >= zones[zone].from;
+  });
+  return samples;
 }
 
 void require_pins(const FitProblem& problem) {
@@ -66,9 +65,9 @@ void require_pins(const FitProblem& problem) {
 
 }  // namespace
 
-AdaptiveFit::AdaptiveFit(const FitProblem& problem, const FitOptions& options) : options_(options) {
+AdaptiveFit::AdaptiveFit(FitProblem problem, const FitOptions& options) : options_(options) {
   require_pins(problem);
-  samples_ = free_samples(problem);
+  samples_ = free_samples(std::move(problem.samples), problem.zones);
   zones_ = problem.zones;
   pins_ = problem.pins;
   states_.resize(samples_.size());
@@ -79,14 +78,15 @@ AdaptiveFit::AdaptiveFit(const FitProblem& problem, const FitOptions& options) :
   run();
 }
 
-void AdaptiveFit::refit(const FitProblem& problem, double closest) {
+void AdaptiveFit::refit(FitProblem problem, double closest) {
   require_pins(problem);
-  std::vector<FitSample> samples = free_samples(problem);
+  std::vector<FitSample> samples = free_samples(std::move(problem.samples), problem.zones);
   const SampleChanges changes = changes_of(samples_, samples);
   const auto rebuilt = changed_places(pins_, problem.pins, zones_, problem.zones);
   for (PointState& point : points_) point.moved = 0;
   if (!changes.any() && rebuilt.empty()) return;
   std::vector<double> breaks = breaks_of(problem, spline_.breaks, rebuilt, closest);
+  const bool same_spline = rebuilt.empty() && breaks == spline_.breaks;
 
   std::vector<SampleState> states(samples.size());
   std::vector<FitRow> rows(samples.size(), FitRow{kNotCarried, {}});
@@ -105,7 +105,13 @@ void AdaptiveFit::refit(const FitProblem& problem, double closest) {
   rows_ = std::move(rows);
   zones_ = problem.zones;
   pins_ = problem.pins;
-  set_breaks(std::move(breaks));
+  if (same_spline) {
+    std::vector<std::size_t> same_places(spline_.size());
+    std::iota(same_places.begin(), same_places.end(), std::size_t{0});
+    set_samples(same_places);
+  } else {
+    set_breaks(std::move(breaks));
+  }
 
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (changes.altered[i]) wake(rows_[i].first);
@@ -124,7 +130,13 @@ void AdaptiveFit::set_breaks(std::vector<double> breaks) {
   }
   spline_ = std::move(next);
   points_ = std::move(points);
+  set_samples(now_at);
+}
+
+// What is known of the samples on a spline whose control points were elsewhere before.
+void AdaptiveFit::set_samples(const std::vector<std::size_t>& now_at) {
   set_rows(now_at);
+  set_first_samples();
   set_stiffness();
   measure_fixed();
 }
@@ -158,6 +170,14 @@ void AdaptiveFit::set_rows(const std::vector<std::size_t>& now_at) {
       row = row_at(spline_, samples_[i].parameter, span);
       tight_[i] = 1;
     }
+  }
+}
+
+void AdaptiveFit::set_first_samples() {
+  first_sample_.assign(points_.size() + 1, rows_.size());
+  for (std::size_t i = rows_.size(); i-- > 0;) first_sample_[rows_[i].first] = i;
+  for (std::size_t point = points_.size(); point-- > 0;) {
+    first_sample_[point] = std::min(first_sample_[point], first_sample_[point + 1]);
   }
 }
 
@@ -208,8 +228,9 @@ void AdaptiveFit::run() {
 
 // Solves until every span is known to need a knot or not to.
 void AdaptiveFit::decide_spans() {
+  const IndexRange all{0, points_.size()};
   for (int pass = 0; pass < options_.passes; ++pass) {
-    const auto awake = ranges([&](std::size_t i) { return points_[i].undecided != 0; });
+    const auto awake = ranges([&](std::size_t i) { return points_[i].undecided != 0; }, {&all, 1});
     for (PointState& point : points_) point.undecided = 0;
     for (const IndexRange& range : awake) {
       solve(range, Phase::kDecide);
@@ -234,12 +255,15 @@ void AdaptiveFit::settle() {
   for (std::size_t i = 0; i < tight_.size(); ++i) {
     if (std::exchange(tight_[i], std::uint8_t{0}) != 0) forget_limit(states_[i]);
   }
+  std::vector<IndexRange> where{{0, points_.size()}};
   for (int pass = 0; pass < kSolutions + options_.last_passes; ++pass) {
-    const auto awake = ranges([&](std::size_t i) { return points_[i].left > 0; });
+    std::vector<IndexRange> awake =
+        ranges([&](std::size_t i) { return points_[i].left > 0; }, where);
     if (awake.empty()) break;
     for (const IndexRange& range : awake) {
       solve(range, pass < kSolutions ? Phase::kRelax : Phase::kClose);
     }
+    where = std::move(awake);
   }
   for (PointState& point : points_) point.left = 0;
 }
@@ -345,39 +369,48 @@ void AdaptiveFit::wake_at(const std::vector<double>& places) {
 // Those whose rows touch the range.
 IndexRange AdaptiveFit::samples_of(IndexRange free) const {
   const std::size_t first = free.begin < 3 ? 0 : free.begin - 3;
-  const auto before = [](const FitRow& row, std::size_t point) { return row.first < point; };
-  const auto begin = std::lower_bound(rows_.begin(), rows_.end(), first, before);
-  const auto end = std::lower_bound(begin, rows_.end(), free.end, before);
-  return {static_cast<std::size_t>(begin - rows_.begin()),
-          static_cast<std::size_t>(end - rows_.begin())};
+  return {first_sample_[first], first_sample_[free.end]};
 }
 
-// Ranges of control points around those that are awake; a wall parts them.
+// Ranges of control points around those that are awake; a wall parts them. A solution of the ranges
+// `where` wakes none that is not in one of them or in the span beside it.
 template <typename IsAwake>
-std::vector<IndexRange> AdaptiveFit::ranges(const IsAwake& is_awake) const {
+std::vector<IndexRange> AdaptiveFit::ranges(const IsAwake& is_awake,
+                                            std::span<const IndexRange> where) const {
+  constexpr std::size_t kDegree = 3;
   const std::size_t size = spline_.size();
   const auto awake = [&](std::size_t i) { return spline_.fixed[i] == 0 && is_awake(i); };
   std::vector<IndexRange> found;
-  for (std::size_t i = 0; i < size; ++i) {
-    if (!awake(i)) continue;
-    std::size_t begin = i;
-    std::size_t wall = 0;
-    for (std::size_t k = 0; k < kReach && begin > 0 && wall < kWall; ++k) {
-      wall = spline_.fixed[--begin] != 0 ? wall + 1 : 0;
-    }
-    while (i < size && awake(i)) ++i;
-    std::size_t end = i;
-    wall = 0;
-    for (std::size_t k = 0; k < kReach && end < size && wall < kWall; ++k) {
-      wall = spline_.fixed[end++] != 0 ? wall + 1 : 0;
-    }
-    if (!found.empty() && begin <= found.back().end) {
-      found.back().end = end;
-    } else {
-      found.push_back({begin, end});
+  std::size_t i = 0;
+  for (const IndexRange& part : where) {
+    i = std::max(i, std::max(part.begin, kDegree) - kDegree);
+    for (const std::size_t last = std::min(part.end + kDegree, size); i < last; ++i) {
+      if (!awake(i)) continue;
+      const std::size_t first = i;
+      while (i < size && awake(i)) ++i;
+      add_range({first, i}, found);
     }
   }
   return found;
+}
+
+// With the control points around that are solved for as well.
+void AdaptiveFit::add_range(IndexRange awake, std::vector<IndexRange>& found) const {
+  std::size_t begin = awake.begin;
+  std::size_t wall = 0;
+  for (std::size_t k = 0; k < kReach && begin > 0 && wall < kWall; ++k) {
+    wall = spline_.fixed[--begin] != 0 ? wall + 1 : 0;
+  }
+  std::size_t end = awake.end;
+  wall = 0;
+  for (std::size_t k = 0; k < kReach && end < spline_.size() && wall < kWall; ++k) {
+    wall = spline_.fixed[end++] != 0 ? wall + 1 : 0;
+  }
+  if (!found.empty() && begin <= found.back().end) {
+    found.back().end = end;
+  } else {
+    found.push_back({begin, end});
+  }
 }
 
 BsplineCurve AdaptiveFit::curve() const {

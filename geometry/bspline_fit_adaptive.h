@@ -24,12 +24,12 @@ namespace batten::geometry {
 class AdaptiveFit {
  public:
   // Fits. Throws std::invalid_argument as fit_bspline does.
-  AdaptiveFit(const FitProblem& problem, const FitOptions& options);
+  AdaptiveFit(FitProblem problem, const FitOptions& options);
 
   // Fits another problem on the same interval: the curve stays as it is where the samples, zones
   // and pins are the same, but for what the change moves. `closest` (mm): a pin or the end of a
   // zone takes the place of knots nearer than this.
-  void refit(const FitProblem& problem, double closest);
+  void refit(FitProblem problem, double closest);
 
   [[nodiscard]] const FitSpline& spline() const { return spline_; }
   [[nodiscard]] BsplineCurve curve() const;
@@ -52,7 +52,9 @@ class AdaptiveFit {
   enum class Phase { kDecide, kRelax, kClose };
 
   void set_breaks(std::vector<double> breaks);
+  void set_samples(const std::vector<std::size_t>& now_at);
   void set_rows(const std::vector<std::size_t>& now_at);
+  void set_first_samples();
   void set_stiffness();
   void measure_fixed();
   void run();
@@ -67,7 +69,9 @@ class AdaptiveFit {
   void wake_at(const std::vector<double>& places);
   [[nodiscard]] IndexRange samples_of(IndexRange free) const;
   template <typename IsAwake>
-  [[nodiscard]] std::vector<IndexRange> ranges(const IsAwake& is_awake) const;
+  [[nodiscard]] std::vector<IndexRange> ranges(const IsAwake& is_awake,
+                                               std::span<const IndexRange> where) const;
+  void add_range(IndexRange awake, std::vector<IndexRange>& found) const;
 
   FitOptions options_;
   std::vector<FitSample> samples_;  // those outside the zones
@@ -79,6 +83,8 @@ class AdaptiveFit {
   std::vector<std::uint8_t>
       tight_;  // per sample: its weights are still those of a start on new knots
   std::vector<PointState> points_;  // per control point
+  std::vector<std::size_t>
+      first_sample_;  // per control point, and one more: the first whose row starts there or behind
   FitSystem system_;
 };
 

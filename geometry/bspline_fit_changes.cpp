@@ -99,7 +99,7 @@ std::vector<double> breaks_of(const FitProblem& problem, std::span<const double>
     while (part < rebuilt.size() && rebuilt[part].to < u) ++part;
     if (part < rebuilt.size() && rebuilt[part].from <= u) breaks.push_back(u);
   }
-  std::sort(breaks.begin(), breaks.end());
+  if (breaks.size() > now.size()) std::sort(breaks.begin(), breaks.end());
   breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());
 
   const std::vector<double> required = required_breaks(problem);

@@ -108,14 +108,14 @@ void PartedFit::start(const FitProblem& problem) {
   borders_ = borders_of(problem);
   parts_.clear();
   parts_.reserve(borders_.size() - 1);
-  for (const FitProblem& part : parted(problem)) parts_.emplace_back(part, options_);
+  for (FitProblem& part : parted(problem)) parts_.emplace_back(std::move(part), options_);
   assemble(problem);
 }
 
 void PartedFit::refit(const FitProblem& problem, double closest) {
-  const std::vector<FitProblem> parts = parted(problem);
+  std::vector<FitProblem> parts = parted(problem);
   if (parts.empty()) return start(problem);
-  for (std::size_t i = 0; i < parts.size(); ++i) parts_[i].refit(parts[i], closest);
+  for (std::size_t i = 0; i < parts.size(); ++i) parts_[i].refit(std::move(parts[i]), closest);
   assemble(problem);
 }
 
@@ -147,7 +147,13 @@ void PartedFit::assemble(const FitProblem& problem) {
                      [](const Pin& a, const Pin& b) { return a.parameter < b.parameter; });
     breaks.insert(breaks.end(), own.begin() + (in_zone ? 1 : 0), own.end());
   }
-  spline_ = spline_on(std::move(breaks), problem.pins, problem.zones);
+  const bool same_spline = breaks == spline_.breaks &&
+                           changed_places(pins_, problem.pins, zones_, problem.zones).empty();
+  if (!same_spline) {
+    spline_ = spline_on(std::move(breaks), problem.pins, problem.zones);
+    pins_ = problem.pins;
+    zones_ = problem.zones;
+  }
   std::size_t next = 0;
   for (const AdaptiveFit& part : parts_) {
     const FitSpline& own = part.spline();

@@ -37,7 +37,9 @@ class PartedFit {
   FitOptions options_;
   std::vector<double> borders_;  // between the parts, and both ends
   std::vector<AdaptiveFit> parts_;
-  FitSpline spline_;
+  FitSpline spline_;  // of the parts in a row, with these pins and zones
+  std::vector<Pin> pins_;
+  std::vector<StraightZone> zones_;
 };
 
 }  // namespace batten::geometry

@@ -47,7 +47,8 @@ struct FitRow {
 [[nodiscard]] FitRow row_at(const FitSpline& spline, double u, std::size_t& span);
 
 // The curve at a sample.
-[[nodiscard]] inline Point3 place_of(const FitRow& row, std::span<const Point3> points) {
+[[nodiscard, gnu::always_inline]] inline Point3 place_of(const FitRow& row,
+                                                         std::span<const Point3> points) {
   const Point3* p = &points[row.first];
   return row.value[0] * p[0] + row.value[1] * p[1] + row.value[2] * p[2] + row.value[3] * p[3];
 }

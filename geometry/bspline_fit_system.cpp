@@ -65,6 +65,11 @@ SpanSums sums_of(std::span<const FitRow> rows, std::span<const SampleState> stat
   return sums;
 }
 
+// The two numbers the other way round.
+Pair swapped(const Pair& pair) { return Pair{pair[1], pair[0]}; }
+
+void add_to(double* at, const Pair& pair) { put(pair_at(at) + pair, at); }
+
 }  // namespace
 
 bool FitSystem::solve(const FitSpline& spline, std::span<const FitRow> rows,
@@ -72,13 +77,8 @@ bool FitSystem::solve(const FitSpline& spline, std::span<const FitRow> rows,
   free_ = free;
   offset_ = free.begin < kBands ? 0 : free.begin - kBands;
   const std::size_t end = std::min(free.end + kBands, spline.size());
-  matrix_.reset(end - offset_);
+  matrix_.set_rows({&spline.energy[offset_], end - offset_});
   right_.assign(end - offset_, Point3::Zero());
-  for (std::size_t i = offset_; i < end; ++i) {
-    for (std::size_t k = 0; k <= kBands && k <= i - offset_; ++k) {
-      matrix_.at(i - offset_, static_cast<int>(k)) = spline.energy[i][k];
-    }
-  }
   add_samples(rows, states, samples);
   for (std::size_t i = offset_; i < end; ++i) {
     if (is_held(spline, i)) matrix_.fix(i - offset_, spline.points[i], right_);
@@ -93,6 +93,10 @@ void FitSystem::add_samples(std::span<const FitRow> rows, std::span<const Sample
     const std::size_t first = rows[i].first;
     const std::size_t begin = i;
     while (i < samples.end && rows[i].first == first) ++i;
+    if (i == begin + 1) {
+      add_sample(rows[begin], states[begin]);
+      continue;
+    }
     const SpanSums sums = sums_of(rows.subspan(begin, i - begin), states.subspan(begin, i - begin));
     const std::size_t row = first - offset_;
 #pragma GCC unroll 4
@@ -107,6 +111,34 @@ void FitSystem::add_samples(std::span<const FitRow> rows, std::span<const Sample
       force.z() += sums.force[2][j];
     }
   }
+}
+
+// The same numbers as those of a span with one sample, without the sums: where every vertex has its
+// own knot, most are.
+void FitSystem::add_sample(const FitRow& row, const SampleState& state) {
+  const std::size_t first = row.first - offset_;
+  const Pair weight = twice(state.base + state.push);
+  const Pair low = weight * pair_at(&row.value[0]);
+  const Pair high = weight * pair_at(&row.value[2]);
+  double* const band = &matrix_.at(first, 0);
+  const auto row_of = [band](std::size_t j) { return band + j * (BandedMatrix::kBands + 1); };
+  row_of(0)[0] += low[0] * row.value[0];
+  add_to(row_of(1), swapped(low) * twice(row.value[1]));
+  add_to(row_of(2), Pair{high[0], low[1]} * twice(row.value[2]));
+  row_of(2)[2] += low[0] * row.value[2];
+  add_to(row_of(3), swapped(high) * twice(row.value[3]));
+  add_to(row_of(3) + 2, swapped(low) * twice(row.value[3]));
+  const Pair target = pair_at(state.target.data());
+  const double height = state.target.z();
+  const auto pull = [&](std::size_t j, double weighted) {
+    double* const force = right_[first + j].data();
+    add_to(force, twice(weighted) * target);
+    force[2] += weighted * height;
+  };
+  pull(0, low[0]);
+  pull(1, low[1]);
+  pull(2, high[0]);
+  pull(3, high[1]);
 }
 
 void FitSystem::invert(const FitSpline& spline, std::size_t first_point) {

@@ -39,6 +39,7 @@ class FitSystem {
  private:
   void add_samples(std::span<const FitRow> rows, std::span<const SampleState> states,
                    IndexRange samples);
+  void add_sample(const FitRow& row, const SampleState& state);
   [[nodiscard]] bool is_held(const FitSpline& spline, std::size_t point) const {
     return point < free_.begin || point >= free_.end || spline.fixed[point] != 0;
   }

@@ -11,24 +11,9 @@ namespace {
 // least-squares curve.
 constexpr double kTightStart = 30;
 
-// Weights stay above this part of the stiffness, so that a stretch whose samples all have
-// room is still held somewhere and the system stays regular; and below this multiple of it:
-// heavier weights no longer move the curve where its knots cannot follow.
-constexpr double kWeightFloor = 1e-8;
-constexpr double kWeightCap = 1e4;
-
 // Scatter is judged over this many neighbours on either side: enough for a standard error of
 // a fifth, few enough to follow a change of noise along the path.
 constexpr std::size_t kScatterWindow = 10;
-
-// In one step a weight grows by this factor at the most. Falling is quicker: distances grow no
-// faster than weights fall, so a weight that falls by the ratio does not fall too far.
-constexpr double kGrowth = 8;
-constexpr double kFall = 1.0 / 32;
-
-// What is left of the base weight of a sample without scatter after each step: little enough to
-// vanish soon, enough for the weights of limits to follow.
-constexpr double kLetGo = 0.25;
 
 // A sample this far above its limit asks for another knot; so does a span whose samples
 // scatter this much more than expected (a tight fit leaves about half of the scatter).
@@ -41,10 +26,6 @@ constexpr double kHopeless = 2.5;
 // Whether a distance, over what is wanted, hardly follows its falling weight: the last step went
 // less than half of the way.
 bool is_numb(double now, double before) { return now < 1 && 1 - now > 0.5 * (1 - before); }
-
-double bounded(double weight, double stiffness) {
-  return std::clamp(weight, kWeightFloor * stiffness, kWeightCap * stiffness);
-}
 
 }  // namespace
 
@@ -85,25 +66,19 @@ void reweight_scatter(std::span<const FitSample> samples, std::span<SampleState>
     const double factor = is_numb(rms, state.rms) ? rms * rms * rms : rms;
     state.rms = rms;
     const double change = std::clamp(factor, least, kGrowth);
-    state.base = bounded(state.base * change, state.stiffness);
+    state.base = bounded_weight(state.base * change, state.stiffness);
     // What a limit needed beside the heavier weight it will be told again if need be.
     if (states[i].distance < samples[i].limit) {
-      state.push = bounded(state.push * std::min(change, 1.0), state.stiffness);
+      state.push = bounded_weight(state.push * std::min(change, 1.0), state.stiffness);
     }
   }
-}
-
-void relax_limit(double ratio, SampleState& state) {
-  state.push = bounded(state.push * std::clamp(ratio / kAimInside, kFall, 1.0), state.stiffness);
 }
 
 void press_limit(double ratio, double leverage, double part, SampleState& state) {
   if (!(leverage > 0)) return;
   const double excess = std::min(ratio / kAimInside, kGrowth) - 1;
-  state.push = bounded(state.push + part * excess / leverage, state.stiffness);
+  state.push = bounded_weight(state.push + part * excess / leverage, state.stiffness);
 }
-
-void let_go(SampleState& state) { state.base = bounded(kLetGo * state.base, state.stiffness); }
 
 void forget_limit(SampleState& state) { state.push = kWeightFloor * state.stiffness; }
 

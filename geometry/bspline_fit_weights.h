@@ -21,6 +21,25 @@ struct SampleState {
   double rms = 0;                  // of the distances around over their scatter, one step before
 };
 
+// Weights stay above this part of the stiffness, so that a stretch whose samples all have
+// room is still held somewhere and the system stays regular; and below this multiple of it:
+// heavier weights no longer move the curve where its knots cannot follow.
+inline constexpr double kWeightFloor = 1e-8;
+inline constexpr double kWeightCap = 1e4;
+
+// In one step a weight grows by this factor at the most. Falling is quicker: distances grow no
+// faster than weights fall, so a weight that falls by the ratio does not fall too far.
+inline constexpr double kGrowth = 8;
+inline constexpr double kFall = 1.0 / 32;
+
+// What is left of the base weight of a sample without scatter after each step: little enough to
+// vanish soon, enough for the weights of limits to follow.
+inline constexpr double kLetGo = 0.25;
+
+inline double bounded_weight(double weight, double stiffness) {
+  return std::clamp(weight, kWeightFloor * stiffness, kWeightCap * stiffness);
+}
+
 // Weights close to those of the least-squares curve: they fall from there where there is room.
 void start_tight(SampleState& state);
 
@@ -52,7 +71,10 @@ void reweight_scatter(std::span<const FitSample> samples, std::span<SampleState>
 
 // Where a limit leaves room its weight falls by the ratio of distance and limit (C. L. Lawson's
 // reweighting), so that it vanishes where the limit is not felt.
-void relax_limit(double ratio, SampleState& state);
+inline void relax_limit(double ratio, SampleState& state) {
+  state.push =
+      bounded_weight(state.push * std::clamp(ratio / kAimInside, kFall, 1.0), state.stiffness);
+}
 
 // Where a limit is passed its weight takes a part of Newton's step: with leverage h, the compliance
 // of the curve at the sample, a weight w leaves a distance proportional to 1 / (w + k),
@@ -60,7 +82,9 @@ void relax_limit(double ratio, SampleState& state);
 void press_limit(double ratio, double leverage, double part, SampleState& state);
 
 // A sample without scatter is held by its limit alone in the end: its base weight fades.
-void let_go(SampleState& state);
+inline void let_go(SampleState& state) {
+  state.base = bounded_weight(kLetGo * state.base, state.stiffness);
+}
 
 // The limit is told again if need be.
 void forget_limit(SampleState& state);
