@@ -55,6 +55,9 @@ BandFit::BandFit(std::vector<Point3> points, const FairOptions& options,
 }
 
 void BandFit::loosen(std::vector<double> factors) {
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    if (factors[i] != loosen_[i]) altered_.push_back(i);
+  }
   loosen_ = std::move(factors);
   hold();
 }
@@ -62,9 +65,12 @@ void BandFit::loosen(std::vector<double> factors) {
 void BandFit::take_back(const BandFit& before, std::span<const IndexRange> stretches) {
   for (const IndexRange& stretch : stretches) {
     for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
+      altered_.push_back(i);
       loosen_[i] = before.loosen_[i];
+      if (features_.kinds[i] != before.features_.kinds[i]) stated_ = false;
       features_.kinds[i] = before.features_.kinds[i];
       if (i + 1 == stretch.end) break;
+      if (features_.lines[i] != before.features_.lines[i]) stated_ = false;
       features_.lines[i] = before.features_.lines[i];
       care_[i] = before.care_[i];
     }
@@ -108,21 +114,35 @@ void BandFit::find_meant() {
 }
 
 void BandFit::fit() {
-  FitProblem problem = state_fair_problem(points_, features_, loosen_, care_, band());
-  hold_met(problem);
+  state();
   if (fit_) {
-    fit_->refit(problem, closest_knots(band()));
+    fit_->refit(problem_, closest_knots(band()));
   } else {
-    fit_.emplace(problem, FitOptions{});
+    fit_.emplace(problem_, FitOptions{});
   }
 }
 
-void BandFit::hold_met(FitProblem& problem) const {
+// What each vertex is decides where knots, corners and lines are. As long as that stays, a problem
+// differs from the one before only about the vertices that are asked for otherwise.
+void BandFit::state() {
+  if (stated_) {
+    std::sort(altered_.begin(), altered_.end());
+    restate_samples(points_, features_, loosen_, care_, band(), altered_, problem_);
+  } else {
+    problem_ = state_fair_problem(points_, features_, loosen_, care_, band());
+  }
+  stated_ = true;
+  altered_.clear();
+  hold_met();
+}
+
+void BandFit::hold_met() {
+  std::vector<FitSample>& samples = problem_.samples;
   for (const std::size_t i : met_) {
     const auto at =
-        std::lower_bound(problem.samples.begin(), problem.samples.end(), features_.parameters[i],
+        std::lower_bound(samples.begin(), samples.end(), features_.parameters[i],
                          [](const FitSample& sample, double u) { return sample.parameter < u; });
-    if (at == problem.samples.end() || at->parameter != features_.parameters[i]) continue;
+    if (at == samples.end() || at->parameter != features_.parameters[i]) continue;
     at->limit = kMetLimit * options_.tolerance;
     at->scatter = 0;
   }
@@ -165,6 +185,8 @@ bool BandFit::mend() {
     if (off_[edge] <= options_.tolerance) continue;
     left = true;
     EdgeCare& care = care_[edge];
+    altered_.push_back(edge);
+    altered_.push_back(edge + 1);
     const int watched = is_noisy(edge) ? kWatchedAmongNoise : kWatched;
     const bool slightly = off_[edge] < kSlightly * options_.tolerance;
     care.breaches += slightly || is_noisy(edge) ? 1 : watched + 1;
@@ -184,6 +206,7 @@ bool BandFit::is_noisy(std::size_t edge) const {
 
 // An edge and so many on either side stay lines between kept corners.
 void BandFit::keep_edges(std::size_t edge, std::size_t around) {
+  stated_ = false;
   const std::size_t last = std::min(edge + around, off_.size() - 1);
   for (std::size_t e = edge < around ? 0 : edge - around; e <= last; ++e) {
     features_.lines[e] = true;

@@ -50,22 +50,26 @@ class BandFit {
 
  private:
   [[nodiscard]] BandOptions band() const;
+  void state();
   void find_meant();
   void fit();
   void measure();
   [[nodiscard]] bool mend();
   [[nodiscard]] bool is_noisy(std::size_t edge) const;
   void keep_edges(std::size_t edge, std::size_t around);
-  void hold_met(FitProblem& problem) const;
+  void hold_met();
 
   std::vector<Point3> points_;
   FairOptions options_;
   std::vector<std::size_t> met_;
   PathFeatures features_;
-  std::vector<double> loosen_;  // per vertex
-  std::vector<double> rooms_;   // per edge
-  std::vector<EdgeCare> care_;  // per edge
-  std::vector<Point3> meant_;   // per vertex, where noise takes much of the band; else empty
+  std::vector<double> loosen_;        // per vertex
+  std::vector<double> rooms_;         // per edge
+  std::vector<EdgeCare> care_;        // per edge
+  std::vector<Point3> meant_;         // per vertex, where noise takes much of the band; else empty
+  FitProblem problem_;                // what is asked of the fit
+  bool stated_ = false;               // and whether it is, but for what follows
+  std::vector<std::size_t> altered_;  // vertices whose samples are asked for otherwise since then
   std::optional<PartedFit> fit_;
   std::vector<double> at_;
   std::vector<double> off_;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
+
+#include "geometry/fair_knots.h"
 
 namespace batten::geometry {
 
@@ -26,10 +29,6 @@ constexpr double kNoiseMargin = 1.2;
 // limit, the vertices no longer bind: the curve runs between vertices and chords. Otherwise
 // it would have to swing out to each vertex.
 constexpr double kTooHigh = 0.7;
-
-// A vertex turns more than by noise when it turns by so many noises over its edge: four standard
-// deviations of a second difference, sqrt(6) noises.
-constexpr double kSureTurn = 4 * 2.45;
 
 // Smooth edges whose chord may leave the curve by this part of the limit are watched between
 // their vertices; so are those whose vertices leave the curve as much room.
@@ -80,15 +79,52 @@ class ProblemMaker {
   FitProblem make() {
     find_reaches();
     problem_.samples.reserve(n_ + n_ / 4);
-    for (std::size_t i = 0; i < n_; ++i) {
-      add_vertex(i);
-      if (i + 1 < n_) add_edge(i);
-    }
-    finish();
+    problem_.breakpoints.reserve(n_);
+    add(0, n_);
+    problem_.breakpoints =
+        knots_of(std::move(problem_.breakpoints), std::move(corner_knots_), problem_,
+                 {f_.parameters.front(), f_.parameters.back()}, closest_knots(options_));
     return std::move(problem_);
   }
 
+  // Each stretch of them starts at a smooth vertex and goes on to the next one: how edges are
+  // watched is told by the last smooth vertex before them.
+  void remake(std::span<const std::size_t> changed, std::vector<FitSample>& samples) {
+    find_reaches();
+    std::vector<FitSample> all;
+    all.reserve(samples.size() + samples.size() / 8);
+    auto old = samples.cbegin();
+    std::size_t done = 0;  // vertices before this one are as they shall be
+    for (const std::size_t vertex : changed) {
+      if (vertex < done) continue;
+      std::size_t begin = vertex;
+      while (begin > done && !smooth(begin)) --begin;
+      std::size_t end = vertex + 1;
+      while (end < n_ && !smooth(end)) ++end;
+      while (old != samples.cend() && old->parameter < f_.parameters[begin]) all.push_back(*old++);
+      problem_.samples.clear();
+      add(begin, end);
+      all.insert(all.end(), problem_.samples.begin(), problem_.samples.end());
+      while (old != samples.cend() && (end == n_ || old->parameter < f_.parameters[end])) ++old;
+      done = end;
+    }
+    all.insert(all.end(), old, samples.cend());
+    samples = std::move(all);
+  }
+
  private:
+  // The vertices [begin, end[ and the edges behind them.
+  void add(std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      add_vertex(i);
+      if (i + 1 == n_) break;
+      const std::size_t before = problem_.samples.size();
+      add_edge(i);
+      put_in_order(before);
+    }
+  }
+
+  [[nodiscard]] bool smooth(std::size_t i) const { return f_.kinds[i] == VertexKind::kSmooth; }
   [[nodiscard]] double length(std::size_t edge) const {
     return f_.parameters[edge + 1] - f_.parameters[edge];
   }
@@ -150,7 +186,7 @@ class ProblemMaker {
 
   [[nodiscard]] bool has_own_knot(std::size_t i) const {
     if (!wants_near(i) || noisy(i)) return false;
-    return std::max(sagitta(i - 1), sagitta(i)) > kCoarse * expected(i);
+    return std::max(f_.bows[i - 1], f_.bows[i]) > kCoarse * expected(i);
   }
 
   [[nodiscard]] bool noisy(std::size_t i) const {
@@ -177,34 +213,8 @@ class ProblemMaker {
     return care_.empty() ? 1 : care_[edge].share;
   }
 
-  // How far a curve through the vertices would leave an edge: the cubic that meets both ends at
-  // half of their turns.
-  [[nodiscard]] double sagitta(std::size_t edge) const {
-    const double start = 0.5 * f_.turns[edge];
-    const double end = 0.5 * f_.turns[edge + 1];
-    if (!bends_back(edge)) return length(edge) * (start + end) / 8;
-    // It crosses the edge: the greater of its two bows.
-    double height = 0;
-    for (const double t : {0.1, 0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9}) {
-      height = std::max(height, std::abs(t * (1 - t) * (start * (1 - t) - end * t)));
-    }
-    return length(edge) * height;
-  }
-
-  // Whether the path turns to one side before an edge and to the other behind it, by more than
-  // its noise.
-  [[nodiscard]] bool bends_back(std::size_t edge) const {
-    if (edge == 0 || edge + 2 >= n_) return false;
-    const double noise = std::max(f_.noise[edge], f_.noise[edge + 1]);
-    const double by_noise = kSureTurn * noise / length(edge);
-    if (std::min(f_.turns[edge], f_.turns[edge + 1]) <= by_noise) return false;
-    const Vector3 before = direction(edge - 1).cross(direction(edge));
-    const Vector3 behind = direction(edge).cross(direction(edge + 1));
-    return before.dot(behind) < 0;
-  }
-
   [[nodiscard]] double scatter(std::size_t i) const {
-    const double height = std::max(sagitta(i - 1), sagitta(i));
+    const double height = std::max(f_.bows[i - 1], f_.bows[i]);
     if (height > kTooHigh * options_.limit) return 0;
     const double loose = looseness(i);
     return std::isinf(loose) ? 0 : expected(i) * loose;
@@ -229,7 +239,7 @@ class ProblemMaker {
   [[nodiscard]] double left_of_rounding(std::size_t i) const {
     if (!wants_near(i)) return 1;
     if (options_.accurate) return kLeftOfRounding;
-    const double height = std::min(sagitta(i - 1), sagitta(i));
+    const double height = std::min(f_.bows[i - 1], f_.bows[i]);
     const double least = kWorthKnots * options_.rounding;
     return height > least ? std::max(least / height, kLeftOfRounding) : 1;
   }
@@ -248,10 +258,10 @@ class ProblemMaker {
   void add_corner_knots(std::size_t i) {
     const double u = f_.parameters[i];
     const double first = kFirstKnot * options_.limit;
-    for (double d = first; d < reach_before_[i]; d *= 2) problem_.breakpoints.push_back(u - d);
-    for (double d = first; d < reach_after_[i]; d *= 2) problem_.breakpoints.push_back(u + d);
-    problem_.breakpoints.push_back(u - std::max(reach_before_[i], first / 2));
-    problem_.breakpoints.push_back(u + std::max(reach_after_[i], first / 2));
+    for (double d = first; d < reach_before_[i]; d *= 2) corner_knots_.push_back(u - d);
+    for (double d = first; d < reach_after_[i]; d *= 2) corner_knots_.push_back(u + d);
+    corner_knots_.push_back(u - std::max(reach_before_[i], first / 2));
+    corner_knots_.push_back(u + std::max(reach_after_[i], first / 2));
     since_break_ = 0;
   }
 
@@ -354,52 +364,15 @@ class ProblemMaker {
     problem_.samples.push_back(sample);
   }
 
-  // Knots and samples came in the order of the path but for those of corners.
-  void finish() {
-    auto& samples = problem_.samples;
+  // Samples of one edge, from this one on: those that watch it came first.
+  void put_in_order(std::size_t begin) {
+    const auto first = problem_.samples.begin() + static_cast<std::ptrdiff_t>(begin);
     const auto earlier = [](const FitSample& a, const FitSample& b) {
       return a.parameter < b.parameter;
     };
-    if (!std::is_sorted(samples.begin(), samples.end(), earlier)) {
-      std::sort(samples.begin(), samples.end(), earlier);
+    if (!std::is_sorted(first, problem_.samples.end(), earlier)) {
+      std::sort(first, problem_.samples.end(), earlier);
     }
-    auto& knots = problem_.breakpoints;
-    std::sort(knots.begin(), knots.end());
-    // Knots closer than a quarter of the finest wanted spacing add nothing but trouble; ends of
-    // zones and pins are kept.
-    const double close = closest_knots(options_);
-    std::vector<double> needed;
-    for (const Pin& pin : problem_.pins) needed.push_back(pin.parameter);
-    for (const StraightZone& zone : problem_.zones) {
-      needed.push_back(zone.from);
-      needed.push_back(zone.to);
-    }
-    std::sort(needed.begin(), needed.end());
-    needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
-    std::vector<double> kept;
-    std::size_t next = 0;
-    std::size_t zone = 0;
-    for (const double u : knots) {
-      while (next < needed.size() && needed[next] < u) ++next;
-      const bool must = next < needed.size() && needed[next] == u;
-      if (must) {
-        while (!kept.empty() && u - kept.back() < close && !is_needed(needed, kept.back())) {
-          kept.pop_back();
-        }
-        if (kept.empty() || kept.back() != u) kept.push_back(u);
-        continue;
-      }
-      while (zone < problem_.zones.size() && problem_.zones[zone].to <= u) ++zone;
-      const bool inside = zone < problem_.zones.size() && u > problem_.zones[zone].from;
-      const bool outside_path = u <= f_.parameters.front() || u >= f_.parameters.back();
-      if (inside || outside_path || (!kept.empty() && u - kept.back() < close)) continue;
-      kept.push_back(u);
-    }
-    knots = std::move(kept);
-  }
-
-  static bool is_needed(const std::vector<double>& needed, double u) {
-    return std::binary_search(needed.begin(), needed.end(), u);
   }
 
   std::span<const Point3> p_;
@@ -411,6 +384,7 @@ class ProblemMaker {
   FitProblem problem_;
   std::vector<double> reach_before_;
   std::vector<double> reach_after_;
+  std::vector<double> corner_knots_;
   std::size_t since_break_ = 0;
   bool loose_ = false;  // the last vertex left the curve room of the size of the limit
   std::optional<std::size_t> before_;
@@ -425,6 +399,13 @@ FitProblem state_fair_problem(std::span<const Point3> points, const PathFeatures
                               std::span<const double> loosen, std::span<const EdgeCare> care,
                               const BandOptions& options) {
   return ProblemMaker(points, features, loosen, care, options).make();
+}
+
+void restate_samples(std::span<const Point3> points, const PathFeatures& features,
+                     std::span<const double> loosen, std::span<const EdgeCare> care,
+                     const BandOptions& options, std::span<const std::size_t> changed,
+                     FitProblem& problem) {
+  ProblemMaker(points, features, loosen, care, options).remake(changed, problem.samples);
 }
 
 }  // namespace batten::geometry

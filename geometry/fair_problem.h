@@ -2,6 +2,7 @@
 // keep and how closely. Method: docs/algorithms/fair.md, sections Band and Corners.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -39,5 +40,13 @@ struct EdgeCare {
                                             std::span<const double> loosen,
                                             std::span<const EdgeCare> care,
                                             const BandOptions& options);
+
+// The same for a problem that was stated for these points with these features and options, where
+// `loosen` and `care` have changed since then at some vertices, those beside an edge whose care
+// changed too: the samples about them are made anew. `changed`: these vertices, in order.
+void restate_samples(std::span<const Point3> points, const PathFeatures& features,
+                     std::span<const double> loosen, std::span<const EdgeCare> care,
+                     const BandOptions& options, std::span<const std::size_t> changed,
+                     FitProblem& problem);
 
 }  // namespace batten::geometry

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "geometry/edge_bows.h"
 #include "geometry/kink_among_noise.h"
 #include "geometry/vertex_noise.h"
 
@@ -182,6 +183,7 @@ PathFeatures find_features(std::span<const Point3> points, const FeatureOptions&
     f.turns[i] = turn_between(points[i] - points[i - 1], points[i + 1] - points[i]);
   }
   f.noise = vertex_noise(points, f.parameters);
+  f.bows = edge_bows(points, f.parameters, f.turns, f.noise);
   f.kinds.assign(n, VertexKind::kKeptCorner);
   const std::vector<double> scatter = cornerless_scatter(f, options);
   for (std::size_t i = 1; i + 1 < n; ++i) {

@@ -25,6 +25,7 @@ struct PathFeatures {
   std::vector<double> parameters;  // length along the path at each vertex, mm
   std::vector<double> turns;       // radians in [0, pi] at each vertex; 0 at the ends
   std::vector<double> noise;       // mm, see vertex_noise
+  std::vector<double> bows;        // mm, per edge, see edge_bows
   std::vector<VertexKind> kinds;   // the ends are kKeptCorner
   std::vector<bool> lines;         // edge i, from vertex i to i + 1, was meant as a line
 };
