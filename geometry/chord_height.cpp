@@ -127,7 +127,7 @@ ChordHeight ChordsFrom::to(double end) const {
   double square = 0;
   for (std::size_t i = first_; i < pieces_.size() && pieces_.breaks()[i] < end; ++i) {
     const double t0 = i == first_ ? pieces_.local(i, from_) : 0;
-    const double t1 = pieces_.local(i, end);
+    const double t1 = pieces_.breaks()[i + 1] <= end ? 1 : pieces_.local(i, end);
     const AcrossChord seen = seen_from(start_, direction, pieces_.piece(i), t0, t1);
     const double* a = seen.along;
     result.in_order = result.in_order && a[0] <= a[1] && a[1] <= a[2] && a[2] <= a[3];

@@ -52,11 +52,12 @@ SplineWalk::SplineWalk(std::span<const double> knots, std::span<const Point3> co
   take_span();
 }
 
-void SplineWalk::go_to(double u) {
-  if (u >= t_[span_] && (u < t_[span_ + 1] || span_ + 1 == p_.size())) return;
+void SplineWalk::find_span(double u) {
   constexpr std::size_t kNear = 8;  // spans that are tried one by one
   if (u >= t_[span_] && (span_ + kNear >= p_.size() || u < t_[span_ + kNear])) {
     while (span_ + 1 < p_.size() && t_[span_ + 1] <= u) ++span_;
+  } else if (u < t_[span_] && span_ >= kFairDegree + kNear && u >= t_[span_ - kNear]) {
+    while (u < t_[span_]) --span_;
   } else {
     const auto begin = t_.begin() + kFairDegree;
     const auto end = t_.begin() + static_cast<std::ptrdiff_t>(p_.size());
@@ -69,6 +70,9 @@ void SplineWalk::go_to(double u) {
 // Taylor's series at the start of the span: de Boor's algorithm for the curve and its derivatives,
 // where all that is left of it at a knot is written out.
 void SplineWalk::take_span() {
+  if (kept_[span_ % kKept] == span_) return;
+  kept_[span_ % kKept] = span_;
+  std::array<Vector3, 4>& power = power_[span_ % kKept];
   const double* t = &t_[span_];
   const Point3* p = &p_[span_];
   const Vector3 d0 = 3 / (t[1] - t[-2]) * (p[-2] - p[-3]);
@@ -81,33 +85,29 @@ void SplineWalk::take_span() {
   const double middle = (t[0] - t[-1]) / (t[1] - t[-1]);
   const Point3 before = (1 - low) * p[-3] + low * p[-2];
   const Point3 after = (1 - high) * p[-2] + high * p[-1];
-  power_[0] = (1 - middle) * before + middle * after;
-  power_[1] = (1 - middle) * d0 + middle * d1;
-  power_[2] = 0.5 * s0;
-  power_[3] = (s1 - s0) / (6 * (t[1] - t[0]));
-}
-
-Point3 SplineWalk::point_at(double u) {
-  go_to(u);
-  const double x = u - t_[span_];
-  return power_[0] + x * (power_[1] + x * (power_[2] + x * power_[3]));
+  power[0] = (1 - middle) * before + middle * after;
+  power[1] = (1 - middle) * d0 + middle * d1;
+  power[2] = 0.5 * s0;
+  power[3] = (s1 - s0) / (6 * (t[1] - t[0]));
 }
 
 double SplineWalk::curvature_at(double u) {
   go_to(u);
+  const std::array<Vector3, 4>& power = power_[span_ % kKept];
   const double x = u - t_[span_];
-  const Vector3 first = power_[1] + x * (2 * power_[2] + 3 * x * power_[3]);
-  const Vector3 second = 2 * power_[2] + 6 * x * power_[3];
+  const Vector3 first = power[1] + x * (2 * power[2] + 3 * x * power[3]);
+  const Vector3 second = 2 * power[2] + 6 * x * power[3];
   const double speed = first.norm();
   return speed == 0 ? 0 : first.cross(second).norm() / (speed * speed * speed);
 }
 
 double SplineWalk::third_by_length_at(double u) {
   go_to(u);
+  const std::array<Vector3, 4>& power = power_[span_ % kKept];
   const double x = u - t_[span_];
-  const Vector3 first = power_[1] + x * (2 * power_[2] + 3 * x * power_[3]);
-  const Vector3 second = 2 * power_[2] + 6 * x * power_[3];
-  const Vector3 third = 6 * power_[3];
+  const Vector3 first = power[1] + x * (2 * power[2] + 3 * x * power[3]);
+  const Vector3 second = 2 * power[2] + 6 * x * power[3];
+  const Vector3 third = 6 * power[3];
   const double speed = first.norm();
   if (speed == 0) return 0;
   // Of speed: its first and second derivative by the parameter.
@@ -120,8 +120,9 @@ double SplineWalk::third_by_length_at(double u) {
 
 double SplineWalk::nearer(double u, const Point3& p) {
   go_to(u);
+  const std::array<Vector3, 4>& power = power_[span_ % kKept];
   const double x = u - t_[span_];
-  const Vector3 first = power_[1] + x * (2 * power_[2] + 3 * x * power_[3]);
+  const Vector3 first = power[1] + x * (2 * power[2] + 3 * x * power[3]);
   const double squared = first.squaredNorm();
   return squared == 0 ? u : u + (p - point_at(u)).dot(first) / squared;
 }

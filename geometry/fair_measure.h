@@ -19,7 +19,12 @@ class SplineWalk {
   // Both must outlive it. Clamped at the ends.
   SplineWalk(std::span<const double> knots, std::span<const Point3> control_points);
 
-  [[nodiscard]] Point3 point_at(double u);
+  [[nodiscard]] Point3 point_at(double u) {
+    go_to(u);
+    const std::array<Vector3, 4>& power = power_[span_ % kKept];
+    const double x = u - t_[span_];
+    return power[0] + x * (power[1] + x * (power[2] + x * power[3]));
+  }
   [[nodiscard]] double curvature_at(double u);  // 1/mm; 0 where the first derivative vanishes
   // 1/mm^2: length of the third derivative by length; 0 where the first derivative vanishes.
   [[nodiscard]] double third_by_length_at(double u);
@@ -31,13 +36,21 @@ class SplineWalk {
   [[nodiscard]] double end_of_piece(double u);
 
  private:
-  void go_to(double u);
+  // Spans whose coefficients are kept: an edge and its neighbours are looked at in turn.
+  static constexpr std::size_t kKept = 8;
+
+  void go_to(double u) {
+    if (!(u >= t_[span_] && (u < t_[span_ + 1] || span_ + 1 == p_.size()))) find_span(u);
+  }
+  void find_span(double u);
   void take_span();
 
   std::span<const double> t_;
   std::span<const Point3> p_;
   std::size_t span_;
-  std::array<Vector3, 4> power_;  // coefficients by the parameter since the start of the span
+  // Coefficients by the parameter since the start of a span, and which spans these are.
+  std::array<std::array<Vector3, 4>, kKept> power_;
+  std::array<std::size_t, kKept> kept_{};
 };
 
 // A polyline and the parameters of its vertices on a curve.
