@@ -380,38 +380,56 @@ std::vector<ChainPiece> ArcChain::pieces_of(const ArcPair& pair) {
           ChainPiece{pair.second, pair.end.place.z(), pair.end.u}};
 }
 
-std::optional<std::vector<ChainPiece>> ArcChain::greedy(const ChainNode& start,
-                                                        const ChainNode& end,
-                                                        std::size_t at_most) const {
-  std::vector<ChainPiece> pieces;
-  std::vector<std::pair<std::size_t, OpenPair>> open;  // by the place of their first piece
+ArcChain::Walk ArcChain::walk(const ChainNode& start, const ChainNode& end, double whole,
+                              std::size_t at_most) const {
+  Walk walk;
   const auto most = static_cast<double>(at_most);
   ChainNode at = start;
   double guess = end.u - start.u;
   while (at.u < end.u) {
+    walk.reached = at.u;
     auto step = next_step(at, end, end.u, guess);
     if (step && end.u - step->end.u < kRemainder * (step->end.u - at.u) && step->end.u < end.u) {
       // A short remainder would be all rounding: halve what is left instead.
       const double half = (end.u - at.u) / 2;
       if (auto shorter = next_step(at, end, at.u + half, half)) step = std::move(shorter);
     }
-    if (!step || pieces.size() + step->pieces.size() > at_most) return std::nullopt;
-    if (step->open) open.emplace_back(pieces.size(), *step->open);
-    pieces.insert(pieces.end(), step->pieces.begin(), step->pieces.end());
+    walk.outcome = Outcome::kStuck;
+    if (!step) return walk;
+    walk.outcome = Outcome::kBehind;
+    if (walk.pieces.size() + step->pieces.size() > at_most) return walk;
+    if (step->open) walk.open.emplace_back(walk.pieces.size(), *step->open);
+    walk.pieces.insert(walk.pieces.end(), step->pieces.begin(), step->pieces.end());
     guess = step->end.u - at.u;
     at = step->end;
-    const double done = (at.u - start.u) / (end.u - start.u);
-    const bool is_behind = static_cast<double>(pieces.size()) > kHopelessPace * done * most;
-    if ((done > kPaceKnown && is_behind) || falls_behind(done, pieces.size(), at_most)) {
-      return std::nullopt;
+    const double done = (at.u - start.u) / (whole - start.u);
+    const bool is_behind = static_cast<double>(walk.pieces.size()) > kHopelessPace * done * most;
+    if ((done > kPaceKnown && is_behind) || falls_behind(done, walk.pieces.size(), at_most)) {
+      return walk;
     }
   }
+  walk.outcome = Outcome::kArrived;
+  return walk;
+}
+
+bool ArcChain::fails_before(const ChainNode& start, const ChainNode& end, double whole,
+                            std::size_t at_most) const {
+  const Walk found = walk(start, end, whole, at_most);
+  const bool far_from_end = found.reached < (start.u + end.u) / 2;
+  return found.outcome == Outcome::kBehind || (found.outcome == Outcome::kStuck && far_from_end);
+}
+
+std::optional<std::vector<ChainPiece>> ArcChain::greedy(const ChainNode& start,
+                                                        const ChainNode& end,
+                                                        std::size_t at_most) const {
+  Walk found = walk(start, end, end.u, at_most);
+  if (found.outcome != Outcome::kArrived) return std::nullopt;
   // The chain goes the same way whichever joints its pairs have, and most chains are given up.
-  for (const auto& [first, pair] : open) {
+  for (const auto& [first, pair] : found.open) {
     std::ranges::copy(pieces_of(best_pair(pair.start, pair.found)),
-                      pieces.begin() + static_cast<std::ptrdiff_t>(first));
+                      found.pieces.begin() + static_cast<std::ptrdiff_t>(first));
   }
-  return pieces;
+  return std::move(found.pieces);
 }
 
 std::optional<std::vector<ChainPiece>> ArcChain::between(const ChainNode& start,

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "geometry/biarc.h"
@@ -60,6 +61,12 @@ class ArcChain {
                                                                const ChainNode& end,
                                                                std::size_t at_most) const;
 
+  // Whether the chain from `start` already falls behind its pace before `end`, or sticks long
+  // before it, where it would go on to `whole` (the parameter at which its stretch ends): between()
+  // would give it up.
+  [[nodiscard]] bool fails_before(const ChainNode& start, const ChainNode& end, double whole,
+                                  std::size_t at_most) const;
+
   // A pair of arcs from `start` to the place at u, in the search's form.
   [[nodiscard]] std::optional<ArcPair> pair_to(const ChainNode& start, double u) const;
 
@@ -78,6 +85,17 @@ class ArcChain {
     std::optional<OpenPair> open;  // the two pieces are one
   };
 
+  // The pieces of a chain, pairs by the place of their first piece, and why it ends.
+  enum class Outcome { kArrived, kBehind, kStuck };
+  struct Walk {
+    std::vector<ChainPiece> pieces;
+    std::vector<std::pair<std::size_t, OpenPair>> open;
+    double reached = 0;  // parameter
+    Outcome outcome = Outcome::kArrived;
+  };
+
+  // `whole`: the end of the way that the pace is told by.
+  Walk walk(const ChainNode& start, const ChainNode& end, double whole, std::size_t at_most) const;
   std::optional<std::vector<ChainPiece>> greedy(const ChainNode& start, const ChainNode& end,
                                                 std::size_t at_most) const;
   std::optional<std::vector<ChainPiece>> balanced(

@@ -245,15 +245,13 @@ double range_along(const CurvePieces& pieces, const Vector3& axis) {
 
 // Whether a chain off the plane falls so far behind on so many pieces that it would be given up,
 // however well it went afterwards: most are, and so only they are looked at closely.
-constexpr std::size_t kFirstPieces = 3000;
+constexpr std::size_t kFirstPieces = 1500;
 
 // One curve, chained in one plane.
 class ArcFit {
  public:
-  ArcFit(const BsplineCurve& curve, const MarkedPieces& marked, double chords,
-         const ArcFitOptions& options)
-      : curve_(curve),
-        marked_(marked),
+  ArcFit(const MarkedPieces& marked, double chords, const ArcFitOptions& options)
+      : marked_(marked),
         chords_(chords),
         options_(options),
         frame_(PlaneFrame::across(options.axis)),
@@ -273,37 +271,64 @@ class ArcFit {
   // them.
   [[nodiscard]] bool falls_behind_early() const {
     const double end = marked_.pieces.breaks()[kFirstPieces];
-    const PlaneCurve first(curve_, curve_.first(), end, frame_);
+    const PlaneCurve first(marked_.pieces, kFirstPieces, frame_);
     const ArcChain chain(first, limits_);
     std::vector<Stretch> stretches = ArcCutter(first, chain, options_.grid).cut(marked_, end);
     const std::vector<Stop> stops = stops_of(first, chain, stretches, flat_);
-    // The last one ends at no corner of the curve; of the others there are no more than these.
+    // The last one goes on behind these pieces. Of the others there are no more than at corners and
+    // about straight runs.
+    const Stretch last = stretches.back();
     stretches.pop_back();
+    const auto runs = std::ranges::count_if(
+        marked_.straight_runs, [this](const StraightRun& run) { return has_direction(run); });
     const std::size_t most_stretches =
-        marked_.corners.size() + 2 * marked_.straight_runs.size() + 2;
+        marked_.corners.size() + 2 * static_cast<std::size_t>(runs) + 2;
     const std::size_t most = most_pieces(chords_, most_stretches, options_, flat_);
-    return !path_along(chain, stretches, stops, most);
+    std::size_t left = most;
+    if (!path_along(chain, stretches, stops, most, left)) return true;
+    if (last.straight) return false;
+    const ChainNode from{last.from, stops[stretches.size()].place, stops[stretches.size()].leaving};
+    const ChainNode to{last.to, stops.back().place, stops.back().arriving};
+    return chain.fails_before(from, to, end_of_stretch(end), left);
   }
 
   [[nodiscard]] std::optional<Path> chain() const {
-    const PlaneCurve whole(curve_, curve_.first(), curve_.last(), frame_);
+    const PlaneCurve whole(marked_.pieces, marked_.pieces.size(), frame_);
     const ArcChain chain(whole, limits_);
     const std::vector<Stretch> stretches =
-        ArcCutter(whole, chain, options_.grid).cut(marked_, curve_.last());
+        ArcCutter(whole, chain, options_.grid).cut(marked_, marked_.pieces.last());
     const std::vector<Stop> stops = stops_of(whole, chain, stretches, flat_);
-    return path_along(chain, stretches, stops,
-                      most_pieces(chords_, stretches.size(), options_, flat_));
+    const std::size_t most = most_pieces(chords_, stretches.size(), options_, flat_);
+    std::size_t left = most;
+    return path_along(chain, stretches, stops, most, left);
   }
 
  private:
+  // Where the smooth stretch that holds u ends, or before: at the next corner or straight run.
+  [[nodiscard]] double end_of_stretch(double u) const {
+    double end = marked_.pieces.last();
+    const auto corner = std::ranges::upper_bound(marked_.corners, u);
+    if (corner != marked_.corners.end()) end = std::min(end, *corner);
+    auto run = std::ranges::upper_bound(marked_.straight_runs, u, {}, &StraightRun::from);
+    while (run != marked_.straight_runs.end() && !has_direction(*run)) ++run;
+    if (run != marked_.straight_runs.end()) end = std::min(end, run->from);
+    return end;
+  }
+
+  // Whether the run may stay a line (ArcCutter asks more of it).
+  [[nodiscard]] bool has_direction(const StraightRun& run) const {
+    const Vector3 way = marked_.pieces.point_at(run.to) - marked_.pieces.point_at(run.from);
+    return way.norm() >= kLeastRunInGrids * options_.grid;
+  }
+
+  // `left`: of `most` pieces, those that may still be used.
   [[nodiscard]] std::optional<Path> path_along(const ArcChain& chain,
                                                const std::vector<Stretch>& stretches,
-                                               const std::vector<Stop>& stops,
-                                               std::size_t most) const {
+                                               const std::vector<Stop>& stops, std::size_t most,
+                                               std::size_t& left) const {
     const double from = marked_.pieces.first();
     const double length = marked_.pieces.last() - from;
     PathBuilder builder(frame_, options_.axis, marked_.pieces.piece(0).control[0]);
-    std::size_t left = most;
     for (std::size_t i = 0; i < stretches.size(); ++i) {
       const Stretch& stretch = stretches[i];
       if (stretch.straight) {
@@ -324,7 +349,6 @@ class ArcFit {
     return builder.take();
   }
 
-  const BsplineCurve& curve_;
   const MarkedPieces& marked_;
   double chords_;
   const ArcFitOptions& options_;
@@ -352,13 +376,13 @@ std::optional<Path> fit_arcs(const BsplineCurve& curve, double from, double to,
   const bool whole = from == curve.first() && to == curve.last();
   const BsplineCurve part = whole ? curve : curve.part(from, to);
   const MarkedPieces pieces(part, from, to);
-  return fit_arcs(part, pieces, chords_along(pieces.pieces, options.max_deviation), options);
+  return fit_arcs(pieces, chords_along(pieces.pieces, options.max_deviation), options);
 }
 
-std::optional<Path> fit_arcs(const BsplineCurve& curve, const MarkedPieces& pieces, double chords,
+std::optional<Path> fit_arcs(const MarkedPieces& pieces, double chords,
                              const ArcFitOptions& options) {
   check(options);
-  const ArcFit fit(curve, pieces, chords, options);
+  const ArcFit fit(pieces, chords, options);
   if (!fit.is_flat() && !options.helical) return std::nullopt;
   if (!fit.is_flat() && pieces.pieces.size() > 2 * kFirstPieces && fit.falls_behind_early()) {
     return std::nullopt;

@@ -44,8 +44,8 @@ struct ArcFitOptions {
                                            const ArcFitOptions& options);
 
 // The same for all of a curve that is in its pieces already. `chords`: chords_along of them.
-[[nodiscard]] std::optional<Path> fit_arcs(const BsplineCurve& curve, const MarkedPieces& pieces,
-                                           double chords, const ArcFitOptions& options);
+[[nodiscard]] std::optional<Path> fit_arcs(const MarkedPieces& pieces, double chords,
+                                           const ArcFitOptions& options);
 
 // About how many chords within `deviation` (mm) the curve takes.
 [[nodiscard]] double chords_along(const CurvePieces& pieces, double deviation);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/curve_pieces.h"
 #include "geometry/numeric.h"
 
 namespace batten::geometry {
@@ -81,10 +80,14 @@ PlaneFrame PlaneFrame::across(const Vector3& axis) {
   return frame;
 }
 
-PlaneCurve::PlaneCurve(const BsplineCurve& curve, double from, double to, const PlaneFrame& frame) {
-  const CurvePieces pieces(curve, from, to);
+PlaneCurve::PlaneCurve(const CurvePieces& pieces, std::size_t most, const PlaneFrame& frame) {
+  const std::size_t count = std::min(most, pieces.size());
+  breaks_.reserve(count + 1);
+  pieces_.reserve(count);
+  start_angles_.reserve(count);
+  end_angles_.reserve(count);
   breaks_.push_back(pieces.first());
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     CubicBezier local = pieces.piece(i);
     for (Point3& control : local.control) control = frame.local(control);
     append(local, pieces.breaks()[i], pieces.breaks()[i + 1], kTurnHalvings);

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "geometry/bspline_curve.h"
+#include "geometry/curve_pieces.h"
 #include "geometry/path.h"
 
 namespace batten::geometry {
@@ -33,9 +33,9 @@ struct PlaneFrame {
 
 class PlaneCurve {
  public:
-  // The part of `curve` from `from` to `to`. Requires degree 3 or less. Pieces that turn by
-  // more than a radian are halved.
-  PlaneCurve(const BsplineCurve& curve, double from, double to, const PlaneFrame& frame);
+  // Pieces that turn by more than a radian are halved. `most`: of the given ones, the first so
+  // many.
+  PlaneCurve(const CurvePieces& pieces, std::size_t most, const PlaneFrame& frame);
 
   // Piece i runs over [breaks()[i], breaks()[i + 1]].
   [[nodiscard]] const std::vector<double>& breaks() const { return breaks_; }

@@ -90,9 +90,9 @@ std::optional<OutputPlan> plan_in(const Run& run, const geometry::FairPath& fair
   std::vector<double> starts;
   for (const FeedStretch& stretch : feed_stretches(run, fair)) {
     const bool all = stretch.from == curve.first() && stretch.to == curve.last();
-    const std::optional<Path> arcs =
-        all && whole != nullptr ? geometry::fit_arcs(curve, whole->pieces, whole->chords, fit)
-                                : geometry::fit_arcs(curve, stretch.from, stretch.to, fit);
+    const std::optional<Path> arcs = all && whole != nullptr
+                                         ? geometry::fit_arcs(whole->pieces, whole->chords, fit)
+                                         : geometry::fit_arcs(curve, stretch.from, stretch.to, fit);
     if (!arcs) return std::nullopt;
     Path taken;
     for (const PathPiece& piece : *arcs) {
