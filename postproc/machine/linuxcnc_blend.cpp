@@ -135,6 +135,22 @@ double trim_of(const Side& side, const Vector2& center) {
   return side.radius * angle_between(-side.center, center - side.center);
 }
 
+struct HalfAngle {
+  double sine;
+  double cosine;
+  double tangent;
+};
+
+// Of half the angle between two moves: between lines, whose directions are known, no angle is
+// needed for it. `theta`: that angle; `along`: product of the directions; `across`: size of their
+// cross product.
+HalfAngle half_angle_of(double theta, bool lines, double along, double across) {
+  if (!lines || along <= 0) return {std::sin(theta), std::cos(theta), std::tan(theta)};
+  const double sine = std::sqrt((1 + along) / 2);
+  const double cosine = across / (2 * sine);
+  return {sine, cosine, sine / cosine};
+}
+
 // The same arc where a side is an arc itself; the radius stays.
 bool fit_to_arcs(BlendArc& arc, const Side& before, const Side& after, double allowed) {
   const auto center = before.is_arc && after.is_arc ? center_at_arcs(before, after, arc.radius)
@@ -155,9 +171,11 @@ bool fit_to_arcs(BlendArc& arc, const Side& before, const Side& after, double al
 std::optional<BlendArc> blend_arc(const Segment& before, const Segment& after,
                                   const Machine& machine, double tolerance) {
   const Vector3 cross = before.end_direction.cross(after.start_direction);
-  const double turn = std::atan2(cross.norm(), before.end_direction.dot(after.start_direction));
+  const double along = before.end_direction.dot(after.start_direction);
+  const double across = cross.norm();
+  const double turn = std::atan2(across, along);
   if (turn < 2 * kLeastAngle || pi - turn < 2 * kLeastAngle) return std::nullopt;
-  const Vector3 binormal = cross.normalized();
+  const Vector3 binormal = cross / across;
   if (!in_plane(before, binormal) || !in_plane(after, binormal)) return std::nullopt;
 
   const double half_angle = (pi - turn) / 2;
@@ -167,14 +185,16 @@ std::optional<BlendArc> blend_arc(const Segment& before, const Segment& after,
   const bool two_arcs = before.shape == Shape::kArc && after.shape == Shape::kArc;
   if (theta <= (two_arcs ? kLeastArcAngle : 0)) return std::nullopt;
 
+  const bool lines = before.shape != Shape::kArc && after.shape != Shape::kArc;
+  const HalfAngle half = half_angle_of(theta, lines, along, across);
   BlendArc arc;
   arc.turn = pi - 2 * theta;
   arc.acceleration = limit_across(binormal, axis_accelerations(machine));
   const double normal_acceleration = kNormalShare * arc.acceleration;
   const double allowed = blend_tolerance(before, after, tolerance);
   const double reach =
-      std::min({reach1.length, reach2.length, std::cos(theta) * allowed / (1 - std::sin(theta))});
-  const double radius = std::tan(theta) * reach;
+      std::min({reach1.length, reach2.length, allowed * (1 + half.sine) / half.cosine});
+  const double radius = half.tangent * reach;
   const double feed = std::min({std::max(before.feed, after.feed), machine.path_feed,
                                 limit_across(binormal, axis_velocities(machine, false))});
   arc.velocity = std::min(std::sqrt(normal_acceleration * radius), feed);
@@ -185,7 +205,7 @@ std::optional<BlendArc> blend_arc(const Segment& before, const Segment& after,
   const double blend_time = std::min(std::sqrt(2 * parabolic * reach), arc.velocity) / parabolic;
   arc.radius = std::max(arc.velocity * arc.velocity / normal_acceleration,
                         std::min(blend_time * arc.velocity / arc.turn, radius));
-  arc.trim_before = arc.trim_after = arc.radius / std::tan(theta);
+  arc.trim_before = arc.trim_after = arc.radius / half.tangent;
   if (before.shape == Shape::kArc || after.shape == Shape::kArc) {
     if (!fit_to_arcs(arc, side_of(before, binormal, 0), side_of(after, binormal, turn), allowed)) {
       return std::nullopt;
