@@ -214,8 +214,8 @@ PartCrossing crossing_of(const PartLayer& old, const PartEdge& first, const Part
   }
   if (crossing.labels.empty()) crossing.labels = {first.label, second.label};
   std::ranges::sort(crossing.labels);
-  const auto same = std::ranges::unique(crossing.labels);
-  crossing.labels.erase(same.begin(), same.end());
+  crossing.labels.erase(std::unique(crossing.labels.begin(), crossing.labels.end()),
+                        crossing.labels.end());
   return crossing;
 }
 

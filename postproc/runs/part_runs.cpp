@@ -162,8 +162,7 @@ std::vector<std::uint32_t> cuts_about(std::span<const LineRange> copied,
       if (!std::ranges::binary_search(cuts, line - first)) blocks.push_back(line - first);
     }
   }
-  const auto same = std::ranges::unique(blocks);
-  blocks.erase(same.begin(), same.end());
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
   return blocks;
 }
 
