@@ -57,17 +57,37 @@ bool is_program_number(std::string_view bare) {
          std::all_of(bare.begin() + 1, bare.end(), is_digit);
 }
 
-// Behind the number or name of an O-word: CALL, SUB, ENDIF .. Nothing where it is none.
+// Where the bracket at `at` is closed; the end of the text where it is not.
+std::size_t closing_bracket(std::string_view text, std::size_t at) {
+  int depth = 0;
+  for (; at < text.size(); ++at) {
+    depth += text[at] == '[' ? 1 : text[at] == ']' ? -1 : 0;
+    if (depth == 0) break;
+  }
+  return at;
+}
+
+constexpr std::string_view kOWordKeywords[] = {
+    "CALL", "SUB",   "ENDSUB",   "RETURN", "IF",        "ELSEIF", "ELSE",    "ENDIF",
+    "DO",   "WHILE", "ENDWHILE", "REPEAT", "ENDREPEAT", "BREAK",  "CONTINUE"};
+
+// Of an O-word the part behind its number or name: CALL.., SUB, ENDIF .. What is named otherwise
+// than is known here is given whole: a word anywhere in it counts then.
 std::string_view o_word_keyword(std::string_view bare) {
   if (bare.empty() || bare[0] != 'O') return {};
   std::size_t at = 1;
   if (at < bare.size() && bare[at] == '#') ++at;
-  if (at < bare.size() && (bare[at] == '<' || bare[at] == '[')) {
-    const std::size_t end = bare.find(bare[at] == '<' ? '>' : ']', at);
-    return end == std::string_view::npos ? std::string_view{} : bare.substr(end + 1);
+  if (at < bare.size() && bare[at] == '<') {
+    at = std::min(bare.find('>', at), bare.size() - 1) + 1;
+  } else if (at < bare.size() && bare[at] == '[') {
+    at = std::min(closing_bracket(bare, at), bare.size() - 1) + 1;
+  } else {
+    while (at < bare.size() && is_digit(bare[at])) ++at;
   }
-  while (at < bare.size() && is_digit(bare[at])) ++at;
-  return bare.substr(at);
+  const std::string_view keyword = bare.substr(at);
+  const bool known = std::ranges::any_of(
+      kOWordKeywords, [keyword](std::string_view word) { return keyword.starts_with(word); });
+  return known ? keyword : bare;
 }
 
 // +1 where a body begins, -1 where it ends.
@@ -82,15 +102,20 @@ int body_step(std::string_view bare) {
     return 1;
   }
   const std::string_view keyword = o_word_keyword(bare);
+  const bool unknown = keyword.size() == bare.size();
+  const auto says = [&](std::string_view word) {
+    return unknown ? contains(keyword, word) : keyword.starts_with(word);
+  };
+  if (keyword.empty()) return 0;
   for (const std::string_view word : {"ENDSUB", "ENDWHILE", "ENDREPEAT", "ENDIF"}) {
-    if (keyword.starts_with(word)) return -1;
+    if (says(word)) return -1;
   }
   // `O1 do` .. `O1 while [..]` and `O1 while [..]` .. `O1 endwhile` cannot be told apart by one
   // line; the end of the first looks like the begin of the second. Bodies then last longer.
-  for (const std::string_view word : {"SUB", "WHILE", "REPEAT", "DO", "IF"}) {
-    if (keyword.starts_with(word)) return 1;
+  for (const std::string_view word : {"SUB", "WHILE", "REPEAT", "DO"}) {
+    if (says(word)) return 1;
   }
-  return 0;
+  return says("IF") && !says("ELSEIF") ? 1 : 0;
 }
 
 std::optional<Label> whole_number(const Word* word) {

@@ -69,9 +69,9 @@ constexpr Explanation kExplanations[] = {
     {kChecksum, "The line has a check sum: the sender counts such lines.",
      "Take numbers and sums off; the sender adds them when it sends.", false},
     {kSubprogram, "A subprogram is called, or ends. Nothing is known afterwards.",
-     "Smooth the called programs as files of their own; and --allow subprogram where they leave "
-     "all "
-     "modes (units, plane, G90, compensation, rotation ..) as they find them: then only place and "
+     "Smooth the called programs as files of their own; and --allow subprogram where they "
+     "leave all modes (units, plane, G90, compensation, rotation ..) as they find them: then only "
+     "place and "
      "feed are unknown behind a call.",
      true},
     {kProgramEnd, "The program stops or ends (M0, M1, M2, M30, M60).", kCopied, false},

@@ -178,8 +178,16 @@ constexpr OptionRow kCurvesOf = {
         "the control whose own curves (G06.2, POLY, G5 ..) are to be read in both programs, or "
         "a profile of it"};
 
+constexpr OptionRow kAllowedBefore = {
+    .name = "allow",
+    .kind = OptionKind::kList,
+    .value = "REASON,..",
+    .help =
+        "what smooth was allowed; subprogram: calls leave all modes as they find them, in both "
+        "programs"};
+
 constexpr std::array kVerifyRows = {kTolerance, kProfile, kCurvesOf, kToleranceKind, kSide,
-                                    kUnits,     kSource,  kDecimals, kAllow,         kJson,
+                                    kUnits,     kSource,  kDecimals, kAllowedBefore, kJson,
                                     kForce,     kQuiet,   kLogLevel};
 constexpr std::array kInspectRows = {kUnits, kSource, kDecimals, kAllow,
                                      kJson,  kForce,  kQuiet,    kLogLevel};

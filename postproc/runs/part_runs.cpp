@@ -321,8 +321,9 @@ PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options,
     if (!std::holds_alternative<Run>(runs.sections[i].content)) continue;
     runs.works.push_back({i, context_of(part.program, part.meaning, runs.sections[i])});
     const std::uint32_t line = part.program.blocks[runs.sections[i].first_block].line;
-    if (holds(facts.copied, line))
+    if (holds(facts.copied, line)) {
       runs.works.back().choosing.reason = gcode::reason::kCrossesItself;
+    }
   }
   Joints(part, options, runs).run();
   return runs;

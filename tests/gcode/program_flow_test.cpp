@@ -59,6 +59,8 @@ INSTANTIATE_TEST_SUITE_P(
         FlowCase{"MainBeforeSubprogram", "O1\nX1\nM30\nO2\nX1\nM99\n", {}, {}, {4, 5, 6}},
         FlowCase{
             "NamesThatLookLikeWords", "o<subdo> call\nX1\no<endif> call [1]\nX2\n", {}, {}, {}},
+        FlowCase{"ComputedNames", "o[#[1]+2] sub\nX1\no[#[1]+2] endsub\nX2\n", {}, {}, {1, 2, 3}},
+        FlowCase{"UnknownNames", "o##1 sub\nX1\no##1 endsub\nX2\n", {}, {}, {1, 2, 3}},
         FlowCase{"NamedSubprogram", "o<call> sub\nX1\no<call> endsub\nX2\n", {}, {}, {1, 2, 3}},
         FlowCase{"MacroLoop", "X1\nWHILE [#1 LT 3] DO1\nX2\nEND1\nX3\n", {}, {}, {2, 3, 4}},
         FlowCase{"NestedLoops",
