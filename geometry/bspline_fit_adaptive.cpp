@@ -15,8 +15,9 @@ namespace {
 // the same for all does not depend on rounding, and weights have found their places by then.
 constexpr std::uint8_t kSolutions = 20;
 
-// A solution in which it moves by less than this part of its limit counts as several.
-constexpr double kStill = 2e-4;
+// A solution in which it moves by less than this part of its limit counts as several: what the
+// solutions that are left would still move it by is a fiftieth of the limit at the most.
+constexpr double kStill = 1e-3;
 constexpr std::uint8_t kStillCounts = 4;
 
 // One that rests wakes when it is moved by this part of its limit, for so many solutions.
@@ -85,8 +86,12 @@ void AdaptiveFit::refit(FitProblem problem, double closest) {
   const auto rebuilt = changed_places(pins_, problem.pins, zones_, problem.zones);
   for (PointState& point : points_) point.moved = 0;
   if (!changes.any() && rebuilt.empty()) return;
-  std::vector<double> breaks = breaks_of(problem, spline_.breaks, rebuilt, closest);
-  const bool same_spline = rebuilt.empty() && breaks == spline_.breaks;
+  const bool may_differ = !rebuilt.empty() || has_new_breaks_ || closest != closest_;
+  std::vector<double> breaks;
+  if (may_differ) breaks = breaks_of(problem, spline_.breaks, rebuilt, closest);
+  const bool same_spline = !may_differ || (rebuilt.empty() && breaks == spline_.breaks);
+  has_new_breaks_ = false;
+  closest_ = closest;
 
   std::vector<SampleState> states(samples.size());
   std::vector<FitRow> rows(samples.size(), FitRow{kNotCarried, {}});
@@ -219,10 +224,11 @@ void AdaptiveFit::run() {
       continue;
     }
     settle();
-    if (last ||
-        !split_spans([](const SpanNeed& need, bool) { return need.worst > kNearlyInside; })) {
-      return;
-    }
+    const bool is_split =
+        !last && split_spans([](const SpanNeed& need, bool) { return need.worst > kNearlyInside; });
+    if (is_split) continue;
+    out_of_rounds_ = last;
+    return;
   }
 }
 
@@ -268,22 +274,36 @@ void AdaptiveFit::settle() {
   for (PointState& point : points_) point.left = 0;
 }
 
+// Whether a span may need a knot that it did not need at the end of the last fit: where it was
+// solved for, or cannot be.
+bool AdaptiveFit::may_ask(std::size_t first_point) const {
+  if (out_of_rounds_) return true;
+  bool all_fixed = true;
+  for (std::size_t point = first_point; point < first_point + 4; ++point) {
+    if (points_[point].moved != 0) return true;
+    all_fixed = all_fixed && spline_.fixed[point] != 0;
+  }
+  return all_fixed;
+}
+
 // Splits the spans that ask for it at the middle one of the samples inside them. Returns whether
 // any was.
 template <typename Asks>
 bool AdaptiveFit::split_spans(const Asks& asks) {
+  constexpr std::size_t kDegree = 3;
   std::vector<double> middles;
-  for (std::size_t begin = 0; begin < rows_.size();) {
-    const std::size_t end = end_of_span(rows_, begin);
-    constexpr std::size_t kDegree = 3;
-    const double from = spline_.knots[rows_[begin].first + kDegree];
+  for (std::size_t point = 0; point + kDegree < points_.size(); ++point) {
+    const std::size_t begin = first_sample_[point];
+    const std::size_t end = first_sample_[point + 1];
+    if (begin == end || !may_ask(point)) continue;
+    const double from = spline_.knots[point + kDegree];
     std::size_t inside = begin;
     while (inside < end && samples_[inside].parameter <= from) ++inside;
+    if (inside == end) continue;
     const SpanNeed need = need_of({&samples_[begin], end - begin}, {&states_[begin], end - begin});
-    if (inside < end && asks(need, tight_[begin] != 0)) {
+    if (asks(need, tight_[begin] != 0)) {
       middles.push_back(samples_[inside + (end - inside) / 2].parameter);
     }
-    begin = end;
   }
   if (middles.empty()) return false;
   std::vector<double> breaks(spline_.breaks.size() + middles.size());
@@ -291,8 +311,10 @@ bool AdaptiveFit::split_spans(const Asks& asks) {
              breaks.begin());
   breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());
   const bool finer = breaks.size() > spline_.breaks.size();
-  if (finer) set_breaks(std::move(breaks));
-  return finer;
+  if (!finer) return false;
+  set_breaks(std::move(breaks));
+  has_new_breaks_ = true;
+  return true;
 }
 
 void AdaptiveFit::solve(IndexRange free, Phase phase) {

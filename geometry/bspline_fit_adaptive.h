@@ -60,6 +60,7 @@ class AdaptiveFit {
   void run();
   void decide_spans();
   void settle();
+  [[nodiscard]] bool may_ask(std::size_t first_point) const;
   template <typename Asks>
   [[nodiscard]] bool split_spans(const Asks& asks);
   void solve(IndexRange free, Phase phase);
@@ -85,6 +86,9 @@ class AdaptiveFit {
   std::vector<PointState> points_;  // per control point
   std::vector<std::size_t>
       first_sample_;  // per control point, and one more: the first whose row starts there or behind
+  bool has_new_breaks_ = true;  // that may be too near to pins and zones
+  double closest_ = 0;          // mm, how near that is
+  bool out_of_rounds_ = false;  // the last fit ended before all spans were known to do
   FitSystem system_;
 };
 

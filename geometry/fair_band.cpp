@@ -49,7 +49,7 @@ BandFit::BandFit(std::vector<Point3> points, const FairOptions& options,
       care_(points_.size() - 1),
       at_(features_.parameters),
       off_(points_.size() - 1),
-      time_(points_.size() - 1) {
+      tight_(points_.size()) {
   rooms_.resize(points_.size() - 1, 1);
   for (std::size_t edge = 0; edge < care_.size(); ++edge) care_[edge].share = rooms_[edge];
 }
@@ -153,7 +153,7 @@ void BandFit::measure() {
   const std::vector<double>& start = features_.parameters;
   const std::size_t vertices = points_.size();
   SplineWalk curve = walk();
-  const TravelLimits limits{options_.feed / 60, options_.acceleration, options_.jerk};
+  const TravelLimits most = limits();
   const auto index_of = [&](double u) {
     return static_cast<std::size_t>(std::lower_bound(start.begin(), start.end(), u) -
                                     start.begin());
@@ -165,6 +165,7 @@ void BandFit::measure() {
     const std::size_t last = std::min(index_of(part.to) + 2, vertices);
     for (std::size_t i = first; i < last; ++i) {
       at_[i] = nearest_parameter(curve, points_, start, i);
+      tight_[i] = exceeds(curve, at_[i], most) ? 1 : 0;
     }
     const VertexPlaces path{points_, at_};
     const std::size_t first_edge = std::max<std::size_t>(first, 1) - 1;
@@ -172,10 +173,23 @@ void BandFit::measure() {
     for (std::size_t edge = first_edge; edge < last_edge; ++edge) {
       off_[edge] = edge_deviation(curve, path, edge, rooms_[edge] * options_.tolerance);
       off_[edge] /= rooms_[edge];
-      time_[edge] = edge_time(curve, path, edge, limits);
     }
     done = last;
   }
+}
+
+TravelLimits BandFit::limits() const {
+  return {options_.feed / 60, options_.acceleration, options_.jerk};
+}
+
+double BandFit::time_beside(const IndexRange& vertices) const {
+  SplineWalk curve = walk();
+  const VertexPlaces path{points_, at_};
+  double time = 0;
+  for (std::size_t i = vertices.begin; i + 1 < vertices.end; ++i) {
+    time += edge_time(curve, path, i, limits());
+  }
+  return time;
 }
 
 // Tightens the problem where the curve left the band. Returns whether it did anywhere.

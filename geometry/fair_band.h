@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -43,10 +44,14 @@ class BandFit {
   [[nodiscard]] SplineWalk walk() const;
   [[nodiscard]] const std::vector<double>& parameters() const { return at_; }  // of the vertices
 
-  // Per edge: greatest distance between it and the curve (mm, over its room), and travel time
-  // beside it (s).
+  // Per edge: greatest distance between it and the curve, mm, over its room.
   [[nodiscard]] const std::vector<double>& deviations() const { return off_; }
-  [[nodiscard]] const std::vector<double>& times() const { return time_; }
+
+  // Whether the curve at a vertex is too tight for the feed.
+  [[nodiscard]] bool is_tight(std::size_t vertex) const { return tight_[vertex] != 0; }
+
+  // s: along the curve beside the edges between these vertices.
+  [[nodiscard]] double time_beside(const IndexRange& vertices) const;
 
  private:
   [[nodiscard]] BandOptions band() const;
@@ -54,6 +59,7 @@ class BandFit {
   void find_meant();
   void fit();
   void measure();
+  [[nodiscard]] TravelLimits limits() const;
   [[nodiscard]] bool mend();
   [[nodiscard]] bool is_noisy(std::size_t edge) const;
   void keep_edges(std::size_t edge, std::size_t around);
@@ -73,7 +79,7 @@ class BandFit {
   std::optional<PartedFit> fit_;
   std::vector<double> at_;
   std::vector<double> off_;
-  std::vector<double> time_;
+  std::vector<std::uint8_t> tight_;  // per vertex
 };
 
 }  // namespace batten::geometry

@@ -170,6 +170,12 @@ double speed_at(SplineWalk& curve, double u, const TravelLimits& limits) {
   return speed;
 }
 
+bool exceeds(SplineWalk& curve, double u, const TravelLimits& limits) {
+  const double allowed_third = limits.jerk / (limits.speed * limits.speed * limits.speed);
+  if (std::isfinite(allowed_third) && curve.third_by_length_at(u) > allowed_third) return true;
+  return curve.curvature_at(u) > limits.acceleration / (limits.speed * limits.speed);
+}
+
 double edge_time(SplineWalk& curve, const VertexPlaces& path, std::size_t edge,
                  const TravelLimits& limits) {
   constexpr int kSteps = 4;

@@ -78,6 +78,9 @@ struct TravelLimits {
 // mm/s: the speed that these limits allow at u if it is held there.
 [[nodiscard]] double speed_at(SplineWalk& curve, double u, const TravelLimits& limits);
 
+// Whether the curve bends or twists too much at u for the limits' own speed.
+[[nodiscard]] bool exceeds(SplineWalk& curve, double u, const TravelLimits& limits);
+
 // Seconds along the curve beside an edge, at that speed.
 [[nodiscard]] double edge_time(SplineWalk& curve, const VertexPlaces& path, std::size_t edge,
                                const TravelLimits& limits);

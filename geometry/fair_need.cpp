@@ -21,19 +21,11 @@ constexpr double kWorthIt = 0.002;
 constexpr std::size_t kBeside = 16;
 
 // The vertices beside which the curve is too tight for the feed, and three on either side of them.
-std::vector<bool> tight_vertices(const BandFit& fit, const FairOptions& options) {
-  const double speed = options.feed / 60;
-  const double allowed = options.acceleration / (speed * speed);
-  const double allowed_third = options.jerk / (speed * speed * speed);
+std::vector<bool> tight_vertices(const BandFit& fit) {
   const std::size_t n = fit.points().size();
   std::vector<bool> tight(n, false);
-  SplineWalk curve = fit.walk();
   for (std::size_t i = 1; i + 1 < n; ++i) {
-    if (fit.features().kinds[i] != VertexKind::kSmooth) continue;
-    const double u = fit.parameters()[i];
-    const bool by_jerk =
-        std::isfinite(allowed_third) && curve.third_by_length_at(u) > allowed_third;
-    if (!by_jerk && curve.curvature_at(u) <= allowed) continue;
+    if (fit.features().kinds[i] != VertexKind::kSmooth || !fit.is_tight(i)) continue;
     constexpr std::size_t kAround = 3;
     const std::size_t last = std::min(i + kAround, n - 1);
     for (std::size_t j = i < kAround ? 0 : i - kAround; j <= last; ++j) tight[j] = true;
@@ -45,7 +37,7 @@ std::vector<bool> tight_vertices(const BandFit& fit, const FairOptions& options)
 // before; nothing when there are none that could still be given more.
 std::optional<std::vector<double>> widened(const BandFit& fit, const FairOptions& options,
                                            std::vector<double>& tried) {
-  const std::vector<bool> tight = tight_vertices(fit, options);
+  const std::vector<bool> tight = tight_vertices(fit);
   std::vector<double> loosen = fit.loosened();
   bool any = false;
   for (std::size_t i = 0; i < tight.size(); ++i) {
@@ -83,16 +75,12 @@ std::vector<IndexRange> stretches_apart(const BandFit& before, const BandFit& af
 // A curve that had to keep edges as they were is not smoother, whatever its time says.
 bool is_worth_it(const BandFit& before, const BandFit& after, IndexRange stretch,
                  double tolerance) {
-  double time_before = 0;
-  double time_after = 0;
   for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
     if (before.features().kinds[i] != after.features().kinds[i]) return false;
     if (i + 1 == stretch.end) break;
     if (after.deviations()[i] > tolerance) return false;
-    time_before += before.times()[i];
-    time_after += after.times()[i];
   }
-  return time_after <= (1 - kWorthIt) * time_before;
+  return after.time_beside(stretch) <= (1 - kWorthIt) * before.time_beside(stretch);
 }
 
 bool is_inside(const BandFit& fit, double tolerance) {
