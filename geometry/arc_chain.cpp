@@ -30,7 +30,7 @@ constexpr double kPaceKnown = 0.2;
 constexpr double kHopelessPace = 1.5;
 
 // Nor will one that has used so many pieces more than that, however short the way was.
-constexpr double kPiecesAhead = 200;
+constexpr double kPiecesAhead = 64;
 
 // Kink (radians) of a single arc at a fixed tangent that is noise of a fitted curve.
 constexpr double kKinkNoise = 1e-5;
@@ -171,7 +171,7 @@ bool ArcChain::heights_hold(const PlaneArc& arc, double from, double to, double 
     const double b = std::min(to, curve_.breaks()[i + 1]);
     if (a >= to) break;
     for (double t : {0.25, 0.5, 0.75, 1.0}) {
-      const Point3 p = curve_.place_at(a + t * (b - a));
+      const Point3 p = curve_.place_in(i, a + t * (b - a));
       const double expected = from_height + (to_height - from_height) * way(in_plane(p));
       if (std::abs(p.z() - expected) > 0.9 * limits_.height_deviation) return false;
     }
@@ -192,15 +192,15 @@ bool ArcChain::holds(const PlaneArc& arc, double from, double to, double from_he
 // Where the curve passes the normal through the joint.
 double ArcChain::joint_parameter(const Point2& joint, const Vector2& tangent, double from,
                                  double to) const {
-  const auto before = [&](double u) {
-    return (in_plane(curve_.place_at(u)) - joint).dot(tangent) < 0;
+  const auto before = [&](std::size_t piece, double u) {
+    return (in_plane(curve_.place_in(piece, u)) - joint).dot(tangent) < 0;
   };
   const auto& breaks = curve_.breaks();
   std::size_t low = curve_.index_of(from);
   std::size_t high = curve_.index_of(to);
   while (low < high) {  // the last piece whose start is before the joint
     const std::size_t middle = (low + high + 1) / 2;
-    if (breaks[middle] <= from || before(breaks[middle])) {
+    if (breaks[middle] <= from || before(middle, breaks[middle])) {
       low = middle;
     } else {
       high = middle - 1;
@@ -211,7 +211,7 @@ double ArcChain::joint_parameter(const Point2& joint, const Vector2& tangent, do
   constexpr int kSteps = 24;  // 1e-7 of a piece
   for (int step = 0; step < kSteps; ++step) {
     const double middle = (good + bad) / 2;
-    (before(middle) ? good : bad) = middle;
+    (before(low, middle) ? good : bad) = middle;
   }
   return (good + bad) / 2;
 }

@@ -274,28 +274,24 @@ void AdaptiveFit::settle() {
   for (PointState& point : points_) point.left = 0;
 }
 
-// Whether a span may need a knot that it did not need at the end of the last fit: where it was
-// solved for, or cannot be.
-bool AdaptiveFit::may_ask(std::size_t first_point) const {
-  if (out_of_rounds_) return true;
-  bool all_fixed = true;
-  for (std::size_t point = first_point; point < first_point + 4; ++point) {
-    if (points_[point].moved != 0) return true;
-    all_fixed = all_fixed && spline_.fixed[point] != 0;
-  }
-  return all_fixed;
-}
-
-// Splits the spans that ask for it at the middle one of the samples inside them. Returns whether
-// any was.
+// Splits the spans that ask for it at the middle one of the samples inside them: those that were
+// solved for in this fit or cannot be, since the others needed no knot at the end of the last one.
+// Returns whether any was.
 template <typename Asks>
 bool AdaptiveFit::split_spans(const Asks& asks) {
   constexpr std::size_t kDegree = 3;
   std::vector<double> middles;
-  for (std::size_t point = 0; point + kDegree < points_.size(); ++point) {
+  std::size_t free_until = 0;   // behind the last control point that is
+  std::size_t moved_until = 0;  // the same of those that were solved for
+  for (std::size_t last = 0; last < points_.size(); ++last) {
+    if (spline_.fixed[last] == 0) free_until = last + 1;
+    if (points_[last].moved != 0) moved_until = last + 1;
+    if (last < kDegree) continue;
+    const std::size_t point = last - kDegree;
     const std::size_t begin = first_sample_[point];
     const std::size_t end = first_sample_[point + 1];
-    if (begin == end || !may_ask(point)) continue;
+    const bool may_ask = moved_until > point || free_until <= point || out_of_rounds_;
+    if (begin == end || !may_ask) continue;
     const double from = spline_.knots[point + kDegree];
     std::size_t inside = begin;
     while (inside < end && samples_[inside].parameter <= from) ++inside;

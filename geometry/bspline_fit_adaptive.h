@@ -60,7 +60,6 @@ class AdaptiveFit {
   void run();
   void decide_spans();
   void settle();
-  [[nodiscard]] bool may_ask(std::size_t first_point) const;
   template <typename Asks>
   [[nodiscard]] bool split_spans(const Asks& asks);
   void solve(IndexRange free, Phase phase);

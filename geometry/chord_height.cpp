@@ -16,35 +16,14 @@ constexpr double kTwist = 1e-4;
 // Halves of a piece twist a quarter as much.
 constexpr int kHalvings = 6;
 
-// A part of a piece: what lies across the chord, and how far along it.
-struct AcrossChord {
-  CubicBezier across;
-  double along[4];
-};
-
-// The part of a piece between two of its own parameters, seen from the start of a chord.
-AcrossChord seen_from(const Point3& start, const Vector3& direction, const CubicBezier& piece,
-                      double t0, double t1) {
-  const Point3* p = piece.control;
-  const Vector3 q0 = p[0] - start;
-  const Vector3 first = 3 * (p[1] - p[0]);
-  const Vector3 second = 3 * (p[2] - p[1]) - first;
-  const Vector3 third = (p[3] - p[0]) - first - second;
-  const double width = t1 - t0;
-  // The same cubic in powers of the part's own parameter.
-  const Vector3 d0 = q0 + t0 * (first + t0 * (second + t0 * third));
-  const Vector3 d1 = width * (first + t0 * (2 * second + 3 * t0 * third));
-  const Vector3 d2 = width * width * (second + 3 * t0 * third);
-  const Vector3 d3 = width * width * width * third;
-  constexpr double kThird = 1.0 / 3;
-  const Vector3 control[4] = {d0, d0 + kThird * d1, d0 + 2 * kThird * d1 + kThird * d2,
-                              d0 + d1 + d2 + d3};
-  AcrossChord seen;
-  for (int i = 0; i < 4; ++i) {
-    seen.along[i] = direction.dot(control[i]);
-    seen.across.control[i] = control[i] - seen.along[i] * direction;
-  }
-  return seen;
+// A coordinate of the piece up to this part of its parameter. De Casteljau's algorithm.
+Four restricted(const Four& p, double part) {
+  const double a = p[0] + part * (p[1] - p[0]);
+  const double b = p[1] + part * (p[2] - p[1]);
+  const double c = p[2] + part * (p[3] - p[2]);
+  const double ab = a + part * (b - a);
+  const double bc = b + part * (c - b);
+  return Four::of(p[0], a, ab, ab + part * (bc - ab));
 }
 
 double cubic_at(const double* h, double t) {
@@ -103,13 +82,55 @@ double greatest_square(const CubicBezier& piece, double known, int halvings) {
   return std::max(first, greatest_square(right, std::max(first, known), halvings - 1));
 }
 
+Four squares_of(const ControlCoordinates& p) { return p.x * p.x + p.y * p.y + p.z * p.z; }
+
+Point3 point_of(const ControlCoordinates& p, std::size_t i) { return {p.x[i], p.y[i], p.z[i]}; }
+
+// The same for what lies across a chord, where nearly always one look is enough.
+double greatest_square(const ControlCoordinates& across, double known) {
+  const Four squares = squares_of(across);
+  const double ends = std::max(squares[0], squares[3]);
+  const double hull = greatest(squares);
+  if (hull <= known || hull == ends) return hull;
+  const auto middle_of = [](const Four& p) {
+    return 0.125 * (p[0] + p[3]) + 0.375 * (p[1] + p[2]);
+  };
+  Point3 bow{middle_of(across.x), middle_of(across.y), middle_of(across.z)};
+  if (bow.squaredNorm() < ends) bow = point_of(across, squares[0] >= squares[3] ? 0 : 3);
+  const double size = bow.norm();
+  if (size > 0) {
+    const Vector3 up = bow / size;
+    const Four heights = across.x * up.x() + across.y * up.y() + across.z * up.z();
+    const double twist = greatest(squares_of(
+        {across.x - heights * up.x(), across.y - heights * up.y(), across.z - heights * up.z()}));
+    const double h[] = {heights[0], heights[1], heights[2], heights[3]};
+    const double height = greatest_of(h);
+    const double square = height * height + twist;
+    if (square <= known || twist <= kTwist * height * height) return std::min(square, hull);
+  }
+  const CubicBezier piece{
+      {point_of(across, 0), point_of(across, 1), point_of(across, 2), point_of(across, 3)}};
+  return greatest_square(piece, known, kHalvings);
+}
+
 }  // namespace
 
 ChordsFrom::ChordsFrom(const CurvePieces& pieces, double from)
-    : pieces_(pieces),
-      from_(from),
-      first_(pieces.index_of(from)),
-      start_(pieces.point_in(first_, from)) {}
+    : pieces_(pieces), from_(from), first_(pieces.index_of(from)) {
+  const double at = pieces.local(first_, from);
+  const CubicBezier& piece = pieces.piece(first_);
+  const CubicBezier rest = at > 0 ? parts_at(piece, at).second : piece;
+  start_ = rest.control[0];
+  left_ = 1 - at;
+  rest_ = seen_from_start(rest);
+}
+
+ControlCoordinates ChordsFrom::seen_from_start(const CubicBezier& piece) const {
+  const Point3* p = piece.control;
+  return {Four::of(p[0].x(), p[1].x(), p[2].x(), p[3].x()) - start_.x(),
+          Four::of(p[0].y(), p[1].y(), p[2].y(), p[3].y()) - start_.y(),
+          Four::of(p[0].z(), p[1].z(), p[2].z(), p[3].z()) - start_.z()};
+}
 
 // The piece that holds `u`, at or after the first.
 std::size_t ChordsFrom::piece_at(double u) const {
@@ -118,20 +139,33 @@ std::size_t ChordsFrom::piece_at(double u) const {
   return piece;
 }
 
+// Of piece i, what lies between the start and `end`, seen from the start.
+ControlCoordinates ChordsFrom::part_before(std::size_t i, double end) const {
+  const ControlCoordinates whole = i == first_ ? rest_ : seen_from_start(pieces_.piece(i));
+  if (pieces_.breaks()[i + 1] <= end) return whole;
+  double part = pieces_.local(i, end);
+  if (i == first_) part = left_ > 0 ? std::max(1 - (1 - part) / left_, 0.0) : 0;
+  return {restricted(whole.x, part), restricted(whole.y, part), restricted(whole.z, part)};
+}
+
 ChordHeight ChordsFrom::to(double end) const {
-  const Vector3 chord = pieces_.point_in(piece_at(end), end) - start_;
+  std::size_t last = piece_at(end);
+  if (last > first_ && pieces_.breaks()[last] >= end) --last;
+  const ControlCoordinates ending = part_before(last, end);
+  const Vector3 chord = point_of(ending, 3);
   ChordHeight result;
   result.chord = chord.norm();
   result.in_order = result.chord > 0;
   const Vector3 direction = result.in_order ? Vector3(chord / result.chord) : Vector3::Zero();
   double square = 0;
-  for (std::size_t i = first_; i < pieces_.size() && pieces_.breaks()[i] < end; ++i) {
-    const double t0 = i == first_ ? pieces_.local(i, from_) : 0;
-    const double t1 = pieces_.breaks()[i + 1] <= end ? 1 : pieces_.local(i, end);
-    const AcrossChord seen = seen_from(start_, direction, pieces_.piece(i), t0, t1);
-    const double* a = seen.along;
-    result.in_order = result.in_order && a[0] <= a[1] && a[1] <= a[2] && a[2] <= a[3];
-    square = std::max(square, greatest_square(seen.across, square, kHalvings));
+  for (std::size_t i = first_; i <= last; ++i) {
+    const ControlCoordinates seen = i == last ? ending : part_before(i, end);
+    const Four along = seen.x * direction.x() + seen.y * direction.y() + seen.z * direction.z();
+    result.in_order =
+        result.in_order && along[0] <= along[1] && along[1] <= along[2] && along[2] <= along[3];
+    const ControlCoordinates across{seen.x - along * direction.x(), seen.y - along * direction.y(),
+                                    seen.z - along * direction.z()};
+    square = std::max(square, greatest_square(across, square));
   }
   result.height = std::sqrt(square);
   return result;

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "geometry/curve_pieces.h"
+#include "geometry/four_numbers.h"
 #include "geometry/point.h"
 
 namespace batten::geometry {
@@ -16,6 +17,13 @@ struct ChordHeight {
   // Whether the curve goes forward along the chord from its start to its end. Then each place is
   // matched with its foot, in order, and curve and chord are within `height` of each other.
   bool in_order = false;
+};
+
+// The coordinates of the control points of a piece.
+struct ControlCoordinates {
+  Four x;
+  Four y;
+  Four z;
 };
 
 // Chords that start at one place of the curve. The pieces must live as long.
@@ -37,11 +45,15 @@ class ChordsFrom {
 
  private:
   [[nodiscard]] std::size_t piece_at(double u) const;
+  [[nodiscard]] ControlCoordinates seen_from_start(const CubicBezier& piece) const;
+  [[nodiscard]] ControlCoordinates part_before(std::size_t i, double end) const;
 
   const CurvePieces& pieces_;
   double from_;
   std::size_t first_;
   Point3 start_;
+  double left_ = 1;          // of the first piece's parameter, behind the start
+  ControlCoordinates rest_;  // of the first piece there, seen from the start
 };
 
 }  // namespace batten::geometry

@@ -15,9 +15,9 @@
 namespace batten::geometry {
 namespace {
 
-// A chord's end is searched to this part of its length: a thousand chords lose one tenth of
-// a chord.
-constexpr double kEndPrecision = 1e-4;
+// A chord's end is searched to this part of its length: a thousand chords lose a quarter of a
+// chord.
+constexpr double kEndPrecision = 5e-4;
 
 // A chord this much longer than the greatest length (relative) has that length: rounding of
 // evenly divided lines.
@@ -26,8 +26,10 @@ constexpr double kLengthNoise = 1e-9;
 // How often the limits are narrowed to let the last chord grow to the size of the others.
 constexpr int kChordBalancingRounds = 8;
 
-// The last chord is no remainder when it is this part of a full one.
+// The last chord is no remainder when it is this part of a full one; the limits are narrowed for
+// one that is a little longer: with a whole one there is often another behind it.
 constexpr double kFullChord = 0.98;
+constexpr double kWantedChord = 0.99;
 
 // Only so many chords at the end are narrowed: over these a remainder is spread thin, and
 // the cost of the rounds does not grow with the run.
@@ -207,7 +209,7 @@ std::vector<double> balanced(const CurvePieces& pieces, double from, std::vector
   for (int round = 0; round < kChordBalancingRounds && ends.size() > 1; ++round) {
     const double part = part_of_full_chord(pieces, ends[ends.size() - 2], to, scaled(limits, good));
     if (part >= kFullChord) break;
-    const double wanted = good * (count - 1 + part) / count;
+    const double wanted = good * (count - 1 + part) / (count - 1 + kWantedChord);
     const double next = std::max(wanted, (good + small) / 2);
     std::vector<double> narrower =
         greedy_ends(pieces, from, to, scaled(limits, next), ends.size() + 1);

@@ -129,10 +129,11 @@ CubicBezier PlaneCurve::part(std::size_t i, double from, double to) const {
   return sub_piece(pieces_[i], t0, t1);
 }
 
-Point3 PlaneCurve::place_at(double u) const {
-  const std::size_t i = index_of(u);
+Point3 PlaneCurve::place_in(std::size_t i, double u) const {
   return geometry::point_at(pieces_[i], local(i, u));
 }
+
+Point3 PlaneCurve::place_at(double u) const { return place_in(index_of(u), u); }
 
 double PlaneCurve::angle_in(std::size_t i, double u) const {
   const double t = local(i, u);

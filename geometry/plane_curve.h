@@ -44,6 +44,8 @@ class PlaneCurve {
   [[nodiscard]] CubicBezier part(std::size_t i, double from, double to) const;
 
   [[nodiscard]] Point3 place_at(double u) const;
+  // The same for who knows the piece that holds u.
+  [[nodiscard]] Point3 place_in(std::size_t i, double u) const;
 
   // Angle of the tangent in the plane, radians, continuous but for corners, where it is the
   // angle of leaving (`angle_before`: of arriving).
