@@ -10,15 +10,16 @@ constexpr std::array<char, 3> kOffsetLetters = {'I', 'J', 'K'};
 
 bool is_empty_text(const std::string& text) { return text.empty(); }
 
-// Words one behind the other.
+// Words one behind the other, at the end of a text.
 class WordLine {
  public:
-  explicit WordLine(bool blanks) : blanks_(blanks) {}
+  WordLine(bool blanks, std::string& text) : blanks_(blanks), text_(text) {}
 
   void add(std::string_view name, std::string_view value) {
-    if (!text_.empty() && blanks_) text_ += ' ';
+    if (!first_ && blanks_) text_ += ' ';
     text_ += name;
     text_ += value;
+    first_ = false;
   }
   void add(char letter, std::string_view digits) { add(std::string_view(&letter, 1), digits); }
 
@@ -26,11 +27,10 @@ class WordLine {
     add(letter, digits.starts_with('-') ? digits : "+" + digits);
   }
 
-  [[nodiscard]] const std::string& text() const { return text_; }
-
  private:
   bool blanks_;
-  std::string text_;
+  bool first_ = true;
+  std::string& text_;
 };
 
 class Rs274Spelling final : public BlockSpelling {
@@ -38,9 +38,9 @@ class Rs274Spelling final : public BlockSpelling {
   bool motion_stays() const override { return true; }
   bool centers_are_places() const override { return false; }
 
-  std::string lines(const SpokenBlock& block, bool blanks,
-                    std::string_view line_end) const override {
-    WordLine line(blanks);
+  void add_lines(const SpokenBlock& block, bool blanks, std::string_view line_end,
+                 std::string& text) const override {
+    WordLine line(blanks, text);
     if (block.plane) {
       line.add('G', *block.plane == Plane::kXY ? "17" : *block.plane == Plane::kZX ? "18" : "19");
     }
@@ -53,7 +53,7 @@ class Rs274Spelling final : public BlockSpelling {
     }
     if (!block.radius.empty()) line.add('R', block.radius);
     if (!block.feed.empty()) line.add('F', block.feed);
-    return line.text() + std::string(line_end);
+    text += line_end;
   }
 
  private:
@@ -69,13 +69,16 @@ class KlartextSpelling final : public BlockSpelling {
   bool motion_stays() const override { return false; }
   bool centers_are_places() const override { return true; }
 
-  std::string lines(const SpokenBlock& block, bool, std::string_view line_end) const override {
+  void add_lines(const SpokenBlock& block, bool, std::string_view line_end,
+                 std::string& text) const override {
     const bool clockwise = block.motion == MotionMode::kClockwise;
     const bool arc = clockwise || block.motion == MotionMode::kCounterclockwise;
     const bool by_radius = arc && !block.radius.empty();
-    std::string text;
-    if (arc && !by_radius) text = centre(block) + std::string(line_end);
-    WordLine line(true);
+    if (arc && !by_radius) {
+      add_centre(block, text);
+      text += line_end;
+    }
+    WordLine line(true, text);
     line.add(by_radius ? "CR" : arc ? "C" : "L", {});
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!block.places[axis].empty()) line.add_signed(kPlaceLetters[axis], block.places[axis]);
@@ -83,22 +86,30 @@ class KlartextSpelling final : public BlockSpelling {
     if (by_radius) line.add_signed('R', block.radius);
     if (arc) line.add(clockwise ? "DR-" : "DR+", {});
     if (!block.feed.empty()) line.add('F', block.feed);
-    return text + line.text() + std::string(line_end);
+    text += line_end;
   }
 
  private:
   // In the plane of X and Y.
-  static std::string centre(const SpokenBlock& block) {
-    WordLine line(true);
+  static void add_centre(const SpokenBlock& block, std::string& text) {
+    WordLine line(true, text);
     line.add("CC", {});
     for (std::size_t axis = 0; axis < 2; ++axis) {
       line.add_signed(kPlaceLetters[axis], block.centers[axis]);
     }
-    return line.text();
   }
 };
 
 }  // namespace
+
+void SpokenBlock::clear() {
+  plane.reset();
+  motion.reset();
+  for (std::string& place : places) place.clear();
+  for (std::string& center : centers) center.clear();
+  radius.clear();
+  feed.clear();
+}
 
 bool SpokenBlock::is_empty() const { return !plane && !motion && feed.empty() && has_no_numbers(); }
 
@@ -109,6 +120,13 @@ bool SpokenBlock::says_only_feed() const {
 bool SpokenBlock::has_no_numbers() const {
   return radius.empty() && std::ranges::all_of(places, is_empty_text) &&
          std::ranges::all_of(centers, is_empty_text);
+}
+
+std::string BlockSpelling::lines(const SpokenBlock& block, bool blanks,
+                                 std::string_view line_end) const {
+  std::string text;
+  add_lines(block, blanks, line_end, text);
+  return text;
 }
 
 const BlockSpelling& rs274_spelling() {

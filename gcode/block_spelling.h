@@ -19,6 +19,8 @@ struct SpokenBlock {
   std::string radius;                  // R
   std::string feed;
 
+  void clear();  // says nothing any more; its texts keep their room
+
   [[nodiscard]] bool is_empty() const;
   // F stands alone.
   [[nodiscard]] bool says_only_feed() const;
@@ -38,9 +40,13 @@ class BlockSpelling {
   // Whether centres of arcs are places, whatever the state says.
   [[nodiscard]] virtual bool centers_are_places() const = 0;
 
-  // The block, or the blocks that say it, each with this line end.
-  [[nodiscard]] virtual std::string lines(const SpokenBlock& block, bool blanks,
-                                          std::string_view line_end) const = 0;
+  // The block, or the blocks that say it, each with this line end, at the end of `text`.
+  virtual void add_lines(const SpokenBlock& block, bool blanks, std::string_view line_end,
+                         std::string& text) const = 0;
+
+  // The same by itself.
+  [[nodiscard]] std::string lines(const SpokenBlock& block, bool blanks,
+                                  std::string_view line_end) const;
 };
 
 // G1 X1 Y2 F500

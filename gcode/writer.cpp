@@ -278,8 +278,8 @@ void Writer::add_feed(double feed) {
 }
 
 void Writer::end_block() {
-  text_ += dialect_.spelling().lines(block_, dialect_.blanks_between_words(), line_end_);
-  block_ = {};
+  dialect_.spelling().add_lines(block_, dialect_.blanks_between_words(), line_end_, text_);
+  block_.clear();
 }
 
 }  // namespace batten::gcode

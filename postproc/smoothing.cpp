@@ -255,10 +255,11 @@ class RunSmoother {
   }
 
   // About how many lines there will be.
-  [[nodiscard]] double chords_wanted(const geometry::FairPath& fair, double deviation) const {
+  [[nodiscard]] double chords_wanted(const geometry::FairPath& fair, double deviation) {
     const double step = std::min(greatest_feed(run_) / 60, options_.machine->max_velocity()) *
                         options_.machine->block_period;
-    return chords_for(fair, 0.5 * deviation, 2 * step);
+    if (!expected_) expected_.emplace(fair);
+    return expected_->within(0.5 * deviation, 2 * step);
   }
 
   [[nodiscard]] bool is_hopeless(const geometry::FairPath& fair, const PlanOptions& lines) {
@@ -299,6 +300,7 @@ class RunSmoother {
   // `share` of the tolerance belongs to the form; `left` is what the curve leaves.
   void add_candidates(const RunCurve& curve, double share, double left) {
     const geometry::FairPath& fair = curve.path;
+    expected_.reset();
     const auto plan_with = [&](double multiple) {
       return PlanOptions{
           options_.target,       options_.machine,       units_,
@@ -510,7 +512,8 @@ class RunSmoother {
   RunFacts judged_;           // what a gain is measured by before the candidates are there
   bool passed_over_ = false;  // a candidate that could not gain was not made
   bool fits_ = false;         // a method found a curve inside the tolerance
-  double curvature_ = 0;      // 1/mm, greatest of the curve that candidates are made of
+  std::optional<ExpectedChords> expected_;  // of the curve that candidates are made of
+  double curvature_ = 0;  // 1/mm, greatest of the curve that candidates are made of
   SmoothedRun result_;
 };
 

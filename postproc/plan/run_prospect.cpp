@@ -56,19 +56,26 @@ double coarse_part(const Run& run, double tolerance) {
   return p.size() > 2 ? static_cast<double>(coarse) / static_cast<double>(p.size() - 2) : 0;
 }
 
-double chords_for(const geometry::FairPath& fair, double deviation, double min_length) {
+ExpectedChords::ExpectedChords(const geometry::FairPath& fair) {
   constexpr int kParts = 3;
-  double chords = 0;
   geometry::SplineWalk curve(fair.curve.basis().knots(), fair.curve.control_points());
   const std::vector<double> breaks = fair.curve.breakpoints();
+  steps_.reserve(kParts * breaks.size());
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
     const double step = (breaks[i + 1] - breaks[i]) / kParts;
     for (int k = 0; k < kParts; ++k) {
       // The parameter is about the length.
-      const double curvature = curve.curvature_at(breaks[i] + (k + 0.5) * step);
-      const double per_mm = std::sqrt(curvature / (8 * deviation));
-      chords += step * (per_mm * min_length > 1 ? std::sqrt(0.5) * per_mm : per_mm);
+      steps_.push_back({step, std::sqrt(curve.curvature_at(breaks[i] + (k + 0.5) * step))});
     }
+  }
+}
+
+double ExpectedChords::within(double deviation, double min_length) const {
+  const double per_bend = 1 / std::sqrt(8 * deviation);
+  double chords = 0;
+  for (const Step& step : steps_) {
+    const double per_mm = per_bend * step.bend;
+    chords += step.length * (per_mm * min_length > 1 ? std::sqrt(0.5) * per_mm : per_mm);
   }
   return chords;
 }

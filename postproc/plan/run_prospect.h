@@ -23,10 +23,21 @@ namespace batten::postproc {
 // `tolerance`: a run of a coarser tolerance, of which only the corners could be rounded.
 [[nodiscard]] double coarse_part(const Run& run, double tolerance);
 
-// About how many chords within `deviation` the fair curve takes, where chords shorter than
-// `min_length` may be twice as far off.
-[[nodiscard]] double chords_for(const geometry::FairPath& fair, double deviation,
-                                double min_length);
+// About how many chords a fair curve takes.
+class ExpectedChords {
+ public:
+  explicit ExpectedChords(const geometry::FairPath& fair);
+
+  // Within `deviation` (mm), where chords shorter than `min_length` (mm) may be twice as far off.
+  [[nodiscard]] double within(double deviation, double min_length) const;
+
+ private:
+  struct Step {
+    double length;  // mm
+    double bend;    // the root of the curvature
+  };
+  std::vector<Step> steps_;  // a few for each span
+};
 
 // The least number of arcs and lines that the fair curve takes, by its straight parts: each is a
 // line, and what joins two of them gently takes two arcs or more.

@@ -17,6 +17,8 @@ using gcode::Writer;
 // The most digits after the point that can be printed.
 constexpr int kMostDecimals = 9;
 
+bool is_end_of_line(char c) { return c == '\n' || c == '\r'; }
+
 // Writes the moves of one run and counts what it writes.
 class RunWriter {
  public:
@@ -78,7 +80,8 @@ class RunWriter {
   void count_from(std::size_t begin) {
     std::string_view written = std::string_view(writer_.text()).substr(begin);
     while (!written.empty()) {
-      const std::size_t end = written.find_first_of("\r\n");
+      const std::size_t end = static_cast<std::size_t>(
+          std::find_if(written.begin(), written.end(), is_end_of_line) - written.begin());
       const std::string_view line = written.substr(0, end);
       every_line_fits_ = every_line_fits_ && target_.line_length(line) <= target_.max_line_length();
       // SPL has lines that go on with the block.

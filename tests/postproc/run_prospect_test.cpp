@@ -78,7 +78,7 @@ TEST(ChordsFor, IsWithinAFifthOfTheChordsThatArePlanned) {
     plan.max_deviation = deviation;
     const auto planned = static_cast<double>(plan_lines(run, *fair, plan).moves.size());
     const double step = 10 * options.machine->block_period;
-    const double estimated = chords_for(*fair, 0.5 * deviation, 2 * step);
+    const double estimated = ExpectedChords(*fair).within(0.5 * deviation, 2 * step);
     EXPECT_NEAR(estimated, planned, 0.2 * planned);
   }
 }
