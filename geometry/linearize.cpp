@@ -15,10 +15,6 @@
 namespace batten::geometry {
 namespace {
 
-// A chord's end is searched to this part of its length: a thousand chords lose a quarter of a
-// chord.
-constexpr double kEndPrecision = 5e-4;
-
 // A chord this much longer than the greatest length (relative) has that length: rounding of
 // evenly divided lines.
 constexpr double kLengthNoise = 1e-9;
@@ -38,11 +34,13 @@ constexpr std::size_t kBalancedChords = 50;
 struct Limits {
   double deviation;   // mm
   double max_length;  // mm, infinite when there is none
+  double precision;   // of a chord's end, relative to its length
 };
 
 Limits scaled(const Limits& limits, double chord_length) {
   // A chord's deviation grows with the square of its length.
-  return {limits.deviation * chord_length * chord_length, limits.max_length * chord_length};
+  return {limits.deviation * chord_length * chord_length, limits.max_length * chord_length,
+          limits.precision};
 }
 
 // The longest chord from one place of the curve.
@@ -92,22 +90,22 @@ class LongestChord {
   }
 
   [[nodiscard]] bool is_settled() const {
-    return std::isfinite(bad_) && bad_ - good_ <= kEndPrecision * (bad_ - chords_.from());
+    return std::isfinite(bad_) && bad_ - good_ <= limits_.precision * (bad_ - chords_.from());
   }
 
   // Narrows the doubt between an end that holds and one that does not, by the secants of the bow.
   void approach(double end, double limit) {
     constexpr int kSecants = 12;
-    constexpr double kWidest = 4;                  // the length changes by this factor at most
-    constexpr double kNearly = 1 - kEndPrecision;  // of the deviation: half of it, of the length
+    constexpr double kWidest = 4;                 // the length changes by this factor at most
+    const double nearly = 1 - limits_.precision;  // of the deviation: half of it, of the length
     const double from = chords_.from();
     const double full = std::sqrt(limits_.deviation);
-    const double aim = std::sqrt(0.5 * (1 + kNearly)) * full;
+    const double aim = std::sqrt(0.5 * (1 + nearly)) * full;
     Trial before{from, 0, true};
     for (int i = 0;; ++i) {
       const Trial trial = try_end(end);
       (trial.holds ? good_ : bad_) = end;
-      if (trial.holds && (end >= limit || trial.bow * trial.bow >= kNearly * limits_.deviation)) {
+      if (trial.holds && (end >= limit || trial.bow * trial.bow >= nearly * limits_.deviation)) {
         return;
       }
       if (is_settled()) return;
@@ -332,9 +330,10 @@ std::vector<double> chord_vertices(const MarkedPieces& curve, double from, doubl
     throw std::invalid_argument("chord_vertices: max_deviation " +
                                 std::to_string(options.max_deviation) + ", expected > 0");
   }
-  const Limits limits{options.max_deviation, options.max_length > 0
-                                                 ? options.max_length
-                                                 : std::numeric_limits<double>::infinity()};
+  const Limits limits{
+      options.max_deviation,
+      options.max_length > 0 ? options.max_length : std::numeric_limits<double>::infinity(),
+      options.precision};
   std::vector<double> vertices = {from};
   auto corner = std::upper_bound(curve.corners.begin(), curve.corners.end(), from);
   std::size_t run = 0;

@@ -18,10 +18,14 @@ using Vertices = std::vector<geometry::LinkVertex>;
 
 // How far chords may go in either direction.
 struct Fineness {
-  double finest = 0;      // mm, chord to curve, wished for
-  double coarsest = 0;    // mm, the limit
-  double min_length = 0;  // mm; where chords would be shorter, they become coarser
+  double finest = 0;        // mm, chord to curve, wished for
+  double coarsest = 0;      // mm, the limit
+  double min_length = 0;    // mm; where chords would be shorter, they become coarser
+  double precision = 5e-4;  // of the chords' ends
 };
+
+// Chords that are only wished to be so fine may be a tenth of a percent shorter on the average.
+constexpr double kPrecisionOfWishes = 2e-3;
 
 // From one fineness to the next coarser one that is tried: chords twice as long.
 constexpr double kCoarser = 4;
@@ -48,7 +52,7 @@ Fineness fineness_for(double feed, const PlanOptions& options, double finest) {
   const double per_block = length_per_block(feed, *options.machine);
   switch (options.prefer) {
     case Prefer::kTime:
-      return {limit / 2, limit, kPeriodsForTime * per_block};
+      return {limit / 2, limit, kPeriodsForTime * per_block, kPrecisionOfWishes};
     case Prefer::kAccuracy:
       return {finest, kBalanced * limit, kPeriodsForAccuracy * per_block};
     case Prefer::kSize:
@@ -61,8 +65,8 @@ Fineness fineness_for(double feed, const PlanOptions& options, double finest) {
 // coarser on each stretch whose chords come out too short.
 std::vector<double> chords(const MarkedPieces& curve, double from, double to,
                            const Fineness& fineness) {
-  std::vector<double> wished =
-      geometry::chord_vertices(curve, from, to, {.max_deviation = fineness.finest});
+  std::vector<double> wished = geometry::chord_vertices(
+      curve, from, to, {.max_deviation = fineness.finest, .precision = fineness.precision});
   if (fineness.finest >= fineness.coarsest) return wished;
   Fineness coarser = fineness;
   coarser.finest = std::min(fineness.finest * kCoarser, fineness.coarsest);
