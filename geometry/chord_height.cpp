@@ -115,8 +115,8 @@ double greatest_square(const ControlCoordinates& across, double known) {
 
 }  // namespace
 
-ChordsFrom::ChordsFrom(const CurvePieces& pieces, double from)
-    : pieces_(pieces), from_(from), first_(pieces.index_of(from)) {
+ChordsFrom::ChordsFrom(const CurvePieces& pieces, std::size_t piece_of_start, double from)
+    : pieces_(pieces), from_(from), first_(piece_of_start) {
   const double at = pieces.local(first_, from);
   const CubicBezier& piece = pieces.piece(first_);
   const CubicBezier rest = at > 0 ? parts_at(piece, at).second : piece;

@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::size_t kFairDegree = 3;
 
-// Samples of a piece of the curve beside an edge; four times as many where one of them is further
-// off than this part of the limit.
-constexpr int kParts = 6;
+// Samples of a piece of the curve beside an edge: between them a bow rises by a sixteenth more.
+// Many more where one of them is further off than this part of the limit.
+constexpr int kParts = 4;
 constexpr int kMoreParts = 24;
 constexpr double kLookCloser = 0.6;
 

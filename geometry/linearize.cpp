@@ -46,8 +46,9 @@ Limits scaled(const Limits& limits, double chord_length) {
 // The longest chord from one place of the curve.
 class LongestChord {
  public:
-  LongestChord(const CurvePieces& pieces, double from, const Limits& limits)
-      : pieces_(pieces), chords_(pieces, from), limits_(limits) {}
+  // `piece`: that holds `from`.
+  LongestChord(const CurvePieces& pieces, std::size_t piece, double from, const Limits& limits)
+      : pieces_(pieces), chords_(pieces, piece, from), limits_(limits) {}
 
   // Where it ends, at most `limit`; `guess` is some end behind the start.
   double end(double guess, double limit) {
@@ -174,14 +175,15 @@ class LongestChord {
 std::vector<double> greedy_ends(const CurvePieces& pieces, double from, double to,
                                 const Limits& limits, std::size_t at_most) {
   std::vector<double> ends;
-  const std::size_t first = pieces.index_of(from);
+  std::size_t piece = pieces.index_of(from);
   // A chord is about as long as the one before, and as much longer than that as that was.
-  double last_step = pieces.breaks()[first + 1] - pieces.breaks()[first];
+  double last_step = pieces.breaks()[piece + 1] - pieces.breaks()[piece];
   double growth = 1;
   constexpr double kMostGrowth = 1.5;
   for (double at = from; at < to && ends.size() < at_most;) {
     const double guess = at + std::clamp(growth, 1 / kMostGrowth, kMostGrowth) * last_step;
-    const double end = LongestChord(pieces, at, limits).end(guess, to);
+    while (piece + 1 < pieces.size() && pieces.breaks()[piece + 1] <= at) ++piece;
+    const double end = LongestChord(pieces, piece, at, limits).end(guess, to);
     growth = ends.empty() ? 1 : (end - at) / last_step;
     last_step = end - at;
     at = end;

@@ -15,6 +15,7 @@
 #include "geometry/numeric.h"
 #include "postproc/machine/junction_speed.h"
 #include "postproc/machine/timed_chain.h"
+#include "postproc/plan/curve_bends.h"
 #include "postproc/plan/piece_plans.h"
 #include "postproc/plan/run_choice.h"
 #include "postproc/plan/run_curve.h"
@@ -124,7 +125,7 @@ class RunSmoother {
     const CurveRequest request = curve_request(first, shares, rounding);
     const auto curve = curve_of(first, run_.points, request);
     if (curve) {
-      curvature_ = greatest_curvature(curve->path.curve);
+      look_at(*curve);
       know(curve->path, rounding);
       add_candidates_of(*curve, shares);
       if (first == Method::kFair && request.near) try_simpler(request, shares);
@@ -163,7 +164,7 @@ class RunSmoother {
   void know(const geometry::FairPath& path, double rounding) {
     result_.facts.noise = path.noise;
     result_.facts.error = chord_error(run_, path, rounding);
-    result_.facts.fair_curvature = curvature_;
+    result_.facts.fair_curvature = bends_->greatest();
   }
 
   // Where the near curve is worth nothing, one that leaves of the vertices what their decimals do
@@ -176,9 +177,11 @@ class RunSmoother {
   }
 
   void try_curve(const RunCurve& curve, const ToleranceShares& shares) {
-    curvature_ = greatest_curvature(curve.path.curve);
+    look_at(curve);
     add_candidates_of(curve, shares);
   }
+
+  void look_at(const RunCurve& curve) { bends_.emplace(curve.path.curve); }
 
   // Where it leaves some of the tolerance.
   void add_candidates_of(const RunCurve& curve, const ToleranceShares& shares) {
@@ -255,16 +258,15 @@ class RunSmoother {
   }
 
   // About how many lines there will be.
-  [[nodiscard]] double chords_wanted(const geometry::FairPath& fair, double deviation) {
+  [[nodiscard]] double chords_wanted(double deviation) const {
     const double step = std::min(greatest_feed(run_) / 60, options_.machine->max_velocity()) *
                         options_.machine->block_period;
-    if (!expected_) expected_.emplace(fair);
-    return expected_->within(0.5 * deviation, 2 * step);
+    return bends_->chords(0.5 * deviation, 2 * step);
   }
 
-  [[nodiscard]] bool is_hopeless(const geometry::FairPath& fair, const PlanOptions& lines) {
+  [[nodiscard]] bool is_hopeless(const PlanOptions& lines) {
     judged_.error = result_.facts.error;
-    const Prospect chords{least_time_, chords_wanted(fair, lines.max_deviation),
+    const Prospect chords{least_time_, chords_wanted(lines.max_deviation),
                           known(lines.max_deviation)};
     const bool hopeless = options_.prefer == Prefer::kTime &&
                           !may_gain(chords, judged_, context_.blocks, options_.prefer);
@@ -300,7 +302,6 @@ class RunSmoother {
   // `share` of the tolerance belongs to the form; `left` is what the curve leaves.
   void add_candidates(const RunCurve& curve, double share, double left) {
     const geometry::FairPath& fair = curve.path;
-    expected_.reset();
     const auto plan_with = [&](double multiple) {
       return PlanOptions{
           options_.target,       options_.machine,       units_,
@@ -340,7 +341,7 @@ class RunSmoother {
     double before = std::numeric_limits<double>::infinity();
     for (const double multiple : {kLongChords, kMiddleChords, kFineChords}) {
       const PlanOptions lines = plan_with(one_sided() ? kFineChords : multiple);
-      if (lines.max_deviation > kAnother * before || is_hopeless(fair, lines)) continue;
+      if (lines.max_deviation > kAnother * before || is_hopeless(lines)) continue;
       before = lines.max_deviation;
       const bool made = multiple == kFineChords && ahead.lines;
       push(made ? std::move(ahead.lines)
@@ -366,12 +367,12 @@ class RunSmoother {
     ahead.leaves_out_arcs = beats_form(ahead.arcs, far, 0);
     const auto beats_lines = [&](double multiple) {
       const double deviation = plan_with(multiple).max_deviation;
-      return beats_form(ahead.arcs, deviation, chords_wanted(fair, deviation));
+      return beats_form(ahead.arcs, deviation, chords_wanted(deviation));
     };
     ahead.leaves_out_lines = ahead.leaves_out_arcs && beats_lines(kLongChords) &&
                              beats_lines(kMiddleChords) && beats_lines(kFineChords);
     const PlanOptions lines = plan_with(kFineChords);
-    const bool makes_lines = !ahead.leaves_out_arcs && !is_hopeless(fair, lines) &&
+    const bool makes_lines = !ahead.leaves_out_arcs && !is_hopeless(lines) &&
                              lines.max_deviation < plan_with(kMiddleChords).max_deviation;
     if (makes_lines) {
       ahead.lines = candidate_of(curve, plan_lines(run_, fair, pieces, lines), lines.max_deviation);
@@ -462,7 +463,7 @@ class RunSmoother {
     const bool meant = curve.method == Method::kFair;
     if (plan->error > 0) error = plan->error;
     candidate.error = known(meant ? error : error + curve.path.deviation);
-    candidate.max_curvature = curvature_;
+    candidate.max_curvature = bends_->greatest();
     std::vector<TimedPiece> moves = timed_pieces(*plan);
     if (!run_.arcs.empty()) candidate.kink = greatest_kink(moves);
     candidate.times = times_.of_candidate(moves, text->blocks, result_.facts.times,
@@ -509,11 +510,10 @@ class RunSmoother {
   gcode::Units units_;
   RunTimes times_;
   double least_time_ = 0;
-  RunFacts judged_;           // what a gain is measured by before the candidates are there
-  bool passed_over_ = false;  // a candidate that could not gain was not made
-  bool fits_ = false;         // a method found a curve inside the tolerance
-  std::optional<ExpectedChords> expected_;  // of the curve that candidates are made of
-  double curvature_ = 0;  // 1/mm, greatest of the curve that candidates are made of
+  RunFacts judged_;                  // what a gain is measured by before the candidates are there
+  bool passed_over_ = false;         // a candidate that could not gain was not made
+  bool fits_ = false;                // a method found a curve inside the tolerance
+  std::optional<CurveBends> bends_;  // of the curve that candidates are made of
   SmoothedRun result_;
 };
 

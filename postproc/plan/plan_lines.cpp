@@ -61,6 +61,25 @@ Fineness fineness_for(double feed, const PlanOptions& options, double finest) {
   return {limit, limit, 0};
 }
 
+Vertices on_the_curve(const BsplineCurve& curve, const std::vector<double>& parameters) {
+  Vertices vertices;
+  vertices.reserve(parameters.size());
+  for (const double u : parameters) vertices.push_back({curve.point_at(u), u});
+  return vertices;
+}
+
+// `parameters` increase.
+Vertices on_the_curve(const geometry::CurvePieces& curve, const std::vector<double>& parameters) {
+  Vertices vertices;
+  vertices.reserve(parameters.size());
+  std::size_t piece = curve.index_of(parameters.front());
+  for (const double u : parameters) {
+    while (piece + 1 < curve.size() && curve.breaks()[piece + 1] <= u) ++piece;
+    vertices.push_back({curve.point_in(piece, u), u});
+  }
+  return vertices;
+}
+
 // Parameters of the vertices between two places, both included: as fine as wished for, and
 // coarser on each stretch whose chords come out too short.
 std::vector<double> chords(const MarkedPieces& curve, double from, double to,
@@ -71,11 +90,10 @@ std::vector<double> chords(const MarkedPieces& curve, double from, double to,
   Fineness coarser = fineness;
   coarser.finest = std::min(fineness.finest * kCoarser, fineness.coarsest);
 
-  std::vector<geometry::Point3> places;
-  places.reserve(wished.size());
-  for (const double u : wished) places.push_back(curve.pieces.point_at(u));
+  const Vertices places = on_the_curve(curve.pieces, wished);
   const auto is_short = [&](std::size_t i) {
-    return i + 1 < wished.size() && (places[i + 1] - places[i]).norm() < fineness.min_length;
+    return i + 1 < wished.size() &&
+           (places[i + 1].place - places[i].place).norm() < fineness.min_length;
   };
   std::vector<double> vertices = {from};
   for (std::size_t i = 0; i + 1 < wished.size();) {
@@ -89,14 +107,6 @@ std::vector<double> chords(const MarkedPieces& curve, double from, double to,
     vertices.insert(vertices.end(), longer.begin() + 1, longer.end());
     i = end;
   }
-  return vertices;
-}
-
-template <typename Curve>
-Vertices on_the_curve(const Curve& curve, const std::vector<double>& parameters) {
-  Vertices vertices;
-  vertices.reserve(parameters.size());
-  for (const double u : parameters) vertices.push_back({curve.point_at(u), u});
   return vertices;
 }
 

@@ -10,6 +10,7 @@
 
 #include "geometry/fair_measure.h"
 #include "geometry/one_sided_fair.h"
+#include "postproc/plan/curve_bends.h"
 
 namespace batten::postproc {
 
@@ -89,17 +90,7 @@ double greatest_curvature(std::span<const Point3> p) {
 }
 
 double greatest_curvature(const geometry::BsplineCurve& curve) {
-  constexpr int kParts = 8;
-  double most = 0;
-  geometry::SplineWalk walk(curve.basis().knots(), curve.control_points());
-  const std::vector<double> knots = curve.breakpoints();
-  for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-    for (int k = 0; k < kParts; ++k) {
-      const double u = knots[i] + (knots[i + 1] - knots[i]) * k / kParts;
-      most = std::max(most, walk.curvature_at(u));
-    }
-  }
-  return std::max(most, walk.curvature_at(curve.last()));
+  return CurveBends(curve).greatest();
 }
 
 double chord_error(const Run& run, const FairPath& meant, double rounding) {

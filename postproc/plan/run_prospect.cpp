@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/fair_measure.h"
-
 namespace batten::postproc {
 
 using geometry::Point3;
@@ -17,11 +15,15 @@ namespace {
 // legs at most.
 double saved_at(const Vector3& a, const Vector3& b, double tolerance,
                 geometry::ToleranceKind kind) {
-  const double turn = std::atan2(a.cross(b).norm(), a.dot(b));
+  const double to_middles = 0.5 * (a.norm() + b.norm() - (a + b).norm());
+  const double across = a.cross(b).norm();
+  // A sine is less than its turn, and a tangent greater.
+  const double sine = across / (a.norm() * b.norm());
+  if (to_middles <= tolerance * sine / 2) return to_middles;
+  const double turn = std::atan2(across, a.dot(b));
   if (kind == geometry::ToleranceKind::kBand) {
     tolerance /= std::max(std::cos(turn / 2), std::sin(geometry::kSharpestCut / 2));
   }
-  const double to_middles = 0.5 * (a.norm() + b.norm() - (a + b).norm());
   return std::min(to_middles, 2 * tolerance * std::tan(turn / 4));
 }
 
@@ -50,34 +52,13 @@ double coarse_part(const Run& run, double tolerance) {
   for (std::size_t i = 1; i + 1 < p.size(); ++i) {
     const Vector3 a = p[i] - p[i - 1];
     const Vector3 b = p[i + 1] - p[i];
-    const double turn = std::atan2(a.cross(b).norm(), a.dot(b));
-    if (turn * std::min(a.norm(), b.norm()) / 8 > tolerance) ++coarse;
+    const double across = a.cross(b).norm();
+    const auto [shorter, longer] = std::minmax({a.norm(), b.norm()});
+    // A turn of less than a right angle is less than 1.6 of its sine.
+    if (a.dot(b) > 0 && 1.6 * across / 8 <= tolerance * longer) continue;
+    if (std::atan2(across, a.dot(b)) * shorter / 8 > tolerance) ++coarse;
   }
   return p.size() > 2 ? static_cast<double>(coarse) / static_cast<double>(p.size() - 2) : 0;
-}
-
-ExpectedChords::ExpectedChords(const geometry::FairPath& fair) {
-  constexpr int kParts = 3;
-  geometry::SplineWalk curve(fair.curve.basis().knots(), fair.curve.control_points());
-  const std::vector<double> breaks = fair.curve.breakpoints();
-  steps_.reserve(kParts * breaks.size());
-  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
-    const double step = (breaks[i + 1] - breaks[i]) / kParts;
-    for (int k = 0; k < kParts; ++k) {
-      // The parameter is about the length.
-      steps_.push_back({step, std::sqrt(curve.curvature_at(breaks[i] + (k + 0.5) * step))});
-    }
-  }
-}
-
-double ExpectedChords::within(double deviation, double min_length) const {
-  const double per_bend = 1 / std::sqrt(8 * deviation);
-  double chords = 0;
-  for (const Step& step : steps_) {
-    const double per_mm = per_bend * step.bend;
-    chords += step.length * (per_mm * min_length > 1 ? std::sqrt(0.5) * per_mm : per_mm);
-  }
-  return chords;
 }
 
 double arcs_for(const geometry::MarkedPieces& curve) {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "geometry/curve_pieces.h"
-#include "geometry/fair.h"
 #include "postproc/machine/machine.h"
 #include "postproc/options.h"
 #include "postproc/runs/section.h"
@@ -22,22 +21,6 @@ namespace batten::postproc {
 // The part of the run's vertices whose chords would leave a curve through them by more than
 // `tolerance`: a run of a coarser tolerance, of which only the corners could be rounded.
 [[nodiscard]] double coarse_part(const Run& run, double tolerance);
-
-// About how many chords a fair curve takes.
-class ExpectedChords {
- public:
-  explicit ExpectedChords(const geometry::FairPath& fair);
-
-  // Within `deviation` (mm), where chords shorter than `min_length` (mm) may be twice as far off.
-  [[nodiscard]] double within(double deviation, double min_length) const;
-
- private:
-  struct Step {
-    double length;  // mm
-    double bend;    // the root of the curvature
-  };
-  std::vector<Step> steps_;  // a few for each span
-};
 
 // The least number of arcs and lines that the fair curve takes, by its straight parts: each is a
 // line, and what joins two of them gently takes two arcs or more.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "postproc/plan/curve_bends.h"
 #include "postproc/plan/output_plan.h"
 #include "postproc/plan/run_choice.h"
 #include "wavy_programs.h"
@@ -78,7 +79,7 @@ TEST(ChordsFor, IsWithinAFifthOfTheChordsThatArePlanned) {
     plan.max_deviation = deviation;
     const auto planned = static_cast<double>(plan_lines(run, *fair, plan).moves.size());
     const double step = 10 * options.machine->block_period;
-    const double estimated = ExpectedChords(*fair).within(0.5 * deviation, 2 * step);
+    const double estimated = CurveBends(fair->curve).chords(0.5 * deviation, 2 * step);
     EXPECT_NEAR(estimated, planned, 0.2 * planned);
   }
 }
