@@ -290,10 +290,9 @@ class RunSmoother {
   }
 
   // Whether the candidate would be chosen rather than any form at this deviation.
-  [[nodiscard]] bool beats_form(const std::optional<Candidate>& candidate, double deviation,
-                                double blocks) const {
-    const Rival rival{least_time_at_rest(), known(deviation), blocks};
-    return candidate && beats(*candidate, rival, result_, context_, options_);
+  [[nodiscard]] bool beats_form(const Candidate& candidate, double deviation, double blocks) const {
+    const Rival rival{least_time_at_rest(), known(deviation), blocks, 0};
+    return beats(candidate, rival, result_, context_, options_);
   }
 
   // Whether the run must not be cut on one side: then what is written follows the curve closely.
@@ -338,23 +337,56 @@ class RunSmoother {
       add_arc_splines(curve, whole);
     }
     if (options_.output == Form::kArcs || ahead.leaves_out_lines) return;
+    if (!ahead.lines) ahead.lines = lines_of(curve, pieces, plan_with);
+    for (Candidate& lines : *ahead.lines) push(std::move(lines));
+  }
+
+  // Chords that are worth looking at, the longest first, but for finer ones that could not be
+  // preferred to those before them.
+  template <typename PlanWith>
+  [[nodiscard]] std::vector<Candidate> lines_of(const RunCurve& curve,
+                                                const geometry::MarkedPieces& pieces,
+                                                const PlanWith& plan_with) {
+    std::vector<Candidate> made;
+    double made_within = 0;
     double before = std::numeric_limits<double>::infinity();
     for (const double multiple : {kLongChords, kMiddleChords, kFineChords}) {
       const PlanOptions lines = plan_with(one_sided() ? kFineChords : multiple);
-      if (lines.max_deviation > kAnother * before || is_hopeless(lines)) continue;
-      before = lines.max_deviation;
-      const bool made = multiple == kFineChords && ahead.lines;
-      push(made ? std::move(ahead.lines)
-                : candidate_of(curve, plan_lines(run_, fair, pieces, lines), lines.max_deviation));
+      const double within = lines.max_deviation;
+      if (within > kAnother * before || is_hopeless(lines)) continue;
+      before = within;
+      if (may_leave_out_ && !made.empty() && beats_finer(made.back(), made_within, within)) {
+        result_.left_out = true;
+        continue;
+      }
+      auto candidate = candidate_of(curve, plan_lines(run_, curve.path, pieces, lines), within);
+      if (!candidate) continue;
+      made.push_back(std::move(*candidate));
+      made_within = within;
     }
+    return made;
+  }
+
+  // Whether lines would be chosen rather than finer ones. The kinks of chords go with the root of
+  // their deviation.
+  [[nodiscard]] bool beats_finer(const Candidate& lines, double deviation, double finer) const {
+    constexpr double kEvenLess = 1.1;  // than that: chords differ
+    const double time = 0.5 * (lines.times.as_set + lines.times.without_merging);
+    Rival rival{time, known(finer), chords_wanted(finer), lines.times.exact_path};
+    if (!beats(lines, rival, result_, context_, options_)) return false;
+    const Times least =
+        times_.with_less_kinks(lines.moves, kEvenLess * std::sqrt(deviation / finer));
+    rival.least_time = std::max(least_time_at_rest(), 0.5 * (least.as_set + least.without_merging));
+    rival.exact_path = least.exact_path;
+    return beats(lines, rival, result_, context_, options_);
   }
 
   // Made before others, to know whether these could be chosen.
   struct Ahead {
-    std::optional<Candidate> arcs;   // near to the curve
-    std::optional<Candidate> lines;  // near to the curve
-    bool leaves_out_arcs = false;    // those further away
-    bool leaves_out_lines = false;   // all of them
+    std::optional<Candidate> arcs;  // near to the curve
+    std::optional<std::vector<Candidate>> lines;
+    bool leaves_out_arcs = false;   // those further away
+    bool leaves_out_lines = false;  // all of them
   };
 
   // The dearest forms are the ones that are seldom chosen: few arcs further away from the curve,
@@ -362,21 +394,20 @@ class RunSmoother {
   template <typename PlanWith>
   void leave_out_forms(const RunCurve& curve, const geometry::MarkedPieces& pieces,
                        const PlanWith& plan_with, Ahead& ahead) {
-    const geometry::FairPath& fair = curve.path;
     const double far = plan_with(kArcs).max_deviation;
-    ahead.leaves_out_arcs = beats_form(ahead.arcs, far, 0);
+    ahead.leaves_out_arcs = ahead.arcs && beats_form(*ahead.arcs, far, 0);
     const auto beats_lines = [&](double multiple) {
       const double deviation = plan_with(multiple).max_deviation;
-      return beats_form(ahead.arcs, deviation, chords_wanted(deviation));
+      return beats_form(*ahead.arcs, deviation, chords_wanted(deviation));
     };
     ahead.leaves_out_lines = ahead.leaves_out_arcs && beats_lines(kLongChords) &&
                              beats_lines(kMiddleChords) && beats_lines(kFineChords);
-    const PlanOptions lines = plan_with(kFineChords);
-    const bool makes_lines = !ahead.leaves_out_arcs && !is_hopeless(lines) &&
-                             lines.max_deviation < plan_with(kMiddleChords).max_deviation;
+    const PlanOptions fine = plan_with(kFineChords);
+    const bool makes_lines = !ahead.leaves_out_arcs && !is_hopeless(fine) &&
+                             fine.max_deviation < plan_with(kMiddleChords).max_deviation;
     if (makes_lines) {
-      ahead.lines = candidate_of(curve, plan_lines(run_, fair, pieces, lines), lines.max_deviation);
-      ahead.leaves_out_arcs = beats_form(ahead.lines, far, 0);
+      ahead.lines = lines_of(curve, pieces, plan_with);
+      ahead.leaves_out_arcs = !ahead.lines->empty() && beats_form(ahead.lines->back(), far, 0);
     }
     result_.left_out = result_.left_out || ahead.leaves_out_arcs;
   }
@@ -446,7 +477,12 @@ class RunSmoother {
   }
 
   void push(std::optional<Candidate> candidate) {
-    if (candidate) result_.candidates.push_back(std::move(*candidate));
+    if (candidate) push(std::move(*candidate));
+  }
+
+  void push(Candidate candidate) {
+    if (!context_.is_piece()) candidate.moves = {};
+    result_.candidates.push_back(std::move(candidate));
   }
 
   // Nothing where there is no plan, or the target cannot say it.
@@ -469,7 +505,7 @@ class RunSmoother {
     candidate.times = times_.of_candidate(moves, text->blocks, result_.facts.times,
                                           compares_kinks(options_), options_.output != Form::kAuto);
     candidate.text = std::move(*text);
-    if (context_.is_piece()) candidate.moves = std::move(moves);
+    candidate.moves = std::move(moves);
     return candidate;
   }
 

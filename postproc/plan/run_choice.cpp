@@ -139,7 +139,8 @@ bool beats(const Candidate& c, const Rival& rival, const SmoothedRun& run,
     return false;
   }
   if (2 * rival.least_time < (1 - kSameTime) * sum_of(c.times)) return false;
-  if (rival.least_time < kFewerKinks * c.times.exact_path) return false;
+  const double exact_path = std::max(rival.least_time, rival.exact_path);
+  if (exact_path < kFewerKinks * c.times.exact_path) return false;
   if (c.error * kSameError < rival.error) return true;
   if (rival.error * kSameError < c.error) return false;
   return static_cast<double>(c.text.blocks) < rival.blocks / kEstimate;

@@ -42,6 +42,7 @@ struct Rival {
   double least_time = 0;  // s: no way in which the control may be set takes it less
   double error = 0;       // mm, about
   double blocks = 0;      // may be too many by a fifth
+  double exact_path = 0;  // s: under exact path no less than this, about
 };
 
 // Whether `choose` prefers the candidate to such another one, whatever its time is.

@@ -6,6 +6,16 @@
 
 namespace batten::postproc {
 
+namespace {
+
+Machine with_accelerations(Machine machine, double multiple) {
+  for (AxisLimits& axis : machine.axes) axis.acceleration *= multiple;
+  machine.path_acceleration *= multiple;
+  return machine;
+}
+
+}  // namespace
+
 RunTimes::RunTimes(const RunContext& context, const Machine& machine)
     : context_(context), machine_(machine), around_(of_neighbours()) {}
 
@@ -19,10 +29,13 @@ Times RunTimes::of_run(const std::vector<TimedPiece>& motions) const {
 }
 
 double RunTimes::as_set_of_run(const std::vector<TimedPiece>& motions) const {
-  const auto time = [this](const std::vector<TimedPiece>& chain) {
-    return cutting_time(chain, machine_, context_.after.path);
-  };
-  return (has_neighbours() ? time(with_neighbours(motions)) : time(motions)) - around_.as_set;
+  return in_one_setting(motions, machine_, context_.after.path) - around_.as_set;
+}
+
+double RunTimes::in_one_setting(const std::vector<TimedPiece>& moves, const Machine& machine,
+                                gcode::PathMode path) const {
+  return has_neighbours() ? cutting_time(with_neighbours(moves), machine, path)
+                          : cutting_time(moves, machine, path);
 }
 
 Times RunTimes::of_candidate(const std::vector<TimedPiece>& moves, std::size_t blocks,
@@ -41,6 +54,24 @@ Times RunTimes::of_candidate(const std::vector<TimedPiece>& moves, std::size_t b
   if (exact_path) times.exact_path = place.exact_path() - around_.exact_path;
   times.flat_out = place.flat_out() - around_.flat_out;
   return times;
+}
+
+// Axes that can do more pass the same kinks as these axes smaller ones, and do everything else
+// quicker. On LinuxCNC a kink that is not blended is passed or stopped at by what it asks of the
+// axes, which goes with the kink; a blended one is passed at a speed whose square goes with what
+// the axes can do, and inversely with the square of the kink.
+Times RunTimes::with_less_kinks(const std::vector<TimedPiece>& moves, double times_less) const {
+  Times least;
+  if (machine_.model != ControllerModel::kLinuxcnc) return least;
+  const Machine stronger = with_accelerations(machine_, times_less);
+  least.exact_path =
+      in_one_setting(moves, stronger, gcode::PathMode::kExactPath) - around_.exact_path;
+  Machine strongest = with_accelerations(machine_, times_less * times_less);
+  least.as_set = in_one_setting(moves, strongest, context_.after.path) - around_.as_set;
+  strongest.naive_cam_tolerance = 0;
+  least.without_merging =
+      in_one_setting(moves, strongest, context_.after.path) - around_.without_merging;
+  return least;
 }
 
 Times RunTimes::alone(const std::vector<TimedPiece>& chain) const {

@@ -27,10 +27,17 @@ class RunTimes {
   [[nodiscard]] Times of_candidate(const std::vector<TimedPiece>& moves, std::size_t blocks,
                                    const Times& old, bool exact_path, bool wanted) const;
 
+  // What moves take whose kinks are so many times smaller, but for flat_out: about, and rather too
+  // little. 0 where nothing is known of it.
+  [[nodiscard]] Times with_less_kinks(const std::vector<TimedPiece>& moves,
+                                      double times_less) const;
+
  private:
   [[nodiscard]] Times alone(const std::vector<TimedPiece>& chain) const;
   [[nodiscard]] Times of_neighbours() const;
   [[nodiscard]] SettingTimes in_place(const std::vector<TimedPiece>& moves) const;
+  [[nodiscard]] double in_one_setting(const std::vector<TimedPiece>& moves, const Machine& machine,
+                                      gcode::PathMode path) const;
   [[nodiscard]] bool has_neighbours() const;
   [[nodiscard]] std::vector<TimedPiece> with_neighbours(const std::vector<TimedPiece>& moves) const;
 
