@@ -18,7 +18,7 @@ constexpr std::uint8_t kSolutions = 20;
 // A solution in which it moves by less than this part of its limit counts as several: what the
 // solutions that are left would still move it by is a fiftieth of the limit at the most.
 constexpr double kStill = 1e-3;
-constexpr std::uint8_t kStillCounts = 7;
+constexpr std::uint8_t kStillCounts = 4;
 
 // One that rests wakes when it is moved by this part of its limit, for so many solutions.
 constexpr double kMoved = 0.01;

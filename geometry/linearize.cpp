@@ -22,8 +22,9 @@ constexpr double kLengthNoise = 1e-9;
 // How often the limits are narrowed to let the last chord grow to the size of the others.
 constexpr int kChordBalancingRounds = 8;
 
-// The last chord is no remainder when it is this part of a full one; the limits are narrowed for
-// one that is a little longer: with a whole one there is often another behind it.
+// The last chord is no remainder when it is this part of a full one. The limits are narrowed for
+// one that is a little longer, for with a whole one there is often another behind it; but where
+// lengths divide evenly there is none.
 constexpr double kFullChord = 0.98;
 constexpr double kWantedChord = 0.99;
 
@@ -209,7 +210,8 @@ std::vector<double> balanced(const CurvePieces& pieces, double from, std::vector
   for (int round = 0; round < kChordBalancingRounds && ends.size() > 1; ++round) {
     const double part = part_of_full_chord(pieces, ends[ends.size() - 2], to, scaled(limits, good));
     if (part >= kFullChord) break;
-    const double wanted = good * (count - 1 + part) / (count - 1 + kWantedChord);
+    const double last = std::isfinite(limits.max_length) ? 1 : kWantedChord;
+    const double wanted = good * (count - 1 + part) / (count - 1 + last);
     const double next = std::max(wanted, (good + small) / 2);
     std::vector<double> narrower =
         greedy_ends(pieces, from, to, scaled(limits, next), ends.size() + 1);

@@ -136,6 +136,9 @@ class RunSmoother {
     if (result_.candidates.empty()) {
       return kept(passed_over_ ? gcode::reason::kNoGain : gcode::reason::kTargetCannot);
     }
+    if (!context_.is_piece()) {
+      for (Candidate& candidate : result_.candidates) candidate.moves = {};
+    }
     return std::move(result_);
   }
 
@@ -289,6 +292,10 @@ class RunSmoother {
     return least_time_ > lost ? least_time_ + lost : least_time_;
   }
 
+  [[nodiscard]] bool keeps_speed(const Times& times) const {
+    return batten::postproc::keeps_speed(times, least_time_at_rest());
+  }
+
   // Whether the candidate would be chosen rather than any form at this deviation.
   [[nodiscard]] bool beats_form(const Candidate& candidate, double deviation, double blocks) const {
     const Rival rival{least_time_at_rest(), known(deviation), blocks, 0};
@@ -337,34 +344,58 @@ class RunSmoother {
       add_arc_splines(curve, whole);
     }
     if (options_.output == Form::kArcs || ahead.leaves_out_lines) return;
-    if (!ahead.lines) ahead.lines = lines_of(curve, pieces, plan_with);
-    for (Candidate& lines : *ahead.lines) push(std::move(lines));
+    if (ahead.lines.empty()) ahead.lines = line_forms(plan_with);
+    add_lines(curve, pieces, ahead.lines);
   }
 
-  // Chords that are worth looking at, the longest first, but for finer ones that could not be
-  // preferred to those before them.
+  // Lines that are no further from the curve than the plan says.
+  struct LineForm {
+    PlanOptions plan;
+    std::optional<Candidate> made;
+  };
+
+  // Those that are worth looking at, the longest first.
   template <typename PlanWith>
-  [[nodiscard]] std::vector<Candidate> lines_of(const RunCurve& curve,
-                                                const geometry::MarkedPieces& pieces,
-                                                const PlanWith& plan_with) {
-    std::vector<Candidate> made;
-    double made_within = 0;
-    double before = std::numeric_limits<double>::infinity();
+  [[nodiscard]] std::vector<LineForm> line_forms(const PlanWith& plan_with) {
+    std::vector<LineForm> forms;
     for (const double multiple : {kLongChords, kMiddleChords, kFineChords}) {
-      const PlanOptions lines = plan_with(one_sided() ? kFineChords : multiple);
-      const double within = lines.max_deviation;
-      if (within > kAnother * before || is_hopeless(lines)) continue;
-      before = within;
-      if (may_leave_out_ && !made.empty() && beats_finer(made.back(), made_within, within)) {
-        result_.left_out = true;
-        continue;
-      }
-      auto candidate = candidate_of(curve, plan_lines(run_, curve.path, pieces, lines), within);
-      if (!candidate) continue;
-      made.push_back(std::move(*candidate));
-      made_within = within;
+      PlanOptions lines = plan_with(one_sided() ? kFineChords : multiple);
+      const double before =
+          forms.empty() ? std::numeric_limits<double>::infinity() : forms.back().plan.max_deviation;
+      if (lines.max_deviation > kAnother * before || is_hopeless(lines)) continue;
+      forms.push_back({lines, {}});
     }
-    return made;
+    return forms;
+  }
+
+  void make(const RunCurve& curve, const geometry::MarkedPieces& pieces, LineForm& form) const {
+    form.made = candidate_of(curve, plan_lines(run_, curve.path, pieces, form.plan),
+                             form.plan.max_deviation);
+  }
+
+  // But for finer ones that could not be preferred to the best of those before them.
+  void add_lines(const RunCurve& curve, const geometry::MarkedPieces& pieces,
+                 std::vector<LineForm>& forms) {
+    const bool may_leave_out = may_leave_out_ && curve.method == Method::kFair && !curves_wanted();
+    std::optional<std::size_t> last;  // of the candidates
+    double deviation = 0;
+    for (LineForm& form : forms) {
+      const double finer = form.plan.max_deviation;
+      const bool beaten = may_leave_out && !form.made && last && is_best(*last) &&
+                          beats_finer(result_.candidates[*last], deviation, finer);
+      result_.left_out = result_.left_out || beaten;
+      if (beaten) continue;
+      if (!form.made) make(curve, pieces, form);
+      if (!form.made) continue;
+      last = result_.candidates.size();
+      deviation = finer;
+      push(std::move(form.made));
+    }
+  }
+
+  [[nodiscard]] bool is_best(std::size_t candidate) const {
+    const Choosing choosing = choose(result_, context_, options_);
+    return !choosing.order.empty() && choosing.order.front() == candidate;
   }
 
   // Whether lines would be chosen rather than finer ones. The kinks of chords go with the root of
@@ -384,7 +415,7 @@ class RunSmoother {
   // Made before others, to know whether these could be chosen.
   struct Ahead {
     std::optional<Candidate> arcs;  // near to the curve
-    std::optional<std::vector<Candidate>> lines;
+    std::vector<LineForm> lines;    // some of them made
     bool leaves_out_arcs = false;   // those further away
     bool leaves_out_lines = false;  // all of them
   };
@@ -406,8 +437,13 @@ class RunSmoother {
     const bool makes_lines = !ahead.leaves_out_arcs && !is_hopeless(fine) &&
                              fine.max_deviation < plan_with(kMiddleChords).max_deviation;
     if (makes_lines) {
-      ahead.lines = lines_of(curve, pieces, plan_with);
-      ahead.leaves_out_arcs = !ahead.lines->empty() && beats_form(ahead.lines->back(), far, 0);
+      ahead.lines = line_forms(plan_with);
+      make(curve, pieces, ahead.lines.front());
+      // Where long ones have many kinks, so have fine ones.
+      if (ahead.lines.front().made && !keeps_speed(ahead.lines.front().made->times)) return;
+      LineForm& finest = ahead.lines.back();
+      if (!finest.made) make(curve, pieces, finest);
+      ahead.leaves_out_arcs = finest.made && beats_form(*finest.made, far, 0);
     }
     result_.left_out = result_.left_out || ahead.leaves_out_arcs;
   }
@@ -477,12 +513,7 @@ class RunSmoother {
   }
 
   void push(std::optional<Candidate> candidate) {
-    if (candidate) push(std::move(*candidate));
-  }
-
-  void push(Candidate candidate) {
-    if (!context_.is_piece()) candidate.moves = {};
-    result_.candidates.push_back(std::move(candidate));
+    if (candidate) result_.candidates.push_back(std::move(*candidate));
   }
 
   // Nothing where there is no plan, or the target cannot say it.

@@ -116,6 +116,10 @@ bool compares_kinks(const SmoothOptions& options) {
          options.output != Form::kCurves;
 }
 
+bool keeps_speed(const Times& times, double least_time) {
+  return least_time >= kFewerKinks * times.exact_path;
+}
+
 std::size_t most_moves_for_accuracy(std::size_t blocks) {
   return static_cast<std::size_t>(kMoreBlocks * static_cast<double>(blocks));
 }
@@ -139,10 +143,11 @@ bool beats(const Candidate& c, const Rival& rival, const SmoothedRun& run,
     return false;
   }
   if (2 * rival.least_time < (1 - kSameTime) * sum_of(c.times)) return false;
-  const double exact_path = std::max(rival.least_time, rival.exact_path);
-  if (exact_path < kFewerKinks * c.times.exact_path) return false;
+  if (!keeps_speed(c.times, std::max(rival.least_time, rival.exact_path))) return false;
   if (c.error * kSameError < rival.error) return true;
-  if (rival.error * kSameError < c.error) return false;
+  // Both may be multiples of one share of the tolerance that are just so far apart.
+  constexpr double kRounding = 1 + 1e-6;
+  if (rival.error * kSameError < kRounding * c.error) return false;
   return static_cast<double>(c.text.blocks) < rival.blocks / kEstimate;
 }
 

@@ -25,6 +25,9 @@ struct Choosing {
 // Whether the choice looks at Times::exact_path of candidates that are equal otherwise.
 [[nodiscard]] bool compares_kinks(const SmoothOptions& options);
 
+// Whether nothing that takes `least_time` (s) or more could be better for having fewer kinks.
+[[nodiscard]] bool keeps_speed(const Times& times, double least_time);
+
 // What is known of a candidate before it is made. `blocks` may be too many by a fifth, `least_time`
 // is a bound for every way in which the control may be set.
 struct Prospect {
