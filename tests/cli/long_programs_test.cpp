@@ -142,5 +142,23 @@ TEST(MemoryOfLongPrograms, DoesNotGrowWithTheirBlocks) {
   EXPECT_LE(twice, once + kRows * 200 * kBytesOfBlock);
 }
 
+// The same of `inspect`, which keeps what it says of each row: two sections.
+TEST(MemoryOfLongPrograms, DoesNotGrowWithTheBlocksThatAreInspected) {
+  constexpr std::size_t kRows = 2000;
+  constexpr std::size_t kBytesOfBlock = 10;
+  const BattenFolder folder;
+  const auto memory_of = [&](std::size_t rows) {
+    folder.put("part.nc", relief(rows));
+    const ProcessResult done =
+        folder.shell(std::string("export ASAN_OPTIONS=quarantine_size_mb=1:$ASAN_OPTIONS; ") +
+                     kMeasured + "inspect part.nc | tail -1");
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    return std::stoul(done.out);
+  };
+  const std::size_t text = relief(kRows).size();  // that is mapped
+  const std::size_t once = memory_of(kRows);
+  EXPECT_LE(memory_of(2 * kRows), once + text + kRows * 200 * kBytesOfBlock);
+}
+
 }  // namespace
 }  // namespace batten
