@@ -44,10 +44,7 @@ void close_before(BlockIterator begin, BlockIterator mark, Diagnostics& found) {
 
 void close_after(BlockIterator mark, BlockIterator end, Diagnostics& found) {
   const bool any = std::any_of(mark, end, has_words);
-  for (auto block = mark + 1; block != end; ++block) {
-    block->opacity = Opacity::kProgramMark;
-    block->word_count = 0;
-  }
+  std::for_each(mark + 1, end, close_behind_marks);
   if (any) {
     found.push_back({Severity::kNote, "text-outside-marks", mark->span,
                      "words stand after this second % line, which ends the program; they are "
@@ -56,6 +53,11 @@ void close_after(BlockIterator mark, BlockIterator end, Diagnostics& found) {
 }
 
 }  // namespace
+
+void close_behind_marks(Block& block) {
+  block.opacity = Opacity::kProgramMark;
+  block.word_count = 0;
+}
 
 void close_program_marks(Program& program, Diagnostics& found) {
   const auto begin = program.blocks.begin();
@@ -77,6 +79,7 @@ void MarkWatch::see(const Program& part) {
   for (const Block& block : part.blocks) {
     if (is_mark(part, block)) {
       ++marks_;
+      if (marks_ == 2 && words_behind_first_) last_mark_ = block.line;
     } else if (has_words(block)) {
       words_before_ |= marks_ == 0;
       words_behind_first_ |= marks_ > 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "gcode/diagnostic.h"
 #include "gcode/program.h"
@@ -14,6 +15,9 @@ namespace batten::gcode {
 // The first % line begins the program when blocks with words follow it; otherwise it ends it.
 void close_program_marks(Program& program, Diagnostics& found);
 
+// What close_program_marks does with a block behind the mark that ends the program.
+void close_behind_marks(Block& block);
+
 // Sees a program part by part, from its begin, before any marks are closed.
 class MarkWatch {
  public:
@@ -23,12 +27,16 @@ class MarkWatch {
   [[nodiscard]] bool closes_nothing() const {
     return !(words_before_ && words_behind_first_) && !words_behind_second_;
   }
+  // The line of the mark that ends the program, from 1; 0: none was seen. close_program_marks makes
+  // all blocks behind it opaque, also those that say nothing.
+  [[nodiscard]] std::uint32_t last_mark() const { return last_mark_; }
 
  private:
   std::size_t marks_ = 0;
   bool words_before_ = false;
   bool words_behind_first_ = false;
   bool words_behind_second_ = false;
+  std::uint32_t last_mark_ = 0;
 };
 
 }  // namespace batten::gcode

@@ -1,59 +1,15 @@
 #include "postproc/inspect.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
+#include <utility>
+#include <variant>
 
-#include "gcode/large_pages.h"
 #include "geometry/numeric.h"
 #include "geometry/path.h"
 
 namespace batten::postproc {
 
 namespace {
-
-using geometry::Vector3;
-
-// In between, the mean of the two middle ones.
-double median_of(std::vector<double> values) {
-  const std::size_t middle = values.size() / 2;
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(middle));
-  const double upper = values[middle];
-  if (values.size() % 2 == 1) return upper;
-  return (upper +
-          *std::max_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(middle))) /
-         2;
-}
-
-// The greatest turn of a chain of directions, each a unit vector or zero where there is none.
-class GreatestTurn {
- public:
-  // `vertex`: where it is.
-  void add(const Vector3& from, const Vector3& to, std::size_t vertex) {
-    if (from.isZero() || to.isZero()) return;
-    const Vector3 across = from.cross(to);
-    const double along = from.dot(to);
-    if (along > 0 && across.squaredNorm() <= certainly_less_) return;
-    // atan2 keeps small turns exact where acos loses half of the digits.
-    const double turn = std::atan2(across.norm(), along);
-    if (!(turn > radians_)) return;
-    radians_ = turn;
-    vertex_ = vertex;
-    // Sines rise up to a right angle. Far above the rounding of unit vectors and of a sine.
-    constexpr double kRounding = 1e-9;
-    const double sine = std::sin(std::min(turn, std::numbers::pi / 2)) * (1 - kRounding);
-    certainly_less_ = sine * sine;
-  }
-
-  [[nodiscard]] double degrees() const { return radians_ * 180 / std::numbers::pi; }
-  [[nodiscard]] std::size_t vertex() const { return vertex_; }
-
- private:
-  double radians_ = 0;
-  std::size_t vertex_ = 0;
-  double certainly_less_ = 0;  // squared sine of turns that are less than the greatest so far
-};
 
 bool moves(const gcode::Interpretation& interpretation, std::uint32_t block) {
   const std::int32_t motion = interpretation.blocks[block].motion;
@@ -87,100 +43,99 @@ std::size_t cutting_moves_in(const gcode::Interpretation& interpretation, const 
   return count;
 }
 
-void describe_run(const Run& run, InspectedSection& section) {
-  section.closed = run.closed;
-  section.decimals = run.decimals;
-  section.segments = segment_statistics(run);
-  if (run.feeds.empty()) return;
-  const auto [least, greatest] = std::ranges::minmax(run.feeds, {}, &FeedFrom::feed);
-  section.least_feed = least.feed;
-  section.greatest_feed = greatest.feed;
+InspectedSection described(const gcode::Program& program,
+                           const gcode::Interpretation& interpretation, const Section& section) {
+  InspectedSection description;
+  description.first_line = program.blocks[section.first_block].line;
+  description.last_line = program.blocks[section.last_block].line;
+  description.blocks = section.last_block - section.first_block + 1;
+  description.cutting_moves = cutting_moves_in(interpretation, section);
+  if (const auto* verbatim = std::get_if<Verbatim>(&section.content)) {
+    description.reason = verbatim->reason;
+  }
+  return description;
 }
 
-// What is asked of the motions of a run, one after the other.
-class SegmentTally {
- public:
-  explicit SegmentTally(const Run& run) {
-    gcode::reserve_in_large_pages(lengths_, run.points.size());
-  }
-
-  void add_line(const Vector3& way) {
-    const double length = way.norm();
-    const Vector3 direction = length > 0 ? Vector3(way / length) : Vector3(Vector3::Zero());
-    add(length, direction, direction);
-  }
-  void add_arc(const geometry::Arc& arc) {
-    add(geometry::length_of(arc), geometry::direction_at(arc, 0), geometry::direction_at(arc, 1));
-  }
-
-  SegmentStatistics take() {
-    SegmentStatistics statistics;
-    if (lengths_.empty()) return statistics;
-    statistics.count = lengths_.size();
-    statistics.shortest = shortest_;
-    statistics.longest = longest_;
-    statistics.length = length_;
-    statistics.greatest_turn_deg = turn_.degrees();
-    statistics.turn_motion = turn_.vertex();
-    statistics.median = median_of(std::move(lengths_));
-    return statistics;
-  }
-
- private:
-  void add(double length, const Vector3& start, const Vector3& end) {
-    turn_.add(before_, start, lengths_.size());
-    lengths_.push_back(length);
-    length_ += length;
-    shortest_ = std::min(shortest_, length);
-    longest_ = std::max(longest_, length);
-    before_ = end;
-  }
-
-  std::vector<double> lengths_;
-  double length_ = 0;
-  double shortest_ = std::numeric_limits<double>::infinity();
-  double longest_ = 0;
-  GreatestTurn turn_;
-  Vector3 before_ = Vector3::Zero();
-};
+void add_feeds(const Run& run, bool first, InspectedSection& section) {
+  if (run.feeds.empty()) return;
+  const auto [least, greatest] = std::ranges::minmax(run.feeds, {}, &FeedFrom::feed);
+  section.least_feed = first ? least.feed : std::min(section.least_feed, least.feed);
+  section.greatest_feed = first ? greatest.feed : std::max(section.greatest_feed, greatest.feed);
+}
 
 }  // namespace
 
-SegmentStatistics segment_statistics(const Run& run) {
-  SegmentTally tally(run);
-  auto arc = run.arcs.begin();
-  for (std::size_t i = 0; i + 1 < run.points.size();) {
-    if (arc != run.arcs.end() && arc->first == i) {
-      tally.add_arc(arc->arc);
-      i = arc++->last;
-    } else {
-      tally.add_line(run.points[i + 1] - run.points[i]);
-      ++i;
+void Inspection::add(const gcode::Program& part, const gcode::Interpretation& meaning,
+                     const std::vector<Section>& sections, bool goes_on) {
+  for (const Section& section : sections) {
+    if (!goes_on) {
+      end_run();
+      sections_.push_back(described(part, meaning, section));
     }
+    if (const auto* run = std::get_if<Run>(&section.content)) {
+      if (!goes_on) begin_run(*run);
+      if (goes_on) {
+        const InspectedSection more = described(part, meaning, section);
+        sections_.back().blocks += more.blocks;
+        sections_.back().cutting_moves += more.cutting_moves;
+      }
+      add_run(part, meaning, section);
+    }
+    goes_on = false;
   }
-  return tally.take();
+}
+
+void Inspection::begin_run(const Run& run) {
+  in_run_ = true;
+  start_ = run.points.front();
+  turn_line_ = 0;
+  add_feeds(run, true, sections_.back());
+}
+
+void Inspection::add_run(const gcode::Program& part, const gcode::Interpretation& meaning,
+                         const Section& section) {
+  const Run& run = std::get<Run>(section.content);
+  InspectedSection& description = sections_.back();
+  const std::size_t motions_before = tally_.count();
+  const std::size_t turn_before = tally_.turn_motion();
+  tally_.add(run);
+  const std::size_t turn = tally_.turn_motion();
+  if (turn != turn_before) {
+    // A piece ends with a block that moves.
+    turn_line_ = turn == motions_before
+                     ? description.last_line
+                     : line_of_motion(turn - motions_before, part, meaning, section);
+  }
+  add_feeds(run, false, description);
+  description.last_line = part.blocks[section.last_block].line;
+  description.decimals = std::max(description.decimals, run.decimals);
+  description.closed = (run.points.back() - start_).norm() <= geometry::kSamePlace;
+}
+
+void Inspection::end_run() {
+  if (!in_run_) return;
+  in_run_ = false;
+  sections_.back().segments = tally_.take();
+  sections_.back().segments.turn_line = turn_line_;
+}
+
+void Inspection::go_back_to(std::size_t size) {
+  in_run_ = false;
+  tally_ = {};
+  sections_.resize(size);
+}
+
+std::vector<InspectedSection> Inspection::take() {
+  end_run();
+  return std::move(sections_);
 }
 
 std::vector<InspectedSection> inspect(const gcode::Program& program,
                                       const gcode::Interpretation& interpretation,
                                       const std::vector<Section>& sections) {
-  std::vector<InspectedSection> inspected;
-  for (const Section& section : sections) {
-    InspectedSection description;
-    description.first_line = program.blocks[section.first_block].line;
-    description.last_line = program.blocks[section.last_block].line;
-    description.blocks = section.last_block - section.first_block + 1;
-    description.cutting_moves = cutting_moves_in(interpretation, section);
-    if (const auto* verbatim = std::get_if<Verbatim>(&section.content)) {
-      description.reason = verbatim->reason;
-    } else {
-      describe_run(std::get<Run>(section.content), description);
-      description.segments.turn_line =
-          line_of_motion(description.segments.turn_motion, program, interpretation, section);
-    }
-    inspected.push_back(description);
-  }
-  return inspected;
+  Inspection inspection;
+  inspection.add(program, interpretation, sections, false);
+  return inspection.take();
 }
 
 }  // namespace batten::postproc

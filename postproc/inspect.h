@@ -2,26 +2,18 @@
 // segments, and why the rest would be kept.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
 #include "gcode/motion.h"
 #include "gcode/program.h"
+#include "geometry/point.h"
 #include "postproc/runs/section.h"
+#include "postproc/segment_tally.h"
 
 namespace batten::postproc {
-
-struct SegmentStatistics {
-  std::size_t count = 0;
-  double shortest = 0;           // mm
-  double median = 0;             // mm
-  double longest = 0;            // mm
-  double length = 0;             // mm, of the whole run
-  double greatest_turn_deg = 0;  // at the vertices between the segments
-  std::size_t turn_motion = 0;   // of the run, from 1, that ends at that vertex; 0: no turn
-  std::uint32_t turn_line = 0;   // line of its block; 0: no turn, or not asked for
-};
 
 // One section of the program; a run when `reason` is empty.
 struct InspectedSection {
@@ -41,7 +33,35 @@ struct InspectedSection {
                                                     const gcode::Interpretation& interpretation,
                                                     const std::vector<Section>& sections);
 
-// Of the run's motions. Their lines are not known here: `turn_line` is 0.
-[[nodiscard]] SegmentStatistics segment_statistics(const Run& run);
+// The same of a program that is read part by part. Holds the sections, and the lengths of the
+// segments of the run that goes on.
+class Inspection {
+ public:
+  // The sections of the next blocks. `goes_on`: the last run so far goes on in the first of them,
+  // which is a run from its first block on; their lines are those of one chain.
+  void add(const gcode::Program& part, const gcode::Interpretation& meaning,
+           const std::vector<Section>& sections, bool goes_on);
+
+  // As many as were added, each as it would be if the program ended here.
+  [[nodiscard]] std::size_t size() const { return sections_.size(); }
+  // Takes the sections behind the first `size` away again. None of those that stay goes on.
+  void go_back_to(std::size_t size);
+
+  // All sections.
+  [[nodiscard]] std::vector<InspectedSection> take();
+
+ private:
+  void add_run(const gcode::Program& part, const gcode::Interpretation& meaning,
+               const Section& section);
+  void begin_run(const Run& run);
+  void end_run();
+
+  std::vector<InspectedSection> sections_;
+  // Of the last section, where it is a run that may go on.
+  bool in_run_ = false;
+  SegmentTally tally_;
+  geometry::Point3 start_ = geometry::Point3::Zero();
+  std::uint32_t turn_line_ = 0;
+};
 
 }  // namespace batten::postproc

@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <cstdint>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
@@ -13,6 +14,8 @@
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
 #include "postproc/inspect.h"
+#include "postproc/inspect_in_parts.h"
+#include "postproc/part_reader.h"
 #include "postproc/report/json_values.h"
 #include "postproc/runs/run_grouping.h"
 
@@ -108,27 +111,56 @@ Json json_of(const InspectedSection& section) {
   return json;
 }
 
-std::string json_report(const std::vector<InspectedSection>& sections,
-                        const gcode::Diagnostics& diagnostics, const gcode::Program& program) {
+std::string json_report(const InspectedProgram& inspected, const gcode::SourceText& source) {
   Json list = Json::array();
-  for (const InspectedSection& section : sections) list.push_back(json_of(section));
+  for (const InspectedSection& section : inspected.sections) list.push_back(json_of(section));
   Json kept = Json::array();
-  for (const auto& [reason, total] : kept_totals(sections)) {
+  for (const auto& [reason, total] : kept_totals(inspected.sections)) {
     kept.push_back({{"id", reason},
                     {"sections", total.sections},
                     {"blocks", total.blocks},
                     {"cutting_moves", total.cutting_moves},
                     {"text", text_of(reason)}});
   }
-  const Json json = {{"batten", BATTEN_VERSION},
-                     {"input",
-                      {{"file", program.source.name()},
-                       {"bytes", program.source.text().size()},
-                       {"blocks", program.blocks.size()}}},
-                     {"sections", std::move(list)},
-                     {"kept", std::move(kept)},
-                     {"diagnostics", diagnostics_json(diagnostics, program.source)}};
+  const Json json = {
+      {"batten", BATTEN_VERSION},
+      {"input",
+       {{"file", source.name()}, {"bytes", source.text().size()}, {"blocks", inspected.blocks}}},
+      {"sections", std::move(list)},
+      {"kept", std::move(kept)},
+      {"diagnostics", diagnostics_json(inspected.found, source)}};
   return json_text(json);
+}
+
+InspectedProgram inspect_whole(const gcode::SourceText& source, gcode::Language language,
+                               const PartReading& reading, const GroupingOptions& grouping) {
+  InspectedProgram inspected;
+  const gcode::Program program =
+      gcode::parse(source, {language, reading.decimals, reading.options.units}, inspected.found);
+  gcode::tell_of_contradictions(program, reading.source, inspected.found);
+  const gcode::Interpretation interpretation =
+      gcode::interpret(program, reading.options, inspected.found);
+  inspected.sections =
+      inspect(program, interpretation, group_runs(program, interpretation, grouping));
+  inspected.blocks = program.blocks.size();
+  inspected.unit_word_seen = interpretation.unit_word_seen;
+  return inspected;
+}
+
+// What a program is made of, in parts where it is long.
+InspectedProgram inspected(const gcode::SourceText& source, gcode::Language language,
+                           const InspectCommand& command) {
+  PartReading reading;
+  reading.source = command.source;
+  reading.decimals = gcode::decimals_read(command.source, nullptr, language, command.decimals);
+  reading.options = {.units = command.units, .calls_keep_modes = calls_keep_modes(command.allowed)};
+  GroupingOptions grouping;
+  grouping.allowed.assign(command.allowed.begin(), command.allowed.end());
+  if (language == gcode::Language::kRs274 && source.text().size() >= kBytesForParts) {
+    source.set_aside({0, static_cast<std::uint32_t>(source.text().size())});
+    if (auto parts = inspect_in_parts(source, reading, grouping)) return std::move(*parts);
+  }
+  return inspect_whole(source, language, reading, grouping);
 }
 
 }  // namespace
@@ -139,43 +171,34 @@ int run(const InspectCommand& command) {
   if (interrupted()) return end_interrupted();
   if (!source) return static_cast<int>(ExitCode::kFileError);
 
-  gcode::Diagnostics found;
-  const auto language = gcode::source_language(*source, command.source, std::nullopt, found);
+  gcode::Diagnostics of_language;
+  const auto language = gcode::source_language(*source, command.source, std::nullopt, of_language);
   if (!language) {
-    print(found, *source, command.log_level);
+    print(of_language, *source, command.log_level);
     return static_cast<int>(ExitCode::kNotUnderstood);
   }
-  const gcode::Decimals decimals =
-      gcode::decimals_read(command.source, nullptr, *language, command.decimals);
-  const gcode::Program program = gcode::parse(*source, {*language, decimals, command.units}, found);
-  gcode::tell_of_contradictions(program, command.source, found);
-  const gcode::Interpretation interpretation = gcode::interpret(
-      program, {.units = command.units, .calls_keep_modes = calls_keep_modes(command.allowed)},
-      found);
-  GroupingOptions grouping;
-  grouping.allowed.assign(command.allowed.begin(), command.allowed.end());
-  const auto sections =
-      inspect(program, interpretation, group_runs(program, interpretation, grouping));
+  InspectedProgram result = inspected(*source, *language, command);
+  result.found.insert(result.found.begin(), of_language.begin(), of_language.end());
 
   if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
-  print(found, *source, command.log_level);
+  print(result.found, *source, command.log_level);
   if (command.json_file != "-") {
-    const std::string text = fmt::format("{}: {} blocks\n", source->name(), program.blocks.size()) +
-                             runs_table(sections) + kept_table(sections);
+    const std::string text = fmt::format("{}: {} blocks\n", source->name(), result.blocks) +
+                             runs_table(result.sections) + kept_table(result.sections);
     if (const int code = write_result("-", text, false); code != 0) return code;
   }
   if (!command.json_file.empty()) {
-    const int code =
-        write_result(command.json_file, json_report(sections, found, program), command.force);
+    const int code = write_result(command.json_file, json_report(result, *source), command.force);
     if (code != 0) return code;
   }
-  if (!interpretation.unit_word_seen) {
+  if (!result.unit_word_seen) {
     say(source->name() +
         ": no G20 or G21 tells whether its numbers are inches or millimetres; say --units mm or "
         "--units inch");
     return static_cast<int>(ExitCode::kNotUnderstood);
   }
-  return static_cast<int>(gcode::has_error(found) ? ExitCode::kNotUnderstood : ExitCode::kDone);
+  return static_cast<int>(gcode::has_error(result.found) ? ExitCode::kNotUnderstood
+                                                         : ExitCode::kDone);
 }
 
 }  // namespace batten::postproc

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "gcode/interpreter.h"
@@ -10,7 +13,9 @@
 #include "postproc/cli/interrupt.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
+#include "postproc/part_reader.h"
 #include "postproc/profile/added_lines.h"
+#include "postproc/proof/part_verification.h"
 #include "postproc/proof/verification.h"
 #include "postproc/report/json_values.h"
 
@@ -134,15 +139,12 @@ std::string summary_of(const Verification& verification, const VerifyCommand& co
       corners, verification.stretches.size(), verification.events_compared);
 }
 
-Json json_of(const Stretch& stretch, const Read& before, const Read& after) {
-  const auto line = [](const Read& read, std::uint32_t block) {
-    return block < read.program.blocks.size() ? read.program.blocks[block].line : 0;
-  };
+Json json_of(const Stretch& stretch) {
   const geometry::PathComparison& comparison = stretch.comparison;
-  return {{"old_first_line", line(before, stretch.old_first_block)},
-          {"old_last_line", line(before, stretch.old_last_block)},
-          {"new_first_line", line(after, stretch.new_first_block)},
-          {"new_last_line", line(after, stretch.new_last_block)},
+  return {{"old_first_line", stretch.old_first_line},
+          {"old_last_line", stretch.old_last_line},
+          {"new_first_line", stretch.new_first_line},
+          {"new_last_line", stretch.new_last_line},
           {"proved", comparison.verdict == geometry::Verdict::kProved},
           {"at_least_mm", comparison.bounds.at_least},
           {"at_most_mm", std::isfinite(comparison.bounds.at_most) ? Json(comparison.bounds.at_most)
@@ -151,7 +153,7 @@ Json json_of(const Stretch& stretch, const Read& before, const Read& after) {
 }
 
 std::string json_report(const Verification& verification, const VerifyCommand& command,
-                        const Read& before, const Read& after) {
+                        const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
   Json breaches = Json::array();
   for (const Breach& breach : verification.breaches) {
     breaches.push_back({{"kind", name_of(breach.kind)},
@@ -163,7 +165,7 @@ std::string json_report(const Verification& verification, const VerifyCommand& c
   }
   Json stretches = Json::array();
   for (const Stretch& stretch : verification.stretches) {
-    stretches.push_back(json_of(stretch, before, after));
+    stretches.push_back(json_of(stretch));
   }
   return json_text({{"batten", BATTEN_VERSION},
                     {"old", command.old_program},
@@ -178,7 +180,7 @@ std::string json_report(const Verification& verification, const VerifyCommand& c
                     {"events_compared", verification.events_compared},
                     {"breaches", std::move(breaches)},
                     {"stretches", std::move(stretches)},
-                    {"diagnostics", diagnostics_json(after.diagnostics, after.source)}});
+                    {"diagnostics", diagnostics_json(of_new, new_source)}});
 }
 
 // Moves without a unit are an error among the diagnostics: a tolerance means nothing then.
@@ -188,10 +190,10 @@ bool is_understood(const Read& read, LogLevel level) {
 }
 
 // 0 when written or not asked for; else says why and returns the exit code.
-int write_json(const VerifyCommand& command, const Verification& verification, const Read& before,
-               const Read& after) {
+int write_json(const VerifyCommand& command, const Verification& verification,
+               const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
   if (command.json_file.empty()) return 0;
-  return write_result(command.json_file, json_report(verification, command, before, after),
+  return write_result(command.json_file, json_report(verification, command, of_new, new_source),
                       command.force);
 }
 
@@ -208,9 +210,10 @@ int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& sou
     say_lines(fmt::format("proved: {} and {} are the same, byte for byte\n", command.new_program,
                           command.old_program));
   }
+  if (command.json_file.empty()) return 0;
   const Read same =
       read(source, command, command.source, std::nullopt, gcode::dwells_of(command.source));
-  return write_json(command, {}, same, same);
+  return write_json(command, {}, same.diagnostics, source);
 }
 
 // The new program without the lines that a profile may add; as it is where there is no profile.
@@ -232,6 +235,63 @@ void append(const std::vector<Breach>& breaches, Verification& verification) {
   verification.breaches.insert(verification.breaches.end(), breaches.begin(), breaches.end());
 }
 
+// Says what was found, and returns the exit code. `added`: lines of a profile, which are not
+// compared.
+int tell(const VerifyCommand& command, const Verification& verification, std::size_t added,
+         const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
+  for (std::size_t i = 0; i < verification.breaches.size() && i < kMostBreaches; ++i) {
+    say_lines(text_of(verification.breaches[i], command));
+  }
+  if (verification.breaches.size() > kMostBreaches) {
+    say(fmt::format("{} more breaches, see --json", verification.breaches.size() - kMostBreaches));
+  }
+  if (!verification.proved() || command.log_level >= LogLevel::kInfo) {
+    say_lines(summary_of(verification, command));
+  }
+  if (added > 0 && verification.proved()) {
+    say_lines(
+        fmt::format("  besides {} lines that the profile {} adds, whose effect on the control "
+                    "is not known here\n",
+                    added, command.profile->file));
+  }
+  const int code = write_json(command, verification, of_new, new_source);
+  return verification.proved() ? code : static_cast<int>(ExitCode::kNotProved);
+}
+
+// How a program of the RS-274 family is read in parts; nothing for others.
+std::optional<PartReading> part_reading(const gcode::SourceText& source,
+                                        const VerifyCommand& command) {
+  gcode::Diagnostics uncertain;
+  const auto language =
+      gcode::source_language(source, command.source, language_of_target(command), uncertain);
+  if (language != gcode::Language::kRs274) return std::nullopt;
+  PartReading reading;
+  reading.source = command.source;
+  reading.decimals =
+      gcode::decimals_read(command.source, target_of(command), *language, command.decimals);
+  reading.dwells = gcode::dwells_of(command.source);
+  reading.options = {.units = command.units,
+                     .curves = curves_of(command),
+                     .calls_keep_modes = calls_keep_modes(command.allowed)};
+  return reading;
+}
+
+// Long programs that are proved part by part; nothing: the whole is to be asked.
+std::optional<VerifiedInParts> proved_in_parts(const VerifyCommand& command,
+                                               const gcode::SourceText& old_source,
+                                               const gcode::SourceText& new_source) {
+  const std::size_t size = std::max(old_source.text().size(), new_source.text().size());
+  if (size < kBytesForParts || command.profile != nullptr) return std::nullopt;
+  const auto old_reading = part_reading(old_source, command);
+  const auto new_reading = part_reading(new_source, command);
+  for (const gcode::SourceText* source : {&old_source, &new_source}) {
+    source->set_aside({0, static_cast<std::uint32_t>(source->text().size())});
+  }
+  if (!old_reading || !new_reading) return std::nullopt;
+  return verify_in_parts({old_source, *old_reading}, {new_source, *new_reading},
+                         {command.tolerance_mm, command.tolerance_kind, command.side}, interrupted);
+}
+
 }  // namespace
 
 int run(const VerifyCommand& command) {
@@ -246,6 +306,13 @@ int run(const VerifyCommand& command) {
     return accept_same_bytes(command, *new_source);
   }
 
+  if (const auto parts = proved_in_parts(command, *old_source, *new_source)) {
+    if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
+    print(parts->of_old, *old_source, command.log_level);
+    print(parts->of_new, *new_source, command.log_level);
+    return tell(command, parts->verification, 0, parts->of_new, *new_source);
+  }
+  if (interrupted()) return end_interrupted();
   const auto foreign = language_before(*old_source, *new_source, command);
   const Read before =
       read(*old_source, command, command.source, foreign, gcode::dwells_of(command.source));
@@ -274,24 +341,7 @@ int run(const VerifyCommand& command) {
                             added.brackets),
          verification);
 
-  for (std::size_t i = 0; i < verification.breaches.size() && i < kMostBreaches; ++i) {
-    say_lines(text_of(verification.breaches[i], command));
-  }
-  if (verification.breaches.size() > kMostBreaches) {
-    say(fmt::format("{} more breaches, see --json", verification.breaches.size() - kMostBreaches));
-  }
-  if (!verification.proved() || command.log_level >= LogLevel::kInfo) {
-    say_lines(summary_of(verification, command));
-  }
-  if (added.lines > 0 && verification.proved()) {
-    say_lines(
-        fmt::format("  besides {} lines that the profile {} adds, whose effect on the control "
-                    "is not known here\n",
-                    added.lines, command.profile->file));
-  }
-  const ExitCode verdict = verification.proved() ? ExitCode::kDone : ExitCode::kNotProved;
-  const int code = write_json(command, verification, before, after);
-  return verdict == ExitCode::kDone ? code : static_cast<int>(verdict);
+  return tell(command, verification, added.lines, after.diagnostics, after.source);
 }
 
 }  // namespace batten::postproc

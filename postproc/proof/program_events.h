@@ -45,6 +45,7 @@ struct ReadProgram {
   // that keep the tolerance piece by piece, each piece from where the one before it has ended, keep
   // it as a whole.
   std::span<const std::uint32_t> cuts = {};
+  std::uint32_t line_before = 0;  // of a part: of the last block before it; 0: there is none
 };
 
 enum class EventKind : std::uint8_t {

@@ -174,6 +174,11 @@ Stretch stretch_of(const PartPair& pair, geometry::BandComparison compared) {
   stretch.old_last_block = block(pair.before, std::max<std::size_t>(pair.before.size(), 1) - 1);
   stretch.new_first_block = block(pair.after, 0);
   stretch.new_last_block = block(pair.after, std::max<std::size_t>(pair.after.size(), 1) - 1);
+  const auto last = [](const Part& part) { return std::max<std::size_t>(part.size(), 1) - 1; };
+  stretch.old_first_line = pair.before.line(0);
+  stretch.old_last_line = pair.before.line(last(pair.before));
+  stretch.new_first_line = pair.after.line(0);
+  stretch.new_last_line = pair.after.line(last(pair.after));
   stretch.old_worst_line = pair.before.line(comparison.worst_piece_a);
   stretch.new_worst_line = pair.after.line(comparison.worst_piece_b);
   stretch.comparison = std::move(comparison);

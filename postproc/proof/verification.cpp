@@ -25,7 +25,8 @@ using geometry::Verdict;
 // Follows one program from event to event and knows where the tool stands.
 class Follower {
  public:
-  Follower(const ReadProgram& read, const ProgramEvents& list) : read_(read), list_(list) {}
+  Follower(const ReadProgram& read, const ProgramEvents& list)
+      : read_(read), list_(list), line_(read.line_before) {}
 
   // Goes behind event `index`, or to the end. Returns the moves on the way, with all events
   // between left out.
@@ -77,7 +78,7 @@ class Follower {
   std::size_t next_event_ = 0;
   std::size_t cut_ = 0;
   std::optional<std::uint32_t> block_;  // of the last event passed
-  std::uint32_t line_ = 0;
+  std::uint32_t line_;
   std::optional<std::uint32_t> lost_after_;
 };
 

@@ -63,6 +63,9 @@ inline constexpr double kOverSide = 0.1;
 struct Stretch {
   std::uint32_t old_first_block = 0, old_last_block = 0;
   std::uint32_t new_first_block = 0, new_last_block = 0;
+  // Their lines; where one program has no moves there, that of the event before.
+  std::uint32_t old_first_line = 0, old_last_line = 0;
+  std::uint32_t new_first_line = 0, new_last_line = 0;
   geometry::PathComparison comparison;
   double corner_mm = 0;  // band reading: greatest distance of a corner that was cut; 0: none was
   std::uint32_t old_worst_line = 0;  // where the greatest distance was met

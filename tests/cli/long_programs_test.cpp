@@ -142,5 +142,63 @@ TEST(MemoryOfLongPrograms, DoesNotGrowWithTheirBlocks) {
   EXPECT_LE(twice, once + kRows * 200 * kBytesOfBlock);
 }
 
+// The same of `inspect`, which keeps what it says of each row: two sections.
+TEST(MemoryOfLongPrograms, DoesNotGrowWithTheBlocksThatAreInspected) {
+  constexpr std::size_t kRows = 2000;
+  constexpr std::size_t kBytesOfBlock = 10;
+  const BattenFolder folder;
+  const auto memory_of = [&](std::size_t rows) {
+    folder.put("part.nc", relief(rows));
+    const ProcessResult done =
+        folder.shell(std::string("export ASAN_OPTIONS=quarantine_size_mb=1:$ASAN_OPTIONS; ") +
+                     kMeasured + "inspect part.nc | tail -1");
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    return std::stoul(done.out);
+  };
+  const std::size_t text = relief(kRows).size();  // that is mapped
+  const std::size_t once = memory_of(kRows);
+  EXPECT_LE(memory_of(2 * kRows), once + text + kRows * 200 * kBytesOfBlock);
+}
+
+// The same of `verify`, which holds parts of two programs.
+TEST(MemoryOfLongPrograms, DoesNotGrowWithTheBlocksThatAreVerified) {
+  constexpr std::size_t kRows = 2000;
+  constexpr std::size_t kBytesOfBlock = 10;
+  const BattenFolder folder;
+  const auto memory_of = [&](std::size_t rows) {
+    folder.put("old.nc", relief(rows));
+    folder.put("new.nc", relief(rows) + "(the end)\n");
+    const ProcessResult done =
+        folder.shell(std::string("export ASAN_OPTIONS=quarantine_size_mb=1:$ASAN_OPTIONS; ") +
+                     kMeasured + "verify old.nc new.nc");
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    return std::stoul(done.out);
+  };
+  const std::size_t texts = 2 * relief(kRows).size();  // that are mapped
+  const std::size_t once = memory_of(kRows);
+  EXPECT_LE(memory_of(2 * kRows), once + texts + kRows * 200 * kBytesOfBlock);
+}
+
+// What differs is said by line and place, wherever it stands.
+TEST(VerifyOfLongPrograms, TellsWhatDiffersAtEitherEnd) {
+  const BattenFolder folder;
+  const std::string before = relief(2000);
+  folder.put("old.nc", before);
+  const auto told_of = [&](const std::string& after) {
+    folder.put("new.nc", after);
+    const ProcessResult done = folder.batten("verify old.nc new.nc");
+    EXPECT_EQ(done.exit_code, 3) << done.err;
+    return done.err;
+  };
+  std::string moved = before;
+  moved.replace(moved.rfind("X100.125"), 8, "X100.925");
+  const std::size_t line = 3 + 203 * 1999 + 101;
+  EXPECT_NE(told_of(moved).find("new.nc:" + std::to_string(line) + ": distance"),
+            std::string::npos);
+  std::string early = before;
+  early.insert(early.find("G0 X0"), "M8\n");
+  EXPECT_NE(told_of(early).find("new.nc:3: event-added: M8"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace batten

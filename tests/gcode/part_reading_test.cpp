@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
+#include "gcode/read_part.h"
 
 namespace batten::gcode {
 namespace {
@@ -134,6 +137,32 @@ INSTANTIATE_TEST_SUITE_P(
         PartsCase{"UnclosedComments", "G21\n" + many("G0 X1 (open\n", 60)},
         PartsCase{"NoUnits", "G90\nM3\nG1 X1 F2\nX2\n"}, PartsCase{"NoMotion", "G90\n(no)\nM30\n"}),
     [](const auto& test) { return test.param.name; });
+
+// Parts are held while their end is not known: taken apart anywhere and put together again they are
+// what they were.
+TEST_P(PartReading, IsTheSameTakenApartAndPutTogether) {
+  const std::string text = GetParam().text;
+  Diagnostics ignored;
+  const Reading whole = as_a_whole(text);
+  const SourceText source("part.nc", text);
+  for (std::uint32_t first = 0; first <= whole.blocks.size(); ++first) {
+    TextCarry carry;
+    ControlCarry control(Units::kUnknown);
+    ReadPart held{parse_part(source, {}, carry, ignored), {}};
+    held.meaning = interpret_part(held.program, {}, control, ignored);
+    ReadPart rest = take_rest(held, first);
+    Reading apart;
+    add(held.program, held.meaning, apart);
+    add(rest.program, rest.meaning, apart);
+    EXPECT_EQ(apart.blocks, whole.blocks);
+    EXPECT_EQ(apart.meanings, whole.meanings);
+    append(held, std::move(rest));
+    Reading together;
+    add(held.program, held.meaning, together);
+    EXPECT_EQ(together.blocks, whole.blocks);
+    EXPECT_EQ(together.meanings, whole.meanings);
+  }
+}
 
 TEST(PartReading, TellsOfMarksThatCloseSomething) {
   for (const std::size_t blocks : {1, 2, 100}) {
