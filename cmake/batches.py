@@ -14,7 +14,7 @@ import sys
 NAME = re.compile(r"[A-Za-z_]\w*")
 NOT_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
 # What is asked of a value or of the standard library is never found in an anonymous namespace.
-ELSEWHERE = re.compile(r"(?:(?<![\w.])\.|(?<=[\w)\]])\.|->|\bstd::)\s*[A-Za-z_]\w*")
+ELSEWHERE = re.compile(r"(?:\.|->|\bstd::)\s*[A-Za-z_]\w*")
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 INCLUDED = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 OF_OTHERS = re.compile(r"^#include <([^>]+)>", re.MULTILINE)
