@@ -79,7 +79,6 @@ std::string dwell_block(std::int32_t ms, DwellForm form) {
     case DwellForm::kSecondsP:
       return "G4 P" + dwell_seconds(ms, false);
     case DwellForm::kSecondsX:
-      return "G4 X" + dwell_seconds(ms, true);
     case DwellForm::kSecondsXOrMsP:
       return "G4 X" + dwell_seconds(ms, true);
     case DwellForm::kSecondsByPoint:

@@ -10,7 +10,7 @@ namespace batten::gcode {
 
 // Asks the system for large pages, where it has such, before the room is touched. An advice: it
 // changes no byte, and small rooms are left alone.
-void prefer_large_pages(const void* room, std::size_t bytes);
+void prefer_large_pages(void* room, std::size_t bytes);
 
 // Room for so many items in an empty list.
 template <typename Item>

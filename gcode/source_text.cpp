@@ -60,6 +60,10 @@ class Mapping {
   [[nodiscard]] std::string_view text() const {
     return {static_cast<const char*>(address_), size_};
   }
+  // What the system does with the advice changes no byte.
+  void give_back(std::size_t begin, std::size_t end) const {
+    (void)::madvise(static_cast<char*>(address_) + begin, end - begin, MADV_DONTNEED);
+  }
 
  private:
   void* address_ = MAP_FAILED;
@@ -191,8 +195,7 @@ void SourceText::set_aside(SourceSpan span) const {
       (span.begin - std::min<std::size_t>(span.begin, kReadAround)) / page * page;
   const std::size_t end = std::min<std::size_t>(span.end, bytes_->text.size()) / page * page;
   if (begin < end) {
-    // What the system does with the advice changes no byte.
-    (void)::madvise(const_cast<char*>(bytes_->text.data()) + begin, end - begin, MADV_DONTNEED);
+    bytes_->mapped->give_back(begin, end);
   }
 }
 

@@ -160,6 +160,7 @@ class Search {
     for (const double off : kStarts) {
       Node node;
       node.entry = {start, options_.start_angle.value_or(options_.direction + off), 1};
+      node.arc = {start, start};  // none arrives at a start
       judge(node);
       add_to(0, node);
       if (options_.start_angle) break;

@@ -336,7 +336,8 @@ class ActReader {
   void set_work_offset(int code, gcode::SourceSpan where) {
     if (work_offset_ == code) return;
     work_offset_ = code;
-    (void)add(ActKind::kWorkOffset, where, code / 10);
+    const int number = code / 10;  // codes are tenths
+    (void)add(ActKind::kWorkOffset, where, number);
   }
 
   // --- motions ------------------------------------------------------------------------------

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "geometry/path.h"
+#include "tests/support/overlapping_paths.h"
 
 namespace batten::geometry {
 namespace {
@@ -119,17 +120,6 @@ TEST(StrandsNearOtherParts, AreThoseThatComparingAllFinds) {
 
 // --- crossings -----------------------------------------------------------------------------------
 
-// Along y = 0, round a wide loop, and back above the first pass by `gap`.
-std::vector<Point2> there_and_back(double gap) {
-  std::vector<Point2> points;
-  for (int i = 0; i <= 20; ++i) points.emplace_back(0.5 * i, 0);
-  points.emplace_back(12, -3);
-  points.emplace_back(16, 0);
-  points.emplace_back(12, 3);
-  for (int i = 20; i >= 0; --i) points.emplace_back(0.5 * i, gap);
-  return points;
-}
-
 std::vector<PartEdge> edges_of(const std::vector<Point2>& points, std::uint32_t cut) {
   std::vector<PartEdge> edges;
   for (std::uint32_t i = 0; i + 1 < points.size(); ++i) {
@@ -145,7 +135,7 @@ std::vector<PartEdge> edges_of(const std::vector<Point2>& points, std::uint32_t 
 }
 
 TEST(NewCrossingsOfParts, AreThoseOfTheWholePathWhereTwoPartsMeet) {
-  const std::vector<Point2> old = there_and_back(0.015);
+  const std::vector<Point2> old = lollipop(0.015);
   std::vector<Point2> over = old;
   over[10].y() = 0.009;
   over[34].y() = 0.006;
@@ -161,14 +151,14 @@ TEST(NewCrossingsOfParts, AreThoseOfTheWholePathWhereTwoPartsMeet) {
 }
 
 TEST(NewCrossingsOfParts, MayBeWhereTheOldPartsMet) {
-  const std::vector<Point2> old = there_and_back(0);
+  const std::vector<Point2> old = lollipop(0);
   std::vector<Point2> wavy = old;
   for (std::size_t i = 1; i <= 19; ++i) wavy[i].y() = i % 2 == 0 ? 0.004 : -0.004;
   EXPECT_TRUE(new_crossings_of_parts(edges_of(old, 22), edges_of(wavy, 22), kTolerance).empty());
 }
 
 TEST(NewCrossingsOfParts, AreNotMadeByPlanesAboveEachOther) {
-  const std::vector<Point2> old = there_and_back(0.015);
+  const std::vector<Point2> old = lollipop(0.015);
   std::vector<Point2> over = old;
   over[10].y() = 0.009;
   over[34].y() = 0.006;

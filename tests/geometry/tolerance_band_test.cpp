@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "geometry/path.h"
+#include "tests/support/overlapping_paths.h"
 
 namespace batten::geometry {
 namespace {
@@ -22,17 +23,6 @@ std::vector<Point2> arc_points(const Point2& center, double radius, double from,
     const double a = from + (to - from) * i / edges;
     points.emplace_back(center.x() + radius * std::cos(a), center.y() + radius * std::sin(a));
   }
-  return points;
-}
-
-// Along y = 0 to x = 10, round a wide loop, and back above the first pass by `gap`.
-std::vector<Point2> lollipop(double gap) {
-  std::vector<Point2> points;
-  for (int i = 0; i <= 20; ++i) points.emplace_back(0.5 * i, 0);
-  points.emplace_back(12, -3);
-  points.emplace_back(16, 0);
-  points.emplace_back(12, 3);
-  for (int i = 20; i >= 0; --i) points.emplace_back(0.5 * i, gap);
   return points;
 }
 

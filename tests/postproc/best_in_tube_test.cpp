@@ -38,8 +38,8 @@ TubeChoice best_of(const BsplineCurve& curve, double radius) {
 void print(const std::string& name, double radius, const TubeChoice& choice) {
   fmt::print("{} R {:.3f}: {} {:.5f} -> {:.5f} s, {:.2f} % less, kappa_max {:.5f}, {} timed\n",
              name, radius, geometry::name_of(choice.best.method), choice.time_before, choice.time,
-             100 * (1 - choice.time / choice.time_before), greatest_curvature(choice.best.curve),
-             choice.timed);
+             100 * (1 - choice.time / choice.time_before),
+             geometry::greatest_curvature(choice.best.curve), choice.timed);
 }
 
 double percent_saved(const TubeChoice& choice) {
@@ -94,11 +94,11 @@ INSTANTIATE_TEST_SUITE_P(Cases, BestInTubeAgainstLiteral,
 // The true helix has .0489; the noise of two points makes .0678 of it.
 TEST(BestInTubeOfTheNoisyHelix, FindsNearlyTheTrueCurvature) {
   const BsplineCurve helix = geometry::helix_with_two_wrong_points();
-  EXPECT_NEAR(greatest_curvature(helix), .0678, 5e-5);
+  EXPECT_NEAR(geometry::greatest_curvature(helix), .0678, 5e-5);
   for (const auto& [radius, curvature] : {std::pair(.125, .0506), std::pair(.25, .0510)}) {
     const TubeChoice choice = best_of(helix, radius);
     print("helix", radius, choice);
-    EXPECT_LE(greatest_curvature(choice.best.curve), curvature);
+    EXPECT_LE(geometry::greatest_curvature(choice.best.curve), curvature);
   }
 }
 
@@ -111,13 +111,13 @@ class BestInTubeOfSoundCurves : public testing::TestWithParam<Sound> {};
 
 TEST_P(BestInTubeOfSoundCurves, RaisesNeitherTimeNorCurvature) {
   const BsplineCurve& curve = GetParam().curve;
-  const double bend = greatest_curvature(curve);
+  const double bend = geometry::greatest_curvature(curve);
   for (const double radius : {.25, 1.0}) {
     SCOPED_TRACE(testing::Message() << "R " << radius);
     const TubeChoice choice = best_of(curve, radius);
     print(GetParam().name, radius, choice);
     EXPECT_LE(choice.time, choice.time_before);
-    EXPECT_LE(greatest_curvature(choice.best.curve), bend * (1 + 1e-9));
+    EXPECT_LE(geometry::greatest_curvature(choice.best.curve), bend * (1 + 1e-9));
   }
 }
 

@@ -198,8 +198,9 @@ TEST(MethodCurves, OfNaseathBendsLessThanItsFit) {
   for (int i = 0; i <= 100; ++i) points.emplace_back(0.8 * i, noise(random), 0);
   CurveRequest fit = request_with(0.025);
   fit.accurate = true;
-  const double before = greatest_curvature(fair_curve(points, fit)->curve);
-  const double after = greatest_curvature(naseath_curve(points, request_with(0.1), false)->curve);
+  const double before = postproc::greatest_curvature(fair_curve(points, fit)->curve);
+  const double after =
+      postproc::greatest_curvature(naseath_curve(points, request_with(0.1), false)->curve);
   EXPECT_GT(before, 0);
   EXPECT_LT(after, 0.7 * before);
 }
