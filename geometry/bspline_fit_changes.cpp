@@ -39,20 +39,6 @@ void add_changed(std::span<const Thing> before, std::span<const Thing> after,
 
 bool by_start(const ParameterRange& a, const ParameterRange& b) { return a.from < b.from; }
 
-// Every pin and both ends of every zone, increasing, each once.
-std::vector<double> required_breaks(const FitProblem& problem) {
-  std::vector<double> required;
-  required.reserve(problem.pins.size() + 2 * problem.zones.size());
-  for (const Pin& pin : problem.pins) required.push_back(pin.parameter);
-  for (const StraightZone& zone : problem.zones) {
-    required.push_back(zone.from);
-    required.push_back(zone.to);
-  }
-  std::sort(required.begin(), required.end());
-  required.erase(std::unique(required.begin(), required.end()), required.end());
-  return required;
-}
-
 }  // namespace
 
 bool SampleChanges::any() const {
@@ -89,6 +75,19 @@ std::vector<ParameterRange> changed_places(std::span<const Pin> pins_before,
   add_changed(zones_before, zones_after, changed);
   std::sort(changed.begin(), changed.end(), by_start);
   return changed;
+}
+
+std::vector<double> required_breaks(const FitProblem& problem) {
+  std::vector<double> required;
+  required.reserve(problem.pins.size() + 2 * problem.zones.size());
+  for (const Pin& pin : problem.pins) required.push_back(pin.parameter);
+  for (const StraightZone& zone : problem.zones) {
+    required.push_back(zone.from);
+    required.push_back(zone.to);
+  }
+  std::sort(required.begin(), required.end());
+  required.erase(std::unique(required.begin(), required.end()), required.end());
+  return required;
 }
 
 std::vector<double> breaks_of(const FitProblem& problem, std::span<const double> now,

@@ -34,6 +34,9 @@ struct ParameterRange {
                                                          std::span<const StraightZone> zones_before,
                                                          std::span<const StraightZone> zones_after);
 
+// Every pin and both ends of every zone, increasing, each once.
+[[nodiscard]] std::vector<double> required_breaks(const FitProblem& problem);
+
 // The breakpoints `now`, but for the parts that are `rebuilt`: these start again from the
 // breakpoints of `problem`. With every pin and zone of `problem`, which take the place of
 // breakpoints nearer than `closest`.

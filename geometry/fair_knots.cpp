@@ -17,26 +17,13 @@ std::vector<double> in_order(std::vector<double> along, std::vector<double> abou
   return along;
 }
 
-// Pins and ends of zones, in order, each once.
-std::vector<double> needed_knots(const FitProblem& problem) {
-  std::vector<double> needed;
-  for (const Pin& pin : problem.pins) needed.push_back(pin.parameter);
-  for (const StraightZone& zone : problem.zones) {
-    needed.push_back(zone.from);
-    needed.push_back(zone.to);
-  }
-  std::sort(needed.begin(), needed.end());
-  needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
-  return needed;
-}
-
 }  // namespace
 
 std::vector<double> knots_of(std::vector<double> along, std::vector<double> about_corners,
                              const FitProblem& problem, const ParameterRange& path,
                              double closest) {
   const std::vector<double> wished = in_order(std::move(along), std::move(about_corners));
-  const std::vector<double> needed = needed_knots(problem);
+  const std::vector<double> needed = required_breaks(problem);
   const auto is_needed = [&](double u) {
     return std::binary_search(needed.begin(), needed.end(), u);
   };
