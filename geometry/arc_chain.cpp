@@ -11,9 +11,6 @@
 namespace batten::geometry {
 namespace {
 
-// A step's end is searched to this part of its length: a hundred pieces lose a third of one.
-constexpr double kReachPrecision = 3e-3;
-
 // A single arc is taken instead of a pair when it reaches this part of the pair's length:
 // one piece then covers more than a piece of the pair does.
 constexpr double kSingleReach = 0.6;
@@ -65,7 +62,8 @@ Point2 in_plane(const Point3& p) { return p.head<2>(); }
 // The farthest u in ]from, limit] where `holds`, starting with a step of `guess`; `from`
 // when none was found above `shortest`.
 template <typename Holds>
-double farthest(double from, double limit, double guess, double shortest, const Holds& holds) {
+double farthest(double from, double limit, double guess, double shortest, double precision,
+                const Holds& holds) {
   double good = from;
   double bad = limit;
   double step = std::min(guess, limit - from);
@@ -91,7 +89,7 @@ double farthest(double from, double limit, double guess, double shortest, const 
       }
     }
   }
-  while (bad - good > kReachPrecision * (bad - from)) {
+  while (bad - good > precision * (bad - from)) {
     const double middle = (good + bad) / 2;
     (holds(middle) ? good : bad) = middle;
   }
@@ -301,7 +299,7 @@ std::optional<ArcChain::Step> ArcChain::line_step(const ChainNode& start,
            holds(line, start.u, u, start.place.z(), height_of(u));
   };
   const double all = end.u - start.u;
-  const double reach = farthest(start.u, end.u, all, 1e-9 * all, line_holds);
+  const double reach = farthest(start.u, end.u, all, 1e-9 * all, limits_.precision, line_holds);
   if (reach <= start.u) return std::nullopt;
   const ChainNode node = reach >= end.u ? end : node_at(start, reach, Tangent::kCurve);
   return Step{{ChainPiece{line_to(reach), node.place.z(), reach}}, node, {}};
@@ -324,7 +322,7 @@ std::optional<ArcPair> ArcChain::farthest_pair(const ChainNode& start, const Cha
     if (!best || pair->end.u > best->end.u) best = std::move(pair);
     return true;
   };
-  (void)farthest(start.u, limit, guess, shortest_step(start, end), pair_holds);
+  (void)farthest(start.u, limit, guess, shortest_step(start, end), limits_.precision, pair_holds);
   return best;
 }
 
@@ -352,7 +350,8 @@ std::optional<ArcChain::Step> ArcChain::farthest_single(const ChainNode& start,
   };
   if (least > start.u && !single_holds(least)) return std::nullopt;
   if (least < limit) {
-    (void)farthest(start.u, limit, guess, shortest_step(start, end), single_holds);
+    (void)farthest(start.u, limit, guess, shortest_step(start, end), limits_.precision,
+                   single_holds);
   }
   return best;
 }

@@ -247,6 +247,9 @@ double range_along(const CurvePieces& pieces, const Vector3& axis) {
 // however well it went afterwards: most are, and so only they are looked at closely.
 constexpr std::size_t kFirstPieces = 1500;
 
+// A try need not know better than this how many arcs there will be.
+constexpr double kPrecisionOfTries = 0.03;
+
 // One curve, chained in one plane.
 class ArcFit {
  public:
@@ -272,7 +275,9 @@ class ArcFit {
   [[nodiscard]] bool falls_behind_early() const {
     const double end = marked_.pieces.breaks()[kFirstPieces];
     const PlaneCurve first(marked_.pieces, kFirstPieces, frame_);
-    const ArcChain chain(first, limits_);
+    ArcChainLimits limits = limits_;
+    limits.precision = kPrecisionOfTries;
+    const ArcChain chain(first, limits);
     std::vector<Stretch> stretches = ArcCutter(first, chain, options_.grid).cut(marked_, end);
     const std::vector<Stop> stops = stops_of(first, chain, stretches, flat_);
     // The last one goes on behind these pieces. Of the others there are no more than at corners and

@@ -327,14 +327,15 @@ class RunSmoother {
       PlanOptions fine = plan_with(kFineArcs);
       // They are there to be near, not few.
       if (!few_wanted()) fine.arc_effort = geometry::ArcEffort::kBrief;
-      ahead.arcs = candidate_of(curve, plan_arcs(run_, fair, pieces, fine), fine.max_deviation);
+      ahead.arcs =
+          candidate_of(curve, plan_arcs(run_, fair, pieces, *bends_, fine), fine.max_deviation);
     }
     const bool may_leave_out =
         may_leave_out_ && curve.method == Method::kFair && !curves_wanted() && arcs_wanted;
     if (may_leave_out) leave_out_forms(curve, pieces, plan_with, ahead);
     if (arcs_wanted && !ahead.leaves_out_arcs) {
       const PlanOptions arcs = plan_with(one_sided() ? kFineArcs : kArcs);
-      push(candidate_of(curve, plan_arcs(run_, fair, pieces, arcs), arcs.max_deviation));
+      push(candidate_of(curve, plan_arcs(run_, fair, pieces, *bends_, arcs), arcs.max_deviation));
     }
     push(std::move(ahead.arcs));
     const bool few = few_wanted() || !run_.arcs.empty();
@@ -405,10 +406,13 @@ class RunSmoother {
     const double time = 0.5 * (lines.times.as_set + lines.times.without_merging);
     Rival rival{time, known(finer), chords_wanted(finer), lines.times.exact_path};
     if (!beats(lines, rival, result_, context_, options_)) return false;
-    const Times least =
-        times_.with_less_kinks(lines.moves, kEvenLess * std::sqrt(deviation / finer));
-    rival.least_time = std::max(least_time_at_rest(), 0.5 * (least.as_set + least.without_merging));
-    rival.exact_path = least.exact_path;
+    const double less_kinks = kEvenLess * std::sqrt(deviation / finer);
+    rival.exact_path = times_.exact_path_with_less_kinks(lines.moves, less_kinks);
+    if (!beats(lines, rival, result_, context_, options_)) return false;
+    // Without merging they gain as little as these do.
+    const double share = std::min(time / lines.times.as_set, 1.0);
+    rival.least_time = std::max(least_time_at_rest(),
+                                share * times_.as_set_with_less_kinks(lines.moves, less_kinks));
     return beats(lines, rival, result_, context_, options_);
   }
 

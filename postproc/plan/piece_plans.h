@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "geometry/curve_pieces.h"
+#include "postproc/plan/curve_bends.h"
 #include "postproc/plan/output_plan.h"
 
 namespace batten::postproc {
@@ -15,6 +16,7 @@ namespace batten::postproc {
 
 [[nodiscard]] std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fair,
                                                   const geometry::MarkedPieces& pieces,
+                                                  const CurveBends& bends,
                                                   const PlanOptions& options);
 
 }  // namespace batten::postproc

@@ -121,11 +121,12 @@ std::vector<PlaneAxes> flattest_first(const Run& run, std::vector<PlaneAxes> pla
 
 std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fair,
                                     const PlanOptions& options) {
-  return plan_arcs(run, fair, {fair.curve, fair.curve.first(), fair.curve.last()}, options);
+  return plan_arcs(run, fair, {fair.curve, fair.curve.first(), fair.curve.last()},
+                   CurveBends(fair.curve), options);
 }
 
 std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fair,
-                                    const geometry::MarkedPieces& pieces,
+                                    const geometry::MarkedPieces& pieces, const CurveBends& bends,
                                     const PlanOptions& options) {
   const std::vector<PlaneAxes> planes = arc_planes(options);
   bool flat_somewhere = false;
@@ -141,7 +142,7 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::FairPath& fa
   // are lines and steep little helices. The fewest moves win; the plane in which the run is
   // flattest comes first, so that the others are soon given up. More moves than the run has motions
   // are chords in all but name, and plan_lines does those better.
-  const WholeCurve whole{pieces, geometry::chords_along(pieces.pieces, fit_deviation(options))};
+  const WholeCurve whole{pieces, bends.chords(fit_deviation(options), 0)};
   std::optional<OutputPlan> best;
   std::size_t most = motion_count(run);
   for (const PlaneAxes& plane : flattest_first(run, planes)) {

@@ -60,18 +60,18 @@ Times RunTimes::of_candidate(const std::vector<TimedPiece>& moves, std::size_t b
 // quicker. On LinuxCNC a kink that is not blended is passed or stopped at by what it asks of the
 // axes, which goes with the kink; a blended one is passed at a speed whose square goes with what
 // the axes can do, and inversely with the square of the kink.
-Times RunTimes::with_less_kinks(const std::vector<TimedPiece>& moves, double times_less) const {
-  Times least;
-  if (machine_.model != ControllerModel::kLinuxcnc) return least;
+double RunTimes::as_set_with_less_kinks(const std::vector<TimedPiece>& moves,
+                                        double times_less) const {
+  if (machine_.model != ControllerModel::kLinuxcnc) return 0;
+  const Machine stronger = with_accelerations(machine_, times_less * times_less);
+  return in_one_setting(moves, stronger, context_.after.path) - around_.as_set;
+}
+
+double RunTimes::exact_path_with_less_kinks(const std::vector<TimedPiece>& moves,
+                                            double times_less) const {
+  if (machine_.model != ControllerModel::kLinuxcnc) return 0;
   const Machine stronger = with_accelerations(machine_, times_less);
-  least.exact_path =
-      in_one_setting(moves, stronger, gcode::PathMode::kExactPath) - around_.exact_path;
-  Machine strongest = with_accelerations(machine_, times_less * times_less);
-  least.as_set = in_one_setting(moves, strongest, context_.after.path) - around_.as_set;
-  strongest.naive_cam_tolerance = 0;
-  least.without_merging =
-      in_one_setting(moves, strongest, context_.after.path) - around_.without_merging;
-  return least;
+  return in_one_setting(moves, stronger, gcode::PathMode::kExactPath) - around_.exact_path;
 }
 
 Times RunTimes::alone(const std::vector<TimedPiece>& chain) const {

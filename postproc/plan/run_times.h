@@ -27,10 +27,12 @@ class RunTimes {
   [[nodiscard]] Times of_candidate(const std::vector<TimedPiece>& moves, std::size_t blocks,
                                    const Times& old, bool exact_path, bool wanted) const;
 
-  // What moves take whose kinks are so many times smaller, but for flat_out: about, and rather too
-  // little. 0 where nothing is known of it.
-  [[nodiscard]] Times with_less_kinks(const std::vector<TimedPiece>& moves,
-                                      double times_less) const;
+  // What moves take whose kinks are so many times smaller, as the control is set and under exact
+  // path: about, and rather too little. 0 where nothing is known of it.
+  [[nodiscard]] double as_set_with_less_kinks(const std::vector<TimedPiece>& moves,
+                                              double times_less) const;
+  [[nodiscard]] double exact_path_with_less_kinks(const std::vector<TimedPiece>& moves,
+                                                  double times_less) const;
 
  private:
   [[nodiscard]] Times alone(const std::vector<TimedPiece>& chain) const;
