@@ -37,7 +37,7 @@ class SiemensLexer {
  public:
   // `line` is a span of `source`, without its line end.
   SiemensLexer(std::string_view source, SourceSpan line)
-      : text_(source.substr(0, line.end)), begin_(line.begin), at_(line.begin) {}
+      : text_(source.substr(0, line.end)), at_(line.begin) {}
 
   // kEnd after the last token. Linear in the line as a whole.
   [[nodiscard]] SiemensToken next();
@@ -55,7 +55,6 @@ class SiemensLexer {
   [[nodiscard]] std::size_t after_blanks(std::size_t at) const;
 
   std::string_view text_;
-  std::size_t begin_;
   std::size_t at_;
   bool anything_ = false;  // a token that is no block number, skip sign or label
 };

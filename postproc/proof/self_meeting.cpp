@@ -94,9 +94,10 @@ class Cells {
     std::ranges::sort(found, [](const Entry& a, const Entry& b) {
       return a.cell != b.cell ? a.cell < b.cell : a.edge < b.edge;
     });
-    const auto same = std::ranges::unique(
-        found, [](const Entry& a, const Entry& b) { return a.cell == b.cell && a.edge == b.edge; });
-    found.erase(same.begin(), same.end());
+    const auto is_same = [](const Entry& a, const Entry& b) {
+      return a.cell == b.cell && a.edge == b.edge;
+    };
+    found.erase(std::unique(found.begin(), found.end(), is_same), found.end());
     return found;
   }
 
