@@ -152,7 +152,7 @@ class PartInspector {
       if (!chains.has_arc_from(place) && !chains.has_arc_before(place)) return place;
       break;
     }
-    cut_from_ = 2 * count;  // what was looked at is not looked at again part for part
+    cut_from_ = std::size_t{2} * count;  // what was looked at is not looked at again part for part
     return 0;
   }
 

@@ -111,16 +111,17 @@ std::optional<CommonPlace> last_common_place(const gcode::Interpretation& before
   std::vector<PlaceOnWay> new_places = places_of(after);
   const KeyFilter filter(new_places);
   std::ranges::stable_sort(new_places, {}, &PlaceOnWay::key);
-  for (auto old = old_places.rbegin(); old != old_places.rend(); ++old) {
-    if (!filter.may_have(old->key)) continue;
-    const auto first = std::ranges::lower_bound(new_places, old->key, {}, &PlaceOnWay::key);
-    const auto last = std::ranges::upper_bound(new_places, old->key, {}, &PlaceOnWay::key);
+  for (std::size_t i = old_places.size(); i-- > 0;) {
+    const PlaceOnWay& old = old_places[i];
+    if (!filter.may_have(old.key)) continue;
+    const auto first = std::ranges::lower_bound(new_places, old.key, {}, &PlaceOnWay::key);
+    const auto last = std::ranges::upper_bound(new_places, old.key, {}, &PlaceOnWay::key);
     if (first == last) continue;
     const auto nearest = std::ranges::min_element(
-        first, last, {}, [&](const PlaceOnWay& place) { return std::abs(place.way - old->way); });
-    const gcode::Motion& old_motion = before.motions[old->motion];
+        first, last, {}, [&](const PlaceOnWay& place) { return std::abs(place.way - old.way); });
+    const gcode::Motion& old_motion = before.motions[old.motion];
     const gcode::Motion& new_motion = after.motions[nearest->motion];
-    if (!as_far(*old, *nearest) || old_motion.piece.end() != new_motion.piece.end()) continue;
+    if (!as_far(old, *nearest) || old_motion.piece.end() != new_motion.piece.end()) continue;
     return CommonPlace{old_motion.block + 1, new_motion.block + 1};
   }
   return std::nullopt;
