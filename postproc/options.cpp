@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "gcode/reason.h"
+#include "geometry/fair.h"
 #include "postproc/cli/decimals_option.h"
 
 namespace batten::postproc {
@@ -158,10 +159,6 @@ std::string_view name_of(Method method) { return name_in(kMethods, method); }
 std::string_view name_of(Prefer prefer) { return name_in(kPreferences, prefer); }
 std::string_view name_of(Linearize linearize) { return name_in(kLinearizations, linearize); }
 
-Linearize linearize_of(const SmoothOptions& options) {
-  if (options.linearize) return *options.linearize;
-  return options.prefer == Prefer::kSize ? Linearize::kMinLink : Linearize::kChord;
-}
 std::string_view name_of(ToleranceKind kind) { return name_in(kToleranceKinds, kind); }
 std::string_view name_of(Side side) { return name_in(kSides, side); }
 std::string_view name_of(SourceKind source) { return name_in(kSources, source); }
@@ -217,6 +214,21 @@ std::vector<std::string> problems_of_allowed(std::span<const std::string> ids) {
 std::vector<std::string> problems_of_side(geometry::Side side, geometry::ToleranceKind kind) {
   if (side == geometry::Side::kBoth || kind == geometry::ToleranceKind::kPath) return {};
   return {"--side: left and right need --tolerance-kind path"};
+}
+
+Linearize linearize_of(const SmoothOptions& options) {
+  if (options.linearize) return *options.linearize;
+  return options.prefer == Prefer::kSize ? Linearize::kMinLink : Linearize::kChord;
+}
+
+bool wants_few_moves(const SmoothOptions& options) {
+  if (options.prefer == Prefer::kAccuracy) return false;
+  return options.output == Form::kArcs || options.prefer == Prefer::kSize;
+}
+
+double keep_corner_angle_of(const SmoothOptions& options) {
+  if (!options.keep_corners_deg) return geometry::FairOptions{}.keep_corner_angle;
+  return *options.keep_corners_deg * std::numbers::pi / 180;
 }
 
 std::vector<std::string> problems_of(const SmoothOptions& options) {

@@ -86,6 +86,13 @@ struct SmoothOptions {
 // chords, whose ends are nearer to the path that was meant, for time and accuracy.
 [[nodiscard]] Linearize linearize_of(const SmoothOptions& options);
 
+// Whether the whole tolerance may be spent on fewer moves: who wants the fewest bytes, and who asks
+// for arcs by name.
+[[nodiscard]] bool wants_few_moves(const SmoothOptions& options);
+
+// Radians: vertices that turn more stay as they are.
+[[nodiscard]] double keep_corner_angle_of(const SmoothOptions& options);
+
 // Whether they say that what is called leaves all modes as it finds them (reason `subprogram`).
 [[nodiscard]] bool calls_keep_modes(std::span<const std::string> allowed);
 

@@ -66,7 +66,8 @@ struct SmoothedRun {
   RunFacts facts;
   std::vector<Candidate> candidates;  // none where `reason` says why
   std::string_view reason;
-  bool left_out = false;  // there are more that the choice would not prefer to the best of these
+  bool left_out = false;     // there are more that the choice would not prefer to the best of these
+  bool passed_over = false;  // one that could not gain was not made
 };
 
 // Which candidates are made. Those that would not be chosen are of use where the proof of the

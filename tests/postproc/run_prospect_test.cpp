@@ -6,8 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "postproc/plan/curve_bends.h"
-#include "postproc/plan/output_plan.h"
 #include "postproc/plan/run_choice.h"
 #include "wavy_programs.h"
 
@@ -66,22 +64,6 @@ TEST(CoarsePart, IsTheShareOfVerticesThatLeaveTheTolerance) {
   const postproc::Run run = run_through(half_circle(50));  // 0.00494 mm
   EXPECT_EQ(coarse_part(run, 0.0045), 1);
   EXPECT_EQ(coarse_part(run, 0.0055), 0);
-}
-
-TEST(ChordsFor, IsWithinAFifthOfTheChordsThatArePlanned) {
-  for (const double deviation : {0.0005, 0.002, 0.005}) {
-    SCOPED_TRACE(testing::Message() << deviation << " mm");
-    postproc::Run run = run_through(half_circle(400));
-    const auto fair = geometry::fair_path(run.points, {});
-    ASSERT_TRUE(fair);
-    const SmoothOptions options = options_for("linuxcnc");
-    PlanOptions plan{options.target, options.machine};
-    plan.max_deviation = deviation;
-    const auto planned = static_cast<double>(plan_lines(run, *fair, plan).moves.size());
-    const double step = 10 * options.machine->block_period;
-    const double estimated = CurveBends(fair->curve).chords(0.5 * deviation, 2 * step);
-    EXPECT_NEAR(estimated, planned, 0.2 * planned);
-  }
 }
 
 // --- may_gain: the figures are far from the margins ----------------------------------------------
