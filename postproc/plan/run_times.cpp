@@ -1,7 +1,10 @@
 #include "postproc/plan/run_times.h"
 
+#include <algorithm>
+
 #include "gcode/large_pages.h"
 #include "postproc/machine/cycle_time.h"
+#include "postproc/machine/junction_speed.h"
 #include "postproc/plan/run_choice.h"
 
 namespace batten::postproc {
@@ -58,20 +61,36 @@ Times RunTimes::of_candidate(const std::vector<TimedPiece>& moves, std::size_t b
 
 // Axes that can do more pass the same kinks as these axes smaller ones, and do everything else
 // quicker. On LinuxCNC a kink that is not blended is passed or stopped at by what it asks of the
-// axes, which goes with the kink; a blended one is passed at a speed whose square goes with what
-// the axes can do, and inversely with the square of the kink.
+// axes, see multiple_for_kinks; a blended one is passed at a speed whose square goes with what the
+// axes can do, and inversely with the square of the kink.
 double RunTimes::as_set_with_less_kinks(const std::vector<TimedPiece>& moves,
                                         double times_less) const {
-  if (machine_.model != ControllerModel::kLinuxcnc) return 0;
-  const Machine stronger = with_accelerations(machine_, times_less * times_less);
+  const double multiple = multiple_for_kinks(moves, times_less);
+  if (multiple == 0) return 0;
+  const Machine stronger =
+      with_accelerations(machine_, std::max(multiple, times_less * times_less));
   return in_one_setting(moves, stronger, context_.after.path) - around_.as_set;
 }
 
 double RunTimes::exact_path_with_less_kinks(const std::vector<TimedPiece>& moves,
                                             double times_less) const {
-  if (machine_.model != ControllerModel::kLinuxcnc) return 0;
-  const Machine stronger = with_accelerations(machine_, times_less);
+  const double multiple = multiple_for_kinks(moves, times_less);
+  if (multiple == 0) return 0;
+  const Machine stronger = with_accelerations(machine_, multiple);
   return in_one_setting(moves, stronger, gcode::PathMode::kExactPath) - around_.exact_path;
+}
+
+// What a kink k asks, as a part of the acceleration a, is k (v / T + a) / a at speed v and servo
+// period T (docs/algorithms/cycle_time.md): k (s + 1) with s = v / T a. With m times the
+// acceleration k asks k (s / m + 1), which is to be no more than k (s + 1) / times_less. The
+// slowest move decides. 0: no multiple does, or the control is another one.
+double RunTimes::multiple_for_kinks(const std::vector<TimedPiece>& moves, double times_less) const {
+  if (machine_.model != ControllerModel::kLinuxcnc) return 0;
+  double slowest = machine_.max_velocity();
+  for (const TimedPiece& move : moves) slowest = std::min(slowest, move.feed / 60);
+  const double steps = slowest / (machine_.servo_period * axis_accelerations(machine_).maxCoeff());
+  const double left = steps + 1 - times_less;
+  return left > 0 ? times_less * steps / left : 0;
 }
 
 Times RunTimes::alone(const std::vector<TimedPiece>& chain) const {

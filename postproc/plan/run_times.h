@@ -28,13 +28,16 @@ class RunTimes {
                                    const Times& old, bool exact_path, bool wanted) const;
 
   // What moves take whose kinks are so many times smaller, as the control is set and under exact
-  // path: about, and rather too little. 0 where nothing is known of it.
+  // path: about, and rather too little, where moves take longer than two block periods. 0 where
+  // nothing is known of it.
   [[nodiscard]] double as_set_with_less_kinks(const std::vector<TimedPiece>& moves,
                                               double times_less) const;
   [[nodiscard]] double exact_path_with_less_kinks(const std::vector<TimedPiece>& moves,
                                                   double times_less) const;
 
  private:
+  [[nodiscard]] double multiple_for_kinks(const std::vector<TimedPiece>& moves,
+                                          double times_less) const;
   [[nodiscard]] Times alone(const std::vector<TimedPiece>& chain) const;
   [[nodiscard]] Times of_neighbours() const;
   [[nodiscard]] SettingTimes in_place(const std::vector<TimedPiece>& moves) const;
