@@ -33,6 +33,13 @@ struct PartEnd {
   std::size_t blocks = std::numeric_limits<std::size_t>::max();    // so many of them
 };
 
+// Where a part from `begin` (bytes) on ends that has so many bytes, and the rest of its last line:
+// behind a line feed, or at the end of the text. Nothing where that rest is longer than
+// `longest_rest`.
+[[nodiscard]] std::optional<std::uint32_t> end_of_lines(const SourceText& source,
+                                                        std::uint32_t begin, std::size_t bytes,
+                                                        std::size_t longest_rest);
+
 // Where the next part begins, and what the text before it said. As it stands: the whole begins.
 struct TextCarry {
   std::uint32_t begin = 0;                 // bytes

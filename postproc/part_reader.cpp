@@ -1,7 +1,6 @@
 #include "postproc/part_reader.h"
 
 #include <algorithm>
-#include <string_view>
 #include <utility>
 
 #include "gcode/reason.h"
@@ -20,7 +19,7 @@ PartReader::PartReader(const gcode::SourceText& source, const PartReading& readi
 
 PartReader::Next PartReader::read_on() {
   if (text_.begin >= source_->text().size()) return Next::kAtEnd;
-  const auto end = end_of_part();
+  const auto end = gcode::end_of_lines(*source_, text_.begin, limits_.bytes, limits_.longest_line);
   if (!end) return Next::kNeedsWhole;
   gcode::ReadPart part{
       gcode::parse_part(*source_, {.byte = *end, .blocks = limits_.blocks}, text_, of_text_), {}};
@@ -30,16 +29,6 @@ PartReader::Next PartReader::read_on() {
   if (needs_whole(part)) return Next::kNeedsWhole;
   gcode::append(held_, std::move(part));
   return Next::kRead;
-}
-
-// Behind a line feed; nothing where lines are too long or have none.
-std::optional<std::uint32_t> PartReader::end_of_part() const {
-  const std::string_view text = source_->text();
-  if (text.size() - text_.begin <= limits_.bytes) return static_cast<std::uint32_t>(text.size());
-  const std::size_t from = text_.begin + limits_.bytes;
-  const std::size_t feed = text.substr(from, limits_.longest_line).find('\n');
-  if (feed == std::string_view::npos) return std::nullopt;
-  return static_cast<std::uint32_t>(from + feed + 1);
 }
 
 void PartReader::close_behind_marks(gcode::Program& part) const {

@@ -59,7 +59,6 @@ class PartReader {
   [[nodiscard]] bool unit_word_seen() const { return control_.unit_word_seen; }
 
  private:
-  [[nodiscard]] std::optional<std::uint32_t> end_of_part() const;
   void close_behind_marks(gcode::Program& part) const;
   [[nodiscard]] bool needs_whole(const gcode::ReadPart& part) const;
 

@@ -1,31 +1,22 @@
 #include "postproc/program_scout.h"
 
-#include <algorithm>
+#include <oneapi/tbb/parallel_pipeline.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <atomic>
 #include <deque>
+#include <memory>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include "gcode/reason.h"
-#include "gcode/source_kind.h"
-#include "postproc/profile/target_words.h"
 #include "postproc/proof/program_events.h"
 #include "postproc/runs/run_joints.h"
-#include "postproc/translation/conversion.h"
 #include "postproc/writing/provenance.h"
 
 namespace batten::postproc {
 
 namespace {
-
-// Blocks that are held at once: much more than what a part costs by itself, and much less than a
-// window, which is read again from the begin of a part on.
-constexpr std::size_t kBlocksAtOnce = 4096;
-
-// Bytes of a part, but for the rest of its last line. Without a bound, a search for a kind of line
-// end that the text does not have would go through all of it, part for part.
-constexpr std::size_t kBytesAtOnce = std::size_t{1} << 19;
-constexpr std::size_t kLongestRest = std::size_t{1} << 20;
 
 LongRunLimits limits_of(LongRunLimits limits, const SmoothOptions& options) {
   limits.rewritten = options.method != Method::kNone;
@@ -37,65 +28,57 @@ class Scout {
   Scout(const gcode::SourceText& source, const SmoothOptions& options, const WindowLimits& limits,
         const Tell& tell)
       : source_(source),
-        options_(options),
+        texts_(source, options),
+        meanings_(options),
         least_blocks_(limits.least_blocks),
         cuts_(limits_of(limits.long_runs, options), grouping_of(options)),
         tell_(tell),
-        now_{{}, {gcode::ControlCarry(options.units)}} {
-    now_.text.decimals = {reading_of(options, gcode::Language::kRs274).decimals, options.units};
-    read_options_ = read_options_of(options);
-  }
+        threads_(options.threads) {}
 
   ScoutReport run() {
-    const auto size = static_cast<double>(source_.text().size());
-    while (now_.text.begin < source_.text().size()) {
-      const std::uint32_t begin = now_.text.begin;
-      const auto end = end_of_part();
-      if (!end) return std::move(report_);
-      starts_.push_back(now_);
-      gcode::Program part =
-          gcode::parse_part(source_, {.byte = *end, .blocks = kBlocksAtOnce}, now_.text, of_text_);
-      part.dwells = gcode::dwells_of(options_.source);
-      const gcode::Interpretation meaning =
-          gcode::interpret_part(part, read_options_, now_.before.control, of_meaning_);
-      if (needs_whole(part, meaning)) return std::move(report_);
-      now_.before.events = events_before_next({&part, &meaning, now_.before.events});
-      look_for_ends(part, meaning);
-      take_facts(part, meaning);
-      source_.set_aside({begin, now_.text.begin});
-      if (!tell_(now_.text.begin / size)) {
-        report_.outcome = Scouting::kStopped;
-        return std::move(report_);
-      }
-    }
-    finish();
+    oneapi::tbb::task_arena arena(threads_ > 0 ? threads_ : oneapi::tbb::task_arena::automatic);
+    arena.execute([&] { go_through(arena.max_concurrency()); });
+    if (!ended_early_) finish();
     return std::move(report_);
   }
 
  private:
-  // Behind a line feed; nothing where lines are too long or have none.
-  [[nodiscard]] std::optional<std::uint32_t> end_of_part() const {
-    const std::string_view text = source_.text();
-    const std::uint32_t begin = now_.text.begin;
-    if (text.size() - begin <= kBytesAtOnce) return static_cast<std::uint32_t>(text.size());
-    const std::size_t from = begin + kBytesAtOnce;
-    const std::size_t feed = text.substr(from, kLongestRest).find('\n');
-    if (feed == std::string_view::npos) return std::nullopt;
-    return static_cast<std::uint32_t>(from + feed + 1);
+  using Part = std::shared_ptr<ScoutedPart>;
+
+  // Each of the three stages takes about as long as the others.
+  void go_through(int threads) {
+    using oneapi::tbb::filter_mode;
+    using oneapi::tbb::make_filter;
+    constexpr std::size_t kStages = 3;
+    const auto read = [this](oneapi::tbb::flow_control& flow) -> Part {
+      Part part = ended_early_ ? nullptr : texts_.next();
+      if (!part) flow.stop();
+      return part;
+    };
+    const auto interpret = [this](const Part& part) {
+      if (!part->needs_whole && !ended_early_) meanings_.add_to(*part);
+      return part;
+    };
+    const auto look = [this](const Part& part) {
+      if (!ended_early_) ended_early_ = !take(*part);
+    };
+    oneapi::tbb::parallel_pipeline(
+        threads > 1 ? 2 * kStages : 1,
+        make_filter<void, Part>(filter_mode::serial_in_order, read) &
+            make_filter<Part, Part>(filter_mode::serial_in_order, interpret) &
+            make_filter<Part, void>(filter_mode::serial_in_order, look));
   }
 
-  [[nodiscard]] bool needs_whole(const gcode::Program& part, const gcode::Interpretation& meaning) {
-    if (now_.before.control.reaches_out || !now_.text.marks.closes_nothing()) return true;
-    gcode::Diagnostics others;
-    tell_of_other_meanings(part, *options_.target, others);
-    gcode::tell_of_contradictions(part, options_.source, others);
-    if (!others.empty() || is_of_another_family(part, *options_.target)) return true;
-    if (gcode::has_error(of_text_) || gcode::has_error(of_meaning_)) return true;
-    // A curve may go on in the next part.
-    return read_options_.curves != nullptr &&
-           std::ranges::any_of(meaning.blocks, [](const gcode::BlockMeaning& block) {
-             return block.of_curve || block.barrier == gcode::reason::kSpline;
-           });
+  // False: the report says why it ends here.
+  [[nodiscard]] bool take(const ScoutedPart& part) {
+    if (part.needs_whole) return false;
+    starts_.push_back(part.begin);
+    look_for_ends(part.program, part.meaning);
+    take_facts(part.program, part.meaning);
+    source_.set_aside({part.begin.text.begin, part.end});
+    const bool goes_on = tell_(part.end / static_cast<double>(source_.text().size()));
+    if (!goes_on) report_.outcome = Scouting::kStopped;
+    return goes_on;
   }
 
   void look_for_ends(const gcode::Program& part, const gcode::Interpretation& meaning) {
@@ -159,25 +142,23 @@ class Scout {
     cuts_.end();
     take_cuts();
     report_.near = cuts_.near_parts();
-    gcode::finish_text(now_.text, of_text_);
-    gcode::finish_interpretation(now_.before.control, of_meaning_);
-    report_.found = std::move(of_text_);
-    report_.found.insert(report_.found.end(), of_meaning_.begin(), of_meaning_.end());
+    report_.found = texts_.finish();
+    const gcode::Diagnostics of_meaning = meanings_.finish();
+    report_.found.insert(report_.found.end(), of_meaning.begin(), of_meaning.end());
     if (gcode::has_error(report_.found) || report_.windows.empty()) return;
-    add_window(now_.text.begin, false);
+    add_window(texts_.end(), false);
     report_.outcome = Scouting::kWindows;
   }
 
   const gcode::SourceText& source_;
-  const SmoothOptions& options_;
+  PartTexts texts_;
+  PartMeanings meanings_;
   std::size_t least_blocks_;
   LongRunCuts cuts_;
   const Tell& tell_;
-  gcode::ReadOptions read_options_;
-  ReadingPlace now_;
+  int threads_;
+  std::atomic<bool> ended_early_ = false;
   std::deque<ReadingPlace> starts_;  // of parts, from that on where the next window is read from
-  gcode::Diagnostics of_text_;
-  gcode::Diagnostics of_meaning_;
   std::optional<LongRunCut> end_;  // where a window may end, if the next block that says something
                                    // is none of the rapids before it
   std::uint32_t first_line_ = 1;   // of the next window

@@ -8,13 +8,12 @@
 
 #include "gcode/diagnostic.h"
 #include "gcode/modal_state.h"
-#include "gcode/part_reading.h"
 #include "gcode/source_text.h"
 #include "postproc/options.h"
 #include "postproc/runs/long_run_cuts.h"
 #include "postproc/runs/near_parts.h"
 #include "postproc/runs/part_runs.h"
-#include "postproc/runs/program_part.h"
+#include "postproc/scouted_parts.h"
 
 namespace batten::postproc {
 
@@ -22,12 +21,6 @@ enum class Scouting {
   kWindows,  // the program may be smoothed in windows
   kWhole,    // only as a whole: see below
   kStopped,
-};
-
-// A place of the text where reading may begin, and all that is known there.
-struct ReadingPlace {
-  gcode::TextCarry text;
-  TextBefore before;
 };
 
 struct WindowPlace {
@@ -68,7 +61,8 @@ struct WindowLimits {
 // family, with curves that the target's reader follows, with lines of more than 1 MiB or without
 // line feeds, and without any place for a cut.
 //
-// Holds a bounded number of blocks. `tell` is told the share of the bytes that was seen.
+// Holds a bounded number of blocks. Reads text, meaning and cuts side by side where options.threads
+// lets it. `tell` is told the share of the bytes that was seen, by one thread after the other.
 [[nodiscard]] ScoutReport scout(const gcode::SourceText& source, const SmoothOptions& options,
                                 const WindowLimits& limits, const Tell& tell);
 

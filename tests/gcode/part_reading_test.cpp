@@ -183,5 +183,25 @@ TEST(PartReading, TellsOfPartsThatReachOut) {
   }
 }
 
+TEST(EndOfLines, IsBehindTheLineFeedThatFollows) {
+  const SourceText source("part.nc", "G21\nG0 X1\nG1 X2 F5");  // line feeds at 3 and 9
+  EXPECT_EQ(end_of_lines(source, 0, 1, 10), 4);
+  EXPECT_EQ(end_of_lines(source, 0, 3, 10), 4);
+  EXPECT_EQ(end_of_lines(source, 0, 4, 10), 10);
+  EXPECT_EQ(end_of_lines(source, 4, 2, 10), 10);
+}
+
+TEST(EndOfLines, IsThatOfTheTextWhereLittleIsLeft) {
+  const SourceText source("part.nc", "G21\nG0 X1\nG1 X2 F5");
+  EXPECT_EQ(end_of_lines(source, 4, 14, 10), 18);
+  EXPECT_EQ(end_of_lines(source, 18, 1, 10), 18);
+}
+
+TEST(EndOfLines, IsNowhereInALineThatIsTooLong) {
+  const SourceText source("part.nc", "G21\nG0 X1\nG1 X2 F5");
+  EXPECT_EQ(end_of_lines(source, 0, 4, 5), std::nullopt);
+  EXPECT_EQ(end_of_lines(source, 0, 11, 3), std::nullopt) << "no line feed in the last line";
+}
+
 }  // namespace
 }  // namespace batten::gcode
