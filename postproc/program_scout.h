@@ -47,7 +47,7 @@ struct WindowLimits {
   //
   // As many runs as keep all threads busy, and a small part of the memory that a program may take:
   // about 1 KB a block.
-  std::size_t least_blocks = 32768;
+  std::size_t least_blocks = 16384;
   LongRunLimits long_runs = {};
 };
 

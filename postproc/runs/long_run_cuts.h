@@ -21,9 +21,9 @@
 namespace batten::postproc {
 
 struct LongRunLimits {
-  std::size_t whole_at_most = 200000;  // points of a run that is not cut
-  std::size_t shortest = 25000;        // motions of a piece; kNeighbourBlocks or more
-  std::size_t longest = 50000;         // the same, but where it cannot be cut
+  std::size_t whole_at_most = 50000;  // points of a run that is not cut
+  std::size_t shortest = 12500;        // motions of a piece; kNeighbourBlocks or more
+  std::size_t longest = 25000;         // the same, but where it cannot be cut
   bool rewritten = true;               // else nothing can come near to anything
 };
 
