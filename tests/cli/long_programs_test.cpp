@@ -1,11 +1,14 @@
 // Programs of many megabytes, from files and streams: written window by window, and the same bytes,
 // messages and reports as where the whole is asked for (`--report` needs it).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include "batten_process.h"
 #include "tests/postproc/wavy_programs.h"
@@ -114,69 +117,75 @@ std::string relief(std::size_t rows) {
   return text + "M30\n";
 }
 
-// Runs what follows and prints the most bytes of memory that it took. This process is no measure: a
-// child counts what its parent had when it was made.
-constexpr const char* kMeasured =
-    "python3 -c 'import resource, subprocess, sys\n"
-    "code = subprocess.call(sys.argv[1:])\n"
-    "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024)\n"
-    "sys.exit(code)' '" BATTEN_BINARY "' ";
+// The most bytes of memory that a command of the program takes. This process is no measure: a child
+// counts what its parent had when it was made. What a sanitizer would keep of memory that was given
+// back is no memory of the program.
+std::size_t memory_of(const BattenFolder& folder, const std::string& command) {
+  constexpr const char* kMeasured =
+      "export ASAN_OPTIONS=quarantine_size_mb=1:$ASAN_OPTIONS; "
+      "python3 -c 'import resource, subprocess, sys\n"
+      "code = subprocess.call(sys.argv[1:], stdout=subprocess.DEVNULL)\n"
+      "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024)\n"
+      "sys.exit(code)' '" BATTEN_BINARY "' ";
+  const ProcessResult done = folder.shell(kMeasured + command);
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  return std::stoul(done.out);
+}
 
-// Twice the blocks, and no more memory than some bytes of each, for the report of its run: held as
-// a whole a block takes some hundred.
+// Rows of two hundred blocks, and twice as many: no more memory than some bytes of each block, for
+// the report of its run. Held as a whole a block takes some hundred.
+constexpr std::size_t kRows = 2000;
+constexpr std::size_t kForReport = kRows * 200 * 10;
+
 TEST(MemoryOfLongPrograms, DoesNotGrowWithTheirBlocks) {
-  constexpr std::size_t kRows = 2000;
-  constexpr std::size_t kBytesOfBlock = 10;
   const BattenFolder folder;
-  const auto memory_of = [&](std::size_t rows) {
-    folder.put("part.nc", relief(rows));
-    // What a sanitizer would keep of memory that was given back is no memory of the program.
-    const ProcessResult done = folder.shell(
-        std::string("export ASAN_OPTIONS=quarantine_size_mb=1:$ASAN_OPTIONS; ") + kMeasured +
-        "smooth part.nc -o new.nc --force --target linuxcnc --method none --threads 1 --quiet");
-    EXPECT_EQ(done.exit_code, 0) << done.err;
-    return std::stoul(done.out);
-  };
-  const std::size_t once = memory_of(kRows);
-  const std::size_t twice = memory_of(2 * kRows);
-  EXPECT_LE(twice, once + kRows * 200 * kBytesOfBlock);
+  folder.put("once.nc", relief(kRows));
+  folder.put("twice.nc", relief(2 * kRows));
+  const std::string options = " -o new.nc --force --target linuxcnc --method none --threads 1";
+  const std::size_t once = memory_of(folder, "smooth once.nc" + options);
+  EXPECT_LE(memory_of(folder, "smooth twice.nc" + options), once + kForReport);
 }
 
-// The same of `inspect`, which keeps what it says of each row: two sections.
+// A run of so many short lines along a wave, of which few remain.
+std::string one_run(int lines) {
+  std::string text = "G21 G90 G17\nM3 S9000\nG0 X0 Y0 Z5\nG1 Z-1 F300\nF2000\n";
+  for (int i = 1; i <= lines; ++i) {
+    text += fmt::format("G1 X{:.4f} Y{:.4f}\n", 0.1 * i, 20 * std::sin(0.002 * i));
+  }
+  return text + "G0 Z5\nM30\n";
+}
+
+// Of one run that is rewritten: a hundred bytes for each block beside what is mapped.
+TEST(MemoryOfLongPrograms, IsAHundredBytesForABlockOfOneLongRun) {
+  constexpr int kLines = 400'000;
+  const BattenFolder folder;
+  const std::string text = one_run(kLines);
+  folder.put("part.nc", text);
+  const std::string options = " -o new.nc --target linuxcnc --method fair --threads 1";
+  EXPECT_LE(memory_of(folder, "smooth part.nc" + options), text.size() + kLines * 100);
+  EXPECT_LT(folder.text_of("new.nc").size(), text.size() / 4) << "it is rewritten";
+}
+
+// `inspect` keeps what it says of each row: two sections.
 TEST(MemoryOfLongPrograms, DoesNotGrowWithTheBlocksThatAreInspected) {
-  constexpr std::size_t kRows = 2000;
-  constexpr std::size_t kBytesOfBlock = 10;
   const BattenFolder folder;
-  const auto memory_of = [&](std::size_t rows) {
-    folder.put("part.nc", relief(rows));
-    const ProcessResult done =
-        folder.shell(std::string("export ASAN_OPTIONS=quarantine_size_mb=1:$ASAN_OPTIONS; ") +
-                     kMeasured + "inspect part.nc | tail -1");
-    EXPECT_EQ(done.exit_code, 0) << done.err;
-    return std::stoul(done.out);
-  };
-  const std::size_t text = relief(kRows).size();  // that is mapped
-  const std::size_t once = memory_of(kRows);
-  EXPECT_LE(memory_of(2 * kRows), once + text + kRows * 200 * kBytesOfBlock);
+  const std::string text = relief(kRows);  // that is mapped
+  folder.put("once.nc", text);
+  folder.put("twice.nc", relief(2 * kRows));
+  const std::size_t once = memory_of(folder, "inspect once.nc");
+  EXPECT_LE(memory_of(folder, "inspect twice.nc"), once + text.size() + kForReport);
 }
 
-// The same of `verify`, which holds parts of two programs.
+// `verify` holds parts of two programs.
 TEST(MemoryOfLongPrograms, DoesNotGrowWithTheBlocksThatAreVerified) {
-  constexpr std::size_t kRows = 2000;
-  constexpr std::size_t kBytesOfBlock = 10;
   const BattenFolder folder;
-  const auto memory_of = [&](std::size_t rows) {
-    folder.put("old.nc", relief(rows));
-    folder.put("new.nc", relief(rows) + "(the end)\n");
-    const ProcessResult done =
-        folder.shell(std::string("export ASAN_OPTIONS=quarantine_size_mb=1:$ASAN_OPTIONS; ") +
-                     kMeasured + "verify old.nc new.nc");
-    EXPECT_EQ(done.exit_code, 0) << done.err;
-    return std::stoul(done.out);
-  };
-  const std::size_t texts = 2 * relief(kRows).size();  // that are mapped
-  const std::size_t once = memory_of(kRows);
-  EXPECT_LE(memory_of(2 * kRows), once + texts + kRows * 200 * kBytesOfBlock);
+  const std::string text = relief(kRows);
+  for (const auto& [name, rows] : {std::pair{"once", kRows}, {"twice", 2 * kRows}}) {
+    folder.put(fmt::format("{}.nc", name), relief(rows));
+    folder.put(fmt::format("{}.new.nc", name), relief(rows) + "(the end)\n");
+  }
+  const std::size_t once = memory_of(folder, "verify once.nc once.new.nc");
+  EXPECT_LE(memory_of(folder, "verify twice.nc twice.new.nc"), once + 2 * text.size() + kForReport);
 }
 
 // What differs is said by line and place, wherever it stands.
