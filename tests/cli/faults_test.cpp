@@ -14,20 +14,12 @@
 
 #include "batten_process.h"
 #include "tests/postproc/wavy_programs.h"
+#include "tests/support/counts_memory.h"
 
 namespace batten {
 namespace {
 
 namespace fs = std::filesystem;
-
-#if !defined(__has_feature)  // GCC says it by a macro, Clang by this
-#define __has_feature(feature) 0
-#endif
-#if defined(__SANITIZE_ADDRESS__) || __has_feature(address_sanitizer)
-constexpr bool kCountsMemory = false;  // the sanitizer needs terabytes of addresses
-#else
-constexpr bool kCountsMemory = true;
-#endif
 
 // A run that is rewritten.
 std::string part_program() { return postproc::wave_program(); }

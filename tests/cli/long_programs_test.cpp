@@ -12,6 +12,7 @@
 
 #include "batten_process.h"
 #include "tests/postproc/wavy_programs.h"
+#include "tests/support/counts_memory.h"
 
 namespace batten {
 namespace {
@@ -157,6 +158,7 @@ std::string one_run(int lines) {
 
 // Of one run that is rewritten: a hundred bytes for each block beside what is mapped.
 TEST(MemoryOfLongPrograms, IsAHundredBytesForABlockOfOneLongRun) {
+  if (!kCountsMemory) GTEST_SKIP() << "a sanitizer takes more";
   constexpr int kLines = 400'000;
   const BattenFolder folder;
   const std::string text = one_run(kLines);
