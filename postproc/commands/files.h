@@ -17,7 +17,7 @@
 namespace batten::postproc {
 
 // Programs of this size (bytes) and more are read part by part, where that is enough.
-inline constexpr std::size_t kBytesForParts = std::size_t{1} << 23;
+inline constexpr std::size_t kBytesForParts = std::size_t{1} << 21;
 
 // Reads a file, or standard input to its end. On failure says why and returns nothing.
 [[nodiscard]] std::optional<gcode::SourceText> read_program(const std::string& name);

@@ -41,8 +41,9 @@ bool would_be_refused(const std::string& file, bool replace_existing) {
 }
 
 // From this size on a program is smoothed window by window where that can be. It is read twice
-// then, and takes some 60 MB; as a whole one of this size takes about 350 MB.
-constexpr std::size_t kBytesForWindows = std::size_t{1} << 23;
+// then, and takes some 30 MB; as a whole one of this size takes about 60 MB, and ten times the size
+// ten times as much.
+constexpr std::size_t kBytesForWindows = std::size_t{1} << 21;
 
 class SmoothWork {
  public:
