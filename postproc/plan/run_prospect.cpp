@@ -73,7 +73,7 @@ std::vector<Method> methods_worth_trying(double corners, std::size_t points, dou
   constexpr double kWorthTrying = 0.02;
   if (corners < kCorners || least_time > (1 - kWorthTrying) * time) return {};
   // A racing line and the eight points are searches of their own for each corner.
-  constexpr std::size_t kMostSearched = 100;
+  constexpr std::size_t kMostSearched = 50;
   if (points > kMostSearched) return {Method::kGuo};
   return {Method::kGuo, Method::kOzcan, Method::kRacing};
 }
