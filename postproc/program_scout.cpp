@@ -12,6 +12,7 @@
 #include "gcode/reason.h"
 #include "postproc/proof/program_events.h"
 #include "postproc/runs/run_joints.h"
+#include "postproc/side_by_side.h"
 #include "postproc/writing/provenance.h"
 
 namespace batten::postproc {
@@ -33,11 +34,10 @@ class Scout {
         least_blocks_(limits.least_blocks),
         cuts_(limits_of(limits.long_runs, options), grouping_of(options)),
         tell_(tell),
-        threads_(options.threads) {}
+        threads_(threads_at_once(options.threads)) {}
 
   ScoutReport run() {
-    oneapi::tbb::task_arena arena(threads_ > 0 ? threads_ : oneapi::tbb::task_arena::automatic);
-    arena.execute([&] { go_through(arena.max_concurrency()); });
+    oneapi::tbb::task_arena(threads_).execute([&] { go_through(threads_); });
     if (!ended_early_) finish();
     return std::move(report_);
   }

@@ -1,9 +1,17 @@
 #include "postproc/side_by_side.h"
 
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
+
 namespace batten::postproc {
+
+int threads_at_once(int asked) {
+  const int cores = oneapi::tbb::info::default_concurrency();
+  return asked > 0 ? std::min(asked, cores) : cores;
+}
 
 void side_by_side(int threads, std::size_t count, const std::function<void(std::size_t)>& one) {
   const auto all = [&] { oneapi::tbb::parallel_for(std::size_t{0}, count, one); };
@@ -12,7 +20,7 @@ void side_by_side(int threads, std::size_t count, const std::function<void(std::
     oneapi::tbb::this_task_arena::isolate(all);
     return;
   }
-  oneapi::tbb::task_arena arena(threads > 0 ? threads : oneapi::tbb::task_arena::automatic);
+  oneapi::tbb::task_arena arena(threads_at_once(threads));
   arena.execute(all);
 }
 

@@ -10,6 +10,10 @@ namespace batten::postproc {
 // a part of.
 inline constexpr int kThreadsOfCaller = -1;
 
+// How many threads work for who asks for so many: as many as there are cores at the most, and all
+// of them for 0. The library would take no more either, and say so in words of its own.
+[[nodiscard]] int threads_at_once(int asked);
+
 // Calls `one` for 0 .. count - 1, in any order, on so many threads; 0: all cores. The calls must
 // not look at each other.
 void side_by_side(int threads, std::size_t count, const std::function<void(std::size_t)>& one);

@@ -129,9 +129,8 @@ class Windows {
     if (copied_ != nullptr) setting_.facts.copied = *copied_;
     crossings_.emplace(*near_, options_.tolerance_mm);
     progress_.begin(windows_);
-    oneapi::tbb::task_arena arena(options_.threads > 0 ? options_.threads
-                                                       : oneapi::tbb::task_arena::automatic);
-    arena.execute([&] { go_through(arena.max_concurrency()); });
+    const int threads = threads_at_once(options_.threads);
+    oneapi::tbb::task_arena(threads).execute([&] { go_through(threads); });
     if (outcome_ == WindowOutcome::kNeedsWhole) return std::nullopt;
     if (outcome_ == WindowOutcome::kStopped) return std::move(result_);
     if (parts_cross()) return std::nullopt;

@@ -99,6 +99,17 @@ TEST_F(LongProgram, ThatNeedsTheWholeIsWrittenOnce) {
   }
 }
 
+// More threads than there are cores: no more work at once, and no word of it.
+TEST_F(LongProgram, IsSmoothedUnderAnyNumberOfThreadsWithoutAWord) {
+  for (const char* threads : {"1", "200"}) {
+    const ProcessResult done = folder_.batten(std::string(kSmooth) + "--quiet --force -o " +
+                                              threads + ".nc --threads " + threads);
+    EXPECT_EQ(done.exit_code, 0);
+    EXPECT_EQ(done.err, "");
+  }
+  EXPECT_EQ(folder_.text_of("1.nc"), folder_.text_of("200.nc"));
+}
+
 TEST_F(LongProgram, ThatDoesNotFitOnTheDiskLeavesNothing) {
   const ProcessResult done =
       folder_.shell("ulimit -f 1024; batten smooth part.nc -o new.nc --target linuxcnc");
