@@ -3,7 +3,6 @@
 #include <utility>
 #include <vector>
 
-#include "gcode/large_pages.h"
 #include "postproc/plan/run_choice.h"
 #include "postproc/runs/run_path.h"
 
