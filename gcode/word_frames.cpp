@@ -39,8 +39,11 @@ void WordApplier::apply_axis_user(Code code) {
              : words_.has_any("ABC")  ? void()
                                       : forget_position(state_);
     case 281:
-    case 301:  // store the home position: nothing moves
-      return acts(reason::kCoordinateChange);
+    case 301:
+      // Store the home position: nothing moves by themselves. Axis words beside them are a motion
+      // on LinuxCNC, in its mode, cycles too; of other controls nothing is known.
+      acts(reason::kCoordinateChange);
+      return words_.has_any("XYZABCUVWIJKR") ? forget_position(state_) : void();
     case 650:  // a macro call may leave any state behind
       acts(reason::kSubprogram);
       return;

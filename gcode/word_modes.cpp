@@ -61,6 +61,8 @@ void WordApplier::apply_cutter(Code code) {
 void WordApplier::apply_tool_length(Code code) {
   acts(reason::kToolChange);
   forget_position(state_);
+  // Axis words of G43.1 are offsets on LinuxCNC and grbl, a motion on FANUC.
+  effect_.takes_axes |= code == 431 || code == 432;
   if (code == 434 || code == 435) {
     modal().tool_center_point = Tri::kOn;
   } else if (code == 490) {

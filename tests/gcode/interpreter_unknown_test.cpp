@@ -57,7 +57,12 @@ INSTANTIATE_TEST_SUITE_P(
                     PlaceCase{"HomeByIncrement", "G28 W0", true, true, false},
                     PlaceCase{"HomeRotary", "G28 A0", true, true, true},
                     PlaceCase{"HomeAll", "G30", false, false, false},
+                    PlaceCase{"StoredHome", "G28.1", true, true, true},
+                    PlaceCase{"StoredHomeAndAPlace", "G28.1 X30", false, false, false},
+                    PlaceCase{"StoredHomeAndAMove", "G30.1 G1 X10 Y10", false, false, false},
+                    PlaceCase{"StoredHomeAndAnArc", "G28.1 G2 I5", false, false, false},
                     PlaceCase{"ToolLength", "G43 H1", false, false, false},
+                    PlaceCase{"ToolOffsets", "G43.1 X10 Z3", false, false, false},
                     PlaceCase{"ToolLengthOff", "G49", false, false, false},
                     PlaceCase{"LengthNumber", "H2", false, false, false},
                     PlaceCase{"ToolChange", "M6", false, false, false},
@@ -149,6 +154,71 @@ INSTANTIATE_TEST_SUITE_P(
                     ForgetCase{"CallAndEnd", "M98 P5 M30"}, ForgetCase{"UnknownG", "G777"},
                     ForgetCase{"Unreadable", "G1 X"}),
     [](const auto& test) { return test.param.name; });
+
+// Where LinuxCNC 2.9 is behind a block of two kinds of codes that began at X5 Y6 Z3 under G1: what
+// its rs274 said.
+struct LinuxCncPlace {
+  const char* block;
+  double x, y, z;
+  const char* motion = "G1";  // the mode that the next block moves in
+};
+constexpr LinuxCncPlace kLinuxCncPlaces[] = {
+    {"G4 P0.1 X10 Y10", 10, 10, 3},
+    {"G4 P0.1 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G4 P0.1 G81 X1 Y1 Z-1 R2", 1, 1, 2, "G81"},
+    {"G10 L2 P1 X10 Y10", -5, -4, 3},
+    {"G10 L2 P1 Z3", 5, 6, 0},
+    {"G10 L20 P1 X10 Y10", 10, 10, 3},
+    {"G28", 0, 0, 0},
+    {"G28 X10 Y10", 0, 0, 3},
+    {"G28 Z3", 5, 6, 0},
+    {"G28.1", 5, 6, 3},
+    {"G28.1 X10 Y10", 10, 10, 3},
+    {"G28.1 G1 X10 Y10", 10, 10, 3},
+    {"G28.1 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G28.1 G81 X1 Y1 Z-1 R2", 1, 1, 2, "G81"},
+    {"G30 X10 Y10", 0, 0, 3},
+    {"G30.1", 5, 6, 3},
+    {"G30.1 X10 Y10", 10, 10, 3},
+    {"G30.1 G1 X10 Y10", 10, 10, 3},
+    {"G30.1 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G43.1 X10 Y10", -5, -4, 3},
+    {"G43.1 G1 X10 Y10", 10, 10, 3},
+    {"G43.1 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G43.1 Z3", 5, 6, 0},
+    {"G52 X10 Y10", -5, -4, 3},
+    {"G52 Z3", 5, 6, 0},
+    {"G53 X10 Y10", 10, 10, 3},
+    {"G53 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G92 X10 Y10", 10, 10, 3},
+    {"G92.1 X10 Y10", 10, 10, 3},
+    {"G92.1 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G92.2 G1 X10 Y10", 10, 10, 3},
+    {"G92.3 Z3", 5, 6, 3},
+    {"G92.3 G81 X1 Y1 Z-1 R2", 1, 1, 2, "G81"},
+    {"G40 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G49 G1 X10 Y10", 10, 10, 3},
+    {"G64 P0.1 X10 Y10", 10, 10, 3},
+    {"M6 X10 Y10", 10, 10, 3},
+};
+
+// One axis in the next block shows where that began.
+TEST(InterpreterUnknown, ThePlaceBesideOtherCodesIsLinuxCncsOrUnknown) {
+  for (const LinuxCncPlace& row : kLinuxCncPlaces) {
+    SCOPED_TRACE(row.block);
+    const double places[] = {row.x, row.y, row.z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Interpreted it(
+          std::string("G21 G90 G94 G17 G40 G49 G54 F3000\nG0 X1 Y2 Z3\nG1 X5 Y6\n") + row.block +
+          "\n" + "XYZ"[axis] + "50\n");
+      const Motion* next = it.motion_of_line(5);
+      if (next == nullptr) continue;  // kept as it is
+      EXPECT_EQ(next->kind == MotionKind::kRapid, std::string_view(row.motion) == "G0");
+      if (!next->start_known) continue;
+      EXPECT_EQ(next->piece.start()[static_cast<Eigen::Index>(axis)], places[axis]) << axis;
+    }
+  }
+}
 
 TEST(InterpreterUnknown, AJumpThatIsNotTakenChangesNothing) {
   const Interpreted it(std::string(kStart) + "IF [#1 GT 2] GOTO 900\nG1 X5\n");
