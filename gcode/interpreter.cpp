@@ -48,7 +48,8 @@ class Interpreter {
   }
 
   Interpretation run() {
-    const ProgramFlow whole_flow = follow_flow(program_);
+    const ProgramFlow whole_flow =
+        follow_flow(program_, now_.calls_keep_modes ? Returns::kBehindCalls : Returns::kToAnyLabel);
     const std::vector<BlockFlow>& flow = whole_flow.blocks;
     const auto count = static_cast<std::uint32_t>(program_.blocks.size());
     for (std::uint32_t i = 0; i < count;) {
@@ -157,7 +158,7 @@ class Interpreter {
       case Opacity::kContinued:
         return make_opaque(opacity_reason(block.opacity));
       default:
-        if (is_klartext()) return read_klartext();
+        if (is_klartext()) return read_klartext(block);
         if (is_siemens() && block.opacity == Opacity::kFlow) return read_siemens_flow(block);
         return read_opaque(block);
     }
@@ -179,7 +180,11 @@ class Interpreter {
     make_opaque(reason::kProgramFlow);
   }
 
-  void read_klartext() {
+  void read_klartext(const Block& block) {
+    if (block.opacity == Opacity::kUnreadable) {
+      forget_klartext(now_);
+      return make_opaque(reason::kNotUnderstood);
+    }
     const std::string_view text = klartext_statement_text(program_, block_index_);
     make_opaque(apply_klartext(text, now_));
     read_.unit_word_seen |= now_.modal.units != Units::kUnknown;

@@ -151,13 +151,15 @@ struct LabelledBlock {
 
 class FlowFinder {
  public:
-  explicit FlowFinder(const Program& program) : program_(program), flow_(program.blocks.size()) {}
+  FlowFinder(const Program& program, Returns returns)
+      : program_(program), returns_(returns), flow_(program.blocks.size()) {}
 
   ProgramFlow find() {
     for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
       read_block(i);
     }
     close_segment(program_.blocks.size());
+    judge_calls();
     const bool refers = !jump_targets_.empty() || any_label_ || !contours_.empty();
     reaches_out_ |= refers;
     if (refers) {
@@ -172,6 +174,7 @@ class FlowFinder {
   void read_block(std::size_t i) {
     const Block& block = program_.blocks[i];
     if (block.opacity == Opacity::kProgramMark) {
+      note_program(find_word(program_.words_of(block), 'O'));
       return;
     }
     const auto words = program_.words_of(block);
@@ -189,6 +192,7 @@ class FlowFinder {
     if (find_word(words, 'G') != nullptr) {
       read_lathe_cycle(words);
     }
+    note_call(words);
     flow_[i].in_body |= depth_ > 0;
   }
 
@@ -196,11 +200,13 @@ class FlowFinder {
     const std::string_view text = program_.source.text(program_.blocks[i].span);
     const std::string bare = bare_words(text);
     find_jumps(bare);
+    note_hidden_call(program_.blocks[i].opacity, text, bare);
     if (!is_flow) {
       return;
     }
     if (is_program_number(bare)) {
       close_segment(i);
+      note_program(find_word(program_.words_of(program_.blocks[i]), 'O'));
     }
     const int step = body_step(bare);
     reaches_out_ |= step != 0;
@@ -259,6 +265,37 @@ class FlowFinder {
     }
     segment_is_subprogram_ |= ends_subprogram;
     reaches_out_ |= ends_subprogram;
+  }
+
+  void note_program(const Word* number) {
+    if (const auto program = whole_number(number)) programs_.insert(*program);
+  }
+
+  // M98 P, G65 P and the like; P may count repetitions in front of the last four digits.
+  void note_call(std::span<const Word> words) {
+    constexpr Label kPrograms = 10000;
+    const bool calls = has_code(words, 'M', 98, 98) || has_code(words, 'M', 198, 198) ||
+                       has_code(words, 'G', 65, 65) || has_code(words, 'G', 66, 66.1);
+    if (!calls) return;
+    const auto program = whole_number(find_word(words, 'P'));
+    called_.push_back(program ? std::optional(*program % kPrograms) : std::nullopt);
+  }
+
+  // Of a block whose words are not all listed.
+  void note_hidden_call(Opacity opacity, std::string_view text, std::string_view bare) {
+    if (opacity == Opacity::kExpression || opacity == Opacity::kCornerWord) return;
+    const bool foreign = opacity == Opacity::kForeign && calls_siemens_program(text);
+    if (foreign || contains(bare, "M98") || contains(bare, "G65"))
+      called_.emplace_back(std::nullopt);
+  }
+
+  // What is called and does not stand here may come back to any label.
+  void judge_calls() {
+    if (returns_ == Returns::kBehindCalls) return;
+    reaches_out_ |= !called_.empty();
+    any_label_ |= std::ranges::any_of(called_, [this](const std::optional<Label>& program) {
+      return !program || !programs_.contains(*program);
+    });
   }
 
   void add_target(const Word* word) {
@@ -342,9 +379,12 @@ class FlowFinder {
   }
 
   const Program& program_;
+  Returns returns_;
   std::vector<BlockFlow> flow_;
   std::vector<LabelledBlock> labels_;  // in order; found where something refers to one
   std::unordered_set<Label> jump_targets_;
+  std::unordered_set<Label> programs_;        // that stand here
+  std::vector<std::optional<Label>> called_;  // nothing: by a name or a computed number
   std::vector<std::pair<Label, Label>> contours_;
   bool any_label_ = false;
   int depth_ = 0;
@@ -355,13 +395,15 @@ class FlowFinder {
 
 }  // namespace
 
-ProgramFlow follow_flow(const Program& program) {
+ProgramFlow follow_flow(const Program& program, Returns returns) {
   if (program.language == Language::kKlartext) return {find_klartext_flow(program), true};
-  if (program.language == Language::kSiemens) return {find_siemens_flow(program), true};
-  return FlowFinder(program).find();
+  if (program.language == Language::kSiemens) return {find_siemens_flow(program, returns), true};
+  return FlowFinder(program, returns).find();
 }
 
-std::vector<BlockFlow> find_flow(const Program& program) { return follow_flow(program).blocks; }
+std::vector<BlockFlow> find_flow(const Program& program, Returns returns) {
+  return follow_flow(program, returns).blocks;
+}
 
 FlowEffect flow_effect(std::string_view text) {
   const std::string bare = bare_words(text);

@@ -21,8 +21,15 @@ enum class FlowEffect : std::uint8_t {
 // `text` is a line of Opacity::kFlow.
 [[nodiscard]] FlowEffect flow_effect(std::string_view text);
 
+// Where subprograms come back to that are called and stand in another file: `M99 P100` and
+// `RET("N100")` go on at a block of the program that called.
+enum class Returns : std::uint8_t {
+  kBehindCalls,
+  kToAnyLabel,
+};
+
 struct BlockFlow {
-  bool label_referenced = false;  // its N number is named by some word of the program
+  bool label_referenced = false;  // its N number is, or may be, named elsewhere
   bool jump_target = false;       // control can come to it from another place
   bool in_body = false;           // of a loop, a subprogram, or a contour that a cycle names
 };
@@ -34,10 +41,11 @@ struct ProgramFlow {
   // is said of any block.
   bool reaches_out = false;
 };
-[[nodiscard]] ProgramFlow follow_flow(const Program& program);
+[[nodiscard]] ProgramFlow follow_flow(const Program& program, Returns returns);
 
 // The blocks of follow_flow. A jump to a computed label makes every block with an N number a
 // target.
-[[nodiscard]] std::vector<BlockFlow> find_flow(const Program& program);
+[[nodiscard]] std::vector<BlockFlow> find_flow(const Program& program,
+                                               Returns returns = Returns::kBehindCalls);
 
 }  // namespace batten::gcode

@@ -34,7 +34,12 @@ constexpr Explanation kExplanations[] = {
      "Remove the / if the block is always meant.", false},
     {kActiveComment, "The comment acts when it is reached: (MSG,..), (DEBUG,..), (LOGOPEN,..).",
      "Write it as a plain comment if it need not act.", false},
-    {kReferencedLabel, "The block's N number is the target of a jump or a call.", kCopied, false},
+    {kReferencedLabel,
+     "The block's N number is, or may be, the target of a jump, a call, or a return (M99 P) from a "
+     "called program that is not read.",
+     "--allow subprogram where called programs come back behind their calls; otherwise nothing: "
+     "such blocks are copied as they are.",
+     false},
     {kOtherAxis, "The block moves or names an axis other than X, Y, Z.",
      "Only three-axis motion is smoothed.", false},
     {kExtruder, "The block has an E word: the amount is proportional to the path.",
@@ -70,9 +75,9 @@ constexpr Explanation kExplanations[] = {
      "Take numbers and sums off; the sender adds them when it sends.", false},
     {kSubprogram, "A subprogram is called, or ends. Nothing is known afterwards.",
      "Smooth the called programs as files of their own; and --allow subprogram where they "
-     "leave all modes (units, plane, G90, compensation, rotation ..) as they find them: then only "
-     "place and "
-     "feed are unknown behind a call.",
+     "leave all modes (units, plane, G90, compensation, rotation ..) as they find them and come "
+     "back behind the call: then only place and feed are unknown there, and N numbers are no "
+     "targets.",
      true},
     {kProgramEnd, "The program stops or ends (M0, M1, M2, M30, M60).", kCopied, false},
 

@@ -8,6 +8,7 @@
 
 #include "gcode/characters.h"
 #include "gcode/siemens/lexer.h"
+#include "gcode/siemens/name_kinds.h"
 #include "gcode/siemens/value.h"
 
 namespace batten::gcode {
@@ -118,10 +119,26 @@ int siemens_body_step(std::string_view statement) {
   return name == "REPEAT" && alone ? 1 : 0;
 }
 
+bool calls_program(std::string_view statement) {
+  const std::string_view name = first_name(statement);
+  const std::string_view behind =
+      statement.substr(std::min(after_blanks(statement, name.size()), statement.size()));
+  if (name == "MCALL") return calls_program(behind);
+  if (name == "CALL" && first_name(behind) == "BLOCK") return false;  // a part of this one
+  const bool numbered =
+      name.size() > 1 && name.find_first_not_of("0123456789", 1) == std::string_view::npos;
+  if (numbered) return name[0] == 'L';
+  const bool is_set = behind.starts_with('=') || behind.starts_with('[');
+  return name.size() > 1 && name[0] != '$' && !is_set && !kind_of_siemens_name(name, false);
+}
+
 class FlowReader {
  public:
-  explicit FlowReader(const Program& program)
-      : program_(program), flow_(program.blocks.size()), labels_(program.blocks.size()) {}
+  FlowReader(const Program& program, Returns returns)
+      : program_(program),
+        returns_(returns),
+        flow_(program.blocks.size()),
+        labels_(program.blocks.size()) {}
 
   std::vector<BlockFlow> run() {
     for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
@@ -150,7 +167,18 @@ class FlowReader {
     if (block.opacity == Opacity::kForeign || block.opacity == Opacity::kNamedWords) {
       is_subprogram_ |= ends_subprogram(block);
     }
+    if (may_call(block.opacity)) note_call(plain_text(text_of(block)));
     flow_[i].in_body |= depth_ > 0;
+  }
+
+  static bool may_call(Opacity opacity) {
+    return opacity == Opacity::kForeign || opacity == Opacity::kNamedWords ||
+           opacity == Opacity::kUnreadable;
+  }
+
+  void note_call(std::string_view plain) {
+    note_repeated_part(plain);
+    any_label_ |= returns_ == Returns::kToAnyLabel && calls_program(statement_in(plain));
   }
 
   // A block may have a number and a name.
@@ -195,6 +223,19 @@ class FlowReader {
     }
   }
 
+  // CALL BLOCK N100 TO N110
+  void note_repeated_part(std::string_view plain) {
+    const std::vector<Name> names = names_in(plain);
+    const auto is = [](std::string_view text) {
+      return [text](const Name& name) { return name.text == text; };
+    };
+    const auto begins = std::ranges::find_if(names, is("BLOCK"));
+    if (std::ranges::none_of(names.begin(), begins, is("CALL")) || begins == names.end()) return;
+    note_target(label_at(plain, after_blanks(plain, begins->end)));
+    const auto ends = std::find_if(begins, names.end(), is("TO"));
+    if (ends != names.end()) note_target(label_at(plain, after_blanks(plain, ends->end)));
+  }
+
   void note_target(const std::optional<LabelName>& label) {
     if (label) {
       targets_.insert(*label);
@@ -226,6 +267,7 @@ class FlowReader {
   }
 
   const Program& program_;
+  Returns returns_;
   std::vector<BlockFlow> flow_;
   std::vector<std::vector<LabelName>> labels_;
   std::unordered_set<LabelName> targets_;
@@ -237,8 +279,12 @@ class FlowReader {
 
 }  // namespace
 
-std::vector<BlockFlow> find_siemens_flow(const Program& program) {
-  return FlowReader(program).run();
+std::vector<BlockFlow> find_siemens_flow(const Program& program, Returns returns) {
+  return FlowReader(program, returns).run();
+}
+
+bool calls_siemens_program(std::string_view line) {
+  return calls_program(statement_in(plain_text(line)));
 }
 
 FlowEffect siemens_flow_effect(std::string_view text) {

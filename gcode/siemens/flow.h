@@ -11,9 +11,14 @@
 namespace batten::gcode {
 
 // One per block. A label is NAME:, N100 or :100. Where a jump goes to something computed, or to a
-// name that is no label, every label is a target. A program that ends with M17 or RET is called by
-// others: all of it is a body.
-[[nodiscard]] std::vector<BlockFlow> find_siemens_flow(const Program& program);
+// name that is no label, every label is a target; so is it with kToAnyLabel where anything is
+// called that is not known to come back behind its call. A program that ends with M17 or RET is
+// called by others: all of it is a body.
+[[nodiscard]] std::vector<BlockFlow> find_siemens_flow(const Program& program, Returns returns);
+
+// L100, CALL "PART", PART(1,2), MCALL PART: does the line call a program, of its own or of others?
+// Not where the name is one that is known.
+[[nodiscard]] bool calls_siemens_program(std::string_view line);
 
 // What a line of Opacity::kFlow does to the state of the blocks after it.
 [[nodiscard]] FlowEffect siemens_flow_effect(std::string_view text);

@@ -78,6 +78,51 @@ INSTANTIATE_TEST_SUITE_P(
         FlowCase{"AfterTheProgram", "%\nN10 X1\n%\nGOTO 10\n", {}, {}, {}}),
     [](const auto& test) { return test.param.name; });
 
+struct CallCase {
+  const char* name;
+  const char* text;
+  Lines labels;  // that may be returned to
+};
+void PrintTo(const CallCase& test, std::ostream* out) { *out << test.text; }
+
+class Calls : public testing::TestWithParam<CallCase> {};
+
+// M99 P100 in a program that stands in another file goes on at N100 of the one that called.
+TEST_P(Calls, OfProgramsThatAreNotReadMayComeBackToAnyLabel) {
+  Diagnostics found;
+  const Program program = parse(SourceText("test.nc", GetParam().text), found);
+  Lines labels;
+  const ProgramFlow flow = follow_flow(program, Returns::kToAnyLabel);
+  for (std::size_t i = 0; i < flow.blocks.size(); ++i) {
+    EXPECT_EQ(flow.blocks[i].label_referenced, flow.blocks[i].jump_target);
+    if (flow.blocks[i].label_referenced) labels.push_back(i + 1);
+  }
+  EXPECT_EQ(labels, GetParam().labels);
+  for (const BlockFlow& each : find_flow(program)) EXPECT_FALSE(each.label_referenced);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ProgramFlow, Calls,
+    testing::Values(CallCase{"Call", "N10 X1\nX2\nM98 P2000\nN20 X3\n", {1, 4}},
+                    CallCase{"Macro", "N10 X1\nG65 P9010 A1\n", {1}},
+                    CallCase{"ModalMacro", "N10 X1\nG66 P9010 A1\n", {1}},
+                    CallCase{"FromTheCard", "N10 X1\nM198 P1\n", {1}},
+                    CallCase{"ComputedNumber", "N10 X1\nM98 P#1\nM30\nO1\nX2\nM99\n", {1}},
+                    CallCase{"ByName", "N10 X1\nM98 <PART>\n", {1}},
+                    CallCase{"BehindACondition", "N10 X1\nIF [#1 EQ 2] M98 P2000\n", {1}},
+                    CallCase{"OfSiemens", "N10 X1\nPART(1,2)\n", {1}},
+                    CallCase{"OfWhatStandsHere", "N10 X1\nM98 P2000 L3\nM30\nO2000\nX2\nM99\n", {}},
+                    CallCase{"WithItsRepetitions", "N10 X1\nM98 P32000\nM30\nO2000\nX2\nM99\n", {}},
+                    CallCase{"OfLinuxCnc", "N10 X1\no<part> call\n", {}},
+                    CallCase{"NoCall", "N10 X1\nM6 T5\nG43 H5\nX2\n", {}}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(ProgramFlow, CallsThatComeBackBehindThemselvesNameNoLabel) {
+  const std::string text = "G21 F9\nG0 X1\nN10 G1 X2\nM98 P2000\n";
+  EXPECT_TRUE(Interpreted(text).line(3).label_referenced);
+  EXPECT_FALSE(Interpreted(text, ReadOptions{.calls_keep_modes = true}).line(3).label_referenced);
+}
+
 TEST(ProgramFlow, JumpTargetsAreEnteredWithNothingKnown) {
   const Interpreted it("G21 G90 F9\nG0 X1 Y1 Z1\nG1 X2\nN10 G1 X3\nG1 X4\nIF [#1 LT 3] GOTO 10\n");
   EXPECT_TRUE(it.line(4).entered_from_elsewhere);

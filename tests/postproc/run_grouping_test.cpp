@@ -399,7 +399,7 @@ TEST(RunGrouping, CoversEveryBlockOnceAndRunsMeetTheirMotions) {
       "G1 X1", "Y2",  "X3 Y1", "Z-1",      "G1 X4 F200", "(c)", "",       "G0 Z5", "M8",
       "X5",    "G91", "G90",   "G2 X1 R9", "G1 X6 Y6",   "T1",  "F300",   "G28",   "/X1",
       "X7",    "Y8",  "X9",    "N10 X10",  "G41",        "G40", "M98 P1", "#1=2",  "G61"};
-  constexpr int kPrograms = 300;
+  constexpr int kPrograms = 400;
   std::size_t runs = 0;
   for (int seed = 0; seed < kPrograms; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);

@@ -235,6 +235,36 @@ TEST(SiemensFlow, OnlyLabelsThatAreNamedAreEntered) {
   EXPECT_FALSE(repeated.blocks[1].entered_from_elsewhere);
 }
 
+TEST(SiemensFlow, APartThatIsCalledAgainNamesItsLabels) {
+  const std::string part = "N10 FIRST: G1 X1\nN20 X2\nN30 LAST: X3\n";
+  for (const char* call : {"CALL BLOCK N10 TO N30", "call block N010 to LAST",
+                           "N40 CALL BLOCK FIRST TO LAST ; again"}) {
+    SCOPED_TRACE(call);
+    const Interpretation read = read_program(part + call + "\n");
+    EXPECT_TRUE(read.blocks[0].entered_from_elsewhere);
+    EXPECT_FALSE(read.blocks[1].entered_from_elsewhere);
+    EXPECT_TRUE(read.blocks[2].entered_from_elsewhere);
+  }
+  const Interpretation computed = read_program(part + "CALL BLOCK \"N\"<<R1 TO N30\n");
+  EXPECT_TRUE(computed.blocks[0].entered_from_elsewhere);
+}
+
+// RET("N10") in a program that stands in another file goes on at N10 of the one that called.
+TEST(SiemensFlow, ProgramsThatAreNotReadMayComeBackToAnyLabel) {
+  for (const char* call : {"L100 P3", "PART", "N5 PART(1,2)", "CALL \"PART\"", "EXTCALL(\"PART\")",
+                           "PCALL /_N_WKS_DIR/PART(1)", "MCALL PART(2)"}) {
+    EXPECT_TRUE(read_program(std::string("N10 G1 X1\n") + call + "\n").blocks[0].label_referenced)
+        << call;
+  }
+  for (const char* none :
+       {"CYCLE81(5,0,2,-5)", "MCALL CYCLE81(5,0,2,-5)", "MCALL", "CYCLE832(0.01)", "R1=5",
+        "MYVAR=5", "MYVAR[2]=5", "$TC_DP1[1,1]=120", "G0 SUPA Z0 D0", "TRANS X5", "DEF REAL A",
+        "M3 S500", "MSG(\"PART\")", "T=\"MILL\""}) {
+    EXPECT_FALSE(read_program(std::string("N10 G1 X1\n") + none + "\n").blocks[0].label_referenced)
+        << none;
+  }
+}
+
 TEST(SiemensParser, AnyBytesAreReadAndEveryByteIsInOneBlock) {
   const std::string sample =
       "%_N_P_MPF\n;$PATH=/_N_MPF_DIR\nN10 G71 G90 DEF REAL A\nN20 CYCLE832(0.01,1,1) MSG(\"a\")\n"
