@@ -9,6 +9,7 @@
 #include "gcode/active_comment.h"
 #include "gcode/byte_order_mark.h"
 #include "gcode/characters.h"
+#include "gcode/joined_lines.h"
 #include "gcode/klartext/parser.h"
 #include "gcode/language_marks.h"
 #include "gcode/large_pages.h"
@@ -46,6 +47,7 @@ class Parser {
          Diagnostics& found)
       : program_{source, {}, {}, {}, language, carry.decimals.rule()},
         text_(source.text()),
+        joined_(source.text()),
         end_(end),
         carry_(carry),
         found_(found),
@@ -94,6 +96,7 @@ class Parser {
   // False, and nothing read, where the line at the begin of what is left is no line of plain words.
   bool read_plain_block(std::string_view text) {
     if (!has_plain_way_ || carry_.begin >= text.size()) return false;
+    if (follows_lone_return(text, carry_.begin)) return false;
     Block block = block_here();
     const auto line = read_plain_words(text, carry_.begin, program_.words);
     if (!line || line->text_end - line->begin > kLongestLine) {
@@ -124,15 +127,16 @@ class Parser {
     block.span = {line.begin, line.text_end};
     block.end = line.end;
     const SourceSpan content = without_filling(block);
-    if (content.size() > 0 && text_[content.begin] == '%') {
+    if (joined_.holds(line)) {
+      make_unreadable(block, content, kJoinedLine);
+      carry_.words_seen = true;
+    } else if (content.size() > 0 && text_[content.begin] == '%') {
       read_mark(block, content);
     } else if (content.size() > kLongestLine) {
       make_unreadable(block, content, "a line of more than 1 MiB");
       carry_.words_seen = true;
-    } else if (program_.language == Language::kSiemens) {
-      read_siemens(block, content);
     } else {
-      read_tokens(block, content);
+      read_content(block, content);
     }
     block.word_count = static_cast<std::uint32_t>(program_.words.size()) - block.first_word;
     read_decimals(block);
@@ -140,6 +144,17 @@ class Parser {
         static_cast<std::uint32_t>(program_.comments.size()) - block.first_comment;
     program_.blocks.push_back(block);
     told_in_block_ = false;
+  }
+
+  void read_content(Block& block, SourceSpan content) {
+    const bool nul = content.size() > 0 && has_nul(program_.source.text(block.span));
+    if (nul) make_unreadable(block, block.span, kNulInLine);
+    if (program_.language == Language::kSiemens) {
+      read_siemens(block, content);
+    } else {
+      read_tokens(block, content);
+    }
+    if (nul) block.opacity = Opacity::kUnreadable;  // whatever its words are
   }
 
   void read_decimals(Block& block) {
@@ -411,6 +426,7 @@ class Parser {
 
   Program program_;
   std::string_view text_;
+  JoinedLines joined_;
   PartEnd end_;
   TextCarry& carry_;
   Diagnostics& found_;

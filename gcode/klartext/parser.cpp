@@ -10,13 +10,17 @@
 #include <vector>
 
 #include "gcode/characters.h"
+#include "gcode/joined_lines.h"
 #include "gcode/klartext/move_words.h"
 #include "gcode/klartext/statement.h"
 #include "gcode/line_cursor.h"
 #include "gcode/number_format.h"
+#include "gcode/told_troubles.h"
 
 namespace batten::gcode {
 namespace {
+
+constexpr std::string_view kUnreadableBlock = "unreadable-block";
 
 constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
 
@@ -31,7 +35,7 @@ bool is_coefficient_line(std::string_view content) {
 class KlartextParser {
  public:
   KlartextParser(const SourceText& source, Diagnostics& found)
-      : text_(source.text()), found_(found) {
+      : text_(source.text()), joined_(source.text()), found_(found) {
     program_.source = source;
     program_.language = Language::kKlartext;
   }
@@ -44,6 +48,7 @@ class KlartextParser {
     }
     LineCursor lines(text_);
     while (const auto line = lines.next()) read_line(*line);
+    told_.tell_rest(found_);
     return std::move(program_);
   }
 
@@ -55,11 +60,27 @@ class KlartextParser {
     block.line = static_cast<std::uint32_t>(program_.blocks.size()) + 1;
     block.first_word = static_cast<std::uint32_t>(program_.words.size());
     block.first_comment = static_cast<std::uint32_t>(program_.comments.size());
-    read_content(block, without_fillers(block));
+    const SourceSpan inner = without_fillers(block);
+    if (joined_.holds(line)) {
+      make_unreadable(block, kJoinedLine);
+    } else if (inner.size() > 0 && has_nul(program_.source.text(block.span))) {
+      make_unreadable(block, kNulInLine);
+    } else {
+      read_content(block, inner);
+    }
     block.word_count = static_cast<std::uint32_t>(program_.words.size()) - block.first_word;
     block.comment_count =
         static_cast<std::uint32_t>(program_.comments.size()) - block.first_comment;
     program_.blocks.push_back(block);
+  }
+
+  void make_unreadable(Block& block, std::string_view trouble) {
+    block.opacity = Opacity::kUnreadable;
+    end_last_move();  // RND may stand there
+    forget_path();
+    if (!told_.counts(kUnreadableBlock, block.span)) return;
+    found_.push_back({Severity::kWarning, kUnreadableBlock, block.span,
+                      std::string(trouble) + "; the block is copied as it is"});
   }
 
   // A line of nothing but fillers is a mark: it must not vanish with the lines around it.
@@ -142,7 +163,11 @@ class KlartextParser {
         block.opacity = Opacity::kForeign;
         break;
     }
-    // What follows may be in other coordinates: the numbers of the centre say nothing any more.
+    forget_path();
+  }
+
+  // What follows may be in other coordinates: the numbers of the centre say nothing any more.
+  void forget_path() {
     for (Word& word : centre_) word.is_number = false;
     last_move_.reset();
   }
@@ -198,6 +223,8 @@ class KlartextParser {
 
   Program program_{SourceText("", ""), {}, {}, {}, Language::kKlartext};
   std::string_view text_;
+  JoinedLines joined_;
+  ToldTroubles told_;
   Diagnostics& found_;
   std::vector<Word> centre_;  // of the last CC
   std::optional<std::size_t> last_move_;

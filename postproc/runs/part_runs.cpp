@@ -18,6 +18,7 @@
 #include "postproc/side_by_side.h"
 #include "postproc/smoothing.h"
 #include "postproc/writing/block_numbers.h"
+#include "postproc/writing/line_end.h"
 
 namespace batten::postproc {
 
@@ -41,7 +42,7 @@ RunContext context_of(const gcode::Program& program, const gcode::Interpretation
   return {program,
           section.first_block == 0 ? meaning.states[0] : state_after(section.first_block - 1),
           state_after(section.last_block),
-          program.source.text({first.span.end, first.end}),
+          written_line_end(program.source.text({first.span.end, first.end})),
           section.last_block - section.first_block + 1,
           bytes_of(program, section).size(),
           number_room(program, section.first_block, section.last_block)};

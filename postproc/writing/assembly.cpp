@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "postproc/writing/line_end.h"
+
 namespace batten::postproc {
 namespace {
 
@@ -49,7 +51,7 @@ class Assembler {
     }
     leave_runs(line_end_);
     if (footer_at_ == end()) {
-      if (!additions_.words.footer.empty() && !text_.ends_with('\n') && !text_.ends_with('\r')) {
+      if (!additions_.words.footer.empty() && !text_.ends_with('\n')) {
         text_ += line_end_;
       }
       add_lines(additions_.words.footer, line_end_);
@@ -127,7 +129,7 @@ class Assembler {
       if (block.end > block.span.end) ending = program_.source.text({block.span.end, block.end});
       if (block.span.begin >= at) break;
     }
-    return ending.empty() ? "\n" : ending;
+    return written_line_end(ending);
   }
 
   [[nodiscard]] bool is_rewritten(const gcode::Block& block) const {

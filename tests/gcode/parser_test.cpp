@@ -101,7 +101,9 @@ INSTANTIATE_TEST_SUITE_P(
                     BlockCase{"WrongChecksum", "N5 G1 X1*88", "unreadable: N5 G1 X1"},
                     BlockCase{"NulAndEndOfFileInside", std::string("G1\0X\x1A", 5),
                               "unreadable: G1"},
-                    BlockCase{"NulsAround", std::string("\0 G1\0\0", 6), "words: G1"},
+                    BlockCase{"NulInFront", std::string("\0 G1", 4), "unreadable: G1"},
+                    BlockCase{"NulBehind", std::string("G1\0\0", 4), "unreadable: G1"},
+                    BlockCase{"NulInAComment", std::string("(a\0b) G1", 9), "unreadable: G1"},
                     BlockCase{"NulsOnly", std::string("\0\0", 2), "mark"}),
     [](const auto& test) { return test.param.name; });
 
@@ -159,9 +161,28 @@ TEST(Parser, ReadsAnyLineEndAndAMissingLastOne) {
   const Blocks expected = {"words: G1", "words", "words: X1", "words: Y2"};
   EXPECT_EQ(blocks_of("G1\n\nX1\nY2"), expected);
   EXPECT_EQ(blocks_of("G1\r\n\r\nX1\r\nY2"), expected);
-  EXPECT_EQ(blocks_of("G1\r\rX1\rY2"), expected);
-  EXPECT_EQ(blocks_of("G1\r\n\nX1\rY2\n"), expected);
+  EXPECT_EQ(blocks_of("G1\r\n\nX1\r\nY2\n"), expected);
   EXPECT_EQ(blocks_of(""), Blocks{});
+}
+
+// A CR that no LF follows ends a line for some controls and is left out by others. That is the same
+// where only one of the lines between two LFs says anything.
+TEST(Parser, ReadsNoLinesThatAnotherControlWouldJoin) {
+  const Blocks gap = {"words: G1", "words", "words: X1", "words"};
+  EXPECT_EQ(blocks_of("G1\r\r\nX1\r\r\n"), gap);
+  EXPECT_EQ(blocks_of("G1\n\rX1\n\r"), gap);
+  EXPECT_EQ(blocks_of("G1\r \t\nX1\n \r"), gap);
+  EXPECT_EQ(blocks_of("G1\r"), Blocks{"words: G1"});
+
+  EXPECT_EQ(blocks_of("M3\nG1\rX1\nY2\n"),
+            (Blocks{"words: M3", "unreadable", "unreadable", "words: Y2"}));
+  EXPECT_EQ(blocks_of("G1\rX1\rY2\r"), (Blocks{"unreadable", "unreadable", "unreadable"}));
+  EXPECT_EQ(blocks_of("M3\n\r\rG1\r\rX1\r\r\nY2\n"),
+            (Blocks{"words: M3", "words", "words", "unreadable", "words", "unreadable", "words",
+                    "words: Y2"}));
+  EXPECT_EQ(blocks_of("%\rG1\r%\nX1\n"),
+            (Blocks{"unreadable", "unreadable", "unreadable", "words: X1"}));
+  EXPECT_EQ(blocks_of("(a)\rG1\n"), (Blocks{"unreadable", "unreadable"}));
 }
 
 TEST(Parser, SkipsAByteOrderMark) {

@@ -67,13 +67,14 @@ Construct call(const char* name, const char* target, const std::string& text) {
   return {name, target, text + back, "subprogram", true, {}, {}, "subprogram"};
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    CallsThatKeepModes, LexingTable,
-    testing::Values(call("Named", kLinuxCnc, "o<do_it> call [1] [2]"),
-                    call("Numbered", kLinuxCnc, "o100 call"), call("Call", kFanuc, "M98 P1000 L3"),
-                    call("Macro", kFanuc, "G65 P9010 A1."), call("Local", "haas", "M97 P700"),
-                    call("Program", kHeidenhain, "CALL PGM OTHER")),
-    &construct_name);
+INSTANTIATE_TEST_SUITE_P(CallsThatKeepModes, LexingTable,
+                         testing::Values(call("Named", kLinuxCnc, "o<do_it> call [1] [2]"),
+                                         call("Numbered", kLinuxCnc, "o100 call"),
+                                         call("Call", kFanuc, "M98 P1000 L3"),
+                                         call("Macro", kFanuc, "G65 P9010 A1."),
+                                         call("Local", "haas", "M97 P700"),
+                                         call("Program", kHeidenhain, "CALL PGM OTHER")),
+                         &construct_name);
 
 INSTANTIATE_TEST_SUITE_P(
     Skipping, LexingTable,
@@ -192,6 +193,26 @@ TEST(LexingTableLabels, ThatAreNamedAreNeitherDroppedNorPassedOver) {
   }
 }
 
+// M99 P500 in a program that is not read comes back to N500.
+TEST(LexingTableLabels, MayBeNamedByAProgramThatIsCalled) {
+  const auto language = gcode::Language::kRs274;
+  const std::string before = head_of(language) + wave_part(language, 0) + "N500 " +
+                             wave_part(language, 1) + "M98 P2000\n" + tail_of(language);
+  SmoothOptions options = options_for(kFanuc);
+  const SmoothResult kept = smoothed(before, options);
+  EXPECT_TRUE(kept.proved);
+  EXPECT_TRUE(is_rewritten_within(kept, 1, 4 + kWaveLines));
+  EXPECT_FALSE(is_rewritten_within(kept, 5 + kWaveLines, 500));
+  EXPECT_NE(kept.text.find("N500 G1 X30.200"), std::string::npos);
+  expect_rest_copied(before, kept);
+
+  options.allowed = {"subprogram"};
+  const SmoothResult allowed = smoothed(before, options);
+  EXPECT_TRUE(allowed.proved);
+  EXPECT_TRUE(is_rewritten_within(allowed, 1, 500));
+  EXPECT_EQ(allowed.text.find("N500"), std::string::npos);
+}
+
 TEST(LexingTableLabels, OfSiemensAreLikewise) {
   const auto language = gcode::Language::kSiemens;
   for (const std::string label : {"N500", "LATER:", ":500"}) {
@@ -221,8 +242,9 @@ TEST(LexingTableEncodings, AreKeptByteForByte) {
   const std::string texts[] = {
       "\xEF\xBB\xBF" + plain,
       with_ends("\r\n"),
-      with_ends("\r"),
-      std::string(40, '\0') + plain,
+      with_ends("\r\r\n"),
+      with_ends("\n\r"),
+      std::string(40, '\0') + "\n" + plain,
       std::string(20, '\0') + "\n%\n" + plain + "%\n" + std::string(9, '\0'),
       plain + "\x1A",
       "%\r\n" + with_ends("\r\n") + "%\r\n\x1A"};
@@ -235,6 +257,54 @@ TEST(LexingTableEncodings, AreKeptByteForByte) {
     EXPECT_EQ(result.text.substr(0, head), text.substr(0, head));
     const std::string tail = text.substr(text.find("G0 Z5.", head));
     EXPECT_TRUE(result.text.ends_with(tail));
+  }
+}
+
+// LinuxCNC leaves out a CR that no LF follows, wherever it stands; grbl ends a line there. What is
+// written reads the same for both, and what does not is copied.
+TEST(LexingTableEncodings, NewLinesEndAsEveryControlReadsThem) {
+  const auto has_lone_return = [](std::string_view line) {
+    const std::size_t first = line.find_first_not_of(" \r");
+    const std::size_t last = line.find_last_not_of(" \r");
+    return first != std::string_view::npos &&
+           line.substr(first, last - first).find('\r') != std::string_view::npos;
+  };
+  for (const std::string end : {"\n", "\r\n", "\r\r\n", "\r\r\r\n", "\n\r", "\n\r\r", "\r\n\r"}) {
+    SCOPED_TRACE(testing::PrintToString(end));
+    for (const char* target : {kLinuxCnc, kGrbl, kFanuc}) {
+      const std::string before = wave_program({.line_end = end});
+      const SmoothResult result = smoothed(before, options_for(target));
+      EXPECT_TRUE(result.proved);
+      EXPECT_EQ(rewritten_runs(result), 1U);
+      for (const std::string& line : lines_of(result.text)) EXPECT_FALSE(has_lone_return(line));
+    }
+  }
+}
+
+TEST(LexingTableEncodings, LinesThatControlsReadInTwoWaysAreCopied) {
+  const std::string wave = wave_program();
+  const std::size_t middle = wave.find('\n', wave.size() / 2);
+  const auto with = [&](std::size_t at, std::size_t count, const std::string& what) {
+    return std::string(wave).replace(at, count, what);
+  };
+  std::string returns = wave;
+  std::ranges::replace(returns, '\n', '\r');
+  const std::string nul(1, '\0');
+  const std::string texts[] = {returns,
+                               returns + "\n",
+                               with(middle, 1, "\r"),
+                               with(middle, 1, nul + "\n"),
+                               with(middle, 1, "\n" + nul),
+                               with(0, 0, std::string(40, '\0'))};
+  for (const std::string& text : texts) {
+    SCOPED_TRACE(testing::Message() << "text " << (&text - texts));
+    const SmoothResult result = smoothed(text, options_for(kLinuxCnc));
+    EXPECT_TRUE(result.proved);
+    EXPECT_TRUE(std::ranges::any_of(result.diagnostics, [](const gcode::Diagnostic& told) {
+      return told.id == "unreadable-block" && !told.message.empty();
+    }));
+    const std::size_t copied = &text - texts < 2 ? 0 : text.find_first_of(std::string("\0\r", 2));
+    EXPECT_EQ(text.substr(copied), result.text.substr(result.text.size() - (text.size() - copied)));
   }
 }
 

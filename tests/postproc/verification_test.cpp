@@ -305,6 +305,30 @@ INSTANTIATE_TEST_SUITE_P(Verify, Accepts, testing::ValuesIn(good_cases()),
 
 // --- what it tells --------------------------------------------------------------------------
 
+// LinuxCNC runs the two lines as one, straight to the corner on the other side.
+TEST(Verify, DoesNotTakeALoneReturnForALineEnd) {
+  const std::string apart = "G21 G90\nG0 X0 Y0 Z0\nG1 X60 F3000\nY60\nX0\nM2\n";
+  EXPECT_TRUE(verify_texts(apart, replaced(apart, "Y60\n", "Y60\r\r\n")).proved());
+  EXPECT_FALSE(verify_texts(apart, replaced(apart, "\nY60\n", "\rY60\r\r\n")).proved());
+  EXPECT_FALSE(verify_texts(replaced(apart, "\nY60\n", "\rY60\n"), apart).proved());
+  const std::string same = replaced(apart, "\nY60\n", "\rY60\n");
+  EXPECT_TRUE(verify_texts(same, same).proved());
+}
+
+// LinuxCNC does not run what stands behind a NUL, grbl does.
+TEST(Verify, ComparesALineWithANulByItsBytes) {
+  const std::string nul(1, '\0');
+  const std::string plain = "G21 G90\nG0 X0 Y0 Z0\nG1 X60 F3000\nY60\nX0\nM2\n";
+  const std::string in_front = replaced(plain, "Y60", nul + "Y60");
+  const std::string behind = replaced(plain, "Y60", "Y60" + nul);
+  for (const std::string& text : {in_front, behind}) {
+    EXPECT_TRUE(verify_texts(text, text).proved());
+    EXPECT_FALSE(verify_texts(plain, text).proved());
+    EXPECT_FALSE(verify_texts(text, plain).proved());
+  }
+  EXPECT_FALSE(verify_texts(in_front, behind).proved());
+}
+
 TEST(Verify, SaysHowFarAProvedPathIs) {
   const Verification found = verify_texts(kProgram, replaced(kProgram, "X30 Y0\n", "X30.006 Y0\n"));
   ASSERT_TRUE(found.proved());

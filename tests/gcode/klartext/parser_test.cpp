@@ -49,6 +49,21 @@ TEST_P(KlartextLines, AreReadAsWords) {
   EXPECT_EQ(last.opacity, test.opacity);
 }
 
+// The RND that may stand in such a line cuts the move before it.
+INSTANTIATE_TEST_SUITE_P(
+    LinesThatControlsReadInTwoWays, KlartextLines,
+    testing::Values(LineCase{"Joined", "L X+1\rL Y+2", "", Opacity::kUnreadable},
+                    LineCase{"Apart", "L X+1\r\nL Y+2\r\n", "G1 Y2"},
+                    LineCase{"ApartByMore", "L X+1\r\r\nL Y+2", "G1 Y2"},
+                    LineCase{"NulInFront", std::string("\0L X+1", 6), "", Opacity::kUnreadable},
+                    LineCase{"NulBehind", std::string("L X+1\0", 6), "", Opacity::kUnreadable},
+                    LineCase{"NulsOnly", std::string("\0\0", 2), "", Opacity::kProgramMark}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(KlartextParser, CutsTheMoveInFrontOfALineThatItDoesNotRead) {
+  EXPECT_EQ(parsed("L X+1\nCC\rRND R2\n").blocks[0].opacity, Opacity::kCornerWord);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Moves, KlartextLines,
     testing::Values(
