@@ -11,16 +11,17 @@ Why programs were refused stands behind the table, with their first block that c
 
 import argparse
 import concurrent.futures
-import gzip
 import json
 import pathlib
 import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "corpus"))
+import programs
+
 TARGETS = "fanuc,siemens,itnc530,grbl,linuxcnc,haas"
 FORMS = "auto,curves,arcs,lines"
-NOT_PROGRAMS = {".md", ".txt", ".json"}
 HANGS = 900  # seconds, for programs of some megabytes
 
 
@@ -42,12 +43,8 @@ def read_options():
 
 
 def programs_in(folder, largest):
-    for file in sorted(folder.rglob("*")):
-        if not file.is_file() or file.suffix.lower() in NOT_PROGRAMS:
-            continue
-        data = file.read_bytes()
-        if file.suffix == ".gz":
-            data = gzip.decompress(data)
+    for file in programs.programs_in(folder):
+        data = programs.bytes_of(file)
         if len(data) <= largest:
             yield file.name, data
 
@@ -120,16 +117,16 @@ def summed(rows, target, form):
 
 def main(options):
     options.batten = str(pathlib.Path(options.batten).resolve())  # runs in folders of its own
-    programs = list(programs_in(options.folder, options.largest))
+    chosen = list(programs_in(options.folder, options.largest))
     if options.via:
-        print(f"{len(programs)} programs", end=", ")
-        programs = [(name, converted(options, data)) for name, data in programs]
-        programs = [(name, data) for name, data in programs if data is not None]
-        print(f"{len(programs)} of them converted for {options.via}")
-    if not programs:
+        print(f"{len(chosen)} programs", end=", ")
+        chosen = [(name, converted(options, data)) for name, data in chosen]
+        chosen = [(name, data) for name, data in chosen if data is not None]
+        print(f"{len(chosen)} of them converted for {options.via}")
+    if not chosen:
         print("no programs")
         return 77
-    work = [(name, data, target, form) for name, data in programs
+    work = [(name, data, target, form) for name, data in chosen
             for target in options.targets.split(",") for form in options.forms.split(",")]
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         rows = list(pool.map(lambda one: row_of(options, *one), work))

@@ -6,7 +6,6 @@ BATTEN_CORPUS in the environment goes before the folders. Exits with 77 when the
 """
 
 import concurrent.futures
-import gzip
 import json
 import os
 import pathlib
@@ -16,24 +15,14 @@ import sys
 import tempfile
 
 import rules
+from programs import bytes_of, programs_in
 
 TOLERANCE = 0.01  # mm
 SKIPPED = 77
 AT_ONCE = 2
-NOT_PROGRAMS = {".md", ".txt", ".json"}
 
 # Seconds after which a program of some megabytes counts as hanging, on a slow build.
 HANGS = 600
-
-
-def programs_in(folder):
-    return sorted(f for f in folder.rglob("*")
-                  if f.is_file() and f.suffix.lower() not in NOT_PROGRAMS)
-
-
-def bytes_of(file):
-    data = file.read_bytes()
-    return gzip.decompress(data) if file.suffix == ".gz" else data
 
 
 def linuxcnc_accepts(program, folder):
