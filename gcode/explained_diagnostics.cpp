@@ -48,6 +48,11 @@ constexpr ExplainedDiagnostic kExplained[] = {
      "The program has motions and neither G20 nor G21 (nor G70, G71 without parameters). A "
      "tolerance means nothing then.",
      "Say --units mm or --units inch."},
+    {"lathe-program", "warning",
+     "The program is one for a lathe: it has a word that only such programs have (G50 S, G71 P Q, "
+     "LIMS, FUNCTION MODE TURN ..), or two of different kinds that mills hardly use (T0101, G96, a "
+     "feed of 0.2 ..) and no Y. X may be a diameter there and G90 a cycle. It is copied as it is.",
+     "If it is a program for a mill, write the word that the message names in another way."},
     {"two-words-of-one-group", "warning",
      "G0 G1, G17 G18, M3 M5, or a code twice, in one block: controls disagree what that does.",
      "Take one of them out."},

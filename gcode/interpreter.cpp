@@ -468,6 +468,30 @@ class Interpreter {
   std::uint32_t block_index_ = 0;
 };
 
+// Nothing of it is certain, and no word alone says what it seems to say.
+void make_all_opaque(const Program& program, Interpretation& read) {
+  for (std::size_t i = 0; i < read.blocks.size(); ++i) {
+    BlockMeaning& meaning = read.blocks[i];
+    const Block& block = program.blocks[i];
+    const bool says_nothing = block.opacity == Opacity::kNone && block.word_count == 0;
+    if ((says_nothing && meaning.kind == BlockKind::kEmpty) ||
+        meaning.barrier == reason::kProgramMark) {
+      continue;
+    }
+    meaning.kind = BlockKind::kOpaque;
+    meaning.barrier = reason::kLatheProgram;
+    meaning.of_curve = false;
+  }
+}
+
+Diagnostic lathe_warning(const LatheWatch& lathe) {
+  return {
+      Severity::kWarning, "lathe-program", lathe.where(),
+      fmt::format("{}: this is a program for a lathe, where X may be a diameter and G90 a cycle; "
+                  "it is copied as it is. If it is for a mill, write this in another way",
+                  lathe.evidence())};
+}
+
 }  // namespace
 
 Interpretation interpret(const Program& program, const ReadOptions& options, Diagnostics& found) {
@@ -479,7 +503,17 @@ Interpretation interpret(const Program& program, const ReadOptions& options, Dia
 
 Interpretation interpret_part(const Program& part, const ReadOptions& options, ControlCarry& carry,
                               Diagnostics& found) {
-  return Interpreter(part, options, carry, found).run();
+  carry.lathe.see(part);
+  if (!carry.lathe.is_lathe()) return Interpreter(part, options, carry, found).run();
+  // What is told of single blocks would be told of a mill.
+  Diagnostics of_a_mill;
+  Interpretation read = Interpreter(part, options, carry, of_a_mill).run();
+  make_all_opaque(part, read);
+  found.push_back(lathe_warning(carry.lathe));
+  carry.told = {};
+  carry.any_motion = false;  // it needs no units
+  carry.reaches_out = true;
+  return read;
 }
 
 void finish_interpretation(const ControlCarry& carry, Diagnostics& found) {

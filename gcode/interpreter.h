@@ -32,6 +32,10 @@ struct ReadOptions {
 // units-missing: motions in a program that names no unit, without ReadOptions::units. At most
 // one diagnostic per block. Linear time.
 //
+// A program for a lathe (gcode/lathe_marks.h) gives one warning, lathe-program: nothing of it is
+// followed, all its blocks that say anything are opaque. Its motions are listed as a mill would do
+// them, so that they can be counted.
+//
 // Positions are those of the program's own coordinates. In states that no motion may be
 // rewritten in (scaling, rotation, tilted planes ..) they are not where the tool is.
 [[nodiscard]] Interpretation interpret(const Program& program, const ReadOptions& options,

@@ -5,7 +5,8 @@
 // (gcode::parse, gcode::interpret), and so are the diagnostics behind the finish_ functions, where
 //   - no part reaches out: TextCarry::marks says so of its % lines, ControlCarry::reaches_out of
 //     jumps, loops and subprograms;
-//   - no part begins within a curve that ReadOptions::curves reads.
+//   - no part begins within a curve that ReadOptions::curves reads;
+//   - the program is none for a lathe: ControlCarry::lathe says so at its end.
 // Places are places of the source, lines are lines of it. Indices (Motion::block and the like)
 // begin anew in each part.
 #pragma once
@@ -19,6 +20,7 @@
 #include "gcode/decimal_points.h"
 #include "gcode/diagnostic.h"
 #include "gcode/interpreter.h"
+#include "gcode/lathe_marks.h"
 #include "gcode/motion.h"
 #include "gcode/program.h"
 #include "gcode/program_marks.h"
@@ -73,6 +75,7 @@ struct ControlCarry {
   bool any_motion = false;
   SourceSpan first_motion;   // its block
   bool reaches_out = false;  // a part was not for itself, see above
+  LatheWatch lathe;          // of all parts so far
   ToldTroubles told;
 };
 

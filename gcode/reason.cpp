@@ -123,6 +123,13 @@ constexpr Explanation kExplanations[] = {
     {kModalMacro, "A macro runs after each motion (G66).", kCopied, false},
     {kLatheDiameter, "X is a diameter (G7).", "Lathe programs in diameters are not smoothed.",
      false},
+    {kLatheProgram,
+     "The program is one for a lathe, by its marks: X may be a diameter, U and W increments, G90, "
+     "G92 "
+     "and G94 cycles.",
+     "Programs for lathes are copied as they are. The warning names the mark: if this is a program "
+     "for a mill, write that word in another way.",
+     false},
     {kFeedUnknown, "No feed is known for this motion.", "Write F before the first cutting move.",
      false},
     {kLoopBody,

@@ -64,6 +64,8 @@ inline constexpr std::string_view kExactStop = "exact-stop";
 inline constexpr std::string_view kControlSmoothing = "control-smoothing";
 inline constexpr std::string_view kModalMacro = "modal-macro";
 inline constexpr std::string_view kLatheDiameter = "lathe-diameter";
+inline constexpr std::string_view kLatheProgram =
+    "lathe-program";  // X may be a diameter, G90 a cycle: nothing of it is certain
 inline constexpr std::string_view kFeedUnknown = "feed-unknown";
 inline constexpr std::string_view kLoopBody =
     "loop-body";  // between DO/WHILE and END, or a subprogram's body

@@ -147,6 +147,7 @@ class Scout {
     report_.found.insert(report_.found.end(), of_meaning.begin(), of_meaning.end());
     if (gcode::has_error(report_.found) || report_.windows.empty()) return;
     add_window(texts_.end(), false);
+    for (WindowPlace& window : report_.windows) window.from.before.control.lathe.settle();
     report_.outcome = Scouting::kWindows;
   }
 

@@ -56,10 +56,10 @@ struct WindowLimits {
 // goes on from one window to the next. And it ends where a long run is cut, but where no method is
 // asked for: such runs are not cut.
 //
-// Only as a whole: programs that are not understood or that the target takes otherwise than the
-// reader, with jumps, loops or subprograms, with words outside the % marks, with words of another
-// family, with curves that the target's reader follows, with lines of more than 1 MiB or without
-// line feeds, and without any place for a cut.
+// Only as a whole: programs for lathes, programs that are not understood or that the target takes
+// otherwise than the reader, with jumps, loops or subprograms, with words outside the % marks, with
+// words of another family, with curves that the target's reader follows, with lines of more than 1
+// MiB or without line feeds, and without any place for a cut.
 //
 // Holds a bounded number of blocks. Reads text, meaning and cuts side by side where options.threads
 // lets it. `tell` is told the share of the bytes that was seen, by one thread after the other.

@@ -124,6 +124,7 @@ class Windows {
         facts.was_smoothed && !is_allowed(gcode::reason::kAlreadySmoothed, options_);
     setting_.long_runs = limits.long_runs;
     windows_ = std::move(facts.windows);
+    known_.known.control.lathe.settle();
     near_ = std::make_shared<const std::vector<NearParts>>(std::move(facts.near));
     setting_.facts.near = near_;
     if (copied_ != nullptr) setting_.facts.copied = *copied_;
