@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "gcode/reason.h"
 #include "postproc/report/run_reasons.h"
 
 namespace batten::postproc {
@@ -69,7 +70,12 @@ std::string times(const SmoothResult& result, const Machine& machine) {
 
 void add_runs(const SmoothResult& result, Lines& lines) {
   if (result.runs.empty()) {
-    lines.add("runs", "none found: batten inspect says of each block why it is copied");
+    const bool of_a_lathe = std::ranges::any_of(
+        result.diagnostics,
+        [](const gcode::Diagnostic& each) { return each.id == gcode::reason::kLatheProgram; });
+    lines.add("runs", of_a_lathe
+                          ? "none: the program is one for a lathe (lathe-program)"
+                          : "none found: batten inspect says of each block why it is copied");
     return;
   }
   const auto rewritten = static_cast<std::size_t>(

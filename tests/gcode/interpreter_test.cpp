@@ -137,7 +137,7 @@ void PrintTo(const BlockCase& test, std::ostream* out) { *out << test.block; }
 class BlockInAProgram : public testing::TestWithParam<BlockCase> {};
 
 TEST_P(BlockInAProgram, HasThisMeaning) {
-  const Interpreted it(std::string(kPreamble) + GetParam().block);
+  const Interpreted it(std::string(kPreamble) + GetParam().block, {.lathes = false});
   ASSERT_EQ(it.read.blocks.size(), 4U);
   EXPECT_EQ(it.line(4).kind, GetParam().kind);
   EXPECT_EQ(it.line(4).barrier, GetParam().barrier);

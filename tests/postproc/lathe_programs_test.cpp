@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "postproc/inspect_in_parts.h"
+#include "postproc/report/summary_text.h"
 #include "postproc/time/program_time_steps.h"
 #include "tests/postproc/in_windows.h"
 #include "tests/postproc/wavy_programs.h"
@@ -20,6 +21,13 @@ const gcode::Diagnostic* lathe_warning(const SmoothResult& result) {
   const auto found = std::ranges::find(result.diagnostics, std::string_view("lathe-program"),
                                        &gcode::Diagnostic::id);
   return found == result.diagnostics.end() ? nullptr : &*found;
+}
+
+// Siemens programs are read as such.
+SmoothOptions options_of(std::string_view target) {
+  SmoothOptions options = options_for(target);
+  if (target == "siemens") options.source = gcode::SourceKind::kSiemens;
+  return options;
 }
 
 // A contour in X and Z that any mill would cut, and that has no mark of a lathe.
@@ -34,12 +42,11 @@ std::string contour(const std::string& head, const std::string& tail = "") {
 }
 
 void expect_copied(const std::string& text, std::string_view target, std::string_view evidence) {
-  const SmoothResult result = smoothed(text, options_for(target));
+  const SmoothResult result = smoothed(text, options_of(target));
   EXPECT_TRUE(result.understood);
   EXPECT_TRUE(result.proved);
   EXPECT_EQ(result.text, text);
-  ASSERT_EQ(result.runs.size(), 1U);
-  EXPECT_EQ(result.runs[0].reason, "lathe-program");
+  for (const RunReport& run : result.runs) EXPECT_EQ(run.reason, "lathe-program");
   const gcode::Diagnostic* warning = lathe_warning(result);
   ASSERT_NE(warning, nullptr);
   EXPECT_EQ(warning->severity, gcode::Severity::kWarning);
@@ -84,7 +91,7 @@ TEST_P(Mark, CopiesTheProgramHoweverLateItStands) {
 TEST_P(Mark, IsOneWhereYIsNamedOnlyIfItIsCertain) {
   const MarkCase& c = GetParam();
   const SmoothResult result =
-      smoothed(contour("G21 G40\n" + c.marks + "\nG0 Y5.\n"), options_for(c.target));
+      smoothed(contour("G21 G40\n" + c.marks + "\nG0 Y5.\n"), options_of(c.target));
   EXPECT_EQ(lathe_warning(result) != nullptr, c.certain);
 }
 
@@ -173,7 +180,7 @@ class Mill : public testing::TestWithParam<MillCase> {};
 
 TEST_P(Mill, IsSmoothed) {
   const MillCase& c = GetParam();
-  const SmoothResult result = smoothed(c.words + "\n" + wave_program(), options_for(c.target));
+  const SmoothResult result = smoothed(c.words + "\n" + wave_program(), options_of(c.target));
   EXPECT_EQ(lathe_warning(result), nullptr) << lathe_warning(result)->message;
   EXPECT_GE(rewritten_runs(result), 1U);
 }
@@ -235,6 +242,18 @@ TEST(LatheProgram, NeedsNoUnits) {
   const SmoothResult result = smoothed(text, options_for("fanuc"));
   EXPECT_TRUE(result.understood);
   EXPECT_EQ(result.text, text);
+}
+
+TEST(LatheProgram, SaysSoInTheSummaryEvenWhereNothingMoves) {
+  const SmoothOptions options = options_for("fanuc");
+  for (const std::string& text :
+       {contour("G21\nG50 S2000\n"), std::string("G21\nG50 S2000\nG0 X4.\nM30\n")}) {
+    const SmoothResult result = smoothed(text, options);
+    const gcode::SourceText source("part.nc", text);
+    const std::string summary = summary_text(
+        {.source = source, .options = options, .result = result, .output_file = "new.nc"});
+    EXPECT_NE(summary.find("lathe-program"), std::string::npos) << summary;
+  }
 }
 
 TEST(LatheProgram, IsNotTranslated) {
