@@ -1,5 +1,8 @@
 #include "gcode/opaque_blocks.h"
 
+#include <algorithm>
+
+#include "gcode/characters.h"
 #include "gcode/program_flow.h"
 #include "gcode/reason.h"
 
@@ -11,25 +14,31 @@ namespace {
 bool assigns_only_variables(std::string_view text) {
   constexpr int kFirstSystemVariable = 2000;
   for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1)) {
+    int number = -1;
     std::size_t digit = at + 1;
-    int number = 0;
-    while (digit < text.size() && text[digit] >= '0' && text[digit] <= '9' &&
-           number < kFirstSystemVariable) {
-      number = number * 10 + (text[digit] - '0');
-      ++digit;
+    for (; digit < text.size() && (is_digit(text[digit]) || is_blank(text[digit])); ++digit) {
+      if (is_blank(text[digit])) continue;  // they mean nothing within a number
+      number = std::max(number, 0) * 10 + (text[digit] - '0');
+      if (number >= kFirstSystemVariable) return false;
     }
     const bool named = digit < text.size() && text[digit] == '<';
-    if (number >= kFirstSystemVariable || (digit == at + 1 && !named)) {
-      return false;
-    }
+    if (number < 0 && !named) return false;
   }
   return true;
 }
 
-void apply_flow(FlowEffect effect, ControlState& state) {
-  switch (effect) {
+void apply_assignment(std::string_view text, ControlState& state) {
+  if (assigns_only_variables(text)) return;
+  forget_position(state);
+  state.work_offset = 0;
+}
+
+void apply_flow(std::string_view text, ControlState& state) {
+  switch (flow_effect(text)) {
     case FlowEffect::kNothing:
       return;
+    case FlowEffect::kAssignment:
+      return apply_assignment(text, state);
     case FlowEffect::kCall:
       return forget_what_calls_change(state);
     case FlowEffect::kProgramNumber:
@@ -66,13 +75,9 @@ void apply_opaque(Opacity opacity, std::string_view text, ControlState& state) {
     case Opacity::kProgramMark:  // and text that no control reads
       return;
     case Opacity::kAssignment:
-      if (!assigns_only_variables(text)) {
-        forget_position(state);
-        state.work_offset = 0;
-      }
-      return;
+      return apply_assignment(text, state);
     case Opacity::kFlow:
-      return apply_flow(flow_effect(text), state);
+      return apply_flow(text, state);
     default:
       forget_everything(state);
   }

@@ -413,7 +413,8 @@ FlowEffect flow_effect(std::string_view text) {
   const bool jumps = bare.starts_with("GOTO") || (bare.starts_with("IF") && contains(bare, "GOTO"));
   const bool assigns = bare.starts_with("IF") && contains(bare, "THEN#");
   if (o_word_keyword(bare).starts_with("CALL")) return FlowEffect::kCall;
-  return jumps || assigns ? FlowEffect::kNothing : FlowEffect::kEverything;
+  if (assigns) return FlowEffect::kAssignment;
+  return jumps ? FlowEffect::kNothing : FlowEffect::kEverything;
 }
 
 }  // namespace batten::gcode

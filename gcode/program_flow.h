@@ -13,6 +13,7 @@ namespace batten::gcode {
 // What a line of flow words does to the state of the blocks after it.
 enum class FlowEffect : std::uint8_t {
   kNothing,        // GOTO, IF .. GOTO: falls through with the state that it found
+  kAssignment,     // IF .. THEN #1=5
   kProgramNumber,  // O1234: the beginning of a program
   kCall,           // LinuxCNC: o100 call, o<name> call
   kEverything,     // loops, branches: the state after it depends on what was executed
