@@ -4,6 +4,17 @@
 #include "gcode/word_applier.h"
 
 namespace batten::gcode {
+namespace {
+
+// M100 and above are the user's or the builder's: LinuxCNC runs a program of that name, others a
+// macro or the PLC. Any of them may move the axes, but sees no modal state of ours.
+bool is_user_function(Code code) {
+  constexpr Code kFirst = 1000;
+  return code >= kFirst;
+}
+
+}  // namespace
+
 StateEffect WordApplier::apply() {
   for (const Code code : words_.g_codes()) {
     apply_g(code);
@@ -194,7 +205,7 @@ void WordApplier::apply_m(Code code) {
     case 198:
       return acts(reason::kSubprogram);
     default:
-      // Also 100 and above: they call programs of the user, which see no modal state of ours.
+      if (is_user_function(code)) forget_position(state_);
       return acts(reason::kMiscFunction);
   }
 }
@@ -223,6 +234,7 @@ void apply_late_words(const BlockWords& words, ControlState& state) {
         forget_position(state);
         break;
       default:
+        if (is_user_function(code)) forget_position(state);
         break;
     }
   }

@@ -78,7 +78,22 @@ INSTANTIATE_TEST_SUITE_P(
                     PlaceCase{"CompensationOff", "G41 D1\nG40", false, false, false},
                     PlaceCase{"DeletableMotion", "/G1 X9", false, true, true},
                     PlaceCase{"DeletableNothing", "/G1 X2", true, true, true},
-                    PlaceCase{"UserM", "M150 P1", true, true, true}),
+                    PlaceCase{"UserM", "M150 P1", false, false, false},
+                    PlaceCase{"FirstUserM", "M100", false, false, false},
+                    PlaceCase{"UserMBesideMotion", "G1 X5 M101", false, false, false},
+                    PlaceCase{"OtherM", "M12", true, true, true}),
+    [](const auto& test) { return test.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    Assignments, PlaceAfter,
+    testing::Values(PlaceCase{"BlanksInTheNumber", "#52 21=5", false, false, false},
+                    PlaceCase{"BehindN", "N7 #5221=5", false, false, false},
+                    PlaceCase{"AsSecond", "#100=1 #5221=5", false, false, false},
+                    PlaceCase{"ConditionalVariable", "IF[#1EQ1]THEN#100=5", true, true, true},
+                    PlaceCase{"Conditional", "IF[#1EQ1]THEN#5221=1.", false, false, false},
+                    PlaceCase{"ConditionalWithBlanks", "N7 if [#1 eq 1] then # 5221 = 1.", false,
+                              false, false},
+                    PlaceCase{"ConditionalComputed", "IF[#1EQ1]THEN#[#2]=1.", false, false, false}),
     [](const auto& test) { return test.param.name; });
 
 struct ForgetCase {

@@ -115,9 +115,15 @@ INSTANTIATE_TEST_SUITE_P(RunGrouping, RunEnd,
                                          EndCase{"Rotary", "A30", "other-axis"},
                                          EndCase{"Extruder", "X3.5 E1", "extruder"},
                                          EndCase{"Assignment", "#1=2", "parameter-assignment"},
-                                         EndCase{"Jump", "IF [#1 GT 2] GOTO 99", "program-flow"},
-                                         EndCase{"UserM", "M101", "misc-function"}),
+                                         EndCase{"Jump", "IF [#1 GT 2] GOTO 99", "program-flow"}),
                          [](const auto& test) { return test.param.name; });
+
+// What it runs may move the axes: both have to be named again.
+TEST(RunGrouping, StartsAnewBehindAFunctionOfTheUser) {
+  EXPECT_EQ(Grouped(std::string(kStart) + kThree + "M101\n" + kThreeMore).outline(),
+            "1-1 state-change; 2-2 rapid; 3-5 run; 6-6 misc-function; 7-8 position-unknown; "
+            "9-9 too-short");
+}
 
 TEST(RunGrouping, StartsAfterTheMotionThatMakesThePlaceKnown) {
   EXPECT_EQ(Grouped("G21 F9\nG1 X0 Y0\nX1\nX2\nX3\n").outline(),
