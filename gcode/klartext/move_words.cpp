@@ -109,6 +109,7 @@ class MoveReading {
     while (!reader_.at_end()) {
       if (!read_word()) return false;
     }
+    if (rapid_ && has_word('F')) return false;  // the control takes one of them
     return !is_arc_kind() || (sense_ != 0 && arc_has_its_words());
   }
 
@@ -219,13 +220,14 @@ class MoveReading {
     return kind_ == KlartextKind::kArc || kind_ == KlartextKind::kRadiusArc;
   }
 
+  [[nodiscard]] bool has_word(char letter) const {
+    return std::any_of(words_.begin() + static_cast<std::ptrdiff_t>(motion_), words_.end(),
+                       [letter](const Word& word) { return word.letter == letter; });
+  }
+
   [[nodiscard]] bool arc_has_its_words() const {
-    const auto has = [this](char letter) {
-      return std::any_of(words_.begin() + static_cast<std::ptrdiff_t>(motion_), words_.end(),
-                         [letter](const Word& word) { return word.letter == letter; });
-    };
     const bool radius = kind_ == KlartextKind::kRadiusArc;
-    return (has('X') || has('Y')) && !has('Z') && radius == has('R');
+    return (has_word('X') || has_word('Y')) && !has_word('Z') && radius == has_word('R');
   }
 
   static Word word_from(char letter, std::uint32_t begin) {

@@ -8,8 +8,9 @@
 namespace batten::gcode {
 
 enum class NameKind : std::uint8_t {
-  kNothing,      // how the axes are driven, messages, tolerances of the control: no path, no state
+  kNothing,      // how the axes are driven, messages: no path, no state
   kDeclaration,  // the rest of the line declares something
+  kTolerance,    // how far the control may round, not where the path is
   kRefitOn,
   kRefitOff,
   kToolCenterOn,

@@ -93,6 +93,8 @@ class NameApplier {
         return block(reason::kStateChange);
       case NameKind::kVariable:
         return block(reason::kAssignment);
+      case NameKind::kTolerance:
+        return block(reason::kControlSmoothing);
       case NameKind::kRefitOn:
         modal().control_smoothing = Tri::kOn;
         return block(reason::kControlSmoothing);

@@ -186,7 +186,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Construct{"Spline", kSiemens, "BSPLINE X31 Y0\nX32 Y1\nG1 X33 Y0", "spline"},
                     Construct{"Tolerance", kHeidenhain,
                               "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.02", "control-smoothing"},
-                    Construct{"HighSpeedCycle", kSiemens, "CYCLE832(0.02,1,1)", "state-change"}),
+                    Construct{"HighSpeedCycle", kSiemens, "CYCLE832(0.02,1,1)",
+                              "control-smoothing"},
+                    Construct{"ContourTolerance", kSiemens, "CTOL=0.02", "control-smoothing"},
+                    Construct{"AxisTolerance", kSiemens, "ATOL[X]=0.02", "control-smoothing"}),
     &construct_name);
 
 INSTANTIATE_TEST_SUITE_P(
