@@ -60,6 +60,11 @@ constexpr ExplainedBreach kBreaches[] = {
      "Plane, units, a mode or the feed are different where a copied block depends on them, or only "
      "assumed where a word had set them.",
      "Look for a plane that was selected for arcs and not restored."},
+    {"point-spelling",
+     "Nothing says for which control the programs are, and a length stands without a decimal point "
+     "(X5) that the old program writes with one (X5.), or the other way round: some controls take "
+     "X5 for 0.005 mm.",
+     "Say --target or --source, or --decimals."},
     {"profile-words-open",
      "Words of a profile before a run without those behind it, or its header without its footer.",
      "Something was taken out by hand: put it back."},

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "gcode/interpreter.h"
 #include "gcode/parser.h"
@@ -16,6 +17,7 @@
 #include "postproc/part_reader.h"
 #include "postproc/profile/added_lines.h"
 #include "postproc/proof/part_verification.h"
+#include "postproc/proof/point_spelling.h"
 #include "postproc/proof/verification.h"
 #include "postproc/report/json_values.h"
 
@@ -231,6 +233,20 @@ AddedLines without_added_lines(const VerifyCommand& command, const Read& before,
   return take_added_lines(before.program, new_source.text(), words);
 }
 
+// Nothing says for which control the programs are, nor how it counts numbers without a point.
+bool is_control_open(const VerifyCommand& command) {
+  return target_of(command) == nullptr && command.source == gcode::SourceKind::kAuto &&
+         !command.decimals;
+}
+
+void compare_points(const VerifyCommand& command, const gcode::SourceText& old_source,
+                    const gcode::SourceText& new_source, Verification& verification) {
+  if (!is_control_open(command)) return;
+  if (auto breach = other_point_spelling(old_source, new_source)) {
+    verification.breaches.push_back(std::move(*breach));
+  }
+}
+
 void append(const std::vector<Breach>& breaches, Verification& verification) {
   verification.breaches.insert(verification.breaches.end(), breaches.begin(), breaches.end());
 }
@@ -306,7 +322,8 @@ int run(const VerifyCommand& command) {
     return accept_same_bytes(command, *new_source);
   }
 
-  if (const auto parts = proved_in_parts(command, *old_source, *new_source)) {
+  if (auto parts = proved_in_parts(command, *old_source, *new_source)) {
+    compare_points(command, *old_source, *new_source, parts->verification);
     if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
     print(parts->of_old, *old_source, command.log_level);
     print(parts->of_new, *new_source, command.log_level);
@@ -336,6 +353,10 @@ int run(const VerifyCommand& command) {
              {command.tolerance_mm, command.tolerance_kind, command.side});
   if (interrupted()) return end_interrupted();
   if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
+  if (before.program.language == gcode::Language::kRs274 &&
+      after.program.language == gcode::Language::kRs274) {
+    compare_points(command, *old_source, *new_source, verification);
+  }
   append(added.breaches, verification);
   append(events_in_brackets({.program = &after.program, .interpretation = &after.interpretation},
                             added.brackets),

@@ -291,6 +291,20 @@ TEST_F(CommandLine, VerifyProvesTheSameBytesInAnyUnit) {
   EXPECT_EQ(batten("verify part.nc other.nc --units inch").exit_code, 0);
 }
 
+// X10 may be 0.010 mm where X10. is 10 mm: which control it is decides.
+TEST_F(CommandLine, VerifyAsksForTheControlWhereADecimalPointIsLost) {
+  folder_.put("old.nc", "G21 G90\nG0 X0. Y0. Z5.\nG1 X10. F100.\nM30\n");
+  folder_.put("new.nc", "G21 G90\nG0 X0. Y0. Z5.\nG1 X10 F100.\nM30\n");
+  const ProcessResult open = batten("verify old.nc new.nc");
+  EXPECT_EQ(open.exit_code, 3);
+  EXPECT_TRUE(contains(open.err, "new.nc:3: point-spelling: found X10 without")) << open.err;
+  EXPECT_TRUE(contains(open.err, "--target")) << open.err;
+  EXPECT_EQ(batten("verify old.nc new.nc --target linuxcnc").exit_code, 0);
+  EXPECT_EQ(batten("verify old.nc new.nc --source ngc").exit_code, 0);
+  EXPECT_EQ(batten("verify old.nc new.nc --decimals explicit --source fanuc").exit_code, 0);
+  EXPECT_EQ(batten("verify old.nc new.nc --target fanuc").exit_code, 3);
+}
+
 // A tolerance needs a unit only where something moves.
 TEST_F(CommandLine, VerifyComparesProgramsWithoutMovesInAnyUnit) {
   folder_.put("old.nc", "T1 M6\nM30\n");

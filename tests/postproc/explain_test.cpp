@@ -48,6 +48,7 @@ Ids ids_in_sources_of_the_verifier() {
   Ids ids = {"distance"};  // one word
   add_ids_in(source_folder() / "postproc/profile/added_lines.cpp", ids);
   add_ids_in(source_folder() / "postproc/proof/event_breaches.cpp", ids);
+  add_ids_in(source_folder() / "postproc/proof/point_spelling.cpp", ids);
   add_ids_in(source_folder() / "postproc/proof/stretch_comparison.cpp", ids);
   return ids;
 }
