@@ -61,13 +61,17 @@ class Lister {
       : program_(*read.program),
         interpretation_(*read.interpretation),
         cuts_(read.cuts),
-        set_by_word_(read.before.set_by_word) {}
+        set_by_word_(read.before.set_by_word),
+        feed_is_new_(read.before.feed_is_new) {}
 
   ProgramEvents run() {
     list_.cuts.reserve(interpretation_.motions.size());
     for (std::uint32_t i = 0; i < program_.blocks.size(); ++i) {
       if (!cuts_.empty() && cuts_.front() == i) list_cut(i);
+      const std::size_t cuts = list_.cuts.size();
       list_block(i);
+      if (names_feed(program_.blocks[i])) feed_is_new_ = true;
+      if (list_.cuts.size() > cuts) feed_is_new_ = false;
     }
     list_.cuts_before.push_back(list_.cuts.size());
     return std::move(list_);
@@ -82,6 +86,14 @@ class Lister {
       forget_words_in_unknown_state();
     }
     return set_by_word_;
+  }
+
+  [[nodiscard]] bool feed_is_new_at_end() {
+    for (std::size_t i = program_.blocks.size(); i-- > 0;) {
+      if (is_cut(static_cast<std::uint32_t>(i))) return false;
+      if (names_feed(program_.blocks[i])) return true;
+    }
+    return feed_is_new_;
   }
 
   [[nodiscard]] bool is_plain_rapid(std::uint32_t index) {
@@ -141,7 +153,13 @@ class Lister {
       if (!text.empty()) add_text(std::move(text));
       return;
     }
-    for (const Word& word : program_.words_of(block)) list_word(word, meaning.motion >= 0);
+    for (const Word& word : program_.words_of(block)) {
+      if (word.letter != 'N' || is_block_number(block, word)) {
+        list_word(word, meaning.motion >= 0);
+      } else {
+        add_word(word, meaning.motion >= 0);  // controls refuse it, or run it
+      }
+    }
     if (meaning.motion < 0) return;
     const Motion& motion = interpretation_.motions[static_cast<std::size_t>(meaning.motion)];
     if (motion.kind == MotionKind::kRapid) {
@@ -156,6 +174,23 @@ class Lister {
       add_event(EventKind::kWord).text = "end of motion with words";
       acts_with_motion_ = false;
     }
+  }
+
+  [[nodiscard]] bool names_feed(const Block& block) const {
+    return std::ranges::any_of(program_.words_of(block),
+                               [](const Word& word) { return word.letter == 'F'; });
+  }
+
+  // Does list_block give a cut?
+  [[nodiscard]] bool is_cut(std::uint32_t index) {
+    block_index_ = index;
+    const Block& block = program_.blocks[index];
+    const BlockMeaning& meaning = interpretation_.blocks[index];
+    if (meaning.motion < 0 || meaning.of_curve) return meaning.motion >= 0;
+    const Motion& motion = interpretation_.motions[static_cast<std::size_t>(meaning.motion)];
+    return block.opacity == gcode::Opacity::kNone && !block.block_delete &&
+           motion.kind != MotionKind::kRapid && has_length(motion.piece) &&
+           !must_stand_as_text(block, meaning);
   }
 
   void add_cut(const BlockMeaning& meaning) {
@@ -197,8 +232,11 @@ class Lister {
       case 'T':
       case 'D':
       case 'H':
-      case 'M':
         return true;
+      case 'M': {
+        constexpr double kFirstOfTheUser = 100;  // what they run is not known
+        return word.value < kFirstOfTheUser;
+      }
       case 'X':
       case 'Y':
       case 'Z':
@@ -226,6 +264,8 @@ class Lister {
         return false;
       case CodeGroup::kMotion:
         return code <= 30;  // G0 G1 G2 G3
+      case CodeGroup::kPath:
+        return code != 620 && code != 630;  // G62, G63: a tapping move on some controls
       default:
         return true;
     }
@@ -243,6 +283,10 @@ class Lister {
       case 'D':
       case 'H':
         return add_word(word, moves);
+      case 'F':
+        // No state carries it to the place where it counts.
+        if (!state_after().feed) add_word(word, moves);
+        return;
       default:
         return;
     }
@@ -251,12 +295,24 @@ class Lister {
   void list_g(const Word& word, bool moves) {
     const Code code = *code_of(word);
     const CodeGroup group = gcode::group_of_g(code);
-    if (group == CodeGroup::kMotion) return;
+    if (group == CodeGroup::kMotion) {
+      constexpr Code kFirstArc = 20;
+      if (!moves && code >= kFirstArc) add_word(word, moves);  // an arc to nowhere: refused, or run
+      return;
+    }
     Code& set = set_by_word_[static_cast<std::size_t>(group)];
-    const bool repeats = set == code && group != CodeGroup::kCycleEnd;
+    const bool repeats = set == code && !acts_each_time(code, group);
     set = code;
     if (repeats || group == CodeGroup::kPlane || group == CodeGroup::kArcDistance) return;
     add_word(word, moves);
+  }
+
+  // What such a word does hangs on more than the word: the tool in the spindle (G43), offsets that
+  // were changed (G54), words beside it or their absence (G64 ends the tolerance of G64 P0.01).
+  static bool acts_each_time(Code code, CodeGroup group) {
+    constexpr Code kBlending = 640;
+    return group == CodeGroup::kCycleEnd || group == CodeGroup::kToolLength ||
+           group == CodeGroup::kWorkOffset || code == kBlending;
   }
 
   // A block that stands as text sets modes too.
@@ -272,9 +328,19 @@ class Lister {
   [[nodiscard]] std::string text_of_words(const Block& block, bool with_label) const {
     std::string text;
     for (const Word& word : program_.words_of(block)) {
-      if (word.letter != 'N' || with_label) append_word(text, program_.source.text(word.span));
+      if (with_label || !is_block_number(block, word)) {
+        append_word(text, program_.source.text(word.span));
+      }
     }
     return text;
+  }
+
+  // An N behind other words is no block number on all controls.
+  [[nodiscard]] bool is_block_number(const Block& block, const Word& word) const {
+    const auto stands_before = [&](const Word& other) {
+      return other.span.begin >= block.span.begin && other.span.begin < word.span.begin;
+    };
+    return word.letter == 'N' && std::ranges::none_of(program_.words_of(block), stands_before);
   }
 
   // Controls number the blocks of Klartext anew, so the number is left out there. A centre that
@@ -325,6 +391,10 @@ class Lister {
     event.state_before = state_index_before();
     event.plane_set = is_set(CodeGroup::kPlane);
     event.arc_distance_set = is_set(CodeGroup::kArcDistance);
+    event.feed_is_new = feed_is_new_;
+    if (kind == EventKind::kRapid) {
+      event.feed_is_new |= names_feed(program_.blocks[block_index_]);
+    }
     list_.cuts_before.push_back(list_.cuts.size());
     list_.events.push_back(std::move(event));
     return list_.events.back();
@@ -351,6 +421,7 @@ class Lister {
   ProgramEvents list_;
   std::uint32_t block_index_ = 0;
   std::array<Code, kCodeGroups> set_by_word_;  // the last word of each group
+  bool feed_is_new_;                           // before the block that is listed
   bool acts_with_motion_ = false;
   mutable std::optional<std::uint32_t> asked_state_;
   mutable bool answer_ = false;
@@ -370,6 +441,8 @@ bool same_feed(const Cut& a, const Cut& b) {
 
 ProgramEvents list_events(const ReadProgram& read) { return Lister(read).run(); }
 
+bool feed_is_new_at_end(const ReadProgram& read) { return Lister(read).feed_is_new_at_end(); }
+
 bool is_plain_rapid(const ReadProgram& read, std::uint32_t block) {
   return Lister(read).is_plain_rapid(block);
 }
@@ -377,6 +450,7 @@ bool is_plain_rapid(const ReadProgram& read, std::uint32_t block) {
 EventsBefore events_before_next(const ReadProgram& read) {
   EventsBefore next;
   next.set_by_word = Lister(read).words_set();
+  next.feed_is_new = feed_is_new_at_end(read);
   next.place = read.before.place;
   const auto& motions = read.interpretation->motions;
   if (motions.empty()) return next;

@@ -27,6 +27,7 @@ struct EventsBefore {
   // The last word of each modal group, in tenths; -1: none has set it.
   std::array<gcode::Code, kCodeGroups> set_by_word = nothing_set();
   std::optional<geometry::Point3> place;  // mm: where the last motion ends, if that is known
+  bool feed_is_new = false;               // feed_is_new_at_end
 
   bool operator==(const EventsBefore&) const = default;
 
@@ -67,6 +68,8 @@ struct ProgramEvent {
   // A word has set the plane, the arc distance mode: not only assumed as after power-on.
   bool plane_set = false;
   bool arc_distance_set = false;
+  // An F stands before its block, of a kRapid also in it, that no cut has used yet.
+  bool feed_is_new = false;
 };
 
 // A motion at feed rate whose place is known, in a state in which the path alone counts.
@@ -96,9 +99,11 @@ struct ProgramEvents {
 
 // The pieces of curves that are read exactly (gcode::ReadOptions::curves) are cuts as lines are.
 //
-// No events are: comments that do not act, N words that nothing refers to, F (a property of the
-// cuts), motion words, plane and arc distance words (they only say how arcs are written), and
-// words of other modal groups and S that repeat what a word has set before.
+// No events are: comments that do not act, N words before the others that nothing refers to, F
+// where the state after its block has it (state_difference compares it where it counts), motion
+// words but a G2 or G3 that goes nowhere, plane and arc distance words (they only say how arcs are
+// written), and words of other modal groups and S that repeat what a word has set before, unless
+// they do more than that: G43, G54, G64 without its P.
 //
 // Everything that could depend on more than the path is a kText event: blocks that are not
 // understood, other axes, motions from unknown places, loops, labels that are referred to, and
@@ -107,6 +112,9 @@ struct ProgramEvents {
 
 // What the next part takes over.
 [[nodiscard]] EventsBefore events_before_next(const ReadProgram& read);
+
+// Whether the last F is behind the last cut.
+[[nodiscard]] bool feed_is_new_at_end(const ReadProgram& read);
 
 // Whether the block is a rapid whose place is known, and says nothing else.
 [[nodiscard]] bool is_plain_rapid(const ReadProgram& read, std::uint32_t block);

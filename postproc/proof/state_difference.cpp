@@ -45,6 +45,15 @@ std::string_view different_mode(const ModalState& before, const ModalState& afte
   return {};
 }
 
+std::string_view different_feed(const ModalState& before, const ModalState& after) {
+  const bool as_written = before.feed_without_point == after.feed_without_point;
+  return same_feed(before.feed, after.feed) && as_written ? "" : "feed";
+}
+
+const ModalState& state_behind(const ProgramEvent& event, const ReadProgram& read) {
+  return read.interpretation->states[read.interpretation->blocks[event.block].state_after];
+}
+
 const ModalState& last_state(const ReadProgram& read) {
   const auto& blocks = read.interpretation->blocks;
   return read.interpretation->states[blocks.empty() ? 0 : blocks.back().state_after];
@@ -63,11 +72,13 @@ std::string_view different_item(const ProgramEvent& before, const ReadProgram& o
   if (before.arc_distance_set && !after.arc_distance_set) {
     return "arc distance mode (no word has set it)";
   }
-  if (before.kind != EventKind::kText) return {};
-  if (old_state.motion != new_state.motion) return "motion word";
-  const bool as_written = old_state.feed_without_point == new_state.feed_without_point;
-  if (!same_feed(old_state.feed, new_state.feed) || !as_written) return "feed";
-  return {};
+  if (before.kind == EventKind::kText && old_state.motion != new_state.motion) {
+    return "motion word";
+  }
+  const bool counts = before.kind == EventKind::kText || before.feed_is_new || after.feed_is_new;
+  if (!counts) return {};
+  if (before.kind != EventKind::kRapid) return different_feed(old_state, new_state);
+  return different_feed(state_behind(before, old_program), state_behind(after, new_program));
 }
 
 std::string_view different_in_common(const ProgramEvent& before, const ReadProgram& old_program,
@@ -81,7 +92,11 @@ std::string_view different_in_common(const ProgramEvent& before, const ReadProgr
 
 std::string_view different_item_at_end(const ReadProgram& old_program,
                                        const ReadProgram& new_program) {
-  return different_mode(last_state(old_program), last_state(new_program));
+  const ModalState& old_state = last_state(old_program);
+  const ModalState& new_state = last_state(new_program);
+  const std::string_view item = different_mode(old_state, new_state);
+  const bool feed_counts = feed_is_new_at_end(old_program) || feed_is_new_at_end(new_program);
+  return item.empty() && feed_counts ? different_feed(old_state, new_state) : item;
 }
 
 }  // namespace batten::postproc

@@ -7,9 +7,11 @@
 
 namespace batten::postproc {
 
-// What differs, in words ("units", "plane" ..); empty when nothing does. Motion word and feed
-// are asked for at kText events only: other events do not depend on them, and the cuts after
-// them have their own.
+// What differs, in words ("units", "plane" ..); empty when nothing does. The motion word is asked
+// for at kText events only: other events do not depend on it, and the cuts after them have their
+// own. The feed is asked for at kText events, whatever uses it there, and where an F stands in
+// either program that no cut has used: a rapid may run with it, that of its own block too, and
+// behind G20, G93 or M2 it is not known any more.
 [[nodiscard]] std::string_view different_item(const ProgramEvent& before,
                                               const ReadProgram& old_program,
                                               const ProgramEvent& after,
@@ -22,7 +24,7 @@ namespace batten::postproc {
                                                    const ProgramEvent& after,
                                                    const ReadProgram& new_program);
 
-// The same after the last block, without motion word and feed.
+// The same after the last block, without the motion word.
 [[nodiscard]] std::string_view different_item_at_end(const ReadProgram& old_program,
                                                      const ReadProgram& new_program);
 

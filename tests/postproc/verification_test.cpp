@@ -143,6 +143,9 @@ std::vector<WrongCase> wrong_cases() {
   const std::string comp =
       "G21 G90 G17\nT1\nG0 X0 Y0 Z0\nG41 D1\nG1 X10 F500\nX20 Y0.001\nX30\nG40\nG1 X40\nM30\n";
   const std::string parameters = "G21 G90\nG0 X0 Y0 Z0\n#1 = 5\nG1 X10 F500\nX[#1]\nM30\n";
+  const std::string blending = "G21 G90\nG64 P0.01\nG0 X0 Y0 Z0\nG1 X5 F100\nG64\nG1 X9\nM30\n";
+  const std::string lengths = "G21 G90\nT1 M6\nG43 H1\nG0 X0 Y0 Z0\nT2 M6\nG43\nG0 X0 Y0 Z0\nM30\n";
+  const std::string offsets = "G21 G90\nG0 X0 Y0 Z0\nG54 P2\nG0 X0 Y0 Z0\nG54\nG0 X0 Y0 Z0\nM30\n";
   const std::string rotary = "G21 G90\nG0 X0 Y0 Z0\nG1 X10 A5 F500\nX20 A10\nM30\n";
   return {
       {"ShiftByElevenTenthsOfTheTolerance", kProgram, shifted_program(0.011), "distance", 0, 0},
@@ -214,6 +217,22 @@ std::vector<WrongCase> wrong_cases() {
        "G21 G90\nG0 X0 Y0 Z0\nG1 X5 F100\nG1 X9\nGOTO 10\nM30\n", "event-lost", 3, 0},
       {"BlendingChanged", "G21 G90 G64\nG0 X0 Y0 Z0\nG1 X5 F100\nM30\n",
        "G21 G90 G61\nG0 X0 Y0 Z0\nG1 X5 F100\nM30\n", "event-changed", 1, 1},
+      {"LostEndOfABlendingTolerance", blending, replaced(blending, "G64\n", ""), "event-lost", 5,
+       0},
+      {"AddedEndOfABlendingTolerance", replaced(blending, "G64\n", ""), blending, "event-added", 0,
+       5},
+      {"LostBlendingThatWasSetBefore", replaced(blending, "G64 P0.01", "G64"),
+       replaced(replaced(blending, "G64 P0.01", "G64"), "G1 X5 F100\nG64\n", "G1 X5 F100\n"),
+       "event-lost", 5, 0},
+      {"LostLengthOfTheNextTool", lengths, replaced(lengths, "G43\n", ""), "event-lost", 6, 0},
+      {"LostWorkOffsetBehindAFurtherOne", offsets, replaced(offsets, "G54\n", ""), "event-lost", 5,
+       0},
+      {"ArcToNowhere", kProgram, but("X20 Y20\n", "X20 Y20\nG2\n"), "event-added", 0, 15},
+      {"NumberBehindWords", kProgram, but("X20 Y20\n", "X20 Y20 N5\n"), "event-added", 0, 14},
+      {"NumberBehindWordsOfACopiedBlock", rotary, replaced(rotary, "X20 A10", "X20 A10 N5"),
+       "event-changed", 4, 4},
+      {"FeedOfARapid", kProgram, but("X50 Y50\n", "X50 Y50 F90\n"), "state-changed", 16, 16},
+      {"FeedBehindTheLastMotion", kProgram, but("M9\n", "F90\nM9\n"), "state-changed", 20, 21},
       {"DrilledElsewhere", "G21 G90\nG0 X0 Y0 Z5\nG81 X1 Y1 Z-3 R1 F50\nX2\nG80\nM30\n",
        "G21 G90\nG0 X0 Y0 Z5\nG81 X1 Y1 Z-3 R1 F50\nX2.5\nG80\nM30\n", "event-changed", 4, 4},
       {"NothingLeft", kProgram, "%\n%\n", "event-lost", 0, 0},
