@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "gcode/arc_center.h"
+#include "gcode/dialects/arc_rules.h"
+#include "gcode/number_limit.h"
 #include "geometry/numeric.h"
 
 namespace batten::gcode {
@@ -148,6 +150,10 @@ std::optional<Writer::PrintedArc> Writer::print_arc(const geometry::Arc& arc) co
   printed.arc.start = state_.position.mm;
   printed.arc.end = {printed.end[0].mm, printed.end[1].mm, printed.end[2].mm};
   printed.arc.axis = geometry::Vector3::Unit(normal);
+  // A centre that far away is no number of a program.
+  if (!((arc.center - arc.start).cwiseAbs().maxCoeff() / unit_ < kNumberLimit / 2)) {
+    return std::nullopt;
+  }
   const double sweep = arc.axis[normal] > 0 ? arc.sweep : -arc.sweep;
   if (dialect_.arc_form() == ArcForm::kCenters) {
     print_center(arc.center, sweep, printed);
@@ -155,7 +161,7 @@ std::optional<Writer::PrintedArc> Writer::print_arc(const geometry::Arc& arc) co
     return std::nullopt;
   }
   if (std::abs(printed.arc.sweep - sweep) > std::numbers::pi) return std::nullopt;
-  if (!dialect_.arc_complaint(printed.arc, state_.modal.units).empty()) return std::nullopt;
+  if (!arc_refusal(dialect_, printed.arc, state_.modal.units).empty()) return std::nullopt;
   return printed;
 }
 

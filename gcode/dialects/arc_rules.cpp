@@ -2,15 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "gcode/dialects/rs274_family.h"
+#include "gcode/number_limit.h"
 #include "gcode/plane_axes.h"
 
 namespace batten::gcode {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kMmPerInch = 25.4;
+
+// A radius that was read is itself to within this part: what is computed from it is noise.
+constexpr double kSameRadius = 1e-9;
 
 // grbl refuses an arc (error 33) whose radii differ by more than kMismatch and by more than
 // either of the other two.
@@ -38,11 +44,49 @@ constexpr double kLeastKnownSweep = 0.1 * kDegree;
 // by 1.5 steps of its last decimal at the most (gcode/arc_center.h).
 constexpr double kStepsOfMismatch = 1.5;
 
-// A coordinate as grbl holds it: read into 32 bits in the program's units, inches then
-// multiplied by 25.4 in 32 bits.
+// Digits that grbl reads of a number; what follows them is not read, and behind the point it counts
+// for nothing.
+constexpr int kGrblDigits = 8;
+
+// More than any number of ours has.
+constexpr int kAllDecimals = 9;
+
+// The number that grbl reads from these digits: whole digits in 32 bits, times a hundredth and a
+// tenth as often as there were decimals, each time in 32 bits.
+float read_by_grbl(std::string_view text) {
+  const bool negative = text.starts_with('-');
+  std::uint32_t digits = 0;
+  int count = 0;
+  int exponent = 0;
+  bool behind_point = false;
+  for (const char c : text.substr(negative ? 1 : 0)) {
+    if (c == '.') {
+      behind_point = true;
+      continue;
+    }
+    if (++count <= kGrblDigits) {
+      digits = digits * 10 + static_cast<std::uint32_t>(c - '0');
+      exponent -= behind_point ? 1 : 0;
+    } else {
+      exponent += behind_point ? 0 : 1;
+    }
+  }
+  auto value = static_cast<float>(digits);
+  if (digits != 0) {
+    for (; exponent <= -2; exponent += 2) value *= 0.01F;
+    for (; exponent < 0; ++exponent) value *= 0.1F;
+    for (; exponent > 0; --exponent) value *= 10.0F;
+  }
+  return negative ? -value : value;
+}
+
+// A coordinate as grbl holds it: read in the program's units, inches then multiplied by 25.4 in 32
+// bits.
 float held(double mm, Units units) {
-  if (units != Units::kInch) return static_cast<float>(mm);
-  return static_cast<float>(mm / 25.4) * 25.4F;
+  const double unit = units == Units::kInch ? kMmPerInch : 1;
+  // Noise of the last bits of a double is no digit of the text.
+  const float read = read_by_grbl(to_text(mm / unit, {.decimals = kAllDecimals}));
+  return units == Units::kInch ? read * static_cast<float>(kMmPerInch) : read;
 }
 
 // The check of grbl's g-code parser, number by number, in 32 bits as on its processor.
@@ -62,6 +106,14 @@ bool radii_differ_in_32_bits(const geometry::Arc& arc, Units units) {
          (mismatch > kGreatestMismatch || mismatch > kRelativeMismatch * start_radius);
 }
 
+// Whether ends and centre, and each offset between them, are numbers that may be written.
+bool is_written(const geometry::Arc& arc, double unit) {
+  for (const geometry::Point3& place : {arc.start, arc.end, arc.center}) {
+    if (!(place.cwiseAbs().maxCoeff() / unit < kNumberLimit / 2)) return false;
+  }
+  return true;
+}
+
 // mm
 double step_of_centers(Units units, const TargetTable& table) {
   const int decimals = units == Units::kInch ? table.centers.inch : table.centers.mm;
@@ -70,10 +122,17 @@ double step_of_centers(Units units, const TargetTable& table) {
 
 }  // namespace
 
-std::string_view grbl_arc_rule(const geometry::Arc& printed, Units units,
-                               const TargetTable& table) {
+std::string_view arc_refusal(const Dialect& target, const geometry::Arc& printed, Units units) {
+  if (!is_written(printed, millimetres_per(units))) return "numbers greater than any control takes";
+  const EndRadii radii = end_radii(printed);
+  if (!(std::min(radii.start, radii.end) >= target.min_arc_radius() * (1 - kSameRadius))) {
+    return "arc radius below the least";
+  }
+  return target.arc_complaint(printed, units);
+}
+
+std::string_view grbl_arc_rule(const geometry::Arc& printed, Units units, const TargetTable&) {
   const double sweep = std::abs(printed.sweep);
-  if (end_radii(printed).start < table.min_radius) return "arc radius below the least";
   if (radii_differ_in_32_bits(printed, units)) {
     return "error 33: radii at the ends of the arc differ";
   }
@@ -82,10 +141,9 @@ std::string_view grbl_arc_rule(const geometry::Arc& printed, Units units,
   return {};
 }
 
-std::string_view tinyg_arc_rule(const geometry::Arc& printed, Units, const TargetTable& table) {
+std::string_view tinyg_arc_rule(const geometry::Arc& printed, Units, const TargetTable&) {
   const EndRadii radii = end_radii(printed);
   const double sweep = std::abs(printed.sweep);
-  if (radii.start < table.min_radius) return "arc radius below the least";
   if (radii.mismatch() > kTinygRelative * radii.start) {
     return "radii at the ends of the arc differ by more than 0.1 %";
   }
@@ -105,7 +163,6 @@ std::string_view unchecked_arc_rule(const geometry::Arc& printed, Units units,
 std::string_view strictest_arc_rule(const geometry::Arc& printed, Units units,
                                     const TargetTable& table) {
   const EndRadii radii = end_radii(printed);
-  if (std::min(radii.start, radii.end) < table.min_radius) return "arc radius below the least";
   if (radii.mismatch() > kStepsOfMismatch * step_of_centers(units, table)) {
     return "radii at the ends of the arc differ by more than the printed digits";
   }

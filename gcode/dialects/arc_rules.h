@@ -1,4 +1,6 @@
-// When controls refuse an arc, as functions of its printed numbers. A family's row names one.
+// When controls refuse an arc, as functions of its printed numbers. A family's row names one. The
+// least radius is a value of every target, a user's profile too: arc_refusal asks it beside the
+// rule.
 #pragma once
 
 #include <string_view>
@@ -7,12 +9,17 @@
 
 namespace batten::gcode {
 
+// Why the target is not given the printed arc, empty where it is: below its least radius, or
+// refused by its own rule, or said by numbers that nobody writes.
+[[nodiscard]] std::string_view arc_refusal(const Dialect& target, const geometry::Arc& printed,
+                                           Units units);
+
 // The control's complaint about the printed arc, empty when it takes it.
 using ArcRule = std::string_view (*)(const geometry::Arc& printed, Units units,
                                      const TargetTable& table);
 
-// grbl 1.1 and those that kept its check: error 33 in 32-bit numbers, and no angle that is noise
-// there. Also below the table's least radius.
+// grbl 1.1 and those that kept its check: error 33 in 32-bit numbers, read from the printed digits
+// as grbl reads them, and no angle that is noise there.
 [[nodiscard]] std::string_view grbl_arc_rule(const geometry::Arc& printed, Units units,
                                              const TargetTable& table);
 

@@ -15,6 +15,9 @@ constexpr double kRadiusMismatch = 0.0283;
 constexpr double kRelativeCenterError = 1e-3;
 constexpr double kGreatestCenterError = 2.83;
 
+// The interpreter takes an arc of a smaller radius (mm, measured) for one of none.
+constexpr double kLeastLinuxcncRadius = 0.00127;
+
 // Sweeps below 1e-6 rad are read as a full turn. Ten times that keeps clear of rounding.
 constexpr double kLeastLinuxcncSweep = 1e-5;
 
@@ -54,7 +57,7 @@ class LinuxCnc final : public Rs274Dialect {
     const double shorter = std::min(radii.start, radii.end);
     const double allowed =
         std::min(std::max(kRadiusMismatch, kRelativeCenterError * shorter), kGreatestCenterError);
-    if (!(shorter > 0)) return "arc with a radius of zero";
+    if (!(shorter > kLeastLinuxcncRadius)) return "arc with a radius of zero";
     if (radii.mismatch() > allowed) return "radius at the start differs from radius at the end";
     if (std::abs(printed.sweep) < kLeastLinuxcncSweep)
       return "arc so short that it is read as a full turn";

@@ -40,7 +40,6 @@ class Siemens final : public Rs274Dialect {
   std::string_view arc_complaint(const geometry::Arc& printed, Units units) const override {
     const EndRadii radii = end_radii(printed);
     const double sweep = std::abs(printed.sweep);
-    if (radii.start < min_arc_radius()) return "arc radius below 0.1 mm";
     if (radii.mismatch() > 2 * printed_step(coordinates(units), units)) {
       return "radius at the start differs from radius at the end";
     }

@@ -27,6 +27,10 @@ constexpr ExplainedBreach kBreaches[] = {
      "A flat stretch meets itself where the old one does not: two parts of it are nearer to each "
      "other than twice the tolerance, and one came over to the other side.",
      "Take a smaller tolerance."},
+    {"arc-refused",
+     "While a program is smoothed: the target would refuse an arc of the new text, by its least "
+     "radius or its check of the radii.",
+     "Nothing: the run goes back to another form, in the end to its own blocks."},
     {"not-proved",
      "The distance of a stretch could be bounded from both sides, but the tolerance lies between "
      "the bounds: paths that run over themselves many times within the tolerance, or a distance "

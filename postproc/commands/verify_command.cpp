@@ -102,6 +102,8 @@ std::string_view name_of(BreachKind kind) {
       return "rapid";
     case BreachKind::kEvent:
       return "event";
+    case BreachKind::kTarget:
+      return "target";
     case BreachKind::kState:
       break;
   }

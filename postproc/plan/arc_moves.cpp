@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gcode/dialects/arc_rules.h"
 #include "geometry/arc_parts.h"
 
 namespace batten::postproc {
@@ -43,7 +44,7 @@ geometry::ArcPartsOptions parts_for(const geometry::Arc& arc, const gcode::Diale
 // The control takes it, and its own chords are no coarser than chords of ours would be.
 bool is_taken(const geometry::Arc& arc, const PlanOptions& options) {
   const gcode::Dialect& target = *options.target;
-  return target.arc_complaint(arc, options.units).empty() &&
+  return gcode::arc_refusal(target, arc, options.units).empty() &&
          gcode::chord_error(target.arc_chords(), radius_of(arc)) <= options.max_deviation;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -12,6 +13,7 @@
 #include "gcode/reason.h"
 #include "postproc/profile/added_lines.h"
 #include "postproc/proof/parallel_verification.h"
+#include "postproc/proof/refused_arcs.h"
 
 namespace batten::postproc {
 
@@ -28,7 +30,8 @@ void add_breaches(const AddedLines& added, const ReadProgram& read, Verification
 // Breaches of one stretch, which no other stretch has a part in.
 bool is_of_one_stretch(const Breach& breach) {
   return breach.kind == BreachKind::kDistance || breach.kind == BreachKind::kNotProved ||
-         breach.kind == BreachKind::kSide || breach.kind == BreachKind::kCrossing;
+         breach.kind == BreachKind::kSide || breach.kind == BreachKind::kCrossing ||
+         breach.kind == BreachKind::kTarget;
 }
 
 class Prover {
@@ -111,6 +114,7 @@ class Prover {
     const Promise promise(options_.tolerance_mm, options_.tolerance_kind, options_.side);
     round.verification = verify_in_parallel(before, after, promise, options_.threads);
     add_breaches(added, after, round.verification);
+    add_refused_arcs(before, after, assembled.begins, round.verification);
     round.added_lines = added.lines;
     round.blocks = program.blocks.size();
     round.proved = round.verification.proved();
@@ -122,6 +126,22 @@ class Prover {
       round.behind = {std::move(control), events_before_next(after)};
     }
     return round;
+  }
+
+  // That the target takes each new arc is asked of the text, too, once it is known what is new.
+  void add_refused_arcs(const ReadProgram& before, const ReadProgram& after,
+                        const std::vector<std::size_t>& begins, Verification& verification) const {
+    const OldLine old_line = [&](std::uint32_t block, const Stretch& stretch) {
+      // Lines of a profile stand between the sections: nearly is near enough to find the run.
+      if (!additions_.words.empty()) return stretch.old_last_line;
+      const auto next =
+          std::ranges::upper_bound(begins, std::size_t{after.program->blocks[block].span.begin});
+      const auto section = static_cast<std::size_t>(next - begins.begin()) - 1;
+      return part_.program.blocks[runs_.sections[section].first_block].line;
+    };
+    std::vector<Breach> refused =
+        refused_arcs(before, after, verification.stretches, *options_.target, old_line);
+    std::ranges::move(refused, std::back_inserter(verification.breaches));
   }
 
   // Where the sections that begin at cuts begin in the new text. The proof does not rest on it: its
@@ -167,18 +187,31 @@ class Prover {
     std::vector<RunWork*> blamed;
     std::vector<RunWork*> crossing;
     std::vector<RunWork*> over;
+    std::vector<RunWork*> refused;
     for (const Breach& breach : verification.breaches) {
       RunWork* work = rewritten_run_at(breach.old_line);
       if (part_.window && (work == nullptr || !is_of_one_stretch(breach))) {
         stands_alone_ = false;
         return false;
       }
-      const bool wrong_side = breach.kind == BreachKind::kSide;
-      auto& list = breach.kind == BreachKind::kCrossing ? crossing : wrong_side ? over : blamed;
-      if (work != nullptr) list.push_back(work);
+      if (work == nullptr) continue;
+      switch (breach.kind) {
+        case BreachKind::kCrossing:
+          crossing.push_back(work);
+          break;
+        case BreachKind::kSide:
+          over.push_back(work);
+          break;
+        case BreachKind::kTarget:
+          refused.push_back(work);
+          break;
+        default:
+          blamed.push_back(work);
+      }
     }
     if (give_way(std::move(crossing), gcode::reason::kCrossesItself)) return true;
     if (give_way(std::move(over), gcode::reason::kWrongSide)) return true;
+    if (give_way(std::move(refused), gcode::reason::kTargetCannot)) return true;
     if (blamed.empty()) {
       // A breach that belongs to no run: believe none of them.
       for (RunWork& work : runs_.works) {

@@ -31,6 +31,7 @@ enum class BreachKind {
   kRapid,      // a rapid with another start or end, lost or added
   kEvent,      // an acting word or block lost, added, moved or changed
   kState,      // plane, units, distance mode .. differ where a copied block depends on them
+  kTarget,     // a new block that the target refuses: asked where text for a target is proved
 };
 
 struct Breach {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "gcode/dialects/arc_rules.h"
 #include "gcode/plane_axes.h"
 #include "gcode/writer.h"
 
@@ -116,7 +117,7 @@ std::string PlainMoves::say_arc(const geometry::Arc& arc, double feed) {
     text_.add_rounding(sagitta);
     return say_chords(arc, *plane, feed, chords);
   }
-  const std::string_view why = target_.arc_complaint(arc, modal_.units);
+  const std::string_view why = gcode::arc_refusal(target_, arc, modal_.units);
   return why.empty() ? "is an arc that rounding would change"
                      : fmt::format("is an arc that is not taken there: {}", why);
 }

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <string>
+
+#include "gcode/dialects/arc_rules.h"
 
 namespace batten::gcode {
 namespace {
@@ -77,7 +80,7 @@ class ArcRule : public testing::TestWithParam<ArcCase> {};
 TEST_P(ArcRule, TakesOrRefuses) {
   const ArcCase& test = GetParam();
   const Arc arc = arc_with(test.radius, test.sweep_deg * std::numbers::pi / 180, test.mismatch);
-  const auto complaint = dialect(test.dialect).arc_complaint(arc, Units::kMillimetre);
+  const auto complaint = arc_refusal(dialect(test.dialect), arc, Units::kMillimetre);
   EXPECT_EQ(complaint.empty(), test.taken) << complaint;
 }
 
@@ -101,6 +104,10 @@ INSTANTIATE_TEST_SUITE_P(
         ArcCase{"GrblLongest", "grbl", 10, 345, 0, true},
         ArcCase{"GrblClockwise", "grbl", 10, -90, 0, true},
         // LinuxCNC: 0.0283 mm, or 0.1 % of the radius up to 2.83 mm
+        // and a least radius of 0.05 mm, ours
+        ArcCase{"LinuxcncTooTight", "linuxcnc", 0.0499, 90, 0, false},
+        ArcCase{"LinuxcncOfMicrometres", "linuxcnc", 0.00015, 90, 0, false},
+        ArcCase{"LinuxcncTightest", "linuxcnc", 0.05, 90, 0, true},
         ArcCase{"LinuxcncExact", "linuxcnc", 10, 90, 0, true},
         ArcCase{"LinuxcncBelow28Micrometres", "linuxcnc", 1, 90, 0.0280, true},
         ArcCase{"LinuxcncAbove28Micrometres", "linuxcnc", 1, 90, 0.0290, false},
@@ -118,8 +125,46 @@ TEST(Grbl, JudgesArcsInEveryPlaneAlike) {
   const Arc in_yz{Point3(5, 10, 0), Point3(5, flat.end.x(), flat.end.y()), Point3(5, 0, 0),
                   Vector3::UnitX(), 1};
   for (const Arc& arc : {flat, in_zx, in_yz}) {
-    EXPECT_FALSE(dialect("grbl").arc_complaint(arc, Units::kMillimetre).empty());
-    EXPECT_FALSE(dialect("grbl").arc_complaint(arc, Units::kInch).empty());
+    EXPECT_FALSE(arc_refusal(dialect("grbl"), arc, Units::kMillimetre).empty());
+    EXPECT_FALSE(arc_refusal(dialect("grbl"), arc, Units::kInch).empty());
+  }
+}
+
+// Digits that grbl reads of X100000.009: eight. Its end, one digit shorter, it reads to the last.
+TEST(Grbl, RefusesAnArcWhoseRadiiDifferInTheDigitsThatItReads) {
+  const auto half_turn = [](double start) {
+    return Arc{Point3(start, 0, 0), Point3(start - 2, 0, 0), Point3(start - 1, 0, 0),
+               Vector3::UnitZ(), std::numbers::pi};
+  };
+  for (const char* name : {"grbl", "grblhal", "fluidnc"}) {
+    EXPECT_EQ(arc_refusal(dialect(name), half_turn(1000.009), Units::kMillimetre), "") << name;
+    EXPECT_FALSE(arc_refusal(dialect(name), half_turn(100000.009), Units::kMillimetre).empty())
+        << name;
+  }
+}
+
+TEST(Dialects, RefuseArcsBelowTheLeastRadiusOfTheirTableAndOfAProfile) {
+  for (const Dialect* each : dialects()) {
+    const auto refusal = [&](const Dialect& target, double radius) {
+      return arc_refusal(target, arc_with(radius, 1, 0), Units::kMillimetre);
+    };
+    const double least = each->min_arc_radius();
+    EXPECT_GE(least, 0.05) << each->name();
+    EXPECT_FALSE(refusal(*each, 0.99 * least).empty()) << each->name();
+    TargetTable table = table_of(*each);
+    table.min_radius = 3 * least;
+    const auto mine = each->with_values(table);
+    EXPECT_EQ(refusal(*each, 2 * least), "") << each->name();
+    EXPECT_FALSE(refusal(*mine, 2 * least).empty()) << each->name();
+  }
+}
+
+TEST(Dialects, RefuseArcsOfNumbersThatNobodyWrites) {
+  for (const Dialect* each : dialects()) {
+    for (const double radius : {1e9, 1e12, std::numeric_limits<double>::infinity()}) {
+      EXPECT_FALSE(arc_refusal(*each, arc_with(radius, 1, 0), Units::kMillimetre).empty())
+          << each->name();
+    }
   }
 }
 

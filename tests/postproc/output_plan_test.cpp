@@ -375,7 +375,7 @@ TEST(PlanArcs, PlansNoArcThatTheTargetRefuses) {
   for (const PlannedMove& move : plan->moves) {
     const auto* arc = std::get_if<Arc>(&move.piece);
     if (arc == nullptr) continue;
-    EXPECT_EQ(setup.options.target->arc_complaint(*arc, gcode::Units::kMillimetre), "");
+    EXPECT_EQ(gcode::arc_refusal(*setup.options.target, *arc, gcode::Units::kMillimetre), "");
   }
   EXPECT_LE(deviation_of(*plan, spiral.fair.curve), 0.00505);
 }

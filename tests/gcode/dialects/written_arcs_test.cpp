@@ -72,7 +72,7 @@ TEST_P(EveryTarget, WritesNoArcThatItWouldRefuse) {
     const tests::Interpreted read(program_from(wanted.start, Units::kMillimetre, out.text()));
     const auto* arc = read.read.motions.back().piece.arc();
     ASSERT_NE(arc, nullptr) << out.text();
-    EXPECT_EQ(target_.arc_complaint(*arc, Units::kMillimetre), "") << out.text();
+    EXPECT_EQ(arc_refusal(target_, *arc, Units::kMillimetre), "") << out.text();
   }
 }
 

@@ -1,0 +1,67 @@
+#include "postproc/proof/refused_arcs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+
+#include "gcode/dialects/arc_rules.h"
+#include "geometry/numeric.h"
+
+namespace batten::postproc {
+namespace {
+
+using gcode::Motion;
+
+std::span<const Motion> motions_in(const ReadProgram& read, std::uint32_t first,
+                                   std::uint32_t last) {
+  const auto& motions = read.interpretation->motions;
+  const auto begin = std::ranges::lower_bound(motions, first, {}, &Motion::block);
+  const auto end = std::ranges::upper_bound(motions, last, {}, &Motion::block);
+  return {begin, end};
+}
+
+bool is_same(const geometry::Arc& a, const geometry::Arc& b) {
+  const auto same = [](const geometry::Point3& p, const geometry::Point3& q) {
+    return (p - q).norm() <= geometry::kSamePlace;
+  };
+  return same(a.start, b.start) && same(a.end, b.end) && same(a.center, b.center) &&
+         a.sweep * b.sweep > 0;
+}
+
+}  // namespace
+
+std::vector<Breach> refused_arcs(const ReadProgram& before, const ReadProgram& after,
+                                 const std::vector<Stretch>& stretches,
+                                 const gcode::Dialect& target, const OldLine& old_line) {
+  std::vector<Breach> breaches;
+  for (const Stretch& stretch : stretches) {
+    const auto is_old = [&](const geometry::Arc& arc) {
+      return std::ranges::any_of(
+          motions_in(before, stretch.old_first_block, stretch.old_last_block),
+          [&](const Motion& m) {
+            return m.piece.arc() != nullptr && is_same(*m.piece.arc(), arc);
+          });
+    };
+    for (const Motion& m : motions_in(after, stretch.new_first_block, stretch.new_last_block)) {
+      const geometry::Arc* arc = m.piece.arc();
+      if (arc == nullptr) continue;
+      const auto& meaning = after.interpretation->blocks[m.block];
+      const gcode::Units units = after.interpretation->states[meaning.state_after].units;
+      const std::string_view why = gcode::arc_refusal(target, *arc, units);
+      if (why.empty() || is_old(*arc)) continue;
+      Breach breach;
+      breach.kind = BreachKind::kTarget;
+      breach.id = "arc-refused";
+      breach.old_line = old_line(m.block, stretch);
+      breach.new_line = after.program->blocks[m.block].line;
+      breach.message =
+          fmt::format("{} refuses this arc: {}; expected one that it runs", target.name(), why);
+      breaches.push_back(std::move(breach));
+    }
+  }
+  return breaches;
+}
+
+}  // namespace batten::postproc
