@@ -57,6 +57,10 @@ constexpr std::size_t kBalancedPieces = 60;
 constexpr double kShortestInGrids = 10;
 constexpr double kShortest = 1e-5;  // mm, without a grid
 
+// A joint is about as far from the curve as the arcs that meet there. One that is farther away by
+// this many times the deviation, and a step of the grid, is none, whatever noise there is.
+constexpr double kJointOff = 10;
+
 Point2 in_plane(const Point3& p) { return p.head<2>(); }
 
 // The farthest u in ]from, limit] where `holds`, starting with a step of `guess`; `from`
@@ -238,8 +242,17 @@ std::optional<ArcPair> ArcChain::pair_between(const ChainNode& start, const Chai
   return pair;
 }
 
+// Whether the curve is there at u. Each arc of a pair is held against the part of the curve beside
+// it and not against its own ends: where that part is no longer than the deviation, lines to a
+// joint far away and back would pass.
+bool ArcChain::is_passed(const Point2& joint, double u) const {
+  const double off = (in_plane(curve_.place_at(u)) - joint).norm();
+  return off <= kJointOff * limits_.deviation + limits_.grid;
+}
+
 bool ArcChain::holds(ArcPair& pair, const ChainNode& start) const {
   pair.joint_u = joint_parameter(pair.first.end, pair.tangent, start.u, pair.end.u);
+  if (!is_passed(pair.first.end, pair.joint_u)) return false;
   if (!limits_.flat) pair.joint_height = rounded(curve_.place_at(pair.joint_u)).z();
   return holds(pair.first, start.u, pair.joint_u, start.place.z(), pair.joint_height) &&
          holds(pair.second, pair.joint_u, pair.end.u, pair.joint_height, pair.end.place.z());

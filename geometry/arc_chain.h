@@ -128,6 +128,7 @@ class ArcChain {
   bool holds(const PlaneArc& arc, double from, double to, double from_height,
              double to_height) const;
   bool allowed(const PlaneArc& arc) const;
+  bool is_passed(const Point2& joint, double u) const;
   bool heights_hold(const PlaneArc& arc, double from, double to, double from_height,
                     double to_height) const;
   double joint_parameter(const Point2& joint, const Vector2& tangent, double from, double to) const;

@@ -5,6 +5,7 @@
 
 #include "gcode/characters.h"
 #include "gcode/curves/curve_format.h"
+#include "gcode/number_limit.h"
 #include "gcode/writer.h"
 #include "geometry/numeric.h"
 
@@ -111,12 +112,35 @@ bool has_arcs(const OutputPlan& plan) {
   });
 }
 
+// A part of the numbers that a program may hold: what is made of these places for a curve
+// (differences of third order, sums of lengths) is one of them, too.
+constexpr double kGreatestPlace = gcode::kNumberLimit / 16;
+
+bool is_number(const geometry::Point3& place, double unit) {
+  return place.cwiseAbs().maxCoeff() / unit < kGreatestPlace;
+}
+
+// Whether every place that the plan names is a number that a program may hold.
+bool names_numbers(const OutputPlan& plan, double unit) {
+  const auto holds = [unit](const geometry::Point3& place) { return is_number(place, unit); };
+  return std::ranges::all_of(plan.moves,
+                             [&](const PlannedMove& move) {
+                               const auto* arc = std::get_if<geometry::Arc>(&move.piece);
+                               return holds(geometry::end_point(move.piece)) &&
+                                      (arc == nullptr || holds(arc->center));
+                             }) &&
+         std::ranges::all_of(plan.curves, [&](const PlannedCurve& curve) {
+           return std::ranges::all_of(curve.curve.control_points(), holds);
+         });
+}
+
 }  // namespace
 
 std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
                                  const gcode::Program& program, const gcode::Dialect& target,
                                  const gcode::ModalState& before, const gcode::ModalState& after,
                                  std::string_view line_end) {
+  if (!names_numbers(plan, gcode::millimetres_per(before.units))) return std::nullopt;
   const gcode::Position start{run.points.front(), {true, true, true}};
   RunWriter out(target, Writer(target, {before, start}, line_end));
   if (after.feed_without_point) out.writer().use_feeds_without_point();

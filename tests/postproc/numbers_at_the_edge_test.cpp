@@ -192,6 +192,49 @@ TEST(EdgeNumbersOf, ManyShapesAreRewritten) {
 
 // --- thousands of equal places -----------------------------------------------------------------
 
+// --- ways no longer than the deviation -----------------------------------------------------------
+
+// Between places that are noise alone, pairs of lines to a joint far away and back look right
+// beside the curve, whose part is shorter than the deviation.
+constexpr const char* kNoiseAlone[] = {
+    "G21\n"
+    "G17 G90 G94 G40\n"
+    "G0 X7.1642 Y24.9162 Z5.0000\n"
+    "G1 Z0.0000 F1000.0000\n"
+    "G1 X7.1702 Y24.9165\n"
+    "G1 X7.1667 Y24.9176\n"
+    "G1 X7.1698 Y24.9073\n"
+    "G1 X7.1710 Y24.9098\n"
+    "G1 X7.1765 Y24.8935\n"
+    "G1 X7.1917 Y24.8873\n",
+    "G21\n"
+    "G17 G90 G94 G40\n"
+    "G0 X2.65519 Y-32.37284 Z5.00000\n"
+    "G1 Z0.00000 F1000.00000\n"
+    "G1 X2.65635 Y-32.36985\n"
+    "G1 X2.65495 Y-32.37309\n"
+    "G1 X2.65693 Y-32.37180\n"
+    "G1 X2.65877 Y-32.37610\n"
+    "G1 X2.70280 Y-32.39463\n",
+};
+
+TEST(NoiseAlone, BecomesNothingThatGoesFarAwayAndBack) {
+  for (const char* text : kNoiseAlone) {
+    const gcode::SourceText source("part.nc", text);
+    for (const gcode::Dialect* target : gcode::dialects()) {
+      if (target->language() != gcode::Language::kRs274) continue;
+      for (const Prefer prefer : {Prefer::kTime, Prefer::kAccuracy, Prefer::kSize}) {
+        SmoothOptions options = options_for(target->name());
+        options.tolerance_mm = 0.005;
+        options.prefer = prefer;
+        SmoothResult result;
+        ASSERT_NO_THROW(result = smooth_program(source, options)) << target->name();
+        EXPECT_TRUE(result.proved || !result.understood) << target->name();
+      }
+    }
+  }
+}
+
 TEST(RepeatedPlaces, ByTheThousandNeitherCountNorCost) {
   const std::string wave_text = wave_program();
   std::string text;

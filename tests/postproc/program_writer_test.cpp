@@ -144,6 +144,26 @@ TEST(WriteRun, WritesChordsForAnArcThatTheControlRefuses) {
   EXPECT_LE(out->blocks, 8U);
 }
 
+// Lines and arcs to places that no number of a program names.
+TEST(WriteRun, WritesNothingOfPlacesBeyondTheNumbersOfAProgram) {
+  const auto write = [](const Planned& planned, std::string_view target) {
+    return written(planned, target, cutting(), cutting()).has_value();
+  };
+  for (const char* target : {"linuxcnc", "grbl"}) {
+    Planned far({0, 0, 0});
+    far.line({-17179869184.0, 3, 0});
+    far.line({1, 0, 0});
+    EXPECT_FALSE(write(far, target)) << target;
+    Planned flat({0, 0, 0});
+    flat.arc({1, 0, 0}, {0.5, -1e12, 0}, Vector3::UnitZ(), -1e-12);
+    EXPECT_FALSE(write(flat, target)) << target;
+    Planned near({0, 0, 0});
+    near.line({100000, 3, 0});
+    near.line({1, 0, 0});
+    EXPECT_TRUE(write(near, target)) << target;
+  }
+}
+
 // A control with lines of ten bytes.
 class ShortLines final : public gcode::Rs274Dialect {
  public:
