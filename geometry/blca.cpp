@@ -37,7 +37,7 @@ ChordRow blca(const BsplineCurve& curve, double from, double to, double toleranc
   const CurvePieces pieces(curve, from, to);
   std::vector<double> ends = pieces.corners();
   ends.push_back(to);
-  ChordRow row{{from}, 0};
+  ChordRow row{{from}, 0, 0};
   for (const double limit : ends) {
     while (row.parameters.back() < limit) {
       const double start = row.parameters.back();

@@ -1,6 +1,8 @@
 #include "postproc/pipeline.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -11,7 +13,7 @@
 #include "gcode/parser.h"
 #include "gcode/reason.h"
 #include "gcode/source_kind.h"
-#include "postproc/plan/curve_caution.h"
+#include "postproc/plan/form_notes.h"
 #include "postproc/profile/added_lines.h"
 #include "postproc/profile/target_words.h"
 #include "postproc/proof/part_crossings.h"
@@ -148,9 +150,8 @@ class Smoothing {
     if (auto told = untold_smoothing(result_.runs, part_.program, *options_.target)) {
       result_.diagnostics.push_back(std::move(*told));
     }
-    if (auto told = curve_caution(result_.runs, part_.program, *options_.target)) {
-      result_.diagnostics.push_back(std::move(*told));
-    }
+    std::ranges::move(form_notes(result_.runs, part_.program, *options_.target),
+                      std::back_inserter(result_.diagnostics));
     return std::move(result_);
   }
 

@@ -47,6 +47,7 @@ struct Candidate {
   RunText text;
   double error = 0;  // mm, the written form from the path that was meant, as far as it is known
   double max_curvature = 0;       // 1/mm, greatest of the curve that it was made of
+  bool chords_for_steps = false;  // see plan_lines
   double kink = 0;                // radians, see greatest_kink; 0 where the run is one of lines
   Times times;                    // slower in one way: the ways that were not asked are the run's
   std::vector<TimedPiece> moves;  // of a piece of a run; empty otherwise

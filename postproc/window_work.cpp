@@ -4,7 +4,7 @@
 
 #include "gcode/control_state.h"
 #include "gcode/part_reading.h"
-#include "postproc/plan/curve_caution.h"
+#include "postproc/plan/form_notes.h"
 #include "postproc/proof/part_proof.h"
 #include "postproc/runs/run_joints.h"
 #include "postproc/writing/provenance.h"
@@ -110,7 +110,7 @@ class WindowWork {
     done_.runs = report_runs({part.program, part.meaning, runs.sections, runs.works, runs.cut_runs,
                               verification.stretches, true});
     done_.untold = untold_smoothing(done_.runs, part.program, *setting_.options.target);
-    done_.caution = curve_caution(done_.runs, part.program, *setting_.options.target);
+    done_.form_notes = form_notes(done_.runs, part.program, *setting_.options.target);
     done_.notes = std::move(runs.notes);
     done_.near_edges = std::move(proved.near_edges);
     if (!part.program.blocks.empty()) done_.last_line = part.program.blocks.back().line;

@@ -50,8 +50,8 @@ struct WindowDone {
   std::uint32_t deviation_line = 0;
   std::vector<RunReport> runs;
   std::vector<gcode::Diagnostics> notes;
-  std::optional<gcode::Diagnostic> untold;   // postproc/writing/provenance.h
-  std::optional<gcode::Diagnostic> caution;  // postproc/plan/curve_caution.h
+  std::optional<gcode::Diagnostic> untold;  // postproc/writing/provenance.h
+  gcode::Diagnostics form_notes;            // postproc/plan/form_notes.h
   TextBefore old_behind;
   std::vector<NearEdges> near_edges;
   std::uint32_t last_line = 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -137,7 +138,7 @@ class Windows {
     if (parts_cross()) return std::nullopt;
     notes_.tell_rest(result_.diagnostics);
     if (untold_) result_.diagnostics.push_back(std::move(*untold_));
-    if (caution_) result_.diagnostics.push_back(std::move(*caution_));
+    std::ranges::move(form_notes_, std::back_inserter(result_.diagnostics));
     result_.understood = true;
     result_.proved = true;
     return std::move(result_);
@@ -230,7 +231,12 @@ class Windows {
       result_.deviation_line = made.deviation_line;
     }
     if (!untold_) untold_ = std::move(made.untold);
-    if (!caution_) caution_ = std::move(made.caution);
+    for (gcode::Diagnostic& note : made.form_notes) {  // one of each is enough
+      if (std::ranges::find(form_notes_, note.id, &gcode::Diagnostic::id) != form_notes_.end()) {
+        continue;
+      }
+      form_notes_.push_back(std::move(note));
+    }
     for (RunReport& run : made.runs) {
       result_.time_before_s += run.time_before_s;
       result_.time_after_s += run.time_after_s;
@@ -253,7 +259,7 @@ class Windows {
   NewTextBefore known_;  // behind the windows that were taken
   BandNoteTally notes_;
   std::optional<gcode::Diagnostic> untold_;
-  std::optional<gcode::Diagnostic> caution_;
+  gcode::Diagnostics form_notes_;
   SmoothResult result_;
 };
 

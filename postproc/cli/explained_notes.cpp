@@ -43,6 +43,10 @@ constexpr gcode::ExplainedDiagnostic kExplained[] = {
      "certain. The message says what is open.",
      "Run the program without a part, or on the vendor's simulator, and compare it with another "
      "form."},
+    {"chords-for-steps", "note",
+     "The equal steps of --linearize ilca are as short everywhere as the tightest place of the run "
+     "asks for, and were too many. Its lines are chords, as --linearize chord lays them.",
+     "Nothing, or a larger tolerance."},
 };
 
 }  // namespace

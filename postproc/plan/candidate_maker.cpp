@@ -26,6 +26,7 @@ std::optional<Candidate> CandidateMaker::make(const OutputPlan& plan, const Time
   if (!text || !take_numbers(text->text)) return std::nullopt;
   Candidate candidate;
   candidate.form = plan.form;
+  candidate.chords_for_steps = plan.chords_for_steps;
   candidate.moves = timed_pieces(plan);
   if (!run.arcs.empty()) candidate.kink = greatest_kink(candidate.moves);
   candidate.times = times_.of_candidate(candidate.moves, text->blocks, old, compares_kinks(options),

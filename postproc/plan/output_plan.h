@@ -39,6 +39,7 @@ struct OutputPlan {
   std::vector<std::size_t> comments_after;  // those that stood on the run's last blocks
   double error = 0;  // mm, moves to curve, as the height of equal chords with their ends on the
                      // curve; 0: not known, max_deviation at most
+  bool chords_for_steps = false;  // see plan_lines
 };
 
 struct PlanOptions {
@@ -58,8 +59,9 @@ struct PlanOptions {
 // starts at or first after the comment's vertex. All throw std::invalid_argument when `fair`
 // does not have one parameter per point of the run.
 
-// Lines along the curve, as `linearize` says. minlink, ilca and blca take all of max_deviation; the
-// vertices of minlink alone leave the curve. How fine chords are depends on the preference:
+// Lines along the curve, as `linearize` says; chords where the equal steps of ilca would be too
+// many (geometry/ilca.h), which the plan tells. minlink, ilca and blca take all of max_deviation;
+// the vertices of minlink alone leave the curve. How fine chords are depends on the preference:
 //   time      half of max_deviation, but all of it where chords would be shorter than twice the
 //             way of one block period at the feed: the control would slow down for them;
 //   accuracy  as fine as the block period and most_moves allow, down to a tenth of the rounding of

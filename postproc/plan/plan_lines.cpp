@@ -110,16 +110,22 @@ std::vector<double> chords(const MarkedPieces& curve, double from, double to,
   return vertices;
 }
 
+// `used_chords` is set where equal steps would have been too many.
 Vertices vertices_on(const BsplineCurve& curve, const MarkedPieces& pieces,
-                     const FeedStretch& stretch, const PlanOptions& options, double finest) {
+                     const FeedStretch& stretch, const PlanOptions& options, double finest,
+                     bool& used_chords) {
   const double deviation = options.max_deviation;
   switch (options.linearize) {
     case Linearize::kMinLink:
       return geometry::min_link_vertices(curve, stretch.from, stretch.to, {.tolerance = deviation});
     case Linearize::kIlca:
-      return on_the_curve(
-          curve,
-          geometry::ilca(curve, stretch.from, stretch.to, {.max_deviation = deviation}).parameters);
+      if (const auto row =
+              geometry::ilca(curve, stretch.from, stretch.to, {.max_deviation = deviation})) {
+        return on_the_curve(curve, row->parameters);
+      }
+      used_chords = true;
+      return on_the_curve(pieces.pieces, chords(pieces, stretch.from, stretch.to,
+                                                {.finest = deviation, .coarsest = deviation}));
     case Linearize::kBlca:
       return on_the_curve(curve,
                           geometry::blca(curve, stretch.from, stretch.to, deviation).parameters);
@@ -139,7 +145,8 @@ OutputPlan lines_of(const Run& run, const geometry::FairPath& fair, const Marked
   std::vector<double> starts;
   geometry::Point3 place = run.points.front();
   for (const FeedStretch& stretch : feed_stretches(run, fair)) {
-    const Vertices vertices = vertices_on(fair.curve, pieces, stretch, options, finest);
+    const Vertices vertices =
+        vertices_on(fair.curve, pieces, stretch, options, finest, plan.chords_for_steps);
     for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
       const bool last = i + 2 == vertices.size() && stretch.to >= fair.curve.last();
       const geometry::Point3 next = last ? run.points.back() : vertices[i + 1].place;

@@ -111,6 +111,7 @@ class Reporter {
     r.status = RunStatus::kRewritten;
     r.method = chosen->method;
     r.form = chosen->form;
+    r.chords_for_steps = chosen->chords_for_steps;
     r.proved = done_.proved;
     r.deviation_mm = deviation_within(section);
     return r;

@@ -32,6 +32,7 @@ struct RunReport {
   std::size_t blocks_out = 0;
   double deviation_mm = 0;  // proved bound
   bool proved = false;
+  bool chords_for_steps = false;  // see plan_lines
   double noise_mm = 0;
   double max_curvature_before = 0;  // 1/mm, circle through three neighbouring vertices
   double max_curvature_after = 0;

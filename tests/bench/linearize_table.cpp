@@ -73,7 +73,7 @@ void print_counts(const char* name, const BsplineCurve& curve, double first_step
                   double tolerance) {
   const double from = curve.first();
   const double to = curve.last();
-  const auto equal = geometry::ilca(curve, from, to, {tolerance, first_step});
+  const auto equal = geometry::ilca(curve, from, to, {tolerance, first_step}).value();
   const auto tangent = geometry::blca(curve, from, to, tolerance);
   const auto chords = geometry::chord_vertices(curve, from, to, {.max_deviation = tolerance});
   const auto links = geometry::min_link_vertices(

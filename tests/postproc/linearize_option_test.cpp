@@ -120,6 +120,27 @@ TEST(PlanLines, ChangeTheFeedOnTheCurveHoweverTheyAreLaid) {
   }
 }
 
+// A quarter turn of a kilometre in one piece takes some eight thousand equal steps.
+TEST(PlanLines, AreChordsWhereEqualStepsWouldBeWithoutBound) {
+  Wave wave;
+  EXPECT_FALSE(wave.planned(Linearize::kIlca).chords_for_steps);
+  const std::vector<Point3> points = {{0, 0, 0}, {5.5e5, 0, 0}, {1e6, 4.5e5, 0}, {1e6, 1e6, 0}};
+  wave.fair.curve = BsplineCurve(geometry::BsplineBasis(3, {0, 0, 0, 0, 1, 1, 1, 1}), points);
+  wave.run.points = {points.front(), wave.fair.curve.point_at(0.5), points.back()};
+  wave.run.feeds = {{0, 1000}};
+  wave.run.comments.clear();
+  wave.fair.vertex_parameters = {0, 0.5, 1};
+  const OutputPlan steps = wave.planned(Linearize::kIlca);
+  EXPECT_TRUE(steps.chords_for_steps);
+  const OutputPlan chords = wave.planned(Linearize::kChord);
+  EXPECT_FALSE(chords.chords_for_steps);
+  ASSERT_EQ(steps.moves.size(), chords.moves.size());
+  for (std::size_t i = 0; i < steps.moves.size(); ++i) {
+    EXPECT_EQ(geometry::end_point(steps.moves[i].piece),
+              geometry::end_point(chords.moves[i].piece));
+  }
+}
+
 TEST(PlanLines, AreFewestAsMinLink) {
   const Wave wave;
   const auto links = static_cast<double>(wave.planned(Linearize::kMinLink).moves.size());
