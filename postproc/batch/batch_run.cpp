@@ -62,6 +62,7 @@ class BatchRun {
         observer_(observer),
         order_(largest_first(request.programs)),
         pool_(request.jobs, [&request](std::size_t job) {
+          when_late(LateWork::kEnds);
           return answer_of(request.plan, request.programs[job].name);
         }) {
     for (const TreeProgram& program : request.programs) {
@@ -110,6 +111,11 @@ class BatchRun {
     if (!end.trouble.empty() || !result) {
       const std::string what = end.trouble.empty() ? "no answer" : end.trouble;
       result = WorkerResult{.record = without_result(name_of_job(end.job), "the process " + what)};
+    }
+    if (stopped_ && !end.trouble.empty()) {  // we have ended it
+      result->record.status = ProgramStatus::kNotDone;
+      result->record.exit_code = 0;
+      result->record.message.clear();
     }
     result->record.program = name_of_job(end.job);  // its bytes, which JSON need not keep
     finish(end.job, std::move(result->record), result->was_done);

@@ -15,10 +15,11 @@ namespace batten::postproc {
 namespace {
 
 volatile std::sig_atomic_t received_signal = 0;
+volatile std::sig_atomic_t late_work = static_cast<std::sig_atomic_t>(LateWork::kEndsAndTells);
 volatile std::sig_atomic_t has_half_written = 0;
 char half_written[PATH_MAX] = "";
 
-// Below, only what may be called in a signal handler: unlink, write and _exit.
+// Below, only what may be called in a signal handler: alarm, unlink, write and _exit.
 
 [[noreturn]] void end_now(int code) {
   if (has_half_written != 0) unlink(half_written);
@@ -28,6 +29,7 @@ char half_written[PATH_MAX] = "";
 void on_signal(int signal_number) {
   if (received_signal == 0) {
     received_signal = signal_number;
+    if (late_work != static_cast<std::sig_atomic_t>(LateWork::kMayEndLater)) alarm(kPatience);
     return;
   }
   end_now(128 + signal_number);
@@ -36,6 +38,15 @@ void on_signal(int signal_number) {
 void tell(std::string_view message) {
   const ssize_t told = write(STDERR_FILENO, message.data(), message.size());
   (void)told;  // nobody is left to tell it to where this fails
+}
+
+// Nobody has asked for the flag in time.
+void on_patience_over(int /*signal_number*/) {
+  if (received_signal == 0) return;  // somebody else's alarm
+  if (late_work == static_cast<std::sig_atomic_t>(LateWork::kEndsAndTells)) {
+    tell("batten: interrupted in the midst of a long search; no output was left half written\n");
+  }
+  end_now(128 + received_signal);
 }
 
 // A mapped file became shorter than it was, or its disk cannot be read any more. What was to be
@@ -76,11 +87,14 @@ void install_interrupt_handlers() {
   handle(SIGINT, on_signal);
   handle(SIGTERM, on_signal);
   if (!is_ignored(SIGHUP)) handle(SIGHUP, on_signal);
+  handle(SIGALRM, on_patience_over);
   handle(SIGBUS, on_lost_file);
   std::set_terminate(on_terminate);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }
+
+void when_late(LateWork work) { late_work = static_cast<std::sig_atomic_t>(work); }
 
 bool interrupted() { return received_signal != 0; }
 

@@ -122,6 +122,7 @@ int work_through(const BatchCommand& command, const BatchRequest& request, const
     say(fmt::format("half-written files of an earlier run removed: {}", removed));
   }
   BatchResult result;
+  when_late(LateWork::kMayEndLater);  // the processes of the programs end in time
   {
     BatchDisplay display(command.progress);
     result = run_batch(request, [&](const BatchCount& count, const ProgramRecord* ended) {

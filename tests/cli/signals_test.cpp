@@ -166,6 +166,32 @@ TEST_F(Signals, AtRandomMomentsLeaveTheOldOrTheNewBytes) {
   EXPECT_GT(counts_.killed, 0);
 }
 
+// To and fro for 40,000 lines: a run whose search takes long.
+std::string one_long_search() {
+  std::string text = "G21 G17 G90 G94\nG0 X0 Y0 Z5\nG1 Z0 F1000\n";
+  for (int i = 1; i <= 40'000; ++i) {
+    text += "G1 X" + std::to_string(i / 2) + (i % 2 == 0 ? ".0" : ".5") + " Y" +
+            std::to_string(3 * (i % 2)) + "\n";
+  }
+  return text + "G0 Z5\nM2\n";
+}
+
+// It is over when that search is, or when it is ended there.
+TEST(SignalsInOneSearch, AreHeededWithinAboutASecond) {
+  const BattenFolder folder;
+  folder.put("part.nc", one_long_search());
+  const Started started(folder, {"smooth", "part.nc", "--target", "linuxcnc", "--method", "naseath",
+                                 "--threads", "1", "-o", "new.nc"});
+  ::usleep(1'500'000);
+  started.send(SIGTERM);
+  const int status = started.wait();
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 143) << status;
+  EXPECT_NE(folder.text_of("err").find("interrupted in the midst"), std::string::npos)
+      << folder.text_of("err");
+  EXPECT_FALSE(folder.has("new.nc"));
+  EXPECT_TRUE(half_written_in(folder.file(".")).empty());
+}
+
 // A program that waits for a pipe, on either side, is not at work, and a signal ends it all the
 // same.
 struct Waiting {
