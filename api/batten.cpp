@@ -8,18 +8,19 @@
 #include <stdexcept>
 #include <variant>
 
-#include "gcode/interpreter.h"
-#include "gcode/parser.h"
-#include "gcode/source_kind.h"
-#include "postproc/cli/decimals_option.h"
-#include "postproc/inspect.h"
-#include "postproc/machine/machine_choice.h"
-#include "postproc/options.h"
-#include "postproc/pipeline.h"
+#include "gcode/controls/built_in.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "gcode/reading/source_kind.h"
+#include "postproc/machine/files/machine_choice.h"
+#include "postproc/machine/program_time/program_time.h"
+#include "postproc/machine/program_time/program_time_dwell.h"
+#include "postproc/options/decimals_option.h"
+#include "postproc/options/options.h"
 #include "postproc/proof/verification.h"
 #include "postproc/runs/run_grouping.h"
-#include "postproc/time/program_time.h"
-#include "postproc/time/program_time_dwell.h"
+#include "postproc/stream/inspect.h"
+#include "postproc/stream/pipeline.h"
 
 namespace batten {
 namespace {
@@ -264,8 +265,9 @@ Proof verify(std::string_view old_program, std::string_view new_program, double 
   proof.proved = found.proved();
   proof.deviation_mm = found.deviation_mm;
   proof.deviation_line = found.deviation_line;
-  for (const postproc::Breach& breach : found.breaches) {
-    proof.differences.push_back({breach.id, breach.old_line, breach.new_line, breach.message});
+  for (const postproc::Violation& violation : found.violations) {
+    proof.differences.push_back(
+        {violation.id, violation.old_line, violation.new_line, violation.message});
   }
   return proof;
 }

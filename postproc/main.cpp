@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "postproc/cli/cli.h"
-#include "postproc/cli/exit_code.h"
-#include "postproc/cli/interrupt.h"
 #include "postproc/commands/files.h"
+#include "postproc/system/exit_code.h"
+#include "postproc/system/interrupt.h"
 
 namespace {
 

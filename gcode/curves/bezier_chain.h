@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "geometry/path.h"
-#include "geometry/point.h"
+#include "geometry/basic/point.h"
+#include "geometry/path/path.h"
 
 namespace batten::gcode {
 

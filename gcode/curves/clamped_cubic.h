@@ -1,7 +1,7 @@
 // What the curve blocks of most controls can hold.
 #pragma once
 
-#include "geometry/bspline_curve.h"
+#include "geometry/path/bspline_curve.h"
 
 namespace batten::gcode {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/diagnostic.h"
+#include "gcode/text/diagnostic.h"
 
 namespace batten::gcode {
 

@@ -6,10 +6,10 @@
 #include <string_view>
 
 #include "gcode/curves/curve_text.h"
-#include "gcode/modal_state.h"
-#include "gcode/program.h"
-#include "geometry/bspline_curve.h"
-#include "geometry/path.h"
+#include "gcode/state/modal_state.h"
+#include "gcode/text/program.h"
+#include "geometry/path/bspline_curve.h"
+#include "geometry/path/path.h"
 
 namespace batten::gcode {
 

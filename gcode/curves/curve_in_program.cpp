@@ -11,12 +11,13 @@ namespace {
 
 bool may_be_followed(const ModalState& state) {
   return is_known(state) && state.distance == DistanceMode::kAbsolute &&
-         state.feed_mode == FeedMode::kPerMinute && state.cutter_compensation == Tri::kOff &&
-         state.tool_center_point == Tri::kOff && state.tilted_plane == Tri::kOff &&
-         state.scaling == Tri::kOff && state.rotation == Tri::kOff && state.mirror == Tri::kOff &&
-         state.polar == Tri::kOff && state.cylindrical == Tri::kOff &&
-         state.control_smoothing == Tri::kOff && state.modal_macro == Tri::kOff &&
-         state.constant_surface_speed == Tri::kOff && state.lathe_diameter == Tri::kOff;
+         state.feed_mode == FeedMode::kPerMinute && state.cutter_compensation == TriState::kOff &&
+         state.tool_center_point == TriState::kOff && state.tilted_plane == TriState::kOff &&
+         state.scaling == TriState::kOff && state.rotation == TriState::kOff &&
+         state.mirror == TriState::kOff && state.polar == TriState::kOff &&
+         state.cylindrical == TriState::kOff && state.control_smoothing == TriState::kOff &&
+         state.modal_macro == TriState::kOff && state.constant_surface_speed == TriState::kOff &&
+         state.lathe_diameter == TriState::kOff;
 }
 
 bool is_certain(const Program& program, const Block& block, const BlockFlow& flow) {

@@ -5,10 +5,10 @@
 #include <optional>
 #include <span>
 
-#include "gcode/control_state.h"
 #include "gcode/curves/curve_text.h"
-#include "gcode/motion.h"
-#include "gcode/program_flow.h"
+#include "gcode/state/block_flow.h"
+#include "gcode/state/control_state.h"
+#include "gcode/state/motion.h"
 
 namespace batten::gcode {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gcode/dialect.h"
-#include "geometry/numeric.h"
+#include "gcode/state/units.h"
+#include "geometry/basic/rounding.h"
 
 namespace batten::gcode {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "gcode/curves/curve_text.h"
-#include "geometry/point.h"
+#include "geometry/basic/point.h"
 
 namespace batten::gcode {
 

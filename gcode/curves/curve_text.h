@@ -13,11 +13,11 @@
 #include <variant>
 #include <vector>
 
-#include "gcode/modal_state.h"
-#include "gcode/number_format.h"
-#include "gcode/program.h"
-#include "geometry/path.h"
-#include "geometry/point.h"
+#include "gcode/state/modal_state.h"
+#include "gcode/text/number_format.h"
+#include "gcode/text/program.h"
+#include "geometry/basic/point.h"
+#include "geometry/path/path.h"
 
 namespace batten::gcode {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "geometry/bezier_halves.h"
-#include "geometry/point.h"
+#include "geometry/basic/point.h"
+#include "geometry/path/bezier_halves.h"
 
 namespace batten::gcode {
 namespace {

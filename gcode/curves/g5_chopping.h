@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "geometry/path.h"
+#include "geometry/path/path.h"
 
 namespace batten::gcode {
 

@@ -4,9 +4,9 @@
 #include <numbers>
 #include <string_view>
 
-#include "gcode/block_words.h"
-#include "gcode/control_state.h"
-#include "geometry/numeric.h"
+#include "gcode/state/block_words.h"
+#include "gcode/state/control_state.h"
+#include "geometry/basic/rounding.h"
 
 namespace batten::gcode {
 namespace {
@@ -94,7 +94,7 @@ CurveWriting write_g5(const std::vector<CubicBezier>& pieces, const CurveSetting
 
 CurveResult read_g5(const Program& program, std::uint32_t first, const CurveStart& start) {
   const Block& block = program.blocks[first];
-  if (block.opacity != Opacity::kNone) return refusal("not words alone");
+  if (block.opacity != ParseStatus::kNone) return refusal("not words alone");
   const BlockWords words(program.words_of(block));
   if (!words.has_g(kG5)) return refusal("no G5");
   if (words.problem() != BlockWords::Problem::kNone || !words.all_numbers()) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "gcode/curves/curve_text.h"
-#include "geometry/path.h"
+#include "geometry/path/path.h"
 
 namespace batten::gcode {
 

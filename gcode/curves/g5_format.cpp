@@ -16,7 +16,7 @@ class G5Format : public CurveFormat {
 
   std::string_view complaint(const ModalState& state) const override {
     if (state.plane != Plane::kXY) return "G5 outside G17";
-    if (state.cutter_compensation != Tri::kOff) return "G5 under cutter compensation";
+    if (state.cutter_compensation != TriState::kOff) return "G5 under cutter compensation";
     return {};
   }
 

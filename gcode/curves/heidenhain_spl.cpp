@@ -9,7 +9,7 @@
 #include "gcode/curves/bezier_chain.h"
 #include "gcode/curves/curve_print.h"
 #include "gcode/curves/spl_limits.h"
-#include "gcode/dialect.h"
+#include "gcode/state/units.h"
 
 namespace batten::gcode {
 namespace {
@@ -133,7 +133,7 @@ class SplWriter {
 std::string_view spl_complaint(const ModalState& state) {
   if (state.feed_mode != FeedMode::kPerMinute) return "SPL needs feed per minute";
   if (state.distance != DistanceMode::kAbsolute) return "SPL is written with absolute places only";
-  const std::array<std::pair<Tri, std::string_view>, 8> items = {{
+  const std::array<std::pair<TriState, std::string_view>, 8> items = {{
       {state.cutter_compensation, "SPL under RL or RR"},
       {state.polar, "SPL in polar coordinates"},
       {state.cylindrical, "SPL on a cylinder surface"},
@@ -144,7 +144,7 @@ std::string_view spl_complaint(const ModalState& state) {
       {state.mirror, "SPL under a mirror cycle"},
   }};
   for (const auto& [item, complaint] : items) {
-    if (item != Tri::kOff) return complaint;
+    if (item != TriState::kOff) return complaint;
   }
   return {};
 }

@@ -8,7 +8,7 @@
 #include "gcode/curves/heidenhain_spl.h"
 #include "gcode/curves/klartext_words.h"
 #include "gcode/curves/spl_limits.h"
-#include "gcode/dialect.h"
+#include "gcode/state/units.h"
 
 namespace batten::gcode {
 namespace {

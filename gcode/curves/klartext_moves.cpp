@@ -7,11 +7,11 @@
 #include <string>
 #include <utility>
 
-#include "gcode/arc_center.h"
 #include "gcode/curves/curve_print.h"
 #include "gcode/curves/klartext_words.h"
-#include "gcode/dialect.h"
-#include "geometry/numeric.h"
+#include "gcode/state/units.h"
+#include "gcode/text/arc_center.h"
+#include "geometry/basic/rounding.h"
 
 namespace batten::gcode {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <utility>
 
-#include "gcode/characters.h"
-#include "gcode/number_format.h"
-#include "gcode/number_limit.h"
+#include "gcode/text/characters.h"
+#include "gcode/text/number_format.h"
+#include "gcode/text/number_limit.h"
 
 namespace batten::gcode {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "gcode/curves/bezier_chain.h"
-#include "geometry/numeric.h"
+#include "geometry/basic/rounding.h"
 
 namespace batten::gcode {
 namespace {

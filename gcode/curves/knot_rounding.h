@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/bspline_curve.h"
+#include "geometry/path/bspline_curve.h"
 
 namespace batten::gcode {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "gcode/number_format.h"
+#include "gcode/text/number_format.h"
 
 namespace batten::gcode {
 namespace {
@@ -91,7 +91,7 @@ class NurbsAlarms {
 
   void follow(const Block& block) {
     const Words words = words_of(block);
-    if (block.word_count == 0 && block.opacity == Opacity::kNone) return;
+    if (block.word_count == 0 && block.opacity == ParseStatus::kNone) return;
     const bool begins = std::ranges::count(words.codes, 62) > 0;
     const bool changes_mode = std::ranges::any_of(words.codes, ends_curve);
     if (in_curve_ && (begins || changes_mode)) cut_short(block.line, "another mode");
@@ -164,7 +164,7 @@ class NurbsAlarms {
     const bool has_place =
         words.place[0] != nullptr || words.place[1] != nullptr || words.place[2] != nullptr;
     if (words.foreign != nullptr || words.order != nullptr || !words.codes.empty() ||
-        block.opacity != Opacity::kNone) {
+        block.opacity != ParseStatus::kNone) {
       say(block.line, "foreign-word", "words inside a curve that no curve has");
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -3,7 +3,7 @@
 
 #include "gcode/curves/curve_alarm.h"
 #include "gcode/curves/nurbs_rules.h"
-#include "gcode/program.h"
+#include "gcode/text/program.h"
 
 namespace batten::gcode {
 

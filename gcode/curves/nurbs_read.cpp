@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "gcode/dialect.h"
-#include "geometry/numeric.h"
+#include "gcode/state/units.h"
+#include "geometry/basic/rounding.h"
 
 namespace batten::gcode {
 namespace {
@@ -53,7 +53,8 @@ std::optional<double>* slot_of(char letter, NurbsBlock& block) {
 
 NurbsBlock words_of_block(const Program& program, const Block& block) {
   NurbsBlock read;
-  read.others = block.opacity != Opacity::kNone || block.block_delete || block.comment_count > 0;
+  read.others =
+      block.opacity != ParseStatus::kNone || block.block_delete || block.comment_count > 0;
   for (const Word& word : program.words_of(block)) {
     std::optional<double>* slot = slot_of(word.letter, read);
     if (word.letter == 'N') continue;
@@ -72,7 +73,7 @@ NurbsBlock words_of_block(const Program& program, const Block& block) {
 bool is_frame(const Program& program, std::uint32_t block, double p) {
   if (block >= program.blocks.size()) return false;
   const Block& line = program.blocks[block];
-  if (line.opacity != Opacity::kNone || line.block_delete) return false;
+  if (line.opacity != ParseStatus::kNone || line.block_delete) return false;
   int found = 0;
   for (const Word& word : program.words_of(line)) {
     if (word.letter == 'N') continue;

@@ -8,7 +8,7 @@
 
 #include "gcode/curves/curve_text.h"
 #include "gcode/curves/nurbs_rules.h"
-#include "geometry/bspline_curve.h"
+#include "geometry/path/bspline_curve.h"
 
 namespace batten::gcode {
 

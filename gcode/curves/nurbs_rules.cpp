@@ -41,7 +41,7 @@ NurbsRules mitsubishi_nurbs() {
 std::string_view nurbs_complaint(const ModalState& state) {
   if (state.feed_mode != FeedMode::kPerMinute) return "G06.2 needs feed per minute (G94)";
   if (state.distance != DistanceMode::kAbsolute) return "G06.2 is written in G90 only";
-  const std::array<std::pair<Tri, std::string_view>, 11> items = {{
+  const std::array<std::pair<TriState, std::string_view>, 11> items = {{
       {state.cutter_compensation, "G06.2 is an alarm under G41 and G42"},
       {state.polar, "G06.2 is an alarm under G12.1, and polar coordinates are no places"},
       {state.cylindrical, "G06.2 in cylindrical interpolation"},
@@ -55,7 +55,7 @@ std::string_view nurbs_complaint(const ModalState& state) {
       {state.lathe_diameter, "G06.2 with diameters"},
   }};
   for (const auto& [item, complaint] : items) {
-    if (item != Tri::kOff) return complaint;
+    if (item != TriState::kOff) return complaint;
   }
   return {};
 }

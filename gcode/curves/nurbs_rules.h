@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "gcode/curves/knot_rounding.h"
-#include "gcode/modal_state.h"
+#include "gcode/state/modal_state.h"
 
 namespace batten::gcode {
 

@@ -6,7 +6,7 @@
 
 #include "gcode/curves/clamped_cubic.h"
 #include "gcode/curves/curve_print.h"
-#include "gcode/dialect.h"
+#include "gcode/state/units.h"
 
 namespace batten::gcode {
 namespace {

@@ -9,8 +9,8 @@
 #include "gcode/curves/curve_print.h"
 #include "gcode/curves/knot_rounding.h"
 #include "gcode/curves/siemens_words.h"
-#include "gcode/dialect.h"
-#include "geometry/numeric.h"
+#include "gcode/state/units.h"
+#include "geometry/basic/rounding.h"
 
 namespace batten::gcode {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "gcode/curves/curve_text.h"
-#include "geometry/bspline_curve.h"
+#include "geometry/path/bspline_curve.h"
 
 namespace batten::gcode {
 

@@ -8,7 +8,7 @@
 
 #include "gcode/curves/bezier_chain.h"
 #include "gcode/curves/curve_print.h"
-#include "gcode/dialect.h"
+#include "gcode/state/units.h"
 
 namespace batten::gcode {
 namespace {
@@ -48,7 +48,7 @@ class PolyWord {
 std::string_view poly_complaint(const ModalState& state) {
   if (state.feed_mode != FeedMode::kPerMinute) return "POLY needs feed per minute (G94)";
   if (state.distance != DistanceMode::kAbsolute) return "POLY is written in G90 only";
-  const std::array<std::pair<Tri, std::string_view>, 10> items = {{
+  const std::array<std::pair<TriState, std::string_view>, 10> items = {{
       {state.cutter_compensation, "POLY under G41 or G42"},
       {state.polar, "POLY in polar coordinates"},
       {state.cylindrical, "POLY in cylindrical interpolation"},
@@ -61,7 +61,7 @@ std::string_view poly_complaint(const ModalState& state) {
       {state.lathe_diameter, "POLY with diameters"},
   }};
   for (const auto& [item, complaint] : items) {
-    if (item != Tri::kOff) return complaint;
+    if (item != TriState::kOff) return complaint;
   }
   return {};
 }

@@ -12,7 +12,7 @@
 
 #include "gcode/curves/curve_alarm.h"
 #include "gcode/curves/curve_text.h"
-#include "geometry/path.h"
+#include "geometry/path/path.h"
 
 namespace batten::gcode {
 

@@ -6,7 +6,7 @@
 #include "gcode/curves/bezier_chain.h"
 #include "gcode/curves/siemens_poly.h"
 #include "gcode/curves/siemens_words.h"
-#include "gcode/dialect.h"
+#include "gcode/state/units.h"
 
 namespace batten::gcode {
 namespace {

@@ -33,7 +33,7 @@ class SplFormat final : public CurveFormat {
 
   CurveResult read(const Program& program, std::uint32_t first,
                    const CurveStart& start) const override {
-    const bool may_be = program.blocks[first].opacity == Opacity::kForeign;
+    const bool may_be = program.blocks[first].opacity == ParseStatus::kForeign;
     if (!may_be || !starts_spline(program, first)) return CurveRefusal{"no SPL"};
     return read_spl(program, first, start);
   }

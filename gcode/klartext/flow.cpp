@@ -6,8 +6,8 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "gcode/characters.h"
 #include "gcode/klartext/statement.h"
+#include "gcode/text/characters.h"
 
 namespace batten::gcode {
 namespace {
@@ -18,7 +18,7 @@ class KlartextFlow {
 
   std::vector<BlockFlow> find() {
     for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
-      if (program_.blocks[i].opacity == Opacity::kFlow) read_statement(i);
+      if (program_.blocks[i].opacity == ParseStatus::kFlow) read_statement(i);
     }
     mark_bodies();
     return std::move(flow_);

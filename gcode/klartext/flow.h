@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "gcode/program_flow.h"
+#include "gcode/state/block_flow.h"
+#include "gcode/text/program.h"
 
 namespace batten::gcode {
 

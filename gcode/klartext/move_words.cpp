@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "gcode/characters.h"
-#include "gcode/number_format.h"
+#include "gcode/text/characters.h"
+#include "gcode/text/number_format.h"
 
 namespace batten::gcode {
 namespace {

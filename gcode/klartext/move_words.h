@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gcode/klartext/statement.h"
-#include "gcode/program.h"
+#include "gcode/text/program.h"
 
 namespace batten::gcode {
 

@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "gcode/characters.h"
-#include "gcode/joined_lines.h"
 #include "gcode/klartext/move_words.h"
 #include "gcode/klartext/statement.h"
-#include "gcode/line_cursor.h"
-#include "gcode/number_format.h"
-#include "gcode/told_troubles.h"
+#include "gcode/state/diagnostic_limiter.h"
+#include "gcode/text/characters.h"
+#include "gcode/text/joined_lines.h"
+#include "gcode/text/line_cursor.h"
+#include "gcode/text/number_format.h"
 
 namespace batten::gcode {
 namespace {
@@ -75,7 +75,7 @@ class KlartextParser {
   }
 
   void make_unreadable(Block& block, std::string_view trouble) {
-    block.opacity = Opacity::kUnreadable;
+    block.opacity = ParseStatus::kUnreadable;
     end_last_move();  // RND may stand there
     forget_path();
     if (!told_.counts(kUnreadableBlock, block.span)) return;
@@ -98,7 +98,7 @@ class KlartextParser {
       ++inner.begin;
       filled = true;
     }
-    if (filled && inner.begin == inner.end) block.opacity = Opacity::kProgramMark;
+    if (filled && inner.begin == inner.end) block.opacity = ParseStatus::kProgramMark;
     return inner;
   }
 
@@ -112,7 +112,7 @@ class KlartextParser {
     const std::string_view content = program_.source.text(parts.content);
     const bool of_spline = after_spline_ && is_coefficient_line(content);
     if (continued_ || of_spline) {
-      block.opacity = Opacity::kContinued;
+      block.opacity = ParseStatus::kContinued;
       continued_ = parts.continues;
       return;
     }
@@ -134,33 +134,33 @@ class KlartextParser {
       case KlartextKind::kCentre:
         return read_centre(parts, block);
       case KlartextKind::kTangential:
-        block.opacity = Opacity::kForeign;
+        block.opacity = ParseStatus::kForeign;
         end_last_move();
         return add_centre();
       case KlartextKind::kPolar:
       case KlartextKind::kOtherPath:
       case KlartextKind::kSpline:
-        block.opacity = Opacity::kForeign;
+        block.opacity = ParseStatus::kForeign;
         last_move_.reset();
         return add_centre();
       case KlartextKind::kBegin:
       case KlartextKind::kEnd:
-        block.opacity = Opacity::kProgramMark;
+        block.opacity = ParseStatus::kProgramMark;
         break;
       case KlartextKind::kAssignment:
-        block.opacity = Opacity::kAssignment;
+        block.opacity = ParseStatus::kAssignment;
         return;
       case KlartextKind::kJump:
       case KlartextKind::kLabel:
       case KlartextKind::kCallLabel:
       case KlartextKind::kCallProgram:
-        block.opacity = Opacity::kFlow;
+        block.opacity = ParseStatus::kFlow;
         break;
       case KlartextKind::kDefinition:
-        block.opacity = Opacity::kForeign;
+        block.opacity = ParseStatus::kForeign;
         return;
       default:
-        block.opacity = Opacity::kForeign;
+        block.opacity = ParseStatus::kForeign;
         break;
     }
     forget_path();
@@ -186,14 +186,14 @@ class KlartextParser {
         !parts.continues && read_klartext_move(kind, text_, parts.content, program_.words);
     if (!plain) {
       program_.words.resize(first);
-      block.opacity = Opacity::kForeign;
+      block.opacity = ParseStatus::kForeign;
       last_move_.reset();
       return;
     }
     const bool all_numbers =
         std::all_of(program_.words.begin() + static_cast<std::ptrdiff_t>(first),
                     program_.words.end(), [](const Word& word) { return word.is_number; });
-    if (!all_numbers) block.opacity = Opacity::kExpression;
+    if (!all_numbers) block.opacity = ParseStatus::kExpression;
     if (kind != KlartextKind::kFunctions) last_move_ = program_.blocks.size();
   }
 
@@ -206,7 +206,7 @@ class KlartextParser {
     whole.is_number = false;
     whole.span = parts.content;
     centre_ = {whole};
-    block.opacity = Opacity::kForeign;
+    block.opacity = ParseStatus::kForeign;
   }
 
   // The centre is a part of what the block says.
@@ -216,7 +216,7 @@ class KlartextParser {
   void end_last_move() {
     if (last_move_) {
       Block& move = program_.blocks[*last_move_];
-      if (move.opacity == Opacity::kNone) move.opacity = Opacity::kCornerWord;
+      if (move.opacity == ParseStatus::kNone) move.opacity = ParseStatus::kCornerWord;
     }
     last_move_.reset();
   }
@@ -224,7 +224,7 @@ class KlartextParser {
   Program program_{SourceText("", ""), {}, {}, {}, Language::kKlartext};
   std::string_view text_;
   JoinedLines joined_;
-  ToldTroubles told_;
+  DiagnosticLimiter told_;
   Diagnostics& found_;
   std::vector<Word> centre_;  // of the last CC
   std::optional<std::size_t> last_move_;

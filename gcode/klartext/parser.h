@@ -10,12 +10,12 @@
 //
 // RL and RR are G41 and G42. Everything else is copied: such blocks are opaque, and
 // state.h says what they may have changed. Where a later block bends the end of a motion
-// (RND, CHF) or takes its direction (CT, DEP), the motion before it is Opacity::kCornerWord.
+// (RND, CHF) or takes its direction (CT, DEP), the motion before it is ParseStatus::kCornerWord.
 #pragma once
 
-#include "gcode/diagnostic.h"
-#include "gcode/program.h"
-#include "gcode/source_text.h"
+#include "gcode/text/diagnostic.h"
+#include "gcode/text/program.h"
+#include "gcode/text/source_text.h"
 
 namespace batten::gcode {
 

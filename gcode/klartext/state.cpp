@@ -5,12 +5,12 @@
 #include <optional>
 #include <string_view>
 
-#include "gcode/characters.h"
 #include "gcode/klartext/statement.h"
-#include "gcode/line_cursor.h"
-#include "gcode/number_format.h"
-#include "gcode/number_limit.h"
-#include "gcode/reason.h"
+#include "gcode/state/reason.h"
+#include "gcode/text/characters.h"
+#include "gcode/text/line_cursor.h"
+#include "gcode/text/number_format.h"
+#include "gcode/text/number_limit.h"
 
 namespace batten::gcode {
 namespace {
@@ -50,10 +50,10 @@ class StatementWords {
   ModalState& modal() { return state_.modal; }
 
   void apply_compensation(std::string_view token) {
-    if (is_same_word(token, "R0")) modal().cutter_compensation = Tri::kOff;
+    if (is_same_word(token, "R0")) modal().cutter_compensation = TriState::kOff;
     const bool on =
         is_same_word(token, "RL") || is_same_word(token, "RR") || token == "R+" || token == "R-";
-    if (on) modal().cutter_compensation = Tri::kOn;
+    if (on) modal().cutter_compensation = TriState::kOn;
   }
 
   // FMAX counts in its block only; a plain number is modal; others are not followed.
@@ -68,16 +68,16 @@ class StatementWords {
   }
 
   void apply_function(double code) {
-    if (code == 128 || code == 114 || code == 144) modal().tool_center_point = Tri::kOn;
-    if (code == 129 || code == 115 || code == 145) modal().tool_center_point = Tri::kOff;
+    if (code == 128 || code == 114 || code == 144) modal().tool_center_point = TriState::kOn;
+    if (code == 129 || code == 115 || code == 145) modal().tool_center_point = TriState::kOff;
     if (code == 136 || code == 137) {
       modal().feed_mode = code == 136 ? FeedMode::kPerRevolution : FeedMode::kPerMinute;
       modal().feed.reset();
     }
-    if (code == 112 || code == 124) modal().control_smoothing = Tri::kOn;
-    if (code == 113) modal().control_smoothing = Tri::kOff;
-    if (code == 89) modal().modal_macro = Tri::kOn;  // a cycle at each place from now on
-    if (code == 99) modal().modal_macro = Tri::kOff;
+    if (code == 112 || code == 124) modal().control_smoothing = TriState::kOn;
+    if (code == 113) modal().control_smoothing = TriState::kOff;
+    if (code == 89) modal().modal_macro = TriState::kOn;  // a cycle at each place from now on
+    if (code == 99) modal().modal_macro = TriState::kOff;
     if (code == 2 || code == 30) forget_klartext(state_);
   }
 
@@ -115,19 +115,19 @@ class CycleEffect {
         forget_position(state_);
         return reason::kCoordinateChange;
       case 8:
-        return set_frame(state_.modal.mirror, value_.empty() ? Tri::kOff : Tri::kOn,
+        return set_frame(state_.modal.mirror, value_.empty() ? TriState::kOff : TriState::kOn,
                          reason::kMirror);
       case 10:
-        return set_frame(state_.modal.rotation, says("ROT", 0) ? Tri::kOff : Tri::kOn,
+        return set_frame(state_.modal.rotation, says("ROT", 0) ? TriState::kOff : TriState::kOn,
                          reason::kRotation);
       case 11:
         return apply_scaling();
       case 26:  // a factor for each axis: 11 does not end it
-        state_.modal.scaling = Tri::kUnknown;
+        state_.modal.scaling = TriState::kUnknown;
         forget_position(state_);
         return reason::kScaling;
       case 19:
-        return set_frame(state_.modal.tilted_plane, value_.empty() ? Tri::kOff : Tri::kOn,
+        return set_frame(state_.modal.tilted_plane, value_.empty() ? TriState::kOff : TriState::kOn,
                          reason::kTiltedPlane);
       case 9:
         return reason::kDwell;
@@ -140,18 +140,18 @@ class CycleEffect {
 
  private:
   // The first line (8.0, 10.0) only says the name; the values follow in the next.
-  std::string_view set_frame(Tri& item, Tri value, std::string_view why) {
+  std::string_view set_frame(TriState& item, TriState value, std::string_view why) {
     forget_position(state_);
     if (number_.minor == 1) item = value;
-    if (number_.minor > 1 || number_.minor < 0) item = Tri::kUnknown;
+    if (number_.minor > 1 || number_.minor < 0) item = TriState::kUnknown;
     return why;
   }
 
   std::string_view apply_scaling() {
-    const bool by_axis = state_.modal.scaling == Tri::kUnknown;
-    const std::string_view why =
-        set_frame(state_.modal.scaling, says("SCL", 1) ? Tri::kOff : Tri::kOn, reason::kScaling);
-    if (by_axis) state_.modal.scaling = Tri::kUnknown;
+    const bool by_axis = state_.modal.scaling == TriState::kUnknown;
+    const std::string_view why = set_frame(
+        state_.modal.scaling, says("SCL", 1) ? TriState::kOff : TriState::kOn, reason::kScaling);
+    if (by_axis) state_.modal.scaling = TriState::kUnknown;
     return why;
   }
 
@@ -225,7 +225,7 @@ void apply_begin(std::string_view content, ControlState& state) {
 std::string_view apply_plane(std::string_view content, ControlState& state) {
   KlartextTokens tokens(content);
   (void)tokens.next();  // PLANE
-  state.modal.tilted_plane = is_same_word(tokens.next(), "RESET") ? Tri::kOff : Tri::kOn;
+  state.modal.tilted_plane = is_same_word(tokens.next(), "RESET") ? TriState::kOff : TriState::kOn;
   forget_position(state);
   return reason::kTiltedPlane;
 }
@@ -239,7 +239,7 @@ std::string_view apply_tcpm(std::string_view content, ControlState& state) {
     forget_klartext(state);
     return reason::kForeignWords;
   }
-  state.modal.tool_center_point = resets ? Tri::kOff : Tri::kOn;
+  state.modal.tool_center_point = resets ? TriState::kOff : TriState::kOn;
   forget_position(state);
   return reason::kToolCenterPoint;
 }
@@ -257,7 +257,7 @@ std::string_view apply_flow(KlartextKind kind, ControlState& state) {
 std::string_view apply_path(KlartextKind kind, std::string_view content, std::string_view statement,
                             ControlState& state) {
   const bool of_contour = starts_with_word(content, "APPR") || starts_with_word(content, "DEP");
-  if (of_contour) state.modal.cutter_compensation = Tri::kUnknown;
+  if (of_contour) state.modal.cutter_compensation = TriState::kUnknown;
   forget_position(state);
   LineCursor lines(statement);
   while (const auto line = lines.next()) {
@@ -277,14 +277,14 @@ void forget_klartext(ControlState& state) {
   state.modal.units = units;
   state.modal.distance = DistanceMode::kAbsolute;
   state.modal.path = PathMode::kBlending;
-  state.modal.lathe_diameter = Tri::kOff;
+  state.modal.lathe_diameter = TriState::kOff;
   start_klartext(state);
 }
 
 std::string_view klartext_statement_text(const Program& program, std::uint32_t first) {
   std::uint32_t last = first;
   while (last + 1 < program.blocks.size() &&
-         program.blocks[last + 1].opacity == Opacity::kContinued) {
+         program.blocks[last + 1].opacity == ParseStatus::kContinued) {
     ++last;
   }
   const SourceSpan whole{program.blocks[first].span.begin, program.blocks[last].span.end};

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "gcode/control_state.h"
-#include "gcode/program.h"
+#include "gcode/state/control_state.h"
+#include "gcode/text/program.h"
 
 namespace batten::gcode {
 

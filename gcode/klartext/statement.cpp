@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "gcode/characters.h"
+#include "gcode/text/characters.h"
 
 namespace batten::gcode {
 namespace {

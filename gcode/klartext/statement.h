@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "gcode/source_text.h"
+#include "gcode/text/source_text.h"
 
 namespace batten::gcode {
 

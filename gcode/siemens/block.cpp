@@ -5,9 +5,9 @@
 #include <limits>
 #include <string>
 
-#include "gcode/characters.h"
-#include "gcode/number_limit.h"
 #include "gcode/siemens/lexer.h"
+#include "gcode/text/characters.h"
+#include "gcode/text/number_limit.h"
 
 namespace batten::gcode {
 namespace {
@@ -64,7 +64,7 @@ class BlockReader {
           break;
         case SiemensTokenKind::kName:
           if (is_flow(token)) {
-            block_.opacity = Opacity::kFlow;
+            block_.opacity = ParseStatus::kFlow;
             return block_;
           }
           take_name(token);
@@ -78,7 +78,7 @@ class BlockReader {
 
  private:
   SiemensBlock unreadable(const SiemensToken& token, std::string_view trouble) {
-    block_.opacity = Opacity::kUnreadable;
+    block_.opacity = ParseStatus::kUnreadable;
     block_.trouble = trouble;
     block_.trouble_at = token.span;
     return block_;
@@ -159,13 +159,13 @@ class BlockReader {
 
   SiemensBlock finished() {
     if (foreign_) {
-      block_.opacity = Opacity::kForeign;
+      block_.opacity = ParseStatus::kForeign;
     } else if (assigns_ && !words_beside_ && !label_) {
-      block_.opacity = Opacity::kAssignment;
+      block_.opacity = ParseStatus::kAssignment;
     } else if (named_ || assigns_ || label_) {
-      block_.opacity = Opacity::kNamedWords;
+      block_.opacity = ParseStatus::kNamedWords;
     } else if (expression_) {
-      block_.opacity = Opacity::kExpression;
+      block_.opacity = ParseStatus::kExpression;
     }
     return block_;
   }

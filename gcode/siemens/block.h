@@ -5,13 +5,13 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/program.h"
-#include "gcode/source_text.h"
+#include "gcode/text/program.h"
+#include "gcode/text/source_text.h"
 
 namespace batten::gcode {
 
 struct SiemensBlock {
-  Opacity opacity = Opacity::kNone;
+  ParseStatus opacity = ParseStatus::kNone;
   bool skip = false;  // starts with /, or /0 to /9
   std::optional<SourceSpan> comment;
   std::string_view trouble;  // kUnreadable: what cannot be read, for people
@@ -19,7 +19,7 @@ struct SiemensBlock {
 };
 
 // Adds the words of the line, which is a span of `source` without its line end, to `words`: those
-// of one letter, and CR= as R. With Opacity::kNamedWords the others are to be looked up
+// of one letter, and CR= as R. With ParseStatus::kNamedWords the others are to be looked up
 // (gcode/siemens/names.h).
 [[nodiscard]] SiemensBlock read_siemens_block(std::string_view source, SourceSpan line,
                                               std::vector<Word>& words);

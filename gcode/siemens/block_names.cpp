@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "gcode/characters.h"
 #include "gcode/siemens/block.h"
+#include "gcode/text/characters.h"
 
 namespace batten::gcode {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gcode/siemens/lexer.h"
-#include "gcode/source_text.h"
+#include "gcode/text/source_text.h"
 
 namespace batten::gcode {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <unordered_set>
 
-#include "gcode/characters.h"
 #include "gcode/siemens/lexer.h"
 #include "gcode/siemens/name_kinds.h"
 #include "gcode/siemens/value.h"
+#include "gcode/text/characters.h"
 
 namespace batten::gcode {
 namespace {
@@ -142,7 +142,7 @@ class FlowReader {
 
   std::vector<BlockFlow> run() {
     for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
-      if (program_.blocks[i].opacity != Opacity::kProgramMark) read_block(i);
+      if (program_.blocks[i].opacity != ParseStatus::kProgramMark) read_block(i);
     }
     mark_targets();
     for (BlockFlow& each : flow_) each.in_body |= is_subprogram_;
@@ -157,23 +157,24 @@ class FlowReader {
   void read_block(std::size_t i) {
     const Block& block = program_.blocks[i];
     note_labels(i);
-    if (block.opacity == Opacity::kFlow || block.opacity == Opacity::kUnreadable) {
+    if (block.opacity == ParseStatus::kFlow || block.opacity == ParseStatus::kUnreadable) {
       const std::string plain = plain_text(text_of(block));
       note_jumps(plain);
-      const int step = block.opacity == Opacity::kFlow ? siemens_body_step(statement_in(plain)) : 0;
+      const int step =
+          block.opacity == ParseStatus::kFlow ? siemens_body_step(statement_in(plain)) : 0;
       flow_[i].in_body |= step != 0;
       depth_ = std::max(0, depth_ + step);
     }
-    if (block.opacity == Opacity::kForeign || block.opacity == Opacity::kNamedWords) {
+    if (block.opacity == ParseStatus::kForeign || block.opacity == ParseStatus::kNamedWords) {
       is_subprogram_ |= ends_subprogram(block);
     }
     if (may_call(block.opacity)) note_call(plain_text(text_of(block)));
     flow_[i].in_body |= depth_ > 0;
   }
 
-  static bool may_call(Opacity opacity) {
-    return opacity == Opacity::kForeign || opacity == Opacity::kNamedWords ||
-           opacity == Opacity::kUnreadable;
+  static bool may_call(ParseStatus opacity) {
+    return opacity == ParseStatus::kForeign || opacity == ParseStatus::kNamedWords ||
+           opacity == ParseStatus::kUnreadable;
   }
 
   void note_call(std::string_view plain) {
@@ -189,9 +190,9 @@ class FlowReader {
       labels_[i].push_back(
           without_zeros(without_blanks(plain_text(program_.source.text(word.span)))));
     }
-    const bool may_have_name = block.opacity == Opacity::kNamedWords ||
-                               block.opacity == Opacity::kFlow ||
-                               block.opacity == Opacity::kForeign;
+    const bool may_have_name = block.opacity == ParseStatus::kNamedWords ||
+                               block.opacity == ParseStatus::kFlow ||
+                               block.opacity == ParseStatus::kForeign;
     if (!may_have_name || text_of(block).find(':') == std::string_view::npos) return;
     SiemensLexer lexer(program_.source.text(), block.span);
     for (;;) {

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/program.h"
-#include "gcode/program_flow.h"
+#include "gcode/state/block_flow.h"
+#include "gcode/text/program.h"
 
 namespace batten::gcode {
 
@@ -20,7 +20,7 @@ namespace batten::gcode {
 // Not where the name is one that is known.
 [[nodiscard]] bool calls_siemens_program(std::string_view line);
 
-// What a line of Opacity::kFlow does to the state of the blocks after it.
+// What a line of ParseStatus::kFlow does to the state of the blocks after it.
 [[nodiscard]] FlowEffect siemens_flow_effect(std::string_view text);
 
 }  // namespace batten::gcode

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <optional>
 
-#include "gcode/characters.h"
-#include "gcode/number_limit.h"
 #include "gcode/siemens/value.h"
+#include "gcode/text/characters.h"
+#include "gcode/text/number_limit.h"
 
 namespace batten::gcode {
 namespace {

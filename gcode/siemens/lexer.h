@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "gcode/number_format.h"
-#include "gcode/source_text.h"
+#include "gcode/text/number_format.h"
+#include "gcode/text/source_text.h"
 
 namespace batten::gcode {
 

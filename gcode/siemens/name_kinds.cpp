@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "gcode/characters.h"
+#include "gcode/text/characters.h"
 
 namespace batten::gcode {
 namespace {

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <string>
 
-#include "gcode/reason.h"
 #include "gcode/siemens/block_names.h"
 #include "gcode/siemens/lexer.h"
 #include "gcode/siemens/name_kinds.h"
+#include "gcode/state/reason.h"
 
 namespace batten::gcode {
 namespace {
@@ -59,7 +59,7 @@ class NameApplier {
   ModalState& modal() { return state_.modal; }
 
   // With axis words the frame is set; without it all programmable frames are taken back.
-  void apply_frame(Tri& item, std::string_view why) {
+  void apply_frame(TriState& item, std::string_view why) {
     add_frame(item, why);
     if (!names_axes()) take_frames_back();
   }
@@ -70,13 +70,14 @@ class NameApplier {
   }
 
   void take_frames_back() {
-    for (Tri* each : {&modal().rotation, &modal().scaling, &modal().mirror}) *each = Tri::kOff;
+    for (TriState* each : {&modal().rotation, &modal().scaling, &modal().mirror})
+      *each = TriState::kOff;
   }
 
-  void add_frame(Tri& item, std::string_view why) {
+  void add_frame(TriState& item, std::string_view why) {
     lose_place(why);
     effect_.takes_axes = true;
-    item = Tri::kOn;
+    item = TriState::kOn;
   }
 
   void set_units_to(Units units) {
@@ -96,33 +97,33 @@ class NameApplier {
       case NameKind::kTolerance:
         return block(reason::kControlSmoothing);
       case NameKind::kRefitOn:
-        modal().control_smoothing = Tri::kOn;
+        modal().control_smoothing = TriState::kOn;
         return block(reason::kControlSmoothing);
       case NameKind::kRefitOff:
-        modal().control_smoothing = Tri::kOff;
+        modal().control_smoothing = TriState::kOff;
         return block(reason::kControlSmoothing);
       case NameKind::kToolCenterOn:
-        modal().tool_center_point = Tri::kOn;
+        modal().tool_center_point = TriState::kOn;
         return lose_place(reason::kToolCenterPoint);
       case NameKind::kTransformationOff:
-        modal().tool_center_point = Tri::kOff;
-        modal().polar = Tri::kOff;
-        modal().cylindrical = Tri::kOff;
+        modal().tool_center_point = TriState::kOff;
+        modal().polar = TriState::kOff;
+        modal().cylindrical = TriState::kOff;
         return lose_place(reason::kToolCenterPoint);
       case NameKind::kPolarOn:
-        modal().polar = Tri::kOn;
+        modal().polar = TriState::kOn;
         return lose_place(reason::kPolar);
       case NameKind::kCylinderOn:
-        modal().cylindrical = Tri::kOn;
+        modal().cylindrical = TriState::kOn;
         return lose_place(reason::kCylindrical);
       case NameKind::kTilt:
-        modal().tilted_plane = arguments ? Tri::kOn : Tri::kOff;
+        modal().tilted_plane = arguments ? TriState::kOn : TriState::kOff;
         return lose_place(reason::kTiltedPlane);
       case NameKind::kTiltOn:
-        modal().tilted_plane = Tri::kOn;
+        modal().tilted_plane = TriState::kOn;
         return lose_place(reason::kTiltedPlane);
       case NameKind::kTiltOff:
-        modal().tilted_plane = Tri::kOff;
+        modal().tilted_plane = TriState::kOff;
         return lose_place(reason::kTiltedPlane);
       case NameKind::kOffset:
         if (!names_axes()) take_frames_back();
@@ -177,12 +178,12 @@ class NameApplier {
         return block(reason::kSpindle);
       case NameKind::kDiameterOn:
         lose_place(reason::kLatheDiameter);
-        modal().lathe_diameter = Tri::kOn;
+        modal().lathe_diameter = TriState::kOn;
         return;
       case NameKind::kDiameterOff:
         block(reason::kStateChange);
-        if (modal().lathe_diameter != Tri::kOff) lose_place(reason::kLatheDiameter);
-        modal().lathe_diameter = Tri::kOff;
+        if (modal().lathe_diameter != TriState::kOff) lose_place(reason::kLatheDiameter);
+        modal().lathe_diameter = TriState::kOff;
         return;
       default:
         return apply_motions(kind);
@@ -195,17 +196,17 @@ class NameApplier {
         modal().motion = MotionMode::kUnknown;
         modal().feed.reset();
         modal().spindle_speed.reset();
-        if (calls_modally_) modal().modal_macro = Tri::kOn;
+        if (calls_modally_) modal().modal_macro = TriState::kOn;
         return lose_place(reason::kCannedCycle);
       case NameKind::kModalCall:
-        modal().modal_macro = Tri::kOff;
+        modal().modal_macro = TriState::kOff;
         return block(reason::kCannedCycle);
       case NameKind::kSurfaceSpeedOn:
-        modal().constant_surface_speed = Tri::kOn;
+        modal().constant_surface_speed = TriState::kOn;
         return block(reason::kSpindle);
       case NameKind::kSurfaceSpeedOff:
         // With G971 F is per minute, with G973 what it was.
-        modal().constant_surface_speed = Tri::kOff;
+        modal().constant_surface_speed = TriState::kOff;
         modal().feed_mode = FeedMode::kUnknown;
         modal().feed.reset();
         return block(reason::kSpindle);

@@ -4,9 +4,9 @@
 
 #include <string_view>
 
-#include "gcode/block_words.h"
-#include "gcode/control_state.h"
 #include "gcode/siemens/variables.h"
+#include "gcode/state/block_words.h"
+#include "gcode/state/control_state.h"
 
 namespace batten::gcode {
 
@@ -18,8 +18,8 @@ struct NamedEffect {
   std::string_view barrier;  // why the block is copied
 };
 
-// `text` is a block of Opacity::kNamedWords, `words` its words of one letter. Applies what is known
-// to the state. `variables` are those that the program has declared so far; DEF adds to them.
+// `text` is a block of ParseStatus::kNamedWords, `words` its words of one letter. Applies what is
+// known to the state. `variables` are those that the program has declared so far; DEF adds to them.
 [[nodiscard]] NamedEffect apply_names(std::string_view text, const BlockWords& words,
                                       SiemensVariables& variables, ControlState& state);
 

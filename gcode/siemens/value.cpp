@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "gcode/characters.h"
+#include "gcode/text/characters.h"
 
 namespace batten::gcode {
 namespace {

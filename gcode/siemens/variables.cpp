@@ -1,7 +1,7 @@
 #include "gcode/siemens/variables.h"
 
-#include "gcode/characters.h"
 #include "gcode/siemens/value.h"
+#include "gcode/text/characters.h"
 
 namespace batten::gcode {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "postproc/cli/progress_text.h"
+#include "postproc/system/progress_text.h"
 
 namespace batten::postproc {
 

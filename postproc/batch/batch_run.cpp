@@ -8,9 +8,9 @@
 #include <string>
 
 #include "postproc/batch/process_pool.h"
-#include "postproc/cli/exit_code.h"
-#include "postproc/cli/interrupt.h"
-#include "postproc/report/json_values.h"
+#include "postproc/system/exit_code.h"
+#include "postproc/system/interrupt.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 

@@ -30,7 +30,7 @@ struct BatchResult {
 using BatchObserver = std::function<void(const BatchCount& count, const ProgramRecord* ended)>;
 
 // The largest programs first, so that none of them is left alone at the end; the result does not
-// depend on it. After Ctrl-C or SIGTERM (postproc/cli/interrupt.h) what runs is stopped, and the
+// depend on it. After Ctrl-C or SIGTERM (postproc/system/interrupt.h) what runs is stopped, and the
 // rest is not done.
 //
 // A process that ends without a result is a failed program with the code of an internal error.

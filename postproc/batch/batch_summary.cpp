@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "postproc/report/json_values.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 

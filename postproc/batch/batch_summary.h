@@ -18,7 +18,7 @@ struct BatchTotals : ProgramFigures {
   std::size_t not_proved = 0;
   std::size_t failed = 0;
   std::size_t not_done = 0;
-  int exit_code = 0;  // the worst of all programs, by postproc/cli/exit_code.h
+  int exit_code = 0;  // the worst of all programs, by postproc/system/exit_code.h
 };
 
 [[nodiscard]] BatchTotals totals_of(std::span<const ProgramRecord> records);

@@ -2,7 +2,7 @@
 
 #include <system_error>
 
-#include "gcode/characters.h"
+#include "gcode/text/characters.h"
 
 namespace batten::postproc {
 

@@ -1,4 +1,4 @@
-// What killed runs left half written (postproc/writing/output_file.h).
+// What killed runs left half written (postproc/system/output_file.h).
 #pragma once
 
 #include <filesystem>

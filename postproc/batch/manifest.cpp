@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "postproc/batch/program_tree.h"
-#include "postproc/report/json_values.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 

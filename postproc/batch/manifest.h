@@ -55,7 +55,7 @@ void each_figure(Figures& figures, const Take& take) {
 struct ProgramRecord : ProgramFigures {
   std::string program;  // path in the tree
   ProgramStatus status = ProgramStatus::kNotDone;
-  int exit_code = 0;    // of postproc/cli/exit_code.h
+  int exit_code = 0;    // of postproc/system/exit_code.h
   std::string message;  // why it was not written; empty otherwise
   std::string input_sha256;
   std::string settings_sha256;

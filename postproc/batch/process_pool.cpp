@@ -15,7 +15,7 @@
 #include <thread>
 #include <utility>
 
-#include "postproc/writing/output_file.h"
+#include "postproc/system/output_file.h"
 
 namespace batten::postproc {
 

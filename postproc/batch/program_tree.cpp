@@ -4,7 +4,7 @@
 #include <array>
 #include <system_error>
 
-#include "gcode/characters.h"
+#include "gcode/text/characters.h"
 
 namespace batten::postproc {
 

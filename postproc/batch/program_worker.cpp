@@ -9,13 +9,13 @@
 
 #include "postproc/batch/content_hash.h"
 #include "postproc/batch/program_tree.h"
-#include "postproc/cli/exit_code.h"
-#include "postproc/cli/interrupt.h"
-#include "postproc/pipeline.h"
 #include "postproc/report/json_report.h"
-#include "postproc/runs/smooth_verdict.h"
-#include "postproc/writing/output_file.h"
-#include "postproc/writing/watched_file.h"
+#include "postproc/stream/pipeline.h"
+#include "postproc/stream/smooth_verdict.h"
+#include "postproc/system/exit_code.h"
+#include "postproc/system/interrupt.h"
+#include "postproc/system/output_file.h"
+#include "postproc/system/watched_file.h"
 
 namespace batten::postproc {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "postproc/batch/manifest.h"
-#include "postproc/options.h"
+#include "postproc/options/options.h"
 
 namespace batten::postproc {
 

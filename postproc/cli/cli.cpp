@@ -38,7 +38,7 @@ std::vector<CommandRow> command_rows() {
        {{"IN", "the program, - is standard input"}},
        "Example:\n  batten inspect part.nc --json part.json"},
       {"time",
-       "Tell how long a machine needs for a program, and where the time goes.",
+       "ProgressCallback how long a machine needs for a program, and where the time goes.",
        time_rows(),
        {{"FILE", "the program, - is standard input"}},
        "Examples:\n"

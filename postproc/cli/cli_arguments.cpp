@@ -4,8 +4,9 @@
 
 #include <algorithm>
 
-#include "postproc/cli/decimals_option.h"
-#include "postproc/writing/output_file.h"
+#include "gcode/controls/built_in.h"
+#include "postproc/options/decimals_option.h"
+#include "postproc/system/output_file.h"
 
 namespace batten::postproc {
 

@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/dialect.h"
-#include "gcode/modal_state.h"
-#include "gcode/source_kind.h"
+#include "gcode/control/dialect.h"
+#include "gcode/reading/source_kind.h"
+#include "gcode/state/modal_state.h"
 #include "postproc/cli/cli_given.h"
 #include "postproc/cli/cli_values.h"
-#include "postproc/cli/log_level.h"
+#include "postproc/options/log_level.h"
 
 namespace batten::postproc {
 

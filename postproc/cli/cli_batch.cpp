@@ -8,7 +8,7 @@
 #include "postproc/cli/cli_arguments.h"
 #include "postproc/cli/cli_commands.h"
 #include "postproc/cli/cli_smooth_options.h"
-#include "postproc/machine/machine_file.h"
+#include "postproc/machine/files/machine_file.h"
 
 namespace batten::postproc {
 

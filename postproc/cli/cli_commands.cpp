@@ -9,8 +9,8 @@
 #include "postproc/cli/cli_machine.h"
 #include "postproc/cli/cli_smooth_options.h"
 #include "postproc/cli/cli_target.h"
-#include "postproc/cli/decimals_option.h"
-#include "postproc/writing/output_file.h"
+#include "postproc/options/decimals_option.h"
+#include "postproc/system/output_file.h"
 
 namespace batten::postproc {
 

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cctype>
 
-#include "gcode/dialect.h"
-#include "gcode/reason.h"
+#include "gcode/control/dialect.h"
+#include "gcode/controls/built_in.h"
+#include "gcode/state/reason.h"
 #include "postproc/cli/explain.h"
 #include "postproc/machine/machine.h"
 

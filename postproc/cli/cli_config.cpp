@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "postproc/profile/toml_text.h"
+#include "postproc/text/toml_text.h"
 
 namespace batten::postproc {
 

@@ -1,8 +1,8 @@
 // The options of `smooth`, which `batch` and in part `verify` have, too.
 #pragma once
 
-#include "geometry/side.h"
-#include "geometry/tolerance_kind.h"
+#include "geometry/basic/side.h"
+#include "geometry/basic/tolerance_kind.h"
 #include "postproc/cli/cli_given.h"
 #include "postproc/cli/cli_values.h"
 #include "postproc/commands/commands.h"

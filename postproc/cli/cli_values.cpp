@@ -6,6 +6,8 @@
 #include <array>
 #include <charconv>
 
+#include "gcode/state/units.h"
+
 namespace batten::postproc {
 
 namespace {

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/modal_state.h"
-#include "postproc/cli/nearest_name.h"
-#include "postproc/options.h"
+#include "gcode/state/modal_state.h"
+#include "postproc/options/options.h"
+#include "postproc/text/nearest_name.h"
 
 namespace batten::postproc {
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "gcode/explained_diagnostics.h"
-#include "gcode/reason.h"
+#include "gcode/reading/explained_diagnostics.h"
+#include "gcode/state/reason.h"
 #include "postproc/cli/explained_notes.h"
 
 namespace batten::postproc {
@@ -14,7 +14,7 @@ namespace {
 // Columns of the text, a little less than a terminal of 80.
 constexpr std::size_t kColumns = 78;
 
-constexpr ExplainedBreach kBreaches[] = {
+constexpr ExplainedViolation kViolations[] = {
     {"distance",
      "A stretch of cutting moves leaves the tolerance, both ways and in order. The message gives a "
      "distance that is certainly reached, the lines say where.",
@@ -134,9 +134,9 @@ std::string of_diagnostic(std::string_view id) {
               found->advice);
 }
 
-std::string of_breach(std::string_view id) {
-  const auto all = explained_breaches();
-  const auto found = std::ranges::find(all, id, &ExplainedBreach::id);
+std::string of_violation(std::string_view id) {
+  const auto all = explained_violations();
+  const auto found = std::ranges::find(all, id, &ExplainedViolation::id);
   if (found == all.end()) return "";
   return part(fmt::format("{}: a breach found by batten verify", id), found->text, found->advice);
 }
@@ -160,13 +160,13 @@ void add_row(std::string& text, std::string_view id, std::string_view meaning) {
 
 }  // namespace
 
-std::span<const ExplainedBreach> explained_breaches() { return kBreaches; }
+std::span<const ExplainedViolation> explained_violations() { return kViolations; }
 
 std::vector<std::string_view> explained_ids() {
   std::vector<std::string_view> ids;
   for (const auto& each : gcode::reason::explanations()) ids.push_back(each.id);
   for (const auto& each : explained_messages()) ids.push_back(each.id);
-  for (const auto& each : explained_breaches()) ids.push_back(each.id);
+  for (const auto& each : explained_violations()) ids.push_back(each.id);
   std::ranges::sort(ids);
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   return ids;
@@ -174,7 +174,7 @@ std::vector<std::string_view> explained_ids() {
 
 std::string explanation_of(std::string_view id) {
   std::string text;
-  for (const std::string& each : {of_reason(id), of_diagnostic(id), of_breach(id)}) {
+  for (const std::string& each : {of_reason(id), of_diagnostic(id), of_violation(id)}) {
     if (each.empty()) continue;
     text += (text.empty() ? "" : "\n") + each;
   }
@@ -188,7 +188,7 @@ std::string all_explanations() {
   add_list(text, "\nMessages about a program:");
   for (const auto& each : explained_messages()) add_row(text, each.id, each.text);
   add_list(text, "\nBreaches found by batten verify:");
-  for (const auto& each : explained_breaches()) add_row(text, each.id, each.text);
+  for (const auto& each : explained_violations()) add_row(text, each.id, each.text);
   return text;
 }
 

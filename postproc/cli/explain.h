@@ -8,15 +8,15 @@
 
 namespace batten::postproc {
 
-// A breach that `batten verify` can find (Breach::id).
-struct ExplainedBreach {
+// A breach that `batten verify` can find (Violation::id).
+struct ExplainedViolation {
   std::string_view id;
   std::string_view text;
   std::string_view advice;
 };
 
 // Every id, once.
-[[nodiscard]] std::span<const ExplainedBreach> explained_breaches();
+[[nodiscard]] std::span<const ExplainedViolation> explained_violations();
 
 // All ids that can be asked for, sorted, each once: reasons why runs are kept, messages about a
 // program, breaches. Some are both a reason and a breach.

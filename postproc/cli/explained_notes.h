@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "gcode/explained_diagnostics.h"
+#include "gcode/reading/explained_diagnostics.h"
 
 namespace batten::postproc {
 

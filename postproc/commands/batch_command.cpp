@@ -12,10 +12,10 @@
 #include "postproc/batch/content_hash.h"
 #include "postproc/batch/leftovers.h"
 #include "postproc/batch/process_pool.h"
-#include "postproc/cli/exit_code.h"
-#include "postproc/cli/interrupt.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
+#include "postproc/system/exit_code.h"
+#include "postproc/system/interrupt.h"
 
 namespace batten::postproc {
 

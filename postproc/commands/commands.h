@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "gcode/modal_state.h"
-#include "gcode/source_kind.h"
-#include "geometry/point.h"
+#include "gcode/reading/source_kind.h"
+#include "gcode/state/modal_state.h"
+#include "geometry/basic/point.h"
 #include "postproc/batch/program_tree.h"
-#include "postproc/cli/log_level.h"
-#include "postproc/options.h"
+#include "postproc/options/log_level.h"
+#include "postproc/options/options.h"
 #include "postproc/profile/target_profile.h"
-#include "postproc/progress.h"
+#include "postproc/stream/progress.h"
 
 namespace batten::postproc {
 
@@ -100,7 +100,7 @@ struct BatchCommand {
 };
 [[nodiscard]] int run(const BatchCommand& command);
 
-// Puts the post script where FreeCAD looks for it (postproc/plugins/freecad_post.h).
+// Puts the post script where FreeCAD looks for it (postproc/hosts/freecad_post.h).
 struct FreecadCommand {
   std::string freecad;  // the program to ask, not given: the one in PATH
   std::string folder;   // given: nobody is asked

@@ -10,12 +10,12 @@
 #include <system_error>
 #include <utility>
 
-#include "postproc/cli/exit_code.h"
-#include "postproc/cli/interrupt.h"
-#include "postproc/cli/terminal_colour.h"
-#include "postproc/writing/output_file.h"
-#include "postproc/writing/spool_file.h"
-#include "postproc/writing/valid_utf8.h"
+#include "postproc/system/exit_code.h"
+#include "postproc/system/interrupt.h"
+#include "postproc/system/output_file.h"
+#include "postproc/system/spool_file.h"
+#include "postproc/system/terminal_colour.h"
+#include "postproc/system/valid_utf8.h"
 
 namespace batten::postproc {
 
@@ -24,7 +24,7 @@ namespace {
 // More notes and warnings than this hide what matters; the JSON report has them all.
 constexpr std::size_t kMostRemarks = 20;
 
-// Positions in a source are 32 bits wide (gcode/source_text.h).
+// Positions in a source are 32 bits wide (gcode/text/source_text.h).
 constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
 
 constexpr const char* kWasChanged = ": was changed while it was read; nothing was written";

@@ -8,11 +8,11 @@
 #include <string>
 #include <string_view>
 
-#include "gcode/diagnostic.h"
-#include "gcode/source_text.h"
-#include "postproc/cli/log_level.h"
-#include "postproc/writing/output_file.h"
-#include "postproc/writing/watched_file.h"
+#include "gcode/text/diagnostic.h"
+#include "gcode/text/source_text.h"
+#include "postproc/options/log_level.h"
+#include "postproc/system/output_file.h"
+#include "postproc/system/watched_file.h"
 
 namespace batten::postproc {
 
@@ -27,7 +27,7 @@ inline constexpr std::size_t kBytesForParts = std::size_t{1} << 21;
 [[nodiscard]] bool changed_while_read(const WatchedFile& file);
 
 // Says that a signal ended the work before anything was written, and returns its exit code.
-// Requires interrupted() (postproc/cli/interrupt.h).
+// Requires interrupted() (postproc/system/interrupt.h).
 [[nodiscard]] int end_interrupted();
 
 // 0 when written; else says why and returns the exit code.
@@ -58,7 +58,7 @@ void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& sourc
 void say(std::string_view message);
 
 // Whole lines on standard error, as they are but for bytes that are not UTF-8
-// (postproc/writing/valid_utf8.h).
+// (postproc/system/valid_utf8.h).
 void say_lines(std::string_view text);
 
 }  // namespace batten::postproc

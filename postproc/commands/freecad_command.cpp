@@ -6,11 +6,11 @@
 #include <iterator>
 #include <system_error>
 
-#include "postproc/cli/exit_code.h"
-#include "postproc/cli/interrupt.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
-#include "postproc/plugins/freecad_post.h"
+#include "postproc/hosts/freecad_post.h"
+#include "postproc/system/exit_code.h"
+#include "postproc/system/interrupt.h"
 
 namespace batten::postproc {
 

@@ -5,19 +5,19 @@
 #include <optional>
 #include <utility>
 
-#include "gcode/interpreter.h"
-#include "gcode/parser.h"
-#include "gcode/reason.h"
-#include "gcode/source_kind.h"
-#include "postproc/cli/exit_code.h"
-#include "postproc/cli/interrupt.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "gcode/reading/source_kind.h"
+#include "gcode/state/reason.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
-#include "postproc/inspect.h"
-#include "postproc/inspect_in_parts.h"
-#include "postproc/part_reader.h"
-#include "postproc/report/json_values.h"
 #include "postproc/runs/run_grouping.h"
+#include "postproc/stream/chunk_reader.h"
+#include "postproc/stream/inspect.h"
+#include "postproc/stream/inspect_in_parts.h"
+#include "postproc/system/exit_code.h"
+#include "postproc/system/interrupt.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 
@@ -157,7 +157,7 @@ InspectedProgram inspected(const gcode::SourceText& source, gcode::Language lang
   GroupingOptions grouping;
   grouping.allowed.assign(command.allowed.begin(), command.allowed.end());
   if (language == gcode::Language::kRs274 && source.text().size() >= kBytesForParts) {
-    source.set_aside({0, static_cast<std::uint32_t>(source.text().size())});
+    source.release_pages({0, static_cast<std::uint32_t>(source.text().size())});
     if (auto parts = inspect_in_parts(source, reading, grouping)) return std::move(*parts);
   }
   return inspect_whole(source, language, reading, grouping);

@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
-#include "gcode/dialect.h"
-#include "postproc/cli/exit_code.h"
+#include "gcode/control/dialect.h"
+#include "gcode/controls/built_in.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
 #include "postproc/profile/target_profile.h"
-#include "postproc/report/json_values.h"
+#include "postproc/system/exit_code.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 

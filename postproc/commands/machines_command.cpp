@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "postproc/cli/exit_code.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
+#include "postproc/machine/files/machine_file.h"
 #include "postproc/machine/machine_fields.h"
-#include "postproc/machine/machine_file.h"
-#include "postproc/report/json_values.h"
+#include "postproc/system/exit_code.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 

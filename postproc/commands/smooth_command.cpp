@@ -5,20 +5,20 @@
 #include <utility>
 #include <vector>
 
-#include "postproc/cli/exit_code.h"
-#include "postproc/cli/interrupt.h"
-#include "postproc/cli/log_level.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
+#include "postproc/options/log_level.h"
 #include "postproc/report/html_report.h"
 #include "postproc/report/json_report.h"
 #include "postproc/report/summary_text.h"
-#include "postproc/runs/near_parts.h"
-#include "postproc/runs/smooth_verdict.h"
-#include "postproc/windows.h"
-#include "postproc/writing/output_file.h"
-#include "postproc/writing/spool_file.h"
-#include "postproc/writing/watched_file.h"
+#include "postproc/runs/proximity_index.h"
+#include "postproc/stream/smooth_verdict.h"
+#include "postproc/stream/windows.h"
+#include "postproc/system/exit_code.h"
+#include "postproc/system/interrupt.h"
+#include "postproc/system/output_file.h"
+#include "postproc/system/spool_file.h"
+#include "postproc/system/watched_file.h"
 
 namespace batten::postproc {
 
@@ -160,7 +160,7 @@ class SmoothWork {
       return static_cast<int>(ExitCode::kFileError);
     }
     if (!done || !tell_of_windows()) return code_ ? code_ : finish(static_cast<int>(verdict_));
-    const auto parts = [&](const PartWriter& writer) { spool->hand_to(writer); };
+    const auto parts = [&](const PartWriter& writer) { spool->write_to(writer); };
     return finish(write_parts(output_, parts, replaces()));
   }
 

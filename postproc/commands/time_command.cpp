@@ -3,17 +3,17 @@
 #include <iterator>
 #include <optional>
 
-#include "gcode/interpreter.h"
-#include "gcode/parser.h"
-#include "gcode/source_kind.h"
-#include "postproc/cli/exit_code.h"
-#include "postproc/cli/interrupt.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "gcode/reading/source_kind.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
+#include "postproc/machine/program_time/program_time.h"
+#include "postproc/machine/program_time/program_time_dwell.h"
+#include "postproc/machine/program_time/program_time_profile.h"
 #include "postproc/report/time_report.h"
-#include "postproc/time/program_time.h"
-#include "postproc/time/program_time_dwell.h"
-#include "postproc/time/program_time_profile.h"
+#include "postproc/system/exit_code.h"
+#include "postproc/system/interrupt.h"
 
 namespace batten::postproc {
 namespace {

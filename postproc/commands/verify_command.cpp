@@ -7,26 +7,26 @@
 #include <optional>
 #include <utility>
 
-#include "gcode/interpreter.h"
-#include "gcode/parser.h"
-#include "gcode/source_kind.h"
-#include "postproc/cli/exit_code.h"
-#include "postproc/cli/interrupt.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "gcode/reading/source_kind.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
-#include "postproc/part_reader.h"
-#include "postproc/profile/added_lines.h"
-#include "postproc/proof/part_verification.h"
 #include "postproc/proof/point_spelling.h"
 #include "postproc/proof/verification.h"
-#include "postproc/report/json_values.h"
+#include "postproc/stream/added_lines.h"
+#include "postproc/stream/chunk_reader.h"
+#include "postproc/stream/part_verification.h"
+#include "postproc/system/exit_code.h"
+#include "postproc/system/interrupt.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 
 namespace {
 
 // More breaches than this tell nothing new on a screen; the JSON report has them all.
-constexpr std::size_t kMostBreaches = 20;
+constexpr std::size_t kMostViolations = 20;
 
 struct Read {
   gcode::SourceText source;
@@ -86,46 +86,47 @@ Read read(const gcode::SourceText& source, const VerifyCommand& command, gcode::
   return {source, std::move(program), std::move(interpretation), std::move(found)};
 }
 
-std::string_view name_of(BreachKind kind) {
+std::string_view name_of(ViolationKind kind) {
   switch (kind) {
-    case BreachKind::kDistance:
+    case ViolationKind::kDistance:
       return "distance";
-    case BreachKind::kNotProved:
+    case ViolationKind::kNotProved:
       return "not-proved";
-    case BreachKind::kSide:
+    case ViolationKind::kSide:
       return "side";
-    case BreachKind::kCrossing:
+    case ViolationKind::kCrossing:
       return "crossing";
-    case BreachKind::kFeed:
+    case ViolationKind::kFeed:
       return "feed";
-    case BreachKind::kRapid:
+    case ViolationKind::kRapid:
       return "rapid";
-    case BreachKind::kEvent:
+    case ViolationKind::kEvent:
       return "event";
-    case BreachKind::kTarget:
+    case ViolationKind::kTarget:
       return "target";
-    case BreachKind::kState:
+    case ViolationKind::kState:
       break;
   }
   return "state";
 }
 
-std::string text_of(const Breach& breach, const VerifyCommand& command) {
-  const std::string place = breach.new_line > 0
-                                ? fmt::format("{}:{}", command.new_program, breach.new_line)
-                                : fmt::format("{}:{}", command.old_program, breach.old_line);
-  const std::string old_place = breach.new_line > 0 && breach.old_line > 0
-                                    ? fmt::format(" (line {} of the old program)", breach.old_line)
-                                    : "";
-  return fmt::format("{}: {}: {}{}\n", place, breach.id, breach.message, old_place);
+std::string text_of(const Violation& violation, const VerifyCommand& command) {
+  const std::string place = violation.new_line > 0
+                                ? fmt::format("{}:{}", command.new_program, violation.new_line)
+                                : fmt::format("{}:{}", command.old_program, violation.old_line);
+  const std::string old_place =
+      violation.new_line > 0 && violation.old_line > 0
+          ? fmt::format(" (line {} of the old program)", violation.old_line)
+          : "";
+  return fmt::format("{}: {}: {}{}\n", place, violation.id, violation.message, old_place);
 }
 
 std::string summary_of(const Verification& verification, const VerifyCommand& command) {
   if (!verification.proved()) {
     return fmt::format("NOT PROVED: {} of the new program against the old one\n",
-                       verification.breaches.size() == 1
+                       verification.violations.size() == 1
                            ? "1 breach"
-                           : fmt::format("{} breaches", verification.breaches.size()));
+                           : fmt::format("{} breaches", verification.violations.size()));
   }
   const bool band = command.tolerance_kind == geometry::ToleranceKind::kBand;
   const std::string corners =
@@ -158,14 +159,14 @@ Json json_of(const Stretch& stretch) {
 
 std::string json_report(const Verification& verification, const VerifyCommand& command,
                         const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
-  Json breaches = Json::array();
-  for (const Breach& breach : verification.breaches) {
-    breaches.push_back({{"kind", name_of(breach.kind)},
-                        {"id", breach.id},
-                        {"old_line", breach.old_line},
-                        {"new_line", breach.new_line},
-                        {"deviation_mm", breach.deviation_mm},
-                        {"message", breach.message}});
+  Json violations = Json::array();
+  for (const Violation& violation : verification.violations) {
+    violations.push_back({{"kind", name_of(violation.kind)},
+                          {"id", violation.id},
+                          {"old_line", violation.old_line},
+                          {"new_line", violation.new_line},
+                          {"deviation_mm", violation.deviation_mm},
+                          {"message", violation.message}});
   }
   Json stretches = Json::array();
   for (const Stretch& stretch : verification.stretches) {
@@ -182,7 +183,7 @@ std::string json_report(const Verification& verification, const VerifyCommand& c
                     {"deviation_line", verification.deviation_line},
                     {"corner_mm", verification.corner_mm},
                     {"events_compared", verification.events_compared},
-                    {"breaches", std::move(breaches)},
+                    {"breaches", std::move(violations)},
                     {"stretches", std::move(stretches)},
                     {"diagnostics", diagnostics_json(of_new, new_source)}});
 }
@@ -244,24 +245,26 @@ bool is_control_open(const VerifyCommand& command) {
 void compare_points(const VerifyCommand& command, const gcode::SourceText& old_source,
                     const gcode::SourceText& new_source, Verification& verification) {
   if (!is_control_open(command)) return;
-  if (auto breach = other_point_spelling(old_source, new_source)) {
-    verification.breaches.push_back(std::move(*breach));
+  if (auto violation = other_point_spelling(old_source, new_source)) {
+    verification.violations.push_back(std::move(*violation));
   }
 }
 
-void append(const std::vector<Breach>& breaches, Verification& verification) {
-  verification.breaches.insert(verification.breaches.end(), breaches.begin(), breaches.end());
+void append(const std::vector<Violation>& violations, Verification& verification) {
+  verification.violations.insert(verification.violations.end(), violations.begin(),
+                                 violations.end());
 }
 
 // Says what was found, and returns the exit code. `added`: lines of a profile, which are not
 // compared.
 int tell(const VerifyCommand& command, const Verification& verification, std::size_t added,
          const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
-  for (std::size_t i = 0; i < verification.breaches.size() && i < kMostBreaches; ++i) {
-    say_lines(text_of(verification.breaches[i], command));
+  for (std::size_t i = 0; i < verification.violations.size() && i < kMostViolations; ++i) {
+    say_lines(text_of(verification.violations[i], command));
   }
-  if (verification.breaches.size() > kMostBreaches) {
-    say(fmt::format("{} more breaches, see --json", verification.breaches.size() - kMostBreaches));
+  if (verification.violations.size() > kMostViolations) {
+    say(fmt::format("{} more breaches, see --json",
+                    verification.violations.size() - kMostViolations));
   }
   if (!verification.proved() || command.log_level >= LogLevel::kInfo) {
     say_lines(summary_of(verification, command));
@@ -303,7 +306,7 @@ std::optional<VerifiedInParts> proved_in_parts(const VerifyCommand& command,
   const auto old_reading = part_reading(old_source, command);
   const auto new_reading = part_reading(new_source, command);
   for (const gcode::SourceText* source : {&old_source, &new_source}) {
-    source->set_aside({0, static_cast<std::uint32_t>(source->text().size())});
+    source->release_pages({0, static_cast<std::uint32_t>(source->text().size())});
   }
   if (!old_reading || !new_reading) return std::nullopt;
   return verify_in_parts({old_source, *old_reading}, {new_source, *new_reading},
@@ -359,7 +362,7 @@ int run(const VerifyCommand& command) {
       after.program.language == gcode::Language::kRs274) {
     compare_points(command, *old_source, *new_source, verification);
   }
-  append(added.breaches, verification);
+  append(added.violations, verification);
   append(events_in_brackets({.program = &after.program, .interpretation = &after.interpretation},
                             added.brackets),
          verification);

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/modal_state.h"
+#include "gcode/state/modal_state.h"
 
 namespace batten::postproc {
 

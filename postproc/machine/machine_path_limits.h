@@ -1,8 +1,8 @@
 // What a feed plan may ask of a machine.
 #pragma once
 
-#include "postproc/machine/feed_plan_limits.h"
 #include "postproc/machine/machine.h"
+#include "postproc/machine/planner/feed_plan_limits.h"
 
 namespace batten::postproc {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <variant>
 
-#include "gcode/target_table.h"
+#include "gcode/control/target_table.h"
 
 namespace batten::postproc {
 

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <utility>
 
+#include "gcode/controls/built_in.h"
 #include "postproc/machine/machine.h"
 #include "postproc/profile/profile_keys.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "gcode/dialect.h"
-#include "postproc/profile/profile_words.h"
+#include "gcode/control/dialect.h"
+#include "postproc/options/profile_words.h"
 
 namespace batten::postproc {
 

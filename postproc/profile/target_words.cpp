@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "postproc/profile/profile_words.h"
+#include "postproc/options/profile_words.h"
 
 namespace batten::postproc {
 

@@ -1,9 +1,9 @@
 // Whether the words of a program mean to the target what they mean to the reader.
 #pragma once
 
-#include "gcode/diagnostic.h"
-#include "gcode/dialect.h"
-#include "gcode/program.h"
+#include "gcode/control/dialect.h"
+#include "gcode/text/diagnostic.h"
+#include "gcode/text/program.h"
 
 namespace batten::postproc {
 

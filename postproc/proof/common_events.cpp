@@ -11,12 +11,12 @@
 #include <string_view>
 #include <utility>
 
-#include "gcode/block_words.h"
-#include "gcode/dwell.h"
 #include "gcode/klartext/statement.h"
 #include "gcode/siemens/block_names.h"
+#include "gcode/state/block_words.h"
+#include "gcode/state/dwell.h"
+#include "gcode/state/path_state.h"
 #include "postproc/proof/common_texts.h"
-#include "postproc/proof/path_state.h"
 
 namespace batten::postproc {
 namespace {
@@ -64,11 +64,11 @@ class CommonLister {
       return;
     }
     list_comments(block);
-    if (block.opacity == gcode::Opacity::kProgramMark) return;
-    const bool foreign = is_klartext() && block.opacity == gcode::Opacity::kForeign;
+    if (block.opacity == gcode::ParseStatus::kProgramMark) return;
+    const bool foreign = is_klartext() && block.opacity == gcode::ParseStatus::kForeign;
     if (foreign && !block.block_delete && list_statement(block)) return;
     const bool split =
-        block.opacity == gcode::Opacity::kNone && meaning.kind != gcode::BlockKind::kOpaque;
+        block.opacity == gcode::ParseStatus::kNone && meaning.kind != gcode::BlockKind::kOpaque;
     const bool plain = (split || names_are_read(block)) && !block.block_delete &&
                        !meaning.label_referenced && !meaning.entered_from_elsewhere;
     if (!plain) return add_own_text(block);
@@ -78,7 +78,7 @@ class CommonLister {
 
   // A Siemens block with units or D, whose motion the interpreter would not follow: it has none.
   [[nodiscard]] bool names_are_read(const Block& block) const {
-    if (block.opacity != gcode::Opacity::kNamedWords) return false;
+    if (block.opacity != gcode::ParseStatus::kNamedWords) return false;
     const gcode::BlockWords words(program_.words_of(block));
     const bool plain = words.problem() == gcode::BlockWords::Problem::kNone && words.all_numbers();
     if (!plain || words.has_any("XYZIJKRABCUVW")) return false;

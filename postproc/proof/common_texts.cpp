@@ -4,9 +4,9 @@
 #include <cmath>
 #include <system_error>
 
-#include "gcode/characters.h"
 #include "gcode/klartext/statement.h"
-#include "gcode/number_format.h"
+#include "gcode/text/characters.h"
+#include "gcode/text/number_format.h"
 
 namespace batten::postproc {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "gcode/part_reading.h"
+#include "gcode/reading/part_reading.h"
 
 namespace batten::postproc {
 
@@ -41,7 +41,7 @@ void for_each_length(const gcode::SourceText& source, const Look& look) {
         if ((is_pointless(word) || is_pointed(word)) && !look(word, block)) return;
       }
     }
-    source.set_aside({begin, carry.begin});
+    source.release_pages({begin, carry.begin});
   }
 }
 
@@ -77,17 +77,17 @@ bool is_other(const gcode::Word& word, const Spelling& before) {
 
 }  // namespace
 
-std::optional<Breach> other_point_spelling(const gcode::SourceText& before,
-                                           const gcode::SourceText& after) {
+std::optional<Violation> other_point_spelling(const gcode::SourceText& before,
+                                              const gcode::SourceText& after) {
   const Spelling spelling = spelling_of(before);
-  std::optional<Breach> breach;
+  std::optional<Violation> violation;
   for_each_length(after, [&](const gcode::Word& word, const gcode::Block& block) {
     if (!is_other(word, spelling)) return true;
-    breach.emplace();
-    breach->kind = BreachKind::kNotProved;
-    breach->id = "point-spelling";
-    breach->new_line = block.line;
-    breach->message = fmt::format(
+    violation.emplace();
+    violation->kind = ViolationKind::kNotProved;
+    violation->id = "point-spelling";
+    violation->new_line = block.line;
+    violation->message = fmt::format(
         "found {} {} a decimal point, expected it {} one, as in the old program: some controls "
         "take X5. for 5 mm and X5 for 0.005 mm. Say which control it is for (--target or "
         "--source), or --decimals",
@@ -95,7 +95,7 @@ std::optional<Breach> other_point_spelling(const gcode::SourceText& before,
         word.has_point ? "without" : "with");
     return false;
   });
-  return breach;
+  return violation;
 }
 
 }  // namespace batten::postproc

@@ -1,11 +1,11 @@
 // Do two programs write their numbers alike, with a decimal point or without one? Some controls of
-// the FANUC kind take X5. for 5 mm and X5 for 0.005 mm (gcode/decimals.h). Where nobody says which
-// control the programs are for, the one is not the other.
+// the FANUC kind take X5. for 5 mm and X5 for 0.005 mm (gcode/text/decimals.h). Where nobody says
+// which control the programs are for, the one is not the other.
 #pragma once
 
 #include <optional>
 
-#include "gcode/source_text.h"
+#include "gcode/text/source_text.h"
 #include "postproc/proof/verification.h"
 
 namespace batten::postproc {
@@ -16,7 +16,7 @@ namespace batten::postproc {
 //   - ends with a bare point, where no length of the old one has a point.
 // Zero is zero. Programs that do not end numbers with a bare point, X5 or X5.000, are for other
 // controls. Linear time; holds the numbers of the old program that end with a bare point.
-[[nodiscard]] std::optional<Breach> other_point_spelling(const gcode::SourceText& before,
-                                                         const gcode::SourceText& after);
+[[nodiscard]] std::optional<Violation> other_point_spelling(const gcode::SourceText& before,
+                                                            const gcode::SourceText& after);
 
 }  // namespace batten::postproc

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "gcode/code_groups.h"
-#include "gcode/reason.h"
-#include "postproc/proof/path_state.h"
+#include "gcode/state/code_groups.h"
+#include "gcode/state/path_state.h"
+#include "gcode/state/reason.h"
 
 namespace batten::postproc {
 namespace {
@@ -19,7 +19,7 @@ using gcode::CodeGroup;
 using gcode::ModalState;
 using gcode::Motion;
 using gcode::MotionKind;
-using gcode::Tri;
+using gcode::TriState;
 using gcode::Word;
 namespace reason = gcode::reason;
 
@@ -82,7 +82,7 @@ class Lister {
     for (block_index_ = 0; block_index_ < program_.blocks.size(); ++block_index_) {
       const Block& block = program_.blocks[block_index_];
       if (interpretation_.blocks[block_index_].of_curve) continue;
-      if (block.opacity == gcode::Opacity::kNone && !block.block_delete) remember_words(block);
+      if (block.opacity == gcode::ParseStatus::kNone && !block.block_delete) remember_words(block);
       forget_words_in_unknown_state();
     }
     return set_by_word_;
@@ -101,7 +101,7 @@ class Lister {
     const Block& block = program_.blocks[index];
     const BlockMeaning& meaning = interpretation_.blocks[index];
     if (meaning.barrier != reason::kRapid || meaning.motion < 0 || meaning.of_curve) return false;
-    if (block.opacity != gcode::Opacity::kNone || block.block_delete) return false;
+    if (block.opacity != gcode::ParseStatus::kNone || block.block_delete) return false;
     constexpr std::string_view kLetters = "NGXYZF";
     const auto is_plain = [&](const Word& word) {
       return kLetters.find(word.letter) != std::string_view::npos &&
@@ -128,10 +128,10 @@ class Lister {
       if (meaning.motion >= 0) add_cut(meaning);
       return;
     }
-    if (block.opacity != gcode::Opacity::kNone || block.block_delete) {
+    if (block.opacity != gcode::ParseStatus::kNone || block.block_delete) {
       add_text(text_of_block(block));
       // Its names may have changed any group.
-      if (block.opacity == gcode::Opacity::kNamedWords) set_by_word_.fill(kNotSet);
+      if (block.opacity == gcode::ParseStatus::kNamedWords) set_by_word_.fill(kNotSet);
     } else {
       list_words(block, meaning);
       list_active_comments(block);
@@ -188,7 +188,7 @@ class Lister {
     const BlockMeaning& meaning = interpretation_.blocks[index];
     if (meaning.motion < 0 || meaning.of_curve) return meaning.motion >= 0;
     const Motion& motion = interpretation_.motions[static_cast<std::size_t>(meaning.motion)];
-    return block.opacity == gcode::Opacity::kNone && !block.block_delete &&
+    return block.opacity == gcode::ParseStatus::kNone && !block.block_delete &&
            motion.kind != MotionKind::kRapid && has_length(motion.piece) &&
            !must_stand_as_text(block, meaning);
   }

@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/code_groups.h"
-#include "gcode/motion.h"
-#include "gcode/program.h"
-#include "geometry/point.h"
+#include "gcode/state/code_groups.h"
+#include "gcode/state/motion.h"
+#include "gcode/text/program.h"
+#include "geometry/basic/point.h"
 
 namespace batten::postproc {
 

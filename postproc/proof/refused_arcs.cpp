@@ -6,8 +6,8 @@
 #include <span>
 #include <string_view>
 
-#include "gcode/dialects/arc_rules.h"
-#include "geometry/numeric.h"
+#include "gcode/controls/arc_rules.h"
+#include "geometry/basic/rounding.h"
 
 namespace batten::postproc {
 namespace {
@@ -32,10 +32,10 @@ bool is_same(const geometry::Arc& a, const geometry::Arc& b) {
 
 }  // namespace
 
-std::vector<Breach> refused_arcs(const ReadProgram& before, const ReadProgram& after,
-                                 const std::vector<Stretch>& stretches,
-                                 const gcode::Dialect& target, const OldLine& old_line) {
-  std::vector<Breach> breaches;
+std::vector<Violation> refused_arcs(const ReadProgram& before, const ReadProgram& after,
+                                    const std::vector<Stretch>& stretches,
+                                    const gcode::Dialect& target, const OldLine& old_line) {
+  std::vector<Violation> violations;
   for (const Stretch& stretch : stretches) {
     const auto is_old = [&](const geometry::Arc& arc) {
       return std::ranges::any_of(
@@ -51,17 +51,17 @@ std::vector<Breach> refused_arcs(const ReadProgram& before, const ReadProgram& a
       const gcode::Units units = after.interpretation->states[meaning.state_after].units;
       const std::string_view why = gcode::arc_refusal(target, *arc, units);
       if (why.empty() || is_old(*arc)) continue;
-      Breach breach;
-      breach.kind = BreachKind::kTarget;
-      breach.id = "arc-refused";
-      breach.old_line = old_line(m.block, stretch);
-      breach.new_line = after.program->blocks[m.block].line;
-      breach.message =
+      Violation violation;
+      violation.kind = ViolationKind::kTarget;
+      violation.id = "arc-refused";
+      violation.old_line = old_line(m.block, stretch);
+      violation.new_line = after.program->blocks[m.block].line;
+      violation.message =
           fmt::format("{} refuses this arc: {}; expected one that it runs", target.name(), why);
-      breaches.push_back(std::move(breach));
+      violations.push_back(std::move(violation));
     }
   }
-  return breaches;
+  return violations;
 }
 
 }  // namespace batten::postproc

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "gcode/dialect.h"
+#include "gcode/control/dialect.h"
 #include "postproc/proof/verification.h"
 
 namespace batten::postproc {
@@ -16,9 +16,10 @@ using OldLine = std::function<std::uint32_t(std::uint32_t block, const Stretch& 
 
 // A breach for each arc of a stretch that was compared which the target refuses (gcode/dialects/
 // arc_rules.h). Arcs of the old program are its own affair: they are copied.
-[[nodiscard]] std::vector<Breach> refused_arcs(const ReadProgram& before, const ReadProgram& after,
-                                               const std::vector<Stretch>& stretches,
-                                               const gcode::Dialect& target,
-                                               const OldLine& old_line);
+[[nodiscard]] std::vector<Violation> refused_arcs(const ReadProgram& before,
+                                                  const ReadProgram& after,
+                                                  const std::vector<Stretch>& stretches,
+                                                  const gcode::Dialect& target,
+                                                  const OldLine& old_line);
 
 }  // namespace batten::postproc

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/chord_polyline.h"
+#include "geometry/distance/chord_polyline.h"
 
 namespace batten::postproc {
 
@@ -18,8 +18,8 @@ using geometry::Vector3;
 constexpr double kChordPart = 0.01;
 
 // A path with more chords of arcs than twice this is cut into longer ones as a whole, whose error
-// is greater by the square (geometry/chord_polyline.h): their number here is known to a factor of
-// two.
+// is greater by the square (geometry/distance/chord_polyline.h): their number here is known to a
+// factor of two.
 constexpr double kManyChords = 1 << 19;
 
 // mm: how far chords must be from each other so that neither they meet, nor those into which

@@ -1,6 +1,6 @@
 // Whether a long path may meet itself: cross, touch or run over itself. What new_crossing
-// (geometry/tolerance_band.h) looks for is found among such meetings only. Holds the corners of the
-// path's chords, 24 bytes each, and nothing else of it.
+// (geometry/band/tolerance_band.h) looks for is found among such meetings only. Holds the corners
+// of the path's chords, 24 bytes each, and nothing else of it.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "geometry/path.h"
-#include "geometry/point.h"
+#include "geometry/basic/point.h"
+#include "geometry/path/path.h"
 
 namespace batten::postproc {
 

@@ -4,10 +4,10 @@ namespace batten::postproc {
 namespace {
 
 using gcode::ModalState;
-using gcode::Tri;
+using gcode::TriState;
 
 struct SwitchItem {
-  Tri ModalState::*item;
+  TriState ModalState::*item;
   std::string_view name;
 };
 constexpr SwitchItem kSwitches[] = {

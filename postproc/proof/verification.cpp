@@ -11,11 +11,11 @@
 
 #include "postproc/proof/common_events.h"
 #include "postproc/proof/event_alignment.h"
-#include "postproc/proof/event_breaches.h"
+#include "postproc/proof/event_violations.h"
 #include "postproc/proof/parallel_verification.h"
+#include "postproc/proof/section_comparison.h"
 #include "postproc/proof/state_difference.h"
-#include "postproc/proof/stretch_comparison.h"
-#include "postproc/side_by_side.h"
+#include "postproc/system/parallel_for.h"
 
 namespace batten::postproc {
 namespace {
@@ -109,8 +109,8 @@ class Verifier {
     }
     finish(next, aligned.complete);
     flush_stretch();
-    merge_moved_events(breaches_);
-    for (Breach& breach : breaches_) result_.breaches.push_back(std::move(breach));
+    merge_moved_events(violations_);
+    for (Violation& violation : violations_) result_.violations.push_back(std::move(violation));
     result_.events_compared = aligned.same.size();
     return std::move(result_);
   }
@@ -128,7 +128,7 @@ class Verifier {
     const GapReport gap = report_events_between(
         {{old_list_.events.data() + next.before, same.before - next.before}, &old_},
         {{new_list_.events.data() + next.after, same.after - next.after}, &new_});
-    breaches_.insert(breaches_.end(), gap.breaches.begin(), gap.breaches.end());
+    violations_.insert(violations_.end(), gap.violations.begin(), gap.violations.end());
     return gap.only_words;
   }
 
@@ -139,7 +139,7 @@ class Verifier {
     const std::string_view item = in_common_words_ ? different_in_common(before, old_, after, new_)
                                                    : different_item(before, old_, after, new_);
     if (!item.empty() && item != last_different_item_) {
-      breaches_.push_back(state_breach(item, before, old_, after, new_));
+      violations_.push_back(state_violation(item, before, old_, after, new_));
     }
     last_different_item_ = item;
   }
@@ -154,7 +154,7 @@ class Verifier {
     // Rounding of the printed decimals is far above, that of doubles far below this share.
     constexpr double kRounding = 1e-9;
     if (std::max(start, end) <= promise_.tolerance_mm * (1 + kRounding)) return;
-    breaches_.push_back(rapid_breach(before, old_, after, new_));
+    violations_.push_back(rapid_violation(before, old_, after, new_));
   }
 
   // --- moves --------------------------------------------------------------------------------
@@ -201,7 +201,7 @@ class Verifier {
       if (!moves.gap && moves.any()) asked.push_back(&moves);
     }
     if (threads_ == 1 || asked.size() < 2) return;
-    side_by_side(threads_, asked.size(), [&](std::size_t i) {
+    parallel_for(threads_, asked.size(), [&](std::size_t i) {
       asked[i]->result = compare_stretch(asked[i]->before, asked[i]->after, promise_);
     });
   }
@@ -229,14 +229,15 @@ class Verifier {
   // Both stretches beside an event break the tolerance, but together they keep it: the path is
   // right, and the event stands at another place of it.
   void join_if_event_moved(Compared& first, Compared& second) const {
-    if (first.result.breaches.empty() || second.result.breaches.empty()) return;
+    if (first.result.violations.empty() || second.result.violations.empty()) return;
     const StretchSide before = joined(first.before, second.before);
     const StretchSide after = joined(first.after, second.after);
     if (compare_whole_path(before, after, promise_).verdict != Verdict::kProved) return;
-    const double moved = first.result.breaches.front().deviation_mm;
-    first.result.breaches = {moved_event_breach(old_list_.events[first.event.before], old_,
-                                                new_list_.events[first.event.after], new_, moved)};
-    second.result.breaches.clear();
+    const double moved = first.result.violations.front().deviation_mm;
+    first.result.violations = {moved_event_violation(old_list_.events[first.event.before], old_,
+                                                     new_list_.events[first.event.after], new_,
+                                                     moved)};
+    second.result.violations.clear();
   }
 
   static StretchSide joined(const StretchSide& first, const StretchSide& second) {
@@ -250,7 +251,8 @@ class Verifier {
   void flush_stretch() {
     if (!last_) return;
     for (Stretch& stretch : last_->result.stretches) add_stretch(std::move(stretch));
-    for (Breach& breach : last_->result.breaches) breaches_.push_back(std::move(breach));
+    for (Violation& violation : last_->result.violations)
+      violations_.push_back(std::move(violation));
     last_.reset();
   }
 
@@ -269,8 +271,8 @@ class Verifier {
   void finish(const EventPair& next, bool complete) {
     if (!complete) {
       flush_stretch();
-      breaches_.push_back(too_many_differences({old_list_.events, &old_}, next.before,
-                                               {new_list_.events, &new_}, next.after));
+      violations_.push_back(too_many_differences({old_list_.events, &old_}, next.before,
+                                                 {new_list_.events, &new_}, next.after));
       return;
     }
     const EventPair end{old_list_.events.size(), new_list_.events.size()};
@@ -281,7 +283,7 @@ class Verifier {
     if (in_common_words_) return;
     const std::string_view item = different_item_at_end(old_, new_);
     if (!item.empty() && item != last_different_item_) {
-      breaches_.push_back(end_state_breach(item, old_, new_));
+      violations_.push_back(end_state_violation(item, old_, new_));
     }
   }
 
@@ -295,7 +297,7 @@ class Verifier {
   Follower old_follower_;
   Follower new_follower_;
   Verification result_;
-  std::vector<Breach> breaches_;
+  std::vector<Violation> violations_;
   std::vector<Moves> moves_;  // one for each pair of events that are the same, and behind them
   std::size_t next_moves_ = 0;
   std::optional<Compared> last_;

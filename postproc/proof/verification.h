@@ -4,7 +4,8 @@
 // What is compared, in order: every block that acts (M, S, T words, coordinate systems,
 // dwells, opaque blocks ..) must stand in both, the same; rapids must have the same ends; and
 // between them each stretch of cutting moves at one feed must keep the tolerance, both ways
-// and in order (geometry/path_distance). What counts as an event: postproc/proof/program_events.h.
+// and in order (geometry/distance/path_distance). What counts as an event:
+// postproc/proof/program_events.h.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +14,16 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/motion.h"
-#include "gcode/program.h"
-#include "geometry/path_distance.h"
-#include "geometry/side.h"
-#include "geometry/tolerance_kind.h"
+#include "gcode/state/motion.h"
+#include "gcode/text/program.h"
+#include "geometry/basic/side.h"
+#include "geometry/basic/tolerance_kind.h"
+#include "geometry/distance/path_distance.h"
 #include "postproc/proof/program_events.h"
 
 namespace batten::postproc {
 
-enum class BreachKind {
+enum class ViolationKind {
   kDistance,   // a stretch leaves the tolerance
   kNotProved,  // a stretch could neither be proved nor refuted
   kSide,       // a stretch comes over to the side that is not allowed
@@ -34,8 +35,8 @@ enum class BreachKind {
   kTarget,     // a new block that the target refuses: asked where text for a target is proved
 };
 
-struct Breach {
-  BreachKind kind = BreachKind::kDistance;
+struct Violation {
+  ViolationKind kind = ViolationKind::kDistance;
   std::string id;  // stable, all listed in docs/diagnostics.md: "distance", "event-lost" ..
   std::uint32_t old_line = 0;  // of the breach itself, as near as it is known; 0: none
   std::uint32_t new_line = 0;
@@ -74,13 +75,13 @@ struct Stretch {
 };
 
 struct Verification {
-  std::vector<Breach> breaches;      // empty: proved
-  std::vector<Stretch> stretches;    // in order; identical ones are not listed
-  double deviation_mm = 0;           // greatest proved bound
-  std::uint32_t deviation_line = 0;  // of the old program
-  double corner_mm = 0;              // greatest of the stretches
+  std::vector<Violation> violations;  // empty: proved
+  std::vector<Stretch> stretches;     // in order; identical ones are not listed
+  double deviation_mm = 0;            // greatest proved bound
+  std::uint32_t deviation_line = 0;   // of the old program
+  double corner_mm = 0;               // greatest of the stretches
   std::size_t events_compared = 0;
-  [[nodiscard]] bool proved() const { return breaches.empty(); }
+  [[nodiscard]] bool proved() const { return violations.empty(); }
 };
 
 // Feeds are the same when they differ by less than a millionth: they are printed again.

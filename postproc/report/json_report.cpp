@@ -1,8 +1,8 @@
 #include "postproc/report/json_report.h"
 
-#include "postproc/cli/decimals_option.h"
-#include "postproc/report/json_values.h"
+#include "postproc/options/decimals_option.h"
 #include "postproc/report/run_reasons.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 

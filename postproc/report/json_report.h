@@ -11,14 +11,13 @@
 
 #include <string>
 
-#include "postproc/report/json_values.h"
 #include "postproc/report/smooth_report.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 
 // The object itself.
 [[nodiscard]] Json smooth_json(const SmoothReport& report);
-
 
 [[nodiscard]] std::string json_report(const SmoothReport& report);
 

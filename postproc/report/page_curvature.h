@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "geometry/path.h"
-#include "geometry/point.h"
+#include "geometry/basic/point.h"
+#include "geometry/path/path.h"
 
 namespace batten::postproc {
 

@@ -7,13 +7,13 @@
 #include <optional>
 #include <vector>
 
-#include "gcode/interpreter.h"
-#include "gcode/parser.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "postproc/convert/conversion.h"
 #include "postproc/proof/verification.h"
 #include "postproc/report/compact_numbers.h"
 #include "postproc/report/json_report.h"
 #include "postproc/report/page_speed.h"
-#include "postproc/translation/conversion.h"
 
 namespace batten::postproc {
 namespace {

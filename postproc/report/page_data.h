@@ -2,8 +2,8 @@
 #pragma once
 
 #include "postproc/report/html_report.h"
-#include "postproc/report/json_values.h"
 #include "postproc/report/page_path.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/numeric.h"
-#include "geometry/path_matching.h"
+#include "geometry/basic/rounding.h"
+#include "geometry/distance/path_matching.h"
 #include "postproc/report/page_curvature.h"
 #include "postproc/report/page_thinning.h"
 

@@ -3,7 +3,7 @@
 //
 // Made from the two texts alone, by the verifier's own reading and comparison: the deviation along
 // the path is the distance of the pairs that are the certificate of the proof
-// (geometry/path_matching.h), not a nearest-point distance measured beside it.
+// (geometry/distance/path_matching.h), not a nearest-point distance measured beside it.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,10 @@
 #include <span>
 #include <vector>
 
-#include "geometry/point.h"
-#include "postproc/pipeline.h"
+#include "geometry/basic/point.h"
 #include "postproc/proof/program_events.h"
 #include "postproc/proof/verification.h"
+#include "postproc/stream/pipeline.h"
 
 namespace batten::postproc {
 

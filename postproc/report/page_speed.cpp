@@ -6,12 +6,12 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/numeric.h"
-#include "postproc/machine/controller_models.h"
-#include "postproc/machine/cycle_time.h"
-#include "postproc/machine/jerk_motion.h"
+#include "geometry/basic/rounding.h"
+#include "postproc/machine/models/controller_models.h"
+#include "postproc/machine/models/cycle_time.h"
+#include "postproc/machine/models/jerk_motion.h"
+#include "postproc/machine/models/velocity_profile.h"
 #include "postproc/machine/unit_sizes.h"
-#include "postproc/machine/velocity_profile.h"
 
 namespace batten::postproc {
 namespace {
@@ -124,7 +124,7 @@ void ProgramSpeeds::add_chain(const ReadProgram& read, const Cut* begin, const C
   const std::uint32_t block = meaning.motions[begin->motion].block;
   const gcode::PathMode path = meaning.states[meaning.blocks[block].state_after].path;
   const StretchChain chain = stretches_of(with_length_and_feed(pieces, machine), machine, path,
-                                          ChainEnd::kStop, WantPlaces::kYes);
+                                          ChainEnd::kStop, WithPositions::kYes);
   Ways ways(chain, ends);
   std::vector<Sample> samples;
   for_each_speed(chain, [&](double planned, double speed) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "geometry/numeric.h"
+#include "geometry/basic/rounding.h"
 
 namespace batten::postproc {
 namespace {

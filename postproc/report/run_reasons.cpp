@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "gcode/reason.h"
+#include "gcode/state/reason.h"
 
 namespace batten::postproc {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "postproc/pipeline.h"
+#include "postproc/stream/pipeline.h"
 
 namespace batten::postproc {
 

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "gcode/source_text.h"
-#include "postproc/options.h"
-#include "postproc/pipeline.h"
+#include "gcode/text/source_text.h"
+#include "postproc/options/options.h"
+#include "postproc/stream/pipeline.h"
 
 namespace batten::postproc {
 

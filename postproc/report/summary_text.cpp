@@ -8,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "gcode/reason.h"
+#include "gcode/state/reason.h"
+#include "gcode/state/units.h"
 #include "postproc/report/run_reasons.h"
 
 namespace batten::postproc {

@@ -1,5 +1,5 @@
-#include "postproc/report/json_values.h"
 #include "postproc/report/time_report.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 namespace {

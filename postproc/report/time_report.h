@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "gcode/diagnostic.h"
-#include "gcode/program.h"
+#include "gcode/text/diagnostic.h"
+#include "gcode/text/program.h"
 #include "postproc/machine/machine.h"
-#include "postproc/time/program_time.h"
+#include "postproc/machine/program_time/program_time.h"
 
 namespace batten::postproc {
 

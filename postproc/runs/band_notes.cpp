@@ -13,8 +13,8 @@
 #include <variant>
 #include <vector>
 
-#include "geometry/numeric.h"
-#include "geometry/tolerance_band.h"
+#include "geometry/band/tolerance_band.h"
+#include "geometry/basic/rounding.h"
 #include "postproc/runs/run_blocks.h"
 
 namespace batten::postproc {
@@ -129,7 +129,7 @@ void BandNoteTally::add(std::span<const gcode::Diagnostics> of_runs, gcode::Diag
       if (told_ < kMostBandNotes) {
         ++told_;
         found.push_back(note);
-      } else if (++untold_ == 1) {
+      } else if (++missing_provenance_ == 1) {
         first_untold_ = note.where;
       }
     }
@@ -137,9 +137,10 @@ void BandNoteTally::add(std::span<const gcode::Diagnostics> of_runs, gcode::Diag
 }
 
 void BandNoteTally::tell_rest(gcode::Diagnostics& found) const {
-  if (untold_ == 0) return;
-  found.push_back({gcode::Severity::kNote, "band-overlap", first_untold_,
-                   fmt::format("{} more notes on bands that overlap or have cusps", untold_)});
+  if (missing_provenance_ == 0) return;
+  found.push_back(
+      {gcode::Severity::kNote, "band-overlap", first_untold_,
+       fmt::format("{} more notes on bands that overlap or have cusps", missing_provenance_)});
 }
 
 void append_band_notes(std::span<const gcode::Diagnostics> of_runs, gcode::Diagnostics& found) {

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <span>
 
-#include "gcode/diagnostic.h"
-#include "gcode/motion.h"
-#include "gcode/program.h"
+#include "gcode/state/motion.h"
+#include "gcode/text/diagnostic.h"
+#include "gcode/text/program.h"
 #include "postproc/runs/section.h"
 
 namespace batten::postproc {
@@ -36,7 +36,7 @@ class BandNoteTally {
 
  private:
   std::size_t told_ = 0;
-  std::size_t untold_ = 0;
+  std::size_t missing_provenance_ = 0;
   gcode::SourceSpan first_untold_;
 };
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/path.h"
+#include "geometry/path/path.h"
 
 namespace batten::postproc {
 

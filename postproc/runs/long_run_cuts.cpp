@@ -60,9 +60,9 @@ void LongRunCuts::add_move(std::uint32_t block, const geometry::Point3& start,
   if (adjacent_ && moves_ >= from_ + limits_.shortest) {
     const gcode::Block& of_text = program_->blocks[block];
     candidates_.push_back(
-        {moves_, fitness_at(before_, start, end), {of_text.line, of_text.span.begin}});
+        {moves_, split_score_at(before_, start, end), {of_text.line, of_text.span.begin}});
   }
-  if (limits_.rewritten) strands_.add(start, end, program_->blocks[block].line);
+  if (limits_.rewritten) clusters_.add(start, end, program_->blocks[block].line);
   ++moves_;
   before_ = start;
   adjacent_ = true;
@@ -76,7 +76,7 @@ std::optional<LongRunCuts::Candidate> LongRunCuts::choice(std::size_t end) const
   for (const Candidate& candidate : candidates_) {
     if (candidate.vertex > end) break;
     if (best && candidate.vertex > from_ + limits_.longest) break;
-    if (!best || !(candidate.fitness < best->fitness)) best = candidate;
+    if (!best || !(candidate.split_score < best->split_score)) best = candidate;
   }
   return best;
 }
@@ -102,9 +102,9 @@ void LongRunCuts::cut(bool run_ends) {
 void LongRunCuts::end_run() {
   if (moves_ > 0) cut(true);
   if (moves_ + 1 > limits_.whole_at_most && !cut_lines_.empty() && limits_.rewritten) {
-    if (auto near = strands_.near_parts(cut_lines_)) near_.push_back(std::move(*near));
+    if (auto near = clusters_.self_proximity(cut_lines_)) near_.push_back(std::move(*near));
   }
-  strands_.clear();
+  clusters_.clear();
   cut_lines_.clear();
   moves_ = 0;
   plunging_ = 0;
@@ -119,7 +119,7 @@ void LongRunCuts::end() { end_run(); }
 
 std::vector<LongRunCut> LongRunCuts::found() { return std::exchange(found_, {}); }
 
-std::vector<NearParts> LongRunCuts::near_parts() { return std::exchange(near_, {}); }
+std::vector<SelfProximity> LongRunCuts::self_proximity() { return std::exchange(near_, {}); }
 
 LongRuns find_long_runs(const gcode::Program& program, const gcode::Interpretation& meaning,
                         const LongRunLimits& limits, const GroupingOptions& grouping) {
@@ -132,7 +132,7 @@ LongRuns find_long_runs(const gcode::Program& program, const gcode::Interpretati
   for (const LongRunCut& cut : cuts.found()) {
     long_runs.cuts.push_back(cut.line - program.blocks.front().line);
   }
-  long_runs.near = cuts.near_parts();
+  long_runs.near = cuts.self_proximity();
   return long_runs;
 }
 

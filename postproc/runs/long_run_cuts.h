@@ -11,20 +11,20 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/motion.h"
-#include "gcode/program.h"
-#include "geometry/point.h"
-#include "postproc/runs/cut_fitness.h"
-#include "postproc/runs/near_parts.h"
+#include "gcode/state/motion.h"
+#include "gcode/text/program.h"
+#include "geometry/basic/point.h"
+#include "postproc/runs/proximity_index.h"
 #include "postproc/runs/run_grouping.h"
+#include "postproc/runs/split_score.h"
 
 namespace batten::postproc {
 
 struct LongRunLimits {
   std::size_t whole_at_most = 50000;  // points of a run that is not cut
-  std::size_t shortest = 12500;        // motions of a piece; kNeighbourBlocks or more
-  std::size_t longest = 25000;         // the same, but where it cannot be cut
-  bool rewritten = true;               // else nothing can come near to anything
+  std::size_t shortest = 12500;       // motions of a piece; kNeighbourBlocks or more
+  std::size_t longest = 25000;        // the same, but where it cannot be cut
+  bool rewritten = true;              // else nothing can come near to anything
 };
 
 // A block that begins a run of its own.
@@ -40,7 +40,7 @@ struct LongRunCut {
 class LongRunCuts {
  public:
   LongRunCuts(const LongRunLimits& limits, const GroupingOptions& grouping)
-      : limits_(limits), grouping_(grouping), strands_(grouping.tolerance_mm) {}
+      : limits_(limits), grouping_(grouping), clusters_(grouping.tolerance_mm) {}
 
   // The blocks that follow are those of this part, which must outlive them.
   void begin_part(const gcode::Program& program, const gcode::Interpretation& meaning);
@@ -51,12 +51,12 @@ class LongRunCuts {
   [[nodiscard]] std::vector<LongRunCut> found();
 
   // Of the runs that were cut and have ended, and that were not given yet, in order.
-  [[nodiscard]] std::vector<NearParts> near_parts();
+  [[nodiscard]] std::vector<SelfProximity> self_proximity();
 
  private:
   struct Candidate {
     std::size_t vertex = 0;
-    Fitness fitness;
+    Fitness split_score;
     LongRunCut place;
   };
 
@@ -85,13 +85,13 @@ class LongRunCuts {
   std::vector<LongRunCut> pending_;                     // of a run that may still be short
   std::vector<LongRunCut> found_;
   std::vector<std::uint32_t> cut_lines_;  // all cuts of the run that goes on
-  RunStrands strands_;                    // its own
-  std::vector<NearParts> near_;
+  ProximityIndex clusters_;               // its own
+  std::vector<SelfProximity> near_;
 };
 
 struct LongRuns {
   std::vector<std::uint32_t> cuts;  // block indices
-  std::vector<NearParts> near;
+  std::vector<SelfProximity> near;
 };
 
 [[nodiscard]] LongRuns find_long_runs(const gcode::Program& program,

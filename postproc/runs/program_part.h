@@ -4,10 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "gcode/motion.h"
-#include "gcode/part_reading.h"
-#include "gcode/program.h"
-#include "postproc/machine/cycle_time.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/part_reading.h"
+#include "gcode/state/motion.h"
+#include "gcode/text/program.h"
+#include "postproc/machine/models/cycle_time.h"
 #include "postproc/proof/program_events.h"
 
 namespace batten::postproc {
@@ -25,7 +26,7 @@ struct WindowStart {
   gcode::DecimalPoints decimals;
   bool same_as_old = false;  // all that is known of the new text is what is known of the old one
   // Where it begins, or ends, within a long run that is cut there: what is cut before and behind it
-  // (postproc/runs/run_joints.h). Empty elsewhere.
+  // (postproc/runs/boundary_timing.h). Empty elsewhere.
   std::vector<TimedPiece> moves_before = {};
   std::vector<TimedPiece> moves_behind = {};
 };

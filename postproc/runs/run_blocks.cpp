@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gcode/block_words.h"
-#include "gcode/code_groups.h"
-#include "gcode/large_pages.h"
-#include "gcode/reason.h"
-#include "geometry/numeric.h"
+#include "gcode/state/block_words.h"
+#include "gcode/state/code_groups.h"
+#include "gcode/state/reason.h"
+#include "gcode/text/large_pages.h"
+#include "geometry/basic/rounding.h"
 #include "postproc/runs/run_path.h"
 
 namespace batten::postproc {

@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
-#include "gcode/motion.h"
-#include "gcode/program.h"
+#include "gcode/state/motion.h"
+#include "gcode/text/program.h"
 #include "postproc/runs/intended_arcs.h"
 #include "postproc/runs/section.h"
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <utility>
 
-#include "geometry/numeric.h"
-#include "postproc/runs/cut_fitness.h"
+#include "geometry/basic/rounding.h"
+#include "postproc/runs/split_score.h"
 
 namespace batten::postproc {
 
@@ -81,8 +81,8 @@ std::vector<bool> cuttable(const Run& run) {
 std::vector<std::size_t> cut_places(const Run& run, const CuttingOptions& options) {
   const std::span<const Point3> points = run.points;
   const std::vector<bool> can = cuttable(run);
-  const auto fitness_of = [&](std::size_t i) {
-    return can[i] ? fitness_at(points[i - 1], points[i], points[i + 1]) : kNoPlace;
+  const auto split_score_of = [&](std::size_t i) {
+    return can[i] ? split_score_at(points[i - 1], points[i], points[i + 1]) : kNoPlace;
   };
   std::vector<std::size_t> places;
   std::size_t from = 0;
@@ -90,13 +90,13 @@ std::vector<std::size_t> cut_places(const Run& run, const CuttingOptions& option
   while (points.size() - 1 - from > options.longest) {
     const std::size_t end = points.size() - 1 - options.shortest;
     std::size_t best = from + options.shortest;
-    Fitness best_fitness = fitness_of(best);
+    Fitness best_split_score = split_score_of(best);
     for (std::size_t i = best + 1; i <= end; ++i) {
       // Further than that only where nothing else can be cut.
       if (i > from + options.longest && can[best]) break;
-      const Fitness fitness = fitness_of(i);
-      if (fitness < best_fitness) continue;  // of equals the last: fewer pieces
-      best_fitness = fitness;
+      const Fitness split_score = split_score_of(i);
+      if (split_score < best_split_score) continue;  // of equals the last: fewer pieces
+      best_split_score = split_score;
       best = i;
     }
     if (!can[best]) break;

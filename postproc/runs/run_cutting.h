@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "gcode/motion.h"
-#include "gcode/program.h"
+#include "gcode/state/motion.h"
+#include "gcode/text/program.h"
 #include "postproc/runs/section.h"
 
 namespace batten::postproc {

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "gcode/reason.h"
+#include "gcode/state/reason.h"
 #include "postproc/runs/intended_arcs.h"
 #include "postproc/runs/run_blocks.h"
 
@@ -15,7 +15,7 @@ namespace {
 using gcode::BlockMeaning;
 using gcode::ModalState;
 using gcode::Motion;
-using gcode::Tri;
+using gcode::TriState;
 namespace reason = gcode::reason;
 
 // The part of the tolerance by which a run's points may miss its arcs between them. It is taken off
@@ -24,7 +24,7 @@ constexpr double kArcShare = 0.03;
 
 // The states of which each forbids to rewrite.
 struct UnsafeSwitch {
-  Tri ModalState::*item;
+  TriState ModalState::*item;
   std::string_view reason;
 };
 constexpr UnsafeSwitch kUnsafeSwitches[] = {
@@ -50,7 +50,7 @@ std::string_view unsafe_mode(const ModalState& state, const GroupingOptions& opt
   for (const UnsafeSwitch& unsafe : kUnsafeSwitches) {
     const bool lifted =
         unsafe.item == &ModalState::control_smoothing && is_allowed(reason::kControlSmoothing);
-    if (state.*unsafe.item == Tri::kOn && !lifted) {
+    if (state.*unsafe.item == TriState::kOn && !lifted) {
       return unsafe.reason;
     }
   }

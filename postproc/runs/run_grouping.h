@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/motion.h"
-#include "gcode/program.h"
+#include "gcode/state/motion.h"
+#include "gcode/text/program.h"
 #include "postproc/runs/section.h"
 
 namespace batten::postproc {

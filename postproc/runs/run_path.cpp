@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "gcode/text/large_pages.h"
+
 namespace batten::postproc {
 namespace {
 
@@ -160,6 +162,21 @@ double greatest_kink(std::span<const TimedPiece> moves) {
     if (turn < kCorner) greatest = std::max(greatest, turn);
   }
   return greatest;
+}
+
+std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::size_t last) {
+  std::vector<TimedPiece> pieces;
+  std::size_t next = 0;
+  double feed = 0;
+  gcode::reserve_in_large_pages(pieces, last - first);
+  MotionWalk walk(run, first, last);
+  while (auto motion = walk.next()) {
+    while (next < run.feeds.size() && run.feeds[next].vertex <= motion->first) {
+      feed = run.feeds[next++].feed;
+    }
+    pieces.push_back({std::move(motion->piece), feed});
+  }
+  return pieces;
 }
 
 }  // namespace batten::postproc

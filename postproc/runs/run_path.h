@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "geometry/path.h"
-#include "geometry/point.h"
-#include "postproc/machine/cycle_time.h"
+#include "geometry/basic/point.h"
+#include "geometry/path/path.h"
+#include "postproc/machine/models/cycle_time.h"
 #include "postproc/runs/section.h"
 
 namespace batten::postproc {
@@ -59,5 +59,9 @@ class MotionWalk {
 // Radians: the greatest turn between two moves that follow each other. Turns above 30 degrees are
 // corners and do not count.
 [[nodiscard]] double greatest_kink(std::span<const TimedPiece> moves);
+
+// The motions of a run between two of its vertices.
+[[nodiscard]] std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first,
+                                                   std::size_t last);
 
 }  // namespace batten::postproc

@@ -6,10 +6,10 @@
 #include <variant>
 #include <vector>
 
-#include "gcode/motion.h"
-#include "gcode/source_text.h"
-#include "geometry/path.h"
-#include "geometry/point.h"
+#include "gcode/state/motion.h"
+#include "gcode/text/source_text.h"
+#include "geometry/basic/point.h"
+#include "geometry/path/path.h"
 
 namespace batten::postproc {
 

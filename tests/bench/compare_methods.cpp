@@ -16,14 +16,14 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/band_comparison.h"
-#include "geometry/naseath.h"
-#include "geometry/parameter_samples.h"
-#include "geometry/path_distance.h"
-#include "geometry/tube_smoothing.h"
-#include "postproc/machine/feed_plan.h"
-#include "postproc/machine/s_curve.h"
-#include "postproc/plan/run_curve.h"
+#include "geometry/distance/band_comparison.h"
+#include "geometry/distance/path_distance.h"
+#include "geometry/fitting/naseath/naseath.h"
+#include "geometry/fitting/tube/tube_smoothing.h"
+#include "geometry/path/parameter_samples.h"
+#include "postproc/machine/planner/feed_plan.h"
+#include "postproc/machine/planner/s_curve.h"
+#include "postproc/smooth/methods/run_curve.h"
 #include "tests/support/method_cases.h"
 #include "tests/support/paths.h"
 
@@ -106,7 +106,7 @@ void compare_polyline(const Case& given) {
       if (choice.value == Method::kBest || choice.value == Method::kNone) continue;
       // The others give the same curve in both readings.
       if (band && choice.value != Method::kGuo && choice.value != Method::kOzcan &&
-          choice.value != Method::kRacing) {
+          choice.value != Method::kTimeOptimal) {
         continue;
       }
       const auto made = postproc::curve_of(choice.value, given.points, request_for(given, kind));

@@ -16,10 +16,10 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/diagnostic.h"
-#include "gcode/interpreter.h"
-#include "gcode/parser.h"
-#include "geometry/fair.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "gcode/text/diagnostic.h"
+#include "geometry/fitting/fair/fair.h"
 
 namespace {
 

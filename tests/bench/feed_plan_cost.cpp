@@ -11,11 +11,11 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/bspline_curve.h"
-#include "geometry/path.h"
-#include "postproc/machine/cycle_time.h"
-#include "postproc/machine/feed_estimate.h"
-#include "postproc/machine/feed_plan.h"
+#include "geometry/path/bspline_curve.h"
+#include "geometry/path/path.h"
+#include "postproc/machine/models/cycle_time.h"
+#include "postproc/machine/planner/feed_estimate.h"
+#include "postproc/machine/planner/feed_plan.h"
 
 namespace {
 

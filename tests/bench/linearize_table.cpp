@@ -15,13 +15,14 @@
 #include <utility>
 #include <vector>
 
-#include "gcode/dialect.h"
-#include "gcode/source_text.h"
-#include "geometry/blca.h"
-#include "geometry/ilca.h"
-#include "geometry/linearize.h"
-#include "geometry/min_link.h"
-#include "postproc/pipeline.h"
+#include "gcode/control/dialect.h"
+#include "gcode/controls/built_in.h"
+#include "gcode/text/source_text.h"
+#include "geometry/chords/blca.h"
+#include "geometry/chords/ilca.h"
+#include "geometry/chords/linearize.h"
+#include "geometry/chords/min_link.h"
+#include "postproc/stream/pipeline.h"
 
 namespace {
 

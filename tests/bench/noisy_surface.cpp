@@ -19,14 +19,15 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/interpreter.h"
-#include "gcode/parser.h"
-#include "geometry/fair_measure.h"
-#include "postproc/machine/feed_estimate.h"
-#include "postproc/machine/feed_plan.h"
+#include "gcode/controls/built_in.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "geometry/fitting/fair/fair_measure.h"
 #include "postproc/machine/machine_path_limits.h"
-#include "postproc/pipeline.h"
-#include "postproc/plan/run_curve.h"
+#include "postproc/machine/planner/feed_estimate.h"
+#include "postproc/machine/planner/feed_plan.h"
+#include "postproc/smooth/methods/run_curve.h"
+#include "postproc/stream/pipeline.h"
 #include "tests/support/surface_programs.h"
 
 namespace {
@@ -42,8 +43,8 @@ struct Settings {
   std::string dump;
 };
 
-geometry::FairPath fair_of(const std::vector<Point3>& row, double tolerance,
-                           const postproc::Machine& machine, double feed) {
+geometry::SmoothCurve fair_of(const std::vector<Point3>& row, double tolerance,
+                              const postproc::Machine& machine, double feed) {
   postproc::CurveRequest request;
   request.tolerance = tolerance;
   request.limits = postproc::limits_of(machine, feed);
@@ -69,7 +70,7 @@ CurveFigures figures_of(const Rows& rows, double tolerance, const postproc::Mach
   double length = 0;
   const auto limits = postproc::path_limits_of(machine, feed / 60);
   for (const auto& row : rows) {
-    const geometry::FairPath path = fair_of(row, tolerance, machine, feed);
+    const geometry::SmoothCurve path = fair_of(row, tolerance, machine, feed);
     geometry::SplineWalk walk(path.curve.basis().knots(), path.curve.control_points());
     constexpr int kSteps = 20000;
     const double step = (path.curve.last() - path.curve.first()) / kSteps;
@@ -91,7 +92,8 @@ CurveFigures figures_of(const Rows& rows, double tolerance, const postproc::Mach
   return f;
 }
 
-void dump(const std::vector<Point3>& row, const geometry::FairPath& path, const std::string& name) {
+void dump(const std::vector<Point3>& row, const geometry::SmoothCurve& path,
+          const std::string& name) {
   std::ofstream chords(name + "_chords.txt");
   for (const Point3& p : row) {
     chords << fmt::format("{} {} {}\n", p.x(), p.z(), geometry::FinishSurface::distance(p));

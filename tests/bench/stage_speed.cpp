@@ -10,16 +10,18 @@
 #include <variant>
 #include <vector>
 
-#include "gcode/interpreter.h"
-#include "gcode/parser.h"
-#include "gcode/source_text.h"
-#include "postproc/machine/cycle_time.h"
-#include "postproc/pipeline.h"
-#include "postproc/plan/output_plan.h"
-#include "postproc/plan/run_curve.h"
+#include "gcode/controls/built_in.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "gcode/text/source_text.h"
+#include "postproc/machine/models/cycle_time.h"
 #include "postproc/proof/verification.h"
 #include "postproc/runs/run_grouping.h"
-#include "postproc/smoothing.h"
+#include "postproc/runs/run_path.h"
+#include "postproc/smooth/forms/output_plan.h"
+#include "postproc/smooth/methods/run_curve.h"
+#include "postproc/smooth/run_smoother.h"
+#include "postproc/stream/pipeline.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "batten_process.h"
-#include "tests/postproc/wavy_programs.h"
+#include "tests/support/wavy_programs.h"
 
 namespace batten {
 namespace {

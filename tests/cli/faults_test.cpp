@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "batten_process.h"
-#include "tests/postproc/wavy_programs.h"
 #include "tests/support/counts_memory.h"
+#include "tests/support/wavy_programs.h"
 
 namespace batten {
 namespace {

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "batten_process.h"
-#include "tests/postproc/wavy_programs.h"
 #include "tests/support/counts_memory.h"
+#include "tests/support/wavy_programs.h"
 
 namespace batten {
 namespace {

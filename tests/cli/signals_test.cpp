@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "batten_process.h"
-#include "tests/postproc/wavy_programs.h"
+#include "tests/support/wavy_programs.h"
 
 namespace batten {
 namespace {

@@ -14,8 +14,8 @@
 #include "gcode/curves/nurbs_read.h"
 #include "gcode/curves/siemens_bspline.h"
 #include "gcode/curves/siemens_poly.h"
-#include "gcode/parser.h"
-#include "geometry/path.h"
+#include "gcode/reading/parser.h"
+#include "geometry/path/path.h"
 
 namespace batten::gcode::promises {
 

@@ -7,13 +7,13 @@
 #include <string>
 #include <string_view>
 
-#include "gcode/interpreter.h"
-#include "gcode/parser.h"
-#include "geometry/path.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "geometry/path/path.h"
 #include "postproc/machine/machine.h"
+#include "postproc/machine/program_time/program_time.h"
 #include "postproc/proof/verification.h"
 #include "postproc/runs/run_grouping.h"
-#include "postproc/time/program_time.h"
 
 namespace batten::postproc::promises {
 
@@ -61,7 +61,7 @@ inline std::string broken_meaning(std::string_view text, gcode::Language languag
   if (std::string broken = broken_motions(program, meaning); !broken.empty()) return broken;
   if (std::string broken = broken_sections(program, meaning); !broken.empty()) return broken;
   const Verification same = verify({&program, &meaning}, {&program, &meaning}, 1e-5);
-  if (!same.proved()) return "a program is not itself: " + same.breaches.front().message;
+  if (!same.proved()) return "a program is not itself: " + same.violations.front().message;
   const ProgramTime time = time_program(program, meaning, *find_machine("mill"), {});
   const double seconds = time.seconds.sum();
   return std::isfinite(seconds) && seconds >= 0 ? "" : "a time that is none";

@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "gcode/characters.h"
-#include "gcode/number_format.h"
-#include "gcode/parser.h"
+#include "gcode/reading/parser.h"
+#include "gcode/text/characters.h"
+#include "gcode/text/number_format.h"
 
 namespace batten::gcode::promises {
 
@@ -90,7 +90,8 @@ inline std::string broken_block(const Program& program, const Block& block) {
     if (plain && !word_is_true(word, program.source.text(word.span))) {
       return "a word is not what its bytes say" + where;
     }
-    if (!elsewhere && block.opacity == Opacity::kNone && (!word.is_number || word.letter == ',')) {
+    if (!elsewhere && block.opacity == ParseStatus::kNone &&
+        (!word.is_number || word.letter == ',')) {
       return "a word without a value in a block that is said to be understood" + where;
     }
   }
@@ -99,7 +100,7 @@ inline std::string broken_block(const Program& program, const Block& block) {
       return "a comment is not at its own place" + where;
     }
   }
-  if (!plain || block.opacity != Opacity::kNone) {
+  if (!plain || block.opacity != ParseStatus::kNone) {
     return "";
   }
   const std::string_view text = program.source.text(block.span);

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   auto options = batten::postproc::promises::options_for_text(text);
   // Their searches take seconds to a program under the sanitizers: they are for MutatedPrograms.
   using batten::postproc::Method;
-  if (options.method == Method::kRacing || options.method == Method::kOzcan) {
+  if (options.method == Method::kTimeOptimal || options.method == Method::kOzcan) {
     options.method = Method::kFair;
   }
   const std::string broken = batten::postproc::promises::broken_by(text, options);

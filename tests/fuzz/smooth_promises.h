@@ -8,16 +8,17 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/dialect.h"
-#include "gcode/interpreter.h"
-#include "gcode/language_marks.h"
-#include "gcode/parser.h"
+#include "gcode/control/dialect.h"
+#include "gcode/controls/built_in.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/language_marks.h"
+#include "gcode/reading/parser.h"
+#include "postproc/convert/conversion.h"
 #include "postproc/machine/machine.h"
-#include "postproc/options.h"
-#include "postproc/pipeline.h"
+#include "postproc/options/options.h"
 #include "postproc/proof/verification.h"
 #include "postproc/runs/run_grouping.h"
-#include "postproc/translation/conversion.h"
+#include "postproc/stream/pipeline.h"
 
 namespace batten::postproc::promises {
 
@@ -43,7 +44,7 @@ inline SmoothOptions options_for_text(std::string_view text) {
   constexpr std::array<double, 5> kTolerances = {0.01, 0.01, 0.002, 0.05, 1};
   constexpr std::array kForms = {Form::kAuto, Form::kCurves, Form::kArcs, Form::kLines};
   constexpr std::array kPrefer = {Prefer::kTime, Prefer::kAccuracy, Prefer::kSize};
-  constexpr std::array kMethods = {Method::kBest,    Method::kFair, Method::kRacing,
+  constexpr std::array kMethods = {Method::kBest,    Method::kFair, Method::kTimeOptimal,
                                    Method::kNaseath, Method::kGuo,  Method::kOzcan};
   const std::uint32_t hash = hash_of(text.substr(0, text.find('\n')));
   SmoothOptions options;
@@ -116,7 +117,7 @@ inline std::string broken_by(std::string_view text, const SmoothOptions& options
   const Promise promise(options.tolerance_mm, options.tolerance_kind, options.side);
   const Verification found =
       verify({&before.program, &before.meaning}, {&after.program, &after.meaning}, promise);
-  if (!found.proved()) return "not proved: " + found.breaches.front().message;
+  if (!found.proved()) return "not proved: " + found.violations.front().message;
   if (!rest_is_copied(before.program, result)) return "something that was kept is not the same";
   for (const RunReport& run : result.runs) {
     if (run.reason.empty() != (run.status == RunStatus::kRewritten)) return "kept without a reason";

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "geometry/arc_fit.h"
+#include "geometry/arcs/arc_fit.h"
 #include "tests/support/arc_path_measure.h"
 #include "tests/support/curve_of.h"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/fair.h"
-#include "geometry/path_distance.h"
+#include "geometry/distance/path_distance.h"
+#include "geometry/fitting/fair/fair.h"
 #include "tests/support/paths.h"
 
 namespace batten::geometry {
@@ -106,7 +106,7 @@ PathComparison compare(const std::vector<Point3>& points, const BsplineCurve& cu
   return compare_paths(path_through(points), Path(beziers.begin(), beziers.end()), tolerance);
 }
 
-void expect_ends_and_order(const std::vector<Point3>& points, const FairPath& path) {
+void expect_ends_and_order(const std::vector<Point3>& points, const SmoothCurve& path) {
   const BsplineCurve& curve = path.curve;
   // To the rounding of coordinates of this size: the end of a straight zone is computed.
   const double rounding = 1e-15 * (1 + points.front().norm() + points.back().norm());
@@ -119,7 +119,7 @@ void expect_ends_and_order(const std::vector<Point3>& points, const FairPath& pa
   EXPECT_TRUE(std::is_sorted(at.begin(), at.end()));
 }
 
-// Everything that FairPath promises about its relation to the points.
+// Everything that SmoothCurve promises about its relation to the points.
 void expect_promises(const std::vector<Point3>& points, const FairOptions& options) {
   const auto path = fair_path(points, options);
   ASSERT_TRUE(path);
@@ -138,7 +138,7 @@ void expect_promises(const std::vector<Point3>& points, const FairOptions& optio
       << " of " << points.size() - 1;
 }
 
-TEST(FairPath, MeetsTheEndsInOrderOnRandomPaths) {
+TEST(SmoothCurve, MeetsTheEndsInOrderOnRandomPaths) {
   constexpr int kPaths = 300;
   for (int seed = 0; seed < kPaths; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -148,7 +148,7 @@ TEST(FairPath, MeetsTheEndsInOrderOnRandomPaths) {
   }
 }
 
-TEST(FairPath, StaysInTheBandOfRandomCurves) {
+TEST(SmoothCurve, StaysInTheBandOfRandomCurves) {
   constexpr int kPaths = 200;
   for (int seed = 0; seed < kPaths; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -157,7 +157,7 @@ TEST(FairPath, StaysInTheBandOfRandomCurves) {
   }
 }
 
-TEST(FairPath, StaysInTheBandOfRandomCurvesWhereTheMachineNeedsMore) {
+TEST(SmoothCurve, StaysInTheBandOfRandomCurvesWhereTheMachineNeedsMore) {
   constexpr int kPaths = 60;
   for (int seed = 0; seed < kPaths; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -170,7 +170,7 @@ TEST(FairPath, StaysInTheBandOfRandomCurvesWhereTheMachineNeedsMore) {
   }
 }
 
-TEST(FairPath, StaysInTheBandOnRings) {
+TEST(SmoothCurve, StaysInTheBandOnRings) {
   for (int seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     FairOptions options;
@@ -254,7 +254,7 @@ TEST_P(AnyPath, RunBackwardsStaysInTheBandToo) {
 
 TEST_P(AnyPath, KeepsItsPromises) { expect_promises(GetParam().points, options()); }
 
-INSTANTIATE_TEST_SUITE_P(FairPath, AnyPath,
+INSTANTIATE_TEST_SUITE_P(SmoothCurve, AnyPath,
                          testing::Values(Example{"NoisyLine", zigzag_line(100, 0.5, 0.03), 0.05},
                                          Example{"NoisyHalfCircle",
                                                  noisy_half_circle(20, 400, 0.03), 0.05},
@@ -266,7 +266,7 @@ INSTANTIATE_TEST_SUITE_P(FairPath, AnyPath,
                          [](const auto& test) { return test.param.name; });
 
 // Rows of a surface side by side: where the curve is off the surface, its neighbours are alike.
-TEST(FairPath, DeviatesAlikeOnNeighbouringRows) {
+TEST(SmoothCurve, DeviatesAlikeOnNeighbouringRows) {
   constexpr double kTolerance = 0.01;
   FairOptions options;
   options.tolerance = kTolerance;

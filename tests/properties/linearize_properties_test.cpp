@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "geometry/linearize.h"
-#include "geometry/numeric.h"
+#include "geometry/basic/rounding.h"
+#include "geometry/chords/linearize.h"
 
 namespace batten::geometry {
 namespace {

@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "geometry/linearize.h"
-#include "geometry/min_link.h"
-#include "geometry/path_distance.h"
+#include "geometry/chords/linearize.h"
+#include "geometry/chords/min_link.h"
+#include "geometry/distance/path_distance.h"
 
 namespace batten::geometry {
 namespace {

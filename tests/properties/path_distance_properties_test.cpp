@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "geometry/path_distance.h"
+#include "geometry/distance/path_distance.h"
 
 namespace batten::geometry {
 namespace {

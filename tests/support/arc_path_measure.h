@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "geometry/bspline_curve.h"
-#include "geometry/path.h"
+#include "geometry/path/bspline_curve.h"
+#include "geometry/path/path.h"
 
 namespace batten::geometry {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "geometry/corner_blend.h"
+#include "geometry/fitting/corners/corner_blend.h"
 
 namespace batten::geometry {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geometry/bspline_curve.h"
+#include "geometry/path/bspline_curve.h"
 
 namespace batten::geometry {
 

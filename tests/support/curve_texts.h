@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "gcode/curves/curve_text.h"
-#include "gcode/parser.h"
-#include "geometry/bspline_curve.h"
+#include "gcode/reading/parser.h"
+#include "geometry/path/bspline_curve.h"
 
 namespace batten::curve_tests {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/path.h"
-#include "postproc/machine/feed_plan.h"
+#include "geometry/path/path.h"
+#include "postproc/machine/planner/feed_plan.h"
 #include "tests/support/method_cases.h"
 #include "tests/support/naseath_cases.h"
 #include "tests/support/paths.h"

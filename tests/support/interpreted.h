@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "gcode/interpreter.h"
-#include "gcode/parser.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
 
 namespace batten::tests {
 

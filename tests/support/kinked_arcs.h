@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/plane_curve.h"
-#include "geometry/point.h"
+#include "geometry/basic/point.h"
+#include "geometry/path/plane_curve.h"
 
 namespace batten::tests {
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "gcode/curves/curve_format.h"
-#include "gcode/interpreter.h"
-#include "gcode/parser.h"
-#include "geometry/bspline_curve.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "geometry/path/bspline_curve.h"
 
 namespace batten::tests {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/point.h"
+#include "geometry/basic/point.h"
 
 namespace batten::geometry {
 

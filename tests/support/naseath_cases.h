@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/bspline_curve.h"
-#include "geometry/naseath.h"
-#include "geometry/parameter_samples.h"
-#include "geometry/point.h"
+#include "geometry/basic/point.h"
+#include "geometry/fitting/naseath/naseath.h"
+#include "geometry/path/bspline_curve.h"
+#include "geometry/path/parameter_samples.h"
 
 namespace batten::geometry {
 

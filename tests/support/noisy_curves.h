@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/bspline_curve.h"
+#include "geometry/path/bspline_curve.h"
 #include "tests/support/naseath_cases.h"
 
 namespace batten::geometry {

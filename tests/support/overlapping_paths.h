@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geometry/path.h"
+#include "geometry/path/path.h"
 
 namespace batten::geometry {
 

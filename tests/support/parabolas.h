@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/bspline_curve.h"
+#include "geometry/path/bspline_curve.h"
 
 namespace batten::geometry {
 

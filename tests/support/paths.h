@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/path.h"
-#include "geometry/point.h"
+#include "geometry/basic/point.h"
+#include "geometry/path/path.h"
 
 namespace batten::geometry {
 

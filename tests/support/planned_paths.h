@@ -10,11 +10,11 @@
 #include <variant>
 #include <vector>
 
-#include "geometry/guo_corner.h"
-#include "geometry/ozcan_corner.h"
-#include "geometry/path.h"
-#include "postproc/machine/feed_plan.h"
-#include "postproc/machine/feed_plan_profile.h"
+#include "geometry/fitting/corners/guo_corner.h"
+#include "geometry/fitting/corners/ozcan_corner.h"
+#include "geometry/path/path.h"
+#include "postproc/machine/planner/feed_plan.h"
+#include "postproc/machine/planner/feed_plan_profile.h"
 
 namespace batten::postproc {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/bspline_curve.h"
+#include "geometry/path/bspline_curve.h"
 
 namespace batten::tests {
 

@@ -9,7 +9,7 @@
 
 #include "gcode/curves/bezier_chain.h"
 #include "gcode/curves/klartext_words.h"
-#include "geometry/path_distance.h"
+#include "geometry/distance/path_distance.h"
 #include "tests/support/curve_texts.h"
 
 namespace batten::gcode {
@@ -336,12 +336,12 @@ TEST_P(SplStates, AreComplainedAbout) {
 
 INSTANTIATE_TEST_SUITE_P(
     Spl, SplStates,
-    testing::Values(SplState{"RL", [](ModalState& s) { s.cutter_compensation = Tri::kOn; }},
-                    SplState{"Incremental",
-                             [](ModalState& s) { s.distance = DistanceMode::kIncremental; }},
-                    SplState{"M128", [](ModalState& s) { s.tool_center_point = Tri::kUnknown; }},
-                    SplState{"Mirror", [](ModalState& s) { s.mirror = Tri::kOn; }},
-                    SplState{"Plane", [](ModalState& s) { s.tilted_plane = Tri::kOn; }}),
+    testing::Values(
+        SplState{"RL", [](ModalState& s) { s.cutter_compensation = TriState::kOn; }},
+        SplState{"Incremental", [](ModalState& s) { s.distance = DistanceMode::kIncremental; }},
+        SplState{"M128", [](ModalState& s) { s.tool_center_point = TriState::kUnknown; }},
+        SplState{"Mirror", [](ModalState& s) { s.mirror = TriState::kOn; }},
+        SplState{"Plane", [](ModalState& s) { s.tilted_plane = TriState::kOn; }}),
     [](const auto& test) { return std::string(test.param.name); });
 
 // --- alarms

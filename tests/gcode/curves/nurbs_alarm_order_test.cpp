@@ -6,7 +6,7 @@
 
 #include "gcode/curves/nurbs_alarms.h"
 #include "gcode/curves/nurbs_rules.h"
-#include "gcode/parser.h"
+#include "gcode/reading/parser.h"
 
 namespace batten::gcode {
 namespace {

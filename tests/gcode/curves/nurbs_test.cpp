@@ -8,7 +8,7 @@
 #include "gcode/curves/nurbs_alarms.h"
 #include "gcode/curves/nurbs_read.h"
 #include "gcode/curves/nurbs_write.h"
-#include "geometry/path_distance.h"
+#include "geometry/distance/path_distance.h"
 #include "tests/support/curve_texts.h"
 
 namespace batten::gcode {
@@ -367,17 +367,17 @@ TEST_P(NurbsStates, AreComplainedAbout) {
 INSTANTIATE_TEST_SUITE_P(
     Nurbs, NurbsStates,
     testing::Values(
-        ForbiddenState{"G41", [](ModalState& s) { s.cutter_compensation = Tri::kOn; }, "G41"},
-        ForbiddenState{"PerhapsG41", [](ModalState& s) { s.cutter_compensation = Tri::kUnknown; },
-                       "G41"},
+        ForbiddenState{"G41", [](ModalState& s) { s.cutter_compensation = TriState::kOn; }, "G41"},
+        ForbiddenState{"PerhapsG41",
+                       [](ModalState& s) { s.cutter_compensation = TriState::kUnknown; }, "G41"},
         ForbiddenState{"G93", [](ModalState& s) { s.feed_mode = FeedMode::kInverseTime; }, "G94"},
         ForbiddenState{"G95", [](ModalState& s) { s.feed_mode = FeedMode::kPerRevolution; }, "G94"},
         ForbiddenState{"G91", [](ModalState& s) { s.distance = DistanceMode::kIncremental; },
                        "G90"},
-        ForbiddenState{"G12_1", [](ModalState& s) { s.polar = Tri::kOn; }, "G12.1"},
-        ForbiddenState{"G51", [](ModalState& s) { s.scaling = Tri::kOn; }, "scaling"},
-        ForbiddenState{"G68", [](ModalState& s) { s.rotation = Tri::kOn; }, "rotation"},
-        ForbiddenState{"G43_4", [](ModalState& s) { s.tool_center_point = Tri::kOn; },
+        ForbiddenState{"G12_1", [](ModalState& s) { s.polar = TriState::kOn; }, "G12.1"},
+        ForbiddenState{"G51", [](ModalState& s) { s.scaling = TriState::kOn; }, "scaling"},
+        ForbiddenState{"G68", [](ModalState& s) { s.rotation = TriState::kOn; }, "rotation"},
+        ForbiddenState{"G43_4", [](ModalState& s) { s.tool_center_point = TriState::kOn; },
                        "tool centre"}),
     [](const auto& test) { return std::string(test.param.name); });
 

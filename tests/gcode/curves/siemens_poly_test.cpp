@@ -8,7 +8,7 @@
 
 #include "gcode/curves/bezier_chain.h"
 #include "gcode/curves/siemens_words.h"
-#include "geometry/path_distance.h"
+#include "geometry/distance/path_distance.h"
 #include "tests/support/curve_texts.h"
 
 namespace batten::gcode {
@@ -258,12 +258,12 @@ TEST_P(PolyStates, AreComplainedAbout) {
 
 INSTANTIATE_TEST_SUITE_P(
     Poly, PolyStates,
-    testing::Values(PolyState{"G41", [](ModalState& s) { s.cutter_compensation = Tri::kOn; }},
-                    PolyState{"G91",
-                              [](ModalState& s) { s.distance = DistanceMode::kIncremental; }},
-                    PolyState{"G95", [](ModalState& s) { s.feed_mode = FeedMode::kPerRevolution; }},
-                    PolyState{"TRAORI", [](ModalState& s) { s.tool_center_point = Tri::kUnknown; }},
-                    PolyState{"MIRROR", [](ModalState& s) { s.mirror = Tri::kOn; }}),
+    testing::Values(
+        PolyState{"G41", [](ModalState& s) { s.cutter_compensation = TriState::kOn; }},
+        PolyState{"G91", [](ModalState& s) { s.distance = DistanceMode::kIncremental; }},
+        PolyState{"G95", [](ModalState& s) { s.feed_mode = FeedMode::kPerRevolution; }},
+        PolyState{"TRAORI", [](ModalState& s) { s.tool_center_point = TriState::kUnknown; }},
+        PolyState{"MIRROR", [](ModalState& s) { s.mirror = TriState::kOn; }}),
     [](const auto& test) { return std::string(test.param.name); });
 
 struct PolyTextCase {

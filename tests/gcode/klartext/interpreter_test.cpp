@@ -4,8 +4,8 @@
 #include <string>
 
 #include "gcode/curves/spl_format.h"
-#include "gcode/program_flow.h"
-#include "gcode/reason.h"
+#include "gcode/interpreter/program_flow.h"
+#include "gcode/state/reason.h"
 #include "tests/support/klartext_programs.h"
 
 namespace batten::gcode {
@@ -143,8 +143,8 @@ INSTANTIATE_TEST_SUITE_P(
 struct SwitchCase {
   std::string name;
   std::string lines;
-  Tri ModalState::*item;
-  Tri value;
+  TriState ModalState::*item;
+  TriState value;
 };
 
 void PrintTo(const SwitchCase& test, std::ostream* out) { *out << test.name; }
@@ -160,34 +160,37 @@ TEST_P(KlartextSwitches, AreFollowed) {
 INSTANTIATE_TEST_SUITE_P(
     Klartext, KlartextSwitches,
     testing::Values(
-        SwitchCase{"Compensation", "3 L X+5 RL", &ModalState::cutter_compensation, Tri::kOn},
+        SwitchCase{"Compensation", "3 L X+5 RL", &ModalState::cutter_compensation, TriState::kOn},
         SwitchCase{"CompensationOff", "3 L X+5 RL\n4 L X+6 R0", &ModalState::cutter_compensation,
-                   Tri::kOff},
+                   TriState::kOff},
         SwitchCase{"Approach", "3 APPR LT X+5 Y+5 LEN5 R0", &ModalState::cutter_compensation,
-                   Tri::kOff},
+                   TriState::kOff},
         SwitchCase{"ApproachCompensated", "3 APPR LT X+5 Y+5 LEN5 RL",
-                   &ModalState::cutter_compensation, Tri::kOn},
-        SwitchCase{"Departure", "3 DEP LT LEN5", &ModalState::cutter_compensation, Tri::kUnknown},
-        SwitchCase{"TiltedTool", "3 L X+5 M128", &ModalState::tool_center_point, Tri::kOn},
-        SwitchCase{"TiltedToolEnds", "3 M128\n4 M129", &ModalState::tool_center_point, Tri::kOff},
-        SwitchCase{"Tcpm", "3 FUNCTION TCPM F TCP", &ModalState::tool_center_point, Tri::kOn},
-        SwitchCase{"TcpmEnds", "3 FUNCTION RESET TCPM", &ModalState::tool_center_point, Tri::kOff},
+                   &ModalState::cutter_compensation, TriState::kOn},
+        SwitchCase{"Departure", "3 DEP LT LEN5", &ModalState::cutter_compensation,
+                   TriState::kUnknown},
+        SwitchCase{"TiltedTool", "3 L X+5 M128", &ModalState::tool_center_point, TriState::kOn},
+        SwitchCase{"TiltedToolEnds", "3 M128\n4 M129", &ModalState::tool_center_point,
+                   TriState::kOff},
+        SwitchCase{"Tcpm", "3 FUNCTION TCPM F TCP", &ModalState::tool_center_point, TriState::kOn},
+        SwitchCase{"TcpmEnds", "3 FUNCTION RESET TCPM", &ModalState::tool_center_point,
+                   TriState::kOff},
         SwitchCase{"Plane", "3 PLANE SPATIAL SPA+0 SPB+30 SPC+0 MOVE", &ModalState::tilted_plane,
-                   Tri::kOn},
+                   TriState::kOn},
         SwitchCase{"Cycle19", "3 CYCL DEF 19.0 W\n4 CYCL DEF 19.1 A+0 B+5",
-                   &ModalState::tilted_plane, Tri::kOn},
+                   &ModalState::tilted_plane, TriState::kOn},
         SwitchCase{"Cycle19Ends", "3 CYCL DEF 19.1 A+1\n4 CYCL DEF 19.0 W\n5 CYCL DEF 19.1",
-                   &ModalState::tilted_plane, Tri::kOff},
+                   &ModalState::tilted_plane, TriState::kOff},
         SwitchCase{"Mirror", "3 CYCL DEF 8.0 MIRROR\n4 CYCL DEF 8.1 X", &ModalState::mirror,
-                   Tri::kOn},
-        SwitchCase{"Rotation", "3 CYCL DEF 10.1 ROT+30", &ModalState::rotation, Tri::kOn},
+                   TriState::kOn},
+        SwitchCase{"Rotation", "3 CYCL DEF 10.1 ROT+30", &ModalState::rotation, TriState::kOn},
         SwitchCase{"RotationByIncrements", "3 CYCL DEF 10.1 IROT+0", &ModalState::rotation,
-                   Tri::kOn},
-        SwitchCase{"Scaling", "3 CYCL DEF 11.1 SCL 0.5", &ModalState::scaling, Tri::kOn},
+                   TriState::kOn},
+        SwitchCase{"Scaling", "3 CYCL DEF 11.1 SCL 0.5", &ModalState::scaling, TriState::kOn},
         SwitchCase{"ScalingByAxis", "3 CYCL DEF 26.1 X0.5\n4 CYCL DEF 11.1 SCL 1",
-                   &ModalState::scaling, Tri::kUnknown},
-        SwitchCase{"CycleAtEachPlace", "3 L X+5 M89", &ModalState::modal_macro, Tri::kOn},
-        SwitchCase{"PointFilter", "3 M124 T0.01", &ModalState::control_smoothing, Tri::kOn}),
+                   &ModalState::scaling, TriState::kUnknown},
+        SwitchCase{"CycleAtEachPlace", "3 L X+5 M89", &ModalState::modal_macro, TriState::kOn},
+        SwitchCase{"PointFilter", "3 M124 T0.01", &ModalState::control_smoothing, TriState::kOn}),
     [](const auto& test) { return test.param.name; });
 
 // A feed in a comment of a spline's lines is none.
@@ -195,7 +198,7 @@ TEST(KlartextEffects, CommentsAreNotRead) {
   const KlartextProgram p =
       program_with("3 SPL X+5 Y+5 ~\n  K3X0 K2X0 K1X-5 ; F900 RL\n4 L X+9 Y+1\n");
   EXPECT_EQ(p.state_after(6).feed, 500);
-  EXPECT_EQ(p.state_after(6).cutter_compensation, Tri::kOff);
+  EXPECT_EQ(p.state_after(6).cutter_compensation, TriState::kOff);
 }
 
 // Which lines of these are bodies.

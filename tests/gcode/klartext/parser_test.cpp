@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gcode/klartext/statement.h"
-#include "gcode/number_format.h"
+#include "gcode/text/number_format.h"
 
 namespace batten::gcode {
 namespace {
@@ -33,7 +33,7 @@ struct LineCase {
   std::string name;
   std::string text;
   std::string words;
-  Opacity opacity = Opacity::kNone;
+  ParseStatus opacity = ParseStatus::kNone;
 };
 
 void PrintTo(const LineCase& test, std::ostream* out) { *out << test.name; }
@@ -52,16 +52,16 @@ TEST_P(KlartextLines, AreReadAsWords) {
 // The RND that may stand in such a line cuts the move before it.
 INSTANTIATE_TEST_SUITE_P(
     LinesThatControlsReadInTwoWays, KlartextLines,
-    testing::Values(LineCase{"Joined", "L X+1\rL Y+2", "", Opacity::kUnreadable},
+    testing::Values(LineCase{"Joined", "L X+1\rL Y+2", "", ParseStatus::kUnreadable},
                     LineCase{"Apart", "L X+1\r\nL Y+2\r\n", "G1 Y2"},
                     LineCase{"ApartByMore", "L X+1\r\r\nL Y+2", "G1 Y2"},
-                    LineCase{"NulInFront", std::string("\0L X+1", 6), "", Opacity::kUnreadable},
-                    LineCase{"NulBehind", std::string("L X+1\0", 6), "", Opacity::kUnreadable},
-                    LineCase{"NulsOnly", std::string("\0\0", 2), "", Opacity::kProgramMark}),
+                    LineCase{"NulInFront", std::string("\0L X+1", 6), "", ParseStatus::kUnreadable},
+                    LineCase{"NulBehind", std::string("L X+1\0", 6), "", ParseStatus::kUnreadable},
+                    LineCase{"NulsOnly", std::string("\0\0", 2), "", ParseStatus::kProgramMark}),
     [](const auto& test) { return test.param.name; });
 
 TEST(KlartextParser, CutsTheMoveInFrontOfALineThatItDoesNotRead) {
-  EXPECT_EQ(parsed("L X+1\nCC\rRND R2\n").blocks[0].opacity, Opacity::kCornerWord);
+  EXPECT_EQ(parsed("L X+1\nCC\rRND R2\n").blocks[0].opacity, ParseStatus::kCornerWord);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -92,62 +92,62 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Parameters, KlartextLines,
     testing::Values(
-        LineCase{"Place", "12 L X+Q5 Y1", "N12 G1 X? Y1", Opacity::kExpression},
-        LineCase{"PlaceWithoutSign", "12 L XQ5", "N12 G1 X?", Opacity::kExpression},
-        LineCase{"NegativeLocal", "12 L X-QL12", "N12 G1 X?", Opacity::kExpression},
-        LineCase{"Feed", "12 L X+1 FQ20", "N12 G1 X1 F?", Opacity::kExpression},
-        LineCase{"FeedBehindABlank", "12 L X+1 F Q20", "N12 G1 X1 F?", Opacity::kExpression},
-        LineCase{"FeedOfTheToolCall", "12 L X+1 F AUTO", "N12 G1 X1 F?", Opacity::kExpression},
-        LineCase{"FeedAsOneWord", "12 L X+1 FAUTO", "N12 G1 X1 F?", Opacity::kExpression}),
+        LineCase{"Place", "12 L X+Q5 Y1", "N12 G1 X? Y1", ParseStatus::kExpression},
+        LineCase{"PlaceWithoutSign", "12 L XQ5", "N12 G1 X?", ParseStatus::kExpression},
+        LineCase{"NegativeLocal", "12 L X-QL12", "N12 G1 X?", ParseStatus::kExpression},
+        LineCase{"Feed", "12 L X+1 FQ20", "N12 G1 X1 F?", ParseStatus::kExpression},
+        LineCase{"FeedBehindABlank", "12 L X+1 F Q20", "N12 G1 X1 F?", ParseStatus::kExpression},
+        LineCase{"FeedOfTheToolCall", "12 L X+1 F AUTO", "N12 G1 X1 F?", ParseStatus::kExpression},
+        LineCase{"FeedAsOneWord", "12 L X+1 FAUTO", "N12 G1 X1 F?", ParseStatus::kExpression}),
     [](const auto& test) { return test.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
     Copied, KlartextLines,
     testing::Values(
-        LineCase{"Begin", "0 BEGIN PGM PART MM", "N0", Opacity::kProgramMark},
-        LineCase{"End", "9 END PGM PART MM", "N9", Opacity::kProgramMark},
-        LineCase{"Incremental", "12 L IX+1", "N12", Opacity::kForeign},
-        LineCase{"FeedPerTooth", "12 L X+1 FZ0.1", "N12", Opacity::kForeign},
-        LineCase{"MachineCoordinates", "12 L X+1 M91", "N12", Opacity::kForeign},
-        LineCase{"TiltedTool", "12 M128 F500", "N12", Opacity::kForeign},
-        LineCase{"LookAhead", "12 L X+1 RL M120 LA5", "N12", Opacity::kForeign},
-        LineCase{"ArcWithoutSense", "CC X+0 Y+0\n12 C X+1 Y+1", "N12 I0 J0", Opacity::kForeign},
-        LineCase{"ArcWithZ", "CC X+0 Y+0\n12 C X+1 Z+1 DR+", "N12 I0 J0", Opacity::kForeign},
-        LineCase{"RadiusArcWithoutRadius", "12 CR X+5 DR+", "N12", Opacity::kForeign},
-        LineCase{"CentreOfIncrements", "12 CC IX+10 Y+0", "N12", Opacity::kForeign},
-        LineCase{"CentreHere", "12 CC", "N12", Opacity::kForeign},
-        LineCase{"Polar", "5 CC X+1 Y+2\n12 LP PR+10 PA+30", "N12 I1 J2", Opacity::kForeign},
-        LineCase{"Helix", "CC X+1 Y+2\n12 CP IPA+360 IZ-1 DR+", "N12 I1 J2", Opacity::kForeign},
-        LineCase{"Tangential", "12 CT X+1 Y+1", "N12", Opacity::kForeign},
-        LineCase{"Rounding", "12 RND R2", "N12", Opacity::kForeign},
-        LineCase{"Chamfer", "12 CHF 2", "N12", Opacity::kForeign},
-        LineCase{"Approach", "12 APPR LCT X+1 Y+1 R5 RL F10", "N12", Opacity::kForeign},
-        LineCase{"Departure", "12 DEP LT LEN5", "N12", Opacity::kForeign},
-        LineCase{"Vectors", "12 LN X+1 Y+1 Z+1 NX0 NY0 NZ1", "N12", Opacity::kForeign},
-        LineCase{"ToolCall", "12 TOOL CALL 5 Z S5000", "N12", Opacity::kForeign},
-        LineCase{"ToolDefinition", "12 TOOL DEF 5 L+0 R+3", "N12", Opacity::kForeign},
-        LineCase{"Blank", "12 BLK FORM 0.1 Z X+0 Y+0 Z-20", "N12", Opacity::kForeign},
-        LineCase{"Cycle", "12 CYCL DEF 200 DRILLING ~", "N12", Opacity::kForeign},
+        LineCase{"Begin", "0 BEGIN PGM PART MM", "N0", ParseStatus::kProgramMark},
+        LineCase{"End", "9 END PGM PART MM", "N9", ParseStatus::kProgramMark},
+        LineCase{"Incremental", "12 L IX+1", "N12", ParseStatus::kForeign},
+        LineCase{"FeedPerTooth", "12 L X+1 FZ0.1", "N12", ParseStatus::kForeign},
+        LineCase{"MachineCoordinates", "12 L X+1 M91", "N12", ParseStatus::kForeign},
+        LineCase{"TiltedTool", "12 M128 F500", "N12", ParseStatus::kForeign},
+        LineCase{"LookAhead", "12 L X+1 RL M120 LA5", "N12", ParseStatus::kForeign},
+        LineCase{"ArcWithoutSense", "CC X+0 Y+0\n12 C X+1 Y+1", "N12 I0 J0", ParseStatus::kForeign},
+        LineCase{"ArcWithZ", "CC X+0 Y+0\n12 C X+1 Z+1 DR+", "N12 I0 J0", ParseStatus::kForeign},
+        LineCase{"RadiusArcWithoutRadius", "12 CR X+5 DR+", "N12", ParseStatus::kForeign},
+        LineCase{"CentreOfIncrements", "12 CC IX+10 Y+0", "N12", ParseStatus::kForeign},
+        LineCase{"CentreHere", "12 CC", "N12", ParseStatus::kForeign},
+        LineCase{"Polar", "5 CC X+1 Y+2\n12 LP PR+10 PA+30", "N12 I1 J2", ParseStatus::kForeign},
+        LineCase{"Helix", "CC X+1 Y+2\n12 CP IPA+360 IZ-1 DR+", "N12 I1 J2", ParseStatus::kForeign},
+        LineCase{"Tangential", "12 CT X+1 Y+1", "N12", ParseStatus::kForeign},
+        LineCase{"Rounding", "12 RND R2", "N12", ParseStatus::kForeign},
+        LineCase{"Chamfer", "12 CHF 2", "N12", ParseStatus::kForeign},
+        LineCase{"Approach", "12 APPR LCT X+1 Y+1 R5 RL F10", "N12", ParseStatus::kForeign},
+        LineCase{"Departure", "12 DEP LT LEN5", "N12", ParseStatus::kForeign},
+        LineCase{"Vectors", "12 LN X+1 Y+1 Z+1 NX0 NY0 NZ1", "N12", ParseStatus::kForeign},
+        LineCase{"ToolCall", "12 TOOL CALL 5 Z S5000", "N12", ParseStatus::kForeign},
+        LineCase{"ToolDefinition", "12 TOOL DEF 5 L+0 R+3", "N12", ParseStatus::kForeign},
+        LineCase{"Blank", "12 BLK FORM 0.1 Z X+0 Y+0 Z-20", "N12", ParseStatus::kForeign},
+        LineCase{"Cycle", "12 CYCL DEF 200 DRILLING ~", "N12", ParseStatus::kForeign},
         LineCase{"LineOfACycle", "12 CYCL DEF 200 DRILLING ~\n  Q200=+2 ;CLEARANCE", "",
-                 Opacity::kContinued},
+                 ParseStatus::kContinued},
         LineCase{"LineBehindAComment", "12 CYCL DEF 200 ~\n Q200=2 ;A ~\n Q201=3 ;B", "",
-                 Opacity::kContinued},
-        LineCase{"LineOfALine", "12 L X+1 ~\n  Y+2", "", Opacity::kContinued},
+                 ParseStatus::kContinued},
+        LineCase{"LineOfALine", "12 L X+1 ~\n  Y+2", "", ParseStatus::kContinued},
         LineCase{"LineOfASpline", "8 SPL X+18 Y+6.4\n  K3X-6 K2X+0 K1X-1.2E+001", "",
-                 Opacity::kContinued},
-        LineCase{"CycleCall", "12 CYCL CALL M3", "N12", Opacity::kForeign},
-        LineCase{"Plane", "12 PLANE RESET STAY", "N12", Opacity::kForeign},
-        LineCase{"Stop", "12 STOP M6", "N12", Opacity::kForeign},
-        LineCase{"Probe", "12 TCH PROBE 0.0 REF. PLANE Q5 X-", "N12", Opacity::kForeign},
-        LineCase{"Assignment", "12 Q5 = Q1 + 3", "N12", Opacity::kAssignment},
-        LineCase{"Function", "12 FN 0: Q5 = +3", "N12", Opacity::kAssignment},
-        LineCase{"Jump", "12 FN 9: IF +Q1 EQU +Q2 GOTO LBL 5", "N12", Opacity::kFlow},
-        LineCase{"Label", "12 LBL 1", "N12", Opacity::kFlow},
-        LineCase{"NamedLabel", "12 LBL \"a;b\"", "N12", Opacity::kFlow},
-        LineCase{"Call", "12 CALL LBL 1 REP 5", "N12", Opacity::kFlow},
-        LineCase{"CallOfAProgram", "12 CALL PGM TNC:\\X.H", "N12", Opacity::kFlow},
-        LineCase{"Unknown", "12 XYZZY", "N12", Opacity::kForeign},
-        LineCase{"Fillers", std::string("L X+1\n") + '\x1A', "", Opacity::kProgramMark}),
+                 ParseStatus::kContinued},
+        LineCase{"CycleCall", "12 CYCL CALL M3", "N12", ParseStatus::kForeign},
+        LineCase{"Plane", "12 PLANE RESET STAY", "N12", ParseStatus::kForeign},
+        LineCase{"Stop", "12 STOP M6", "N12", ParseStatus::kForeign},
+        LineCase{"Probe", "12 TCH PROBE 0.0 REF. PLANE Q5 X-", "N12", ParseStatus::kForeign},
+        LineCase{"Assignment", "12 Q5 = Q1 + 3", "N12", ParseStatus::kAssignment},
+        LineCase{"Function", "12 FN 0: Q5 = +3", "N12", ParseStatus::kAssignment},
+        LineCase{"Jump", "12 FN 9: IF +Q1 EQU +Q2 GOTO LBL 5", "N12", ParseStatus::kFlow},
+        LineCase{"Label", "12 LBL 1", "N12", ParseStatus::kFlow},
+        LineCase{"NamedLabel", "12 LBL \"a;b\"", "N12", ParseStatus::kFlow},
+        LineCase{"Call", "12 CALL LBL 1 REP 5", "N12", ParseStatus::kFlow},
+        LineCase{"CallOfAProgram", "12 CALL PGM TNC:\\X.H", "N12", ParseStatus::kFlow},
+        LineCase{"Unknown", "12 XYZZY", "N12", ParseStatus::kForeign},
+        LineCase{"Fillers", std::string("L X+1\n") + '\x1A', "", ParseStatus::kProgramMark}),
     [](const auto& test) { return test.param.name; });
 
 TEST(KlartextParser, KeepsComments) {
@@ -156,7 +156,7 @@ TEST(KlartextParser, KeepsComments) {
   EXPECT_EQ(program.source.text(program.comments[0].span), "; go");
   EXPECT_EQ(program.source.text(program.comments[1].span), "* - SLOT 5");
   EXPECT_EQ(program.source.text(program.comments[2].span), "; only");
-  for (const Block& block : program.blocks) EXPECT_EQ(block.opacity, Opacity::kNone);
+  for (const Block& block : program.blocks) EXPECT_EQ(block.opacity, ParseStatus::kNone);
 }
 
 TEST(KlartextParser, KnowsHiddenBlocks) {
@@ -170,9 +170,9 @@ TEST(KlartextParser, MarksMovesThatLaterBlocksDependOn) {
   for (const std::string next : {"RND R2", "CHF 1", "CT X+5 Y+5", "DEP LT LEN5", "FCT DR- R5"}) {
     const Program program =
         parsed("1 L X+0 Y+0\n2 L X+9 ; a\n3 ; b\n4 " + next + "\n5 L X+9 Y+9\n");
-    EXPECT_EQ(program.blocks[0].opacity, Opacity::kNone) << next;
-    EXPECT_EQ(program.blocks[1].opacity, Opacity::kCornerWord) << next;
-    EXPECT_EQ(program.blocks[4].opacity, Opacity::kNone) << next;
+    EXPECT_EQ(program.blocks[0].opacity, ParseStatus::kNone) << next;
+    EXPECT_EQ(program.blocks[1].opacity, ParseStatus::kCornerWord) << next;
+    EXPECT_EQ(program.blocks[4].opacity, ParseStatus::kNone) << next;
   }
 }
 

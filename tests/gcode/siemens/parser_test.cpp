@@ -1,4 +1,4 @@
-#include "gcode/parser.h"
+#include "gcode/reading/parser.h"
 
 #include <gtest/gtest.h>
 
@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "gcode/interpreter.h"
-#include "gcode/number_format.h"
-#include "gcode/reason.h"
+#include "gcode/interpreter/interpreter.h"
 #include "gcode/siemens/value.h"
 #include "gcode/siemens/variables.h"
+#include "gcode/state/reason.h"
+#include "gcode/text/number_format.h"
 
 namespace batten::gcode {
 namespace {
@@ -33,7 +33,7 @@ std::string words_of(const Program& program) {
 struct LineCase {
   const char* name;
   const char* line;
-  Opacity opacity;
+  ParseStatus opacity;
   const char* words;
 };
 
@@ -50,53 +50,53 @@ TEST_P(SiemensLine, IsReadAsTheControlReadsIt) {
 INSTANTIATE_TEST_SUITE_P(
     Constructs, SiemensLine,
     testing::Values(
-        LineCase{"Plain", "N10 G1 X10 Y-2.5 F1000", Opacity::kNone, "N10 G1 X10 Y-2.5 F1000"},
-        LineCase{"WithoutBlanks", "N10G1X10Y.5", Opacity::kNone, "N10 G1 X10 Y0.5"},
-        LineCase{"Assigned", "G1 X=10 Y = -.5", Opacity::kNone, "G1 X10 Y-0.5"},
-        LineCase{"LowerCase", "g1 x1 ; text", Opacity::kNone, "G1 X1"},
-        LineCase{"Radius", "G2 X10 Y0 CR=5", Opacity::kNone, "G2 X10 Y0 R5"},
-        LineCase{"NegativeRadius", "G3 X10 CR=-5.5", Opacity::kNone, "G3 X10 R-5.5"},
-        LineCase{"ComputedRadius", "G3 X10 CR=R1*2", Opacity::kExpression, "G3 X10 R?"},
-        LineCase{"AbsoluteCentre", "G2 X1 Y1 I=AC(5) J=AC(3)", Opacity::kExpression,
+        LineCase{"Plain", "N10 G1 X10 Y-2.5 F1000", ParseStatus::kNone, "N10 G1 X10 Y-2.5 F1000"},
+        LineCase{"WithoutBlanks", "N10G1X10Y.5", ParseStatus::kNone, "N10 G1 X10 Y0.5"},
+        LineCase{"Assigned", "G1 X=10 Y = -.5", ParseStatus::kNone, "G1 X10 Y-0.5"},
+        LineCase{"LowerCase", "g1 x1 ; text", ParseStatus::kNone, "G1 X1"},
+        LineCase{"Radius", "G2 X10 Y0 CR=5", ParseStatus::kNone, "G2 X10 Y0 R5"},
+        LineCase{"NegativeRadius", "G3 X10 CR=-5.5", ParseStatus::kNone, "G3 X10 R-5.5"},
+        LineCase{"ComputedRadius", "G3 X10 CR=R1*2", ParseStatus::kExpression, "G3 X10 R?"},
+        LineCase{"AbsoluteCentre", "G2 X1 Y1 I=AC(5) J=AC(3)", ParseStatus::kExpression,
                  "G2 X1 Y1 I? J?"},
-        LineCase{"IncrementOfOneAxis", "G1 X=IC(5) Y3", Opacity::kExpression, "G1 X? Y3"},
-        LineCase{"Parameter", "X=R1 Y=R2+3*SIN(R3) Z1", Opacity::kExpression, "X? Y? Z1"},
-        LineCase{"SetsParameters", "N10 R1=5 R2=R1*2", Opacity::kAssignment, "N10"},
-        LineCase{"SetsBesideAMove", "G1 X10 R1=5", Opacity::kNamedWords, "G1 X10"},
-        LineCase{"Message", "MSG(\"a ; b ) X1\")", Opacity::kNamedWords, ""},
-        LineCase{"HighSpeedCycle", "N5 CYCLE832(0.01,_FINISH,1)", Opacity::kNamedWords, "N5"},
-        LineCase{"Modes", "G90 G94 G642 SOFT FFWON COMPOF", Opacity::kNamedWords, "G90 G94"},
-        LineCase{"MetricUnits", "G71 G90 X1", Opacity::kNamedWords, "G90 X1"},
-        LineCase{"ExtendedAddress", "M1=3 S1=5000", Opacity::kNamedWords, ""},
-        LineCase{"NumberedAxis", "G1 X1=10", Opacity::kNamedWords, "G1"},
-        LineCase{"ToolOffset", "D1", Opacity::kNamedWords, "D1"},
-        LineCase{"ToolByName", "T=\"MILL 6\" M6", Opacity::kExpression, "T? M6"},
-        LineCase{"Polynomial", "POLY PO[X]=(18,-18,6) PO[Y]=(6.4)", Opacity::kNamedWords, ""},
-        LineCase{"Declaration", "DEF REAL A, B = 5", Opacity::kNamedWords, ""},
-        LineCase{"Jump", "N10 GOTOF END_OF_IT", Opacity::kFlow, "N10"},
-        LineCase{"Condition", "IF R1 == 5 GOTOB N100", Opacity::kFlow, ""},
-        LineCase{"Label", "AGAIN: G1 X1", Opacity::kNamedWords, "G1 X1"},
-        LineCase{"LabelOfOneLetter", "A1: X1", Opacity::kNamedWords, "X1"},
-        LineCase{"MainBlock", ":10 G1 X1", Opacity::kNamedWords, "G1 X1"},
-        LineCase{"ByIndex", "R[5]=R[2]*3", Opacity::kNamedWords, ""},
-        LineCase{"Repeat", "REPEAT AGAIN P=3", Opacity::kFlow, ""},
-        LineCase{"Subprogram", "L100 P3", Opacity::kForeign, ""},
-        LineCase{"EndOfSubprogram", "M17", Opacity::kForeign, ""},
-        LineCase{"ProgramHead", "%_N_PART_MPF", Opacity::kProgramMark, ""},
-        LineCase{"PathOfThePart", ";$PATH=/_N_WKS_DIR", Opacity::kNone, ""},
-        LineCase{"Exponent", "G1 X1EX-3", Opacity::kUnreadable, "G1"},
-        LineCase{"TwoPoints", "X1.2.3", Opacity::kUnreadable, ""},
-        LineCase{"BlankInANumber", "X1 2", Opacity::kUnreadable, "X1"},
-        LineCase{"Parenthesis", "G1 (no comment)", Opacity::kUnreadable, "G1"},
-        LineCase{"OpenBracket", "MSG(\"a", Opacity::kUnreadable, ""},
-        LineCase{"Skipped", "/3 G1 X1", Opacity::kNone, "G1 X1"}),
+        LineCase{"IncrementOfOneAxis", "G1 X=IC(5) Y3", ParseStatus::kExpression, "G1 X? Y3"},
+        LineCase{"Parameter", "X=R1 Y=R2+3*SIN(R3) Z1", ParseStatus::kExpression, "X? Y? Z1"},
+        LineCase{"SetsParameters", "N10 R1=5 R2=R1*2", ParseStatus::kAssignment, "N10"},
+        LineCase{"SetsBesideAMove", "G1 X10 R1=5", ParseStatus::kNamedWords, "G1 X10"},
+        LineCase{"Message", "MSG(\"a ; b ) X1\")", ParseStatus::kNamedWords, ""},
+        LineCase{"HighSpeedCycle", "N5 CYCLE832(0.01,_FINISH,1)", ParseStatus::kNamedWords, "N5"},
+        LineCase{"Modes", "G90 G94 G642 SOFT FFWON COMPOF", ParseStatus::kNamedWords, "G90 G94"},
+        LineCase{"MetricUnits", "G71 G90 X1", ParseStatus::kNamedWords, "G90 X1"},
+        LineCase{"ExtendedAddress", "M1=3 S1=5000", ParseStatus::kNamedWords, ""},
+        LineCase{"NumberedAxis", "G1 X1=10", ParseStatus::kNamedWords, "G1"},
+        LineCase{"ToolOffset", "D1", ParseStatus::kNamedWords, "D1"},
+        LineCase{"ToolByName", "T=\"MILL 6\" M6", ParseStatus::kExpression, "T? M6"},
+        LineCase{"Polynomial", "POLY PO[X]=(18,-18,6) PO[Y]=(6.4)", ParseStatus::kNamedWords, ""},
+        LineCase{"Declaration", "DEF REAL A, B = 5", ParseStatus::kNamedWords, ""},
+        LineCase{"Jump", "N10 GOTOF END_OF_IT", ParseStatus::kFlow, "N10"},
+        LineCase{"Condition", "IF R1 == 5 GOTOB N100", ParseStatus::kFlow, ""},
+        LineCase{"Label", "AGAIN: G1 X1", ParseStatus::kNamedWords, "G1 X1"},
+        LineCase{"LabelOfOneLetter", "A1: X1", ParseStatus::kNamedWords, "X1"},
+        LineCase{"MainBlock", ":10 G1 X1", ParseStatus::kNamedWords, "G1 X1"},
+        LineCase{"ByIndex", "R[5]=R[2]*3", ParseStatus::kNamedWords, ""},
+        LineCase{"Repeat", "REPEAT AGAIN P=3", ParseStatus::kFlow, ""},
+        LineCase{"Subprogram", "L100 P3", ParseStatus::kForeign, ""},
+        LineCase{"EndOfSubprogram", "M17", ParseStatus::kForeign, ""},
+        LineCase{"ProgramHead", "%_N_PART_MPF", ParseStatus::kProgramMark, ""},
+        LineCase{"PathOfThePart", ";$PATH=/_N_WKS_DIR", ParseStatus::kNone, ""},
+        LineCase{"Exponent", "G1 X1EX-3", ParseStatus::kUnreadable, "G1"},
+        LineCase{"TwoPoints", "X1.2.3", ParseStatus::kUnreadable, ""},
+        LineCase{"BlankInANumber", "X1 2", ParseStatus::kUnreadable, "X1"},
+        LineCase{"Parenthesis", "G1 (no comment)", ParseStatus::kUnreadable, "G1"},
+        LineCase{"OpenBracket", "MSG(\"a", ParseStatus::kUnreadable, ""},
+        LineCase{"Skipped", "/3 G1 X1", ParseStatus::kNone, "G1 X1"}),
     [](const auto& test) { return test.param.name; });
 
 TEST(SiemensParser, TheIsoModeIsNotReadUntilItEnds) {
   Diagnostics found;
   const Program program = siemens("G291\nG1 X290\nG290\nG1 X2\n", found);
-  EXPECT_EQ(program.blocks[1].opacity, Opacity::kForeign);
-  EXPECT_EQ(program.blocks[3].opacity, Opacity::kNone);
+  EXPECT_EQ(program.blocks[1].opacity, ParseStatus::kForeign);
+  EXPECT_EQ(program.blocks[3].opacity, ParseStatus::kNone);
 }
 
 TEST(SiemensValue, EndsWhereTheNextWordStarts) {
@@ -131,10 +131,11 @@ TEST_P(SiemensEffect, IsForgottenAsFarAsItReaches) {
   const bool known = is_known(state);
   const std::int32_t motion = read.blocks[3].motion;
   const bool placed = motion >= 0 && read.motions[static_cast<std::size_t>(motion)].start_known;
-  const bool plain = state.tool_center_point == Tri::kOff && state.tilted_plane == Tri::kOff &&
-                     state.scaling == Tri::kOff && state.rotation == Tri::kOff &&
-                     state.mirror == Tri::kOff && state.polar == Tri::kOff &&
-                     state.cylindrical == Tri::kOff && state.control_smoothing == Tri::kOff;
+  const bool plain = state.tool_center_point == TriState::kOff &&
+                     state.tilted_plane == TriState::kOff && state.scaling == TriState::kOff &&
+                     state.rotation == TriState::kOff && state.mirror == TriState::kOff &&
+                     state.polar == TriState::kOff && state.cylindrical == TriState::kOff &&
+                     state.control_smoothing == TriState::kOff;
   const std::string_view after = !known ? "nothing" : !plain ? "bent" : placed ? "place" : "state";
   EXPECT_EQ(after, GetParam().after);
 }

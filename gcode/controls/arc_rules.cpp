@@ -1,0 +1,174 @@
+#include "gcode/controls/arc_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "gcode/controls/rs274_family.h"
+#include "gcode/state/plane_axes.h"
+#include "gcode/state/units.h"
+#include "gcode/text/number_limit.h"
+
+namespace batten::gcode {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kMmPerInch = 25.4;
+
+// A radius that was read is itself to within this part: what is computed from it is noise.
+constexpr double kSameRadius = 1e-9;
+
+// grbl refuses an arc (error 33) whose radii differ by more than kMismatch and by more than
+// either of the other two.
+constexpr float kMismatch = 0.005F;          // mm
+constexpr float kGreatestMismatch = 0.5F;    // mm
+constexpr float kRelativeMismatch = 0.001F;  // of the radius at the start
+
+// Below half a degree the angle that grbl computes in single precision is mostly noise, and a
+// noisy angle of the wrong sign is a full turn. Near a full turn the same noise makes it none.
+constexpr double kLeastSweep = 0.5 * kDegree;
+constexpr double kGreatestSweep = 350 * kDegree;
+
+// TinyG: one of two thresholds around which its sources and their comments disagree; refusing by
+// the relative part alone is right in both readings.
+constexpr double kTinygRelative = 0.001;
+
+// mm: firmware that cuts arcs into chords runs nothing at all below a tenth of this.
+constexpr double kLeastLength = 0.01;
+
+// A sweep below this (0.1 degrees) depends on the last printed digits where nothing is known of
+// how the control computes.
+constexpr double kLeastKnownSweep = 0.1 * kDegree;
+
+// The centre is printed next to the bisector of the printed ends: the radii at the ends then differ
+// by 1.5 steps of its last decimal at the most (gcode/text/arc_center.h).
+constexpr double kStepsOfMismatch = 1.5;
+
+// Digits that grbl reads of a number; what follows them is not read, and behind the point it counts
+// for nothing.
+constexpr int kGrblDigits = 8;
+
+// More than any number of ours has.
+constexpr int kAllDecimals = 9;
+
+// The number that grbl reads from these digits: whole digits in 32 bits, times a hundredth and a
+// tenth as often as there were decimals, each time in 32 bits.
+float read_by_grbl(std::string_view text) {
+  const bool negative = text.starts_with('-');
+  std::uint32_t digits = 0;
+  int count = 0;
+  int exponent = 0;
+  bool behind_point = false;
+  for (const char c : text.substr(negative ? 1 : 0)) {
+    if (c == '.') {
+      behind_point = true;
+      continue;
+    }
+    if (++count <= kGrblDigits) {
+      digits = digits * 10 + static_cast<std::uint32_t>(c - '0');
+      exponent -= behind_point ? 1 : 0;
+    } else {
+      exponent += behind_point ? 0 : 1;
+    }
+  }
+  auto value = static_cast<float>(digits);
+  if (digits != 0) {
+    for (; exponent <= -2; exponent += 2) value *= 0.01F;
+    for (; exponent < 0; ++exponent) value *= 0.1F;
+    for (; exponent > 0; --exponent) value *= 10.0F;
+  }
+  return negative ? -value : value;
+}
+
+// A coordinate as grbl holds it: read in the program's units, inches then multiplied by 25.4 in 32
+// bits.
+float held(double mm, Units units) {
+  const double unit = units == Units::kInch ? kMmPerInch : 1;
+  // Noise of the last bits of a double is no digit of the text.
+  const float read = read_by_grbl(to_text(mm / unit, {.decimals = kAllDecimals}));
+  return units == Units::kInch ? read * static_cast<float>(kMmPerInch) : read;
+}
+
+// The check of grbl's g-code parser, number by number, in 32 bits as on its processor.
+bool radii_differ_in_32_bits(const geometry::Arc& arc, Units units) {
+  const PlaneAxes* plane = plane_across(arc.axis);
+  if (plane == nullptr) return true;
+  const int a = plane->first;
+  const int b = plane->second;
+  const float offset_a = held(arc.center[a] - arc.start[a], units);
+  const float offset_b = held(arc.center[b] - arc.start[b], units);
+  const float end_a = held(arc.end[a], units) - held(arc.start[a], units) - offset_a;
+  const float end_b = held(arc.end[b], units) - held(arc.start[b], units) - offset_b;
+  const float start_radius = std::sqrt(offset_a * offset_a + offset_b * offset_b);
+  const float end_radius = std::sqrt(end_a * end_a + end_b * end_b);
+  const float mismatch = std::abs(end_radius - start_radius);
+  return mismatch > kMismatch &&
+         (mismatch > kGreatestMismatch || mismatch > kRelativeMismatch * start_radius);
+}
+
+// Whether ends and centre, and each offset between them, are numbers that may be written.
+bool is_written(const geometry::Arc& arc, double unit) {
+  for (const geometry::Point3& place : {arc.start, arc.end, arc.center}) {
+    if (!(place.cwiseAbs().maxCoeff() / unit < kNumberLimit / 2)) return false;
+  }
+  return true;
+}
+
+// mm
+double step_of_centers(Units units, const TargetTable& table) {
+  const int decimals = units == Units::kInch ? table.centers.inch : table.centers.mm;
+  return printed_step({.decimals = decimals}, units);
+}
+
+}  // namespace
+
+std::string_view arc_refusal(const Dialect& target, const geometry::Arc& printed, Units units) {
+  if (!is_written(printed, millimetres_per(units))) return "numbers greater than any control takes";
+  const EndRadii radii = end_radii(printed);
+  if (!(std::min(radii.start, radii.end) >= target.min_arc_radius() * (1 - kSameRadius))) {
+    return "arc radius below the least";
+  }
+  return target.arc_complaint(printed, units);
+}
+
+std::string_view grbl_arc_rule(const geometry::Arc& printed, Units units, const TargetTable&) {
+  const double sweep = std::abs(printed.sweep);
+  if (radii_differ_in_32_bits(printed, units)) {
+    return "error 33: radii at the ends of the arc differ";
+  }
+  if (sweep < kLeastSweep) return "arc of less than 0.5 degrees";
+  if (sweep > kGreatestSweep) return "arc of more than 350 degrees";
+  return {};
+}
+
+std::string_view tinyg_arc_rule(const geometry::Arc& printed, Units, const TargetTable&) {
+  const EndRadii radii = end_radii(printed);
+  const double sweep = std::abs(printed.sweep);
+  if (radii.mismatch() > kTinygRelative * radii.start) {
+    return "radii at the ends of the arc differ by more than 0.1 %";
+  }
+  if (sweep < kLeastSweep) return "arc of less than 0.5 degrees";
+  if (sweep > kGreatestSweep) return "arc of more than 350 degrees";
+  return {};
+}
+
+std::string_view unchecked_arc_rule(const geometry::Arc& printed, Units units,
+                                    const TargetTable& table) {
+  if (end_radii(printed).start * std::abs(printed.sweep) < kLeastLength) {
+    return "arc so short that it is not run";
+  }
+  return strictest_arc_rule(printed, units, table);
+}
+
+std::string_view strictest_arc_rule(const geometry::Arc& printed, Units units,
+                                    const TargetTable& table) {
+  const EndRadii radii = end_radii(printed);
+  if (radii.mismatch() > kStepsOfMismatch * step_of_centers(units, table)) {
+    return "radii at the ends of the arc differ by more than the printed digits";
+  }
+  if (std::abs(printed.sweep) < kLeastKnownSweep) return "arc of less than 0.1 degrees";
+  return {};
+}
+
+}  // namespace batten::gcode

@@ -1,0 +1,532 @@
+#include "gcode/interpreter/interpreter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "gcode/curves/curve_in_program.h"
+#include "gcode/interpreter/arc_from_words.h"
+#include "gcode/interpreter/block_complaints.h"
+#include "gcode/interpreter/motion_words.h"
+#include "gcode/interpreter/opaque_blocks.h"
+#include "gcode/interpreter/plain_line.h"
+#include "gcode/interpreter/program_flow.h"
+#include "gcode/interpreter/state_changes.h"
+#include "gcode/klartext/state.h"
+#include "gcode/siemens/flow.h"
+#include "gcode/siemens/names.h"
+#include "gcode/siemens/variables.h"
+#include "gcode/state/block_words.h"
+#include "gcode/state/control_state.h"
+#include "gcode/state/dwell.h"
+#include "gcode/state/reason.h"
+#include "gcode/text/large_pages.h"
+
+namespace batten::gcode {
+namespace {
+
+class Interpreter {
+ public:
+  Interpreter(const Program& program, const ReadOptions& options, ControlCarry& carry,
+              Diagnostics& found)
+      : program_(program),
+        curves_(options.curves),
+        has_plain_way_(options.short_ways && program.language == Language::kRs274),
+        carry_(carry),
+        complaints_(program, carry.told, found),
+        now_(carry.state) {
+    now_.calls_keep_modes = options.calls_keep_modes;
+    carry.is_klartext = is_klartext();
+    if (is_klartext()) start_klartext(now_);
+    read_.unit_word_seen = carry.unit_word_seen;
+    read_.states.push_back(now_.modal);
+    reserve_in_large_pages(read_.blocks, program.blocks.size());
+    reserve_in_large_pages(read_.motions,
+                           program.blocks.size());  // nearly every block of a long program moves
+  }
+
+  Interpretation run() {
+    const ProgramFlow whole_flow =
+        follow_flow(program_, now_.calls_keep_modes ? Returns::kBehindCalls : Returns::kToAnyLabel);
+    const std::vector<BlockFlow>& flow = whole_flow.blocks;
+    const auto count = static_cast<std::uint32_t>(program_.blocks.size());
+    for (std::uint32_t i = 0; i < count;) {
+      if (has_plain_way_ && read_plain_line(program_, i, flow[i], now_, read_)) {
+        ++i;
+      } else if (const auto curve = curve_at(program_, i, now_, curves_, flow)) {
+        add_curve(i, *curve);
+        i += curve->blocks;
+      } else {
+        read_block(i, flow[i]);
+        ++i;
+      }
+    }
+    carry_.state = now_;
+    carry_.unit_word_seen = read_.unit_word_seen;
+    carry_.reaches_out |= whole_flow.reaches_out;
+    if (!carry_.any_motion && !read_.motions.empty()) {
+      carry_.any_motion = true;
+      carry_.first_motion = program_.blocks[read_.motions.front().block].span;
+    }
+    return std::move(read_);
+  }
+
+ private:
+  void read_block(std::uint32_t index, const BlockFlow& flow) {
+    const Block& block = program_.blocks[index];
+    meaning_ = BlockMeaning{};
+    block_index_ = index;
+    complaints_.begin_block(index);
+    meaning_.label_referenced = flow.label_referenced;
+    if (flow.jump_target) {
+      meaning_.entered_from_elsewhere = true;
+      is_klartext() ? forget_klartext(now_) : forget_everything(now_);
+    }
+    if (block.block_delete) {
+      read_deletable(block);
+    } else {
+      read_words_or_text(block);
+    }
+    add_barriers_of_place(block, flow);
+    forget_motion_word();
+    remember_arc_distance();
+    if (read_.states.back() != now_.modal) {
+      read_.states.push_back(now_.modal);
+    }
+    meaning_.state_after = static_cast<std::uint32_t>(read_.states.size() - 1);
+    read_.blocks.push_back(meaning_);
+  }
+
+  // The blocks of a curve together. Until it is over nothing but the curve happens.
+  void add_curve(std::uint32_t first, const CurveReading& curve) {
+    now_.modal.motion = MotionMode::kOther;
+    now_.other_motion = reason::kSpline;
+    forget_motion_word();
+    if (curve.feed) {
+      now_.modal.feed = *curve.feed * (now_.modal.units == Units::kInch ? kMillimetresPerInch : 1);
+      now_.modal.feed_without_point = is_feed_without_point(program_, first, curve);
+    }
+    if (read_.states.back() != now_.modal) {
+      read_.states.push_back(now_.modal);
+    }
+    auto next = curve.motions.begin();
+    for (std::uint32_t i = first; i < first + curve.blocks; ++i) {
+      meaning_ = BlockMeaning{};
+      meaning_.kind = BlockKind::kSettings;  // it says a knot, or that the curve begins
+      meaning_.barrier = reason::kSpline;
+      meaning_.of_curve = true;
+      meaning_.state_after = static_cast<std::uint32_t>(read_.states.size() - 1);
+      if (next != curve.motions.end() && next->block == i) {
+        meaning_.kind = BlockKind::kMotion;
+        meaning_.motion = static_cast<std::int32_t>(read_.motions.size());
+        read_.motions.push_back(motion_of(*next++, curve));
+      }
+      read_.blocks.push_back(meaning_);
+    }
+    // It started where the place was known, and so it ends.
+    now_.position.mm = read_.motions.back().piece.end();
+  }
+
+  // The operator chooses whether the block is executed: what it changes is unknown afterwards.
+  void read_deletable(const Block& block) {
+    const ControlState skipped = now_;
+    read_words_or_text(block);
+    now_ = either(skipped, now_);
+    const bool acts = meaning_.kind != BlockKind::kEmpty;
+    drop_motion();
+    if (acts) {
+      meaning_.kind = BlockKind::kOpaque;
+    }
+    meaning_.barrier = reason::kBlockDelete;
+  }
+
+  void read_words_or_text(const Block& block) {
+    switch (block.opacity) {
+      case ParseStatus::kNone:
+      case ParseStatus::kExpression:
+        return read_words(block);
+      case ParseStatus::kNamedWords:
+        return read_named(block);
+      case ParseStatus::kCornerWord:
+        // The block's motion stops short of its end, and the next one starts beside it.
+        read_words(block);
+        drop_motion();
+        forget_position(now_);
+        return make_opaque(reason::kCornerWord);
+      case ParseStatus::kContinued:
+        return make_opaque(opacity_reason(block.opacity));
+      default:
+        if (is_klartext()) return read_klartext(block);
+        if (is_siemens() && block.opacity == ParseStatus::kFlow) return read_siemens_flow(block);
+        return read_opaque(block);
+    }
+  }
+
+  void read_opaque(const Block& block) {
+    const std::string_view text = program_.source.text(block.span);
+    apply_opaque(block.opacity, text, now_);
+    const bool calls =
+        block.opacity == ParseStatus::kFlow && flow_effect(text) == FlowEffect::kCall;
+    make_opaque(calls ? reason::kSubprogram : opacity_reason(block.opacity));
+  }
+
+  [[nodiscard]] bool is_siemens() const { return program_.language == Language::kSiemens; }
+  [[nodiscard]] bool is_klartext() const { return program_.language == Language::kKlartext; }
+
+  void read_siemens_flow(const Block& block) {
+    const FlowEffect effect = siemens_flow_effect(program_.source.text(block.span));
+    if (effect != FlowEffect::kNothing) forget_everything(now_);
+    make_opaque(reason::kProgramFlow);
+  }
+
+  void read_klartext(const Block& block) {
+    if (block.opacity == ParseStatus::kUnreadable) {
+      forget_klartext(now_);
+      return make_opaque(reason::kNotUnderstood);
+    }
+    const std::string_view text = klartext_statement_text(program_, block_index_);
+    make_opaque(apply_klartext(text, now_));
+    read_.unit_word_seen |= now_.modal.units != Units::kUnknown;
+  }
+
+  // Every block of Klartext that moves says how.
+  void forget_motion_word() {
+    if (is_klartext()) now_.modal.motion = MotionMode::kUnknown;
+  }
+
+  // No word of Siemens programs changes it: AC() and IC() say it of one number.
+  void remember_arc_distance() {
+    if (is_siemens()) now_.modal.arc_distance = DistanceMode::kIncremental;
+  }
+
+  void make_opaque(std::string_view why) {
+    meaning_.kind = BlockKind::kOpaque;
+    meaning_.barrier = why;
+  }
+
+  void drop_motion() {
+    if (meaning_.motion >= 0) {
+      read_.motions.pop_back();
+      meaning_.motion = -1;
+    }
+  }
+
+  // Which of two reasons it is that a value is not known.
+  void tell_expression_from_decimals(const Block& block) {
+    if (meaning_.barrier != reason::kExpression) return;
+    const bool no_point = std::ranges::any_of(program_.words_of(block), [](const Word& word) {
+      return word.without_point && !word.is_number;
+    });
+    if (no_point) meaning_.barrier = reason::kImpliedDecimals;
+  }
+
+  void add_barriers_of_place(const Block& block, const BlockFlow& flow) {
+    tell_expression_from_decimals(block);
+    const bool active = std::ranges::any_of(program_.comments_of(block), [](const Comment& c) {
+      return c.kind == CommentKind::kActive;
+    });
+    if (block.has_checksum) {
+      block_run(reason::kChecksum);  // the host counts these lines
+    }
+    if (active) {
+      block_run(reason::kActiveComment);
+      if (meaning_.kind == BlockKind::kEmpty) {
+        meaning_.kind = BlockKind::kSettings;
+      } else if (meaning_.kind == BlockKind::kMotion) {
+        meaning_.kind = BlockKind::kMotionAndMore;
+      }
+    }
+    if (meaning_.label_referenced) {
+      block_run(reason::kReferencedLabel);
+    }
+    if (flow.in_body && meaning_.kind != BlockKind::kEmpty) {
+      block_run(reason::kLoopBody);
+    }
+    // Last: an arc that may stand in a run has this barrier alone.
+    if (meaning_.motion >= 0 && read_.motions.back().kind == MotionKind::kArc) {
+      block_run(reason::kArc);
+    }
+  }
+
+  void block_run(std::string_view why) {
+    if (meaning_.barrier.empty()) {
+      meaning_.barrier = why;
+    }
+  }
+
+  // --- words --------------------------------------------------------------------------------
+
+  void read_words(const Block& block) {
+    const BlockWords words(program_.words_of(block));
+    if (words.problem() != BlockWords::Problem::kNone) {
+      return refuse_words(words);
+    }
+    if (words.has_g(40) && waits_alone(block)) {
+      meaning_.kind = BlockKind::kSettings;
+      meaning_.barrier = reason::kDwell;
+      return;
+    }
+    const StateEffect effect = apply_words(words, now_);
+    read_.unit_word_seen |= effect.unit_word;
+    if (effect.unknown_code >= 0) {
+      complaints_.tell_unknown_code(effect.unknown_code);
+    }
+    meaning_.barrier = effect.barrier;
+    read_motion(words, effect);
+    apply_late_words(words, now_);
+    if (!words.all_numbers()) {
+      drop_motion();
+      make_opaque(reason::kExpression);
+    } else if (!effect.understood && meaning_.kind != BlockKind::kOpaque) {
+      drop_motion();
+      make_opaque(effect.barrier);
+    }
+  }
+
+  // A dwell whose one word is a time on every control that reads it, not a place, feed or speed.
+  [[nodiscard]] bool waits_alone(const Block& block) const {
+    const bool siemens = program_.language == Language::kSiemens;
+    const DwellForm form = siemens ? DwellForm::kSecondsF : DwellForm::kUnknown;
+    return dwell_ms(program_.words_of(block), form).has_value();
+  }
+
+  // Siemens: the block is copied; what it does to the state is known where all its names are.
+  void read_named(const Block& block) {
+    const BlockWords words(program_.words_of(block));
+    if (words.problem() != BlockWords::Problem::kNone) {
+      return refuse_words(words);
+    }
+    const NamedEffect named =
+        apply_names(program_.source.text(block.span), words, variables_, now_);
+    if (!named.understood) {
+      forget_everything(now_);
+      return make_opaque(reason::kForeignWords);
+    }
+    StateEffect effect = apply_words(words, now_);
+    read_.unit_word_seen |= effect.unit_word || named.unit_word;
+    if (effect.motion >= 0) {
+      set_motion_mode(effect.motion);
+    }
+    effect.takes_axes |= named.takes_axes;
+    const bool moves = words.has_any("XYZIJKR") && !effect.takes_axes;
+    if (moves && now_.modal.motion != MotionMode::kOther &&
+        why_not_followed(words, effect, now_).empty()) {
+      now_.position = end_of_motion(words, now_);
+    } else if (moves) {
+      forget_position(now_);
+    }
+    forget_increments(words);
+    if (named.loses_place || !words.all_numbers()) {
+      forget_position(now_);
+    }
+    apply_late_words(words, now_);
+    make_opaque(named.barrier);
+  }
+
+  void refuse_words(const BlockWords& words) {
+    forget_everything(now_);
+    make_opaque(words.all_numbers() ? reason::kNotUnderstood : reason::kExpression);
+    complaints_.tell_words(words);
+  }
+
+  void read_motion(const BlockWords& words, const StateEffect& effect) {
+    const bool settings = !effect.barrier.empty();
+    if (effect.motion >= 0) {
+      set_motion_mode(effect.motion);
+    }
+    const MotionMode mode = now_.modal.motion;
+    const bool arc_words = is_arc(mode) && words.has_any("IJKR");
+    const bool moves = !effect.takes_axes && (words.has_any("XYZ") || arc_words);
+    if (effect.motion >= 0 && mode == MotionMode::kOther) {
+      return read_other_motion(now_.other_motion);
+    }
+    if (!moves) {
+      return finish_without_motion(words, effect);
+    }
+    if (mode == MotionMode::kOther) {
+      return read_other_motion(now_.other_motion);
+    }
+    if (const std::string_view why = why_not_followed(words, effect, now_); !why.empty()) {
+      return lose_motion(words, why);
+    }
+    if (!(is_arc(mode) ? add_arc(words) : add_line(words))) {
+      return;
+    }
+    meaning_.kind = settings ? BlockKind::kMotionAndMore : BlockKind::kMotion;
+    forget_increments(words);
+  }
+
+  void set_motion_mode(Code motion) {
+    now_.modal.motion = mode_of(motion);
+    now_.other_motion =
+        now_.modal.motion == MotionMode::kOther ? other_motion_reason(motion) : std::string_view{};
+    if (motion == 310 || motion == 120 || motion == 130) {
+      // One-shot on some controls, modal on others.
+      now_.modal.motion = MotionMode::kOther;
+    }
+  }
+
+  // Cycles, threads, splines, probes: where the tool is afterwards depends on the control.
+  void read_other_motion(std::string_view why) {
+    forget_position(now_);
+    block_run(why);
+    meaning_.kind = BlockKind::kSettings;
+  }
+
+  void finish_without_motion(const BlockWords& words, const StateEffect& effect) {
+    if (effect.motion >= 0 && !effect.takes_axes) {
+      // G1 alone: the next block moves in this mode.
+      if (read_.states.back().motion != now_.modal.motion) {
+        block_run(reason::kStateChange);
+      }
+    }
+    forget_increments(words);
+    if (!effect.takes_parameters && words.has_any("PQLIJKR")) {
+      forget_position(now_);
+      return make_opaque(reason::kNotUnderstood);
+    }
+    const bool nothing = meaning_.barrier.empty() && !effect.feed_changed;
+    meaning_.kind = nothing ? BlockKind::kEmpty : BlockKind::kSettings;
+  }
+
+  // U, V, W move X, Y, Z by increments on lathes, and axes of their own elsewhere.
+  void forget_increments(const BlockWords& words) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (words.has("UVW"[axis])) {
+        forget_axis(now_, axis);
+      }
+    }
+  }
+
+  // The motion happens, but its path is not known. Nor is its end, as a rule: controls that
+  // refuse the block stop, others go where the words say.
+  void lose_motion(const BlockWords& words, std::string_view why) {
+    make_opaque(why);
+    if (why == reason::kExpression) {
+      forget_named_axes(now_, words);
+    } else if (why == reason::kPositionUnknown && now_.modal.distance == DistanceMode::kAbsolute) {
+      now_.position = end_of_motion(words, now_);
+    } else {
+      forget_position(now_);
+    }
+  }
+
+  // --- geometry -----------------------------------------------------------------------------
+
+  bool add_line(const BlockWords& words) {
+    const Position end = end_of_motion(words, now_);
+    Motion motion;
+    motion.kind = now_.modal.motion == MotionMode::kRapid ? MotionKind::kRapid : MotionKind::kLine;
+    motion.piece = geometry::Line{now_.position.mm, end.mm};
+    const bool rapid = motion.kind == MotionKind::kRapid;
+    add_motion(std::move(motion), words, end);
+    if (rapid) {
+      block_run(reason::kRapid);
+    }
+    return true;
+  }
+
+  bool add_arc(const BlockWords& words) {
+    const Position end = end_of_motion(words, now_);
+    const ArcReading reading = arc_from_words(arc_words(words, now_, end));
+    if (!reading.arc) {
+      complaints_.tell(reading.problem, reading.message);
+      lose_motion(words, reason::kArc);
+      return false;
+    }
+    Motion motion;
+    motion.kind = MotionKind::kArc;
+    motion.piece = *reading.arc;
+    add_motion(std::move(motion), words, end);
+    return true;
+  }
+
+  void add_motion(Motion motion, const BlockWords& words, const Position& end) {
+    motion.block = block_index_;
+    motion.start_known = true;
+    motion.end_known = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      motion.axes_named[axis] = words.has("XYZ"[axis]);
+      motion.start_known &= !motion.axes_named[axis] || now_.position.known[axis];
+      motion.end_known &= !motion.axes_named[axis] || end.known[axis];
+    }
+    now_.position = end;
+    meaning_.motion = static_cast<std::int32_t>(read_.motions.size());
+    read_.motions.push_back(std::move(motion));
+  }
+
+  const Program& program_;
+  const CurveFormat* curves_;
+  bool has_plain_way_;
+  ControlCarry& carry_;
+  BlockComplaints complaints_;
+  ControlState now_;
+  SiemensVariables variables_;
+  Interpretation read_;
+  BlockMeaning meaning_;  // of the block that is being read
+  std::uint32_t block_index_ = 0;
+};
+
+// Nothing of it is certain, and no word alone says what it seems to say.
+void make_all_opaque(const Program& program, Interpretation& read) {
+  for (std::size_t i = 0; i < read.blocks.size(); ++i) {
+    BlockMeaning& meaning = read.blocks[i];
+    const Block& block = program.blocks[i];
+    const bool says_nothing = block.opacity == ParseStatus::kNone && block.word_count == 0;
+    if ((says_nothing && meaning.kind == BlockKind::kEmpty) ||
+        meaning.barrier == reason::kProgramMark) {
+      continue;
+    }
+    meaning.kind = BlockKind::kOpaque;
+    meaning.barrier = reason::kLatheProgram;
+    meaning.of_curve = false;
+  }
+}
+
+Diagnostic lathe_warning(const LatheWatch& lathe) {
+  return {
+      Severity::kWarning, "lathe-program", lathe.where(),
+      fmt::format("{}: this is a program for a lathe, where X may be a diameter and G90 a cycle; "
+                  "it is copied as it is. If it is for a mill, write this in another way",
+                  lathe.evidence())};
+}
+
+}  // namespace
+
+Interpretation interpret(const Program& program, const ReadOptions& options, Diagnostics& found) {
+  ControlCarry carry(options.units);
+  Interpretation read = interpret_part(program, options, carry, found);
+  finish_interpretation(carry, found);
+  return read;
+}
+
+Interpretation interpret_part(const Program& part, const ReadOptions& options, ControlCarry& carry,
+                              Diagnostics& found) {
+  if (options.lathes) carry.lathe.see(part);
+  if (!carry.lathe.is_lathe()) return Interpreter(part, options, carry, found).run();
+  // What is told of single blocks would be told of a mill.
+  Diagnostics of_a_mill;
+  Interpretation read = Interpreter(part, options, carry, of_a_mill).run();
+  make_all_opaque(part, read);
+  found.push_back(lathe_warning(carry.lathe));
+  carry.told = {};
+  carry.any_motion = false;  // it needs no units
+  carry.reaches_out = true;
+  return read;
+}
+
+void finish_interpretation(const ControlCarry& carry, Diagnostics& found) {
+  carry.told.tell_rest(found);
+  if (carry.unit_word_seen || !carry.any_motion) {
+    return;
+  }
+  const std::string_view missing =
+      carry.is_klartext ? "no BEGIN PGM with MM or INCH" : "no G20 or G21";
+  found.push_back({Severity::kError, "units-missing", carry.first_motion,
+                   fmt::format("{} in the whole program; without a unit a tolerance means nothing. "
+                               "Say --units mm or --units inch",
+                               missing)});
+}
+
+}  // namespace batten::gcode

@@ -1,0 +1,54 @@
+// Blocks to motions in millimetres: the only place that knows inches and increments.
+#pragma once
+
+#include "gcode/interpreter/control_carry.h"
+#include "gcode/state/motion.h"
+#include "gcode/text/diagnostic.h"
+#include "gcode/text/program.h"
+
+namespace batten::gcode {
+
+class CurveFormat;  // gcode/curves/curve_format.h
+
+struct ReadOptions {
+  Units units = Units::kUnknown;  // --units: what a program that names no unit means
+  // The curves of the control that the program is for; all others are motions that cannot be
+  // followed. nullptr: none are read.
+  const CurveFormat* curves = nullptr;
+  // Subprograms and macros leave all modes as they find them (M97, M98, M198, G65, O-word calls,
+  // CALL LBL, CALL PGM): behind a call only place, feed, speed and kind of motion are unknown.
+  bool calls_keep_modes = false;
+  bool lathes = true;  // are told by their marks; else every program is read as a mill's
+  bool short_ways =
+      true;  // for simple blocks (gcode/interpreter/plain_line.h); they change nothing
+};
+
+// Follows the program from its first block to its last, as a control would, without loops
+// and calls: blocks that would need them are opaque, and what they could have changed is
+// unknown after them.
+//
+// State at the start: units as in the options; everything else as controls have it after
+// power-on (absolute, XY plane, feed per minute, compensations off), the position unknown.
+//
+// What most controls would refuse (two words of one group, an arc whose radii differ by more
+// than 0.0283 mm and 0.1 %) gives a warning; the block is opaque then. The only error is
+// units-missing: motions in a program that names no unit, without ReadOptions::units. At most
+// one diagnostic per block. Linear time.
+//
+// A program for a lathe (gcode/state/lathe_marks.h) gives one warning, lathe-program: nothing of it
+// is followed, all its blocks that say anything are opaque. Its motions are listed as a mill would
+// do them, so that they can be counted.
+//
+// Positions are those of the program's own coordinates. In states that no motion may be
+// rewritten in (scaling, rotation, tilted planes ..) they are not where the tool is.
+[[nodiscard]] Interpretation interpret(const Program& program, const ReadOptions& options,
+                                       Diagnostics& found);
+
+// ReadOptions::units counts only where the carry is made.
+[[nodiscard]] Interpretation interpret_part(const Program& part, const ReadOptions& options,
+                                            ControlCarry& carry, Diagnostics& found);
+
+// What is told of the whole program at its end.
+void finish_interpretation(const ControlCarry& carry, Diagnostics& found);
+
+}  // namespace batten::gcode

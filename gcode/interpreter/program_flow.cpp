@@ -1,0 +1,420 @@
+#include "gcode/interpreter/program_flow.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "gcode/klartext/flow.h"
+#include "gcode/siemens/flow.h"
+#include "gcode/text/characters.h"
+
+namespace batten::gcode {
+namespace {
+
+using Label = std::uint64_t;
+
+// Upper case, without blanks, comments, block delete and the leading N number.
+std::string bare_words(std::string_view text) {
+  std::string bare;
+  bool in_comment = false;
+  for (const char c : text) {
+    if (c == ';' && !in_comment) {
+      break;
+    }
+    in_comment |= c == '(';
+    if (!in_comment && c != ' ' && c != '\t') {
+      bare.push_back(static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
+    }
+    in_comment &= c != ')';
+  }
+  std::size_t from = 0;
+  if (from < bare.size() && bare[from] == '/') {
+    ++from;
+  }
+  if (from + 1 < bare.size() && bare[from] == 'N' && is_digit(bare[from + 1])) {
+    ++from;
+    while (from < bare.size() && is_digit(bare[from])) {
+      ++from;
+    }
+  }
+  return bare.substr(from);
+}
+
+bool contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+bool starts_with_word_and_digit(std::string_view text, std::string_view word) {
+  return text.starts_with(word) && text.size() > word.size() && is_digit(text[word.size()]);
+}
+
+bool is_program_number(std::string_view bare) {
+  return bare.size() > 1 && (bare[0] == 'O' || bare[0] == ':') &&
+         std::all_of(bare.begin() + 1, bare.end(), is_digit);
+}
+
+// Where the bracket at `at` is closed; the end of the text where it is not.
+std::size_t closing_bracket(std::string_view text, std::size_t at) {
+  int depth = 0;
+  for (; at < text.size(); ++at) {
+    depth += text[at] == '[' ? 1 : text[at] == ']' ? -1 : 0;
+    if (depth == 0) break;
+  }
+  return at;
+}
+
+constexpr std::string_view kOWordKeywords[] = {
+    "CALL", "SUB",   "ENDSUB",   "RETURN", "IF",        "ELSEIF", "ELSE",    "ENDIF",
+    "DO",   "WHILE", "ENDWHILE", "REPEAT", "ENDREPEAT", "BREAK",  "CONTINUE"};
+
+// Of an O-word the part behind its number or name: CALL.., SUB, ENDIF .. What is named otherwise
+// than is known here is given whole: a word anywhere in it counts then.
+std::string_view o_word_keyword(std::string_view bare) {
+  if (bare.empty() || bare[0] != 'O') return {};
+  std::size_t at = 1;
+  if (at < bare.size() && bare[at] == '#') ++at;
+  if (at < bare.size() && bare[at] == '<') {
+    at = std::min(bare.find('>', at), bare.size() - 1) + 1;
+  } else if (at < bare.size() && bare[at] == '[') {
+    at = std::min(closing_bracket(bare, at), bare.size() - 1) + 1;
+  } else {
+    while (at < bare.size() && is_digit(bare[at])) ++at;
+  }
+  const std::string_view keyword = bare.substr(at);
+  const bool known = std::ranges::any_of(
+      kOWordKeywords, [keyword](std::string_view word) { return keyword.starts_with(word); });
+  return known ? keyword : bare;
+}
+
+// +1 where a body begins, -1 where it ends.
+int body_step(std::string_view bare) {
+  if (starts_with_word_and_digit(bare, "END")) {
+    return -1;  // macro B: END1
+  }
+  if (starts_with_word_and_digit(bare, "DO")) {
+    return 1;
+  }
+  if (bare.starts_with("WHILE") && contains(bare, "]DO")) {
+    return 1;
+  }
+  const std::string_view keyword = o_word_keyword(bare);
+  const bool unknown = keyword.size() == bare.size();
+  const auto says = [&](std::string_view word) {
+    return unknown ? contains(keyword, word) : keyword.starts_with(word);
+  };
+  if (keyword.empty()) return 0;
+  for (const std::string_view word : {"ENDSUB", "ENDWHILE", "ENDREPEAT", "ENDIF"}) {
+    if (says(word)) return -1;
+  }
+  // `O1 do` .. `O1 while [..]` and `O1 while [..]` .. `O1 endwhile` cannot be told apart by one
+  // line; the end of the first looks like the begin of the second. Bodies then last longer.
+  for (const std::string_view word : {"SUB", "WHILE", "REPEAT", "DO"}) {
+    if (says(word)) return 1;
+  }
+  return says("IF") && !says("ELSEIF") ? 1 : 0;
+}
+
+std::optional<Label> whole_number(const Word* word) {
+  constexpr double kGreatestLabel = 1e15;
+  if (word == nullptr || !word->is_number || word->value < 0 || word->value > kGreatestLabel ||
+      word->value != std::floor(word->value)) {
+    return std::nullopt;
+  }
+  return static_cast<Label>(word->value);
+}
+
+const Word* find_word(std::span<const Word> words, char letter) {
+  const auto found =
+      std::ranges::find_if(words, [letter](const Word& word) { return word.letter == letter; });
+  return found == words.end() ? nullptr : &*found;
+}
+
+bool has_code(std::span<const Word> words, char letter, double low, double high) {
+  return std::ranges::any_of(words, [=](const Word& word) {
+    return word.letter == letter && word.is_number && word.value >= low && word.value <= high;
+  });
+}
+
+// The letters of labels, calls and cycles: a block without them has no part in the flow.
+bool names_flow(const Word& word) {
+  return word.letter == 'N' || word.letter == 'M' || word.letter == 'G';
+}
+
+struct LabelledBlock {
+  std::size_t block = 0;
+  Label label = 0;
+};
+
+class FlowFinder {
+ public:
+  FlowFinder(const Program& program, Returns returns)
+      : program_(program), returns_(returns), flow_(program.blocks.size()) {}
+
+  ProgramFlow find() {
+    for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
+      read_block(i);
+    }
+    close_segment(program_.blocks.size());
+    judge_calls();
+    const bool refers = !jump_targets_.empty() || any_label_ || !contours_.empty();
+    reaches_out_ |= refers;
+    if (refers) {
+      find_labels();
+      mark_labels();
+      mark_contours();
+    }
+    return {std::move(flow_), reaches_out_};
+  }
+
+ private:
+  void read_block(std::size_t i) {
+    const Block& block = program_.blocks[i];
+    if (block.opacity == ParseStatus::kProgramMark) {
+      note_program(find_word(program_.words_of(block), 'O'));
+      return;
+    }
+    const auto words = program_.words_of(block);
+    if (block.opacity == ParseStatus::kNone && program_.language == Language::kRs274 &&
+        std::ranges::none_of(words, names_flow)) {
+      flow_[i].in_body |= depth_ > 0;
+      return;
+    }
+    if (block.opacity != ParseStatus::kNone) {
+      read_text(i, block.opacity == ParseStatus::kFlow);
+    }
+    if (find_word(words, 'M') != nullptr) {
+      read_calls(words);
+    }
+    if (find_word(words, 'G') != nullptr) {
+      read_lathe_cycle(words);
+    }
+    note_call(words);
+    flow_[i].in_body |= depth_ > 0;
+  }
+
+  void read_text(std::size_t i, bool is_flow) {
+    const std::string_view text = program_.source.text(program_.blocks[i].span);
+    const std::string bare = bare_words(text);
+    find_jumps(bare);
+    note_hidden_call(program_.blocks[i].opacity, text, bare);
+    if (!is_flow) {
+      return;
+    }
+    if (is_program_number(bare)) {
+      close_segment(i);
+      note_program(find_word(program_.words_of(program_.blocks[i]), 'O'));
+    }
+    const int step = body_step(bare);
+    reaches_out_ |= step != 0;
+    flow_[i].in_body |= step != 0 || depth_ > 0;
+    depth_ = std::max(0, depth_ + step);
+  }
+
+  static std::optional<Label> leading_label(std::string_view text) {
+    std::size_t at = text.find_first_not_of("/ \t");
+    if (at == std::string_view::npos || std::toupper(static_cast<unsigned char>(text[at])) != 'N') {
+      return std::nullopt;
+    }
+    return number_at(text, at + 1);
+  }
+
+  static std::optional<Label> number_at(std::string_view text, std::size_t at) {
+    constexpr std::size_t kMaxDigits = 15;
+    Label number = 0;
+    std::size_t digits = 0;
+    for (; at < text.size() && is_digit(text[at]) && digits < kMaxDigits; ++at, ++digits) {
+      number = number * 10 + static_cast<Label>(text[at] - '0');
+    }
+    return digits == 0 ? std::nullopt : std::optional(number);
+  }
+
+  // GOTO 100, GOTO N100, IF [..] N100. A computed target can be any label.
+  void find_jumps(std::string_view bare) {
+    for (std::size_t at = bare.find("GOTO"); at != std::string_view::npos;
+         at = bare.find("GOTO", at + 4)) {
+      std::size_t to = at + 4;
+      while (to < bare.size() && bare[to] == 'N') {
+        ++to;
+      }
+      if (const auto label = number_at(bare, to)) {
+        jump_targets_.insert(*label);
+      } else if (to < bare.size() && (bare[to] == '#' || bare[to] == '[' || bare[to] == '(')) {
+        any_label_ = true;
+      }
+    }
+    for (std::size_t at = bare.find('N'); at != std::string_view::npos;
+         at = bare.find('N', at + 1)) {
+      if (const auto label = number_at(bare, at + 1)) {
+        jump_targets_.insert(*label);
+      }
+    }
+  }
+
+  // M97 P, M99 P and M98 P.. H name a block; M98 P alone names a program.
+  void read_calls(std::span<const Word> words) {
+    const bool ends_subprogram = has_code(words, 'M', 99, 99);
+    if (ends_subprogram || has_code(words, 'M', 97, 97)) {
+      add_target(find_word(words, 'P'));
+    }
+    if (has_code(words, 'M', 98, 98)) {
+      add_target(find_word(words, 'H'));
+    }
+    segment_is_subprogram_ |= ends_subprogram;
+    reaches_out_ |= ends_subprogram;
+  }
+
+  void note_program(const Word* number) {
+    if (const auto program = whole_number(number)) programs_.insert(*program);
+  }
+
+  // M98 P, G65 P and the like; P may count repetitions in front of the last four digits.
+  void note_call(std::span<const Word> words) {
+    constexpr Label kPrograms = 10000;
+    const bool calls = has_code(words, 'M', 98, 98) || has_code(words, 'M', 198, 198) ||
+                       has_code(words, 'G', 65, 65) || has_code(words, 'G', 66, 66.1);
+    if (!calls) return;
+    const auto program = whole_number(find_word(words, 'P'));
+    called_.push_back(program ? std::optional(*program % kPrograms) : std::nullopt);
+  }
+
+  // Of a block whose words are not all listed.
+  void note_hidden_call(ParseStatus opacity, std::string_view text, std::string_view bare) {
+    if (opacity == ParseStatus::kExpression || opacity == ParseStatus::kCornerWord) return;
+    const bool foreign = opacity == ParseStatus::kForeign && calls_siemens_program(text);
+    if (foreign || contains(bare, "M98") || contains(bare, "G65"))
+      called_.emplace_back(std::nullopt);
+  }
+
+  // What is called and does not stand here may come back to any label.
+  void judge_calls() {
+    if (returns_ == Returns::kBehindCalls) return;
+    reaches_out_ |= !called_.empty();
+    any_label_ |= std::ranges::any_of(called_, [this](const std::optional<Label>& program) {
+      return !program || !programs_.contains(*program);
+    });
+  }
+
+  void add_target(const Word* word) {
+    if (word == nullptr) {
+      return;
+    }
+    const auto label = whole_number(word);
+    if (label) {
+      jump_targets_.insert(*label);
+    } else if (!word->is_number) {
+      any_label_ = true;
+    }
+  }
+
+  // G70 to G73 P Q of lathes name the first and the last block of a contour. On mills G73 drills,
+  // with Z or R in the block.
+  void read_lathe_cycle(std::span<const Word> words) {
+    if (!has_code(words, 'G', 70, 73) || find_word(words, 'Z') != nullptr ||
+        find_word(words, 'R') != nullptr) {
+      return;
+    }
+    const auto first = whole_number(find_word(words, 'P'));
+    const auto last = whole_number(find_word(words, 'Q'));
+    if (first && last) {
+      contours_.emplace_back(*first, *last);
+    }
+  }
+
+  // A program with M99 is a subprogram, or starts again from its beginning: its blocks can be
+  // entered in a state that we do not see.
+  void close_segment(std::size_t end) {
+    for (std::size_t i = segment_begin_; segment_is_subprogram_ && i < end; ++i) {
+      flow_[i].in_body = true;
+    }
+    segment_begin_ = end;
+    segment_is_subprogram_ = false;
+  }
+
+  void find_labels() {
+    for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
+      if (const auto label = label_of(program_.blocks[i])) {
+        labels_.push_back({i, *label});
+      }
+    }
+  }
+
+  [[nodiscard]] std::optional<Label> label_of(const Block& block) const {
+    if (block.opacity == ParseStatus::kProgramMark) {
+      return std::nullopt;
+    }
+    const auto label = whole_number(find_word(program_.words_of(block), 'N'));
+    return label || block.opacity == ParseStatus::kNone
+               ? label
+               : leading_label(program_.source.text(block.span));
+  }
+
+  void mark_labels() {
+    for (const LabelledBlock& each : labels_) {
+      if (any_label_ || jump_targets_.contains(each.label)) {
+        flow_[each.block].label_referenced = true;
+        flow_[each.block].jump_target = true;
+      }
+    }
+  }
+
+  void mark_contours() {
+    for (const auto& [first, last] : contours_) {
+      bool inside = false;
+      auto next = labels_.begin();
+      for (std::size_t i = 0; i < flow_.size(); ++i) {
+        const bool labelled = next != labels_.end() && next->block == i;
+        const bool is_first = labelled && next->label == first;
+        const bool is_last = labelled && next->label == last;
+        if (labelled) ++next;
+        flow_[i].label_referenced |= is_first || is_last;
+        inside |= is_first;
+        flow_[i].in_body |= inside;
+        inside &= !is_last;
+      }
+    }
+  }
+
+  const Program& program_;
+  Returns returns_;
+  std::vector<BlockFlow> flow_;
+  std::vector<LabelledBlock> labels_;  // in order; found where something refers to one
+  std::unordered_set<Label> jump_targets_;
+  std::unordered_set<Label> programs_;        // that stand here
+  std::vector<std::optional<Label>> called_;  // nothing: by a name or a computed number
+  std::vector<std::pair<Label, Label>> contours_;
+  bool any_label_ = false;
+  int depth_ = 0;
+  std::size_t segment_begin_ = 0;
+  bool segment_is_subprogram_ = false;
+  bool reaches_out_ = false;
+};
+
+}  // namespace
+
+ProgramFlow follow_flow(const Program& program, Returns returns) {
+  if (program.language == Language::kKlartext) return {find_klartext_flow(program), true};
+  if (program.language == Language::kSiemens) return {find_siemens_flow(program, returns), true};
+  return FlowFinder(program, returns).find();
+}
+
+std::vector<BlockFlow> find_flow(const Program& program, Returns returns) {
+  return follow_flow(program, returns).blocks;
+}
+
+FlowEffect flow_effect(std::string_view text) {
+  const std::string bare = bare_words(text);
+  if (is_program_number(bare)) {
+    return FlowEffect::kProgramNumber;
+  }
+  const bool jumps = bare.starts_with("GOTO") || (bare.starts_with("IF") && contains(bare, "GOTO"));
+  const bool assigns = bare.starts_with("IF") && contains(bare, "THEN#");
+  if (o_word_keyword(bare).starts_with("CALL")) return FlowEffect::kCall;
+  if (assigns) return FlowEffect::kAssignment;
+  return jumps ? FlowEffect::kNothing : FlowEffect::kEverything;
+}
+
+}  // namespace batten::gcode

@@ -1,0 +1,31 @@
+// Where control can come from elsewhere: jump targets, loop bodies, subprograms. Only as much
+// as is needed to leave such blocks alone.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "gcode/state/block_flow.h"
+#include "gcode/text/program.h"
+
+namespace batten::gcode {
+
+// `text` is a line of ParseStatus::kFlow.
+[[nodiscard]] FlowEffect flow_effect(std::string_view text);
+
+// Where subprograms come back to that are called and stand in another file: `M99 P100` and
+// `RET("N100")` go on at a block of the program that called.
+enum class Returns : std::uint8_t {
+  kBehindCalls,
+  kToAnyLabel,
+};
+
+[[nodiscard]] ProgramFlow follow_flow(const Program& program, Returns returns);
+
+// The blocks of follow_flow. A jump to a computed label makes every block with an N number a
+// target.
+[[nodiscard]] std::vector<BlockFlow> find_flow(const Program& program,
+                                               Returns returns = Returns::kBehindCalls);
+
+}  // namespace batten::gcode

@@ -1,0 +1,33 @@
+// What the words of a block do to the control, other than a motion along X, Y, Z.
+#pragma once
+
+#include <string_view>
+
+#include "gcode/state/block_words.h"
+#include "gcode/state/control_state.h"
+
+namespace batten::gcode {
+
+// The sum over all words of a block.
+struct StateEffect {
+  // The first word's reason why the block cannot stand in a run; empty: they change nothing.
+  std::string_view barrier;
+  bool understood = true;         // false: a word is not known; everything is unknown after it
+  Code unknown_code = -1;         // that G word
+  bool takes_axes = false;        // the axis words do not belong to a motion (G28, G92, G10 ..)
+  bool takes_parameters = false;  // P, Q, L, R, I .. belong to some word
+  bool unit_word = false;
+  bool feed_changed = false;
+  Code motion = -1;  // the word of the motion group, -1: none
+};
+
+// Applies the G words but those of motions, then F, S, T, H, D, then the M words. What a word
+// may have changed in ways that are not known is unknown in `state` afterwards.
+//
+// Requires words.problem() == kNone. Words without number make what they set unknown.
+[[nodiscard]] StateEffect apply_words(const BlockWords& words, ControlState& state);
+
+// What only happens at the end of the block, after its motion: calls, program end, tool change.
+void apply_late_words(const BlockWords& words, ControlState& state);
+
+}  // namespace batten::gcode

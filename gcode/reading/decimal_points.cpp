@@ -1,0 +1,95 @@
+#include "gcode/reading/decimal_points.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "gcode/state/units.h"
+
+namespace batten::gcode {
+namespace {
+
+constexpr std::array<double, kMostIncrementDecimals + 2> kSteps = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6};
+
+int increment_decimals(const Decimals& rule, Units units) {
+  return rule.increment_decimals + (units == Units::kInch ? 1 : 0);
+}
+
+// Dwell, macro calls, high speed modes: their numbers are times, arguments and switches.
+bool has_no_lengths(const BlockWords& words) {
+  const bool high_speed = words.has_g(51) || (words.has_g(50) && !words.has_any("XYZIJ"));
+  return words.has_g(40) || words.has_g(650) || words.has_g(660) || words.has_g(661) || high_speed;
+}
+
+bool is_cycle(Code code) { return code >= 730 && code <= 890 && code != 800; }
+
+}  // namespace
+
+bool DecimalPoints::read(std::span<Word> words) {
+  if (rule_.pointless == PointlessNumbers::kUnits || words.empty()) return false;
+  const BlockWords sorted(words);
+  follow(sorted);
+  const bool no_lengths = has_no_lengths(sorted);
+  bool unknown = false;
+  for (Word& word : words) {
+    if (!word.is_number || word.has_point || word.value == 0) continue;
+    if (word.letter == 'F') word.without_point = true;
+    if (no_lengths || !is_length(word.letter)) continue;
+    word.without_point = true;
+    if (!has_no_value()) {
+      scale(word);
+      continue;
+    }
+    if (!unknown && unknown_++ == 0) first_unknown_ = word;
+    unknown = true;
+    word.is_number = false;
+  }
+  return unknown;
+}
+
+void DecimalPoints::follow(const BlockWords& words) {
+  units_ = units_set_by(words).value_or(units_);
+  for (const Code code : words.g_codes()) {
+    if (is_cycle(code)) {
+      mode_ = Mode::kCycle;
+    } else if (code == 62) {
+      mode_ = Mode::kCurve;
+    } else if (code == 0 || code == 10 || code == 20 || code == 30 || code == 800) {
+      mode_ = Mode::kPlain;
+    }
+  }
+}
+
+bool DecimalPoints::is_length(char letter) const {
+  if (letter == 'K') return mode_ != Mode::kCycle;
+  constexpr std::string_view kLengths = "XYZUVWIJRQ";
+  return kLengths.find(letter) != std::string_view::npos;
+}
+
+// Controls differ in whether a knot or a weight without a point is counted in increments.
+bool DecimalPoints::has_no_value() const {
+  return rule_.pointless == PointlessNumbers::kUndeclared || mode_ == Mode::kCurve;
+}
+
+// Numbers without a point are whole, so the quotient is the double of the decimal that is meant.
+void DecimalPoints::scale(Word& word) const {
+  const int decimals = increment_decimals(rule_, units_);
+  word.value /= kSteps.at(static_cast<std::size_t>(decimals));
+  word.decimals = static_cast<std::uint8_t>(decimals);
+}
+
+void DecimalPoints::tell(Diagnostics& found) const {
+  if (unknown_ == 0) return;
+  const std::string blocks = unknown_ == 1 ? "1 block" : fmt::format("{} blocks", unknown_);
+  found.push_back(
+      {Severity::kWarning, "implied-decimals", first_unknown_.span,
+       fmt::format(
+           "{0}{1:.0f} has no decimal point: {0}{1:.0f}. on some of these controls, {1:.0f} "
+           "least increments on others. {2} of this kind stay as they are. Say --decimals "
+           "explicit or --decimals implied",
+           first_unknown_.letter, first_unknown_.value, blocks)});
+}
+
+}  // namespace batten::gcode

@@ -1,0 +1,109 @@
+#include "gcode/rs274/plain_words.h"
+
+#include <array>
+#include <cstdint>
+
+#include "gcode/text/characters.h"
+#include "gcode/text/number_limit.h"
+
+namespace batten::gcode {
+namespace {
+
+// Fifteen digits are below 2^53, below which every integer is a double; and so are the powers of
+// ten up to that one. The quotient of the two is rounded once: it is the double that is nearest to
+// the decimal.
+constexpr std::size_t kMostPlainDigits = 15;
+constexpr std::array<double, kMostPlainDigits + 1> kTens = {
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+
+// Behind the digits that stand there. The mantissa is of no use where they are too many.
+const char* behind_digits(const char* at, const char* end, std::uint64_t& mantissa) {
+  for (; at != end && is_digit(*at); ++at) {
+    mantissa = mantissa * 10 + static_cast<std::uint64_t>(*at - '0');
+  }
+  return at;
+}
+
+const char* behind_blanks(const char* at, const char* end) {
+  while (at != end && is_blank(*at)) ++at;
+  return at;
+}
+
+struct PlainNumber {
+  double value = 0;
+  std::size_t decimals = 0;
+  bool has_point = false;
+};
+
+// Behind the number that stands there; nullptr where there is none of this kind.
+const char* read_plain_number(const char* at, const char* end, PlainNumber& number) {
+  const bool negative = at != end && *at == '-';
+  if (negative || (at != end && *at == '+')) ++at;
+  std::uint64_t mantissa = 0;
+  const char* behind = behind_digits(at, end, mantissa);
+  auto digits = static_cast<std::size_t>(behind - at);
+  number.has_point = behind != end && *behind == '.';
+  if (number.has_point) {
+    const char* const fraction = behind + 1;
+    behind = behind_digits(fraction, end, mantissa);
+    number.decimals = static_cast<std::size_t>(behind - fraction);
+    digits += number.decimals;
+  }
+  if (digits == 0 || digits > kMostPlainDigits) return nullptr;
+  const double size = static_cast<double>(mantissa) / kTens[number.decimals];
+  number.value = negative && mantissa != 0 ? -size : size;  // -0 is read as 0
+  return size < kNumberLimit ? behind : nullptr;
+}
+
+// Behind the words of the line, and the blanks behind them; nullptr where one is of another kind.
+// `at`, `end`: places in the text that begins at `text`.
+const char* read_words(const char* text, const char* at, const char* end,
+                       std::vector<Word>& words) {
+  const auto place = [text](const char* where) { return static_cast<std::uint32_t>(where - text); };
+  const char* behind_word = nullptr;
+  at = behind_blanks(at, end);
+  while (at != end && is_letter(*at)) {
+    const char letter = upper(*at);
+    // An E right behind a number may be an exponent, an O begins no word.
+    if (letter == 'O' || (letter == 'E' && at == behind_word)) return nullptr;
+    PlainNumber number;
+    behind_word = read_plain_number(at + 1, end, number);
+    if (behind_word == nullptr) return nullptr;
+    Word& word = words.emplace_back();
+    word.letter = letter;
+    word.decimals = static_cast<std::uint8_t>(number.decimals);
+    word.has_point = number.has_point;
+    word.value = number.value;
+    word.span = {place(at), place(behind_word)};
+    at = behind_blanks(behind_word, end);
+  }
+  return at;
+}
+
+// Nothing for a CR that no LF follows: it ends a line too, but is looked for in another way.
+std::optional<std::size_t> behind_line_end(std::string_view text, std::size_t at) {
+  if (at == text.size()) return at;
+  if (text[at] == '\n') return at + 1;
+  if (text[at] == '\r' && at + 1 < text.size() && text[at + 1] == '\n') return at + 2;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<LineBounds> read_plain_words(std::string_view text, std::size_t begin,
+                                           std::vector<Word>& words) {
+  const std::size_t words_before = words.size();
+  const char* const end_of_text = text.data() + text.size();
+  const char* const stop = read_words(text.data(), text.data() + begin, end_of_text, words);
+  if (stop != nullptr) {
+    const auto text_end = static_cast<std::size_t>(stop - text.data());
+    if (const auto end = behind_line_end(text, text_end)) {
+      return LineBounds{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(text_end),
+                        static_cast<std::uint32_t>(*end)};
+    }
+  }
+  words.resize(words_before);
+  return std::nullopt;
+}
+
+}  // namespace batten::gcode

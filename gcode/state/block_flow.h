@@ -1,0 +1,33 @@
+// Where control can come from elsewhere, as values: what the readers of each language find and the
+// interpreter asks of every block.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace batten::gcode {
+
+// What a line of flow words does to the state of the blocks after it.
+enum class FlowEffect : std::uint8_t {
+  kNothing,        // GOTO, IF .. GOTO: falls through with the state that it found
+  kAssignment,     // IF .. THEN #1=5
+  kProgramNumber,  // O1234: the beginning of a program
+  kCall,           // LinuxCNC: o100 call, o<name> call
+  kEverything,     // loops, branches: the state after it depends on what was executed
+};
+
+struct BlockFlow {
+  bool label_referenced = false;  // its N number is, or may be, named elsewhere
+  bool jump_target = false;       // control can come to it from another place
+  bool in_body = false;           // of a loop, a subprogram, or a contour that a cycle names
+};
+
+struct ProgramFlow {
+  std::vector<BlockFlow> blocks;  // one per block
+  // Something of it could be meant for blocks elsewhere: the target of a jump, the begin or the end
+  // of a body, a contour, the end of a subprogram. Where no part of a program reaches out, nothing
+  // is said of any block.
+  bool reaches_out = false;
+};
+
+}  // namespace batten::gcode

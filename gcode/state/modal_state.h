@@ -1,0 +1,83 @@
+// What a control remembers from block to block. Every item can be unknown: it is so after a
+// block that was not understood and could have changed it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "geometry/basic/point.h"
+
+namespace batten::gcode {
+
+enum class Units : std::uint8_t { kUnknown, kMillimetre, kInch };
+enum class Plane : std::uint8_t { kUnknown, kXY, kZX, kYZ };  // G17, G18, G19
+enum class DistanceMode : std::uint8_t { kUnknown, kAbsolute, kIncremental };
+enum class FeedMode : std::uint8_t { kUnknown, kPerMinute, kInverseTime, kPerRevolution };
+enum class PathMode : std::uint8_t {
+  kUnknown,
+  kBlending,   // G64, or the control's default
+  kExactPath,  // G61
+  kExactStop,  // G61.1, G60
+};
+enum class MotionMode : std::uint8_t {
+  kUnknown,
+  kRapid,             // G0
+  kLine,              // G1
+  kClockwise,         // G2
+  kCounterclockwise,  // G3
+  kOther,             // threading, probing, canned cycles, splines, G80: axis words are no line
+};
+
+// On, off, or unknown.
+enum class TriState : std::uint8_t { kOff, kOn, kUnknown };
+
+struct ModalState {
+  MotionMode motion = MotionMode::kUnknown;
+  Units units = Units::kUnknown;
+  Plane plane = Plane::kXY;
+  DistanceMode distance = DistanceMode::kAbsolute;
+  DistanceMode arc_distance = DistanceMode::kIncremental;  // G91.1; G90.1 is absolute
+  FeedMode feed_mode = FeedMode::kPerMinute;
+  PathMode path = PathMode::kBlending;
+  TriState cutter_compensation = TriState::kOff;  // G41, G42 (any form)
+  TriState tool_center_point = TriState::kOff;    // G43.4, G43.5, TRAORI, M128
+  TriState tilted_plane = TriState::kOff;         // G68.2, CYCLE800, PLANE
+  TriState scaling = TriState::kOff;              // G51, G50
+  TriState rotation = TriState::kOff;             // G68, G69
+  TriState mirror = TriState::kOff;               // G51.1, M21 ..
+  TriState polar = TriState::kOff;                // G16, G12.1, G112
+  TriState cylindrical = TriState::kOff;          // G07.1, G107
+  TriState control_smoothing =
+      TriState::kOff;  // G05.1 Q2/Q3, G05 P10000, G131: the control refits points
+  TriState modal_macro = TriState::kOff;             // G66
+  TriState constant_surface_speed = TriState::kOff;  // G96
+  TriState lathe_diameter = TriState::kOff;          // G7 (LinuxCNC)
+  TriState laser_power_mode =
+      TriState::kOff;          // grbl M4 with $32: never known; M4 alone does not set it
+  std::optional<double> feed;  // F as last programmed, in mm/min, 1/min or mm/rev by feed_mode
+  // F1000 rather than F1000., on controls where these may be two feeds (Word::without_point).
+  bool feed_without_point = false;
+  std::optional<double> spindle_speed;  // S
+  bool operator==(const ModalState&) const = default;
+};
+
+// Nothing is known: after a call, or a block that could have changed anything.
+[[nodiscard]] ModalState unknown_modal_state();
+
+// What is known when either of two states may hold: items in which they differ are unknown.
+[[nodiscard]] ModalState either(const ModalState& a, const ModalState& b);
+
+// Does every item have a value? The motion mode, the feed, the spindle speed and the laser
+// mode are not asked for: a block names the first itself, the others do not bend the path.
+[[nodiscard]] bool is_known(const ModalState& state);
+
+// The programmed position, mm. An axis that is not known has no value: before its first
+// word, and after blocks that moved it in ways that were not understood.
+struct Position {
+  geometry::Point3 mm = geometry::Point3::Zero();  // 0 on unknown axes
+  std::array<bool, 3> known = {false, false, false};
+  [[nodiscard]] bool all_known() const { return known[0] && known[1] && known[2]; }
+};
+
+}  // namespace batten::gcode

@@ -1,0 +1,73 @@
+// What the blocks of a program do: motions in millimetres, and for every block whether it
+// may stand inside a run of motions that is rewritten.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "gcode/state/modal_state.h"
+#include "gcode/state/motion_path.h"
+#include "gcode/state/reason_id.h"
+#include "gcode/text/program.h"
+
+namespace batten::gcode {
+
+enum class MotionKind : std::uint8_t {
+  kRapid,  // G0
+  kLine,   // G1
+  kArc,    // G2, G3
+  kCurve,  // a cubic piece of a curve that is read exactly: ReadOptions::curves
+};
+
+struct Motion {
+  std::uint32_t block = 0;  // index into Program::blocks
+  MotionKind kind = MotionKind::kLine;
+  // Every axis that the block names was known before it; for arcs both axes of the plane too.
+  // Axes that are not known stand at 0 in `piece`, before and after: an axis that a 2D program
+  // never names is a constant, and which one does not matter.
+  bool start_known = false;
+  // Every axis that the block names is known after it. False in G91 from an unknown place.
+  bool end_known = false;
+  std::array<bool, 3> axes_named = {false, false, false};  // X, Y, Z stand in the block
+  // A Line for kRapid and kLine, an Arc for kArc, a CubicBezier for kCurve; absolute mm.
+  MotionPath piece;
+};
+
+// What a block is, as far as grouping and checking are concerned.
+enum class BlockKind : std::uint8_t {
+  kEmpty,          // nothing, comments, N, or words that change nothing
+  kMotion,         // one motion of MotionKind, and words that only describe it (F, G1) or change
+                   // nothing
+  kSettings,       // words that change the state or act (M, S, T, G54, an F alone ..), without a
+                   // motion that can be followed (G28, cycles)
+  kMotionAndMore,  // a motion with words that change the state or act in the same block
+  kOpaque,         // not understood, not certain to be executed, or of an unknown state
+};
+
+struct BlockMeaning {
+  BlockKind kind = BlockKind::kEmpty;
+  // Why this block itself cannot be part of a run; empty where it can (see reason.h). The state
+  // may still forbid it. Empty also for blocks without motion that may stand inside a run and
+  // vanish with it: empty lines, comments, and words that change nothing or the feed only.
+  ReasonId barrier;
+  bool label_referenced = false;  // its N number is the target of GOTO, P, M97, M99 ..
+  // Before this block the state and place are not what the block before it left: control can
+  // come from elsewhere (a label that is jumped to).
+  bool entered_from_elsewhere = false;
+  // One of the blocks that say a curve together, which is read exactly. Each of its pieces is the
+  // motion of one of them. `barrier` is reason::kSpline: curves are copied.
+  bool of_curve = false;
+  std::int32_t motion = -1;       // index into Interpretation::motions, -1: none
+  std::uint32_t state_after = 0;  // index into Interpretation::states
+};
+
+struct Interpretation {
+  std::vector<BlockMeaning> blocks;  // one per block of the program
+  std::vector<Motion> motions;       // in order
+  std::vector<ModalState> states;    // states[0] is the state before the first block
+  // G20 or G21 (or G70/G71 without parameters) stood somewhere, or --units was given.
+  bool unit_word_seen = false;
+};
+
+}  // namespace batten::gcode

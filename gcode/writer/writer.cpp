@@ -1,0 +1,292 @@
+#include "gcode/writer/writer.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "gcode/controls/arc_rules.h"
+#include "gcode/state/units.h"
+#include "gcode/text/arc_center.h"
+#include "gcode/text/number_limit.h"
+#include "geometry/basic/rounding.h"
+
+namespace batten::gcode {
+namespace {
+
+using geometry::Point3;
+
+// Enough for any number of a source.
+constexpr int kAllDecimals = 9;
+
+const PlaneAxes& arc_plane(const geometry::Vector3& axis) {
+  const PlaneAxes* plane = plane_across(axis);
+  if (plane != nullptr) return *plane;
+  throw std::invalid_argument("Writer: arc axis (" + std::to_string(axis.x()) + ", " +
+                              std::to_string(axis.y()) + ", " + std::to_string(axis.z()) +
+                              "), expected an axis of the coordinate system");
+}
+
+PlanePoint in_plane(const Point3& place, const PlaneAxes& plane) {
+  return {place[plane.first], place[plane.second]};
+}
+
+// The angle from `start` to `end` about `center` in the direction of `wanted`'s sign: above 0
+// and at most a full turn in size.
+double sweep_between(const PlanePoint& start, const PlanePoint& end, const PlanePoint& center,
+                     double wanted) {
+  const PlanePoint a = start - center;
+  const PlanePoint b = end - center;
+  const double angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+  if (wanted > 0) return angle > 0 ? angle : angle + 2 * std::numbers::pi;
+  return angle < 0 ? angle : angle - 2 * std::numbers::pi;
+}
+
+void check(const ModalState& modal) {
+  if (modal.units == Units::kUnknown) {
+    throw std::invalid_argument("Writer: units unknown, expected millimetre or inch");
+  }
+  if (modal.distance != DistanceMode::kAbsolute) {
+    throw std::invalid_argument("Writer: distances not absolute, expected G90");
+  }
+  if (modal.feed_mode != FeedMode::kPerMinute) {
+    throw std::invalid_argument("Writer: feeds not per minute, expected G94");
+  }
+}
+
+}  // namespace
+
+struct Writer::PrintedArc {
+  PlaneAxes plane;
+  geometry::Arc arc;  // as the printed numbers say it, about the positive axis
+  Coordinates end;
+  std::array<std::string, 2> center;  // of the plane's first and second axis; empty: left out
+  std::string radius;                 // empty where the centre is given
+};
+
+Writer::Writer(const Dialect& dialect, WriterState state, std::string_view line_end)
+    : dialect_(dialect),
+      state_(std::move(state)),
+      line_end_(line_end),
+      unit_((check(state_.modal), millimetres_per(state_.modal.units))),
+      coordinates_(dialect.coordinates(state_.modal.units)),
+      feeds_(dialect.feeds(state_.modal.units)) {}
+
+void Writer::line_to(const Point3& end, double feed) {
+  const Coordinates coordinates = print(end);
+  if (!coordinates[0].changes && !coordinates[1].changes && !coordinates[2].changes) return;
+  add_motion(MotionMode::kLine);
+  add_coordinates(coordinates);
+  add_feed(feed);
+  end_block();
+}
+
+bool Writer::arc_to(const geometry::Arc& arc, double feed) {
+  const std::optional<PrintedArc> printed = print_arc(arc);
+  if (!printed) return false;
+  add_plane(printed->plane.plane);
+  add_motion(printed->arc.sweep > 0 ? MotionMode::kCounterclockwise : MotionMode::kClockwise);
+  add_coordinates(printed->end);
+  block_.centers[static_cast<std::size_t>(printed->plane.first)] = printed->center[0];
+  block_.centers[static_cast<std::size_t>(printed->plane.second)] = printed->center[1];
+  block_.radius = printed->radius;
+  add_feed(feed);
+  end_block();
+  return true;
+}
+
+void Writer::copy_line(std::string_view text) {
+  text_ += text;
+  text_ += line_end_;
+}
+
+void Writer::restore(const ModalState& expected) {
+  if (expected.motion == MotionMode::kUnknown) end_curve();
+  if (expected.plane != Plane::kUnknown) add_plane(expected.plane);
+  const bool wants_motion = expected.motion != MotionMode::kUnknown &&
+                            expected.motion != state_.modal.motion &&
+                            dialect_.spelling().motion_stays();
+  if (wants_motion) {
+    if (expected.motion != MotionMode::kLine && expected.motion != MotionMode::kRapid) {
+      throw std::invalid_argument(
+          "Writer::restore: a motion word that cannot stand alone, "
+          "expected G0 or G1");
+    }
+    add_motion(expected.motion);
+  }
+  if (expected.feed) add_feed(*expected.feed);
+  if (block_.says_only_feed() && dialect_.repeats_words()) {
+    const bool rapid = expected.motion == MotionMode::kRapid;
+    add_motion(rapid ? MotionMode::kRapid : MotionMode::kLine);
+  }
+  if (!block_.is_empty()) end_block();
+}
+
+Writer::Coordinate Writer::print(int axis, double mm) const {
+  const auto known = state_.position.known[static_cast<std::size_t>(axis)];
+  const double now = state_.position.mm[axis];
+  if (known && std::abs(mm - now) <= geometry::kSamePlace) return {false, now, {}};
+  Coordinate printed;
+  printed.digits = to_text(mm / unit_, coordinates_);
+  printed.mm = read_number(printed.digits)->value * unit_;
+  printed.changes = !known || std::abs(printed.mm - now) > geometry::kSamePlace;
+  if (!printed.changes) printed.mm = now;
+  return printed;
+}
+
+Writer::Coordinates Writer::print(const Point3& place) const {
+  return {print(0, place[0]), print(1, place[1]), print(2, place[2])};
+}
+
+std::optional<Writer::PrintedArc> Writer::print_arc(const geometry::Arc& arc) const {
+  PrintedArc printed;
+  printed.plane = arc_plane(arc.axis);
+  const int normal = printed.plane.normal;
+  if (!dialect_.takes_arcs_in(printed.plane.plane) || !centers_understood()) return std::nullopt;
+
+  printed.end = print_arc_end(arc.end, printed.plane);
+  if (printed.end[static_cast<std::size_t>(normal)].changes && !dialect_.takes_helices()) {
+    return std::nullopt;
+  }
+  printed.arc.start = state_.position.mm;
+  printed.arc.end = {printed.end[0].mm, printed.end[1].mm, printed.end[2].mm};
+  printed.arc.axis = geometry::Vector3::Unit(normal);
+  // A centre that far away is no number of a program.
+  if (!((arc.center - arc.start).cwiseAbs().maxCoeff() / unit_ < kNumberLimit / 2)) {
+    return std::nullopt;
+  }
+  const double sweep = arc.axis[normal] > 0 ? arc.sweep : -arc.sweep;
+  if (dialect_.arc_form() == ArcForm::kCenters) {
+    print_center(arc.center, sweep, printed);
+  } else if (!print_radius(arc.center, sweep, printed)) {
+    return std::nullopt;
+  }
+  if (std::abs(printed.arc.sweep - sweep) > std::numbers::pi) return std::nullopt;
+  if (!arc_refusal(dialect_, printed.arc, state_.modal.units).empty()) return std::nullopt;
+  return printed;
+}
+
+bool Writer::absolute_centers() const {
+  if (dialect_.spelling().centers_are_places()) return true;
+  return state_.modal.arc_distance == DistanceMode::kAbsolute && dialect_.takes_arc_distance_mode();
+}
+
+bool Writer::centers_understood() const {
+  return dialect_.arc_form() == ArcForm::kRadius || absolute_centers() ||
+         state_.modal.arc_distance == DistanceMode::kIncremental;
+}
+
+// An arc needs a word of its plane even where it comes back to where it began; some controls want
+// both words always.
+Writer::Coordinates Writer::print_arc_end(const Point3& end, const PlaneAxes& plane) const {
+  Coordinates coordinates = print(end);
+  Coordinate& first = coordinates[static_cast<std::size_t>(plane.first)];
+  Coordinate& second = coordinates[static_cast<std::size_t>(plane.second)];
+  const bool neither = !first.changes && !second.changes;
+  if (neither || dialect_.repeats_words()) name_again(first);
+  if (dialect_.repeats_words()) name_again(second);
+  return coordinates;
+}
+
+// Where the axis is, exactly.
+void Writer::name_again(Coordinate& coordinate) const {
+  if (coordinate.changes) return;
+  NumberFormat exact = coordinates_;
+  exact.decimals = kAllDecimals;
+  exact.trailing_zeros = false;
+  coordinate.changes = true;
+  coordinate.digits = to_text(coordinate.mm / unit_, exact);
+}
+
+// The centre in the program's units, from printed start and printed end; then the sweep.
+void Writer::print_center(const Point3& wanted, double sweep, PrintedArc& printed) const {
+  const PlaneAxes& plane = printed.plane;
+  const NumberFormat format = dialect_.arc_offsets(state_.modal.units);
+  const PlanePoint start = in_plane(printed.arc.start, plane) / unit_;
+  const PlanePoint end = in_plane(printed.arc.end, plane) / unit_;
+  CenterGrid grid;
+  grid.step = std::pow(10.0, -format.decimals);
+  if (!absolute_centers()) grid.base = start;
+  const PlanePoint steps = printed_center(start, end, in_plane(wanted, plane) / unit_, sweep, grid);
+  PlanePoint center = grid.base;
+  for (const int i : {0, 1}) {
+    std::string digits = to_text(steps[i] * grid.step, format);
+    center[i] += read_number(digits)->value;
+    // An offset of zero need not be said, unless both are. Absolute centres need both words.
+    const bool says_nothing = !absolute_centers() && steps[i] == 0 && steps[1 - i] != 0;
+    if (!says_nothing) printed.center[static_cast<std::size_t>(i)] = std::move(digits);
+  }
+  printed.arc.sweep = sweep_between(start, end, center, sweep);
+  printed.arc.center = printed.arc.start;
+  printed.arc.center[plane.first] = center.x() * unit_;
+  printed.arc.center[plane.second] = center.y() * unit_;
+}
+
+// The radius in the program's units; then the centre that it says, and the sweep. False where R
+// would not say the arc: half a turn and more, or ends further apart than the printed diameter.
+bool Writer::print_radius(const Point3& wanted, double sweep, PrintedArc& printed) const {
+  if (!(std::abs(sweep) < std::numbers::pi)) return false;
+  const PlaneAxes& plane = printed.plane;
+  const PlanePoint start = in_plane(printed.arc.start, plane) / unit_;
+  const PlanePoint end = in_plane(printed.arc.end, plane) / unit_;
+  const PlanePoint half = (end - start) / 2;
+  if (!(half.norm() > 0)) return false;
+  const PlanePoint along = PlanePoint(-half.y(), half.x()).normalized();
+  const PlanePoint middle = start + half;
+  const double height = (in_plane(wanted, plane) / unit_ - middle).dot(along);
+
+  printed.radius =
+      to_text(std::hypot(height, half.norm()), dialect_.arc_offsets(state_.modal.units));
+  const double radius = read_number(printed.radius)->value;
+  if (!(radius > half.norm())) return false;
+  // The centre of a short counter-clockwise arc lies to the left of its chord.
+  const double side = sweep > 0 ? 1 : -1;
+  const PlanePoint center = middle + side * std::sqrt(radius * radius - half.squaredNorm()) * along;
+  printed.arc.sweep = sweep_between(start, end, center, sweep);
+  printed.arc.center = printed.arc.start;
+  printed.arc.center[plane.first] = center.x() * unit_;
+  printed.arc.center[plane.second] = center.y() * unit_;
+  return true;
+}
+
+void Writer::add_plane(Plane plane) {
+  if (plane == state_.modal.plane) return;
+  block_.plane = plane;
+  state_.modal.plane = plane;
+}
+
+void Writer::add_motion(MotionMode motion) {
+  if (motion == state_.modal.motion && !dialect_.repeats_words()) return;
+  block_.motion = motion;
+  state_.modal.motion = motion;
+}
+
+void Writer::add_coordinates(const Coordinates& coordinates) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    if (!coordinates[i].changes) continue;
+    block_.places[i] = coordinates[i].digits;
+    state_.position.mm[axis] = coordinates[i].mm;
+    state_.position.known[i] = true;
+  }
+}
+
+bool Writer::feed_is_said(double feed) const {
+  if (state_.modal.feed == feed) return true;
+  return state_.modal.feed &&
+         to_text(*state_.modal.feed / unit_, feeds_) == to_text(feed / unit_, feeds_);
+}
+
+void Writer::add_feed(double feed) {
+  if (feed_is_said(feed)) return;
+  const std::string digits = to_text(feed / unit_, feeds_);
+  block_.feed = digits;
+  state_.modal.feed = read_number(digits)->value * unit_;
+}
+
+void Writer::end_block() {
+  dialect_.spelling().add_lines(block_, dialect_.blanks_between_words(), line_end_, text_);
+  block_.clear();
+}
+
+}  // namespace batten::gcode

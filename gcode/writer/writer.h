@@ -1,0 +1,120 @@
+// Writes blocks for one dialect: words that change nothing are left out, numbers are
+// rounded to the dialect's decimals, and the rounded place is the writer's place.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "gcode/control/block_spelling.h"
+#include "gcode/control/dialect.h"
+#include "gcode/state/modal_state.h"
+#include "gcode/state/plane_axes.h"
+#include "geometry/path/bspline_curve.h"
+#include "geometry/path/path.h"
+
+namespace batten::gcode {
+
+struct WriterState {
+  ModalState modal;   // as the control has it before the first block written
+  Position position;  // mm
+};
+
+class Writer {
+ public:
+  // `line_end` as the source has it: "\n" or "\r\n". Throws std::invalid_argument unless the
+  // state has known units, absolute distances and feeds per minute.
+  Writer(const Dialect& dialect, WriterState state, std::string_view line_end);
+
+  // From here on coordinates are printed so, rather than as Dialect::coordinates says.
+  void use_coordinates(const NumberFormat& format) { coordinates_ = format; }
+
+  // From here on feeds are whole numbers without a decimal point.
+  void use_feeds_without_point() { feeds_ = {.decimals = 0}; }
+
+  // A straight move at feed rate. Words of axes whose printed value does not change are left
+  // out; a move that moves nothing writes nothing. `feed` in mm/min; written when it changes.
+  // An axis that is already at its end to within kSamePlace stays there, even where its
+  // number has more decimals than are printed.
+  void line_to(const geometry::Point3& end, double feed);
+
+  // An arc in the plane across `arc.axis` (which must be an axis of the coordinate system;
+  // throws std::invalid_argument otherwise). Starts at the writer's place; arc.start is not
+  // looked at. Selects the plane when it is not active. The printed centre offsets, or the radius
+  // where the dialect gives that, are computed from the printed start and end, so that both radii
+  // agree to within rounding. Returns false
+  // and writes nothing when the dialect's rules refuse the printed arc, when rounding would make
+  // it a full turn or none, or when it is not known how centres are to be given (G90.1, G91.1).
+  [[nodiscard]] bool arc_to(const geometry::Arc& arc, double feed);
+
+  // A clamped cubic curve in the dialect's own words (Dialect::curves), from the writer's place,
+  // which is the curve's first point but for rounding. Axes that it does not move are not named,
+  // unless the control wants them. `last_decimals`: the last place may have so many, where they are
+  // more than coordinates have. What is written is read again: the writer's place is where the
+  // printed curve ends. Returns false and writes nothing where the dialect has no curves, refuses
+  // this one or the state, or does not read what it wrote.
+  //
+  // Afterwards the motion mode is MotionMode::kOther: what follows says its motion word.
+  [[nodiscard]] bool curve_to(const geometry::BsplineCurve& curve, double feed, int last_decimals);
+
+  // Ends a curve that the control takes as going on: the motion word of lines, on a line of its
+  // own. Writes nothing when no curve was written last.
+  void end_curve();
+
+  // A line of its own, copied as it is (a comment of the source).
+  void copy_line(std::string_view text);
+
+  // Restores plane, motion word and feed, so that the next copied block finds what it
+  // expects. Writes at most one block, and none when nothing differs. What `expected` does not
+  // know is left as it is. Throws std::invalid_argument when it expects a motion word that
+  // cannot stand alone (only G0 and G1 can) and that is not active.
+  void restore(const ModalState& expected);
+
+  // Whether it is known how arc centres are to be given, or they are not given at all; arc_to
+  // refuses every arc where not.
+  [[nodiscard]] bool centers_understood() const;
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] const WriterState& state() const { return state_; }
+
+ private:
+  // One coordinate of the next place, as it will be printed.
+  struct Coordinate {
+    bool changes = false;
+    double mm = 0;  // where the axis is afterwards
+    std::string digits;
+  };
+  using Coordinates = std::array<Coordinate, 3>;
+  struct PrintedArc;
+
+  [[nodiscard]] Coordinate print(int axis, double mm) const;
+  [[nodiscard]] Coordinates print(const geometry::Point3& place) const;
+  [[nodiscard]] std::optional<PrintedArc> print_arc(const geometry::Arc& arc) const;
+  [[nodiscard]] Coordinates print_arc_end(const geometry::Point3& end,
+                                          const PlaneAxes& plane) const;
+  void name_again(Coordinate& coordinate) const;
+  [[nodiscard]] bool print_radius(const geometry::Point3& wanted, double sweep,
+                                  PrintedArc& printed) const;
+  void print_center(const geometry::Point3& wanted, double sweep, PrintedArc& printed) const;
+  [[nodiscard]] bool absolute_centers() const;
+
+  // The words of one block, gathered until it ends.
+  void add_plane(Plane plane);
+  void add_motion(MotionMode motion);
+  void add_coordinates(const Coordinates& coordinates);
+  void add_feed(double feed);
+  [[nodiscard]] bool feed_is_said(double feed) const;
+  void end_block();
+
+  const Dialect& dialect_;
+  WriterState state_;
+  std::string line_end_;
+  double unit_;  // mm
+  NumberFormat coordinates_;
+  NumberFormat feeds_;
+  SpokenBlock block_;
+  std::string text_;
+};
+
+}  // namespace batten::gcode

@@ -1,0 +1,464 @@
+#include "geometry/arcs/arc_spline.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "geometry/arcs/plane_band.h"
+#include "geometry/basic/angle.h"
+#include "geometry/basic/rounding.h"
+
+namespace batten::geometry {
+namespace {
+
+// How much is looked at. Half of it all gives some percent more arcs.
+struct Effort {
+  std::size_t width;  // chains that are followed at once
+  int of_one_place;   // and of them, so many of one place, so that they are not all alike
+  // Where an arc ends, as a part of its farthest reach: at the very end it leans on the edge of
+  // the band, and the next one has no room.
+  std::span<const double> parts;
+  // The arcs to one end, by their place in the range of curvatures.
+  std::span<const double> in_range;
+  // `PlaneBand::reach` looks at each so many-th sample: what lies between them closes a fan by
+  // little more, and an arc that is taken is held against all of them in the end.
+  std::size_t stride = 1;
+};
+
+constexpr std::array kBriefParts = {1.0, 0.9, 0.75, 0.5};
+constexpr std::array kBriefInRange = {0.1, 0.5, 0.9};
+constexpr Effort kBrief = {5, 2, kBriefParts, kBriefInRange, 4};
+
+constexpr std::array kQuickParts = {1.0, 0.93, 0.84, 0.74, 0.6, 0.4};
+constexpr std::array kQuickInRange = {0.05, 0.3, 0.5, 0.7, 0.95};
+constexpr Effort kQuick = {8, 2, kQuickParts, kQuickInRange};
+
+constexpr std::array kManyParts = {1.0, 0.95, 0.9, 0.84, 0.77, 0.7, 0.6, 0.5, 0.35};
+constexpr std::array kManyInRange = {0.03, 0.15, 0.3, 0.42, 0.5, 0.58, 0.7, 0.85, 0.97};
+constexpr Effort kThorough = {12, 3, kManyParts, kManyInRange};
+
+const Effort& effort_for(ArcEffort effort) {
+  switch (effort) {
+    case ArcEffort::kBrief:
+      return kBrief;
+    case ArcEffort::kThorough:
+      return kThorough;
+    case ArcEffort::kQuick:
+      break;
+  }
+  return kQuick;
+}
+
+// Directions in which a chain may start, about the given one, radians.
+constexpr std::array kStarts = {0.0,   1e-4, -1e-4, 3e-4, -3e-4, 1e-3, -1e-3, 3e-3,
+                                -3e-3, 0.01, -0.01, 0.03, -0.03, 0.1,  -0.1};
+
+// No bound on the arcs.
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+// A kink counts as so many arcs.
+constexpr std::size_t kKinkCosts = 3;
+
+// Levels that may pass without one that sees farther: as many as a kink costs, and some more.
+constexpr std::size_t kStuck = kKinkCosts + 4;
+
+// Turns of the polyline beyond this may become kinks.
+constexpr double kKinkTurn = 0.2;
+
+// Where a pair of arcs meets: see biarc_joint.
+constexpr std::array kBalances = {1.0, 0.7, 1.4, 0.5, 2.0, 0.3, 3.0};
+
+// An angle that differs less is the same tangent; rounding of an end by a grid step turns the
+// tangent by two steps over the arc's length.
+constexpr double kSameTurn = 1e-6;
+
+// Chains of no more arcs than this are tried again with a part of the tolerance: circles and
+// fillets come out with their own radius.
+constexpr std::size_t kFew = 8;
+constexpr double kNearer = 0.3;
+constexpr int kNearerRounds = 3;
+
+struct Node {
+  BandEntry entry;
+  PlaneArc arc;  // that arrives here
+  std::ptrdiff_t before = -1;
+  bool kink = false;  // the chain turns here
+  std::size_t reach = 0;
+  double score = 0;
+};
+
+class Search {
+ public:
+  // Chains that cost more than `at_most` arcs are not looked for.
+  Search(std::span<const Point2> points, const ArcSplineOptions& options,
+         std::size_t at_most = kNone - 1)
+      : options_(options),
+        effort_(effort_for(options.effort)),
+        band_(points,
+              {options.tolerance, 1 / options.min_radius, options.max_sweep, effort_.stride}),
+        count_(band_.samples().size()),
+        best_arcs_(at_most + 1) {}
+
+  std::optional<ArcSpline> run() {
+    add_starts();
+    std::size_t improved = 0;  // the level that saw farther than the ones before it
+    double farthest = -1;
+    for (std::size_t arcs = 0; arcs < levels_.size() && arcs < best_arcs_; ++arcs) {
+      keep_best(levels_[arcs]);
+      const std::vector<std::size_t> level = levels_[arcs];  // levels_ grows below
+      if (!level.empty() && nodes_[level.front()].score > farthest) {
+        farthest = nodes_[level.front()].score;
+        improved = arcs;
+      }
+      if (arcs > improved + kStuck) break;
+      grow(level, arcs);
+    }
+    return chain();
+  }
+
+ private:
+  void grow(const std::vector<std::size_t>& level, std::size_t arcs) {
+    for (const std::size_t i : level) finish(i, arcs);
+    // A chain that goes on from here has two arcs more at the least: no better than the best.
+    if (arcs + 2 >= best_arcs_) return;
+    std::vector<Node> found;
+    for (const std::size_t i : level) {
+      spread(i, found);
+      if (options_.kinks) turn_at_corner(i, arcs);
+    }
+    follow(found, arcs + 1);
+    if (options_.kinks && levels_.size() <= arcs + 1 && !best_) turn_where_stuck(level, arcs);
+  }
+
+  void add_to(std::size_t arcs, Node node) {
+    if (levels_.size() <= arcs) levels_.resize(arcs + 1);
+    levels_[arcs].push_back(nodes_.size());
+    nodes_.push_back(std::move(node));
+  }
+
+  // How good a place is to go on from: how far the next arc gets.
+  void judge(Node& node) const {
+    const ArcReach reach = band_.reach(node.entry);
+    node.reach = reach.end;
+    const auto& samples = band_.samples();
+    node.score = samples[reach.end - 1].station;
+    if (reach.end < count_) {
+      const double step = samples[reach.end].station - node.score;
+      node.score += 0.5 * step * std::min(1.0, reach.margin / options_.tolerance);
+    }
+  }
+
+  void add_starts() {
+    const Point2 start = band_.samples().front().place;
+    for (const double off : kStarts) {
+      Node node;
+      node.entry = {start, options_.start_angle.value_or(options_.direction + off), 1};
+      node.arc = {start, start};  // none arrives at a start
+      judge(node);
+      add_to(0, node);
+      if (options_.start_angle) break;
+    }
+  }
+
+  // The farthest-seeing ones, not too many of one place.
+  void keep_best(std::vector<std::size_t>& level) const {
+    std::stable_sort(level.begin(), level.end(), [this](std::size_t a, std::size_t b) {
+      return nodes_[a].score > nodes_[b].score;
+    });
+    if (level.size() > effort_.width) level.resize(effort_.width);
+  }
+
+  [[nodiscard]] Point2 rounded(const Point2& p) const {
+    if (!(options_.grid > 0)) return p;
+    return {std::round(p.x() / options_.grid) * options_.grid,
+            std::round(p.y() / options_.grid) * options_.grid};
+  }
+
+  // The place beside sample j on the arc of this curvature.
+  static Point2 place_on(const BandEntry& entry, double curvature, const Point2& sample) {
+    const Vector2 along = unit_vector(entry.angle);
+    const Vector2 left(-along.y(), along.x());
+    const Vector2 way = sample - entry.place;
+    if (curvature == 0) return entry.place + way.dot(along) * along;
+    const Point2 center = entry.place + left / curvature;
+    return center + (sample - center).normalized() / std::abs(curvature);
+  }
+
+  [[nodiscard]] std::optional<Node> node_on(std::size_t from, double curvature,
+                                            std::size_t sample) const {
+    const BandEntry& entry = nodes_[from].entry;
+    const Point2 end = rounded(place_on(entry, curvature, band_.samples()[sample].place));
+    Node node;
+    node.arc = arc_leaving(entry.place, entry.angle, end, options_.max_radius);
+    if (node.arc.length() <= 2 * options_.grid + kSamePlace) return std::nullopt;
+    node.before = static_cast<std::ptrdiff_t>(from);
+    node.entry = {end, node.arc.start_angle() + node.arc.sweep, sample + 1};
+    // A flat arc that is written as a line would make a kink of half its sweep.
+    if (node.arc.is_line() && curvature != 0) return std::nullopt;
+    return node;
+  }
+
+  // Every arc from node i that is worth a look.
+  void spread(std::size_t i, std::vector<Node>& found) const {
+    const ArcFan fan = band_.fan(nodes_[i].entry);
+    const auto& samples = band_.samples();
+    const std::size_t next = nodes_[i].entry.next;
+    if (fan.ranges.empty()) return;
+    const double start = samples[next - 1].station;
+    const double reach = samples[next + fan.ranges.size() - 1].station - start;
+    std::size_t last = count_;
+    for (const double part : effort_.parts) {
+      const std::size_t j = sample_at(start + part * reach, next, next + fan.ranges.size() - 1);
+      if (j == last || j + 1 == count_) continue;
+      last = j;
+      const CurvatureRange& range = fan.ranges[j - next];
+      const auto add = [&](double curvature) {
+        if (auto node = node_on(i, curvature, j)) {
+          judge(*node);
+          found.push_back(*node);
+        }
+      };
+      if (range.low < 0 && range.high > 0) add(0);
+      for (const double place : effort_.in_range) {
+        const double curvature = range.low + place * (range.high - range.low);
+        if (std::abs(curvature) * options_.max_radius > 1) add(curvature);
+      }
+    }
+  }
+
+  // The last sample in [low, high] at or before a station.
+  [[nodiscard]] std::size_t sample_at(double station, std::size_t low, std::size_t high) const {
+    const auto& samples = band_.samples();
+    const auto begin = samples.begin() + static_cast<std::ptrdiff_t>(low);
+    const auto end = samples.begin() + static_cast<std::ptrdiff_t>(high) + 1;
+    const auto after = std::upper_bound(
+        begin, end, station + kSamePlace,
+        [](double s, const PlaneBand::Sample& sample) { return s < sample.station; });
+    return after == begin ? low : static_cast<std::size_t>(after - samples.begin()) - 1;
+  }
+
+  // Keeps the best of the found ones that hold.
+  void follow(const std::vector<Node>& found, std::size_t arcs) {
+    std::vector<std::size_t> order(found.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&found](std::size_t a, std::size_t b) {
+      return found[a].score > found[b].score;
+    });
+    std::vector<std::pair<std::size_t, int>> of_place;  // how many were kept of a place
+    std::size_t kept = 0;
+    for (const std::size_t i : order) {
+      if (kept == effort_.width) break;
+      Node node = found[i];
+      const std::size_t place = node.entry.next;
+      auto same = std::ranges::find(of_place, place, &std::pair<std::size_t, int>::first);
+      if (same != of_place.end() && same->second == effort_.of_one_place) continue;
+      const BandEntry& from = nodes_[static_cast<std::size_t>(node.before)].entry;
+      const auto passed = band_.passed(from, node.arc);
+      if (!passed || *passed < from.next) continue;
+      if (same == of_place.end()) same = of_place.insert(same, {place, 0});
+      ++same->second;
+      node.entry.next = *passed;
+      add_to(arcs, node);
+      ++kept;
+    }
+  }
+
+  void offer(Node node, std::size_t arcs) {
+    if (arcs >= best_arcs_) return;
+    best_arcs_ = arcs;
+    best_ = nodes_.size();
+    nodes_.push_back(std::move(node));
+  }
+
+  // One arc or two from node i to the end.
+  void finish(std::size_t i, std::size_t arcs) {
+    if (arcs + 1 >= best_arcs_) return;
+    const auto& samples = band_.samples();
+    const BandEntry entry = nodes_[i].entry;
+    const Point2 end = samples.back().place;
+    if ((end - entry.place).norm() <= kSamePlace) return;
+    if (nodes_[i].reach == count_ && finish_with_one(i, entry, end, arcs)) return;
+    if (!options_.end_angle || arcs + 2 >= best_arcs_) return;
+    const double reached = samples[nodes_[i].reach - 1].station;
+    const double left = samples.back().station - reached;
+    if (left > 1.5 * (reached - samples[entry.next - 1].station)) return;
+    finish_with_two(i, entry, end, arcs);
+  }
+
+  bool finish_with_one(std::size_t i, const BandEntry& entry, const Point2& end, std::size_t arcs) {
+    Node node;
+    node.arc = arc_leaving(entry.place, entry.angle, end, options_.max_radius);
+    node.before = static_cast<std::ptrdiff_t>(i);
+    node.entry = {end, node.arc.start_angle() + node.arc.sweep, count_};
+    if (!allowed(node.arc)) return false;
+    const double sharp = kSameTurn + 2 * options_.grid / node.arc.length();
+    if (node.arc.is_line() && std::abs(wrapped(node.arc.start_angle() - entry.angle)) > sharp) {
+      return false;
+    }
+    if (options_.end_angle && std::abs(wrapped(node.entry.angle - *options_.end_angle)) > sharp) {
+      return false;
+    }
+    if (band_.passed(entry, node.arc) != count_) return false;
+    offer(node, arcs + 1);
+    return true;
+  }
+
+  void finish_with_two(std::size_t i, const BandEntry& entry, const Point2& end, std::size_t arcs) {
+    const double angle = *options_.end_angle;
+    for (const double balance : kBalances) {
+      const auto joint = biarc_joint(entry.place, entry.angle, end, angle, balance);
+      if (!joint) continue;
+      const Point2 middle = rounded(joint->place);
+      Node first;
+      first.arc = arc_leaving(entry.place, entry.angle, middle, options_.max_radius);
+      if (!allowed(first.arc)) continue;
+      const auto next = band_.passed(entry, first.arc);
+      if (!next || *next == count_) continue;
+      first.before = static_cast<std::ptrdiff_t>(i);
+      first.entry = {middle, first.arc.start_angle() + first.arc.sweep, *next};
+      Node second;
+      second.arc = arc_arriving(middle, end, angle, options_.max_radius);
+      if (!allowed(second.arc) || band_.passed(first.entry, second.arc) != count_) continue;
+      second.entry = {end, angle, count_};
+      second.before = static_cast<std::ptrdiff_t>(nodes_.size());
+      nodes_.push_back(first);
+      offer(second, arcs + 2);
+      return;
+    }
+  }
+
+  [[nodiscard]] bool allowed(const PlaneArc& arc) const {
+    return arc.length() > kSamePlace && std::abs(arc.sweep) <= options_.max_sweep &&
+           (arc.is_line() || arc.radius >= options_.min_radius);
+  }
+
+  // Where a corner of the polyline stands among the last samples that arcs from node i pass,
+  // or the first that they do not, the chain may turn as sharply as it.
+  void turn_at_corner(std::size_t i, std::size_t arcs) {
+    const auto& samples = band_.samples();
+    const ArcFan fan = band_.fan(nodes_[i].entry);
+    const std::size_t next = nodes_[i].entry.next;
+    constexpr std::size_t kBack = 16;
+    const std::size_t end = next + fan.ranges.size();
+    for (std::size_t c = std::max(next, end - std::min(end, kBack)); c < end; ++c) {
+      if (c + 1 >= count_ || std::abs(samples[c].turn) < kKinkTurn) continue;
+      const CurvatureRange& range = fan.ranges[c - next];
+      add_turns(node_on(i, range.middle(), c), c, arcs);
+      add_turns(node_on(i, nearest_in(range, i, c), c), c, arcs);
+      return;
+    }
+  }
+
+  // No arc goes on from any node of a level: turn at the farthest place that one reaches.
+  void turn_where_stuck(const std::vector<std::size_t>& level, std::size_t arcs) {
+    for (const std::size_t i : level) {
+      const ArcFan fan = band_.fan(nodes_[i].entry);
+      const std::size_t next = nodes_[i].entry.next;
+      for (std::size_t j = next + fan.ranges.size(); j-- > next;) {
+        if (j + 1 >= count_) continue;
+        if (add_turns(node_on(i, fan.ranges[j - next].middle(), j), j, arcs)) break;
+      }
+    }
+  }
+
+  // The curvature in the range with which an arc from node i passes nearest to the sample.
+  [[nodiscard]] double nearest_in(const CurvatureRange& range, std::size_t i,
+                                  std::size_t sample) const {
+    const BandEntry& entry = nodes_[i].entry;
+    const Vector2 way = band_.samples()[sample].place - entry.place;
+    const double through = 2 * cross(unit_vector(entry.angle), way) / way.squaredNorm();
+    const double margin = 0.05 * (range.high - range.low);
+    return std::clamp(through, range.low + margin, range.high - margin);
+  }
+
+  // The chain goes on from where `node` arrives in directions about that of the edge after the
+  // sample.
+  bool add_turns(std::optional<Node> node, std::size_t sample, std::size_t arcs) {
+    if (!node || !allowed(node->arc)) return false;
+    const BandEntry& from = nodes_[static_cast<std::size_t>(node->before)].entry;
+    const auto passed = band_.passed(from, node->arc);
+    if (!passed || *passed >= count_ || *passed <= from.next) return false;
+    node->kink = true;
+    for (const double off : kStarts) {
+      node->entry = {node->arc.end, band_.samples()[sample + 1].edge_angle + off, *passed};
+      judge(*node);
+      add_to(arcs + 1 + kKinkCosts, *node);
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::optional<ArcSpline> chain() const {
+    if (!best_) return std::nullopt;
+    ArcSpline spline;
+    const auto& samples = band_.samples();
+    for (auto i = static_cast<std::ptrdiff_t>(*best_);
+         nodes_[static_cast<std::size_t>(i)].before >= 0;
+         i = nodes_[static_cast<std::size_t>(i)].before) {
+      const Node& node = nodes_[static_cast<std::size_t>(i)];
+      spline.pieces.push_back({node.arc, samples[node.entry.next - 1].station});
+      if (node.kink) ++spline.kinks;
+    }
+    std::reverse(spline.pieces.begin(), spline.pieces.end());
+    return spline;
+  }
+
+  const ArcSplineOptions& options_;
+  const Effort& effort_;
+  PlaneBand band_;
+  std::size_t count_;
+  std::vector<Node> nodes_;
+  std::vector<std::vector<std::size_t>> levels_;  // nodes by the number of arcs so far
+  std::size_t best_arcs_;                         // what the best chain so far costs
+  std::optional<std::size_t> best_;               // its last node
+};
+
+void check(const ArcSplineOptions& options) {
+  const auto require = [](bool holds, const char* what, double value) {
+    if (!holds) {
+      throw std::invalid_argument(std::string("fit_arc_spline: ") + what + " " +
+                                  std::to_string(value) + " out of range");
+    }
+  };
+  require(options.tolerance > 0, "tolerance", options.tolerance);
+  require(options.min_radius > 0, "min_radius", options.min_radius);
+  require(options.max_radius > options.min_radius, "max_radius", options.max_radius);
+  require(options.max_sweep > 0 && options.max_sweep < kPi, "max_sweep", options.max_sweep);
+}
+
+std::size_t cost_of(const ArcSpline& spline) {
+  return spline.pieces.size() + kKinkCosts * static_cast<std::size_t>(spline.kinks);
+}
+
+// With as many arcs, how much nearer can the chain be?
+ArcSpline drawn_near(std::span<const Point2> points, const ArcSplineOptions& options,
+                     ArcSpline found) {
+  ArcSplineOptions nearer = options;
+  for (int round = 0; round < kNearerRounds; ++round) {
+    nearer.tolerance *= kNearer;
+    auto next = Search(points, nearer, cost_of(found)).run();
+    if (!next) break;
+    found = std::move(*next);
+  }
+  return found;
+}
+
+}  // namespace
+
+std::optional<ArcSpline> fit_arc_spline(std::span<const Point2> points,
+                                        const ArcSplineOptions& options) {
+  check(options);
+  auto found = Search(points, options).run();
+  if (found && found->pieces.size() <= kFew) {
+    return drawn_near(points, options, std::move(*found));
+  }
+  return found;
+}
+
+}  // namespace batten::geometry

@@ -1,0 +1,147 @@
+#include "geometry/arcs/biarc.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/basic/angle.h"
+#include "geometry/basic/rounding.h"
+#include "geometry/path/bezier_halves.h"
+
+namespace batten::geometry {
+namespace {
+
+// Halvings of a piece whose bounds are not sharp; each one quarters what they have too much.
+constexpr int kHalvings = 6;
+
+double angle_of(const Vector2& v) { return std::atan2(v.y(), v.x()); }
+
+struct PlaneCubic {
+  std::array<Point2, 4> control;
+};
+
+struct Range {
+  double least;
+  double greatest;
+
+  bool holds(double x) const { return least <= x && x <= greatest; }
+};
+
+// `piece` relative to the center; `allowed` bounds the squared distance from it.
+bool in_ring(const PlaneCubic& piece, const Range& allowed, int halvings) {
+  const auto& q = piece.control;
+  const double first = q[0].squaredNorm();
+  const double last = q[3].squaredNorm();
+  if (!allowed.holds(first) || !allowed.holds(last)) return false;  // places of the curve
+  if (allowed.holds(q[0].dot(q[1])) && allowed.holds(q[2].dot(q[3])) &&
+      allowed.holds((2 * q[0].dot(q[2]) + 3 * q[1].squaredNorm()) / 5) &&
+      allowed.holds((2 * q[1].dot(q[3]) + 3 * q[2].squaredNorm()) / 5) &&
+      allowed.holds((q[0].dot(q[3]) + 9 * q[1].dot(q[2])) / 10)) {
+    return true;
+  }
+  if (halvings == 0) return false;
+  const auto [left, right] = halves(piece);
+  return in_ring(left, allowed, halvings - 1) && in_ring(right, allowed, halvings - 1);
+}
+
+// `piece` in coordinates (along, across) of the line.
+bool in_strip(const PlaneCubic& piece, double deviation, int halvings) {
+  const auto& q = piece.control;
+  const auto near = [deviation](const Point2& p) { return std::abs(p.y()) <= deviation; };
+  if (!near(q[0]) || !near(q[3])) return false;
+  if (near(q[1]) && near(q[2])) return true;
+  if (halvings == 0) return false;
+  const auto [left, right] = halves(piece);
+  return in_strip(left, deviation, halvings - 1) && in_strip(right, deviation, halvings - 1);
+}
+
+bool goes_forward_around(const PlaneCubic& piece, double sweep, double noise) {
+  for (int i = 0; i < 3; ++i) {
+    const Vector2 leg = piece.control[i + 1] - piece.control[i];
+    const double forward = cross(piece.control[i], leg) * (sweep > 0 ? 1 : -1);
+    if (forward < -noise * piece.control[i].norm()) return false;
+  }
+  return true;
+}
+
+bool goes_forward_along(const PlaneCubic& piece, double noise) {
+  for (int i = 0; i < 3; ++i) {
+    if (piece.control[i + 1].x() < piece.control[i].x() - noise) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+double PlaneArc::length() const {
+  return is_line() ? (end - start).norm() : radius * std::abs(sweep);
+}
+
+double PlaneArc::start_angle() const { return angle_of(end - start) - sweep / 2; }
+
+PlaneArc arc_with_sweep(const Point2& start, const Point2& end, double sweep, double max_radius) {
+  PlaneArc arc{start, end};
+  const Vector2 chord = end - start;
+  const double length = chord.norm();
+  const double half_sine = std::sin(std::abs(sweep) / 2);
+  if (length <= kSamePlace || length >= 2 * max_radius * half_sine) return arc;
+  arc.sweep = sweep;
+  arc.radius = length / (2 * half_sine);
+  // Seen from the middle of the chord the center lies across it, to the left for a
+  // counter-clockwise arc of less than half a turn.
+  const Vector2 left(-chord.y() / length, chord.x() / length);
+  const double away = arc.radius * std::cos(std::abs(sweep) / 2) * (sweep > 0 ? 1 : -1);
+  arc.center = (start + end) / 2 + away * left;
+  return arc;
+}
+
+PlaneArc arc_leaving(const Point2& start, double angle, const Point2& end, double max_radius) {
+  return arc_with_sweep(start, end, 2 * wrapped(angle_of(end - start) - angle), max_radius);
+}
+
+PlaneArc arc_arriving(const Point2& start, const Point2& end, double angle, double max_radius) {
+  return arc_with_sweep(start, end, 2 * wrapped(angle - angle_of(end - start)), max_radius);
+}
+
+std::optional<BiarcJoint> biarc_joint(const Point2& start, double start_angle, const Point2& end,
+                                      double end_angle, double balance) {
+  const Vector2 t0 = unit_vector(start_angle);
+  const Vector2 t1 = unit_vector(end_angle);
+  const Vector2 v = end - start;
+  const double vv = v.squaredNorm();
+  const double b = v.dot(t0 + t1);
+  const double c = (t1 - t0).squaredNorm() / 2;  // 1 - t0.t1 without cancellation
+  // Equal lengths: 2 c d^2 + 2 b d - v.v = 0, in the form that keeps its digits.
+  const double root = std::sqrt(b * b + 2 * c * vv);
+  const double equal = b >= 0 ? vv / (b + root) : (root - b) / (2 * c);
+  const double first = balance * equal;
+  const double below = 2 * (v.dot(t1) + first * c);
+  const double second = (vv - 2 * first * v.dot(t0)) / below;
+  if (!(first > 0) || !(second > 0) || !std::isfinite(first) || !std::isfinite(second)) {
+    return std::nullopt;
+  }
+  const Point2 first_corner = start + first * t0;
+  const Vector2 between = end - second * t1 - first_corner;
+  const double length = first + second;
+  return BiarcJoint{first_corner + first / length * between, between.normalized()};
+}
+
+bool stays_near(const CubicBezier& piece, const PlaneArc& arc, double deviation) {
+  PlaneCubic local;
+  if (arc.is_line()) {
+    const Vector2 along = (arc.end - arc.start).normalized();
+    for (int i = 0; i < 4; ++i) {
+      const Vector2 q = piece.control[i].head<2>() - arc.start;
+      local.control[i] = {along.dot(q), cross(along, q)};
+    }
+    return goes_forward_along(local, deviation) && in_strip(local, deviation, kHalvings);
+  }
+  for (int i = 0; i < 4; ++i) local.control[i] = piece.control[i].head<2>() - arc.center;
+  const double inner = std::max(arc.radius - deviation, 0.0);
+  const double outer = arc.radius + deviation;
+  return goes_forward_around(local, arc.sweep, deviation) &&
+         in_ring(local, {inner * inner, outer * outer}, kHalvings);
+}
+
+}  // namespace batten::geometry

@@ -1,0 +1,58 @@
+// Arcs and pairs of arcs in a plane, from places and tangents.
+#pragma once
+
+#include <optional>
+
+#include "geometry/path/path.h"
+#include "geometry/path/plane_curve.h"
+
+namespace batten::geometry {
+
+// A circular arc in the plane; a line when `sweep` is 0.
+struct PlaneArc {
+  Point2 start;
+  Point2 end;
+  Point2 center = Point2::Zero();
+  double radius = 0;  // mm
+  double sweep = 0;   // radians, positive counter-clockwise, |sweep| < 2 pi
+
+  [[nodiscard]] bool is_line() const { return sweep == 0; }
+  [[nodiscard]] double length() const;
+  [[nodiscard]] double start_angle() const;  // of the tangent, radians
+};
+
+// The arc between two places that turns by `sweep`; a line when it is flatter than
+// `max_radius`.
+[[nodiscard]] PlaneArc arc_with_sweep(const Point2& start, const Point2& end, double sweep,
+                                      double max_radius);
+
+// The arc that leaves `start` at the angle `angle` and ends in `end`, and the one that
+// arrives there at that angle.
+[[nodiscard]] PlaneArc arc_leaving(const Point2& start, double angle, const Point2& end,
+                                   double max_radius);
+[[nodiscard]] PlaneArc arc_arriving(const Point2& start, const Point2& end, double angle,
+                                    double max_radius);
+
+// Two arcs that leave `start` and arrive at `end` at given angles can meet, with a common
+// tangent, on a circle of places. `first` is the length from `start` along its tangent to
+// the corner of the first arc's tangents; it and the length `second` before `end` obey
+//   v.v - 2 first v.t0 - 2 second v.t1 - 2 first second (1 - t0.t1) = 0,  v = end - start,
+// which says that the two corners are first + second apart. K. M. Bolton, Biarc curves,
+// Computer-Aided Design 7(2), 1975.
+struct BiarcJoint {
+  Point2 place;
+  Vector2 tangent;
+};
+
+// `balance`: `first` relative to the value for which both lengths are equal. Nothing when
+// there is no such pair with both lengths positive.
+[[nodiscard]] std::optional<BiarcJoint> biarc_joint(const Point2& start, double start_angle,
+                                                    const Point2& end, double end_angle,
+                                                    double balance);
+
+// True when the part of the plane curve is proved to stay within `deviation` of the arc and
+// to go forward along it. Bounds: Bernstein coefficients of the squared distance from the
+// center, which is a polynomial of degree six; the piece is halved where they are not sharp.
+[[nodiscard]] bool stays_near(const CubicBezier& piece, const PlaneArc& arc, double deviation);
+
+}  // namespace batten::geometry

@@ -1,0 +1,332 @@
+#include "geometry/arcs/plane_band.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/basic/angle.h"
+#include "geometry/basic/rounding.h"
+
+namespace batten::geometry {
+namespace {
+
+// What a curve with the polyline's turns does between two samples is at most this part of the
+// tolerance.
+constexpr double kBetween = 0.02;
+constexpr double kMostParts = 8;
+
+// Edges longer than this many tolerances could hide an arc's bulge between their ends.
+constexpr double kLongEdge = 200;
+constexpr int kPartsOfLong = 4;
+
+// About vertices that turn more, samples stand at distances that double from this part of the
+// tolerance: arcs that round them are that small.
+constexpr double kTightTurn = 0.1;
+constexpr double kNearest = 0.5;
+constexpr double kRoomForTight = 10;  // tolerances: a shorter edge is no leg of a corner
+
+double angle_of(const Vector2& v) { return std::atan2(v.y(), v.x()); }
+
+// A fan is made for this part of the tolerance; the rest is for what arcs do between samples
+// and for the rounding of their ends.
+constexpr double kFanPart = 0.97;
+
+// Places that a fan meets together.
+constexpr std::size_t kTogether = 8;
+
+// A fan that closes sample by sample. An arc from the origin along the first axis with
+// curvature k passes a place (x, y) at a distance of at most e when
+//   k (x^2 + y^2 - e^2) lies between 2 (y - e) and 2 (y + e),
+// from | |place - centre| - 1 / |k| | <= e.
+class ClosingFan {
+ public:
+  using Ranges = std::array<CurvatureRange, kTogether>;
+
+  ClosingFan(const BandEntry& entry, const PlaneBand::Limits& limits, double steepest)
+      : place_(entry.place),
+        along_(unit_vector(entry.angle)),
+        tolerance_(kFanPart * limits.tolerance),
+        range_{-limits.max_curvature, limits.max_curvature},
+        steepest_(steepest) {}
+
+  // False when no arc passes this place as well; the range stays as it was.
+  bool narrow(const Point2& sample) {
+    const Vector2 way = sample - place_;
+    const double x = way.dot(along_);
+    const double y = cross(along_, way);
+    const double beyond = x * x + y * y - tolerance_ * tolerance_;
+    if (beyond <= 0) return true;  // the start itself is near enough
+    if (x <= 0 || std::abs(y) > steepest_ * x) return false;
+    const double low = std::max(range_.low, 2 * (y - tolerance_) / beyond);
+    const double high = std::min(range_.high, 2 * (y + tolerance_) / beyond);
+    if (low > high) return false;
+    range_ = {low, high};
+    squared_ = beyond;
+    return true;
+  }
+
+  // The same for each `step`-th of kTogether places, without a branch between them. `after`: the
+  // range behind each. False where one of them is too near or not passed: then nothing has changed,
+  // and they must be asked for one by one.
+  bool narrow_together(const double* xs, const double* ys, std::size_t step, Ranges& after) {
+    std::array<double, kTogether> ways_x;
+    std::array<double, kTogether> ways_y;
+    for (std::size_t k = 0; k < kTogether; ++k) {
+      ways_x[k] = xs[k * step] - place_.x();
+      ways_y[k] = ys[k * step] - place_.y();
+    }
+    std::array<double, kTogether> lows;
+    std::array<double, kTogether> highs;
+    std::array<double, kTogether> beyonds;
+    std::array<double, kTogether> rooms;  // 0 or above where the place lies ahead
+    for (std::size_t k = 0; k < kTogether; ++k) {
+      const double x = ways_x[k] * along_.x() + ways_y[k] * along_.y();
+      const double y = along_.x() * ways_y[k] - along_.y() * ways_x[k];
+      beyonds[k] = x * x + y * y - tolerance_ * tolerance_;
+      rooms[k] = steepest_ * x - std::abs(y);
+      lows[k] = 2 * (y - tolerance_) / beyonds[k];
+      highs[k] = 2 * (y + tolerance_) / beyonds[k];
+    }
+    CurvatureRange range = range_;
+    bool ahead = true;
+    for (std::size_t k = 0; k < kTogether; ++k) {
+      ahead = ahead && beyonds[k] > 0 && rooms[k] >= 0;
+      range = {std::max(range.low, lows[k]), std::min(range.high, highs[k])};
+      after[k] = range;
+    }
+    // Ranges only close: what is open behind the last was open behind each.
+    if (!ahead || range.low > range.high) return false;
+    range_ = range;
+    squared_ = beyonds.back();
+    return true;
+  }
+
+  [[nodiscard]] const CurvatureRange& range() const { return range_; }
+  [[nodiscard]] double width() const { return (range_.high - range_.low) * squared_ / 2; }
+
+ private:
+  Point2 place_;
+  Vector2 along_;
+  double tolerance_;
+  CurvatureRange range_;
+  double steepest_;
+  double squared_ = 0;
+};
+
+// Radians, for |tangent| <= kSmallTangent: what the series leaves out is below rounding.
+constexpr double kSmallTangent = 0.125;
+
+double small_angle(double tangent) {
+  const double t = tangent * tangent;
+  const double tail = 1.0 / 11 + t * (-1.0 / 13 + t * (1.0 / 15 - t / 17));
+  const double sum = -1.0 / 3 + t * (1.0 / 5 + t * (-1.0 / 7 + t * (1.0 / 9 - t * tail)));
+  return tangent * (1 + t * sum);
+}
+
+// Length along a line or an arc, and distance across it, of places near it.
+class ArcMeter {
+ public:
+  explicit ArcMeter(const PlaneArc& arc) : arc_(arc), length_(arc.length()) {
+    if (arc.is_line()) {
+      first_ = (arc.end - arc.start).normalized();
+    } else {
+      first_ = arc.start - arc.center;
+      radius_ = first_.norm();
+      turn_ = arc.sweep > 0 ? 1 : -1;
+      before_ = first_;
+    }
+  }
+
+  struct Foot {
+    double along;  // mm from the start, negative before it
+    double off;    // mm
+    double half;   // mm, how far before and after the foot the arc is within the tolerance
+  };
+
+  // Quick where each place is near the one that was asked for before it.
+  [[nodiscard]] Foot foot(const Point2& place, double tolerance) {
+    if (arc_.is_line()) {
+      const Vector2 way = place - arc_.start;
+      const double off = std::abs(cross(first_, way));
+      return {way.dot(first_), off, std::sqrt(std::max(0.0, tolerance * tolerance - off * off))};
+    }
+    const Vector2 way = place - arc_.center;
+    const double distance = way.norm();
+    const double off = std::abs(distance - radius_);
+    const double room = std::max(0.0, tolerance * tolerance - off * off);
+    return {angle_to(way) * radius_, off,
+            std::sqrt(room * radius_ / std::max(distance, kSamePlace))};
+  }
+
+  // Whether the part [from, to] bulges from the line through a sample's place along its edge by no
+  // more than `tolerance`, its two ends being near enough.
+  [[nodiscard]] bool bulges_within(double tolerance, double from, double to,
+                                   const PlaneBand::Sample& sample) const {
+    if (arc_.is_line()) return true;
+    const double height = cross(sample.edge_way, arc_.center - sample.place) - turn_ * radius_;
+    if (std::abs(height) <= tolerance) return true;
+    double at = wrapped(turn_ * (sample.edge_angle - arc_.start_angle()));
+    if (at < 0) at += 2 * kPi;
+    return at * radius_ < from || at * radius_ > to;
+  }
+
+  [[nodiscard]] double length() const { return length_; }
+
+ private:
+  // How far the arc has turned where it passes this ray from its centre: from the ray before it
+  // where that is near, for an arctangent costs more than all the rest.
+  double angle_to(const Vector2& way) {
+    const double across = cross(before_, way);
+    const double ahead = before_.dot(way);
+    if (std::abs(across) <= kSmallTangent * ahead && ahead > 0) {
+      angle_ += turn_ * small_angle(across / ahead);
+    } else {
+      angle_ = turn_ * std::atan2(cross(first_, way), first_.dot(way));
+      if (angle_ < -(kPi - std::abs(arc_.sweep) / 2)) angle_ += 2 * kPi;
+    }
+    before_ = way;
+    return angle_;
+  }
+
+  const PlaneArc& arc_;
+  double length_;
+  Vector2 first_ = Vector2::Zero();  // a line's direction; an arc's first radius
+  double radius_ = 0;
+  double turn_ = 1;
+  Vector2 before_ = Vector2::Zero();  // the ray that was asked for last
+  double angle_ = 0;                  // of it
+};
+
+double distance_to_segment(const Point2& p, const Point2& a, const Point2& b) {
+  const Vector2 d = b - a;
+  const double t = std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
+  return (p - a - t * d).norm();
+}
+
+}  // namespace
+
+PlaneBand::PlaneBand(std::span<const Point2> points, const Limits& limits)
+    : limits_(limits), steepest_(std::tan(limits.max_sweep / 2)) {
+  const std::size_t n = points.size();
+  std::vector<double> angles(n - 1);
+  for (std::size_t i = 0; i + 1 < n; ++i) angles[i] = angle_of(points[i + 1] - points[i]);
+  samples_.reserve(2 * n);
+  x_.reserve(2 * n);
+  y_.reserve(2 * n);
+  add_sample({points[0], 0, angles[0], 0, unit_vector(angles[0])});
+  double turn_before = 0;
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    const double turn_after = i + 2 < n ? wrapped(angles[i + 1] - angles[i]) : 0;
+    add_edge({points[i], points[i + 1], angles[i], turn_before, turn_after});
+    turn_before = turn_after;
+  }
+}
+
+void PlaneBand::add_sample(const Sample& sample) {
+  samples_.push_back(sample);
+  x_.push_back(sample.place.x());
+  y_.push_back(sample.place.y());
+}
+
+void PlaneBand::add_edge(const Edge& edge) {
+  const Vector2 way = edge.to - edge.from;
+  const double length = way.norm();
+  const Vector2 edge_way = unit_vector(edge.angle);
+  std::vector<double> places;
+  const double nearest = kNearest * limits_.tolerance;
+  const auto add_about = [&](double turn, bool at_end) {
+    if (std::abs(turn) < kTightTurn || length < kRoomForTight * limits_.tolerance) return;
+    for (double d = nearest; d < length / 2; d *= 2) places.push_back(at_end ? length - d : d);
+  };
+  add_about(edge.turn_before, false);
+  add_about(edge.turn_after, true);
+  const double gentle =
+      std::min(kTightTurn, std::max(std::abs(edge.turn_before), std::abs(edge.turn_after)));
+  const double sagitta = length * gentle / 8;
+  double parts = std::ceil(std::sqrt(sagitta / (kBetween * limits_.tolerance)));
+  parts =
+      std::clamp(parts, length > kLongEdge * limits_.tolerance ? kPartsOfLong : 1.0, kMostParts);
+  for (int i = 1; i < static_cast<int>(parts); ++i) places.push_back(length * i / parts);
+  std::sort(places.begin(), places.end());
+  const double start = samples_.back().station;
+  double last = 0;
+  for (const double place : places) {
+    if (place - last < nearest / 2) continue;
+    add_sample({edge.from + (place / length) * way, start + place, edge.angle, 0, edge_way});
+    last = place;
+  }
+  add_sample({edge.to, start + length, edge.angle, edge.turn_after, edge_way});
+}
+
+ArcFan PlaneBand::fan(const BandEntry& entry) const {
+  ArcFan fan;
+  ClosingFan closing(entry, limits_, steepest_);
+  ClosingFan::Ranges after;
+  const std::size_t count = samples_.size();
+  for (std::size_t i = entry.next; i < count;) {
+    if (i + kTogether <= count && closing.narrow_together(&x_[i], &y_[i], 1, after)) {
+      fan.ranges.insert(fan.ranges.end(), after.begin(), after.end());
+      i += kTogether;
+      continue;
+    }
+    const std::size_t end = std::min(i + kTogether, count);
+    for (; i < end; ++i) {
+      if (!closing.narrow(samples_[i].place)) return fan;
+      fan.ranges.push_back(closing.range());
+    }
+  }
+  return fan;
+}
+
+ArcReach PlaneBand::reach(const BandEntry& entry) const {
+  ClosingFan closing(entry, limits_, steepest_);
+  ClosingFan::Ranges after;
+  const std::size_t count = samples_.size();
+  std::size_t i = entry.next;  // the first sample that is not known to be passed
+  for (std::size_t step = limits_.stride; step > 0; step = step > 1 ? 1 : 0) {
+    bool passes = true;
+    while (passes && i + step <= count) {
+      const std::size_t first = i + step - 1;
+      if (i + step * kTogether <= count &&
+          closing.narrow_together(&x_[first], &y_[first], step, after)) {
+        i += step * kTogether;
+        continue;
+      }
+      for (std::size_t k = 0; k < kTogether && passes && i + step <= count; ++k) {
+        passes = closing.narrow(samples_[i + step - 1].place);
+        if (passes) i += step;
+      }
+    }
+  }
+  return {i, closing.width()};
+}
+
+std::optional<std::size_t> PlaneBand::passed(const BandEntry& entry, const PlaneArc& arc) const {
+  ArcMeter meter(arc);
+  const double tolerance = limits_.tolerance;
+  double at = 0;  // everything before is matched
+  std::size_t i = entry.next;
+  for (; i < samples_.size(); ++i) {
+    const Sample& sample = samples_[i];
+    const ArcMeter::Foot foot = meter.foot(sample.place, tolerance);
+    if (foot.along > meter.length() + kSamePlace) break;
+    // Not passed by this arc: then it ends on the edge before the sample, which is asked below.
+    if (foot.off > tolerance || at > foot.along + foot.half) break;
+    const double to = std::max(at, foot.along - foot.half);
+    if (!meter.bulges_within(tolerance, at, to, sample)) return std::nullopt;
+    at = to;
+  }
+  if (i == samples_.size()) {
+    const bool meets = (arc.end - samples_.back().place).norm() <= tolerance;
+    return meets ? std::optional(i) : std::nullopt;
+  }
+  const Sample& next = samples_[i];
+  if (distance_to_segment(arc.end, samples_[i - 1].place, next.place) > tolerance ||
+      !meter.bulges_within(tolerance, at, meter.length(), next)) {
+    return std::nullopt;
+  }
+  return i;
+}
+
+}  // namespace batten::geometry

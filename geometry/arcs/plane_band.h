@@ -1,0 +1,97 @@
+// The band around a polyline in the plane as single arcs meet it: which arcs from a place stay
+// inside, how far they reach, and whether one of them does, in order.
+// Method: docs/algorithms/arc_spline.md, steps 1 to 3.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/arcs/biarc.h"
+#include "geometry/path/plane_curve.h"
+
+namespace batten::geometry {
+
+// Signed curvatures, 1/mm, positive to the left.
+struct CurvatureRange {
+  double low;
+  double high;
+
+  [[nodiscard]] double middle() const { return 0.5 * (low + high); }
+};
+
+// An arc starts here: at a place within the tolerance of the polyline, with this tangent.
+struct BandEntry {
+  Point2 place;
+  double angle = 0;      // radians
+  std::size_t next = 1;  // first sample that lies ahead
+};
+
+// The arcs from one entry: ranges[i] are the curvatures that pass every sample from the next
+// one to the i-th after it within the tolerance. No range is empty.
+struct ArcFan {
+  std::vector<CurvatureRange> ranges;
+};
+
+struct ArcReach {
+  std::size_t end;    // the first sample that no arc from the entry passes
+  double margin = 0;  // mm, how wide the band is at the sample before it for arcs that get there
+};
+
+class PlaneBand {
+ public:
+  // A place of the polyline that arcs are held against: its vertices, and between them so many
+  // more that what an arc does between two of them is little against the tolerance.
+  struct Sample {
+    Point2 place;
+    double station;     // length along the polyline, mm
+    double edge_angle;  // direction of the edge that ends here or passes here, radians
+    double turn;        // radians, signed, at a vertex; 0 between vertices
+    Vector2 edge_way;   // the unit vector of that direction
+  };
+
+  struct Limits {
+    double tolerance = 0;      // mm, > 0
+    double max_curvature = 0;  // 1/mm, > 0
+    double max_sweep = 0;      // radians, below pi
+    std::size_t stride = 1;    // `reach` looks at each so many-th sample as long as it may
+  };
+
+  // Requires two points or more, neighbours apart.
+  PlaneBand(std::span<const Point2> points, const Limits& limits);
+
+  [[nodiscard]] const std::vector<Sample>& samples() const { return samples_; }
+  [[nodiscard]] const Limits& limits() const { return limits_; }
+
+  [[nodiscard]] ArcFan fan(const BandEntry& entry) const;
+  // The end of that fan; with a stride narrow places between the samples may be overlooked.
+  [[nodiscard]] ArcReach reach(const BandEntry& entry) const;
+
+  // Whether the arc (or line) from `entry` stays within the tolerance of the polyline, and the
+  // polyline of it, both going forward (Frechet distance). Returns the first sample that lies
+  // beyond the arc's end; samples().size() when it ends at the last one.
+  [[nodiscard]] std::optional<std::size_t> passed(const BandEntry& entry,
+                                                  const PlaneArc& arc) const;
+
+ private:
+  // An edge of the polyline, with the turns at its ends.
+  struct Edge {
+    Point2 from;
+    Point2 to;
+    double angle;
+    double turn_before;
+    double turn_after;
+  };
+  void add_edge(const Edge& edge);
+  void add_sample(const Sample& sample);
+
+  Limits limits_;
+  double steepest_;  // a place seen at half the sweep from the tangent: the arc has turned by it
+  std::vector<Sample> samples_;
+  // The places once more, for fans: many of them are asked for together.
+  std::vector<double> x_;
+  std::vector<double> y_;
+};
+
+}  // namespace batten::geometry

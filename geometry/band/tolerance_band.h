@@ -1,0 +1,82 @@
+// The band of a flat path (all places within a tolerance of it): where it lies over itself, where
+// its edge has cusps, and its outline for pictures. Method: docs/algorithms/tolerance_band.md.
+//
+// A path in the band of another one may cross itself where the other does not, but only where the
+// band lies over itself: there two parts of the path are nearer to each other than twice the
+// tolerance, and either may move over to the other side of its neighbour. `new_crossing` looks for
+// that.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/basic/point.h"
+#include "geometry/path/path.h"
+
+namespace batten::geometry {
+
+using Point2 = Eigen::Vector2d;
+
+// Two parts of one path whose bands overlap: edges first_from..first_to and second_from..second_to.
+struct BandOverlap {
+  std::size_t first_from = 0;
+  std::size_t first_to = 0;
+  std::size_t second_from = 0;
+  std::size_t second_to = 0;
+  double distance = 0;        // mm, least distance of the two parts
+  std::size_t edge = 0;       // of the first part, where that is met
+  bool meets_itself = false;  // the parts cross, touch or run over each other
+};
+
+// A side of an edge that the edge of the band does not have: the bends at the two ends of the edge
+// are so near to each other that the band's radius is greater than that of the path there.
+struct BandCusp {
+  std::size_t edge = 0;
+  bool left = false;  // on the left of the way of travel
+};
+
+struct BandStructure {
+  std::vector<BandOverlap> overlaps;  // in order of their first edges
+  std::vector<BandCusp> cusps;        // in order
+};
+
+// Of the polyline through `points` (mm) under `tolerance` (mm, > 0). Parts between which the path
+// never leaves the band, as the legs of a corner, are one part and do not overlap. The ends of a
+// closed path are neighbours.
+//
+// Nothing where the path lies in a heap: more than kMostPairs pairs of edges for each edge are near
+// to each other. Throws std::invalid_argument when the tolerance is not a positive number.
+[[nodiscard]] std::optional<BandStructure> band_structure(std::span<const Point2> points,
+                                                          double tolerance);
+
+inline constexpr std::size_t kMostPairs = 200;
+
+// Where two paths are compared: index of the pieces and a place.
+struct NewCrossing {
+  std::size_t first_piece = 0;   // of the new path
+  std::size_t second_piece = 0;  // which meets the first one there
+  Point3 place = Point3::Zero();
+};
+
+// A place where the new path crosses, touches or runs over itself, while the old one, which it
+// follows within `tolerance` both ways and in order, does not in the place that belongs to it.
+// Looked at are the pieces that lie in planes across an axis (the one across which most of them
+// lie), each plane for itself; arcs and Bezier pieces as chords nearer to them than a hundredth of
+// the tolerance. The first such place along the new path, in the plane whose pieces come first.
+//
+// Nothing where there is none, and in planes where a path lies in a heap (see above): this is a
+// safeguard beside the proof of the distance, and says nothing about what runs through space.
+[[nodiscard]] std::optional<NewCrossing> new_crossing(std::span<const PathPiece> before,
+                                                      std::span<const PathPiece> after,
+                                                      double tolerance);
+
+// The edge of the band as closed polygons: the outer ones counter-clockwise, holes clockwise. Round
+// ends and corners have corners of their own every 15 degrees, on the outside by less than a
+// hundredth of the tolerance. For pictures: cost about a millisecond for each edge.
+[[nodiscard]] std::vector<std::vector<Point2>> band_outline(std::span<const Point2> points,
+                                                            double tolerance);
+
+}  // namespace batten::geometry

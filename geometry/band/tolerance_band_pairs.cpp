@@ -1,0 +1,269 @@
+#include "geometry/band/tolerance_band_pairs.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/box_intersection_d.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "geometry/basic/rounding.h"
+#include "geometry/path/box_grid.h"
+
+namespace batten::geometry {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Segment = Kernel::Segment_2;
+using PairBox = CGAL::Box_intersection_d::Box_with_info_d<double, 2, std::uint32_t>;
+
+Kernel::Point_2 to_cgal(const Point2& p) { return {p.x(), p.y()}; }
+
+Segment segment_of(const FlatEdges& edges, std::size_t edge) {
+  return {to_cgal(edges.from(edge)), to_cgal(edges.to(edge))};
+}
+
+FlatBox box_around(const FlatEdges& edges, std::size_t edge, double margin) {
+  const Point2 low = edges.from(edge).cwiseMin(edges.to(edge));
+  const Point2 high = edges.from(edge).cwiseMax(edges.to(edge));
+  return {low - Point2(margin, margin), high + Point2(margin, margin)};
+}
+
+// As BoxGrid::each_pair, for boxes of any sizes.
+template <typename Function>
+void each_pair_of_any(std::span<const FlatBox> around, const Function& found) {
+  std::vector<PairBox> boxes;
+  boxes.reserve(around.size());
+  for (std::uint32_t i = 0; i < around.size(); ++i) {
+    const auto& [low, high] = around[i];
+    boxes.emplace_back(CGAL::Bbox_2(low.x(), low.y(), high.x(), high.y()), i);
+  }
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(),
+                                [&](const PairBox& a, const PairBox& b) {
+                                  found(std::min(a.info(), b.info()), std::max(a.info(), b.info()));
+                                });
+}
+
+bool share_a_vertex(const FlatEdges& edges, std::size_t a, std::size_t b) {
+  return edges.to(a) == edges.from(b) || edges.to(b) == edges.from(a);
+}
+
+// Both places lie on one side of the line through an edge, further from it than `reach` and the
+// rounding of it.
+bool lie_beside(const FlatEdges& edges, std::size_t edge, const Point2& a, const Point2& b,
+                double reach) {
+  const Point2& from = edges.from(edge);
+  const Vector2 along = edges.to(edge) - from;
+  const double limit = (reach + kSamePlace) * along.norm();
+  const double first = cross(along, a - from);
+  const double second = cross(along, b - from);
+  return (first > limit && second > limit) || (first < -limit && second < -limit);
+}
+
+// Whether two edges are no further apart than `reach`: nearly all that are asked for are neighbours
+// or lie beside each other, which needs no exact distance.
+bool are_near(const FlatEdges& edges, const EdgePair& pair, double reach) {
+  const auto [a, b] = pair;
+  if (share_a_vertex(edges, a, b)) return true;
+  if (lie_beside(edges, a, edges.from(b), edges.to(b), reach) ||
+      lie_beside(edges, b, edges.from(a), edges.to(a), reach)) {
+    return false;
+  }
+  return edge_distance(edges, pair) <= reach;
+}
+
+// Whether a place is no further from an edge than `reach`.
+bool is_near(const FlatEdges& edges, std::size_t edge, const Point2& place, double reach) {
+  const Point2& from = edges.from(edge);
+  const Vector2 along = edges.to(edge) - from;
+  const double t = std::clamp((place - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  const double distance = (place - from - t * along).norm();
+  if (std::abs(distance - reach) > kSamePlace) return distance < reach;
+  return edge_distance(edges, edge, place) <= reach;
+}
+
+// Ends a search that finds too much.
+struct TooMany {};
+
+// Sets of pairs that belong together.
+class Groups {
+ public:
+  explicit Groups(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  }
+
+  std::size_t root(std::size_t i) {
+    while (parent_[i] != i) {
+      parent_[i] = parent_[parent_[i]];
+      i = parent_[i];
+    }
+    return i;
+  }
+
+  // The root with the lower number stays, so that it is the first of its group.
+  void join(std::size_t a, std::size_t b) {
+    a = root(a);
+    b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
+// Puts pairs together whose edges are neighbours.
+class Grouping {
+ public:
+  Grouping(std::span<const EdgePair> pairs, const FlatEdges& edges, double reach)
+      : pairs_(pairs), edges_(edges), reach_(reach), groups_(pairs.size()) {}
+
+  // The places of two edges that are near to each other are a convex part of the square of their
+  // parameters. So the parts of two pairs join where a vertex between them is near to the other
+  // edge.
+  std::vector<std::size_t> run() {
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      const auto [first, second] = pairs_[i];
+      const auto after_first = edges_.after(first);
+      const auto after_second = edges_.after(second);
+      if (after_first == second || after_second == first) join_beside(i);
+      if (after_first && is_near(edges_, second, edges_.to(first), reach_)) {
+        join(i, *after_first, second);
+      }
+      if (after_second && is_near(edges_, first, edges_.to(second), reach_)) {
+        join(i, first, *after_second);
+      }
+    }
+    return numbers();
+  }
+
+ private:
+  void join(std::size_t pair, std::size_t a, std::size_t b) {
+    if (a == b) return;
+    const EdgePair wanted{static_cast<std::uint32_t>(std::min(a, b)),
+                          static_cast<std::uint32_t>(std::max(a, b))};
+    const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), wanted);
+    if (found == pairs_.end() || *found != wanted) return;
+    groups_.join(pair, static_cast<std::size_t>(found - pairs_.begin()));
+  }
+
+  void join_beside(std::size_t pair) {
+    if (beside_) groups_.join(*beside_, pair);
+    beside_ = pair;
+  }
+
+  std::vector<std::size_t> numbers() {
+    std::vector<std::size_t> result(pairs_.size(), 0);
+    std::size_t next = 1;
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      const std::size_t root = groups_.root(i);
+      if (beside_ && root == groups_.root(*beside_)) continue;
+      result[i] = root == i ? next++ : result[root];
+    }
+    return result;
+  }
+
+  std::span<const EdgePair> pairs_;
+  const FlatEdges& edges_;
+  double reach_;
+  Groups groups_;
+  std::optional<std::size_t> beside_;  // a pair of neighbours
+};
+
+// The path turns right back at the vertex that two neighbours share.
+bool folds(const FlatEdges& edges, std::size_t before, std::size_t after) {
+  const Point2& corner = edges.to(before);
+  // Legs that point to different half planes: the angle is not acute by far more than rounding.
+  const double turned_back = (edges.from(before) - corner).dot(edges.to(after) - corner);
+  if (turned_back < -kSamePlace * (edges.from(before) - corner).norm()) return false;
+  const Kernel::Point_2 start = to_cgal(edges.from(before));
+  const Kernel::Point_2 vertex = to_cgal(edges.to(before));
+  const Kernel::Point_2 end = to_cgal(edges.to(after));
+  return CGAL::collinear(start, vertex, end) && CGAL::angle(start, vertex, end) == CGAL::ACUTE;
+}
+
+}  // namespace
+
+bool FlatEdges::add(const Point2& from, const Point2& to) {
+  if ((from - to).norm() <= kSamePlace) return false;
+  const bool goes_on = !edges_.empty() && (edges_.back().to - from).norm() <= kSamePlace;
+  if (!goes_on) first_.push_back(edges_.size());
+  edges_.push_back({goes_on ? edges_.back().to : from, to, first_.size() - 1});
+  return true;
+}
+
+bool FlatEdges::is_closed(std::size_t chain) const {
+  const std::size_t first = first_[chain];
+  const std::size_t end = chain + 1 < first_.size() ? first_[chain + 1] : edges_.size();
+  return end - first > 2 && (edges_[first].from - edges_[end - 1].to).norm() <= kSamePlace;
+}
+
+std::optional<std::size_t> FlatEdges::after(std::size_t edge) const {
+  const std::size_t chain = edges_[edge].chain;
+  if (edge + 1 < edges_.size() && edges_[edge + 1].chain == chain) return edge + 1;
+  if (is_closed(chain)) return first_[chain];
+  return {};
+}
+
+std::optional<std::vector<EdgePair>> near_pairs(const FlatEdges& edges, double reach) {
+  std::vector<EdgePair> pairs;
+  if (edges.size() == 0) return pairs;
+  std::vector<FlatBox> boxes;
+  boxes.reserve(edges.size());
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    boxes.push_back(box_around(edges, i, 0.5 * reach));
+  }
+  const auto found = [&](std::uint32_t first, std::uint32_t second) {
+    const EdgePair pair{first, second};
+    if (!are_near(edges, pair, reach)) return;
+    pairs.push_back(pair);
+    if (pairs.size() > kMostPairs * edges.size()) throw TooMany{};
+  };
+  try {
+    if (const auto grid = BoxGrid::made_of(boxes)) {
+      grid->each_pair(found);
+    } else {
+      each_pair_of_any(boxes, found);
+    }
+  } catch (const TooMany&) {
+    return {};
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+std::vector<std::size_t> group_pairs(std::span<const EdgePair> pairs, const FlatEdges& edges,
+                                     double reach) {
+  return Grouping(pairs, edges, reach).run();
+}
+
+bool edges_meet(const FlatEdges& edges, const EdgePair& pair) {
+  if (edges.after(pair.first) == pair.second) return folds(edges, pair.first, pair.second);
+  if (edges.after(pair.second) == pair.first) return folds(edges, pair.second, pair.first);
+  return CGAL::do_intersect(segment_of(edges, pair.first), segment_of(edges, pair.second));
+}
+
+double edge_distance(const FlatEdges& edges, const EdgePair& pair) {
+  return std::sqrt(
+      CGAL::squared_distance(segment_of(edges, pair.first), segment_of(edges, pair.second)));
+}
+
+double edge_distance(const FlatEdges& edges, std::size_t edge, const Point2& place) {
+  return std::sqrt(CGAL::squared_distance(segment_of(edges, edge), to_cgal(place)));
+}
+
+Point2 meeting_place(const FlatEdges& edges, const EdgePair& pair) {
+  const Segment a = segment_of(edges, pair.first);
+  const auto common = CGAL::intersection(a, segment_of(edges, pair.second));
+  Kernel::Point_2 place = a.source();
+  if (common) {
+    if (const auto* point = boost::get<Kernel::Point_2>(&*common)) {
+      place = *point;
+    } else {
+      const auto& shared = boost::get<Segment>(*common);
+      place = CGAL::midpoint(shared.source(), shared.target());
+    }
+  }
+  return {place.x(), place.y()};
+}
+
+}  // namespace batten::geometry

@@ -1,0 +1,76 @@
+// Which edges of a flat path are near to each other, and which of these pairs belong together.
+// Used by tolerance_band*.cpp only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/band/tolerance_band.h"
+
+namespace batten::geometry {
+
+// Edges of a flat path in order. It may be in several chains: where it left the plane between.
+class FlatEdges {
+ public:
+  // Goes on with the last chain where that ends at `from`, else starts another one. Returns whether
+  // there is an edge: not where the two are one place.
+  bool add(const Point2& from, const Point2& to);
+
+  [[nodiscard]] std::size_t size() const { return edges_.size(); }
+  [[nodiscard]] const Point2& from(std::size_t edge) const { return edges_[edge].from; }
+  [[nodiscard]] const Point2& to(std::size_t edge) const { return edges_[edge].to; }
+
+  // The edge that starts where this one ends, along the path or round a closed chain.
+  [[nodiscard]] std::optional<std::size_t> after(std::size_t edge) const;
+
+ private:
+  struct Edge {
+    Point2 from;
+    Point2 to;
+    std::size_t chain;
+  };
+  [[nodiscard]] bool is_closed(std::size_t chain) const;
+
+  std::vector<Edge> edges_;
+  std::vector<std::size_t> first_;  // edge of each chain
+};
+
+struct EdgePair {
+  std::uint32_t first = 0;
+  std::uint32_t second = 0;  // above `first`
+  friend bool operator==(const EdgePair& a, const EdgePair& b) {
+    return a.first == b.first && a.second == b.second;
+  }
+  friend bool operator<(const EdgePair& a, const EdgePair& b) {
+    return a.first != b.first ? a.first < b.first : a.second < b.second;
+  }
+};
+
+// All pairs of edges, neighbours too, whose distance is at most `reach` (mm), sorted. Nothing when
+// there are more than kMostPairs for each edge.
+[[nodiscard]] std::optional<std::vector<EdgePair>> near_pairs(const FlatEdges& edges, double reach);
+
+// The number of the group of each pair, from 0 in order of the first pairs. `pairs` and `reach` are
+// those of near_pairs. Two pairs are in one group when one can walk from one to the other along
+// both edges without ever being further apart than `reach`. Group 0 holds all pairs of neighbours
+// and what is reached from them: the path beside itself.
+[[nodiscard]] std::vector<std::size_t> group_pairs(std::span<const EdgePair> pairs,
+                                                   const FlatEdges& edges, double reach);
+
+// Whether the edges of the pair have more in common than the vertex that neighbours share: they
+// cross, touch, or run over each other. Exact.
+[[nodiscard]] bool edges_meet(const FlatEdges& edges, const EdgePair& pair);
+
+// mm, of the two edges.
+[[nodiscard]] double edge_distance(const FlatEdges& edges, const EdgePair& pair);
+
+// mm, of a place and an edge.
+[[nodiscard]] double edge_distance(const FlatEdges& edges, std::size_t edge, const Point2& place);
+
+// A place that both edges have; the middle where they run over each other. Requires edges_meet.
+[[nodiscard]] Point2 meeting_place(const FlatEdges& edges, const EdgePair& pair);
+
+}  // namespace batten::geometry

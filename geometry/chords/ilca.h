@@ -1,0 +1,47 @@
+// Chords over equal steps, as many as the tolerance asks for: Hamdan's ILCA, for any curve.
+// Method: docs/algorithms/hamdan.md.
+//
+// W. K. Hamdan, H. L. Alwan, B. M. Hussein, 2005. A reproduction: chord_vertices
+// (geometry/chords/linearize.h) needs fewer chords.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "geometry/path/bspline_curve.h"
+
+namespace batten::geometry {
+
+// How many chords may be looked for, for each piece of the curve, and how many deviations be read
+// for each of these chords: equal steps are as short everywhere as the tightest place asks for, and
+// cusps of a noisy path may ask for millions.
+inline constexpr double kIlcaChordsPerPiece = 16;
+inline constexpr double kIlcaLeastBound = 1000;  // chords, of a curve of few pieces
+inline constexpr double kIlcaReadings = 16;      // of each chord
+
+struct IlcaOptions {
+  double max_deviation = 0.01;  // mm, curve to chord; > 0
+  double first_step = 0;        // of the parameter; 0: one step to begin with
+};
+
+// A curve's chords, each between neighbours of `parameters`.
+struct ChordRow {
+  std::vector<double> parameters;  // increasing, both ends included
+  double deviation = 0;            // mm, greatest distance of the curve from its chords
+  std::size_t readings = 0;        // deviations of chords that were asked for (ilca)
+};
+
+// n equal steps of the parameter between two corners of the curve, n the least number from
+// ceil(length / first_step) on for which no chord deviates by more than max_deviation. A corner is
+// always a vertex. Numbers n are passed over where the deviation found for a smaller one says
+// that they are too few: it goes with 1 / n^2.
+//
+// Nothing where that takes more chords or more work than the bounds above allow.
+//
+// Requires degree 3 or less and first() <= from < to <= last(). Throws std::invalid_argument when
+// an option is outside its range.
+[[nodiscard]] std::optional<ChordRow> ilca(const BsplineCurve& curve, double from, double to,
+                                           const IlcaOptions& options);
+
+}  // namespace batten::geometry

@@ -1,0 +1,161 @@
+#include "geometry/chords/min_link_gates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/path/bezier_halves.h"
+
+namespace batten::geometry {
+namespace {
+
+// A piece that is this many times longer than the steps beside it is cut into about as long
+// parts, but not into more than kMostInLine: places to turn are wanted near its ends.
+constexpr double kGrowth = 4;
+constexpr double kMostInLine = 16;
+
+// Halvings of one Bezier piece: a million gates on it are enough for any.
+constexpr int kMostHalvings = 20;
+
+// Gates keep this part of the width up to which their inner ends do not cross.
+constexpr double kRoom = 0.9;
+
+// Tangents that differ by less (radians) make no bend: rounding of points and tangents.
+constexpr double kNoBend = 1e-12;
+
+// A part of the curve between two gates, or more where it is long.
+struct PieceSteps {
+  double from;
+  double to;
+  double length;     // mm, of its chord
+  double steps = 1;  // equal ones of the parameter
+
+  [[nodiscard]] double step() const { return length / steps; }
+};
+
+// A cubic is at most three quarters as far from its chord as its control points are.
+double sagitta_bound(const CubicBezier& piece) {
+  const Point3& start = piece.control[0];
+  const Vector3 chord = piece.control[3] - start;
+  const double length = chord.norm();
+  const Vector3 along = length > 0 ? Vector3(chord / length) : Vector3(Vector3::Zero());
+  double farthest = 0;
+  for (const Point3& p : {piece.control[1], piece.control[2]}) {
+    const double at = std::clamp(along.dot(p - start), 0.0, length);
+    farthest = std::max(farthest, (p - start - at * along).norm());
+  }
+  return 0.75 * farthest;
+}
+
+// Halves the piece until each part keeps the gap.
+void append_parts(const CubicBezier& piece, double from, double to, double gap, int halvings,
+                  std::vector<PieceSteps>& parts) {
+  if (halvings == 0 || sagitta_bound(piece) <= gap) {
+    parts.push_back({from, to, (piece.control[3] - piece.control[0]).norm()});
+    return;
+  }
+  const auto [left, right] = halves(piece);
+  const double middle = (from + to) / 2;
+  append_parts(left, from, middle, gap, halvings - 1, parts);
+  append_parts(right, middle, to, gap, halvings - 1, parts);
+}
+
+void cut_long_pieces(std::vector<PieceSteps>& cuts) {
+  std::vector<double> wanted(cuts.size(), 1);
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    double beside = std::numeric_limits<double>::infinity();
+    if (i > 0) beside = std::min(beside, cuts[i - 1].step());
+    if (i + 1 < cuts.size()) beside = std::min(beside, cuts[i + 1].step());
+    if (beside > 0)
+      wanted[i] = std::min(std::ceil(cuts[i].length / (kGrowth * beside)), kMostInLine);
+  }
+  for (std::size_t i = 0; i < cuts.size(); ++i) cuts[i].steps = std::max(cuts[i].steps, wanted[i]);
+}
+
+// Up to which width on the side of `bend` the ends of two gates go forward.
+double room_between(const Gate& a, const Gate& b, const Vector3& bend) {
+  const double turned = (b.along - a.along).dot(bend);
+  const double way = (b.center - a.center).norm();
+  return turned > kNoBend ? way / turned : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+GateChain::GateChain(const CurvePieces& pieces, double from, double to, double gap)
+    : pieces_(&pieces) {
+  std::vector<PieceSteps> cuts;
+  for (std::size_t i = pieces.index_of(from); i < pieces.size() && pieces.breaks()[i] < to; ++i) {
+    append_parts(pieces.part(i, from, to), std::max(from, pieces.breaks()[i]),
+                 std::min(to, pieces.breaks()[i + 1]), gap, kMostHalvings, cuts);
+  }
+  cut_long_pieces(cuts);
+  gates_.push_back(gate_at(from));
+  for (const PieceSteps& cut : cuts) {
+    for (double k = 1; k < cut.steps; ++k) {
+      gates_.push_back(gate_at(cut.from + (cut.to - cut.from) * k / cut.steps));
+    }
+    gates_.push_back(gate_at(cut.to));
+  }
+  for (Gate& gate : gates_) gate.gap = gap;
+  find_bends();
+}
+
+Gate GateChain::gate_at(double parameter) const {
+  Gate gate;
+  gate.parameter = parameter;
+  gate.center = pieces_->point_at(parameter);
+  gate.along = gates_.empty() ? pieces_->leaving(parameter) : pieces_->arriving(parameter);
+  return gate;
+}
+
+void GateChain::find_bends() {
+  for (std::size_t i = 0; i < gates_.size(); ++i) {
+    Gate& gate = gates_[i];
+    const Gate& before = gates_[i > 0 ? i - 1 : i];
+    const Gate& after = gates_[i + 1 < gates_.size() ? i + 1 : i];
+    const Vector3 turn = after.along - before.along;
+    gate.bend = turn - turn.dot(gate.along) * gate.along;
+    const double size = gate.bend.norm();
+    gate.room = std::numeric_limits<double>::infinity();
+    if (size <= kNoBend) {
+      gate.bend = Vector3::Zero();
+      continue;
+    }
+    gate.bend /= size;
+    gate.room = kRoom * std::min(room_between(before, gate, gate.bend),
+                                 room_between(gate, after, gate.bend));
+  }
+}
+
+std::size_t GateChain::index_of(double parameter) const {
+  const auto after =
+      std::upper_bound(gates_.begin() + 1, gates_.end() - 1, parameter,
+                       [](double u, const Gate& gate) { return u < gate.parameter; });
+  return static_cast<std::size_t>(after - gates_.begin()) - 1;
+}
+
+Gate GateChain::at(double parameter) const {
+  const std::size_t i = index_of(parameter);
+  const double from = gates_[i].parameter;
+  Gate gate = between(i, (parameter - from) / (gates_[i + 1].parameter - from));
+  if (gate.parameter != parameter) {  // rounded
+    gate.parameter = parameter;
+    gate.center = pieces_->point_at(parameter);
+  }
+  return gate;
+}
+
+Gate GateChain::between(std::size_t i, double part) const {
+  const Gate& before = gates_[i];
+  const Gate& after = gates_[i + 1];
+  Gate gate = gate_at(before.parameter + part * (after.parameter - before.parameter));
+  gate.gap = before.gap;
+  gate.room = std::min(before.room, after.room);
+  const Vector3 bend = before.bend + after.bend;
+  const Vector3 across = bend - bend.dot(gate.along) * gate.along;
+  const double size = across.norm();
+  gate.bend = size > kNoBend ? Vector3(across / size) : Vector3(Vector3::Zero());
+  return gate;
+}
+
+}  // namespace batten::geometry

@@ -1,0 +1,226 @@
+#include "geometry/chords/min_link_plane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "geometry/chords/min_link_sight.h"
+
+namespace batten::geometry {
+namespace {
+
+// Gates are entered this part narrower than allowed: above the rounding of many crossings of
+// lines, which is 1e-16 of the coordinates.
+constexpr double kWayNoise = 1e-8;
+
+// How often the last place of a link is halved out: to 1e-12 of the way between two gates.
+constexpr int kEndHalvings = 40;
+
+// What so many links reach: of the gates `first` and on, and of a place beyond the last of them
+// that only the farthest links get to.
+struct Layer {
+  std::size_t first = 0;
+  std::vector<Offsets> reached;
+  std::optional<PlaneGate> end = {};  // between gate last() and the next
+  double end_part = 0;
+  Offsets end_reached = {};
+
+  [[nodiscard]] std::size_t last() const { return first + reached.size() - 1; }
+  [[nodiscard]] const Offsets& on(std::size_t i) const { return reached[i - first]; }
+
+  void extend(std::size_t i, const Offsets& seen) {
+    if (i < first) return;
+    if (i > last()) reached.resize(i - first + 1);
+    Offsets& all = reached[i - first];
+    all = all.hull_with(seen);
+  }
+};
+
+// A place of a path: on gate `gate`, or (beyond) between it and the next.
+struct Place {
+  std::size_t gate = 0;
+  bool beyond = false;
+  double part = 0;  // of the parameter to the next gate, if beyond
+  double offset = 0;
+};
+
+class GateSweep {
+ public:
+  GateSweep(const GateChain& gates, const Vector3& normal, const Point3& start, double width)
+      : chain_(gates), width_(width * (1 - 2 * kWayNoise)), noise_(width * kWayNoise) {
+    const Vector3 first = gates[0].along - gates[0].along.dot(normal) * normal;
+    axes_.row(0) = first.normalized();
+    axes_.row(1) = normal.cross(first).normalized();
+    gates_.reserve(gates.size());
+    for (std::size_t i = 0; i < gates.size(); ++i) gates_.push_back(plane_gate(gates[i]));
+    const double offset = (start - gates[0].center).dot(in_space(gates_.front().normal));
+    layers_.push_back({.first = 0, .reached = {{offset, offset}}});
+  }
+
+  std::optional<std::vector<LinkVertex>> fewest_links(const Point3& start) {
+    while (!end_is_seen_) {
+      if (!grow()) return std::nullopt;
+    }
+    const auto places = places_back_from_end();
+    if (!places) return std::nullopt;
+    std::vector<LinkVertex> vertices = {{start, chain_[0].parameter}};
+    for (std::size_t k = 1; k < places->size(); ++k) vertices.push_back(vertex_at((*places)[k]));
+    vertices.push_back({chain_.back().center, chain_.back().parameter});
+    return vertices;
+  }
+
+ private:
+  [[nodiscard]] std::size_t last_gate() const { return gates_.size() - 1; }
+
+  [[nodiscard]] Vector3 in_space(const Vector2& v) const { return axes_.transpose() * v; }
+
+  [[nodiscard]] PlaneGate plane_gate(const Gate& gate) const {
+    PlaneGate plane;
+    plane.center = axes_ * (gate.center - chain_[0].center);
+    const Vector2 along = (axes_ * gate.along).normalized();
+    plane.normal = Vector2(-along.y(), along.x());
+    const double bend = plane.normal.dot(axes_ * gate.bend);
+    const double inside = std::min(width_ - gate.gap, gate.room);
+    plane.open = {bend < 0 ? -inside : -width_, bend > 0 ? inside : width_};
+    return plane;
+  }
+
+  // Calls `see(sight, next gate)` for every place where a link may start after this layer: on the
+  // last gate where it is still in reach. On the gate after that it is not, which leaves few ways.
+  template <typename See>
+  void from_each_place(const Layer& layer, const See& see) const {
+    if (layer.end) see(Sight(*layer.end, layer.end_reached), layer.last() + 1);
+    see(Sight(gates_[layer.last()], layer.on(layer.last())), layer.last() + 1);
+    for (std::size_t i = layer.last(); i-- > layer.first;) {
+      if (layer.on(i).empty()) continue;
+      const Offsets open = gates_[i + 1].open;
+      const Offsets& reached = layer.on(i + 1);
+      for (const Offsets& part : {Offsets{open.low, reached.low}, {reached.high, open.high}}) {
+        if (!(part.low < part.high)) continue;
+        PlaneGate next = gates_[i + 1];
+        next.open = part;
+        Sight sight(gates_[i], layer.on(i));
+        if (!sight.pass(next).empty()) see(sight, i + 2);
+      }
+    }
+  }
+
+  // One link more. False when it gets no further.
+  bool grow() {
+    const Layer& now = layers_.back();
+    Layer next;
+    next.first = now.last();
+    next.reached = {gates_[now.last()].open};  // by a link along the gate
+    std::vector<SightLimits> farthest;         // what got to the last gate of `next`
+    from_each_place(now, [&](Sight sight, std::size_t j) {
+      for (; j <= last_gate(); ++j) {
+        const Offsets seen = sight.pass(gates_[j]);
+        if (seen.empty()) break;
+        if (j > next.last()) farthest.clear();
+        next.extend(j, seen);
+        if (j == last_gate() && seen.low <= 0 && seen.high >= 0) end_is_seen_ = true;
+      }
+      if (j == next.last() + 1 && j > now.last() + 1) farthest.push_back(sight.limits());
+    });
+    if (end_is_seen_) return true;  // from the layer before
+    if (next.last() == now.last()) return false;
+    if (next.last() < last_gate()) find_end(farthest, next);
+    layers_.push_back(std::move(next));
+    // From the last gate the end is seen along the gate.
+    end_is_seen_ = layers_.back().last() == last_gate();
+    return true;
+  }
+
+  // How far between two gates the farthest links get.
+  void find_end(const std::vector<SightLimits>& farthest, Layer& layer) const {
+    for (const SightLimits& limits : farthest) {
+      const auto seen_at = [&](double part) {
+        return limits.seen_on(plane_gate(chain_.between(layer.last(), part)));
+      };
+      double good = layer.end_part;
+      if (seen_at(good).empty() || good >= 1) continue;
+      double bad = 1;
+      for (int i = 0; i < kEndHalvings; ++i) {
+        const double middle = (good + bad) / 2;
+        (seen_at(middle).empty() ? bad : good) = middle;
+      }
+      if (!(good > layer.end_part)) continue;
+      layer.end_part = good;
+      layer.end = plane_gate(chain_.between(layer.last(), good));
+      layer.end_reached = limits.seen_on(*layer.end);
+    }
+  }
+
+  // Where the links turn, from the start to the last turn before the end.
+  [[nodiscard]] std::optional<std::vector<Place>> places_back_from_end() const {
+    std::vector<Place> places = {{last_gate(), false, 0, 0}};
+    for (std::size_t k = layers_.size(); k-- > 0;) {
+      const auto before = turn_before(places.back(), layers_[k]);
+      if (!before) return std::nullopt;
+      places.push_back(*before);
+    }
+    std::reverse(places.begin(), places.end());
+    places.pop_back();
+    return places;
+  }
+
+  // The last place of the layer that sees this one; there, the one nearest to the curve.
+  [[nodiscard]] std::optional<Place> turn_before(const Place& place, const Layer& layer) const {
+    if (!place.beyond && place.gate <= layer.last() && !layer.on(place.gate).empty()) {
+      const Offsets& part = layer.on(place.gate);
+      return Place{place.gate, false, 0, std::clamp(place.offset, part.low, part.high)};
+    }
+    BackwardSight sight(point_of(place), noise_);
+    std::size_t i = place.beyond ? place.gate + 1 : place.gate;  // one gate ahead of the next
+    for (; i > layer.last() + 1; --i) {
+      if (!sight.pass(gates_[i - 1])) return std::nullopt;
+    }
+    if (layer.end && place.gate > layer.last()) {
+      const Offsets part = sight.seen_on(*layer.end, layer.end_reached);
+      if (!part.empty()) return Place{layer.last(), true, layer.end_part, nearest_to_curve(part)};
+    }
+    for (; i > layer.first; --i) {
+      const Offsets part = sight.seen_on(gates_[i - 1], layer.on(i - 1));
+      if (!part.empty()) return Place{i - 1, false, 0, nearest_to_curve(part)};
+      if (!sight.pass(gates_[i - 1])) return std::nullopt;
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] static double nearest_to_curve(const Offsets& part) {
+    return std::clamp(0.0, part.low, part.high);
+  }
+
+  [[nodiscard]] PlaneGate gate_of(const Place& place) const {
+    return place.beyond ? plane_gate(chain_.between(place.gate, place.part)) : gates_[place.gate];
+  }
+
+  [[nodiscard]] Point2 point_of(const Place& place) const {
+    return gate_of(place).at(place.offset);
+  }
+
+  [[nodiscard]] LinkVertex vertex_at(const Place& place) const {
+    const Gate gate = place.beyond ? chain_.between(place.gate, place.part) : chain_[place.gate];
+    const Vector3 normal = in_space(plane_gate(gate).normal);
+    return {gate.center + place.offset * normal, gate.parameter};
+  }
+
+  const GateChain& chain_;
+  double width_;  // mm, of a gate to each side
+  double noise_;  // mm
+  Eigen::Matrix<double, 2, 3> axes_;
+  std::vector<PlaneGate> gates_;
+  std::vector<Layer> layers_;
+  bool end_is_seen_ = false;  // from the last layer
+};
+
+}  // namespace
+
+std::optional<std::vector<LinkVertex>> min_link_in_plane(const GateChain& gates,
+                                                         const Vector3& normal, const Point3& start,
+                                                         double width) {
+  return GateSweep(gates, normal, start, width).fewest_links(start);
+}
+
+}  // namespace batten::geometry

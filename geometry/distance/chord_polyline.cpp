@@ -1,0 +1,129 @@
+#include "geometry/distance/chord_polyline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace batten::geometry {
+namespace {
+
+// Rounding of a place computed on an arc or Bezier piece, relative to the sizes that enter
+// it: some dozen operations of half a rounding step each, and the angle of the arc, which
+// carries a few steps times the radius. 64 steps are several times that sum.
+constexpr double kEvaluationNoise = 64 * std::numeric_limits<double>::epsilon();
+
+// 2^20 chords (28 MB) for one path at the most on top of one per piece. A full circle of
+// radius 1e4 mm cut to 1e-5 mm takes 70,000.
+constexpr double kMostChords = 1 << 20;
+
+// The control points (centre) whose coordinates enter the evaluation, and sweep as a factor.
+double size_of_evaluation(const PathPiece& piece) {
+  if (const auto* arc = std::get_if<Arc>(&piece)) {
+    const double radius =
+        std::max((arc->start - arc->center).norm(), (arc->end - arc->center).norm());
+    return arc->center.cwiseAbs().maxCoeff() + radius * (1 + std::abs(arc->sweep));
+  }
+  const auto& control = std::get<CubicBezier>(piece).control;
+  double size = 0;
+  for (const Point3& point : control) size = std::max(size, point.cwiseAbs().maxCoeff());
+  return size;
+}
+
+double chords_for(double bend, double max_error) {
+  return std::max(1.0, std::ceil(std::sqrt(bend / (8 * max_error))));
+}
+
+class ChordCutter {
+ public:
+  ChordCutter(std::span<const PathPiece> path, double max_error) {
+    const double wanted = chords_wanted(path, max_error);
+    // Halving the number of chords makes their error four times as large.
+    const double coarser = std::max(1.0, wanted / kMostChords);
+    max_error_ = max_error * coarser * coarser;
+    result_.points.reserve(path.size() + 1);
+    result_.errors.reserve(path.size());
+    result_.pieces.reserve(path.size());
+    result_.points.push_back(start_point(path.front()));
+    for (std::size_t i = 0; i < path.size(); ++i) add_piece(path[i], i);
+    if (result_.errors.empty()) add_edge(result_.points.front(), 0, 0);
+  }
+
+  ChordPolyline take() { return std::move(result_); }
+
+ private:
+  static double chords_wanted(std::span<const PathPiece> path, double max_error) {
+    double sum = 0;
+    for (const PathPiece& piece : path) {
+      if (!std::holds_alternative<Line>(piece)) {
+        sum += chords_for(second_derivative_bound(piece), max_error);
+      }
+    }
+    return sum;
+  }
+
+  void add_piece(const PathPiece& piece, std::size_t index) {
+    add_line(start_point(piece), index);
+    if (std::holds_alternative<Line>(piece)) {
+      add_line(end_point(piece), index);
+    } else {
+      add_bent(piece, index);
+    }
+  }
+
+  void add_line(const Point3& end, std::size_t index) {
+    if (end != result_.points.back()) add_edge(end, 0, index);
+  }
+
+  void add_bent(const PathPiece& piece, std::size_t index) {
+    const double bend = second_derivative_bound(piece);
+    const auto count = static_cast<std::size_t>(chords_for(bend, max_error_));
+    const double step = 1.0 / static_cast<double>(count);
+    // The steps of t are equal to within a rounding step of t; that is far inside the noise.
+    const double error = bend * step * step / 8 + kEvaluationNoise * size_of_evaluation(piece);
+    for (std::size_t k = 1; k < count; ++k) {
+      add_edge(geometry::point_at(piece, static_cast<double>(k) * step), error, index);
+    }
+    add_edge(end_point(piece), error, index);
+  }
+
+  void add_edge(const Point3& end, double error, std::size_t index) {
+    result_.points.push_back(end);
+    result_.errors.push_back(error);
+    result_.pieces.push_back(index);
+  }
+
+  double max_error_;
+  ChordPolyline result_;
+};
+
+}  // namespace
+
+ChordPolyline cut_into_chords(std::span<const PathPiece> path, double max_error) {
+  return ChordCutter(path, max_error).take();
+}
+
+double greatest_coordinate(const ChordPolyline& polyline) {
+  double greatest = 0;
+  for (const Point3& point : polyline.points) {
+    greatest = std::max(greatest, point.cwiseAbs().maxCoeff());
+  }
+  return greatest;
+}
+
+Point3 point_at(const ChordPolyline& polyline, const PlaceOnChord& place) {
+  const Point3& from = polyline.points[place.edge];
+  const Point3& to = polyline.points[place.edge + 1];
+  if (place.t >= 1) return to;
+  return from + place.t * (to - from);
+}
+
+double nearest_parameter(const ChordPolyline& polyline, std::size_t edge, const Point3& point,
+                         double from, double to) {
+  const Vector3 along = polyline.points[edge + 1] - polyline.points[edge];
+  const double length2 = along.squaredNorm();
+  // On an edge of no length every place is the nearest; going on to its end loses nothing.
+  if (length2 == 0) return to;
+  return std::clamp((point - polyline.points[edge]).dot(along) / length2, from, to);
+}
+
+}  // namespace batten::geometry

@@ -1,0 +1,104 @@
+// The cubic B-spline of least energy that stays in a band: at given parameters its places (or its
+// derivatives) keep given distances from given ones. A convex problem, solved by Newton's method
+// on a logarithmic barrier: every curve on the way is strictly inside.
+// Method: docs/algorithms/band_curve.md.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "geometry/basic/point.h"
+#include "geometry/path/bspline_curve.h"
+
+namespace batten::geometry {
+
+// What "no further than radius" is about.
+enum class BandShape {
+  kBall,      // the full distance
+  kCylinder,  // the distance across `direction`: sliding along it is free
+  kSlab,      // the distance along `direction`: sliding across it is free
+};
+
+struct BandSample {
+  double parameter = 0;
+  // 0: the place of the curve is bounded, mm; d > 0: its d-th derivative by the parameter.
+  int derivative = 0;
+  Point3 foot = Point3::Zero();
+  BandShape shape = BandShape::kBall;
+  Vector3 direction = Vector3::Zero();  // unit; kBall: not used
+  double radius = 0;                    // > 0
+  // Unit or zero. Not zero: the value is not behind the foot in this direction, so that of a
+  // cylinder the half on one side of the path is left.
+  Vector3 side = Vector3::Zero();
+  // The energy has pull * distance^2 added, the distance being what the radius bounds.
+  double pull = 0;
+};
+
+// A control point that is not free to go anywhere.
+struct HeldPoint {
+  std::size_t index = 0;
+  Point3 place = Point3::Zero();
+  Eigen::Matrix3d free = Eigen::Matrix3d::Zero();  // projector on the directions it may go in
+
+  [[nodiscard]] static HeldPoint at(std::size_t index, const Point3& place);
+  // `direction`, `normal`: unit.
+  [[nodiscard]] static HeldPoint on_line(std::size_t index, const Point3& place,
+                                         const Vector3& direction);
+  [[nodiscard]] static HeldPoint on_plane(std::size_t index, const Point3& place,
+                                          const Vector3& normal);
+};
+
+// How much the energy counts at a parameter.
+struct EnergyWeight {
+  double weight = 1;                // >= 0
+  Vector3 along = Vector3::Zero();  // unit or zero: in this direction it counts next to nothing
+};
+
+struct BandProblem {
+  BsplineBasis basis;  // of degree 3
+  // The energy is the integral of weight * |C^(energy)|^2 over the parameter, 2 or 3.
+  int energy = 3;
+  // Empty: 1 everywhere. Else it is asked at four places per span.
+  std::function<EnergyWeight(double)> weight;
+  std::vector<BandSample> samples;
+  std::vector<HeldPoint> held;
+};
+
+struct BarrierOptions {
+  int max_steps = 200;
+  // Ends when the energy is known to be above the least one by this part at most.
+  double gap = 1e-5;
+};
+
+enum class BandEnd {
+  kLeast,      // the least energy, to within the gap
+  kStepLimit,  // inside the band, but the energy may not be the least
+  kOutside,    // no curve on this basis was found that is inside
+};
+
+struct BandCurve {
+  BsplineCurve curve;
+  BandEnd end = BandEnd::kOutside;
+  double energy = 0;
+  double worst_ratio =
+      0;          // the greatest distance over radius at a sample; with a side, at its foot 1
+  int steps = 0;  // Newton steps, each linear in samples and control points
+};
+
+// `start`: control points to begin with; held points are put where they have to be. It may be
+// outside: then the band is widened to hold it and shrunk again, as far as it goes.
+//
+// Throws std::invalid_argument when the degree is not 3, a radius is not positive, or the number
+// of points does not fit the basis.
+[[nodiscard]] BandCurve solve_band(const BandProblem& problem, std::vector<Point3> start,
+                                   const BarrierOptions& options);
+
+// The curve for which the greatest ratio of distance over radius is least, over the samples with
+// a derivative >= `from_derivative`; the others keep their radius (it is widened as well if the
+// start is outside). Of the energy only a trace counts. worst_ratio is that greatest ratio, and
+// `end` is kLeast when it is known to be the least to within the gap.
+[[nodiscard]] BandCurve least_ratio_in_band(const BandProblem& problem, std::vector<Point3> start,
+                                            int from_derivative, const BarrierOptions& options);
+
+}  // namespace batten::geometry

@@ -1,0 +1,89 @@
+// The barrier function of a band problem, and Newton steps on it.
+//
+//   t * (energy * E(x) + price * wide) - sum of log(wide_i^2 - |distance_i / radius_i|^2)
+//
+// with x the control points, E the energy, and wide_i the factor by which the radius of row i is
+// widened: 1, or `wide` for the rows that are being shrunk. This logarithm is self-concordant, so
+// Newton's method with a line search always arrives.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/fitting/band_curve_matrix.h"
+#include "geometry/fitting/band_curve_rows.h"
+
+namespace batten::geometry {
+
+// Which rows are widened by the common factor.
+enum class Widening {
+  kNone,    // none
+  kPlaces,  // all but the rates, which do not count
+  kRates,   // the rates; the others stay as they are
+};
+
+struct BarrierPoint {
+  std::vector<Point3> points;
+  double wide = 1;
+};
+
+class BandBarrier {
+ public:
+  // `band` and `held` must outlive it.
+  BandBarrier(const BandRows& band, const std::vector<HeldPoint>& held, std::size_t points,
+              Widening widening);
+
+  double weight = 1;  // t
+  double energy = 1;
+  double price = 0;
+
+  // Where the function is least, what is priced is above its least value by at most this over
+  // `weight`: two for each logarithm of a square.
+  [[nodiscard]] double gap_times_weight() const { return gap_times_weight_; }
+
+  // One Newton step with the best step length. Gives the squared Newton decrement before the
+  // step, about twice what the function was above its least value; nothing where rounding no
+  // longer allows a step. Requires `at` strictly inside.
+  [[nodiscard]] std::optional<double> step(BarrierPoint& at);
+
+ private:
+  struct Direction {
+    std::vector<Point3> points;
+    double wide = 0;
+    double decrement = 0;  // squared
+  };
+  // The argument of one logarithm along a direction: value + 2 slope a + bend a^2.
+  struct Line {
+    double value;
+    double slope;
+    double bend;
+  };
+
+  [[nodiscard]] bool takes_part(const BandRow& row) const;
+  [[nodiscard]] bool is_widened(const BandRow& row) const;
+  void assemble(const BarrierPoint& at);
+  void add_row(const BandRow& row, const BarrierPoint& at);
+  void add_side(const BandRow& row, const Vector3& off, const BarrierPoint& at);
+  void add_energy(const BarrierPoint& at);
+  void add(const BandCombination& value, const Vector3& gradient, const Eigen::Matrix3d& curvature);
+  void add_mixed(const BandCombination& value, const Vector3& mixed);
+  [[nodiscard]] bool factor();
+  [[nodiscard]] std::optional<Direction> direction(const BarrierPoint& at);
+  void find_lines(const BarrierPoint& at, const Direction& along);
+  [[nodiscard]] double best_length(const BarrierPoint& at, const Direction& along);
+
+  const BandRows& band_;
+  const std::vector<HeldPoint>& held_;
+  Widening widening_;
+  double gap_times_weight_ = 0;
+
+  BlockBandedMatrix hessian_;
+  BlockBandedMatrix factors_;
+  std::vector<Point3> gradient_;
+  std::vector<Point3> mixed_;  // second derivatives by a control point and by `wide`
+  double wide_gradient_ = 0;
+  double wide_curvature_ = 0;
+  std::vector<Line> lines_;
+};
+
+}  // namespace batten::geometry

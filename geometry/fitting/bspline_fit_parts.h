@@ -1,0 +1,45 @@
+// A fit in parts that do not know of each other: pins and straight zones part the curve, for
+// whatever happens on one side of them does not move the other.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geometry/fitting/bspline_fit.h"
+#include "geometry/fitting/bspline_fit_adaptive.h"
+#include "geometry/path/bspline_curve.h"
+
+namespace batten::geometry {
+
+class PartedFit {
+ public:
+  // Fits. Throws std::invalid_argument as fit_bspline does.
+  PartedFit(const FitProblem& problem, const FitOptions& options);
+
+  // Fits another problem on the same interval, and works only where it differs. `closest` (mm): a
+  // pin or the end of a zone takes the place of knots nearer than this.
+  void refit(const FitProblem& problem, double closest);
+
+  [[nodiscard]] const FitSpline& spline() const { return spline_; }
+  [[nodiscard]] BsplineCurve curve() const;
+
+  // Where the curve moved in the last fit: increasing, apart.
+  [[nodiscard]] std::vector<ParameterRange> moved() const;
+
+  // Distance over limit of each of these samples, those of the problem; 0 within a zone.
+  [[nodiscard]] std::vector<double> ratios(std::span<const FitSample> given) const;
+
+ private:
+  void start(const FitProblem& problem);
+  [[nodiscard]] std::vector<FitProblem> parted(const FitProblem& problem) const;
+  void assemble(const FitProblem& problem);
+
+  FitOptions options_;
+  std::vector<double> borders_;  // between the parts, and both ends
+  std::vector<AdaptiveFit> parts_;
+  FitSpline spline_;  // of the parts in a row, with these pins and zones
+  std::vector<Pin> pins_;
+  std::vector<StraightZone> zones_;
+};
+
+}  // namespace batten::geometry

@@ -1,0 +1,84 @@
+// A corner where two straight legs meet, and a short curve in its place.
+//
+// All blends are cubic B-splines in the plane of the corner that start on the one leg and end
+// on the other. Methods: docs/algorithms/guo.md, docs/algorithms/ozcan.md.
+#pragma once
+
+#include <string_view>
+#include <variant>
+
+#include "geometry/basic/point.h"
+#include "geometry/basic/tolerance_kind.h"
+#include "geometry/path/bspline_curve.h"
+
+namespace batten::geometry {
+
+struct Corner {
+  Point3 before;
+  Point3 vertex;
+  Point3 after;
+};
+
+// Why a corner stays as it is.
+enum class NoBlend {
+  kNoLeg,     // a leg is no longer than rounding noise (kSamePlace)
+  kStraight,  // the path goes straight on (half turn below kSameDirection)
+  kReversal,  // the path goes back on itself: no curve inside the tolerance leads round
+  kNoRoom,    // tolerance or shares of the legs leave less than rounding noise
+  kKept,      // turns more than the caller allows
+};
+
+// "no-leg", "straight", "reversal", "no-room", "kept".
+[[nodiscard]] std::string_view name_of(NoBlend reason);
+
+// A corner in its own directions.
+struct CornerFrame {
+  Point3 vertex;
+  Vector3 a;  // unit, from the vertex along the leg that arrives, backwards
+  Vector3 b;  // unit, from the vertex along the leg that leaves
+  double length_a;
+  double length_b;
+  double sin_half;  // of half the angle between a and b: near 0 at a reversal,
+  double cos_half;  // near 0 where the path goes straight on
+
+  // Unit normals to the legs, in the plane of the corner and away from the other leg.
+  [[nodiscard]] Vector3 outward_a() const;
+  [[nodiscard]] Vector3 outward_b() const;
+};
+
+[[nodiscard]] std::variant<CornerFrame, NoBlend> frame_of(const Corner& corner);
+
+// The same corner travelled the other way.
+[[nodiscard]] CornerFrame reversed(const CornerFrame& frame);
+
+// How far blend and corner are apart, mm.
+struct BlendDeviation {
+  double legs = 0;      // greatest distance of the blend from the nearer leg
+  double corner = 0;    // least distance of the blend from the vertex
+  double in_order = 0;  // greatest of: the blend up to its place nearest to the vertex from the
+                        // one leg, after it from the other, and that place from the vertex
+};
+
+// What a tolerance of that kind has to be compared with.
+[[nodiscard]] double deviation_of(const BlendDeviation& deviation, ToleranceKind kind);
+
+// By samples that are refined around each extremum, among them every place where a distance has a
+// kink; relative error below 1e-9.
+//
+// `in_order` is the distance taken in order where the feet of the blend on the legs go forward.
+// Requires degree 3 or less.
+[[nodiscard]] BlendDeviation measure_blend(const BsplineCurve& curve, const CornerFrame& frame);
+
+// The same as deviation_of(measure_blend(curve, frame), kind), for less where only that is asked.
+[[nodiscard]] double measure_deviation(const BsplineCurve& curve, const CornerFrame& frame,
+                                       ToleranceKind kind);
+
+struct CornerBlend {
+  BsplineCurve curve;  // from the leg that arrives to the leg that leaves
+  BlendDeviation deviation;
+};
+
+// Throws std::invalid_argument when the tolerance is not a positive number.
+void require_positive_tolerance(double tolerance, std::string_view caller);
+
+}  // namespace batten::geometry

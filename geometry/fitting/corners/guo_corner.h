@@ -1,0 +1,65 @@
+// The five-point corner: a cubic B-spline over two equal stretches of the legs, with closed
+// forms for everything. Method: docs/algorithms/guo.md.
+//
+// Source: Y. Guo, J. Yan, X. Wang, Journal of Engineering Research and Reports 25(12), 2023,
+// 60-75.
+//
+// Letters of the paper: L the spacing of the control points along the legs, e the distance
+// of the vertex from the blend, theta half the angle between the legs, delta the tolerance.
+#pragma once
+
+#include <variant>
+
+#include "geometry/fitting/corners/corner_blend.h"
+
+namespace batten::geometry {
+
+struct GuoBlend {
+  CornerBlend blend;  // control points on the legs, 2L and L from the vertex, and the vertex
+  double spacing;     // mm, L: the blend replaces 2L of either leg
+  double greatest_curvature;  // 1/mm, in the middle
+};
+
+// mm, e = (L / 2) cos theta.
+[[nodiscard]] double guo_apex_distance(const CornerFrame& frame, double spacing);
+
+// mm, the e that a tolerance allows: delta / sin theta in the band reading, delta in the path
+// reading. Both are exact: the blend's deviation of that kind is the tolerance then.
+[[nodiscard]] double guo_allowed_apex(const CornerFrame& frame, double tolerance,
+                                      ToleranceKind kind);
+
+// mm, the L that has this e.
+[[nodiscard]] double guo_spacing_for_apex(const CornerFrame& frame, double apex_distance);
+
+// 1/mm, (4/3) cos theta / (L sin^2 theta).
+[[nodiscard]] double guo_greatest_curvature(const CornerFrame& frame, double spacing);
+
+// 1/mm^2, sin 2 theta / (18 L^2): the curvature is 0 at both ends of the blend, as on the
+// legs, and starts with this slope by length.
+[[nodiscard]] double guo_curvature_slope(const CornerFrame& frame, double spacing);
+
+// The blend of that spacing. Requires 0 < 2 * spacing <= both legs.
+[[nodiscard]] GuoBlend guo_blend(const CornerFrame& frame, double spacing);
+
+// What becomes of a corner that has more room than the tolerance allows.
+enum class GuoApex {
+  kAllowed,        // as great a blend as the tolerance allows: e = epsilon
+  kHalfTolerance,  // the paper's: e = delta / 2
+};
+
+struct GuoRule {
+  double tolerance = 0.01;  // mm
+  ToleranceKind kind = ToleranceKind::kPath;
+  GuoApex apex = GuoApex::kAllowed;
+};
+
+// The blend that takes no more than so much of each leg (mm; more than the leg counts as the
+// whole leg) and holds the tolerance: all of the lesser share where that holds it, else what
+// `apex` says. Throws std::invalid_argument when the tolerance is not a positive number.
+[[nodiscard]] std::variant<GuoBlend, NoBlend> guo_corner(const Corner& corner, const GuoRule& rule,
+                                                         double share_before, double share_after);
+
+// The same with the whole legs.
+[[nodiscard]] std::variant<GuoBlend, NoBlend> guo_corner(const Corner& corner, const GuoRule& rule);
+
+}  // namespace batten::geometry

@@ -1,0 +1,75 @@
+// The eight-point corner: a cubic B-spline whose first and last three control points lie on the
+// legs, while the two in the middle are moved until the machine can keep the highest feed.
+// Method: docs/algorithms/ozcan.md.
+//
+// Source: A. Ozcan, E. Riviere-Lorphevre, F. Ducobu, AIP Conference Proceedings 1960, 070020,
+// 2018.
+#pragma once
+
+#include <array>
+#include <variant>
+
+#include "geometry/fitting/corners/corner_blend.h"
+#include "geometry/path/kinematic_feed.h"
+
+namespace batten::geometry {
+
+// Where P1, P2, P3 lie on the leg that arrives and P8, P7, P6 on the leg that leaves: mm from
+// the vertex, decreasing.
+struct OzcanLegs {
+  std::array<double, 3> before;
+  std::array<double, 3> after;
+};
+
+// A place beside a leg: mm from the vertex along it, and mm from it, away from the other leg.
+struct BesideLeg {
+  double along;
+  double outward;
+};
+
+struct OzcanBlend {
+  CornerBlend blend;
+  BesideLeg fourth;      // P4 beside the leg that arrives
+  BesideLeg fifth;       // P5 beside the leg that leaves
+  double feed_estimate;  // mm/s, see feed_estimate()
+  int evaluations;       // curves that were measured to find it
+};
+
+// Points at 1, 3/4 and 1/2 of a reach, as in the paper. Each reach is all of its share of the
+// leg (mm), or less where even the sharpest curve (P4 and P5 in the vertex) would use more than
+// 0.35 of the tolerance, about where the feed estimate of the optimum is greatest.
+[[nodiscard]] OzcanLegs ozcan_legs(const CornerFrame& frame, double tolerance, ToleranceKind kind,
+                                   double share_before, double share_after);
+
+// Knots 0 0 0 0 1 2 3 4 5 5 5 5. The first three points of either side are on the legs, so the
+// curve leaves them with their direction and curvature 0, wherever P4 and P5 are.
+[[nodiscard]] BsplineCurve ozcan_curve(const CornerFrame& frame, const OzcanLegs& legs,
+                                       const BesideLeg& fourth, const BesideLeg& fifth);
+
+// P4 and P5 on the legs, as far from the vertex (in parts of P3 and P6) as the tolerance allows:
+// the paper's "usual" corner. kNoRoom where no such place is near enough.
+//
+// Throws std::invalid_argument when the tolerance is not a positive number or the legs do not
+// decrease to a positive number.
+[[nodiscard]] std::variant<OzcanBlend, NoBlend> ozcan_usual(const CornerFrame& frame,
+                                                            const OzcanLegs& legs, double tolerance,
+                                                            ToleranceKind kind,
+                                                            const KinematicLimits& limits);
+
+// P4 and P5 where the feed estimate is greatest within the tolerance, searched from the usual
+// corner and never worse than that. With equal legs P5 is the mirror image of P4, as in the
+// paper; with others both are free. Does not throw for other reasons than ozcan_usual.
+[[nodiscard]] std::variant<OzcanBlend, NoBlend> ozcan_optimum(const CornerFrame& frame,
+                                                              const OzcanLegs& legs,
+                                                              double tolerance, ToleranceKind kind,
+                                                              const KinematicLimits& limits);
+
+// All of it for a corner that may be degenerate: its frame, ozcan_legs, ozcan_optimum. The
+// shares are mm of each leg; more than the leg counts as the whole leg.
+[[nodiscard]] std::variant<OzcanBlend, NoBlend> ozcan_corner(const Corner& corner, double tolerance,
+                                                             ToleranceKind kind,
+                                                             const KinematicLimits& limits,
+                                                             double share_before,
+                                                             double share_after);
+
+}  // namespace batten::geometry

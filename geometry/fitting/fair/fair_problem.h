@@ -1,0 +1,52 @@
+// States the fairing of a path as a fit: where knots may start, which places the curve has to
+// keep and how closely. Method: docs/algorithms/fair.md, sections Band and Corners.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "geometry/basic/point.h"
+#include "geometry/fitting/bspline_fit.h"
+#include "geometry/fitting/fair/path_features.h"
+
+namespace batten::geometry {
+
+struct BandOptions {
+  double limit = 0.01;     // mm, full distance allowed
+  double rounding = 5e-4;  // mm, greatest error of a printed coordinate
+  double scatter = 0;      // mm, as FairOptions
+  bool accurate = false;   // as FairOptions
+  bool near = true;        // the same
+
+  // The places that vertices were meant to have where noise takes much of the band, and their own
+  // places elsewhere; empty: nowhere.
+  std::span<const Point3> meant;
+};
+
+// How closely an edge is watched that an earlier curve has left.
+struct EdgeRefinement {
+  double share = 1;    // of the limit that is given out beside it
+  int violations = 0;  // so often the curve left it: it gets more samples
+};
+
+// Knots nearer than this to a pin or to the end of a straight line add nothing but trouble, mm.
+[[nodiscard]] double closest_knots(const BandOptions& options);
+
+// `loosen[i]` >= 1 widens the scatter expected at vertex i (the machine needs more room
+// there); infinite: only the limit counts. Empty: 1 everywhere. `care`: per edge; empty: none.
+[[nodiscard]] FitProblem state_fair_problem(std::span<const Point3> points,
+                                            const PathFeatures& features,
+                                            std::span<const double> loosen,
+                                            std::span<const EdgeRefinement> care,
+                                            const BandOptions& options);
+
+// The same for a problem that was stated for these points with these features and options, where
+// `loosen` and `care` have changed since then at some vertices, those beside an edge whose care
+// changed too: the samples about them are made anew. `changed`: these vertices, in order.
+void restate_samples(std::span<const Point3> points, const PathFeatures& features,
+                     std::span<const double> loosen, std::span<const EdgeRefinement> care,
+                     const BandOptions& options, std::span<const std::size_t> changed,
+                     FitProblem& problem);
+
+}  // namespace batten::geometry

@@ -1,0 +1,149 @@
+#include "geometry/fitting/naseath/naseath_setting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "geometry/basic/rounding.h"
+#include "geometry/fitting/naseath/naseath_sensitivity.h"
+#include "geometry/path/displacement.h"
+
+namespace batten::geometry {
+
+namespace {
+
+// A bound on the displacement may exceed it by this part of what `accuracy` resolves: while
+// passes are made, and in the end.
+constexpr double kSlack = 0.1;
+constexpr double kLastSlack = 1e-7;
+
+// Of the room that is left, moves take this part. A pass that takes all of it is at the tube to
+// within rounding; this much less and the last bound, too, is inside it.
+constexpr double kInside = 1 - 1e-6;
+
+void check(const NaseathOptions& options) {
+  const auto refuse = [](const std::string& name, double found) {
+    throw std::invalid_argument("smooth_naseath: " + name + " " + std::to_string(found) +
+                                ", expected above 0");
+  };
+  if (!(options.radius > 0)) refuse("radius", options.radius);
+  if (!(options.accuracy > 0)) refuse("accuracy", options.accuracy);
+  if (options.precision < 1) refuse("precision", options.precision);
+  if (options.max_passes < 1) refuse("max_passes", options.max_passes);
+}
+
+bool is_clamped(const BsplineBasis& basis) {
+  const auto& t = basis.knots();
+  return t.front() == basis.first() && t.back() == basis.last();
+}
+
+bool has_single_inner_knots(const BsplineBasis& basis) {
+  const auto& t = basis.knots();
+  for (std::size_t i = kNaseathDegree; i < basis.size(); ++i) {
+    if (!(t[i] < t[i + 1])) return false;
+  }
+  return true;
+}
+
+BsplineCurve displacement_of(const NaseathSetting& setting, const ControlPolygon& polygon) {
+  std::vector<Point3> moves = polygon.points;
+  for (std::size_t i = 0; i < moves.size(); ++i) moves[i] -= setting.original.points[i];
+  return setting.curve_of(std::move(moves));
+}
+
+std::vector<double> bounds_per_span(const NaseathSetting& setting, const ControlPolygon& polygon,
+                                    double slack) {
+  return displacement_bounds(displacement_of(setting, polygon), slack * setting.at_tube());
+}
+
+// The greatest displacement at `precision` equal steps in every span, as the thesis measures it.
+double sampled_displacement(const BsplineCurve& displacement, int precision) {
+  const std::vector<double> knots = displacement.breakpoints();
+  double most = displacement.point_at(knots.back()).norm();
+  for (std::size_t span = 0; span + 1 < knots.size(); ++span) {
+    for (int i = 0; i < precision; ++i) {
+      const double u = knots[span] + (knots[span + 1] - knots[span]) * i / precision;
+      most = std::max(most, displacement.point_at(u).norm());
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+bool is_periodic_ring(const BsplineCurve& curve) {
+  const auto& t = curve.basis().knots();
+  const auto& points = curve.control_points();
+  if (curve.degree() != static_cast<int>(kNaseathDegree) || points.size() < 2 * kNaseathDegree)
+    return false;
+  const std::size_t m = points.size() - kNaseathDegree;
+  const double period = curve.last() - curve.first();
+  for (std::size_t i = 0; i < kNaseathDegree; ++i) {
+    if ((points[i] - points[m + i]).norm() > kSamePlace) return false;
+  }
+  for (std::size_t i = 0; i <= 2 * kNaseathDegree; ++i) {
+    if (std::abs(t[m + i] - t[i] - period) > kSameKnot * period) return false;
+  }
+  return true;
+}
+
+BsplineCurve NaseathSetting::curve_of(std::vector<Point3> points) const {
+  if (original.closed) {
+    for (std::size_t i = 0; i < kNaseathDegree; ++i) points.push_back(points[i]);
+  }
+  return {basis, std::move(points)};
+}
+
+bool NaseathSetting::is_held(std::size_t i) const {
+  const auto held = static_cast<std::size_t>(std::max(0, options.held_points));
+  return !original.closed && (i < held || i + held >= original.size());
+}
+
+NaseathSetting naseath_setting(const BsplineCurve& curve, const NaseathOptions& options) {
+  check(options);
+  const bool ring = is_periodic_ring(curve);
+  if (curve.degree() != static_cast<int>(kNaseathDegree) ||
+      !has_single_inner_knots(curve.basis()) || !(ring || is_clamped(curve.basis()))) {
+    throw std::invalid_argument("smooth_naseath: degree " + std::to_string(curve.degree()) +
+                                ", expected a cubic, clamped or a ring, with single inner knots");
+  }
+  ControlPolygon polygon{curve.control_points(), ring};
+  if (ring) polygon.points.resize(polygon.size() - kNaseathDegree);
+  const std::size_t m = polygon.size();
+  const EndLegs legs = end_legs(polygon);
+  return {curve.basis(), std::move(polygon), legs, parameters_of_influence(curve.basis(), m),
+          options};
+}
+
+NaseathRoom naseath_room(const NaseathSetting& setting, const ControlPolygon& polygon) {
+  const NaseathOptions& options = setting.options;
+  const double radius = options.radius;
+  const std::size_t m = polygon.size();
+  NaseathRoom room;
+  if (!options.repairs.exact_bound) {
+    room.least =
+        radius - sampled_displacement(displacement_of(setting, polygon), options.precision);
+    room.per_point.assign(m, room.least);
+    return room;
+  }
+  const std::vector<double> bounds = bounds_per_span(setting, polygon, kSlack);
+  room.least = radius - *std::max_element(bounds.begin(), bounds.end());
+  room.per_point.assign(m, kInside * (options.repairs.local_stop ? radius : room.least));
+  if (!options.repairs.local_stop) return room;
+  for (std::size_t j = 0; j < bounds.size(); ++j) {
+    for (std::size_t i = j; i <= j + kNaseathDegree; ++i) {
+      double& left = room.per_point[i % m];
+      left = std::min(left, kInside * (radius - bounds[j]));
+    }
+  }
+  return room;
+}
+
+double naseath_displacement(const NaseathSetting& setting, const ControlPolygon& polygon) {
+  const std::vector<double> bounds = bounds_per_span(setting, polygon, kLastSlack);
+  return *std::max_element(bounds.begin(), bounds.end());
+}
+
+}  // namespace batten::geometry

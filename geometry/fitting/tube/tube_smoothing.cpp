@@ -1,0 +1,189 @@
+#include "geometry/fitting/tube/tube_smoothing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "geometry/fitting/naseath/naseath.h"
+#include "geometry/fitting/tube/tube_smoothing_knots.h"
+#include "geometry/fitting/tube/tube_smoothing_solver.h"
+#include "geometry/path/parameter_samples.h"
+
+namespace batten::geometry {
+
+namespace {
+
+// Rounds of weighting by the curve of the round before, and after which of them a candidate is
+// taken: the first changes most, the last has settled.
+constexpr int kRounds = 9;
+bool is_taken(int round) { return round == 1 || round == 3 || round == kRounds; }
+
+// The time at the speed min(V, sqrt(A/kappa)), with the corner between the two rounded, is the
+// integral of (1/V^4 + (kappa/A)^2)^(1/4) ds. As a function of kappa^2 it is concave, so its
+// tangent, which has this power, is above it: lowering the integral of tangent slope times kappa^2
+// lowers the time, and the tangent is taken anew each round. (A local least: it depends on the
+// start.)
+constexpr double kQuickPower = -0.75;
+
+// What is twice too much is weighted so much more in the next round; more would swing.
+constexpr double kRaise = 0.5;
+constexpr std::size_t kCurvaturePlaces = 8;  // per span
+
+// A parameter that stands still has no curvature to speak of.
+constexpr double kLeastSpeed = 1e-3;
+
+class TubeCandidates {
+ public:
+  TubeCandidates(const BsplineCurve& curve, const TubeOptions& options, int halvings)
+      : options_(options),
+        halvings_(halvings),
+        solver_(with_spans_halved(curve, halvings), options),
+        slow_curvature_(options.acceleration / (options.feed * options.feed)) {}
+
+  void add(TubeMethod method, const BsplineCurve& curve) {
+    found.push_back({method, halvings_, curve, solver_.displacement(curve)});
+  }
+
+  void add_least_energies() {
+    const BsplineCurve bending = solver_.least(2, {});
+    const BsplineCurve third = solver_.least(3, {});
+    add(TubeMethod::kBending, bending);
+    add(TubeMethod::kThirdDerivative, third);
+    for (const BsplineCurve& start : {bending, third}) {
+      add_weighted(TubeMethod::kCurvature, start, 0);
+      add_weighted(TubeMethod::kQuick, start, kQuickPower);
+      add_even(start);
+    }
+    add_weighted(TubeMethod::kQuick, solver_.original(), kQuickPower);
+  }
+
+  void add_naseath(const NaseathRepairs& repairs, TubeMethod method) {
+    NaseathOptions options;
+    options.radius = options_.radius;
+    options.held_points = options_.held_points;
+    options.repairs = repairs;
+    const BsplineCurve moved = smooth_naseath(solver_.original(), options).curve;
+    add(method, solver_.pulled_inside(moved));
+    add_weighted(TubeMethod::kQuick, moved, kQuickPower);
+  }
+
+  std::vector<TubeCandidate> found;
+
+ private:
+  // The integral of (1 + (kappa / slow)^2)^power * kappa^2 ds, the power taken of the curve of the
+  // round before. kappa^2 ds is the square of what C'' has across C', over the third power of the
+  // speed, du.
+  void add_weighted(TubeMethod method, BsplineCurve curve, double power) {
+    for (int round = 1; round <= kRounds; ++round) {
+      const BsplineCurve before = curve;
+      curve = solver_.least(2, [&](double u) {
+        const double ratio = before.curvature_at(u) / slow_curvature_;
+        return weight_at(before, u, std::pow(1 + ratio * ratio, power));
+      });
+      if (is_taken(round)) add(method, curve);
+    }
+  }
+
+  // Weights rise from round to round where the curvature holds the machine up, until what is left
+  // of it is spread evenly.
+  void add_even(BsplineCurve curve) {
+    const auto breaks = curve.breakpoints();
+    std::vector<double> raised(breaks.size() - 1, 1);
+    for (int round = 1; round <= kRounds; ++round) {
+      const BsplineCurve before = curve;
+      raise(raised, before);
+      curve = solver_.least(2, [&](double u) {
+        const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, u);
+        return weight_at(before, u, raised[static_cast<std::size_t>(above - breaks.begin() - 1)]);
+      });
+      if (is_taken(round)) add(TubeMethod::kEven, curve);
+    }
+  }
+
+  void raise(std::vector<double>& weights, const BsplineCurve& curve) const {
+    const auto samples = parameter_samples(curve, kCurvaturePlaces);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      double most = slow_curvature_;
+      for (std::size_t k = 0; k <= kCurvaturePlaces; ++k) {
+        most = std::max(most, samples[i * kCurvaturePlaces + k].curvature);
+      }
+      weights[i] *= std::pow(most / slow_curvature_, kRaise);
+    }
+  }
+
+  [[nodiscard]] static EnergyWeight weight_at(const BsplineCurve& curve, double u, double weight) {
+    const Vector3 speed = curve.derivative_at(u, 1);
+    const double size = std::max(speed.norm(), kLeastSpeed);
+    return {weight / (size * size * size), speed / size};
+  }
+
+  const TubeOptions& options_;
+  int halvings_;
+  TubeSolver solver_;
+  double slow_curvature_;  // 1/mm: from here on the feed cannot be held
+};
+
+void require(bool holds, const std::string& what) {
+  if (!holds) throw std::invalid_argument("smooth_in_tube: " + what);
+}
+
+void check(const BsplineCurve& curve, const TubeOptions& options) {
+  require(curve.degree() == 3, "degree " + std::to_string(curve.degree()) + ", expected 3");
+  const auto& t = curve.basis().knots();
+  const auto spans = curve.breakpoints().size() - 1;
+  require(spans + 3 == curve.basis().size() && t[0] == curve.first() && t.back() == curve.last(),
+          "knots that are not clamped, or repeated ones inside");
+  require(options.radius > 0 && std::isfinite(options.radius),
+          "radius " + std::to_string(options.radius) + " mm, expected a positive number");
+  require(options.feed > 0 && options.acceleration > 0, "feed and acceleration must be positive");
+  require(options.held_points >= 0 && options.held_points <= 3,
+          std::to_string(options.held_points) + " held points, expected 0 to 3");
+  require(options.halvings >= 0, "halvings below 0");
+}
+
+}  // namespace
+
+std::string_view name_of(TubeMethod method) {
+  switch (method) {
+    case TubeMethod::kOriginal:
+      return "original";
+    case TubeMethod::kNaseath:
+      return "naseath";
+    case TubeMethod::kNaseathLiteral:
+      return "naseath-literal";
+    case TubeMethod::kBending:
+      return "bending";
+    case TubeMethod::kThirdDerivative:
+      return "third-derivative";
+    case TubeMethod::kCurvature:
+      return "curvature";
+    case TubeMethod::kEven:
+      return "even";
+    case TubeMethod::kQuick:
+      return "quick";
+    case TubeMethod::kMixture:
+      return "mixture";
+  }
+  return "";
+}
+
+std::vector<TubeCandidate> smooth_in_tube(const BsplineCurve& curve, const TubeOptions& options) {
+  check(curve, options);
+  std::vector<TubeCandidate> all;
+  for (int halvings = 0; halvings <= options.halvings; ++halvings) {
+    TubeCandidates made(curve, options, halvings);
+    if (halvings == 0) {
+      made.add(TubeMethod::kOriginal, curve);
+      made.add_naseath({}, TubeMethod::kNaseath);
+      made.add_naseath(NaseathRepairs::none(), TubeMethod::kNaseathLiteral);
+    }
+    made.add_least_energies();
+    for (TubeCandidate& candidate : made.found) all.push_back(std::move(candidate));
+  }
+  return all;
+}
+
+}  // namespace batten::geometry

@@ -1,0 +1,64 @@
+// Symmetric positive definite systems with three sub-diagonals, as cubic B-splines give them,
+// factored and solved for points in linear time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "geometry/basic/point.h"
+
+namespace batten::geometry {
+
+class BandedMatrix {
+ public:
+  static constexpr int kBands = 3;  // below the diagonal
+
+  explicit BandedMatrix(std::size_t size) : rows_(size, Row{}) {}
+
+  [[nodiscard]] std::size_t size() const { return rows_.size(); }
+  void set_zero();
+
+  // A row: the diagonal first, then the entries below it.
+  using Row = std::array<double, kBands + 1>;
+
+  // All zero and of another size; memory is kept for the next one.
+  void reset(std::size_t size) { rows_.assign(size, Row{}); }
+
+  // These rows; memory is kept. Of the first ones, entries that would be left of the matrix count
+  // for nothing.
+  void set_rows(std::span<const Row> rows) { rows_.assign(rows.begin(), rows.end()); }
+
+  // Entry (i, i - below), 0 <= below <= kBands, below <= i. The matrix is symmetric: only
+  // the lower half is kept.
+  double& at(std::size_t i, int below) { return rows_[i][below]; }
+  [[nodiscard]] double at(std::size_t i, int below) const { return rows_[i][below]; }
+
+  // Replaces row and column i by the unit row, moving `value` times the column to `right`:
+  // the unknown i is then exactly `value`.
+  void fix(std::size_t i, const Point3& value, std::vector<Point3>& right);
+
+  // Solves in place: `right` becomes the solution. The matrix is overwritten by its factors
+  // (L D L^T, with the inverse of D). Returns false when a pivot is not positive; `right` is
+  // undefined then.
+  [[nodiscard]] bool solve(std::vector<Point3>& right);
+
+  // After solve(): the entries of the inverse inside the band, as another banded matrix
+  // (K. Takahashi et al. 1973). Linear time.
+  [[nodiscard]] BandedMatrix inverse_band() const;
+
+  // The same in the memory of another matrix, and only from row `first` on: the rows before it
+  // stay zero.
+  void inverse_band(BandedMatrix& inverse, std::size_t first) const;
+
+ private:
+  template <int kBefore>
+  [[nodiscard]] bool eliminate(std::size_t i, std::vector<Point3>& right);
+  template <int kBehind>
+  void back_substitute(std::size_t i, std::vector<Point3>& right) const;
+
+  std::vector<Row> rows_;
+};
+
+}  // namespace batten::geometry

@@ -1,0 +1,256 @@
+#include "geometry/path/bspline_curve.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace batten::geometry {
+
+namespace {
+
+constexpr int kMaxValues = (kMaxDegree + 1) * (kMaxDegree + 1);
+
+// A derivative shorter than this part of the curve's speed (control polygon by parameter)
+// is zero: cancellation leaves some 1e-15 of it.
+constexpr double kNoSpeed = 1e-12;
+
+// The blossom (polar form) of the polynomial of one span: symmetric, affine in each of its
+// p arguments, and the polynomial itself where all are equal. Control points are blossoms
+// of consecutive knots (L. Ramshaw 1987), so knots need not be inserted one by one.
+Point3 blossom(const BsplineBasis& basis, const std::vector<Point3>& points, std::size_t span,
+               const double* arguments) {
+  const int p = basis.degree();
+  const auto& t = basis.knots();
+  std::array<Point3, kMaxDegree + 1> d;
+  for (int j = 0; j <= p; ++j) d[j] = points[span - p + j];
+  for (int r = 1; r <= p; ++r) {
+    for (int j = p; j >= r; --j) {
+      const std::size_t i = span - p + j;
+      const double alpha = (arguments[r - 1] - t[i]) / (t[i + 1 + p - r] - t[i]);
+      d[j] = (1 - alpha) * d[j - 1] + alpha * d[j];
+    }
+  }
+  return d[p];
+}
+
+Point3 between(const Point3& a, const Point3& b, double part) { return (1 - part) * a + part * b; }
+
+// The last three Bezier points of a cubic span that is not empty: blossoms of its two knots, where
+// all but four of the steps of de Boor's algorithm have weights of 0 and 1. `t` points to the
+// span's first knot, `p` to the last of its four control points.
+std::array<Point3, 3> cubic_span(const double* t, const Point3* p) {
+  const Point3 third = between(p[-2], p[-1], (t[1] - t[-1]) / (t[2] - t[-1]));
+  const Point3 beyond = between(p[-1], p[0], (t[1] - t[0]) / (t[3] - t[0]));
+  return {between(p[-2], third, (t[0] - t[-1]) / (t[1] - t[-1])), third,
+          between(third, beyond, (t[1] - t[0]) / (t[2] - t[0]))};
+}
+
+std::vector<CubicBezier> cubic_pieces(const BsplineBasis& basis,
+                                      const std::vector<Point3>& points) {
+  constexpr std::size_t kCubic = 3;
+  const std::vector<double>& t = basis.knots();
+  std::vector<CubicBezier> pieces;
+  pieces.reserve(basis.size() - kCubic);
+  for (std::size_t span = kCubic; span < basis.size(); ++span) {
+    if (!(t[span] < t[span + 1])) continue;
+    const std::array<Point3, 3> q = cubic_span(&t[span], &points[span]);
+    // Neighbours share their joint to the last bit.
+    const std::array<double, 3> start{t[span], t[span], t[span]};
+    const Point3 first =
+        pieces.empty() ? blossom(basis, points, span, start.data()) : pieces.back().control[3];
+    pieces.push_back({{first, q[0], q[1], q[2]}});
+  }
+  return pieces;
+}
+
+}  // namespace
+
+BsplineCurve::BsplineCurve(BsplineBasis basis, std::vector<Point3> control_points)
+    : basis_(std::move(basis)), control_points_(std::move(control_points)) {
+  if (control_points_.size() != basis_.size()) {
+    throw std::invalid_argument("BsplineCurve: " + std::to_string(control_points_.size()) +
+                                " control points, expected " + std::to_string(basis_.size()) +
+                                " (knots - degree - 1)");
+  }
+}
+
+Point3 BsplineCurve::point_at(double u) const {
+  if (u <= first() && basis_.knots()[0] == first()) return control_points_.front();
+  if (u >= last() && basis_.knots().back() == last()) return control_points_.back();
+  const std::size_t span = basis_.find_span(u);
+  std::array<double, kMaxDegree + 1> n{};
+  basis_.evaluate(span, std::clamp(u, first(), last()), n.data());
+  Point3 point = Point3::Zero();
+  const std::size_t offset = span - degree();
+  for (int j = 0; j <= degree(); ++j) point += n[j] * control_points_[offset + j];
+  return point;
+}
+
+Vector3 BsplineCurve::derivative_at(double u, int order) const {
+  const std::size_t span = basis_.find_span(u);
+  std::array<double, kMaxValues> n{};
+  if (order > degree()) return Vector3::Zero();
+  basis_.evaluate_derivatives(span, std::clamp(u, first(), last()), order, n.data());
+  Vector3 sum = Vector3::Zero();
+  const int row = order * (degree() + 1);
+  for (int j = 0; j <= degree(); ++j) {
+    sum += n[row + j] * control_points_[span - degree() + j];
+  }
+  return sum;
+}
+
+Vector3 BsplineCurve::direction_at(double u) const {
+  const std::size_t span = basis_.find_span(u);
+  double polygon = 0;
+  for (int j = 0; j < degree(); ++j) {
+    polygon += (control_points_[span - j] - control_points_[span - j - 1]).norm();
+  }
+  const double width = basis_.knots()[span + 1] - basis_.knots()[span];
+  const bool at_end = u >= last();
+  for (int order = 1; order <= degree(); ++order) {
+    const Vector3 d = derivative_at(u, order);
+    const double size = d.norm() * std::pow(width, order);
+    if (size > kNoSpeed * polygon && size > 0) {
+      // Arriving at the end, even derivatives point backwards.
+      const bool backwards = at_end && order % 2 == 0;
+      return (backwards ? Vector3(-d) : d) / d.norm();
+    }
+  }
+  return Vector3::Zero();
+}
+
+double BsplineCurve::curvature_at(double u) const {
+  const Vector3 d1 = derivative_at(u, 1);
+  const double speed = d1.norm();
+  if (speed == 0) return 0;
+  return d1.cross(derivative_at(u, 2)).norm() / (speed * speed * speed);
+}
+
+BsplineCurve BsplineCurve::with_knot(double u) const {
+  // Boehm's insertion: point i of the new polygon divides the old leg i-1, i where the new
+  // knot divides the support of that leg.
+  const std::size_t k = basis_.find_span(u);
+  const auto& t = basis_.knots();
+  const int p = degree();
+  std::vector<double> knots = t;
+  knots.insert(knots.begin() + static_cast<std::ptrdiff_t>(k) + 1, u);
+  std::vector<Point3> points;
+  points.reserve(control_points_.size() + 1);
+  for (std::size_t i = 0; i <= control_points_.size(); ++i) {
+    if (i + p <= k) {
+      points.push_back(control_points_[i]);
+    } else if (i > k) {
+      points.push_back(control_points_[i - 1]);
+    } else {
+      const double alpha = (u - t[i]) / (t[i + p] - t[i]);
+      points.push_back((1 - alpha) * control_points_[i - 1] + alpha * control_points_[i]);
+    }
+  }
+  return {BsplineBasis(p, std::move(knots)), std::move(points)};
+}
+
+BsplineCurve BsplineCurve::part(double from, double to) const {
+  if (!(first() <= from && from < to && to <= last())) {
+    throw std::invalid_argument("BsplineCurve::part: from " + std::to_string(from) + " to " +
+                                std::to_string(to) + ", expected an interval inside " +
+                                std::to_string(first()) + " to " + std::to_string(last()));
+  }
+  const auto p = static_cast<std::size_t>(degree());
+  const auto& t = basis_.knots();
+  const auto inner_begin = std::upper_bound(t.begin(), t.end(), from);
+  const auto inner_end = std::lower_bound(inner_begin, t.end(), to);
+  std::vector<double> knots(p + 1, from);
+  knots.insert(knots.end(), inner_begin, inner_end);
+  knots.insert(knots.end(), p + 1, to);
+
+  std::vector<Point3> points;
+  points.reserve(knots.size() - p - 1);
+  for (std::size_t i = 0; i + p + 1 < knots.size(); ++i) {
+    // Any span of the support serves; the widest is the best conditioned.
+    std::size_t widest = i;
+    for (std::size_t j = i + 1; j <= i + p; ++j) {
+      if (knots[j + 1] - knots[j] > knots[widest + 1] - knots[widest]) widest = j;
+    }
+    const double inside = 0.5 * (knots[widest] + knots[widest + 1]);
+    points.push_back(blossom(basis_, control_points_, basis_.find_span(inside), &knots[i + 1]));
+  }
+  return {BsplineBasis(degree(), std::move(knots)), std::move(points)};
+}
+
+std::vector<double> BsplineCurve::breakpoints() const {
+  const auto begin = basis_.knots().begin() + degree();
+  const auto end = basis_.knots().begin() + static_cast<std::ptrdiff_t>(basis_.size()) + 1;
+  std::vector<double> distinct;
+  std::unique_copy(begin, end, std::back_inserter(distinct));
+  return distinct;
+}
+
+std::vector<CubicBezier> BsplineCurve::bezier_pieces() const {
+  const int p = degree();
+  if (p > 3) {
+    throw std::invalid_argument("BsplineCurve::bezier_pieces: degree " + std::to_string(p) +
+                                ", expected 3 or less");
+  }
+  if (p == 3) return cubic_pieces(basis_, control_points_);
+  const auto& t = basis_.knots();
+  std::vector<CubicBezier> pieces;
+  pieces.reserve(basis_.size() - p);
+  for (std::size_t span = p; span < basis_.size(); ++span) {
+    const double a = t[span];
+    const double b = t[span + 1];
+    if (!(a < b)) continue;
+    std::array<Point3, 4> q;
+    for (int bs = 0; bs <= p; ++bs) {
+      std::array<double, 3> arguments{};
+      for (int j = 0; j < p; ++j) arguments[j] = j < bs ? b : a;
+      q[bs] = blossom(basis_, control_points_, span, arguments.data());
+    }
+    // Neighbours share their joint to the last bit.
+    if (!pieces.empty()) q[0] = pieces.back().control[3];
+    // Raise lower degrees: point i of degree d + 1 is (i q_{i-1} + (d + 1 - i) q_i)/(d + 1).
+    for (int d = p; d < 3; ++d) {
+      q[d + 1] = q[d];
+      for (int i = d; i >= 1; --i) q[i] = (i * q[i - 1] + (d + 1 - i) * q[i]) / (d + 1);
+    }
+    pieces.push_back({{q[0], q[1], q[2], q[3]}});
+  }
+  return pieces;
+}
+
+BsplineCurve BsplineCurve::reversed() const {
+  std::vector<double> knots(basis_.knots().rbegin(), basis_.knots().rend());
+  const double sum = first() + last();
+  for (double& u : knots) u = sum - u;
+  return {BsplineBasis(degree(), std::move(knots)),
+          std::vector<Point3>(control_points_.rbegin(), control_points_.rend())};
+}
+
+double length_between(const BsplineCurve& curve, double from, double to) {
+  // Gauss-Legendre, five points.
+  constexpr std::array<double, 5> kNodes = {-0.9061798459386640, -0.5384693101056831, 0.0,
+                                            0.5384693101056831, 0.9061798459386640};
+  constexpr std::array<double, 5> kWeights = {0.2369268850561891, 0.4786286704993665,
+                                              0.5688888888888889, 0.4786286704993665,
+                                              0.2369268850561891};
+  const auto& t = curve.basis().knots();
+  double length = 0;
+  double a = from;
+  auto next = std::upper_bound(t.begin(), t.end(), from);
+  while (a < to) {
+    const double b = next == t.end() ? to : std::min(*next, to);
+    const double half = 0.5 * (b - a);
+    const double mid = 0.5 * (a + b);
+    for (std::size_t i = 0; i < kNodes.size(); ++i) {
+      length += kWeights[i] * half * curve.derivative_at(mid + half * kNodes[i], 1).norm();
+    }
+    a = b;
+    next = std::upper_bound(next, t.end(), a);
+  }
+  return length;
+}
+
+}  // namespace batten::geometry

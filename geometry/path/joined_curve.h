@@ -1,0 +1,26 @@
+// Curves, lines and Bezier pieces as one B-spline curve.
+#pragma once
+
+#include <span>
+
+#include "geometry/path/bspline_curve.h"
+#include "geometry/path/path.h"
+
+namespace batten::geometry {
+
+// Clamped cubics, one or more, each starting at the parameter and the place where the one before
+// it ends. The joints are triple knots: the curve is the parts, to the last digit, and may have
+// corners there. Linear cost.
+//
+// Throws std::invalid_argument when there is no part, or one is no clamped cubic, or the
+// parameters do not join. Places that differ by rounding are taken from the earlier part.
+[[nodiscard]] BsplineCurve joined(std::span<const BsplineCurve> parts);
+
+// Lines and cubic Bezier pieces, one or more. Piece i runs over [stations[i], stations[i + 1]];
+// stations increase strictly and are one more than pieces.
+//
+// Throws std::invalid_argument when they are not, or when a piece is an arc.
+[[nodiscard]] BsplineCurve curve_of_pieces(std::span<const PathPiece> pieces,
+                                           std::span<const double> stations);
+
+}  // namespace batten::geometry

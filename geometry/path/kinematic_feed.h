@@ -1,0 +1,23 @@
+// The feed that a machine's axes allow on a curve if it were held all along: a guess that needs
+// no planning.
+#pragma once
+
+#include "geometry/basic/point.h"
+#include "geometry/path/bspline_curve.h"
+
+namespace batten::geometry {
+
+// Per axis x, y, z.
+struct KinematicLimits {
+  double feed = 25;                                  // mm/s
+  Vector3 speed = Vector3::Constant(500);            // mm/s
+  Vector3 acceleration = Vector3(2500, 3000, 3000);  // mm/s^2
+  Vector3 jerk = Vector3::Constant(5000);            // mm/s^3
+};
+
+// mm/s: the least over curve and axes of V / |x_s|, sqrt(A / |x_ss|) and cbrt(J / |x_sss|), no
+// more than `feed`; x_s .. are derivatives by length, the third from both sides at the knots.
+// Requires degree 3 or less. By samples that are refined around the least ones.
+[[nodiscard]] double feed_estimate(const BsplineCurve& curve, const KinematicLimits& limits);
+
+}  // namespace batten::geometry

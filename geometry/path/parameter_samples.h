@@ -1,0 +1,36 @@
+// A curve at equal parameter steps in every span: the measure that the tables of Naseath 2007
+// are made with. docs/algorithms/naseath.md says how it differs from a mean over the length.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geometry/path/bspline_curve.h"
+
+namespace batten::geometry {
+
+// Steps per span that reproduce the tables.
+inline constexpr int kNaseathSteps = 400;
+
+struct ParameterSample {
+  double parameter = 0;
+  double distance = 0;   // mm along the curve from its start
+  double speed = 0;      // mm per unit of the parameter
+  double curvature = 0;  // 1/mm; 0 where the speed is 0
+};
+
+// Every breakpoint once (seen from the span before it) and `steps` equal steps in every span;
+// distances by the trapezoidal rule. Requires degree 3 or less; throws std::invalid_argument
+// where steps < 1.
+[[nodiscard]] std::vector<ParameterSample> parameter_samples(const BsplineCurve& curve, int steps);
+
+// Mean over the samples, each counted once whatever the distance to its neighbours: a short span
+// weighs as much as a long one. 0 without samples, as the others.
+[[nodiscard]] double mean_curvature(std::span<const ParameterSample> samples);
+[[nodiscard]] double max_curvature(std::span<const ParameterSample> samples);
+[[nodiscard]] double sampled_length(std::span<const ParameterSample> samples);  // mm
+
+// The integral of curvature^2 over the length (1/mm), trapezoidal rule.
+[[nodiscard]] double bending(std::span<const ParameterSample> samples);
+
+}  // namespace batten::geometry

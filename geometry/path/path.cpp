@@ -1,0 +1,320 @@
+#include "geometry/path/path.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "geometry/basic/rounding.h"
+
+namespace batten::geometry {
+namespace {
+
+// Below this part of the control polygon's size a derivative is rounding noise: the
+// differences of coordinates of 1e4 mm carry 2e-12 mm, polygons are 1e-3 mm long or more.
+constexpr double kNoDerivative = 1e-9;
+
+Vector3 unit_or_zero(const Vector3& v) {
+  const double length = v.norm();
+  return length > 0 ? Vector3(v / length) : Vector3(Vector3::Zero());
+}
+
+// An arc in cylinder coordinates about its axis. Radius, angle and height are linear in t,
+// so one moving frame (outward, forward, axis) holds all derivatives.
+class ArcFrame {
+ public:
+  explicit ArcFrame(const Arc& arc) : axis_(arc.axis), center_(arc.center), sweep_(arc.sweep) {
+    const Vector3 from = arc.start - center_;
+    const Vector3 to = arc.end - center_;
+    height_ = axis_.dot(from);
+    rise_ = axis_.dot(to) - height_;
+    const Vector3 from_radial = from - height_ * axis_;
+    const Vector3 to_radial = to - (height_ + rise_) * axis_;
+    radius_ = from_radial.norm();
+    growth_ = to_radial.norm() - radius_;
+    if (radius_ > 0) {
+      outward_ = from_radial / radius_;
+    } else {  // a spiral that starts on its axis: turn the direction of the end back
+      const Vector3 out = unit_or_zero(to_radial);
+      outward_ = std::cos(sweep_) * out - std::sin(sweep_) * axis_.cross(out);
+    }
+    forward_ = axis_.cross(outward_);
+  }
+
+  double radius(double t) const { return radius_ + t * growth_; }
+  double greatest_radius() const { return std::max(radius_, radius_ + growth_); }
+  double sweep() const { return sweep_; }
+  double growth() const { return growth_; }
+
+  Point3 point(double t) const {
+    return center_ + radius(t) * outward(t) + (height_ + t * rise_) * axis_;
+  }
+
+  // First derivative by t in the frame (outward, forward, axis).
+  Vector3 velocity(double t) const { return {growth_, radius(t) * sweep_, rise_}; }
+
+  Vector3 acceleration(double t) const {
+    return {-radius(t) * sweep_ * sweep_, 2 * growth_ * sweep_, 0};
+  }
+
+  Vector3 in_space(double t, const Vector3& local) const {
+    const Vector3 out = outward(t);
+    return local.x() * out + local.y() * axis_.cross(out) + local.z() * axis_;
+  }
+
+ private:
+  Vector3 outward(double t) const {
+    return std::cos(sweep_ * t) * outward_ + std::sin(sweep_ * t) * forward_;
+  }
+
+  Vector3 axis_;
+  Point3 center_;
+  double sweep_;
+  double height_;
+  double rise_;
+  double radius_;
+  double growth_;
+  Vector3 outward_;
+  Vector3 forward_;
+};
+
+Vector3 bezier_first(const CubicBezier& b, double t) {
+  const double s = 1 - t;
+  return 3 * (s * s * (b.control[1] - b.control[0]) + 2 * s * t * (b.control[2] - b.control[1]) +
+              t * t * (b.control[3] - b.control[2]));
+}
+
+Vector3 bezier_second(const CubicBezier& b, double t) {
+  return 6 * ((1 - t) * (b.control[2] - 2 * b.control[1] + b.control[0]) +
+              t * (b.control[3] - 2 * b.control[2] + b.control[1]));
+}
+
+Vector3 bezier_third(const CubicBezier& b) {
+  return 6 * (b.control[3] - 3 * b.control[2] + 3 * b.control[1] - b.control[0]);
+}
+
+double polygon_length(const CubicBezier& b) {
+  return (b.control[1] - b.control[0]).norm() + (b.control[2] - b.control[1]).norm() +
+         (b.control[3] - b.control[2]).norm();
+}
+
+// Where the first derivative vanishes, Taylor's next term gives the direction: leaving the
+// place for t < 1, arriving at it for t = 1.
+Vector3 bezier_direction(const CubicBezier& b, double t) {
+  const double nothing = kNoDerivative * polygon_length(b);
+  const Vector3 first = bezier_first(b, t);
+  if (first.norm() > nothing) return first.normalized();
+  const Vector3 second = bezier_second(b, t);
+  if (second.norm() > nothing) return (t < 1 ? 1.0 : -1.0) * second.normalized();
+  return unit_or_zero(bezier_third(b));
+}
+
+double curvature_of(const Vector3& first, const Vector3& second) {
+  const double speed = first.norm();
+  return speed > 0 ? first.cross(second).norm() / (speed * speed * speed) : 0.0;
+}
+
+// Gauss-Legendre with five points on [a, b].
+template <typename Speed>
+double gauss5(const Speed& speed, double a, double b) {
+  constexpr double kNode[] = {0.0, 0.5384693101056831, 0.9061798459386640};
+  constexpr double kWeight[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+  const double middle = (a + b) / 2;
+  const double half = (b - a) / 2;
+  double sum = kWeight[0] * speed(middle);
+  for (int i = 1; i < 3; ++i) {
+    sum += kWeight[i] * (speed(middle - half * kNode[i]) + speed(middle + half * kNode[i]));
+  }
+  return half * sum;
+}
+
+// Halves [a, b] until two halves agree with the whole. The five-point rule gains a factor
+// of 1000 per halving on smooth speeds, so the halves are far better than their difference
+// to the whole; the depth ends the search at a cusp, where each half adds half as much.
+template <typename Speed>
+double integrate(const Speed& speed, double a, double b, double whole, double allowed, int depth) {
+  const double middle = (a + b) / 2;
+  const double left = gauss5(speed, a, middle);
+  const double right = gauss5(speed, middle, b);
+  if (depth == 0 || std::abs(left + right - whole) <= allowed) return left + right;
+  return integrate(speed, a, middle, left, allowed, depth - 1) +
+         integrate(speed, middle, b, right, allowed, depth - 1);
+}
+
+template <typename Speed>
+double integrate_speed(const Speed& speed) {
+  constexpr double kRelativeError = 1e-11;  // of the whole; a few sub-intervals add theirs
+  constexpr int kDepth = 30;
+  const double whole = gauss5(speed, 0, 1);
+  return integrate(speed, 0.0, 1.0, whole, kRelativeError * whole, kDepth);
+}
+
+template <typename T>
+inline constexpr bool is_line = std::is_same_v<std::decay_t<T>, Line>;
+template <typename T>
+inline constexpr bool is_arc = std::is_same_v<std::decay_t<T>, Arc>;
+
+}  // namespace
+
+Point3 start_point(const PathPiece& piece) {
+  return std::visit(
+      [](const auto& p) -> Point3 {
+        if constexpr (std::is_same_v<std::decay_t<decltype(p)>, CubicBezier>) {
+          return p.control[0];
+        } else {
+          return p.start;
+        }
+      },
+      piece);
+}
+
+Point3 end_point(const PathPiece& piece) {
+  return std::visit(
+      [](const auto& p) -> Point3 {
+        if constexpr (std::is_same_v<std::decay_t<decltype(p)>, CubicBezier>) {
+          return p.control[3];
+        } else {
+          return p.end;
+        }
+      },
+      piece);
+}
+
+Point3 point_at(const CubicBezier& piece, double t) {
+  const Point3* p = piece.control;
+  if (t <= 0) return p[0];
+  if (t >= 1) return p[3];
+  const double s = 1 - t;
+  return s * s * s * p[0] + 3 * s * s * t * p[1] + 3 * s * t * t * p[2] + t * t * t * p[3];
+}
+
+Point3 point_at(const PathPiece& piece, double t) {
+  if (t <= 0) return start_point(piece);
+  if (t >= 1) return end_point(piece);
+  return std::visit(
+      [t](const auto& p) -> Point3 {
+        if constexpr (is_line<decltype(p)>) {
+          return p.start + t * (p.end - p.start);
+        } else if constexpr (is_arc<decltype(p)>) {
+          return ArcFrame(p).point(t);
+        } else {
+          return point_at(p, t);
+        }
+      },
+      piece);
+}
+
+Vector3 direction_at(const PathPiece& piece, double t) {
+  return std::visit(
+      [t](const auto& p) -> Vector3 {
+        if constexpr (is_line<decltype(p)>) {
+          return unit_or_zero(p.end - p.start);
+        } else if constexpr (is_arc<decltype(p)>) {
+          const ArcFrame frame(p);
+          return unit_or_zero(frame.in_space(t, frame.velocity(t)));
+        } else {
+          return bezier_direction(p, t);
+        }
+      },
+      piece);
+}
+
+double length_of(const PathPiece& piece) {
+  return std::visit(
+      [](const auto& p) -> double {
+        if constexpr (is_line<decltype(p)>) {
+          return (p.end - p.start).norm();
+        } else if constexpr (is_arc<decltype(p)>) {
+          const ArcFrame frame(p);
+          if (frame.growth() == 0) return frame.velocity(0).norm();
+          return integrate_speed([&frame](double t) { return frame.velocity(t).norm(); });
+        } else {
+          return integrate_speed([&p](double t) { return bezier_first(p, t).norm(); });
+        }
+      },
+      piece);
+}
+
+double length_of(std::span<const PathPiece> path) {
+  double sum = 0;
+  for (const PathPiece& piece : path) sum += length_of(piece);
+  return sum;
+}
+
+double curvature_at(const PathPiece& piece, double t) {
+  return std::visit(
+      [t](const auto& p) -> double {
+        if constexpr (is_line<decltype(p)>) {
+          return 0;
+        } else if constexpr (is_arc<decltype(p)>) {
+          const ArcFrame frame(p);
+          return curvature_of(frame.velocity(t), frame.acceleration(t));
+        } else {
+          return curvature_of(bezier_first(p, t), bezier_second(p, t));
+        }
+      },
+      piece);
+}
+
+double second_derivative_bound(const PathPiece& piece) {
+  return std::visit(
+      [](const auto& p) -> double {
+        if constexpr (is_line<decltype(p)>) {
+          return 0;
+        } else if constexpr (is_arc<decltype(p)>) {
+          const ArcFrame frame(p);
+          const double inward = frame.greatest_radius() * frame.sweep() * frame.sweep();
+          return std::hypot(inward, 2 * frame.growth() * frame.sweep());
+        } else {  // linear in t, so greatest at an end
+          return std::max(bezier_second(p, 0).norm(), bezier_second(p, 1).norm());
+        }
+      },
+      piece);
+}
+
+CubicBezier sub_piece(const CubicBezier& piece, double t0, double t1) {
+  const Point3* p = piece.control;
+  // The blossom of the cubic at (t0,t0,t0), (t0,t0,t1), (t0,t1,t1), (t1,t1,t1).
+  const auto blossom = [p](double u, double v, double w) -> Point3 {
+    Point3 d[3];
+    for (int i = 0; i < 3; ++i) d[i] = (1 - u) * p[i] + u * p[i + 1];
+    for (int i = 0; i < 2; ++i) d[i] = (1 - v) * d[i] + v * d[i + 1];
+    return (1 - w) * d[0] + w * d[1];
+  };
+  CubicBezier part;
+  part.control[0] = t0 > 0 ? blossom(t0, t0, t0) : p[0];
+  part.control[1] = blossom(t0, t0, t1);
+  part.control[2] = blossom(t0, t1, t1);
+  part.control[3] = t1 < 1 ? blossom(t1, t1, t1) : p[3];
+  return part;
+}
+
+PathPiece sub_piece(const PathPiece& piece, double t0, double t1) {
+  return std::visit(
+      [&piece, t0, t1](const auto& p) -> PathPiece {
+        if constexpr (is_line<decltype(p)>) {
+          return Line{point_at(piece, t0), point_at(piece, t1)};
+        } else if constexpr (is_arc<decltype(p)>) {
+          return Arc{point_at(piece, t0), point_at(piece, t1), p.center, p.axis,
+                     p.sweep * (t1 - t0)};
+        } else {
+          return sub_piece(p, t0, t1);
+        }
+      },
+      piece);
+}
+
+Path path_through(std::span<const Point3> points) {
+  Path path;
+  if (points.empty()) return path;
+  path.reserve(points.size() - 1);
+  Point3 last = points.front();
+  for (const Point3& point : points.subspan(1)) {
+    if ((point - last).norm() <= kSamePlace) continue;
+    path.push_back(Line{last, point});
+    last = point;
+  }
+  return path;
+}
+
+}  // namespace batten::geometry

@@ -1,0 +1,271 @@
+#include "postproc/convert/conversion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "gcode/reading/language_marks.h"
+#include "gcode/reading/source_kind.h"
+#include "gcode/rs274/plain_beginning.h"
+#include "gcode/state/dwell.h"
+#include "gcode/state/source_marks.h"
+#include "postproc/convert/obstacles.h"
+#include "postproc/convert/portable_words.h"
+#include "postproc/options/profile_words.h"
+
+namespace batten::postproc {
+namespace {
+
+// In tenths. The same on every control of the family that takes them at all.
+constexpr std::array kCommonG = {0,   10,  20,  30,  170, 180, 190, 200, 210, 400, 430,
+                                 490, 540, 550, 560, 570, 580, 590, 800, 900, 910, 940};
+constexpr std::array kCommonM = {0, 10, 20, 30, 40, 50, 60, 80, 90, 300};
+constexpr std::string_view kCommonLetters = "NXYZIJKRFST";
+
+bool is_motion(int g_code) { return g_code >= 0 && g_code <= 30; }
+
+gcode::Plane plane_of(int g_code) {
+  switch (g_code) {
+    case 170:
+      return gcode::Plane::kXY;
+    case 180:
+      return gcode::Plane::kZX;
+    case 190:
+      return gcode::Plane::kYZ;
+    default:
+      return gcode::Plane::kUnknown;
+  }
+}
+
+class BlockCheck {
+ public:
+  BlockCheck(const gcode::Program& program, const gcode::Dialect& target)
+      : program_(program), target_(target) {}
+
+  std::optional<Obstacle> obstacle_in(const gcode::Block& block) const {
+    if (block.opacity == gcode::ParseStatus::kProgramMark) return std::nullopt;
+    if (block.opacity != gcode::ParseStatus::kNone)
+      return Obstacle{block.span, "is no block of plain words"};
+    if (block.block_delete)
+      return Obstacle{block.span, "is left out by some controls, run by others"};
+    if (block.has_checksum) return Obstacle{block.span, "has a check sum"};
+    if (target_.line_length(program_.source.text(block.span)) > target_.max_line_length()) {
+      return Obstacle{block.span,
+                      fmt::format("is longer than {} characters", target_.max_line_length())};
+    }
+    const std::span<const gcode::Word> words = program_.words_of(block);
+    if (const gcode::Word* dwell = coded_word(words, 'G', word_code::kDwell)) {
+      const std::string why = why_not_dwell(words);
+      return why.empty() ? std::nullopt : std::optional(Obstacle{dwell->span, why});
+    }
+    for (const gcode::Word& word : words) {
+      if (std::string why = why_not(word, words); !why.empty()) return Obstacle{word.span, why};
+    }
+    if (target_.repeats_words() && moves_without_saying_how(words)) {
+      return Obstacle{block.span,
+                      "names no G0, G1, G2 or G3, which the target needs in every block"};
+    }
+    for (const gcode::Comment& comment : program_.comments_of(block)) {
+      if (!can_say(comment)) return Obstacle{comment.span, "is no comment there"};
+    }
+    return std::nullopt;
+  }
+
+ private:
+  // A dwell that waits as long on the target.
+  std::string why_not_dwell(std::span<const gcode::Word> words) const {
+    const auto ms = gcode::dwell_ms(words, program_.dwells);
+    if (!ms) return std::string(why_no_certain_dwell(words, program_.dwells));
+    const auto there = target_.dwell_form() == gcode::DwellForm::kUnknown
+                           ? std::nullopt
+                           : gcode::dwell_ms(words, target_.dwell_form());
+    if (!there) return "waits for a time that is not certain there";
+    return there == ms ? "" : "waits for another time there";
+  }
+
+  std::string why_not(const gcode::Word& word, std::span<const gcode::Word> words) const {
+    if (!word.is_number) return "has no plain number";
+    if (target_.cannot_say(word.letter, tenths_of(word))) return "is not taken there";
+    switch (word.letter) {
+      case 'G':
+        return why_not_g(tenths_of(word));
+      case 'M':
+        return is_in(kCommonM, tenths_of(word)) ? "" : "may mean something else there";
+      case 'H':
+        return has_g(words, 430) ? "" : "may mean something else there";
+      case 'I':
+      case 'J':
+      case 'K':
+        return target_.arc_form() == gcode::ArcForm::kCenters ? "" : "may be no offset there";
+      default:
+        return kCommonLetters.find(word.letter) != std::string_view::npos
+                   ? ""
+                   : "may mean something else there";
+    }
+  }
+
+  std::string why_not_g(int code) const {
+    if (const std::string_view meaning = target_.other_meaning(code); !meaning.empty()) {
+      return std::string(meaning);
+    }
+    if (!is_in(kCommonG, code)) return "may mean something else there";
+    const gcode::Plane plane = plane_of(code);
+    const bool wrong_plane = plane != gcode::Plane::kUnknown && !target_.takes_arcs_in(plane);
+    return wrong_plane ? "is no plane of arcs there" : "";
+  }
+
+  template <std::size_t count>
+  static bool is_in(const std::array<int, count>& codes, int code) {
+    return std::ranges::find(codes, code) != codes.end();
+  }
+
+  static bool has_g(std::span<const gcode::Word> words, int code) {
+    return std::ranges::any_of(words, [code](const gcode::Word& word) {
+      return word.letter == 'G' && tenths_of(word) == code;
+    });
+  }
+
+  static bool moves_without_saying_how(std::span<const gcode::Word> words) {
+    bool moves = false;
+    bool says_how = false;
+    for (const gcode::Word& word : words) {
+      moves = moves || (word.letter >= 'X' && word.letter <= 'Z');
+      says_how = says_how || (word.letter == 'G' && is_motion(tenths_of(word)));
+    }
+    return moves && !says_how;
+  }
+
+  bool can_say(const gcode::Comment& comment) const {
+    const std::string said = target_.comment("x");
+    return comment.kind != gcode::CommentKind::kActive && !said.empty() &&
+           program_.source.text(comment.span).front() == said.front();
+  }
+
+  const gcode::Program& program_;
+  const gcode::Dialect& target_;
+};
+
+// A dwell that waits for another time on the target.
+struct OtherDwell {
+  gcode::SourceSpan where;
+  std::int32_t ms = 0;
+  std::int32_t ms_there = 0;
+};
+
+// The first one. What G4 P means is known only where the user has named the source.
+std::optional<OtherDwell> other_dwell(const gcode::Program& program, const gcode::Dialect& target) {
+  const gcode::DwellForm there = target.dwell_form();
+  if (program.dwells == gcode::DwellForm::kUnknown || there == gcode::DwellForm::kUnknown ||
+      program.dwells == there) {
+    return std::nullopt;
+  }
+  for (const gcode::Block& block : program.blocks) {
+    const auto words = program.words_of(block);
+    if (coded_word(words, 'G', word_code::kDwell) == nullptr) continue;
+    const auto ms = gcode::dwell_ms(words, program.dwells);
+    const auto ms_there = gcode::dwell_ms(words, there);
+    if (ms && ms_there && ms != ms_there) return OtherDwell{block.span, *ms, *ms_there};
+  }
+  return std::nullopt;
+}
+
+// Where the program says its language, if it does: the place to tell about.
+gcode::SourceSpan place_of(gcode::Language language, const gcode::SourceText& source) {
+  for (const gcode::LanguageMark& each : gcode::language_marks(source)) {
+    if (each.language == language) return each.where;
+  }
+  return gcode::plain_beginning(source).value_or(gcode::SourceSpan{});
+}
+
+std::string evidence_of(gcode::Language language, const gcode::SourceText& source,
+                        const SmoothOptions& options) {
+  for (const gcode::LanguageMark& each : gcode::language_marks(source)) {
+    if (each.language == language) return fmt::format("found {}, so this is", each.evidence);
+  }
+  const auto plain = gcode::plain_beginning(source);
+  if (options.source == gcode::SourceKind::kAuto && plain) {
+    return fmt::format("found {}, so this is", source.text(*plain));
+  }
+  return "--source says that this is";
+}
+
+}  // namespace
+
+std::optional<gcode::Language> language_read(const gcode::SourceText& source,
+                                             const SmoothOptions& options,
+                                             gcode::Diagnostics& found) {
+  const gcode::Language of_target = options.target->language();
+  const auto language = gcode::source_language(source, options.source, of_target, found);
+  const bool plain = language == gcode::Language::kRs274 && of_target == gcode::Language::kSiemens;
+  if (!language || *language == of_target || plain) return language;
+  found.push_back(
+      {gcode::Severity::kError, "foreign-language", place_of(*language, source),
+       fmt::format("{} a program in {}; target {} reads {}, and --convert says it there "
+                   "where every block can be said",
+                   evidence_of(*language, source, options), gcode::describe(*language),
+                   options.target->name(), gcode::describe(of_target))});
+  return std::nullopt;
+}
+
+std::optional<gcode::Language> language_to_translate(const gcode::SourceText& source,
+                                                     const SmoothOptions& options) {
+  if (!options.convert) return std::nullopt;
+  gcode::Diagnostics uncertain;
+  const auto language = gcode::source_language(source, options.source, std::nullopt, uncertain);
+  return language == options.target->language() ? std::nullopt : language;
+}
+
+gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language) {
+  const gcode::Decimals decimals =
+      gcode::decimals_read(options.source, options.target, language, options.decimals);
+  return {.language = language,
+          .decimals = decimals,
+          .units = options.units,
+          .dwells = gcode::dwells_of(options.source)};
+}
+
+bool is_of_another_family(const gcode::Program& program, const gcode::Dialect& target) {
+  return other_dwell(program, target) ||
+         std::ranges::any_of(gcode::source_marks(program), [&](const gcode::FoundMark& found) {
+           return (target.known_marks() & gcode::mark(found.mark)) == 0;
+         });
+}
+
+void tell_of_other_family(const gcode::Program& program, const gcode::Dialect& target,
+                          gcode::Diagnostics& found) {
+  for (const gcode::FoundMark& each : gcode::source_marks(program)) {
+    if ((target.known_marks() & gcode::mark(each.mark)) != 0) continue;
+    found.push_back({gcode::Severity::kError, "other-family", each.where,
+                     fmt::format("{}: a program for other controls than target {}; --convert tells "
+                                 "which blocks could not be said there",
+                                 gcode::describe(each.mark), target.name())});
+  }
+  if (const auto dwell = other_dwell(program, target)) {
+    found.push_back(
+        {gcode::Severity::kError, "other-family", dwell->where,
+         fmt::format("{} waits for {} s on the control that --source names, and for {} s "
+                     "on target {}; --convert tells which blocks could not be said "
+                     "there",
+                     program.source.text(dwell->where), gcode::dwell_seconds(dwell->ms, false),
+                     gcode::dwell_seconds(dwell->ms_there, false), target.name())});
+  }
+}
+
+void tell_what_cannot_be_said(const gcode::Program& program, const gcode::Dialect& target,
+                              gcode::Diagnostics& found) {
+  const BlockCheck check(program, target);
+  std::vector<Obstacle> obstacles;
+  for (const gcode::Block& block : program.blocks) {
+    if (auto obstacle = check.obstacle_in(block)) obstacles.push_back(std::move(*obstacle));
+  }
+  tell_obstacles(obstacles, program, target, found);
+}
+
+}  // namespace batten::postproc

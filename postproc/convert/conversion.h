@@ -1,0 +1,58 @@
+// Programs that were made for another family of controls than the target's.
+//
+// Within RS-274 nothing is translated: what is not rewritten is copied, so a program can go to
+// another control only when every block that is copied says the same there. Between plain words,
+// Klartext and Siemens it is translated first (postproc/stream/translated_smoothing.h).
+#pragma once
+
+#include <optional>
+
+#include "gcode/control/dialect.h"
+#include "gcode/reading/parser.h"
+#include "gcode/text/diagnostic.h"
+#include "gcode/text/language.h"
+#include "gcode/text/program.h"
+#include "gcode/text/source_text.h"
+#include "postproc/options/options.h"
+
+namespace batten::postproc {
+
+// The language to read the program in (gcode/reading/source_kind.h). Nothing, and an error, where
+// that is not certain; and an error "foreign-language" where the target reads another one. Plain
+// words (RS-274) are read for Siemens targets too.
+[[nodiscard]] std::optional<gcode::Language> language_read(const gcode::SourceText& source,
+                                                           const SmoothOptions& options,
+                                                           gcode::Diagnostics& found);
+
+// With --convert: the language of the program, where the target reads another one. A text without
+// certain marks of a language counts as plain words (RS-274) here. Nothing where nothing is to be
+// translated.
+[[nodiscard]] std::optional<gcode::Language> language_to_translate(const gcode::SourceText& source,
+                                                                   const SmoothOptions& options);
+
+[[nodiscard]] inline bool is_to_be_translated(const gcode::SourceText& source,
+                                              const SmoothOptions& options) {
+  return language_to_translate(source, options).has_value();
+}
+
+// How a program in this language is read with these options.
+[[nodiscard]] gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language);
+
+// Whether the program has words of controls that the target is none of, or a dwell that, as its
+// source reads it, waits for another time than the target does.
+[[nodiscard]] bool is_of_another_family(const gcode::Program& program,
+                                        const gcode::Dialect& target);
+
+// Adds an error "other-family" for each kind of such words, at its first place.
+void tell_of_other_family(const gcode::Program& program, const gcode::Dialect& target,
+                          gcode::Diagnostics& found);
+
+// Adds an error "cannot-convert" for each block with a word that the target does not take, or not
+// for certain in the same meaning: only words that mean the same on every control of the RS-274
+// family pass (motions, planes, units, work offsets G54 to G59, G40, G43 with H, G49, G80, G90,
+// G91, G94, M0 to M6, M8, M9, M30, F, S, T, comments in the target's form), without those that the
+// target refuses. After 50 blocks one more says how many there are.
+void tell_what_cannot_be_said(const gcode::Program& program, const gcode::Dialect& target,
+                              gcode::Diagnostics& found);
+
+}  // namespace batten::postproc

@@ -1,0 +1,85 @@
+// The text that says the acts of a program in another language.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gcode/control/dialect.h"
+#include "gcode/state/motion.h"
+#include "gcode/text/program.h"
+#include "postproc/convert/obstacles.h"
+#include "postproc/convert/program_operations.h"
+
+namespace batten::postproc {
+
+struct TranslationSource {
+  const gcode::Program& program;  // in any language
+  const gcode::Interpretation& meaning;
+  const ProgramOperations& operations;
+  // --allow work-offset: where the language has no word for G54, the datum that is active on the
+  // control stands for it.
+  bool datum_is_work_offset = false;
+  // --allow tool-length: where lengths always count, they may count behind G49, too.
+  bool length_counts_always = false;
+  // --allow blank-form: BLK FORM may become a comment.
+  bool blank_is_remark = false;
+};
+
+struct Translation {
+  std::string text;
+  std::vector<std::uint32_t>
+      source_lines;                 // for each line of `text`, the line of the source, from 1
+  double rounding_mm = 0;           // how far a printed place is from the source's, at most
+  std::vector<Obstacle> obstacles;  // what the language cannot say; then the text is worth nothing
+};
+
+// Heidenhain Klartext in millimetres, without block numbers, under this program name:
+//   G0 X1 Y2      L X+1 Y+2 FMAX
+//   G1 X1 F500    L X+1 F500
+//   G2, G3        CC X+0 Y+0 and C X+1 Y+2 DR-
+//   T5 M6, S3000  TOOL CALL 5 Z S3000
+//   (text)        ; text
+// The unit is always the millimetre: what F means in an INCH program is not the same on all of
+// these controls. Obstacles: arcs out of the plane of X and Y, helices, arcs whose radii differ by
+// more than the control takes, places beyond its range, work offsets and motions without the length
+// of the tool that are not allowed.
+[[nodiscard]] Translation in_klartext(const TranslationSource& source, const gcode::Dialect& target,
+                                      std::string_view name);
+
+// Plain words (RS-274) or Siemens words, by the target's language, in the units of the program:
+//   L X+1 Y+2 FMAX        G0 X1 Y2
+//   L X+1 F500            G1 X1 F500
+//   CC, C, CR             G2 or G3 with I J K, or R where the target has that
+//   TOOL CALL 5 Z S3000   T5 M6, G43 H5 (Siemens: D1), S3000
+//   ; text                a comment of the target
+// First the modes are said that the language of the program implies: G21 (Siemens: G710), G17, G40,
+// G90, G94. The file has the frame that controls of the FANUC kind want (%, O0001, %); its O number
+// is `name`, where that is a number of up to four digits, else 1. Arcs are cut where the target
+// takes only shorter ones; one that is too small for it is chords that leave it by a printed step
+// at the most.
+//
+// Obstacles: words that the target refuses or takes for something else, arcs that it does not take,
+// helices where it has none, G58 and G59 for Siemens, where the length of the tool is not said in a
+// Siemens program, lines longer than the target takes; for plain words a program without an end.
+[[nodiscard]] Translation in_plain_words(const TranslationSource& source,
+                                         const gcode::Dialect& target, std::string_view name);
+
+// A name that either control takes, from that of a file: capitals, digits and _.
+[[nodiscard]] std::string program_name(std::string_view file);
+
+// What Klartext says in place of a work offset, so that the proof finds it and the operator sees
+// it: "G54: its datum is active".
+[[nodiscard]] std::string datum_remark(int work_offset);
+
+// The same for motions behind G49.
+inline constexpr std::string_view kLengthRemark = "G49: the length of the tool counts";
+
+// For motions along Z behind a tool change without G43.
+inline constexpr std::string_view kUnsaidLengthRemark = "no G43: the length of the tool counts";
+
+// What other languages say before their M30, where Klartext ends by its END PGM alone.
+inline constexpr std::string_view kEndRemark = "END PGM";
+
+}  // namespace batten::postproc

@@ -1,0 +1,155 @@
+// The machines that need no file. Limits of real ones differ by more than a factor of ten, so each
+// says where its figures come from; a machine file starts as one of them.
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "postproc/machine/files/grbl_settings.h"
+#include "postproc/machine/machine.h"
+
+namespace batten::postproc {
+namespace {
+
+constexpr double kPerMinute = 1.0 / 60;
+
+void set_xyz(Machine& m, const AxisLimits& limits) {
+  for (const Axis axis : {Axis::kX, Axis::kY, Axis::kZ}) m.axis(axis) = limits;
+}
+
+// LinuxCNC, with the limits under which its model was compared with the real control
+// (docs/algorithms/cycle_time.md): a fast router or engraving machine.
+Machine linuxcnc() {
+  Machine m;
+  m.name = "linuxcnc";
+  m.description = "LinuxCNC 2.9, G64 P0.01, 400 mm/s and 4000 mm/s2 on every axis, 1 ms servo";
+  m.model = ControllerModel::kLinuxcnc;
+  set_xyz(m,
+          {.velocity = 400, .acceleration = 4000, .jerk = Machine::kNone, .rapid_velocity = 400});
+  m.path_feed = 400;
+  m.block_period = 0.001;
+  m.servo_period = 0.001;
+  // What the planner optimises ([TRAJ]ARC_BLEND_OPTIMIZATION_DEPTH); its queue of 2000
+  // blocks is never the limit.
+  m.look_ahead = 50;
+  m.blend_tolerance = 0.01;
+  m.naive_cam_tolerance = 0.01;
+  return m;
+}
+
+// What every grbl 1.1 has in common: 16 MHz, and a serial line of 115200 baud, which is 11,520
+// bytes a second: X12.345Y-6.789 and its line end take 1.3 ms.
+Machine any_grbl() {
+  Machine m;
+  m.model = ControllerModel::kGrbl;
+  m.stream_rate = 11520;
+  m.block_period = 0.0013;
+  m.servo_period = 0.01;  // speeds change in steps of a hundredth of a second (ACCELERATION_TICKS)
+  m.look_ahead = 15;      // the ring of 16 holds one block less
+  m.blend_tolerance = 0;
+  return m;
+}
+
+// What a new grbl answers to `$$` (DEFAULTS_GENERIC of its defaults.h), as far as time goes.
+constexpr std::string_view kGrblDefaults =
+    "$11=0.010\n$12=0.002\n"
+    "$110=500.000\n$111=500.000\n$112=500.000\n"
+    "$120=10.000\n$121=10.000\n$122=10.000\n";
+
+Machine grbl() {
+  std::vector<std::string> problems;
+  auto m = with_grbl_settings(any_grbl(), kGrblDefaults, "default settings", problems);
+  if (!m) throw std::logic_error("grbl: " + problems.front());
+  m->name = "grbl";
+  m->description = "grbl 1.1 as it comes ($110=500, $120=10): for first steps of any machine";
+  return *m;
+}
+
+// A belt-driven hobby router: defaults.h of grbl has such values for the Shapeoko 3.
+Machine router() {
+  Machine m = any_grbl();
+  m.name = "router";
+  m.description = "hobby router, grbl 1.1 at 115200 baud, 5000 mm/min and 400 mm/s2";
+  set_xyz(m, {.velocity = 5000 * kPerMinute,
+              .acceleration = 400,
+              .jerk = Machine::kNone,
+              .rapid_velocity = 5000 * kPerMinute});
+  m.junction_deviation = 0.01;
+  m.arc_tolerance = 0.002;
+  return m;
+}
+
+// A machining centre with an industrial control of which nothing else is known: 20 m/min,
+// a fifth of g, 2 ms a block (500 blocks/s) and 200 blocks of look-ahead are what makers
+// name for mid-range controls; 6 s from chip to chip with a carousel.
+Machine mill() {
+  Machine m;
+  m.name = "mill";
+  m.description = "machining centre, 20 m/min and 2000 mm/s2 on every axis, 500 blocks/s";
+  m.model = ControllerModel::kLookAhead;
+  set_xyz(m, {.velocity = 20000 * kPerMinute,
+              .acceleration = 2000,
+              .jerk = Machine::kNone,
+              .rapid_velocity = 20000 * kPerMinute});
+  m.block_period = 0.002;
+  m.look_ahead = 200;
+  m.blend_tolerance = 0;
+  m.tool_change_time = 6;
+  m.spindle_start_time = 2;
+  return m;
+}
+
+// A high-speed mill for dies: 0.5 ms a block and 1024 blocks ahead are what Heidenhain names for
+// its iTNC 530; 40 m/min, one g and 100 m/s^3 what makers of such machines name.
+Machine high_speed_mill() {
+  Machine m;
+  m.name = "high-speed";
+  m.description = "high-speed mill, 40 m/min, 10 m/s2, jerk 100 m/s3, 2000 blocks/s";
+  m.model = ControllerModel::kLookAhead;
+  set_xyz(m, {.velocity = 40000 * kPerMinute,
+              .acceleration = 10000,
+              .jerk = 100000,
+              .rapid_velocity = 60000 * kPerMinute});
+  m.block_period = 0.0005;
+  m.servo_period = 0.0005;
+  m.look_ahead = 1024;
+  m.blend_tolerance = 0.01;
+  m.tool_change_time = 4;
+  m.spindle_start_time = 1.5;
+  return m;
+}
+
+// A control of the nineties that was fast then: it sees 20 blocks and brakes for what may follow.
+Machine old_mill() {
+  Machine m;
+  m.name = "old-mill";
+  m.description = "old shop control, 10 m/min, 1000 mm/s2, 1000 blocks/s, 20 blocks ahead";
+  m.model = ControllerModel::kLookAhead;
+  set_xyz(m, {.velocity = 10000 * kPerMinute,
+              .acceleration = 1000,
+              .jerk = Machine::kNone,
+              .rapid_velocity = 15000 * kPerMinute});
+  m.block_period = 0.001;
+  m.servo_period = 0.002;
+  m.look_ahead = 20;
+  m.blend_tolerance = 0;
+  m.tool_change_time = 10;
+  m.spindle_start_time = 3;
+  return m;
+}
+
+}  // namespace
+
+std::span<const Machine> built_in_machines() {
+  static const std::array machines = {linuxcnc(), router(),          grbl(),
+                                      mill(),     high_speed_mill(), old_mill()};
+  return machines;
+}
+
+const Machine* find_machine(std::string_view name) {
+  const auto machines = built_in_machines();
+  const auto found = std::find_if(machines.begin(), machines.end(),
+                                  [&](const Machine& m) { return m.name == name; });
+  return found == machines.end() ? nullptr : &*found;
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,198 @@
+#include "postproc/machine/files/grbl_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <map>
+
+#include "postproc/machine/files/value_origin.h"
+
+namespace batten::postproc {
+namespace {
+
+constexpr double kSecondsPerMinute = 60;
+constexpr int kJunctionDeviation = 11;
+constexpr int kArcTolerance = 12;
+constexpr int kMaxRate = 110;       // mm/min of X, then of the other axes
+constexpr int kAcceleration = 120;  // mm/s^2
+
+struct Setting {
+  double value = 0;
+  std::size_t line = 0;
+  std::size_t column = 0;
+};
+
+std::string_view without_blanks_before(std::string_view text) {
+  return text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
+}
+
+// What controls and senders write beside settings: "ok", "[MSG:..]", "<Idle|..>", ">>> $$", the
+// greeting, comments; "$$" itself and settings with names, such as "$N0=".
+bool is_passed_over(std::string_view line) {
+  constexpr std::array<std::string_view, 4> kWords = {"ok", "Grbl", "GrblHAL", "grbl"};
+  constexpr std::string_view kFirstLetters = "[<>;(#%";
+  if (line.empty() || kFirstLetters.find(line.front()) != std::string_view::npos) return true;
+  for (const std::string_view word : kWords) {
+    if (line.starts_with(word)) return true;
+  }
+  return line.front() == '$' && (line.size() == 1 || line[1] < '0' || line[1] > '9');
+}
+
+class DumpReader {
+ public:
+  DumpReader(const std::string& file, std::vector<std::string>& problems)
+      : file_(file), problems_(problems) {}
+
+  void read(std::string_view dump) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (dump.starts_with(kByteOrderMark)) dump.remove_prefix(kByteOrderMark.size());
+    for (std::size_t line = 1; !dump.empty(); ++line) {
+      const std::size_t end = dump.find('\n');
+      read_line(dump.substr(0, end), line);
+      if (end == std::string_view::npos) break;
+      dump.remove_prefix(end + 1);
+    }
+  }
+
+  // Nothing when the setting is not in the dump.
+  [[nodiscard]] const Setting* find(int number) const {
+    const auto found = settings_.find(number);
+    return found == settings_.end() ? nullptr : &found->second;
+  }
+
+ private:
+  void read_line(std::string_view line, std::size_t number) {
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    const std::string_view text = without_blanks_before(line);
+    if (is_passed_over(text)) return;
+    const auto column = static_cast<std::size_t>(text.data() - line.data()) + 1;
+    if (text.starts_with("error") || text.starts_with("ALARM")) {
+      complain(number, column,
+               fmt::format("'{}' is what a control answers that prints no settings", text));
+      return;
+    }
+    if (!read_setting(text, number, column)) {
+      complain(number, column, fmt::format("'{}', expected a setting such as $110=5000.000", text));
+    }
+  }
+
+  // "$110=5000.000 (x max rate, mm/min)"
+  bool read_setting(std::string_view text, std::size_t line, std::size_t column) {
+    if (text.front() != '$') return false;
+    int number = 0;
+    const char* const last = text.data() + text.size();
+    const auto [after_number, bad_number] = std::from_chars(text.data() + 1, last, number);
+    if (bad_number != std::errc{}) return false;
+    std::string_view rest = without_blanks_before({after_number, last});
+    if (!rest.starts_with('=')) return false;
+    rest = without_blanks_before(rest.substr(1));
+    double value = 0;
+    const auto [after_value, bad_value] = std::from_chars(rest.data(), last, value);
+    const std::string_view comment = without_blanks_before({after_value, last});
+    const bool is_number = bad_value == std::errc{} && std::isfinite(value) &&
+                           (comment.empty() || comment.front() == '(' || comment.front() == ';');
+    if (is_number) {
+      const auto at = column + static_cast<std::size_t>(rest.data() - text.data());
+      settings_[number] = {value, line, at};
+      return true;
+    }
+    // Of the settings that do not matter here some are texts (a network's name in grblHAL).
+    return !matters(number);
+  }
+
+  static bool matters(int number) {
+    const auto is_of_axis = [number](int first) {
+      return number >= first && number < first + static_cast<int>(kAxes);
+    };
+    return number == kJunctionDeviation || number == kArcTolerance || is_of_axis(kMaxRate) ||
+           is_of_axis(kAcceleration);
+  }
+
+  void complain(std::size_t line, std::size_t column, const std::string& what) {
+    problems_.push_back(fmt::format("{}:{}:{}: {}", file_, line, column, what));
+  }
+
+  const std::string& file_;
+  std::vector<std::string>& problems_;
+  std::map<int, Setting> settings_;
+};
+
+// Puts settings into the machine and remembers where each came from.
+class Application {
+ public:
+  Application(const DumpReader& dump, Machine& machine, ValueOrigins& origins)
+      : dump_(dump), machine_(machine), origins_(origins) {}
+
+  void apply() {
+    take(kJunctionDeviation, machine_.junction_deviation, {"junction-deviation"});
+    take(kArcTolerance, machine_.arc_tolerance, {"arc-tolerance"});
+    for (std::size_t i = 0; i < kAxes; ++i) take_axis(i);
+  }
+
+  [[nodiscard]] const std::string& missing() const { return missing_; }
+
+ private:
+  void take_axis(std::size_t index) {
+    const auto axis = static_cast<Axis>(index);
+    AxisLimits& limits = machine_.axis(axis);
+    const int offset = static_cast<int>(index);
+    const std::string table = fmt::format("axis.{}.", name_of(axis));
+    const bool required = index < kLinearAxes;
+    if (take(kMaxRate + offset, limits.velocity, {table + "velocity", table + "rapid-velocity"},
+             required)) {
+      limits.velocity /= kSecondsPerMinute;
+      limits.rapid_velocity = limits.velocity;
+    }
+    take(kAcceleration + offset, limits.acceleration, {table + "acceleration"}, required);
+  }
+
+  bool take(int number, double& place, const std::vector<std::string>& keys, bool required = true) {
+    const Setting* setting = dump_.find(number);
+    if (setting == nullptr) {
+      if (required) missing_ += fmt::format("{}${}", missing_.empty() ? "" : ", ", number);
+      return false;
+    }
+    place = setting->value;
+    for (const std::string& key : keys) {
+      origins_.add(key, {fmt::format("${}", number), setting->line, setting->column});
+    }
+    return true;
+  }
+
+  const DumpReader& dump_;
+  Machine& machine_;
+  ValueOrigins& origins_;
+  std::string missing_;
+};
+
+}  // namespace
+
+std::optional<Machine> with_grbl_settings(const Machine& base, std::string_view dump,
+                                          const std::string& file,
+                                          std::vector<std::string>& problems) {
+  const std::size_t problems_before = problems.size();
+  DumpReader reader(file, problems);
+  reader.read(dump);
+  if (problems.size() > problems_before) return std::nullopt;
+
+  Machine machine = base;
+  machine.model = ControllerModel::kGrbl;
+  ValueOrigins origins(file);
+  Application application(reader, machine, origins);
+  application.apply();
+  if (!application.missing().empty()) {
+    problems.push_back(
+        fmt::format("{}: no {} in it, expected all that grbl prints when asked for $$", file,
+                    application.missing()));
+    return std::nullopt;
+  }
+  origins.add_problems_of(machine, problems);
+  if (problems.size() > problems_before) return std::nullopt;
+  return machine;
+}
+
+}  // namespace batten::postproc

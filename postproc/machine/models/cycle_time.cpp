@@ -1,0 +1,106 @@
+#include "postproc/machine/models/cycle_time.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string_view>
+
+#include "geometry/basic/rounding.h"
+#include "postproc/machine/models/controller_models.h"
+#include "postproc/machine/models/junction_speed.h"
+#include "postproc/machine/models/stream_limit.h"
+#include "postproc/machine/models/timed_chain.h"
+
+namespace batten::postproc {
+namespace {
+
+void require_positive(double value, std::string_view name, const Machine& machine) {
+  if (value > 0) return;
+  throw std::invalid_argument(
+      fmt::format("machine \"{}\": {} is {}, expected above 0", machine.name, name, value));
+}
+
+void require_usable(const Machine& machine) {
+  require_positive(machine.max_velocity(), "max_velocity", machine);
+  require_positive(machine.rapid_velocity(), "rapid_velocity", machine);
+  require_positive(machine.max_acceleration(), "max_acceleration", machine);
+  require_positive(machine.path_feed, "path_feed", machine);
+  require_positive(machine.path_acceleration, "path_acceleration", machine);
+  require_positive(machine.block_period, "block_period", machine);
+  require_positive(machine.stream_rate, "stream_rate", machine);
+  require_positive(machine.look_ahead, "look_ahead", machine);
+  if (machine.model != ControllerModel::kGrbl) {
+    require_positive(machine.servo_period, "servo_period", machine);
+  } else {
+    require_positive(machine.junction_deviation, "junction_deviation", machine);
+    require_positive(machine.arc_tolerance, "arc_tolerance", machine);
+  }
+}
+
+// Above any diagonal of the axes (sqrt(3)), so that it limits nothing; mm/min.
+double feed_of(const TimedPiece& p, const Machine& machine) {
+  if (!p.rapid && p.feed > 0) return p.feed;
+  return axis_velocities(machine, p.rapid).maxCoeff() * 60 * 2;
+}
+
+bool has_length(const TimedPiece& p) { return geometry::length_of(p.piece) > geometry::kSamePlace; }
+
+void require_feed(const TimedPiece& p) {
+  if (p.feed >= 0) return;
+  throw std::invalid_argument(fmt::format("feed is {} mm/min, expected 0 or above", p.feed));
+}
+
+}  // namespace
+
+std::vector<TimedPiece> with_length_and_feed(std::span<const TimedPiece> pieces,
+                                             const Machine& machine) {
+  std::vector<TimedPiece> moving;
+  moving.reserve(pieces.size());
+  for (const TimedPiece& p : pieces) {
+    require_feed(p);
+    if (!has_length(p)) continue;
+    moving.push_back(p);
+    moving.back().feed = feed_of(p, machine);
+  }
+  limit_by_stream(moving, machine);
+  return moving;
+}
+
+StretchChain stretches_of(std::span<const TimedPiece> pieces, const Machine& machine,
+                          gcode::PathMode path, ChainEnd end, WithPositions places) {
+  require_usable(machine);
+  switch (machine.model) {
+    case ControllerModel::kLinuxcnc:
+      return linuxcnc_stretches(pieces, machine, path, end, places);
+    case ControllerModel::kGrbl:
+      return grbl_stretches(pieces, machine, path, places);
+    case ControllerModel::kLookAhead:
+      break;
+  }
+  return look_ahead_stretches(pieces, machine, path, places);
+}
+
+TimedChain::TimedChain(std::span<const TimedPiece> pieces, const Machine& machine) {
+  require_usable(machine);
+  moving_ = with_length_and_feed(pieces, machine);
+}
+
+double TimedChain::time(const Machine& machine, gcode::PathMode path, ChainEnd end) const {
+  const StretchChain chain = stretches_of(moving_, machine, path, end, WithPositions::kNo);
+  return profile_time(chain.stretches, chain.rules);
+}
+
+void TimedChain::lift_feeds(const Machine& machine) {
+  for (TimedPiece& p : moving_) {
+    p.feed = 0;
+    p.feed = feed_of(p, machine);
+  }
+  limit_by_stream(moving_, machine);
+}
+
+double cutting_time(std::span<const TimedPiece> pieces, const Machine& machine,
+                    gcode::PathMode path, ChainEnd end) {
+  return TimedChain(pieces, machine).time(machine, path, end);
+}
+
+}  // namespace batten::postproc

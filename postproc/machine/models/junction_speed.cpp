@@ -1,0 +1,90 @@
+#include "postproc/machine/models/junction_speed.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/basic/rounding.h"
+#include "postproc/machine/models/velocity_profile.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::kSameDirection;
+using geometry::Vector3;
+
+Vector3 of_xyz(const Machine& machine, double AxisLimits::*limit) {
+  return {machine.axis(Axis::kX).*limit, machine.axis(Axis::kY).*limit,
+          machine.axis(Axis::kZ).*limit};
+}
+
+// The least of limit / share over the axes that take part.
+double least_ratio(const Vector3& limits, const Vector3& shares) {
+  double least = kNoLimit;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double share = std::abs(shares[i]);
+    if (share > 0) least = std::min(least, limits[i] / share);
+  }
+  return least;
+}
+
+// Arcs of G17, G18 and G19 lie across one axis; a helix moves along it too.
+constexpr double kFlat = 1e-6;  // mm of rise
+
+}  // namespace
+
+Vector3 axis_velocities(const Machine& machine, bool rapid) {
+  return of_xyz(machine, rapid ? &AxisLimits::rapid_velocity : &AxisLimits::velocity);
+}
+
+Vector3 axis_accelerations(const Machine& machine) {
+  return of_xyz(machine, &AxisLimits::acceleration);
+}
+
+Vector3 axis_jerks(const Machine& machine) { return of_xyz(machine, &AxisLimits::jerk); }
+
+double limit_along(const Vector3& direction, const Vector3& limits) {
+  const double limit = least_ratio(limits, direction);
+  return limit < kNoLimit ? limit : limits.minCoeff();
+}
+
+double limit_across(const Vector3& normal, const Vector3& limits) {
+  Vector3 shares;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double square = 1 - normal[i] * normal[i];
+    shares[i] = square > kSameDirection ? std::sqrt(square) : 0;
+  }
+  return least_ratio(limits, shares);
+}
+
+double limit_on(const geometry::PathPiece& piece, const Vector3& limits) {
+  if (std::holds_alternative<geometry::Line>(piece)) {
+    return limit_along(geometry::direction_at(piece, 0), limits);
+  }
+  const auto* arc = std::get_if<geometry::Arc>(&piece);
+  if (arc == nullptr || std::abs(arc->axis.dot(arc->end - arc->start)) > kFlat) {
+    return limits.minCoeff();
+  }
+  return limit_across(arc->axis, limits);
+}
+
+// With phi the angle between the two segments (180 degrees: straight on), the circle of
+// radius R that touches both leaves the corner by R (1 - sin(phi/2)) / sin(phi/2).
+double junction_deviation_speed(const Vector3& before, const Vector3& after, double deviation,
+                                const Vector3& acceleration) {
+  const Vector3 turn = after - before;
+  if (turn.norm() <= kSameDirection) return kNoLimit;
+  const double sin_half = std::sqrt(std::max(0.0, (1 + before.dot(after)) / 2));
+  // 1 - sin_half would lose all digits at small turns: (1 - s)(1 + s) = (1 - dot) / 2.
+  const double one_minus_sin_half = turn.squaredNorm() / 4 / (1 + sin_half);
+  const double along_turn = limit_along(turn.normalized(), acceleration);
+  return std::sqrt(along_turn * deviation * sin_half / one_minus_sin_half);
+}
+
+double velocity_step_speed(const Vector3& before, const Vector3& after, const Vector3& acceleration,
+                           double period) {
+  const Vector3 turn = after - before;
+  if (turn.cwiseAbs().maxCoeff() <= kSameDirection) return kNoLimit;
+  return least_ratio(acceleration * period, turn);
+}
+
+}  // namespace batten::postproc

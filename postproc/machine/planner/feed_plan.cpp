@@ -1,0 +1,328 @@
+#include "postproc/machine/planner/feed_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <variant>
+
+#include "geometry/basic/rounding.h"
+#include "postproc/machine/planner/feed_estimate_parts.h"
+#include "postproc/machine/planner/feed_plan_envelope.h"
+#include "postproc/machine/planner/feed_plan_grid.h"
+#include "postproc/machine/planner/feed_plan_path.h"
+#include "postproc/machine/planner/feed_plan_problem.h"
+#include "postproc/machine/planner/feed_plan_refine.h"
+#include "postproc/machine/planner/feed_plan_solver.h"
+#include "postproc/machine/planner/feed_plan_straight.h"
+#include "postproc/machine/planner/feed_plan_straight_nodes.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Path;
+using geometry::PathPiece;
+
+// A straight move is not refined, so it has more nodes from the start.
+constexpr double kStraightDensity = 2;
+
+// A joint so many times slower than the envelope of the speeds on both sides is passed at its speed
+// without acceleration. An acceleration there wins at most 0.15 times the square of the ratio of
+// the speeds, as part of the time of a ramp; the envelope is 1.65 times what jerk allows between
+// two rests: 1.6e-5.
+constexpr double kSlowJoint = 160;
+
+// The first solution only says where nodes are missing.
+constexpr SearchRule kRough = {0.5, 1e-3, 0.2};
+
+// The next start from it, near to what they find.
+constexpr SearchRule kFine = {0.02, 2e-5, 0.02};
+
+// Intervals are cut where the jerk switches, once, and where a limit is exceeded between the places
+// that were asked, until it is so by less than half a percent; three times are rarely needed.
+constexpr std::array<RefineRule, 4> kRefinements = {RefineRule{0.002, 0.5}, RefineRule{0.004, 2},
+                                                    RefineRule{0.004, 2}, RefineRule{0.004, 2}};
+
+// Parameters this close are the same: rounding of sums.
+constexpr double kSameParameter = 1e-12;
+
+// Distances of the ends of the pieces from the start of the first.
+std::vector<double> ends_of_pieces(const Path& pieces) {
+  std::vector<double> ends;
+  double sum = 0;
+  for (const PathPiece& piece : pieces) ends.push_back(sum += geometry::length_of(piece));
+  return ends;
+}
+
+class Planner {
+ public:
+  Planner(const KinematicPathLimits& limits, const FeedPlanOptions& options)
+      : limits_(limits), options_(options), potential_(limits) {}
+
+  FeedPlan run(std::span<const PathPiece> path, const PlanEnds& ends);
+
+ private:
+  // What the pieces between two stops are, and where they come from.
+  struct Chain {
+    Path pieces;
+    std::vector<std::size_t> numbers;  // of the pieces in the path
+    std::vector<double> bounds;        // mm/s at their ends
+    bool slow_start = false;           // at the bound, without acceleration
+    bool slow_end = false;
+  };
+
+  void plan_chain(const Chain& chain);
+  [[nodiscard]] std::vector<std::size_t> slow_joints(const Chain& chain) const;
+  void plan_part(const Chain& chain);
+  void plan_straight(const Chain& chain, double length);
+  void plan_straight_run(const Chain& chain, double length);
+  template <typename StateAt>
+  void add_straight_nodes(const Chain& chain, const std::vector<double>& ends,
+                          const std::vector<double>& times, const StateAt& state_of);
+  void plan_bent(const Chain& chain);
+  void start_nodes(const Chain& chain, double speed, double acceleration);
+  void add_node(std::size_t piece, double t, double length, double seconds, double speed,
+                double acceleration);
+
+  const KinematicPathLimits& limits_;
+  const FeedPlanOptions& options_;
+  Potential potential_;
+  FeedPlan plan_;
+};
+
+FeedPlan Planner::run(std::span<const PathPiece> path, const PlanEnds& ends) {
+  Chain chain;
+  chain.bounds.push_back(ends.start_speed);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (!(geometry::length_of(path[i]) > geometry::kSamePlace)) continue;
+    if (!chain.pieces.empty()) {
+      const double bound = passing_speed(derivatives_by_length(chain.pieces.back(), 1),
+                                         derivatives_by_length(path[i], 0), potential_, limits_);
+      chain.bounds.push_back(bound);
+      if (bound == 0) {
+        ++plan_.stops;
+        plan_chain(chain);
+        chain = {};
+        chain.bounds.push_back(0);
+      } else if (!std::isinf(bound)) {
+        ++plan_.passed_jumps;
+      }
+    }
+    chain.pieces.push_back(path[i]);
+    chain.numbers.push_back(i);
+  }
+  if (!chain.pieces.empty()) {
+    chain.bounds.push_back(ends.end_speed);
+    plan_chain(chain);
+  }
+  return std::move(plan_);
+}
+
+// The joints, as numbers of the pieces after them, at which the chain falls into parts.
+std::vector<std::size_t> Planner::slow_joints(const Chain& chain) const {
+  PartChain envelope;
+  for (std::size_t i = 0; i < chain.pieces.size(); ++i) {
+    if (i > 0) envelope.parts.back().end_bound = chain.bounds[i];
+    append_parts(chain.pieces[i], i, ends_of(chain.pieces[i]), potential_, limits_, envelope.parts);
+  }
+  envelope.find_potentials(chain.bounds.front(), chain.bounds.back(), potential_);
+  std::vector<std::size_t> joints;
+  for (const std::size_t part : envelope.slow_joints(kSlowJoint, potential_)) {
+    joints.push_back(envelope.parts[part].piece);
+  }
+  return joints;
+}
+
+void Planner::plan_chain(const Chain& chain) {
+  Chain part;
+  part.bounds.push_back(chain.bounds.front());
+  std::size_t next = 0;
+  const auto add_until = [&](std::size_t end) {
+    for (; next < end; ++next) {
+      part.pieces.push_back(chain.pieces[next]);
+      part.numbers.push_back(chain.numbers[next]);
+      part.bounds.push_back(chain.bounds[next + 1]);
+    }
+  };
+  if (chain.pieces.size() > 1) {
+    for (const std::size_t joint : slow_joints(chain)) {
+      add_until(joint);
+      part.slow_end = true;
+      plan_part(part);
+      part = {};
+      part.bounds.push_back(chain.bounds[joint]);
+      part.slow_start = true;
+    }
+  }
+  add_until(chain.pieces.size());
+  plan_part(part);
+}
+
+void Planner::plan_part(const Chain& chain) {
+  const bool slow_start = chain.slow_start || chain.bounds.front() == 0;
+  const bool slow_end = chain.slow_end || chain.bounds.back() == 0;
+  const bool straight = std::all_of(
+      chain.pieces.begin(), chain.pieces.end(),
+      [](const PathPiece& piece) { return std::holds_alternative<geometry::Line>(piece); });
+  const bool runs_on = std::all_of(chain.bounds.begin() + 1, chain.bounds.end() - 1,
+                                   [](double bound) { return std::isinf(bound); });
+  if (!(slow_start && slow_end && straight && runs_on)) return plan_bent(chain);
+  const double length = geometry::length_of(chain.pieces);
+  if (chain.slow_start || chain.slow_end) {
+    plan_straight_run(chain, length);
+  } else {
+    plan_straight(chain, length);
+  }
+}
+
+void Planner::start_nodes(const Chain& chain, double speed, double acceleration) {
+  if (plan_.nodes.empty()) plan_.nodes.emplace_back();
+  FeedPlanNode& node = plan_.nodes.back();
+  node.speed = speed;
+  node.acceleration = acceleration;
+  node.piece = chain.numbers.front();
+  node.t = 0;
+}
+
+// A node `length` mm and some seconds after the last one.
+void Planner::add_node(std::size_t piece, double t, double length, double seconds, double speed,
+                       double acceleration) {
+  FeedPlanNode node;
+  node.distance = plan_.nodes.back().distance + length;
+  node.speed = speed;
+  node.acceleration = acceleration;
+  plan_.time += seconds;
+  node.time = plan_.time;
+  node.piece = piece;
+  node.t = t;
+  plan_.nodes.push_back(node);
+}
+
+void Planner::plan_straight(const Chain& chain, double length) {
+  const geometry::Vector3 direction = geometry::direction_at(chain.pieces.front(), 0);
+  const StraightMove move = straight_move(length, limits_along(direction, limits_));
+  start_nodes(chain, 0, state_at(move, 0).acceleration);
+  const std::vector<double> ends = ends_of_pieces(chain.pieces);
+  add_straight_nodes(chain, ends, node_times(move, ends, kStraightDensity * options_.density),
+                     [&](double time) { return state_at(move, time); });
+}
+
+void Planner::plan_straight_run(const Chain& chain, double length) {
+  const geometry::Vector3 direction = geometry::direction_at(chain.pieces.front(), 0);
+  const LimitsAlong along = limits_along(direction, limits_);
+  const StraightRun run = straight_run(length, chain.bounds.front(), chain.bounds.back(), along);
+  start_nodes(chain, run.from, 0);
+  const std::vector<double> ends = ends_of_pieces(chain.pieces);
+  add_straight_nodes(chain, ends, node_times(run, along, ends, kStraightDensity * options_.density),
+                     [&](double time) { return state_at(run, time, along); });
+}
+
+template <typename StateAt>
+void Planner::add_straight_nodes(const Chain& chain, const std::vector<double>& ends,
+                                 const std::vector<double>& times, const StateAt& state_of) {
+  std::size_t piece = 0;
+  StraightState last;
+  double last_time = 0;
+  for (const double time : times) {
+    const StraightState state = state_of(time);
+    const double from = piece > 0 ? ends[piece - 1] : 0;
+    double t = (state.distance - from) / (ends[piece] - from);
+    if (t > 1 - kSameParameter && piece + 1 < chain.pieces.size()) {
+      ++piece;
+      t = 0;
+    }
+    add_node(chain.numbers[piece], std::min(t, 1.0), state.distance - last.distance,
+             time - last_time, state.speed, state.acceleration);
+    last = state;
+    last_time = time;
+  }
+}
+
+void Planner::plan_bent(const Chain& chain) {
+  PlanGrid grid = make_plan_grid(chain.pieces, chain.bounds, limits_, options_.density);
+  grid.slow_start = chain.slow_start;
+  grid.slow_end = chain.slow_end;
+  PlanProblem problem = make_plan_problem(chain.pieces, grid, limits_);
+  PlanSolution solution = fastest_plan(problem, rough_start(problem, grid), kRough);
+  const auto rounds = static_cast<std::size_t>(std::clamp(options_.refinements, 0, 4));
+  for (const RefineRule& rule : std::span(kRefinements).first(rounds)) {
+    PlanGrid finer_grid = grid;
+    std::vector<double> start = solution.x;
+    const std::size_t cut = refine_plan(chain.pieces, limits_, problem, rule, finer_grid, start);
+    const bool first = &rule == &kRefinements.front();
+    if (cut == 0 && !first) break;
+    PlanProblem finer = cut > 0 ? make_plan_problem(chain.pieces, finer_grid, limits_) : problem;
+    const bool sound = raise_above_zero(finer, start);
+    PlanSolution found = sound ? fastest_plan(finer, std::move(start), kFine)
+                               : fastest_plan(finer, rough_start(finer, finer_grid), kRough);
+    // The search may lose itself where the speed is next to nothing within the path.
+    if (!std::isfinite(found.seconds)) break;
+    grid = std::move(finer_grid);
+    problem = std::move(finer);
+    solution = std::move(found);
+  }
+  const auto& x = solution.x;
+  const std::size_t n = problem.intervals();
+  const auto& intervals = grid.intervals;
+  const bool from_rest = problem.start.length > 0;
+  // The place where interval k ends is where the next one starts.
+  const auto add = [&](std::size_t k, double seconds, double q, double p) {
+    const bool last = k + 1 == intervals.size();
+    const GridInterval& at = last ? intervals[k] : intervals[k + 1];
+    add_node(chain.numbers[at.piece], last ? at.t1 : at.t0, intervals[k].length, seconds,
+             std::sqrt(q), p / 2);
+  };
+  std::size_t k = 0;
+  if (from_rest) {
+    start_nodes(chain, 0, problem.start.acceleration_at_rest(x[0]));
+    add(k++, problem.start.time() / std::sqrt(x[0]), x[0], x[1]);
+  } else {
+    start_nodes(chain, std::sqrt(x[0]), x[1] / 2);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    add(k++, interval_seconds(problem.lengths[i], x.data() + 2 * i), x[2 * i + 2], x[2 * i + 3]);
+  }
+  if (problem.end.length > 0) {
+    add(k, problem.end.time() / std::sqrt(x[2 * n]), 0,
+        -2 * problem.end.acceleration_at_rest(x[2 * n]));
+  }
+}
+
+void require_sound(const PlanEnds& ends) {
+  if (ends.start_speed >= 0 && ends.end_speed >= 0) return;
+  throw std::invalid_argument("plan_feed: end speeds " + std::to_string(ends.start_speed) +
+                              " and " + std::to_string(ends.end_speed) + ", expected 0 or more");
+}
+
+}  // namespace
+
+FeedPlan plan_feed(std::span<const PathPiece> path, const KinematicPathLimits& limits,
+                   const PlanEnds& ends, const FeedPlanOptions& options) {
+  require_sound(limits);
+  require_sound(ends);
+  return Planner(limits, options).run(path, ends);
+}
+
+FeedPlan plan_feed(const geometry::BsplineCurve& curve, const KinematicPathLimits& limits,
+                   const PlanEnds& ends, const FeedPlanOptions& options) {
+  return plan_feed(path_of(curve), limits, ends, options);
+}
+
+double planned_time(std::span<const PathPiece> path, const KinematicPathLimits& limits,
+                    const PlanEnds& ends, const FeedPlanOptions& options) {
+  return plan_feed(path, limits, ends, options).time;
+}
+
+double planned_time(const geometry::BsplineCurve& curve, const KinematicPathLimits& limits,
+                    const PlanEnds& ends, const FeedPlanOptions& options) {
+  return plan_feed(curve, limits, ends, options).time;
+}
+
+Path path_of(const geometry::BsplineCurve& curve) {
+  const auto pieces = curve.bezier_pieces();
+  return {pieces.begin(), pieces.end()};
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,83 @@
+// The least time in which a machine can run a given path: jerk-limited feed planning.
+// Method: docs/algorithms/feed_planning.md.
+//
+// What jumps is not hidden. At a kink (the direction jumps) the plan stops, unless the jump in
+// speed that it makes is within what KinematicPathLimits allows; where the curvature jumps it slows
+// down until the acceleration jumps no more than is allowed there. Both are counted.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "geometry/path/bspline_curve.h"
+#include "geometry/path/path.h"
+#include "postproc/machine/planner/feed_plan_limits.h"
+
+namespace batten::postproc {
+
+// The greatest speeds at both ends, mm/s, each passed with any acceleration; 0 is rest, with
+// acceleration 0.
+struct PlanEnds {
+  double start_speed = 0;
+  double end_speed = 0;
+};
+
+struct FeedPlanOptions {
+  // Nodes in the time sqrt(v / jerk), half of what the machine needs for a change of its speed
+  // by v; more where the plan needs them. The error of the time falls with the square of it.
+  double density = 6;
+  // Rounds in which the plan gets nodes where they are missing, at most 4; fewer are made where
+  // fewer do.
+  int refinements = 4;
+};
+
+// For a choice between many candidates: a time that is right to about 0.2 %, mostly too long, of a
+// plan that may exceed limits by a quarter for an instant between its nodes.
+inline constexpr FeedPlanOptions kQuickPlan = {4, 0};
+
+// Between two nodes speed^2 is a cubic of the distance; next to rest it is a power of the distance,
+// that of constant jerk (of constant acceleration where the jerk has no limit).
+struct FeedPlanNode {
+  double distance = 0;      // mm from the start of the path
+  double speed = 0;         // mm/s
+  double acceleration = 0;  // mm/s^2 along the path
+  double time = 0;          // s
+  std::size_t piece = 0;    // where that is, for the interval that starts here
+  double t = 0;
+};
+
+struct FeedPlan {
+  std::vector<FeedPlanNode> nodes;  // of a path without length: none
+  double time = 0;                  // s
+  int stops = 0;                    // at kinks, both ends not counted
+  int passed_jumps = 0;             // joints passed with an allowed jump in speed or acceleration
+};
+
+// No limit is exceeded at the nodes and in the middle between them; between those by some 0.1 %
+// and at most 0.5 % with the default options. The time is that of a local optimum (the jerk limit
+// is not convex), from above, within a few 1e-4 on the paths whose optimum is known.
+//
+// Throws std::invalid_argument for limits that are not sound (require_sound) or negative end
+// speeds.
+[[nodiscard]] FeedPlan plan_feed(std::span<const geometry::PathPiece> path,
+                                 const KinematicPathLimits& limits, const PlanEnds& ends = {},
+                                 const FeedPlanOptions& options = {});
+
+// Requires degree 3 or less.
+[[nodiscard]] FeedPlan plan_feed(const geometry::BsplineCurve& curve,
+                                 const KinematicPathLimits& limits, const PlanEnds& ends = {},
+                                 const FeedPlanOptions& options = {});
+
+// Seconds; the time of the plan. Linear cost.
+[[nodiscard]] double planned_time(std::span<const geometry::PathPiece> path,
+                                  const KinematicPathLimits& limits, const PlanEnds& ends = {},
+                                  const FeedPlanOptions& options = {});
+[[nodiscard]] double planned_time(const geometry::BsplineCurve& curve,
+                                  const KinematicPathLimits& limits, const PlanEnds& ends = {},
+                                  const FeedPlanOptions& options = {});
+
+// The curve as a path: its Bezier pieces.
+[[nodiscard]] geometry::Path path_of(const geometry::BsplineCurve& curve);
+
+}  // namespace batten::postproc

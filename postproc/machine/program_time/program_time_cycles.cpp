@@ -1,0 +1,119 @@
+#include "postproc/machine/program_time/program_time_cycles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gcode/state/control_state.h"
+#include "geometry/basic/rounding.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Point3;
+
+// How far above the bottom a peck comes back: LinuxCNC's 0.010 inch; others have a parameter
+// of about that size.
+constexpr double kPeckClearance = 0.254;
+
+// More repeats or pecks than a drill can stand are a slip in the program.
+constexpr int kMostRepeats = 10000;
+
+double millimetres(double value, const gcode::ModalState& state) {
+  return state.units == gcode::Units::kInch ? value * gcode::kMillimetresPerInch : value;
+}
+
+void read_into(std::optional<double>& place, const gcode::Word* word,
+               const gcode::ModalState& state) {
+  if (word != nullptr && word->is_number) place = millimetres(word->value, state);
+}
+
+// The moves of one hole, and where the tool is.
+class HoleMoves {
+ public:
+  HoleMoves(std::vector<CycleMove>& moves, const Point3& from) : moves_(moves), at_(from) {}
+
+  void to(StepKind kind, const Point3& place) {
+    if ((place - at_).norm() > geometry::kSamePlace) moves_.push_back({kind, {at_, place}, 0});
+    at_ = place;
+  }
+  void to_z(StepKind kind, double z) { to(kind, {at_.x(), at_.y(), z}); }
+  void dwell(double seconds) {
+    if (seconds > 0) moves_.push_back({StepKind::kDwell, {at_, at_}, seconds});
+  }
+  void start_spindle() { moves_.push_back({StepKind::kSpindle, {at_, at_}, 0}); }
+
+  [[nodiscard]] const Point3& at() const { return at_; }
+
+ private:
+  std::vector<CycleMove>& moves_;
+  Point3 at_;
+};
+
+// G83 comes up to R after each peck, G73 by the clearance only.
+void peck(HoleMoves& hole, double r, double bottom, double depth, bool to_top) {
+  for (double z = r - depth; z > bottom + geometry::kSamePlace; z -= depth) {
+    hole.to_z(StepKind::kCut, z);
+    if (to_top) {
+      hole.to_z(StepKind::kRapid, r);
+      hole.to_z(StepKind::kRapid, std::min(r, z + kPeckClearance));
+    } else {
+      hole.to_z(StepKind::kRapid, std::min(r, z + kPeckClearance));
+    }
+  }
+  hole.to_z(StepKind::kCut, bottom);
+}
+
+}  // namespace
+
+bool is_drilling_cycle(gcode::Code code) {
+  return code == 730 || code == 890 || (code >= 810 && code <= 860);
+}
+
+void DrillingCycle::read(const gcode::BlockWords& words, const gcode::ModalState& state,
+                         std::optional<double> dwell) {
+  read_into(z_, words.find('Z'), state);
+  read_into(r_, words.find('R'), state);
+  read_into(peck_, words.find('Q'), state);
+  if (dwell) dwell_ = *dwell;
+}
+
+std::optional<std::vector<CycleMove>> DrillingCycle::moves(const gcode::BlockWords& words,
+                                                           const gcode::ModalState& state,
+                                                           const Point3& from) const {
+  const bool pecks = code_ == 730 || code_ == 830;
+  if (!z_ || !r_ || (pecks && !(peck_ && *peck_ > 0))) return std::nullopt;
+  const bool incremental = state.distance == gcode::DistanceMode::kIncremental;
+  const double r = incremental ? initial_z_ + *r_ : *r_;
+  const double bottom = incremental ? r + *z_ : *z_;
+  if (bottom > r || (pecks && (r - bottom) / *peck_ > kMostRepeats)) return std::nullopt;
+
+  const gcode::Word* repeats = words.has('L') ? words.find('L') : words.find('K');
+  const int holes = repeats == nullptr
+                        ? 1
+                        : static_cast<int>(std::clamp(repeats->value, 0.0, double(kMostRepeats)));
+  const auto step = [&](char axis, double at) {
+    const gcode::Word* word = words.find(axis);
+    if (word == nullptr) return at;
+    return millimetres(word->value, state) + (incremental ? at : 0);
+  };
+  std::vector<CycleMove> moves;
+  HoleMoves hole(moves, from);
+  for (int i = 0; i < holes; ++i) {
+    if (hole.at().z() < r) hole.to_z(StepKind::kRapid, r);
+    hole.to(StepKind::kRapid, {step('X', hole.at().x()), step('Y', hole.at().y()), hole.at().z()});
+    hole.to_z(StepKind::kRapid, r);
+    if (pecks) {
+      peck(hole, r, bottom, *peck_, code_ == 830);
+    } else {
+      hole.to_z(StepKind::kCut, bottom);
+    }
+    if (code_ == 820 || code_ == 860 || code_ == 890) hole.dwell(dwell_);
+    const bool feeds_out = code_ == 840 || code_ == 850 || code_ == 890;
+    if (feeds_out) hole.to_z(StepKind::kCut, r);
+    hole.to_z(StepKind::kRapid, returns_to_initial_ ? std::max(initial_z_, r) : r);
+    if (code_ == 860) hole.start_spindle();
+  }
+  return moves;
+}
+
+}  // namespace batten::postproc

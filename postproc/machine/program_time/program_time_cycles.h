@@ -1,0 +1,53 @@
+// Canned cycles of drilling along Z, as the moves that controls make of them: G73, G81 to G86
+// and G89 in the plane XY.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "gcode/state/block_words.h"
+#include "gcode/state/modal_state.h"
+#include "geometry/path/path.h"
+#include "postproc/machine/program_time/program_time_steps.h"
+
+namespace batten::postproc {
+
+[[nodiscard]] bool is_drilling_cycle(gcode::Code code);
+
+struct CycleMove {
+  StepKind kind = StepKind::kCut;  // kCut, kRapid, kDwell, kSpindle
+  geometry::Line line;             // kCut, kRapid; may have no length
+  double seconds = 0;              // kDwell
+};
+
+// The words of a cycle that stay for its later holes, in mm as programmed.
+class DrillingCycle {
+ public:
+  explicit DrillingCycle(gcode::Code code, double initial_z) : code_(code), initial_z_(initial_z) {}
+
+  [[nodiscard]] gcode::Code code() const { return code_; }
+
+  // `dwell` is what the P of this block means in seconds, where it stands.
+  void read(const gcode::BlockWords& words, const gcode::ModalState& state,
+            std::optional<double> dwell);
+  // G98: back to the height at the start of the cycle; G99: to R.
+  void set_return_to_initial(bool initial) { returns_to_initial_ = initial; }
+  void change_code(gcode::Code code) { code_ = code; }
+
+  // The moves of one block from `from`: L (or K) times the hole. Nothing where Z or R was never
+  // given, a peck has no depth, or the bottom is not below R.
+  [[nodiscard]] std::optional<std::vector<CycleMove>> moves(const gcode::BlockWords& words,
+                                                            const gcode::ModalState& state,
+                                                            const geometry::Point3& from) const;
+
+ private:
+  gcode::Code code_;
+  double initial_z_;
+  bool returns_to_initial_ = true;
+  std::optional<double> z_;
+  std::optional<double> r_;
+  std::optional<double> peck_;
+  double dwell_ = 0;  // s
+};
+
+}  // namespace batten::postproc

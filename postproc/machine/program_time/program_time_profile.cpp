@@ -1,0 +1,139 @@
+#include "postproc/machine/program_time/program_time_profile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "postproc/machine/models/chain_motion.h"
+#include "postproc/machine/program_time/program_time_chains.h"
+#include "postproc/machine/unit_sizes.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Point3;
+using geometry::Vector3;
+
+// Places further apart than this, where one chain ends and the next begins, are a jump: the
+// program's text does not say how the tool came there (mm). Printed places differ by less.
+constexpr double kJump = 1e-3;
+
+class Sampler {
+ public:
+  Sampler(const gcode::Program& program, const ProgramSteps& steps, double period,
+          const std::function<bool(const ProfileSample&)>& use)
+      : program_(program), steps_(steps), period_(period), use_(use) {}
+
+  void run(const RunChain& chain) {
+    if (stopped_) return;
+    if (chain.pieces.empty()) return wait(chain);
+    const ChainMotion motion(chain.stretches);
+    for (std::size_t i = 0; i < chain.stretches.places.size() && !stopped_; ++i) {
+      run_stretch(chain, motion, i);
+    }
+    start_ += motion.duration();
+  }
+
+  // The sample behind the end.
+  void finish() {
+    if (!stopped_ && !(samples_ == 0 && start_ == 0)) emit(place_);
+  }
+
+  [[nodiscard]] bool stopped() const { return stopped_; }
+
+ private:
+  [[nodiscard]] double next_time() const { return static_cast<double>(samples_) * period_; }
+
+  void wait(const RunChain& chain) {
+    line_ = line_of(chain.steps.front());
+    const double end = start_ + chain.seconds;
+    while (next_time() < end && !stopped_) emit(place_);
+    start_ = end;
+  }
+
+  void run_stretch(const RunChain& chain, const ChainMotion& motion, std::size_t i) {
+    const StretchPlace& place = chain.stretches.places[i];
+    const Point3 first = geometry::start_point(place.path);
+    if (!moved_ || (first - place_).norm() > kJump) begin_at(first);
+    const double end = start_ + motion.end_of(i);
+    while (next_time() < end && !stopped_) {
+      const double share = motion.share_at(i, next_time() - start_);
+      line_ = line_of(chain.steps[piece_at(chain, place, share)]);
+      emit(geometry::point_at(place.path, share));
+    }
+    line_ = line_of(chain.steps[place.last_piece]);
+    place_ = geometry::end_point(place.path);
+  }
+
+  // Which of the pieces that share a stretch is run at this share of its way.
+  static std::uint32_t piece_at(const RunChain& chain, const StretchPlace& place, double share) {
+    if (place.first_piece == place.last_piece) return place.first_piece;
+    if (place.is_corner) return share < 0.5 ? place.first_piece : place.last_piece;
+    double length = 0;
+    for (auto p = place.first_piece; p <= place.last_piece; ++p) {
+      length += geometry::length_of(chain.pieces[p].piece);
+    }
+    double way = share * length;
+    for (auto p = place.first_piece; p < place.last_piece; ++p) {
+      way -= geometry::length_of(chain.pieces[p].piece);
+      if (way <= 0) return p;
+    }
+    return place.last_piece;
+  }
+
+  [[nodiscard]] std::uint32_t line_of(std::uint32_t step) const {
+    return program_.blocks[steps_.steps[step].block].line;
+  }
+
+  void begin_at(const Point3& place) {
+    moved_ = true;
+    place_ = last_ = place;
+    velocity_.setZero();
+    acceleration_.setZero();
+  }
+
+  void emit(const Point3& place) {
+    const Vector3 velocity = (place - last_) / period_;
+    const Vector3 acceleration = (velocity - velocity_) / period_;
+    ProfileSample sample;
+    sample.time = next_time();
+    sample.line = line_;
+    sample.place = place;
+    sample.feed = velocity.norm() * kMinute;
+    sample.acceleration = acceleration;
+    sample.jerk = (acceleration - acceleration_) / period_;
+    last_ = place;
+    velocity_ = velocity;
+    acceleration_ = acceleration;
+    ++samples_;
+    stopped_ = !use_(sample);
+  }
+
+  const gcode::Program& program_;
+  const ProgramSteps& steps_;
+  double period_;
+  const std::function<bool(const ProfileSample&)>& use_;
+  std::size_t samples_ = 0;
+  double start_ = 0;  // s: of what is run now
+  std::uint32_t line_ = 0;
+  bool moved_ = false;
+  bool stopped_ = false;
+  Point3 place_ = Point3::Zero();  // where the stretch before ended
+  Point3 last_ = Point3::Zero();   // of the sample before
+  Vector3 velocity_ = Vector3::Zero();
+  Vector3 acceleration_ = Vector3::Zero();
+};
+
+}  // namespace
+
+bool sample_program(const gcode::Program& program, const ProgramSteps& steps,
+                    const Machine& machine, double period,
+                    const std::function<bool(const ProfileSample&)>& use) {
+  if (!(period > 0)) throw std::invalid_argument("sample_program: the period must be above 0");
+  Sampler sampler(program, steps, period, use);
+  for_each_chain(program, steps, machine, [&](const RunChain& chain) { sampler.run(chain); });
+  sampler.finish();
+  return !sampler.stopped();
+}
+
+}  // namespace batten::postproc

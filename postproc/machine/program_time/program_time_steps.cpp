@@ -1,0 +1,506 @@
+#include "postproc/machine/program_time/program_time_steps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "gcode/state/control_state.h"
+#include "gcode/state/reason.h"
+#include "postproc/machine/program_time/program_time_cycles.h"
+#include "postproc/machine/program_time/program_time_dwell.h"
+#include "postproc/machine/program_time/program_time_place.h"
+
+namespace batten::postproc {
+namespace {
+
+using gcode::BlockKind;
+using gcode::BlockWords;
+using gcode::Code;
+using gcode::ModalState;
+using gcode::PathMode;
+using gcode::TriState;
+namespace reason = gcode::reason;
+
+// The control bends or shifts the programmed path.
+bool is_path_changed(const ModalState& s) {
+  const std::array changes = {s.cutter_compensation,
+                              s.tool_center_point,
+                              s.tilted_plane,
+                              s.scaling,
+                              s.rotation,
+                              s.mirror,
+                              s.polar,
+                              s.cylindrical,
+                              s.control_smoothing,
+                              s.lathe_diameter};
+  return std::ranges::any_of(changes, [](TriState t) { return t == TriState::kOn; });
+}
+
+class StepReader {
+ public:
+  StepReader(const gcode::Program& program, const gcode::Interpretation& meaning,
+             const StepOptions& options)
+      : program_(program), meaning_(meaning), options_(options) {
+    read_.controls.emplace_back();
+    read_.steps.reserve(meaning.motions.size());
+    if (options.start) place_.set(*options.start);
+  }
+
+  ProgramSteps run() {
+    for (index_ = 0; index_ < program_.blocks.size() && !ended_; ++index_) read_block();
+    if (ended_) note_what_follows();
+    return std::move(read_);
+  }
+
+ private:
+  [[nodiscard]] const gcode::Block& block() const { return program_.blocks[index_]; }
+  [[nodiscard]] const gcode::BlockMeaning& block_meaning() const { return meaning_.blocks[index_]; }
+  [[nodiscard]] const ModalState& state() const {
+    return meaning_.states[block_meaning().state_after];
+  }
+  void note(std::string_view id) { read_.not_timed.add(id, block().line); }
+
+  void read_block() {
+    const gcode::BlockMeaning& m = block_meaning();
+    if (m.of_curve) return add_curve_piece();
+    switch (m.kind) {
+      case BlockKind::kEmpty:
+        return;
+      case BlockKind::kMotion:
+        return add_motion(BlockWords(program_.words_of(block())));
+      case BlockKind::kSettings:
+      case BlockKind::kMotionAndMore:
+        return read_words(BlockWords(program_.words_of(block())));
+      case BlockKind::kOpaque:
+        return read_opaque();
+    }
+  }
+
+  // --- blocks that are not understood -------------------------------------------------------
+
+  void read_opaque() {
+    const gcode::BlockMeaning& m = block_meaning();
+    if (m.barrier == reason::kProgramMark || m.barrier == reason::kAssignment) return;
+    const BlockWords words(program_.words_of(block()));
+    const bool exact_stop = m.barrier == reason::kExactStop && words.has_g(90) && is_line_mode();
+    if (exact_stop && words.all_numbers() && words.has_any("XYZ")) {
+      read_words(words);
+      add_placed(line_of_words(words, state(), place_), words);
+      read_.steps.back().stops_after = true;
+      return;
+    }
+    if (words.has_words() || block().opacity != gcode::ParseStatus::kNone) note(m.barrier);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (words.has("XYZ"[axis])) place_.forget_axis(axis);
+    }
+    if (state().motion == gcode::MotionMode::kUnknown) place_.forget();
+    cycle_.reset();
+    add_rest();
+  }
+
+  [[nodiscard]] bool is_line_mode() const {
+    return state().motion == gcode::MotionMode::kRapid ||
+           state().motion == gcode::MotionMode::kLine;
+  }
+
+  // --- words --------------------------------------------------------------------------------
+
+  void read_words(const BlockWords& words) {
+    if (const gcode::Word* t = words.find('T'); t != nullptr && t->is_number) {
+      selected_ = static_cast<std::int32_t>(t->value);
+      if (!changes_by_m6()) change_tool(selected_);
+    }
+    for (const Code code : words.m_codes()) read_m(code);
+    if (words.has('S') && !words.has_m(30) && !words.has_m(40)) add_rest();
+    for (const Code code : words.g_codes()) read_g(code, words);
+    if (block_meaning().motion >= 0) {
+      add_motion(words);
+    } else if (state().motion == gcode::MotionMode::kOther) {
+      read_other_motion(words);
+    } else {
+      cycle_.reset();
+      add_rotary(words);
+    }
+    for (const Code code : words.m_codes()) read_late_m(code);
+  }
+
+  // A lathe's T changes the tool at once; where a program says M6, T only gets it ready.
+  bool changes_by_m6() {
+    if (!has_m6_) {
+      has_m6_ = std::ranges::any_of(program_.words, [](const gcode::Word& w) {
+        return w.letter == 'M' && w.is_number && w.value == 6;
+      });
+    }
+    return *has_m6_;
+  }
+
+  void change_tool(std::int32_t tool) {
+    tool_ = tool;
+    add_wait(StepKind::kToolChange, 0);
+    place_.doubt();
+  }
+
+  void read_m(Code code) {
+    switch (code / 10) {
+      case 3:
+      case 4:
+        return add_wait(StepKind::kSpindle, 0);
+      case 6:
+        return change_tool(selected_);
+      case 0:  // at the end of the block
+      case 1:
+      case 2:
+      case 30:
+      case 60:
+      case 48:  // override switches
+      case 49:
+      case 97:  // calls: said with their own reason
+      case 98:
+      case 99:
+      case 198:
+        return;
+      case 5:
+      case 7:
+      case 8:
+      case 9:
+      case 19:
+      case 61:
+        return add_rest();
+      default:
+        note(reason::kMiscFunction);
+        return add_rest();
+    }
+  }
+
+  void read_late_m(Code code) {
+    switch (code / 10) {
+      case 0:
+      case 1:
+      case 60:
+        note(not_timed::kOperatorStop);
+        return add_rest();
+      case 2:
+      case 30:
+        ended_ = true;
+        return;
+      case 97:
+      case 98:
+      case 99:
+      case 198:
+        note(reason::kSubprogram);
+        place_.forget();
+        return add_rest();
+      default:
+        return;
+    }
+  }
+
+  void read_g(Code code, const BlockWords& words) {
+    switch (code) {
+      case 40:
+        return add_dwell(words);
+      case 600:
+      case 610:
+      case 611:
+      case 620:
+      case 630:
+      case 640:
+        return set_control(code, words);
+      case 280:
+      case 300:
+      case 530:
+        return leave_for_reference(words);
+      case 920:
+        return set_coordinates(words);
+      case 430:
+      case 431:
+      case 432:
+      case 434:
+        has_tool_offset_ = true;
+        place_.doubt();
+        return add_rest();
+      case 490:
+        if (std::exchange(has_tool_offset_, false)) place_.doubt();
+        return add_rest();
+      case 540:
+      case 550:
+      case 560:
+      case 570:
+      case 580:
+      case 590:
+      case 541:
+      case 591:
+      case 592:
+      case 593:
+        return change_work_offset(code);
+      case 100:
+      case 520:
+      case 921:
+      case 922:
+      case 923:
+        place_.forget();
+        return add_rest();
+      case 650:
+      case 660:
+      case 661:
+        note(reason::kSubprogram);
+        place_.forget();
+        return;
+      case 980:
+      case 990:
+        returns_to_initial_ = code == 980;
+        return;
+      case 800:
+        return cycle_.reset();
+      default:
+        return;
+    }
+  }
+
+  void change_work_offset(Code code) {
+    // The first one says in which coordinates the program is meant.
+    if (work_offset_ != 0 && work_offset_ != code) place_.forget();
+    work_offset_ = code;
+    add_rest();
+  }
+
+  void leave_for_reference(const BlockWords& words) {
+    note(not_timed::kReferenceMove);
+    add_rest();
+    const bool named = words.has_any("XYZ");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!named || words.has("XYZ"[axis])) place_.forget_axis(axis);
+    }
+  }
+
+  void set_coordinates(const BlockWords& words) {
+    const PlacedMotion here = line_of_words(words, absolute(state()), place_);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!words.has("XYZ"[axis])) continue;
+      place_.set_axis(axis, geometry::end_point(here.piece)[static_cast<Eigen::Index>(axis)],
+                      Certainty::kKnown);
+    }
+    add_rest();
+  }
+
+  static ModalState absolute(ModalState state) {
+    state.distance = gcode::DistanceMode::kAbsolute;
+    return state;
+  }
+
+  void set_control(Code code, const BlockWords& words) {
+    PathControl control;
+    control.mode = code == 640                  ? PathMode::kBlending
+                   : code == 610                ? PathMode::kExactPath
+                   : code == 600 || code == 611 ? PathMode::kExactStop
+                                                : PathMode::kUnknown;
+    if (code == 640) {
+      const double unit = state().units == gcode::Units::kInch ? gcode::kMillimetresPerInch : 1;
+      const auto value = [&](char letter, double otherwise) {
+        const gcode::Word* word = words.find(letter);
+        return word != nullptr && word->is_number ? word->value * unit : otherwise;
+      };
+      control.blend_tolerance = value('P', 0);
+      control.naive_cam_tolerance = value('Q', *control.blend_tolerance);
+    }
+    const auto known = std::ranges::find(read_.controls, control);
+    control_ = static_cast<std::uint16_t>(known - read_.controls.begin());
+    if (known == read_.controls.end()) read_.controls.push_back(control);
+  }
+
+  // --- steps --------------------------------------------------------------------------------
+
+  ProgramStep& add_step(StepKind kind) {
+    ProgramStep& step = read_.steps.emplace_back();
+    step.kind = kind;
+    step.control = control_;
+    step.tool = tool_;
+    step.block = static_cast<std::uint32_t>(index_);
+    return step;
+  }
+
+  void add_wait(StepKind kind, double seconds) { add_step(kind).seconds = seconds; }
+
+  void add_rest() {
+    const bool moves_before = !read_.steps.empty() && (read_.steps.back().kind == StepKind::kCut ||
+                                                       read_.steps.back().kind == StepKind::kRapid);
+    if (moves_before) add_step(StepKind::kRest);
+  }
+
+  void add_dwell(const BlockWords& words) {
+    const DwellTime dwell = dwell_of(words, options_.dwell_unit, state().spindle_speed);
+    if (!dwell.seconds) note(not_timed::kDwellUnknown);
+    if (dwell.unit_assumed) note(not_timed::kDwellAssumed);
+    add_wait(StepKind::kDwell, dwell.seconds.value_or(0));
+  }
+
+  // A rotary axis alone: in G93 the program says how long it turns.
+  void add_rotary(const BlockWords& words) {
+    if (!words.has_any("ABC") || words.has_any("XYZ")) return;
+    const auto feed = state().feed;
+    if (state().feed_mode == gcode::FeedMode::kInverseTime && feed && *feed > 0) {
+      return add_wait(StepKind::kRotary, 60 / *feed);
+    }
+    note(not_timed::kRotaryAxis);
+  }
+
+  void add_motion(const BlockWords& words) {
+    const gcode::Motion& motion =
+        meaning_.motions[static_cast<std::size_t>(block_meaning().motion)];
+    cycle_.reset();
+    add_placed(place_motion(motion, words, state(), place_), words);
+  }
+
+  void add_placed(const PlacedMotion& placed, const BlockWords& words) {
+    const bool rapid = state().motion == gcode::MotionMode::kRapid;
+    if (placed.start == Certainty::kUnknown) note(not_timed::kPlaceUnknown);
+    if (placed.start == Certainty::kAssumed) note(not_timed::kPlaceAssumed);
+    if (words.has_any("ABCUVW")) note(not_timed::kRotaryAxis);
+    if (is_path_changed(state())) note(not_timed::kPathChanged);
+    if (block_meaning().barrier == reason::kLoopBody) note(reason::kLoopBody);
+    ProgramStep& step = add_step(rapid ? StepKind::kRapid : StepKind::kCut);
+    step.piece = placed.piece;
+    if (!rapid) step.feed = feed_along(placed.piece);
+    move_to_end(place_, placed, words, state());
+  }
+
+  // Of a curve that was read exactly: the place before it is known.
+  void add_curve_piece() {
+    cycle_.reset();
+    if (block_meaning().motion < 0) return;
+    const gcode::Motion& motion =
+        meaning_.motions[static_cast<std::size_t>(block_meaning().motion)];
+    ProgramStep& step = add_step(StepKind::kCut);
+    step.piece = motion.piece;
+    step.feed = feed_along(motion.piece);
+    const geometry::Point3& end = motion.piece.end();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!motion.axes_named[axis]) continue;
+      place_.set_axis(axis, end[static_cast<Eigen::Index>(axis)], Certainty::kKnown);
+    }
+  }
+
+  // mm/min; 0 where it is not known.
+  double feed_along(const geometry::PathPiece& piece) {
+    const ModalState& s = state();
+    if (!s.feed || !(*s.feed > 0)) {
+      note(reason::kFeedUnknown);
+      return 0;
+    }
+    switch (s.feed_mode) {
+      case gcode::FeedMode::kInverseTime:
+        return *s.feed * geometry::length_of(piece);
+      case gcode::FeedMode::kPerRevolution:
+        if (s.spindle_speed && s.constant_surface_speed == TriState::kOff) {
+          return *s.feed * *s.spindle_speed;
+        }
+        note(not_timed::kSpindleUnknown);
+        return 0;
+      case gcode::FeedMode::kPerMinute:
+        return *s.feed;
+      case gcode::FeedMode::kUnknown:
+        break;
+    }
+    note(reason::kFeedUnknown);
+    return 0;
+  }
+
+  // --- motions that are no line and no arc ----------------------------------------------------
+
+  void read_other_motion(const BlockWords& words) {
+    for (const Code code : words.g_codes()) {
+      if (!is_drilling_cycle(code)) continue;
+      if (cycle_) {
+        cycle_->change_code(code);
+      } else {
+        cycle_.emplace(code, place_.mm().z());
+      }
+    }
+    if (takes_axes(words)) return;
+    if (cycle_ && !words.has_g(800)) return drill(words);
+    if (!words.has_any("XYZ")) return add_rotary(words);
+    note(block_meaning().barrier.empty() ? reason::kCannedCycle : block_meaning().barrier.id());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (words.has("XYZ"[axis])) place_.forget_axis(axis);
+    }
+    add_rest();
+  }
+
+  // Axis words that belong to a word of their own block and not to the modal motion.
+  static bool takes_axes(const BlockWords& words) {
+    constexpr std::array kTakers = {40, 100, 280, 300, 520, 530, 920, 921, 922, 923};
+    return std::ranges::any_of(kTakers, [&](Code code) { return words.has_g(code); });
+  }
+
+  void drill(const BlockWords& words) {
+    const bool starts = std::ranges::any_of(words.g_codes(), is_drilling_cycle);
+    std::optional<double> dwell;
+    if (words.has('P')) {
+      const DwellTime time = dwell_of(words, options_.dwell_unit, std::nullopt);
+      dwell = time.seconds;
+      if (time.unit_assumed) note(not_timed::kDwellAssumed);
+    }
+    cycle_->read(words, state(), dwell);
+    cycle_->set_return_to_initial(returns_to_initial_);
+    if (!starts && !words.has_any("XYZ")) return;
+    const bool plane_xy = state().plane == gcode::Plane::kXY;
+    const bool place_known = std::ranges::all_of(std::array{0, 1, 2}, [&](int axis) {
+      return place_.certainty(static_cast<std::size_t>(axis)) != Certainty::kUnknown;
+    });
+    const auto moves = plane_xy && place_known && words.all_numbers()
+                           ? cycle_->moves(words, state(), place_.mm())
+                           : std::nullopt;
+    if (!moves) {
+      note(reason::kCannedCycle);
+      place_.forget();
+      return add_rest();
+    }
+    if (is_path_changed(state())) note(not_timed::kPathChanged);
+    if (block_meaning().barrier == reason::kLoopBody) note(reason::kLoopBody);
+    for (const CycleMove& move : *moves) add_cycle_move(move);
+  }
+
+  void add_cycle_move(const CycleMove& move) {
+    if (move.kind == StepKind::kDwell || move.kind == StepKind::kSpindle) {
+      return add_wait(move.kind, move.seconds);
+    }
+    ProgramStep& step = add_step(move.kind);
+    step.piece = move.line;
+    step.stops_after = true;  // cycles end each of their moves in position
+    if (move.kind == StepKind::kCut) step.feed = feed_along(move.line);
+    place_.set(move.line.end);
+  }
+
+  void note_what_follows() {
+    for (; index_ < program_.blocks.size(); ++index_) {
+      if (BlockWords(program_.words_of(block())).has_any("XYZ")) note(not_timed::kAfterEnd);
+    }
+  }
+
+  const gcode::Program& program_;
+  const gcode::Interpretation& meaning_;
+  const StepOptions& options_;
+  ProgramSteps read_;
+  std::size_t index_ = 0;  // of the block that is being read
+  ToolPlace place_;
+  std::int32_t tool_ = ProgramStep::kNoTool;
+  std::int32_t selected_ = ProgramStep::kNoTool;
+  std::uint16_t control_ = 0;
+  Code work_offset_ = 0;
+  bool has_tool_offset_ = false;
+  bool returns_to_initial_ = true;
+  bool ended_ = false;
+  std::optional<bool> has_m6_;
+  std::optional<DrillingCycle> cycle_;
+};
+
+}  // namespace
+
+ProgramSteps read_steps(const gcode::Program& program, const gcode::Interpretation& meaning,
+                        const StepOptions& options) {
+  return StepReader(program, meaning, options).run();
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,291 @@
+#include "postproc/options/options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+#include "gcode/state/reason.h"
+#include "gcode/state/units.h"
+#include "geometry/fitting/fair/fair.h"
+#include "postproc/options/decimals_option.h"
+
+namespace batten::postproc {
+
+namespace {
+
+// A tolerance above this (mm) is a slip of units: somebody meant micrometres.
+constexpr double kGreatestTolerance = 10;
+
+// More threads than this are a slip; no machine that runs a CAM has them.
+constexpr int kMostThreads = 1024;
+
+// path_distance.h: the proved bound is tight to within this part of the tolerance.
+constexpr double kProofLooseness = 0.02;
+
+// Part of the tolerance without rounding that arcs or chords may use; see options.h.
+constexpr double kFormPart = 1.0 / 3;
+
+constexpr std::array kForms = {
+    Choice<Form>{Form::kAuto, "auto",
+                 "curves that the target surely reads, arcs or lines, as --prefer says"},
+    Choice<Form>{Form::kCurves, "curves",
+                 "the target's own curves; arcs or lines for runs that are none"},
+    Choice<Form>{Form::kArcs, "arcs", "G02/G03 where a run lies in a plane of the target"},
+    Choice<Form>{Form::kLines, "lines", "G01 along the smoothed curve"},
+};
+
+constexpr std::array kMethods = {
+    Choice<Method>{Method::kBest, "best", "every method; the result that serves --prefer is taken"},
+    Choice<Method>{Method::kFair, "fair",
+                   "the path that was meant, as smooth as the machine needs it"},
+    Choice<Method>{Method::kTimeOptimal, "racing",
+                   "lines, and at each corner the fastest curve on the machine; slow to compute"},
+    Choice<Method>{Method::kNaseath, "naseath",
+                   "a spline's control points moved inside a tube (Naseath 2007), repaired"},
+    Choice<Method>{Method::kGuo, "guo",
+                   "lines with a five-point curve at each vertex (Guo 2023), legs shared fairly"},
+    Choice<Method>{Method::kOzcan, "ozcan",
+                   "lines with an eight-point curve at each vertex (Ozcan 2018); slow to compute"},
+    Choice<Method>{Method::kNaseathLiteral, "naseath-literal",
+                   "as the thesis has it, for comparison: may make a path worse"},
+    Choice<Method>{Method::kGuoLiteral, "guo-literal",
+                   "as the paper has it, for comparison: half the tolerance or less is used"},
+    Choice<Method>{Method::kNone, "none", "nothing is rewritten: checks and reports only"},
+};
+
+constexpr std::array kPreferences = {
+    Choice<Prefer>{Prefer::kTime, "time", "the least cutting time on the machine"},
+    Choice<Prefer>{Prefer::kAccuracy, "accuracy", "nearest to the path that was meant"},
+    Choice<Prefer>{Prefer::kSize, "size", "the fewest bytes inside the tolerance"},
+};
+
+using geometry::ToleranceKind;
+constexpr std::array kToleranceKinds = {
+    Choice<ToleranceKind>{ToleranceKind::kPath, "path", "both ways and in order, corners too"},
+    Choice<ToleranceKind>{ToleranceKind::kBand, "band",
+                          "new path to old one in order; corners may be further off"},
+};
+
+using geometry::Side;
+constexpr std::array kSides = {
+    Choice<Side>{Side::kBoth, "both", "the new path may be on either side of the old one"},
+    Choice<Side>{Side::kLeft, "left", "only on the left of the way of travel, seen from above"},
+    Choice<Side>{Side::kRight, "right", "only on the right of the way of travel, seen from above"},
+};
+
+using gcode::SourceKind;
+constexpr std::array kSources = {
+    Choice<SourceKind>{SourceKind::kAuto, "auto",
+                       "what the program's marks say; without any, as the target reads"},
+    Choice<SourceKind>{SourceKind::kNgc, "ngc", "LinuxCNC and the RS274/NGC standard"},
+    Choice<SourceKind>{SourceKind::kFanuc, "fanuc", "FANUC and controls like it, with macro B"},
+    Choice<SourceKind>{SourceKind::kHaas, "haas", "Haas, with macro B"},
+    Choice<SourceKind>{SourceKind::kGrbl, "grbl", "grbl and its kin"},
+    Choice<SourceKind>{SourceKind::kSiemens, "siemens", "Siemens Sinumerik"},
+    Choice<SourceKind>{SourceKind::kHeidenhain, "heidenhain", "Heidenhain Klartext"},
+};
+
+constexpr std::array kLinearizations = {
+    Choice<Linearize>{Linearize::kMinLink, "minlink",
+                      "the fewest lines: ends anywhere inside the tolerance"},
+    Choice<Linearize>{Linearize::kChord, "chord", "few chords with ends on the curve"},
+    Choice<Linearize>{Linearize::kIlca, "ilca", "equal steps of the parameter (Hamdan 2005)"},
+    Choice<Linearize>{Linearize::kBlca, "blca", "steps until the tangent is left (Hamdan 2005)"},
+};
+
+template <typename Value, std::size_t count>
+std::string_view name_in(const std::array<Choice<Value>, count>& choices, Value value) {
+  for (const auto& choice : choices) {
+    if (choice.value == value) return choice.name;
+  }
+  return "unknown";
+}
+
+// See ToleranceShares, 2.
+double rounding_of(const SmoothOptions& options, gcode::Units units, int run_decimals) {
+  gcode::NumberFormat places = options.target->coordinates(units);
+  places.decimals = std::max(places.decimals, run_decimals);
+  const double place = std::numbers::sqrt3 / 2 * gcode::printed_step(places, units);
+  if (options.output == Form::kLines) return place;
+  const double offset = gcode::printed_step(options.target->arc_offsets(units), units);
+  return place + std::numbers::sqrt2 / 2 * offset;
+}
+
+bool takes_any_arcs(const gcode::Dialect& target) {
+  return target.takes_arcs_in(gcode::Plane::kXY) || target.takes_arcs_in(gcode::Plane::kZX) ||
+         target.takes_arcs_in(gcode::Plane::kYZ);
+}
+
+void check_tolerance(const SmoothOptions& options, std::vector<std::string>& problems) {
+  const double tolerance = options.tolerance_mm;
+  if (!std::isfinite(tolerance) || tolerance <= 0) {
+    problems.push_back(
+        fmt::format("--tolerance: {:g} mm, expected a length above 0, such as 0.01", tolerance));
+    return;
+  }
+  if (tolerance > kGreatestTolerance) {
+    problems.push_back(
+        fmt::format("--tolerance: {:g} mm, expected {:g} mm or less (micrometres are written as "
+                    "0.010)",
+                    tolerance, kGreatestTolerance));
+    return;
+  }
+  if (options.target == nullptr) return;
+  // Units that only the program will tell: millimetres, the finer ones, are the least demand.
+  const ToleranceShares shares = share_tolerance(options, options.units);
+  if (shares.smoothing <= 0) {
+    problems.push_back(
+        fmt::format("--tolerance: {:g} mm, expected more than the {:.5f} mm that the decimals of "
+                    "target {} lose by rounding",
+                    tolerance, shares.rounding, options.target->name()));
+  }
+}
+
+}  // namespace
+
+std::span<const Choice<Form>> forms() { return kForms; }
+std::span<const Choice<Method>> methods() { return kMethods; }
+std::span<const Choice<Prefer>> preferences() { return kPreferences; }
+std::span<const Choice<Linearize>> linearizations() { return kLinearizations; }
+std::span<const Choice<ToleranceKind>> tolerance_kinds() { return kToleranceKinds; }
+std::span<const Choice<Side>> sides() { return kSides; }
+std::span<const Choice<SourceKind>> sources() { return kSources; }
+
+std::string_view name_of(Form form) { return name_in(kForms, form); }
+std::string_view name_of(Method method) { return name_in(kMethods, method); }
+std::string_view name_of(Prefer prefer) { return name_in(kPreferences, prefer); }
+std::string_view name_of(Linearize linearize) { return name_in(kLinearizations, linearize); }
+
+std::string_view name_of(ToleranceKind kind) { return name_in(kToleranceKinds, kind); }
+std::string_view name_of(Side side) { return name_in(kSides, side); }
+std::string_view name_of(SourceKind source) { return name_in(kSources, source); }
+
+std::string_view name_of(gcode::Units units) {
+  switch (units) {
+    case gcode::Units::kMillimetre:
+      return "mm";
+    case gcode::Units::kInch:
+      return "inch";
+    case gcode::Units::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+bool calls_keep_modes(std::span<const std::string> allowed) {
+  return std::ranges::find(allowed, gcode::reason::kSubprogram) != allowed.end();
+}
+
+gcode::ReadOptions read_options_of(const SmoothOptions& options) {
+  gcode::ReadOptions reading;
+  reading.units = options.units;
+  if (options.target != nullptr) reading.curves = options.target->curves();
+  reading.calls_keep_modes = calls_keep_modes(options.allowed);
+  return reading;
+}
+
+std::vector<std::string> problems_of_allowed(std::span<const std::string> ids) {
+  std::vector<std::string> problems;
+  const auto all = gcode::reason::explanations();
+  std::string possible;
+  for (const auto& explanation : all) {
+    if (!explanation.can_be_allowed) continue;
+    possible += (possible.empty() ? "" : ", ") + std::string(explanation.id);
+  }
+  if (possible.empty()) possible = "none";
+  for (const std::string& id : ids) {
+    const auto found = std::ranges::find(all, id, &gcode::reason::Explanation::id);
+    if (found == all.end()) {
+      problems.push_back(
+          fmt::format("--allow: there is no reason '{}'; possible: {}", id, possible));
+    } else if (!found->can_be_allowed) {
+      problems.push_back(
+          fmt::format("--allow: '{}' cannot be lifted, since rewriting would not be safe there; "
+                      "possible: {}",
+                      id, possible));
+    }
+  }
+  return problems;
+}
+
+std::vector<std::string> problems_of_side(geometry::Side side, geometry::ToleranceKind kind) {
+  if (side == geometry::Side::kBoth || kind == geometry::ToleranceKind::kPath) return {};
+  return {"--side: left and right need --tolerance-kind path"};
+}
+
+Linearize linearize_of(const SmoothOptions& options) {
+  if (options.linearize) return *options.linearize;
+  return options.prefer == Prefer::kSize ? Linearize::kMinLink : Linearize::kChord;
+}
+
+bool wants_few_moves(const SmoothOptions& options) {
+  if (options.prefer == Prefer::kAccuracy) return false;
+  return options.output == Form::kArcs || options.prefer == Prefer::kSize;
+}
+
+double keep_corner_angle_of(const SmoothOptions& options) {
+  if (!options.keep_corners_deg) return geometry::FairOptions{}.keep_corner_angle;
+  return *options.keep_corners_deg * std::numbers::pi / 180;
+}
+
+std::vector<std::string> problems_of(const SmoothOptions& options) {
+  std::vector<std::string> problems;
+  if (options.target == nullptr) {
+    problems.emplace_back("--target: no target given; `batten targets` lists them");
+  }
+  if (options.machine == nullptr) {
+    problems.emplace_back("--machine: no machine given; `batten machines` lists them");
+  }
+  check_tolerance(options, problems);
+  if (options.target != nullptr && options.output == Form::kArcs &&
+      !takes_any_arcs(*options.target)) {
+    problems.push_back(fmt::format("--output: target {} takes no arcs; possible: auto, lines",
+                                   options.target->name()));
+  }
+  if (options.target != nullptr && options.output == Form::kCurves &&
+      options.target->curves() == nullptr) {
+    problems.push_back(fmt::format("--output: target {} reads no curves; possible: auto, {}lines",
+                                   options.target->name(),
+                                   takes_any_arcs(*options.target) ? "arcs, " : ""));
+  }
+  if (options.keep_corners_deg &&
+      !(*options.keep_corners_deg > 0 && *options.keep_corners_deg <= 180)) {
+    problems.push_back(
+        fmt::format("--keep-corners: {:g} degrees, expected more than 0 and at most 180",
+                    *options.keep_corners_deg));
+  }
+  std::ranges::move(problems_of_side(options.side, options.tolerance_kind),
+                    std::back_inserter(problems));
+  std::ranges::move(problems_of_decimals(options.decimals, options.source, options.target),
+                    std::back_inserter(problems));
+  std::ranges::move(problems_of_allowed(options.allowed), std::back_inserter(problems));
+  if (options.min_motions < 2) {
+    problems.push_back(
+        fmt::format("min_motions: {}, expected 2 or more motions in a run", options.min_motions));
+  }
+  if (options.threads < 0 || options.threads > kMostThreads) {
+    problems.push_back(
+        fmt::format("--threads: {}, expected 0 (all cores) to {}", options.threads, kMostThreads));
+  }
+  return problems;
+}
+
+ToleranceShares share_tolerance(const SmoothOptions& options, gcode::Units units,
+                                int run_decimals) {
+  ToleranceShares shares;
+  const gcode::Units written =
+      units == gcode::Units::kInch ? gcode::Units::kInch : gcode::Units::kMillimetre;
+  shares.rounding = rounding_of(options, written, run_decimals);
+  const double rest = options.tolerance_mm * (1 - kProofLooseness) - shares.rounding;
+  if (rest > 0) {
+    shares.form = kFormPart * rest;
+    shares.smoothing = rest - shares.form;
+  }
+  return shares;
+}
+
+}  // namespace batten::postproc

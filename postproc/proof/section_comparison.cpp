@@ -1,0 +1,387 @@
+#include "postproc/proof/section_comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "geometry/band/tolerance_band.h"
+#include "geometry/distance/band_comparison.h"
+#include "geometry/path/parallel_path.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Path;
+using geometry::PathComparison;
+using geometry::PathPiece;
+using geometry::Verdict;
+
+// Of two arcs or curves.
+bool same_bend(const PathPiece& a, const PathPiece& b) {
+  if (a.index() != b.index()) return false;
+  if (const auto* arc = std::get_if<geometry::Arc>(&a)) {
+    const auto& other = std::get<geometry::Arc>(b);
+    return arc->center == other.center && arc->axis == other.axis && arc->sweep == other.sweep;
+  }
+  const auto& control = std::get<geometry::CubicBezier>(a).control;
+  return std::equal(std::begin(control), std::end(control),
+                    std::begin(std::get<geometry::CubicBezier>(b).control));
+}
+
+bool same_piece(const gcode::MotionPath& a, const gcode::MotionPath& b) {
+  if (a.start() != b.start() || a.end() != b.end() || a.is_line() != b.is_line()) return false;
+  return a.is_line() || same_bend(a, b);
+}
+
+const gcode::Motion& motion_of(const Cut& cut, const ReadProgram& read) {
+  return read.interpretation->motions[cut.motion];
+}
+
+std::uint32_t line_of(const Cut& cut, const ReadProgram& read) {
+  return read.program->blocks[motion_of(cut, read).block].line;
+}
+
+std::string feed_text(const Cut& cut) {
+  return cut.feed ? fmt::format("{:.6g} mm/min{}", *cut.feed,
+                                cut.feed_without_point ? " without a decimal point" : "")
+                  : std::string("none known");
+}
+
+// Some of the cuts of one side, as a path.
+struct Part {
+  const StretchSide* side = nullptr;
+  std::size_t begin = 0;
+  std::size_t end = 0;  // after the last
+
+  [[nodiscard]] std::size_t size() const { return end - begin; }
+  [[nodiscard]] const Cut& cut(std::size_t i) const { return side->cuts[begin + i]; }
+  [[nodiscard]] const gcode::MotionPath& piece(std::size_t i) const {
+    return motion_of(cut(i), *side->read).piece;
+  }
+  [[nodiscard]] Part without(std::size_t first, std::size_t last) const {
+    return {side, begin + first, end - last};
+  }
+  // Where the path stands before its first piece.
+  [[nodiscard]] std::optional<geometry::Point3> start() const {
+    if (size() > 0) return piece(0).start();
+    if (begin > 0) return motion_of(side->cuts[begin - 1], *side->read).piece.end();
+    return side->start;
+  }
+  [[nodiscard]] Path path() const {
+    Path result;
+    result.reserve(size());
+    for (std::size_t i = 0; i < size(); ++i) result.push_back(piece(i));
+    if (const auto here = start(); result.empty() && here) {
+      result.push_back(geometry::Line{*here, *here});
+    }
+    return result;
+  }
+  // Line of the i-th cut; of the nearest one where there are fewer.
+  [[nodiscard]] std::uint32_t line(std::size_t i) const {
+    if (side->cuts.empty()) return side->line;
+    const std::size_t index = std::min(begin + i, side->cuts.size() - 1);
+    return line_of(side->cuts[index], *side->read);
+  }
+  // Line of the cut with an end nearest to the place.
+  [[nodiscard]] std::uint32_t line_near(const geometry::Point3& place) const {
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < size(); ++i) {
+      const double distance =
+          std::min((piece(i).start() - place).norm(), (piece(i).end() - place).norm());
+      if (distance < least) {
+        least = distance;
+        nearest = i;
+      }
+    }
+    return line(nearest);
+  }
+};
+
+Part all_of(const StretchSide& side) { return {&side, 0, side.cuts.size()}; }
+
+bool is_one_feed(const Cut& a, const Cut& b) {
+  return a.feed == b.feed && a.feed_without_point == b.feed_without_point;
+}
+
+// The longest parts that have one feed, in order.
+std::vector<Part> parts_of_one_feed(const StretchSide& side) {
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < side.cuts.size(); ++i) {
+    if (parts.empty() || !is_one_feed(side.cuts[parts.back().begin], side.cuts[i])) {
+      parts.push_back({&side, i, i});
+    }
+    parts.back().end = i + 1;
+  }
+  return parts;
+}
+
+struct PartPair {
+  Part before;
+  Part after;
+};
+
+// How many pieces at the begin (at the end) are the same.
+std::size_t same_at_begin(const PartPair& pair, std::size_t most) {
+  std::size_t count = 0;
+  while (count < most && same_piece(pair.before.piece(count), pair.after.piece(count))) ++count;
+  return count;
+}
+
+std::size_t same_at_end(const PartPair& pair, std::size_t most) {
+  std::size_t count = 0;
+  while (count < most && same_piece(pair.before.piece(pair.before.size() - 1 - count),
+                                    pair.after.piece(pair.after.size() - 1 - count))) {
+    ++count;
+  }
+  return count;
+}
+
+// A proof for the middle is a proof for the whole: the same pieces are passed together.
+PartPair without_same_ends(const PartPair& pair) {
+  const std::size_t most = std::min(pair.before.size(), pair.after.size());
+  const std::size_t first = same_at_begin(pair, most);
+  const std::size_t last = same_at_end(pair, most - first);
+  return {pair.before.without(first, last), pair.after.without(first, last)};
+}
+
+geometry::BandComparison compare(const PartPair& pair, const Promise& promise) {
+  const Path before = pair.before.path();
+  const Path after = pair.after.path();
+  if (promise.kind == geometry::ToleranceKind::kBand) {
+    return geometry::compare_in_band(before, after, promise.tolerance_mm);
+  }
+  return {geometry::compare_paths(before, after, promise.tolerance_mm), 0, 0};
+}
+
+Stretch stretch_of(const PartPair& pair, geometry::BandComparison compared) {
+  PathComparison& comparison = compared.paths;
+  const auto block = [](const Part& part, std::size_t i) {
+    return part.side->cuts.empty()
+               ? 0
+               : motion_of(part.side->cuts[std::min(part.begin + i, part.side->cuts.size() - 1)],
+                           *part.side->read)
+                     .block;
+  };
+  Stretch stretch;
+  stretch.old_first_block = block(pair.before, 0);
+  stretch.old_last_block = block(pair.before, std::max<std::size_t>(pair.before.size(), 1) - 1);
+  stretch.new_first_block = block(pair.after, 0);
+  stretch.new_last_block = block(pair.after, std::max<std::size_t>(pair.after.size(), 1) - 1);
+  const auto last = [](const Part& part) { return std::max<std::size_t>(part.size(), 1) - 1; };
+  stretch.old_first_line = pair.before.line(0);
+  stretch.old_last_line = pair.before.line(last(pair.before));
+  stretch.new_first_line = pair.after.line(0);
+  stretch.new_last_line = pair.after.line(last(pair.after));
+  stretch.old_worst_line = pair.before.line(comparison.worst_piece_a);
+  stretch.new_worst_line = pair.after.line(comparison.worst_piece_b);
+  stretch.comparison = std::move(comparison);
+  stretch.corner_mm = compared.corner_at_most;
+  return stretch;
+}
+
+Violation distance_violation(const PartPair& pair, const PathComparison& comparison,
+                             double tolerance_mm) {
+  Violation violation;
+  violation.old_line = pair.before.line(comparison.worst_piece_a);
+  violation.new_line = pair.after.line(comparison.worst_piece_b);
+  if (comparison.verdict == Verdict::kBroken) {
+    violation.kind = ViolationKind::kDistance;
+    violation.id = "distance";
+    violation.deviation_mm = comparison.bounds.at_least;
+    violation.message =
+        fmt::format("the new path is {:.6g} mm or more from the old one, allowed {:.6g} mm",
+                    comparison.bounds.at_least, tolerance_mm);
+  } else {
+    violation.kind = ViolationKind::kNotProved;
+    violation.id = "not-proved";
+    violation.message = fmt::format(
+        "the distance of the paths is between {:.6g} and {:.6g} mm, allowed {:.6g} mm: neither "
+        "proved nor broken",
+        comparison.bounds.at_least, comparison.bounds.at_most, tolerance_mm);
+  }
+  return violation;
+}
+
+// `middle`: without the pieces that are the same, which cannot be to blame.
+std::optional<Violation> crossing_violation(const PartPair& pair, const PartPair& middle,
+                                            double tolerance_mm) {
+  const auto found = geometry::new_crossing(pair.before.path(), pair.after.path(), tolerance_mm);
+  if (!found) return {};
+  Violation violation;
+  violation.kind = ViolationKind::kCrossing;
+  violation.id = "crosses-itself";
+  violation.old_line = middle.before.line_near(found->place);
+  violation.new_line = pair.after.line(found->first_piece);
+  violation.message = fmt::format(
+      "the new path meets itself at X{:.4f} Y{:.4f} Z{:.4f} (lines {} and {}), the old one does "
+      "not",
+      found->place.x(), found->place.y(), found->place.z(), violation.new_line,
+      pair.after.line(found->second_piece));
+  return violation;
+}
+
+// On one side of the old path, as far as the tolerance: within half of it of the path that is half
+// of it beside the old one. docs/algorithms/one_side.md
+std::optional<Violation> side_violation(const PartPair& pair, const Promise& promise) {
+  if (promise.side == geometry::Side::kBoth) return {};
+  const double half = promise.tolerance_mm / 2;
+  const double over = kOverSide * promise.tolerance_mm;
+  Violation violation;
+  violation.kind = ViolationKind::kSide;
+  violation.id = "wrong-side";
+  const auto beside = geometry::parallel_path(pair.before.path(), promise.side, half);
+  if (!beside) {
+    violation.old_line = pair.before.line(0);
+    violation.new_line = pair.after.line(0);
+    violation.message =
+        "the old path has arcs outside the XY plane or curves: no side of it is known";
+    return violation;
+  }
+  const PathComparison found = geometry::compare_paths(*beside, pair.after.path(), half + over);
+  if (found.verdict == Verdict::kProved) return {};
+  violation.old_line = pair.before.line_near(found.worst_a);
+  violation.new_line = pair.after.line(found.worst_piece_b);
+  violation.deviation_mm = std::max(0.0, found.bounds.at_least - half);
+  violation.message = fmt::format(
+      "the new path {} on the {} of the old one by {:.6g} mm at most",
+      found.verdict == Verdict::kBroken ? "does not stay" : "could not be proved to stay",
+      promise.side == geometry::Side::kLeft ? "left" : "right", promise.tolerance_mm);
+  return violation;
+}
+
+class StretchComparer {
+ public:
+  StretchComparer(const StretchSide& before, const StretchSide& after, const Promise& promise)
+      : before_(before), after_(after), promise_(promise), tolerance_(promise.tolerance_mm) {}
+
+  StretchResult run() {
+    const std::vector<Part> old_parts = parts_of_one_feed(before_);
+    const std::vector<Part> new_parts = parts_of_one_feed(after_);
+    const bool one_side_only = old_parts.empty() || new_parts.empty();
+    if (one_side_only || !same_feeds(old_parts, new_parts)) {
+      compare_part({all_of(before_), all_of(after_)});
+      return std::move(result_);
+    }
+    for (std::size_t i = 0; i < old_parts.size(); ++i) compare_part({old_parts[i], new_parts[i]});
+    if (old_parts.size() > 1 && std::ranges::any_of(result_.violations, is_of_distance)) {
+      look_for_moved_feed();
+    }
+    return std::move(result_);
+  }
+
+ private:
+  static bool is_of_distance(const Violation& violation) {
+    return violation.kind == ViolationKind::kDistance ||
+           violation.kind == ViolationKind::kNotProved;
+  }
+
+  bool same_feeds(const std::vector<Part>& old_parts, const std::vector<Part>& new_parts) {
+    const std::size_t both = std::min(old_parts.size(), new_parts.size());
+    for (std::size_t i = 0; i < both; ++i) {
+      const Cut& old_feed = old_parts[i].cut(0);
+      const Cut& new_feed = new_parts[i].cut(0);
+      if (same_feed(old_feed, new_feed)) continue;
+      add_feed_violation(
+          "feed-changed", old_parts[i].line(0), new_parts[i].line(0),
+          fmt::format("feed {}, expected {}", feed_text(new_feed), feed_text(old_feed)));
+      return false;
+    }
+    if (old_parts.size() > both) {
+      const Part& lost = old_parts[both];
+      add_feed_violation("feed-changed", lost.line(0),
+                         new_parts.back().line(new_parts.back().size()),
+                         fmt::format("feed {} is missing", feed_text(lost.cut(0))));
+      return false;
+    }
+    if (new_parts.size() > both) {
+      const Part& added = new_parts[both];
+      add_feed_violation("feed-changed", old_parts.back().line(old_parts.back().size()),
+                         added.line(0),
+                         fmt::format("feed {} was not there", feed_text(added.cut(0))));
+      return false;
+    }
+    return true;
+  }
+
+  void compare_part(const PartPair& pair) {
+    const PartPair middle = without_same_ends(pair);
+    if (middle.before.size() == 0 && middle.after.size() == 0) return;
+    geometry::BandComparison comparison = compare(middle, promise_);
+    if (comparison.paths.verdict == Verdict::kProved) {
+      result_.stretches.push_back(stretch_of(middle, std::move(comparison)));
+      look_beside_the_distance(pair, middle);
+      return;
+    }
+    // The same ends may be passed otherwise than together: only the whole is a refutation.
+    comparison = compare(pair, promise_);
+    if (comparison.paths.verdict != Verdict::kProved) {
+      result_.violations.push_back(distance_violation(pair, comparison.paths, tolerance_));
+    } else {
+      look_beside_the_distance(pair, pair);
+    }
+    result_.stretches.push_back(stretch_of(pair, std::move(comparison)));
+  }
+
+  // What else a path that keeps the distance may do wrong. `proved`: the part that keeps it.
+  void look_beside_the_distance(const PartPair& pair, const PartPair& proved) {
+    if (auto violation = side_violation(proved, promise_)) {
+      result_.violations.push_back(std::move(*violation));
+    }
+    // Of the whole, for a new part may also cross one that is the same.
+    if (auto violation = crossing_violation(pair, proved, tolerance_)) {
+      result_.violations.push_back(std::move(*violation));
+    }
+  }
+
+  // Parts that break the tolerance of a path that keeps it: a feed begins at another place.
+  void look_for_moved_feed() {
+    const PathComparison whole = compare_whole_path(before_, after_, promise_);
+    if (whole.verdict != Verdict::kProved) return;
+    for (Violation& violation : result_.violations) {
+      if (!is_of_distance(violation)) continue;
+      violation.kind = ViolationKind::kFeed;
+      violation.id = "feed-moved";
+      violation.message = fmt::format(
+          "the path is the same within {:.6g} mm, but a feed begins or ends at another place",
+          tolerance_);
+    }
+  }
+
+  void add_feed_violation(std::string id, std::uint32_t old_line, std::uint32_t new_line,
+                          std::string message) {
+    Violation violation;
+    violation.kind = ViolationKind::kFeed;
+    violation.id = std::move(id);
+    violation.old_line = old_line;
+    violation.new_line = new_line;
+    violation.message = std::move(message);
+    result_.violations.push_back(std::move(violation));
+  }
+
+  const StretchSide& before_;
+  const StretchSide& after_;
+  Promise promise_;
+  double tolerance_;  // of the promise
+  StretchResult result_;
+};
+
+}  // namespace
+
+StretchResult compare_stretch(const StretchSide& before, const StretchSide& after,
+                              const Promise& promise) {
+  return StretchComparer(before, after, promise).run();
+}
+
+geometry::PathComparison compare_whole_path(const StretchSide& before, const StretchSide& after,
+                                            const Promise& promise) {
+  return compare({all_of(before), all_of(after)}, promise).paths;
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,98 @@
+// How a smoothed run is said in the target's words: lines, arcs or curves along its curve, cut
+// where the feed changes, with the run's comments at their places.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gcode/control/dialect.h"
+#include "geometry/arcs/arc_spline.h"
+#include "geometry/fitting/fair/fair.h"
+#include "geometry/path/path.h"
+#include "postproc/machine/models/cycle_time.h"
+#include "postproc/options/options.h"
+#include "postproc/runs/section.h"
+
+namespace batten::postproc {
+
+enum class OutputForm { kArcs, kLines, kCurves };
+
+struct PlannedMove {
+  geometry::PathPiece piece;                 // a CubicBezier only as part of a PlannedCurve
+  double feed = 0;                           // mm/min
+  std::vector<std::size_t> comments_before;  // indices into Run::comments
+};
+
+// Moves that are written together as one curve of the target: the curve's Bezier pieces.
+struct PlannedCurve {
+  std::size_t first = 0;         // index into OutputPlan::moves
+  std::size_t count = 0;         // as many as the curve has pieces
+  geometry::BsplineCurve curve;  // a clamped cubic
+};
+
+// The moves chain to within kSamePlace, from the run's first point to its last.
+struct OutputPlan {
+  OutputForm form = OutputForm::kLines;
+  std::vector<PlannedMove> moves;
+  std::vector<PlannedCurve> curves;         // in order
+  std::vector<std::size_t> comments_after;  // those that stood on the run's last blocks
+  double error = 0;  // mm, moves to curve, as the height of equal chords with their ends on the
+                     // curve; 0: not known, max_deviation at most
+  bool chords_for_steps = false;  // see plan_lines
+};
+
+struct PlanOptions {
+  const gcode::Dialect* target = nullptr;
+  const Machine* machine = nullptr;
+  gcode::Units units = gcode::Units::kMillimetre;
+  gcode::Plane active_plane = gcode::Plane::kXY;
+  Prefer prefer = Prefer::kTime;
+  double max_deviation = 0.005;    // mm, moves to curve: the share of the form
+  double keep_corner_angle = 3.2;  // radians: see geometry::FairOptions
+  Linearize linearize = Linearize::kChord;
+  std::size_t most_moves = 0;  // lines that prefer accuracy become coarser for it; 0: any number
+  geometry::ArcEffort arc_effort = geometry::ArcEffort::kQuick;  // of plan_arcs
+};
+
+// All plans cut the curve where the feed changes, and put each comment before the move that
+// starts at or first after the comment's vertex. All throw std::invalid_argument when `fair`
+// does not have one parameter per point of the run.
+
+// Lines along the curve, as `linearize` says; chords where the equal steps of ilca would be too
+// many (geometry/chords/ilca.h), which the plan tells. minlink, ilca and blca take all of
+// max_deviation; the vertices of minlink alone leave the curve. How fine chords are depends on the
+// preference:
+//   time      half of max_deviation, but all of it where chords would be shorter than twice the
+//             way of one block period at the feed: the control would slow down for them;
+//   accuracy  as fine as the block period and most_moves allow, down to a tenth of the rounding of
+//             the printed numbers, and all of max_deviation where even that is too much for the
+//             control; balanced (geometry/chords/balanced_chords.h);
+//   size      all of max_deviation.
+[[nodiscard]] OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair,
+                                    const PlanOptions& options);
+
+// Arcs in a plane that the target takes arcs in and that the run lies in, the active plane
+// first. A run in space: helices and lines in the plane that needs the fewest, where the target
+// takes helices and they are fewer than the run's motions. Nothing when no plane serves. Arcs that
+// the target would refuse are chords already. Comments are placed by the length along the moves,
+// which may be one short move off.
+[[nodiscard]] std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve& fair,
+                                                  const PlanOptions& options);
+
+// Few arcs in the band around the run's vertices themselves, where max_deviation is measured
+// from; of the fair curve only the direction is taken where the path is cut. Every joint is
+// tangent but for corners in which no arc of the target's least radius fits. The run lies in a
+// plane that the target takes arcs in; nothing otherwise, or when no chain was found.
+[[nodiscard]] std::optional<OutputPlan> plan_arc_spline(const Run& run,
+                                                        const geometry::SmoothCurve& fair,
+                                                        const PlanOptions& options);
+
+// Curves of the target, on few control points: the curve is fitted anew within max_deviation where
+// that takes fewer. Long straight parts are lines, and so is what the target does not take as a
+// curve. Curves end at corners. Nothing when the target has no curves or none serves here.
+[[nodiscard]] std::optional<OutputPlan> plan_curves(const Run& run,
+                                                    const geometry::SmoothCurve& fair,
+                                                    const PlanOptions& options);
+
+}  // namespace batten::postproc

@@ -1,0 +1,189 @@
+#include "postproc/smooth/forms/program_writer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gcode/curves/curve_format.h"
+#include "gcode/state/units.h"
+#include "gcode/text/characters.h"
+#include "gcode/text/number_limit.h"
+#include "gcode/writer/writer.h"
+#include "geometry/basic/rounding.h"
+
+namespace batten::postproc {
+namespace {
+
+using gcode::NumberFormat;
+using gcode::Writer;
+
+// The most digits after the point that can be printed.
+constexpr int kMostDecimals = 9;
+
+bool is_end_of_line(char c) { return c == '\n' || c == '\r'; }
+
+// Writes the moves of one run and counts what it writes.
+class RunWriter {
+ public:
+  RunWriter(const gcode::Dialect& target, Writer writer)
+      : target_(target), writer_(std::move(writer)) {}
+
+  Writer& writer() { return writer_; }
+
+  void write(const PlannedMove& move) {
+    const std::size_t begin = writer_.text().size();
+    if (const auto* arc = std::get_if<geometry::Arc>(&move.piece)) {
+      if (writer_.arc_to(*arc, move.feed)) {
+        ++result_.arcs;
+      } else {
+        write_chords(*arc, move.feed);
+      }
+    } else {
+      writer_.line_to(geometry::end_point(move.piece), move.feed);
+    }
+    count_from(begin);
+  }
+
+  // Curves of many blocks follow each other with the end of the one between them.
+  [[nodiscard]] bool write(const PlannedCurve& curve, double feed, int last_decimals) {
+    const std::size_t begin = writer_.text().size();
+    if (!target_.curves()->is_block_per_piece()) writer_.end_curve();
+    if (!writer_.curve_to(curve.curve, feed, last_decimals)) return false;
+    count_from(begin);
+    return true;
+  }
+
+  void restore(const gcode::ModalState& after) {
+    const std::size_t begin = writer_.text().size();
+    writer_.restore(after);
+    count_from(begin);
+  }
+
+  [[nodiscard]] bool every_line_fits() const { return every_line_fits_; }
+
+  RunText finished() {
+    result_.text = writer_.text();
+    return std::move(result_);
+  }
+
+ private:
+  // Chords that differ from the arc by half a printed step at the most.
+  void write_chords(const geometry::Arc& arc, double feed) {
+    const gcode::Units units = writer_.state().modal.units;
+    const double deviation = gcode::printed_step(target_.coordinates(units), units) / 2;
+    const geometry::Vector3 out = arc.start - arc.center;
+    const double radius = (out - out.dot(arc.axis) * arc.axis).norm();
+    const double half_angle = std::acos(std::max(1 - deviation / radius, 0.0));
+    const double count = std::max(1.0, std::ceil(std::abs(arc.sweep) / 2 / half_angle));
+    for (double i = 1; i <= count; ++i) {
+      writer_.line_to(geometry::point_at(arc, i / count), feed);
+    }
+  }
+
+  void count_from(std::size_t begin) {
+    std::string_view written = std::string_view(writer_.text()).substr(begin);
+    while (!written.empty()) {
+      const std::size_t end = static_cast<std::size_t>(
+          std::find_if(written.begin(), written.end(), is_end_of_line) - written.begin());
+      const std::string_view line = written.substr(0, end);
+      every_line_fits_ = every_line_fits_ && target_.line_length(line) <= target_.max_line_length();
+      // SPL has lines that go on with the block.
+      if (!gcode::is_blank(line.front())) ++result_.blocks;
+      const std::size_t next = written.find_first_not_of("\r\n", end);
+      written = next == std::string_view::npos ? std::string_view() : written.substr(next);
+    }
+  }
+
+  const gcode::Dialect& target_;
+  Writer writer_;
+  RunText result_;
+  bool every_line_fits_ = true;
+};
+
+// G2 and G3 cannot be said again by themselves, and no block behind a run needs them (section.h).
+gcode::ModalState without_arc_word(gcode::ModalState state) {
+  const bool arc = state.motion == gcode::MotionMode::kClockwise ||
+                   state.motion == gcode::MotionMode::kCounterclockwise;
+  if (arc) state.motion = gcode::MotionMode::kUnknown;
+  return state;
+}
+
+bool has_arcs(const OutputPlan& plan) {
+  return std::ranges::any_of(plan.moves, [](const PlannedMove& move) {
+    return std::holds_alternative<geometry::Arc>(move.piece);
+  });
+}
+
+// A part of the numbers that a program may hold: what is made of these places for a curve
+// (differences of third order, sums of lengths) is one of them, too.
+constexpr double kGreatestPlace = gcode::kNumberLimit / 16;
+
+bool is_number(const geometry::Point3& place, double unit) {
+  return place.cwiseAbs().maxCoeff() / unit < kGreatestPlace;
+}
+
+// Whether every place that the plan names is a number that a program may hold.
+bool names_numbers(const OutputPlan& plan, double unit) {
+  const auto holds = [unit](const geometry::Point3& place) { return is_number(place, unit); };
+  return std::ranges::all_of(plan.moves,
+                             [&](const PlannedMove& move) {
+                               const auto* arc = std::get_if<geometry::Arc>(&move.piece);
+                               return holds(geometry::end_point(move.piece)) &&
+                                      (arc == nullptr || holds(arc->center));
+                             }) &&
+         std::ranges::all_of(plan.curves, [&](const PlannedCurve& curve) {
+           return std::ranges::all_of(curve.curve.control_points(), holds);
+         });
+}
+
+}  // namespace
+
+std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
+                                 const gcode::Program& program, const gcode::Dialect& target,
+                                 const gcode::ModalState& before, const gcode::ModalState& after,
+                                 std::string_view line_end) {
+  if (!names_numbers(plan, gcode::millimetres_per(before.units))) return std::nullopt;
+  const gcode::Position start{run.points.front(), {true, true, true}};
+  RunWriter out(target, Writer(target, {before, start}, line_end));
+  if (after.feed_without_point) out.writer().use_feeds_without_point();
+  if (has_arcs(plan) && !out.writer().centers_understood()) return std::nullopt;
+
+  const auto copy_comments = [&](const std::vector<std::size_t>& comments) {
+    for (const std::size_t i : comments) {
+      out.writer().copy_line(program.source.text(run.comments[i].text));
+    }
+  };
+  NumberFormat format = plan.form == OutputForm::kLines ? target.coordinates(before.units)
+                                                        : target.arc_ends(before.units);
+  out.writer().use_coordinates(format);
+  auto curve = plan.curves.begin();
+  for (std::size_t i = 0; i < plan.moves.size();) {
+    const PlannedMove& move = plan.moves[i];
+    copy_comments(move.comments_before);
+    if (curve != plan.curves.end() && curve->first == i) {
+      if (target.curves() == nullptr) return std::nullopt;
+      const std::size_t end = i + curve->count;
+      const bool last = end == plan.moves.size();
+      if (!out.write(*curve, move.feed, last ? std::min(run.decimals, kMostDecimals) : 0)) {
+        return std::nullopt;
+      }
+      // Nothing stands inside a curve.
+      for (++i; i < end; ++i) copy_comments(plan.moves[i].comments_before);
+      ++curve;
+      continue;
+    }
+    if (++i == plan.moves.size()) {
+      format.decimals = std::min(std::max(format.decimals, run.decimals), kMostDecimals);
+      out.writer().use_coordinates(format);
+    }
+    out.write(move);
+  }
+  copy_comments(plan.comments_after);
+  out.restore(without_arc_word(after));
+
+  const geometry::Point3& reached = out.writer().state().position.mm;
+  if ((reached - run.points.back()).norm() > geometry::kSamePlace) return std::nullopt;
+  if (!out.every_line_fits()) return std::nullopt;
+  return out.finished();
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,43 @@
+// Planned moves to text, in the words of the target.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "gcode/control/dialect.h"
+#include "gcode/state/modal_state.h"
+#include "gcode/text/program.h"
+#include "postproc/runs/section.h"
+#include "postproc/smooth/forms/output_plan.h"
+
+namespace batten::postproc {
+
+struct RunText {
+  std::string text;        // whole lines, with line ends
+  std::size_t blocks = 0;  // lines with words, not those of comments alone
+  std::size_t arcs = 0;
+};
+
+// The run's blocks. `before` is the state after the last block before the run (the place is the
+// run's first point), `after` the state in which the copied block after it must find the control:
+// where plane, motion word or feed differ at the end of the run, one block restores them; what
+// `after` does not know is left as it is.
+//
+// The run's first and last point are met exactly: the last move is printed with as many decimals
+// as the run was. Comments are copied, each on a line of its own.
+//
+// The comments of moves inside a curve stand behind it.
+//
+// Nothing when a curve is planned that the target cannot say, when arcs are planned and it is not
+// known how their centres are to be given, when a line would be too long, or when the last point
+// has more decimals than can be printed. An arc that the dialect refuses once it is printed is
+// written as chords.
+[[nodiscard]] std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
+                                               const gcode::Program& program,
+                                               const gcode::Dialect& target,
+                                               const gcode::ModalState& before,
+                                               const gcode::ModalState& after,
+                                               std::string_view line_end);
+
+}  // namespace batten::postproc

@@ -1,0 +1,81 @@
+// What a method of smoothing makes of a run: one curve, whatever the method.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "geometry/basic/point.h"
+#include "geometry/basic/side.h"
+#include "geometry/basic/tolerance_kind.h"
+#include "geometry/fitting/fair/fair.h"
+#include "geometry/path/kinematic_feed.h"
+#include "postproc/machine/machine.h"
+#include "postproc/options/options.h"
+#include "postproc/runs/section.h"
+
+namespace batten::postproc {
+
+// The value that every method gives: see geometry::SmoothCurve. `noise` and `rounds` are known to
+// `fair` alone, 0 with the others.
+struct RunCurve {
+  Method method = Method::kFair;
+  geometry::SmoothCurve path;
+};
+
+struct CurveRequest {
+  double tolerance = 0.01;  // mm, curve to run
+  geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
+  geometry::Side side = geometry::Side::kBoth;
+  double side_margin = 0;            // mm, see geometry::OneSidedOptions
+  double rounding = 0.0005;          // mm, greatest error of one printed coordinate of the run
+  double keep_corner_angle = 3.2;    // radians: vertices that turn more stay as they are
+  geometry::KinematicLimits limits;  // what the machine can do at the greatest feed of the run
+  double jerk = std::numeric_limits<double>::infinity();  // mm/s^3, see geometry::FairOptions
+  double scatter = 0;                                     // mm, see geometry::FairOptions
+  bool accurate = false;                                  // see geometry::FairOptions
+  bool near = true;                                       // the same
+};
+
+// `feed`: mm/min, programmed. Where the machine has no jerk limit, it is infinite.
+[[nodiscard]] geometry::KinematicLimits limits_of(const Machine& machine, double feed);
+
+// The ends of the run are met exactly. A closed run starts and ends in its seam vertex, where the
+// tool is put down and taken up; only `fair` has no corner there where the path has none.
+//
+// Returns nothing when the method finds no curve, and with a side for all methods but `fair`;
+// throws std::invalid_argument for Method::kBest and Method::kNone, which are no methods of their
+// own.
+[[nodiscard]] std::optional<RunCurve> curve_of(Method method, std::span<const geometry::Point3> run,
+                                               const CurveRequest& request);
+
+// The methods one by one.
+[[nodiscard]] std::optional<geometry::SmoothCurve> fair_curve(std::span<const geometry::Point3> run,
+                                                              const CurveRequest& request);
+
+// A B-spline is fitted to the run first, within a quarter of the tolerance; what its measured
+// deviation leaves is the radius of the tube. Lines and kept corners of the fit stay; the parts
+// between them are smoothed, each with the tangent and curvature that it has where it meets a line.
+[[nodiscard]] std::optional<geometry::SmoothCurve> naseath_curve(
+    std::span<const geometry::Point3> run, const CurveRequest& request, bool literal);
+
+// Every vertex that is not kept gets a blend; the lines between stay. `racing` finds none where the
+// machine limits neither acceleration nor jerk of an axis.
+[[nodiscard]] std::optional<geometry::SmoothCurve> time_optimal_curve(
+    std::span<const geometry::Point3> run, const CurveRequest& request);
+[[nodiscard]] std::optional<geometry::SmoothCurve> guo_curve(std::span<const geometry::Point3> run,
+                                                             const CurveRequest& request,
+                                                             bool literal);
+[[nodiscard]] std::optional<geometry::SmoothCurve> ozcan_curve(
+    std::span<const geometry::Point3> run, const CurveRequest& request);
+
+// 1/mm: the greatest of the circles through three neighbouring vertices, and of a curve by samples.
+[[nodiscard]] double greatest_curvature(std::span<const geometry::Point3> points);
+[[nodiscard]] double greatest_curvature(const geometry::BsplineCurve& curve);
+
+// How far the chords of the run are from the curve that was meant, as the height of equal chords:
+// the rms distance of their middles (mm). Noisy vertices are as far off as they scatter.
+[[nodiscard]] double chord_error(const Run& run, const geometry::SmoothCurve& meant,
+                                 double rounding);
+
+}  // namespace batten::postproc

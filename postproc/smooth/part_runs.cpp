@@ -1,0 +1,343 @@
+#include "postproc/smooth/part_runs.h"
+
+#include <algorithm>
+#include <atomic>
+#include <iterator>
+#include <mutex>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "gcode/state/reason.h"
+#include "gcode/writer/block_numbers.h"
+#include "postproc/runs/band_notes.h"
+#include "postproc/runs/boundary_timing.h"
+#include "postproc/runs/run_cutting.h"
+#include "postproc/runs/run_grouping.h"
+#include "postproc/runs/run_path.h"
+#include "postproc/smooth/run_smoother.h"
+#include "postproc/smooth/selection/selection.h"
+#include "postproc/system/parallel_for.h"
+#include "postproc/text/line_end.h"
+
+namespace batten::postproc {
+
+namespace {
+
+// Neighbours of a piece that are timed with it: the machine looks ahead over as many blocks to
+// stop, at most.
+constexpr std::size_t kNeighbours = 100;
+
+std::string_view bytes_of(const gcode::Program& program, const Section& section) {
+  const std::uint32_t begin = program.blocks[section.first_block].span.begin;
+  return program.source.text({begin, program.blocks[section.last_block].end});
+}
+
+RunContext context_of(const gcode::Program& program, const gcode::Interpretation& meaning,
+                      const Section& section) {
+  const auto state_after = [&](std::uint32_t block) -> const gcode::ModalState& {
+    return meaning.states[meaning.blocks[block].state_after];
+  };
+  const gcode::Block& first = program.blocks[section.first_block];
+  return {program,
+          section.first_block == 0 ? meaning.states[0] : state_after(section.first_block - 1),
+          state_after(section.last_block),
+          written_line_end(program.source.text({first.span.end, first.end})),
+          section.last_block - section.first_block + 1,
+          bytes_of(program, section).size(),
+          number_room(program, section.first_block, section.last_block)};
+}
+
+// Long runs that long_run_cuts leaves, for there are arcs in them: they are cut as wholes, and
+// their times are taken from rest to rest, which is a stop too much for many points.
+std::vector<Section> with_long_runs_cut(std::vector<Section> sections,
+                                        const gcode::Interpretation& meaning,
+                                        const LongRunLimits& limits) {
+  std::vector<Section> cut;
+  cut.reserve(sections.size());
+  for (Section& section : sections) {
+    const Run* run = std::get_if<Run>(&section.content);
+    if (run == nullptr || run->points.size() <= limits.whole_at_most) {
+      cut.push_back(std::move(section));
+      continue;
+    }
+    for (RunPiece& piece :
+         cut_run(section, meaning, {.shortest = limits.shortest, .longest = limits.longest})) {
+      cut.push_back(std::move(piece.section));
+    }
+  }
+  return cut;
+}
+
+// Runs that were cut from one are not run from rest to rest. Each is timed with some moves of its
+// neighbours, and the time of the moves about a cut, which are in two of these times, is shared
+// between them: so the times of all are that of the whole.
+class Joints {
+ public:
+  Joints(const ProgramPart& part, const SmoothOptions& options, PartRuns& runs)
+      : part_(part), options_(options), runs_(runs) {}
+
+  void run() {
+    for (RunState& work : runs_.works) {
+      const Section& section = runs_.sections[work.section];
+      const std::uint32_t end = section.last_block + 1;
+      const bool begins = is_cut(section.first_block);
+      const bool ends = is_cut(end);
+      if (!begins && !ends) continue;
+      Times shared;
+      if (begins) {
+        work.context.lead = before(section.first_block);
+        shared += times_about(section.first_block, work.context.after.path);
+      }
+      if (ends) {
+        work.context.tail = behind(end);
+        shared += times_about(end, work.context.after.path);
+      }
+      work.context.of_neighbours = half_of(shared);
+    }
+  }
+
+ private:
+  [[nodiscard]] bool is_cut(std::uint32_t block) const {
+    if (part_.window && block == 0) return !part_.window->moves_before.empty();
+    if (part_.window && block == part_.program.blocks.size()) {
+      return !part_.window->moves_behind.empty();
+    }
+    return is_cut_of_long_run(block) || std::ranges::binary_search(runs_.copied_cuts, block);
+  }
+
+  [[nodiscard]] bool is_cut_of_long_run(std::uint32_t block) const {
+    return std::ranges::binary_search(runs_.cuts, block);
+  }
+
+  // The whole looks no further than a window that ends at the cuts of long runs.
+  [[nodiscard]] std::uint32_t window_begin(std::uint32_t block) const {
+    if (is_cut_of_long_run(block)) return 0;
+    const auto next = std::ranges::upper_bound(runs_.cuts, block);
+    return next == runs_.cuts.begin() ? 0 : *std::prev(next);
+  }
+
+  [[nodiscard]] std::uint32_t window_end(std::uint32_t block) const {
+    const auto next = std::ranges::upper_bound(runs_.cuts, block);
+    const bool is_last = is_cut_of_long_run(block) || next == runs_.cuts.end();
+    return is_last ? static_cast<std::uint32_t>(part_.program.blocks.size()) : *next;
+  }
+
+  [[nodiscard]] std::vector<TimedPiece> before(std::uint32_t block) const {
+    if (part_.window && block == 0) return part_.window->moves_before;
+    return moves_before(part_.program, part_.meaning, block, window_begin(block));
+  }
+
+  [[nodiscard]] std::vector<TimedPiece> behind(std::uint32_t block) const {
+    if (block == part_.program.blocks.size()) return part_.window->moves_behind;
+    return moves_from(part_.program, part_.meaning, block, window_end(block));
+  }
+
+  [[nodiscard]] Times times_about(std::uint32_t block, gcode::PathMode path) const {
+    std::vector<TimedPiece> moves = before(block);
+    const std::vector<TimedPiece> rest = behind(block);
+    moves.insert(moves.end(), rest.begin(), rest.end());
+    return times_of(moves, *options_.machine, path);
+  }
+
+  static Times half_of(const Times& times) {
+    return {times.as_set / 2, times.without_merging / 2, times.flat_out / 2, times.exact_path / 2};
+  }
+
+  const ProgramPart& part_;
+  const SmoothOptions& options_;
+  PartRuns& runs_;
+};
+
+// Blocks at which stretches that are copied begin or end, but where runs are cut anyway.
+std::vector<std::uint32_t> cuts_about(std::span<const LineRange> copied,
+                                      const gcode::Program& program,
+                                      const std::vector<std::uint32_t>& cuts) {
+  std::vector<std::uint32_t> blocks;
+  if (program.blocks.empty()) return blocks;
+  const std::uint32_t first = program.blocks.front().line;
+  const std::uint32_t last = program.blocks.back().line;
+  for (const LineRange& range : copied) {
+    for (const std::uint32_t line : {range.first, range.last + 1}) {
+      if (line <= first || line > last) continue;
+      if (!std::ranges::binary_search(cuts, line - first)) blocks.push_back(line - first);
+    }
+  }
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  return blocks;
+}
+
+class PartSmoother {
+ public:
+  PartSmoother(const ProgramPart& part, const SmoothOptions& options, const ProgressCallback& tell,
+               PartRuns& runs)
+      : part_(part), options_(options), tell_(tell), runs_(runs) {}
+
+  // False: the work was stopped.
+  bool run() {
+    std::vector<std::size_t> whole;
+    for (std::size_t i = 0; i < runs_.works.size(); ++i) {
+      if (runs_.works[i].selection.reason.empty()) whole.push_back(i);
+    }
+    if (!nothing_asked()) note_bands();  // they warn of what new paths may do
+    for (const RunState& work : runs_.works) points_ += run_of(work).points.size();
+    if (!smooth_works(whole)) return false;
+    const std::vector<std::size_t> pieces = cut_runs();
+    if (!smooth_works(pieces)) return false;
+    for (CutRun& cut : runs_.cut_runs) revert_costly_pieces(cut, runs_.works, options_);
+    return true;
+  }
+
+ private:
+  [[nodiscard]] bool nothing_asked() const { return options_.method == Method::kNone; }
+
+  [[nodiscard]] const Run& run_of(const RunState& work) const {
+    return std::get<Run>(runs_.sections[work.section].content);
+  }
+
+  void note_bands() {
+    std::vector<gcode::Diagnostics> notes(runs_.works.size());
+    parallel_for(options_.threads, runs_.works.size(), [&](std::size_t i) {
+      notes[i] = band_notes(part_.program, part_.meaning, runs_.sections[runs_.works[i].section],
+                            options_.tolerance_mm);
+    });
+    runs_.notes = std::move(notes);
+  }
+
+  bool smooth_works(const std::vector<std::size_t>& works) {
+    std::atomic<bool> stopped = false;
+    std::mutex telling;
+    const auto one = [&](std::size_t i) {
+      if (stopped) return;
+      RunState& work = runs_.works[works[i]];
+      work.smoothed = smooth_run(run_of(work), work.context, options_);
+      work.selection = choose(work.smoothed, work.context, options_);
+      work.drop_what_is_not_written();
+      const std::scoped_lock lock(telling);
+      smoothed_points_ += run_of(work).points.size();
+      const double part =
+          std::min(1.0, static_cast<double>(smoothed_points_) / static_cast<double>(2 * points_));
+      if (!tell_(part)) stopped = true;
+    };
+    parallel_for(options_.threads, works.size(), one);
+    return !stopped;
+  }
+
+  // Puts pieces in the place of runs that would be kept as a whole: their parts differ. Returns the
+  // works that are new.
+  std::vector<std::size_t> cut_runs() {
+    std::vector<std::size_t> fresh;
+    std::vector<Section> sections;
+    std::vector<RunState> works;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < runs_.sections.size(); ++i) {
+      const bool is_run = next < runs_.works.size() && runs_.works[next].section == i;
+      if (!is_run || !add_pieces(runs_.works[next], sections, works, fresh)) {
+        if (is_run) {
+          runs_.works[next].section = sections.size();
+          works.push_back(std::move(runs_.works[next]));
+        }
+        sections.push_back(std::move(runs_.sections[i]));
+      }
+      if (is_run) ++next;
+    }
+    runs_.sections = std::move(sections);
+    runs_.works = std::move(works);
+    return fresh;
+  }
+
+  bool add_pieces(RunState& work, std::vector<Section>& sections, std::vector<RunState>& works,
+                  std::vector<std::size_t>& fresh) {
+    const std::string_view kept = work.selection.reason;
+    const bool disappoints = kept == gcode::reason::kNoGain || kept == gcode::reason::kSlower ||
+                             kept == gcode::reason::kNoFit;
+    if (!disappoints) return false;
+    std::vector<RunPiece> pieces = cut_run(runs_.sections[work.section], part_.meaning, {});
+    if (pieces.size() < 2) return false;
+    CutRun cut;
+    cut.path = work.context.after.path;
+    cut.facts = work.smoothed.facts;
+    cut.reason = work.selection.reason;
+    cut.first_work = works.size();
+    cut.pieces = pieces.size();
+    cut.run = std::move(std::get<Run>(runs_.sections[work.section].content));
+    for (RunPiece& piece : pieces) {
+      fresh.push_back(works.size());
+      RunState part{sections.size(), context_of(part_.program, part_.meaning, piece.section)};
+      part.cut_run = runs_.cut_runs.size();
+      part.first = piece.first;
+      part.last = piece.last;
+      const std::size_t end = cut.run.points.size() - 1;
+      part.context.lead = timed_pieces(
+          cut.run, piece.first < kNeighbours ? 0 : piece.first - kNeighbours, piece.first);
+      part.context.tail =
+          timed_pieces(cut.run, piece.last, std::min(piece.last + kNeighbours, end));
+      works.push_back(std::move(part));
+      sections.push_back(std::move(piece.section));
+    }
+    runs_.cut_runs.push_back(std::move(cut));
+    return true;
+  }
+
+  const ProgramPart& part_;
+  const SmoothOptions& options_;
+  const ProgressCallback& tell_;
+  PartRuns& runs_;
+  std::size_t points_ = 0;           // of all runs
+  std::size_t smoothed_points_ = 0;  // pieces count again
+};
+
+}  // namespace
+
+bool is_allowed(std::string_view reason, const SmoothOptions& options) {
+  return std::ranges::find(options.allowed, reason) != options.allowed.end();
+}
+
+GroupingOptions grouping_of(const SmoothOptions& options) {
+  GroupingOptions grouping;
+  grouping.min_motions = options.min_motions;
+  grouping.tolerance_mm = options.tolerance_mm;
+  for (const std::string& id : options.allowed) grouping.allowed.push_back(id);
+  return grouping;
+}
+
+PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options,
+                   const LongRunLimits& limits, const LongRunFacts& facts) {
+  const GroupingOptions grouping = grouping_of(options);
+  PartRuns runs;
+  runs.near = facts.near;
+  if (!part.window) {
+    LongRunLimits asked = limits;
+    asked.rewritten = options.method != Method::kNone;
+    LongRuns found = find_long_runs(part.program, part.meaning, asked, grouping);
+    runs.cuts = std::move(found.cuts);
+    runs.near = std::make_shared<const std::vector<SelfProximity>>(std::move(found.near));
+  }
+  runs.copied_cuts = cuts_about(facts.copied, part.program, runs.cuts);
+  std::vector<std::uint32_t> all_cuts;
+  std::ranges::merge(runs.cuts, runs.copied_cuts, std::back_inserter(all_cuts));
+  runs.sections = group_runs(part.program, part.meaning, grouping, all_cuts);
+  runs.sections = with_long_runs_cut(std::move(runs.sections), part.meaning, limits);
+  for (std::size_t i = 0; i < runs.sections.size(); ++i) {
+    if (!std::holds_alternative<Run>(runs.sections[i].content)) continue;
+    runs.works.push_back({i, context_of(part.program, part.meaning, runs.sections[i])});
+    const std::uint32_t line = part.program.blocks[runs.sections[i].first_block].line;
+    if (holds(facts.copied, line)) {
+      runs.works.back().selection.reason = gcode::reason::kCrossesItself;
+    }
+  }
+  Joints(part, options, runs).run();
+  return runs;
+}
+
+void keep_as_smoothed(PartRuns& runs) {
+  for (RunState& work : runs.works) work.selection.reason = gcode::reason::kAlreadySmoothed;
+}
+
+bool smooth_runs(const ProgramPart& part, const SmoothOptions& options,
+                 const ProgressCallback& tell, PartRuns& runs) {
+  return PartSmoother(part, options, tell, runs).run();
+}
+
+}  // namespace batten::postproc

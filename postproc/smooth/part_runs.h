@@ -1,0 +1,60 @@
+// The runs of a part of a program: found, smoothed, and cut where they would be kept as a whole.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "gcode/text/diagnostic.h"
+#include "postproc/options/options.h"
+#include "postproc/runs/long_run_cuts.h"
+#include "postproc/runs/program_part.h"
+#include "postproc/runs/proximity_index.h"
+#include "postproc/runs/section.h"
+#include "postproc/smooth/run_state.h"
+
+namespace batten::postproc {
+
+// What is known of the parts of a program's long runs before they are smoothed.
+struct LongRunFacts {
+  // Of a window: those of the whole program. The whole finds its own.
+  std::shared_ptr<const std::vector<SelfProximity>> near = {};
+  // Stretches that are copied, for the new paths of parts crossed there. As `joined` gives them.
+  std::vector<LineRange> copied = {};
+};
+
+struct PartRuns {
+  std::vector<std::uint32_t> cuts;         // blocks at which long runs are cut
+  std::vector<std::uint32_t> copied_cuts;  // others, where a stretch that is copied begins or ends
+  std::shared_ptr<const std::vector<SelfProximity>>
+      near;  // of the long runs of the program; or none
+  std::vector<Section> sections;
+  std::vector<RunState> works;  // of the sections that are runs, in order
+  std::vector<CutRun> cut_runs;
+  std::vector<gcode::Diagnostics> notes;  // on the bands of the runs (postproc/runs/band_notes.h)
+};
+
+// Whether the user has lifted this rule.
+[[nodiscard]] bool is_allowed(std::string_view reason, const SmoothOptions& options);
+
+[[nodiscard]] GroupingOptions grouping_of(const SmoothOptions& options);
+
+// `part` must outlive the runs: they refer to it. A window ends where a long run is to be cut, the
+// whole is cut here; but not where no method is asked for.
+[[nodiscard]] PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options,
+                                 const LongRunLimits& limits = {}, const LongRunFacts& facts = {});
+
+// Every run is kept, since the program was smoothed before.
+void keep_as_smoothed(PartRuns& runs);
+
+// Called with the share of the work that is done, 0..1; false stops it.
+using ProgressCallback = std::function<bool(double)>;
+
+// Makes candidates for all runs and chooses among them. The same for any number of threads. False:
+// the work was stopped.
+[[nodiscard]] bool smooth_runs(const ProgramPart& part, const SmoothOptions& options,
+                               const ProgressCallback& tell, PartRuns& runs);
+
+}  // namespace batten::postproc

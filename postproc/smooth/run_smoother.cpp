@@ -1,0 +1,240 @@
+#include "postproc/smooth/run_smoother.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "gcode/state/reason.h"
+#include "gcode/text/large_pages.h"
+#include "postproc/machine/models/timed_chain.h"
+#include "postproc/runs/run_path.h"
+#include "postproc/smooth/candidate_maker.h"
+#include "postproc/smooth/curve_forms.h"
+#include "postproc/smooth/methods/curvature_profile.h"
+#include "postproc/smooth/methods/run_curve.h"
+#include "postproc/smooth/selection/candidate.h"
+#include "postproc/smooth/selection/candidate_bounds.h"
+#include "postproc/smooth/selection/run_bound.h"
+#include "postproc/smooth/selection/run_times.h"
+#include "postproc/smooth/selection/selection.h"
+
+namespace batten::postproc {
+
+namespace {
+
+constexpr double kMmPerInch = 25.4;
+
+// Where few blocks are wanted, vertices may scatter by this part of the tolerance: fewer arcs
+// and chords do for the simpler curve.
+constexpr double kSpent = 0.25;
+
+// Arcs that are pieces of a curve scatter about it, but the curve that is looked for stays within
+// this part of the tolerance of most of them.
+constexpr double kArcsSpend = 0.5;
+
+// Of the share of the form, the curve may use this part too: what it leaves of it, and of its
+// own share, the form gets back. The fair curve comes near to all that it may use, and where many
+// arcs or chords follow it closely they need more.
+constexpr double kLent = 0.6;
+constexpr double kLentToFair = 0.5;
+
+// Of the form's share, what a written line may take on the side where the run must not be cut.
+constexpr double kSideMargin = 0.25;
+
+// Radians: vertices that turn more are bends so tight, where they are none of the path that was
+// meant, that curves may rather end there.
+constexpr double kSharpCorner = 45 * std::numbers::pi / 180;
+
+double step_of(int decimals, gcode::Units units) {
+  const double step = std::pow(10.0, -decimals);
+  return units == gcode::Units::kInch ? kMmPerInch * step : step;
+}
+
+double greatest_feed(const Run& run) {
+  double feed = 0;
+  for (const FeedFrom& from : run.feeds) feed = std::max(feed, from.feed);
+  return feed;
+}
+
+bool has_sharp_corner(const std::vector<geometry::Point3>& points) {
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const geometry::Vector3 in = points[i] - points[i - 1];
+    const geometry::Vector3 out = points[i + 1] - points[i];
+    if (std::atan2(in.cross(out).norm(), in.dot(out)) > kSharpCorner) return true;
+  }
+  return false;
+}
+
+// The curves that may stand in a run's place, one after the other, as long as one of them could be
+// better than what is there.
+class RunSmoother {
+ public:
+  // All must live as long. `result` has the facts of the run as it stands.
+  RunSmoother(const RunTask& task, const RunTimes& times, const ToleranceShares& shares,
+              SmoothedRun& result)
+      : task_(task),
+        shares_(shares),
+        rounding_(0.5 * step_of(task.run.decimals, task.context.before.units)),
+        maker_(task, times),
+        bounds_(task, times, result),
+        result_(result) {}
+
+  // Why the run is kept, or nothing.
+  [[nodiscard]] std::string_view smooth() {
+    if (bounds_.is_hopeless()) return gcode::reason::kNoGain;
+    const bool best = options().method == Method::kBest;
+    const bool curve = try_first(best ? Method::kFair : options().method);
+    if (curve && has_curves()) try_kept_corners();
+    if (best && options().side == geometry::Side::kBoth) try_others();
+    if (!fits_) return gcode::reason::kNoFit;
+    if (!result_.candidates.empty()) return {};
+    return result_.passed_over ? gcode::reason::kNoGain : gcode::reason::kTargetCannot;
+  }
+
+ private:
+  [[nodiscard]] const Run& run() const { return task_.run; }
+  [[nodiscard]] const RunContext& context() const { return task_.context; }
+  [[nodiscard]] const SmoothOptions& options() const { return task_.options; }
+
+  [[nodiscard]] CurveRequest curve_request(Method method) const {
+    const bool few = wants_few_moves(options());
+    CurveRequest request;
+    const double lent = method == Method::kFair && !few ? kLentToFair : kLent;
+    request.tolerance = shares_.smoothing + lent * shares_.form;
+    request.kind = options().tolerance_kind;
+    request.side = options().side;
+    request.side_margin = kSideMargin * shares_.form + shares_.rounding;
+    request.rounding = rounding_;
+    request.keep_corner_angle = keep_corner_angle_of(options());
+    request.limits = limits_of(*options().machine, greatest_feed(run()));
+    request.jerk = options().machine->max_jerk();
+    if (few) request.scatter = kSpent * request.tolerance;
+    const double of_arcs = std::min(arc_scatter(run()), kArcsSpend * request.tolerance);
+    request.scatter = std::max(request.scatter, of_arcs);
+    request.accurate = options().prefer == Prefer::kAccuracy;
+    // Who asks for curves by name asks for few control points.
+    request.near = options().output != Form::kCurves;
+    return request;
+  }
+
+  // False where there is no such curve. The fair curve is the path that was meant.
+  bool try_first(Method method) {
+    const CurveRequest request = curve_request(method);
+    const auto curve = curve_of(method, run().points, request);
+    if (!curve) return false;
+    const CurvatureProfile bends(curve->path.curve);
+    result_.facts.noise = curve->path.noise;
+    result_.facts.error = chord_error(run(), curve->path, rounding_);
+    result_.facts.fair_curvature = bends.greatest();
+    add_candidates_of(*curve, bends);
+    if (method == Method::kFair && request.near) try_simpler(request);
+    return true;
+  }
+
+  void try_curve(Method method, const CurveRequest& request) {
+    const auto curve = curve_of(method, run().points, request);
+    if (curve) add_candidates_of(*curve, CurvatureProfile(curve->path.curve));
+  }
+
+  // Where it leaves some of the tolerance.
+  void add_candidates_of(const RunCurve& curve, const CurvatureProfile& bends) {
+    const double left = shares_.smoothing + shares_.form - curve.path.deviation;
+    if (!(left > 0)) return;
+    fits_ = true;
+    CurveForms(task_, maker_, bounds_, curve, bends, shares_.form, left).add_to(result_);
+  }
+
+  // Where the near curve is worth nothing, one that leaves of the vertices what their decimals do
+  // may be. Pieces of a run are fitted alike.
+  void try_simpler(CurveRequest request) {
+    if (request.accurate || request.scatter > 0 || context().is_piece()) return;
+    if (!choose(result_, context(), options()).order.empty()) return;
+    request.near = false;
+    try_curve(Method::kFair, request);
+  }
+
+  // A bend of the tolerance's size in the place of a corner takes a curve some thirty control
+  // points. Its end in the corner and the start of the next one are fewer blocks, and often as
+  // quick.
+  void try_kept_corners() {
+    if (options().output != Form::kCurves || options().keep_corners_deg) return;
+    if (!has_sharp_corner(run().points)) return;
+    CurveRequest request = curve_request(Method::kFair);
+    request.keep_corner_angle = kSharpCorner;
+    try_curve(Method::kFair, request);
+  }
+
+  // The other methods, where there is time left to win and they may win it.
+  void try_others() {
+    const auto mean = [](const Times& t) { return 0.5 * (t.as_set + t.without_merging); };
+    double time = mean(bounds_.times_before());
+    if (!context().is_piece()) {  // else times are not those of the run alone
+      for (const Candidate& c : result_.candidates) time = std::min(time, mean(c.times));
+    }
+    const double corners = coarse_part(run(), options().tolerance_mm);
+    for (const Method method :
+         methods_worth_trying(corners, run().points.size(), bounds_.least_time(), time)) {
+      try_curve(method, curve_request(method));
+    }
+  }
+
+  [[nodiscard]] bool has_curves() const {
+    return std::ranges::any_of(result_.candidates,
+                               [](const Candidate& c) { return c.form == OutputForm::kCurves; });
+  }
+
+  const RunTask& task_;
+  const ToleranceShares& shares_;
+  double rounding_;  // mm, greatest error of one printed coordinate of the run
+  CandidateMaker maker_;
+  CandidateBounds bounds_;
+  bool fits_ = false;  // a method found a curve inside the tolerance
+  SmoothedRun& result_;
+};
+
+// What is known of a run that is to be smoothed.
+RunFacts facts_of(const Run& run, const RunTimes& times, const std::vector<TimedPiece>& motions) {
+  RunFacts facts;
+  facts.max_curvature = greatest_curvature(run.points);
+  facts.times = times.of_run(motions);
+  if (!run.arcs.empty()) facts.kink = greatest_kink(motions);
+  return facts;
+}
+
+// Nothing is compared: what is told of the run is the time that it takes.
+SmoothedRun kept_unasked(const Run& run, const RunTimes& times,
+                         const std::vector<TimedPiece>& motions) {
+  SmoothedRun result;
+  result.facts.max_curvature = greatest_curvature(run.points);
+  result.facts.times.as_set = times.as_set_of_run(motions);
+  result.reason = gcode::reason::kMethodNone;
+  return result;
+}
+
+}  // namespace
+
+SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOptions& options,
+                       CandidateScope scope) {
+  const RunTimes times(context, *options.machine);
+  const std::vector<TimedPiece> motions = timed_pieces(run, 0, run.points.size() - 1);
+  if (options.method == Method::kNone) return kept_unasked(run, times, motions);
+
+  SmoothedRun result;
+  result.facts = facts_of(run, times, motions);
+  ToleranceShares shares = share_tolerance(options, context.before.units, run.decimals);
+  shares.smoothing -= run.chord_error;  // the points are not quite where the arcs are
+  if (!(shares.smoothing > 0)) {
+    result.reason = gcode::reason::kNoFit;
+    return result;
+  }
+  const RunTask task{run, context, options, scope};
+  result.reason = RunSmoother(task, times, shares, result).smooth();
+  if (!context.is_piece()) {
+    for (Candidate& candidate : result.candidates) candidate.moves = {};
+  }
+  return result;
+}
+
+}  // namespace batten::postproc

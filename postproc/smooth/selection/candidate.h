@@ -1,0 +1,83 @@
+// What stands where a run is smoothed: the run in its program, and what could be written instead of
+// it with what each candidate costs. Values that the methods, the forms and the selection hand on.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "gcode/state/modal_state.h"
+#include "gcode/text/program.h"
+#include "gcode/writer/block_numbers.h"
+#include "postproc/machine/models/cycle_time.h"
+#include "postproc/options/options.h"
+#include "postproc/runs/section.h"
+#include "postproc/smooth/forms/output_plan.h"
+#include "postproc/smooth/forms/program_writer.h"
+#include "postproc/smooth/selection/setting_times.h"
+
+namespace batten::postproc {
+
+// Where a run stands.
+struct RunContext {
+  const gcode::Program& program;
+  const gcode::ModalState& before;  // state after the block before the run
+  const gcode::ModalState& after;   // state in which the block after the run must find the control
+  std::string_view line_end;
+  std::size_t blocks = 0;  // of the run, as they were
+  std::size_t bytes = 0;
+  LineNumberRange numbers = {};  // for the blocks that take their place
+  // What is cut right before and after it, where it is a piece of a longer run: a piece is not
+  // run from rest to rest.
+  std::vector<TimedPiece> lead = {};
+  std::vector<TimedPiece> tail = {};
+  // Of a run for itself that was cut from a longer one: what of the time with lead and tail belongs
+  // to its neighbours. Nothing of a piece: what it adds to the times of both alone is asked.
+  std::optional<Times> of_neighbours = {};
+
+  [[nodiscard]] bool is_piece() const { return !of_neighbours && (!lead.empty() || !tail.empty()); }
+};
+
+struct Candidate {
+  std::string_view method;  // name_of(Method): "fair", "guo" ..
+  OutputForm form = OutputForm::kLines;
+  RunText text;
+  double error = 0;  // mm, the written form from the path that was meant, as far as it is known
+  double max_curvature = 0;       // 1/mm, greatest of the curve that it was made of
+  bool chords_for_steps = false;  // see plan_lines
+  double kink = 0;                // radians, see greatest_kink; 0 where the run is one of lines
+  Times times;                    // slower in one way: the ways that were not asked are the run's
+  std::vector<TimedPiece> moves;  // of a piece of a run; empty otherwise
+};
+
+// What is known of a run, whether it is rewritten or not.
+struct RunFacts {
+  Times times;                // but exact_path, which nobody compares with: 0
+  double max_curvature = 0;   // 1/mm, circle through three neighbouring vertices
+  double noise = 0;           // mm, rms distance of the vertices from the fair curve
+  double error = 0;           // mm, how far the old path is from the one that was meant
+  double fair_curvature = 0;  // 1/mm, greatest of the fair curve
+  double kink = 0;            // radians, greatest between motions of a run with arcs, or 0
+};
+
+struct SmoothedRun {
+  RunFacts facts;
+  std::vector<Candidate> candidates;  // none where `reason` says why
+  std::string_view reason;
+  bool left_out = false;     // there are more that the choice would not prefer to the best of these
+  bool passed_over = false;  // one that could not gain was not made
+};
+
+// Which candidates are made. Those that would not be chosen are of use where the proof of the
+// chosen one fails.
+enum class CandidateScope { kToChoose, kAll };
+
+// A run that is to be smoothed, and what every step of that knows of it. All must live as long.
+struct RunTask {
+  const Run& run;
+  const RunContext& context;
+  const SmoothOptions& options;
+  CandidateScope scope = CandidateScope::kToChoose;
+};
+
+}  // namespace batten::postproc

@@ -1,0 +1,139 @@
+#include "postproc/smooth/selection/candidate_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "postproc/machine/models/junction_speed.h"
+#include "postproc/runs/run_path.h"
+#include "postproc/smooth/selection/run_bound.h"
+#include "postproc/smooth/selection/selection.h"
+#include "postproc/smooth/selection/setting_times.h"
+
+namespace batten::postproc {
+
+namespace {
+
+// Of a run with so many coarse vertices there is nothing left to fit but corners.
+constexpr double kCoarse = 0.5;
+
+// The fair curve of scattered vertices is no better known than this part of their scatter: a form
+// that is nearer to it than that is not nearer to the path that was meant.
+constexpr double kKnown = 0.5;
+
+// mm/s: the machine's speed at a feed in mm/min.
+double speed_at(double feed, const Machine& machine) {
+  return std::min(feed / 60, machine.max_velocity());
+}
+
+double least_feed(const Run& run) {
+  double feed = std::numeric_limits<double>::infinity();
+  for (const FeedFrom& from : run.feeds) feed = std::min(feed, from.feed);
+  return feed;
+}
+
+// Times of a piece leave out what its neighbours need to stop and start; what it could gain is
+// judged by its time alone.
+Times judged_times(const RunTask& task, const Times& in_place) {
+  if (!task.context.is_piece()) return in_place;
+  const std::vector<TimedPiece> alone = timed_pieces(task.run, 0, task.run.points.size() - 1);
+  const SettingTimes times(alone, *task.options.machine, task.context.after.path);
+  Times judged = in_place;
+  judged.as_set = times.as_set();
+  judged.without_merging = times.without_merging();
+  return judged;
+}
+
+}  // namespace
+
+CandidateBounds::CandidateBounds(const RunTask& task, const RunTimes& times,
+                                 const SmoothedRun& so_far)
+    : task_(task),
+      times_(times),
+      so_far_(so_far),
+      least_time_(postproc::least_time(task.run, task.options.tolerance_mm, *task.options.machine,
+                                       task.options.tolerance_kind)),
+      before_(judged_times(task, so_far.facts.times)) {}
+
+RunFacts CandidateBounds::facts_before() const {
+  RunFacts facts = so_far_.facts;
+  facts.times = before_;
+  return facts;
+}
+
+bool CandidateBounds::is_hopeless() const {
+  const auto& [run, context, options, scope] = task_;
+  if (coarse_part(run, options.tolerance_mm) < kCoarse) return false;
+  const RunFacts before = facts_before();
+  const Prospect corners{least_time_, 2.0 * static_cast<double>(context.blocks), before.error};
+  return !may_gain(corners, before, context.blocks, options.prefer);
+}
+
+bool CandidateBounds::are_hopeless(const LinesAhead& lines) const {
+  const Prefer prefer = task_.options.prefer;
+  const Prospect chords{least_time_, blocks_of(lines), known(lines.deviation)};
+  return prefer == Prefer::kTime && !may_gain(chords, facts_before(), task_.context.blocks, prefer);
+}
+
+bool CandidateBounds::arcs_are_hopeless(const geometry::MarkedPieces& curve) const {
+  const SmoothOptions& options = task_.options;
+  return options.prefer == Prefer::kTime && options.output == Form::kAuto &&
+         arcs_for(curve) > static_cast<double>(task_.context.blocks);
+}
+
+double CandidateBounds::known(double error) const {
+  return std::max(error, kKnown * so_far_.facts.noise);
+}
+
+// About how many of them there will be, as plan_lines lays them.
+double CandidateBounds::blocks_of(const LinesAhead& lines) const {
+  const Machine& machine = *task_.options.machine;
+  double feed = 0;
+  for (const FeedFrom& from : task_.run.feeds) feed = std::max(feed, from.feed);
+  return lines.bends.chords(0.5 * lines.deviation,
+                            2 * speed_at(feed, machine) * machine.block_period);
+}
+
+// What no form of the run takes less than, s: `least_time_`, and to start and to stop.
+double CandidateBounds::least_time_at_rest() const {
+  const Machine& machine = *task_.options.machine;
+  const double lost = speed_at(least_feed(task_.run), machine) / axis_accelerations(machine).norm();
+  return least_time_ > lost ? least_time_ + lost : least_time_;
+}
+
+bool CandidateBounds::keeps_speed(const Times& times) const {
+  return postproc::keeps_speed(times, least_time_at_rest());
+}
+
+bool CandidateBounds::beats_form(const Candidate& candidate, double deviation,
+                                 double blocks) const {
+  const Bound bound{least_time_at_rest(), known(deviation), blocks, 0};
+  return beats(candidate, bound, so_far_, task_.context, task_.options);
+}
+
+bool CandidateBounds::beats_lines(const Candidate& candidate, const LinesAhead& lines) const {
+  return beats_form(candidate, lines.deviation, blocks_of(lines));
+}
+
+// The kinks of chords go with the root of their deviation.
+bool CandidateBounds::beats_finer(const Candidate& lines, double deviation,
+                                  const LinesAhead& finer) const {
+  constexpr double kEvenLess = 1.1;  // than that: chords differ
+  const auto beats_it = [&](const Bound& bound) {
+    return beats(lines, bound, so_far_, task_.context, task_.options);
+  };
+  const double time = 0.5 * (lines.times.as_set + lines.times.without_merging);
+  Bound bound{time, known(finer.deviation), blocks_of(finer), lines.times.exact_path};
+  if (!beats_it(bound)) return false;
+  const double less_kinks = kEvenLess * std::sqrt(deviation / finer.deviation);
+  bound.exact_path = times_.exact_path_with_less_kinks(lines.moves, less_kinks);
+  if (!beats_it(bound)) return false;
+  // Without merging they gain as little as these do.
+  const double share = std::min(time / lines.times.as_set, 1.0);
+  bound.least_time = std::max(least_time_at_rest(),
+                              share * times_.as_set_with_less_kinks(lines.moves, less_kinks));
+  return beats_it(bound);
+}
+
+}  // namespace batten::postproc

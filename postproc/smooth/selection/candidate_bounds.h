@@ -1,0 +1,69 @@
+// What is known of a run's forms before they are made: whether one could gain anything, and whether
+// what has been made would be chosen whatever it takes.
+#pragma once
+
+#include "geometry/path/curve_pieces.h"
+#include "postproc/smooth/methods/curvature_profile.h"
+#include "postproc/smooth/selection/candidate.h"
+#include "postproc/smooth/selection/run_times.h"
+
+namespace batten::postproc {
+
+// Lines along a curve, no further from it than this.
+struct LinesAhead {
+  const CurvatureProfile& bends;  // of the curve
+  double deviation = 0;           // mm
+};
+
+class CandidateBounds {
+ public:
+  // All must live as long. `so_far`: what is known of the run and has been made, its facts' times
+  // at least.
+  CandidateBounds(const RunTask& task, const RunTimes& times, const SmoothedRun& so_far);
+
+  [[nodiscard]] const RunFacts& facts() const { return so_far_.facts; }
+
+  // s: see postproc/smooth/selection/run_bound.h.
+  [[nodiscard]] double least_time() const { return least_time_; }
+
+  // s: what the run takes, by which gains are measured. Of a piece: from rest to rest.
+  [[nodiscard]] const Times& times_before() const { return before_; }
+
+  // Whether the program's own chords are coarser than the tolerance nearly everywhere: a curve
+  // could only round their corners, in more blocks than there are.
+  [[nodiscard]] bool is_hopeless() const;
+
+  [[nodiscard]] bool are_hopeless(const LinesAhead& lines) const;
+
+  // Corners between lines, each of which would be more arcs than it has blocks: chords do as well.
+  [[nodiscard]] bool arcs_are_hopeless(const geometry::MarkedPieces& curve) const;
+
+  // mm: how near a form can be said to be to the path that was meant that is so near to the fair
+  // curve.
+  [[nodiscard]] double known(double error) const;
+
+  // Whether a kink that costs time is none of those in a form that takes this.
+  [[nodiscard]] bool keeps_speed(const Times& times) const;
+
+  // Whether the candidate would be chosen rather than any form at this deviation (mm) in so many
+  // blocks, whatever it takes.
+  [[nodiscard]] bool beats_form(const Candidate& candidate, double deviation, double blocks) const;
+  [[nodiscard]] bool beats_lines(const Candidate& candidate, const LinesAhead& lines) const;
+
+  // Whether lines that are this far from the curve would be chosen rather than finer ones.
+  [[nodiscard]] bool beats_finer(const Candidate& lines, double deviation,
+                                 const LinesAhead& finer) const;
+
+ private:
+  [[nodiscard]] double blocks_of(const LinesAhead& lines) const;
+  [[nodiscard]] double least_time_at_rest() const;
+  [[nodiscard]] RunFacts facts_before() const;
+
+  const RunTask& task_;
+  const RunTimes& times_;
+  const SmoothedRun& so_far_;
+  double least_time_;
+  Times before_;
+};
+
+}  // namespace batten::postproc

@@ -1,0 +1,80 @@
+// Do the parts of a long run cross each other where they did not before? Each is proved for itself;
+// here what was written of those stretches that are near to other parts
+// (postproc/runs/proximity_index.h) is looked at together. Holds these stretches, and nothing of
+// the rest.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/text/program.h"
+#include "geometry/band/self_proximity.h"
+#include "postproc/proof/program_events.h"
+#include "postproc/runs/proximity_index.h"
+#include "postproc/runs/section.h"
+
+namespace batten::postproc {
+
+// Of one long run, of the stretches that are near to other parts of it.
+struct NearEdges {
+  std::size_t run = 0;  // index of its SelfProximity
+  std::vector<geometry::PartEdge> before;
+  std::vector<geometry::PartEdge> after;
+};
+
+// New text that was proved, and where the sections begin in it.
+struct WrittenSections {
+  ReadProgram read;
+  std::span<const std::size_t> begins;  // bytes
+};
+
+// What the sections hold of each long run, in order. `written`: nothing where no byte differs.
+[[nodiscard]] std::vector<NearEdges> near_edges_of(const ReadProgram& old,
+                                                   std::span<const Section> sections,
+                                                   const std::optional<WrittenSections>& written,
+                                                   std::span<const SelfProximity> near,
+                                                   double tolerance_mm);
+
+// Gathers a program's windows, one after the other.
+class PartCrossings {
+ public:
+  PartCrossings(std::span<const SelfProximity> near, double tolerance_mm)
+      : near_(near), tolerance_(tolerance_mm) {}
+
+  void take(std::vector<NearEdges> edges);
+  // All runs that end up to this line are known: those that cross are found, and their edges are
+  // not held any longer.
+  void look_up_to(std::uint32_t line);
+  // The stretches about crossings, of both strands: where these are copied nothing crosses that did
+  // not. As `joined` gives them; none where nothing crosses.
+  [[nodiscard]] std::vector<LineRange> found() const;
+
+  // Above this nothing is said of a run: most of it is near to itself.
+  static constexpr std::size_t kMostEdges = std::size_t{1} << 20;
+
+ private:
+  struct Held {
+    std::size_t run = 0;
+    NearEdges edges;
+    bool too_many = false;
+  };
+  void look_at(const NearEdges& edges);
+
+  std::span<const SelfProximity> near_;
+  double tolerance_;
+  std::vector<Held> held_;
+  std::vector<LineRange> found_;
+};
+
+// What is to be copied beside what is copied already: all of it as `joined` gives it. Where that is
+// all copied, the whole of the long runs.
+[[nodiscard]] std::vector<LineRange> more_to_copy(const std::vector<LineRange>& copied,
+                                                  const std::vector<LineRange>& found,
+                                                  std::span<const SelfProximity> near);
+
+}  // namespace batten::postproc

@@ -1,0 +1,60 @@
+// Two long programs compared part by part: what verify (postproc/proof/verification.h) says of
+// programs that keep the promise, in the memory of some parts.
+//
+// Why the parts together are the proof. Both texts are read from their begins, with what the parts
+// before have left behind (PartReader, EventsBefore). A part of the old program is held against the
+// part of the new one that ends at the same place, by the same code as the whole:
+//
+//   - Behind as many plain rapids, which are then the same events. No stretch goes over a rapid and
+//     no event is joined with another over it, so each stretch and each event of the whole is
+//     compared in one of the parts, from the same states, and the bounds are those of the whole.
+//   - In a long run without rapids, where a motion ends at the same place in both, to the last
+//     digit. Two paths that are followed in order within the tolerance, and two more that begin
+//     where these end, are followed as wholes by following the ones after the others. The stretch
+//     is then listed in pieces, each with its own bounds. Beside the distance the whole asks two
+//     things of a stretch. That the feeds come in the same order: a feed goes on over the cut in
+//     both programs or in neither. And that the new path does not cross itself where the old one
+//     did not: the new path of such a run must not meet itself at all
+//     (postproc/proof/self_meeting.h). A side is not proved in pieces, for the corner at the cut
+//     would be in none of them.
+//
+// Whatever else there is to say is left to the whole: that a part is not proved proves nothing, and
+// which events differ shows only in all of them. So nothing is accepted here that the whole shows
+// to be broken; only where its search for a proof would cost too much may the pieces of a long run
+// be proved and the run as a whole be left open.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+
+#include "gcode/text/diagnostic.h"
+#include "gcode/text/source_text.h"
+#include "postproc/proof/verification.h"
+#include "postproc/stream/chunk_reader.h"
+
+namespace batten::postproc {
+
+struct TextToVerify {
+  const gcode::SourceText& source;
+  PartReading reading;
+};
+
+struct VerifyLimits {
+  PartLimits parts = {};
+  std::size_t longest = 65536;  // old blocks without a rapid that are held before a run is cut
+};
+
+struct VerifiedInParts {
+  Verification verification;  // proved; blocks of its stretches count within their parts
+  gcode::Diagnostics of_old;
+  gcode::Diagnostics of_new;
+};
+
+// Nothing where the whole is needed: all that is not proved is among that, and what PartReader does
+// not read. Nothing too where `stopped` says so; it is asked once for each part.
+[[nodiscard]] std::optional<VerifiedInParts> verify_in_parts(
+    const TextToVerify& before, const TextToVerify& after, const Promise& promise,
+    const std::function<bool()>& stopped = {}, const VerifyLimits& limits = {});
+
+}  // namespace batten::postproc

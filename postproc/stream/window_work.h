@@ -1,0 +1,70 @@
+// One window of a long program: read, smoothed and proved for itself.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/text/diagnostic.h"
+#include "gcode/text/source_text.h"
+#include "postproc/options/options.h"
+#include "postproc/runs/program_part.h"
+#include "postproc/smooth/part_runs.h"
+#include "postproc/stream/part_crossings.h"
+#include "postproc/stream/prescan.h"
+#include "postproc/stream/run_report.h"
+
+namespace batten::postproc {
+
+// What the windows of a program have in common.
+struct WindowSetting {
+  const gcode::SourceText& source;
+  const SmoothOptions& options;
+  gcode::ReadOptions read_options;
+  LongRunLimits long_runs = {};
+  bool was_smoothed = false;  // the program: all runs are kept
+  LongRunFacts facts = {};
+};
+
+// What a window takes over from the new text before it.
+struct NewTextBefore {
+  TextBefore known;
+  bool says_smoothed = false;  // that it was smoothed stands there already
+};
+
+enum class WindowOutcome { kDone, kStopped, kNeedsWhole };
+
+struct WindowDone {
+  WindowOutcome outcome = WindowOutcome::kDone;
+  NewTextBefore before;  // that it was made for
+  NewTextBefore behind;
+  bool unchanged = false;  // the text is the bytes of the window
+  std::string text;
+  std::size_t blocks = 0;  // of the text
+  double corner_mm = 0;
+  double deviation_mm = 0;
+  std::uint32_t deviation_line = 0;
+  std::vector<RunReport> runs;
+  std::vector<gcode::Diagnostics> notes;
+  std::optional<gcode::Diagnostic> untold;  // postproc/stream/provenance.h
+  gcode::Diagnostics form_notes;            // postproc/stream/form_notes.h
+  TextBefore old_behind;
+  std::vector<NearEdges> near_edges;
+  std::uint32_t last_line = 0;
+};
+
+// What the new text before a window may have told the control, by what the old text told it there.
+using Guess = std::function<NewTextBefore(const TextBefore& old_before)>;
+
+// `tell` is told the share of the window that is done.
+[[nodiscard]] WindowDone smooth_window(const WindowSetting& setting, const WindowPlace& place,
+                                       const Guess& before, const ProgressCallback& tell);
+
+// Whether what is made for one of them is what is made for the other.
+[[nodiscard]] bool same_before(const NewTextBefore& a, const NewTextBefore& b);
+
+}  // namespace batten::postproc

@@ -1,0 +1,40 @@
+#include "postproc/text/json_values.h"
+
+#include <string_view>
+
+namespace batten::postproc {
+
+namespace {
+
+std::string_view name_of(gcode::Severity severity) {
+  switch (severity) {
+    case gcode::Severity::kNote:
+      return "note";
+    case gcode::Severity::kWarning:
+      return "warning";
+    case gcode::Severity::kError:
+      break;
+  }
+  return "error";
+}
+
+}  // namespace
+
+Json diagnostics_json(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source) {
+  Json list = Json::array();
+  for (const gcode::Diagnostic& diagnostic : diagnostics) {
+    const gcode::SourcePlace place = source.place_of(diagnostic.where.begin);
+    list.push_back({{"severity", name_of(diagnostic.severity)},
+                    {"id", diagnostic.id},
+                    {"line", place.line},
+                    {"column", place.column},
+                    {"message", diagnostic.message}});
+  }
+  return list;
+}
+
+std::string json_text(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace batten::postproc

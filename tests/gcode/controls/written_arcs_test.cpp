@@ -1,0 +1,253 @@
+// What every target writes for arcs, read by the interpreter, and by the rules of three controls
+// that are known to the last condition.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <sstream>
+
+#include "gcode/controls/built_in.h"
+#include "gcode/state/units.h"
+#include "tests/support/dialect_arcs.h"
+#include "tests/support/interpreted.h"
+
+namespace batten::gcode {
+namespace {
+
+using geometry::Arc;
+using geometry::Point3;
+using geometry::Vector3;
+
+constexpr Units kBoth[] = {Units::kMillimetre, Units::kInch};
+
+std::vector<std::string> names_of_targets() {
+  std::vector<std::string> names = {"linuxcnc"};
+  for (const auto family :
+       {grbl_family(), printer_family(), pc_family(), machining_center_family(), plc_family()}) {
+    for (const Dialect* each : family) names.emplace_back(each->name());
+  }
+  return names;
+}
+
+class EveryTarget : public testing::TestWithParam<std::string> {
+ protected:
+  const Dialect& target_ = named_dialect(GetParam());
+};
+
+// The end is the writer's own place, and the middle lies where it was meant to within rounding.
+TEST_P(EveryTarget, WritesArcsThatTheReaderUnderstands) {
+  std::mt19937 random(11);
+  int refused = 0;
+  constexpr int kArcs = 300;
+  for (int i = 0; i < kArcs; ++i) {
+    const Units units = kBoth[i % 3 == 0 ? 1 : 0];
+    const Arc wanted = random_arc_for(target_, units, 300, random);
+    Writer out = arc_writer(target_, wanted.start, units);
+    if (!out.arc_to(wanted, 1000)) {
+      ++refused;
+      continue;
+    }
+    const tests::Interpreted read(program_from(wanted.start, units, out.text()));
+    SCOPED_TRACE(out.text());
+    ASSERT_FALSE(read.read.motions.empty());
+    const geometry::PathPiece& piece = read.read.motions.back().piece;
+    ASSERT_TRUE(std::holds_alternative<Arc>(piece));
+    ASSERT_LT((end_point(piece) - out.state().position.mm).norm(), 1e-9);
+    const double step = printed_step(target_.arc_offsets(units), units) +
+                        printed_step(target_.arc_ends(units), units);
+    ASSERT_LT((point_at(piece, 0.5) - point_at(geometry::PathPiece(wanted), 0.5)).norm(),
+              2.5 * step);
+  }
+  EXPECT_LE(refused, kArcs / 50);
+}
+
+// A control that has its own check must take what is written; its complaint is asked about the
+// arc that was read, not about the one that was meant.
+TEST_P(EveryTarget, WritesNoArcThatItWouldRefuse) {
+  std::mt19937 random(12);
+  for (int i = 0; i < 300; ++i) {
+    const Arc wanted = random_arc_for(target_, Units::kMillimetre, 300, random);
+    Writer out = arc_writer(target_, wanted.start, Units::kMillimetre);
+    if (!out.arc_to(wanted, 1000)) continue;
+    const tests::Interpreted read(program_from(wanted.start, Units::kMillimetre, out.text()));
+    const auto* arc = read.read.motions.back().piece.arc();
+    ASSERT_NE(arc, nullptr) << out.text();
+    EXPECT_EQ(arc_refusal(target_, *arc, Units::kMillimetre), "") << out.text();
+  }
+}
+
+TEST_P(EveryTarget, KeepsItsLinesShort) {
+  std::mt19937 random(13);
+  for (int i = 0; i < 300; ++i) {
+    const Arc wanted = random_arc_for(target_, Units::kMillimetre, 1000, random);
+    Writer out = arc_writer(target_, wanted.start, Units::kMillimetre);
+    if (!out.arc_to(wanted, 1234.567891)) continue;
+    std::istringstream lines(out.text());
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(target_.line_length(line), target_.max_line_length()) << line;
+    }
+  }
+}
+
+TEST_P(EveryTarget, PrintsPointsBlanksAndDigitsAsItsTableSays) {
+  std::mt19937 random(14);
+  for (int i = 0; i < 100; ++i) {
+    const Units units = kBoth[i % 2];
+    const Arc wanted = random_arc_for(target_, units, 300, random);
+    Writer out = arc_writer(target_, wanted.start, units);
+    out.line_to(wanted.start + Vector3(1, 0, 0), 500);
+    const std::string& text = out.text();
+    std::istringstream in(text);
+    std::size_t words = 0;
+    for (std::string word; in >> word;) {
+      ++words;
+      if (word[0] == 'G') continue;
+      const std::size_t point = word.find('.');
+      if (target_.coordinates(units).always_point) {
+        EXPECT_NE(point, std::string::npos) << text;
+      }
+      const int most =
+          word[0] == 'F' ? target_.feeds(units).decimals : target_.arc_ends(units).decimals;
+      if (point != std::string::npos) {
+        EXPECT_LE(word.size() - point - 1, static_cast<std::size_t>(most)) << text;
+      }
+    }
+    if (target_.blanks_between_words()) {
+      EXPECT_GE(words, 2U) << text;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Dialects, EveryTarget, testing::ValuesIn(names_of_targets()),
+                         [](const auto& test) { return test.param; });
+
+// --- the rules of single controls
+// -----------------------------------------------------------------
+
+// A reader of its own: letters and the numbers behind them.
+std::map<char, double> words_of(const std::string& line) {
+  std::map<char, double> words;
+  std::istringstream in(line);
+  for (std::string word; in >> word;) words[word[0]] = std::stod(word.substr(1));
+  return words;
+}
+
+// Klipper: G2 or G3 in every line, no R, an I or J that is not 0, X and Y; then it turns by the
+// angle from start to end about start + (I, J), and goes nowhere below 0.001 mm.
+TEST(Klipper, RunsTenThousandArcsAsTheyAreMeant) {
+  const Dialect& klipper = named_dialect("klipper");
+  std::mt19937 random(21);
+  for (int i = 0; i < 10000; ++i) {
+    const Arc wanted = random_arc_for(klipper, Units::kMillimetre, 1000, random);
+    Writer out = arc_writer(klipper, wanted.start, Units::kMillimetre);
+    if (!out.arc_to(wanted, 1000)) continue;
+    const auto words = words_of(out.text());
+    ASSERT_TRUE(out.text().starts_with("G2 ") || out.text().starts_with("G3 ")) << out.text();
+    ASSERT_TRUE(words.contains('X') && words.contains('Y') && !words.contains('R')) << out.text();
+    const double offset_x = words.contains('I') ? words.at('I') : 0;
+    const double offset_y = words.contains('J') ? words.at('J') : 0;
+    ASSERT_TRUE(offset_x != 0 || offset_y != 0) << out.text();
+    const double to_x = words.at('X') - (wanted.start.x() + offset_x);
+    const double to_y = words.at('Y') - (wanted.start.y() + offset_y);
+    double turn =
+        std::atan2(-offset_x * to_y + offset_y * to_x, -offset_x * to_x - offset_y * to_y);
+    if (turn < 0) turn += 2 * std::numbers::pi;
+    if (words.at('G') == 2) turn -= 2 * std::numbers::pi;
+    const double meant = wanted.axis.z() > 0 ? wanted.sweep : -wanted.sweep;
+    const double radius = std::hypot(offset_x, offset_y);
+    ASSERT_NEAR(turn, meant, 0.003 / radius + 1e-9) << out.text();
+    ASSERT_GT(std::abs(turn) * radius, 0.001) << out.text();
+  }
+}
+
+// TinyG and g2core: |r1 - r0| above 1 mm, or above 0.1 % of the radius (in the stricter reading of
+// its two thresholds).
+TEST(G2core, TakesTenThousandArcs) {
+  const Dialect& g2core = named_dialect("g2core");
+  std::mt19937 random(22);
+  for (int i = 0; i < 10000; ++i) {
+    const Arc wanted = random_arc_for(g2core, Units::kMillimetre, 1000, random);
+    Writer out = arc_writer(g2core, wanted.start, Units::kMillimetre);
+    if (!out.arc_to(wanted, 1000)) continue;
+    const tests::Interpreted read(program_from(wanted.start, Units::kMillimetre, out.text()));
+    const auto& arc = *read.read.motions.back().piece.arc();
+    const auto radius = [&arc](const Point3& place) {
+      const Vector3 from = place - arc.center;
+      return (from - from.dot(arc.axis) * arc.axis).norm();
+    };
+    const double mismatch = std::abs(radius(arc.start) - radius(arc.end));
+    ASSERT_LE(mismatch, 0.001 * radius(arc.start)) << out.text();
+  }
+}
+
+// R says the same whether I, J, K would be offsets or places.
+TEST(ByRadius, NamesNoCentre) {
+  for (const std::string_view name : {"mach3", "mach4", "uccnc", "hurco", "num", "codesys"}) {
+    std::mt19937 random(23);
+    const Dialect& dialect = named_dialect(name);
+    for (int i = 0; i < 200; ++i) {
+      const Arc wanted = random_arc_for(dialect, Units::kMillimetre, 300, random);
+      for (const DistanceMode centers :
+           {DistanceMode::kIncremental, DistanceMode::kAbsolute, DistanceMode::kUnknown}) {
+        ModalState modal = cutting_in(Units::kMillimetre);
+        modal.arc_distance = centers;
+        Writer out(dialect, {modal, {wanted.start, {true, true, true}}}, "\n");
+        if (!out.arc_to(wanted, 1000)) continue;
+        EXPECT_EQ(out.text().find_first_of("IJK"), std::string::npos) << out.text();
+        EXPECT_NE(out.text().find(" R"), std::string::npos) << out.text();
+      }
+    }
+  }
+}
+
+TEST(ByRadius, RefusesAHalfTurnAndMore) {
+  const Point3 start(10, 0, 0);
+  for (const double sweep : {3.1416, 4.0, 6.28, -3.1416}) {
+    Writer out = arc_writer(named_dialect("mach3"), start, Units::kMillimetre);
+    EXPECT_FALSE(out.arc_to(arc_round(start, Point3::Zero(), Vector3::UnitZ(), sweep, 0), 1000));
+    EXPECT_EQ(out.text(), "");
+  }
+}
+
+// By hand: a quarter turn of radius 10 about the origin.
+TEST(ByRadius, SaysAQuarterTurnSo) {
+  const Point3 start(10, 0, 0);
+  Writer mach = arc_writer(named_dialect("mach3"), start, Units::kMillimetre);
+  ASSERT_TRUE(mach.arc_to(
+      arc_round(start, Point3::Zero(), Vector3::UnitZ(), std::numbers::pi / 2, 0), 1000));
+  EXPECT_EQ(mach.text(), "G3 X0 Y10 R10\n");
+  Writer hurco = arc_writer(named_dialect("hurco"), start, Units::kMillimetre);
+  ASSERT_TRUE(hurco.arc_to(
+      arc_round(start, Point3::Zero(), Vector3::UnitZ(), -std::numbers::pi / 2, 0), 600));
+  EXPECT_EQ(hurco.text(), "G2 X0. Y-10. R10. F600.\n");
+}
+
+// --- words in every block
+// -------------------------------------------------------------------------
+
+TEST(Printers, NameTheMotionInEveryBlockAndBothAxesInEveryArc) {
+  for (const std::string_view name : {"marlin", "klipper", "reprapfirmware", "smoothieware"}) {
+    SCOPED_TRACE(name);
+    Writer out = arc_writer(named_dialect(name), Point3(0, 0, 0), Units::kMillimetre);
+    out.line_to({1, 0, 0}, 1000);
+    out.line_to({2, 0, 0}, 1000);
+    ASSERT_TRUE(
+        out.arc_to(arc_round({2, 0, 0}, {2, 1, 0}, Vector3::UnitZ(), std::numbers::pi, 0), 1000));
+    ModalState after = cutting_in(Units::kMillimetre);
+    after.feed = 500;
+    out.restore(after);
+    EXPECT_EQ(out.text(), "G1 X1\nG1 X2\nG3 X2 Y2 J1\nG1 F500\n");
+  }
+}
+
+TEST(Printers, SayAFeedThatIsRestoredBehindAMotionWord) {
+  Writer out = arc_writer(named_dialect("klipper"), Point3(0, 0, 0), Units::kMillimetre);
+  out.line_to({1, 0, 0}, 700);
+  ModalState after = cutting_in(Units::kMillimetre);
+  out.restore(after);
+  EXPECT_EQ(out.text(), "G1 X1 F700\nG1 F1000\n");
+}
+
+}  // namespace
+}  // namespace batten::gcode

@@ -1,0 +1,293 @@
+// What is forgotten: after a block that could have changed something, that something is
+// unknown, until a word sets it again.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "gcode/state/reason.h"
+#include "tests/support/interpreted.h"
+
+namespace batten::gcode {
+namespace {
+
+using tests::Interpreted;
+
+constexpr const char* kStart =
+    "G21 G90 G94 G17 G40 G49 G64 F100\nG54\nG0 X1 Y1 Z1\nG1 X2\n";  // 4 lines
+constexpr const char* kAfter = "\nG1 X3\nY3\nZ3\nG1 X4 Y4 Z4\n";
+
+struct PlaceCase {
+  const char* name;
+  const char* block;
+  bool x, y, z;  // known after it
+};
+void PrintTo(const PlaceCase& test, std::ostream* out) { *out << test.block; }
+
+class PlaceAfter : public testing::TestWithParam<PlaceCase> {};
+
+TEST_P(PlaceAfter, IsKnownOnTheseAxes) {
+  const Interpreted it(std::string(kStart) + GetParam().block + kAfter);
+  const std::size_t last = it.read.blocks.size();
+  ASSERT_NE(it.motion_of_line(last - 3), nullptr);
+  EXPECT_EQ(it.motion_of_line(last - 3)->start_known, GetParam().x);
+  EXPECT_EQ(it.motion_of_line(last - 2)->start_known, GetParam().y);
+  EXPECT_EQ(it.motion_of_line(last - 1)->start_known, GetParam().z);
+  EXPECT_TRUE(it.motion_of_line(last)->start_known);  // the words said all of it again
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Interpreter, PlaceAfter,
+    testing::Values(PlaceCase{"Comment", "(text)", true, true, true},
+                    PlaceCase{"Spindle", "M3 S100", true, true, true},
+                    PlaceCase{"Dwell", "G4 P1", true, true, true},
+                    PlaceCase{"DwellWithX", "G4 X1", false, true, true},
+                    PlaceCase{"DwellOfSeconds", "G4 X1.5", true, true, true},
+                    PlaceCase{"DwellAndAPlace", "G4 P1. X1.5", false, true, true},
+                    PlaceCase{"SameOffset", "G54", true, true, true},
+                    PlaceCase{"OtherOffset", "G55", false, false, false},
+                    PlaceCase{"ExtendedOffset", "G54.1 P3", false, false, false},
+                    PlaceCase{"OffsetWithP", "G54 P3", false, false, false},
+                    PlaceCase{"OriginOfOneAxis", "G92 Y0", true, false, true},
+                    PlaceCase{"OriginOfTheExtruder", "G92 E0", true, true, true},
+                    PlaceCase{"OriginBack", "G92.1", false, false, false},
+                    PlaceCase{"LocalOffset", "G52 X1", false, false, false},
+                    PlaceCase{"Data", "G10 L2 P1 X0\nG1", false, false, false},
+                    PlaceCase{"MachinePlace", "G53 G1 Z0", true, true, false},
+                    PlaceCase{"HomeOneAxis", "G28 Z0", true, true, false},
+                    PlaceCase{"HomeByIncrement", "G28 W0", true, true, false},
+                    PlaceCase{"HomeRotary", "G28 A0", true, true, true},
+                    PlaceCase{"HomeAll", "G30", false, false, false},
+                    PlaceCase{"StoredHome", "G28.1", true, true, true},
+                    PlaceCase{"StoredHomeAndAPlace", "G28.1 X30", false, false, false},
+                    PlaceCase{"StoredHomeAndAMove", "G30.1 G1 X10 Y10", false, false, false},
+                    PlaceCase{"StoredHomeAndAnArc", "G28.1 G2 I5", false, false, false},
+                    PlaceCase{"ToolLength", "G43 H1", false, false, false},
+                    PlaceCase{"ToolOffsets", "G43.1 X10 Z3", false, false, false},
+                    PlaceCase{"ToolLengthOff", "G49", false, false, false},
+                    PlaceCase{"LengthNumber", "H2", false, false, false},
+                    PlaceCase{"ToolChange", "M6", false, false, false},
+                    PlaceCase{"Tool", "T2", false, false, false},
+                    PlaceCase{"ToolBesideMotion", "G1 X5 T2", false, false, false},
+                    PlaceCase{"LatheIncrement", "G1 U5", false, true, true},
+                    PlaceCase{"ExpressionOnX", "G1 X#1 ", false, true, true},
+                    PlaceCase{"CornerWord", "G1 X5 ,R1", false, false, false},
+                    PlaceCase{"Variable", "#100=5", true, true, true},
+                    PlaceCase{"NamedVariable", "#<_depth>=5", true, true, true},
+                    PlaceCase{"SystemVariable", "#5221=5", false, false, false},
+                    PlaceCase{"ComputedVariable", "##1=5", false, false, false},
+                    PlaceCase{"CompensationOff", "G41 D1\nG40", false, false, false},
+                    PlaceCase{"DeletableMotion", "/G1 X9", false, true, true},
+                    PlaceCase{"DeletableNothing", "/G1 X2", true, true, true},
+                    PlaceCase{"UserM", "M150 P1", false, false, false},
+                    PlaceCase{"FirstUserM", "M100", false, false, false},
+                    PlaceCase{"UserMBesideMotion", "G1 X5 M101", false, false, false},
+                    PlaceCase{"OtherM", "M12", true, true, true}),
+    [](const auto& test) { return test.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    Assignments, PlaceAfter,
+    testing::Values(PlaceCase{"BlanksInTheNumber", "#52 21=5", false, false, false},
+                    PlaceCase{"BehindN", "N7 #5221=5", false, false, false},
+                    PlaceCase{"AsSecond", "#100=1 #5221=5", false, false, false},
+                    PlaceCase{"ConditionalVariable", "IF[#1EQ1]THEN#100=5", true, true, true},
+                    PlaceCase{"Conditional", "IF[#1EQ1]THEN#5221=1.", false, false, false},
+                    PlaceCase{"ConditionalWithBlanks", "N7 if [#1 eq 1] then # 5221 = 1.", false,
+                              false, false},
+                    PlaceCase{"ConditionalComputed", "IF[#1EQ1]THEN#[#2]=1.", false, false, false}),
+    [](const auto& test) { return test.param.name; });
+
+struct ForgetCase {
+  const char* name;
+  const char* block;
+};
+void PrintTo(const ForgetCase& test, std::ostream* out) { *out << test.block; }
+
+class Everything : public testing::TestWithParam<ForgetCase> {};
+
+TEST_P(Everything, IsUnknownAfterIt) {
+  const Interpreted it(std::string(kStart) + GetParam().block + "\n");
+  EXPECT_EQ(it.last_state(), unknown_modal_state());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Interpreter, Everything,
+    testing::Values(ForgetCase{"Call", "M98 P1000"}, ForgetCase{"LocalCall", "M97 P10"},
+                    ForgetCase{"CallBesideMotion", "G1 X1 M98 P1"}, ForgetCase{"Return", "M99"},
+                    ForgetCase{"Macro", "G65 P9010"}, ForgetCase{"OWord", "o100 call"},
+                    ForgetCase{"OWordIf", "o1 if [#1 GT 2]"},
+                    ForgetCase{"Loop", "WHILE [#1 LT 2] DO1"}, ForgetCase{"NextProgram", "O1234"},
+                    ForgetCase{"End", "M30"}, ForgetCase{"SavedState", "M72"},
+                    ForgetCase{"UnknownG", "G777"}, ForgetCase{"Foreign", "CYCLE832(0.01)"},
+                    ForgetCase{"Sender", "$32=1"}, ForgetCase{"Unreadable", "G1 X"},
+                    ForgetCase{"DeletableCall", "/M98 P1"}, ForgetCase{"TwoOfOneGroup", "G90 G91"}),
+    [](const auto& test) { return test.param.name; });
+
+// --- calls that keep modes ---------------------------------------------------------------------
+
+class KeptModes : public testing::TestWithParam<ForgetCase> {};
+
+TEST_P(KeptModes, AreKnownBehindACall) {
+  const Interpreted it(std::string(kStart) + GetParam().block + "\nX5 Y5 Z5\nG1 X5 Y5 Z5\nX6\n",
+                       ReadOptions{.calls_keep_modes = true});
+  ModalState expected = it.state_after_line(4);
+  expected.motion = MotionMode::kUnknown;
+  expected.feed.reset();
+  EXPECT_EQ(it.state_after_line(5), expected);
+  EXPECT_EQ(it.motion_of_line(6), nullptr);  // which kind of motion, only the program called knows
+  EXPECT_FALSE(it.motion_of_line(7)->start_known);
+  EXPECT_TRUE(it.motion_of_line(8)->start_known);
+}
+
+INSTANTIATE_TEST_SUITE_P(Interpreter, KeptModes,
+                         testing::Values(ForgetCase{"Call", "M98 P1000"},
+                                         ForgetCase{"LocalCall", "M97 P10"},
+                                         ForgetCase{"FromTheCard", "M198 P1"},
+                                         ForgetCase{"CallBesideMotion", "G1 X1 M98 P1"},
+                                         ForgetCase{"Macro", "G65 P9010 A1."},
+                                         ForgetCase{"OWord", "o100 call"},
+                                         ForgetCase{"OWordByName", "N5 o<do_if_sub> call [1] [#2]"},
+                                         ForgetCase{"OWordByParameter", "o#1 call"}),
+                         [](const auto& test) { return test.param.name; });
+
+class NotKeptModes : public testing::TestWithParam<ForgetCase> {};
+
+TEST_P(NotKeptModes, AreUnknownAllTheSame) {
+  const Interpreted it(std::string(kStart) + GetParam().block + "\n",
+                       ReadOptions{.calls_keep_modes = true});
+  ModalState state = it.last_state();
+  state.modal_macro = TriState::kUnknown;
+  EXPECT_EQ(state, unknown_modal_state());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Interpreter, NotKeptModes,
+    testing::Values(ForgetCase{"Return", "M99"}, ForgetCase{"ModalMacro", "G66 P9010"},
+                    ForgetCase{"OWordIf", "o1 if [#1 GT 2]"},
+                    ForgetCase{"Subprogram", "o<call> sub"},
+                    ForgetCase{"Loop", "WHILE [#1 LT 2] DO1"}, ForgetCase{"NextProgram", "O1234"},
+                    ForgetCase{"End", "M30"}, ForgetCase{"SavedState", "M72"},
+                    ForgetCase{"CallAndEnd", "M98 P5 M30"}, ForgetCase{"UnknownG", "G777"},
+                    ForgetCase{"Unreadable", "G1 X"}),
+    [](const auto& test) { return test.param.name; });
+
+// Where LinuxCNC 2.9 is behind a block of two kinds of codes that began at X5 Y6 Z3 under G1: what
+// its rs274 said.
+struct LinuxCncPlace {
+  const char* block;
+  double x, y, z;
+  const char* motion = "G1";  // the mode that the next block moves in
+};
+constexpr LinuxCncPlace kLinuxCncPlaces[] = {
+    {"G4 P0.1 X10 Y10", 10, 10, 3},
+    {"G4 P0.1 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G4 P0.1 G81 X1 Y1 Z-1 R2", 1, 1, 2, "G81"},
+    {"G10 L2 P1 X10 Y10", -5, -4, 3},
+    {"G10 L2 P1 Z3", 5, 6, 0},
+    {"G10 L20 P1 X10 Y10", 10, 10, 3},
+    {"G28", 0, 0, 0},
+    {"G28 X10 Y10", 0, 0, 3},
+    {"G28 Z3", 5, 6, 0},
+    {"G28.1", 5, 6, 3},
+    {"G28.1 X10 Y10", 10, 10, 3},
+    {"G28.1 G1 X10 Y10", 10, 10, 3},
+    {"G28.1 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G28.1 G81 X1 Y1 Z-1 R2", 1, 1, 2, "G81"},
+    {"G30 X10 Y10", 0, 0, 3},
+    {"G30.1", 5, 6, 3},
+    {"G30.1 X10 Y10", 10, 10, 3},
+    {"G30.1 G1 X10 Y10", 10, 10, 3},
+    {"G30.1 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G43.1 X10 Y10", -5, -4, 3},
+    {"G43.1 G1 X10 Y10", 10, 10, 3},
+    {"G43.1 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G43.1 Z3", 5, 6, 0},
+    {"G52 X10 Y10", -5, -4, 3},
+    {"G52 Z3", 5, 6, 0},
+    {"G53 X10 Y10", 10, 10, 3},
+    {"G53 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G92 X10 Y10", 10, 10, 3},
+    {"G92.1 X10 Y10", 10, 10, 3},
+    {"G92.1 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G92.2 G1 X10 Y10", 10, 10, 3},
+    {"G92.3 Z3", 5, 6, 3},
+    {"G92.3 G81 X1 Y1 Z-1 R2", 1, 1, 2, "G81"},
+    {"G40 G0 X10 Y10", 10, 10, 3, "G0"},
+    {"G49 G1 X10 Y10", 10, 10, 3},
+    {"G64 P0.1 X10 Y10", 10, 10, 3},
+    {"M6 X10 Y10", 10, 10, 3},
+};
+
+// One axis in the next block shows where that began.
+TEST(InterpreterUnknown, ThePlaceBesideOtherCodesIsLinuxCncsOrUnknown) {
+  for (const LinuxCncPlace& row : kLinuxCncPlaces) {
+    SCOPED_TRACE(row.block);
+    const double places[] = {row.x, row.y, row.z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Interpreted it(
+          std::string("G21 G90 G94 G17 G40 G49 G54 F3000\nG0 X1 Y2 Z3\nG1 X5 Y6\n") + row.block +
+          "\n" + "XYZ"[axis] + "50\n");
+      const Motion* next = it.motion_of_line(5);
+      if (next == nullptr) continue;  // kept as it is
+      EXPECT_EQ(next->kind == MotionKind::kRapid, std::string_view(row.motion) == "G0");
+      if (!next->start_known) continue;
+      EXPECT_EQ(next->piece.start()[static_cast<Eigen::Index>(axis)], places[axis]) << axis;
+    }
+  }
+}
+
+TEST(InterpreterUnknown, AJumpThatIsNotTakenChangesNothing) {
+  const Interpreted it(std::string(kStart) + "IF [#1 GT 2] GOTO 900\nG1 X5\n");
+  EXPECT_TRUE(it.motion_of_line(6)->start_known);
+  EXPECT_EQ(it.last_state(), it.state_after_line(4));
+}
+
+TEST(InterpreterUnknown, ADeletableBlockMakesUnknownWhatItChanges) {
+  const Interpreted it(std::string(kStart) + "/G91 F200\n");
+  EXPECT_EQ(it.last_state().distance, DistanceMode::kUnknown);
+  EXPECT_EQ(it.last_state().feed, std::nullopt);
+  EXPECT_EQ(it.last_state().units, Units::kMillimetre);
+  EXPECT_EQ(it.last_state().plane, Plane::kXY);
+}
+
+TEST(InterpreterUnknown, DeletableUnitsTakeThePlaceAlong) {
+  const Interpreted it(std::string(kStart) + "/G20\nG1 X2 Y2 Z2\nX3\n");
+  EXPECT_EQ(it.last_state().units, Units::kUnknown);
+  EXPECT_FALSE(it.motion_of_line(6)->start_known);
+}
+
+TEST(InterpreterUnknown, ModesThatAreSetAgainAreKnownAgain) {
+  const Interpreted it(std::string(kStart) + "M98 P1\nG21 G90 G18 G94 G61 G40 F50\nG1 X1\n");
+  const ModalState& now = it.last_state();
+  EXPECT_EQ(now.units, Units::kMillimetre);
+  EXPECT_EQ(now.distance, DistanceMode::kAbsolute);
+  EXPECT_EQ(now.plane, Plane::kZX);
+  EXPECT_EQ(now.path, PathMode::kExactPath);
+  EXPECT_EQ(now.cutter_compensation, TriState::kOff);
+  EXPECT_EQ(now.feed, 50.0);
+  EXPECT_EQ(now.scaling, TriState::kUnknown);  // nobody said G50
+  EXPECT_FALSE(is_known(now));
+}
+
+TEST(InterpreterUnknown, AxisWordsInACycleAreNoLines) {
+  const Interpreted it(std::string(kStart) + "G81 X5 Y5 Z-3 R1\nX6\nG80\nX7\nG0 X8\n");
+  EXPECT_EQ(it.line(6).barrier, reason::kCannedCycle);
+  EXPECT_EQ(it.motion_of_line(6), nullptr);
+  EXPECT_EQ(it.motion_of_line(8), nullptr);  // a line on FANUC, an error on LinuxCNC
+  ASSERT_NE(it.motion_of_line(9), nullptr);
+  EXPECT_FALSE(it.motion_of_line(9)->start_known);
+}
+
+TEST(InterpreterUnknown, RepeatedModesCountOnlyAfterTheyWereSaid) {
+  const Interpreted it(std::string(kStart) + "M98 P1\nG90\nG90\n");
+  EXPECT_EQ(it.line(6).kind, BlockKind::kSettings);
+  EXPECT_EQ(it.line(7).kind, BlockKind::kEmpty);
+}
+
+TEST(InterpreterUnknown, TextAfterTheLastMarkIsInert) {
+  const Interpreted it("%\nG21 G0 X1\n%\nG20 more\n");
+  EXPECT_EQ(it.line(4).barrier, reason::kProgramMark);
+  EXPECT_EQ(it.last_state().units, Units::kMillimetre);
+}
+
+}  // namespace
+}  // namespace batten::gcode

@@ -1,0 +1,151 @@
+// Blocks that control can reach from elsewhere are found, and only those.
+#include "gcode/interpreter/program_flow.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "gcode/state/reason.h"
+#include "tests/support/interpreted.h"
+
+namespace batten::gcode {
+namespace {
+
+using tests::Interpreted;
+using Lines = std::vector<std::size_t>;
+
+struct FlowCase {
+  const char* name;
+  const char* text;
+  Lines labels;   // lines whose N number is referenced
+  Lines targets;  // lines that are jumped to
+  Lines bodies;   // lines inside loops, subprograms, contours
+};
+void PrintTo(const FlowCase& test, std::ostream* out) { *out << test.text; }
+
+class Flow : public testing::TestWithParam<FlowCase> {};
+
+TEST_P(Flow, IsFound) {
+  Diagnostics found;
+  const Program program = parse(SourceText("test.nc", GetParam().text), found);
+  const std::vector<BlockFlow> flow = find_flow(program);
+  Lines labels;
+  Lines targets;
+  Lines bodies;
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    if (flow[i].label_referenced) labels.push_back(i + 1);
+    if (flow[i].jump_target) targets.push_back(i + 1);
+    if (flow[i].in_body) bodies.push_back(i + 1);
+  }
+  EXPECT_EQ(labels, GetParam().labels);
+  EXPECT_EQ(targets, GetParam().targets);
+  EXPECT_EQ(bodies, GetParam().bodies);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ProgramFlow, Flow,
+    testing::Values(
+        FlowCase{"NothingRefers", "N10 G1 X1\nN20 X2\nM98 P20\nG4 P10\n", {}, {}, {}},
+        FlowCase{"Goto", "N10 X1\nN20 X2\nIF [#1 EQ 2] GOTO 20\n", {2}, {2}, {}},
+        FlowCase{"GotoN", "N10 X1\nGOTO N10\n", {1}, {1}, {}},
+        FlowCase{"GotoForward", "GOTOF N30\nN20 X1\nn 30 X2\n", {3}, {3}, {}},
+        FlowCase{"TwoJumps", "GOTO 10\nN10 X1\nN20 X2\nGOTO 20\n", {2, 3}, {2, 3}, {}},
+        FlowCase{"ComputedJump", "N10 X1\nX2\nN20 X3\nGOTO #5\n", {1, 3}, {1, 3}, {}},
+        FlowCase{"LocalCall", "M97 P50\nM30\nN50 X1\n", {3}, {3}, {}},
+        FlowCase{"CallAtABlock", "M98 P1000 H30\nN30 X1\n", {2}, {2}, {}},
+        FlowCase{"ReturnTo", "N10 X1\nM30\nO5\nX1\nM99 P10\n", {1}, {1}, {3, 4, 5}},
+        FlowCase{"SubprogramFile", "X1\nX2\nM99\n", {}, {}, {1, 2, 3}},
+        FlowCase{"MainBeforeSubprogram", "O1\nX1\nM30\nO2\nX1\nM99\n", {}, {}, {4, 5, 6}},
+        FlowCase{
+            "NamesThatLookLikeWords", "o<subdo> call\nX1\no<endif> call [1]\nX2\n", {}, {}, {}},
+        FlowCase{"ComputedNames", "o[#[1]+2] sub\nX1\no[#[1]+2] endsub\nX2\n", {}, {}, {1, 2, 3}},
+        FlowCase{"UnknownNames", "o##1 sub\nX1\no##1 endsub\nX2\n", {}, {}, {1, 2, 3}},
+        FlowCase{"NamedSubprogram", "o<call> sub\nX1\no<call> endsub\nX2\n", {}, {}, {1, 2, 3}},
+        FlowCase{"MacroLoop", "X1\nWHILE [#1 LT 3] DO1\nX2\nEND1\nX3\n", {}, {}, {2, 3, 4}},
+        FlowCase{"NestedLoops",
+                 "WHILE[#1LT3]DO1\nX1\nDO2\nX2\nEND2\nX3\nEND1\nX4\n",
+                 {},
+                 {},
+                 {1, 2, 3, 4, 5, 6, 7}},
+        FlowCase{"OWordSub", "o<part> sub\nX1\no<part> endsub\nX2\n", {}, {}, {1, 2, 3}},
+        FlowCase{"OWordRepeat", "o1 repeat [3]\nX1\no1 endrepeat\nX2\n", {}, {}, {1, 2, 3}},
+        FlowCase{
+            "OWordIf", "o1 if [#1 GT 2]\nX1\no1 else\nX2\no1 endif\nX3\n", {}, {}, {1, 2, 3, 4, 5}},
+        FlowCase{"OWordCallIsNoBody", "o1 call [3]\nX1\n", {}, {}, {}},
+        FlowCase{"LatheContour", "G71 P10 Q20\nN10 G0 X1\nX2\nN20 X3\nX4\n", {2, 4}, {}, {2, 3, 4}},
+        FlowCase{"MillPecking", "N2 X1\nG73 X1 Z-2 R1 P1 Q2\nN1 X2\n", {}, {}, {}},
+        FlowCase{"AfterTheProgram", "%\nN10 X1\n%\nGOTO 10\n", {}, {}, {}}),
+    [](const auto& test) { return test.param.name; });
+
+struct CallCase {
+  const char* name;
+  const char* text;
+  Lines labels;  // that may be returned to
+};
+void PrintTo(const CallCase& test, std::ostream* out) { *out << test.text; }
+
+class Calls : public testing::TestWithParam<CallCase> {};
+
+// M99 P100 in a program that stands in another file goes on at N100 of the one that called.
+TEST_P(Calls, OfProgramsThatAreNotReadMayComeBackToAnyLabel) {
+  Diagnostics found;
+  const Program program = parse(SourceText("test.nc", GetParam().text), found);
+  Lines labels;
+  const ProgramFlow flow = follow_flow(program, Returns::kToAnyLabel);
+  for (std::size_t i = 0; i < flow.blocks.size(); ++i) {
+    EXPECT_EQ(flow.blocks[i].label_referenced, flow.blocks[i].jump_target);
+    if (flow.blocks[i].label_referenced) labels.push_back(i + 1);
+  }
+  EXPECT_EQ(labels, GetParam().labels);
+  for (const BlockFlow& each : find_flow(program)) EXPECT_FALSE(each.label_referenced);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ProgramFlow, Calls,
+    testing::Values(CallCase{"Call", "N10 X1\nX2\nM98 P2000\nN20 X3\n", {1, 4}},
+                    CallCase{"Macro", "N10 X1\nG65 P9010 A1\n", {1}},
+                    CallCase{"ModalMacro", "N10 X1\nG66 P9010 A1\n", {1}},
+                    CallCase{"FromTheCard", "N10 X1\nM198 P1\n", {1}},
+                    CallCase{"ComputedNumber", "N10 X1\nM98 P#1\nM30\nO1\nX2\nM99\n", {1}},
+                    CallCase{"ByName", "N10 X1\nM98 <PART>\n", {1}},
+                    CallCase{"BehindACondition", "N10 X1\nIF [#1 EQ 2] M98 P2000\n", {1}},
+                    CallCase{"OfSiemens", "N10 X1\nPART(1,2)\n", {1}},
+                    CallCase{"OfWhatStandsHere", "N10 X1\nM98 P2000 L3\nM30\nO2000\nX2\nM99\n", {}},
+                    CallCase{"WithItsRepetitions", "N10 X1\nM98 P32000\nM30\nO2000\nX2\nM99\n", {}},
+                    CallCase{"OfLinuxCnc", "N10 X1\no<part> call\n", {}},
+                    CallCase{"NoCall", "N10 X1\nM6 T5\nG43 H5\nX2\n", {}}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(ProgramFlow, CallsThatComeBackBehindThemselvesNameNoLabel) {
+  const std::string text = "G21 F9\nG0 X1\nN10 G1 X2\nM98 P2000\n";
+  EXPECT_TRUE(Interpreted(text).line(3).label_referenced);
+  EXPECT_FALSE(Interpreted(text, ReadOptions{.calls_keep_modes = true}).line(3).label_referenced);
+}
+
+TEST(ProgramFlow, JumpTargetsAreEnteredWithNothingKnown) {
+  const Interpreted it("G21 G90 F9\nG0 X1 Y1 Z1\nG1 X2\nN10 G1 X3\nG1 X4\nIF [#1 LT 3] GOTO 10\n");
+  EXPECT_TRUE(it.line(4).entered_from_elsewhere);
+  EXPECT_TRUE(it.line(4).label_referenced);
+  EXPECT_EQ(it.state_after_line(4).units, Units::kUnknown);
+  EXPECT_FALSE(it.line(3).entered_from_elsewhere);
+}
+
+TEST(ProgramFlow, BarriersNameTheLabelAndTheBody) {
+  const Interpreted it("G21 F9\nG0 X1\nG71 P10 Q20\nN10 G1 X3\nX4\nN20 X5\nX6\n",
+                       {.lathes = false});
+  EXPECT_EQ(it.line(5).barrier, reason::kLoopBody);
+  EXPECT_EQ(it.line(7).barrier, std::string_view());
+  const Interpreted jump("G21 F9\nG0 X1\nN10 F9\nGOTO 10\n");
+  EXPECT_EQ(jump.line(3).barrier, reason::kReferencedLabel);
+}
+
+TEST(ProgramFlow, LinesWithACheckSumAreCounted) {
+  // The exclusive or of the bytes of "N5 G1 X1".
+  const int sum = 0x4e ^ 0x35 ^ 0x20 ^ 0x47 ^ 0x31 ^ 0x20 ^ 0x58 ^ 0x31;
+  const Interpreted it("G21 F9\nG0 X0\nN5 G1 X1*" + std::to_string(sum) + "\n");
+  EXPECT_EQ(it.line(3).barrier, reason::kChecksum);
+}
+
+}  // namespace
+}  // namespace batten::gcode

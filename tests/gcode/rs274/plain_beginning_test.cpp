@@ -1,0 +1,48 @@
+#include "gcode/rs274/plain_beginning.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "gcode/reading/source_kind.h"
+
+namespace batten::gcode {
+namespace {
+
+// What stands there; "none".
+std::string beginning_of(const std::string& text) {
+  const SourceText source("test", text);
+  const auto found = plain_beginning(source);
+  return found ? std::string(source.text(*found)) : "none";
+}
+
+TEST(PlainBeginning, IsAGWordInTheFirstBlockThatSaysAnything) {
+  EXPECT_EQ(beginning_of("G21 G90\n"), "G21 G90");
+  EXPECT_EQ(beginning_of("%\nO0001 (part)\n\n; text\n(text)\n  n10 g0 X1\nL X+1\n"), "n10 g0 X1");
+  EXPECT_EQ(beginning_of("\xEF\xBB\xBFG21\n"), "G21");
+  EXPECT_EQ(beginning_of("O100\r\nN5G21\r\n"), "N5G21");
+}
+
+TEST(PlainBeginning, IsNoneOfWhatKlartextMayBeginWith) {
+  for (const char* text : {"", "\n", "; text\n", "0 BEGIN PGM A MM\n", "5 L X+1\nG21\n",
+                           "L X+1 R0 FMAX\n", "* - part\nL X+1\n", "TOOL CALL 5 Z\n", "CC X+0\n",
+                           "M3\n", "5 M3\n", "X1 Y1\n", "GOTO\n", "O100 sub\nG21\n", "N\n"}) {
+    EXPECT_EQ(beginning_of(text), "none") << text;
+  }
+}
+
+// A text without marks is Klartext for a target that reads it, unless it begins so.
+TEST(PlainBeginning, DecidesForTargetsThatReadKlartext) {
+  const auto language = [](const char* text, SourceKind kind, Language target) {
+    Diagnostics found;
+    return source_language(SourceText("test", text), kind, target, found);
+  };
+  EXPECT_EQ(language("G21\n", SourceKind::kAuto, Language::kKlartext), Language::kRs274);
+  EXPECT_EQ(language("L X+1\n", SourceKind::kAuto, Language::kKlartext), Language::kKlartext);
+  EXPECT_EQ(language("G21\n", SourceKind::kHeidenhain, Language::kKlartext), Language::kKlartext);
+  EXPECT_EQ(language("0 BEGIN PGM A MM\n", SourceKind::kAuto, Language::kRs274),
+            Language::kKlartext);
+}
+
+}  // namespace
+}  // namespace batten::gcode

@@ -1,0 +1,241 @@
+#include "gcode/text/number_format.h"
+
+#include <gtest/gtest.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <ostream>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+namespace batten::gcode {
+namespace {
+
+struct WriteCase {
+  std::string name;
+  double value;
+  NumberFormat format;
+  std::string text;
+};
+
+void PrintTo(const WriteCase& row, std::ostream* out) { *out << row.name; }
+
+class AppendNumber : public testing::TestWithParam<WriteCase> {};
+
+TEST_P(AppendNumber, WritesWhatControlsRead) {
+  EXPECT_EQ(to_text(GetParam().value, GetParam().format), GetParam().text);
+}
+
+constexpr NumberFormat kThree{.decimals = 3};
+constexpr NumberFormat kPointed{.decimals = 3, .trailing_zeros = false, .always_point = true};
+constexpr NumberFormat kPadded{.decimals = 3, .trailing_zeros = true};
+
+INSTANTIATE_TEST_SUITE_P(
+    Numbers, AppendNumber,
+    testing::Values(
+        WriteCase{"Zero", 0.0, kThree, "0"}, WriteCase{"NegativeZero", -0.0, kThree, "0"},
+        WriteCase{"NegativeZeroPointed", -0.0, kPointed, "0."},
+        WriteCase{"RoundsToZeroWithoutSign", -0.0004, kThree, "0"},
+        WriteCase{"RoundsToZeroPadded", -0.0004, kPadded, "0.000"},
+        WriteCase{"HalfGoesAway", 0.0005, kThree, "0.001"},
+        WriteCase{"HalfGoesAwayBelowZero", -0.0005, kThree, "-0.001"},
+        // 1.0005 is stored as 1.000499999..; what the user wrote is the shortest decimal.
+        WriteCase{"HalfOfTheShortestDecimal", 1.0005, kThree, "1.001"},
+        WriteCase{"HalfOfTheShortestDecimalBelowZero", -1.0005, kThree, "-1.001"},
+        WriteCase{"BelowHalf", 1.00049999, kThree, "1"},
+        WriteCase{"CarriesThroughNines", 9.9996, kThree, "10"},
+        WriteCase{"CarriesIntoAPaddedFraction", 0.9996, kPadded, "1.000"},
+        WriteCase{"CarriesFromNothing", 0.6, NumberFormat{.decimals = 0}, "1"},
+        WriteCase{"NothingKept", 0.04, NumberFormat{.decimals = 0}, "0"},
+        WriteCase{"WholeNumberPointed", 5.0, kPointed, "5."},
+        WriteCase{"WholeNumberPointedNoDecimals", 1200.0,
+                  NumberFormat{.decimals = 0, .trailing_zeros = true, .always_point = true},
+                  "1200."},
+        WriteCase{"TrailingZerosOfAWholeNumberStay", 1200.0, kThree, "1200"},
+        WriteCase{"TrailingZerosCut", 1.5, kThree, "1.5"},
+        WriteCase{"TrailingZerosKept", 1.5, kPadded, "1.500"},
+        WriteCase{"SmallFraction", 0.001, kThree, "0.001"},
+        WriteCase{"NoExponentWhenSmall", 1e-9, NumberFormat{.decimals = 9}, "0.000000001"},
+        WriteCase{"NoExponentWhenLarge", 999999999.0, kThree, "999999999"},
+        WriteCase{"RoundsUpToTheLimit", 999999999.9996, kThree, "1000000000"},
+        WriteCase{"Denormal", std::numeric_limits<double>::denorm_min(), kThree, "0"},
+        WriteCase{"NineDecimals", 1.0 / 3, NumberFormat{.decimals = 9}, "0.333333333"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(AppendNumber, KeepsWhatStandsBefore) {
+  std::string line = "G1 X";
+  append_number(line, -2.5, kThree);
+  EXPECT_EQ(line, "G1 X-2.5");
+}
+
+TEST(AppendNumber, RefusesWhatNoControlTakes) {
+  EXPECT_THROW((void)to_text(1e9, kThree), std::invalid_argument);
+  EXPECT_THROW((void)to_text(-1e9, kThree), std::invalid_argument);
+  EXPECT_THROW((void)to_text(std::numeric_limits<double>::infinity(), kThree),
+               std::invalid_argument);
+  EXPECT_THROW((void)to_text(std::nan(""), kThree), std::invalid_argument);
+  EXPECT_THROW((void)to_text(1.0, NumberFormat{.decimals = 10}), std::invalid_argument);
+  EXPECT_THROW((void)to_text(1.0, NumberFormat{.decimals = -1}), std::invalid_argument);
+}
+
+// A value of one of many sizes, both signs.
+double random_value(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> exponent(-12, 8.99);
+  const double size = std::pow(10.0, exponent(random));
+  return std::uniform_real_distribution<double>(-size, size)(random);
+}
+
+TEST(AppendNumber, WritesOnlyPlainDecimalsWithinHalfAUnit) {
+  constexpr int kNumbers = 200'000;
+  std::mt19937_64 random(1);
+  for (int i = 0; i < kNumbers; ++i) {
+    SCOPED_TRACE(testing::Message() << "number " << i);
+    const double value = random_value(random);
+    const NumberFormat format{.decimals = static_cast<int>(random() % 10),
+                              .trailing_zeros = random() % 2 == 0,
+                              .always_point = random() % 2 == 0};
+    const std::string text = to_text(value, format);
+    ASSERT_EQ(text.find_first_not_of("-.0123456789"), std::string::npos) << text;
+    const auto read = read_number(text);
+    ASSERT_TRUE(read) << text;
+    ASSERT_LE(read->decimals, format.decimals) << text;
+    ASSERT_EQ(read->value, rounded(value, format.decimals)) << text;
+    if (read->value == 0) {
+      ASSERT_NE(text.front(), '-') << text;
+    }
+    // Half a unit of the last digit, and the rounding of two doubles.
+    const double unit = std::pow(10.0, -format.decimals);
+    ASSERT_LE(std::abs(read->value - value), 0.5 * unit + 1e-15 * std::abs(value)) << text;
+  }
+}
+
+TEST(AppendNumber, EveryGridPlaceComesBackAsItWas) {
+  // All places of a 0.001 grid from -100 to 100, as a CAM system prints them.
+  for (int thousandths = -100'000; thousandths <= 100'000; ++thousandths) {
+    const double value = thousandths / 1000.0;
+    const std::string text = to_text(value, kThree);
+    ASSERT_EQ(read_number(text)->value, value) << text;
+    ASSERT_EQ(rounded(value, 3), value) << text;
+    ASSERT_EQ(to_text(read_number(text)->value, kThree), text);
+  }
+}
+
+TEST(AppendNumber, AHalfAlwaysGoesAwayFromZero) {
+  // n + half a unit, as a user would write it, for three decimals.
+  for (int thousandths = 0; thousandths < 20'000; ++thousandths) {
+    const std::string half = to_text(thousandths / 1000.0, kPadded) + "5";
+    const double expected = (thousandths + 1) / 1000.0;
+    ASSERT_EQ(rounded(read_number(half)->value, 3), expected) << half;
+    ASSERT_EQ(rounded(-read_number(half)->value, 3), -expected) << half;
+  }
+}
+
+// Beside the middle of two steps, by less and less: the size of what is between decides.
+TEST(AppendNumber, WhatIsBesideAHalfGoesToItsSide) {
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 100'000; ++i) {
+    const auto steps = static_cast<std::int64_t>(random() % 2'000'000);
+    const double beside = std::pow(10.0, -static_cast<double>(random() % 8)) * 0.4;
+    for (const int side : {-1, 1}) {
+      const double value = (static_cast<double>(steps) + 0.5 + side * beside) / 10000;
+      const std::int64_t expected = steps + (side > 0 ? 1 : 0);
+      std::string text = std::to_string(expected / 10000) + '.' +
+                         std::to_string(10000 + expected % 10000).substr(1);
+      ASSERT_EQ(to_text(value, {.decimals = 4, .trailing_zeros = true}), text) << beside * side;
+      if (expected != 0) text.insert(0, 1, '-');
+      ASSERT_EQ(to_text(-value, {.decimals = 4, .trailing_zeros = true}), text) << beside * side;
+    }
+  }
+}
+
+TEST(Rounded, TwiceIsOnce) {
+  std::mt19937_64 random(2);
+  for (int i = 0; i < 50'000; ++i) {
+    const int decimals = static_cast<int>(random() % 10);
+    const double once = rounded(random_value(random), decimals);
+    ASSERT_EQ(rounded(once, decimals), once);
+    ASSERT_FALSE(once == 0 && std::signbit(once));
+  }
+}
+
+struct ReadCase {
+  std::string name;
+  std::string text;
+  double value;
+  int decimals;
+  bool has_point;
+};
+
+void PrintTo(const ReadCase& row, std::ostream* out) { *out << row.name; }
+
+class ReadsNumber : public testing::TestWithParam<ReadCase> {};
+
+TEST_P(ReadsNumber, AsWritten) {
+  const auto read = read_number(GetParam().text);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->value, GetParam().value);
+  EXPECT_FALSE(read->value == 0 && std::signbit(read->value));
+  EXPECT_EQ(read->decimals, GetParam().decimals);
+  EXPECT_EQ(read->has_point, GetParam().has_point);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Texts, ReadsNumber,
+    testing::Values(
+        ReadCase{"Whole", "5", 5, 0, false}, ReadCase{"PointLast", "5.", 5, 0, true},
+        ReadCase{"PointFirst", ".5", 0.5, 1, true},
+        ReadCase{"SignedPointFirst", "-.5", -0.5, 1, true}, ReadCase{"Plus", "+5", 5, 0, false},
+        ReadCase{"LeadingZeros", "00005", 5, 0, false},
+        ReadCase{"NegativeZero", "-0.000", 0, 3, true},
+        ReadCase{"TrailingZeros", "1.2500", 1.25, 4, true},
+        // The standard's own example of blanks inside a number.
+        ReadCase{"BlanksInside", " +0. 12 34", 0.1234, 4, true},
+        ReadCase{"TabAfterSign", "-\t7", -7, 0, false},
+        ReadCase{"BlanksAround", "  3.25 \t", 3.25, 2, true},
+        ReadCase{"ManyDigits", "3.14159265358979323846264338", 3.141592653589793, 26, true},
+        ReadCase{"ManyDigitsWithBlanks", "3.14159265358979323 846264338", 3.141592653589793, 26,
+                 true},
+        // 2^53 + 1 lies half way between two doubles; ties go to even.
+        ReadCase{"TieToEven", "9007199254740993", 9007199254740992.0, 0, false},
+        ReadCase{"JustAboveTheTie", "9007199254740993.0000000001", 9007199254740994.0, 10, true},
+        ReadCase{"SmallerThanAnyDouble", "0." + std::string(400, '0') + "1", 0, 401, true}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(ReadNumber, RefusesEverythingElse) {
+  for (const std::string text :
+       {"",   " ",  "+",   "-",    ".",   "-.",  "+-5", "--5", "1e3", "1E3", "1.2.3",
+        "5x", "x5", "1,5", "0x10", "inf", "nan", "5-",  "[1]", "#1",  "1\n"}) {
+    EXPECT_FALSE(read_number(text)) << '"' << text << '"';
+  }
+  EXPECT_FALSE(read_number(std::string(400, '9'))) << "greater than any double";
+}
+
+TEST(ReadNumber, AgreesWithCorrectRoundingOnRandomDigits) {
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 200'000; ++i) {
+    const int before = static_cast<int>(random() % 10);
+    const int after = static_cast<int>(random() % 14) + (before == 0 ? 1 : 0);
+    std::string text;
+    for (int k = 0; k < before; ++k) text.push_back(static_cast<char>('0' + random() % 10));
+    text.push_back('.');
+    for (int k = 0; k < after; ++k) text.push_back(static_cast<char>('0' + random() % 10));
+    double expected = 0;
+    std::from_chars(text.data(), text.data() + text.size(), expected);
+    ASSERT_EQ(read_number(text)->value, expected) << text;
+  }
+}
+
+TEST(ScanNumber, StopsWhereTheNumberStops) {
+  EXPECT_EQ(scan_number("1.5Y2")->length, 3u);
+  EXPECT_EQ(scan_number("0. 12 34Y 7")->length, 8u);
+  EXPECT_EQ(scan_number("5  (c)")->length, 1u);
+  EXPECT_EQ(scan_number("1.2.3")->length, 3u);
+  EXPECT_EQ(scan_number("1e3")->length, 1u);
+  EXPECT_FALSE(scan_number("Y2"));
+}
+
+}  // namespace
+}  // namespace batten::gcode

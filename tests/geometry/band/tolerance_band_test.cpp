@@ -1,0 +1,263 @@
+#include "geometry/band/tolerance_band.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+
+#include "geometry/path/path.h"
+#include "tests/support/overlapping_paths.h"
+
+namespace batten::geometry {
+namespace {
+
+using std::numbers::pi;
+
+std::vector<Point2> arc_points(const Point2& center, double radius, double from, double to,
+                               int edges) {
+  std::vector<Point2> points;
+  for (int i = 0; i <= edges; ++i) {
+    const double a = from + (to - from) * i / edges;
+    points.emplace_back(center.x() + radius * std::cos(a), center.y() + radius * std::sin(a));
+  }
+  return points;
+}
+
+std::vector<Point2> figure_of_eight(const Point2& shift) {
+  std::vector<Point2> points;
+  for (int i = 0; i <= 200; ++i) {
+    const double a = 2 * pi * i / 200 + 0.1;
+    points.emplace_back(10 * std::sin(a) + shift.x(), 5 * std::sin(2 * a) + shift.y());
+  }
+  return points;
+}
+
+Path path_at(const std::vector<Point2>& points, double height, int axis = 2) {
+  std::vector<Point3> places;
+  for (const Point2& p : points) {
+    Point3 place;
+    place[axis] = height;
+    place[axis == 0 ? 1 : 0] = p.x();
+    place[axis == 2 ? 1 : 2] = p.y();
+    places.push_back(place);
+  }
+  return path_through(places);
+}
+
+BandStructure structure_of(const std::vector<Point2>& points, double tolerance) {
+  const auto found = band_structure(points, tolerance);
+  EXPECT_TRUE(found.has_value());
+  return found.value_or(BandStructure{});
+}
+
+double area_of(const std::vector<Point2>& polygon) {
+  double twice = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point2& a = polygon[i];
+    const Point2& b = polygon[(i + 1) % polygon.size()];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return twice / 2;
+}
+
+// --- overlaps ----------------------------------------------------------------------------------
+
+TEST(BandStructure, PathsBesideThemselvesDoNotOverlap) {
+  std::vector<Point2> dense;
+  for (int i = 0; i <= 500; ++i) dense.emplace_back(0.003 * i, 0);
+  EXPECT_TRUE(structure_of(dense, 0.01).overlaps.empty());
+  EXPECT_TRUE(structure_of({{0, 0}, {10, 0}, {0, 1}}, 0.01).overlaps.empty()) << "a sharp corner";
+  EXPECT_TRUE(structure_of({{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}}, 0.01).overlaps.empty())
+      << "a ring: its ends are neighbours";
+  EXPECT_TRUE(structure_of({}, 0.01).overlaps.empty());
+  EXPECT_TRUE(structure_of({{1, 1}}, 0.01).overlaps.empty());
+}
+
+TEST(BandStructure, FindsTwoPassesThatAreNearerThanTwoTolerances) {
+  const BandStructure found = structure_of(lollipop(0.015), 0.01);
+  ASSERT_EQ(found.overlaps.size(), 1u);
+  const BandOverlap& overlap = found.overlaps.front();
+  EXPECT_EQ(overlap.first_from, 0u);
+  EXPECT_EQ(overlap.first_to, 20u) << "the first leg of the loop starts inside the overlap";
+  EXPECT_EQ(overlap.second_from, 23u);
+  EXPECT_EQ(overlap.second_to, 43u);
+  EXPECT_NEAR(overlap.distance, 0.015, 1e-12);
+  EXPECT_FALSE(overlap.meets_itself);
+  EXPECT_TRUE(structure_of(lollipop(0.015), 0.007).overlaps.empty());
+}
+
+TEST(BandStructure, SaysWhereThePathMeetsItself) {
+  const BandStructure eight = structure_of(figure_of_eight({0, 0}), 0.01);
+  ASSERT_EQ(eight.overlaps.size(), 1u);
+  EXPECT_TRUE(eight.overlaps.front().meets_itself);
+  EXPECT_EQ(eight.overlaps.front().distance, 0);
+
+  std::vector<Point2> again = lollipop(0);
+  again.pop_back();  // no ring
+  const BandStructure twice = structure_of(again, 0.01);
+  ASSERT_EQ(twice.overlaps.size(), 1u) << "the same pass again, backwards";
+  EXPECT_TRUE(twice.overlaps.front().meets_itself);
+}
+
+TEST(BandStructure, EdgesAreThoseOfTheGivenPoints) {
+  std::vector<Point2> points = lollipop(0.015);
+  points.insert(points.begin() + 5, 7, points[5]);  // seven edges without length
+  const BandStructure found = structure_of(points, 0.01);
+  ASSERT_EQ(found.overlaps.size(), 1u);
+  EXPECT_EQ(found.overlaps.front().second_from, 30u);
+}
+
+TEST(BandStructure, SaysNothingOfAHeap) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> within(0, 0.01);
+  std::vector<Point2> heap;
+  for (int i = 0; i < 1000; ++i) heap.emplace_back(within(random), within(random));
+  EXPECT_FALSE(band_structure(heap, 0.01).has_value());
+}
+
+TEST(BandStructure, RefusesATolerancethatIsNone) {
+  const std::vector<Point2> points{{0, 0}, {1, 0}};
+  for (const double wrong : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW((void)band_structure(points, wrong), std::invalid_argument);
+    EXPECT_THROW((void)band_outline(points, wrong), std::invalid_argument);
+  }
+}
+
+// --- cusps -------------------------------------------------------------------------------------
+
+TEST(BandStructure, HasCuspsInsideBendsThatAreTighterThanTheBand) {
+  const auto tight = structure_of(arc_points({0, 0}, 0.005, 0, pi, 12), 0.01);
+  EXPECT_EQ(tight.cusps.size(), 10u) << "all edges but the first and the last";
+  for (const BandCusp& cusp : tight.cusps) EXPECT_TRUE(cusp.left);
+  const auto other_way = structure_of(arc_points({0, 0}, 0.005, pi, 0, 12), 0.01);
+  EXPECT_EQ(other_way.cusps.size(), 10u);
+  for (const BandCusp& cusp : other_way.cusps) EXPECT_FALSE(cusp.left);
+  EXPECT_TRUE(structure_of(arc_points({0, 0}, 0.02, 0, pi, 12), 0.01).cusps.empty());
+}
+
+TEST(BandStructure, ACornerOrAZigzagIsNoCusp) {
+  EXPECT_TRUE(structure_of({{0, 0}, {9.99, 0}, {10, 0}, {10, 0.01}, {10, 5}}, 0.005).cusps.empty());
+  std::vector<Point2> zigzag;
+  for (int i = 0; i < 20; ++i) zigzag.emplace_back(0.001 * i, i % 2 == 0 ? 0 : 0.002);
+  EXPECT_TRUE(structure_of(zigzag, 0.01).cusps.empty());
+}
+
+// --- crossings -----------------------------------------------------------------------------------
+
+TEST(NewCrossing, PassesThatChangeSidesAreFound) {
+  const std::vector<Point2> old = lollipop(0.015);
+  std::vector<Point2> apart = old;
+  std::vector<Point2> over = old;
+  for (std::size_t i = 8; i <= 12; ++i) {
+    apart[i].y() = -0.009;
+    over[i].y() = 0.009;
+    over[44 - i].y() = 0.006;
+  }
+  EXPECT_FALSE(new_crossing(path_at(old, 1), path_at(apart, 1), 0.01).has_value());
+  const auto found = new_crossing(path_at(old, 1), path_at(over, 1), 0.01);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->first_piece, 7u);
+  EXPECT_EQ(found->second_piece, 36u);
+  EXPECT_NEAR(found->place.x(), 3.5 + 0.5 * 15 / 18, 1e-9) << "where 0.018 x = 0.015 - 0.018 x";
+  EXPECT_EQ(found->place.z(), 1);
+}
+
+TEST(NewCrossing, InEveryPlane) {
+  const std::vector<Point2> old = lollipop(0.015);
+  std::vector<Point2> over = old;
+  over[10].y() = 0.009;
+  over[34].y() = 0.006;
+  for (const int axis : {0, 1, 2}) {
+    EXPECT_TRUE(new_crossing(path_at(old, 4, axis), path_at(over, 4, axis), 0.01).has_value());
+    EXPECT_FALSE(new_crossing(path_at(old, 4, axis), path_at(old, 4, axis), 0.01).has_value());
+  }
+}
+
+TEST(NewCrossing, CrossingsThatWereThereMayMove) {
+  const Path old = path_at(figure_of_eight({0, 0}), 0);
+  EXPECT_FALSE(new_crossing(old, path_at(figure_of_eight({0.004, -0.006}), 0), 0.01).has_value());
+
+  // Two lines that cross at a hundredth of a radian: 0.005 mm aside moves the crossing by 0.5 mm.
+  const std::vector<Point2> flat{{0, 0}, {10, 0}, {10, 5}, {0, 5}, {0, 0.05}, {10, -0.05}};
+  std::vector<Point2> moved = flat;
+  moved[0].y() = moved[1].y() = 0.005;
+  EXPECT_FALSE(new_crossing(path_at(flat, 0), path_at(moved, 0), 0.01).has_value());
+}
+
+TEST(NewCrossing, PassesThatLieOnEachOtherMayCross) {
+  const std::vector<Point2> old = lollipop(0);
+  std::vector<Point2> wavy = old;
+  for (std::size_t i = 1; i <= 19; ++i) wavy[i].y() = i % 2 == 0 ? 0.004 : -0.004;
+  EXPECT_FALSE(new_crossing(path_at(old, 0), path_at(wavy, 0), 0.01).has_value());
+}
+
+TEST(NewCrossing, ALittleLoopThatWasNotThereIsFound) {
+  const std::vector<Point2> old{{0, 0}, {10, 0}};
+  const std::vector<Point2> loop{{0, 0},     {5.004, 0},  {5.004, 0.004},
+                                 {5, 0.004}, {5, -0.004}, {10, 0}};
+  const auto found = new_crossing(path_at(old, 0), path_at(loop, 0), 0.01);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR((found->place - Point3(5, 0, 0)).norm(), 0, 1e-12);
+  EXPECT_FALSE(new_crossing(path_at(loop, 0), path_at(loop, 0), 0.01).has_value());
+}
+
+TEST(NewCrossing, ATurnRightBackThatWasThereMayStay) {
+  const std::vector<Point2> old{{0, 0}, {10, 0}, {4, 0}, {4, 6}};
+  EXPECT_FALSE(new_crossing(path_at(old, 0), path_at(old, 0), 0.01).has_value());
+  const std::vector<Point2> fold{{0, 0}, {4.005, 0}, {3.995, 0}, {4, 6}};
+  const std::vector<Point2> corner{{0, 0}, {4, 0}, {4, 6}};
+  EXPECT_TRUE(new_crossing(path_at(corner, 0), path_at(fold, 0), 0.01).has_value());
+}
+
+TEST(NewCrossing, ACircleMayEndWhereItBegan) {
+  std::vector<Point2> polygon = arc_points({0, 0}, 10, 0, 2 * pi, 100);
+  polygon.back() = polygon.front();
+  polygon.insert(polygon.begin(), Point2(15, 0));
+  polygon.emplace_back(15, 3);
+  const Path old = path_at(polygon, 0);
+  const Point3 start(10, 0, 0);
+  const Path circle{Line{{15, 0, 0}, start}, Arc{start, {-10, 0, 0}, {0, 0, 0}, {0, 0, 1}, pi},
+                    Arc{{-10, 0, 0}, start, {0, 0, 0}, {0, 0, 1}, pi}, Line{start, {15, 3, 0}}};
+  EXPECT_FALSE(new_crossing(old, circle, 0.01).has_value());
+}
+
+TEST(NewCrossing, PathsInSpaceAreNotLookedAt) {
+  const std::vector<Point2> old = lollipop(0.015);
+  std::vector<Point2> over = old;
+  over[10].y() = 0.009;
+  over[34].y() = 0.006;
+  std::vector<Point3> rising;
+  for (const Point2& p : over) {
+    rising.emplace_back(p.x(), p.y(), 0.001 * static_cast<double>(rising.size()));
+  }
+  EXPECT_FALSE(new_crossing(path_at(old, 0), path_through(rising), 0.01).has_value());
+  EXPECT_FALSE(new_crossing({}, path_at(over, 0), 0.01).has_value());
+}
+
+// --- outline -----------------------------------------------------------------------------------
+
+TEST(BandOutline, LiesAroundTheBandByLessThanAHundredthOfTheTolerance) {
+  const auto outline = band_outline(std::vector<Point2>{{0, 0}, {3, 4}}, 0.1);
+  ASSERT_EQ(outline.size(), 1u);
+  const double exact = 2 * 0.1 * 5 + pi * 0.01;
+  EXPECT_GE(area_of(outline[0]), exact);
+  EXPECT_LE(area_of(outline[0]), exact * 1.01);
+}
+
+TEST(BandOutline, ARingHasAHole) {
+  const auto outline = band_outline(arc_points({0, 0}, 1, 0, 2 * pi, 60), 0.1);
+  ASSERT_EQ(outline.size(), 2u);
+  EXPECT_NEAR(area_of(outline[0]), pi * 1.1 * 1.1, 0.03);
+  EXPECT_NEAR(area_of(outline[1]), -pi * 0.9 * 0.9, 0.03);
+}
+
+TEST(BandOutline, OfNothingIsNothing) {
+  EXPECT_TRUE(band_outline({}, 0.1).empty());
+  EXPECT_TRUE(band_outline(std::vector<Point2>{{1, 1}, {1, 1}}, 0.1).empty());
+}
+
+}  // namespace
+}  // namespace batten::geometry

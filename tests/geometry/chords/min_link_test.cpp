@@ -1,0 +1,282 @@
+#include "geometry/chords/min_link.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "geometry/chords/linearize.h"
+#include "geometry/path/plane_curve.h"
+#include "tests/support/curve_of.h"
+#include "tests/support/parabolas.h"
+
+namespace batten::geometry {
+namespace {
+
+// Gates so fine that the strip is narrower than the tube by 2e-4 of the tolerance.
+constexpr int kFineGates = 96;
+constexpr int kFinestGates = 256;
+
+double length_of(const std::vector<LinkVertex>& vertices) {
+  double length = 0;
+  for (std::size_t i = 1; i < vertices.size(); ++i) {
+    length += (vertices[i].place - vertices[i - 1].place).norm();
+  }
+  return length;
+}
+
+std::size_t links_on(const BsplineCurve& curve, double tolerance, int gates = 32) {
+  return min_link_vertices(curve, curve.first(), curve.last(),
+                           {.tolerance = tolerance, .gates_per_link = gates, .balanced = false})
+             .size() -
+         1;
+}
+
+struct CountCase {
+  std::string name;
+  Parabola parabola;
+  double tolerance;
+  std::size_t links;
+};
+
+std::ostream& operator<<(std::ostream& out, const CountCase& test) { return out << test.name; }
+
+class MinLink : public testing::TestWithParam<CountCase> {};
+
+TEST_P(MinLink, NeedsTheCountsOfTheTable) {
+  const auto& [name, parabola, tolerance, links] = GetParam();
+  EXPECT_EQ(links_on(parabola.curve(), tolerance, kFineGates), links);
+  EXPECT_EQ(links_on(in_space(parabola.curve()), tolerance, kFineGates), links);
+}
+
+// With fewer gates the count is one too many where it is nearly so by itself: 89 links need all but
+// 2e-4 of the tolerance .00005.
+TEST_P(MinLink, NeedsOneLinkMoreAtMostWithFewGates) {
+  const auto& [name, parabola, tolerance, links] = GetParam();
+  const std::size_t found = links_on(parabola.curve(), tolerance);
+  EXPECT_GE(found, links);
+  EXPECT_LE(found, name == "FlatFinest" ? links + 1 : links);
+  const auto balanced =
+      min_link_vertices(parabola.curve(), parabola.from, parabola.to, {.tolerance = tolerance});
+  EXPECT_EQ(balanced.size() - 1, found);
+}
+
+INSTANTIATE_TEST_SUITE_P(Parabolas, MinLink,
+                         testing::Values(CountCase{"FlatCoarse", kFlatParabola, .05, 4},
+                                         CountCase{"FlatFine", kFlatParabola, .005, 10},
+                                         CountCase{"FlatFiner", kFlatParabola, .0005, 29},
+                                         CountCase{"FlatFinest", kFlatParabola, .00005, 89},
+                                         CountCase{"SteepCoarse", kSteepParabola, .045, 6},
+                                         CountCase{"SteepFine", kSteepParabola, .0045, 18},
+                                         CountCase{"SteepFiner", kSteepParabola, .00045, 54},
+                                         CountCase{"SteepFinest", kSteepParabola, .000045, 168}),
+                         [](const auto& test) { return test.param.name; });
+
+// Where the count changes: 3 links on the flat parabola need T >= .05377, 4 go down to .02865; 5 on
+// the steep one need T >= .05651, 6 go down to .03856.
+TEST(MinLinkCount, ChangesAtTheKnownTolerances) {
+  EXPECT_EQ(links_on(kFlatParabola.curve(), .05379, kFinestGates), 3U);
+  EXPECT_EQ(links_on(kFlatParabola.curve(), .05375, kFinestGates), 4U);
+  EXPECT_EQ(links_on(kFlatParabola.curve(), .02867, kFinestGates), 4U);
+  EXPECT_EQ(links_on(kFlatParabola.curve(), .02863, kFinestGates), 5U);
+  EXPECT_EQ(links_on(kSteepParabola.curve(), .05653, kFinestGates), 5U);
+  EXPECT_EQ(links_on(kSteepParabola.curve(), .05649, kFinestGates), 6U);
+  EXPECT_EQ(links_on(kSteepParabola.curve(), .03858, kFinestGates), 6U);
+  EXPECT_EQ(links_on(kSteepParabola.curve(), .03854, kFinestGates), 7U);
+}
+
+struct Example {
+  std::string name;
+  Parabola parabola;
+  double tolerance;
+  std::vector<Point2> vertices;
+  double length;
+};
+
+std::ostream& operator<<(std::ostream& out, const Example& test) { return out << test.name; }
+
+class MinLinkExample : public testing::TestWithParam<Example> {};
+
+// Vertices on the outer offset, links tangent to the inner one. On the flat parabola the end lies
+// on the inner side of the last tangent: one vertex more, in front of the end.
+TEST_P(MinLinkExample, HasTheVerticesOfTheClosedForm) {
+  const Example& example = GetParam();
+  const BsplineCurve curve = example.parabola.curve();
+  const CurvePieces pieces(curve, curve.first(), curve.last());
+  const GateChain gates(pieces, curve.first(), curve.last(), 1e-6 * example.tolerance);
+  const auto found = min_link_in_plane(gates, Vector3::UnitZ(), gates[0].center, example.tolerance);
+  ASSERT_TRUE(found);
+  const std::vector<LinkVertex>& vertices = *found;
+  ASSERT_EQ(vertices.size(), example.vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    EXPECT_NEAR(vertices[i].place.x(), example.vertices[i].x(), 1e-4) << i;
+    EXPECT_NEAR(vertices[i].place.y(), example.vertices[i].y(), 1.5e-3) << i;
+  }
+  EXPECT_NEAR(length_of(vertices), example.length, 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Parabolas, MinLinkExample,
+    testing::Values(
+        Example{"Flat",
+                kFlatParabola,
+                .05,
+                {{2, 1.838}, {4.8659, 3.9156}, {8.0606, 5.3290}, {10.9983, 5.8392}, {11, 5.807}},
+                10.047039},
+        Example{"Steep",
+                kSteepParabola,
+                .045,
+                {{1, 2},
+                 {1.8012, 5.4085},
+                 {3.0433, 15.9795},
+                 {4.6438, 38.6979},
+                 {6.6037, 80.4724},
+                 {8.9232, 149.7665},
+                 {10, 191}},
+                189.320747}),
+    [](const auto& test) { return test.param.name; });
+
+// On a circle of radius r a link between vertices at r + T, tangent to r - T, spans
+// 2 acos((r - T) / (r + T)); the first and the last begin on the circle and span
+// acos((r - T) / r) + acos((r - T) / (r + T)).
+TEST(MinLinkCount, IsThatOfTheClosedFormOnACircle) {
+  const double r = 10;
+  const double sweep = 5;
+  const auto circle = [&](double u) { return Point3(r * std::cos(u), r * std::sin(u), 0); };
+  const BsplineCurve curve = curve_of(circle, 0, sweep, 400);
+  for (const double tolerance : {0.5, 0.1, 0.04, 0.01}) {
+    const double half = std::acos((r - tolerance) / (r + tolerance));
+    const double ends = 2 * (std::acos((r - tolerance) / r) + half);
+    const double links = 2 + (sweep - ends) / (2 * half);
+    const auto found =
+        min_link_vertices(curve, 0, sweep, {.tolerance = tolerance, .gates_per_link = kFineGates});
+    EXPECT_EQ(static_cast<double>(found.size() - 1), std::ceil(links))
+        << tolerance << ", " << links;
+  }
+}
+
+TEST(MinLinkVertices, AreNotFartherApartThanBalancedOnes) {
+  // Balanced: the least tolerance with 6 links on the steep parabola is .03856.
+  const auto vertices = min_link_vertices(kSteepParabola.curve(), 1, 10, {.tolerance = .045});
+  ASSERT_EQ(vertices.size(), 7U);
+  for (std::size_t i = 1; i + 1 < vertices.size(); ++i) {
+    const double off =
+        (vertices[i].place - kSteepParabola.curve().point_at(vertices[i].parameter)).norm();
+    EXPECT_NEAR(off, .03856, .0006);
+  }
+}
+
+TEST(MinLinkVertices, CoverALineWithOneLink) {
+  const BsplineCurve line(BsplineBasis::clamped(3, {0, 1}),
+                          {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}});
+  const auto vertices = min_link_vertices(line, 0, 1, {.tolerance = 1e-3});
+  ASSERT_EQ(vertices.size(), 2U);
+  EXPECT_EQ(vertices.front().place, Point3(0, 0, 0));
+  EXPECT_EQ(vertices.back().place, Point3(3, 3, 3));
+}
+
+TEST(MinLinkVertices, StandOnCorners) {
+  const BsplineCurve corner(
+      BsplineBasis(3, {0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2}),
+      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {3, 1, 0}, {3, 2, 0}, {3, 3, 0}});
+  const auto vertices = min_link_vertices(corner, 0, 2, {.tolerance = 1});
+  ASSERT_EQ(vertices.size(), 3U);
+  EXPECT_EQ(vertices[1].place, Point3(3, 0, 0));
+}
+
+TEST(MinLinkVertices, RefuseOptionsOutsideTheirRange) {
+  const BsplineCurve curve = kFlatParabola.curve();
+  EXPECT_THROW((void)min_link_vertices(curve, 2, 11, {.tolerance = 0}), std::invalid_argument);
+  EXPECT_THROW((void)min_link_vertices(curve, 2, 11, {.gates_per_link = 7}), std::invalid_argument);
+}
+
+// The fewest links between places on a grid: so many gates, so many offsets on each, all tried.
+// A link is refused when it is further than the tolerance from the curve on a gate.
+class GridOfPlaces {
+ public:
+  GridOfPlaces(const BsplineCurve& curve, double tolerance) : tolerance_(tolerance) {
+    for (int i = 0; i <= kGates * kFiner; ++i) {
+      const double u = curve.first() + (curve.last() - curve.first()) * i / (kGates * kFiner);
+      const Vector3 along = curve.direction_at(u);
+      centers_.push_back(curve.point_at(u));
+      normals_.push_back(Vector3(-along.y(), along.x(), 0));
+    }
+  }
+
+  int fewest_links() const {
+    const auto places = static_cast<std::size_t>((kGates + 1) * kOffsets);
+    std::vector<int> links(places, -1);
+    const std::size_t start = kOffsets / 2;
+    const std::size_t end = places - 1 - kOffsets / 2;
+    std::vector<std::size_t> layer = {start};
+    links[start] = 0;
+    while (!layer.empty() && links[end] < 0) {
+      std::vector<std::size_t> next;
+      for (const std::size_t from : layer) {
+        for (std::size_t to = from / kOffsets * kOffsets; to < places; ++to) {
+          if (links[to] >= 0 || !sees(from, to)) continue;
+          links[to] = links[from] + 1;
+          next.push_back(to);
+        }
+      }
+      layer = std::move(next);
+    }
+    return links[end];
+  }
+
+ private:
+  static constexpr int kGates = 60;
+  static constexpr int kFiner = 2;
+  static constexpr std::size_t kOffsets = 17;
+
+  Point3 place(std::size_t index) const {
+    const std::size_t i = index / kOffsets * kFiner;
+    const double part = 2.0 * static_cast<double>(index % kOffsets) / (kOffsets - 1) - 1;
+    return centers_[i] + part * tolerance_ * normals_[i];
+  }
+
+  bool sees(std::size_t from, std::size_t to) const {
+    const Point3 a = place(from);
+    const Vector3 way = place(to) - a;
+    for (std::size_t i = from / kOffsets * kFiner + 1; i < to / kOffsets * kFiner; ++i) {
+      const double crossing = way.x() * normals_[i].y() - way.y() * normals_[i].x();
+      if (crossing <= 0) return false;
+      const Vector3 off = a - centers_[i];
+      const double offset = (way.x() * off.y() - way.y() * off.x()) / crossing;
+      if (std::abs(offset) > tolerance_ * (1 + 1e-9)) return false;
+    }
+    return true;
+  }
+
+  double tolerance_;
+  std::vector<Point3> centers_;
+  std::vector<Vector3> normals_;
+};
+
+// No path between places of a grid needs fewer links, also where the bend changes its side. (The
+// grid's path may use 0.4 % more tolerance, since it is held against gates only.)
+TEST(MinLinkCount, IsNotBeatenByTryingAllPlacesOfAGrid) {
+  for (int seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const auto wave = [&](double u) {
+      return Point3(u, 1.5 * std::sin(0.45 * u + seed) + 0.4 * std::sin((0.7 + 0.06 * seed) * u),
+                    0);
+    };
+    const BsplineCurve curve = curve_of(wave, 0, 20, 60);
+    const double tolerance = 0.03 + 0.01 * seed;
+    const int on_grid = GridOfPlaces(curve, 0.98 * tolerance).fewest_links();
+    ASSERT_GT(on_grid, 0);
+    const auto found = min_link_vertices(curve, 0, 20, {.tolerance = tolerance});
+    EXPECT_LE(static_cast<int>(found.size()) - 1, on_grid);
+    // Every path has one beside it whose vertices stand on a grid that is somewhat wider.
+    const int wider = GridOfPlaces(curve, 1.3 * tolerance).fewest_links();
+    EXPECT_GE(static_cast<int>(found.size()) - 1, wider);
+  }
+}
+
+}  // namespace
+}  // namespace batten::geometry

@@ -1,0 +1,423 @@
+#include "geometry/fitting/corners/guo_path.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "geometry/distance/path_distance.h"
+#include "tests/support/corners.h"
+
+namespace batten::geometry {
+namespace {
+
+GuoOptions fair(double tolerance, ToleranceKind kind, bool closed = false) {
+  GuoOptions options;
+  options.rule = {tolerance, kind, GuoApex::kAllowed};
+  options.closed = closed;
+  return options;
+}
+
+std::vector<GuoBlend> blends_of(const GuoPath& path) {
+  std::vector<GuoBlend> blends;
+  for (const GuoPathCorner& corner : path.corners) {
+    if (const auto* blend = std::get_if<GuoBlend>(&corner.outcome)) blends.push_back(*blend);
+  }
+  return blends;
+}
+
+// Figures of a path as docs/algorithms/guo.md has them.
+struct Figures {
+  std::size_t blends = 0;
+  double legs = 0;       // mm, greatest distance from the polyline
+  double curvature = 0;  // 1/mm, greatest
+  double median = 0;     // 1/mm, of the blends' greatest curvatures
+  double least_spacing = std::numeric_limits<double>::infinity();
+};
+
+Figures figures_of(const GuoPath& path) {
+  Figures found;
+  std::vector<double> curvatures;
+  for (const GuoBlend& blend : blends_of(path)) {
+    found.legs = std::max(found.legs, blend.blend.deviation.legs);
+    found.least_spacing = std::min(found.least_spacing, blend.spacing);
+    curvatures.push_back(blend.greatest_curvature);
+  }
+  found.blends = curvatures.size();
+  std::sort(curvatures.begin(), curvatures.end());
+  if (curvatures.empty()) return found;
+  found.curvature = curvatures.back();
+  const std::size_t n = curvatures.size();
+  found.median = (curvatures[(n - 1) / 2] + curvatures[n / 2]) / 2;
+  return found;
+}
+
+// r = exp(sin t) - 2 cos 4t + sin((2t - pi) / 24)^5, 80 segments, ten times as large.
+std::vector<Point3> butterfly() {
+  std::vector<Point3> points;
+  for (int i = 0; i <= 80; ++i) {
+    const double t = 2 * std::numbers::pi * i / 80;
+    const double r = std::exp(std::sin(t)) - 2 * std::cos(4 * t) +
+                     std::pow(std::sin((2 * t - std::numbers::pi) / 24), 5);
+    points.emplace_back(10 * r * std::cos(t), 10 * r * std::sin(t), 0);
+  }
+  return points;
+}
+
+std::vector<Point3> hexagon() {
+  return {{0, 0, 0},     {10, 0, 4},    {15, 8.66, 0}, {10, 17.32, 4},
+          {0, 17.32, 0}, {-5, 8.66, 4}, {0, 0, 0}};
+}
+
+TEST(GuoPath, GivesTheFiguresOfTheButterfly) {
+  const std::vector<Point3> points = butterfly();
+  const GuoPath literal = guo_path(points, GuoOptions::literal(0.05, 0.1));
+  const Figures paper = figures_of(literal);
+  const Figures ours = figures_of(guo_path(points, fair(0.05, ToleranceKind::kBand)));
+  const Figures strict = figures_of(guo_path(points, fair(0.05, ToleranceKind::kPath)));
+  fmt::print("butterfly, tolerance 0.05    blends  off legs  greatest  median  least L\n");
+  for (const auto& [name, f] : {std::pair{"literal, lambda 0.1", paper},
+                                std::pair{"fair, band", ours}, std::pair{"fair, path", strict}}) {
+    fmt::print("{:28} {:6} {:9.4f} {:9.2f} {:7.3f} {:8.5f}\n", name, f.blends, f.legs, f.curvature,
+               f.median, f.least_spacing);
+  }
+  EXPECT_EQ(paper.blends, 79u);
+  EXPECT_NEAR(paper.legs, 0.0420, 0.00005);
+  EXPECT_NEAR(paper.curvature, 50.3, 0.05);
+  EXPECT_NEAR(paper.median, 0.29, 0.005);
+  EXPECT_NEAR(paper.least_spacing, 0.06185, 0.000005);
+
+  EXPECT_EQ(ours.blends, 79u);
+  EXPECT_NEAR(ours.legs, 0.05, 1e-9);
+  EXPECT_NEAR(ours.curvature, 14.8, 0.05);
+  EXPECT_NEAR(ours.median, 0.14, 0.005);
+
+  // How much of the allowed distance the paper's reduced corners use: 0.48 on the average.
+  double used = 0;
+  int reduced = 0;
+  for (const GuoBlend& blend : blends_of(literal)) {
+    if (std::abs(blend.blend.deviation.corner - 0.025) > 1e-9) continue;
+    ++reduced;
+    used += blend.blend.deviation.legs / 0.05;
+  }
+  EXPECT_EQ(reduced, 72);
+  EXPECT_NEAR(used / reduced, 0.48, 0.005);
+}
+
+TEST(GuoPath, GivesTheFiguresOfTheHexagon) {
+  GuoOptions options = GuoOptions::literal(0.05, 0.1);
+  options.closed = true;  // changes nothing: the paper leaves the seam sharp
+  const GuoPath literal = guo_path(hexagon(), options);
+  ASSERT_EQ(blends_of(literal).size(), 5u);
+  for (const GuoBlend& blend : blends_of(literal)) {
+    EXPECT_NEAR(blend.spacing / 0.084102, 1, 1e-4);
+    EXPECT_NEAR(blend.blend.deviation.corner / 0.025, 1, 1e-4);
+    EXPECT_NEAR(blend.greatest_curvature / 14.58, 1, 4e-4);  // as many digits as given
+    const auto& p = blend.blend.curve.control_points();
+    const auto frame = std::get<CornerFrame>(frame_of({p.front(), p[2], p.back()}));
+    EXPECT_NEAR(std::asin(frame.sin_half) / kDegrees, 53.522, 0.01);
+  }
+  const GuoPath ours = guo_path(hexagon(), fair(0.05, ToleranceKind::kBand, true));
+  ASSERT_EQ(blends_of(ours).size(), 6u);
+  for (const GuoBlend& blend : blends_of(ours)) {
+    EXPECT_NEAR(blend.spacing / 0.209188, 1, 1e-4);
+    EXPECT_NEAR(blend.blend.deviation.corner / 0.062182, 1, 1e-4);
+    EXPECT_NEAR(blend.greatest_curvature / 5.86, 1, 1e-3);
+  }
+}
+
+// Four segments at right angles, the first a little shorter than the others: the greedy rule
+// leaves the second corner a hundredth of what the others have.
+std::vector<Point3> almost_equal_steps() {
+  return {{0, 0, 0}, {0.198, 0, 0}, {0.198, 0.2, 0}, {0.398, 0.2, 0}, {0.398, 0.4, 0}};
+}
+
+std::vector<double> spacings(const GuoPath& path) {
+  std::vector<double> found;
+  for (const GuoBlend& blend : blends_of(path)) found.push_back(blend.spacing);
+  return found;
+}
+
+void expect_near(const std::vector<double>& found, const std::vector<double>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-9) << i;
+}
+
+TEST(GuoPath, SharesShortSegmentsLiterallyOrFairly) {
+  const auto steps = almost_equal_steps();
+  expect_near(spacings(guo_path(steps, GuoOptions::literal(0.05, 0))), {0.099, 0.001, 0.099});
+  expect_near(spacings(guo_path(steps, fair(0.05, ToleranceKind::kBand))), {0.05, 0.05, 0.05});
+}
+
+// With all segments 0.2 the first blend, 2L = 0.2, would reach the next corner, so it is halved.
+// The other two find 0.1 left before them and take that.
+TEST(GuoPath, HalvesABlendThatWouldReachTheNextCorner) {
+  const std::vector<Point3> equal = {
+      {0, 0, 0}, {0.2, 0, 0}, {0.2, 0.2, 0}, {0.4, 0.2, 0}, {0.4, 0.4, 0}};
+  const GuoPath path = guo_path(equal, GuoOptions::literal(0.05, 0));
+  expect_near(spacings(path), {0.05, 0.05, 0.05});
+  // The last corner is not halved though it reaches the end.
+  const std::vector<Point3> one = {{0, 0, 0}, {0.2, 0, 0}, {0.2, 0.2, 0}};
+  expect_near(spacings(guo_path(one, GuoOptions::literal(0.1, 0))), {0.1});
+}
+
+// Lambda 0.5 takes half of the 0.101 that the first blend leaves: 2L <= 0.0505 there.
+TEST(GuoPath, LambdaTakesRoomFromTheNextCorner) {
+  const std::vector<Point3> points = {{0, 0, 0}, {0.099, 0, 0}, {0.099, 0.2, 0}, {0.4, 0.2, 0}};
+  expect_near(spacings(guo_path(points, GuoOptions::literal(0.05, 0))), {0.0495, 0.0505});
+  expect_near(spacings(guo_path(points, GuoOptions::literal(0.05, 0.5))), {0.0495, 0.02525});
+}
+
+TEST(GuoPath, GivesAllOfASegmentToTheOnlyCornerThatNeedsIt) {
+  // A straight vertex at (4, 0), a reversal at (10, 3).
+  const std::vector<Point3> points = {{0, 0, 0},  {4, 0, 0},  {10, 0, 0},
+                                      {10, 3, 0}, {10, 0, 0}, {20, 0, 0}};
+  const GuoPath path = guo_path(points, fair(50, ToleranceKind::kPath));
+  ASSERT_EQ(path.corners.size(), 4u);
+  EXPECT_EQ(std::get<NoBlend>(path.corners[0].outcome), NoBlend::kStraight);
+  EXPECT_NEAR(std::get<GuoBlend>(path.corners[1].outcome).spacing, 1.5, 1e-12);
+  EXPECT_EQ(std::get<NoBlend>(path.corners[2].outcome), NoBlend::kReversal);
+  EXPECT_NEAR(std::get<GuoBlend>(path.corners[3].outcome).spacing, 1.5, 1e-12);
+}
+
+TEST(GuoPath, PassesOverPointsThatAreOnePlace) {
+  const std::vector<Point3> points = {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 1e-10, 0},
+                                      {1, 1, 0}, {1, 1, 0}, {2, 1, 0}};
+  const GuoPath path = guo_path(points, fair(0.01, ToleranceKind::kPath));
+  ASSERT_EQ(path.corners.size(), 2u);
+  EXPECT_EQ(path.corners[0].vertex, 2u);
+  EXPECT_EQ(path.corners[1].vertex, 4u);
+  EXPECT_EQ(blends_of(path).size(), 2u);
+}
+
+TEST(GuoPath, EndsOnItsOwnPointsWhereBlendsTakeAllOfTheLegs) {
+  std::mt19937 random(5);
+  for (int seed = 0; seed < 50; ++seed) {
+    const Motion motion = random_motion(random);
+    const Corner corner = motion(corner_of(10 + seed, 1, 1));
+    const std::vector<Point3> points = {corner.before, corner.vertex, corner.after};
+    const GuoPath path = guo_path(points, fair(10, ToleranceKind::kPath));
+    EXPECT_LE(path.pieces.size(), 4u);
+    EXPECT_EQ(start_point(path.pieces.front()), points.front());
+    EXPECT_EQ(end_point(path.pieces.back()), points.back());
+  }
+}
+
+TEST(GuoPath, TakesAnyNumberOfPoints) {
+  const std::vector<Point3> points = {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}};
+  for (const bool closed : {false, true}) {
+    for (std::size_t n = 0; n <= points.size(); ++n) {
+      SCOPED_TRACE(testing::Message() << n << " points, closed " << closed);
+      const std::span<const Point3> given(points.data(), n);
+      for (const GuoSharing sharing : {GuoSharing::kFair, GuoSharing::kLiteral}) {
+        GuoOptions options = fair(0.01, ToleranceKind::kPath, closed);
+        options.sharing = sharing;
+        EXPECT_TRUE(blends_of(guo_path(given, options)).empty());
+      }
+    }
+  }
+  EXPECT_EQ(guo_path(points, fair(0.01, ToleranceKind::kPath)).pieces.size(), 2u);
+}
+
+// --- properties ---------------------------------------------------------------------------
+
+// Segments of 1e-2 to 10 mm; every tenth vertex or so straight, reversed or doubled.
+std::vector<Point3> random_path(std::mt19937& random, int segments) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::normal_distribution<double> normal;
+  std::vector<Point3> points = {Point3::Zero()};
+  Vector3 direction(1, 0, 0);
+  for (int i = 0; i < segments; ++i) {
+    const double odd = unit(random);
+    if (odd < 0.05) {
+      direction = -direction;
+    } else if (odd > 0.15) {
+      const double wild = std::pow(10, -3 * unit(random));
+      const Vector3 next(normal(random), normal(random), normal(random));
+      direction = (direction + 3 * wild * next).normalized();
+    }
+    if (odd > 0.97) points.push_back(points.back());
+    points.push_back(points.back() + std::pow(10, -2 + 3 * unit(random)) * direction);
+  }
+  return points;
+}
+
+// Places along each segment of the ends of the blends never go back; blends end on segments.
+void expect_joints_in_order(std::span<const Point3> points, const GuoPath& path) {
+  const Point3* reached = &points[0];
+  double at = 0;  // mm from *reached that are used
+  for (const GuoPathCorner& corner : path.corners) {
+    const Point3& q = points[corner.vertex];
+    const auto* guo = std::get_if<GuoBlend>(&corner.outcome);
+    const double length = (q - *reached).norm();
+    const double taken = guo ? 2 * guo->spacing : 0;
+    EXPECT_LE(at + taken, length + 1e-9) << "before vertex " << corner.vertex;
+    reached = &q;
+    at = taken;
+  }
+  EXPECT_LE(at, (points.back() - *reached).norm() + 1e-9);
+}
+
+// Neighbours meet; but at vertices without a blend also in direction and curvature.
+void expect_smooth_but_at_kept_corners(std::span<const Point3> points, const GuoPath& path) {
+  const auto kept = [&](const Point3& p) {
+    return std::any_of(path.corners.begin(), path.corners.end(), [&](const auto& corner) {
+      return std::holds_alternative<NoBlend>(corner.outcome) &&
+             (points[corner.vertex] - p).norm() < 1e-9;
+    });
+  };
+  for (std::size_t i = 0; i + 1 < path.pieces.size(); ++i) {
+    const PathPiece& one = path.pieces[i];
+    const PathPiece& next = path.pieces[i + 1];
+    EXPECT_EQ(end_point(one), start_point(next)) << i;
+    if (kept(end_point(one))) continue;
+    // Blends as short as 1e-8 mm have ends with rounding of 1e-14 mm.
+    EXPECT_LT((direction_at(one, 1) - direction_at(next, 0)).norm(), 1e-5) << i;
+    const double here = curvature_at(one, 1);
+    const double scale =
+        std::max({here, curvature_at(next, 0), curvature_at(one, 0), curvature_at(next, 1)});
+    EXPECT_LE(std::abs(here - curvature_at(next, 0)), 1e-5 * scale) << i;
+  }
+}
+
+double greatest_distance_to(std::span<const Point3> points, const Path& pieces) {
+  double worst = 0;
+  for (const PathPiece& piece : pieces) {
+    for (int k = 0; k <= 16; ++k) {
+      const Point3 p = point_at(piece, k / 16.0);
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        if (points[i] == points[i + 1]) continue;
+        least = std::min(least, segment_distance(p, points[i], points[i + 1]));
+      }
+      worst = std::max(worst, least);
+    }
+  }
+  return worst;
+}
+
+TEST(GuoPath, StaysInTheBandSharesAndJoinsOnRandomPaths) {
+  std::mt19937 random(2);
+  for (int seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(testing::Message() << "path " << seed);
+    const std::vector<Point3> points = random_path(random, 25);
+    const double tolerance = std::pow(10, -4 + 4 * (seed % 7) / 6.0);
+    const ToleranceKind kind = seed % 2 ? ToleranceKind::kPath : ToleranceKind::kBand;
+    GuoOptions options = fair(tolerance, kind);
+    if (seed % 3 == 0) {
+      options = GuoOptions::literal(tolerance, 0.1);
+      options.rule.kind = kind;
+    }
+    const GuoPath path = guo_path(points, options);
+    EXPECT_FALSE(blends_of(path).empty());
+    EXPECT_LE(greatest_distance_to(points, path.pieces), tolerance * (1 + 1e-9) + 1e-9);
+    expect_joints_in_order(points, path);
+    expect_smooth_but_at_kept_corners(points, path);
+    EXPECT_EQ(start_point(path.pieces.front()), points.front());
+    EXPECT_EQ(end_point(path.pieces.back()), points.back());
+    if (kind == ToleranceKind::kPath) {
+      const auto proof = compare_paths(path_through(points), path.pieces, 1.03 * tolerance);
+      EXPECT_EQ(proof.verdict, Verdict::kProved);
+    }
+  }
+}
+
+TEST(GuoPath, FollowsMotionsAndReversals) {
+  std::mt19937 random(3);
+  for (int seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(testing::Message() << "path " << seed);
+    const std::vector<Point3> points = random_path(random, 20);
+    const GuoOptions options = fair(0.02, seed % 2 ? ToleranceKind::kPath : ToleranceKind::kBand);
+    const Motion motion = random_motion(random);
+    std::vector<Point3> moved;
+    for (const Point3& p : points) moved.push_back(motion(p));
+    const std::vector<Point3> back(points.rbegin(), points.rend());
+
+    const auto given = blends_of(guo_path(points, options));
+    const auto turned = blends_of(guo_path(moved, options));
+    const auto reversed = blends_of(guo_path(back, options));
+    ASSERT_EQ(given.size(), turned.size());
+    ASSERT_EQ(given.size(), reversed.size());
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      for (std::size_t k = 0; k < 5; ++k) {
+        const Point3& p = given[i].blend.curve.control_points()[k];
+        EXPECT_LT((motion(p) - turned[i].blend.curve.control_points()[k]).norm(), 1e-7);
+        const auto& mirrored = reversed[given.size() - 1 - i].blend.curve.control_points();
+        EXPECT_LT((p - mirrored[4 - k]).norm(), 1e-7);
+      }
+    }
+  }
+}
+
+TEST(GuoPath, HasNoCornerAtTheSeamOfAClosedPath) {
+  for (const ToleranceKind kind : {ToleranceKind::kPath, ToleranceKind::kBand}) {
+    const GuoPath path = guo_path(hexagon(), fair(0.05, kind, true));
+    const PathPiece& first = path.pieces.front();
+    const PathPiece& last = path.pieces.back();
+    EXPECT_EQ(start_point(first), end_point(last));
+    EXPECT_LT((direction_at(first, 0) - direction_at(last, 1)).norm(), 1e-9);
+    EXPECT_NEAR(curvature_at(first, 0), curvature_at(last, 1), 1e-6);
+    EXPECT_GT(curvature_at(first, 0), 1);
+    expect_smooth_but_at_kept_corners(hexagon(), path);
+    // Nearest to the old seam, so that old and new path start within tolerance of each other.
+    const double apex = (start_point(first) - hexagon().front()).norm();
+    const auto& seam = std::get<GuoBlend>(path.corners.front().outcome);
+    EXPECT_NEAR(apex, seam.blend.deviation.corner, 1e-12);
+  }
+  const auto old_path = path_through(hexagon());
+  const GuoPath path = guo_path(hexagon(), fair(0.05, ToleranceKind::kPath, true));
+  EXPECT_EQ(compare_paths(old_path, path.pieces, 0.0515).verdict, Verdict::kProved);
+}
+
+TEST(GuoPath, MakesNoVertexOfAClosedPathSpecial) {
+  std::mt19937 random(4);
+  for (int seed = 0; seed < 20; ++seed) {
+    std::vector<Point3> ring = random_path(random, 12);
+    std::vector<Point3> closed = ring;
+    closed.push_back(ring.front());
+    std::rotate(ring.begin(), ring.begin() + 5, ring.end());
+    ring.push_back(ring.front());
+    const GuoOptions options = fair(0.02, ToleranceKind::kPath, true);
+    auto one = spacings(guo_path(closed, options));
+    auto other = spacings(guo_path(ring, options));
+    std::sort(one.begin(), one.end());
+    std::sort(other.begin(), other.end());
+    expect_near(one, other);
+  }
+}
+
+TEST(GuoPath, LeavesCornersThatTurnMoreThanAsked) {
+  // Turns of 5.7 and 84 degrees.
+  const std::vector<Point3> points = {{0, 0, 0}, {10, 0, 0}, {20, 1, 0}, {20, 11, 0}};
+  for (const GuoSharing sharing : {GuoSharing::kFair, GuoSharing::kLiteral}) {
+    GuoOptions options = fair(5, ToleranceKind::kPath);
+    options.sharing = sharing;
+    options.keep_corner_angle = 1;
+    const GuoPath path = guo_path(points, options);
+    ASSERT_EQ(path.corners.size(), 2u);
+    // The kept one needs nothing of the segment between them: 2L is all of the first leg.
+    EXPECT_NEAR(std::get<GuoBlend>(path.corners[0].outcome).spacing, 5, 1e-12);
+    EXPECT_EQ(std::get<NoBlend>(path.corners[1].outcome), NoBlend::kKept);
+    EXPECT_EQ(start_point(path.pieces.back()), points[2]);
+  }
+}
+
+TEST(GuoPath, RefusesALambdaThatLeavesNothing) {
+  for (const double lambda : {-0.1, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(static_cast<void>(guo_path(hexagon(), GuoOptions::literal(0.05, lambda))),
+                 std::invalid_argument);
+  }
+}
+
+}  // namespace
+}  // namespace batten::geometry

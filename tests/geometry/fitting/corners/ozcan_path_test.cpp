@@ -1,0 +1,150 @@
+#include "geometry/fitting/corners/ozcan_path.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <variant>
+#include <vector>
+
+#include "geometry/distance/path_distance.h"
+#include "geometry/path/joined_curve.h"
+#include "tests/support/corners.h"
+#include "tests/support/method_cases.h"
+
+namespace batten::geometry {
+namespace {
+
+OzcanOptions with_tolerance(double tolerance, ToleranceKind kind) {
+  OzcanOptions options;
+  options.tolerance = tolerance;
+  options.kind = kind;
+  return options;
+}
+
+int blends_in(const OzcanPath& path) {
+  return static_cast<int>(std::count_if(path.corners.begin(), path.corners.end(), [](auto& c) {
+    return std::holds_alternative<OzcanBlend>(c.outcome);
+  }));
+}
+
+// A path of many gentle turns and some sharp ones, in space.
+std::vector<Point3> bent_path(unsigned seed, int segments) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> length(0.2, 3);
+  std::vector<Point3> points = {Point3::Zero()};
+  Vector3 direction(1, 0, 0);
+  for (int i = 0; i < segments; ++i) {
+    const double turn = i % 7 == 3 ? 1 : 0.03;
+    const Vector3 aside(normal(random), normal(random), normal(random));
+    direction = (direction + turn * aside).normalized();
+    points.push_back(points.back() + length(random) * direction);
+  }
+  return points;
+}
+
+TEST(OzcanPath, GivesTheCornerOfOzcanAsTheCornerMethodDoes) {
+  const std::vector<Point3> points = ozcan_corner_path();
+  const OzcanOptions options = with_tolerance(0.1, ToleranceKind::kBand);
+  const OzcanPath path = ozcan_path(points, options);
+  ASSERT_EQ(path.corners.size(), 1u);
+  const auto alone = ozcan_corner({points[0], points[1], points[2]}, 0.1, ToleranceKind::kBand,
+                                  options.limits, 1e9, 1e9);
+  const auto& found = std::get<OzcanBlend>(path.corners[0].outcome);
+  EXPECT_NEAR(found.feed_estimate, std::get<OzcanBlend>(alone).feed_estimate, 1e-9);
+  EXPECT_EQ(path.searched, 1);
+}
+
+TEST(OzcanPath, StaysWithinTheToleranceInOrder) {
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const std::vector<Point3> points = bent_path(seed, 15);
+    const OzcanPath path = ozcan_path(points, with_tolerance(0.02, ToleranceKind::kPath));
+    EXPECT_GT(blends_in(path), 10);
+    const PathComparison proof = compare_paths(path_through(points), path.pieces, 0.0206);
+    EXPECT_EQ(proof.verdict, Verdict::kProved) << proof.bounds.at_most;
+  }
+}
+
+TEST(OzcanPath, LeavesTheLegsWithTheirDirectionAndWithoutCurvature) {
+  const OzcanPath path = ozcan_path(bent_path(9, 12), with_tolerance(0.02, ToleranceKind::kPath));
+  for (std::size_t i = 0; i + 1 < path.pieces.size(); ++i) {
+    const PathPiece& before = path.pieces[i];
+    const PathPiece& after = path.pieces[i + 1];
+    EXPECT_EQ(end_point(before), start_point(after));
+    EXPECT_LT((direction_at(before, 1) - direction_at(after, 0)).norm(), 1e-6) << i;
+    EXPECT_NEAR(curvature_at(before, 1), curvature_at(after, 0),
+                1e-6 + 1e-6 * curvature_at(before, 1))
+        << i;
+  }
+}
+
+// The star's corners are of two kinds in ten directions; a square's legs have four.
+TEST(OzcanPath, SearchesCornersThatAreAlikeOnce) {
+  std::vector<Point3> stairs = {Point3::Zero()};
+  for (int i = 0; i < 40; ++i) {
+    stairs.push_back(stairs.back() + (i % 2 ? Vector3(0, 2, 0) : Vector3(2, 0, 0)));
+  }
+  const OzcanPath path = ozcan_path(stairs, with_tolerance(0.05, ToleranceKind::kPath));
+  EXPECT_EQ(blends_in(path), 39);
+  EXPECT_EQ(path.searched, 2) << "to the left and to the right";
+}
+
+TEST(OzcanPath, SearchesNoGentleCorner) {
+  std::vector<Point3> ring;
+  for (int i = 0; i <= 360; ++i) {
+    const double angle = i * std::numbers::pi / 180;
+    ring.emplace_back(10 * std::cos(angle), 10 * std::sin(angle), 0);
+  }
+  const OzcanPath path = ozcan_path(ring, with_tolerance(0.01, ToleranceKind::kPath));
+  EXPECT_EQ(path.searched, 0);
+  EXPECT_EQ(blends_in(path), 359);
+}
+
+TEST(OzcanPath, LeavesCornersThatTurnMoreThanAsked) {
+  const std::vector<Point3> points = {{0, 0, 0}, {10, 0, 0}, {20, 1, 0}, {20, 11, 0}};
+  OzcanOptions options = with_tolerance(0.01, ToleranceKind::kPath);
+  options.keep_corner_angle = 1;
+  const OzcanPath path = ozcan_path(points, options);
+  ASSERT_EQ(path.corners.size(), 2u);
+  EXPECT_TRUE(std::holds_alternative<OzcanBlend>(path.corners[0].outcome));
+  EXPECT_EQ(std::get<NoBlend>(path.corners[1].outcome), NoBlend::kKept);
+  const auto passes = [&](const Point3& place) {
+    return std::any_of(path.pieces.begin(), path.pieces.end(),
+                       [&](const PathPiece& p) { return end_point(p) == place; });
+  };
+  EXPECT_TRUE(passes(points[2]));
+  EXPECT_FALSE(passes(points[1]));
+}
+
+TEST(OzcanPath, RoundsTheSeamOfAClosedPath) {
+  OzcanOptions options = with_tolerance(0.05, ToleranceKind::kPath);
+  options.closed = true;
+  const OzcanPath path = ozcan_path(guo_hexagon(), options);
+  EXPECT_EQ(blends_in(path), 6);
+  EXPECT_EQ(start_point(path.pieces.front()), end_point(path.pieces.back()));
+  EXPECT_LT((direction_at(path.pieces.front(), 0) - direction_at(path.pieces.back(), 1)).norm(),
+            1e-9);
+  EXPECT_LE((start_point(path.pieces.front()) - guo_hexagon().front()).norm(), 0.05);
+}
+
+// Stations are lengths along the polyline, so lines run at unit speed and the curve of the
+// pieces passes each vertex's station near the vertex.
+TEST(OzcanPath, HasTheStationOfEachVertexBesideIt) {
+  const std::vector<Point3> points = bent_path(3, 12);
+  const OzcanPath path = ozcan_path(points, with_tolerance(0.02, ToleranceKind::kPath));
+  ASSERT_EQ(path.stations.size(), path.pieces.size() + 1);
+  const BsplineCurve curve = curve_of_pieces(path.pieces, path.stations);
+  double station = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i > 0) station += (points[i] - points[i - 1]).norm();
+    EXPECT_LE((curve.point_at(station) - points[i]).norm(), 0.0205) << i;
+  }
+  EXPECT_NEAR(curve.last(), station, 1e-12);
+}
+
+}  // namespace
+}  // namespace batten::geometry

@@ -1,0 +1,212 @@
+// Naseath's method as his thesis has it, against the figures of an independent program.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "geometry/fitting/naseath/naseath.h"
+#include "geometry/fitting/naseath/naseath_categories.h"
+#include "geometry/fitting/naseath/naseath_directions.h"
+#include "geometry/fitting/naseath/naseath_sensitivity.h"
+#include "geometry/path/parameter_samples.h"
+#include "tests/support/naseath_cases.h"
+
+namespace batten::geometry {
+namespace {
+
+ControlPolygon polygon_of(const BsplineCurve& curve) { return {curve.control_points(), false}; }
+
+// --- the thesis, step by step ------------------------------------------------------------------
+
+class NaseathCase : public testing::TestWithParam<std::string> {
+ protected:
+  nlohmann::json given = naseath_case(GetParam());
+  BsplineCurve curve = curve_in(given);
+};
+
+TEST_P(NaseathCase, TurnsAndGroupsAreThoseOfTheThesis) {
+  const ControlPolygon polygon = polygon_of(curve);
+  const auto turns = turns_of(polygon);
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const double z = turns[i].z();
+    EXPECT_EQ((z > 0) - (z < 0), given["turns"][i].get<int>()) << "point " << i;
+  }
+  const auto groups = categories_of(polygon).groups;
+  ASSERT_EQ(groups.size(), given["groups"].size());
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    EXPECT_EQ(groups[i].first, given["groups"][i][0].get<std::size_t>());
+    EXPECT_EQ(groups[i].first + groups[i].count - 1, given["groups"][i][1].get<std::size_t>());
+  }
+}
+
+TEST_P(NaseathCase, DirectionsAreThoseOfTheThesis) {
+  const ControlPolygon polygon = polygon_of(curve);
+  const auto directions = naseath_directions(polygon, categories_of(polygon), end_legs(polygon));
+  EXPECT_LE(farthest(directions, points_of(given["directions"])), 1e-12);
+}
+
+TEST_P(NaseathCase, PassesAreThoseOfTheThesis) {
+  const NaseathResult result = smooth_naseath(curve, literal(given["R"]));
+  EXPECT_EQ(result.passes, given["iterations"].get<int>());
+  EXPECT_EQ(result.kept_pass, result.passes);
+  EXPECT_EQ(result.stop, NaseathStop::kTouchesTube);
+  const auto remaining = given["dmax"].get<std::vector<double>>();
+  ASSERT_EQ(result.remaining.size(), remaining.size());
+  for (std::size_t i = 0; i < remaining.size(); ++i) {
+    EXPECT_NEAR(result.remaining[i], remaining[i], 1e-9) << "pass " << i;
+  }
+  EXPECT_LE(farthest(result.curve.control_points(), points_of(given["result"])), 1e-9);
+}
+
+TEST_P(NaseathCase, LengthAndCurvatureAreThoseOfTheThesis) {
+  const auto before = parameter_samples(curve, kNaseathSteps);
+  EXPECT_NEAR(sampled_length(before), given["L0"].get<double>(), 1e-9);
+  EXPECT_NEAR(max_curvature(before), given["kmax0"].get<double>(), 1e-9);
+  const NaseathResult result = smooth_naseath(curve, literal(given["R"]));
+  const auto after = parameter_samples(result.curve, kNaseathSteps);
+  EXPECT_NEAR(sampled_length(after), given["L1"].get<double>(), 1e-9);
+  EXPECT_NEAR(max_curvature(after), given["kmax1"].get<double>(), 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Small, NaseathCase, testing::Values("G1", "G2", "G3"),
+                         [](const auto& test) { return test.param; });
+
+struct SensitivityCase {
+  std::string name;
+  std::vector<double> expected;
+};
+
+class NaseathSensitivity : public testing::TestWithParam<SensitivityCase> {};
+
+TEST_P(NaseathSensitivity, IsHowFarTheCurveFollowsAMockMove) {
+  const BsplineCurve curve = curve_of_case(GetParam().name);
+  const ControlPolygon polygon = polygon_of(curve);
+  const std::size_t m = polygon.size();
+  constexpr double kMove = 0.25;
+  auto moves = naseath_directions(polygon, categories_of(polygon), end_legs(polygon));
+  for (Vector3& move : moves) move *= kMove;
+  const auto sensitivities =
+      naseath_sensitivities({curve.basis(), moves}, parameters_of_influence(curve.basis(), m),
+                            std::vector<double>(m, kMove), std::vector<double>(m, 1));
+  ASSERT_EQ(sensitivities.size(), GetParam().expected.size());
+  for (std::size_t i = 0; i < m; ++i) {
+    EXPECT_NEAR(sensitivities[i], GetParam().expected[i], 1e-6) << "point " << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Small, NaseathSensitivity,
+    testing::Values(SensitivityCase{"G1", {1, .280474, .224190, .337638, .224190, .280474, 1}},
+                    SensitivityCase{"G3", {1, .233545, .512325, .999556, .512325, .233545, 1}}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(NaseathDirections, OfADoubleApexAreTheNormalOfItsLeg) {
+  const ControlPolygon polygon = polygon_of(curve_of_case("G2"));
+  const auto categories = categories_of(polygon);
+  ASSERT_EQ(categories.groups.size(), 1u);
+  EXPECT_TRUE(categories.groups[0].has_two_apexes());
+  EXPECT_EQ(categories.of_point[3], NaseathCategory::kApex);
+  EXPECT_EQ(categories.of_point[4], NaseathCategory::kApex);
+  EXPECT_EQ(categories.of_point[5], NaseathCategory::kSide);
+}
+
+// Legs that are parallel but for the rounding of their coordinates.
+TEST(NaseathCategories, ARoundingErrorIsNoTurn) {
+  const ControlPolygon polygon{
+      {{0, 0, 0}, {0.1, 0.3, 0}, {0.3, 0.9, 0}, {0.7, 2.1, 0}, {5, 1, 0}, {6, 3, 0}}, false};
+  const auto turns = turns_of(polygon);
+  EXPECT_EQ(turns[1], Vector3::Zero());
+  EXPECT_EQ(turns[2], Vector3::Zero());
+  EXPECT_NE(turns[3], Vector3::Zero());
+  EXPECT_TRUE(categories_of(polygon).groups.empty());
+}
+
+TEST(NaseathCategories, TwoPointsAreNoGroupAndThreeAre) {
+  ControlPolygon polygon{{{0, 0, 0}, {1, 0, 0}, {2, 1, 0}, {2, 2, 0}}, false};
+  EXPECT_TRUE(categories_of(polygon).groups.empty());
+  polygon.points.emplace_back(1, 3, 0);
+  ASSERT_EQ(categories_of(polygon).groups.size(), 1u);
+  EXPECT_EQ(categories_of(polygon).groups[0].count, 3u);
+}
+
+TEST(NaseathCategories, AGroupGoesOnAcrossTheSeamOfARing) {
+  // A square's corners with one dent, begun at different points: the group of the seven others
+  // starts behind the dent each time.
+  const std::vector<Point3> shape = {{0, 0, 0}, {4, 0, 0}, {8, 0.1, 0}, {9, 4, 0},
+                                     {8, 8, 0}, {4, 7, 0}, {0, 8, 0},   {-1, 4, 0}};
+  for (std::size_t shift = 0; shift < shape.size(); ++shift) {
+    SCOPED_TRACE(testing::Message() << "shift " << shift);
+    ControlPolygon ring{shape, true};
+    std::rotate(ring.points.begin(), ring.points.begin() + static_cast<std::ptrdiff_t>(shift),
+                ring.points.end());
+    const auto categories = categories_of(ring);
+    ASSERT_EQ(categories.groups.size(), 1u);
+    EXPECT_EQ(categories.groups[0].count, 7u);
+    EXPECT_LE((ring.at(categories.groups[0].first) - Point3(0, 8, 0)).norm(), 0);
+    EXPECT_FALSE(categories.turns_one_way);
+  }
+}
+
+// --- the tables --------------------------------------------------------------------------------
+
+class NaseathOriginal : public testing::TestWithParam<std::string> {};
+
+TEST_P(NaseathOriginal, HasTheLengthAndCurvatureOfTheTable) {
+  const auto given = naseath_case(GetParam());
+  const auto samples = parameter_samples(curve_in(given), kNaseathSteps);
+  const double length = given["length"];
+  const double mean = given["kappa_param_mean"];
+  const double most = given["kappa_max"];
+  EXPECT_NEAR(sampled_length(samples), length, 1e-9 * length);
+  EXPECT_NEAR(mean_curvature(samples), mean, 1e-9 * mean);
+  EXPECT_NEAR(max_curvature(samples), most, 1e-9 * most);
+}
+
+INSTANTIATE_TEST_SUITE_P(Tables, NaseathOriginal,
+                         testing::Values("tc1", "tc2", "tc3", "tc5a", "tc5b", "tc6"),
+                         [](const auto& test) { return test.param; });
+
+// What is cut off, in percent, as the table prints it; below 0 where it prints nothing.
+struct TableRow {
+  std::string name;
+  double radius;
+  double curvature;
+  double length;
+};
+
+class NaseathTable : public testing::TestWithParam<TableRow> {};
+
+TEST_P(NaseathTable, TheLiteralMethodCutsOffWhatTheTableSays) {
+  const TableRow& row = GetParam();
+  const BsplineCurve curve = curve_of_case(row.name);
+  const auto before = parameter_samples(curve, kNaseathSteps);
+  const NaseathResult result = smooth_naseath(curve, literal(row.radius));
+  const auto after = parameter_samples(result.curve, kNaseathSteps);
+  const auto cut = [](double was, double is) { return 100 * (1 - is / was); };
+  if (row.curvature >= 0) {
+    EXPECT_NEAR(cut(mean_curvature(before), mean_curvature(after)), row.curvature, 0.06);
+  }
+  if (row.length >= 0) {
+    EXPECT_NEAR(cut(sampled_length(before), sampled_length(after)), row.length, 0.006);
+  }
+}
+
+// tc5a prints lengths, 100.375, 100.168 and 100.023 of 100.441.
+constexpr double kNone = -1;
+INSTANTIATE_TEST_SUITE_P(
+    Tables, NaseathTable,
+    testing::Values(TableRow{"tc5a", .025, 7.5, .066}, TableRow{"tc5a", .125, 38.0, .272},
+                    TableRow{"tc5a", .25, 84.7, .416}, TableRow{"tc6", .025, 1.6, .18},
+                    TableRow{"tc6", .125, 7.6, .88}, TableRow{"tc6", .25, 14.6, 1.66},
+                    TableRow{"tc1", .025, kNone, .04}, TableRow{"tc1", .125, kNone, .21},
+                    TableRow{"tc1", .25, kNone, .51}, TableRow{"tc3", .025, kNone, .46},
+                    TableRow{"tc3", .125, kNone, 2.28}, TableRow{"tc3", .25, kNone, 4.51}),
+    [](const auto& test) {
+      return test.param.name + "_" +
+             std::to_string(static_cast<int>(std::lround(1000 * test.param.radius)));
+    });
+
+}  // namespace
+}  // namespace batten::geometry

@@ -1,0 +1,138 @@
+#include "postproc/cli/explain.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
+#include <string>
+
+#include "gcode/reading/explained_diagnostics.h"
+#include "gcode/state/reason.h"
+
+namespace batten::postproc {
+namespace {
+
+namespace fs = std::filesystem;
+using Ids = std::set<std::string>;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+fs::path source_folder() { return BATTEN_SOURCE_DIR; }
+
+// Every string of the file that looks like an id: small words with dashes between.
+void add_ids_in(const fs::path& file, Ids& ids) {
+  const std::string text = text_of(file);
+  const std::regex id("\"([a-z]+(-[a-z]+)+)\"");
+  for (std::sregex_iterator found(text.begin(), text.end(), id), end; found != end; ++found) {
+    ids.insert((*found)[1]);
+  }
+}
+
+Ids ids_in_sources_of_the_reader() {
+  Ids ids;
+  for (const auto& entry : fs::directory_iterator(source_folder() / "gcode")) {
+    const std::string name = entry.path().filename().string();
+    const bool explains = name == "reason.cpp" || name == "explained_diagnostics.cpp";
+    if (entry.path().extension() == ".cpp" && !explains) add_ids_in(entry.path(), ids);
+  }
+  return ids;
+}
+
+Ids ids_in_sources_of_the_verifier() {
+  Ids ids = {"distance"};  // one word
+  add_ids_in(source_folder() / "postproc/stream/added_lines.cpp", ids);
+  add_ids_in(source_folder() / "postproc/proof/event_violations.cpp", ids);
+  add_ids_in(source_folder() / "postproc/proof/point_spelling.cpp", ids);
+  add_ids_in(source_folder() / "postproc/proof/section_comparison.cpp", ids);
+  return ids;
+}
+
+TEST(Explain, KnowsEveryMessageOfTheReader) {
+  Ids explained;
+  for (const auto& each : gcode::explained_diagnostics()) {
+    EXPECT_TRUE(explained.insert(std::string(each.id)).second) << each.id << " twice";
+    EXPECT_FALSE(each.severity.empty()) << each.id;
+    EXPECT_FALSE(each.text.empty()) << each.id;
+    EXPECT_FALSE(each.advice.empty()) << each.id;
+  }
+  EXPECT_EQ(explained, ids_in_sources_of_the_reader());
+}
+
+TEST(Explain, KnowsEveryBreachOfTheVerifier) {
+  Ids explained;
+  for (const ExplainedViolation& each : explained_violations()) {
+    EXPECT_TRUE(explained.insert(std::string(each.id)).second) << each.id << " twice";
+    EXPECT_FALSE(each.text.empty()) << each.id;
+    EXPECT_FALSE(each.advice.empty()) << each.id;
+  }
+  EXPECT_EQ(explained, ids_in_sources_of_the_verifier());
+}
+
+// What the page of messages tells of and the program does not would be found by nobody who reads
+// the program's own messages.
+TEST(Explain, KnowsEveryMessageOfThePage) {
+  const std::string page = text_of(source_folder() / "docs/diagnostics.md");
+  const std::regex row("(^|\n)\\| `([a-z-]+)` \\|");
+  std::size_t rows = 0;
+  for (std::sregex_iterator found(page.begin(), page.end(), row), end; found != end; ++found) {
+    EXPECT_FALSE(explanation_of((*found)[2].str()).empty()) << (*found)[2];
+    ++rows;
+  }
+  EXPECT_GT(rows, 60U);
+}
+
+TEST(Explain, SaysForEveryIdWhatToDo) {
+  const auto ids = explained_ids();
+  EXPECT_GT(ids.size(), 70U);
+  for (const std::string_view id : ids) {
+    const std::string text = explanation_of(id);
+    EXPECT_TRUE(text.starts_with(std::string(id) + ":")) << text;
+    EXPECT_NE(text.find("What to do:"), std::string::npos) << text;
+  }
+}
+
+TEST(Explain, KeepsItsLinesShort) {
+  for (const std::string_view id : explained_ids()) {
+    std::string text = explanation_of(id);
+    for (std::size_t end; (end = text.find('\n')) != std::string::npos; text.erase(0, end + 1)) {
+      EXPECT_LE(end, 80U) << text.substr(0, end);
+    }
+  }
+}
+
+TEST(Explain, TellsBothMeaningsOfAnIdThatIsAReasonAndABreach) {
+  const std::string text = explanation_of("not-proved");
+  EXPECT_NE(text.find("why blocks are kept"), std::string::npos);
+  EXPECT_NE(text.find("a breach found"), std::string::npos);
+}
+
+TEST(Explain, NamesTheOptionThatLiftsARule) {
+  EXPECT_NE(explanation_of("exact-stop").find("--allow exact-stop"), std::string::npos);
+  EXPECT_EQ(explanation_of("cutter-compensation").find("--allow"), std::string::npos);
+}
+
+TEST(Explain, ListsEveryIdWithItsFirstSentence) {
+  const std::string all = all_explanations();
+  for (const std::string_view id : explained_ids()) {
+    EXPECT_NE(all.find("  " + std::string(id) + " "), std::string::npos) << id;
+  }
+}
+
+TEST(Explain, HasNothingForUnknownIds) { EXPECT_EQ(explanation_of("no-such-id"), ""); }
+
+// The page for people says of each message what the program says: its id stands there.
+TEST(Explain, AgreesWithTheDocumentation) {
+  const std::string page = text_of(source_folder() / "docs/diagnostics.md");
+  for (const std::string_view id : explained_ids()) {
+    EXPECT_NE(page.find("`" + std::string(id) + "`"), std::string::npos) << id;
+  }
+}
+
+}  // namespace
+}  // namespace batten::postproc

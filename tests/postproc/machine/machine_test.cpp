@@ -1,0 +1,233 @@
+#include "postproc/machine/machine.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "gcode/control/dialect.h"
+#include "gcode/controls/built_in.h"
+#include "postproc/machine/machine_fields.h"
+#include "postproc/machine/machine_path_limits.h"
+
+namespace batten::postproc {
+namespace {
+
+TEST(BuiltInMachines, AreFoundByTheirNames) {
+  ASSERT_FALSE(built_in_machines().empty());
+  for (const Machine& m : built_in_machines()) {
+    SCOPED_TRACE(m.name);
+    EXPECT_EQ(find_machine(m.name), &m);
+    EXPECT_FALSE(m.description.empty());
+  }
+}
+
+TEST(BuiltInMachines, HaveDifferentNames) {
+  std::set<std::string> names;
+  for (const Machine& m : built_in_machines()) EXPECT_TRUE(names.insert(m.name).second) << m.name;
+}
+
+TEST(BuiltInMachines, CoverEveryModel) {
+  std::set<ControllerModel> models;
+  for (const Machine& m : built_in_machines()) models.insert(m.model);
+  EXPECT_EQ(models.size(), kControllerModels.size());
+}
+
+TEST(BuiltInMachines, AreSound) {
+  for (const Machine& m : built_in_machines()) {
+    SCOPED_TRACE(m.name);
+    for (const MachineProblem& problem : problems_of(m)) {
+      ADD_FAILURE() << problem.key << ": " << problem.value << ", expected " << problem.expected;
+    }
+    EXPECT_GE(m.rapid_velocity(), m.max_velocity());
+    EXPECT_NO_THROW(require_sound(path_limits_of(m)));
+  }
+}
+
+TEST(BuiltInMachines, RunTheTargetsThatNameThem) {
+  for (const gcode::Dialect* target : gcode::dialects()) {
+    EXPECT_NE(find_machine(target->default_machine()), nullptr) << target->name();
+  }
+}
+
+// defaults.h of grbl 1.1: 500 mm/min and 10 mm/s^2 on every axis, $11 = 0.01, $12 = 0.002.
+TEST(BuiltInMachines, HaveGrblAsItComes) {
+  const Machine& m = *find_machine("grbl");
+  EXPECT_EQ(m.model, ControllerModel::kGrbl);
+  EXPECT_DOUBLE_EQ(m.max_velocity(), 500.0 / 60);
+  EXPECT_DOUBLE_EQ(m.rapid_velocity(), 500.0 / 60);
+  EXPECT_DOUBLE_EQ(m.max_acceleration(), 10);
+  EXPECT_DOUBLE_EQ(m.junction_deviation, 0.01);
+  EXPECT_DOUBLE_EQ(m.arc_tolerance, 0.002);
+  EXPECT_EQ(m.look_ahead, 15);
+}
+
+TEST(BuiltInMachines, HaveAHobbyRouterAtTheEndOfASerialLine) {
+  const Machine& m = *find_machine("router");
+  EXPECT_EQ(m.model, ControllerModel::kGrbl);
+  EXPECT_DOUBLE_EQ(m.stream_rate, 115200.0 / 10);  // a start bit, eight of data and a stop bit
+}
+
+TEST(BuiltInMachines, HaveAnOldControlThatSeesTwentyBlocks) {
+  const Machine& m = *find_machine("old-mill");
+  EXPECT_EQ(m.look_ahead, 20);
+  EXPECT_DOUBLE_EQ(m.block_period, 1.0 / 1000);
+}
+
+TEST(BuiltInMachines, HaveAHighSpeedMillWithAJerk) {
+  EXPECT_TRUE(std::isfinite(find_machine("high-speed")->max_jerk()));
+  EXPECT_TRUE(std::isinf(find_machine("mill")->max_jerk()));
+}
+
+TEST(FindMachine, KnowsNoOtherNames) {
+  EXPECT_EQ(find_machine("LinuxCNC"), nullptr);
+  EXPECT_EQ(find_machine(""), nullptr);
+}
+
+TEST(Machine, HasTheLeastOfXyzForRulesThatKnowOneLimit) {
+  Machine m;
+  m.axis(Axis::kX) = {300, 2000, 50000, 500};
+  m.axis(Axis::kY) = {200, 3000, 40000, 600};
+  m.axis(Axis::kZ) = {250, 4000, Machine::kNone, 400};
+  m.axis(Axis::kA) = {1, 1, 1, 1};  // degrees, which are no millimetres
+  EXPECT_EQ(m.max_velocity(), 200);
+  EXPECT_EQ(m.max_acceleration(), 2000);
+  EXPECT_EQ(m.max_jerk(), 40000);
+  EXPECT_EQ(m.rapid_velocity(), 400);
+  m.set_max_velocity(77);
+  EXPECT_EQ(m.axis(Axis::kX).velocity, 77);
+  EXPECT_EQ(m.axis(Axis::kZ).velocity, 77);
+  EXPECT_EQ(m.axis(Axis::kA).velocity, 1);
+}
+
+// --- what no model can work with ---------------------------------------------------------------
+
+struct BadMachine {
+  const char* name;
+  void (*spoil)(Machine&);
+  const char* key;
+  const char* expected;
+};
+
+class BadMachines : public testing::TestWithParam<BadMachine> {};
+
+TEST_P(BadMachines, AreToldByTheirKey) {
+  Machine m = *find_machine("router");
+  GetParam().spoil(m);
+  const auto problems = problems_of(m);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].key, GetParam().key);
+  EXPECT_EQ(problems[0].expected, GetParam().expected);
+}
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+INSTANTIATE_TEST_SUITE_P(
+    Machine, BadMachines,
+    testing::Values(
+        BadMachine{"NoVelocity", [](Machine& m) { m.axis(Axis::kX).velocity = 0; },
+                   "axis.x.velocity", "above 0 (mm/s)"},
+        BadMachine{"EndlessVelocity",
+                   [](Machine& m) { m.axis(Axis::kC).velocity = Machine::kNone; },
+                   "axis.c.velocity", "above 0 (deg/s)"},
+        BadMachine{"NegativeAcceleration", [](Machine& m) { m.axis(Axis::kZ).acceleration = -1; },
+                   "axis.z.acceleration", "above 0 (mm/s2)"},
+        BadMachine{"NoJerk", [](Machine& m) { m.axis(Axis::kY).jerk = 0; }, "axis.y.jerk",
+                   "above 0, or inf (mm/s3)"},
+        BadMachine{"JerkThatIsNoNumber", [](Machine& m) { m.axis(Axis::kA).jerk = kNan; },
+                   "axis.a.jerk", "above 0, or inf (deg/s3)"},
+        BadMachine{"NoRapid", [](Machine& m) { m.axis(Axis::kB).rapid_velocity = 0; },
+                   "axis.b.rapid-velocity", "above 0 (deg/s)"},
+        BadMachine{"NoPathFeed", [](Machine& m) { m.path_feed = 0; }, "path-feed",
+                   "above 0, or inf (mm/s)"},
+        BadMachine{"NoBlockPeriod", [](Machine& m) { m.block_period = 0; }, "block-period",
+                   "above 0 (s)"},
+        BadMachine{"NoStream", [](Machine& m) { m.stream_rate = 0; }, "stream-rate",
+                   "above 0, or inf (bytes/s)"},
+        BadMachine{"NoLookAhead", [](Machine& m) { m.look_ahead = 0; }, "look-ahead",
+                   "1 or more (blocks)"},
+        BadMachine{"NoArcTolerance", [](Machine& m) { m.arc_tolerance = 0; }, "arc-tolerance",
+                   "above 0 (mm)"},
+        BadMachine{"NoJunctionDeviationOfGrbl", [](Machine& m) { m.junction_deviation = 0; },
+                   "junction-deviation", "above 0 (mm)"},
+        BadMachine{"NegativeBlend", [](Machine& m) { m.blend_tolerance = -1e-9; },
+                   "blend-tolerance", "0 or more (mm)"},
+        BadMachine{"NegativeToolChange", [](Machine& m) { m.tool_change_time = -1; },
+                   "tool-change-time", "0 or more (s)"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Machine, NeedsNoJunctionDeviationWithoutGrbl) {
+  Machine m = *find_machine("mill");
+  m.junction_deviation = 0;
+  EXPECT_TRUE(problems_of(m).empty());
+}
+
+// --- units ---------------------------------------------------------------------------------------
+
+struct QuantityCase {
+  const char* text;
+  Quantity quantity;
+  double value;
+};
+
+class Quantities : public testing::TestWithParam<QuantityCase> {};
+
+TEST_P(Quantities, AreReadWithTheirUnit) {
+  const auto value = read_quantity(GetParam().text, GetParam().quantity);
+  ASSERT_TRUE(value.has_value()) << GetParam().text;
+  EXPECT_NEAR(*value, GetParam().value, 1e-12 * std::abs(GetParam().value)) << GetParam().text;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Machine, Quantities,
+    testing::Values(QuantityCase{"5000 mm/min", Quantity::kVelocity, 5000.0 / 60},
+                    QuantityCase{"83.5mm/s", Quantity::kVelocity, 83.5},
+                    QuantityCase{"20 m/min", Quantity::kVelocity, 20000.0 / 60},
+                    QuantityCase{"300 in/min", Quantity::kVelocity, 300 * 25.4 / 60},
+                    QuantityCase{"300 ipm", Quantity::kVelocity, 127},
+                    QuantityCase{"0.5 g", Quantity::kAcceleration, 4903.325},
+                    QuantityCase{"2 m/s2", Quantity::kAcceleration, 2000},
+                    QuantityCase{"2 m/s^2", Quantity::kAcceleration, 2000},
+                    QuantityCase{"50 m/s3", Quantity::kJerk, 50000},
+                    QuantityCase{"25 rpm", Quantity::kAngularVelocity, 150},
+                    QuantityCase{"180 deg/min", Quantity::kAngularVelocity, 3},
+                    QuantityCase{"0.5 ms", Quantity::kTime, 0.0005},
+                    QuantityCase{"2 um", Quantity::kLength, 0.002},
+                    QuantityCase{"0.0005 in", Quantity::kLength, 0.0127},
+                    QuantityCase{"1000 blocks/s", Quantity::kBlockRate, 1000},
+                    QuantityCase{"9600 baud", Quantity::kByteRate, 960}));
+
+TEST(ReadQuantity, NeedsAUnitOfTheKind) {
+  for (const char* text : {"", "mm/s", "5", "5 mm", "5 mm/s2", "5 MM/S", "inf mm/s", "5 mm/s x"}) {
+    EXPECT_FALSE(read_quantity(text, Quantity::kVelocity).has_value()) << text;
+  }
+}
+
+// --- for the feed planner
+// --------------------------------------------------------------------------
+
+TEST(PathLimitsOf, TakeEachAxisForItself) {
+  Machine m;
+  m.axis(Axis::kX) = {300, 2000, 50000, 500};
+  m.axis(Axis::kY) = {200, 3000, 40000, 500};
+  m.axis(Axis::kZ) = {100, 1000, Machine::kNone, 500};
+  m.path_feed = 250;
+  m.path_acceleration = 1500;
+  m.path_jerk = 30000;
+  m.servo_period = 0.002;
+  const KinematicPathLimits limits = path_limits_of(m, 150);
+  EXPECT_EQ(limits.feed, 150);
+  EXPECT_EQ(limits.speed, geometry::Vector3(300, 200, 100));
+  EXPECT_EQ(limits.acceleration, geometry::Vector3(2000, 3000, 1000));
+  EXPECT_EQ(limits.jerk, geometry::Vector3(50000, 40000, Machine::kNone));
+  EXPECT_EQ(limits.tangential_acceleration, 1500);
+  EXPECT_EQ(limits.tangential_jerk, 30000);
+  EXPECT_EQ(limits.period, 0.002);
+  EXPECT_EQ(path_limits_of(m).feed, 250) << "no more than the machine takes";
+  EXPECT_EQ(path_limits_of(m, 1000).feed, 250);
+}
+
+}  // namespace
+}  // namespace batten::postproc

@@ -1,0 +1,436 @@
+// Closed forms and properties of every model. What LinuxCNC alone does is in
+// linuxcnc_model_test.cpp.
+#include "postproc/machine/models/cycle_time.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+#include <variant>
+#include <vector>
+
+#include "tests/support/processor_time.h"
+
+namespace batten::postproc {
+namespace {
+
+using gcode::PathMode;
+using geometry::Arc;
+using geometry::Line;
+using geometry::PathPiece;
+using geometry::Point3;
+using geometry::Vector3;
+using std::numbers::pi;
+
+constexpr double kFeed = 6000;  // mm/min: 100 mm/s
+
+Machine machine_of(ControllerModel model) {
+  Machine m;
+  m.name = "test";
+  m.model = model;
+  m.set_max_velocity(200);
+  m.set_max_acceleration(1000);
+  m.block_period = 0.001;
+  m.look_ahead = 1000;
+  m.blend_tolerance = 0.01;
+  return m;
+}
+
+// A limit that a test turns.
+struct Limit {
+  double (*get)(const Machine&);
+  void (*set)(Machine&, double);
+};
+constexpr Limit kVelocity = {[](const Machine& m) { return m.max_velocity(); },
+                             [](Machine& m, double value) { m.set_max_velocity(value); }};
+constexpr Limit kAcceleration = {[](const Machine& m) { return m.max_acceleration(); },
+                                 [](Machine& m, double value) { m.set_max_acceleration(value); }};
+constexpr Limit kBlockPeriod = {[](const Machine& m) { return m.block_period; },
+                                [](Machine& m, double value) { m.block_period = value; }};
+constexpr Limit kJunctionDeviation = {
+    [](const Machine& m) { return m.junction_deviation; },
+    [](Machine& m, double value) { m.junction_deviation = value; }};
+
+constexpr ControllerModel kModels[] = {ControllerModel::kLookAhead, ControllerModel::kLinuxcnc,
+                                       ControllerModel::kGrbl};
+
+double time_of(const std::vector<TimedPiece>& pieces, const Machine& m,
+               PathMode path = PathMode::kBlending) {
+  return cutting_time(pieces, m, path);
+}
+
+TimedPiece line(const Point3& from, const Point3& to, double feed = kFeed) {
+  return {Line{from, to}, feed};
+}
+
+TimedPiece half_circle(double radius, double from_angle, double feed = kFeed) {
+  const Point3 start(radius * std::cos(from_angle), radius * std::sin(from_angle), 0);
+  return {Arc{start, -start, Point3::Zero(), Vector3::UnitZ(), pi}, feed};
+}
+
+class EveryModel : public testing::TestWithParam<ControllerModel> {};
+
+INSTANTIATE_TEST_SUITE_P(CuttingTime, EveryModel, testing::ValuesIn(kModels), [](const auto& test) {
+  return test.param == ControllerModel::kLookAhead  ? "LookAhead"
+         : test.param == ControllerModel::kLinuxcnc ? "Linuxcnc"
+                                                    : "Grbl";
+});
+
+// LinuxCNC ends a stop with a whole period; half of it is the model's mean.
+double stop_loss(const Machine& m) {
+  return m.model == ControllerModel::kLinuxcnc ? m.block_period / 2 : 0;
+}
+
+// 0 to 100 mm/s takes .1 s and 5 mm: .1 + (50 - 10) / 100 + .1.
+TEST_P(EveryModel, TimesALongLineAsATrapezoid) {
+  const Machine m = machine_of(GetParam());
+  EXPECT_NEAR(time_of({line({0, 0, 0}, {50, 0, 0})}, m), 0.6 + stop_loss(m), 1e-12);
+}
+
+// Half of 2.5 mm at 1000 mm/s^2 takes sqrt(2.5 / 1000) s, below 100 mm/s.
+TEST_P(EveryModel, TimesAShortLineAsATriangle) {
+  const Machine m = machine_of(GetParam());
+  EXPECT_NEAR(time_of({line({0, 0, 0}, {0, 0, 2.5})}, m), 0.1 + stop_loss(m), 1e-12);
+}
+
+// Along the diagonal two axes share the acceleration: 1000 sqrt(2). Length 50 sqrt(2).
+TEST_P(EveryModel, LetsAxesAddUpOnDiagonals) {
+  const Machine m = machine_of(GetParam());
+  const double expected = 50 * std::sqrt(2.0) / 100 + 100 / (1000 * std::sqrt(2.0));
+  EXPECT_NEAR(time_of({line({0, 0, 0}, {50, -50, 0})}, m), expected + stop_loss(m), 1e-12);
+}
+
+TEST_P(EveryModel, NeverExceedsTheAxes) {
+  const Machine m = machine_of(GetParam());
+  // 200 mm/s takes .2 s and 20 mm each way.
+  EXPECT_NEAR(time_of({line({0, 0, 0}, {100, 0, 0}, 60000)}, m), 0.7 + stop_loss(m), 1e-12);
+  EXPECT_NEAR(time_of({line({0, 0, 0}, {100, 0, 0}, 0)}, m), 0.7 + stop_loss(m), 1e-12)
+      << "no feed: as fast as the machine cuts";
+}
+
+TEST_P(EveryModel, TakesCollinearLinesAsOne) {
+  const Machine m = machine_of(GetParam());
+  const Point3 a(1, 2, 3);
+  const Point3 b(31, 22, -7);
+  const double whole = time_of({line(a, b)}, m);
+  std::vector<TimedPiece> parts;
+  constexpr int kParts = 10;
+  for (int i = 0; i < kParts; ++i) {
+    parts.push_back(line(a + (b - a) * i / kParts, a + (b - a) * (i + 1) / kParts));
+  }
+  EXPECT_NEAR(time_of(parts, m), whole, 1e-9);
+}
+
+TEST_P(EveryModel, StopsBetweenBlocksUnderExactStop) {
+  const Machine m = machine_of(GetParam());
+  const TimedPiece first = line({0, 0, 0}, {30, 0, 0});
+  const TimedPiece second = line({30, 0, 0}, {50, 0, 0});
+  const double alone = time_of({first}, m) + time_of({second}, m);
+  EXPECT_NEAR(time_of({first, second}, m, PathMode::kExactStop), alone, 1e-12);
+  EXPECT_LT(time_of({first, second}, m), alone - 0.05);
+}
+
+TEST_P(EveryModel, TakesNoTimeForNothing) {
+  const Machine m = machine_of(GetParam());
+  EXPECT_EQ(time_of({}, m), 0);
+  EXPECT_EQ(time_of({line({1, 1, 1}, {1, 1, 1})}, m), 0);
+  const TimedPiece real = line({0, 0, 0}, {30, 0, 0});
+  EXPECT_EQ(time_of({line({0, 0, 0}, {0, 0, 0}), real}, m), time_of({real}, m));
+}
+
+TEST_P(EveryModel, SlowsDownForShortBlocks) {
+  Machine m = machine_of(GetParam());
+  m.block_period = 0.004;
+  std::vector<TimedPiece> parts;
+  for (int i = 0; i < 1000; ++i) parts.push_back(line({0.1 * i, 0, 0}, {0.1 * (i + 1), 0, 0}));
+  const double time = time_of(parts, m);
+  EXPECT_GE(time, 1000 * 0.004);
+  EXPECT_LE(time, 1000 * 0.004 * 1.02 + 0.1) << "LinuxCNC keeps 2 % of reserve";
+}
+
+// With N blocks of .2 mm ahead the speed is at most sqrt(2 a N .2): 77.5 mm/s at N = 15.
+TEST_P(EveryModel, BrakesForTheEndOfTheLookAhead) {
+  Machine m = machine_of(GetParam());
+  m.look_ahead = 15;
+  std::vector<TimedPiece> parts;
+  for (int i = 0; i < 3000; ++i) parts.push_back(line({0.2 * i, 0, 0}, {0.2 * (i + 1), 0, 0}));
+  const double velocity = std::sqrt(2 * 1000 * 15 * 0.2);
+  const double time = time_of(parts, m);
+  EXPECT_GE(time, 600 / velocity);
+  EXPECT_LE(time, 600 / velocity * 1.05);
+  m.look_ahead = 1000;
+  EXPECT_NEAR(time_of(parts, m), 6.1, 0.002) << "6 s at 100 mm/s and .1 s of ramps";
+}
+
+TEST_P(EveryModel, RefusesLimitsThatCannotMove) {
+  const std::vector<TimedPiece> one = {line({0, 0, 0}, {1, 0, 0})};
+  for (const Limit& limit : {kVelocity, kAcceleration, kBlockPeriod}) {
+    Machine m = machine_of(GetParam());
+    limit.set(m, 0);
+    EXPECT_THROW((void)time_of(one, m), std::invalid_argument);
+    limit.set(m, std::numeric_limits<double>::quiet_NaN());
+    EXPECT_THROW((void)time_of(one, m), std::invalid_argument);
+  }
+  const Machine m = machine_of(GetParam());
+  EXPECT_THROW((void)time_of({line({0, 0, 0}, {1, 0, 0}, -1)}, m), std::invalid_argument);
+}
+
+// --- bends --------------------------------------------------------------------------------
+
+// Speeding up on a bend leaves sqrt(a^2 - (v^2 / r)^2) along the path. Integrated here in
+// small steps of time; the model has it in closed form for the way and by quadrature.
+TEST(LookAheadTime, SharesTheAccelerationOfABend) {
+  const Machine m = machine_of(ControllerModel::kLookAhead);
+  const double radius = 10;
+  const double limit = std::sqrt(std::sqrt(3.0) / 2 * 1000 * radius);  // 93 mm/s
+  double v = 0;
+  double way = 0;
+  double time = 0;
+  constexpr double kStep = 1e-7;
+  while (v < limit) {
+    const double normal = v * v / radius;
+    const double next = v + std::sqrt(1000.0 * 1000 - normal * normal) * kStep;
+    way += (v + next) / 2 * kStep;
+    v = next;
+    time += kStep;
+  }
+  const double expected = 2 * time + (2 * pi * radius - 2 * way) / limit;
+  const std::vector<TimedPiece> circle = {half_circle(radius, 0), half_circle(radius, pi)};
+  EXPECT_NEAR(time_of(circle, m), expected, 1e-5);
+}
+
+// A cubic Bezier piece that runs straight and evenly is a line. LinuxCNC runs short parts at
+// one acceleration each, which costs .2 ms here.
+TEST_P(EveryModel, TimesAStraightBezierPieceAsALine) {
+  const Machine m = machine_of(GetParam());
+  const geometry::CubicBezier straight{{{0, 0, 0}, {10, 0, 0}, {20, 0, 0}, {30, 0, 0}}};
+  EXPECT_NEAR(time_of({{straight, kFeed}}, m), time_of({line({0, 0, 0}, {30, 0, 0})}, m), 5e-4);
+}
+
+// The usual quarter of a circle by Bezier, 0.5522847 of the radius, is 3e-4 of it off.
+TEST_P(EveryModel, TimesARoundBezierPieceAsAnArc) {
+  const Machine m = machine_of(GetParam());
+  const double k = 20 * 0.5522847498;
+  const geometry::CubicBezier quarter{{{20, 0, 0}, {20, k, 0}, {k, 20, 0}, {0, 20, 0}}};
+  const Arc arc{{20, 0, 0}, {0, 20, 0}, {0, 0, 0}, Vector3::UnitZ(), pi / 2};
+  const double expected = time_of({{arc, kFeed}}, m);
+  EXPECT_NEAR(time_of({{quarter, kFeed}}, m), expected, 0.02 * expected);
+}
+
+// --- corners ------------------------------------------------------------------------------
+
+// At 90 degrees X stops and Y starts: each changes by v, at most a T = 1 mm/s.
+// From rest to 100 and down to 1: (100 - 1) / 1000 s and (100^2 - 1) / 2000 mm.
+TEST(LookAheadTime, PassesACornerByTheAccelerationOfTheAxes) {
+  const Machine m = machine_of(ControllerModel::kLookAhead);
+  const double down_way = (100.0 * 100 - 1) / 2000;
+  const double one = 0.1 + 0.099 + (30 - 5 - down_way) / 100;
+  EXPECT_NEAR(time_of({line({0, 0, 0}, {30, 0, 0}), line({30, 0, 0}, {30, 30, 0})}, m), 2 * one,
+              1e-12);
+}
+
+// v^2 = a d s / (1 - s), s = sin 45 degrees; the change of direction is along a diagonal,
+// where two axes give a = 1000 sqrt(2).
+TEST(GrblTime, PassesACornerByJunctionDeviation) {
+  Machine m = machine_of(ControllerModel::kGrbl);
+  m.junction_deviation = 0.02;
+  const double s = std::sqrt(0.5);
+  const double v = std::sqrt(1000 * std::sqrt(2.0) * 0.02 * s / (1 - s));
+  const double down_way = (100.0 * 100 - v * v) / 2000;
+  const double one = 0.1 + (100 - v) / 1000 + (30 - 5 - down_way) / 100;
+  EXPECT_NEAR(time_of({line({0, 0, 0}, {30, 0, 0}), line({30, 0, 0}, {30, 30, 0})}, m), 2 * one,
+              1e-9);
+}
+
+// r = 10, tolerance .002: half a chord is sqrt(.002 (20 - .002)) = .19999 mm, so that a half
+// circle has floor(10 pi / 2 / .19999) = 78 chords.
+TEST(GrblTime, CutsArcsIntoChords) {
+  const Machine m = machine_of(ControllerModel::kGrbl);
+  std::vector<TimedPiece> chords;
+  constexpr int kChords = 78;
+  const TimedPiece arc = half_circle(10, 0);
+  for (int i = 0; i < kChords; ++i) {
+    chords.push_back(line(geometry::point_at(arc.piece, double(i) / kChords),
+                          geometry::point_at(arc.piece, double(i + 1) / kChords)));
+  }
+  EXPECT_NEAR(time_of({arc}, m), time_of(chords, m), 1e-9);
+  chords.pop_back();
+  EXPECT_GT(std::abs(time_of({arc}, m) - time_of(chords, m)), 1e-4);
+}
+
+TEST_P(EveryModel, TurnsBackOnlyAtRest) {
+  const Machine m = machine_of(GetParam());
+  const TimedPiece there = line({0, 0, 0}, {30, 0, 0});
+  const TimedPiece back = line({30, 0, 0}, {0, 0, 0});
+  const double alone = time_of({there}, m) + time_of({back}, m);
+  // The corner speed of the look-ahead model is a T / 2 = .5 mm/s here: .5 ms twice.
+  EXPECT_NEAR(time_of({there, back}, m), alone, 0.0011);
+}
+
+// --- properties ---------------------------------------------------------------------------
+
+// Lines and arcs in a row, some tangent, some not, from .2 to 8 mm, with changing feeds.
+std::vector<TimedPiece> random_chain(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<TimedPiece> chain;
+  Point3 at = Point3::Zero();
+  double heading = 0;
+  const int pieces = 5 + static_cast<int>(unit(random) * 60);
+  for (int i = 0; i < pieces; ++i) {
+    if (unit(random) < 0.5) heading += (unit(random) - 0.5) * 2;
+    const double feed = 600 + 12000 * unit(random);
+    const Vector3 forward(std::cos(heading), std::sin(heading), 0);
+    if (unit(random) < 0.5) {
+      const Point3 to =
+          at + (0.2 + 8 * unit(random) * unit(random)) * forward + Vector3(0, 0, unit(random));
+      chain.push_back(line(at, to, feed));
+      at = to;
+    } else {
+      const double radius = 0.5 + 10 * unit(random);
+      const double sweep = (unit(random) < 0.5 ? -1 : 1) * (0.2 + unit(random));
+      const Vector3 left(-forward.y(), forward.x(), 0);
+      const Point3 center = at + (sweep > 0 ? radius : -radius) * left;
+      const Vector3 from = at - center;
+      const Point3 to =
+          center + Vector3(from.x() * std::cos(sweep) - from.y() * std::sin(sweep),
+                           from.x() * std::sin(sweep) + from.y() * std::cos(sweep), 0);
+      chain.push_back({Arc{at, to, center, Vector3::UnitZ(), sweep}, feed});
+      at = to;
+      heading += sweep;
+    }
+  }
+  return chain;
+}
+
+PathPiece backward(const PathPiece& piece) {
+  if (const auto* l = std::get_if<Line>(&piece)) return Line{l->end, l->start};
+  Arc arc = std::get<Arc>(piece);
+  std::swap(arc.start, arc.end);
+  arc.sweep = -arc.sweep;
+  return arc;
+}
+
+PathPiece scaled(const PathPiece& piece, double by) {
+  if (const auto* l = std::get_if<Line>(&piece)) return Line{l->start * by, l->end * by};
+  Arc arc = std::get<Arc>(piece);
+  arc.start *= by;
+  arc.end *= by;
+  arc.center *= by;
+  return arc;
+}
+
+constexpr unsigned kChains = 150;
+
+// Models whose rules promise it. LinuxCNC gives arcs less acceleration where its limit of
+// speed is higher.
+class MonotoneModel : public EveryModel {};
+INSTANTIATE_TEST_SUITE_P(CuttingTime, MonotoneModel,
+                         testing::Values(ControllerModel::kLookAhead, ControllerModel::kGrbl));
+
+TEST_P(MonotoneModel, NeverTakesLongerWhenALimitRises) {
+  const Machine m = machine_of(GetParam());
+  for (unsigned seed = 0; seed < kChains; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::vector<TimedPiece> chain = random_chain(seed);
+    const double time = time_of(chain, m);
+    for (const Limit& limit : {kVelocity, kAcceleration, kJunctionDeviation}) {
+      for (const double factor : {1.01, 1.5, 4.0}) {
+        Machine better = m;
+        limit.set(better, factor * limit.get(m));
+        EXPECT_LE(time_of(chain, better), time + 1e-9);
+      }
+    }
+    Machine better = m;
+    better.block_period /= 2;
+    // The corner speed of the look-ahead model is what one period allows.
+    if (m.model == ControllerModel::kGrbl) {
+      EXPECT_LE(time_of(chain, better), time + 1e-9);
+    }
+    better = m;
+    better.look_ahead = 3;
+    EXPECT_GE(time_of(chain, better), time - 1e-9);
+    for (TimedPiece& p : chain) p.feed *= 1.3;
+    EXPECT_LE(time_of(chain, m), time + 1e-9);
+  }
+}
+
+TEST_P(MonotoneModel, TakesTheSameTimeBackward) {
+  const Machine m = machine_of(GetParam());
+  for (unsigned seed = 0; seed < kChains; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const std::vector<TimedPiece> chain = random_chain(seed);
+    std::vector<TimedPiece> reversed;
+    for (auto it = chain.rbegin(); it != chain.rend(); ++it) {
+      reversed.push_back({backward(it->piece), it->feed});
+    }
+    EXPECT_NEAR(time_of(reversed, m), time_of(chain, m), 1e-6);
+  }
+}
+
+// Lengths, speeds and accelerations of another size, the clock the same.
+TEST_P(EveryModel, TakesTheSameTimeInAnyUnitOfLength) {
+  const Machine m = machine_of(GetParam());
+  constexpr double kBy = 25.4;
+  Machine big = m;
+  big.set_max_velocity(kBy * m.max_velocity());
+  big.set_max_acceleration(kBy * m.max_acceleration());
+  for (double Machine::*length : {&Machine::junction_deviation, &Machine::arc_tolerance,
+                                  &Machine::blend_tolerance, &Machine::naive_cam_tolerance}) {
+    big.*length *= kBy;
+  }
+  for (unsigned seed = 0; seed < kChains; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::vector<TimedPiece> chain = random_chain(seed);
+    const double time = time_of(chain, m);
+    for (TimedPiece& p : chain) p = {scaled(p.piece, kBy), p.feed * kBy};
+    EXPECT_NEAR(time_of(chain, big), time, 1e-6);
+  }
+}
+
+TEST_P(EveryModel, IsNeverFasterThanTheFeed) {
+  const Machine m = machine_of(GetParam());
+  for (unsigned seed = 0; seed < kChains; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const std::vector<TimedPiece> chain = random_chain(seed);
+    double least = 0;
+    for (const TimedPiece& p : chain) least += geometry::length_of(p.piece) / (p.feed / 60);
+    // Blended corners and chords are shorter than the path.
+    EXPECT_GE(time_of(chain, m), 0.97 * least);
+    EXPECT_GE(time_of(chain, m, PathMode::kExactPath), 0.999 * least);
+    // Not so on LinuxCNC: where it overlaps two moves, each has half the acceleration, which
+    // can cost more than a stop.
+    if (m.model != ControllerModel::kLinuxcnc) {
+      EXPECT_GE(time_of(chain, m, PathMode::kExactStop), time_of(chain, m) - 1e-9);
+    }
+  }
+}
+
+// Eight times the pieces take about eight times as long to plan; a quadratic step would
+// take 64 times. The best of three runs, and a factor of 3 for a busy computer; chains too
+// long for the caches in both cases.
+TEST_P(EveryModel, CostsLinearTime) {
+  const Machine m = machine_of(GetParam());
+  const auto seconds = [&](int pieces) {
+    std::vector<TimedPiece> chain;
+    for (int i = 0; i < pieces; ++i) {
+      chain.push_back(line({0.3 * i, 0.01 * (i % 2), 0}, {0.3 * (i + 1), 0.01 * ((i + 1) % 2), 0}));
+    }
+    double best = 1e9;
+    for (int run = 0; run < 3; ++run) {
+      const double begin = processor_seconds();
+      EXPECT_GT(time_of(chain, m), 0);
+      best = std::min(best, processor_seconds() - begin);
+    }
+    return best;
+  };
+  const double small = seconds(30000);
+  EXPECT_LT(seconds(240000), 8 * 3 * small);
+}
+
+}  // namespace
+}  // namespace batten::postproc

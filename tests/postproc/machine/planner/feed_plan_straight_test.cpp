@@ -1,0 +1,169 @@
+#include "postproc/machine/planner/feed_plan_straight.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace batten::postproc {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+// The line of 26 sqrt 2 mm at 45 degrees with A 2500 and J 5000 per axis, F 25: two ramps of
+// 2 sqrt(25 / (5000 sqrt 2)) = 0.118921 s over 1.486509 mm each, and 33.796534 mm at 25 mm/s.
+TEST(StraightMove, TakesTheTimeOfTheRampsAndTheCruise) {
+  const double root = std::sqrt(2.0);
+  const LimitsAlong limits{25, 2500 * root, 5000 * root};
+  EXPECT_NEAR(straight_move(26 * root, limits).time(), 1.589703, 5e-7);
+  // Half of it, twice: a corner with a stop.
+  EXPECT_NEAR(2 * straight_move(13 * root, limits).time(), 1.708624, 5e-7);
+}
+
+// v(t) = J t^2 / 2 up to half the peak, so four phases of (L / 2J)^(1/3).
+TEST(StraightMove, OfShortLengthIsFourPhasesOfJerk) {
+  const StraightMove move = straight_move(0.016, {1000, 1000, 1000});
+  EXPECT_NEAR(move.time(), 4 * std::cbrt(0.016 / 2000), 1e-15);
+  EXPECT_NEAR(move.jerk_time, 0.02, 1e-12);
+  EXPECT_EQ(move.acceleration_time, 0);
+  EXPECT_NEAR(move.acceleration, 20, 1e-9);
+}
+
+// A 100, J 1000, no cruise: v^2 / 100 + v / 10 = 30 gives v = 50, ramps of .5 + .1 s.
+TEST(StraightMove, HoldsTheAccelerationLimit) {
+  const StraightMove move = straight_move(30, {1000, 100, 1000});
+  EXPECT_NEAR(move.speed, 50, 1e-12);
+  EXPECT_NEAR(move.time(), 1.2, 1e-12);
+  EXPECT_NEAR(move.acceleration_time, 0.4, 1e-12);
+  EXPECT_EQ(move.acceleration, 100);
+}
+
+TEST(StraightMove, WithoutJerkLimitIsATrapezoid) {
+  const StraightMove move = straight_move(100, {50, 100, kNone});  // .5 s and 12.5 mm to ramp up
+  EXPECT_NEAR(move.time(), 0.5 + 0.5 + 75.0 / 50, 1e-12);
+  EXPECT_NEAR(straight_move(1, {50, 100, kNone}).time(), 0.2, 1e-12);
+}
+
+TEST(StraightMove, OfNoLengthTakesNoTime) {
+  EXPECT_EQ(straight_move(0, {50, 100, 1000}).time(), 0);
+}
+
+// The state by many small steps of constant jerk, from the phases alone.
+TEST(StraightMove, GoesFromRestToRestWithinItsLimits) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> exponent(-3, 3);
+  constexpr int kMoves = 300;
+  for (int i = 0; i < kMoves; ++i) {
+    SCOPED_TRACE(testing::Message() << "move " << i);
+    const double length = std::pow(10, exponent(random));
+    const LimitsAlong limits{std::pow(10, exponent(random)), std::pow(10, 1 + exponent(random)),
+                             std::pow(10, 2 + exponent(random))};
+    const StraightMove move = straight_move(length, limits);
+    constexpr int kSteps = 2000;
+    const double h = move.time() / kSteps;
+    double way = 0;
+    double fastest = 0;
+    for (int k = 0; k < kSteps; ++k) {
+      const StraightState from = state_at(move, k * h);
+      const StraightState to = state_at(move, (k + 1) * h);
+      EXPECT_LE(to.speed, limits.speed * (1 + 1e-9));
+      EXPECT_LE(std::abs(to.acceleration), limits.acceleration * (1 + 1e-9));
+      EXPECT_LE(std::abs(to.acceleration - from.acceleration), limits.jerk * h * (1 + 1e-6));
+      EXPECT_NEAR(to.distance - from.distance, 0.5 * (from.speed + to.speed) * h,
+                  limits.jerk * h * h * h + 1e-12 * length);
+      way += 0.5 * (from.speed + to.speed) * h;
+      fastest = std::max(fastest, to.speed);
+    }
+    EXPECT_NEAR(way / length, 1, 1e-3);  // ramps may be shorter than a step
+    const StraightState end = state_at(move, move.time());
+    EXPECT_NEAR(end.distance / length, 1, 1e-12);
+    EXPECT_NEAR(end.speed / fastest, 0, 1e-9);
+  }
+}
+
+// --- between two speeds --------------------------------------------------------------------------
+
+// From 10 to 20 mm/s with J 1000 takes 2 sqrt(10 / 1000) = .2 s and 3 mm; back the same.
+TEST(StraightRun, RampsUpAndDown) {
+  const LimitsAlong limits{1000, 1000, 1000};
+  const StraightRun run = straight_run(6, 10, 10, limits);
+  EXPECT_NEAR(run.peak, 20, 1e-9);
+  EXPECT_NEAR(run.time, 0.4, 1e-12);
+  // 5 mm further at 20 mm/s where that is the limit.
+  EXPECT_NEAR(straight_run(11, 10, 10, {20, 1000, 1000}).time, 0.65, 1e-12);
+  // From 0 to 10 mm/s takes .2 s and 1 mm; a peak 1e-14 higher would already take 1e-8 s.
+  EXPECT_NEAR(straight_run(1, 0, 10, limits).time, 0.2, 1e-7);
+}
+
+// A 100, J 1000, from 10 to 30 and to 0: .2 + .1 s over 6 mm, and .3 + .1 s over 6 mm.
+TEST(StraightRun, HoldsTheAccelerationLimit) {
+  const StraightRun run = straight_run(12, 10, 0, {1000, 100, 1000});
+  EXPECT_NEAR(run.peak, 30, 1e-9);
+  EXPECT_NEAR(run.time, 0.7, 1e-12);
+}
+
+TEST(StraightRun, OfTooShortAWayTakesTheMeanSpeed) {
+  EXPECT_NEAR(straight_run(1, 0, 50, {100, 1000, 1000}).time, 1 / 25.0, 1e-12);
+}
+
+TEST(StraightRun, BetweenRestsIsAStraightMove) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> exponent(-3, 3);
+  for (int i = 0; i < 300; ++i) {
+    const double length = std::pow(10, exponent(random));
+    LimitsAlong limits{std::pow(10, exponent(random)), std::pow(10, 1 + exponent(random)),
+                       std::pow(10, 2 + exponent(random))};
+    if (i % 5 == 0) limits.jerk = kNone;
+    const double time = straight_move(length, limits).time();
+    EXPECT_NEAR(straight_run(length, 0, 0, limits).time / time, 1, 1e-9) << i;
+  }
+}
+
+// Steps of constant jerk again, and the speed by the way.
+TEST(StraightRun, GoesFromSpeedToSpeedWithinItsLimits) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> exponent(-2, 2);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 300; ++i) {
+    SCOPED_TRACE(testing::Message() << "run " << i);
+    const double length = std::pow(10, exponent(random));
+    const LimitsAlong limits{std::pow(10, exponent(random)), std::pow(10, 1 + exponent(random)),
+                             std::pow(10, 2 + exponent(random))};
+    const double peak = straight_move(length, limits).speed;
+    const double from = i % 7 == 0 ? 0 : 0.3 * unit(random) * peak;
+    const StraightRun run = straight_run(length, from, 0.3 * unit(random) * peak, limits);
+    const StraightRun back = straight_run(length, run.to, run.from, limits);
+    EXPECT_NEAR(back.time / run.time, 1, 1e-9);
+    EXPECT_LE(run.time, straight_move(length, limits).time());
+    constexpr int kSteps = 1000;
+    const double h = run.time / kSteps;
+    for (int k = 0; k < kSteps; ++k) {
+      const StraightState a = state_at(run, k * h, limits);
+      const StraightState b = state_at(run, (k + 1) * h, limits);
+      EXPECT_LE(b.speed, limits.speed * (1 + 1e-9));
+      EXPECT_LE(std::abs(b.acceleration), limits.acceleration * (1 + 1e-9));
+      EXPECT_LE(std::abs(b.acceleration - a.acceleration), limits.jerk * h * (1 + 1e-6));
+      EXPECT_NEAR(b.distance - a.distance, 0.5 * (a.speed + b.speed) * h,
+                  limits.jerk * h * h * h + 1e-9 * length);
+    }
+    EXPECT_NEAR(state_at(run, 0, limits).speed, run.from, 1e-9 * peak);
+    EXPECT_NEAR(state_at(run, run.time, limits).speed, run.to, 1e-6 * peak);
+    EXPECT_NEAR(state_at(run, run.time, limits).distance / length, 1, 1e-9);
+    const StraightState middle = state_at(run, 0.37 * run.time, limits);
+    EXPECT_NEAR(run.speed_at(middle.distance, limits) / middle.speed, 1, 1e-6);
+  }
+}
+
+// No faster move exists: one limit binds at every moment (bang-bang), so each third of a percent
+// off a limit costs time.
+TEST(StraightMove, IsSlowerWithAnyLowerLimitThatItMeets) {
+  const LimitsAlong limits{50, 300, 2000};
+  const double time = straight_move(40, limits).time();
+  EXPECT_GT(straight_move(40, {49.9, 300, 2000}).time(), time);
+  EXPECT_GT(straight_move(40, {50, 299, 2000}).time(), time);
+  EXPECT_GT(straight_move(40, {50, 300, 1990}).time(), time);
+}
+
+}  // namespace
+}  // namespace batten::postproc

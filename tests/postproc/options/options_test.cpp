@@ -1,0 +1,156 @@
+#include "postproc/options/options.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "gcode/controls/built_in.h"
+#include "gcode/state/reason.h"
+
+namespace batten::postproc {
+namespace {
+
+SmoothOptions good_options() {
+  SmoothOptions options;
+  options.target = gcode::find_dialect("linuxcnc");
+  options.machine = find_machine("linuxcnc");
+  return options;
+}
+
+bool mentions(const std::vector<std::string>& problems, std::string_view text) {
+  for (const std::string& problem : problems) {
+    if (problem.find(text) != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST(Options, HaveNoProblemsByDefault) { EXPECT_TRUE(problems_of(good_options()).empty()); }
+
+TEST(Options, AreToldOfAllProblemsAtOnce) {
+  SmoothOptions options;
+  options.tolerance_mm = -1;
+  options.keep_corners_deg = 200;
+  options.allowed = {"no-such-reason"};
+  options.threads = -2;
+  options.min_motions = 1;
+  const auto problems = problems_of(options);
+  EXPECT_EQ(problems.size(), 7u);
+  for (const char* option : {"--target", "--machine", "--tolerance", "--keep-corners", "--allow",
+                             "--threads", "min_motions"}) {
+    EXPECT_TRUE(mentions(problems, option)) << option;
+  }
+}
+
+struct BadOption {
+  const char* name;
+  void (*spoil)(SmoothOptions&);
+  const char* message;
+};
+
+class BadOptions : public testing::TestWithParam<BadOption> {};
+
+TEST_P(BadOptions, AreNamedWithWhatWasFound) {
+  SmoothOptions options = good_options();
+  GetParam().spoil(options);
+  const auto problems = problems_of(options);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_TRUE(mentions(problems, GetParam().message)) << problems.front();
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Options, BadOptions,
+    testing::Values(
+        BadOption{"ToleranceZero", [](SmoothOptions& o) { o.tolerance_mm = 0; }, "0 mm"},
+        BadOption{
+            "ToleranceNotANumber",
+            [](SmoothOptions& o) { o.tolerance_mm = std::numeric_limits<double>::quiet_NaN(); },
+            "--tolerance"},
+        BadOption{"ToleranceInMicrometres", [](SmoothOptions& o) { o.tolerance_mm = 25; },
+                  "micrometres"},
+        BadOption{"ToleranceBelowThePrintedDecimals",
+                  [](SmoothOptions& o) { o.tolerance_mm = 1e-9; }, "decimals of target"},
+        BadOption{"NoCorner", [](SmoothOptions& o) { o.keep_corners_deg = 0; }, "--keep-corners"},
+        BadOption{"RuleThatIsNeverLifted",
+                  [](SmoothOptions& o) { o.allowed = {"cutter-compensation"}; },
+                  "cannot be lifted"},
+        BadOption{"TooManyThreads", [](SmoothOptions& o) { o.threads = 100000; }, "--threads"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Options, TakeEveryRuleThatCanBeLiftedAndNoOther) {
+  int liftable = 0;
+  for (const auto& explanation : gcode::reason::explanations()) {
+    SmoothOptions options = good_options();
+    options.allowed = {std::string(explanation.id)};
+    EXPECT_EQ(problems_of(options).empty(), explanation.can_be_allowed) << explanation.id;
+    liftable += explanation.can_be_allowed ? 1 : 0;
+  }
+  EXPECT_GT(liftable, 0);
+}
+
+TEST(ToleranceShares, AddUpToLessThanTheTolerance) {
+  for (const gcode::Dialect* target : gcode::dialects()) {
+    for (const auto units : {gcode::Units::kMillimetre, gcode::Units::kInch}) {
+      for (const auto& form : forms()) {
+        for (const double tolerance : {0.0005, 0.005, 0.01, 0.1, 1.0}) {
+          SmoothOptions options = good_options();
+          options.target = target;
+          options.output = form.value;
+          options.tolerance_mm = tolerance;
+          const ToleranceShares shares = share_tolerance(options, units);
+          SCOPED_TRACE(testing::Message()
+                       << target->name() << " " << form.name << " " << tolerance);
+          EXPECT_GT(shares.rounding, 0);
+          if (shares.smoothing > 0) {
+            EXPECT_LE(shares.smoothing + shares.form + shares.rounding, tolerance);
+            EXPECT_NEAR(shares.smoothing, 2 * shares.form, 1e-12);
+          } else {
+            EXPECT_GE(shares.rounding, 0.9 * tolerance);
+            EXPECT_EQ(shares.form, 0);
+          }
+        }
+      }
+    }
+  }
+}
+
+// Half a step on each of three axes: d decimals of a unit of u mm move a place by
+// u * 10^-d / 2 * sqrt(3) at the most.
+TEST(ToleranceShares, RoundingIsHalfAStepOnThreeAxes) {
+  SmoothOptions options = good_options();
+  options.output = Form::kLines;
+  const int mm = options.target->coordinates(gcode::Units::kMillimetre).decimals;
+  const int inch = options.target->coordinates(gcode::Units::kInch).decimals;
+  EXPECT_NEAR(share_tolerance(options, gcode::Units::kMillimetre).rounding,
+              0.8660254037844386 * std::pow(10, -mm), 1e-12);
+  EXPECT_NEAR(share_tolerance(options, gcode::Units::kInch).rounding,
+              0.8660254037844386 * 25.4 * std::pow(10, -inch), 1e-12);
+}
+
+TEST(ToleranceShares, ArcsRoundTheirCentresToo) {
+  SmoothOptions options = good_options();
+  options.output = Form::kLines;
+  const double lines = share_tolerance(options, gcode::Units::kMillimetre).rounding;
+  for (const Form form : {Form::kArcs, Form::kAuto}) {
+    options.output = form;
+    EXPECT_GT(share_tolerance(options, gcode::Units::kMillimetre).rounding, lines);
+  }
+}
+
+TEST(ToleranceShares, MoreDecimalsInTheRunLoseLessByRounding) {
+  SmoothOptions options = good_options();
+  options.output = Form::kLines;
+  const ToleranceShares usual = share_tolerance(options, gcode::Units::kMillimetre);
+  const ToleranceShares fine = share_tolerance(options, gcode::Units::kMillimetre, 6);
+  EXPECT_NEAR(fine.rounding, 0.8660254037844386e-6, 1e-15);
+  EXPECT_GT(fine.smoothing, usual.smoothing);
+}
+
+TEST(ToleranceShares, UnknownUnitsCountAsMillimetres) {
+  const SmoothOptions options = good_options();
+  EXPECT_EQ(share_tolerance(options, gcode::Units::kUnknown).rounding,
+            share_tolerance(options, gcode::Units::kMillimetre).rounding);
+}
+
+}  // namespace
+}  // namespace batten::postproc

@@ -1,0 +1,414 @@
+// The verifier on wrong outputs, each of which it must find, and on good ones, which it must
+// accept. Programs are written by hand; each wrong one differs from a good one in one thing.
+#include "postproc/proof/verification.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "gcode/text/source_text.h"
+
+namespace batten::postproc {
+namespace {
+
+// A program read from its text.
+class Reading {
+ public:
+  explicit Reading(std::string text)
+      : program_(gcode::parse(gcode::SourceText("test.nc", std::move(text)), found_)),
+        interpretation_(gcode::interpret(program_, {}, found_)) {}
+  [[nodiscard]] ReadProgram get() const { return {&program_, &interpretation_}; }
+
+ private:
+  gcode::Diagnostics found_;
+  gcode::Program program_;
+  gcode::Interpretation interpretation_;
+};
+
+Verification verify_texts(const std::string& before, const std::string& after,
+                          double tolerance = 0.01) {
+  const Reading old_program(before);
+  const Reading new_program(after);
+  return verify(old_program.get(), new_program.get(), tolerance);
+}
+
+std::string all_violations(const Verification& found) {
+  std::string text;
+  for (const Violation& violation : found.violations) {
+    text += violation.id + " old " + std::to_string(violation.old_line) + " new " +
+            std::to_string(violation.new_line) + ": " + violation.message + "\n";
+  }
+  return text;
+}
+
+bool has_violation(const Verification& found, std::string_view id) {
+  return std::ranges::any_of(found.violations, [id](const Violation& b) { return b.id == id; });
+}
+
+std::string replaced(std::string text, std::string_view what, std::string_view by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+// Two runs with a rapid between, coolant, a feed change inside the first run.
+const std::string kProgram =
+    "%\n"                    // 1
+    "(a part)\n"             // 2
+    "G21 G90 G17 G40 G49\n"  // 3
+    "T1 M6\n"                // 4
+    "S12000 M3\n"            // 5
+    "G0 X0 Y0 Z5\n"          // 6
+    "M8\n"                   // 7
+    "G1 Z-1 F300\n"          // 8
+    "G1 X10 Y0 F1000\n"      // 9
+    "X20 Y0.002\n"           // 10
+    "X30 Y0\n"               // 11
+    "X30 Y10\n"              // 12
+    "X30 Y20 F800\n"         // 13
+    "X20 Y20\n"              // 14
+    "G0 Z5\n"                // 15
+    "X50 Y50\n"              // 16
+    "G1 Z-1 F300\n"          // 17
+    "G1 X60 Y50 F1000\n"     // 18
+    "X60 Y60\n"              // 19
+    "M9\n"                   // 20
+    "G0 Z5\n"                // 21
+    "M5\n"                   // 22
+    "M30\n"                  // 23
+    "%\n";                   // 24
+
+// --- what is wrong --------------------------------------------------------------------------
+
+struct WrongCase {
+  std::string name;
+  std::string before;
+  std::string after;
+  std::string id;          // that the breach must have
+  std::uint32_t old_line;  // 0: not asked
+  std::uint32_t new_line;
+};
+
+void PrintTo(const WrongCase& test, std::ostream* out) { *out << test.name; }
+
+class Refuses : public testing::TestWithParam<WrongCase> {};
+
+TEST_P(Refuses, WhatDoesSomethingElse) {
+  const WrongCase& test = GetParam();
+  const Verification found = verify_texts(test.before, test.after);
+  ASSERT_FALSE(found.proved());
+  const auto violation = std::ranges::find(found.violations, test.id, &Violation::id);
+  ASSERT_NE(violation, found.violations.end()) << all_violations(found);
+  if (test.old_line > 0) {
+    EXPECT_EQ(violation->old_line, test.old_line) << all_violations(found);
+  }
+  if (test.new_line > 0) {
+    EXPECT_EQ(violation->new_line, test.new_line) << all_violations(found);
+  }
+  EXPECT_FALSE(violation->message.empty());
+}
+
+// X and Y of every cutting block and rapid moved by `by` in x.
+std::string shifted_program(double by) {
+  std::string text = kProgram;
+  for (const auto& [from, to] : std::vector<std::pair<std::string, double>>{{"X10 ", 10},
+                                                                            {"X20 Y0.002", 20},
+                                                                            {"X30 Y0\n", 30},
+                                                                            {"X30 Y10", 30},
+                                                                            {"X30 Y20", 30},
+                                                                            {"X20 Y20", 20}}) {
+    char number[32];
+    std::snprintf(number, sizeof number, "X%.4f", to + by);
+    const std::string blank = from.substr(from.find_first_of(" \n"));
+    text = replaced(text, from, number + blank);
+  }
+  return text;
+}
+
+std::vector<WrongCase> wrong_cases() {
+  const auto but = [](std::string_view what, std::string_view by) {
+    return replaced(kProgram, what, by);
+  };
+  // Zig-zag along one line: as a set of places nothing is missing.
+  const std::string zigzag = "G21 G90\nG0 X0 Y0 Z0\nG1 X10 F500\nX2\nX12\nX12 Y5\nG0 Z5\nM30\n";
+  const std::string arcs = "G21 G90 G17\nG0 X0 Y0 Z0\nG1 X10 F500\nG2 X20 Y0 I5 J0\nG0 Z5\nM30\n";
+  const std::string messages =
+      "G21 G90\nG0 X0 Y0 Z0\n(MSG, one)\nG1 X10 F500\n(MSG, two)\nG1 X20\nM30\n";
+  const std::string dense = "G21 G90\nG0 X0 Y0 Z0\nG1 X1 F500\nX2\nX3\nX4\nM62 \nX5\nX6\nX7\nM30\n";
+  const std::string comp =
+      "G21 G90 G17\nT1\nG0 X0 Y0 Z0\nG41 D1\nG1 X10 F500\nX20 Y0.001\nX30\nG40\nG1 X40\nM30\n";
+  const std::string parameters = "G21 G90\nG0 X0 Y0 Z0\n#1 = 5\nG1 X10 F500\nX[#1]\nM30\n";
+  const std::string blending = "G21 G90\nG64 P0.01\nG0 X0 Y0 Z0\nG1 X5 F100\nG64\nG1 X9\nM30\n";
+  const std::string lengths = "G21 G90\nT1 M6\nG43 H1\nG0 X0 Y0 Z0\nT2 M6\nG43\nG0 X0 Y0 Z0\nM30\n";
+  const std::string offsets = "G21 G90\nG0 X0 Y0 Z0\nG54 P2\nG0 X0 Y0 Z0\nG54\nG0 X0 Y0 Z0\nM30\n";
+  const std::string rotary = "G21 G90\nG0 X0 Y0 Z0\nG1 X10 A5 F500\nX20 A10\nM30\n";
+  return {
+      {"ShiftByElevenTenthsOfTheTolerance", kProgram, shifted_program(0.011), "distance", 0, 0},
+      {"CutCorner", kProgram, but("X30 Y0\n", "X29.9 Y0\nX30 Y0.1\n"), "distance", 0, 0},
+      {"DroppedCornerBlock", kProgram, but("X30 Y0\n", ""), "distance", 0, 0},
+      {"DroppedLastBlockOfARun", kProgram, but("X20 Y20\n", ""), "distance", 0, 0},
+      {"AddedBlock", kProgram, but("X30 Y10\n", "X30 Y10\nX31 Y10\nX30 Y10\n"), "distance", 0, 13},
+      {"MovedEndOfARunAndTheRapidAfterIt", kProgram, but("X20 Y20\n", "X20.011 Y20\n"), "distance",
+       14, 14},
+      {"LostCoolant", kProgram, but("M8\n", ""), "event-lost", 7, 0},
+      {"LostCoolantOff", kProgram, but("M9\n", ""), "event-lost", 20, 0},
+      {"AddedCoolant", kProgram, but("X30 Y10\n", "X30 Y10\nM7\n"), "event-added", 0, 13},
+      {"CoolantMovedBehindACut", kProgram, but("M8\nG1 Z-1 F300\n", "G1 Z-1 F300\nM8\n"),
+       "event-moved", 7, 8},
+      {"CoolantMovedPastARapid", kProgram,
+       replaced(but("M8\n", ""), "G0 X0 Y0 Z5\n", "M8\nG0 X0 Y0 Z5\n"), "event-moved", 0, 0},
+      {"CoolantInTheBlockOfTheCut", kProgram, but("M8\nG1 Z-1", "G1 Z-1 M8"), "event-lost", 7, 0},
+      {"OtherSpindleSpeed", kProgram, but("S12000", "S1200"), "event-changed", 5, 5},
+      {"OtherSpindleDirection", kProgram, but("M3", "M4"), "event-changed", 5, 5},
+      {"OtherTool", kProgram, but("T1", "T2"), "event-changed", 4, 4},
+      {"OtherFeed", kProgram, but("F800", "F801"), "feed-changed", 13, 13},
+      {"LostFeed", kProgram, but(" F800", ""), "feed-changed", 13, 0},
+      {"FeedOneBlockLater", kProgram, but("X30 Y20 F800\nX20 Y20\n", "X30 Y20\nX20 Y20 F800\n"),
+       "feed-moved", 0, 0},
+      {"FeedTwoHundredthsLater", kProgram,
+       but("X30 Y10\nX30 Y20 F800\n", "X30 Y10.02\nX30 Y20 F800\n"), "feed-moved", 0, 0},
+      {"OtherRapid", kProgram, but("X50 Y50\n", "X50 Y50.001\n"), "rapid-changed", 16, 16},
+      {"LowerRapid", kProgram, but("G0 Z5\nX50", "G0 Z4\nX50"), "rapid-changed", 15, 15},
+      {"LostRapid", kProgram, but("G0 Z5\nX50 Y50\n", "G0 X50 Y50\n"), "rapid-lost", 15, 0},
+      {"RapidAsACut", kProgram, but("G0 Z5\nX50", "G1 Z5\nG0 X50"), "rapid-lost", 15, 0},
+      {"SwappedRapids", kProgram, but("G0 Z5\nX50 Y50\n", "G0 X50 Y50\nZ5\n"), "rapid-changed", 15,
+       15},
+      {"SwappedRuns", kProgram,
+       "%\n(a part)\nG21 G90 G17 G40 G49\nT1 M6\nS12000 M3\nG0 X0 Y0 Z5\nM8\nG0 X50 Y50\n"
+       "G1 Z-1 F300\nG1 X60 Y50 F1000\nX60 Y60\nG0 Z5\nX0 Y0\nG1 Z-1 F300\nG1 X10 Y0 F1000\n"
+       "X20 Y0.002\nX30 Y0\nX30 Y10\nX30 Y20 F800\nX20 Y20\nM9\nG0 Z5\nM5\nM30\n%\n",
+       "rapid-added", 0, 0},
+      {"ShortenedZigZag", zigzag, replaced(zigzag, "X10 F500\nX2\nX12\n", "X12 F500\n"), "distance",
+       0, 0},
+      {"ArcTheOtherWayRound", arcs, replaced(arcs, "G2 ", "G3 "), "distance", 4, 4},
+      {"ArcInAnotherPlane", arcs, replaced(arcs, "G17", "G18"), "state-changed", 0, 0},
+      {"LostUnits", kProgram, but("G21 ", ""), "event-lost", 3, 0},
+      {"Inches", kProgram, but("G21", "G20"), "event-changed", 3, 3},
+      {"LostAbsolute", kProgram, but("G90 ", ""), "event-lost", 3, 0},
+      {"LostPlaneWord", kProgram, but("G17 ", ""), "state-changed", 0, 0},
+      {"LostCompensationOff", kProgram, but("G40 ", ""), "event-lost", 3, 0},
+      {"LostProgramEnd", kProgram, but("M30\n", ""), "event-lost", 23, 0},
+      {"LostProgramMark", kProgram, but("%\n(a part)", "(a part)"), "event-lost", 1, 0},
+      {"SwappedMessages", messages,
+       "G21 G90\nG0 X0 Y0 Z0\n(MSG, two)\nG1 X10 F500\n(MSG, one)\nG1 X20\nM30\n", "event-changed",
+       3, 3},
+      {"LostMessage", messages, replaced(messages, "(MSG, two)\n", ""), "event-lost", 5, 0},
+      {"SignalOneBlockLater", dense, replaced(dense, "M62 \nX5\n", "X5\nM62 \n"), "event-moved", 7,
+       8},
+      {"SmoothedUnderCutterCompensation", comp, replaced(comp, "X20 Y0.001\n", ""), "event-lost", 6,
+       0},
+      {"LostAssignment", parameters, replaced(parameters, "#1 = 5\n", ""), "event-lost", 3, 0},
+      {"OtherBlanksInAnOpaqueBlock", parameters, replaced(parameters, "#1 = 5", "#1=5"),
+       "event-changed", 3, 3},
+      {"OtherExpression", parameters, replaced(parameters, "X[#1]", "X[#2]"), "event-changed", 5,
+       5},
+      {"OtherRotaryAngle", rotary, replaced(rotary, "A10", "A10.5"), "event-changed", 4, 4},
+      {"DroppedRotaryBlock", rotary, replaced(rotary, "X20 A10\n", ""), "event-lost", 4, 0},
+      {"LostDwell", "G21 G90\nG0 X0 Y0 Z0\nG1 X5 F100\nG4 P1.5\nG1 X9\nM30\n",
+       "G21 G90\nG0 X0 Y0 Z0\nG1 X5 F100\nG1 X9\nM30\n", "event-lost", 4, 0},
+      {"OtherDwell", "G21 G90\nG0 X0 Y0 Z0\nG1 X5 F100\nG4 P1.5\nM30\n",
+       "G21 G90\nG0 X0 Y0 Z0\nG1 X5 F100\nG4 P15\nM30\n", "event-changed", 4, 4},
+      {"LostLabelThatIsReferredTo", "G21 G90\nG0 X0 Y0 Z0\nN10 G1 X5 F100\nG1 X9\nGOTO 10\nM30\n",
+       "G21 G90\nG0 X0 Y0 Z0\nG1 X5 F100\nG1 X9\nGOTO 10\nM30\n", "event-lost", 3, 0},
+      {"BlendingChanged", "G21 G90 G64\nG0 X0 Y0 Z0\nG1 X5 F100\nM30\n",
+       "G21 G90 G61\nG0 X0 Y0 Z0\nG1 X5 F100\nM30\n", "event-changed", 1, 1},
+      {"LostEndOfABlendingTolerance", blending, replaced(blending, "G64\n", ""), "event-lost", 5,
+       0},
+      {"AddedEndOfABlendingTolerance", replaced(blending, "G64\n", ""), blending, "event-added", 0,
+       5},
+      {"LostBlendingThatWasSetBefore", replaced(blending, "G64 P0.01", "G64"),
+       replaced(replaced(blending, "G64 P0.01", "G64"), "G1 X5 F100\nG64\n", "G1 X5 F100\n"),
+       "event-lost", 5, 0},
+      {"LostLengthOfTheNextTool", lengths, replaced(lengths, "G43\n", ""), "event-lost", 6, 0},
+      {"LostWorkOffsetBehindAFurtherOne", offsets, replaced(offsets, "G54\n", ""), "event-lost", 5,
+       0},
+      {"ArcToNowhere", kProgram, but("X20 Y20\n", "X20 Y20\nG2\n"), "event-added", 0, 15},
+      {"NumberBehindWords", kProgram, but("X20 Y20\n", "X20 Y20 N5\n"), "event-added", 0, 14},
+      {"NumberBehindWordsOfACopiedBlock", rotary, replaced(rotary, "X20 A10", "X20 A10 N5"),
+       "event-changed", 4, 4},
+      {"FeedOfARapid", kProgram, but("X50 Y50\n", "X50 Y50 F90\n"), "state-changed", 16, 16},
+      {"FeedBehindTheLastMotion", kProgram, but("M9\n", "F90\nM9\n"), "state-changed", 20, 21},
+      {"DrilledElsewhere", "G21 G90\nG0 X0 Y0 Z5\nG81 X1 Y1 Z-3 R1 F50\nX2\nG80\nM30\n",
+       "G21 G90\nG0 X0 Y0 Z5\nG81 X1 Y1 Z-3 R1 F50\nX2.5\nG80\nM30\n", "event-changed", 4, 4},
+      {"NothingLeft", kProgram, "%\n%\n", "event-lost", 0, 0},
+  };
+}
+
+INSTANTIATE_TEST_SUITE_P(Verify, Refuses, testing::ValuesIn(wrong_cases()),
+                         [](const auto& test) { return test.param.name; });
+
+// --- what is right --------------------------------------------------------------------------
+
+struct GoodCase {
+  std::string name;
+  std::string before;
+  std::string after;
+};
+
+void PrintTo(const GoodCase& test, std::ostream* out) { *out << test.name; }
+
+class Accepts : public testing::TestWithParam<GoodCase> {};
+
+TEST_P(Accepts, WhatDoesTheSame) {
+  const GoodCase& test = GetParam();
+  const Verification found = verify_texts(test.before, test.after);
+  EXPECT_TRUE(found.proved()) << all_violations(found);
+  EXPECT_LE(found.deviation_mm, 0.01);
+  EXPECT_GT(found.events_compared, 0U);
+}
+
+std::vector<GoodCase> good_cases() {
+  const auto but = [](std::string_view what, std::string_view by) {
+    return replaced(kProgram, what, by);
+  };
+  // A quarter of a circle of radius 10 in 16 chords: sagitta 0.012 mm, so its arc through the
+  // middle of the band keeps 0.01; here the chords are tangent-sided: finer, 64 chords.
+  std::string chords = "G21 G90 G17\nG0 X10 Y0 Z0\nG1 Z-1 F100\n";
+  for (int k = 1; k <= 64; ++k) {
+    const double angle = 1.5707963267948966 * k / 64;
+    char line[64];
+    std::snprintf(line, sizeof line, "G1 X%.4f Y%.4f F500\n", 10 * std::cos(angle),
+                  10 * std::sin(angle));
+    chords += line;
+  }
+  chords += "G0 Z5\nM30\n";
+  const std::string arc =
+      "G21 G90 G17\nG0 X10 Y0 Z0\nG1 Z-1 F100\nG3 X0 Y10 I-10 J0 F500\nG0 Z5\nM30\n";
+  std::string side_chords = "G21 G90 G17\nG0 X10 Y0 Z0\nG1 X10 F500\n";
+  for (int k = 1; k <= 64; ++k) {
+    const double angle = 1.5707963267948966 * k / 64;
+    char line[64];
+    std::snprintf(line, sizeof line, "X%.4f Z%.4f\n", 10 * std::cos(angle), 10 * std::sin(angle));
+    side_chords += line;
+  }
+  side_chords += "X-5\nM9\nM30\n";
+  const std::string side_arc =
+      "G21 G90 G17\nG0 X10 Y0 Z0\nG1 X10 F500\nG18 G2 X0 Z10 I-10 K0\nG17 G1 X-5\nM9\nM30\n";
+  return {
+      {"TheSameText", kProgram, kProgram},
+      {"PathMovedByAlmostTheTolerance", kProgram, but("X30 Y0\n", "X30.006 Y-0.0079\n")},
+      {"MergedLines", kProgram, but("G1 X10 Y0 F1000\nX20 Y0.002\nX30 Y0\n", "G1 X30 Y0 F1000\n")},
+      {"ArcForChords", chords, arc},
+      {"ChordsForAnArc", arc, chords},
+      {"PlaneChangedAndRestored", side_chords, side_arc},
+      {"RepeatedWordsDropped",
+       "G21 G90\nG0 X0 Y0 Z0\nS100 M3\nG90 G1 X1 F500 S100\nG90 G1 X2 F500 S100\nG90 G1 X3 F500 "
+       "S100\nM30\n",
+       "G21 G90\nG0 X0 Y0 Z0\nS100 M3\nG90 G1 X1 F500 S100\nX3\nM30\n"},
+      {"LineNumbersDropped", "N1 G21 G90\nN2 G0 X0 Y0 Z0\nN3 G1 X1 F500\nN4 X2\nN5 X3\nN6 M30\n",
+       "N1 G21 G90\nN2 G0 X0 Y0 Z0\nG1 X3 F500\nN6 M30\n"},
+      {"CommentsDropped", kProgram, but("(a part)\n", "")},
+      {"PlainCommentsMoved", "G21 G90\n(one)\nG0 X0 Y0 Z0\nG1 X1 F5\nM30\n",
+       "G21 G90\nG0 X0 Y0 Z0\nG1 X1 F5 ; one\nM30\n"},
+      {"CopiedOpaqueBlocks", "G21 G90\n#1 = 5\nG0 X0 Y0 Z0\nO100 sub\nG1 X1 F5\nO100 endsub\nM30\n",
+       "G21 G90\n#1 = 5\nG0 X0 Y0 Z0\nO100 sub\nG1 X1 F5\nO100 endsub\nM30\n"},
+      {"FeedChangeKeptAtItsPlace", kProgram,
+       but("X30 Y0\nX30 Y10\nX30 Y20 F800\nX20 Y20\n",
+           "X30 Y0\nX30 Y5\nX30 Y9.995\nX30 Y20 F800\nX20 Y20\n")},
+      {"FeedOfABlockThatDoesNotMove", "G21 G90\nG0 X0 Y0 Z0\nG1 X1 F500\nX1 F300\nX2 F500\nM30\n",
+       "G21 G90\nG0 X0 Y0 Z0\nG1 X2 F500\nM30\n"},
+      {"InchesMerged", "G20 G90\nG0 X0 Y0 Z0\nG1 X.1 Y.1 F10\nX.2 Y.2\nX.3 Y.3\nM30\n",
+       "G20 G90\nG0 X0 Y0 Z0\nG1 X.3 Y.3 F10\nM30\n"},
+      {"OtherLineEndsAndBlanks", "G21 G90\nG0 X0 Y0 Z0\nG1 X1 F500\nM30\n",
+       "G21G90\r\nG0X0Y0Z0\r\nG1 X1.000 F500.\r\nM30\r\n"},
+  };
+}
+
+INSTANTIATE_TEST_SUITE_P(Verify, Accepts, testing::ValuesIn(good_cases()),
+                         [](const auto& test) { return test.param.name; });
+
+// --- what it tells --------------------------------------------------------------------------
+
+// LinuxCNC runs the two lines as one, straight to the corner on the other side.
+TEST(Verify, DoesNotTakeALoneReturnForALineEnd) {
+  const std::string apart = "G21 G90\nG0 X0 Y0 Z0\nG1 X60 F3000\nY60\nX0\nM2\n";
+  EXPECT_TRUE(verify_texts(apart, replaced(apart, "Y60\n", "Y60\r\r\n")).proved());
+  EXPECT_FALSE(verify_texts(apart, replaced(apart, "\nY60\n", "\rY60\r\r\n")).proved());
+  EXPECT_FALSE(verify_texts(replaced(apart, "\nY60\n", "\rY60\n"), apart).proved());
+  const std::string same = replaced(apart, "\nY60\n", "\rY60\n");
+  EXPECT_TRUE(verify_texts(same, same).proved());
+}
+
+// LinuxCNC does not run what stands behind a NUL, grbl does.
+TEST(Verify, ComparesALineWithANulByItsBytes) {
+  const std::string nul(1, '\0');
+  const std::string plain = "G21 G90\nG0 X0 Y0 Z0\nG1 X60 F3000\nY60\nX0\nM2\n";
+  const std::string in_front = replaced(plain, "Y60", nul + "Y60");
+  const std::string behind = replaced(plain, "Y60", "Y60" + nul);
+  for (const std::string& text : {in_front, behind}) {
+    EXPECT_TRUE(verify_texts(text, text).proved());
+    EXPECT_FALSE(verify_texts(plain, text).proved());
+    EXPECT_FALSE(verify_texts(text, plain).proved());
+  }
+  EXPECT_FALSE(verify_texts(in_front, behind).proved());
+}
+
+TEST(Verify, SaysHowFarAProvedPathIs) {
+  const Verification found = verify_texts(kProgram, replaced(kProgram, "X30 Y0\n", "X30.006 Y0\n"));
+  ASSERT_TRUE(found.proved());
+  EXPECT_NEAR(found.deviation_mm, 0.006, 0.0003);
+  EXPECT_TRUE(found.deviation_line == 11 || found.deviation_line == 12) << found.deviation_line;
+  ASSERT_EQ(found.stretches.size(), 1U);
+  EXPECT_EQ(found.stretches.front().old_first_block, 10U);  // line 11
+  EXPECT_EQ(found.stretches.front().old_last_block, 11U);
+}
+
+TEST(Verify, ListsNoStretchWhereNothingChanged) {
+  const Verification found = verify_texts(kProgram, kProgram);
+  EXPECT_TRUE(found.proved());
+  EXPECT_TRUE(found.stretches.empty());
+  EXPECT_EQ(found.deviation_mm, 0);
+}
+
+TEST(Verify, FindsEachBreachByItself) {
+  std::string wrong = replaced(kProgram, "S12000", "S100");
+  wrong = replaced(wrong, "X30 Y0\n", "X30.5 Y0\n");
+  wrong = replaced(wrong, "M9\n", "");
+  wrong = replaced(wrong, "X60 Y60\n", "X60 Y61\n");
+  const Verification found = verify_texts(kProgram, wrong);
+  EXPECT_TRUE(has_violation(found, "event-changed"));
+  EXPECT_TRUE(has_violation(found, "event-lost"));
+  EXPECT_EQ(std::ranges::count(found.violations, std::string("distance"), &Violation::id), 2)
+      << all_violations(found);
+}
+
+TEST(Verify, ComesToAnEndWhereProgramsHaveNothingInCommon) {
+  std::string before = "G21 G90\nG0 X0 Y0 Z0\n";
+  std::string after = before;
+  for (int k = 0; k < 3000; ++k) {
+    before += "M" + std::to_string(100 + k % 97) + "\n";
+    after += "M" + std::to_string(300 + k % 89) + "\n";
+  }
+  EXPECT_FALSE(verify_texts(before, after).proved());
+  EXPECT_FALSE(verify_texts(before, "").proved());
+  EXPECT_FALSE(verify_texts("", before).proved());
+  EXPECT_TRUE(verify_texts("", "").proved());
+}
+
+TEST(Verify, ThrowsWhenTheToleranceIsNoLength) {
+  EXPECT_THROW(static_cast<void>(verify_texts(kProgram, kProgram, 0)), std::invalid_argument);
+}
+
+TEST(Verify, FindsAPathThatCrossesItselfWhereTheOldOneDoesNot) {
+  // Out along Y0, round a loop, and back 0.015 mm beside it.
+  const std::string before =
+      "G21 G90 G17\nG0 X0 Y0\nG1 Z-1 F600\nX5\nX10\nX14 Y3\nX10 Y0.015\nX5\nX0\nG0 Z5\nM30\n";
+  const std::string apart = replaced(before, "X5\nX10\n", "X5 Y-0.009\nX10 Y0\n");
+  const std::string over = replaced(replaced(before, "X5\nX10\n", "X5 Y0.009\nX10 Y0\n"),
+                                    "X5\nX0\n", "X5 Y0.006\nX0 Y0.015\n");
+  EXPECT_TRUE(verify_texts(before, apart).proved()) << all_violations(verify_texts(before, apart));
+  const Verification found = verify_texts(before, over);
+  ASSERT_EQ(found.violations.size(), 1u) << all_violations(found);
+  EXPECT_EQ(found.violations[0].id, "crosses-itself");
+  EXPECT_EQ(found.violations[0].kind, ViolationKind::kCrossing);
+  EXPECT_EQ(found.violations[0].new_line, 4u);
+  EXPECT_TRUE(verify_texts(over, over).proved()) << "where it crossed before it may cross";
+}
+
+}  // namespace
+}  // namespace batten::postproc

@@ -1,0 +1,452 @@
+// What may be rewritten together, and why the rest may not.
+#include "postproc/runs/run_grouping.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "gcode/state/reason.h"
+#include "postproc/runs/run_path.h"
+#include "tests/support/interpreted.h"
+#include "tests/support/kinked_arcs.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Point3;
+using tests::Interpreted;
+namespace reason = gcode::reason;
+
+struct Grouped {
+  explicit Grouped(const std::string& text, GroupingOptions options = {})
+      : it(text), sections(group_runs(it.program, it.read, options)) {}
+
+  [[nodiscard]] std::vector<const Section*> runs() const {
+    std::vector<const Section*> found;
+    for (const Section& section : sections) {
+      if (std::holds_alternative<Run>(section.content)) {
+        found.push_back(&section);
+      }
+    }
+    return found;
+  }
+  [[nodiscard]] const Run& only_run() const { return std::get<Run>(runs().at(0)->content); }
+
+  // "1-3 state-change; 4-9 run; .." with lines that count from 1.
+  [[nodiscard]] std::string outline() const {
+    std::string text;
+    for (const Section& section : sections) {
+      const auto* verbatim = std::get_if<Verbatim>(&section.content);
+      text += text.empty() ? "" : "; ";
+      text += std::to_string(section.first_block + 1) + "-" +
+              std::to_string(section.last_block + 1) + " " +
+              (verbatim != nullptr ? std::string(verbatim->reason) : "run");
+    }
+    return text;
+  }
+
+  Interpreted it;
+  std::vector<Section> sections;
+};
+
+constexpr const char* kStart = "G21 G90 G94 G17 F100 S500\nG0 X0 Y0 Z0\n";  // 2 lines
+constexpr const char* kThree = "G1 X1\nX2 Y1\nX3\n";
+constexpr const char* kThreeMore = "G1 X4\nX5 Y2\nX6\n";
+
+// --- what is inside a run -----------------------------------------------------------------------
+
+struct InsideCase {
+  const char* name;
+  const char* block;  // between two chains of three motions
+  const char* outline;
+};
+void PrintTo(const InsideCase& test, std::ostream* out) { *out << test.block; }
+
+class BetweenTwoChains : public testing::TestWithParam<InsideCase> {};
+
+TEST_P(BetweenTwoChains, EndsTheRunOrNot) {
+  const Grouped grouped(std::string(kStart) + kThree + GetParam().block + "\n" + kThreeMore);
+  EXPECT_EQ(grouped.outline(), GetParam().outline);
+}
+
+constexpr const char* kGoesOn = "1-1 state-change; 2-2 rapid; 3-9 run";
+
+std::string ended(const char* why) {
+  return std::string("1-1 state-change; 2-2 rapid; 3-5 run; 6-6 ") + why + "; 7-9 run";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    RunGrouping, BetweenTwoChains,
+    testing::Values(InsideCase{"EmptyLine", "", kGoesOn}, InsideCase{"Comment", "(text)", kGoesOn},
+                    InsideCase{"Number", "N60", kGoesOn}, InsideCase{"Feed", "F200", kGoesOn},
+                    InsideCase{"RepeatedModes", "G1 G90 G21 F100 S500", kGoesOn},
+                    InsideCase{"MotionWithFeed", "X3.5 F300", kGoesOn},
+                    InsideCase{"MotionWithoutLength", "X3", kGoesOn}),
+    [](const auto& test) { return test.param.name; });
+
+struct EndCase {
+  const char* name;
+  const char* block;
+  const char* why;
+};
+void PrintTo(const EndCase& test, std::ostream* out) { *out << test.block; }
+
+class RunEnd : public testing::TestWithParam<EndCase> {};
+
+TEST_P(RunEnd, HasItsReason) {
+  const Grouped grouped(std::string(kStart) + kThree + GetParam().block + "\n" + kThreeMore);
+  EXPECT_EQ(grouped.outline(), ended(GetParam().why));
+}
+
+INSTANTIATE_TEST_SUITE_P(RunGrouping, RunEnd,
+                         testing::Values(EndCase{"Rapid", "G0 Z5", "rapid"},
+                                         EndCase{"Arc", "G2 X3 Y2 I0 J.5", "intended-arc"},
+                                         EndCase{"ArcWithCoolant", "G2 X3 Y2 J.5 M8", "coolant"},
+                                         EndCase{"Coolant", "M8", "coolant"},
+                                         EndCase{"Spindle", "S600", "spindle"},
+                                         EndCase{"SpindleBesideMotion", "X3.5 S600", "spindle"},
+                                         EndCase{"Dwell", "G4 P1", "dwell"},
+                                         EndCase{"OtherM", "M62 P0", "misc-function"},
+                                         EndCase{"Plane", "G18", "state-change"},
+                                         EndCase{"ActiveComment", "(MSG, hi)", "active-comment"},
+                                         EndCase{"Rotary", "A30", "other-axis"},
+                                         EndCase{"Extruder", "X3.5 E1", "extruder"},
+                                         EndCase{"Assignment", "#1=2", "parameter-assignment"},
+                                         EndCase{"Jump", "IF [#1 GT 2] GOTO 99", "program-flow"}),
+                         [](const auto& test) { return test.param.name; });
+
+// What it runs may move the axes: both have to be named again.
+TEST(RunGrouping, StartsAnewBehindAFunctionOfTheUser) {
+  EXPECT_EQ(Grouped(std::string(kStart) + kThree + "M101\n" + kThreeMore).outline(),
+            "1-1 state-change; 2-2 rapid; 3-5 run; 6-6 misc-function; 7-8 position-unknown; "
+            "9-9 too-short");
+}
+
+TEST(RunGrouping, StartsAfterTheMotionThatMakesThePlaceKnown) {
+  EXPECT_EQ(Grouped("G21 F9\nG1 X0 Y0\nX1\nX2\nX3\n").outline(),
+            "1-1 state-change; 2-2 position-unknown; 3-5 run");
+  // Z is named for the first time in the middle.
+  EXPECT_EQ(Grouped("G21 F9\nG0 X0 Y0\nG1 X1\nX2\nX3\nZ1\nX4\nX5\nX6\n").outline(),
+            "1-1 state-change; 2-2 rapid; 3-5 run; 6-6 position-unknown; 7-9 run");
+}
+
+TEST(RunGrouping, KeepsWhatStandsAroundARun) {
+  EXPECT_EQ(Grouped("(head)\n\nG21 F9\nG0 X0 Y0\n(before)\nG1 X1\nX2\nX3\n(after)\n\nM30\n(end)\n")
+                .outline(),
+            "1-3 state-change; 4-5 rapid; 6-8 run; 9-12 program-end");
+  EXPECT_EQ(Grouped("G21 F9\nG0 X0 Y0\nG1 X1\nX2\nX3\nF20\n(end)\n").outline(),
+            "1-1 state-change; 2-2 rapid; 3-5 run; 6-7 comment");
+  EXPECT_EQ(Grouped("(only)\n\n").outline(), "1-2 comment");
+  EXPECT_TRUE(Grouped("").sections.empty());
+}
+
+TEST(RunGrouping, CopiesMotionsWithoutLengthAtItsEnds) {
+  EXPECT_EQ(Grouped(std::string(kStart) + "G1 X0 F50\n" + kThree + "X3 F70\nM9\n").outline(),
+            "1-1 state-change; 2-2 rapid; 3-3 too-short; 4-6 run; 7-7 too-short; 8-8 coolant");
+}
+
+TEST(RunGrouping, CopiesChainsThatAreTooShort) {
+  EXPECT_EQ(Grouped(std::string(kStart) + "G1 X1\nX1\nX2\n").outline(),
+            "1-1 state-change; 2-2 rapid; 3-5 too-short");
+  GroupingOptions options;
+  options.min_motions = 2;
+  EXPECT_EQ(Grouped(std::string(kStart) + "G1 X1\nX1\nX2\n", options).outline(),
+            "1-1 state-change; 2-2 rapid; 3-5 run");
+}
+
+TEST(RunGrouping, JoinsNeighboursThatAreKeptForOneReason) {
+  EXPECT_EQ(Grouped("G21\nG0 X0\nY0\n\nZ0\nM3\n").outline(),
+            "1-1 state-change; 2-5 rapid; 6-6 spindle");
+}
+
+// --- what a run says ----------------------------------------------------------------------------
+
+TEST(Run, HasThePlacesInMillimetres) {
+  const Grouped grouped("G20 F10\nG0 X0 Y0 Z0\nG1 X1 Z-.125\nY2\nX0 Y0 Z0\n");
+  const postproc::Run& run = grouped.only_run();
+  ASSERT_EQ(run.points.size(), 4U);
+  EXPECT_LT((run.points[1] - Point3(25.4, 0, -3.175)).norm(), 1e-12);
+  EXPECT_LT((run.points[2] - Point3(25.4, 50.8, -3.175)).norm(), 1e-12);
+  EXPECT_TRUE(run.closed);
+  EXPECT_EQ(run.decimals, 3);  // of -.125, as written
+  ASSERT_EQ(run.feeds.size(), 1U);
+  EXPECT_EQ(run.feeds[0].feed, 254.0);
+  EXPECT_EQ(run.state, grouped.it.line(2).state_after);
+}
+
+TEST(Run, ChangesTheFeedWhereItsWordStood) {
+  const Grouped grouped(std::string(kStart) +
+                        "G1 X1 F100\nX2 F200\nX3 F200.0\nF300\nX4\nX4 F400\nX5\nX6 F100\n");
+  const auto& feeds = grouped.only_run().feeds;
+  ASSERT_EQ(feeds.size(), 5U);
+  const std::vector<std::pair<std::size_t, double>> expected = {
+      {0, 100}, {1, 200}, {3, 300}, {4, 400}, {5, 100}};
+  for (std::size_t i = 0; i < feeds.size(); ++i) {
+    EXPECT_EQ(feeds[i].vertex, expected[i].first);
+    EXPECT_EQ(feeds[i].feed, expected[i].second);
+  }
+}
+
+TEST(Run, DropsThePointsOfMotionsWithoutLengthButNotTheirComments) {
+  const Grouped grouped(std::string(kStart) +
+                        "G1 X1 (a)\nX2\n(b)\nX2 (c)\n; d\nX3 (e) (f)\n(after)\n");
+  const postproc::Run& run = grouped.only_run();
+  EXPECT_EQ(run.points.size(), 4U);
+  std::string comments;
+  for (const CommentAt& comment : run.comments) {
+    comments += std::to_string(comment.vertex);
+    comments += grouped.it.program.source.text(comment.text);
+  }
+  EXPECT_EQ(comments, "1(a)3(b)3(c)3; d3(e)3(f)");
+}
+
+TEST(Run, StandsAtZeroOnAxesThatItDoesNotName) {
+  const Grouped grouped("G21 F9\nG0 X0 Y0 Z7\nG28 Z0\nG1 X1\nX2\nX3\n");
+  for (const Point3& point : grouped.only_run().points) {
+    EXPECT_EQ(point.z(), 0.0);
+  }
+}
+
+// --- arcs ---------------------------------------------------------------------------------------
+
+TEST(ArcsInRuns, PiecesOfACurveAreARun) {
+  const Grouped grouped(tests::kinked_arc_program(tests::three_leaves));
+  ASSERT_EQ(grouped.runs().size(), 1U);
+  const postproc::Run& run = grouped.only_run();
+  EXPECT_TRUE(run.closed);
+  EXPECT_EQ(run.arcs.size(), motion_count(run));
+  EXPECT_LE(run.chord_error, 0.05 * GroupingOptions{}.tolerance_mm);
+  EXPECT_EQ(grouped.outline().find("arc"), std::string::npos);
+}
+
+TEST(ArcsInRuns, FeedsAndCommentsStayAtTheEndsOfMotions) {
+  const std::vector<std::string> blocks = tests::arc_blocks(tests::three_leaves, {});
+  std::string text = "G21 G90 G94 G17\nG0 X36.0 Y0 Z0\n";
+  for (std::size_t i = 0; i < 6; ++i) text += blocks[i] + "\n";
+  text += "(note)\n" + blocks[6] + " (here)\n";
+  for (std::size_t i = 7; i < 12; ++i) {
+    text += blocks[i].substr(0, blocks[i].find(" F")) + (i == 9 ? " F300\n" : "\n");
+  }
+  const Grouped grouped(text);
+  const postproc::Run& run = grouped.only_run();
+  ASSERT_EQ(run.arcs.size(), 12U);
+  ASSERT_EQ(run.feeds.size(), 2U);
+  EXPECT_EQ(run.feeds[1].vertex, run.arcs[9].first);
+  ASSERT_EQ(run.comments.size(), 2U);
+  EXPECT_EQ(run.comments[0].vertex, run.arcs[6].last);
+  EXPECT_EQ(run.comments[1].vertex, run.arcs[6].last);
+}
+
+struct ArcCase {
+  const char* name;
+  const char* blocks;  // behind kStart
+  const char* outline;
+};
+void PrintTo(const ArcCase& test, std::ostream* out) { *out << test.blocks; }
+
+class Arcs : public testing::TestWithParam<ArcCase> {};
+
+TEST_P(Arcs, EndARunWhereTheyWereMeant) {
+  const Grouped grouped(std::string(kStart) + GetParam().blocks);
+  EXPECT_EQ(grouped.outline(), std::string("1-1 state-change; 2-2 rapid; ") + GetParam().outline);
+}
+
+constexpr const char* kFillet = "G1 X1\nX2\nX3\nG3 X4 Y1 J1\nG1 Y2\nY3\nY4\n";
+constexpr const char* kFilletAway =  // 3 degrees from the line before it
+    "G1 X1\nX2\nX3\nG3 X3.946 Y1.051 I-.0523 J.9986\nG1 Y2\nY3\nY4\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    ArcsInRuns, Arcs,
+    testing::Values(ArcCase{"Fillet", kFillet, "3-5 run; 6-6 intended-arc; 7-9 run"},
+                    ArcCase{"KinkedFillet", kFilletAway, "3-9 run"},
+                    ArcCase{"FullCircle", "G1 X1\nX2\nX3\nG3 X3 Y0 I.02 J5\nG1 X4\nX5\nX6\n",
+                            "3-5 run; 6-6 intended-arc; 7-9 run"},
+                    ArcCase{"Slot", "G1 X9\nG3 X9 Y4 J2\nG1 X0\nG3 X0 Y0 J-2\n",
+                            "3-3 too-short; 4-4 intended-arc; 5-5 too-short; 6-6 intended-arc"},
+                    ArcCase{"TwoPieces", "G2 X2 Y0 I1 J-5\nG2 X4 Y-.837 I-1.279 J-5.862\nG0 Z5\n",
+                            "3-4 too-short; 5-5 rapid"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(ArcsInRuns, AreCutWhereARampMeetsItsFloor) {
+  const std::vector<std::string> blocks = tests::arc_blocks(tests::three_leaves, {});
+  std::string text = "G21 G90 G94 G17\nG0 X36.0 Y0 Z0\n";
+  for (std::size_t i = 0; i < 8; ++i) {
+    text += blocks[i] + (i < 4 ? " Z-0." + std::to_string(i + 1) : "") + "\n";
+  }
+  EXPECT_EQ(Grouped(text).outline(), "1-1 state-change; 2-2 rapid; 3-6 run; 7-10 run");
+}
+
+// A bare G2 is no block: an arc word that is needed behind a run cannot be given back.
+TEST(ArcsInRuns, EndBeforeAnArcWhoseWordIsNeeded) {
+  std::vector<std::string> blocks = tests::arc_blocks(tests::three_leaves, {});
+  blocks.resize(8);
+  std::string text = "G21 G90 G94 G17\nG0 X36.0 Y0 Z0\n";
+  for (const std::string& block : blocks) text += block + "\n";
+  EXPECT_EQ(Grouped(text + "M9\nG0 Z5\n").outline(),
+            "1-1 state-change; 2-2 rapid; 3-10 run; 11-11 coolant; 12-12 rapid");
+  EXPECT_EQ(Grouped(text + "M98 P5\n").outline(),
+            "1-1 state-change; 2-2 rapid; 3-9 run; 10-10 arc; 11-11 subprogram");
+}
+
+// --- states -------------------------------------------------------------------------------------
+
+struct StateCase {
+  const char* name;
+  const char* words;  // a block between kStart and the motions
+  const char* reason;
+};
+void PrintTo(const StateCase& test, std::ostream* out) { *out << test.words; }
+
+class UnsafeState : public testing::TestWithParam<StateCase> {};
+
+TEST_P(UnsafeState, KeepsItsMotionsForThisReason) {
+  const std::string text =
+      std::string(kStart) + GetParam().words + "\nF100\nG0 X0 Y0 Z0\n" + "G1 X1 Y1 Z1\n" + kThree;
+  const Grouped grouped(text);
+  EXPECT_TRUE(grouped.runs().empty());
+  const auto& last = std::get<Verbatim>(grouped.sections.back().content);
+  EXPECT_EQ(last.reason, GetParam().reason);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    RunGrouping, UnsafeState,
+    testing::Values(StateCase{"CompensationLeft", "G41 D1", "cutter-compensation"},
+                    StateCase{"CompensationRight", "G42", "cutter-compensation"},
+                    StateCase{"CompensationDynamic", "G41.1 D3", "cutter-compensation"},
+                    StateCase{"ToolCenterPoint", "G43.4 H1", "tool-center-point"},
+                    StateCase{"ToolVector", "G43.5 H1", "tool-center-point"},
+                    StateCase{"Tcpm", "M128", "tool-center-point"},
+                    StateCase{"TiltedPlane", "G68.2 X0 Y0 Z0 I0 J30 K0", "tilted-plane"},
+                    StateCase{"Incremental", "G91", "incremental-distance"},
+                    StateCase{"InverseTime", "G93", "inverse-time-feed"},
+                    StateCase{"PerRevolution", "G95", "feed-per-revolution"},
+                    StateCase{"SurfaceSpeed", "G96 S100", "constant-surface-speed"},
+                    StateCase{"PolarInterpolation", "G12.1", "polar-coordinates"},
+                    StateCase{"PolarCoordinates", "G16", "polar-coordinates"},
+                    StateCase{"Cylindrical", "G7.1 C20", "cylindrical"},
+                    StateCase{"Scaling", "G51 X0 Y0 P2", "scaling"},
+                    StateCase{"Rotation", "G68 X0 Y0 R30", "rotation"},
+                    StateCase{"Mirror", "G51.1 X0", "mirror"},
+                    StateCase{"MirrorPerhaps", "M21", "state-unknown"},
+                    StateCase{"ExactPath", "G61", "exact-stop"},
+                    StateCase{"ExactStop", "G61.1", "exact-stop"},
+                    StateCase{"OneSidedStop", "G60", "exact-stop"},
+                    StateCase{"ControlFits", "G5.1 Q2 X0 Y0 Z0", "control-smoothing"},
+                    StateCase{"HighSpeed", "G5 P10000", "control-smoothing"},
+                    StateCase{"SuperNurbs", "G131 F1000 J1 E.01", "control-smoothing"},
+                    StateCase{"Diameter", "G7", "lathe-diameter"},
+                    StateCase{"TappingMode", "G63", "state-unknown"},
+                    StateCase{"LatheFeed", "G99", "state-unknown"},
+                    StateCase{"Call", "M98 P1", "state-unknown"},
+                    StateCase{"DeletableUnits", "/G20", "units-unknown"},
+                    StateCase{"DeletableDistance", "/G91", "state-unknown"}),
+    [](const auto& test) { return test.param.name; });
+
+struct SafeCase {
+  const char* name;
+  const char* words;
+};
+void PrintTo(const SafeCase& test, std::ostream* out) { *out << test.words; }
+
+class SafeAgain : public testing::TestWithParam<SafeCase> {};
+
+TEST_P(SafeAgain, LetsRunsBeRewritten) {
+  const Grouped grouped(std::string(kStart) + GetParam().words +
+                        "\nF100\nG0 X0 Y0 Z0\nG1 X1 Y1 Z1\n" + kThree);
+  EXPECT_EQ(grouped.runs().size(), 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    RunGrouping, SafeAgain,
+    testing::Values(SafeCase{"Compensation", "G41 D1\nG40"}, SafeCase{"Tcp", "G43.4 H1\nG49"},
+                    SafeCase{"Tcpm", "M128\nM129"}, SafeCase{"Tilted", "G68.2 X0\nG69"},
+                    SafeCase{"Incremental", "G91\nG90"}, SafeCase{"InverseTime", "G93\nG94"},
+                    SafeCase{"SurfaceSpeed", "G96 S100\nG97"}, SafeCase{"Polar", "G16\nG15"},
+                    SafeCase{"PolarInterpolation", "G12.1\nG13.1"},
+                    SafeCase{"Cylindrical", "G7.1 C20\nG7.1 C0"},
+                    SafeCase{"Scaling", "G51 P2\nG50"}, SafeCase{"Rotation", "G68 R30\nG69"},
+                    SafeCase{"Mirror", "G51.1 X0\nG50.1 X0"}, SafeCase{"ExactPath", "G61\nG64"},
+                    SafeCase{"Fit", "G5.1 Q2 X0\nG5.1 Q0"}, SafeCase{"LookAhead", "G5.1 Q1"},
+                    SafeCase{"HighSpeed", "G5 P10000\nG5 P0"}, SafeCase{"Diameter", "G7\nG8"},
+                    SafeCase{"Plane", "G18"},
+                    SafeCase{"CycleReturn", "G81 X0 Y0 Z-1 R1\nG80 G99\nG94"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(UnsafeStates, AModalMacroIsOne) {
+  gcode::ModalState state;
+  state.units = gcode::Units::kMillimetre;
+  state.feed = 100;
+  EXPECT_EQ(unsafe_state(state, {}), std::string_view());
+  state.modal_macro = gcode::TriState::kOn;
+  EXPECT_EQ(unsafe_state(state, {}), reason::kModalMacro);
+}
+
+TEST(UnsafeStates, AllowLiftsTheExactPathOnly) {
+  GroupingOptions options;
+  options.allowed = {reason::kExactStop, reason::kIncremental};
+  const std::string motions = std::string("G0 X0 Y0 Z0\n") + kThree;
+  EXPECT_EQ(Grouped(kStart + ("G61\n" + motions), options).runs().size(), 1U);
+  EXPECT_EQ(Grouped(kStart + ("G61.1\n" + motions), options).runs().size(), 0U);
+  EXPECT_EQ(Grouped(kStart + ("G91\n" + motions), options).runs().size(), 0U);
+}
+
+TEST(UnsafeStates, NoFeedIsOne) {
+  EXPECT_EQ(Grouped("G21\nG0 X0 Y0 Z0\nG1 X1\nX2\nX3\n").outline(),
+            "1-1 state-change; 2-2 rapid; 3-5 feed-unknown");
+}
+
+// --- every program ------------------------------------------------------------------------------
+
+TEST(RunGrouping, CoversEveryBlockOnceAndRunsMeetTheirMotions) {
+  static constexpr const char* kBlocks[] = {
+      "G1 X1", "Y2",  "X3 Y1", "Z-1",      "G1 X4 F200", "(c)", "",       "G0 Z5", "M8",
+      "X5",    "G91", "G90",   "G2 X1 R9", "G1 X6 Y6",   "T1",  "F300",   "G28",   "/X1",
+      "X7",    "Y8",  "X9",    "N10 X10",  "G41",        "G40", "M98 P1", "#1=2",  "G61"};
+  constexpr int kPrograms = 400;
+  std::size_t runs = 0;
+  for (int seed = 0; seed < kPrograms; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::mt19937 random(static_cast<unsigned>(seed));
+    // Cubed: early entries come more often, so that there are runs.
+    std::uniform_real_distribution<double> pick(0, 1);
+    std::string text = "G21 G90 G94 F100\nG0 X0 Y0 Z0\n";
+    for (int i = 0; i < 80; ++i) {
+      const double p = pick(random);
+      text += kBlocks[static_cast<std::size_t>(p * p * p * std::size(kBlocks))];
+      text += '\n';
+    }
+    const Grouped grouped(text);
+    std::uint32_t next = 0;
+    for (const Section& section : grouped.sections) {
+      ASSERT_EQ(section.first_block, next);
+      ASSERT_GE(section.last_block, section.first_block);
+      next = section.last_block + 1;
+      const auto* run = std::get_if<postproc::Run>(&section.content);
+      if (run == nullptr) {
+        continue;
+      }
+      ++runs;
+      const auto motion_of = [&](std::uint32_t block) {
+        const auto motion = grouped.it.read.blocks[block].motion;
+        return motion < 0 ? nullptr : &grouped.it.read.motions[static_cast<std::size_t>(motion)];
+      };
+      ASSERT_NE(motion_of(section.first_block), nullptr);
+      ASSERT_NE(motion_of(section.last_block), nullptr);
+      ASSERT_EQ(run->points.front(), motion_of(section.first_block)->piece.start());
+      ASSERT_EQ(run->points.back(), motion_of(section.last_block)->piece.end());
+      ASSERT_GE(run->points.size(), 4U);
+      ASSERT_EQ(run->feeds.front().vertex, 0U);
+      for (std::size_t i = 1; i < run->points.size(); ++i) {
+        ASSERT_NE(run->points[i - 1], run->points[i]);
+      }
+    }
+    ASSERT_EQ(next, grouped.it.read.blocks.size());
+  }
+  EXPECT_GT(runs, 200U);
+}
+
+}  // namespace
+}  // namespace batten::postproc

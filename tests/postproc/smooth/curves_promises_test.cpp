@@ -1,0 +1,403 @@
+// What holds for the curves of every target that has them: what is written is read back, and it is
+// proved; what is not understood is not touched; a second pass changes nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "gcode/controls/built_in.h"
+#include "gcode/controls/rs274_family.h"
+#include "gcode/curves/curve_format.h"
+#include "gcode/curves/nurbs_alarms.h"
+#include "gcode/curves/nurbs_write.h"
+#include "gcode/curves/siemens_poly.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "gcode/state/reason.h"
+#include "gcode/state/units.h"
+#include "gcode/writer/writer.h"
+#include "geometry/distance/path_distance.h"
+#include "postproc/smooth/forms/output_plan.h"
+#include "tests/support/random_curves.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::BsplineCurve;
+using geometry::CubicBezier;
+using geometry::Path;
+using geometry::Point3;
+
+std::vector<std::string> targets_with_curves() {
+  std::vector<std::string> names;
+  for (const gcode::Dialect* dialect : gcode::dialects()) {
+    // Klartext is no language of these programs: klartext_test.cpp.
+    const bool klartext = dialect->language() == gcode::Language::kKlartext;
+    if (dialect->curves() != nullptr && !klartext) names.emplace_back(dialect->name());
+  }
+  return names;
+}
+
+class Curves : public testing::TestWithParam<std::string> {
+ protected:
+  const gcode::Dialect& target() const { return *gcode::find_dialect(GetParam()); }
+  const gcode::CurveFormat& format() const { return *target().curves(); }
+
+  SmoothOptions options() const {
+    SmoothOptions wanted = options_for(GetParam());
+    wanted.output = Form::kCurves;
+    return wanted;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Targets, Curves, testing::ValuesIn(targets_with_curves()),
+                         [](const auto& test) {
+                           std::string name = test.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+Path path_of(const BsplineCurve& curve) {
+  Path path;
+  for (const CubicBezier& piece : curve.bezier_pieces()) path.push_back(piece);
+  return path;
+}
+
+// A program that stands in the curve's first place, and then what is written.
+std::string head_at(const Point3& place) {
+  return fmt::format("G21 G90 G17\nG0 X{:.9f} Y{:.9f} Z5\nG1 Z{:.9f} F1000\n", place.x(), place.y(),
+                     place.z());
+}
+
+// The cutting moves behind the first one of a program.
+Path cuts_of(const std::string& text, const gcode::CurveFormat& format) {
+  gcode::Diagnostics found;
+  const gcode::Program program = gcode::parse(gcode::SourceText("test.nc", text), found);
+  const gcode::Interpretation read = gcode::interpret(program, {.curves = &format}, found);
+  Path path;
+  for (std::size_t i = 2; i < read.motions.size(); ++i) path.push_back(read.motions[i].piece);
+  for (const gcode::BlockMeaning& block : read.blocks) {
+    if (block.kind == gcode::BlockKind::kOpaque) return {};
+  }
+  return path;
+}
+
+// The parts of a curve that can be said: the whole, or single pieces where each is a block.
+std::vector<BsplineCurve> sayable(const BsplineCurve& curve, const gcode::CurveFormat& format) {
+  const std::vector<CubicBezier> pieces = curve.bezier_pieces();
+  const auto taken = [&](const CubicBezier& piece) { return format.takes(piece); };
+  if (std::all_of(pieces.begin(), pieces.end(), taken)) return {curve};
+  std::vector<BsplineCurve> parts;
+  const std::vector<double> breaks = curve.breakpoints();
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (taken(pieces[i])) parts.push_back(curve.part(breaks[i], breaks[i + 1]));
+  }
+  return parts;
+}
+
+// Half a step of the last decimal on each of three axes is sqrt(3) / 2 of it; that of other numbers
+// moves a curve by less.
+void expect_read_back(const BsplineCurve& curve, const gcode::Dialect& target) {
+  const auto units = gcode::Units::kMillimetre;
+  const double step = gcode::printed_step(target.coordinates(units), units);
+  const Point3 start = curve.control_points().front();
+  gcode::ModalState modal;
+  modal.motion = gcode::MotionMode::kLine;
+  modal.units = units;
+  modal.feed = 1000;
+  gcode::Writer writer(target, {modal, {start, {true, true, true}}}, "\n");
+  ASSERT_TRUE(writer.curve_to(curve, 2000, 0));
+  writer.end_curve();
+  const Path read = cuts_of(head_at(start) + writer.text(), *target.curves());
+  ASSERT_FALSE(read.empty()) << writer.text();
+  const auto found = geometry::compare_paths(path_of(curve), read, 2 * step);
+  EXPECT_EQ(found.verdict, geometry::Verdict::kProved) << found.bounds.at_least << "\n"
+                                                       << writer.text();
+  EXPECT_LT((writer.state().position.mm - geometry::end_point(read.back())).norm(), 1e-8);
+  EXPECT_EQ(writer.state().modal.feed, 2000);
+}
+
+TEST_P(Curves, RandomOnesAreReadBackToWithinTheirDigits) {
+  std::size_t written = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    for (const BsplineCurve& part : sayable(tests::random_curve(seed, seed % 2 == 1), format())) {
+      expect_read_back(part, target());
+      ++written;
+    }
+  }
+  EXPECT_GE(written, 200U);
+}
+
+// Chords of a curve that leave it by 0.002 mm, three decimals, as CAM writes them.
+std::string cam_program(const BsplineCurve& curve) {
+  const Point3 start = curve.control_points().front();
+  std::string text = head_at(start);
+  std::vector<double> at = {curve.first()};
+  while (at.back() < curve.last()) {
+    const double bend = curve.curvature_at(at.back());
+    const double step = std::clamp(std::sqrt(8 * 0.002 / std::max(bend, 1e-3)), 0.1, 3.0);
+    at.push_back(std::min(at.back() + step, curve.last()));
+  }
+  for (std::size_t i = 1; i < at.size(); ++i) {
+    const Point3 p = curve.point_at(at[i]);
+    text += fmt::format("X{:.3f} Y{:.3f} Z{:.3f}\n", p.x(), p.y(), p.z());
+  }
+  return text + "G0 Z50\nM2\n";
+}
+
+gcode::NurbsRules rules_of(const std::string& target) {
+  if (target == "syntec") return gcode::syntec_nurbs(gcode::Units::kMillimetre);
+  if (target == "mitsubishi") return gcode::mitsubishi_nurbs();
+  return gcode::fanuc_nurbs(gcode::Units::kMillimetre);
+}
+
+// What the control would say to the whole program; its text for people, empty where there is
+// nothing.
+std::string alarms_of(const std::string& text, const std::string& target) {
+  gcode::Diagnostics found;
+  const gcode::Program program = gcode::parse(gcode::SourceText("test.nc", text), found);
+  gcode::CurveAlarms alarms;
+  if (target == "siemens") {
+    alarms = gcode::poly_alarms(program);
+  } else if (gcode::find_dialect(target)->curves()->name() == "G06.2") {
+    alarms = gcode::nurbs_alarms(program, rules_of(target));
+  }
+  std::string all;
+  for (const gcode::CurveAlarm& alarm : alarms) all += fmt::format("{}\n", alarm.id);
+  return all;
+}
+
+TEST_P(Curves, ProgramsOfRandomOnesAreProvedAndASecondPassChangesNothing) {
+  int with_curves = 0;
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const std::string before = cam_program(tests::random_curve(seed, seed % 2 == 1));
+    const SmoothResult result = smoothed(before, options());
+    EXPECT_TRUE(result.proved);
+    EXPECT_LE(result.deviation_mm, options().tolerance_mm);
+    for (const RunReport& run : result.runs) {
+      if (run.status == RunStatus::kRewritten && run.form == OutputForm::kCurves) ++with_curves;
+      EXPECT_NE(run.reason, gcode::reason::kNotProved);
+    }
+    EXPECT_EQ(smoothed(result.text, options()).text, result.text);
+    EXPECT_EQ(alarms_of(result.text, GetParam()), "") << result.text;
+  }
+  EXPECT_GT(with_curves, 2);
+}
+
+// Whether the program has a curve that its control reads.
+std::size_t curve_blocks(const std::string& text, const gcode::CurveFormat& format) {
+  gcode::Diagnostics found;
+  const gcode::Program program = gcode::parse(gcode::SourceText("test.nc", text), found);
+  const gcode::Interpretation read = gcode::interpret(program, {.curves = &format}, found);
+  std::size_t count = 0;
+  for (const gcode::BlockMeaning& block : read.blocks) count += block.of_curve ? 1 : 0;
+  return count;
+}
+
+TEST_P(Curves, AreWrittenWhereTheyAreAskedFor) {
+  const SmoothResult result = smoothed(bend_program(), options());
+  EXPECT_TRUE(result.proved);
+  EXPECT_EQ(rewritten_runs(result), 1U);
+  EXPECT_GT(curve_blocks(result.text, format()), 4U) << result.text;
+  EXPECT_LT(result.blocks_out, result.blocks_in / 3);
+}
+
+// Twenty waves around a small circle: a G5 for each bend, and LinuxCNC runs each as 32 short arcs.
+TEST(CurvesOfLinuxcnc, GiveWayWhereTheyWouldBeSlow) {
+  std::string text = "G21 G90 G17\nG0 X10 Y0 Z5\nG1 Z-1 F12000\n";
+  for (int i = 1; i <= 2000; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 2000;
+    const double radius = 10 + 0.15 * std::sin(20 * angle);
+    text += fmt::format("X{:.4f} Y{:.4f}\n", radius * std::cos(angle), radius * std::sin(angle));
+  }
+  text += "G0 Z50\nM2\n";
+  SmoothOptions wanted = options_for("linuxcnc");
+  wanted.output = Form::kCurves;
+  const SmoothResult result = smoothed(text, wanted);
+  EXPECT_TRUE(result.proved);
+  ASSERT_EQ(rewritten_runs(result), 1U);
+  EXPECT_NE(result.runs.back().form, OutputForm::kCurves);
+  EXPECT_LT(result.blocks_out, result.blocks_in / 4);
+}
+
+// A quarter of a wavy circle to X0 Y40, and another one from there on, to the other side.
+std::string cornered_program() {
+  std::string text = "G21 G90 G17\nG0 X40 Y0 Z5\nG1 Z-1 F2000\n";
+  constexpr int kLines = 80;
+  for (const Point3& center : {Point3(0, 0, -1), Point3(-40, 40, -1)}) {
+    for (int i = 1; i <= kLines; ++i) {
+      const double angle = 0.5 * std::numbers::pi * i / kLines;
+      const double radius = 40 + 3 * std::sin(2 * angle);
+      text += fmt::format("X{:.4f} Y{:.4f}\n", center.x() + radius * std::cos(angle),
+                          center.y() + radius * std::sin(angle));
+    }
+  }
+  return text + "G0 Z50\nM2\n";
+}
+
+// A bend in its place would be some thirty control points.
+TEST_P(Curves, EndInSharpCornersWhereThatIsAsQuick) {
+  const SmoothResult result = smoothed(cornered_program(), options());
+  EXPECT_TRUE(result.proved);
+  EXPECT_EQ(rewritten_runs(result), 1U);
+  const Path cuts = cuts_of(result.text, format());
+  const Point3 corner(0, 40, -1);
+  EXPECT_TRUE(std::any_of(cuts.begin(), cuts.end(), [&](const geometry::PathPiece& piece) {
+    return (geometry::end_point(piece) - corner).norm() < 1e-6;
+  })) << result.text;
+  EXPECT_LT(result.blocks_out, 60U);
+}
+
+TEST_P(Curves, AFeedChangesWhereItChanged) {
+  const std::string before = bend_program("F1200\n");
+  const SmoothResult result = smoothed(before, options());
+  EXPECT_TRUE(result.proved);
+  EXPECT_EQ(rewritten_runs(result), 1U);
+  EXPECT_GT(curve_blocks(result.text, format()), 8U);
+  EXPECT_NE(result.text.find("F1200"), std::string::npos);
+}
+
+TEST_P(Curves, CommentsStandBesideThemInOrder) {
+  const SmoothResult result = smoothed(bend_program("(first)\n(second)\n"), options());
+  EXPECT_TRUE(result.proved);
+  EXPECT_GT(curve_blocks(result.text, format()), 4U);
+  const std::size_t first = result.text.find("(first)\n(second)\n");
+  EXPECT_NE(first, std::string::npos) << result.text;
+}
+
+// What has curves already keeps them, byte for byte, and the runs around them are still smoothed.
+TEST_P(Curves, ThatAreThereAlreadyAreCopied) {
+  SmoothOptions none = options();
+  none.method = Method::kNone;
+  const std::string curves = smoothed(bend_program(), options()).text;
+  EXPECT_EQ(smoothed(curves, none).text, curves);
+  SmoothOptions again = options();
+  again.allowed = {std::string(gcode::reason::kAlreadySmoothed)};
+  const SmoothResult result = smoothed(curves, again);
+  EXPECT_TRUE(result.proved);
+  EXPECT_EQ(curve_blocks(result.text, format()), curve_blocks(curves, format()));
+}
+
+TEST_P(Curves, OfAnotherPathAreABreach) {
+  const std::string before = bend_program();
+  const std::string after = smoothed(before, options()).text;
+  const auto verdict_on = [&](const std::string& text) {
+    gcode::Diagnostics found;
+    const gcode::Program old_program = gcode::parse(gcode::SourceText("old.nc", before), found);
+    const gcode::Program new_program = gcode::parse(gcode::SourceText("new.nc", text), found);
+    const gcode::ReadOptions read{.curves = &format()};
+    const gcode::Interpretation old_meaning = gcode::interpret(old_program, read, found);
+    const gcode::Interpretation new_meaning = gcode::interpret(new_program, read, found);
+    return verify({&old_program, &old_meaning}, {&new_program, &new_meaning}, 0.01);
+  };
+  EXPECT_TRUE(verdict_on(after).proved());
+  // The fifth line with an X word is one of the curve: its X is moved.
+  std::vector<std::string> lines = lines_of(after);
+  std::size_t seen = 0;
+  for (std::string& line : lines) {
+    const std::size_t x = line.find('X');
+    if (x == std::string::npos || ++seen != 5) continue;
+    line.insert(x + 1, line[x + 1] == '-' ? "" : "1");
+    if (line[x + 1] == '-') line.insert(x + 2, "1");
+  }
+  EXPECT_FALSE(verdict_on(joined(lines, "\n")).proved());
+}
+
+// --- too few digits -------------------------------------------------------------------------
+
+// The same format with no digit behind the point of knots, coefficients and offsets.
+class CoarseFormat final : public gcode::CurveFormat {
+ public:
+  CoarseFormat(const gcode::CurveFormat& fine, const gcode::NurbsRules& rules)
+      : fine_(fine), rules_(rules) {}
+  std::string_view name() const override { return fine_.name(); }
+  bool is_default() const override { return fine_.is_default(); }
+  std::string_view complaint(const gcode::ModalState& state) const override {
+    return fine_.complaint(state);
+  }
+  bool takes(const CubicBezier& piece) const override { return fine_.takes(piece); }
+  bool is_block_per_piece() const override { return fine_.is_block_per_piece(); }
+  bool names_all_axes() const override { return fine_.names_all_axes(); }
+  gcode::NumberFormat other_numbers(gcode::Units units) const override {
+    gcode::NumberFormat format = fine_.other_numbers(units);
+    format.decimals = 0;
+    return format;
+  }
+  // Of G06.2 it is the digits before the point that count: knots from 0 to 100 in whole numbers.
+  gcode::CurveWriting write(const BsplineCurve& curve,
+                            const gcode::CurveSetting& setting) const override {
+    if (fine_.is_block_per_piece()) return fine_.write(curve, setting);
+    if (fine_.name() == "BSPLINE") return with_even_knots(fine_.write(curve, setting));
+    gcode::NurbsRules rules = rules_;
+    rules.knots = {.digits = 3, .decimals = 0};
+    return gcode::write_nurbs(curve, setting, rules);
+  }
+  gcode::CurveResult read(const gcode::Program& program, std::uint32_t first,
+                          const gcode::CurveStart& start) const override {
+    return fine_.read(program, first, start);
+  }
+
+ private:
+  // What is left of PL where no digit of it is right.
+  static gcode::CurveWriting with_even_knots(gcode::CurveWriting written) {
+    auto* lines = std::get_if<gcode::CurveLines>(&written);
+    if (lines == nullptr) return written;
+    for (std::string& line : *lines) {
+      const auto at = line.find("PL=") + 3;
+      const auto end = std::min(line.find(' ', at), line.size());
+      if (line.substr(at, end - at) != "0") line.replace(at, end - at, "1");
+    }
+    return written;
+  }
+
+  const gcode::CurveFormat& fine_;
+  gcode::NurbsRules rules_;
+};
+
+class CoarseTarget final : public gcode::Rs274Dialect {
+ public:
+  explicit CoarseTarget(const gcode::CurveFormat& format) : format_(format) {}
+  std::string_view name() const override { return "coarse"; }
+  std::string_view description() const override { return "curves with too few digits"; }
+  gcode::NumberFormat coordinates(gcode::Units) const override { return {.decimals = 4}; }
+  gcode::NumberFormat arc_offsets(gcode::Units) const override { return {.decimals = 5}; }
+  std::size_t max_line_length() const override { return 252; }
+  std::string_view arc_complaint(const geometry::Arc&, gcode::Units) const override { return {}; }
+  double min_arc_radius() const override { return 0.1; }
+  double max_arc_radius() const override { return 1e4; }
+  const gcode::CurveFormat* curves() const override { return &format_; }
+  std::string_view default_machine() const override { return "linuxcnc"; }
+
+ private:
+  const gcode::CurveFormat& format_;
+};
+
+TEST_P(Curves, ThatAreNotVerifiedAreToldOf) {
+  const SmoothResult result = smoothed(bend_program(), options());
+  const bool told = std::ranges::any_of(result.diagnostics, [](const gcode::Diagnostic& found) {
+    return found.id == "curves-unverified" && found.severity == gcode::Severity::kWarning;
+  });
+  EXPECT_EQ(told, GetParam() == "siemens-bspline");
+}
+
+TEST_P(Curves, OfTooFewDigitsAreNotProvedAndGoBack) {
+  const CoarseFormat coarse(format(), rules_of(GetParam()));
+  const CoarseTarget coarse_target(coarse);
+  SmoothOptions wanted = options();
+  wanted.target = &coarse_target;
+  const std::string before = bend_program();
+  const SmoothResult result = smoothed(before, wanted);
+  ASSERT_EQ(result.runs.size(), 2U);  // the plunge is kept too
+  EXPECT_EQ(result.text, before);
+  EXPECT_EQ(result.runs.back().reason, gcode::reason::kNotProved);
+}
+
+}  // namespace
+}  // namespace batten::postproc

@@ -1,0 +1,64 @@
+// Runs that are too long to be held as one are cut into runs for themselves.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <variant>
+
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "postproc/runs/program_part.h"
+#include "postproc/smooth/part_runs.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+constexpr int kMotions = 210000;
+
+ProgramPart long_part() {
+  std::string text = "G21 G90 G17\nG0 X0 Y0 Z5\nG1 Z-1 F300\nG1 X0.1 F2000\n";
+  for (int i = 2; i <= kMotions; ++i) {
+    text += fmt::format("X{:.1f} Y{:.3f}\n", 0.1 * i, 2 * std::sin(0.01 * i));
+  }
+  text += "G0 Z5\nM2\n";
+  gcode::Diagnostics found;
+  gcode::Program program = gcode::parse(gcode::SourceText("long.nc", text), found);
+  gcode::Interpretation meaning = gcode::interpret(program, {}, found);
+  return {std::move(program), std::move(meaning), {}};
+}
+
+TEST(LongRuns, AreCutIntoRunsThatCoverAllBlocks) {
+  const ProgramPart part = long_part();
+  const PartRuns runs = find_runs(part, options_for("linuxcnc"));
+  EXPECT_GE(runs.works.size(), 5U);
+  std::uint32_t next = 0;
+  std::size_t motions = 0;
+  for (const Section& section : runs.sections) {
+    EXPECT_EQ(section.first_block, next);
+    next = section.last_block + 1;
+    const auto* run = std::get_if<postproc::Run>(&section.content);
+    if (run == nullptr) continue;
+    EXPECT_LE(run->points.size(), 50001U);
+    motions += run->points.size() - 1;
+  }
+  EXPECT_EQ(next, part.program.blocks.size());
+  EXPECT_EQ(motions, static_cast<std::size_t>(kMotions));
+}
+
+// What is only copied is held piece by piece too.
+TEST(LongRuns, AreCutAtTheSamePlacesWhereNothingIsAsked) {
+  SmoothOptions options = options_for("linuxcnc");
+  const PartRuns smoothed = find_runs(long_part(), options);
+  options.method = Method::kNone;
+  const PartRuns copied = find_runs(long_part(), options);
+  ASSERT_EQ(copied.works.size(), smoothed.works.size());
+  EXPECT_GT(copied.works.size(), 1U);
+  for (std::size_t i = 0; i < copied.sections.size(); ++i) {
+    EXPECT_EQ(copied.sections[i].first_block, smoothed.sections[i].first_block);
+  }
+}
+
+}  // namespace
+}  // namespace batten::postproc

@@ -1,0 +1,118 @@
+// SPL with too few digits: its polynomials do not begin where the blocks before them end, which the
+// proof finds, and the run goes back.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "gcode/controls/built_in.h"
+#include "gcode/controls/rs274_family.h"
+#include "gcode/curves/curve_format.h"
+#include "gcode/curves/heidenhain_spl.h"
+#include "gcode/state/reason.h"
+#include "tests/support/klartext_programs.h"
+#include "tests/support/random_curves.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+using gcode::CurveFormat;
+
+// As SPL, with no digit behind the point of its coefficients.
+class CoarseSpl final : public CurveFormat {
+ public:
+  explicit CoarseSpl(const CurveFormat& fine) : fine_(fine) {}
+  std::string_view name() const override { return fine_.name(); }
+  bool is_default() const override { return fine_.is_default(); }
+  std::string_view complaint(const gcode::ModalState& state) const override {
+    return fine_.complaint(state);
+  }
+  bool is_block_per_piece() const override { return true; }
+  gcode::NumberFormat other_numbers(gcode::Units units) const override {
+    return fine_.other_numbers(units);
+  }
+  gcode::CurveWriting write(const geometry::BsplineCurve& curve,
+                            const gcode::CurveSetting& setting) const override {
+    gcode::CurveWriting written = fine_.write(curve, setting);
+    auto* lines = std::get_if<gcode::CurveLines>(&written);
+    if (lines == nullptr) return written;
+    for (std::string& line : *lines) cut_digits(line);
+    ++written_;
+    return written;
+  }
+  gcode::CurveResult read(const gcode::Program& program, std::uint32_t first,
+                          const gcode::CurveStart& start) const override {
+    return fine_.read(program, first, start);
+  }
+  [[nodiscard]] int written() const { return written_; }
+
+ private:
+  // Behind each K, the digits behind its point: K3X-6.25E+001 becomes K3X-6E+001.
+  static void cut_digits(std::string& line) {
+    for (std::size_t k = line.find('K'); k != std::string::npos; k = line.find('K', k + 1)) {
+      const std::size_t end = std::min(line.find(' ', k), line.size());
+      const std::size_t point = line.find('.', k);
+      if (point >= end) continue;
+      const std::size_t behind = std::min(line.find_first_not_of("0123456789", point + 1), end);
+      line.erase(point, behind - point);
+    }
+  }
+
+  const CurveFormat& fine_;
+  mutable int written_ = 0;
+};
+
+class CoarseKlartext final : public gcode::Rs274Dialect {
+ public:
+  CoarseKlartext(const gcode::Dialect& base, const CurveFormat& curves)
+      : base_(base), curves_(curves) {}
+  std::string_view name() const override { return "coarse"; }
+  std::string_view description() const override { return "splines with too few digits"; }
+  gcode::Language language() const override { return base_.language(); }
+  const gcode::BlockSpelling& spelling() const override { return base_.spelling(); }
+  gcode::NumberFormat coordinates(gcode::Units units) const override {
+    return base_.coordinates(units);
+  }
+  gcode::NumberFormat arc_offsets(gcode::Units units) const override {
+    return base_.arc_offsets(units);
+  }
+  std::size_t max_line_length() const override { return base_.max_line_length(); }
+  bool takes_arcs_in(gcode::Plane) const override { return false; }  // splines or what was there
+  bool takes_helices() const override { return false; }
+  bool repeats_words() const override { return true; }
+  std::string_view arc_complaint(const geometry::Arc&, gcode::Units) const override {
+    return "no arcs";
+  }
+  double min_arc_radius() const override { return 0.1; }
+  double max_arc_radius() const override { return 1e3; }
+  std::string comment(std::string_view text) const override { return base_.comment(text); }
+  const CurveFormat* curves() const override { return &curves_; }
+  std::string_view default_machine() const override { return "mill"; }
+
+ private:
+  const gcode::Dialect& base_;
+  const CurveFormat& curves_;
+};
+
+TEST(CoarseSplines, AreNotProvedAndGoBack) {
+  const gcode::Dialect& fine = *gcode::find_dialect("itnc530");
+  const CoarseSpl coarse(*fine.curves());
+  const CoarseKlartext target(fine, coarse);
+  const std::string before =
+      tests::numbered_from_zero(tests::klartext_program_of(tests::random_curve(1, true)));
+  SmoothOptions options = options_for("itnc530");
+  options.output = Form::kCurves;
+  ASSERT_NE(smoothed(before, options).text.find("SPL"), std::string::npos);
+  options.target = &target;
+  const SmoothResult result = smoothed(before, options);
+  EXPECT_GT(coarse.written(), 0);
+  EXPECT_EQ(result.text.find("SPL"), std::string::npos);
+  // What is left of it is the program as it was, or lines that were proved.
+  EXPECT_TRUE(result.proved || result.text == before);
+}
+
+}  // namespace
+}  // namespace batten::postproc

@@ -1,0 +1,170 @@
+// Every method from the command line's choice to the proved text, and what `best` makes of them.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "postproc/smooth/selection/joined_times.h"
+#include "postproc/smooth/selection/method_times.h"
+#include "tests/support/method_cases.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Point3;
+
+// Down into the cut, through the points, up again. The first point is X.. Y.. of the plunge.
+std::string program_through(const std::vector<Point3>& points, double feed) {
+  std::string text = "G21 G90 G17\n";
+  text += fmt::format("G0 X{:.4f} Y{:.4f} Z5\nG1 Z0 F300\n", points[0].x(), points[0].y());
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    text += fmt::format("G1 X{:.4f} Y{:.4f}{}\n", points[i].x(), points[i].y(),
+                        i == 1 ? fmt::format(" F{}", feed) : "");
+  }
+  return text + "G0 Z5\nM2\n";
+}
+
+std::string star_program() { return program_through(geometry::star_path(), 3000); }
+
+// 0.02 mm of noise on a gentle wave: a line of chords that every method can better.
+std::string noisy_program() {
+  return wave_program({.lines = 300, .height = 1, .length = 40, .noise = 0.008, .feed = 6000});
+}
+
+SmoothOptions options_with(Method method, std::string_view target, double tolerance = 0.05) {
+  SmoothOptions options = options_for(target);
+  options.method = method;
+  options.tolerance_mm = tolerance;
+  return options;
+}
+
+const RunReport& rewritten_run(const SmoothResult& result) {
+  const auto run = std::ranges::find(result.runs, RunStatus::kRewritten, &RunReport::status);
+  EXPECT_NE(run, result.runs.end()) << "nothing was rewritten";
+  return run == result.runs.end() ? result.runs.front() : *run;
+}
+
+struct MethodOnProgram {
+  Method method;
+  std::string name;
+  std::string (*program)();
+  const char* target;
+  Form output = Form::kAuto;
+};
+
+void PrintTo(const MethodOnProgram& m, std::ostream* out) { *out << m.name; }
+
+class MethodEndToEnd : public testing::TestWithParam<MethodOnProgram> {};
+
+TEST_P(MethodEndToEnd, IsWrittenAndProvedWithinTheTolerance) {
+  const std::string before = GetParam().program();
+  SmoothOptions options = options_with(GetParam().method, GetParam().target);
+  options.output = GetParam().output;
+  const SmoothResult result = smoothed(before, options);
+  EXPECT_TRUE(result.proved);
+  EXPECT_EQ(rewritten_runs(result), 1u);
+  EXPECT_EQ(rewritten_run(result).method, name_of(GetParam().method));
+  EXPECT_LE(result.deviation_mm, 0.05);
+  EXPECT_LE(result.time_after_s, 1.005 * result.time_before_s);
+  EXPECT_TRUE(verdict(before, result.text, 0.05).proved());
+  expect_rest_copied(before, result);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Methods, MethodEndToEnd,
+    testing::Values(
+        MethodOnProgram{Method::kFair, "Fair", noisy_program, "linuxcnc"},
+        MethodOnProgram{Method::kNaseath, "Naseath", noisy_program, "linuxcnc"},
+        MethodOnProgram{Method::kNaseathLiteral, "NaseathLiteral", noisy_program, "linuxcnc"},
+        // LinuxCNC rounds corners itself; grbl slows down for each of them.
+        MethodOnProgram{Method::kGuo, "Guo", star_program, "grbl"},
+        MethodOnProgram{Method::kGuoLiteral, "GuoLiteral", star_program, "grbl", Form::kArcs},
+        MethodOnProgram{Method::kOzcan, "Ozcan", star_program, "grbl"},
+        MethodOnProgram{Method::kTimeOptimal, "Racing", star_program, "grbl"}),
+    [](const auto& test) { return test.param.name; });
+
+// --- which one wins -----------------------------------------------------------------------------
+
+double time_of_star(Method method, Form output) {
+  SmoothOptions options = options_with(method, "grbl");
+  options.output = output;
+  return smoothed(star_program(), options).time_after_s;
+}
+
+TEST(BestMethod, IsThreePerCentFasterThanGuoLiteralOnAStar) {
+  for (const Form output : {Form::kAuto, Form::kLines, Form::kArcs}) {
+    EXPECT_LT(time_of_star(Method::kBest, output),
+              0.97 * time_of_star(Method::kGuoLiteral, output));
+  }
+}
+
+// Times of one method that differ by less than a percent are equal, and then other merits count.
+TEST(BestMethod, IsNotSlowerThanAnyMethodOfItsOwnOnAStar) {
+  const double best = time_of_star(Method::kBest, Form::kAuto);
+  for (const Method method :
+       {Method::kFair, Method::kGuo, Method::kOzcan, Method::kTimeOptimal, Method::kNaseath}) {
+    EXPECT_LT(best, 1.01 * time_of_star(method, Form::kAuto)) << name_of(method);
+  }
+}
+
+TEST(BestMethod, TellsWhichMethodsItTried) {
+  const SmoothResult result = smoothed(star_program(), options_with(Method::kBest, "grbl"));
+  const RunReport& run = rewritten_run(result);
+  EXPECT_GE(run.methods.size(), 2u);
+  const auto won = std::ranges::find(run.methods, run.method, &MethodTime::method);
+  ASSERT_NE(won, run.methods.end());
+  for (const MethodTime& each : run.methods) EXPECT_LE(won->time_s, 1.01 * each.time_s);
+}
+
+// A smooth program: nothing but fair has a chance, and nothing else is tried.
+TEST(BestMethod, TriesNothingElseOnSmoothRuns) {
+  const SmoothResult result = smoothed(wave_program(), options_with(Method::kBest, "grbl"));
+  EXPECT_EQ(rewritten_run(result).methods.size(), 1u);
+}
+
+// --- which methods were tried -------------------------------------------------------------------
+
+Candidate candidate(std::string_view method, double time) {
+  Candidate c;
+  c.method = method;
+  c.times.as_set = time;
+  return c;
+}
+
+TEST(MethodTimes, AreThoseOfTheFastestCandidateOfEachMethod) {
+  SmoothedRun run;
+  run.candidates = {candidate("fair", 3), candidate("fair", 2), candidate("guo", 2.5)};
+  const std::vector<MethodTime> times = method_times(run);
+  ASSERT_EQ(times.size(), 2u);
+  EXPECT_EQ(times[0].method, "fair");
+  EXPECT_EQ(times[0].time_s, 2);
+  EXPECT_EQ(times[1].method, "guo");
+  EXPECT_EQ(times[1].time_s, 2.5);
+}
+
+// 3 + 1 s, tried as 2.5 + 0.75 s with fair; guo was tried on the second stretch only.
+TEST(MethodTimes, OfTwoStretchesAreSumsAndLeaveWhatWasNotTriedAsItWas) {
+  const TriedStretch first = {{{"fair", 2.5}, {"racing", 2.75}}, 3};
+  const TriedStretch second = {{{"fair", 0.75}, {"guo", 0.5}}, 1};
+  const std::vector<MethodTime> times = joined_times(first, second);
+  ASSERT_EQ(times.size(), 3u);
+  EXPECT_EQ(times[0].method, "fair");
+  EXPECT_DOUBLE_EQ(times[0].time_s, 3.25);
+  EXPECT_EQ(times[1].method, "racing");
+  EXPECT_DOUBLE_EQ(times[1].time_s, 3.75);
+  EXPECT_EQ(times[2].method, "guo");
+  EXPECT_DOUBLE_EQ(times[2].time_s, 3.5);
+}
+
+TEST(MethodTimes, SayHowFarTheChosenOneLeads) {
+  const std::vector<MethodTime> times = {{"fair", 2}, {"guo", 2.5}, {"ozcan", 2.25}};
+  EXPECT_DOUBLE_EQ(lead_of("fair", 2, times), 0.25);
+  EXPECT_DOUBLE_EQ(lead_of("guo", 2.5, times), -0.5);
+  EXPECT_EQ(lead_of("fair", 2, {MethodTime{"fair", 2}}), 0);
+}
+
+}  // namespace
+}  // namespace batten::postproc

@@ -1,0 +1,209 @@
+// What every method promises of the curve that it makes of a run.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "geometry/distance/path_distance.h"
+#include "geometry/path/curve_pieces.h"
+#include "postproc/smooth/methods/run_curve.h"
+#include "tests/support/method_cases.h"
+#include "tests/support/paths.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Point3;
+using geometry::Vector3;
+
+CurveRequest request_with(double tolerance) {
+  CurveRequest request;
+  request.tolerance = tolerance;
+  request.limits = limits_of(*find_machine("linuxcnc"), 3000);
+  return request;
+}
+
+geometry::Path pieces_of(const geometry::BsplineCurve& curve) {
+  geometry::Path path;
+  for (const geometry::CubicBezier& piece : curve.bezier_pieces()) path.emplace_back(piece);
+  return path;
+}
+
+struct NamedMethod {
+  Method method;
+  std::string name;
+};
+
+void PrintTo(const NamedMethod& m, std::ostream* out) { *out << m.name; }
+
+class EveryMethod : public testing::TestWithParam<NamedMethod> {
+ protected:
+  [[nodiscard]] std::optional<RunCurve> curve(const std::vector<Point3>& points,
+                                              const CurveRequest& request) const {
+    return curve_of(GetParam().method, points, request);
+  }
+  [[nodiscard]] bool is_corner_method() const {
+    const Method m = GetParam().method;
+    return m == Method::kGuo || m == Method::kGuoLiteral || m == Method::kOzcan ||
+           m == Method::kTimeOptimal;
+  }
+};
+
+// A wavy line in space as a CAM system cuts it into chords of 0.005 mm.
+std::vector<Point3> wavy() {
+  return geometry::greedy_chords(
+      [](double u) { return Point3(u, 2 * std::sin(u / 3), std::cos(u / 5)); }, 0.0, 40.0, 0.005, 4,
+      4000);
+}
+
+std::vector<std::vector<Point3>> runs() {
+  return {wavy(),
+          geometry::star_path(),
+          geometry::guo_hexagon(),
+          geometry::ozcan_corner_path(),
+          geometry::slot_path(20, 5, 40),
+          geometry::circle_path(8, 90)};
+}
+
+// `deviation` is by samples with some methods: a percent is left for what lies between them.
+TEST_P(EveryMethod, StaysWithinTheToleranceOfTheRunInOrder) {
+  for (const double tolerance : {0.01, 0.05}) {
+    for (const std::vector<Point3>& points : runs()) {
+      const auto made = curve(points, request_with(tolerance));
+      ASSERT_TRUE(made);
+      EXPECT_LE(made->path.deviation, tolerance * (1 + 1e-6));
+      const auto proof = geometry::compare_paths(geometry::path_through(points),
+                                                 pieces_of(made->path.curve), 1.03 * tolerance);
+      EXPECT_EQ(proof.verdict, geometry::Verdict::kProved)
+          << points.size() << " points, at most " << proof.bounds.at_most;
+      EXPECT_LE(proof.bounds.at_least, made->path.deviation * 1.03 + 1e-9);
+    }
+  }
+}
+
+TEST_P(EveryMethod, MeetsTheEndsAndPutsTheVerticesInOrder) {
+  for (std::vector<Point3> points : runs()) {
+    points.insert(points.begin() + 1, points[0]);  // twice in one place
+    points.push_back(points.back());
+    const auto made = curve(points, request_with(0.02));
+    ASSERT_TRUE(made);
+    EXPECT_EQ(made->method, GetParam().method);
+    const geometry::SmoothCurve& path = made->path;
+    EXPECT_LT((path.curve.point_at(path.curve.first()) - points.front()).norm(), 1e-9);
+    EXPECT_LT((path.curve.point_at(path.curve.last()) - points.back()).norm(), 1e-9);
+    ASSERT_EQ(path.vertex_parameters.size(), points.size());
+    EXPECT_TRUE(std::is_sorted(path.vertex_parameters.begin(), path.vertex_parameters.end()));
+    EXPECT_EQ(path.vertex_parameters.front(), path.curve.first());
+    EXPECT_EQ(path.vertex_parameters.back(), path.curve.last());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Point3 beside = path.curve.point_at(path.vertex_parameters[i]);
+      EXPECT_LE((beside - points[i]).norm(), 0.0205) << i;
+    }
+  }
+}
+
+// The star's tips turn by 144 degrees, its dents by 72.
+TEST_P(EveryMethod, LeavesCornersThatTurnMoreThanAsked) {
+  const std::vector<Point3> points = geometry::star_path();
+  CurveRequest request = request_with(0.05);
+  request.keep_corner_angle = 100 * std::numbers::pi / 180;
+  const auto made = curve(points, request);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->path.kept_corners, 5);
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const Point3 beside = made->path.curve.point_at(made->path.vertex_parameters[i]);
+    if (i % 2 == 1) {
+      EXPECT_LT((beside - points[i]).norm(), 1e-9) << "tip " << i;
+    } else {
+      EXPECT_GT((beside - points[i]).norm(), 1e-3) << "dent " << i;
+    }
+  }
+}
+
+// The middle half of a long line lies on it.
+TEST_P(EveryMethod, LeavesLongLinesStraight) {
+  const std::vector<Point3> points = geometry::slot_path(40, 5, 60);
+  const auto made = curve(points, request_with(0.02));
+  ASSERT_TRUE(made);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    if ((points[i + 1] - points[i]).norm() < 30) continue;
+    for (const double part : {0.25, 0.5, 0.75}) {
+      const double u0 = made->path.vertex_parameters[i];
+      const double u1 = made->path.vertex_parameters[i + 1];
+      const Point3 place = made->path.curve.point_at(u0 + part * (u1 - u0));
+      EXPECT_NEAR(std::abs(place.y()), 5, 1e-9);
+    }
+  }
+}
+
+// No joint of the curve turns where the run has no kept corner.
+TEST_P(EveryMethod, HasNoCornersOfItsOwn) {
+  for (const std::vector<Point3>& points : {wavy(), geometry::star_path()}) {
+    const auto made = curve(points, request_with(0.02));
+    ASSERT_TRUE(made);
+    const geometry::BsplineCurve& c = made->path.curve;
+    EXPECT_TRUE(geometry::CurvePieces(c, c.first(), c.last()).corners().empty());
+  }
+}
+
+TEST_P(EveryMethod, OfOnePlaceIsNothing) {
+  const std::vector<Point3> points(3, Point3(1, 2, 3));
+  EXPECT_FALSE(curve(points, request_with(0.01)));
+}
+
+TEST_P(EveryMethod, OfTwoPointsIsTheLine) {
+  const std::vector<Point3> points = {{0, 0, 0}, {10, 5, 2}};
+  const auto made = curve(points, request_with(0.01));
+  ASSERT_TRUE(made);
+  EXPECT_NEAR(made->path.deviation, 0, 1e-12);
+  EXPECT_LT((made->path.curve.point_at(0.5 * made->path.curve.last()) - Point3(5, 2.5, 1)).norm(),
+            1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
+                         testing::Values(NamedMethod{Method::kFair, "Fair"},
+                                         NamedMethod{Method::kNaseath, "Naseath"},
+                                         NamedMethod{Method::kNaseathLiteral, "NaseathLiteral"},
+                                         NamedMethod{Method::kGuo, "Guo"},
+                                         NamedMethod{Method::kGuoLiteral, "GuoLiteral"},
+                                         NamedMethod{Method::kOzcan, "Ozcan"},
+                                         NamedMethod{Method::kTimeOptimal, "Racing"}),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(CurveOf, RefusesWhatIsNoMethodOfItsOwn) {
+  const std::vector<Point3> points = {{0, 0, 0}, {10, 5, 2}};
+  for (const Method method : {Method::kBest, Method::kNone}) {
+    EXPECT_THROW((void)curve_of(method, points, request_with(0.01)), std::invalid_argument);
+  }
+}
+
+// What each method is for: sharp corners with the five points use all of the tolerance, the paper's
+// at most half of it.
+TEST(MethodCurves, OfGuoUsesAllOfTheToleranceAndTheLiteralOneHalf) {
+  const std::vector<Point3> star = geometry::star_path();
+  EXPECT_NEAR(guo_curve(star, request_with(0.05), false)->deviation, 0.05, 1e-9);
+  EXPECT_NEAR(guo_curve(star, request_with(0.05), true)->deviation, 0.025, 1e-9);
+}
+
+// A line with noise of 0.02 mm bends less when its control points may move by 0.08 mm.
+TEST(MethodCurves, OfNaseathBendsLessThanItsFit) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> noise(-0.02, 0.02);
+  std::vector<Point3> points;
+  for (int i = 0; i <= 100; ++i) points.emplace_back(0.8 * i, noise(random), 0);
+  CurveRequest fit = request_with(0.025);
+  fit.accurate = true;
+  const double before = postproc::greatest_curvature(fair_curve(points, fit)->curve);
+  const double after =
+      postproc::greatest_curvature(naseath_curve(points, request_with(0.1), false)->curve);
+  EXPECT_GT(before, 0);
+  EXPECT_LT(after, 0.7 * before);
+}
+
+}  // namespace
+}  // namespace batten::postproc

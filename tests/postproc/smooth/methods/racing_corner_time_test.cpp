@@ -1,0 +1,85 @@
+// The racing corner on the machine of the eight-point corner, by the feed planner.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <variant>
+
+#include "geometry/fitting/corners/time_optimal_corner.h"
+#include "postproc/machine/planner/feed_plan.h"
+#include "tests/support/planned_paths.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Corner;
+using geometry::time_optimal_corner;
+using geometry::TimeOptimalBlend;
+using geometry::TimeOptimalOptions;
+using geometry::ToleranceKind;
+using geometry::with_legs;
+
+Corner square_corner() { return {{0, 0, 0}, {13, 13, 0}, {26, 0, 0}}; }
+
+TimeOptimalOptions options_for(double tolerance, ToleranceKind kind) {
+  TimeOptimalOptions options;
+  options.tolerance = tolerance;
+  options.kind = kind;
+  options.share_before = options.share_after = 13;
+  return options;
+}
+
+double time_of(const TimeOptimalBlend& blend) {
+  return planned_time(with_legs(blend, square_corner()), corner_limits());
+}
+
+struct Goal {
+  std::string name;
+  double tolerance;
+  ToleranceKind kind;
+  double time;   // s, at most
+  double bound;  // s: no curve can be faster; numerical, good to .001
+};
+
+class TimeOptimalCornerTime : public testing::TestWithParam<Goal> {};
+
+TEST_P(TimeOptimalCornerTime, ReachesTheGoalAndNotTheImpossible) {
+  const Goal& goal = GetParam();
+  const auto found = time_optimal_corner(square_corner(), options_for(goal.tolerance, goal.kind));
+  ASSERT_TRUE(std::holds_alternative<TimeOptimalBlend>(found));
+  const double time = time_of(std::get<TimeOptimalBlend>(found));
+  fmt::print("{}: {:.5f} s, bound {:.4f}\n", goal.name, time, goal.bound);
+  EXPECT_LE(time, goal.time);
+  EXPECT_GE(time, goal.bound - .002);
+}
+
+INSTANTIATE_TEST_SUITE_P(Square, TimeOptimalCornerTime,
+                         testing::Values(Goal{"Band100", .1, ToleranceKind::kBand, 1.6190, 1.6160},
+                                         Goal{"Band050", .05, ToleranceKind::kBand, 1.6340, 1.6306},
+                                         Goal{"Path100", .1, ToleranceKind::kPath, 1.6260, 1.6211},
+                                         Goal{"Path050", .05, ToleranceKind::kPath, 1.6385,
+                                              1.6338}),
+                         [](const auto& test) { return test.param.name; });
+
+// The blend's own time is one in which the machine can run it, so the plan needs no more.
+TEST(TimeOptimalCornerTime, IsNotAboveWhatTheBlendPromises) {
+  const auto found = time_optimal_corner(square_corner(), options_for(.1, ToleranceKind::kBand));
+  const auto& blend = std::get<TimeOptimalBlend>(found);
+  const double length = 13 * std::sqrt(2.0);
+  const double ramp = 2 * std::sqrt(25 / (5000 * std::sqrt(2.0)));
+  const double legs = 2 * ramp + (2 * length - blend.before - blend.after - 25 * ramp) / 25;
+  EXPECT_LE(time_of(blend), (blend.time + legs) * (1 + 5e-4));
+}
+
+TEST(TimeOptimalCornerTime, TheRoomIsChosenByTheClock) {
+  const TimeOptimalOptions options = options_for(.1, ToleranceKind::kPath);
+  const auto plain = time_optimal_corner(square_corner(), options);
+  const auto timed = time_optimal_corner(
+      square_corner(), options,
+      [](const geometry::BsplineCurve& curve) { return planned_time(curve, corner_limits()); });
+  EXPECT_LE(time_of(std::get<TimeOptimalBlend>(timed)), time_of(std::get<TimeOptimalBlend>(plain)));
+}
+
+}  // namespace
+}  // namespace batten::postproc

@@ -1,0 +1,185 @@
+// What is known of a run and what could be written instead of it.
+#include "postproc/smooth/run_smoother.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "gcode/state/reason.h"
+#include "postproc/runs/run_path.h"
+#include "postproc/smooth/selection/selection.h"
+#include "tests/support/one_run.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+// --- what is known of a run -------------------------------------------------------------------
+
+// The circle through any three vertices has radius 10.
+TEST(SmoothRun, KnowsTheCurvatureOfACircle) {
+  const RunFacts facts = OneRun(circle_program(100)).smooth(options_for("linuxcnc")).facts;
+  EXPECT_NEAR(facts.max_curvature, 0.1, 0.001);
+  EXPECT_NEAR(facts.fair_curvature, 0.1, 0.005);
+}
+
+// Chords are off by R (1 - cos(angle / 2)): 80 of them by 1.93 um.
+TEST(SmoothRun, KnowsHowFarChordsAreFromTheirCircle) {
+  const RunFacts facts = OneRun(circle_program(80)).smooth(options_for("linuxcnc")).facts;
+  const double height = 10 * (1 - std::cos(3.141592653589793 / 160));
+  EXPECT_NEAR(facts.error, height, 0.05 * height);
+  EXPECT_LT(facts.noise, 0.0001);
+}
+
+// Uniform scatter within 3 um has an rms of 3 / sqrt(3) um = 1.73 um, nearly all of it in Y.
+TEST(SmoothRun, KnowsHowMuchVerticesScatter) {
+  const Wave wave{.height = 0.5, .length = 40, .noise = 0.003, .decimals = 4};
+  const RunFacts facts = OneRun(wave_program(wave)).smooth(options_for("linuxcnc")).facts;
+  EXPECT_GT(facts.noise, 0.0012);
+  EXPECT_LT(facts.noise, 0.0022);
+  EXPECT_GE(facts.error, facts.noise) << "noisy vertices are as far off as they scatter";
+}
+
+// 31.416 mm at 3000 mm/min take 0.628 s, and a little more to start and to stop.
+TEST(SmoothRun, KnowsTheTimeOfTheRunUnderEachSetting) {
+  const OneRun run(circle_program(100));
+  const SmoothOptions options = options_for("linuxcnc");
+  const Times times = run.smooth(options).facts.times;
+  const double at_feed = 3.141592653589793 * 10 / 50;
+  EXPECT_GE(times.as_set, at_feed);
+  EXPECT_LT(times.as_set, 1.3 * at_feed);
+  EXPECT_LE(times.flat_out, times.as_set);
+  EXPECT_GE(times.without_merging, at_feed);
+  const std::vector<TimedPiece> motions = timed_pieces(run.run(), 0, 100);
+  const Times all = times_of(motions, *options.machine, gcode::PathMode::kBlending);
+  EXPECT_EQ(times.as_set, all.as_set);
+  EXPECT_EQ(times.without_merging, all.without_merging);
+  EXPECT_EQ(times.flat_out, all.flat_out);
+  EXPECT_GT(all.exact_path, all.as_set) << "a hundred kinks";
+}
+
+// Kinks are what candidates of one time differ by.
+TEST(SmoothRun, TimesCandidatesThatAreNotSlowerUnderEachSetting) {
+  const SmoothedRun smoothed = OneRun(circle_program(100)).smooth(options_for("linuxcnc"));
+  int timed = 0;
+  for (const Candidate& candidate : smoothed.candidates) {
+    if (slower(candidate.times, smoothed.facts.times, false, false)) continue;
+    ++timed;
+    EXPECT_GE(candidate.times.exact_path, candidate.times.as_set * (1 - 1e-9));
+    EXPECT_LE(candidate.times.flat_out, candidate.times.as_set * (1 + 1e-9));
+  }
+  EXPECT_GE(timed, 2);
+}
+
+// --- what could be written --------------------------------------------------------------------
+
+TEST(SmoothRun, MakesEveryCandidateGoodEnoughToBeProved) {
+  for (const char* target : {"linuxcnc", "grbl"}) {
+    for (const std::string& text : {circle_program(100, 3), wave_program()}) {
+      const OneRun run(text);
+      const SmoothedRun smoothed = run.smooth(options_for(target));
+      EXPECT_EQ(smoothed.reason, "");
+      EXPECT_GE(smoothed.candidates.size(), 2u);
+      for (const Candidate& candidate : smoothed.candidates) {
+        EXPECT_TRUE(verdict(text, run.with(candidate), 0.01).proved());
+        EXPECT_EQ(candidate.method, "fair");
+        EXPECT_GT(candidate.error, 0);
+        EXPECT_LE(candidate.error, 0.01);
+        EXPECT_GT(candidate.times.as_set, 0);
+      }
+    }
+  }
+}
+
+// What is left out for being dear would not have been chosen.
+TEST(SmoothRun, ChoosesAmongFewerCandidatesAsAmongAll) {
+  std::size_t left_out = 0;
+  std::vector<std::string> programs = {circle_program(40), circle_program(1000, 4), bend_program(),
+                                       wave_program()};
+  for (const double height : {0.05, 0.5, 4.0}) {
+    for (const double length : {6.0, 40.0, 300.0}) {
+      programs.push_back(wave_program({.lines = 600, .height = height, .length = length}));
+    }
+  }
+  programs.push_back(wave_program({.height = 0.5, .length = 40, .noise = 0.003, .decimals = 4}));
+  programs.push_back(wave_program({.lines = 800, .step = 0.5, .height = 5, .length = 900}));
+  for (const std::string& text : programs) {
+    for (const char* target : {"linuxcnc", "grbl"}) {
+      const OneRun run(text);
+      const SmoothOptions options = options_for(target);
+      if (run.smooth(options, CandidateScope::kToChoose).left_out) ++left_out;
+      EXPECT_EQ(run.chosen(options, CandidateScope::kToChoose),
+                run.chosen(options, CandidateScope::kAll));
+    }
+  }
+  EXPECT_GE(left_out, 4u);
+}
+
+TEST(SmoothRun, WritesTheFormThatWasAskedFor) {
+  const OneRun run(circle_program(100));
+  SmoothOptions options = options_for("linuxcnc");
+  for (const auto& [asked, written] :
+       {std::pair{Form::kArcs, OutputForm::kArcs}, std::pair{Form::kLines, OutputForm::kLines}}) {
+    options.output = asked;
+    const std::vector<Candidate> candidates = run.smooth(options).candidates;
+    EXPECT_FALSE(candidates.empty());
+    for (const Candidate& candidate : candidates) {
+      EXPECT_EQ(candidate.form, written);
+      EXPECT_EQ(candidate.text.arcs > 0, written == OutputForm::kArcs);
+    }
+  }
+}
+
+// Half a circle, in chords that are all on it.
+TEST(SmoothRun, SaysACircleInFewArcs) {
+  SmoothOptions options = options_for("linuxcnc");
+  options.output = Form::kArcs;
+  const std::vector<Candidate> candidates =
+      OneRun(circle_program(200, 3)).smooth(options).candidates;
+  ASSERT_FALSE(candidates.empty());
+  std::size_t fewest = 200;
+  for (const Candidate& candidate : candidates) {
+    EXPECT_EQ(candidate.form, OutputForm::kArcs);
+    EXPECT_LE(candidate.text.arcs, 10u);
+    fewest = std::min(fewest, candidate.text.arcs);
+  }
+  EXPECT_LE(fewest, 2u) << "two halves: those in the whole band";
+}
+
+// --- what is kept -----------------------------------------------------------------------------
+
+TEST(SmoothRun, SaysWhyThereIsNoCandidate) {
+  const OneRun run(wave_program());
+  SmoothOptions none = options_for("linuxcnc");
+  none.method = Method::kNone;
+  EXPECT_EQ(run.smooth(none).reason, gcode::reason::kMethodNone);
+  SmoothOptions tiny = options_for("linuxcnc");
+  tiny.tolerance_mm = 0.00005;  // less than rounding to four decimals costs
+  EXPECT_EQ(run.smooth(tiny).reason, gcode::reason::kNoFit);
+  for (const SmoothOptions& options : {none, tiny}) {
+    const SmoothedRun kept = run.smooth(options);
+    EXPECT_TRUE(kept.candidates.empty());
+    EXPECT_GT(kept.facts.times.as_set, 0) << "its time is known all the same";
+    EXPECT_GT(kept.facts.max_curvature, 0);
+  }
+}
+
+// A run in space that is no helix, for a target that takes no helices, in arcs alone.
+TEST(SmoothRun, SaysThatTheTargetCannot) {
+  std::string text = "G21 G90 G17\nG0 X0 Y0 Z0\nG1 X0 F3000\n";
+  for (int i = 1; i <= 100; ++i) {
+    text += fmt::format("G1 X{:.3f} Y{:.3f} Z{:.3f}\n", 0.2 * i, 2 * std::sin(0.1 * i),
+                        std::sin(0.17 * i));
+  }
+  SmoothOptions options = options_for("linuxcnc");
+  options.output = Form::kArcs;
+  const SmoothedRun kept = OneRun(text + "G0 Z5\nM2\n").smooth(options);
+  EXPECT_TRUE(kept.candidates.empty());
+  EXPECT_EQ(kept.reason, gcode::reason::kTargetCannot);
+}
+
+}  // namespace
+}  // namespace batten::postproc

@@ -1,0 +1,108 @@
+// What is said about a run before it is fitted must hold for what is made of it.
+#include "postproc/smooth/selection/run_bound.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "postproc/smooth/selection/selection.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Point3;
+
+postproc::Run run_through(std::vector<Point3> points, double feed = 600) {
+  postproc::Run run;
+  run.points = std::move(points);
+  run.feeds = {{0, feed}};
+  return run;
+}
+
+// Chords of half a circle of radius 10.
+std::vector<Point3> half_circle(int chords) {
+  constexpr double kPi = 3.141592653589793;
+  std::vector<Point3> points;
+  for (int i = 0; i <= chords; ++i) {
+    points.emplace_back(10 * std::cos(kPi * i / chords), 10 * std::sin(kPi * i / chords), 0);
+  }
+  return points;
+}
+
+Machine machine() { return *find_machine("linuxcnc"); }
+
+TEST(LeastTime, OfALineIsItsLengthAtItsFeed) {
+  const postproc::Run line = run_through({{0, 0, 0}, {20, 0, 0}, {50, 0, 0}});
+  EXPECT_DOUBLE_EQ(least_time(line, 0.01, machine()), 5);  // 50 mm at 10 mm/s
+}
+
+TEST(LeastTime, CountsEachFeedForItsMotions) {
+  postproc::Run line = run_through({{0, 0, 0}, {20, 0, 0}, {50, 0, 0}});
+  line.feeds.push_back({1, 1800});
+  EXPECT_DOUBLE_EQ(least_time(line, 0.01, machine()), 2 + 1);
+}
+
+// A chord across a right corner that passes it at 0.1 mm is 2 * 0.1 * tan(22.5 deg) shorter.
+TEST(LeastTime, LetsCornersBeCutByTheTolerance) {
+  const postproc::Run corner = run_through({{0, 0, 0}, {10, 0, 0}, {10, 10, 0}});
+  EXPECT_NEAR(least_time(corner, 0.1, machine()), (20 - 0.2 * std::tan(M_PI / 8)) / 10, 1e-12);
+}
+
+// Teeth of 0.05 mm every millimetre: the straight line through them is within the tolerance. But
+// for half a tooth at either end, where nothing is cut, it takes no longer than that.
+TEST(LeastTime, IsNoMoreThanThatOfTheLineThroughTeeth) {
+  std::vector<Point3> teeth;
+  for (int i = 0; i <= 100; ++i) teeth.emplace_back(i, i % 2 == 0 ? 0.05 : -0.05, 0);
+  EXPECT_LE(least_time(run_through(teeth), 0.06, machine()),
+            10.0 + 2 * 0.5 * (std::sqrt(1.01) - 1) / 10 + 1e-9);
+}
+
+// Chords of length c on a circle of radius r are c^2 / 8 r away from it.
+TEST(CoarsePart, IsTheShareOfVerticesThatLeaveTheTolerance) {
+  const postproc::Run run = run_through(half_circle(50));  // 0.00494 mm
+  EXPECT_EQ(coarse_part(run, 0.0045), 1);
+  EXPECT_EQ(coarse_part(run, 0.0055), 0);
+}
+
+// --- which methods are tried beside the first ----------------------------------------------------
+
+TEST(MethodsWorthTrying, AreNoneWhereNoTimeIsLeftToWinOrTheRunBends) {
+  EXPECT_TRUE(methods_worth_trying(1, 20, 9.9, 10).empty());
+  EXPECT_TRUE(methods_worth_trying(0.1, 20, 5, 10).empty());
+  EXPECT_EQ(methods_worth_trying(1, 20, 5, 10),
+            (std::vector{Method::kGuo, Method::kOzcan, Method::kTimeOptimal}));
+}
+
+// A search for each corner of a program of 149 lines, three runs of some eighty corners, took 5 s:
+// found by the fuzzer of the whole pipeline, 38 s under its sanitizers.
+TEST(MethodsWorthTrying, SearchNoCornersOfARunThatHasMany) {
+  EXPECT_EQ(methods_worth_trying(1, 80, 5, 10), std::vector{Method::kGuo});
+}
+
+// --- may_gain: the figures are far from the margins ----------------------------------------------
+
+class MayGain : public testing::Test {
+ protected:
+  [[nodiscard]] bool may_gain(const Prospect& prospect) const {
+    RunFacts before;
+    before.times = {10, 10, 10, 10};
+    before.error = 0.004;
+    return postproc::may_gain(prospect, before, 100, Prefer::kTime);
+  }
+};
+
+TEST_F(MayGain, WhatMayBecomeFasterSmallerOrNearer) {
+  EXPECT_TRUE(may_gain({.least_time = 5, .blocks = 900, .error = 0.01})) << "faster";
+  EXPECT_TRUE(may_gain({.least_time = 10, .blocks = 50, .error = 0.01})) << "smaller";
+  EXPECT_TRUE(may_gain({.least_time = 10, .blocks = 120, .error = 0.001})) << "nearer";
+}
+
+TEST_F(MayGain, NothingWithTheFeedHeldAndManyMoreBlocks) {
+  EXPECT_FALSE(may_gain({.least_time = 10, .blocks = 300, .error = 0.001}));
+  EXPECT_FALSE(may_gain({.least_time = 10, .blocks = 130, .error = 0.01}));
+}
+
+}  // namespace
+}  // namespace batten::postproc

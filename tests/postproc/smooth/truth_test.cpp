@@ -1,0 +1,262 @@
+// The path that was meant: programs made from a known surface, and how far from it what is written
+// instead of them is.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "gcode/controls/built_in.h"
+#include "geometry/fitting/fair/fair.h"
+#include "postproc/smooth/methods/run_curve.h"
+#include "tests/support/surface_programs.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::FinishSurface;
+using geometry::kPlacesPerEdge;
+using geometry::kSurfaceRows;
+using geometry::Point3;
+using geometry::rms_of_rows;
+using geometry::surface_program;
+using geometry::surface_rows;
+using geometry::SurfaceDistances;
+
+geometry::SmoothCurve fair_row(const std::vector<Point3>& row, double tolerance, bool accurate) {
+  geometry::FairOptions options;
+  options.tolerance = tolerance;
+  options.accurate = accurate;
+  auto path = geometry::fair_path(row, options);
+  EXPECT_TRUE(path);
+  return *path;
+}
+
+// The distance from the surface at every 0.1 mm of x.
+std::vector<double> offsets_along(const geometry::BsplineCurve& curve) {
+  std::vector<double> offsets;
+  double u = curve.first();
+  for (int i = 1; i < 600; ++i) {
+    for (int step = 0; step < 30; ++step) {
+      u += (0.1 * i - curve.point_at(u).x()) / curve.derivative_at(u, 1).x();
+      u = std::clamp(u, curve.first(), curve.last());
+    }
+    offsets.push_back(FinishSurface::distance(curve.point_at(u)));
+  }
+  return offsets;
+}
+
+double percentile_95(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() * 95 / 100];
+}
+
+struct CurveTruth {
+  double rms = 0;         // mm from the surface
+  double row_to_row = 0;  // mm, the difference between neighbouring rows, 95th percentile
+};
+
+CurveTruth curve_truth(const std::vector<std::vector<Point3>>& rows, double tolerance,
+                       bool accurate) {
+  SurfaceDistances fair;
+  std::vector<double> differences;
+  std::vector<double> last;
+  for (const auto& row : rows) {
+    const geometry::SmoothCurve path = fair_row(row, tolerance, accurate);
+    for (std::size_t i = 0; i + 1 < row.size(); ++i) {
+      const double u = path.vertex_parameters[i];
+      const double width = path.vertex_parameters[i + 1] - u;
+      for (int k = 0; k < kPlacesPerEdge; ++k) {
+        fair.add(
+            FinishSurface::distance(path.curve.point_at(u + (k + 0.5) / kPlacesPerEdge * width)),
+            (row[i + 1] - row[i]).norm() / kPlacesPerEdge);
+      }
+    }
+    const std::vector<double> offsets = offsets_along(path.curve);
+    for (std::size_t i = 0; i < last.size(); ++i) {
+      differences.push_back(std::abs(offsets[i] - last[i]));
+    }
+    last = offsets;
+  }
+  return {fair.rms(), percentile_95(differences)};
+}
+
+class Truth : public testing::TestWithParam<double> {};
+
+// A coordinate of three decimals is off by 0.0003 mm (rms) of itself, which is a fifth of the
+// chords' error at a CAM tolerance of 0.002 mm: there the curve has to be nearer to the surface
+// than the printed places that it is made from.
+TEST_P(Truth, OfTheCurveIsFiveTimesNearerThanThatOfTheChords) {
+  const double cam = GetParam();
+  const auto rows = surface_rows(cam);
+  for (const bool accurate : {false, true}) {
+    const CurveTruth found = curve_truth(rows, 2 * cam, accurate);
+    fmt::print("CAM tolerance {}{}: rms chords {:.6f}, curve {:.6f} mm; row to row, 95 %: {:.6f}\n",
+               cam, accurate ? ", accurate" : "", rms_of_rows(rows), found.rms, found.row_to_row);
+    EXPECT_LE(found.rms, rms_of_rows(rows) / 5);
+    EXPECT_LE(found.row_to_row, 0.001);
+  }
+}
+
+constexpr double kNoise = 0.02;  // mm, the most that vertices are moved
+
+// Noise of 0.02 mm is up to ten times the CAM tolerance and five times the user's: the band about
+// the noisy vertices does not even hold the surface. What is possible inside it is nearer to the
+// surface than the vertices were.
+TEST_P(Truth, OfTheCurveThroughNoiseIsNearerThanThatOfTheNoisyChords) {
+  const double cam = GetParam();
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const auto rows = surface_rows(cam, kNoise, seed);
+    const CurveTruth found = curve_truth(rows, 2 * cam, false);
+    fmt::print("CAM tolerance {}, noise 0.02, seed {}: rms chords {:.6f}, curve {:.6f} mm\n", cam,
+               seed, rms_of_rows(rows), found.rms);
+    EXPECT_LT(found.rms, rms_of_rows(rows));
+    // Who asks for accuracy does not get the noise itself.
+    EXPECT_LT(curve_truth(rows, 2 * cam, true).rms, 1.05 * found.rms);
+  }
+}
+
+// Without the last chord, which is what was left of the row.
+double shortest_edge(const std::vector<Point3>& row) {
+  double shortest = HUGE_VAL;
+  for (std::size_t i = 1; i + 1 < row.size(); ++i) {
+    shortest = std::min(shortest, (row[i] - row[i - 1]).norm());
+  }
+  return shortest;
+}
+
+// Vertices up, down and up again by the noise, less what the tolerance gives back, lie on a circle
+// of curvature 4 (noise - tolerance) / edge^2; and the surface bends by 3 / 36 + 0.8 / 2.3^2 at the
+// most. A curve that sweeps from one such vertex to the next bends up to three times as hard in
+// places; one with corners at noisy vertices did so a hundred times.
+TEST_P(Truth, OfTheCurveThroughNoiseHasNoCorners) {
+  const double tolerance = 2 * GetParam();
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    for (const auto& row : surface_rows(GetParam(), kNoise, seed)) {
+      const geometry::SmoothCurve path = fair_row(row, tolerance, false);
+      const double edge = shortest_edge(row);
+      const double of_noise = 4 * std::max(0.0, kNoise - tolerance) / (edge * edge);
+      const double of_surface = 3.0 / 36 + 0.8 / (2.3 * 2.3);
+      const double end = path.vertex_parameters[row.size() - 3];
+      EXPECT_LE(postproc::greatest_curvature(path.curve.part(path.curve.first(), end)),
+                3 * (of_noise + of_surface));
+      EXPECT_EQ(path.kept_corners, 0);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Surface, Truth, testing::Values(0.002, 0.005, 0.01));
+
+// --- as written --------------------------------------------------------------------------------
+
+// Of all cutting moves of a program, with the curve blocks of a target.
+double rms_of(const std::string& text, std::string_view target = "linuxcnc") {
+  const gcode::SourceText source("rows.nc", text);
+  gcode::Diagnostics ignored;
+  const gcode::Program program = gcode::parse(source, ignored);
+  SurfaceDistances distances;
+  gcode::ReadOptions reading;
+  reading.curves = gcode::find_dialect(target)->curves();
+  for (const gcode::Motion& motion : gcode::interpret(program, reading, ignored).motions) {
+    if (motion.kind == gcode::MotionKind::kRapid) continue;
+    const double step = geometry::length_of(motion.piece) / kPlacesPerEdge;
+    for (int k = 0; k < kPlacesPerEdge; ++k) {
+      distances.add(
+          FinishSurface::distance(geometry::point_at(motion.piece, (k + 0.5) / kPlacesPerEdge)),
+          step);
+    }
+  }
+  return distances.rms();
+}
+
+TEST_P(Truth, OfLinesThatPreferAccuracyIsThreeTimesThatOfTheChords) {
+  const double cam = GetParam();
+  const std::string before = surface_program(surface_rows(cam), 2000);
+  SmoothOptions options = options_for("linuxcnc");
+  options.tolerance_mm = 2 * cam;
+  options.output = Form::kLines;
+  options.prefer = Prefer::kAccuracy;
+  const SmoothResult result = smoothed(before, options);
+  EXPECT_TRUE(result.proved);
+  const double rms_before = rms_of(before);
+  const double rms_after = rms_of(result.text);
+  fmt::print("CAM tolerance {}: rms {:.6f} -> {:.6f} mm, blocks {} -> {}\n", cam, rms_before,
+             rms_after, result.blocks_in, result.blocks_out);
+  EXPECT_LE(rms_after, rms_before / 3);
+  EXPECT_LE(static_cast<double>(result.blocks_out), 1.5 * static_cast<double>(result.blocks_in));
+}
+
+// POLY, which a Siemens control takes without being asked for curves: the path that was meant, as
+// it is where arcs and lines are written.
+TEST_P(Truth, OfCurveBlocksIsFourTimesNearerThanThatOfTheChords) {
+  const double cam = GetParam();
+  const std::string before = surface_program(surface_rows(cam), 2000);
+  SmoothOptions options = options_for("siemens");
+  options.tolerance_mm = 2 * cam;
+  for (const Prefer prefer : {Prefer::kTime, Prefer::kAccuracy}) {
+    options.prefer = prefer;
+    const SmoothResult result = smoothed(before, options);
+    EXPECT_TRUE(result.proved);
+    const double rms_before = rms_of(before);
+    const double rms_after = rms_of(result.text, "siemens");
+    fmt::print("CAM tolerance {}: rms {:.6f} -> {:.6f} mm, blocks {} -> {}\n", cam, rms_before,
+               rms_after, result.blocks_in, result.blocks_out);
+    EXPECT_LE(rms_after, rms_before / 4);
+  }
+}
+
+// Rows that a machine with limits on acceleration and jerk cannot run at their feed for noise.
+void expect_faster_and_nearer(double cam, double feed, double part) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const std::string before = surface_program(surface_rows(cam, kNoise, seed), feed);
+    SmoothOptions options = options_for("fanuc");
+    options.machine = find_machine("high-speed");
+    options.tolerance_mm = 2 * cam;
+    const SmoothResult result = smoothed(before, options);
+    EXPECT_TRUE(result.proved);
+    EXPECT_EQ(rewritten_runs(result), static_cast<std::size_t>(kSurfaceRows));
+    fmt::print(
+        "CAM tolerance {}, noise 0.02, F{}, seed {}: rms {:.6f} -> {:.6f} mm, time {:.3f} -> "
+        "{:.3f} s\n",
+        cam, feed, seed, rms_of(before), rms_of(result.text), result.time_before_s,
+        result.time_after_s);
+    EXPECT_LT(result.time_after_s, part * result.time_before_s);
+    EXPECT_LT(rms_of(result.text), rms_of(before));
+  }
+}
+
+TEST_P(Truth, OfNoisyRowsIsCutNearerAndFasterAtAFinishingFeed) {
+  expect_faster_and_nearer(GetParam(), 3000, 0.97);
+}
+
+TEST_P(Truth, OfNoisyRowsIsCutNearerAndFasterAtAHighFeed) {
+  expect_faster_and_nearer(GetParam(), 6000, 0.75);
+}
+
+// At a feed that noise does not let the machine hold, on a control that rounds corners itself, with
+// six times the CAM tolerance to spend: in less time, and a fifth nearer to the surface than the
+// noisy chords.
+TEST(NoisyTruth, IsCutFasterAndNearer) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const std::string before = surface_program(surface_rows(0.005, kNoise, seed), 10000);
+    SmoothOptions options = options_for("linuxcnc");
+    options.tolerance_mm = 0.03;
+    const SmoothResult result = smoothed(before, options);
+    EXPECT_TRUE(result.proved);
+    EXPECT_EQ(rewritten_runs(result), static_cast<std::size_t>(kSurfaceRows));
+    fmt::print("noise 0.02, seed {}: rms {:.6f} -> {:.6f} mm, time {:.3f} -> {:.3f} s\n", seed,
+               rms_of(before), rms_of(result.text), result.time_before_s, result.time_after_s);
+    EXPECT_LT(result.time_after_s, 0.95 * result.time_before_s);
+    EXPECT_LT(rms_of(result.text), 0.8 * rms_of(before));
+  }
+}
+
+}  // namespace
+}  // namespace batten::postproc

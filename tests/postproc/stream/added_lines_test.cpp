@@ -1,0 +1,226 @@
+// The words of a profile in a written program: exactly these are taken, and nothing else.
+#include "postproc/stream/added_lines.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "gcode/interpreter/interpreter.h"
+#include "postproc/stream/assembly.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+const ProfileWords kWords = {
+    .header = {"(by profile)", "G5.1 Q1"},
+    .footer = {"G5.1 Q0"},
+    .before_run = {"G187 P3 E0.01"},
+    .after_run = {"G187"},
+};
+
+constexpr const char* kOld = "G21 G90\nG0 X0 Y0\nG1 X1 F100\nG1 X2\nM8\nG1 X3\nG1 X4\nM9\nM30\n";
+
+constexpr const char* kNew =
+    "(by profile)\nG5.1 Q1\nG21 G90\nG0 X0 Y0\nG187 P3 E0.01\nG1 X2 F100\nG187\nM8\n"
+    "G187 P3 E0.01\nG1 X4\nG187\nM9\nG5.1 Q0\nM30\n";
+
+AddedLines taken(const std::string& text, const ProfileWords& words = kWords,
+                 const std::string& old_text = kOld) {
+  const ReadText old_program(old_text);
+  return take_added_lines(old_program.program, text, words);
+}
+
+// What `batten verify --profile` says.
+std::vector<std::string> violations(const std::string& text, const std::string& old_text = kOld) {
+  const AddedLines added = taken(text, kWords, old_text);
+  const ReadText before(old_text);
+  const ReadText after(added.text);
+  const ReadProgram read{&after.program, &after.meaning};
+  std::vector<std::string> ids;
+  const auto add = [&ids](const std::vector<Violation>& list) {
+    for (const Violation& violation : list) ids.push_back(violation.id);
+  };
+  add(verify({&before.program, &before.meaning}, read, 0.01).violations);
+  add(added.violations);
+  add(events_in_brackets(read, added.brackets));
+  return ids;
+}
+
+std::string without(std::string text, const std::string& part) {
+  const std::size_t at = text.find(part);
+  return at == std::string::npos ? text : text.erase(at, part.size());
+}
+
+std::string with(std::string text, const std::string& part, const std::string& other) {
+  const std::size_t at = text.find(part);
+  return at == std::string::npos ? text : text.replace(at, part.size(), other);
+}
+
+TEST(AddedLines, AreTakenAndLeaveTheLineNumbers) {
+  const AddedLines added = taken(kNew);
+  EXPECT_EQ(added.text, "\n\nG21 G90\nG0 X0 Y0\n\nG1 X2 F100\n\nM8\n\nG1 X4\n\nM9\n\nM30\n");
+  EXPECT_EQ(added.lines, 7U);
+  EXPECT_TRUE(added.violations.empty());
+  ASSERT_EQ(added.brackets.size(), 2U);
+  EXPECT_EQ(added.brackets[0].before, 5U);
+  EXPECT_EQ(added.brackets[0].after, 7U);
+}
+
+TEST(AddedLines, AreProvedWithTheRest) { EXPECT_EQ(violations(kNew), std::vector<std::string>{}); }
+
+TEST(AddedLines, OfOtherLineEndsAreTakenToo) {
+  std::string text;
+  for (const char c : std::string(kNew))
+    text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_EQ(taken(text).lines, 7U);
+}
+
+TEST(AddedLines, WithoutAProfileAreBreaches) {
+  const ReadText before(kOld);
+  const ReadText after(kNew);
+  EXPECT_FALSE(
+      verify({&before.program, &before.meaning}, {&after.program, &after.meaning}, 0.01).proved());
+}
+
+struct WrongWords {
+  std::string name;
+  std::string text;
+};
+
+class AddedLinesThatAreWrong : public testing::TestWithParam<WrongWords> {};
+
+TEST_P(AddedLinesThatAreWrong, AreBreaches) {
+  EXPECT_NE(violations(GetParam().text), std::vector<std::string>{});
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AddedLines, AddedLinesThatAreWrong,
+    testing::Values(WrongWords{"AnotherNumber", with(kNew, "G187 P3 E0.01", "G187 P3 E0.02")},
+                    WrongWords{"AnotherBlank", with(kNew, "G187 P3 E0.01", "G187 P3  E0.01")},
+                    WrongWords{"OnceMore", with(kNew, "M8\n", "M8\nG187\n")},
+                    WrongWords{"NoEnd", without(kNew, "G187\n")},
+                    WrongWords{"NoEndAtAll", without(without(kNew, "G187\n"), "G187\n")},
+                    WrongWords{"NoBeginning", without(kNew, "G187 P3 E0.01\n")},
+                    WrongWords{"HalfAHeader", without(kNew, "(by profile)\n")},
+                    WrongWords{"NoHeader", without(without(kNew, "(by profile)\n"), "G5.1 Q1\n")},
+                    WrongWords{"NoFooter", without(kNew, "G5.1 Q0\n")},
+                    WrongWords{"TwoFooters", with(kNew, "M30", "G5.1 Q0\nM30")},
+                    WrongWords{"TwoHeaders", with(kNew, "G21", "(by profile)\nG5.1 Q1\nG21")},
+                    WrongWords{"FooterInsideARun",
+                               with(without(kNew, "G5.1 Q0\n"), "G1 X4\n", "G5.1 Q0\nG1 X4\n")},
+                    WrongWords{"AroundAnEvent",
+                               with(with(kNew, "G187\nM8\nG187 P3 E0.01\n", "M8\n"), "x", "x")},
+                    WrongWords{"AroundARapid", with(kNew, "G0 X0 Y0\nG187 P3 E0.01\n",
+                                                    "G187 P3 E0.01\nG0 X0 Y0\n")},
+                    WrongWords{"OtherWordsBeside",
+                               with(kNew, "G187 P3 E0.01\n", "G187 P3 E0.01\nM7\n")},
+                    WrongWords{"AnotherMoveBeside", with(kNew, "G1 X4\n", "G1 Y1\nG1 X4\n")}),
+    [](const auto& test) { return test.param.name; });
+
+// The program's own G187 P1 would be undone by the profile's G187.
+TEST(AddedLines, AreNotTakenWhereTheOldProgramHasSuchWordsItself) {
+  const std::string old_text = with(kOld, "M8", "G187 P1\nM8");
+  const std::string new_text = with(kNew, "M8", "G187 P1\nM8");
+  EXPECT_NE(violations(new_text, old_text), std::vector<std::string>{});
+  EXPECT_EQ(taken(new_text, kWords, old_text).lines, 0U);
+}
+
+TEST(LineWithWordsOf, LooksAtCodesAndNamesWhateverTheirArguments) {
+  const auto line = [](const std::string& text, const ProfileWords& words) {
+    const ReadText read(text);
+    return line_with_words_of(read.program, words);
+  };
+  EXPECT_EQ(line("G21\nG1 X1\nG187P1\n", kWords), 3U);
+  EXPECT_EQ(line("G21\ng05.1 q2 x0\n", kWords), 2U);
+  EXPECT_EQ(line("G21\n(G187)\nG18\n", kWords), 0U);
+  ProfileWords siemens;
+  siemens.before_run = {"CYCLE832(0.01,1)"};
+  siemens.after_run = {"CYCLE832(0,0)"};
+  EXPECT_EQ(line("G71\nN10 cycle832(0.02,2)\n", siemens), 2U);
+  EXPECT_EQ(line("G71\n;CYCLE832\nG1 X1\n", siemens), 0U);
+}
+
+// --- the whole way ------------------------------------------------------------------------------
+
+SmoothOptions with_words(std::string_view target, ProfileWords words) {
+  SmoothOptions options = options_for(target);
+  options.words = std::move(words);
+  options.profile = "test.toml";
+  return options;
+}
+
+ProfileWords smoothness() {
+  return {.header = {"(header)"},
+          .footer = {"(footer)"},
+          .before_run = {"G187 P3 E{tolerance}"},
+          .after_run = {"G187"}};
+}
+
+TEST(ProfileWordsInPrograms, StandAroundRewrittenRunsAndAreProved) {
+  const SmoothResult result = smoothed(wave_program(), with_words("haas", smoothness()));
+  ASSERT_EQ(rewritten_runs(result), 1U);
+  EXPECT_TRUE(result.proved);
+  EXPECT_EQ(result.added_lines, 4U);
+  const auto lines = lines_of(result.text);
+  EXPECT_EQ(lines.front(), "(header)");
+  const auto before = std::ranges::find(lines, "G187 P3 E0.01");
+  const auto after = std::ranges::find(lines, "G187");
+  const auto footer = std::ranges::find(lines, "(footer)");
+  ASSERT_TRUE(before != lines.end() && after != lines.end() && footer != lines.end());
+  EXPECT_TRUE((before + 1)->starts_with("G")) << "the run names its motion again";
+  EXPECT_NE((before + 1)->find('F'), std::string::npos) << "and its feed";
+  EXPECT_EQ(*(after + 1), "G0 Z5");
+  EXPECT_EQ(*(footer + 1), "M2");
+}
+
+TEST(ProfileWordsInPrograms, AreNotAddedWhereNothingIsRewritten) {
+  SmoothOptions options = with_words("haas", smoothness());
+  options.method = Method::kNone;
+  const SmoothResult result = smoothed(wave_program(), options);
+  EXPECT_EQ(result.text, wave_program());
+  EXPECT_EQ(result.added_lines, 0U);
+}
+
+TEST(ProfileWordsInPrograms, AreNotAddedASecondTime) {
+  const SmoothOptions options = with_words("haas", smoothness());
+  const SmoothResult once = smoothed(wave_program(), options);
+  const SmoothResult twice = smoothed(once.text, options);
+  EXPECT_TRUE(twice.understood);
+  EXPECT_EQ(twice.text, once.text);
+}
+
+TEST(ProfileWordsInPrograms, MakeAProgramThatHasThemItselfRefused) {
+  const std::string text = "G187 P1\n" + wave_program();
+  const SmoothResult result = smoothed(text, with_words("haas", smoothness()));
+  EXPECT_FALSE(result.understood);
+  EXPECT_TRUE(std::ranges::any_of(result.diagnostics, [](const gcode::Diagnostic& each) {
+    return each.id == "profile-words-in-program";
+  }));
+}
+
+TEST(ProfileWordsInPrograms, StandOnceAroundRunsThatFollowEachOther) {
+  // Two waves with a feed between that only the settings block says: one or two runs, but never an
+  // end and a beginning right after each other.
+  const SmoothResult result =
+      smoothed(head("G21") + joined(wave_lines({}), "\n") + "M8\n" +
+                   joined(wave_lines({.lines = 200, .height = -2}), "\n") + tail(),
+               with_words("haas", smoothness()));
+  EXPECT_TRUE(result.proved);
+  EXPECT_EQ(result.text.find("G187\nG187 P3"), std::string::npos);
+}
+
+TEST(ProfileWordsInPrograms, FollowTheMarksOfTheProgram) {
+  const std::string text = "%\r\nO1000 (part)\r\n" + wave_program({.line_end = "\r\n"}) + "%\r\n";
+  ProfileWords words = smoothness();
+  words.header = {"G5.1 Q1"};
+  words.footer = {"G5.1 Q0"};
+  const SmoothResult result = smoothed(text, with_words("haas", words));
+  ASSERT_EQ(rewritten_runs(result), 1U);
+  EXPECT_TRUE(result.text.starts_with("%\r\nO1000 (part)\r\nG5.1 Q1\r\nG21 G90 G17\r\n"))
+      << result.text.substr(0, 60);
+  EXPECT_TRUE(result.text.ends_with("M5\r\nG5.1 Q0\r\nM2\r\n%\r\n"));
+}
+
+}  // namespace
+}  // namespace batten::postproc

@@ -1,0 +1,217 @@
+// What holds for every target that writes lines and arcs: the written text is proved, fits the
+// control, and a second pass leaves it alone.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gcode/control/target_table.h"
+#include "gcode/controls/built_in.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+std::vector<std::string> target_names() {
+  std::vector<std::string> names = {"linuxcnc"};
+  for (const auto family : {gcode::grbl_family(), gcode::printer_family(), gcode::pc_family(),
+                            gcode::machining_center_family(), gcode::plc_family()}) {
+    for (const gcode::Dialect* each : family) names.emplace_back(each->name());
+  }
+  return names;
+}
+
+// Controls without inches refuse G20; some say units as G70 and G71, one not at all.
+std::string unit_word(const gcode::Dialect& target, gcode::Units units) {
+  const bool inch = units == gcode::Units::kInch;
+  if (target.other_meaning(210).empty()) {
+    if (!target.other_meaning(200).empty() && inch) return "";
+    return inch ? "G20" : "G21";
+  }
+  return inch ? "G70" : "G71";
+}
+
+class EveryTargetSmooths : public testing::TestWithParam<std::string> {
+ protected:
+  const gcode::Dialect& target_ = *gcode::find_dialect(GetParam());
+
+  static std::string program(const Wave& wave, const std::string& units) {
+    std::string text = wave_program(wave, units);
+    // One command in every block: some controls need it, the others take it.
+    std::string full;
+    for (const std::string& line : lines_of(text)) {
+      full += (line.starts_with('X') ? "G1 " : "") + line + wave.line_end;
+    }
+    return full;
+  }
+
+  void expect_fits(const std::string& before, const SmoothResult& result) const {
+    const auto old_lines = lines_of(before);
+    for (const std::string& line : lines_of(result.text)) {
+      EXPECT_LE(target_.line_length(line), target_.max_line_length()) << line;
+      if (std::ranges::find(old_lines, line) != old_lines.end()) continue;
+      if (target_.repeats_words() && !line.starts_with(';') && !line.starts_with('(')) {
+        EXPECT_TRUE(line.starts_with('G')) << line;
+      }
+    }
+  }
+};
+
+TEST_P(EveryTargetSmooths, AWaveInMillimetresProved) {
+  for (const Form form : {Form::kAuto, Form::kLines, Form::kArcs}) {
+    SmoothOptions options = options_for(GetParam());
+    options.output = form;
+    options.tolerance_mm = 0.02;
+    const std::string text =
+        program({.noise = 0.003}, unit_word(target_, gcode::Units::kMillimetre));
+    const SmoothResult result = smoothed(text, options);
+    ASSERT_TRUE(result.understood);
+    EXPECT_TRUE(result.proved);
+    EXPECT_LE(result.deviation_mm, 0.02);
+    if (form != Form::kArcs) {
+      EXPECT_EQ(rewritten_runs(result), 1U) << result.runs.back().reason;
+    }
+    EXPECT_TRUE(verdict(text, result.text, 0.02).proved());
+    expect_fits(text, result);
+    expect_rest_copied(text, result);
+  }
+}
+
+TEST_P(EveryTargetSmooths, AWaveInInchesProved) {
+  const std::string units = unit_word(target_, gcode::Units::kInch);
+  if (units.empty()) return;  // tested: Conversion refuses G20 there
+  SmoothOptions options = options_for(GetParam());
+  options.tolerance_mm = 0.02;
+  const std::string text = program(
+      {.step = 0.008, .height = 0.08, .length = 0.7, .noise = 0.0001, .decimals = 4, .feed = 80},
+      units);
+  const SmoothResult result = smoothed(text, options);
+  ASSERT_TRUE(result.understood);
+  EXPECT_TRUE(result.proved);
+  EXPECT_EQ(rewritten_runs(result), 1U) << result.runs.back().reason;
+  EXPECT_TRUE(verdict(text, result.text, 0.02).proved());
+  expect_fits(text, result);
+}
+
+TEST_P(EveryTargetSmooths, NothingASecondTime) {
+  SmoothOptions options = options_for(GetParam());
+  options.tolerance_mm = 0.02;
+  const std::string text = program({.noise = 0.003}, unit_word(target_, gcode::Units::kMillimetre));
+  const SmoothResult once = smoothed(text, options);
+  if (target_.comment("x").empty()) return;  // has no words to say that it was smoothed
+  EXPECT_EQ(smoothed(once.text, options).text, once.text);
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, EveryTargetSmooths, testing::ValuesIn(target_names()),
+                         [](const auto& test) { return test.param; });
+
+// --- what a profile changes is in the text ------------------------------------------------------
+
+// The written lines that are not the program's own.
+std::vector<std::string> new_lines(const std::string& before, const SmoothResult& result) {
+  const auto old_lines = lines_of(before);
+  std::vector<std::string> lines;
+  for (const std::string& line : lines_of(result.text)) {
+    if (std::ranges::find(old_lines, line) == old_lines.end()) lines.push_back(line);
+  }
+  return lines;
+}
+
+SmoothResult smoothed_for(const gcode::Dialect& target, const std::string& text) {
+  SmoothOptions options = options_for("haas");
+  options.target = &target;
+  options.output = Form::kArcs;
+  options.tolerance_mm = 0.02;
+  return smoothed(text, options);
+}
+
+TEST(AProfile, ChangesWhatIsWritten) {
+  const gcode::Dialect& haas = *gcode::find_dialect("haas");
+  gcode::TargetTable table = gcode::table_of(haas);
+  table.arc_form = gcode::ArcForm::kRadius;
+  table.max_sweep_deg = 60;
+  table.trailing_zeros = true;
+  table.blanks = false;
+  table.comments = gcode::CommentStyle::kSemicolon;
+  const auto mine = haas.with_values(table);
+  const std::string text = wave_program({.noise = 0.003});
+  const SmoothResult result = smoothed_for(*mine, text);
+  ASSERT_EQ(rewritten_runs(result), 1U);
+  EXPECT_TRUE(result.proved);
+  const auto lines = new_lines(text, result);
+  EXPECT_EQ(lines.front(), "; Batten: smoothed within 0.02 mm");
+  std::size_t arcs = 0;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    EXPECT_EQ(lines[i].find(' '), std::string::npos) << lines[i];
+    EXPECT_EQ(lines[i].find_first_of("IJK"), std::string::npos) << lines[i];
+    arcs += lines[i].find('R') != std::string::npos ? 1 : 0;
+    const std::size_t x = lines[i].find('X');
+    if (x == std::string::npos || i + 1 == lines.size()) continue;
+    const std::size_t end = lines[i].find_first_not_of("-0123456789.", x + 1);
+    const std::string number = lines[i].substr(x + 1, end == std::string::npos ? end : end - x - 1);
+    EXPECT_EQ(number.size() - number.find('.') - 1, 3U) << lines[i];
+  }
+  EXPECT_GT(arcs, 3U);
+}
+
+// Radius 5, full circles as fine chords: parts of at most 90 degrees that end at the axes.
+TEST(AProfile, SplitsArcsAtTheAxesOfThePlane) {
+  std::string text = "G21 G90 G17\nG0 X5 Y0 Z5\nG1 Z-1 F300\n";
+  for (int i = 1; i <= 360; ++i) {
+    const double angle = i * 3.14159265358979 / 180;
+    text += fmt::format("G1 X{:.4f} Y{:.4f} F1000\n", 5 * std::cos(angle), 5 * std::sin(angle));
+  }
+  text += "G0 Z5\nM30\n";
+  const gcode::Dialect& haas = *gcode::find_dialect("haas");
+  gcode::TargetTable table = gcode::table_of(haas);
+  table.single_quadrants = true;
+  const auto mine = haas.with_values(table);
+  const SmoothResult result = smoothed_for(*mine, text);
+  ASSERT_EQ(rewritten_runs(result), 1U);
+  EXPECT_TRUE(result.proved);
+  const ReadText read(result.text);
+  std::size_t arcs = 0;
+  for (const gcode::Motion& motion : read.meaning.motions) {
+    const auto* arc = motion.piece.arc();
+    if (arc == nullptr) continue;
+    ++arcs;
+    const auto quadrant = [&](double t) {
+      const geometry::Vector3 out = geometry::point_at(motion.piece, t) - arc->center;
+      return static_cast<int>(std::floor(std::atan2(out.y(), out.x()) / 1.5707963267948966));
+    };
+    EXPECT_EQ(quadrant(0.02), quadrant(0.98));
+  }
+  EXPECT_GE(arcs, 4U);
+}
+
+TEST(AProfile, OfAControlThatCutsArcsCoarselyGetsLines) {
+  const std::string text = [] {
+    std::string full;
+    for (const std::string& line : lines_of(wave_program({.noise = 0.003}))) {
+      full += (line.starts_with('X') ? "G1 " : "") + line + "\n";
+    }
+    return full;
+  }();
+  const gcode::Dialect& klipper = *gcode::find_dialect("klipper");
+  const auto arcs_in = [&text](const gcode::Dialect& target) {
+    SmoothOptions options = options_for("klipper");
+    options.target = &target;
+    options.output = Form::kArcs;
+    options.tolerance_mm = 0.02;
+    const SmoothResult result = smoothed(text, options);
+    std::size_t arcs = 0;
+    for (const std::string& line : lines_of(result.text)) {
+      arcs += line.starts_with("G2 ") || line.starts_with("G3 ") ? 1 : 0;
+    }
+    return arcs;
+  };
+  gcode::TargetTable table = gcode::table_of(klipper);
+  table.chords = {.longest = 0.1};  // resolution: 0.1
+  const auto fine = klipper.with_values(table);
+  // The wave's tightest bends have a radius of 4.1 mm: chords of 1 mm leave them by 0.03 mm, chords
+  // of 0.1 mm by 0.0003 mm.
+  EXPECT_GT(arcs_in(*fine), 3U);
+  EXPECT_LT(arcs_in(klipper), arcs_in(*fine));
+}
+
+}  // namespace
+}  // namespace batten::postproc

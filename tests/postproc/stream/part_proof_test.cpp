@@ -1,0 +1,93 @@
+// What becomes of runs whose text does not say what was promised: the next candidate, those that
+// were left out, and in the end the blocks as they were.
+#include "postproc/stream/part_proof.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "gcode/state/reason.h"
+#include "postproc/smooth/part_runs.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+constexpr const char* kElsewhere = "G1 X9 Y9\n";  // 9 mm beside every path here
+
+bool go_on(double) { return true; }
+
+// A program with one run, smoothed and not yet proved.
+class SmoothedPart {
+ public:
+  explicit SmoothedPart(const std::string& text)
+      : read_(text), part_{read_.program, read_.meaning}, runs_(find_runs(part_, options_)) {
+    EXPECT_TRUE(smooth_runs(part_, options_, go_on, runs_));
+    EXPECT_EQ(runs_.works.size(), 1U);
+  }
+
+  RunState& work() { return runs_.works.at(0); }
+
+  // Puts a wrong way before the text of so many candidates of those that may be chosen.
+  void spoil(std::size_t candidates) {
+    for (std::size_t i = 0; i < candidates; ++i) {
+      std::string& text = work().smoothed.candidates[work().selection.order.at(i)].text.text;
+      text.insert(0, kElsewhere);
+    }
+  }
+
+  ProvedText proved() {
+    auto done = prove_text(part_, options_, {}, {}, go_on, runs_);
+    EXPECT_TRUE(done);
+    return done.value_or(ProvedText{});
+  }
+
+ private:
+  ReadText read_;
+  SmoothOptions options_ = options_for("linuxcnc");
+  ProgramPart part_;
+  PartRuns runs_;
+};
+
+// Of shallow waves two forms are good enough to be chosen, and none is left out.
+const std::string kTwoForms = wave_program({.lines = 600, .height = 0.5, .length = 6});
+
+// Of steep waves near forms beat all others, which are not made.
+const std::string kOthersLeftOut = wave_program({.lines = 600, .height = 4, .length = 40});
+
+TEST(PartProof, TakesTheNextCandidateWhereOneIsWrong) {
+  SmoothedPart part(kTwoForms);
+  ASSERT_GE(part.work().selection.order.size(), 2U);
+  part.spoil(1);
+  const ProvedText done = part.proved();
+  EXPECT_TRUE(done.proved);
+  EXPECT_FALSE(done.unchanged);
+  EXPECT_EQ(part.work().tried, 1U);
+  EXPECT_EQ(done.text.find(kElsewhere), std::string::npos);
+}
+
+TEST(PartProof, MakesWhatWasLeftOutWhereAllThatWasMadeIsWrong) {
+  SmoothedPart part(kOthersLeftOut);
+  ASSERT_TRUE(part.work().smoothed.left_out);
+  part.spoil(part.work().selection.order.size());
+  const ProvedText done = part.proved();
+  EXPECT_TRUE(done.proved);
+  EXPECT_FALSE(done.unchanged);
+  EXPECT_FALSE(part.work().smoothed.left_out) << "made anew, all of them";
+  EXPECT_EQ(part.work().reject_reason, "");
+  EXPECT_EQ(done.text.find(kElsewhere), std::string::npos);
+}
+
+TEST(PartProof, KeepsTheBlocksWhereEveryCandidateIsWrong) {
+  SmoothedPart part(kTwoForms);
+  ASSERT_FALSE(part.work().smoothed.left_out);
+  part.spoil(part.work().selection.order.size());
+  const ProvedText done = part.proved();
+  EXPECT_TRUE(done.proved);
+  EXPECT_TRUE(done.unchanged);
+  EXPECT_EQ(part.work().chosen(), nullptr);
+  EXPECT_EQ(part.work().reject_reason, gcode::reason::kNotProved);
+}
+
+}  // namespace
+}  // namespace batten::postproc

@@ -1,0 +1,377 @@
+// Long programs that are compared part by part: proved only where the whole is, and with what the
+// whole says.
+#include "postproc/stream/part_verification.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
+#include "postproc/proof/verification.h"
+#include "postproc/stream/pipeline.h"
+#include "tests/support/in_windows.h"
+#include "tests/support/random_passes.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+struct Whole {
+  Verification verification;
+  gcode::Diagnostics of_old;
+  gcode::Diagnostics of_new;
+  bool understood = true;
+
+  [[nodiscard]] bool proved() const { return understood && verification.proved(); }
+};
+
+Whole as_a_whole(const std::string& before, const std::string& after, const Promise& promise) {
+  Whole whole;
+  const gcode::Program old_program =
+      gcode::parse(gcode::SourceText("old.nc", before), whole.of_old);
+  const gcode::Interpretation old_meaning = gcode::interpret(old_program, {}, whole.of_old);
+  const gcode::Program new_program = gcode::parse(gcode::SourceText("new.nc", after), whole.of_new);
+  const gcode::Interpretation new_meaning = gcode::interpret(new_program, {}, whole.of_new);
+  whole.understood = !gcode::has_error(whole.of_old) && !gcode::has_error(whole.of_new);
+  whole.verification = verify({&old_program, &old_meaning}, {&new_program, &new_meaning}, promise);
+  return whole;
+}
+
+std::optional<VerifiedInParts> in_parts(const std::string& before, const std::string& after,
+                                        const Promise& promise, std::size_t blocks,
+                                        std::size_t longest) {
+  VerifyLimits limits;
+  limits.parts.blocks = blocks;
+  limits.longest = longest;
+  const gcode::SourceText old_source("old.nc", before);
+  const gcode::SourceText new_source("new.nc", after);
+  return verify_in_parts({old_source, {}}, {new_source, {}}, promise, {}, limits);
+}
+
+std::string words_of(const Stretch& stretch) {
+  const geometry::PathComparison& found = stretch.comparison;
+  return fmt::format("{}-{} {}-{} {} {:a} {:a} {} {:a} {} {}", stretch.old_first_line,
+                     stretch.old_last_line, stretch.new_first_line, stretch.new_last_line,
+                     static_cast<int>(found.verdict), found.bounds.at_least, found.bounds.at_most,
+                     found.certificate_size, stretch.corner_mm, stretch.old_worst_line,
+                     stretch.new_worst_line);
+}
+
+std::vector<std::string> words_of(const Verification& verification) {
+  std::vector<std::string> words = {
+      fmt::format("{} events, {:a} near {}, {:a}", verification.events_compared,
+                  verification.deviation_mm, verification.deviation_line, verification.corner_mm)};
+  for (const Stretch& stretch : verification.stretches) words.push_back(words_of(stretch));
+  return words;
+}
+
+constexpr std::size_t kNeverCut = 1'000'000;  // no run has as many blocks
+
+// Whether it is proved in parts of some size. What is proved there the whole proves, with the same
+// bounds for the same stretches.
+bool compare_both_ways(const std::string& before, const std::string& after,
+                       const Promise& promise) {
+  const Whole whole = as_a_whole(before, after, promise);
+  bool any = false;
+  for (const std::size_t blocks : {1, 4, 30, 500}) {
+    SCOPED_TRACE(testing::Message() << "parts of " << blocks);
+    const auto parts = in_parts(before, after, promise, blocks, kNeverCut);
+    if (!parts) continue;
+    any = true;
+    EXPECT_TRUE(whole.proved()) << before << "\n----\n" << after;
+    EXPECT_EQ(words_of(parts->verification), words_of(whole.verification));
+    EXPECT_EQ(postproc::words_of(parts->of_old), postproc::words_of(whole.of_old));
+    EXPECT_EQ(postproc::words_of(parts->of_new), postproc::words_of(whole.of_new));
+  }
+  return any;
+}
+
+Promise promise_of(const SmoothOptions& options) {
+  return {options.tolerance_mm, options.tolerance_kind, options.side};
+}
+
+// --- programs of passes -------------------------------------------------------------------------
+
+constexpr unsigned kSeeds = 24;
+
+TEST(PartVerification, SaysOfSmoothedProgramsWhatTheWholeSays) {
+  std::size_t proved = 0;
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    SCOPED_TRACE(seed);
+    const std::string before = RandomPasses(seed).make();
+    const SmoothOptions options = options_of_seed(seed);
+    const SmoothResult smoothed = as_a_whole(before, options);
+    if (!smoothed.understood) continue;
+    proved += compare_both_ways(before, smoothed.text, promise_of(options)) ? 1 : 0;
+    if (HasFailure()) return;
+  }
+  EXPECT_GE(proved, kSeeds / 3);
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end;
+  }
+  return lines;
+}
+
+// One change of one place.
+std::string damaged(std::vector<std::string> lines, std::mt19937& random) {
+  const std::size_t at = random() % lines.size();
+  switch (random() % 7) {
+    case 0:
+      lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(at));
+      break;
+    case 1:
+      if (at + 1 < lines.size()) std::swap(lines[at], lines[at + 1]);
+      break;
+    case 2:
+      lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), "M8\n");
+      break;
+    case 3:
+      lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), "G18\n");
+      break;
+    case 4:
+      lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), "G0 Z7\n");
+      break;
+    case 5:
+      lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), "F777\n");
+      break;
+    default:
+      if (const std::size_t point = lines[at].find('.'); point != std::string::npos) {
+        char& digit = lines[at][point + 1];
+        digit = digit == '9' ? '0' : static_cast<char>(digit + 1);
+      }
+  }
+  return joined(lines, "");
+}
+
+// A lost line, a swapped pair, another word, place, state or feed: anywhere.
+TEST(PartVerification, ProvesNothingThatTheWholeRefuses) {
+  std::mt19937 random(7);
+  std::size_t refused = 0;
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    SCOPED_TRACE(seed);
+    const std::string before = RandomPasses(seed).make();
+    const SmoothOptions options = options_of_seed(seed);
+    const SmoothResult smoothed = as_a_whole(before, options);
+    if (!smoothed.understood) continue;
+    const std::vector<std::string> lines = lines_of(smoothed.text);
+    for (int i = 0; i < 12; ++i) {
+      const std::string after = damaged(lines, random);
+      refused += compare_both_ways(before, after, promise_of(options)) ? 0 : 1;
+      if (HasFailure()) return;
+    }
+  }
+  EXPECT_GE(refused, std::size_t{kSeeds} * 3);
+}
+
+// --- passes of a few blocks, each place for itself ----------------------------------------------
+
+std::string passes(int count, const std::string& at_pass_three = "") {
+  std::string text = "G21 G90 G17\nM3 S900\n";
+  for (int i = 0; i < count; ++i) {
+    text += fmt::format("G0 X{} Y0 Z5\nG1 Z-1 F300\n", i);
+    if (i == 3) text += at_pass_three;
+    text += fmt::format("G1 Y5 F800\nX{}.5\nG0 Z5\n", i);
+  }
+  return text + "M5\nM30\n";
+}
+
+TEST(PartVerification, ProvesPassesOfAnyNumberOfBlocks) {
+  for (const std::size_t blocks : {1, 2, 5, 6, 7, 11, 100}) {
+    const auto parts = in_parts(passes(8), passes(8), {0.01}, blocks, kNeverCut);
+    ASSERT_TRUE(parts) << blocks;
+    EXPECT_TRUE(parts->verification.stretches.empty());
+  }
+}
+
+// The plane is not asked for by lines: it differs at the next event, or at the end.
+TEST(PartVerification, SeesAStateThatDiffersInOnePart) {
+  for (const char* words : {"G18\n", "M8\n", "G91 G1 X0\nG90\n", "G61\n", "S901\n", "/ M1\n"}) {
+    for (const std::size_t blocks : {1, 3, 8, 100}) {
+      EXPECT_FALSE(in_parts(passes(8), passes(8, words), {0.01}, blocks, kNeverCut)) << words;
+    }
+  }
+}
+
+// A stretch that has moves in one program only is told with the line of the rapid before it, which
+// is in another part.
+TEST(PartVerification, NamesALineWhereAProgramHasNoMoves) {
+  const std::string head = "G21 G90 G17\nM3 S900\nG0 X1 Y0 Z0\nG0 X0\n";
+  const std::string before = head + "G1 X0.004 F100\nX0\nG0 Z5\nM30\n";
+  const std::string after = head + "G0 Z5\nM30\n";
+  EXPECT_TRUE(compare_both_ways(before, after, {0.01}));
+  const auto parts = in_parts(before, after, {0.01}, 1, kNeverCut);
+  ASSERT_TRUE(parts);
+  ASSERT_EQ(parts->verification.stretches.size(), 1U);
+  const Stretch& stretch = parts->verification.stretches[0];
+  EXPECT_EQ(stretch.old_first_line, 5U);
+  EXPECT_EQ(stretch.old_last_line, 6U);
+  EXPECT_EQ(stretch.new_first_line, 4U);
+  EXPECT_EQ(stretch.new_last_line, 4U);
+}
+
+// What stands behind the mark that ends the program is copied, and is asked for line by line.
+TEST(PartVerification, SeesWhatStandsBehindTheMarks) {
+  const std::string program = "%\n" + passes(4) + "%\n";
+  for (const std::size_t blocks : {1, 3, 100}) {
+    const auto proved = [&](const char* before, const char* after) {
+      return in_parts(program + before, program + after, {0.01}, blocks, kNeverCut).has_value();
+    };
+    EXPECT_TRUE(proved("(the end)\n\n", "(the end)\n\n"));
+    EXPECT_FALSE(proved("(the end)\n", "(an end)\n"));
+    EXPECT_FALSE(proved("(the end)\n\n", "(the end)\n"));
+    EXPECT_FALSE(proved("(the end)\n", ""));
+  }
+}
+
+TEST(PartVerification, StopsWhereItIsToldTo) {
+  const std::string text = passes(8);
+  const gcode::SourceText source("part.nc", text);
+  int asked = 0;
+  VerifyLimits limits;
+  limits.parts.blocks = 3;
+  const auto stopped = [&] { return ++asked > 2; };
+  EXPECT_FALSE(verify_in_parts({source, {}}, {source, {}}, {0.01}, stopped, limits));
+  EXPECT_EQ(asked, 3);
+}
+
+// --- long runs ----------------------------------------------------------------------------------
+
+// Rows to and fro, half a millimetre apart, `points` on each.
+std::vector<std::pair<double, double>> rows(int count, int points, double apart = 0.5) {
+  std::vector<std::pair<double, double>> places;
+  for (int row = 0; row < count; ++row) {
+    for (int i = 0; i < points; ++i) {
+      const double x = 0.25 * (row % 2 == 0 ? i : points - 1 - i);
+      places.emplace_back(x, apart * row + 0.05 * std::sin(x));
+    }
+  }
+  return places;
+}
+
+std::string one_run(const std::vector<std::pair<double, double>>& places,
+                    const std::string& end = "M30\n") {
+  std::string text = fmt::format("G21 G90 G17\nM3 S900\nG0 X{:.4f} Y{:.4f} Z0\nG1 F900\n",
+                                 places.front().first, places.front().second);
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    text += fmt::format("X{:.4f} Y{:.4f}\n", places[i].first, places[i].second);
+  }
+  return text + end;
+}
+
+// As the whole, but for where the run is listed in pieces: the tolerance is then kept by each, and
+// the greatest deviation is that of the whole within what bounds may be apart.
+TEST(PartVerification, ProvesALongRunInPieces) {
+  const std::string before = one_run(rows(40, 60));
+  SmoothOptions options = options_for("linuxcnc");
+  options.method = Method::kFair;
+  const LongRunLimits long_runs{.whole_at_most = 500, .shortest = 150, .longest = 300};
+  const SmoothResult smoothed = as_a_whole(before, options, long_runs);
+  ASSERT_GT(rewritten_runs(smoothed), 5U);
+  const Promise promise(options.tolerance_mm);
+  const Whole whole = as_a_whole(before, smoothed.text, promise);
+  ASSERT_TRUE(whole.proved());
+  for (const std::size_t blocks : {40, 100, 333}) {
+    const auto parts = in_parts(before, smoothed.text, promise, blocks, 700);
+    ASSERT_TRUE(parts) << blocks;
+    const Verification& found = parts->verification;
+    EXPECT_GT(found.stretches.size(), 2U);
+    EXPECT_EQ(found.events_compared, whole.verification.events_compared);
+    EXPECT_LE(found.deviation_mm, promise.tolerance_mm);
+    EXPECT_NEAR(found.deviation_mm, whole.verification.deviation_mm, 0.02 * promise.tolerance_mm);
+    const std::vector<Stretch>& all = found.stretches;
+    for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+      EXPECT_EQ(all[i].comparison.verdict, geometry::Verdict::kProved);
+      EXPECT_LT(all[i].old_last_line, all[i + 1].old_first_line);
+      EXPECT_LT(all[i].new_last_line, all[i + 1].new_first_line);
+    }
+  }
+}
+
+// One vertex of the new run is off: in the first, a middle and the last piece.
+TEST(PartVerification, ProvesNoLongRunThatLeavesTheToleranceAnywhere) {
+  const auto places = rows(20, 50);
+  const std::string before = one_run(places);
+  ASSERT_TRUE(in_parts(before, one_run(places, "(end)\nM30\n"), {0.01}, 50, 100));
+  for (std::size_t at = 1; at < places.size(); at += 37) {
+    auto moved = places;
+    moved[at].second += 0.03;
+    EXPECT_FALSE(in_parts(before, one_run(moved), {0.01}, 50, 100)) << at;
+  }
+}
+
+// Two feeds that are one when they are compared, but that are two in one program only.
+TEST(PartVerification, SeesAFeedThatBeginsWhereARunIsCut) {
+  const auto places = rows(20, 50);
+  const std::string before = one_run(places);
+  std::vector<std::string> lines = lines_of(before);
+  std::size_t refused = 0;
+  for (std::size_t at = 10; at + 10 < lines.size(); ++at) {
+    std::vector<std::string> other = lines;
+    other[at].insert(other[at].size() - 1, " F900.0005");
+    const std::string after = joined(other, "");
+    EXPECT_FALSE(in_parts(before, after, {0.01}, 50, 100)) << at;
+    if (at % 50 == 0) refused += as_a_whole(before, after, {0.01}).proved() ? 0 : 1;
+  }
+  EXPECT_GT(refused, 0U);
+}
+
+// Rows 0.012 mm apart may come to lie on each other within the tolerance of 0.01: the new run
+// crosses itself, between pieces that are proved each for itself.
+TEST(PartVerification, SeesPiecesThatCrossEachOther) {
+  const auto places = rows(6, 300, 0.012);
+  auto crossed = places;
+  for (std::size_t i = 0; i < crossed.size(); ++i) {
+    const std::size_t row = i / 300;
+    const std::size_t along = i % 300;
+    if (along < 100 || along > 200) continue;
+    if (row == 1) crossed[i].second += 0.008;
+    if (row == 2) crossed[i].second -= 0.008;
+  }
+  const std::string before = one_run(places);
+  const std::string after = one_run(crossed);
+  const Whole whole = as_a_whole(before, after, {0.01});
+  ASSERT_EQ(whole.verification.violations.size(), 1U);
+  EXPECT_EQ(whole.verification.violations[0].id, "crosses-itself");
+  for (const std::size_t longest : {60, 150, 400}) {
+    EXPECT_FALSE(in_parts(before, after, {0.01}, 50, longest)) << longest;
+    EXPECT_TRUE(in_parts(before, one_run(places, "(end)\nM30\n"), {0.01}, 50, longest)) << longest;
+  }
+}
+
+// Rows to and fro on one line are no matter of the new program: but it meets itself, and how the
+// old one did is known to the whole only.
+TEST(PartVerification, LeavesARunThatMeetsItselfToTheWhole) {
+  const auto places = rows(20, 50, 0);
+  const std::string before = one_run(places);
+  const std::string after = one_run(places, "(end)\nM30\n");
+  EXPECT_TRUE(as_a_whole(before, after, {0.01}).proved());
+  EXPECT_FALSE(in_parts(before, after, {0.01}, 50, 100));
+}
+
+// At a corner on the cut neither piece would say on which side the new path goes round it.
+TEST(PartVerification, CutsNoRunWhoseSideIsAskedFor) {
+  const auto places = rows(20, 50);
+  const Promise left(0.01, geometry::ToleranceKind::kPath, geometry::Side::kLeft);
+  const auto parts = in_parts(one_run(places), one_run(places, "(end)\nM30\n"), left, 50, 100);
+  ASSERT_TRUE(parts);
+  EXPECT_TRUE(parts->verification.stretches.empty());
+}
+
+}  // namespace
+}  // namespace batten::postproc

@@ -1,0 +1,57 @@
+// Messages reach readers that stop at the first byte that is not UTF-8.
+
+#include "postproc/system/valid_utf8.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+namespace batten::postproc {
+namespace {
+
+struct Utf8Case {
+  const char* name;
+  std::string_view bytes;
+  std::string_view expected;
+};
+
+class ValidUtf8 : public testing::TestWithParam<Utf8Case> {};
+
+TEST_P(ValidUtf8, KeepsCharactersAndMarksOtherBytes) {
+  EXPECT_EQ(as_valid_utf8(GetParam().bytes), GetParam().expected);
+}
+
+#define FFFD "\xEF\xBF\xBD"
+INSTANTIATE_TEST_SUITE_P(
+    Bytes, ValidUtf8,
+    testing::Values(Utf8Case{"Nothing", "", ""}, Utf8Case{"Ascii", "part.nc:1", "part.nc:1"},
+                    Utf8Case{"TwoBytes", "30\xC2\xB0", "30\xC2\xB0"},
+                    Utf8Case{"ThreeBytes", "\xE2\x82\xAC", "\xE2\x82\xAC"},
+                    Utf8Case{"FourBytes", "\xF0\x9F\x94\xA9", "\xF0\x9F\x94\xA9"},
+                    Utf8Case{"Latin1", "Fr\xE4ser", "Fr" FFFD "ser"},
+                    Utf8Case{"LoneContinuation", "a\x80z", "a" FFFD "z"},
+                    Utf8Case{"CutOff", "a\xE2\x82", "a" FFFD FFFD},
+                    Utf8Case{"Overlong", "\xC0\xAF", FFFD FFFD},
+                    Utf8Case{"Surrogate", "\xED\xA0\x80", FFFD FFFD FFFD},
+                    Utf8Case{"AboveUnicode", "\xF4\x90\x80\x80", FFFD FFFD FFFD FFFD}),
+    [](const auto& test) { return test.param.name; });
+
+// nlohmann's parser decides for itself what is UTF-8.
+TEST(ValidUtf8, OfAnyBytesIsTakenByAStrictReader) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> any(0x20, 0xFF);
+  std::uniform_int_distribution<int> high(0xBF, 0xF5);
+  for (int round = 0; round < 2000; ++round) {
+    std::string bytes;
+    for (int i = 0; i < 12; ++i) {
+      bytes += static_cast<char>(i % 3 == 0 ? high(random) : any(random));
+    }
+    const std::string text = as_valid_utf8(bytes);
+    EXPECT_NO_THROW((void)nlohmann::json(text).dump()) << round;
+    EXPECT_EQ(as_valid_utf8(text), text);
+  }
+}
+
+}  // namespace
+}  // namespace batten::postproc

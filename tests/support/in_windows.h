@@ -1,0 +1,107 @@
+// Programs smoothed window by window beside the same ones as a whole.
+#pragma once
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "gcode/text/diagnostic.h"
+#include "gcode/text/source_text.h"
+#include "postproc/stream/pipeline.h"
+#include "postproc/stream/windows.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+
+struct InWindows {
+  std::optional<SmoothResult> result;
+  std::string text;
+  std::size_t parts = 0;
+};
+
+inline InWindows in_windows(const std::string& text, const SmoothOptions& options,
+                            const WindowLimits& limits) {
+  InWindows done;
+  const TextSink sink = [&](std::string_view part) {
+    done.text += part;
+    ++done.parts;
+    return true;
+  };
+  const gcode::SourceText source("part.nc", text);
+  std::vector<LineRange> copied;
+  for (bool again = true; again;) {
+    const std::size_t before = lines_in(copied);
+    done.text.clear();
+    done.parts = 0;
+    done.result = smooth_in_windows(source, options, sink, {}, limits, &copied);
+    again = !done.result && lines_in(copied) > before;
+  }
+  return done;
+}
+
+inline InWindows in_windows(const std::string& text, const SmoothOptions& options,
+                            std::size_t least_blocks) {
+  return in_windows(text, options, WindowLimits{.least_blocks = least_blocks});
+}
+
+inline SmoothResult as_a_whole(const std::string& text, const SmoothOptions& options,
+                               const LongRunLimits& long_runs = {}) {
+  return smooth_program(gcode::SourceText("part.nc", text), options, {}, long_runs);
+}
+
+inline std::vector<std::string> words_of(const gcode::Diagnostics& diagnostics) {
+  std::vector<std::string> words;
+  for (const gcode::Diagnostic& each : diagnostics) {
+    words.push_back(fmt::format("{} {} {}-{} {}", static_cast<int>(each.severity), each.id,
+                                each.where.begin, each.where.end, each.message));
+  }
+  return words;
+}
+
+// Every field, the numbers to their last bit.
+inline std::string words_of(const RunReport& run) {
+  std::string text = fmt::format(
+      "{}-{} {} {} {} {} {} {}->{} {:a} {} {:a} {:a} {:a} {:a} {:a}", run.first_line, run.last_line,
+      run.points, static_cast<int>(run.status), run.reason, run.method, static_cast<int>(run.form),
+      run.blocks_in, run.blocks_out, run.deviation_mm, run.proved, run.noise_mm,
+      run.max_curvature_before, run.max_curvature_after, run.time_before_s, run.time_after_s);
+  for (const MethodTime& each : run.methods) {
+    text += fmt::format(" {} {:a}", each.method, each.time_s);
+  }
+  return text;
+}
+
+inline void expect_same(const InWindows& windows, const SmoothResult& whole) {
+  const SmoothResult& parts = *windows.result;
+  ASSERT_EQ(windows.text, whole.text);
+  EXPECT_EQ(words_of(parts.diagnostics), words_of(whole.diagnostics));
+  ASSERT_EQ(parts.runs.size(), whole.runs.size());
+  for (std::size_t i = 0; i < whole.runs.size(); ++i) {
+    EXPECT_EQ(words_of(parts.runs[i]), words_of(whole.runs[i])) << "run " << i;
+  }
+  const auto figures = [](const SmoothResult& r) {
+    return std::tuple(r.understood, r.units, r.blocks_in, r.blocks_out, r.bytes_out(),
+                      r.added_lines, r.deviation_mm, r.deviation_line, r.corner_mm, r.time_before_s,
+                      r.time_after_s, r.proved);
+  };
+  EXPECT_EQ(figures(parts), figures(whole));
+}
+
+// Controls, methods, tolerances and threads in turn.
+inline SmoothOptions options_of_seed(unsigned seed) {
+  static const std::vector<std::string> kTargets = {"linuxcnc", "fanuc", "grbl", "haas"};
+  SmoothOptions options = options_for(kTargets[seed % kTargets.size()]);
+  options.threads = 1 + static_cast<int>(seed % 2);
+  if (seed % 6 != 1) options.method = Method::kFair;
+  if (seed % 5 == 2) options.tolerance_kind = geometry::ToleranceKind::kBand;
+  if (seed % 7 == 3) options.allowed = {"exact-stop"};
+  return options;
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,61 @@
+// A result as `batten smooth` could have made it, for the tests of the reports.
+#pragma once
+
+#include <string>
+
+#include "gcode/controls/built_in.h"
+#include "gcode/state/reason.h"
+#include "postproc/report/smooth_report.h"
+
+namespace batten::postproc {
+
+// Two runs rewritten in lines and arcs, three kept: two too short (2 + 3 blocks), one in exact
+// stop (10 blocks).
+inline SmoothResult five_runs() {
+  SmoothResult result;
+  result.text = "G21\nG1 X1\n";
+  result.understood = true;
+  result.proved = true;
+  result.units = gcode::Units::kMillimetre;
+  result.blocks_in = 200;
+  result.blocks_out = 50;
+  result.deviation_mm = 0.0098;
+  result.deviation_line = 120;
+  result.time_before_s = 4.0;
+  result.time_after_s = 2.0;
+  RunReport lines;
+  lines.first_line = 10;
+  lines.last_line = 109;
+  lines.points = 101;
+  lines.status = RunStatus::kRewritten;
+  lines.method = "fair";
+  lines.blocks_in = 100;
+  lines.blocks_out = 20;
+  lines.deviation_mm = 0.0098;
+  lines.proved = true;
+  RunReport arcs = lines;
+  arcs.first_line = 120;
+  arcs.last_line = 180;
+  arcs.form = OutputForm::kArcs;
+  RunReport short_run;
+  short_run.first_line = 182;
+  short_run.last_line = 183;
+  short_run.blocks_in = 2;
+  short_run.reason = gcode::reason::kTooShort;
+  RunReport other_short_run = short_run;
+  other_short_run.blocks_in = 3;
+  RunReport stop = short_run;
+  stop.blocks_in = 10;
+  stop.reason = gcode::reason::kExactStop;
+  result.runs = {lines, short_run, arcs, other_short_run, stop};
+  return result;
+}
+
+inline SmoothOptions linuxcnc_options() {
+  SmoothOptions options;
+  options.target = gcode::find_dialect("linuxcnc");
+  options.machine = find_machine("linuxcnc");
+  return options;
+}
+
+}  // namespace batten::postproc
