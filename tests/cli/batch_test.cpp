@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "batten_process.h"
+#include "tests/support/places.h"
 
 namespace batten {
 namespace {

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <string>
 
+#include "tests/support/places.h"
 #include "tests/support/scratch_folder.h"
 
 namespace batten {

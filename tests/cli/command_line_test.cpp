@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "batten_process.h"
+#include "tests/support/places.h"
 
 namespace batten {
 namespace {

@@ -14,6 +14,7 @@
 
 #include "batten_process.h"
 #include "tests/support/counts_memory.h"
+#include "tests/support/places.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "batten_process.h"
+#include "tests/support/places.h"
 
 namespace batten {
 namespace {

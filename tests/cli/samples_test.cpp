@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "batten_process.h"
+#include "tests/support/places.h"
 
 namespace batten {
 namespace {

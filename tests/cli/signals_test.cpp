@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "batten_process.h"
+#include "tests/support/places.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten {

@@ -14,6 +14,7 @@
 #include "geometry/fitting/naseath/naseath.h"
 #include "geometry/path/bspline_curve.h"
 #include "geometry/path/parameter_samples.h"
+#include "tests/support/places.h"
 
 namespace batten::geometry {
 

@@ -15,6 +15,7 @@
 #include "gcode/controls/row_dialect.h"
 #include "gcode/state/units.h"
 #include "tests/support/dialect_arcs.h"
+#include "tests/support/places.h"
 
 namespace batten::gcode {
 namespace {

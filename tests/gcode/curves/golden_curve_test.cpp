@@ -12,6 +12,7 @@
 #include "gcode/curves/siemens_bspline.h"
 #include "gcode/curves/siemens_poly.h"
 #include "tests/support/curve_texts.h"
+#include "tests/support/places.h"
 
 namespace batten::gcode {
 namespace {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "tests/fuzz/parse_promises.h"
+#include "tests/support/places.h"
 
 namespace batten::gcode {
 namespace {

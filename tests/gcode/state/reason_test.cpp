@@ -9,6 +9,7 @@
 #include <string>
 
 #include "gcode/state/conversion_reason.h"
+#include "tests/support/places.h"
 
 namespace batten::gcode::reason {
 namespace {

@@ -14,6 +14,7 @@
 
 #include "gcode/controls/built_in.h"
 #include "gcode/state/units.h"
+#include "tests/support/places.h"
 
 namespace batten::gcode {
 namespace {

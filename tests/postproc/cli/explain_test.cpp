@@ -11,6 +11,7 @@
 
 #include "gcode/reading/explained_diagnostics.h"
 #include "gcode/state/reason.h"
+#include "tests/support/places.h"
 
 namespace batten::postproc {
 namespace {

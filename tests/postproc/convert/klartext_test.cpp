@@ -19,6 +19,7 @@
 #include "geometry/distance/path_distance.h"
 #include "postproc/proof/verification.h"
 #include "tests/support/klartext_programs.h"
+#include "tests/support/places.h"
 #include "tests/support/random_curves.h"
 #include "tests/support/wavy_programs.h"
 

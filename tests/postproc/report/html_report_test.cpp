@@ -10,6 +10,7 @@
 #include "gcode/controls/built_in.h"
 #include "postproc/report/json_report.h"
 #include "postproc/report/page_files.h"
+#include "tests/support/places.h"
 #include "tests/support/report_words.h"
 #include "tests/support/wavy_programs.h"
 

@@ -23,6 +23,7 @@
 #include "postproc/stream/chunk_reader.h"
 #include "postproc/stream/inspect.h"
 #include "tests/support/in_windows.h"
+#include "tests/support/places.h"
 #include "tests/support/random_passes.h"
 #include "tests/support/wavy_programs.h"
 

@@ -18,6 +18,7 @@
 #include "tests/fuzz/parse_promises.h"
 #include "tests/fuzz/program_mutation.h"
 #include "tests/fuzz/smooth_promises.h"
+#include "tests/support/places.h"
 
 namespace batten::postproc {
 namespace {

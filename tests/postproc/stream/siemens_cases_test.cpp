@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/support/constructs.h"
+#include "tests/support/places.h"
 
 namespace batten::postproc {
 namespace {

@@ -18,6 +18,7 @@
 #include "postproc/stream/prescan.h"
 #include "postproc/stream/window_work.h"
 #include "tests/support/in_windows.h"
+#include "tests/support/places.h"
 #include "tests/support/random_passes.h"
 #include "tests/support/wavy_programs.h"
 
