@@ -15,7 +15,6 @@
 #include "geometry/basic/tolerance_kind.h"
 #include "geometry/distance/chord_polyline.h"
 #include "geometry/distance/in_order_matching.h"
-#include "geometry/distance/path_matching.h"
 
 namespace batten::geometry {
 namespace {

@@ -34,4 +34,9 @@ struct BandComparison {
 [[nodiscard]] BandComparison compare_in_band(std::span<const PathPiece> old_path,
                                              std::span<const PathPiece> new_path, double tolerance);
 
+// As match_paths (path_distance.h), in the band reading: at a corner that is cut, the new path
+// waits for three pairs while the old one goes round it.
+[[nodiscard]] PathMatching match_in_band(std::span<const PathPiece> old_path,
+                                         std::span<const PathPiece> new_path, double tolerance);
+
 }  // namespace batten::geometry

@@ -13,7 +13,6 @@
 #include "geometry/distance/free_space.h"
 #include "geometry/distance/in_order_matching.h"
 #include "geometry/distance/path_distance_predicates.h"
-#include "geometry/distance/path_matching.h"
 
 namespace batten::geometry {
 namespace {

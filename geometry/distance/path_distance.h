@@ -15,6 +15,9 @@
 // lie in a heap within the tolerance of themselves, where the search would cost too much.
 //
 // What is not checked. Piece ends must chain; a gap counts as a straight piece.
+//
+// `match_paths` gives the certificate too, for those who want to show where along the paths the
+// distance is how great.
 #pragma once
 
 #include <cstddef>
@@ -58,5 +61,28 @@ struct PathComparison {
 // each other.
 [[nodiscard]] PathComparison compare_paths(std::span<const PathPiece> a,
                                            std::span<const PathPiece> b, double tolerance);
+
+// Places that are passed together. They lie on the chords that stand for the pieces: on lines
+// exactly, on arcs to within 0.5 % of the tolerance.
+struct PlacePair {
+  std::size_t piece_a = 0;
+  std::size_t piece_b = 0;
+  Point3 a = Point3::Zero();
+  Point3 b = Point3::Zero();
+};
+
+struct PathMatching {
+  PathComparison comparison;
+  // From both starts to both ends, forward on both; between neighbours both run straight along one
+  // chord. Every end of a piece of either path is in one of them. None where both paths are empty.
+  std::vector<PlacePair> pairs;
+};
+
+// `comparison` is that of compare_paths. Where it is proved, the pairs are its certificate: no
+// distance of a pair is above `bounds.at_most`, and the greatest is below it by the chord errors
+// only, which are 1 % of the tolerance together at the most. Elsewhere they are the best matching
+// that was found.
+[[nodiscard]] PathMatching match_paths(std::span<const PathPiece> a, std::span<const PathPiece> b,
+                                       double tolerance);
 
 }  // namespace batten::geometry

@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "geometry/basic/rounding.h"
-#include "geometry/distance/path_matching.h"
+#include "geometry/distance/band_comparison.h"
+#include "geometry/distance/path_distance.h"
 #include "postproc/report/page_curvature.h"
 #include "postproc/report/page_thinning.h"
 

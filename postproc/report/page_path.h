@@ -3,7 +3,7 @@
 //
 // Made from the two texts alone, by the verifier's own reading and comparison: the deviation along
 // the path is the distance of the pairs that are the certificate of the proof
-// (geometry/distance/path_matching.h), not a nearest-point distance measured beside it.
+// (geometry/distance/path_distance.h), not a nearest-point distance measured beside it.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,3 @@
-#include "geometry/distance/path_matching.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "geometry/distance/band_comparison.h"
+#include "geometry/distance/path_distance.h"
 #include "tests/support/paths.h"
 
 namespace batten::geometry {
