@@ -13,7 +13,6 @@
 #include "geometry/band/tolerance_band.h"
 #include "geometry/basic/point.h"
 #include "geometry/path/path.h"
-#include "geometry/path/plane_curve.h"
 
 namespace batten::geometry {
 

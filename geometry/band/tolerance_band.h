@@ -18,8 +18,6 @@
 
 namespace batten::geometry {
 
-using Point2 = Eigen::Vector2d;
-
 // Two parts of one path whose bands overlap: edges first_from..first_to and second_from..second_to.
 struct BandOverlap {
   std::size_t first_from = 0;
@@ -47,12 +45,11 @@ struct BandStructure {
 // never leaves the band, as the legs of a corner, are one part and do not overlap. The ends of a
 // closed path are neighbours.
 //
-// Nothing where the path lies in a heap: more than kMostPairs pairs of edges for each edge are near
-// to each other. Throws std::invalid_argument when the tolerance is not a positive number.
+// Nothing where the path lies in a heap: more than kMostPairs (tolerance_band_pairs.h) pairs of
+// edges for each edge are near to each other. Throws std::invalid_argument when the tolerance is
+// not a positive number.
 [[nodiscard]] std::optional<BandStructure> band_structure(std::span<const Point2> points,
                                                           double tolerance);
-
-inline constexpr std::size_t kMostPairs = 200;
 
 // Where two paths are compared: index of the pieces and a place.
 struct NewCrossing {

@@ -9,6 +9,7 @@
 
 #include "geometry/basic/rounding.h"
 #include "geometry/path/box_grid.h"
+#include "geometry/path/plane_curve.h"
 
 namespace batten::geometry {
 namespace {

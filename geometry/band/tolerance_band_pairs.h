@@ -1,5 +1,5 @@
 // Which edges of a flat path are near to each other, and which of these pairs belong together.
-// Used by tolerance_band*.cpp only.
+// Used by geometry/band/*.cpp only.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/band/tolerance_band.h"
+#include "geometry/basic/point.h"
 
 namespace batten::geometry {
 
@@ -48,6 +48,8 @@ struct EdgePair {
     return a.first != b.first ? a.first < b.first : a.second < b.second;
   }
 };
+
+inline constexpr std::size_t kMostPairs = 200;  // for each edge; more are a heap
 
 // All pairs of edges, neighbours too, whose distance is at most `reach` (mm), sorted. Nothing when
 // there are more than kMostPairs for each edge.

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/path/plane_curve.h"
+#include "geometry/basic/point.h"
 
 namespace batten::geometry {
 

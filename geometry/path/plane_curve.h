@@ -6,13 +6,11 @@
 #include <cstddef>
 #include <vector>
 
+#include "geometry/basic/point.h"
 #include "geometry/path/curve_pieces.h"
 #include "geometry/path/path.h"
 
 namespace batten::geometry {
-
-using Point2 = Eigen::Vector2d;
-using Vector2 = Eigen::Vector2d;
 
 [[nodiscard]] inline double cross(const Vector2& a, const Vector2& b) {
   return a.x() * b.y() - a.y() * b.x();
