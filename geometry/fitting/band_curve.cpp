@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "geometry/fitting/band_curve_barrier.h"
-#include "geometry/fitting/band_curve_rows.h"
+#include "geometry/fitting/band_problem.h"
 
 namespace batten::geometry {
 
@@ -136,18 +136,6 @@ class BandSolver {
 };
 
 }  // namespace
-
-HeldPoint HeldPoint::at(std::size_t index, const Point3& place) {
-  return {index, place, Eigen::Matrix3d::Zero()};
-}
-
-HeldPoint HeldPoint::on_line(std::size_t index, const Point3& place, const Vector3& direction) {
-  return {index, place, direction * direction.transpose()};
-}
-
-HeldPoint HeldPoint::on_plane(std::size_t index, const Point3& place, const Vector3& normal) {
-  return {index, place, Eigen::Matrix3d::Identity() - normal * normal.transpose()};
-}
 
 BandCurve solve_band(const BandProblem& problem, std::vector<Point3> start,
                      const BarrierOptions& options) {

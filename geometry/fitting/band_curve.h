@@ -4,66 +4,13 @@
 // Method: docs/algorithms/band_curve.md.
 #pragma once
 
-#include <cstddef>
-#include <functional>
 #include <vector>
 
 #include "geometry/basic/point.h"
+#include "geometry/fitting/band_problem.h"
 #include "geometry/path/bspline_curve.h"
 
 namespace batten::geometry {
-
-// What "no further than radius" is about.
-enum class BandShape {
-  kBall,      // the full distance
-  kCylinder,  // the distance across `direction`: sliding along it is free
-  kSlab,      // the distance along `direction`: sliding across it is free
-};
-
-struct BandSample {
-  double parameter = 0;
-  // 0: the place of the curve is bounded, mm; d > 0: its d-th derivative by the parameter.
-  int derivative = 0;
-  Point3 foot = Point3::Zero();
-  BandShape shape = BandShape::kBall;
-  Vector3 direction = Vector3::Zero();  // unit; kBall: not used
-  double radius = 0;                    // > 0
-  // Unit or zero. Not zero: the value is not behind the foot in this direction, so that of a
-  // cylinder the half on one side of the path is left.
-  Vector3 side = Vector3::Zero();
-  // The energy has pull * distance^2 added, the distance being what the radius bounds.
-  double pull = 0;
-};
-
-// A control point that is not free to go anywhere.
-struct HeldPoint {
-  std::size_t index = 0;
-  Point3 place = Point3::Zero();
-  Eigen::Matrix3d free = Eigen::Matrix3d::Zero();  // projector on the directions it may go in
-
-  [[nodiscard]] static HeldPoint at(std::size_t index, const Point3& place);
-  // `direction`, `normal`: unit.
-  [[nodiscard]] static HeldPoint on_line(std::size_t index, const Point3& place,
-                                         const Vector3& direction);
-  [[nodiscard]] static HeldPoint on_plane(std::size_t index, const Point3& place,
-                                          const Vector3& normal);
-};
-
-// How much the energy counts at a parameter.
-struct EnergyWeight {
-  double weight = 1;                // >= 0
-  Vector3 along = Vector3::Zero();  // unit or zero: in this direction it counts next to nothing
-};
-
-struct BandProblem {
-  BsplineBasis basis;  // of degree 3
-  // The energy is the integral of weight * |C^(energy)|^2 over the parameter, 2 or 3.
-  int energy = 3;
-  // Empty: 1 everywhere. Else it is asked at four places per span.
-  std::function<EnergyWeight(double)> weight;
-  std::vector<BandSample> samples;
-  std::vector<HeldPoint> held;
-};
 
 struct BarrierOptions {
   int max_steps = 200;

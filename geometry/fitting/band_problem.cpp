@@ -1,4 +1,4 @@
-#include "geometry/fitting/band_curve_rows.h"
+#include "geometry/fitting/band_problem.h"
 
 #include <algorithm>
 #include <cmath>
@@ -88,6 +88,18 @@ std::vector<EnergyTerm> energy_terms(const BandProblem& problem) {
 }
 
 }  // namespace
+
+HeldPoint HeldPoint::at(std::size_t index, const Point3& place) {
+  return {index, place, Eigen::Matrix3d::Zero()};
+}
+
+HeldPoint HeldPoint::on_line(std::size_t index, const Point3& place, const Vector3& direction) {
+  return {index, place, direction * direction.transpose()};
+}
+
+HeldPoint HeldPoint::on_plane(std::size_t index, const Point3& place, const Vector3& normal) {
+  return {index, place, Eigen::Matrix3d::Identity() - normal * normal.transpose()};
+}
 
 double BandRows::energy(const std::vector<Point3>& points) const {
   double sum = 0;
