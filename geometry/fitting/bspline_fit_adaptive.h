@@ -12,11 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "geometry/fitting/bspline_fit.h"
-#include "geometry/fitting/bspline_fit_changes.h"
-#include "geometry/fitting/bspline_fit_spline.h"
 #include "geometry/fitting/bspline_fit_system.h"
 #include "geometry/fitting/bspline_fit_weights.h"
+#include "geometry/fitting/fit_problem.h"
 #include "geometry/path/bspline_curve.h"
 
 namespace batten::geometry {

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "geometry/basic/point.h"
-#include "geometry/fitting/bspline_fit.h"
+#include "geometry/fitting/fit_problem.h"
 
 namespace batten::geometry {
 

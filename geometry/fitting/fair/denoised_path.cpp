@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "geometry/fitting/bspline_fit_spline.h"
 #include "geometry/fitting/bspline_fit_system.h"
 #include "geometry/fitting/bspline_fit_weights.h"
 #include "geometry/numeric/extrema.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "geometry/basic/point.h"
-#include "geometry/fitting/bspline_fit_parts.h"
+#include "geometry/fitting/bspline_fit.h"
 #include "geometry/fitting/fair/fair.h"
 #include "geometry/fitting/fair/fair_measure.h"
 #include "geometry/fitting/fair/fair_problem.h"

@@ -3,8 +3,7 @@
 
 #include <vector>
 
-#include "geometry/fitting/bspline_fit.h"
-#include "geometry/fitting/bspline_fit_changes.h"
+#include "geometry/fitting/fit_problem.h"
 
 namespace batten::geometry {
 

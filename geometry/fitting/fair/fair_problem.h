@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "geometry/basic/point.h"
-#include "geometry/fitting/bspline_fit.h"
 #include "geometry/fitting/fair/path_features.h"
+#include "geometry/fitting/fit_problem.h"
 
 namespace batten::geometry {
 

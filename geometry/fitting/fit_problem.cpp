@@ -1,4 +1,4 @@
-#include "geometry/fitting/bspline_fit_changes.h"
+#include "geometry/fitting/fit_problem.h"
 
 #include <algorithm>
 

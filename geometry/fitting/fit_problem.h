@@ -1,13 +1,52 @@
-// What differs between two problems of a fit.
+// What a fit (bspline_fit.h) is asked for: samples to keep near, straight zones and pins to keep
+// exactly, and where spans start; and what differs between two such problems.
 #pragma once
 
 #include <cstddef>
 #include <span>
 #include <vector>
 
-#include "geometry/fitting/bspline_fit.h"
+#include "geometry/basic/point.h"
 
 namespace batten::geometry {
+
+struct FitSample {
+  double parameter = 0;
+  Point3 target = Point3::Zero();
+  Vector3 along =
+      Vector3::Zero();  // unit direction of free sliding; zero: the full distance counts
+  double limit = 0;     // mm, > 0: no distance is greater
+  double scatter = 0;   // mm, rms distance expected here; 0: only the limit counts
+};
+
+// The curve is exactly the straight line from `start` to `end` over [from, to], run at even
+// speed, and so are its first two derivatives at both ends.
+struct StraightZone {
+  double from = 0;
+  double to = 0;
+  Point3 start = Point3::Zero();
+  Point3 end = Point3::Zero();
+};
+
+// The curve passes here exactly, and may have a corner.
+struct Pin {
+  double parameter = 0;
+  Point3 place = Point3::Zero();
+};
+
+struct FitProblem {
+  std::vector<FitSample> samples;   // parameters increase
+  std::vector<StraightZone> zones;  // do not overlap, in order
+  std::vector<Pin> pins;            // in order; first and last are the ends of the curve
+  std::vector<double> breakpoints;  // where spans start at first, strictly increasing, with the
+                                    // ends, every pin and every end of a zone; none inside a zone
+};
+
+struct FitOptions {
+  int max_refinements = 10;  // rounds of splitting the spans that cannot hold their samples
+  int passes = 8;            // solutions per round that tell which spans those are
+  int last_passes = 16;      // solutions, when weights have settled, to bring all inside
+};
 
 struct SampleChanges {
   static constexpr std::size_t kNew = static_cast<std::size_t>(-1);
