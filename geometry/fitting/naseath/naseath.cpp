@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "geometry/fitting/naseath/naseath_categories.h"
-#include "geometry/fitting/naseath/naseath_choice.h"
-#include "geometry/fitting/naseath/naseath_mover.h"
+#include "geometry/fitting/naseath/naseath_pass.h"
+#include "geometry/fitting/naseath/naseath_polygon.h"
 #include "geometry/fitting/naseath/naseath_setting.h"
 
 namespace batten::geometry {

@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/fitting/naseath/naseath_categories.h"
-#include "geometry/fitting/naseath/naseath_directions.h"
+#include "geometry/fitting/naseath/naseath_polygon.h"
 #include "geometry/path/parameter_samples.h"
 #include "tests/support/naseath_cases.h"
 #include "tests/support/noisy_curves.h"

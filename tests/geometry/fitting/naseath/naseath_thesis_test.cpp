@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "geometry/fitting/naseath/naseath.h"
-#include "geometry/fitting/naseath/naseath_categories.h"
-#include "geometry/fitting/naseath/naseath_directions.h"
-#include "geometry/fitting/naseath/naseath_sensitivity.h"
+#include "geometry/fitting/naseath/naseath_polygon.h"
+#include "geometry/fitting/naseath/naseath_setting.h"
 #include "geometry/path/parameter_samples.h"
 #include "tests/support/naseath_cases.h"
 
