@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "geometry/fitting/naseath/naseath.h"
-#include "geometry/fitting/tube/tube_smoothing_knots.h"
 #include "geometry/fitting/tube/tube_smoothing_solver.h"
 #include "geometry/path/parameter_samples.h"
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "geometry/fitting/tube/tube_smoothing_solver.h"
 #include "geometry/path/bspline_curve.h"
 
 namespace batten::geometry {
@@ -28,20 +29,6 @@ enum class TubeMethod {
 
 [[nodiscard]] std::string_view name_of(TubeMethod method);
 
-struct TubeOptions {
-  double radius = 0.01;  // mm, > 0
-  // Control points at each end that stay: 1 keeps the ends, 2 the directions, 3 the curvatures
-  // there as well. 0: the ends may slide across the tube.
-  int held_points = 0;
-  // The feed that is wanted, and what the machine can give across the path: where local weights
-  // come from.
-  double feed = 400;           // mm/s
-  double acceleration = 4000;  // mm/s^2
-  // Spans are halved this often, where more knots may help: 0 keeps the knots. Candidates come
-  // for each number of halvings up to it.
-  int halvings = 2;
-};
-
 struct TubeCandidate {
   TubeMethod method = TubeMethod::kOriginal;
   int halvings = 0;
@@ -52,7 +39,7 @@ struct TubeCandidate {
 // The old curve comes first; the same every time.
 //
 // Throws std::invalid_argument when the curve is not a clamped cubic with single inner knots, or
-// an option is not in the range given above.
+// an option is not in the range that TubeOptions gives.
 [[nodiscard]] std::vector<TubeCandidate> smooth_in_tube(const BsplineCurve& curve,
                                                         const TubeOptions& options);
 

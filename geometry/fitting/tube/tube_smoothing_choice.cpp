@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "geometry/fitting/tube/tube_smoothing.h"
-#include "geometry/fitting/tube/tube_smoothing_knots.h"
 #include "geometry/fitting/tube/tube_smoothing_solver.h"
 #include "geometry/numeric/pattern_search.h"
 #include "geometry/path/parameter_samples.h"

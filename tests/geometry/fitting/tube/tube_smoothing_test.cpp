@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "geometry/fitting/tube/tube_smoothing_knots.h"
+#include "geometry/fitting/tube/tube_smoothing_solver.h"
 #include "tests/support/corners.h"
 #include "tests/support/naseath_cases.h"
 #include "tests/support/noisy_curves.h"
