@@ -12,7 +12,7 @@
 #include "gcode/interpreter/opaque_blocks.h"
 #include "gcode/interpreter/plain_line.h"
 #include "gcode/interpreter/program_flow.h"
-#include "gcode/interpreter/state_changes.h"
+#include "gcode/interpreter/word_applier.h"
 #include "gcode/klartext/state.h"
 #include "gcode/siemens/flow.h"
 #include "gcode/siemens/names.h"

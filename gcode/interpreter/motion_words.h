@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "gcode/interpreter/arc_from_words.h"
-#include "gcode/interpreter/state_changes.h"
+#include "gcode/interpreter/word_applier.h"
 #include "gcode/state/block_words.h"
 #include "gcode/state/control_state.h"
 #include "gcode/state/modal_state.h"

@@ -1,17 +1,39 @@
-// One block's words at work on the control: the parts of state_changes that belong together
-// are in files of their own (modes, frames), all see this class.
+// What the words of a block do to the control, other than a motion along X, Y, Z. The parts that
+// belong together are in files of their own (word_modes.cpp, word_frames.cpp).
 #pragma once
 
 #include <optional>
 #include <string_view>
 
-#include "gcode/interpreter/state_changes.h"
 #include "gcode/state/block_words.h"
 #include "gcode/state/control_state.h"
 #include "gcode/state/reason.h"
 
 namespace batten::gcode {
 
+// The sum over all words of a block.
+struct StateEffect {
+  // The first word's reason why the block cannot stand in a run; empty: they change nothing.
+  std::string_view barrier;
+  bool understood = true;         // false: a word is not known; everything is unknown after it
+  Code unknown_code = -1;         // that G word
+  bool takes_axes = false;        // the axis words do not belong to a motion (G28, G92, G10 ..)
+  bool takes_parameters = false;  // P, Q, L, R, I .. belong to some word
+  bool unit_word = false;
+  bool feed_changed = false;
+  Code motion = -1;  // the word of the motion group, -1: none
+};
+
+// Applies the G words but those of motions, then F, S, T, H, D, then the M words. What a word
+// may have changed in ways that are not known is unknown in `state` afterwards.
+//
+// Requires words.problem() == kNone. Words without number make what they set unknown.
+[[nodiscard]] StateEffect apply_words(const BlockWords& words, ControlState& state);
+
+// What only happens at the end of the block, after its motion: calls, program end, tool change.
+void apply_late_words(const BlockWords& words, ControlState& state);
+
+// One block's words at work on the control.
 class WordApplier {
  public:
   WordApplier(const BlockWords& words, ControlState& state) : words_(words), state_(state) {}
@@ -81,7 +103,7 @@ class WordApplier {
   void apply_high_speed_mode();
   void apply_modal_macro(Code code);
 
-  // state_changes.cpp: the words with other letters than G
+  // word_applier.cpp: the words with other letters than G
   void apply_feed();
   [[nodiscard]] std::optional<double> feed_of(const Word& f) const;
   void apply_spindle_speed();

@@ -1,6 +1,5 @@
-#include "gcode/interpreter/state_changes.h"
-
 #include "gcode/interpreter/word_applier.h"
+
 #include "gcode/state/reason.h"
 
 namespace batten::gcode {
