@@ -1,14 +1,38 @@
-// Violations of the order and the contents of events, in words.
+// What may be wrong with a new program, and violations of the order and the contents of events in
+// words.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "postproc/proof/program_events.h"
-#include "postproc/proof/verification.h"
 
 namespace batten::postproc {
+
+enum class ViolationKind {
+  kDistance,   // a stretch leaves the tolerance
+  kNotProved,  // a stretch could neither be proved nor refuted
+  kSide,       // a stretch comes over to the side that is not allowed
+  kCrossing,   // a flat stretch crosses itself where the old one did not
+  kFeed,       // another feed, or a feed that changes at another place
+  kRapid,      // a rapid with another start or end, lost or added
+  kEvent,      // an acting word or block lost, added, moved or changed
+  kState,      // plane, units, distance mode .. differ where a copied block depends on them
+  kTarget,     // a new block that the target refuses: asked where text for a target is proved
+};
+
+struct Violation {
+  ViolationKind kind = ViolationKind::kDistance;
+  std::string id;  // stable, all listed in docs/diagnostics.md: "distance", "event-lost" ..
+  std::uint32_t old_line = 0;  // of the breach itself, as near as it is known; 0: none
+  std::uint32_t new_line = 0;
+  double deviation_mm = 0;  // kDistance: at least this much
+  std::string message;      // found and expected
+};
 
 struct EventSpan {
   std::span<const ProgramEvent> events;

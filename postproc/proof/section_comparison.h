@@ -1,15 +1,49 @@
 // The cutting moves between two events: same path within the tolerance, same feeds along it?
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "geometry/basic/point.h"
+#include "geometry/basic/side.h"
+#include "geometry/basic/tolerance_kind.h"
+#include "geometry/distance/path_distance.h"
+#include "postproc/proof/event_violations.h"
 #include "postproc/proof/program_events.h"
-#include "postproc/proof/verification.h"
 
 namespace batten::postproc {
+
+// What the paths must keep.
+struct Promise {
+  double tolerance_mm = 0.01;  // > 0
+  geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
+  // Where the new path may be: on the other side it may be by kOverSide of the tolerance.
+  geometry::Side side = geometry::Side::kBoth;
+
+  // The strict reading, when nothing else is said.
+  Promise(double tolerance, geometry::ToleranceKind reading = geometry::ToleranceKind::kPath,
+          geometry::Side allowed = geometry::Side::kBoth)
+      : tolerance_mm(tolerance), kind(reading), side(allowed) {}
+};
+
+// Printing rounds a place on the path itself to either side of it.
+inline constexpr double kOverSide = 0.1;
+
+// One stretch of cutting moves at one feed that was compared, without the moves at its ends
+// that are the same in both programs.
+struct Stretch {
+  std::uint32_t old_first_block = 0, old_last_block = 0;
+  std::uint32_t new_first_block = 0, new_last_block = 0;
+  // Their lines; where one program has no moves there, that of the event before.
+  std::uint32_t old_first_line = 0, old_last_line = 0;
+  std::uint32_t new_first_line = 0, new_last_line = 0;
+  geometry::PathComparison comparison;
+  double corner_mm = 0;  // band reading: greatest distance of a corner that was cut; 0: none was
+  std::uint32_t old_worst_line = 0;  // where the greatest distance was met
+  std::uint32_t new_worst_line = 0;
+};
 
 // The moves of one program between two events.
 struct StretchSide {

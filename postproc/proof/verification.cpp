@@ -12,7 +12,6 @@
 #include "postproc/proof/common_events.h"
 #include "postproc/proof/event_alignment.h"
 #include "postproc/proof/event_violations.h"
-#include "postproc/proof/parallel_verification.h"
 #include "postproc/proof/section_comparison.h"
 #include "postproc/proof/state_difference.h"
 #include "postproc/system/parallel_for.h"

@@ -12,7 +12,6 @@
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
 #include "gcode/state/reason.h"
-#include "postproc/proof/parallel_verification.h"
 #include "postproc/proof/refused_arcs.h"
 #include "postproc/stream/added_lines.h"
 

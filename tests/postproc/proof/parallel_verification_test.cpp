@@ -1,10 +1,9 @@
 // Any number of threads gives the same proof, of good programs and of wrong ones.
-#include "postproc/proof/parallel_verification.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "postproc/proof/verification.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
