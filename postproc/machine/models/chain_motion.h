@@ -6,7 +6,7 @@
 
 #include "postproc/machine/models/controller_models.h"
 #include "postproc/machine/models/jerk_motion.h"
-#include "postproc/machine/models/stretch_motion.h"
+#include "postproc/machine/models/velocity_profile.h"
 
 namespace batten::postproc {
 

@@ -7,6 +7,7 @@
 
 #include "geometry/basic/rounding.h"
 #include "postproc/machine/models/controller_models.h"
+#include "postproc/machine/models/jerk_motion.h"
 #include "postproc/machine/models/junction_speed.h"
 #include "postproc/machine/models/stream_limit.h"
 #include "postproc/machine/models/timed_chain.h"

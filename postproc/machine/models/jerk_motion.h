@@ -52,7 +52,8 @@ class JerkMotion {
   double velocity_ = 0;
 };
 
-// Seconds of the S-curve between two speeds under a limit of acceleration and one of jerk.
-[[nodiscard]] double s_ramp_time(double change, double acceleration, double jerk);
+// Seconds from rest to rest, with a limit on jerk or without.
+[[nodiscard]] double profile_time(std::span<const VelocityStretch> chain,
+                                  const ProfileRules& rules);
 
 }  // namespace batten::postproc

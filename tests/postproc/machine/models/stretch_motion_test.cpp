@@ -1,5 +1,5 @@
 // The way along a stretch in time against its duration and its limits.
-#include "postproc/machine/models/stretch_motion.h"
+#include "postproc/machine/models/velocity_profile.h"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "postproc/machine/models/jerk_motion.h"
+
 namespace batten::postproc {
 namespace {
 
