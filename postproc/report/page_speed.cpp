@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "geometry/basic/rounding.h"
-#include "postproc/machine/models/controller_models.h"
 #include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/models/jerk_motion.h"
 #include "postproc/machine/models/velocity_profile.h"

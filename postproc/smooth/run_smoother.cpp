@@ -8,7 +8,7 @@
 
 #include "gcode/state/reason.h"
 #include "gcode/text/large_pages.h"
-#include "postproc/machine/models/timed_chain.h"
+#include "postproc/machine/models/cycle_time.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/candidate_maker.h"
 #include "postproc/smooth/curve_forms.h"

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "gcode/state/reason.h"
-#include "postproc/machine/models/timed_chain.h"
+#include "postproc/machine/models/cycle_time.h"
 #include "postproc/runs/run_path.h"
 
 namespace batten::postproc {

@@ -9,10 +9,23 @@
 #include "gcode/state/modal_state.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/machine.h"
-#include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/models/velocity_profile.h"
 
 namespace batten::postproc {
+
+struct TimedPiece {
+  geometry::PathPiece piece;
+  double feed = 0;     // mm/min; 0: as fast as the machine cuts
+  bool rapid = false;  // at the rapid rate; `feed` means nothing then
+  int bytes = 0;       // of its block, for a control that is fed by a line; 0: not known
+};
+
+// What stands behind the chain. It matters on LinuxCNC alone, which brakes with half the
+// acceleration where it blends and no more motion comes.
+enum class ChainEnd {
+  kStop,         // a rapid or another block that ends in a stop
+  kEndOfMotion,  // the program's last motion
+};
 
 // Where a stretch runs. The way along the stretch goes evenly with the parameter of `path`.
 struct StretchPlace {
@@ -41,13 +54,5 @@ enum class WithPositions { kNo, kYes };
 [[nodiscard]] StretchChain linuxcnc_stretches(std::span<const TimedPiece> pieces,
                                               const Machine& machine, gcode::PathMode path,
                                               ChainEnd end, WithPositions places);
-
-// The pieces that have a length, each with a feed above 0. Throws as cutting_time does.
-[[nodiscard]] std::vector<TimedPiece> with_length_and_feed(std::span<const TimedPiece> pieces,
-                                                           const Machine& machine);
-
-// That of the machine's model. Throws as cutting_time does.
-[[nodiscard]] StretchChain stretches_of(std::span<const TimedPiece> pieces, const Machine& machine,
-                                        gcode::PathMode path, ChainEnd end, WithPositions places);
 
 }  // namespace batten::postproc

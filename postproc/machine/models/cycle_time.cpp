@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string_view>
 
 #include "geometry/basic/rounding.h"
-#include "postproc/machine/models/controller_models.h"
 #include "postproc/machine/models/jerk_motion.h"
 #include "postproc/machine/models/junction_speed.h"
-#include "postproc/machine/models/stream_limit.h"
-#include "postproc/machine/models/timed_chain.h"
 
 namespace batten::postproc {
 namespace {
@@ -49,6 +48,30 @@ bool has_length(const TimedPiece& p) { return geometry::length_of(p.piece) > geo
 void require_feed(const TimedPiece& p) {
   if (p.feed >= 0) return;
   throw std::invalid_argument(fmt::format("feed is {} mm/min, expected 0 or above", p.feed));
+}
+
+// Lowers feeds to what the line can keep up with: over the blocks that the control holds at a
+// time (its look-ahead, half of it before and half behind), the way is run no faster than the bytes
+// of these blocks come in. A few short blocks among long ones cost nothing, a long row of them
+// runs at the pace of the line. Blocks whose bytes are not known (0) count as none.
+void limit_by_stream(std::span<TimedPiece> pieces, const Machine& machine) {
+  if (!std::isfinite(machine.stream_rate)) return;
+  const std::size_t n = pieces.size();
+  std::vector<double> way(n + 1, 0.0);    // mm of the pieces before
+  std::vector<double> bytes(n + 1, 0.0);  // of their blocks
+  for (std::size_t i = 0; i < n; ++i) {
+    way[i + 1] = way[i] + geometry::length_of(pieces[i].piece);
+    bytes[i + 1] = bytes[i] + pieces[i].bytes;
+  }
+  const auto half = static_cast<std::size_t>(machine.look_ahead) / 2;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t first = i > half ? i - half : 0;
+    const std::size_t last = std::min(n, i + half + 1);
+    const double sent = bytes[last] - bytes[first];
+    if (!(sent > 0)) continue;
+    const double pace = (way[last] - way[first]) / sent * machine.stream_rate;  // mm/s
+    pieces[i].feed = std::min(pieces[i].feed, pace * 60);
+  }
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "postproc/machine/models/cycle_time.h"
+#include "postproc/machine/models/controller_models.h"
 
 namespace batten::postproc::linuxcnc {
 

@@ -6,7 +6,7 @@
 #include "geometry/basic/point.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/machine.h"
-#include "postproc/machine/models/cycle_time.h"
+#include "postproc/machine/models/controller_models.h"
 #include "postproc/machine/models/velocity_profile.h"
 
 namespace batten::postproc::linuxcnc {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "postproc/machine/machine.h"
-#include "postproc/machine/models/controller_models.h"
+#include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/program_time/program_time_steps.h"
 
 namespace batten::postproc {

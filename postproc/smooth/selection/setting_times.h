@@ -7,7 +7,6 @@
 #include "gcode/state/modal_state.h"
 #include "postproc/machine/machine.h"
 #include "postproc/machine/models/cycle_time.h"
-#include "postproc/machine/models/timed_chain.h"
 
 namespace batten::postproc {
 

@@ -1,5 +1,5 @@
 // What a chain keeps from one question to the next changes no answer.
-#include "postproc/machine/models/timed_chain.h"
+#include "postproc/machine/models/cycle_time.h"
 
 #include <gtest/gtest.h>
 
