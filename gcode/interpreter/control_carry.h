@@ -4,6 +4,7 @@
 
 #include "gcode/state/control_state.h"
 #include "gcode/state/diagnostic_limiter.h"
+#include "gcode/state/lathe_marks.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/text/source_text.h"
 

@@ -6,7 +6,6 @@
 #include "gcode/klartext/statement.h"
 #include "gcode/state/dwell.h"
 #include "gcode/text/number_format.h"
-#include "postproc/convert/translation.h"
 
 namespace batten::postproc {
 namespace {
@@ -96,6 +95,10 @@ std::string_view statement_of(const gcode::Program& program, const gcode::Block&
   const std::string_view text = program.source.text();
   const gcode::KlartextParts parts = gcode::klartext_parts(text, block.span);
   return parts.continues ? std::string_view() : program.source.text(parts.content);
+}
+
+std::string datum_remark(int work_offset) {
+  return "G" + std::to_string(work_offset) + ": its datum is active";
 }
 
 std::optional<int> datum_of_remark(std::string_view comment) {

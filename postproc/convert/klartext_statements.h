@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "gcode/text/program.h"
@@ -33,6 +34,21 @@ struct CalledTool {
 // A block's statement, without number and comment; empty where other lines continue it.
 [[nodiscard]] std::string_view statement_of(const gcode::Program& program,
                                             const gcode::Block& block);
+
+// --- remarks that a translation leaves -----------------------------------------------------------
+
+// What Klartext says in place of a work offset, so that the proof finds it and the operator sees
+// it: "G54: its datum is active".
+[[nodiscard]] std::string datum_remark(int work_offset);
+
+// The same for motions behind G49.
+inline constexpr std::string_view kLengthRemark = "G49: the length of the tool counts";
+
+// For motions along Z behind a tool change without G43.
+inline constexpr std::string_view kUnsaidLengthRemark = "no G43: the length of the tool counts";
+
+// What other languages say before their M30, where Klartext ends by its END PGM alone.
+inline constexpr std::string_view kEndRemark = "END PGM";
 
 // 54 of "G54: its datum is active".
 [[nodiscard]] std::optional<int> datum_of_remark(std::string_view comment);

@@ -11,6 +11,7 @@
 #include "gcode/curves/klartext_moves.h"
 #include "gcode/state/dwell.h"
 #include "gcode/text/number_format.h"
+#include "postproc/convert/klartext_statements.h"
 #include "postproc/convert/translation.h"
 #include "postproc/convert/translation_text.h"
 

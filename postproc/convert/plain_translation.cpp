@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "gcode/state/dwell.h"
+#include "postproc/convert/klartext_statements.h"
 #include "postproc/convert/plain_moves.h"
 #include "postproc/convert/translation.h"
 #include "postproc/convert/translation_text.h"

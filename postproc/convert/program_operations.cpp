@@ -17,7 +17,6 @@
 #include "postproc/convert/portable_words.h"
 #include "postproc/convert/running_functions.h"
 #include "postproc/convert/tool_in_spindle.h"
-#include "postproc/convert/translation.h"
 #include "postproc/options/profile_words.h"
 
 namespace batten::postproc {

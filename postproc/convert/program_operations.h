@@ -49,7 +49,7 @@ struct ProgramOperations {
 // and M8 beside a motion come before it; M5 and M9 of Klartext behind it.
 //
 // The length of the tool: G43 H, D1 (Siemens), or TOOL CALL (Klartext, where it always counts).
-// Remarks that a translation left in Klartext (postproc/convert/translation.h) are the acts
+// Remarks that a translation left in Klartext (postproc/convert/klartext_statements.h) are the acts
 // that they stand for.
 //
 // Obstacles are, besides words and blocks that are not plain: increments; compensation and other

@@ -69,17 +69,4 @@ struct Translation {
 // A name that either control takes, from that of a file: capitals, digits and _.
 [[nodiscard]] std::string program_name(std::string_view file);
 
-// What Klartext says in place of a work offset, so that the proof finds it and the operator sees
-// it: "G54: its datum is active".
-[[nodiscard]] std::string datum_remark(int work_offset);
-
-// The same for motions behind G49.
-inline constexpr std::string_view kLengthRemark = "G49: the length of the tool counts";
-
-// For motions along Z behind a tool change without G43.
-inline constexpr std::string_view kUnsaidLengthRemark = "no G43: the length of the tool counts";
-
-// What other languages say before their M30, where Klartext ends by its END PGM alone.
-inline constexpr std::string_view kEndRemark = "END PGM";
-
 }  // namespace batten::postproc

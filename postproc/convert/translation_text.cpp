@@ -86,8 +86,4 @@ std::string program_name(std::string_view file) {
   return name.empty() || name == "_" ? "PROGRAM" : name;
 }
 
-std::string datum_remark(int work_offset) {
-  return "G" + std::to_string(work_offset) + ": its datum is active";
-}
-
 }  // namespace batten::postproc
