@@ -14,13 +14,6 @@ namespace batten::gcode {
 // `text` is a line of ParseStatus::kFlow.
 [[nodiscard]] FlowEffect flow_effect(std::string_view text);
 
-// Where subprograms come back to that are called and stand in another file: `M99 P100` and
-// `RET("N100")` go on at a block of the program that called.
-enum class Returns : std::uint8_t {
-  kBehindCalls,
-  kToAnyLabel,
-};
-
 [[nodiscard]] ProgramFlow follow_flow(const Program& program, Returns returns);
 
 // The blocks of follow_flow. A jump to a computed label makes every block with an N number a

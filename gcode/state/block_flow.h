@@ -30,4 +30,11 @@ struct ProgramFlow {
   bool reaches_out = false;
 };
 
+// Where subprograms come back to that are called and stand in another file: `M99 P100` and
+// `RET("N100")` go on at a block of the program that called.
+enum class Returns : std::uint8_t {
+  kBehindCalls,
+  kToAnyLabel,
+};
+
 }  // namespace batten::gcode

@@ -12,6 +12,7 @@
 #include "postproc/report/json_report.h"
 #include "postproc/report/summary_text.h"
 #include "postproc/runs/proximity_index.h"
+#include "postproc/stream/pipeline.h"
 #include "postproc/stream/smooth_verdict.h"
 #include "postproc/stream/windows.h"
 #include "postproc/system/exit_code.h"

@@ -2,7 +2,7 @@
 //
 // Within RS-274 nothing is translated: what is not rewritten is copied, so a program can go to
 // another control only when every block that is copied says the same there. Between plain words,
-// Klartext and Siemens it is translated first (postproc/stream/translated_smoothing.h).
+// Klartext and Siemens it is translated first (postproc/stream/pipeline.h).
 #pragma once
 
 #include <optional>

@@ -15,7 +15,7 @@
 #include "geometry/basic/point.h"
 #include "postproc/proof/program_events.h"
 #include "postproc/proof/verification.h"
-#include "postproc/stream/pipeline.h"
+#include "postproc/stream/run_report.h"
 
 namespace batten::postproc {
 

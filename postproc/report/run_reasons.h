@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "postproc/stream/pipeline.h"
+#include "postproc/stream/run_report.h"
 
 namespace batten::postproc {
 

@@ -5,7 +5,7 @@
 
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"
-#include "postproc/stream/pipeline.h"
+#include "postproc/stream/smooth_result.h"
 
 namespace batten::postproc {
 

@@ -5,7 +5,7 @@
 
 #include "gcode/control/dialect.h"
 #include "gcode/text/program.h"
-#include "postproc/stream/pipeline.h"
+#include "postproc/stream/run_report.h"
 
 namespace batten::postproc {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "postproc/options/options.h"
-#include "postproc/stream/pipeline.h"
+#include "postproc/stream/smooth_result.h"
 
 namespace batten::postproc {
 

@@ -1,12 +1,17 @@
-// What the report says of each run of a program.
+// What the report says of each run of a program, and what a user has to be told of the curves in
+// it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "gcode/control/dialect.h"
 #include "gcode/state/motion.h"
+#include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"
 #include "postproc/proof/verification.h"
 #include "postproc/runs/section.h"

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "postproc/stream/pipeline.h"
+#include "postproc/stream/smooth_result.h"
 #include "postproc/system/exit_code.h"
 
 namespace batten::postproc {

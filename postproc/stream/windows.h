@@ -13,8 +13,8 @@
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"
 #include "postproc/runs/proximity_index.h"
-#include "postproc/stream/pipeline.h"
 #include "postproc/stream/prescan.h"
+#include "postproc/stream/smooth_result.h"
 
 namespace batten::postproc {
 
