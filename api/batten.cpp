@@ -12,7 +12,7 @@
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
 #include "gcode/reading/source_kind.h"
-#include "postproc/machine/files/machine_choice.h"
+#include "postproc/machine/files/machine_file.h"
 #include "postproc/machine/program_time/program_time.h"
 #include "postproc/machine/program_time/program_time_dwell.h"
 #include "postproc/options/decimals_option.h"

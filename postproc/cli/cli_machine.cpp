@@ -1,6 +1,6 @@
 #include "postproc/cli/cli_machine.h"
 
-#include "postproc/machine/files/machine_choice.h"
+#include "postproc/machine/files/machine_file.h"
 
 namespace batten::postproc {
 

@@ -1,4 +1,5 @@
-// A machine of the user's own as a TOML file, and any machine written as one. The keys, their units
+// The machine that a user names: `--machine` of every command, and what a machine file is based on;
+// a machine of the user's own as a TOML file, and any machine written as one. The keys, their units
 // and an example: docs/machine_file.md.
 #pragma once
 
@@ -10,6 +11,22 @@
 #include "postproc/machine/machine.h"
 
 namespace batten::postproc {
+
+// The name of a built-in machine, a machine file (NAME.toml) or the INI of a LinuxCNC machine
+// (NAME.ini). Adds to `problems` what is wrong and returns nothing then; `asked_by` stands in
+// front of what is wrong with the choice itself ("--machine"). `being_read`: see
+// read_machine_file.
+[[nodiscard]] std::shared_ptr<const Machine> choose_machine(
+    const std::string& choice, const std::string& asked_by, std::vector<std::string>& problems,
+    const std::vector<std::filesystem::path>& being_read = {});
+
+// `base` with the settings in a file that holds grbl's answer to `$$`; named after the file. No
+// `base`: grbl. Adds to `problems` what is wrong and returns nothing then.
+[[nodiscard]] std::shared_ptr<const Machine> machine_with_grbl_settings(
+    const Machine* base, const std::string& file, std::vector<std::string>& problems);
+
+// "linuxcnc, router, .., a file NAME.toml, or the NAME.ini of a LinuxCNC machine"
+[[nodiscard]] std::string possible_machines();
 
 // A file says what it is based on (a built-in machine or another file) and what differs; or it
 // says everything. Its name is that of the file when it says none.

@@ -1,4 +1,4 @@
-#include "postproc/machine/files/machine_choice.h"
+#include "postproc/machine/files/machine_file.h"
 
 #include <gtest/gtest.h>
 
