@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "postproc/report/page_curvature.h"
-#include "postproc/report/page_thinning.h"
 #include "tests/support/interpreted.h"
 #include "tests/support/paths.h"
 
