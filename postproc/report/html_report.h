@@ -8,7 +8,9 @@
 #include <cstddef>
 #include <string>
 
+#include "postproc/report/page_path.h"
 #include "postproc/report/smooth_report.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 
@@ -18,5 +20,14 @@ struct HtmlReportOptions {
 };
 
 [[nodiscard]] std::string html_report(const SmoothReport& report, const HtmlReportOptions& options);
+
+// --- what the page is told: the JSON report, and the path in columns ---------------------------
+
+// {"report": .., "command": "", "path": ..}, as postproc/report/page/data.js reads it. `report` is
+// that of json_report, its runs as one list per field.
+[[nodiscard]] Json page_data(const SmoothReport& report, const HtmlReportOptions& options);
+
+// {"count": n, "unit_mm": 0.0001, .. and a text per column (postproc/report/compact_numbers.h)}
+[[nodiscard]] Json path_columns(const PagePath& path);
 
 }  // namespace batten::postproc

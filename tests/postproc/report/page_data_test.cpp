@@ -1,6 +1,4 @@
 // The columns that the report's page reads, taken apart again, against figures known by hand.
-#include "postproc/report/page_data.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "postproc/report/html_report.h"
 #include "tests/support/report_words.h"
 
 namespace batten::postproc {
