@@ -9,7 +9,7 @@
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
 #include "postproc/machine/program_time/program_time.h"
-#include "postproc/machine/program_time/program_time_dwell.h"
+#include "postproc/machine/program_time/program_time_blocks.h"
 #include "postproc/machine/program_time/program_time_profile.h"
 #include "postproc/report/time_report.h"
 #include "postproc/system/exit_code.h"

@@ -8,8 +8,7 @@
 
 #include "gcode/state/control_state.h"
 #include "gcode/state/reason.h"
-#include "postproc/machine/program_time/program_time_cycles.h"
-#include "postproc/machine/program_time/program_time_dwell.h"
+#include "postproc/machine/program_time/program_time_blocks.h"
 #include "postproc/machine/program_time/program_time_place.h"
 
 namespace batten::postproc {

@@ -11,19 +11,10 @@
 #include "gcode/state/motion.h"
 #include "gcode/text/program.h"
 #include "geometry/path/path.h"
+#include "postproc/machine/program_time/program_time_blocks.h"
 #include "postproc/machine/program_time/program_time_not_timed.h"
 
 namespace batten::postproc {
-
-enum class StepKind : std::uint8_t {
-  kCut,         // at a feed
-  kRapid,       // G0
-  kDwell,       // G4, or at the bottom of a drilled hole
-  kToolChange,  // M6
-  kSpindle,     // M3, M4: the spindle has to reach its speed
-  kRotary,      // only rotary axes turn, for a time that the program says (G93)
-  kRest,        // motion ends before the block goes on (M7, S, G54 ..); no time of its own
-};
 
 // How joints of motions are passed: what G61, G61.1 and G64 P Q say.
 struct PathControl {
@@ -59,7 +50,7 @@ struct ProgramSteps {
 
 // The steps up to the end of the program (M2, M30). Loops and subprograms are not followed;
 // what stands in them counts once. Canned cycles of drilling along Z are followed
-// (program_time_cycles.h). Linear cost.
+// (program_time_blocks.h). Linear cost.
 //
 // Where the interpreter does not know where a motion starts, the last programmed place is
 // taken (tools, offsets and M functions leave it where it was) and that is counted; axes that

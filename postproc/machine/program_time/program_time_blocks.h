@@ -1,16 +1,47 @@
-// Canned cycles of drilling along Z, as the moves that controls make of them: G73, G81 to G86
-// and G89 in the plane XY.
+// What the words of one block do in time: how long a G4 waits, and the moves that controls make of
+// canned cycles of drilling along Z (G73, G81 to G86 and G89 in the plane XY).
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "gcode/control/dialect.h"
 #include "gcode/state/block_words.h"
 #include "gcode/state/modal_state.h"
 #include "geometry/path/path.h"
-#include "postproc/machine/program_time/program_time_steps.h"
+#include "postproc/machine/machine.h"
 
 namespace batten::postproc {
+
+enum class StepKind : std::uint8_t {
+  kCut,         // at a feed
+  kRapid,       // G0
+  kDwell,       // G4, or at the bottom of a drilled hole
+  kToolChange,  // M6
+  kSpindle,     // M3, M4: the spindle has to reach its speed
+  kRotary,      // only rotary axes turn, for a time that the program says (G93)
+  kRest,        // motion ends before the block goes on (M7, S, G54 ..); no time of its own
+};
+
+// --- dwells ------------------------------------------------------------------------------------
+
+// How long a G4 waits.
+struct DwellTime {
+  std::optional<double> seconds;  // nothing: the block does not say, or in turns of a spindle
+                                  // whose speed is not known
+  bool unit_assumed = false;      // P without a point, where no control was named
+};
+
+// X, U: seconds (FANUC). F: seconds, S: turns of the spindle (Sinumerik). P: by `unit`.
+[[nodiscard]] DwellTime dwell_of(const gcode::BlockWords& words, gcode::DwellUnit unit,
+                                 std::optional<double> spindle_speed);
+
+// What P means in the programs of a control; nullptr: LinuxCNC and grbl count in seconds, whatever
+// the program was written for.
+[[nodiscard]] gcode::DwellUnit dwell_unit_of(const gcode::Dialect* target, const Machine& machine);
+
+// --- canned cycles -----------------------------------------------------------------------------
 
 [[nodiscard]] bool is_drilling_cycle(gcode::Code code);
 
