@@ -6,7 +6,6 @@
 #include <utility>
 #include <variant>
 
-#include "gcode/curves/curve_format.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/run_smoother.h"
 #include "postproc/smooth/selection/joined_times.h"

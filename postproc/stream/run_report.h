@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/control/dialect.h"
 #include "gcode/state/motion.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"

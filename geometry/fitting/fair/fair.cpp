@@ -9,7 +9,6 @@
 #include "geometry/basic/rounding.h"
 #include "geometry/fitting/fair/fair_band.h"
 #include "geometry/fitting/fair/fair_closed.h"
-#include "geometry/fitting/fair/fair_need.h"
 
 namespace batten::geometry {
 

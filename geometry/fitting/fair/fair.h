@@ -2,33 +2,15 @@
 // Method: docs/algorithms/fair.md.
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "geometry/basic/point.h"
+#include "geometry/fitting/fair/fair_problem.h"
 #include "geometry/path/bspline_curve.h"
 
 namespace batten::geometry {
-
-struct FairOptions {
-  double tolerance = 0.01;         // mm, curve to polyline and back, in order; > 0
-  double rounding = 0.0005;        // mm, greatest error of one printed coordinate of the input
-  double keep_corner_angle = 3.2;  // radians: vertices that turn more stay as they are (> pi: none)
-  double feed = 1000;              // mm/min that the machine should hold (the greatest of the run)
-  double acceleration = 1000;      // mm/s^2 across the path that the machine can give
-  double jerk = std::numeric_limits<double>::infinity();  // mm/s^3, the same
-  double scatter = 0;     // mm that vertices may scatter about the curve, beyond their noise:
-                          // a simpler curve, further from the path that was meant
-  bool accurate = false;  // spend the tolerance on noise only, never on feed
-  // Pass vertices as near as their decimals tell their places, which takes more control points;
-  // else as near as their rounding lets them scatter.
-  bool near = true;
-  // Per edge, from each point to the next: the part of the tolerance that the curve may use there,
-  // above 0 and 1 at most. Empty: all of it everywhere. Has to outlive the call.
-  std::span<const double> rooms;
-};
 
 struct SmoothCurve {
   // A cubic, C2 but at kept corners (triple knots). Parameter: about the length along the

@@ -1,5 +1,6 @@
-// A fair curve along a chain of vertices, held inside its band.
-// Method: docs/algorithms/fair.md, sections Band and Staying inside.
+// A fair curve along a chain of vertices, held inside its band; and room for the feed: where the
+// curve is too tight for it, vertices may scatter more.
+// Method: docs/algorithms/fair.md, sections Band, Staying inside and Need.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +11,7 @@
 
 #include "geometry/basic/point.h"
 #include "geometry/fitting/bspline_fit.h"
-#include "geometry/fitting/fair/fair.h"
+#include "geometry/fitting/bspline_fit_system.h"
 #include "geometry/fitting/fair/fair_measure.h"
 #include "geometry/fitting/fair/fair_problem.h"
 #include "geometry/fitting/fair/path_features.h"
@@ -81,5 +82,10 @@ class BandFit {
   std::vector<double> off_;
   std::vector<std::uint8_t> tight_;  // per vertex
 };
+
+// Widens the scatter where the curve is too tight for the feed, a few times, and keeps that where
+// it saves time. Every stretch is judged for itself. Returns the number of rounds that anything
+// was kept of.
+[[nodiscard]] int widen_for_feed(BandFit& fit, const FairOptions& options);
 
 }  // namespace batten::geometry

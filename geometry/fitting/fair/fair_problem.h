@@ -1,8 +1,10 @@
-// States the fairing of a path as a fit: where knots may start, which places the curve has to
-// keep and how closely. Method: docs/algorithms/fair.md, sections Band and Corners.
+// What is asked of the fairing of a path (fair.h), and how that is stated as a fit: where knots may
+// start, which places the curve has to keep and how closely. Method: docs/algorithms/fair.md,
+// sections Band and Corners.
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -11,6 +13,24 @@
 #include "geometry/fitting/fit_problem.h"
 
 namespace batten::geometry {
+
+struct FairOptions {
+  double tolerance = 0.01;         // mm, curve to polyline and back, in order; > 0
+  double rounding = 0.0005;        // mm, greatest error of one printed coordinate of the input
+  double keep_corner_angle = 3.2;  // radians: vertices that turn more stay as they are (> pi: none)
+  double feed = 1000;              // mm/min that the machine should hold (the greatest of the run)
+  double acceleration = 1000;      // mm/s^2 across the path that the machine can give
+  double jerk = std::numeric_limits<double>::infinity();  // mm/s^3, the same
+  double scatter = 0;     // mm that vertices may scatter about the curve, beyond their noise:
+                          // a simpler curve, further from the path that was meant
+  bool accurate = false;  // spend the tolerance on noise only, never on feed
+  // Pass vertices as near as their decimals tell their places, which takes more control points;
+  // else as near as their rounding lets them scatter.
+  bool near = true;
+  // Per edge, from each point to the next: the part of the tolerance that the curve may use there,
+  // above 0 and 1 at most. Empty: all of it everywhere. Has to outlive the call.
+  std::span<const double> rooms;
+};
 
 struct BandOptions {
   double limit = 0.01;     // mm, full distance allowed

@@ -77,7 +77,7 @@ TEST(TargetTable, KeepsTheRulesOfTheDialect) {
 
 // A virtual function that a later change adds to Dialect must reach the base of a profile.
 TEST(ProfiledDialect, AnswersEveryQuestionOfADialect) {
-  const fs::path folder = fs::path(BATTEN_SOURCE_DIR) / "gcode";
+  const fs::path folder = fs::path(BATTEN_SOURCE_DIR) / "gcode" / "control";
   const std::string asked = text_of(folder / "dialect.h");
   const std::string answered =
       text_of(folder / "target_table.h") + text_of(folder / "profiled_dialect.h");

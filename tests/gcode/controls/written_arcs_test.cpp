@@ -7,6 +7,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "gcode/controls/arc_rules.h"
 #include "gcode/controls/built_in.h"
 #include "gcode/state/units.h"
 #include "tests/support/dialect_arcs.h"

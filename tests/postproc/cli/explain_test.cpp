@@ -37,10 +37,13 @@ void add_ids_in(const fs::path& file, Ids& ids) {
 
 Ids ids_in_sources_of_the_reader() {
   Ids ids;
-  for (const auto& entry : fs::directory_iterator(source_folder() / "gcode")) {
-    const std::string name = entry.path().filename().string();
-    const bool explains = name == "reason.cpp" || name == "explained_diagnostics.cpp";
-    if (entry.path().extension() == ".cpp" && !explains) add_ids_in(entry.path(), ids);
+  for (const std::string_view folder :
+       {"text", "state", "rs274", "control", "reading", "interpreter", "writer"}) {
+    for (const auto& entry : fs::directory_iterator(source_folder() / "gcode" / folder)) {
+      const std::string name = entry.path().filename().string();
+      const bool explains = name == "reason.cpp" || name == "explained_diagnostics.cpp";
+      if (entry.path().extension() == ".cpp" && !explains) add_ids_in(entry.path(), ids);
+    }
   }
   return ids;
 }
@@ -50,6 +53,7 @@ Ids ids_in_sources_of_the_verifier() {
   add_ids_in(source_folder() / "postproc/stream/added_lines.cpp", ids);
   add_ids_in(source_folder() / "postproc/proof/event_violations.cpp", ids);
   add_ids_in(source_folder() / "postproc/proof/point_spelling.cpp", ids);
+  add_ids_in(source_folder() / "postproc/proof/refused_arcs.cpp", ids);
   add_ids_in(source_folder() / "postproc/proof/section_comparison.cpp", ids);
   return ids;
 }

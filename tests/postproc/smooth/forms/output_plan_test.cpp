@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "gcode/controls/arc_rules.h"
 #include "gcode/controls/built_in.h"
 #include "postproc/smooth/forms/plan_stretches.h"
 #include "tests/support/curve_of.h"

@@ -92,7 +92,7 @@ class Settle : public testing::Test {
       }
       works_.push_back(std::move(work));
     }
-    settle(cut_, works_, options_for("linuxcnc"));
+    revert_costly_pieces(cut_, works_, options_for("linuxcnc"));
   }
 
   [[nodiscard]] std::size_t rewritten() const {
