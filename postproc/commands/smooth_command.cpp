@@ -11,10 +11,8 @@
 #include "postproc/report/html_report.h"
 #include "postproc/report/json_report.h"
 #include "postproc/report/summary_text.h"
-#include "postproc/runs/proximity_index.h"
 #include "postproc/stream/pipeline.h"
 #include "postproc/stream/smooth_verdict.h"
-#include "postproc/stream/windows.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 #include "postproc/system/output_file.h"
@@ -41,11 +39,6 @@ bool would_be_refused(const std::string& file, bool replace_existing) {
   return true;
 }
 
-// From this size on a program is smoothed window by window where that can be. It is read twice
-// then, and takes some 30 MB; as a whole one of this size takes about 60 MB, and ten times the size
-// ten times as much.
-constexpr std::size_t kBytesForWindows = std::size_t{1} << 21;
-
 class SmoothWork {
  public:
   SmoothWork(const SmoothCommand& command, std::string output)
@@ -55,40 +48,15 @@ class SmoothWork {
     source_ = read_program(command_.input);
     if (interrupted()) return end_interrupted();
     if (!source_) return static_cast<int>(ExitCode::kFileError);
-    // The page draws the whole path.
-    const bool in_windows =
-        source_->text().size() >= kBytesForWindows && command_.report_file.empty();
-    while (in_windows) {
-      if (const auto code = smooth_in_windows_to_output()) return *code;
-      if (!again_) break;
-    }
-    return smooth_whole();
-  }
-
- private:
-  // --- as a whole ---------------------------------------------------------------------------
-
-  int smooth_whole() {
-    const Progress progress = show_progress(command_.progress, source_->text().size());
-    result_ = smooth_program(*source_, command_.options, progress);
-    (void)progress(1);  // the progress line is gone
-    if (const auto code = cannot_be_told()) return *code;
-    tell_of_result();
-    int code = static_cast<int>(verdict_);
-    if (writes() && command_.in_place) code = write_in_place_of(watched_, result_.text);
-    if (writes() && !command_.in_place) code = write_result(output_, result_.text, replaces());
-    return finish(code);
-  }
-
-  // --- window by window ---------------------------------------------------------------------
-
-  // The exit code; nothing where the program must be smoothed as a whole, or `again_`, with nothing
-  // written.
-  std::optional<int> smooth_in_windows_to_output() {
-    if (command_.dry_run) return smooth_windows_only();
+    if (command_.dry_run) return look_only();
+    // The page draws the whole path, and a short program needs no file beside the output.
+    const bool in_memory =
+        source_->text().size() < StreamLimits{}.bytes_for_windows || !command_.report_file.empty();
+    if (in_memory) return write_from_memory();
     return is_seen_at_once() ? write_from_spool() : write_beside();
   }
 
+ private:
   // What is written there is seen before all of it is.
   [[nodiscard]] bool is_seen_at_once() const {
     std::error_code error;
@@ -96,34 +64,44 @@ class SmoothWork {
                               !std::filesystem::is_regular_file(output_, error));
   }
 
-  // False: nothing is to be written, `code_` says why; or the whole is needed.
-  bool smooth_windows(const TextSink& sink) {
+  void smooth(const ProgramSink& sink) {
     const Progress progress = show_progress(command_.progress, source_->text().size());
-    const std::size_t copied = lines_in(copied_);
-    auto result = smooth_in_windows(*source_, command_.options, sink, progress, {}, &copied_);
-    (void)progress(1);
-    needs_whole_ = !result;
-    again_ = !result && lines_in(copied_) > copied;
-    if (!result) return false;
-    result_ = std::move(*result);
-    return true;
+    result_ = smooth_program(*source_, command_.options, sink, progress);
+    (void)progress(1);  // the progress line is gone
   }
 
-  // Behind the windows. False: nothing is to be written.
-  bool tell_of_windows() {
+  // False: nothing is to be written.
+  bool tell_of_smoothing() {
     code_ = cannot_be_told();
     if (code_) return false;
     tell_of_result();
     return verdict_ == ExitCode::kDone;
   }
 
-  std::optional<int> smooth_windows_only() {
-    if (!smooth_windows([](std::string_view) { return true; })) return std::nullopt;
-    if (!tell_of_windows() && code_) return code_;
+  int look_only() {
+    if (command_.report_file.empty()) {
+      smooth({[](std::string_view) { return true; }, [] { return true; }});
+    } else {
+      smooth_in_memory();
+    }
+    if (!tell_of_smoothing() && code_) return *code_;
     return finish(static_cast<int>(verdict_));
   }
 
-  std::optional<int> write_beside() {
+  void smooth_in_memory() {
+    const Progress progress = show_progress(command_.progress, source_->text().size());
+    result_ = smooth_program(*source_, command_.options, progress);
+    (void)progress(1);
+  }
+
+  int write_from_memory() {
+    smooth_in_memory();
+    if (!tell_of_smoothing()) return code_ ? *code_ : finish(static_cast<int>(verdict_));
+    return finish(command_.in_place ? write_in_place_of(watched_, result_.text)
+                                    : write_result(output_, result_.text, replaces()));
+  }
+
+  int write_beside() {
     WriteRequest request;
     request.target = output_;
     request.replace_existing = replaces();
@@ -131,36 +109,32 @@ class SmoothWork {
     bool may_be_told = false;
     request.parts = [&](const PartWriter& writer) {
       bool written = true;
-      const bool done = smooth_windows([&](std::string_view part) {
-        written = writer(part);
-        return written;
-      });
-      may_be_told = done && written;
+      smooth({[&](std::string_view part) { return written = writer(part); }, writer.restart});
+      may_be_told = written;
     };
     request.objection = [&]() -> std::string {
-      if (!may_be_told || !tell_of_windows()) return kNotWanted;
+      if (!may_be_told || !tell_of_smoothing()) return kNotWanted;
       return command_.in_place ? objection_to_place_of(watched_) : "";
     };
     const WriteResult written = write_file(request);
-    if (needs_whole_) return std::nullopt;
-    if (code_) return code_;
+    if (code_) return *code_;
     if (interrupted()) return end_interrupted();
     if (!told_) return exit_code_of(written);
     const bool refused = written.message == kNotWanted;
     return finish(refused ? static_cast<int>(verdict_) : exit_code_of(written));
   }
 
-  std::optional<int> write_from_spool() {
+  int write_from_spool() {
     std::string error;
     auto spool = SpoolFile::make(error);
-    if (!spool) return std::nullopt;  // as a whole no file is needed
-    const bool done = smooth_windows([&](std::string_view part) { return spool->append(part); });
-    if (needs_whole_) return std::nullopt;
+    if (!spool) return write_from_memory();  // needs no file
+    smooth({[&](std::string_view part) { return spool->append(part); },
+            [&] { return spool->restart(); }});
     if (!spool->error().empty()) {
       say(spool->error());
       return static_cast<int>(ExitCode::kFileError);
     }
-    if (!done || !tell_of_windows()) return code_ ? code_ : finish(static_cast<int>(verdict_));
+    if (!tell_of_smoothing()) return code_ ? *code_ : finish(static_cast<int>(verdict_));
     const auto parts = [&](const PartWriter& writer) { spool->write_to(writer); };
     return finish(write_parts(output_, parts, replaces()));
   }
@@ -224,10 +198,7 @@ class SmoothWork {
   std::string json_;
   std::string page_;
   bool told_ = false;
-  bool needs_whole_ = false;
-  bool again_ = false;             // more is to be copied
-  std::vector<LineRange> copied_;  // where parts of long runs crossed each other
-  std::optional<int> code_;        // of a result that is worth nothing
+  std::optional<int> code_;  // of a result that is worth nothing
 };
 
 }  // namespace

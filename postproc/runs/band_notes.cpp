@@ -129,7 +129,7 @@ void BandNoteTally::add(std::span<const gcode::Diagnostics> of_runs, gcode::Diag
       if (told_ < kMostBandNotes) {
         ++told_;
         found.push_back(note);
-      } else if (++missing_provenance_ == 1) {
+      } else if (++left_out_ == 1) {
         first_untold_ = note.where;
       }
     }
@@ -137,10 +137,9 @@ void BandNoteTally::add(std::span<const gcode::Diagnostics> of_runs, gcode::Diag
 }
 
 void BandNoteTally::tell_rest(gcode::Diagnostics& found) const {
-  if (missing_provenance_ == 0) return;
-  found.push_back(
-      {gcode::Severity::kNote, "band-overlap", first_untold_,
-       fmt::format("{} more notes on bands that overlap or have cusps", missing_provenance_)});
+  if (left_out_ == 0) return;
+  found.push_back({gcode::Severity::kNote, "band-overlap", first_untold_,
+                   fmt::format("{} more notes on bands that overlap or have cusps", left_out_)});
 }
 
 void append_band_notes(std::span<const gcode::Diagnostics> of_runs, gcode::Diagnostics& found) {

@@ -36,7 +36,7 @@ class BandNoteTally {
 
  private:
   std::size_t told_ = 0;
-  std::size_t missing_provenance_ = 0;
+  std::size_t left_out_ = 0;
   gcode::SourceSpan first_untold_;
 };
 

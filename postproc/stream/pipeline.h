@@ -1,13 +1,19 @@
 // The whole of `batten smooth` but files and messages: text in, proved text out.
 #pragma once
 
+#include <cstddef>
+#include <functional>
+
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"
 #include "postproc/runs/long_run_cuts.h"
 #include "postproc/stream/smooth_result.h"
+#include "postproc/stream/windows.h"
 
 namespace batten::postproc {
 
+// The whole program as one window, its text in memory.
+//
 // `long_runs`: where runs are cut that are too long to be held as one.
 //
 // A program that is to be translated (postproc/convert/conversion.h) is translated first, then
@@ -19,5 +25,28 @@ namespace batten::postproc {
                                           const SmoothOptions& options,
                                           const Progress& progress = {},
                                           const LongRunLimits& long_runs = {});
+
+// Where the new program goes while it is made.
+struct ProgramSink {
+  TextSink take;
+  // What it was given is worth nothing: the text begins anew. False stops the work.
+  std::function<bool()> restart;
+};
+
+struct StreamLimits {
+  // From this size on a program is read twice and smoothed window by window where that can be, in
+  // some 30 MB; as one window a program of this size takes about 60 MB, and one of ten times the
+  // size ten times as much.
+  std::size_t bytes_for_windows = std::size_t{1} << 21;
+  WindowLimits windows = {};
+};
+
+// The same with the text handed on as it comes: window by window where the program is long, as one
+// window where it is short or needs the whole. The same bytes, report and diagnostics either way.
+// Where the result is not understood, what the sink was given is worth nothing.
+[[nodiscard]] SmoothResult smooth_program(const gcode::SourceText& source,
+                                          const SmoothOptions& options, const ProgramSink& sink,
+                                          const Progress& progress,
+                                          const StreamLimits& limits = {});
 
 }  // namespace batten::postproc

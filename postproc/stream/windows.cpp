@@ -15,9 +15,9 @@
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/state/reason.h"
 #include "postproc/convert/conversion.h"
-#include "postproc/runs/band_notes.h"
+#include "postproc/stream/collected_result.h"
 #include "postproc/stream/part_crossings.h"
-#include "postproc/stream/window_work.h"
+#include "postproc/stream/window.h"
 #include "postproc/system/parallel_for.h"
 
 namespace batten::postproc {
@@ -120,10 +120,10 @@ class Windows {
     };
     PrescanReport facts = prescan(source_, options_, limits, report_prescan);
     if (facts.outcome == PrescanOutcome::kWhole) return std::nullopt;
-    result_.diagnostics = std::move(facts.found);
-    result_.blocks_in = facts.blocks;
-    result_.units = facts.units;
-    if (facts.outcome == PrescanOutcome::kStopped) return std::move(result_);
+    collected_.result.diagnostics = std::move(facts.found);
+    collected_.result.blocks_in = facts.blocks;
+    collected_.result.units = facts.units;
+    if (facts.outcome == PrescanOutcome::kStopped) return std::move(collected_.result);
     setting_.was_smoothed =
         facts.was_smoothed && !is_allowed(gcode::reason::kAlreadySmoothed, options_);
     setting_.long_runs = limits.long_runs;
@@ -137,14 +137,11 @@ class Windows {
     const int threads = threads_at_once(options_.threads);
     oneapi::tbb::task_arena(threads).execute([&] { go_through(threads); });
     if (outcome_ == WindowOutcome::kNeedsWhole) return std::nullopt;
-    if (outcome_ == WindowOutcome::kStopped) return std::move(result_);
+    if (outcome_ == WindowOutcome::kStopped) return std::move(collected_.result);
     if (parts_cross()) return std::nullopt;
-    notes_.tell_rest(result_.diagnostics);
-    if (missing_provenance_) result_.diagnostics.push_back(std::move(*missing_provenance_));
-    std::ranges::move(form_notes_, std::back_inserter(result_.diagnostics));
-    result_.understood = true;
-    result_.proved = true;
-    return std::move(result_);
+    collected_.finish();
+    collected_.result.proved = true;
+    return std::move(collected_.result);
   }
 
  private:
@@ -195,7 +192,7 @@ class Windows {
     const WindowPlace& place = windows_[window];
     const std::string_view bytes =
         made.unchanged ? source_.text({place.begin, place.end}) : std::string_view(made.text);
-    result_.bytes_handed_on += bytes.size();
+    collected_.result.bytes_handed_on += bytes.size();
     if (!sink_(bytes)) return WindowOutcome::kStopped;
     if (made.unchanged)
       source_.release_pages({place.begin, place.end});  // they were read once more
@@ -205,7 +202,7 @@ class Windows {
     guess_.learn(made.old_behind, known_.known);
     crossings_->take(std::move(made.near_edges));
     crossings_->look_up_to(made.last_line);
-    take_figures(std::move(made));
+    collected_.take(std::move(made));
     return WindowOutcome::kDone;
   }
 
@@ -226,28 +223,6 @@ class Windows {
     return true;
   }
 
-  void take_figures(WindowDone made) {
-    notes_.add(made.notes, result_.diagnostics);
-    result_.blocks_out += made.blocks;
-    result_.corner_mm = std::max(result_.corner_mm, made.corner_mm);
-    if (made.deviation_mm > result_.deviation_mm) {
-      result_.deviation_mm = made.deviation_mm;
-      result_.deviation_line = made.deviation_line;
-    }
-    if (!missing_provenance_) missing_provenance_ = std::move(made.untold);
-    for (gcode::Diagnostic& note : made.form_notes) {  // one of each is enough
-      if (std::ranges::find(form_notes_, note.id, &gcode::Diagnostic::id) != form_notes_.end()) {
-        continue;
-      }
-      form_notes_.push_back(std::move(note));
-    }
-    for (RunReport& run : made.runs) {
-      result_.time_before_s += run.time_before_s;
-      result_.time_after_s += run.time_after_s;
-      result_.runs.push_back(std::move(run));
-    }
-  }
-
   const gcode::SourceText& source_;
   const SmoothOptions& options_;
   SmoothOptions for_windows_;
@@ -261,10 +236,7 @@ class Windows {
   std::atomic<WindowOutcome> outcome_ = WindowOutcome::kDone;
   StartGuess guess_;
   NewTextBefore known_;  // behind the windows that were taken
-  BandNoteTally notes_;
-  std::optional<gcode::Diagnostic> missing_provenance_;
-  gcode::Diagnostics form_notes_;
-  SmoothResult result_;
+  CollectedResult collected_;
 };
 
 }  // namespace

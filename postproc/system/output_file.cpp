@@ -202,12 +202,17 @@ WriteResult write_request_to_descriptor(int descriptor, std::string_view name,
                                         const WriteRequest& request) {
   if (!request.parts) return write_to_descriptor(descriptor, name, request.bytes, request.stop);
   WriteResult result;
-  request.parts([&](std::string_view part) {
+  const auto write = [&](std::string_view part) {
     if (result.status == WriteStatus::kWritten) {
       result = write_to_descriptor(descriptor, name, part, request.stop);
     }
     return result.status == WriteStatus::kWritten;
-  });
+  };
+  const auto restart = [&] {
+    return result.status == WriteStatus::kWritten && ::ftruncate(descriptor, 0) == 0 &&
+           ::lseek(descriptor, 0, SEEK_SET) == 0;
+  };
+  request.parts({write, restart});
   return result;
 }
 

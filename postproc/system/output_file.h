@@ -33,8 +33,15 @@ struct WriteResult {
   std::string message;  // empty when written; else the file's name and the reason
 };
 
-// Takes the next part of a file; false: it could not be written, make no more.
-using PartWriter = std::function<bool(std::string_view)>;
+// A file while it is made part by part.
+struct PartWriter {
+  // Takes the next part; false: it could not be written, make no more.
+  std::function<bool(std::string_view)> write;
+  // The file begins anew. False where that cannot be: what was written was seen already.
+  std::function<bool()> restart;
+
+  bool operator()(std::string_view part) const { return write(part); }
+};
 
 struct WriteRequest {
   std::filesystem::path target;  // links are followed: the file they lead to is replaced

@@ -48,6 +48,12 @@ bool SpoolFile::append(std::string_view bytes) {
   return false;
 }
 
+bool SpoolFile::restart() {
+  const bool empty = ::ftruncate(descriptor_, 0) == 0 && ::lseek(descriptor_, 0, SEEK_SET) == 0;
+  if (!empty) error_ = std::string("a temporary file cannot be emptied: ") + std::strerror(errno);
+  return empty;
+}
+
 void SpoolFile::write_to(const PartWriter& writer) const {
   std::vector<char> part(kPartBytes);
   off_t at = 0;

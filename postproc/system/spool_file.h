@@ -24,6 +24,8 @@ class SpoolFile {
 
   // False: the system refused, error() says why.
   [[nodiscard]] bool append(std::string_view bytes);
+  // Nothing stands in it any more. False: the system refused.
+  [[nodiscard]] bool restart();
   [[nodiscard]] const std::string& error() const { return error_; }
 
   // All bytes again, part by part; the other one as a text that is mapped, and stays when this

@@ -12,7 +12,7 @@
 
 #include "postproc/proof/verification.h"
 #include "postproc/stream/prescan.h"
-#include "postproc/stream/window_work.h"
+#include "postproc/stream/window.h"
 #include "tests/support/in_windows.h"
 #include "tests/support/wavy_programs.h"
 

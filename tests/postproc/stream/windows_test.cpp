@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "postproc/stream/prescan.h"
-#include "postproc/stream/window_work.h"
+#include "postproc/stream/window.h"
 #include "tests/support/in_windows.h"
 #include "tests/support/places.h"
 #include "tests/support/random_passes.h"
@@ -218,6 +218,49 @@ TEST(Windows, StopWhereTheUserWantsItAndTellHowFarTheyAre) {
     EXPECT_FALSE(smooth_in_windows(source, options_for("linuxcnc"), sink, some, {.least_blocks = 1})
                      ->understood);
   }
+}
+
+// --- one way for both ----------------------------------------------------------------------------
+
+struct Streamed {
+  SmoothResult result;
+  std::string text;
+  std::size_t restarts = 0;
+};
+
+Streamed streamed(const std::string& text, const StreamLimits& limits) {
+  Streamed done;
+  const ProgramSink sink{[&](std::string_view part) {
+                           done.text += part;
+                           return true;
+                         },
+                         [&] {
+                           done.text.clear();
+                           ++done.restarts;
+                           return true;
+                         }};
+  const gcode::SourceText source("part.nc", text);
+  done.result = smooth_program(source, options_for("linuxcnc"), sink, {}, limits);
+  return done;
+}
+
+TEST(Pipeline, HandsOnTheSameTextInWindowsAndAsOne) {
+  const std::string text = passes(std::string(kHead), "M30\n");
+  const SmoothResult whole = as_a_whole(text, options_for("linuxcnc"));
+  const Streamed as_one = streamed(text, {});
+  const Streamed windows = streamed(text, {.bytes_for_windows = 0, .windows = {.least_blocks = 1}});
+  EXPECT_EQ(as_one.text, whole.text);
+  EXPECT_EQ(windows.text, whole.text);
+  EXPECT_EQ(as_one.result.bytes_out(), whole.bytes_out());
+  EXPECT_EQ(windows.result.bytes_out(), whole.bytes_out());
+  EXPECT_EQ(as_one.restarts + windows.restarts, 0U);
+}
+
+TEST(Pipeline, BeginsTheTextAnewWhereWindowsAreNotEnough) {
+  const std::string text = passes(std::string(kHead), "M99\n");
+  const Streamed done = streamed(text, {.bytes_for_windows = 0, .windows = {.least_blocks = 1}});
+  EXPECT_EQ(done.restarts, 1U);
+  EXPECT_EQ(done.text, as_a_whole(text, options_for("linuxcnc")).text);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "postproc/stream/window_work.h"
+#include "postproc/stream/window.h"
 
 #include <utility>
 
@@ -14,10 +14,36 @@ namespace batten::postproc {
 
 namespace {
 
-constexpr double kAfterWindowsRuns = 0.7;  // share of the work
+// Share of the work: proving costs about as much as smoothing.
+constexpr double kAfterRuns = 0.7;
 
 bool knows_the_same(const TextBefore& a, const TextBefore& b) {
   return gcode::same_knowledge(a.control.state, b.control.state) && a.events == b.events;
+}
+
+// What the proof and the reports of the runs say of a part.
+void take(const WindowSetting& setting, const ProgramPart& part, PartRuns runs, ProvedText proved,
+          WindowDone& done) {
+  const Verification& verification = proved.verification;
+  const gcode::Dialect& target = *setting.options.target;
+  done.unchanged = proved.unchanged;
+  done.proved = proved.proved;
+  done.text = std::move(proved.text);
+  done.blocks = proved.blocks;
+  done.added_lines = proved.added_lines;
+  done.corner_mm = verification.corner_mm;
+  done.deviation_mm = verification.deviation_mm;
+  done.deviation_line = verification.deviation_line;
+  done.read_again = proved.behind.has_value();
+  if (proved.behind) done.behind.known = std::move(*proved.behind);
+  done.runs = report_runs({part.program, part.meaning, runs.sections, runs.works, runs.cut_runs,
+                           verification.stretches, proved.proved});
+  done.untold = missing_provenance(done.runs, part.program, target);
+  done.form_notes = form_notes(done.runs, part.program, target);
+  done.notes = std::move(runs.notes);
+  done.near = std::move(runs.near);
+  done.near_edges = std::move(proved.near_edges);
+  if (!part.program.blocks.empty()) done.last_line = part.program.blocks.back().line;
 }
 
 class WindowWork {
@@ -29,39 +55,25 @@ class WindowWork {
   WindowDone run() {
     const ProgramPart part = read();
     PartRuns runs = find_runs(part, setting_.options, setting_.long_runs, setting_.facts);
-    const ProgressCallback tell_runs = [this](double share) {
-      return tell_(share * kAfterWindowsRuns);
-    };
-    if (setting_.was_smoothed) {
-      keep_as_smoothed(runs);
-    } else if (!smooth_runs(part, setting_.options, tell_runs, runs)) {
-      return stopped();
-    }
-    const ProgressCallback tell_round = [this](double) { return tell_(kAfterWindowsRuns); };
     Additions additions;
-    if (!done_.before.says_smoothed) {
+    if (!before_new_.says_smoothed) {
       additions.comment =
           provenance_comment(*setting_.options.target, setting_.options.tolerance_mm);
     }
-    auto proved =
-        prove_text(part, setting_.options, setting_.read_options, additions, tell_round, runs);
-    if (!proved) return stopped();
-    if (!proved->proved || !proved->stands_alone) {
-      done_.outcome = WindowOutcome::kNeedsWhole;
-      return std::move(done_);
+    WindowDone done = smooth_part(setting_, part, std::move(runs), additions, tell_);
+    done.old_behind = at_behind_;
+    done.before = before_new_;
+    if (done.outcome == WindowOutcome::kDone && !done.proved) {
+      done.outcome = WindowOutcome::kNeedsWhole;
     }
-    take(part, std::move(runs), std::move(*proved));
+    if (done.outcome != WindowOutcome::kDone) return done;
+    if (done.unchanged && !done.read_again) done.behind.known = done.old_behind;
+    done.behind.says_smoothed = before_new_.says_smoothed || !done.unchanged;
     setting_.source.release_pages({place_.from.text.begin, place_.end});
-    if (!tell_(1)) return stopped();
-    return std::move(done_);
+    return done;
   }
 
  private:
-  WindowDone stopped() {
-    done_.outcome = WindowOutcome::kStopped;
-    return std::move(done_);
-  }
-
   struct ReadPart {
     gcode::Program program;
     gcode::Interpretation meaning;
@@ -85,14 +97,14 @@ class WindowWork {
         start.moves_before = moves_before(before.program, before.meaning, blocks);
       }
     }
-    done_.before = before_(at_.before);
+    before_new_ = before_(at_.before);
     start.old_events = at_.before.events;
-    start.new_text = done_.before.known;
+    start.new_text = before_new_.known;
     start.words_seen = at_.text.words_seen;
     start.decimals = at_.text.decimals;
     start.same_as_old = knows_the_same(start.new_text, at_.before);
     ReadPart window = read_on({.byte = place_.end});
-    done_.old_behind = at_.before;
+    at_behind_ = at_.before;
     if (place_.ends_in_run) {
       const ReadPart behind = read_on({.blocks = kNeighbourBlocks});
       start.moves_behind = moves_from(behind.program, behind.meaning, 0);
@@ -100,34 +112,37 @@ class WindowWork {
     return {std::move(window.program), std::move(window.meaning), std::move(start)};
   }
 
-  void take(const ProgramPart& part, PartRuns runs, ProvedText proved) {
-    const Verification& verification = proved.verification;
-    done_.unchanged = proved.unchanged;
-    done_.text = std::move(proved.text);
-    done_.blocks = proved.blocks;
-    done_.corner_mm = verification.corner_mm;
-    done_.deviation_mm = verification.deviation_mm;
-    done_.deviation_line = verification.deviation_line;
-    done_.behind.known = proved.behind ? std::move(*proved.behind) : done_.old_behind;
-    done_.behind.says_smoothed = done_.before.says_smoothed || !proved.unchanged;
-    done_.runs = report_runs({part.program, part.meaning, runs.sections, runs.works, runs.cut_runs,
-                              verification.stretches, true});
-    done_.untold = missing_provenance(done_.runs, part.program, *setting_.options.target);
-    done_.form_notes = form_notes(done_.runs, part.program, *setting_.options.target);
-    done_.notes = std::move(runs.notes);
-    done_.near_edges = std::move(proved.near_edges);
-    if (!part.program.blocks.empty()) done_.last_line = part.program.blocks.back().line;
-  }
-
   const WindowSetting& setting_;
   const WindowPlace& place_;
   const Guess& before_;
   const ProgressCallback& tell_;
   ReadingPlace at_;  // what is read up to here
-  WindowDone done_;
+  NewTextBefore before_new_;
+  TextBefore at_behind_;  // behind the window, in the old text
 };
 
 }  // namespace
+
+WindowDone smooth_part(const WindowSetting& setting, const ProgramPart& part, PartRuns runs,
+                       const Additions& additions, const ProgressCallback& tell) {
+  WindowDone done;
+  done.outcome = WindowOutcome::kStopped;
+  const ProgressCallback tell_runs = [&](double share) { return tell(share * kAfterRuns); };
+  const ProgressCallback tell_round = [&](double) { return tell(kAfterRuns); };
+  if (setting.was_smoothed) {
+    keep_as_smoothed(runs);
+  } else if (!smooth_runs(part, setting.options, tell_runs, runs)) {
+    return done;
+  }
+  auto proved =
+      prove_text(part, setting.options, setting.read_options, additions, tell_round, runs);
+  if (!proved) return done;
+  done.outcome = proved->stands_alone ? WindowOutcome::kDone : WindowOutcome::kNeedsWhole;
+  if (done.outcome != WindowOutcome::kDone) return done;
+  take(setting, part, std::move(runs), std::move(*proved), done);
+  if (!tell(1)) done.outcome = WindowOutcome::kStopped;
+  return done;
+}
 
 WindowDone smooth_window(const WindowSetting& setting, const WindowPlace& place,
                          const Guess& before, const ProgressCallback& tell) {
