@@ -11,7 +11,6 @@
 #include <variant>
 #include <vector>
 
-#include "gcode/curves/curve_alarm.h"
 #include "gcode/curves/curve_text.h"
 #include "geometry/path/path.h"
 
@@ -81,17 +80,5 @@ struct SplText {
 // rounding of doubles where Batten wrote them.
 [[nodiscard]] CurveResult read_spl(const Program& program, std::uint32_t first,
                                    const CurveStart& start);
-
-// What the control would say about the splines of a program whose lengths are in these units:
-//   spl-closure       the start is 1 um or more from where the tool stands
-//   spl-first         no L before the first SPL
-//   spl-order         K3, K2, K1 of an end axis are missing, repeated, or in another order
-//   spl-axes          fewer than two axes, or more than five
-//   spl-coefficient   a mantissa above 9.99999999, or with more than 8 decimals
-//   spl-exponent      beyond -255 .. 255
-//   spl-end           beyond +-99999.9999
-//   spl-words         the block is not understood
-//   spl-kink          a warning: 0.1 degrees or more between two splines
-[[nodiscard]] CurveAlarms spl_alarms(const Program& program, Units units);
 
 }  // namespace batten::gcode

@@ -9,6 +9,10 @@
 
 namespace batten::gcode {
 
+// The control refuses an arc whose ends are not on one circle about CC, by more than this (mm; a
+// machine parameter, from memory).
+inline constexpr double kKlartextRadiusMismatch = 0.016;
+
 struct KlartextWord {
   std::string name;  // upper case: "X", "K3X", "SPL", "FMAX", "RL", "DR+"
   std::optional<double> value;

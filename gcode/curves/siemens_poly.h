@@ -10,7 +10,6 @@
 #include <variant>
 #include <vector>
 
-#include "gcode/curves/curve_alarm.h"
 #include "gcode/curves/curve_text.h"
 #include "geometry/path/path.h"
 
@@ -61,15 +60,6 @@ struct PolyText {
 // The same as pieces of a path; refuses those that are no line and no cubic polynomial.
 [[nodiscard]] CurveResult read_poly(const Program& program, std::uint32_t first,
                                     const CurveStart& start);
-
-// What the control would say, or silently do, about the polynomials of a program:
-//   poly-not-active   PO words where POLY is not active: run as straight lines, no alarm
-//   poly-length       PL outside its range
-//   poly-denominator  0 inside the interval
-//   poly-degree       above three: not every version of the control reads it
-//   poly-compensation under G41 or G42, where Batten never writes one
-//   line-too-long     above 512 characters
-[[nodiscard]] CurveAlarms poly_alarms(const Program& program);
 
 // Characters of one block.
 inline constexpr std::size_t kSiemensLine = 512;

@@ -9,13 +9,15 @@
 #include <variant>
 
 #include "gcode/curves/heidenhain_spl.h"
-#include "gcode/curves/klartext_moves.h"
-#include "gcode/curves/nurbs_alarms.h"
 #include "gcode/curves/nurbs_read.h"
 #include "gcode/curves/siemens_bspline.h"
 #include "gcode/curves/siemens_poly.h"
 #include "gcode/reading/parser.h"
 #include "geometry/path/path.h"
+#include "tests/support/klartext_arc_alarms.h"
+#include "tests/support/nurbs_alarms.h"
+#include "tests/support/poly_alarms.h"
+#include "tests/support/spl_alarms.h"
 
 namespace batten::gcode::promises {
 
@@ -72,9 +74,7 @@ inline std::string broken_readers_at(const Program& program, std::uint32_t first
   broken = broken_reading(bspline, first, program);
   if (!broken.empty()) return "BSPLINE: " + broken;
   broken = broken_reading(read_spl(program, first, start), first, program);
-  if (!broken.empty()) return "SPL: " + broken;
-  broken = broken_reading(read_klartext_moves(program, first, start), first, program);
-  return broken.empty() ? "" : "Klartext: " + broken;
+  return broken.empty() ? "" : "SPL: " + broken;
 }
 
 // The promise that does not hold for this text in this language; empty when all do.

@@ -9,13 +9,15 @@
 #include <string>
 
 #include "gcode/curves/heidenhain_spl.h"
-#include "gcode/curves/klartext_moves.h"
-#include "gcode/curves/nurbs_alarms.h"
 #include "gcode/curves/nurbs_read.h"
 #include "gcode/curves/siemens_bspline.h"
 #include "gcode/curves/siemens_poly.h"
 #include "tests/support/curve_texts.h"
+#include "tests/support/klartext_arc_alarms.h"
+#include "tests/support/nurbs_alarms.h"
 #include "tests/support/places.h"
+#include "tests/support/poly_alarms.h"
+#include "tests/support/spl_alarms.h"
 
 namespace batten::gcode {
 namespace {
@@ -62,7 +64,7 @@ int curves_in(const Program& program) {
          {read_nurbs(program, at, start, fanuc_nurbs(kMm)),
           read_nurbs(program, at, start, mitsubishi_nurbs()), read_poly(program, at, start),
           read_bspline(program, at, start, BsplineUse::kAcceptedUnverified),
-          read_spl(program, at, start), read_klartext_moves(program, at, start)}) {
+          read_spl(program, at, start)}) {
       const auto* reading = std::get_if<CurveReading>(&result);
       if (reading == nullptr || reading->motions.empty()) continue;
       ++found;

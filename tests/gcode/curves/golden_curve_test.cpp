@@ -6,13 +6,15 @@
 #include <string>
 
 #include "gcode/curves/heidenhain_spl.h"
-#include "gcode/curves/nurbs_alarms.h"
 #include "gcode/curves/nurbs_read.h"
 #include "gcode/curves/nurbs_write.h"
 #include "gcode/curves/siemens_bspline.h"
 #include "gcode/curves/siemens_poly.h"
 #include "tests/support/curve_texts.h"
+#include "tests/support/nurbs_alarms.h"
 #include "tests/support/places.h"
+#include "tests/support/poly_alarms.h"
+#include "tests/support/spl_alarms.h"
 
 namespace batten::gcode {
 namespace {

@@ -11,6 +11,7 @@
 #include "gcode/curves/klartext_words.h"
 #include "geometry/distance/path_distance.h"
 #include "tests/support/curve_texts.h"
+#include "tests/support/spl_alarms.h"
 
 namespace batten::gcode {
 namespace {

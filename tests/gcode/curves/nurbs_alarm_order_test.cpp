@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "gcode/curves/nurbs_alarms.h"
 #include "gcode/curves/nurbs_rules.h"
 #include "gcode/reading/parser.h"
+#include "tests/support/nurbs_alarms.h"
 
 namespace batten::gcode {
 namespace {

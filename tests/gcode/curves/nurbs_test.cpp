@@ -5,11 +5,11 @@
 #include <string>
 
 #include "gcode/curves/bezier_chain.h"
-#include "gcode/curves/nurbs_alarms.h"
 #include "gcode/curves/nurbs_read.h"
 #include "gcode/curves/nurbs_write.h"
 #include "geometry/distance/path_distance.h"
 #include "tests/support/curve_texts.h"
+#include "tests/support/nurbs_alarms.h"
 
 namespace batten::gcode {
 namespace {

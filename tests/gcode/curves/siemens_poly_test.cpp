@@ -10,6 +10,7 @@
 #include "gcode/curves/siemens_words.h"
 #include "geometry/distance/path_distance.h"
 #include "tests/support/curve_texts.h"
+#include "tests/support/poly_alarms.h"
 
 namespace batten::gcode {
 namespace {

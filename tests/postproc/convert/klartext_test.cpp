@@ -13,14 +13,15 @@
 
 #include "gcode/controls/built_in.h"
 #include "gcode/curves/heidenhain_spl.h"
-#include "gcode/curves/klartext_moves.h"
 #include "gcode/writer/block_numbers.h"
 #include "gcode/writer/writer.h"
 #include "geometry/distance/path_distance.h"
 #include "postproc/proof/verification.h"
+#include "tests/support/klartext_arc_alarms.h"
 #include "tests/support/klartext_programs.h"
 #include "tests/support/places.h"
 #include "tests/support/random_curves.h"
+#include "tests/support/spl_alarms.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {

@@ -12,7 +12,6 @@
 #include "gcode/controls/built_in.h"
 #include "gcode/controls/rs274_family.h"
 #include "gcode/curves/curve_format.h"
-#include "gcode/curves/nurbs_alarms.h"
 #include "gcode/curves/nurbs_write.h"
 #include "gcode/curves/siemens_poly.h"
 #include "gcode/interpreter/interpreter.h"
@@ -22,6 +21,8 @@
 #include "gcode/writer/writer.h"
 #include "geometry/distance/path_distance.h"
 #include "postproc/smooth/forms/output_plan.h"
+#include "tests/support/nurbs_alarms.h"
+#include "tests/support/poly_alarms.h"
 #include "tests/support/random_curves.h"
 #include "tests/support/wavy_programs.h"
 

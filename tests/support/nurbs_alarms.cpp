@@ -1,4 +1,4 @@
-#include "gcode/curves/nurbs_alarms.h"
+#include "tests/support/nurbs_alarms.h"
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
 // What the control would say about the G06.2 blocks of a program.
 #pragma once
 
-#include "gcode/curves/curve_alarm.h"
 #include "gcode/curves/nurbs_rules.h"
 #include "gcode/text/program.h"
+#include "tests/support/curve_alarm.h"
 
 namespace batten::gcode {
 

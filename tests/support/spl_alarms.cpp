@@ -1,0 +1,145 @@
+#include "tests/support/spl_alarms.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "gcode/curves/bezier_chain.h"
+#include "gcode/curves/heidenhain_spl_words.h"
+#include "gcode/curves/spl_limits.h"
+#include "gcode/text/number_format.h"
+
+namespace batten::gcode {
+namespace {
+
+using geometry::CubicBezier;
+using geometry::Point3;
+
+constexpr int kGreatestExponent = 255;
+
+class SplAlarms {
+ public:
+  SplAlarms(const Program& program, Units units)
+      : program_(program), unit_(millimetres_per(units)) {}
+
+  CurveAlarms all() {
+    for (std::uint32_t at = 0; at < program_.blocks.size();) {
+      const SplWords joined = joined_at(program_, at);
+      line_ = program_.blocks[at].line;
+      follow(joined, at);
+      at += joined.lines;
+    }
+    return std::move(alarms_);
+  }
+
+ private:
+  void say(std::string_view id, std::string message, Severity severity = Severity::kError) {
+    alarms_.push_back({severity, line_, id, std::move(message)});
+  }
+
+  void follow(const SplWords& joined, std::uint32_t at) {
+    if (joined.understood && joined.words.empty()) return;
+    if (!joined.is("SPL")) {
+      before_.reset();
+      after_line_ = joined.is("L");
+      if (joined.is("L") && joined.understood) move(joined);
+      if (!joined.understood || (!joined.is("L") && !joined.words.empty())) known_ = {};
+      return;
+    }
+    if (!after_line_) say("spl-first", "no L before the first SPL");
+    after_line_ = true;  // splines follow each other
+    const std::string_view trouble = joined.understood ? spl_word_trouble(joined) : "spl-words";
+    if (!trouble.empty()) {
+      say(trouble, "the words of the block, expected two to five axes, then K3, K2, K1 of each");
+      known_ = {};
+      before_.reset();
+      return;
+    }
+    check_ranges(joined);
+    check_closure(joined);
+    check_kink(joined, at);
+    move(joined);
+  }
+
+  // Where the ends of a block leave the axes, in the program's units.
+  void move(const SplWords& joined) {
+    for (const KlartextWord& word : joined.words) {
+      if (!is_spl_end(word)) continue;
+      const auto axis = kSplAxes.find(word.name[0]);
+      place_[axis] = *word.value;
+      known_[axis] = true;
+    }
+  }
+
+  void check_ranges(const SplWords& joined) {
+    for (const KlartextWord& word : joined.words) {
+      if (is_spl_end(word) && std::abs(*word.value) > kGreatestEnd) {
+        say("spl-end", word.name + " beyond 99999.9999");
+      }
+      if (!is_spl_coefficient(word)) continue;
+      if (std::abs(word.mantissa) > kGreatestMantissa || word.decimals > kMantissaDecimals) {
+        say("spl-coefficient", word.name + ", expected at most 9.99999999, with an exponent above");
+      }
+      if (word.exponent && std::abs(*word.exponent) > kGreatestExponent) {
+        say("spl-exponent",
+            word.name + " with E" + std::to_string(*word.exponent) + ", expected -255 to 255");
+      }
+    }
+  }
+
+  void check_closure(const SplWords& joined) {
+    std::array<double, kSplAxes.size()> implied{};
+    for (const KlartextWord& word : joined.words) {
+      if (!is_spl_end(word) && !is_spl_coefficient(word)) continue;
+      implied[kSplAxes.find(word.name.back())] += *word.value;
+    }
+    for (const KlartextWord& word : joined.words) {
+      if (!is_spl_end(word)) continue;
+      const auto axis = kSplAxes.find(word.name[0]);
+      if (!known_[axis]) continue;
+      const double off = std::abs(implied[axis] - place_[axis]) * unit_;
+      if (off < kSplClosure) continue;
+      say("spl-closure", word.name + " starts " +
+                             to_text(std::min(off * 1000, kGreatestEnd), {.decimals = 3}) +
+                             " um from where the tool stands, expected less than 1 um");
+    }
+  }
+
+  void check_kink(const SplWords& joined, std::uint32_t at) {
+    Point3 place = Point3::Zero();
+    for (int axis = 0; axis < 3; ++axis)
+      place[axis] = place_[static_cast<std::size_t>(axis)] * unit_;
+    const CubicBezier piece = spl_block_of(joined, at, place, unit_).piece();
+    if (before_) {
+      const double kink = kink_between(*before_, piece);
+      if (kink >= kSplKink) {
+        say("spl-kink",
+            to_text(kink * 180 / std::numbers::pi, {.decimals = 3}) +
+                " degrees between two splines, expected less than 0.1",
+            Severity::kWarning);
+      }
+    }
+    before_ = piece;
+  }
+
+  const Program& program_;
+  double unit_;
+  CurveAlarms alarms_;
+  std::uint32_t line_ = 0;
+  std::array<double, kSplAxes.size()> place_{};
+  std::array<bool, kSplAxes.size()> known_{};
+  bool after_line_ = false;
+  std::optional<CubicBezier> before_;
+};
+
+}  // namespace
+
+CurveAlarms spl_alarms(const Program& program, Units units) {
+  return SplAlarms(program, units).all();
+}
+
+}  // namespace batten::gcode
