@@ -401,10 +401,6 @@ ProgramFlow follow_flow(const Program& program, Returns returns) {
   return FlowFinder(program, returns).find();
 }
 
-std::vector<BlockFlow> find_flow(const Program& program, Returns returns) {
-  return follow_flow(program, returns).blocks;
-}
-
 FlowEffect flow_effect(std::string_view text) {
   const std::string bare = bare_words(text);
   if (is_program_number(bare)) {

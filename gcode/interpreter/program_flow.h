@@ -14,11 +14,7 @@ namespace batten::gcode {
 // `text` is a line of ParseStatus::kFlow.
 [[nodiscard]] FlowEffect flow_effect(std::string_view text);
 
+// A jump to a computed label makes every block with an N number a target.
 [[nodiscard]] ProgramFlow follow_flow(const Program& program, Returns returns);
-
-// The blocks of follow_flow. A jump to a computed label makes every block with an N number a
-// target.
-[[nodiscard]] std::vector<BlockFlow> find_flow(const Program& program,
-                                               Returns returns = Returns::kBehindCalls);
 
 }  // namespace batten::gcode

@@ -49,20 +49,4 @@ ChordRow blca(const BsplineCurve& curve, double from, double to, double toleranc
   return row;
 }
 
-Path blca_tool_path(const BsplineCurve& curve, std::span<const double> parameters,
-                    double tolerance) {
-  Path path;
-  for (std::size_t i = 0; i + 1 < parameters.size(); ++i) {
-    const Point3 start = curve.point_at(parameters[i]);
-    const Vector3 way = curve.point_at(parameters[i + 1]) - start;
-    const Vector3 tangent = curve.direction_at(parameters[i]);
-    const double along = way.dot(tangent);
-    const Vector3 across = way - along * tangent;
-    const Point3 moved = start + tolerance * across.stableNormalized();
-    path.push_back(Line{start, moved});
-    path.push_back(Line{moved, moved + along * tangent});
-  }
-  return path;
-}
-
 }  // namespace batten::geometry

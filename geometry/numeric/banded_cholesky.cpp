@@ -4,8 +4,6 @@
 
 namespace batten::geometry {
 
-void BandedMatrix::set_zero() { std::fill(rows_.begin(), rows_.end(), Row{}); }
-
 void BandedMatrix::fix(std::size_t i, const Point3& value, std::vector<Point3>& right) {
   const int before = static_cast<int>(std::min<std::size_t>(i, kBands));
   for (int k = 1; k <= before; ++k) {
@@ -69,12 +67,6 @@ bool BandedMatrix::solve(std::vector<Point3>& right) {
   if (n > 2) back_substitute<2>(n - 3, right);
   for (std::size_t i = n; i-- > 3;) back_substitute<3>(i - 3, right);
   return true;
-}
-
-BandedMatrix BandedMatrix::inverse_band() const {
-  BandedMatrix inverse(0);
-  inverse_band(inverse, 0);
-  return inverse;
 }
 
 void BandedMatrix::inverse_band(BandedMatrix& inverse, std::size_t first) const {

@@ -18,7 +18,6 @@ class BandedMatrix {
   explicit BandedMatrix(std::size_t size) : rows_(size, Row{}) {}
 
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
-  void set_zero();
 
   // A row: the diagonal first, then the entries below it.
   using Row = std::array<double, kBands + 1>;
@@ -45,11 +44,8 @@ class BandedMatrix {
   [[nodiscard]] bool solve(std::vector<Point3>& right);
 
   // After solve(): the entries of the inverse inside the band, as another banded matrix
-  // (K. Takahashi et al. 1973). Linear time.
-  [[nodiscard]] BandedMatrix inverse_band() const;
-
-  // The same in the memory of another matrix, and only from row `first` on: the rows before it
-  // stay zero.
+  // (K. Takahashi et al. 1973), in its memory; only from row `first` on: the rows before it stay
+  // zero. Linear time.
   void inverse_band(BandedMatrix& inverse, std::size_t first) const;
 
  private:

@@ -130,29 +130,6 @@ double BsplineCurve::curvature_at(double u) const {
   return d1.cross(derivative_at(u, 2)).norm() / (speed * speed * speed);
 }
 
-BsplineCurve BsplineCurve::with_knot(double u) const {
-  // Boehm's insertion: point i of the new polygon divides the old leg i-1, i where the new
-  // knot divides the support of that leg.
-  const std::size_t k = basis_.find_span(u);
-  const auto& t = basis_.knots();
-  const int p = degree();
-  std::vector<double> knots = t;
-  knots.insert(knots.begin() + static_cast<std::ptrdiff_t>(k) + 1, u);
-  std::vector<Point3> points;
-  points.reserve(control_points_.size() + 1);
-  for (std::size_t i = 0; i <= control_points_.size(); ++i) {
-    if (i + p <= k) {
-      points.push_back(control_points_[i]);
-    } else if (i > k) {
-      points.push_back(control_points_[i - 1]);
-    } else {
-      const double alpha = (u - t[i]) / (t[i + p] - t[i]);
-      points.push_back((1 - alpha) * control_points_[i - 1] + alpha * control_points_[i]);
-    }
-  }
-  return {BsplineBasis(p, std::move(knots)), std::move(points)};
-}
-
 BsplineCurve BsplineCurve::part(double from, double to) const {
   if (!(first() <= from && from < to && to <= last())) {
     throw std::invalid_argument("BsplineCurve::part: from " + std::to_string(from) + " to " +

@@ -32,9 +32,6 @@ class BsplineCurve {
   // 1/mm; 0 where the first derivative vanishes.
   [[nodiscard]] double curvature_at(double u) const;
 
-  // The same curve with one more knot at u in ]first, last[. (Boehm 1980.)
-  [[nodiscard]] BsplineCurve with_knot(double u) const;
-
   // The part between two parameters, with the same parameters, clamped at both ends.
   // Requires first() <= from < to <= last().
   [[nodiscard]] BsplineCurve part(double from, double to) const;

@@ -59,21 +59,10 @@ std::vector<ParameterSample> parameter_samples(const BsplineCurve& curve, int st
   return samples;
 }
 
-double mean_curvature(std::span<const ParameterSample> samples) {
-  if (samples.empty()) return 0;
-  double sum = 0;
-  for (const ParameterSample& sample : samples) sum += sample.curvature;
-  return sum / static_cast<double>(samples.size());
-}
-
 double max_curvature(std::span<const ParameterSample> samples) {
   double most = 0;
   for (const ParameterSample& sample : samples) most = std::max(most, sample.curvature);
   return most;
-}
-
-double sampled_length(std::span<const ParameterSample> samples) {
-  return samples.empty() ? 0 : samples.back().distance;
 }
 
 double bending(std::span<const ParameterSample> samples) {

@@ -24,11 +24,8 @@ struct ParameterSample {
 // where steps < 1.
 [[nodiscard]] std::vector<ParameterSample> parameter_samples(const BsplineCurve& curve, int steps);
 
-// Mean over the samples, each counted once whatever the distance to its neighbours: a short span
-// weighs as much as a long one. 0 without samples, as the others.
-[[nodiscard]] double mean_curvature(std::span<const ParameterSample> samples);
+// 0 without samples, as the next one.
 [[nodiscard]] double max_curvature(std::span<const ParameterSample> samples);
-[[nodiscard]] double sampled_length(std::span<const ParameterSample> samples);  // mm
 
 // The integral of curvature^2 over the length (1/mm), trapezoidal rule.
 [[nodiscard]] double bending(std::span<const ParameterSample> samples);

@@ -304,17 +304,4 @@ PathPiece sub_piece(const PathPiece& piece, double t0, double t1) {
       piece);
 }
 
-Path path_through(std::span<const Point3> points) {
-  Path path;
-  if (points.empty()) return path;
-  path.reserve(points.size() - 1);
-  Point3 last = points.front();
-  for (const Point3& point : points.subspan(1)) {
-    if ((point - last).norm() <= kSamePlace) continue;
-    path.push_back(Line{last, point});
-    last = point;
-  }
-  return path;
-}
-
 }  // namespace batten::geometry

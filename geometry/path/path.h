@@ -60,7 +60,4 @@ using Path = std::vector<PathPiece>;
 [[nodiscard]] PathPiece sub_piece(const PathPiece& piece, double t0, double t1);
 [[nodiscard]] CubicBezier sub_piece(const CubicBezier& piece, double t0, double t1);
 
-// The straight chain through `points`, as pieces. Neighbours that are one place are joined.
-[[nodiscard]] Path path_through(std::span<const Point3> points);
-
 }  // namespace batten::geometry

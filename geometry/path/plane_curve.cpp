@@ -167,16 +167,4 @@ double PlaneCurve::slope_at(double u) const {
   return direction.z() / across;
 }
 
-double PlaneCurve::height_range() const {
-  double least = pieces_.front().control[0].z();
-  double greatest = least;
-  for (const CubicBezier& piece : pieces_) {
-    for (const Point3& control : piece.control) {
-      least = std::min(least, control.z());
-      greatest = std::max(greatest, control.z());
-    }
-  }
-  return greatest - least;
-}
-
 }  // namespace batten::geometry

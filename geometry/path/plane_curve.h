@@ -56,9 +56,6 @@ class PlaneCurve {
   // Rise along the axis per mm in the plane; infinite where the curve runs along the axis.
   [[nodiscard]] double slope_at(double u) const;
 
-  // Greatest difference of heights of control points, mm.
-  [[nodiscard]] double height_range() const;
-
  private:
   void append(const CubicBezier& piece, double from, double to, int halvings);
   [[nodiscard]] double angle_in(std::size_t i, double u) const;

@@ -10,25 +10,12 @@ double least_of_xyz(const Machine& machine, double AxisLimits::*limit) {
                    machine.axis(Axis::kZ).*limit});
 }
 
-void set_xyz(Machine& machine, double AxisLimits::*limit, double value) {
-  for (const Axis axis : {Axis::kX, Axis::kY, Axis::kZ}) machine.axis(axis).*limit = value;
-}
-
 }  // namespace
 
 double Machine::max_velocity() const { return least_of_xyz(*this, &AxisLimits::velocity); }
 double Machine::max_acceleration() const { return least_of_xyz(*this, &AxisLimits::acceleration); }
 double Machine::max_jerk() const { return least_of_xyz(*this, &AxisLimits::jerk); }
 double Machine::rapid_velocity() const { return least_of_xyz(*this, &AxisLimits::rapid_velocity); }
-
-void Machine::set_max_velocity(double mm_per_s) { set_xyz(*this, &AxisLimits::velocity, mm_per_s); }
-void Machine::set_max_acceleration(double mm_per_s2) {
-  set_xyz(*this, &AxisLimits::acceleration, mm_per_s2);
-}
-void Machine::set_max_jerk(double mm_per_s3) { set_xyz(*this, &AxisLimits::jerk, mm_per_s3); }
-void Machine::set_rapid_velocity(double mm_per_s) {
-  set_xyz(*this, &AxisLimits::rapid_velocity, mm_per_s);
-}
 
 std::string_view name_of(ControllerModel model) {
   switch (model) {

@@ -84,12 +84,6 @@ struct Machine {
   [[nodiscard]] double max_jerk() const;          // mm/s^3, kNone without a limit
   [[nodiscard]] double rapid_velocity() const;    // mm/s
 
-  // The same for X, Y and Z.
-  void set_max_velocity(double mm_per_s);
-  void set_max_acceleration(double mm_per_s2);
-  void set_max_jerk(double mm_per_s3);
-  void set_rapid_velocity(double mm_per_s);
-
   bool operator==(const Machine&) const = default;
 };
 

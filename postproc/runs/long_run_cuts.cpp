@@ -136,11 +136,4 @@ LongRuns find_long_runs(const gcode::Program& program, const gcode::Interpretati
   return long_runs;
 }
 
-std::vector<std::uint32_t> long_run_cuts(const gcode::Program& program,
-                                         const gcode::Interpretation& meaning,
-                                         const LongRunLimits& limits,
-                                         const GroupingOptions& grouping) {
-  return find_long_runs(program, meaning, limits, grouping).cuts;
-}
-
 }  // namespace batten::postproc

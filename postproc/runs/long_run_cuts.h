@@ -98,10 +98,4 @@ struct LongRuns {
                                       const gcode::Interpretation& meaning,
                                       const LongRunLimits& limits, const GroupingOptions& grouping);
 
-// The cuts alone.
-[[nodiscard]] std::vector<std::uint32_t> long_run_cuts(const gcode::Program& program,
-                                                       const gcode::Interpretation& meaning,
-                                                       const LongRunLimits& limits,
-                                                       const GroupingOptions& grouping);
-
 }  // namespace batten::postproc

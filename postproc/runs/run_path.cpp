@@ -105,11 +105,6 @@ std::size_t motion_count(const Run& run) {
   return count;
 }
 
-bool is_end_of_motion(const Run& run, std::size_t vertex) {
-  const auto arc = arc_not_before(run, vertex);
-  return arc == run.arcs.end() || vertex <= arc->first || vertex == arc->last;
-}
-
 MotionWalk::MotionWalk(const Run& run, std::size_t first, std::size_t last)
     : run_(run), arc_(arc_not_before(run, first)), at_(first), last_(last) {}
 

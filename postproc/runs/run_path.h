@@ -23,9 +23,6 @@ void append_arc(const geometry::Arc& arc, bool names_motion, double max_chord_er
 
 [[nodiscard]] std::size_t motion_count(const Run& run);
 
-// Whether the vertex is the start or the end of a motion.
-[[nodiscard]] bool is_end_of_motion(const Run& run, std::size_t vertex);
-
 struct RunMotion {
   geometry::PathPiece piece;
   std::size_t first = 0;  // vertex where it starts

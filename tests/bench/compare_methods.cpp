@@ -26,6 +26,7 @@
 #include "postproc/smooth/methods/run_curve.h"
 #include "tests/support/method_cases.h"
 #include "tests/support/paths.h"
+#include "tests/support/sample_means.h"
 
 namespace {
 

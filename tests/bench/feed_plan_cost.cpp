@@ -16,6 +16,7 @@
 #include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/planner/feed_estimate.h"
 #include "postproc/machine/planner/feed_plan.h"
+#include "tests/support/paths.h"
 
 namespace {
 

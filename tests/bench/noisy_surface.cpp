@@ -28,6 +28,7 @@
 #include "postproc/machine/planner/feed_plan.h"
 #include "postproc/smooth/methods/run_curve.h"
 #include "postproc/stream/pipeline.h"
+#include "tests/support/paths.h"
 #include "tests/support/surface_programs.h"
 
 namespace {

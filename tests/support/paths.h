@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "geometry/basic/point.h"
+#include "geometry/basic/rounding.h"
 #include "geometry/path/path.h"
 
 namespace batten::geometry {
@@ -142,5 +144,19 @@ struct FinishSurface {
                          cam_tolerance, 3);
   }
 };
+
+// The straight chain through `points`, as pieces. Neighbours that are one place are joined.
+inline Path path_through(std::span<const Point3> points) {
+  Path path;
+  if (points.empty()) return path;
+  path.reserve(points.size() - 1);
+  Point3 last = points.front();
+  for (const Point3& point : points.subspan(1)) {
+    if ((point - last).norm() <= kSamePlace) continue;
+    path.push_back(Line{last, point});
+    last = point;
+  }
+  return path;
+}
 
 }  // namespace batten::geometry

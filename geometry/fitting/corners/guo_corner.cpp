@@ -24,10 +24,6 @@ double guo_greatest_curvature(const CornerFrame& frame, double spacing) {
   return 4 * frame.cos_half / (3 * spacing * frame.sin_half * frame.sin_half);
 }
 
-double guo_curvature_slope(const CornerFrame& frame, double spacing) {
-  return 2 * frame.sin_half * frame.cos_half / (18 * spacing * spacing);
-}
-
 GuoBlend guo_blend(const CornerFrame& frame, double spacing) {
   const Point3& q = frame.vertex;
   std::vector<Point3> points = {q + 2 * spacing * frame.a, q + spacing * frame.a, q,

@@ -34,10 +34,6 @@ struct GuoBlend {
 // 1/mm, (4/3) cos theta / (L sin^2 theta).
 [[nodiscard]] double guo_greatest_curvature(const CornerFrame& frame, double spacing);
 
-// 1/mm^2, sin 2 theta / (18 L^2): the curvature is 0 at both ends of the blend, as on the
-// legs, and starts with this slope by length.
-[[nodiscard]] double guo_curvature_slope(const CornerFrame& frame, double spacing);
-
 // The blend of that spacing. Requires 0 < 2 * spacing <= both legs.
 [[nodiscard]] GuoBlend guo_blend(const CornerFrame& frame, double spacing);
 

@@ -29,7 +29,7 @@ class Flow : public testing::TestWithParam<FlowCase> {};
 TEST_P(Flow, IsFound) {
   Diagnostics found;
   const Program program = parse(SourceText("test.nc", GetParam().text), found);
-  const std::vector<BlockFlow> flow = find_flow(program);
+  const std::vector<BlockFlow> flow = follow_flow(program, Returns::kBehindCalls).blocks;
   Lines labels;
   Lines targets;
   Lines bodies;
@@ -98,7 +98,8 @@ TEST_P(Calls, OfProgramsThatAreNotReadMayComeBackToAnyLabel) {
     if (flow.blocks[i].label_referenced) labels.push_back(i + 1);
   }
   EXPECT_EQ(labels, GetParam().labels);
-  for (const BlockFlow& each : find_flow(program)) EXPECT_FALSE(each.label_referenced);
+  for (const BlockFlow& each : follow_flow(program, Returns::kBehindCalls).blocks)
+    EXPECT_FALSE(each.label_referenced);
 }
 
 INSTANTIATE_TEST_SUITE_P(

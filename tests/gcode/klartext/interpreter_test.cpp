@@ -204,7 +204,8 @@ TEST(KlartextEffects, CommentsAreNotRead) {
 // Which lines of these are bodies.
 std::string bodies_in(const std::string& lines) {
   std::string found;
-  for (const BlockFlow& each : find_flow(KlartextProgram(lines).program)) {
+  for (const BlockFlow& each :
+       follow_flow(KlartextProgram(lines).program, Returns::kBehindCalls).blocks) {
     found += each.jump_target ? 'T' : each.in_body ? 'b' : '.';
   }
   return found;

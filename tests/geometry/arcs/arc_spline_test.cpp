@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "geometry/distance/path_distance.h"
+#include "tests/support/paths.h"
 
 namespace batten::geometry {
 namespace {

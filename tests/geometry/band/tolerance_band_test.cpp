@@ -10,6 +10,7 @@
 
 #include "geometry/path/path.h"
 #include "tests/support/overlapping_paths.h"
+#include "tests/support/paths.h"
 
 namespace batten::geometry {
 namespace {

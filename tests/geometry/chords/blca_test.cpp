@@ -4,11 +4,13 @@
 
 #include <cmath>
 #include <ostream>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "geometry/chords/chord_deviation.h"
+#include "geometry/path/path.h"
 #include "tests/support/curve_of.h"
 #include "tests/support/parabolas.h"
 
@@ -53,6 +55,28 @@ INSTANTIATE_TEST_SUITE_P(Parabolas, Blca,
                                          CountCase{"SteepFiner", kSteepParabola, .00045, 151},
                                          CountCase{"SteepFinest", kSteepParabola, .000045, 475}),
                          [](const auto& test) { return test.param.name; });
+
+// The tool path that the paper draws over these vertices: from each a jump of length `tolerance`
+// across the tangent, to the side where the curve goes, then along the tangent until abeam of the
+// next vertex, which is met there when the step was a whole one. Not a path to be cut: it leaves
+// the curve by the tolerance in every step.
+//
+// Requires `parameters` of the curve, increasing.
+Path blca_tool_path(const BsplineCurve& curve, std::span<const double> parameters,
+                    double tolerance) {
+  Path path;
+  for (std::size_t i = 0; i + 1 < parameters.size(); ++i) {
+    const Point3 start = curve.point_at(parameters[i]);
+    const Vector3 way = curve.point_at(parameters[i + 1]) - start;
+    const Vector3 tangent = curve.direction_at(parameters[i]);
+    const double along = way.dot(tangent);
+    const Vector3 across = way - along * tangent;
+    const Point3 moved = start + tolerance * across.stableNormalized();
+    path.push_back(Line{start, moved});
+    path.push_back(Line{moved, moved + along * tangent});
+  }
+  return path;
+}
 
 struct Example {
   std::string name;

@@ -8,6 +8,7 @@
 
 #include "geometry/distance/path_distance.h"
 #include "geometry/path/curve_pieces.h"
+#include "tests/support/knot_insertion.h"
 #include "tests/support/random_curves.h"
 
 namespace batten::geometry {
@@ -26,7 +27,7 @@ BsplineCurve crowded(BsplineCurve curve, unsigned seed) {
   const std::vector<double> breaks = curve.breakpoints();
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
     for (int k = 0; k < 7; ++k) {
-      curve = curve.with_knot(breaks[i] + part(random) * (breaks[i + 1] - breaks[i]));
+      curve = with_knot(curve, breaks[i] + part(random) * (breaks[i + 1] - breaks[i]));
     }
   }
   return curve;

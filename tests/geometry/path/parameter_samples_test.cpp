@@ -5,7 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tests/support/knot_insertion.h"
 #include "tests/support/naseath_cases.h"
+#include "tests/support/sample_means.h"
 
 namespace batten::geometry {
 namespace {
@@ -14,7 +16,7 @@ namespace {
 BsplineCurve parabola() {
   const BsplineCurve whole(BsplineBasis::clamped(3, {0, 1}),
                            {{0, 0, 0}, {1.0 / 3, 0, 0}, {2.0 / 3, 1.0 / 3, 0}, {1, 1, 0}});
-  return whole.with_knot(0.1);
+  return with_knot(whole, 0.1);
 }
 
 double parabola_curvature(double t) { return 2 / std::pow(1 + 4 * t * t, 1.5); }

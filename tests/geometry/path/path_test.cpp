@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/paths.h"
+
 namespace batten::geometry {
 namespace {
 

@@ -11,6 +11,7 @@
 #include "gcode/controls/built_in.h"
 #include "postproc/machine/machine_fields.h"
 #include "postproc/machine/machine_path_limits.h"
+#include "tests/support/machine_limits.h"
 
 namespace batten::postproc {
 namespace {
@@ -96,7 +97,7 @@ TEST(Machine, HasTheLeastOfXyzForRulesThatKnowOneLimit) {
   EXPECT_EQ(m.max_acceleration(), 2000);
   EXPECT_EQ(m.max_jerk(), 40000);
   EXPECT_EQ(m.rapid_velocity(), 400);
-  m.set_max_velocity(77);
+  set_max_velocity(m, 77);
   EXPECT_EQ(m.axis(Axis::kX).velocity, 77);
   EXPECT_EQ(m.axis(Axis::kZ).velocity, 77);
   EXPECT_EQ(m.axis(Axis::kA).velocity, 1);

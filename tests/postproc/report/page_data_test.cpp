@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "postproc/report/html_report.h"
+#include "tests/support/machine_limits.h"
 #include "tests/support/report_words.h"
 
 namespace batten::postproc {
@@ -54,9 +55,9 @@ constexpr const char* kStraight = "G21 G90\nG0 X0 Y0 Z0\nG1 X100 F6000\n";
 Machine corner_machine() {
   Machine m;
   m.name = "test";
-  m.set_max_velocity(400);
-  m.set_max_acceleration(100);
-  m.set_rapid_velocity(400);
+  set_max_velocity(m, 400);
+  set_max_acceleration(m, 100);
+  set_rapid_velocity(m, 400);
   m.look_ahead = 1000;
   return m;
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/support/interpreted.h"
+#include "tests/support/machine_limits.h"
 
 namespace batten::postproc {
 namespace {
@@ -17,9 +18,9 @@ constexpr double kAcceleration = 100;  // mm/s^2
 Machine steady_machine() {
   Machine m;
   m.name = "test";
-  m.set_max_velocity(400);
-  m.set_max_acceleration(kAcceleration);
-  m.set_rapid_velocity(400);
+  set_max_velocity(m, 400);
+  set_max_acceleration(m, kAcceleration);
+  set_rapid_velocity(m, 400);
   m.look_ahead = 1000;
   return m;
 }
@@ -61,7 +62,7 @@ TEST(ProgramSpeeds, FallAtCorners) {
 // the rest of the first mm takes 0.0292 s at that acceleration.
 TEST(ProgramSpeeds, KeepALimitOnJerk) {
   Machine m = steady_machine();
-  m.set_max_jerk(500);
+  set_max_jerk(m, 500);
   const std::string line = "G21 G90\nG0 X0 Y0 Z0\nG1 X100 F3000\n";
   EXPECT_NEAR(speed_at(line, 3, 0.01, m), 60 * (10 + 0.0292 * kAcceleration), 4);
   EXPECT_NEAR(speed_at(line, 3, 0.5, m), 3000, 1e-3);

@@ -86,7 +86,7 @@ TEST(LongRunCuts, AreThoseOfTheWholeRun) {
         expected.push_back(section.first_block + static_cast<std::uint32_t>(place));
       }
     }
-    EXPECT_EQ(long_run_cuts(read.program, read.meaning, kSmall, {}), expected);
+    EXPECT_EQ(find_long_runs(read.program, read.meaning, kSmall, {}).cuts, expected);
     EXPECT_EQ(expected.empty(), seed == 0);  // 300 points may be held, 301 and more not
   }
 }
@@ -120,7 +120,7 @@ TEST(LongRunCuts, AreTheSameForAnyParts) {
     const std::string text = RandomLines(seed, true).make(1500);
     const ReadText read(text);
     std::vector<std::uint32_t> whole;
-    for (const std::uint32_t block : long_run_cuts(read.program, read.meaning, kSmall, {})) {
+    for (const std::uint32_t block : find_long_runs(read.program, read.meaning, kSmall, {}).cuts) {
       whole.push_back(read.program.blocks[block].line);
     }
     all += whole.size();
@@ -135,7 +135,7 @@ TEST(LongRunCuts, AreTheSameForAnyParts) {
 TEST(LongRunCuts, HaveRunsOnBothSides) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const ReadText read(RandomLines(seed, true).make(1500));
-    const auto cuts = long_run_cuts(read.program, read.meaning, kSmall, {});
+    const auto cuts = find_long_runs(read.program, read.meaning, kSmall, {}).cuts;
     const auto sections = group_runs(read.program, read.meaning, {}, cuts);
     std::size_t found = 0;
     for (std::size_t i = 1; i < sections.size(); ++i) {
@@ -153,7 +153,7 @@ TEST(LongRunCuts, AreNotMadeWhereNothingFollowsInTheNextBlock) {
   std::string text = "G21 G90 G17\nG0 X0 Y0 Z5\nG1 Z-1 F300\n";
   for (int i = 1; i <= 1000; ++i) text += fmt::format("G1 X{:.1f} Y{}\n(mark)\n", 0.1 * i, i % 2);
   const ReadText read(text + "G0 Z5\nM2\n");
-  EXPECT_TRUE(long_run_cuts(read.program, read.meaning, kSmall, {}).empty());
+  EXPECT_TRUE(find_long_runs(read.program, read.meaning, kSmall, {}).cuts.empty());
 }
 
 }  // namespace

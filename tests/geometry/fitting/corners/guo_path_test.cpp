@@ -17,6 +17,7 @@
 
 #include "geometry/distance/path_distance.h"
 #include "tests/support/corners.h"
+#include "tests/support/paths.h"
 
 namespace batten::geometry {
 namespace {

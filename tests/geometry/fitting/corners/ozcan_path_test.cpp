@@ -13,6 +13,7 @@
 #include "geometry/path/joined_curve.h"
 #include "tests/support/corners.h"
 #include "tests/support/method_cases.h"
+#include "tests/support/paths.h"
 
 namespace batten::geometry {
 namespace {

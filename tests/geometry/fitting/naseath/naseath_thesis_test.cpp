@@ -11,6 +11,7 @@
 #include "geometry/fitting/naseath/naseath_setting.h"
 #include "geometry/path/parameter_samples.h"
 #include "tests/support/naseath_cases.h"
+#include "tests/support/sample_means.h"
 
 namespace batten::geometry {
 namespace {

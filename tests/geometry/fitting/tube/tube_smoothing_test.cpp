@@ -11,6 +11,7 @@
 
 #include "geometry/fitting/tube/tube_smoothing_solver.h"
 #include "tests/support/corners.h"
+#include "tests/support/knot_insertion.h"
 #include "tests/support/naseath_cases.h"
 #include "tests/support/noisy_curves.h"
 
@@ -195,7 +196,7 @@ TEST(SmoothInTube, RefusesWhatItCannotUnderstand) {
   options.held_points = 4;
   EXPECT_THROW((void)smooth_in_tube(curve, options), std::invalid_argument);
   const double middle = curve.breakpoints()[3];
-  EXPECT_THROW((void)smooth_in_tube(curve.with_knot(middle), tube(.1)), std::invalid_argument);
+  EXPECT_THROW((void)smooth_in_tube(with_knot(curve, middle), tube(.1)), std::invalid_argument);
 }
 
 // --- the choice --------------------------------------------------------------------------------

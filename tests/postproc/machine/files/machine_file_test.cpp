@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "postproc/machine/machine_fields.h"
+#include "tests/support/machine_limits.h"
 #include "tests/support/scratch_folder.h"
 
 namespace batten::postproc {
@@ -47,9 +48,9 @@ TEST(MachineFile, ChangesWhatDiffersFromItsBase) {
   Machine expected = *find_machine("linuxcnc");
   expected.name = "my";
   expected.description = result.machine->description;
-  expected.set_max_velocity(200);
-  expected.set_max_acceleration(1500);
-  expected.set_rapid_velocity(250);
+  set_max_velocity(expected, 200);
+  set_max_acceleration(expected, 1500);
+  set_rapid_velocity(expected, 250);
   expected.block_period = 0.002;
   expected.look_ahead = 100;
   expected.junction_deviation = 0.02;

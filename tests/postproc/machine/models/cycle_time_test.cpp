@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "tests/support/machine_limits.h"
 #include "tests/support/processor_time.h"
 
 namespace batten::postproc {
@@ -32,8 +33,8 @@ Machine machine_of(ControllerModel model) {
   Machine m;
   m.name = "test";
   m.model = model;
-  m.set_max_velocity(200);
-  m.set_max_acceleration(1000);
+  set_max_velocity(m, 200);
+  set_max_acceleration(m, 1000);
   m.block_period = 0.001;
   m.look_ahead = 1000;
   m.blend_tolerance = 0.01;
@@ -46,9 +47,9 @@ struct Limit {
   void (*set)(Machine&, double);
 };
 constexpr Limit kVelocity = {[](const Machine& m) { return m.max_velocity(); },
-                             [](Machine& m, double value) { m.set_max_velocity(value); }};
+                             [](Machine& m, double value) { set_max_velocity(m, value); }};
 constexpr Limit kAcceleration = {[](const Machine& m) { return m.max_acceleration(); },
-                                 [](Machine& m, double value) { m.set_max_acceleration(value); }};
+                                 [](Machine& m, double value) { set_max_acceleration(m, value); }};
 constexpr Limit kBlockPeriod = {[](const Machine& m) { return m.block_period; },
                                 [](Machine& m, double value) { m.block_period = value; }};
 constexpr Limit kJunctionDeviation = {
@@ -377,8 +378,8 @@ TEST_P(EveryModel, TakesTheSameTimeInAnyUnitOfLength) {
   const Machine m = machine_of(GetParam());
   constexpr double kBy = 25.4;
   Machine big = m;
-  big.set_max_velocity(kBy * m.max_velocity());
-  big.set_max_acceleration(kBy * m.max_acceleration());
+  set_max_velocity(big, kBy * m.max_velocity());
+  set_max_acceleration(big, kBy * m.max_acceleration());
   for (double Machine::*length : {&Machine::junction_deviation, &Machine::arc_tolerance,
                                   &Machine::blend_tolerance, &Machine::naive_cam_tolerance}) {
     big.*length *= kBy;

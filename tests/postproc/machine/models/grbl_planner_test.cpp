@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "postproc/machine/models/cycle_time.h"
+#include "tests/support/machine_limits.h"
 
 namespace batten::postproc {
 namespace {
@@ -25,9 +26,9 @@ Machine router() {
   Machine m;
   m.name = "router";
   m.model = ControllerModel::kGrbl;
-  m.set_max_velocity(kVelocity);
-  m.set_rapid_velocity(kVelocity);
-  m.set_max_acceleration(kAcceleration);
+  set_max_velocity(m, kVelocity);
+  set_rapid_velocity(m, kVelocity);
+  set_max_acceleration(m, kAcceleration);
   m.junction_deviation = 0.012;
   m.arc_tolerance = 0.002;
   m.block_period = 1e-9;  // nothing that feeds it is a limit here

@@ -9,6 +9,7 @@
 
 #include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/models/linuxcnc_naive_cam.h"
+#include "tests/support/machine_limits.h"
 
 namespace batten::postproc {
 namespace {
@@ -24,8 +25,8 @@ using Chain = std::vector<TimedPiece>;
 
 Machine bench_machine(double tolerance) {
   Machine m = *find_machine("linuxcnc");
-  m.set_max_velocity(400);
-  m.set_max_acceleration(4000);
+  set_max_velocity(m, 400);
+  set_max_acceleration(m, 4000);
   m.block_period = 0.001;
   m.blend_tolerance = tolerance;
   m.naive_cam_tolerance = tolerance;

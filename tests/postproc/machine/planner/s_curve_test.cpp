@@ -15,6 +15,7 @@
 #include "geometry/path/parameter_samples.h"
 #include "tests/support/naseath_cases.h"
 #include "tests/support/processor_time.h"
+#include "tests/support/sample_means.h"
 
 namespace batten::postproc {
 namespace {

@@ -13,6 +13,7 @@
 
 #include "postproc/machine/program_time/program_time.h"
 #include "tests/support/interpreted.h"
+#include "tests/support/machine_limits.h"
 
 namespace batten::postproc {
 namespace {
@@ -23,9 +24,9 @@ Machine machine_of(ControllerModel model) {
   Machine m;
   m.name = "test";
   m.model = model;
-  m.set_max_velocity(200);
-  m.set_rapid_velocity(300);
-  m.set_max_acceleration(1000);
+  set_max_velocity(m, 200);
+  set_rapid_velocity(m, 300);
+  set_max_acceleration(m, 1000);
   m.block_period = 0.001;
   m.look_ahead = 1000;
   m.blend_tolerance = 0.01;

@@ -17,6 +17,7 @@
 #include "geometry/path/path.h"
 #include "postproc/machine/models/cycle_time.h"
 #include "tests/support/interpreted.h"
+#include "tests/support/machine_limits.h"
 
 namespace batten::postproc {
 namespace {
@@ -28,9 +29,9 @@ Machine machine_of(ControllerModel model) {
   Machine m;
   m.name = "test";
   m.model = model;
-  m.set_max_velocity(200);
-  m.set_rapid_velocity(300);
-  m.set_max_acceleration(1000);
+  set_max_velocity(m, 200);
+  set_rapid_velocity(m, 300);
+  set_max_acceleration(m, 1000);
   m.block_period = 0.001;
   m.look_ahead = 1000;
   m.blend_tolerance = 0.01;
@@ -188,9 +189,9 @@ TEST_P(EveryControl, ADwellAddsExactlyItsSeconds) {
 TEST_P(EveryControl, SlowMotionTakesTwiceTheTime) {
   const Machine m = machine_of(GetParam());
   Machine slow = m;
-  slow.set_max_velocity(slow.max_velocity() / 2);
-  slow.set_rapid_velocity(slow.rapid_velocity() / 2);
-  slow.set_max_acceleration(slow.max_acceleration() / 4);
+  set_max_velocity(slow, slow.max_velocity() / 2);
+  set_rapid_velocity(slow, slow.rapid_velocity() / 2);
+  set_max_acceleration(slow, slow.max_acceleration() / 4);
   slow.block_period *= 2;
   slow.servo_period *= 2;
   for (unsigned seed = 0; seed < kPrograms; ++seed) {
@@ -217,7 +218,7 @@ TEST_P(EveryControl, SlowMotionTakesTwiceTheTime) {
 TEST_P(EveryControl, HalvedLimitsStretchTheirOwnPartOfAMove) {
   const Machine m = machine_of(GetParam());
   Machine half = m;
-  half.set_max_acceleration(half.max_acceleration() / 2);
+  set_max_acceleration(half, half.max_acceleration() / 2);
   const std::string ramps = "G21 G90\nG1 X2 F20000\nG0 X2.5\nM2\n";
   const auto cut = [&](const Machine& machine) {
     return timed(ramps, machine).seconds.cutting - stop_loss(machine);
@@ -226,7 +227,7 @@ TEST_P(EveryControl, HalvedLimitsStretchTheirOwnPartOfAMove) {
     EXPECT_NEAR(cut(half), std::sqrt(2.0) * cut(m), 1e-9);
   }
   half = m;
-  half.set_max_velocity(half.max_velocity() / 2);
+  set_max_velocity(half, half.max_velocity() / 2);
   const double long_way = timed("G21 G90\nG1 X20000 F60000\nM2\n", m).seconds.cutting;
   const double slow_way = timed("G21 G90\nG1 X20000 F60000\nM2\n", half).seconds.cutting;
   EXPECT_NEAR(slow_way, 2 * long_way, 0.01 * long_way);

@@ -12,6 +12,7 @@
 #include "gcode/controls/built_in.h"
 #include "postproc/smooth/forms/plan_stretches.h"
 #include "tests/support/curve_of.h"
+#include "tests/support/machine_limits.h"
 
 namespace batten::postproc {
 namespace {
@@ -50,7 +51,7 @@ Smoothed wave(double feed = 1000) {
 
 Machine machine_with(double block_period) {
   Machine machine;
-  machine.set_max_velocity(400);
+  set_max_velocity(machine, 400);
   machine.block_period = block_period;
   return machine;
 }

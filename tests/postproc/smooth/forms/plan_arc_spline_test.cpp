@@ -11,6 +11,7 @@
 #include "geometry/distance/path_distance.h"
 #include "geometry/fitting/fair/fair.h"
 #include "postproc/smooth/forms/output_plan.h"
+#include "tests/support/paths.h"
 
 namespace batten::postproc {
 namespace {
