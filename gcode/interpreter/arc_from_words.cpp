@@ -16,11 +16,12 @@ using geometry::Vector3;
 
 constexpr double kFullTurn = 2 * std::numbers::pi;
 
-// How far the radii at the ends of an arc may differ before controls refuse it (LinuxCNC,
-// measured): this much, or this part of the radius, but never more than the last one.
+// How far the radii at the ends of an arc may differ before controls refuse it: this much, or this
+// part of the radius (LinuxCNC, measured), but never more than the last one (grbl; LinuxCNC takes
+// 2.83 mm).
 constexpr double kRadiusSlack = 0.0283;  // mm
 constexpr double kRelativeRadiusSlack = 0.001;
-constexpr double kGreatestRadiusSlack = 2.83;  // mm
+constexpr double kGreatestRadiusSlack = 0.5;  // mm
 
 // A half turn written with R: the printed ends may be a little further apart than 2 R. LinuxCNC
 // takes half chords that are longer by this (0.00005 in), and refuses more.

@@ -22,9 +22,10 @@ void WordApplier::apply_cycle_end() {
 }
 
 void WordApplier::apply_feed_mode(FeedMode mode) {
-  if (modal().feed_mode != mode) {
-    modal().feed.reset();  // the number before had another meaning
-  }
+  // The number before had another meaning; and LinuxCNC forgets it at each of these words, also
+  // where the mode was set already.
+  modal().feed.reset();
+  block(reason::kStateChange);
   set(CodeGroup::kFeedMode, modal().feed_mode, mode);
 }
 

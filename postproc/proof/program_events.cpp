@@ -312,7 +312,7 @@ class Lister {
   static bool acts_each_time(Code code, CodeGroup group) {
     constexpr Code kBlending = 640;
     return group == CodeGroup::kCycleEnd || group == CodeGroup::kToolLength ||
-           group == CodeGroup::kWorkOffset || code == kBlending;
+           group == CodeGroup::kWorkOffset || group == CodeGroup::kFeedMode || code == kBlending;
   }
 
   // A block that stands as text sets modes too.

@@ -143,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(
             "YzRight", "G21 G19 G0 X2 Y0 Z5\nG2 Y5 Z0 K-5 F9", {2, 5, 0}, {2, 0, 0}, kX, -kPi / 2}),
     [](const auto& test) { return test.param.name; });
 
-// Both limits of the radii: 0.0283 mm, or 0.1 % of the radius, never above 2.83 mm.
+// Both limits of the radii: 0.0283 mm, or 0.1 % of the radius, never above 0.5 mm.
 TEST(InterpreterArcs, RefusesCentresThatAreTooFarOff) {
   const auto refused = [](double radius, double difference) {
     ArcWords words;
@@ -154,10 +154,10 @@ TEST(InterpreterArcs, RefusesCentresThatAreTooFarOff) {
   EXPECT_FALSE(refused(10, 0.0282));
   EXPECT_TRUE(refused(10, 0.0284));
   EXPECT_TRUE(refused(10, -0.0284));
-  EXPECT_FALSE(refused(1000, 0.999));
-  EXPECT_TRUE(refused(1000, 1.001));
-  EXPECT_FALSE(refused(10000, 2.829));
-  EXPECT_TRUE(refused(10000, 2.831));
+  EXPECT_FALSE(refused(100, 0.0999));
+  EXPECT_TRUE(refused(100, 0.1001));
+  EXPECT_FALSE(refused(10000, 0.499));
+  EXPECT_TRUE(refused(10000, 0.501));
 }
 
 TEST(InterpreterArcs, TakesAHalfChordThatRoundingMadeLongerThanTheRadius) {

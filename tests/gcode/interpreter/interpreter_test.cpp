@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(
         BlockCase{"RepeatedFeed", "G1 X2 F100.000", BlockKind::kMotion, {}},
         BlockCase{"OtherFeed", "G1 X2 F200", BlockKind::kMotion, {}},
         BlockCase{"RepeatedSpeed", "G1 X2 S500", BlockKind::kMotion, {}},
-        BlockCase{"RepeatedModes", "G90 G21 G94 G17 G40 G1 X2", BlockKind::kMotion, {}},
+        BlockCase{"RepeatedModes", "G90 G21 G17 G40 G1 X2", BlockKind::kMotion, {}},
         BlockCase{"PlainComment", "G1 X2 (text) ; more", BlockKind::kMotion, {}},
         BlockCase{"FeedAlone", "F200", BlockKind::kSettings, {}},
         BlockCase{"NumberAlone", "N40", BlockKind::kEmpty, {}},

@@ -324,6 +324,14 @@ INSTANTIATE_TEST_SUITE_P(Verify, Accepts, testing::ValuesIn(good_cases()),
 
 // --- what it tells --------------------------------------------------------------------------
 
+// LinuxCNC forgets the feed at each G94, also where that mode was set.
+TEST(Verify, WantsTheFeedAgainBehindAFeedModeThatIsSaidOnceMore) {
+  EXPECT_FALSE(verify_texts(kProgram, replaced(kProgram, "X20 Y20\n", "G94\nX20 Y20\n")).proved());
+  const std::string said = replaced(kProgram, "X20 Y20\n", "G94\nX20 Y20 F800\n");
+  EXPECT_FALSE(verify_texts(said, replaced(said, "X20 Y20 F800", "X20 Y20")).proved());
+  EXPECT_TRUE(verify_texts(said, replaced(said, "X20 Y20 F800", "X20 Y20 F800.0")).proved());
+}
+
 // LinuxCNC runs the two lines as one, straight to the corner on the other side.
 TEST(Verify, DoesNotTakeALoneReturnForALineEnd) {
   const std::string apart = "G21 G90\nG0 X0 Y0 Z0\nG1 X60 F3000\nY60\nX0\nM2\n";

@@ -326,5 +326,18 @@ TEST(Pipeline, SaysOnceThatAProgramWasSmoothed) {
   EXPECT_EQ(result.text.find("Batten", at + 1), std::string::npos);
 }
 
+// LinuxCNC forgets the feed there, and stops at a curve without one.
+TEST(Pipeline, SaysTheFeedAgainBehindAFeedMode) {
+  const std::string head = "G21 G90 G17 G94\nG0 X0 Y0 Z0\nG1 X0 Y0 F2000\nG94\n";
+  const std::string text = head + joined(wave_lines({.lines = 60}), "\n") + "M2\n";
+  const SmoothResult result = smoothed(text, options_for("linuxcnc"));
+  ASSERT_GE(rewritten_runs(result), 1U);
+  const std::size_t behind = result.text.find("G94\n", result.text.find("F2000"));
+  ASSERT_NE(behind, std::string::npos);
+  const std::size_t cut = result.text.find('X', behind);
+  const std::string first = result.text.substr(cut, result.text.find('\n', cut) - cut);
+  EXPECT_NE(first.find("F2000"), std::string::npos) << result.text;
+}
+
 }  // namespace
 }  // namespace batten::postproc
