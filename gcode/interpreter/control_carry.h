@@ -20,7 +20,7 @@ struct ControlCarry {
   bool is_klartext = false;  // such programs are read as a whole
   bool any_motion = false;
   SourceSpan first_motion;   // its block
-  bool reaches_out = false;  // a part was not for itself, see above
+  bool reaches_out = false;  // a part was not for itself (gcode/reading/part_reading.h)
   LatheWatch lathe;          // of all parts so far
   DiagnosticLimiter told;
 };

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "postproc/system/spool_file.h"
 #include "tests/support/scratch_folder.h"
 
 namespace batten::postproc {
@@ -49,6 +50,50 @@ TEST_F(OutputFile, IsWrittenWholeAndAlone) {
   EXPECT_EQ(result.status, WriteStatus::kWritten) << result.message;
   EXPECT_EQ(text_of("new.nc"), "G1 X1\n");
   EXPECT_EQ(files_in_folder(), 1u);
+}
+
+TEST_F(OutputFile, HoldsWhatCameBehindTheLastRestart) {
+  WriteRequest request{.target = file("new.nc")};
+  request.parts = [](const PartWriter& write) {
+    EXPECT_TRUE(write("a text that is worth nothing\n"));
+    EXPECT_TRUE(write("and more of it\n"));
+    EXPECT_TRUE(write.restart());
+    EXPECT_TRUE(write("G1 X1\n"));
+  };
+  const WriteResult result = write_file(request);
+  EXPECT_EQ(result.status, WriteStatus::kWritten) << result.message;
+  EXPECT_EQ(text_of("new.nc"), "G1 X1\n");
+  EXPECT_EQ(files_in_folder(), 1u);
+}
+
+// What went into a pipe was seen.
+TEST_F(OutputFile, DoesNotBeginAPipeAnew) {
+  int ends[2] = {};
+  ASSERT_EQ(::pipe(ends), 0);
+  WriteRequest request;
+  request.parts = [](const PartWriter& write) {
+    EXPECT_TRUE(write("seen"));
+    EXPECT_FALSE(write.restart());
+  };
+  EXPECT_EQ(write_request_to_descriptor(ends[1], "pipe", request).status, WriteStatus::kWritten);
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+TEST(SpoolFile, HoldsWhatCameBehindTheLastRestart) {
+  std::string error;
+  auto spool = SpoolFile::make(error);
+  ASSERT_TRUE(spool) << error;
+  EXPECT_TRUE(spool->append("a text that is worth nothing"));
+  EXPECT_TRUE(spool->restart());
+  EXPECT_TRUE(spool->append("G1 X1\n"));
+  std::string text;
+  spool->write_to({[&](std::string_view part) {
+                     text += part;
+                     return true;
+                   },
+                   [] { return false; }});
+  EXPECT_EQ(text, "G1 X1\n");
 }
 
 TEST_F(OutputFile, DoesNotReplaceAnExistingFileUnasked) {
