@@ -53,7 +53,8 @@ TEST_F(OutputFile, IsWrittenWholeAndAlone) {
 }
 
 TEST_F(OutputFile, HoldsWhatCameBehindTheLastRestart) {
-  WriteRequest request{.target = file("new.nc")};
+  WriteRequest request;
+  request.target = file("new.nc");
   request.parts = [](const PartWriter& write) {
     EXPECT_TRUE(write("a text that is worth nothing\n"));
     EXPECT_TRUE(write("and more of it\n"));
