@@ -15,7 +15,6 @@
 #include "postproc/machine/files/machine_file.h"
 #include "postproc/machine/program_time/program_time.h"
 #include "postproc/machine/program_time/program_time_blocks.h"
-#include "postproc/options/decimals_option.h"
 #include "postproc/options/options.h"
 #include "postproc/proof/verification.h"
 #include "postproc/runs/run_grouping.h"

@@ -13,7 +13,6 @@
 #include "gcode/control/block_spelling.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/source_marks.h"
-#include "gcode/text/dwell_form.h"
 #include "gcode/text/language.h"
 #include "gcode/text/number_format.h"
 #include "geometry/path/path.h"

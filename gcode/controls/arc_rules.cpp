@@ -6,9 +6,8 @@
 #include <numbers>
 
 #include "gcode/controls/rs274_family.h"
-#include "gcode/state/plane_axes.h"
-#include "gcode/state/units.h"
-#include "gcode/text/number_limit.h"
+#include "gcode/state/modal_state.h"
+#include "gcode/text/number_format.h"
 
 namespace batten::gcode {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "gcode/controls/built_in.h"
 #include "gcode/controls/rs274_family.h"
-#include "gcode/curves/nurbs_format.h"
-#include "gcode/state/units.h"
+#include "gcode/curves/nurbs.h"
+#include "gcode/state/modal_state.h"
 
 namespace batten::gcode {
 namespace {

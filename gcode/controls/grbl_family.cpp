@@ -4,7 +4,7 @@
 
 #include "gcode/controls/built_in.h"
 #include "gcode/controls/row_dialect.h"
-#include "gcode/curves/g5_format.h"
+#include "gcode/curves/g5_curve.h"
 
 namespace batten::gcode {
 namespace {

@@ -8,8 +8,8 @@
 #include "gcode/controls/arc_rules.h"
 #include "gcode/controls/built_in.h"
 #include "gcode/controls/rs274_family.h"
+#include "gcode/curves/heidenhain_spl.h"
 #include "gcode/curves/klartext_words.h"
-#include "gcode/curves/spl_format.h"
 
 namespace batten::gcode {
 namespace {

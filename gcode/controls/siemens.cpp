@@ -5,9 +5,9 @@
 
 #include "gcode/controls/built_in.h"
 #include "gcode/controls/rs274_family.h"
-#include "gcode/curves/bspline_format.h"
-#include "gcode/curves/poly_format.h"
-#include "gcode/state/units.h"
+#include "gcode/curves/siemens_bspline.h"
+#include "gcode/curves/siemens_poly.h"
+#include "gcode/state/modal_state.h"
 
 namespace batten::gcode {
 namespace {

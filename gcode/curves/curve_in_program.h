@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "gcode/curves/curve_text.h"
+#include "gcode/curves/curve_format.h"
 #include "gcode/state/block_flow.h"
 #include "gcode/state/control_state.h"
 #include "gcode/state/motion.h"

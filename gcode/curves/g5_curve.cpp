@@ -1,12 +1,16 @@
 #include "gcode/curves/g5_curve.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string_view>
+#include <tuple>
 
 #include "gcode/state/block_words.h"
 #include "gcode/state/control_state.h"
+#include "geometry/basic/point.h"
 #include "geometry/basic/rounding.h"
+#include "geometry/path/cubic_polynomial.h"
 
 namespace batten::gcode {
 namespace {
@@ -140,6 +144,161 @@ bool bends_one_way(const CubicBezier& piece) {
     before = after;
   }
   return std::abs(sum) < std::numbers::pi;
+}
+
+namespace {
+
+using geometry::CubicBezier;
+using geometry::Point3;
+
+// The settings of their sources, which no setting of the machine changes.
+constexpr double kNear = 0.1;  // mm, |x| + |y| between the curve and the middle of its chord
+constexpr double kLeastStep = 0.002;
+constexpr double kGreatestStep = 0.1;
+
+double sum_of_axes(const Point3& a, const Point3& b) {
+  return std::abs(a.x() - b.x()) + std::abs(a.y() - b.y());
+}
+
+// The chord from t to the place that is found, step by step as they do.
+class Chopper {
+ public:
+  explicit Chopper(const CubicBezier& piece) : piece_(piece) {}
+
+  std::vector<double> chop() {
+    std::vector<double> ends;
+    while (t_ < 1) {
+      const double end = end_after(std::min(t_ + step_, 1.0));
+      step_ = end - t_;
+      t_ = end;
+      ends.push_back(t_);
+    }
+    return ends;
+  }
+
+ private:
+  // Halved while the chord is off; doubled only where it was not.
+  [[nodiscard]] double end_after(double end) const {
+    bool halved = false;
+    while (end - t_ >= kLeastStep) {
+      const double middle = 0.5 * (t_ + end);
+      if (is_near(middle, end)) break;
+      end = middle;
+      halved = true;
+    }
+    while (!halved && end - t_ <= kGreatestStep) {
+      const double twice = t_ + 2 * (end - t_);
+      if (twice >= 1 || !is_near(end, twice)) break;
+      end = twice;
+    }
+    return end;
+  }
+
+  [[nodiscard]] bool is_near(double middle, double end) const {
+    const Point3 of_chord =
+        0.5 * (geometry::point_at(piece_, t_) + geometry::point_at(piece_, end));
+    return sum_of_axes(geometry::point_at(piece_, middle), of_chord) <= kNear;
+  }
+
+  const CubicBezier& piece_;
+  double t_ = 0;
+  double step_ = kGreatestStep;
+};
+
+// The distance from a chord is convex, 0 at its ends, and the inner control points have weights
+// whose sum is 3 t (1 - t): the curve is off by 3/4 of the greater of theirs at the most.
+double flatness(const CubicBezier& part) {
+  const auto& p = part.control;
+  const geometry::Vector3 way = p[3] - p[0];
+  const double square = way.squaredNorm();
+  const auto off = [&](const Point3& point) {
+    const geometry::Vector3 to = point - p[0];
+    const double along = square > 0 ? std::clamp(to.dot(way) / square, 0.0, 1.0) : 0;
+    return (to - along * way).norm();
+  };
+  return 0.75 * std::max(off(p[1]), off(p[2]));
+}
+
+}  // namespace
+
+std::vector<double> chopped_at(const CubicBezier& piece) { return Chopper(piece).chop(); }
+
+double chopping_error(const CubicBezier& piece) {
+  double most = 0;
+  double from = 0;
+  CubicBezier rest = piece;
+  for (const double end : chopped_at(piece)) {
+    CubicBezier part = rest;
+    if (end < 1) std::tie(part, rest) = geometry::parts_at(rest, (end - from) / (1 - from));
+    most = std::max(most, flatness(part));
+    from = end;
+  }
+  return most;
+}
+
+namespace {
+
+// What all controls with G5 have in common.
+class G5Format : public CurveFormat {
+ public:
+  std::string_view name() const override { return "G5"; }
+
+  // Arcs say the same with a deviation that we choose, and the controls run G5 as arcs or chords.
+  bool is_default() const override { return false; }
+
+  std::string_view complaint(const ModalState& state) const override {
+    if (state.plane != Plane::kXY) return "G5 outside G17";
+    if (state.cutter_compensation != TriState::kOff) return "G5 under cutter compensation";
+    return {};
+  }
+
+  // The pieces that LinuxCNC takes: the others have no use for pieces that are nearly straight.
+  bool takes(const geometry::CubicBezier& piece) const override { return bends_one_way(piece); }
+  bool is_block_per_piece() const override { return true; }
+
+  CurveWriting write(const geometry::BsplineCurve& curve,
+                     const CurveSetting& setting) const override {
+    return write_g5(curve.bezier_pieces(), setting);
+  }
+
+  CurveResult read(const Program& program, std::uint32_t first,
+                   const CurveStart& start) const override {
+    return read_g5(program, first, start);
+  }
+};
+
+class LinuxCncG5 final : public G5Format {
+ public:
+  // As many as arc ends have: a direction that is off by half a step of the fifth decimal over the
+  // third of a millimetre turns the joint by 2e-5 radians.
+  NumberFormat other_numbers(Units units) const override {
+    return {.decimals = units == Units::kInch ? 6 : 5};
+  }
+};
+
+class ChoppedG5 final : public G5Format {
+ public:
+  bool is_run_as_chords() const override { return true; }
+  double chords_error(const geometry::CubicBezier& piece) const override {
+    return chopping_error(piece);
+  }
+
+  // Chords are found in 32-bit numbers: the fifth decimal would be noise.
+  NumberFormat other_numbers(Units units) const override {
+    return {.decimals = units == Units::kInch ? 5 : 4};
+  }
+};
+
+}  // namespace
+
+const CurveFormat& linuxcnc_g5() {
+  static const LinuxCncG5 kFormat;
+  return kFormat;
+}
+
+const CurveFormat& chopped_g5() {
+  static const ChoppedG5 kFormat;
+  return kFormat;
 }
 
 }  // namespace batten::gcode

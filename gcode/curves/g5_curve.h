@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "gcode/curves/curve_text.h"
+#include "gcode/curves/curve_format.h"
 #include "geometry/path/path.h"
 
 namespace batten::gcode {
@@ -27,5 +27,25 @@ namespace batten::gcode {
 // wild ones. So each must turn, all to one side, by `kLeastTurn` (radians) at least, and together
 // by less than half a turn.
 [[nodiscard]] bool bends_one_way(const geometry::CubicBezier& piece);
+
+// How grblHAL and Marlin run a G5: as chords, which they find by halving and doubling the step of
+// the parameter until the middle of each chord is near its curve. Facts and sources:
+// docs/controllers/grbl_family.md.
+
+// The parameters at which their chords end, increasing, the last one 1.
+[[nodiscard]] std::vector<double> chopped_at(const geometry::CubicBezier& piece);
+
+// mm: no place of the piece is further from its chord. An upper bound, by the hull of the control
+// points of each part; right to some percent where all chords bend one way.
+[[nodiscard]] double chopping_error(const geometry::CubicBezier& piece);
+
+// G5 as the curves of a control; see gcode/curves/g5_curve.h.
+
+// LinuxCNC 2.9: only under --output curves. Pieces that bend one way, in G17, not under G41, G42.
+[[nodiscard]] const CurveFormat& linuxcnc_g5();
+
+// grblHAL and Marlin: only under --output curves, since arcs are run with far finer chords. Pieces
+// in G17, none of them straight.
+[[nodiscard]] const CurveFormat& chopped_g5();
 
 }  // namespace batten::gcode

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
 #include "gcode/curves/bezier_chain.h"
 #include "gcode/curves/curve_print.h"
-#include "gcode/curves/spl_limits.h"
-#include "gcode/state/units.h"
+#include "gcode/klartext/statement.h"
+#include "gcode/state/modal_state.h"
 
 namespace batten::gcode {
 namespace {
@@ -191,6 +192,207 @@ CurveWriting write_spl(std::span<const CubicBezier> pieces, const CurveSetting& 
     if (trouble.empty() && !writer.adds_kinks()) return writer.lines(options);
   }
   return CurveRefusal{"rounding makes a kink of 0.1 degrees or more"};
+}
+
+using geometry::Point3;
+
+bool is_spl_coefficient(const KlartextWord& word) {
+  return word.name.size() == 3 && word.name[0] == 'K';
+}
+
+bool is_spl_end(const KlartextWord& word) {
+  return word.name.size() == 1 && kSplAxes.find(word.name[0]) != std::string_view::npos &&
+         word.value.has_value();
+}
+
+SplWords joined_at(const Program& program, std::uint32_t first) {
+  SplWords joined;
+  bool continues = true;
+  for (std::uint32_t at = first; at < program.blocks.size(); ++at) {
+    const auto line = read_klartext_line(program.source.text(program.blocks[at].span));
+    const bool more = at > first && line && !line->number && !line->words.empty() &&
+                      is_spl_coefficient(line->words.front());
+    if (!continues && !more) break;
+    ++joined.lines;
+    if (!line || (at > first && line->number)) {
+      joined.understood = false;
+      break;
+    }
+    for (const KlartextWord& word : line->words) joined.words.push_back(word);
+    // Only splines are joined where nothing says so.
+    continues = line->continues;
+    if (!joined.is("SPL") && !continues) break;
+  }
+  return joined;
+}
+
+std::string_view spl_word_trouble(const SplWords& block) {
+  std::string ends;
+  std::string coefficients;
+  std::string last_axis;
+  for (std::size_t i = 1; i < block.words.size(); ++i) {
+    const KlartextWord& word = block.words[i];
+    if (is_spl_coefficient(word)) {
+      coefficients += word.name;
+    } else if (is_spl_end(word) && coefficients.empty()) {
+      ends += word.name;
+    } else if (word.name != "F" && word.name != "FMAX" && word.name != "M") {
+      return "spl-words";
+    }
+  }
+  for (std::size_t at = 0; at < coefficients.size(); at += 9) {
+    const char axis = coefficients[at + 2];
+    const std::string three = {'K', '3', axis, 'K', '2', axis, 'K', '1', axis};
+    if (coefficients.substr(at, 9) != three) return "spl-order";
+    if (ends.find(axis) == std::string::npos) return "spl-order";
+    if (last_axis.find(axis) != std::string::npos) return "spl-order";
+    last_axis.push_back(axis);
+  }
+  if (last_axis.size() != ends.size()) return "spl-order";
+  if (ends.size() < 2 || ends.size() > 5) return "spl-axes";
+  return {};
+}
+
+SplBlock spl_block_of(const SplWords& joined, std::uint32_t at, const Point3& place, double unit) {
+  SplBlock block;
+  block.block = at;
+  block.end = place;
+  for (const KlartextWord& word : joined.words) {
+    if (word.is("F")) block.feed = word.value;
+    if (!is_spl_end(word) && !is_spl_coefficient(word)) continue;
+    const char axis = word.name.back();
+    if (axis < 'X' || axis > 'Z') continue;
+    const int i = axis - 'X';
+    if (is_spl_coefficient(word)) {
+      block.k[static_cast<std::size_t>(word.name[1] - '1')][i] = *word.value * unit;
+    } else {
+      block.axes[static_cast<std::size_t>(i)] = true;
+      block.end[i] = *word.value * unit;
+    }
+  }
+  return block;
+}
+
+namespace {
+
+bool starts_spline(const Program& program, std::uint32_t block) {
+  const SourceSpan content =
+      klartext_parts(program.source.text(), program.blocks[block].span).content;
+  return klartext_kind(program.source.text(content)) == KlartextKind::kSpline;
+}
+
+class SplFormat final : public CurveFormat {
+ public:
+  std::string_view name() const override { return "SPL"; }
+
+  // A software option on the iTNC 530.
+  bool is_default() const override { return false; }
+  std::string_view complaint(const ModalState& state) const override {
+    return spl_complaint(state);
+  }
+  bool is_block_per_piece() const override { return true; }
+
+  // Of the size of the piece; write_spl takes more where a joint would have a kink.
+  NumberFormat other_numbers(Units) const override { return {.decimals = 6}; }
+
+  CurveWriting write(const geometry::BsplineCurve& curve,
+                     const CurveSetting& setting) const override {
+    return write_spl(curve.bezier_pieces(), setting, {});
+  }
+
+  CurveResult read(const Program& program, std::uint32_t first,
+                   const CurveStart& start) const override {
+    const bool may_be = program.blocks[first].opacity == ParseStatus::kForeign;
+    if (!may_be || !starts_spline(program, first)) return CurveRefusal{"no SPL"};
+    return read_spl(program, first, start);
+  }
+};
+
+}  // namespace
+
+const CurveFormat& heidenhain_spl() {
+  static const SplFormat kFormat;
+  return kFormat;
+}
+
+namespace {
+
+using geometry::CubicBezier;
+using geometry::Point3;
+using geometry::Vector3;
+
+// Decimals of the same number, as doubles, differ by less (mm).
+constexpr double kDecimalNoise = 1e-9;
+
+// The words that a spline of ours has: no rotary axes, no M.
+bool only_main_axes(const SplWords& block) {
+  return std::all_of(block.words.begin() + 1, block.words.end(), [](const KlartextWord& word) {
+    const char axis = word.name.back();
+    const bool main = axis >= 'X' && axis <= 'Z';
+    return word.is("F") ? word.value.has_value()
+                        : main && (is_spl_end(word) || is_spl_coefficient(word));
+  });
+}
+
+}  // namespace
+
+Point3 SplBlock::point_at(double t) const { return end + t * (k[0] + t * (k[1] + t * k[2])); }
+
+CubicBezier SplBlock::piece() const {
+  return {{point_at(1), end + (2 * k[0] + k[1]) / 3, end + k[0] / 3, end}};
+}
+
+std::variant<SplText, CurveRefusal> read_spl_text(const Program& program, std::uint32_t first,
+                                                  const CurveStart& start) {
+  const double unit = millimetres_per(start.units);
+  SplText text;
+  Point3 place = start.position.mm;
+  for (std::uint32_t at = first; at < program.blocks.size();) {
+    const SplWords joined = joined_at(program, at);
+    if (!joined.is("SPL")) break;
+    if (!joined.understood || !spl_word_trouble(joined).empty() || !only_main_axes(joined)) {
+      if (text.pieces.empty()) return CurveRefusal{"an SPL block that is not understood"};
+      break;
+    }
+    const SplBlock block = spl_block_of(joined, at, place, unit);
+    if (block.feed && !text.pieces.empty()) break;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (block.axes[axis] && !start.position.known[axis]) {
+        return CurveRefusal{"where the tool stands is not known"};
+      }
+    }
+    if ((block.point_at(1) - place).cwiseAbs().maxCoeff() >= kSplClosure) {
+      return CurveRefusal{"a spline that starts 1 um or more from where the tool stands"};
+    }
+    place = block.end;
+    text.blocks += joined.lines;
+    at += joined.lines;
+    text.pieces.push_back(block);
+  }
+  if (text.pieces.empty()) return CurveRefusal{"no SPL"};
+  return text;
+}
+
+CurveResult read_spl(const Program& program, std::uint32_t first, const CurveStart& start) {
+  auto read = read_spl_text(program, first, start);
+  if (auto* refusal = std::get_if<CurveRefusal>(&read)) return std::move(*refusal);
+  const SplText& text = std::get<SplText>(read);
+  CurveReading reading;
+  reading.blocks = text.blocks;
+  reading.feed = text.pieces.front().feed;
+  Point3 place = start.position.mm;
+  for (const SplBlock& block : text.pieces) {
+    CubicBezier piece = block.piece();
+    if ((piece.control[0] - place).cwiseAbs().maxCoeff() <= kDecimalNoise) {
+      piece.control[0] = place;
+    }
+    place = block.end;
+    reading.motions.push_back({block.block, piece});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      reading.axes[axis] = reading.axes[axis] || block.axes[axis];
+    }
+  }
+  return reading;
 }
 
 }  // namespace batten::gcode

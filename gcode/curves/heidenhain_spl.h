@@ -11,7 +11,10 @@
 #include <variant>
 #include <vector>
 
-#include "gcode/curves/curve_text.h"
+#include "gcode/curves/curve_format.h"
+#include "gcode/curves/klartext_words.h"
+#include "gcode/text/program.h"
+#include "geometry/basic/point.h"
 #include "geometry/path/path.h"
 
 namespace batten::gcode {
@@ -80,5 +83,44 @@ struct SplText {
 // rounding of doubles where Batten wrote them.
 [[nodiscard]] CurveResult read_spl(const Program& program, std::uint32_t first,
                                    const CurveStart& start);
+
+// The words of one SPL block, whose lines are joined, before what they say is judged.
+
+inline constexpr std::string_view kSplAxes = "XYZUVWABC";
+
+[[nodiscard]] bool is_spl_coefficient(const KlartextWord& word);  // K1X ..
+[[nodiscard]] bool is_spl_end(const KlartextWord& word);          // X with a value ..
+
+// The lines of one block, joined.
+struct SplWords {
+  std::vector<KlartextWord> words;
+  std::uint32_t lines = 0;
+  bool understood = true;
+
+  [[nodiscard]] bool is(std::string_view keyword) const {
+    return !words.empty() && words.front().is(keyword);
+  }
+};
+
+// The block that begins in line `first`, whether it is an SPL or not.
+[[nodiscard]] SplWords joined_at(const Program& program, std::uint32_t first);
+
+// What is wrong with the words of a spline, as the id of an alarm; empty where nothing is.
+[[nodiscard]] std::string_view spl_word_trouble(const SplWords& block);
+
+// What the block says that begins in line `at`, where the tool stands at `place` (mm). Requires
+// words without trouble.
+[[nodiscard]] SplBlock spl_block_of(const SplWords& joined, std::uint32_t at,
+                                    const geometry::Point3& place, double unit);
+
+// Heidenhain SPL as a CurveFormat: for the controls that read it as an option.
+
+[[nodiscard]] const CurveFormat& heidenhain_spl();
+
+// What the numbers of an SPL block may be (iTNC 530 manual, 60642x-04, p. 541).
+
+inline constexpr double kGreatestMantissa = 9.99999999;  // of a coefficient
+inline constexpr int kMantissaDecimals = 8;
+inline constexpr double kGreatestEnd = 99999.9999;  // of an end point, mm
 
 }  // namespace batten::gcode

@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "gcode/curves/curve_text.h"
+#include "gcode/curves/curve_format.h"
 #include "geometry/path/bspline_curve.h"
 
 namespace batten::gcode {
@@ -32,5 +32,11 @@ enum class BsplineUse { kNotAccepted, kAcceptedUnverified };
 // without the flag.
 [[nodiscard]] CurveResult read_bspline(const Program& program, std::uint32_t first,
                                        const CurveStart& start, BsplineUse use);
+
+// BSPLINE as the curves of Siemens controls; see gcode/curves/siemens_bspline.h.
+
+// Only under --output curves, and for who names the target that has them: what the control makes of
+// the blocks is not verified, and caution() says so.
+[[nodiscard]] const CurveFormat& siemens_bspline();
 
 }  // namespace batten::gcode

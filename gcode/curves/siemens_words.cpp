@@ -7,7 +7,6 @@
 
 #include "gcode/text/characters.h"
 #include "gcode/text/number_format.h"
-#include "gcode/text/number_limit.h"
 
 namespace batten::gcode {
 namespace {

@@ -6,8 +6,6 @@
 #include <utility>
 
 #include "gcode/curves/curve_in_program.h"
-#include "gcode/interpreter/arc_from_words.h"
-#include "gcode/interpreter/block_complaints.h"
 #include "gcode/interpreter/motion_words.h"
 #include "gcode/interpreter/opaque_blocks.h"
 #include "gcode/interpreter/plain_line.h"
@@ -15,8 +13,8 @@
 #include "gcode/interpreter/word_applier.h"
 #include "gcode/klartext/state.h"
 #include "gcode/siemens/flow.h"
+#include "gcode/siemens/name_kinds.h"
 #include "gcode/siemens/names.h"
-#include "gcode/siemens/variables.h"
 #include "gcode/state/block_words.h"
 #include "gcode/state/control_state.h"
 #include "gcode/state/dwell.h"

@@ -13,7 +13,6 @@
 #include "gcode/klartext/statement.h"
 #include "gcode/state/diagnostic_limiter.h"
 #include "gcode/text/characters.h"
-#include "gcode/text/joined_lines.h"
 #include "gcode/text/line_cursor.h"
 #include "gcode/text/number_format.h"
 

@@ -10,7 +10,6 @@
 #include "gcode/text/characters.h"
 #include "gcode/text/line_cursor.h"
 #include "gcode/text/number_format.h"
-#include "gcode/text/number_limit.h"
 
 namespace batten::gcode {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 
 namespace batten::gcode {
 namespace {

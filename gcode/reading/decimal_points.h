@@ -1,5 +1,5 @@
 // Words without a decimal point, on controls where X1000 may be 1000 least increments
-// (gcode/text/decimals.h).
+// (gcode/text/language.h).
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 #include "gcode/state/block_words.h"
 #include "gcode/state/modal_state.h"
-#include "gcode/text/decimals.h"
 #include "gcode/text/diagnostic.h"
+#include "gcode/text/language.h"
 #include "gcode/text/program.h"
 
 namespace batten::gcode {

@@ -7,16 +7,14 @@
 #include <utility>
 
 #include "gcode/klartext/parser.h"
-#include "gcode/reading/language_marks.h"
 #include "gcode/reading/part_reading.h"
 #include "gcode/reading/program_marks.h"
+#include "gcode/reading/source_kind.h"
 #include "gcode/rs274/active_comment.h"
 #include "gcode/rs274/lexer.h"
 #include "gcode/rs274/plain_words.h"
 #include "gcode/siemens/block.h"
-#include "gcode/text/byte_order_mark.h"
 #include "gcode/text/characters.h"
-#include "gcode/text/joined_lines.h"
 #include "gcode/text/large_pages.h"
 #include "gcode/text/line_cursor.h"
 

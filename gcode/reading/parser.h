@@ -4,9 +4,7 @@
 #pragma once
 
 #include "gcode/state/modal_state.h"
-#include "gcode/text/decimals.h"
 #include "gcode/text/diagnostic.h"
-#include "gcode/text/dwell_form.h"
 #include "gcode/text/language.h"
 #include "gcode/text/program.h"
 #include "gcode/text/source_text.h"

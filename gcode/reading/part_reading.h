@@ -2,7 +2,7 @@
 // left behind: for programs that are too long to be held as blocks.
 //
 // The blocks, motions and states of the parts, one part after the other, are those of the whole
-// (gcode::parse, gcode::interpret; gcode/interpreter/control_carry.h), and so are the diagnostics
+// (gcode::parse, gcode::interpret; gcode/interpreter/interpreter.h), and so are the diagnostics
 // behind the finish_ functions, where
 //   - no part reaches out: TextCarry::marks says so of its % lines, ControlCarry::reaches_out of
 //     jumps, loops and subprograms;
@@ -22,6 +22,7 @@
 #include "gcode/reading/program_marks.h"
 #include "gcode/state/diagnostic_limiter.h"
 #include "gcode/state/lathe_marks.h"
+#include "gcode/state/motion.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"
 #include "gcode/text/source_text.h"
@@ -62,5 +63,20 @@ struct TextCarry {
 // What is told of the whole text at its end. `found` has the diagnostics of its parts, and no
 // others; they are put in order.
 void finish_text(const TextCarry& carry, Diagnostics& found);
+
+// Consecutive blocks of a program and what they do, taken apart and put together again: what of a
+// program that is read part by part (gcode/reading/part_reading.h) is held at a time.
+
+struct ReadPart {
+  Program program;
+  Interpretation meaning;
+};
+
+// The blocks from `first` on become a part of their own, as if it had been read behind the others,
+// which stay. No curve of several blocks (BlockMeaning::of_curve) is cut.
+[[nodiscard]] ReadPart take_rest(ReadPart& part, std::uint32_t first);
+
+// `more` was read directly behind `part`: both as if they had been read as one.
+void append(ReadPart& part, ReadPart more);
 
 }  // namespace batten::gcode

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "gcode/control/dialect.h"
-#include "gcode/reading/language_marks.h"
-#include "gcode/rs274/plain_beginning.h"
+#include "gcode/rs274/plain_words.h"
+#include "gcode/text/characters.h"
+#include "gcode/text/line_cursor.h"
 
 namespace batten::gcode {
 namespace {
@@ -114,6 +116,179 @@ void tell_of_contradictions(const Program& program, SourceKind kind, Diagnostics
                      fmt::format("{}: not in a program for {} (--source {})", describe(each.mark),
                                  family->controls, family->name)});
   }
+}
+
+namespace {
+
+constexpr std::array<std::string_view, 7> kSiemensTypes = {"REAL",   "INT",  "BOOL", "CHAR",
+                                                           "STRING", "AXIS", "FRAME"};
+
+// Takes the next word (letters, digits and _) off the front of the line.
+std::string_view next_word(std::string_view& line) {
+  while (!line.empty() && is_blank(line.front())) {
+    line.remove_prefix(1);
+  }
+  std::size_t length = 0;
+  while (length < line.size() &&
+         (is_letter(line[length]) || is_digit(line[length]) || line[length] == '_')) {
+    ++length;
+  }
+  const std::string_view word = line.substr(0, length);
+  line.remove_prefix(length);
+  return word;
+}
+
+bool is_number(std::string_view word) {
+  return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+bool same(std::string_view word, std::string_view upper_case) {
+  if (word.size() != upper_case.size()) {
+    return false;
+  }
+  for (std::size_t i = 0; i < word.size(); ++i) {
+    if (upper(word[i]) != upper_case[i]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool is_type(std::string_view word) {
+  for (const std::string_view type : kSiemensTypes) {
+    if (same(word, type)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// The line's place without the blanks before it.
+SourceSpan without_blanks(std::string_view text, const LineBounds& line) {
+  std::uint32_t begin = line.begin;
+  if (begin == 0 && text.starts_with(kByteOrderMark)) {
+    begin = std::min(line.text_end, static_cast<std::uint32_t>(kByteOrderMark.size()));
+  }
+  while (begin < line.text_end && is_blank(text[begin])) {
+    ++begin;
+  }
+  return {begin, line.text_end};
+}
+
+// A line that may be one has one of these letters: 1 for them, 0 for others. Asked without a
+// branch, so that the compiler asks many at once.
+constexpr unsigned char is_letter_of_mark(char c) {
+  const auto small = static_cast<unsigned char>(c | ('a' - 'A'));
+  return (c == '%' ? 1 : 0) | (c == ';' ? 1 : 0) | (small == 'b' ? 1 : 0) | (small == 'd' ? 1 : 0);
+}
+
+// Whether any of so many characters is one.
+constexpr std::size_t kStretch = 64;
+bool has_letter_of_mark(const char* stretch) {
+  unsigned char any = 0;
+  for (std::size_t i = 0; i < kStretch; ++i) {
+    any = static_cast<unsigned char>(any | is_letter_of_mark(stretch[i]));
+  }
+  return any != 0;
+}
+
+// The first of them at or behind `at`; the end of the text where there is none. Most of a long
+// program has none.
+std::size_t find_letter_of_mark(std::string_view text, std::size_t at) {
+  while (text.size() - at >= kStretch && !has_letter_of_mark(text.data() + at)) at += kStretch;
+  while (at < text.size() && is_letter_of_mark(text[at]) == 0) ++at;
+  return at;
+}
+
+// Most of the others are seen to be none at their first letter.
+bool may_be_mark(std::string_view line) {
+  std::size_t at = 0;
+  if (!line.empty() && upper(line.front()) == 'N') {
+    ++at;
+  }
+  while (at < line.size() && (is_digit(line[at]) || is_blank(line[at]))) {
+    ++at;
+  }
+  return at < line.size() &&
+         (line[at] == '%' || line[at] == ';' || upper(line[at]) == 'B' || upper(line[at]) == 'D');
+}
+
+// Bytes that are looked at before they are given back: a long program is not held for its marks.
+constexpr std::size_t kAtOnce = std::size_t{1} << 23;
+
+// Behind a line feed where there is one, so that lines are whole.
+std::size_t end_of_part(std::string_view text, std::size_t begin) {
+  if (text.size() - begin <= kAtOnce) return text.size();
+  const std::size_t feed = text.rfind('\n', begin + kAtOnce);
+  return feed == std::string_view::npos || feed < begin ? text.size() : feed + 1;
+}
+
+std::size_t begin_of_line(std::string_view text, std::size_t at) {
+  while (at > 0 && text[at - 1] != '\n' && text[at - 1] != '\r') --at;
+  return at;
+}
+
+void add_marks_of(const SourceText& source, SourceSpan part, std::vector<LanguageMark>& marks) {
+  const std::string_view part_text = source.text(part);
+  LineCursor lines(part_text);
+  for (std::size_t at = find_letter_of_mark(part_text, 0); at < part_text.size();) {
+    lines.go_to(begin_of_line(part_text, at));
+    const auto line = lines.next();
+    if (!line) {
+      return;
+    }
+    at = find_letter_of_mark(part_text, line->end);
+    SourceSpan span = without_blanks(part_text, *line);
+    span = {span.begin + part.begin, span.end + part.begin};
+    const std::string_view text = source.text(span);
+    if (!may_be_mark(text)) {
+      continue;
+    }
+    const auto found = language_of_line(text);
+    const bool known = !found || std::ranges::any_of(marks, [&](const LanguageMark& each) {
+      return each.language == found->language;
+    });
+    if (!known) {
+      marks.push_back({found->language, found->evidence, span});
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<LanguageEvidence> language_of_line(std::string_view line) {
+  if (line.starts_with("%_N_")) {
+    return LanguageEvidence{Language::kSiemens, "%_N_"};
+  }
+  if (line.starts_with(";$PATH")) {
+    return LanguageEvidence{Language::kSiemens, ";$PATH"};
+  }
+  std::string_view first = next_word(line);
+  if (is_number(first) ||
+      (first.size() > 1 && upper(first[0]) == 'N' && is_number(first.substr(1)))) {
+    first = next_word(line);
+  }
+  const std::string_view second = next_word(line);
+  if (same(first, "BEGIN") && same(second, "PGM")) {
+    return LanguageEvidence{Language::kKlartext, "BEGIN PGM"};
+  }
+  if (same(first, "DEF") && is_type(second)) {
+    return LanguageEvidence{Language::kSiemens, "DEF with a type"};
+  }
+  return std::nullopt;
+}
+
+std::vector<LanguageMark> language_marks(const SourceText& source) {
+  std::vector<LanguageMark> marks;
+  const std::size_t size = source.text().size();
+  for (std::size_t begin = 0; begin < size;) {
+    const std::size_t end = end_of_part(source.text(), begin);
+    const SourceSpan part{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+    add_marks_of(source, part, marks);
+    source.release_pages(part);
+    begin = end;
+  }
+  return marks;
 }
 
 }  // namespace batten::gcode

@@ -4,11 +4,10 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "gcode/state/source_marks.h"
-#include "gcode/text/decimals.h"
 #include "gcode/text/diagnostic.h"
-#include "gcode/text/dwell_form.h"
 #include "gcode/text/language.h"
 #include "gcode/text/program.h"
 #include "gcode/text/source_text.h"
@@ -43,7 +42,7 @@ struct SourceFamily {
 
 // The language in which to read this text. With kAuto: that of its certain marks, which only one
 // language has; without any, Klartext where the target reads that and the text does
-// not begin with plain words (gcode/rs274/plain_beginning.h), else RS-274. Nothing, and an
+// not begin with plain words (gcode/rs274/plain_words.h), else RS-274. Nothing, and an
 // error in `found`, when
 //   source-ambiguous: the text has certain marks of two languages;
 //   source-contradicted: a kind was given, and the text has a certain mark of another language.
@@ -68,5 +67,25 @@ struct SourceFamily {
 // Adds an error source-contradicted for each kind of mark (gcode/state/source_marks.h) that
 // programs of the given kind do not have. None for kAuto.
 void tell_of_contradictions(const Program& program, SourceKind kind, Diagnostics& found);
+
+// Marks by which the language of a program is known for certain: no other language has them.
+
+struct LanguageEvidence {
+  Language language = Language::kRs274;
+  std::string_view evidence;  // what was found: "BEGIN PGM"
+};
+
+// What the line says, when it is one that only such a language has: `0 BEGIN PGM NAME MM`,
+// `%_N_NAME_MPF`, `;$PATH=..`, `DEF REAL ..`. RS-274 has no such lines.
+[[nodiscard]] std::optional<LanguageEvidence> language_of_line(std::string_view line);
+
+struct LanguageMark {
+  Language language = Language::kRs274;
+  std::string_view evidence;
+  SourceSpan where;  // its line
+};
+
+// The first mark of each language that has any, in the order of the text. Linear in the text.
+[[nodiscard]] std::vector<LanguageMark> language_marks(const SourceText& source);
 
 }  // namespace batten::gcode

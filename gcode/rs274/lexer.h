@@ -3,11 +3,39 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string_view>
 
-#include "gcode/rs274/token.h"
+#include "gcode/text/number_format.h"
+#include "gcode/text/source_text.h"
 
 namespace batten::gcode {
+
+enum class TokenKind {
+  kWord,           // a letter and a number: X-.5
+  kValueWord,      // a letter and a value that is computed: X[#1+2], X#5, XSIN[30]
+  kCornerWord,     // ,R2 ,C1 ,A45: `letter` is R, C or A
+  kComment,        // (text), or ( to the end of the line where nothing closes it
+  kLineComment,    // ; to the end of the line
+  kBlockDelete,    // / or /2
+  kChecksum,       // *71 at the end of the line: `number` is 71
+  kAssignment,     // #1=#2+3, #<name>=[..], R1=5: one, with its right side
+  kProgramNumber,  // O1000, and nothing but comments after it
+  kFlow,           // an O-word, IF, GOTO, a label ..: the rest of the line is not split
+  kForeign,        // another language: the rest of the line is not split
+  kUnreadable,     // see `trouble`: the rest of the line is not split
+  kEnd,            // nothing more in this line
+};
+
+struct Token {
+  TokenKind kind = TokenKind::kEnd;
+  char letter = 0;         // upper case
+  bool has_value = false;  // `number` was read
+  bool unclosed = false;   // a comment that nothing closes
+  ReadNumber number;       // means nothing without has_value
+  SourceSpan span;
+  std::string_view trouble;  // kUnreadable: what cannot be read, for people
+};
 
 class LineLexer {
  public:
@@ -52,5 +80,27 @@ class LineLexer {
   std::size_t begin_;
   std::size_t at_;
 };
+
+// Finds where parameters and expressions end; does not compute them.
+
+// All functions take the place where something starts and give the place after it, or
+// nothing when it does not stand there in full. Blanks are skipped.
+
+// #5  ##5  #<name>  #[1+2]
+[[nodiscard]] std::optional<std::size_t> after_parameter(std::string_view text, std::size_t at);
+
+// [1+[2*3]], without comments or strings inside.
+[[nodiscard]] std::optional<std::size_t> after_brackets(std::string_view text, std::size_t at);
+
+// SIN[30], FIX[#1]: a function's name and its brackets. ATAN[1]/[2] is two operands.
+[[nodiscard]] std::optional<std::size_t> after_function(std::string_view text, std::size_t at);
+
+// A value that a letter may take in place of a number: an optional sign, then a parameter,
+// brackets or a function.
+[[nodiscard]] std::optional<std::size_t> after_computed_value(std::string_view text,
+                                                              std::size_t at);
+
+// The right side of an assignment: values, numbers and R parameters, joined by operators.
+[[nodiscard]] std::optional<std::size_t> after_sum(std::string_view text, std::size_t at);
 
 }  // namespace batten::gcode

@@ -9,6 +9,7 @@
 
 #include "gcode/text/line_cursor.h"
 #include "gcode/text/program.h"
+#include "gcode/text/source_text.h"
 
 namespace batten::gcode {
 
@@ -18,5 +19,11 @@ namespace batten::gcode {
 // than a double holds, ends of lines other than LF and CR LF. A line of blanks has no words.
 [[nodiscard]] std::optional<LineBounds> read_plain_words(std::string_view text, std::size_t begin,
                                                          std::vector<Word>& words);
+
+// Whether a text begins as programs of plain words do, and as no Klartext program can.
+
+// The first block that says anything, behind comments, % lines and an O number, where it begins
+// with a G word: `N10 G21 G90`. No statement of Klartext begins so. Reads no further than that.
+[[nodiscard]] std::optional<SourceSpan> plain_beginning(const SourceText& source);
 
 }  // namespace batten::gcode

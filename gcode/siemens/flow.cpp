@@ -8,7 +8,6 @@
 
 #include "gcode/siemens/lexer.h"
 #include "gcode/siemens/name_kinds.h"
-#include "gcode/siemens/value.h"
 #include "gcode/text/characters.h"
 
 namespace batten::gcode {

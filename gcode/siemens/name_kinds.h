@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <unordered_set>
 
 namespace batten::gcode {
 
@@ -52,5 +54,13 @@ enum class NameKind : std::uint8_t {
 // `name` in upper case; `assigned`: an = stands behind it. Nothing for names that are not known:
 // they could do anything.
 [[nodiscard]] std::optional<NameKind> kind_of_siemens_name(std::string_view name, bool assigned);
+
+// Variables that a Siemens program declares for itself: DEF REAL A, B = 5, C[3]. To set one changes
+// nothing but what words in which it stands will say.
+
+using SiemensVariables = std::unordered_set<std::string>;  // in upper case
+
+// `declaration` is what stands behind DEF: the type, then the names with their first values.
+void add_declared_names(std::string_view declaration, SiemensVariables& variables);
 
 }  // namespace batten::gcode

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "gcode/siemens/block_names.h"
+#include "gcode/siemens/block.h"
 #include "gcode/siemens/lexer.h"
 #include "gcode/siemens/name_kinds.h"
 #include "gcode/state/reason.h"

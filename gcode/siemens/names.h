@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "gcode/siemens/variables.h"
+#include "gcode/siemens/name_kinds.h"
 #include "gcode/state/block_words.h"
 #include "gcode/state/control_state.h"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "gcode/state/code.h"
+#include "gcode/state/code_groups.h"
 #include "gcode/text/program.h"
 
 namespace batten::gcode {

@@ -3,9 +3,10 @@
 
 #include <cstdint>
 
-#include "gcode/state/code.h"
-
 namespace batten::gcode {
+
+// A G or M code in tenths: G38.2 is 382, G1 is 10, M3 is 30.
+using Code = int;
 
 enum class CodeGroup : std::uint8_t {
   kUnknown,      // a code that is not known: it could change anything

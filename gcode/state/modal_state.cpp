@@ -1,5 +1,10 @@
 #include "gcode/state/modal_state.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
 namespace batten::gcode {
 namespace {
 
@@ -55,4 +60,60 @@ bool is_known(const ModalState& state) {
   return known;
 }
 
+bool is_lathe_cycle(Code code, const BlockWords& words) {
+  return (code == 700 || code == 710) && words.has_any("PQUVWDIJKRABCEFSXYZL");
+}
+
+std::optional<Units> units_set_by(const BlockWords& words) {
+  for (const Code code : words.g_codes()) {
+    const bool inch = code == 200 || code == 700;
+    const bool millimetre = code == 210 || code == 710;
+    if ((inch || millimetre) && !is_lathe_cycle(code, words)) {
+      return inch ? Units::kInch : Units::kMillimetre;
+    }
+  }
+  return std::nullopt;
+}
+
+double millimetres_per(Units units) {
+  switch (units) {
+    case Units::kMillimetre:
+      return 1;
+    case Units::kInch:
+      return 25.4;
+    case Units::kUnknown:
+      break;
+  }
+  throw std::invalid_argument("millimetres_per: units unknown, expected millimetre or inch");
+}
+
+double printed_step(const NumberFormat& format, Units units) {
+  return std::pow(10.0, -format.decimals) * millimetres_per(units);
+}
+
 }  // namespace batten::gcode
+
+namespace batten::postproc {
+
+bool path_alone_counts(const gcode::ModalState& state) {
+  const std::array switches = {
+      state.cutter_compensation,
+      state.tool_center_point,
+      state.tilted_plane,
+      state.scaling,
+      state.rotation,
+      state.mirror,
+      state.polar,
+      state.cylindrical,
+      state.modal_macro,
+      state.constant_surface_speed,
+      state.lathe_diameter,
+  };
+  return std::ranges::all_of(switches,
+                             [](gcode::TriState item) { return item == gcode::TriState::kOff; }) &&
+         state.control_smoothing != gcode::TriState::kUnknown &&
+         state.units != gcode::Units::kUnknown && state.feed_mode == gcode::FeedMode::kPerMinute &&
+         state.distance == gcode::DistanceMode::kAbsolute;
+}
+
+}  // namespace batten::postproc

@@ -3,10 +3,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
+#include "gcode/state/block_words.h"
+#include "gcode/text/number_format.h"
 #include "geometry/basic/point.h"
+#include "geometry/basic/rounding.h"
 
 namespace batten::gcode {
 
@@ -80,4 +84,53 @@ struct Position {
   [[nodiscard]] bool all_known() const { return known[0] && known[1] && known[2]; }
 };
 
+// Units: G20, G21 and what other controls say in their place, and the sizes of printed numbers.
+
+// The units that the block sets; nothing where it sets none. G70 and G71 with parameters are cycles
+// of a lathe.
+[[nodiscard]] std::optional<Units> units_set_by(const BlockWords& words);
+
+// Whether G70 or G71 beside these words is such a cycle.
+[[nodiscard]] bool is_lathe_cycle(Code code, const BlockWords& words);
+
+// 1 or 25.4. Throws std::invalid_argument for unknown units.
+[[nodiscard]] double millimetres_per(Units units);
+
+// The step between neighbouring numbers of a format, in mm.
+[[nodiscard]] double printed_step(const NumberFormat& format, Units units);
+
+// The three planes of G17, G18 and G19 by their axes.
+
+// A plane's axes (0, 1, 2 for X, Y, Z) in the order in which its normal is right-handed: seen from
+// the tip of +Y, the way from Z to X is counter-clockwise, so G18 has Z before X and G3 is
+// counter-clockwise in all three.
+struct PlaneAxes {
+  Plane plane = Plane::kUnknown;
+  int first = 0;
+  int second = 1;
+  int normal = 2;
+};
+
+inline constexpr std::array<PlaneAxes, 3> kPlaneAxes = {
+    PlaneAxes{Plane::kXY, 0, 1, 2}, PlaneAxes{Plane::kZX, 2, 0, 1}, PlaneAxes{Plane::kYZ, 1, 2, 0}};
+
+// The plane across a unit vector of either sign; nothing when it is no axis of the coordinate
+// system.
+[[nodiscard]] inline const PlaneAxes* plane_across(const geometry::Vector3& axis) {
+  for (const PlaneAxes& plane : kPlaneAxes) {
+    if (std::abs(std::abs(axis[plane.normal]) - 1) < geometry::kSameDirection) return &plane;
+  }
+  return nullptr;
+}
+
 }  // namespace batten::gcode
+
+// In which states of the control the words of a motion are its path.
+
+namespace batten::postproc {
+
+// A state in which the path in X, Y, Z is all there is to a cutting motion. Unknown is not. What a
+// control fits through the points by itself (COMPCAD) is its own deviation, in both programs.
+[[nodiscard]] bool path_alone_counts(const gcode::ModalState& state);
+
+}  // namespace batten::postproc

@@ -2,6 +2,7 @@
 // that can be safe. Every id is explained in docs/diagnostics.md.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string_view>
 
@@ -91,5 +92,41 @@ struct Explanation {
 
 // Every id above, in this order.
 [[nodiscard]] std::span<const Explanation> explanations();
+
+}  // namespace batten::gcode::reason
+
+// A reason of gcode/state/reason.h in one byte, for what is held once per block.
+
+namespace batten::gcode {
+
+// Reads as its id, empty where there is none.
+class ReasonId {
+ public:
+  ReasonId() = default;
+  // Requires an id that is explained in reason::explanations(), or none; throws
+  // std::invalid_argument for another.
+  ReasonId(std::string_view id);
+
+  [[nodiscard]] bool empty() const { return place_ == 0; }
+  [[nodiscard]] std::string_view id() const;
+  operator std::string_view() const { return id(); }
+
+  friend bool operator==(ReasonId, ReasonId) = default;
+  friend bool operator==(ReasonId a, std::string_view b) { return a.id() == b; }
+
+ private:
+  std::uint8_t place_ = 0;  // in reason::explanations(), from 1; 0: none
+};
+
+}  // namespace batten::gcode
+
+// Why a program cannot be converted to another language, where the user may say that it can: ids
+// for --allow beside those of gcode/state/reason.h, explained with them.
+
+namespace batten::gcode::reason {
+
+inline constexpr std::string_view kWorkOffset = "work-offset";  // G54, where there is none
+inline constexpr std::string_view kToolLength = "tool-length";  // G49, where lengths always count
+inline constexpr std::string_view kBlankForm = "blank-form";    // BLK FORM, where there is none
 
 }  // namespace batten::gcode::reason

@@ -1,6 +1,8 @@
 // The character classes of G-code, without the locale.
 #pragma once
 
+#include <string_view>
+
 namespace batten::gcode {
 
 [[nodiscard]] constexpr bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -11,5 +13,9 @@ namespace batten::gcode {
 [[nodiscard]] constexpr char upper(char c) {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
 }
+
+// The bytes that some editors put before the first line of UTF-8.
+
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 }  // namespace batten::gcode

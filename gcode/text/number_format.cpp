@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "gcode/text/characters.h"
-#include "gcode/text/number_limit.h"
 
 namespace batten::gcode {
 namespace {

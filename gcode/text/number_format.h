@@ -40,4 +40,9 @@ struct ScannedNumber {
 };
 [[nodiscard]] std::optional<ScannedNumber> scan_number(std::string_view text);
 
+// How great a number a program may hold.
+
+// No control takes numbers as great as this, and none that we write is.
+inline constexpr double kNumberLimit = 1e9;
+
 }  // namespace batten::gcode

@@ -6,8 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/text/decimals.h"
-#include "gcode/text/dwell_form.h"
 #include "gcode/text/language.h"
 #include "gcode/text/source_text.h"
 

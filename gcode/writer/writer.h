@@ -10,7 +10,6 @@
 #include "gcode/control/block_spelling.h"
 #include "gcode/control/dialect.h"
 #include "gcode/state/modal_state.h"
-#include "gcode/state/plane_axes.h"
 #include "geometry/path/bspline_curve.h"
 #include "geometry/path/path.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "geometry/basic/angle.h"
+#include "geometry/basic/point.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::geometry {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "geometry/arcs/plane_band.h"
-#include "geometry/basic/angle.h"
+#include "geometry/basic/point.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::geometry {

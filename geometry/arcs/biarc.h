@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "geometry/path/path.h"
 #include "geometry/path/plane_curve.h"
@@ -54,5 +55,21 @@ struct BiarcJoint {
 // to go forward along it. Bounds: Bernstein coefficients of the squared distance from the
 // center, which is a polynomial of degree six; the piece is halved where they are not sharp.
 [[nodiscard]] bool stays_near(const CubicBezier& piece, const PlaneArc& arc, double deviation);
+
+// An arc in several, for controls that do not take long ones.
+
+struct ArcPartsOptions {
+  double max_sweep = 0;  // radians, > 0
+  // Directions from the centre that no part goes across: this one and its quarter turns. A unit
+  // vector across the arc's axis, or zero: none.
+  Vector3 quadrant_from = Vector3::Zero();
+};
+
+// Parts of the same circle or helix that follow each other from the arc's start to its end; the arc
+// itself where it is short enough. Where only the sweep counts all parts are alike.
+//
+// A start or end beside a direction by less than a millionth of a radian counts as on it: a part of
+// that length would be none for most controls.
+[[nodiscard]] std::vector<Arc> arc_parts(const Arc& arc, const ArcPartsOptions& options);
 
 }  // namespace batten::geometry

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/basic/angle.h"
+#include "geometry/basic/point.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::geometry {

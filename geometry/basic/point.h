@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
 
 namespace batten::geometry {
 
@@ -15,5 +17,12 @@ using Vector3 = Eigen::Vector3d;
 // The same in a plane.
 using Point2 = Eigen::Vector2d;
 using Vector2 = Eigen::Vector2d;
+
+// Angles in radians.
+
+inline constexpr double kPi = std::numbers::pi;
+
+// The same direction within half a turn of zero, either way.
+[[nodiscard]] inline double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
 }  // namespace batten::geometry

@@ -18,4 +18,9 @@ enum class ToleranceKind {
 // that meet at a reversal might vanish, since each lies in the band of the other.
 inline constexpr double kSharpestCut = 20 * std::numbers::pi / 180;
 
+// On which side of a path another one may be.
+
+// Of the way of travel, seen from above (against Z).
+enum class Side { kBoth, kLeft, kRight };
+
 }  // namespace batten::geometry

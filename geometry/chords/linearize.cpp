@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "geometry/chords/chord_height.h"
 #include "geometry/chords/chord_proof.h"
 #include "geometry/path/curve_pieces.h"
 

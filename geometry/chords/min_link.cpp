@@ -1,9 +1,13 @@
 #include "geometry/chords/min_link.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -13,8 +17,8 @@
 #include "geometry/chords/chord_proof.h"
 #include "geometry/chords/linearize.h"
 #include "geometry/chords/min_link_gates.h"
-#include "geometry/chords/min_link_space.h"
 #include "geometry/path/curve_pieces.h"
+#include "geometry/path/plane_curve.h"
 
 namespace batten::geometry {
 namespace {
@@ -194,6 +198,272 @@ std::vector<LinkVertex> min_link_vertices(const BsplineCurve& curve, double from
   vertices.front().place = curve.point_at(from);
   vertices.back().place = curve.point_at(to);
   return vertices;
+}
+
+namespace {
+
+// Corners of the polygon in a gate's circle. Between two of them it is 2 % narrower; to where the
+// curve bends, where the width is needed, it is not.
+constexpr int kCorners = 16;
+
+// The corners after the first, which is at (1, 0), and that again.
+const std::array<Point2, kCorners> kCircle = [] {
+  std::array<Point2, kCorners> corners;
+  for (int i = 0; i < kCorners; ++i) {
+    corners[static_cast<std::size_t>(i)] = unit_vector(2 * std::numbers::pi * (i + 1) / kCorners);
+  }
+  return corners;
+}();
+
+// How often the last place of a link is halved out: to 1e-4 of the way between two gates.
+constexpr int kLinkEndHalvings = 13;
+
+// Where a link may turn before the farthest place it gets to, as parts of its gates: there the
+// link after it may see more, when the curve begins to bend another way.
+constexpr std::array kEarlierTurns = {0.125, 0.25, 0.5};
+
+// Bends whose directions differ by less than 60 degrees are one bend (the cosine).
+constexpr double kSameBend = 0.5;
+
+// A link turns from the curve's direction at its start by less than 45 degrees.
+constexpr double kWidestView = 1;
+
+struct Circle {
+  Point3 center;
+  Vector3 along;
+  Vector3 across;  // unit; to where the curve bends
+  double radius;
+};
+
+Circle circle_of(const Gate& gate, double width) {
+  Vector3 across = gate.bend;
+  if (across.isZero()) across = gate.along.unitOrthogonal();
+  return {gate.center, gate.along, across, std::min(width - gate.gap, gate.room)};
+}
+
+// The directions of straight ways from one point through circles, one after the other, as a
+// convex polygon in the plane at distance 1.
+class View {
+ public:
+  View(const Point3& eye, const Vector3& ahead) : eye_(eye), ahead_(ahead) {
+    right_ = ahead.unitOrthogonal();
+    up_ = ahead.cross(right_);
+    polygon_ = {{-kWidestView, -kWidestView},
+                {kWidestView, -kWidestView},
+                {kWidestView, kWidestView},
+                {-kWidestView, kWidestView}};
+  }
+
+  // Only ways through this circle from now on. Nothing is changed when there are none.
+  bool pass(const Circle& circle) {
+    const double inner = circle.radius * std::cos(std::numbers::pi / kCorners);
+    const double distance = (circle.center - eye_).dot(circle.along);
+    if (distance <= 0) return true;  // beside the eye
+    if (std::ranges::all_of(polygon_, [&](const Point2& p) {
+          const Vector3 way = direction(p);
+          const double onward = way.dot(circle.along);
+          if (onward <= 0) return false;
+          return (eye_ + distance / onward * way - circle.center).squaredNorm() <= inner * inner;
+        })) {
+      return true;
+    }
+    before_ = polygon_;
+    const Vector3 side = circle.along.cross(circle.across);
+    Vector3 corner = circle.center + circle.radius * circle.across - eye_;
+    for (const Point2& unit : kCircle) {
+      const Vector3 next =
+          circle.center + circle.radius * (unit.x() * circle.across + unit.y() * side) - eye_;
+      cut(corner.cross(next));
+      if (polygon_.empty()) {
+        polygon_ = before_;
+        return false;
+      }
+      corner = next;
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool sees(const Point3& p) const {
+    const Vector3 way = p - eye_;
+    const double onward = way.dot(ahead_);
+    if (onward <= 0) return false;
+    const Point2 at(way.dot(right_) / onward, way.dot(up_) / onward);
+    for (std::size_t i = 0; i < polygon_.size(); ++i) {
+      const Point2& a = polygon_[i];
+      const Point2& b = polygon_[(i + 1) % polygon_.size()];
+      if (cross(b - a, at - a) < 0) return false;
+    }
+    return true;
+  }
+
+  // Where the middle of the view meets the plane of a gate.
+  [[nodiscard]] Point3 middle_on(const Gate& gate) const {
+    Point2 sum = Point2::Zero();
+    for (const Point2& p : polygon_) sum += p;
+    const Vector3 way = direction(sum / static_cast<double>(polygon_.size()));
+    return eye_ + (gate.center - eye_).dot(gate.along) / way.dot(gate.along) * way;
+  }
+
+ private:
+  [[nodiscard]] Vector3 direction(const Point2& p) const {
+    return ahead_ + p.x() * right_ + p.y() * up_;
+  }
+
+  // Keeps the directions on the inner side of a plane through the eye.
+  void cut(const Vector3& inward) {
+    const double base = inward.dot(ahead_);
+    const Point2 rise(inward.dot(right_), inward.dot(up_));
+    const auto height = [&](const Point2& p) { return base + rise.dot(p); };
+    if (std::ranges::all_of(polygon_, [&](const Point2& p) { return height(p) >= 0; })) return;
+    cut_.clear();
+    for (std::size_t i = 0; i < polygon_.size(); ++i) {
+      const Point2& a = polygon_[i];
+      const Point2& b = polygon_[i + 1 < polygon_.size() ? i + 1 : 0];
+      const double at_a = height(a);
+      const double at_b = height(b);
+      if (at_a >= 0) cut_.push_back(a);
+      if ((at_a >= 0) != (at_b >= 0)) cut_.push_back(a + at_a / (at_a - at_b) * (b - a));
+    }
+    polygon_.swap(cut_);
+  }
+
+  Point3 eye_;
+  Vector3 ahead_;
+  Vector3 right_;
+  Vector3 up_;
+  std::vector<Point2> polygon_;  // counter-clockwise seen from the eye's back
+  std::vector<Point2> before_;   // room for the polygon before a circle,
+  std::vector<Point2> cut_;      // and for what a plane leaves of it
+};
+
+// A vertex, and how far links from it get.
+struct Stand {
+  LinkVertex vertex;
+  std::size_t next = 1;  // the first gate ahead
+  std::size_t last = 0;  // the last gate that links from here pass; next - 1 where none
+  LinkVertex farthest;   // between that gate and the next
+  bool sees_end = false;
+
+  [[nodiscard]] double reach() const {
+    return sees_end ? std::numeric_limits<double>::infinity() : farthest.parameter;
+  }
+};
+
+class Walk {
+ public:
+  Walk(const GateChain& gates, double width) : gates_(gates), width_(width) {
+    circles_.reserve(gates.size());
+    for (std::size_t i = 0; i < gates.size(); ++i) circles_.push_back(circle_of(gates[i], width));
+  }
+
+  std::vector<LinkVertex> links_from(const Point3& start, std::span<const double> places) const {
+    std::vector<LinkVertex> vertices;
+    Stand stand = look({start, gates_[0].parameter}, 1, gates_[0].along);
+    while (!stand.sees_end) {
+      vertices.push_back(stand.vertex);
+      if (stand.last < stand.next) {
+        stand = on_the_curve(stand, places, vertices);
+      } else {
+        stand = stand.last == last_gate() ? before_end(stand) : best_after(stand);
+      }
+    }
+    vertices.push_back(stand.vertex);
+    vertices.push_back({gates_.back().center, gates_.back().parameter});
+    return vertices;
+  }
+
+ private:
+  [[nodiscard]] std::size_t last_gate() const { return gates_.size() - 1; }
+
+  [[nodiscard]] Stand look(const LinkVertex& vertex, std::size_t next, const Vector3& ahead) const {
+    Stand stand{vertex, next, next - 1, vertex, next > last_gate()};
+    View view(vertex.place, ahead);
+    while (stand.last < last_gate() && view.pass(circles_[stand.last + 1])) ++stand.last;
+    if (stand.last < next) return stand;
+    if (stand.last == last_gate()) {
+      stand.sees_end = view.sees(gates_.back().center);
+      stand.farthest = {view.middle_on(gates_.back()), gates_.back().parameter};
+      return stand;
+    }
+    double good = 0;
+    double bad = 1;
+    for (int i = 0; i < kLinkEndHalvings; ++i) {
+      const double middle = (good + bad) / 2;
+      const bool passed = view.pass(circle_of(gates_.between(stand.last, middle), width_));
+      (passed ? good : bad) = middle;
+    }
+    const Gate gate = gates_.between(stand.last, good);
+    stand.farthest = {view.middle_on(gate), gate.parameter};
+    return stand;
+  }
+
+  // On to the next of `places`, by way of the curve's own place here.
+  [[nodiscard]] Stand on_the_curve(const Stand& stand, std::span<const double> places,
+                                   std::vector<LinkVertex>& vertices) const {
+    const Gate here = gates_.at(stand.vertex.parameter);
+    if (stand.vertex.place != here.center) vertices.push_back({here.center, here.parameter});
+    const auto next = std::upper_bound(places.begin(), places.end(), here.parameter);
+    if (next == places.end() || *next >= gates_.back().parameter) return at_end(vertices.back());
+    const Gate gate = gates_.at(*next);
+    return look({gate.center, gate.parameter}, gates_.index_of(*next) + 1, gate.along);
+  }
+
+  // Nothing between this vertex and the end.
+  [[nodiscard]] Stand at_end(const LinkVertex& vertex) const {
+    return {vertex, last_gate() + 1, last_gate(), vertex, true};
+  }
+
+  // Where the farthest link from `stand` passes gate `i`.
+  [[nodiscard]] Stand turned_on(const Stand& stand, std::size_t i) const {
+    const Vector3 way = stand.farthest.place - stand.vertex.place;
+    const double part =
+        (gates_[i].center - stand.vertex.place).dot(gates_[i].along) / way.dot(gates_[i].along);
+    return look({stand.vertex.place + part * way, gates_[i].parameter}, i + 1, gates_[i].along);
+  }
+
+  [[nodiscard]] Stand best_after(const Stand& stand) const {
+    Stand best = look(stand.farthest, stand.last + 1, gates_[stand.last].along);
+    const std::size_t passed = stand.last + 1 - stand.next;
+    if (!bend_changes(stand.last, best.last)) return best;
+    for (const double part : kEarlierTurns) {
+      const auto back = static_cast<std::size_t>(part * static_cast<double>(passed));
+      if (back == 0 || best.sees_end) continue;
+      Stand other = turned_on(stand, stand.last - back);
+      if (other.reach() > best.reach()) best = std::move(other);
+    }
+    return best;
+  }
+
+  // Does the curve bend anywhere else than at gate `from`, up to gate `to`?
+  [[nodiscard]] bool bend_changes(std::size_t from, std::size_t to) const {
+    for (std::size_t i = from; i <= to; ++i) {
+      if (gates_[i].bend.dot(gates_[from].bend) < kSameBend) return true;
+    }
+    return false;
+  }
+
+  // The farthest link gets to the last gate, but not to its centre. It turns as early as the end
+  // can be seen from: at the last gate it always can.
+  [[nodiscard]] Stand before_end(const Stand& stand) const {
+    Stand best = at_end(stand.farthest);
+    for (std::size_t i = last_gate(); i-- > stand.next;) {
+      Stand other = turned_on(stand, i);
+      if (!other.sees_end) break;
+      best = std::move(other);
+    }
+    return best;
+  }
+
+  const GateChain& gates_;
+  double width_;
+  std::vector<Circle> circles_;
+};
+
+}  // namespace
+
+std::vector<LinkVertex> few_links_in_space(const GateChain& gates, const Point3& start,
+                                           double width, std::span<const double> places) {
+  return Walk(gates, width).links_from(start, places);
 }
 
 }  // namespace batten::geometry

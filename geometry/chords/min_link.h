@@ -24,8 +24,10 @@
 // which allows less than the tube; corners are always vertices.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "geometry/chords/min_link_gates.h"
 #include "geometry/chords/min_link_plane.h"
 #include "geometry/path/bspline_curve.h"
 
@@ -45,5 +47,19 @@ struct MinLinkOptions {
 // an option is outside its range.
 [[nodiscard]] std::vector<LinkVertex> min_link_vertices(const BsplineCurve& curve, double from,
                                                         double to, const MinLinkOptions& options);
+
+// Few links in the tolerance tube of a curve in space, each as long as it can be.
+// Method: docs/algorithms/min_link.md.
+
+// Links from `start`, near the first gate's centre, to the centre of the last one, through all
+// gates in order, each inside a polygon of 16 corners in the circle of radius `width` (mm) about
+// the gate's centre; a corner points to where the curve bends.
+//
+// Where the curve bends so closely that no link gets on, the way goes over the next of `places`:
+// parameters of the curve, increasing, between which chords are known to be near it. The last of
+// them is the last gate's.
+[[nodiscard]] std::vector<LinkVertex> few_links_in_space(const GateChain& gates,
+                                                         const Point3& start, double width,
+                                                         std::span<const double> places);
 
 }  // namespace batten::geometry

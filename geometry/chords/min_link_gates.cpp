@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/path/bezier_halves.h"
+#include "geometry/path/cubic_polynomial.h"
 
 namespace batten::geometry {
 namespace {

@@ -14,7 +14,7 @@
 #include "geometry/basic/rounding.h"
 #include "geometry/basic/tolerance_kind.h"
 #include "geometry/distance/chord_polyline.h"
-#include "geometry/distance/in_order_matching.h"
+#include "geometry/distance/free_space.h"
 
 namespace batten::geometry {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "geometry/distance/chord_polyline.h"
 #include "geometry/distance/free_space.h"
-#include "geometry/distance/in_order_matching.h"
 #include "geometry/distance/path_distance_predicates.h"
 
 namespace batten::geometry {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "geometry/distance/chord_polyline.h"
-#include "geometry/distance/in_order_matching.h"
+#include "geometry/distance/free_space.h"
 
 namespace batten::geometry {
 

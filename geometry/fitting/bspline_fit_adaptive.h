@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "geometry/fitting/bspline_fit_system.h"
-#include "geometry/fitting/bspline_fit_weights.h"
 #include "geometry/fitting/fit_problem.h"
 #include "geometry/path/bspline_curve.h"
 

@@ -1,13 +1,52 @@
 // A polynomial B-spline curve in space.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "geometry/basic/point.h"
-#include "geometry/path/bspline_basis.h"
 #include "geometry/path/path.h"
 
 namespace batten::geometry {
+
+inline constexpr int kMaxDegree = 5;
+
+class BsplineBasis {
+ public:
+  // Throws std::invalid_argument when the degree is not in 1..kMaxDegree, when there are
+  // fewer than 2 * (degree + 1) knots, when knots decrease, or when [t_p, t_m] is empty.
+  BsplineBasis(int degree, std::vector<double> knots);
+
+  // Clamped knots: every end breakpoint degree + 1 times, the inner ones once.
+  // Breakpoints must increase strictly.
+  [[nodiscard]] static BsplineBasis clamped(int degree, const std::vector<double>& breakpoints);
+
+  [[nodiscard]] int degree() const { return degree_; }
+  [[nodiscard]] const std::vector<double>& knots() const { return knots_; }
+  [[nodiscard]] std::size_t size() const { return knots_.size() - degree_ - 1; }  // functions
+  [[nodiscard]] double first() const { return knots_[degree_]; }
+  [[nodiscard]] double last() const { return knots_[size()]; }
+
+  // The k with t_k <= u < t_{k+1}, p <= k < m; the last non-empty span for u = last().
+  // Parameters outside [first, last] count as the nearer end.
+  [[nodiscard]] std::size_t find_span(double u) const;
+
+  // The degree + 1 functions that are not zero on span k, at u: values[0] belongs to
+  // function k - degree.
+  void evaluate(std::size_t span, double u, double* values) const;
+
+  // The same with derivatives: values[d * (degree + 1) + j] is the d-th derivative of
+  // function k - degree + j, d = 0..derivatives. Derivatives above the degree are 0.
+  void evaluate_derivatives(std::size_t span, double u, int derivatives, double* values) const;
+
+  // The parameter at which the control polygon of a straight line has point i:
+  // (t_{i+1} + ... + t_{i+p}) / p.
+  [[nodiscard]] double greville(std::size_t i) const;
+
+ private:
+  int degree_;
+  std::vector<double> knots_;
+};
 
 class BsplineCurve {
  public:
@@ -54,5 +93,16 @@ class BsplineCurve {
 // Length in mm between two parameters, Gauss-Legendre per span, relative error below 1e-6
 // on spans whose speed changes by less than a factor of ten.
 [[nodiscard]] double length_between(const BsplineCurve& curve, double from, double to);
+
+// How far a curve was moved, when another curve with the same knots was made of it. The
+// displacement D(u) = C(u) - C0(u) is a spline itself, its control points the moves of the control
+// points. Bounds on |D(u)| that hold for every u, not only at samples; no place of either curve is
+// further from the other curve than the greatest |D|.
+
+// For each span of displacement.breakpoints() a number (mm) that |displacement| does not exceed
+// there, and exceeds the greatest |displacement| of the span by no more than `slack` (mm, > 0).
+// Bezier pieces are halved until their control points say so. Requires degree 3 or less.
+[[nodiscard]] std::vector<double> displacement_bounds(const BsplineCurve& displacement,
+                                                      double slack);
 
 }  // namespace batten::geometry

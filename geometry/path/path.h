@@ -4,11 +4,13 @@
 // Every piece is a function of t in [0, 1]; `point_at` meets the ends exactly.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
 
 #include "geometry/basic/point.h"
+#include "geometry/basic/tolerance_kind.h"
 
 namespace batten::geometry {
 
@@ -59,5 +61,21 @@ using Path = std::vector<PathPiece>;
 // The part of `piece` between two parameters, 0 <= t0 < t1 <= 1, again for t in [0, 1].
 [[nodiscard]] PathPiece sub_piece(const PathPiece& piece, double t0, double t1);
 [[nodiscard]] CubicBezier sub_piece(const CubicBezier& piece, double t0, double t1);
+
+// The path beside another one: every place of it moved sideways by the same distance.
+// Method: docs/algorithms/one_side.md.
+
+// Unit, level, to the left of a direction seen from above; zero for one that is upright.
+[[nodiscard]] Vector3 left_of(const Vector3& direction);
+
+// `distance` (mm, > 0) to that side, at the same height. At a vertex it goes round it on an arc of
+// that radius, forwards on the outside and backwards on the inside, so that each of its places
+// belongs to one of the path, in order, and a disc of that radius about it touches the path there.
+// Where the path goes straight up or down it stays beside the place where it was.
+//
+// Nothing for paths with Bezier pieces, or with arcs that do not turn about Z, and for
+// Side::kBoth.
+[[nodiscard]] std::optional<Path> parallel_path(std::span<const PathPiece> path, Side side,
+                                                double distance);
 
 }  // namespace batten::geometry

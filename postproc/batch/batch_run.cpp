@@ -1,12 +1,21 @@
 #include "postproc/batch/batch_run.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <exception>
 #include <numeric>
 #include <optional>
 #include <string>
+#include <system_error>
+#include <thread>
 
+#include "gcode/text/characters.h"
 #include "postproc/batch/process_pool.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
@@ -162,6 +171,78 @@ class BatchRun {
 
 BatchResult run_batch(const BatchRequest& request, const BatchObserver& observer) {
   return BatchRun(request, observer).run();
+}
+
+namespace {
+
+// The processes of a run that was killed end with it, but on a busy machine not at once.
+constexpr int kTries = 20;
+constexpr std::chrono::milliseconds kBetweenTries{100};
+
+// False when somebody else holds it.
+bool lock_file(int descriptor, int operation) {
+  for (int i = 0; i < kTries; ++i) {
+    if (::flock(descriptor, operation | LOCK_NB) == 0 || errno != EWOULDBLOCK) return true;
+    std::this_thread::sleep_for(kBetweenTries);
+  }
+  return false;
+}
+
+}  // namespace
+
+BatchLock::BatchLock(const std::filesystem::path& folder, const Shard& shard) {
+  const bool whole_tree = shard.count == 1;
+  take(folder / "lock", whole_tree ? LOCK_EX : LOCK_SH);
+  if (whole_tree || !problem_.empty()) return;
+  take(folder / fmt::format("lock-{}-of-{}", shard.index, shard.count), LOCK_EX);
+}
+
+BatchLock::~BatchLock() {
+  for (const int descriptor : descriptors_) ::close(descriptor);
+}
+
+void BatchLock::take(const std::filesystem::path& file, int operation) {
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) {
+    problem_ = file.string() + ": cannot be made: " + std::generic_category().message(errno);
+    return;
+  }
+  descriptors_.push_back(descriptor);
+  if (!lock_file(descriptor, operation)) {
+    problem_ = file.string() + ": another run of this batch is at work on these programs";
+  }
+}
+
+namespace fs = std::filesystem;
+
+std::optional<std::string> intended_name(std::string_view half_written) {
+  constexpr std::string_view kEnd = ".batten-part";
+  // The point before the name and the one of the ending are two.
+  if (half_written.size() <= kEnd.size()) return std::nullopt;
+  if (!half_written.starts_with('.') || !half_written.ends_with(kEnd)) return std::nullopt;
+  half_written.remove_prefix(1);
+  half_written.remove_suffix(kEnd.size());
+  const std::size_t dot = half_written.rfind('.');  // before the number of the process
+  if (dot == std::string_view::npos || dot == 0 || dot + 1 == half_written.size()) {
+    return std::nullopt;
+  }
+  for (const char c : half_written.substr(dot + 1)) {
+    if (!gcode::is_digit(c)) return std::nullopt;
+  }
+  return std::string(half_written.substr(0, dot));
+}
+
+std::size_t remove_half_written(const fs::path& root, const std::set<fs::path>& targets) {
+  std::error_code error;
+  std::size_t removed = 0;
+  for (fs::recursive_directory_iterator at(root, error), end; !error && at != end;
+       at.increment(error)) {
+    const auto name = intended_name(at->path().filename().string());
+    if (!name || !targets.contains(at->path().parent_path() / *name)) continue;
+    std::error_code remove_error;
+    if (fs::remove(at->path(), remove_error)) ++removed;
+  }
+  return removed;
 }
 
 }  // namespace batten::postproc

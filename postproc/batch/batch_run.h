@@ -2,11 +2,16 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
+#include <optional>
+#include <set>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "postproc/batch/batch_progress.h"
+#include "postproc/batch/batch_summary.h"
 #include "postproc/batch/manifest.h"
 #include "postproc/batch/program_tree.h"
 #include "postproc/batch/program_worker.h"
@@ -35,5 +40,40 @@ using BatchObserver = std::function<void(const BatchCount& count, const ProgramR
 //
 // A process that ends without a result is a failed program with the code of an internal error.
 [[nodiscard]] BatchResult run_batch(const BatchRequest& request, const BatchObserver& observer);
+
+// Two runs of one batch at a time would do the same work twice, each removing the half-written
+// files of the other.
+
+// Held until the end of its life, and let go by the system however the process ends. Shards of
+// one batch may run together, a run of the whole tree only alone.
+class BatchLock {
+ public:
+  // `folder` is where the batch keeps its manifest; it must exist.
+  BatchLock(const std::filesystem::path& folder, const Shard& shard);
+  BatchLock(const BatchLock&) = delete;
+  BatchLock& operator=(const BatchLock&) = delete;
+  BatchLock(BatchLock&&) = delete;
+  BatchLock& operator=(BatchLock&&) = delete;
+  ~BatchLock();
+
+  // Why the lock was not taken; empty when it was. File systems that know no locks count as taken.
+  [[nodiscard]] const std::string& problem() const { return problem_; }
+
+ private:
+  void take(const std::filesystem::path& file, int operation);
+
+  std::vector<int> descriptors_;
+  std::string problem_;
+};
+
+// What killed runs left half written (postproc/system/output_file.h).
+
+// The name that a half-written file would have got: "part.nc" of ".part.nc.4711.batten-part".
+[[nodiscard]] std::optional<std::string> intended_name(std::string_view half_written);
+
+// Removes below `root` the half-written files of these targets, links to folders not followed.
+// Requires that nobody writes the targets now. Returns how many there were.
+std::size_t remove_half_written(const std::filesystem::path& root,
+                                const std::set<std::filesystem::path>& targets);
 
 }  // namespace batten::postproc

@@ -10,7 +10,6 @@
 #include "postproc/cli/cli_completion.h"
 #include "postproc/cli/cli_config.h"
 #include "postproc/cli/cli_given.h"
-#include "postproc/cli/cli_man.h"
 #include "postproc/cli/cli_table.h"
 #include "postproc/cli/explain.h"
 

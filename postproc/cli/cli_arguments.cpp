@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "gcode/controls/built_in.h"
-#include "postproc/options/decimals_option.h"
+#include "postproc/machine/files/machine_file.h"
+#include "postproc/options/options.h"
 #include "postproc/system/output_file.h"
 
 namespace batten::postproc {
@@ -76,6 +78,59 @@ const gcode::Dialect* built_in_target(std::string_view option, const std::string
   const gcode::Dialect* target = gcode::find_dialect(name);
   if (target == nullptr) problems.push_back(unknown_name(option, name, target_names()));
   return target;
+}
+
+std::shared_ptr<const Machine> machine_given(const Given& given, std::string_view otherwise,
+                                             Problems& problems) {
+  const auto choice = given.value("machine");
+  const auto settings = given.value("grbl-settings");
+  std::shared_ptr<const Machine> machine;
+  if (choice || !otherwise.empty()) {
+    machine = choose_machine(choice.value_or(std::string(otherwise)), "--machine", problems);
+    if (machine == nullptr) return nullptr;
+  }
+  if (!settings) return machine;
+  // The settings say that the control is grbl; only who says otherwise contradicts them.
+  const bool contradicts = machine != nullptr && machine->model != ControllerModel::kGrbl;
+  const Machine* base = contradicts && !choice ? nullptr : machine.get();
+  return machine_with_grbl_settings(base, *settings, problems);
+}
+
+namespace {
+
+bool is_profile_file(const std::optional<std::string>& name) {
+  return name && name->ends_with(".toml");
+}
+
+GivenTarget wrong_target() {
+  GivenTarget target;
+  target.is_wrong = true;
+  return target;
+}
+
+}  // namespace
+
+GivenTarget target_given(const Given& given, Problems& problems) {
+  const auto name = given.value("target");
+  const auto file = is_profile_file(name) ? name : given.value("profile");
+  if (is_profile_file(name) && given.has("profile")) {
+    problems.push_back("--profile: --target names a profile already");
+    return wrong_target();
+  }
+  GivenTarget target;
+  if (name && !is_profile_file(name)) {
+    target.built_in = built_in_target("target", *name, problems);
+    if (target.built_in == nullptr) return wrong_target();
+  }
+  if (!file) return target;
+  const std::size_t problems_before = problems.size();
+  target.profile = read_target_profile(*file, target.built_in, problems);
+  if (target.profile != nullptr) return target;
+  // What was said about the file says enough; the options are not to say it again.
+  for (std::size_t i = problems_before; i < problems.size(); ++i) {
+    problems[i] = "--target: " + problems[i];
+  }
+  return wrong_target();
 }
 
 }  // namespace batten::postproc

@@ -2,6 +2,7 @@
 // place as it was.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,7 +13,9 @@
 #include "gcode/state/modal_state.h"
 #include "postproc/cli/cli_given.h"
 #include "postproc/cli/cli_values.h"
-#include "postproc/options/log_level.h"
+#include "postproc/machine/machine.h"
+#include "postproc/options/options.h"
+#include "postproc/profile/target_profile.h"
 
 namespace batten::postproc {
 
@@ -46,5 +49,26 @@ void read_decimals_into(std::optional<gcode::Decimals>& decimals, const Given& g
 // Adds a problem where there is none of that name.
 [[nodiscard]] const gcode::Dialect* built_in_target(std::string_view option,
                                                     const std::string& name, Problems& problems);
+
+// The machine that the options of a command name; the same options for every command.
+
+// --machine, or the built-in machine `otherwise` (may be empty) when that is not given, with what
+// --grbl-settings says. Null when there is none, and when something was wrong, which `problems`
+// tell then.
+[[nodiscard]] std::shared_ptr<const Machine> machine_given(const Given& given,
+                                                           std::string_view otherwise,
+                                                           Problems& problems);
+
+// The control that a command line names.
+
+// By --target NAME, --target FILE.toml, --profile FILE.toml, or --target NAME with --profile
+// FILE.toml.
+struct GivenTarget {
+  const gcode::Dialect* built_in = nullptr;      // of --target NAME
+  std::shared_ptr<const TargetProfile> profile;  // of the file
+  bool is_wrong = false;                         // and that has been said
+};
+
+[[nodiscard]] GivenTarget target_given(const Given& given, Problems& problems);
 
 }  // namespace batten::postproc

@@ -6,8 +6,6 @@
 #include <utility>
 
 #include "postproc/cli/cli_arguments.h"
-#include "postproc/cli/cli_machine.h"
-#include "postproc/cli/cli_target.h"
 
 namespace batten::postproc {
 

@@ -1,7 +1,6 @@
 // The options of `smooth`, which `batch` and in part `verify` have, too.
 #pragma once
 
-#include "geometry/basic/side.h"
 #include "geometry/basic/tolerance_kind.h"
 #include "postproc/cli/cli_given.h"
 #include "postproc/cli/cli_values.h"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -24,5 +25,10 @@ struct CommandRow {
 
 // "-o" for --out: the one option with a short form.
 [[nodiscard]] std::string_view short_form_of(const OptionRow& row);
+
+// The manual page, made from the table of commands.
+
+// batten(1) in the man macros of roff.
+[[nodiscard]] std::string man_page();
 
 }  // namespace batten::postproc

@@ -6,7 +6,7 @@
 #include <array>
 #include <charconv>
 
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 
 namespace batten::postproc {
 

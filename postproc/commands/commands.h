@@ -11,7 +11,6 @@
 #include "gcode/state/modal_state.h"
 #include "geometry/basic/point.h"
 #include "postproc/batch/program_tree.h"
-#include "postproc/options/log_level.h"
 #include "postproc/options/options.h"
 #include "postproc/profile/target_profile.h"
 #include "postproc/stream/progress.h"

@@ -13,7 +13,6 @@
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 #include "postproc/system/output_file.h"
-#include "postproc/system/spool_file.h"
 #include "postproc/system/terminal_colour.h"
 #include "postproc/system/valid_utf8.h"
 

@@ -10,7 +10,7 @@
 
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/source_text.h"
-#include "postproc/options/log_level.h"
+#include "postproc/options/options.h"
 #include "postproc/system/output_file.h"
 #include "postproc/system/watched_file.h"
 

@@ -7,7 +7,7 @@
 
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
-#include "postproc/options/log_level.h"
+#include "postproc/options/options.h"
 #include "postproc/report/html_report.h"
 #include "postproc/report/json_report.h"
 #include "postproc/report/summary_text.h"
@@ -16,7 +16,6 @@
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 #include "postproc/system/output_file.h"
-#include "postproc/system/spool_file.h"
 #include "postproc/system/watched_file.h"
 
 namespace batten::postproc {

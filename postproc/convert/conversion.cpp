@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,12 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "gcode/reading/language_marks.h"
 #include "gcode/reading/source_kind.h"
-#include "gcode/rs274/plain_beginning.h"
+#include "gcode/rs274/plain_words.h"
 #include "gcode/state/dwell.h"
 #include "gcode/state/source_marks.h"
-#include "postproc/convert/obstacles.h"
 #include "postproc/convert/portable_words.h"
 #include "postproc/options/profile_words.h"
 
@@ -266,6 +265,34 @@ void tell_what_cannot_be_said(const gcode::Program& program, const gcode::Dialec
     if (auto obstacle = check.obstacle_in(block)) obstacles.push_back(std::move(*obstacle));
   }
   tell_obstacles(obstacles, program, target, found);
+}
+
+namespace {
+
+constexpr std::size_t kMostTold = 50;
+
+std::string first_part(std::string_view text) {
+  constexpr std::size_t kMostShown = 40;
+  return text.size() <= kMostShown ? std::string(text)
+                                   : std::string(text.substr(0, kMostShown)) + "..";
+}
+
+}  // namespace
+
+void tell_obstacles(const std::vector<Obstacle>& obstacles, const gcode::Program& program,
+                    const gcode::Dialect& target, gcode::Diagnostics& found) {
+  const std::size_t told = std::min(obstacles.size(), kMostTold);
+  for (std::size_t i = 0; i < told; ++i) {
+    found.push_back(
+        {gcode::Severity::kError, "cannot-convert", obstacles[i].where,
+         fmt::format("{} {} (target {})", first_part(program.source.text(obstacles[i].where)),
+                     obstacles[i].why, target.name())});
+  }
+  if (obstacles.size() > told) {
+    found.push_back(
+        {gcode::Severity::kError, "cannot-convert", obstacles[told].where,
+         fmt::format("from here on {} more blocks of this kind", obstacles.size() - told)});
+  }
 }
 
 }  // namespace batten::postproc

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "gcode/control/dialect.h"
 #include "gcode/reading/parser.h"
@@ -54,5 +56,17 @@ void tell_of_other_family(const gcode::Program& program, const gcode::Dialect& t
 // target refuses. After 50 blocks one more says how many there are.
 void tell_what_cannot_be_said(const gcode::Program& program, const gcode::Dialect& target,
                               gcode::Diagnostics& found);
+
+// What a program says that its target cannot be told.
+
+struct Obstacle {
+  gcode::SourceSpan where;
+  std::string why;  // goes on after the text that stands there: "is not taken there"
+};
+
+// Adds an error "cannot-convert" for each, in their order; after 50 one more says how many there
+// are.
+void tell_obstacles(const std::vector<Obstacle>& obstacles, const gcode::Program& program,
+                    const gcode::Dialect& target, gcode::Diagnostics& found);
 
 }  // namespace batten::postproc

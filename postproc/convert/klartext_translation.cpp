@@ -13,7 +13,6 @@
 #include "gcode/text/number_format.h"
 #include "postproc/convert/klartext_statements.h"
 #include "postproc/convert/translation.h"
-#include "postproc/convert/translation_text.h"
 
 namespace batten::postproc {
 namespace {

@@ -9,8 +9,7 @@
 #include <variant>
 
 #include "gcode/controls/arc_rules.h"
-#include "gcode/state/plane_axes.h"
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 #include "gcode/writer/writer.h"
 
 namespace batten::postproc {

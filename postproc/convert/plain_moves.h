@@ -10,9 +10,7 @@
 #include "gcode/control/dialect.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/motion.h"
-#include "gcode/state/plane_axes.h"
-#include "gcode/state/units.h"
-#include "postproc/convert/translation_text.h"
+#include "postproc/convert/translation.h"
 
 namespace batten::postproc {
 

@@ -12,7 +12,6 @@
 #include "postproc/convert/klartext_statements.h"
 #include "postproc/convert/plain_moves.h"
 #include "postproc/convert/translation.h"
-#include "postproc/convert/translation_text.h"
 
 namespace batten::postproc {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "gcode/state/path_state.h"
+#include "gcode/state/modal_state.h"
 
 namespace batten::postproc {
 namespace {

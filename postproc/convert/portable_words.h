@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "gcode/state/motion.h"
-#include "gcode/text/dwell_form.h"
 #include "gcode/text/language.h"
 #include "gcode/text/program.h"
 

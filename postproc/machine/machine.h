@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <string>
 #include <string_view>
@@ -94,5 +95,11 @@ struct Machine {
 
 [[nodiscard]] std::span<const Machine> built_in_machines();
 [[nodiscard]] const Machine* find_machine(std::string_view name);
+
+// Units in which people give numbers, in those in which we reckon.
+
+inline constexpr double kInch = 25.4;                      // mm
+inline constexpr double kMinute = 60;                      // s
+inline constexpr double kRadian = 180 / std::numbers::pi;  // degrees
 
 }  // namespace batten::postproc

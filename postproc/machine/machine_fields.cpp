@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "postproc/machine/unit_sizes.h"
+#include "postproc/machine/machine.h"
 
 namespace batten::postproc {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "postproc/machine/machine.h"
-#include "postproc/machine/planner/feed_plan_limits.h"
+#include "postproc/machine/planner/feed_plan_path.h"
 
 namespace batten::postproc {
 

@@ -11,7 +11,7 @@
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/source_kind.h"
 #include "gcode/state/modal_state.h"
-#include "geometry/basic/side.h"
+#include "gcode/text/language.h"
 #include "geometry/basic/tolerance_kind.h"
 #include "postproc/machine/machine.h"
 #include "postproc/options/profile_words.h"
@@ -133,5 +133,31 @@ struct ToleranceShares {
 // is for runs that are written with more decimals than the target's usual ones.
 [[nodiscard]] ToleranceShares share_tolerance(const SmoothOptions& options, gcode::Units units,
                                               int run_decimals = 0);
+
+// How much is said on standard error.
+
+enum class LogLevel {
+  kError,    // what ends or stops the work
+  kWarning,  // and what is doubtful in a program
+  kInfo,     // and notes, the summary, progress
+};
+
+[[nodiscard]] std::span<const Choice<LogLevel>> log_levels();
+
+// --decimals: what a number without a point means, as the user says.
+
+// "explicit", "implied", and "implied:0.0001" for the least increment of millimetre programs, which
+// is a power of ten. Nothing for "auto", and with a problem for anything else.
+[[nodiscard]] std::optional<gcode::Decimals> read_decimals(std::string_view text,
+                                                           std::vector<std::string>& problems);
+
+// The same back: "auto" for nothing.
+[[nodiscard]] std::string text_of(const std::optional<gcode::Decimals>& declared);
+
+// Why this cannot be so for this source and this target (nullptr: none is named); empty where it
+// can.
+[[nodiscard]] std::vector<std::string> problems_of_decimals(
+    const std::optional<gcode::Decimals>& declared, gcode::SourceKind source,
+    const gcode::Dialect* target);
 
 }  // namespace batten::postproc

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "gcode/reading/parser.h"
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 #include "gcode/text/characters.h"
 
 namespace batten::postproc {

@@ -8,10 +8,14 @@
 #include <cmath>
 #include <optional>
 #include <sstream>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "gcode/controls/built_in.h"
 #include "postproc/machine/machine.h"
+#include "postproc/options/profile_words.h"
 #include "postproc/profile/profile_keys.h"
 
 namespace batten::postproc {
@@ -414,6 +418,21 @@ std::string profile_text(const gcode::Dialect& target) {
   }
   for (const std::string_view hint : target.smoothing_words()) text += fmt::format("# {}\n", hint);
   return text;
+}
+
+void tell_of_other_meanings(const gcode::Program& program, const gcode::Dialect& target,
+                            gcode::Diagnostics& found) {
+  std::vector<int> told;
+  for (const gcode::Word& word : program.words) {
+    if (word.letter != 'G' || !word.is_number) continue;
+    const int code = tenths_of(word);
+    const std::string_view meaning = target.other_meaning(code);
+    if (meaning.empty() || std::ranges::find(told, code) != told.end()) continue;
+    told.push_back(code);
+    found.push_back({gcode::Severity::kError, "word-means-other", word.span,
+                     fmt::format("{} for target {}: {}", program.source.text(word.span),
+                                 target.name(), meaning)});
+  }
 }
 
 }  // namespace batten::postproc

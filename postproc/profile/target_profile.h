@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "gcode/control/dialect.h"
+#include "gcode/text/diagnostic.h"
+#include "gcode/text/program.h"
 #include "postproc/options/profile_words.h"
 
 namespace batten::postproc {
@@ -27,5 +29,13 @@ struct TargetProfile {
 // The file that leaves this target as it is: every key with its value, its unit and what it means.
 // The control's own smoothing words stand in it as remarks.
 [[nodiscard]] std::string profile_text(const gcode::Dialect& target);
+
+// Whether the words of a program mean to the target what they mean to the reader.
+
+// An error "word-means-other" for the first use of each G word that the target takes for something
+// else than the reader does (G21 mirrors on some): such a program was not read as its control reads
+// it.
+void tell_of_other_meanings(const gcode::Program& program, const gcode::Dialect& target,
+                            gcode::Diagnostics& found);
 
 }  // namespace batten::postproc

@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "gcode/klartext/statement.h"
-#include "gcode/siemens/block_names.h"
+#include "gcode/siemens/block.h"
 #include "gcode/state/block_words.h"
 #include "gcode/state/dwell.h"
-#include "gcode/state/path_state.h"
+#include "gcode/state/modal_state.h"
 #include "postproc/proof/common_texts.h"
 
 namespace batten::postproc {

@@ -1,5 +1,5 @@
 // Do two programs write their numbers alike, with a decimal point or without one? Some controls of
-// the FANUC kind take X5. for 5 mm and X5 for 0.005 mm (gcode/text/decimals.h). Where nobody says
+// the FANUC kind take X5. for 5 mm and X5 for 0.005 mm (gcode/text/language.h). Where nobody says
 // which control the programs are for, the one is not the other.
 #pragma once
 

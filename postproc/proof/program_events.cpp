@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "gcode/state/code_groups.h"
-#include "gcode/state/path_state.h"
+#include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
 
 namespace batten::postproc {

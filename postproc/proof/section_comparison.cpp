@@ -12,7 +12,7 @@
 
 #include "geometry/band/tolerance_band.h"
 #include "geometry/distance/band_comparison.h"
-#include "geometry/path/parallel_path.h"
+#include "geometry/path/path.h"
 
 namespace batten::postproc {
 namespace {

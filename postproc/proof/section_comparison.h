@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "geometry/basic/point.h"
-#include "geometry/basic/side.h"
 #include "geometry/basic/tolerance_kind.h"
 #include "geometry/distance/path_distance.h"
 #include "postproc/proof/event_violations.h"

@@ -1,7 +1,7 @@
 #include "postproc/report/json_report.h"
 
-#include "postproc/options/decimals_option.h"
-#include "postproc/report/run_reasons.h"
+#include "postproc/options/options.h"
+#include "postproc/report/summary_text.h"
 #include "postproc/text/json_values.h"
 
 namespace batten::postproc {

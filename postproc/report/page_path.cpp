@@ -9,7 +9,7 @@
 #include "geometry/basic/rounding.h"
 #include "geometry/distance/band_comparison.h"
 #include "geometry/distance/path_distance.h"
-#include "postproc/report/page_curvature.h"
+#include "postproc/report/page_speed.h"
 
 namespace batten::postproc {
 namespace {

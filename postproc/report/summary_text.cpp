@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <utility>
 #include <vector>
 
+#include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
-#include "gcode/state/units.h"
-#include "postproc/report/run_reasons.h"
 
 namespace batten::postproc {
 
@@ -181,6 +181,30 @@ std::string summary_text(const SmoothReport& report) {
   add_proof(report, rewritten, lines);
   add_profile(report, lines);
   return lines.text();
+}
+
+std::vector<ReasonCount> count_reasons(std::span<const RunReport> runs) {
+  std::map<std::string_view, ReasonCount> by_id;
+  for (const RunReport& run : runs) {
+    if (run.status != RunStatus::kKept) continue;
+    ReasonCount& count = by_id[run.reason];
+    count.id = run.reason;
+    ++count.runs;
+    count.blocks += run.blocks_in;
+  }
+  std::vector<ReasonCount> counts;
+  for (auto& [id, count] : by_id) {
+    const auto explanations = gcode::reason::explanations();
+    const auto found = std::ranges::find(explanations, id, &gcode::reason::Explanation::id);
+    if (found != explanations.end()) {
+      count.text = found->text;
+      count.advice = found->advice;
+      count.can_be_allowed = found->can_be_allowed;
+    }
+    counts.push_back(count);
+  }
+  std::ranges::stable_sort(counts, std::ranges::greater{}, &ReasonCount::blocks);
+  return counts;
 }
 
 }  // namespace batten::postproc

@@ -12,7 +12,7 @@
 #include "gcode/state/reason.h"
 #include "gcode/writer/block_numbers.h"
 #include "postproc/runs/band_notes.h"
-#include "postproc/runs/boundary_timing.h"
+#include "postproc/runs/long_run_cuts.h"
 #include "postproc/runs/run_cutting.h"
 #include "postproc/runs/run_grouping.h"
 #include "postproc/runs/run_path.h"

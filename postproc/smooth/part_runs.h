@@ -10,7 +10,6 @@
 #include "gcode/text/diagnostic.h"
 #include "postproc/options/options.h"
 #include "postproc/runs/long_run_cuts.h"
-#include "postproc/runs/program_part.h"
 #include "postproc/runs/proximity_index.h"
 #include "postproc/runs/section.h"
 #include "postproc/smooth/run_state.h"

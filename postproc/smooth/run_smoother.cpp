@@ -10,13 +10,11 @@
 #include "gcode/text/large_pages.h"
 #include "postproc/machine/models/cycle_time.h"
 #include "postproc/runs/run_path.h"
-#include "postproc/smooth/candidate_maker.h"
 #include "postproc/smooth/curve_forms.h"
 #include "postproc/smooth/methods/curvature_profile.h"
 #include "postproc/smooth/methods/run_curve.h"
 #include "postproc/smooth/selection/candidate.h"
 #include "postproc/smooth/selection/candidate_bounds.h"
-#include "postproc/smooth/selection/run_bound.h"
 #include "postproc/smooth/selection/run_times.h"
 #include "postproc/smooth/selection/selection.h"
 

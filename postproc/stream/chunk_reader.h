@@ -7,10 +7,9 @@
 
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/part_reading.h"
-#include "gcode/reading/read_part.h"
 #include "gcode/reading/source_kind.h"
 #include "gcode/text/diagnostic.h"
-#include "gcode/text/dwell_form.h"
+#include "gcode/text/language.h"
 #include "gcode/text/source_text.h"
 
 namespace batten::postproc {

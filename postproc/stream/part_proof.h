@@ -31,7 +31,7 @@
 #include "gcode/interpreter/interpreter.h"
 #include "postproc/options/options.h"
 #include "postproc/proof/verification.h"
-#include "postproc/runs/program_part.h"
+#include "postproc/runs/section.h"
 #include "postproc/smooth/part_runs.h"
 #include "postproc/stream/assembly.h"
 #include "postproc/stream/part_crossings.h"

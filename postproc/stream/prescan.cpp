@@ -11,7 +11,7 @@
 
 #include "gcode/state/reason.h"
 #include "postproc/proof/program_events.h"
-#include "postproc/runs/boundary_timing.h"
+#include "postproc/runs/long_run_cuts.h"
 #include "postproc/stream/provenance.h"
 #include "postproc/system/parallel_for.h"
 

@@ -7,7 +7,7 @@
 #include "gcode/reading/source_kind.h"
 #include "gcode/state/reason.h"
 #include "postproc/convert/conversion.h"
-#include "postproc/profile/target_words.h"
+#include "postproc/profile/target_profile.h"
 #include "postproc/proof/program_events.h"
 
 namespace batten::postproc {

@@ -10,7 +10,7 @@
 #include "gcode/text/program.h"
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"
-#include "postproc/runs/program_part.h"
+#include "postproc/runs/section.h"
 
 namespace batten::postproc {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "gcode/reading/read_part.h"
+#include "gcode/reading/part_reading.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/source_text.h"
 #include "geometry/basic/point.h"

@@ -12,7 +12,7 @@
 #include <mutex>
 
 #include "postproc/system/interrupt.h"
-#include "postproc/system/progress_text.h"
+#include "postproc/system/terminal_colour.h"
 
 namespace batten::postproc {
 

@@ -8,7 +8,7 @@
 
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/run_smoother.h"
-#include "postproc/smooth/selection/joined_times.h"
+#include "postproc/smooth/selection/method_times.h"
 
 namespace batten::postproc {
 

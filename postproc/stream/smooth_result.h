@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 #include "gcode/text/diagnostic.h"
 #include "postproc/stream/run_report.h"
 

@@ -5,7 +5,7 @@
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/part_reading.h"
 #include "gcode/state/control_state.h"
-#include "postproc/runs/boundary_timing.h"
+#include "postproc/runs/long_run_cuts.h"
 #include "postproc/stream/form_notes.h"
 #include "postproc/stream/part_proof.h"
 #include "postproc/stream/provenance.h"

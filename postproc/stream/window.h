@@ -14,7 +14,7 @@
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"
-#include "postproc/runs/program_part.h"
+#include "postproc/runs/section.h"
 #include "postproc/smooth/part_runs.h"
 #include "postproc/stream/assembly.h"
 #include "postproc/stream/part_crossings.h"

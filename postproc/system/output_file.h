@@ -9,8 +9,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "gcode/text/source_text.h"
 
 namespace batten::postproc {
 
@@ -68,5 +71,37 @@ struct WriteRequest {
 // The same for the bytes or the parts of a request.
 [[nodiscard]] WriteResult write_request_to_descriptor(int descriptor, std::string_view name,
                                                       const WriteRequest& request);
+
+// Bytes that are too many to be held in memory and may not be seen by anybody yet: a file without a
+// name in the folder for temporary files (TMPDIR), gone when it is closed.
+
+class SpoolFile {
+ public:
+  // On failure returns nothing and sets `error`.
+  [[nodiscard]] static std::optional<SpoolFile> make(std::string& error);
+
+  SpoolFile(SpoolFile&& other) noexcept;
+  SpoolFile(const SpoolFile&) = delete;
+  SpoolFile& operator=(const SpoolFile&) = delete;
+  SpoolFile& operator=(SpoolFile&&) = delete;
+  ~SpoolFile();
+
+  // False: the system refused, error() says why.
+  [[nodiscard]] bool append(std::string_view bytes);
+  // Nothing stands in it any more. False: the system refused.
+  [[nodiscard]] bool restart();
+  [[nodiscard]] const std::string& error() const { return error_; }
+
+  // All bytes again, part by part; the other one as a text that is mapped, and stays when this
+  // object is gone. Nothing, with error(), where that cannot be done.
+  void write_to(const PartWriter& writer) const;
+  [[nodiscard]] std::optional<gcode::SourceText> as_text(const std::string& name);
+
+ private:
+  explicit SpoolFile(int descriptor) : descriptor_(descriptor) {}
+
+  int descriptor_;
+  std::string error_;
+};
 
 }  // namespace batten::postproc

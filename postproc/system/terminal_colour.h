@@ -15,4 +15,12 @@ enum class Ink { kError, kWarning, kNote, kGood };
 // The text in a colour, as terminals take it (ECMA-48); as it is when `colour` is false.
 [[nodiscard]] std::string inked(std::string_view text, Ink ink, bool colour);
 
+// What lines that show progress say besides how far the work is.
+
+// "850 kB/s", "1.2 MB/s"
+[[nodiscard]] std::string rate_text(double bytes_per_second);
+
+// "40 s", "2 min", "3 h 20 min": rounded up, since it is a guess.
+[[nodiscard]] std::string rough_time(double seconds);
+
 }  // namespace batten::postproc

@@ -18,7 +18,6 @@
 #include "gcode/control/dialect.h"
 #include "gcode/controls/built_in.h"
 #include "gcode/text/source_text.h"
-#include "geometry/chords/blca.h"
 #include "geometry/chords/ilca.h"
 #include "geometry/chords/linearize.h"
 #include "geometry/chords/min_link.h"

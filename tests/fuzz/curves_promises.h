@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "gcode/curves/heidenhain_spl.h"
-#include "gcode/curves/nurbs_read.h"
+#include "gcode/curves/nurbs.h"
 #include "gcode/curves/siemens_bspline.h"
 #include "gcode/curves/siemens_poly.h"
 #include "gcode/reading/parser.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "gcode/curves/curve_text.h"
+#include "gcode/curves/curve_format.h"
 #include "gcode/reading/parser.h"
 #include "geometry/path/bspline_curve.h"
 

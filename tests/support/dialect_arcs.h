@@ -12,8 +12,7 @@
 
 #include "gcode/control/dialect.h"
 #include "gcode/controls/built_in.h"
-#include "gcode/state/plane_axes.h"
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 #include "gcode/writer/writer.h"
 #include "geometry/path/path.h"
 

@@ -2,7 +2,7 @@
 // docs/controllers/heidenhain_curves.md.
 #pragma once
 
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 #include "gcode/text/program.h"
 #include "tests/support/curve_alarm.h"
 

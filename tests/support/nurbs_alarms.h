@@ -1,7 +1,7 @@
 // What the control would say about the G06.2 blocks of a program.
 #pragma once
 
-#include "gcode/curves/nurbs_rules.h"
+#include "gcode/curves/nurbs.h"
 #include "gcode/text/program.h"
 #include "tests/support/curve_alarm.h"
 

@@ -14,7 +14,6 @@
 #include "geometry/fitting/corners/ozcan_corner.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/planner/feed_plan.h"
-#include "postproc/machine/planner/feed_plan_profile.h"
 
 namespace batten::postproc {
 

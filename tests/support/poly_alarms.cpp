@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "gcode/curves/siemens_poly.h"
-#include "gcode/curves/siemens_poly_words.h"
 #include "gcode/curves/siemens_words.h"
 
 namespace batten::gcode {

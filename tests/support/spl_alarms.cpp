@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "gcode/curves/bezier_chain.h"
-#include "gcode/curves/heidenhain_spl_words.h"
-#include "gcode/curves/spl_limits.h"
+#include "gcode/curves/heidenhain_spl.h"
 #include "gcode/text/number_format.h"
 
 namespace batten::gcode {

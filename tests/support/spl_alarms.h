@@ -1,7 +1,7 @@
 // What a Heidenhain control would say about the SPL blocks of a program.
 #pragma once
 
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 #include "gcode/text/program.h"
 #include "tests/support/curve_alarm.h"
 

@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/basic/rounding.h"
+#include "geometry/fitting/corners/corner_blend.h"
 
 namespace batten::geometry {
 
@@ -56,6 +61,108 @@ std::variant<GuoBlend, NoBlend> guo_corner(const Corner& corner, const GuoRule& 
 std::variant<GuoBlend, NoBlend> guo_corner(const Corner& corner, const GuoRule& rule) {
   constexpr double kWhole = std::numeric_limits<double>::infinity();
   return guo_corner(corner, rule, kWhole, kWhole);
+}
+
+namespace {
+
+GuoRule rule_at(const Corner& corner, const GuoOptions& options) {
+  GuoRule rule = options.rule;
+  rule.kind = kind_at(corner, rule.kind, options.strict_sharper_than);
+  return rule;
+}
+
+// --- routine 2 with fair shares ------------------------------------------------------------
+
+std::vector<GuoPathCorner> fair_corners(const DistinctVertices& vertices,
+                                        const GuoOptions& options) {
+  std::vector<GuoPathCorner> corners;
+  for (const SharedCorner& each :
+       shared_corners(vertices.points, options.closed, options.keep_corner_angle)) {
+    corners.push_back({vertices.indices[each.vertex], NoBlend::kKept});
+    if (each.stays) continue;
+    corners.back().outcome =
+        guo_corner(each.corner, rule_at(each.corner, options), each.share_before, each.share_after);
+  }
+  return corners;
+}
+
+// --- routines 1 to 3 as the paper has them -------------------------------------------------
+
+// start = Q0; for each inner vertex Q_i: the blend that fits between start and Q_{i+1}, halved
+// where it would reach Q_{i+1} and that is a corner, too; then start = P4 + lambda (Q_{i+1} - P4).
+std::vector<GuoPathCorner> literal_corners(const DistinctVertices& vertices,
+                                           const GuoOptions& options) {
+  const std::vector<Point3>& q = vertices.points;
+  const std::size_t n = q.size() - 1;
+  std::vector<GuoPathCorner> corners;
+  Point3 start = q[0];
+  for (std::size_t i = 1; i < n; ++i) {
+    const double a = (q[i] - start).norm();
+    const double b = (q[i + 1] - q[i]).norm();
+    const Corner corner{q[i - 1], q[i], q[i + 1]};
+    if (turns_more(corner, options.keep_corner_angle)) {
+      corners.push_back({vertices.indices[i], NoBlend::kKept});
+      start = q[i];
+      continue;
+    }
+    const GuoRule rule = rule_at(corner, options);
+    auto outcome = guo_corner(corner, rule, a, b);
+    // Only a blend that the segments limit can fill the next one, so the tolerance has its say
+    // before this rule.
+    const auto* blend = std::get_if<GuoBlend>(&outcome);
+    if (blend != nullptr && i + 1 < n && 2 * blend->spacing >= b) {
+      outcome = guo_corner(corner, rule, b / 2, b / 2);
+      blend = std::get_if<GuoBlend>(&outcome);
+    }
+    start = q[i];
+    if (blend != nullptr) {
+      const Point3& p4 = blend->blend.curve.control_points().back();
+      start = p4 + options.lambda * (q[i + 1] - p4);
+    }
+    corners.push_back({vertices.indices[i], std::move(outcome)});
+  }
+  return corners;
+}
+
+// --- the path -----------------------------------------------------------------------------
+
+// `corners` are those of the inner vertices, or of all vertices of a ring.
+BlendedPath rounded_path(const std::vector<Point3>& q, const std::vector<GuoPathCorner>& corners,
+                         bool ring) {
+  std::vector<std::optional<BsplineCurve>> blends(q.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto* blend = std::get_if<GuoBlend>(&corners[i].outcome);
+    if (blend != nullptr) blends[ring ? i : i + 1] = blend->blend.curve;
+  }
+  return blended_path(q, blends, ring);
+}
+
+}  // namespace
+
+GuoOptions GuoOptions::literal(double tolerance, double lambda) {
+  GuoOptions options;
+  options.rule = {tolerance, ToleranceKind::kBand, GuoApex::kHalfTolerance};
+  options.sharing = GuoSharing::kLiteral;
+  options.lambda = lambda;
+  return options;
+}
+
+GuoPath guo_path(std::span<const Point3> points, const GuoOptions& options) {
+  require_positive_tolerance(options.rule.tolerance, "guo_path");
+  if (!(options.lambda >= 0 && options.lambda < 1)) {
+    throw std::invalid_argument("guo_path: lambda " + std::to_string(options.lambda) +
+                                ", expected 0 or more and less than 1");
+  }
+  const bool fair = options.sharing == GuoSharing::kFair;
+  const bool ring = options.closed && fair;
+  const DistinctVertices vertices = distinct_vertices(points, ring);
+  if (vertices.size() < 2) return {};
+  GuoPath path;
+  path.corners = fair ? fair_corners(vertices, options) : literal_corners(vertices, options);
+  BlendedPath rounded = rounded_path(vertices.points, path.corners, ring);
+  path.pieces = std::move(rounded.pieces);
+  path.stations = std::move(rounded.stations);
+  return path;
 }
 
 }  // namespace batten::geometry

@@ -3,13 +3,18 @@
 // are used all the way. Our own. Method: docs/algorithms/band_curve.md, section Corner.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <variant>
+#include <vector>
 
+#include "geometry/basic/point.h"
 #include "geometry/fitting/corners/corner_blend.h"
 #include "geometry/fitting/tube/tube_smoothing.h"
 #include "geometry/path/kinematic_feed.h"
+#include "geometry/path/path.h"
 
 namespace batten::geometry {
 
@@ -48,5 +53,51 @@ struct TimeOptimalBlend {
 
 // The whole corner as one curve, from its `before` to its `after`.
 [[nodiscard]] BsplineCurve with_legs(const TimeOptimalBlend& blend, const Corner& corner);
+
+// A polyline with a racing line (time_optimal_corner.h) in the place of each corner that a machine
+// has to slow down for, and a five-point blend (guo_corner.h) in the place of each gentle one.
+// Method: docs/algorithms/band_curve.md, section Paths of corners.
+
+struct TimeOptimalPathOptions {
+  double tolerance = 0.01;  // mm
+  ToleranceKind kind = ToleranceKind::kPath;
+  KinematicLimits limits;          // as for time_optimal_corner
+  double keep_corner_angle = 3.2;  // radians: vertices that turn more stay (> pi: none)
+  // Radians between the legs: sharper corners are held to ToleranceKind::kPath.
+  double strict_sharper_than = 0;
+  // Radians: vertices that turn less get the five-point blend, in closed form. A racing line would
+  // win little there, and a smooth curve has thousands of them.
+  double least_raced_turn = 0.1;
+  // Corners, different ones, for which a racing line is searched; those behind them get the
+  // five-point blend. Bounds the time for paths that are no paths of corners.
+  int most_raced = 40;
+};
+
+struct TimeOptimalPathBlend {
+  CornerBlend blend;
+  bool raced = false;  // else the five points
+};
+
+struct TimeOptimalPathCorner {
+  std::size_t vertex;  // index among the given points
+  std::variant<TimeOptimalPathBlend, NoBlend> outcome;
+};
+
+struct TimeOptimalPath {
+  std::vector<TimeOptimalPathCorner> corners;  // in order of their vertices
+  Path pieces;                                 // lines and Bezier pieces, joined end to end
+  std::vector<double> stations;  // mm along the polyline where they meet: see BlendedPath
+  int searched = 0;              // corners for which a racing line was searched
+};
+
+// Segments are shared half and half where both ends are corners (shared_corners). Corners that are
+// alike (directions of the legs, and shares where these are used up) are searched once. The path
+// starts and ends in the given ends.
+//
+// Cost: linear, but each corner that has to be searched takes some ten convex problems. Throws
+// std::invalid_argument when the tolerance is not a positive number, or the limits are not as
+// time_optimal_corner needs them.
+[[nodiscard]] TimeOptimalPath time_optimal_path(std::span<const Point3> points,
+                                                const TimeOptimalPathOptions& options);
 
 }  // namespace batten::geometry

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "geometry/fitting/bspline_fit_system.h"
-#include "geometry/fitting/bspline_fit_weights.h"
 #include "geometry/numeric/extrema.h"
 
 namespace batten::geometry {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "geometry/basic/rounding.h"
-#include "geometry/path/displacement.h"
+#include "geometry/path/bspline_curve.h"
 
 namespace batten::geometry {
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "geometry/fitting/naseath/naseath_polygon.h"
-#include "geometry/path/bspline_basis.h"
 #include "geometry/path/bspline_curve.h"
 
 namespace batten::geometry {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "geometry/basic/rounding.h"
-#include "geometry/fitting/corners/blended_path.h"
+#include "geometry/fitting/corners/corner_blend.h"
 #include "geometry/fitting/fair/fair_measure.h"
-#include "geometry/path/parallel_path.h"
+#include "geometry/path/path.h"
 
 namespace batten::geometry {
 

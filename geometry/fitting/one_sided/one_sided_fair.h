@@ -6,7 +6,7 @@
 #include <span>
 
 #include "geometry/basic/point.h"
-#include "geometry/basic/side.h"
+#include "geometry/basic/tolerance_kind.h"
 #include "geometry/fitting/fair/fair.h"
 
 namespace batten::geometry {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "geometry/fitting/band_curve.h"
-#include "geometry/path/displacement.h"
+#include "geometry/path/bspline_curve.h"
 #include "geometry/path/parameter_samples.h"
 
 namespace batten::geometry {

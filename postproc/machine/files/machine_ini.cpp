@@ -14,7 +14,7 @@
 #include "gcode/reading/parser.h"
 #include "postproc/machine/files/ini_file.h"
 #include "postproc/machine/files/value_origin.h"
-#include "postproc/machine/unit_sizes.h"
+#include "postproc/machine/machine.h"
 
 namespace batten::postproc {
 

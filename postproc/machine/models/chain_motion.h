@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "postproc/machine/models/controller_models.h"
+#include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/models/jerk_motion.h"
 #include "postproc/machine/models/velocity_profile.h"
 

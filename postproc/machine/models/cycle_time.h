@@ -2,14 +2,58 @@
 // Method: docs/algorithms/cycle_time.md.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "gcode/state/modal_state.h"
+#include "geometry/path/path.h"
 #include "postproc/machine/machine.h"
-#include "postproc/machine/models/controller_models.h"
+#include "postproc/machine/models/velocity_profile.h"
 
 namespace batten::postproc {
+
+struct TimedPiece {
+  geometry::PathPiece piece;
+  double feed = 0;     // mm/min; 0: as fast as the machine cuts
+  bool rapid = false;  // at the rapid rate; `feed` means nothing then
+  int bytes = 0;       // of its block, for a control that is fed by a line; 0: not known
+};
+
+// What stands behind the chain. It matters on LinuxCNC alone, which brakes with half the
+// acceleration where it blends and no more motion comes.
+enum class ChainEnd {
+  kStop,         // a rapid or another block that ends in a stop
+  kEndOfMotion,  // the program's last motion
+};
+
+// Where a stretch runs. The way along the stretch goes evenly with the parameter of `path`.
+struct StretchPlace {
+  std::uint32_t first_piece = 0;  // of the chain; the stretch serves all from the first to the
+  std::uint32_t last_piece = 0;   // last: lines that a control joins, the two sides of a corner
+  bool is_corner = false;         // a bend that the control puts into the joint of the two
+  geometry::PathPiece path;
+};
+
+struct StretchChain {
+  std::vector<VelocityStretch> stretches;
+  std::vector<StretchPlace> places;  // one for each stretch, or none when they are not wanted
+  ProfileRules rules;
+};
+
+enum class WithPositions { kNo, kYes };
+
+[[nodiscard]] StretchChain look_ahead_stretches(std::span<const TimedPiece> pieces,
+                                                const Machine& machine, gcode::PathMode path,
+                                                WithPositions places);
+
+[[nodiscard]] StretchChain grbl_stretches(std::span<const TimedPiece> pieces,
+                                          const Machine& machine, gcode::PathMode path,
+                                          WithPositions places);
+
+[[nodiscard]] StretchChain linuxcnc_stretches(std::span<const TimedPiece> pieces,
+                                              const Machine& machine, gcode::PathMode path,
+                                              ChainEnd end, WithPositions places);
 
 // Seconds from rest to rest. `path` says whether the control blends or keeps the exact path.
 // Pieces without length take no time. Linear cost.

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "geometry/basic/rounding.h"
-#include "postproc/machine/models/controller_models.h"
+#include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/models/junction_speed.h"
 #include "postproc/machine/models/velocity_profile.h"
 

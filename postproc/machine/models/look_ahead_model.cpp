@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "postproc/machine/models/controller_models.h"
+#include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/models/junction_speed.h"
 #include "postproc/machine/models/velocity_profile.h"
 

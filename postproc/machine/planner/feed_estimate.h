@@ -9,7 +9,7 @@
 #include "geometry/path/bspline_curve.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/planner/feed_plan.h"
-#include "postproc/machine/planner/feed_plan_limits.h"
+#include "postproc/machine/planner/feed_plan_path.h"
 
 namespace batten::postproc {
 

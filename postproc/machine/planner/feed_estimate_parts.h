@@ -7,7 +7,6 @@
 
 #include "geometry/path/path.h"
 #include "postproc/machine/planner/feed_plan_envelope.h"
-#include "postproc/machine/planner/feed_plan_limits.h"
 #include "postproc/machine/planner/feed_plan_path.h"
 
 namespace batten::postproc {

@@ -5,9 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "postproc/machine/planner/feed_estimate_matrix.h"
 #include "postproc/machine/planner/feed_estimate_problem.h"
-#include "postproc/machine/planner/feed_plan_rows.h"
+#include "postproc/machine/planner/feed_plan_problem.h"
 
 namespace batten::postproc {
 namespace {

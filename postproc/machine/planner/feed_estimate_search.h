@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "geometry/path/path.h"
-#include "postproc/machine/planner/feed_estimate_grid.h"
-#include "postproc/machine/planner/feed_plan_limits.h"
+#include "postproc/machine/planner/feed_estimate_problem.h"
+#include "postproc/machine/planner/feed_plan_path.h"
 
 namespace batten::postproc {
 

@@ -14,7 +14,6 @@
 
 #include "geometry/basic/point.h"
 #include "geometry/path/path.h"
-#include "postproc/machine/planner/feed_plan_limits.h"
 #include "postproc/machine/planner/feed_plan_path.h"
 
 namespace batten::postproc {

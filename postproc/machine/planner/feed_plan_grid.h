@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "geometry/path/path.h"
-#include "postproc/machine/planner/feed_plan_limits.h"
+#include "postproc/machine/planner/feed_plan_path.h"
 
 namespace batten::postproc {
 

@@ -1,11 +1,53 @@
 // A path as its feed plan sees it: derivatives by length at a place, and lengths of parts.
 #pragma once
 
+#include <limits>
+
 #include "geometry/basic/point.h"
+#include "geometry/path/kinematic_feed.h"
 #include "geometry/path/path.h"
-#include "postproc/machine/planner/feed_plan_limits.h"
 
 namespace batten::postproc {
+
+// Infinity: no limit. All must be above 0, but period and speed_step may be 0.
+//
+// A place where the curvature jumps (a line that runs into an arc) asks for infinite jerk, one
+// where the direction jumps (a kink) for infinite acceleration. A control sets its axes once
+// per period, and what its limits could do within one period is not felt as a jump: there the
+// acceleration of an axis may jump by jerk * period, and its speed by the lesser of
+// jerk * period^2 / 4 (up and down again within the period) and acceleration * period, or by
+// speed_step where that is more. The plan slows down until the jump is no greater, or stops.
+struct KinematicPathLimits {
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  double feed = kNone;                                                  // mm/s
+  geometry::Vector3 speed = geometry::Vector3::Constant(kNone);         // mm/s, per axis
+  geometry::Vector3 acceleration = geometry::Vector3::Constant(kNone);  // mm/s^2, per axis
+  geometry::Vector3 jerk = geometry::Vector3::Constant(kNone);          // mm/s^3, per axis
+  double tangential_acceleration = kNone;                               // mm/s^2, along the path
+  double tangential_jerk = kNone;                                       // mm/s^3, along the path
+  double normal_acceleration = kNone;                                   // mm/s^2, curvature * v^2
+  double period = 0.001;                                                // s
+  geometry::Vector3 speed_step = geometry::Vector3::Zero();             // mm/s, per axis, at a kink
+
+  KinematicPathLimits() = default;
+  explicit KinematicPathLimits(const geometry::KinematicLimits& axes)
+      : feed(axes.feed), speed(axes.speed), acceleration(axes.acceleration), jerk(axes.jerk) {}
+};
+
+// Throws std::invalid_argument, with the name of the limit, when one is not as said above, or when
+// there is neither a feed nor a speed for every axis.
+void require_sound(const KinematicPathLimits& limits);
+
+// The limits along a straight direction (unit vector): the least over the axes and the path's own.
+struct LimitsAlong {
+  double speed = 0;         // mm/s
+  double acceleration = 0;  // mm/s^2
+  double jerk = 0;          // mm/s^3
+};
+
+[[nodiscard]] LimitsAlong limits_along(const geometry::Vector3& direction,
+                                       const KinematicPathLimits& limits);
 
 // Of the place x by the length s.
 struct LengthDerivatives {

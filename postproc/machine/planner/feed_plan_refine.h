@@ -6,7 +6,7 @@
 
 #include "geometry/path/path.h"
 #include "postproc/machine/planner/feed_plan_grid.h"
-#include "postproc/machine/planner/feed_plan_limits.h"
+#include "postproc/machine/planner/feed_plan_path.h"
 #include "postproc/machine/planner/feed_plan_problem.h"
 
 namespace batten::postproc {

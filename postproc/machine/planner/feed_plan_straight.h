@@ -2,8 +2,9 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
-#include "postproc/machine/planner/feed_plan_limits.h"
+#include "postproc/machine/planner/feed_plan_path.h"
 
 namespace batten::postproc {
 
@@ -62,5 +63,14 @@ struct RampTimes {
 // speed and the time that of their mean over the way. Requires limits as for straight_move().
 [[nodiscard]] StraightRun straight_run(double length, double from_speed, double to_speed,
                                        const LimitsAlong& limits);
+
+// Where the plan of a straight move has its nodes.
+
+// Seconds, rising, the end of the move included: where the jerk changes, `density` places between
+// those, and at `ends`, the distances of the ends of its pieces in mm.
+[[nodiscard]] std::vector<double> node_times(const StraightMove& move,
+                                             const std::vector<double>& ends, double density);
+[[nodiscard]] std::vector<double> node_times(const StraightRun& run, const LimitsAlong& limits,
+                                             const std::vector<double>& ends, double density);
 
 }  // namespace batten::postproc

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "postproc/machine/machine.h"
 #include "postproc/machine/models/chain_motion.h"
 #include "postproc/machine/program_time/program_time_chains.h"
-#include "postproc/machine/unit_sizes.h"
 
 namespace batten::postproc {
 namespace {

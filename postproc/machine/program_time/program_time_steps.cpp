@@ -9,7 +9,6 @@
 #include "gcode/state/control_state.h"
 #include "gcode/state/reason.h"
 #include "postproc/machine/program_time/program_time_blocks.h"
-#include "postproc/machine/program_time/program_time_place.h"
 
 namespace batten::postproc {
 namespace {

@@ -9,10 +9,12 @@
 #include "gcode/control/dialect.h"
 #include "geometry/arcs/arc_spline.h"
 #include "geometry/fitting/fair/fair.h"
+#include "geometry/path/curve_pieces.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/models/cycle_time.h"
 #include "postproc/options/options.h"
 #include "postproc/runs/section.h"
+#include "postproc/smooth/methods/curvature_profile.h"
 
 namespace batten::postproc {
 
@@ -94,5 +96,17 @@ struct PlanOptions {
 [[nodiscard]] std::optional<OutputPlan> plan_curves(const Run& run,
                                                     const geometry::SmoothCurve& fair,
                                                     const PlanOptions& options);
+
+// The plans of postproc/smooth/forms/output_plan.h for who makes more than one of a curve, and so
+// has it in its pieces: `pieces` is all of fair.curve.
+
+[[nodiscard]] OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair,
+                                    const geometry::MarkedPieces& pieces,
+                                    const PlanOptions& options);
+
+[[nodiscard]] std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve& fair,
+                                                  const geometry::MarkedPieces& pieces,
+                                                  const CurvatureProfile& bends,
+                                                  const PlanOptions& options);
 
 }  // namespace batten::postproc

@@ -1,13 +1,11 @@
 #include <algorithm>
 
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 #include "geometry/chords/balanced_chords.h"
-#include "geometry/chords/blca.h"
 #include "geometry/chords/ilca.h"
 #include "geometry/chords/linearize.h"
 #include "geometry/chords/min_link.h"
 #include "postproc/smooth/forms/output_plan.h"
-#include "postproc/smooth/forms/piece_plans.h"
 #include "postproc/smooth/forms/plan_stretches.h"
 
 namespace batten::postproc {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "gcode/curves/curve_format.h"
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 #include "gcode/text/characters.h"
-#include "gcode/text/number_limit.h"
+#include "gcode/text/number_format.h"
 #include "gcode/writer/writer.h"
 #include "geometry/basic/rounding.h"
 

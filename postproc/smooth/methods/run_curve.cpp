@@ -6,10 +6,19 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "geometry/basic/rounding.h"
+#include "geometry/fitting/corners/corner_blend.h"
+#include "geometry/fitting/corners/guo_corner.h"
+#include "geometry/fitting/corners/ozcan_corner.h"
+#include "geometry/fitting/corners/time_optimal_corner.h"
 #include "geometry/fitting/fair/fair_measure.h"
+#include "geometry/fitting/naseath/naseath.h"
 #include "geometry/fitting/one_sided/one_sided_fair.h"
+#include "geometry/path/curve_pieces.h"
+#include "geometry/path/joined_curve.h"
 #include "postproc/smooth/methods/curvature_profile.h"
 
 namespace batten::postproc {
@@ -107,6 +116,196 @@ double chord_error(const Run& run, const SmoothCurve& meant, double rounding) {
   }
   const double chords = std::sqrt(squares / static_cast<double>(run.points.size() - 1));
   return meant.noise > 2 * rounding ? std::max(chords, meant.noise) : chords;
+}
+
+// Methods that leave the lines and put a curve in the place of each vertex: guo, ozcan, racing.
+
+namespace {
+
+using geometry::NoBlend;
+using geometry::Point3;
+using geometry::SmoothCurve;
+
+// Length along the polyline at each point of the run, as the stations of a blended path count it.
+std::vector<double> stations_of(std::span<const Point3> run) {
+  const geometry::DistinctVertices vertices = geometry::distinct_vertices(run, false);
+  std::vector<double> stations;
+  stations.reserve(run.size());
+  double station = 0;
+  std::size_t vertex = 0;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    if (vertex + 1 < vertices.size() && vertices.indices[vertex + 1] == i) {
+      ++vertex;
+      station += (vertices.points[vertex] - vertices.points[vertex - 1]).norm();
+    }
+    stations.push_back(station);
+  }
+  return stations;
+}
+
+// `Path`: GuoPath, OzcanPath or TimeOptimalPath, `Blend` what their corners may hold.
+template <typename Blend, typename Path>
+std::optional<SmoothCurve> as_one_curve(std::span<const Point3> run, const Path& path,
+                                        geometry::ToleranceKind kind) {
+  if (path.pieces.empty()) return std::nullopt;
+  SmoothCurve result{
+      geometry::curve_of_pieces(path.pieces, path.stations), stations_of(run), 0, 0, 0, 0};
+  result.vertex_parameters.back() = result.curve.last();
+  for (const auto& corner : path.corners) {
+    if (const auto* blend = std::get_if<Blend>(&corner.outcome)) {
+      result.deviation =
+          std::max(result.deviation, geometry::deviation_of(blend->blend.deviation, kind));
+    } else if (std::get<NoBlend>(corner.outcome) != NoBlend::kStraight) {
+      ++result.kept_corners;
+    }
+  }
+  return result;
+}
+
+// What time_optimal_corner needs to know.
+bool can_race(const geometry::KinematicLimits& limits) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(limits.acceleration[axis]) && !std::isfinite(limits.jerk[axis]))
+      return false;
+  }
+  return std::isfinite(limits.feed) && limits.feed > 0;
+}
+
+}  // namespace
+
+std::optional<SmoothCurve> guo_curve(std::span<const Point3> run, const CurveRequest& request,
+                                     bool literal) {
+  geometry::GuoOptions options;
+  if (literal) options = geometry::GuoOptions::literal(request.tolerance, 0);
+  options.rule.tolerance = request.tolerance;
+  options.rule.kind = request.kind;
+  options.keep_corner_angle = request.keep_corner_angle;
+  options.strict_sharper_than = geometry::kSharpestCut;
+  return as_one_curve<geometry::GuoBlend>(run, geometry::guo_path(run, options), request.kind);
+}
+
+std::optional<SmoothCurve> ozcan_curve(std::span<const Point3> run, const CurveRequest& request) {
+  geometry::OzcanOptions options;
+  options.tolerance = request.tolerance;
+  options.kind = request.kind;
+  options.limits = request.limits;
+  options.keep_corner_angle = request.keep_corner_angle;
+  options.strict_sharper_than = geometry::kSharpestCut;
+  return as_one_curve<geometry::OzcanBlend>(run, geometry::ozcan_path(run, options), request.kind);
+}
+
+std::optional<SmoothCurve> time_optimal_curve(std::span<const Point3> run,
+                                              const CurveRequest& request) {
+  if (!can_race(request.limits)) return std::nullopt;
+  geometry::TimeOptimalPathOptions options;
+  options.tolerance = request.tolerance;
+  options.kind = request.kind;
+  options.limits = request.limits;
+  options.keep_corner_angle = request.keep_corner_angle;
+  options.strict_sharper_than = geometry::kSharpestCut;
+  return as_one_curve<geometry::TimeOptimalPathBlend>(
+      run, geometry::time_optimal_path(run, options), request.kind);
+}
+
+// Naseath's tube about a spline, for a run of lines.
+
+namespace {
+
+using geometry::BsplineCurve;
+using geometry::Point3;
+using geometry::SmoothCurve;
+
+// The fit may use this part of the tolerance: enough to follow the vertices' rounding and to
+// round corners a little, since the method itself refuses corners; the tube gets the rest.
+constexpr double kFitPart = 0.25;
+
+// Passes over a part. Repaired, the method ends by itself after 10 to 120; literally it need not.
+constexpr int kPasses = 300;
+
+// Control points that stay at both ends of a part: 1 its ends, 3 tangents and curvatures too.
+constexpr int kHoldPlace = 1;
+constexpr int kHoldCurvature = 3;
+
+// A part of the fit between two cuts.
+struct NaseathStretch {
+  double from;
+  double to;
+  bool straight;        // a line of the program: it stays
+  bool meets_smoothly;  // its neighbours go on with its tangent and curvature
+};
+
+// Inner knots at which the curve may have a corner.
+std::vector<double> corners_of(const BsplineCurve& curve) {
+  std::vector<double> corners;
+  const auto& t = curve.basis().knots();
+  for (std::size_t i = 4; i + 5 < t.size(); ++i) {
+    const bool known = !corners.empty() && corners.back() == t[i];
+    if (t[i] == t[i + 1] && !known && t[i] > curve.first() && t[i] < curve.last()) {
+      corners.push_back(t[i]);
+    }
+  }
+  return corners;
+}
+
+std::vector<NaseathStretch> stretches_of(const BsplineCurve& curve, bool closed) {
+  const auto lines = geometry::CurvePieces(curve, curve.first(), curve.last()).straight_runs();
+  const std::vector<double> corners = corners_of(curve);
+  std::vector<double> cuts = {curve.first(), curve.last()};
+  cuts.insert(cuts.end(), corners.begin(), corners.end());
+  for (const geometry::StraightRun& line : lines) {
+    cuts.push_back(line.from);
+    cuts.push_back(line.to);
+  }
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  const auto is_smooth = [&](double u) {
+    if (u == curve.first() || u == curve.last()) return closed;
+    return !std::binary_search(corners.begin(), corners.end(), u);
+  };
+  std::vector<NaseathStretch> stretches;
+  std::size_t line = 0;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    while (line < lines.size() && lines[line].to <= cuts[i]) ++line;
+    const bool straight = line < lines.size() && lines[line].from <= cuts[i];
+    stretches.push_back(
+        {cuts[i], cuts[i + 1], straight, is_smooth(cuts[i]) || is_smooth(cuts[i + 1])});
+  }
+  return stretches;
+}
+
+}  // namespace
+
+std::optional<SmoothCurve> naseath_curve(std::span<const Point3> run, const CurveRequest& request,
+                                         bool literal) {
+  CurveRequest fit = request;
+  fit.tolerance = kFitPart * request.tolerance;
+  fit.scatter = 0;
+  fit.accurate = true;
+  std::optional<SmoothCurve> path = fair_curve(run, fit);
+  if (!path || !(path->deviation < request.tolerance)) return std::nullopt;
+
+  geometry::NaseathOptions options;
+  options.radius = request.tolerance - path->deviation;
+  options.max_passes = kPasses;
+  if (literal) options.repairs = geometry::NaseathRepairs::none();
+  const bool closed = (run.front() - run.back()).norm() <= geometry::kSamePlace;
+  double moved = 0;
+  std::vector<BsplineCurve> parts;
+  for (const NaseathStretch& stretch : stretches_of(path->curve, closed)) {
+    BsplineCurve part = path->curve.part(stretch.from, stretch.to);
+    if (!stretch.straight) {
+      options.held_points = stretch.meets_smoothly ? kHoldCurvature : kHoldPlace;
+      geometry::NaseathResult smoothed = geometry::smooth_naseath(part, options);
+      moved = std::max(moved, smoothed.displacement);
+      part = std::move(smoothed.curve);
+    }
+    parts.push_back(std::move(part));
+  }
+  path->curve = geometry::joined(parts);
+  path->deviation += moved;
+  path->noise = 0;
+  path->rounds = 0;
+  return path;
 }
 
 }  // namespace batten::postproc

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "geometry/basic/point.h"
-#include "geometry/basic/side.h"
 #include "geometry/basic/tolerance_kind.h"
 #include "geometry/fitting/fair/fair.h"
 #include "geometry/path/kinematic_feed.h"

@@ -2,7 +2,13 @@
 // what has been made would be chosen whatever it takes.
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "geometry/path/curve_pieces.h"
+#include "postproc/machine/machine.h"
+#include "postproc/options/options.h"
+#include "postproc/runs/section.h"
 #include "postproc/smooth/methods/curvature_profile.h"
 #include "postproc/smooth/selection/candidate.h"
 #include "postproc/smooth/selection/run_times.h"
@@ -23,7 +29,7 @@ class CandidateBounds {
 
   [[nodiscard]] const RunFacts& facts() const { return so_far_.facts; }
 
-  // s: see postproc/smooth/selection/run_bound.h.
+  // s: see postproc/smooth/selection/candidate_bounds.h.
   [[nodiscard]] double least_time() const { return least_time_; }
 
   // s: what the run takes, by which gains are measured. Of a piece: from rest to rest.
@@ -65,5 +71,27 @@ class CandidateBounds {
   double least_time_;
   Times before_;
 };
+
+// Whether rewriting a run can gain anything, told before the work is done. What is said to be
+// hopeless would have been kept after all, as `choose` decides; what is not may still be kept.
+
+// Seconds below which no form of the run comes that stays within `tolerance`: its length at its
+// feeds, less what can be saved at its vertices, when there were no accelerations to mind.
+[[nodiscard]] double least_time(const Run& run, double tolerance, const Machine& machine,
+                                geometry::ToleranceKind kind = geometry::ToleranceKind::kPath);
+
+// The part of the run's vertices whose chords would leave a curve through them by more than
+// `tolerance`: a run of a coarser tolerance, of which only the corners could be rounded.
+[[nodiscard]] double coarse_part(const Run& run, double tolerance);
+
+// The least number of arcs and lines that the fair curve takes, by its straight parts: each is a
+// line, and what joins two of them gently takes two arcs or more.
+[[nodiscard]] double arcs_for(const geometry::MarkedPieces& curve);
+
+// The methods beside `fair` that may win on a run, for Method::kBest. `corners` is coarse_part of
+// it, `points` how many it has, `time` (s) what its fastest form so far takes on the machine.
+// docs/algorithms/methods.md says why these.
+[[nodiscard]] std::vector<Method> methods_worth_trying(double corners, std::size_t points,
+                                                       double least_time, double time);
 
 }  // namespace batten::postproc

@@ -21,4 +21,17 @@ struct MethodTime {
 [[nodiscard]] double lead_of(std::string_view method, double time_s,
                              const std::vector<MethodTime>& times);
 
+// What was tried on two neighbouring stretches of a run, when a report tells of them as one.
+
+// What was tried on a stretch of a run.
+struct TriedStretch {
+  std::vector<MethodTime> methods;
+  double time_s = 0;  // as it was
+};
+
+// Of two neighbouring stretches as one. A method that was tried on one of them only leaves the
+// other as it was.
+[[nodiscard]] std::vector<MethodTime> joined_times(const TriedStretch& first,
+                                                   const TriedStretch& second);
+
 }  // namespace batten::postproc

@@ -10,7 +10,7 @@
 
 #include "gcode/controls/arc_rules.h"
 #include "gcode/controls/built_in.h"
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 
 namespace batten::gcode {
 namespace {

@@ -13,7 +13,7 @@
 #include "gcode/control/profiled_dialect.h"
 #include "gcode/controls/built_in.h"
 #include "gcode/controls/row_dialect.h"
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 #include "tests/support/dialect_arcs.h"
 #include "tests/support/places.h"
 

@@ -9,7 +9,7 @@
 
 #include "gcode/controls/arc_rules.h"
 #include "gcode/controls/built_in.h"
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 #include "tests/support/dialect_arcs.h"
 #include "tests/support/interpreted.h"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "gcode/curves/g5_format.h"
+#include "gcode/curves/g5_curve.h"
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
 #include "gcode/state/reason.h"

@@ -1,11 +1,10 @@
-#include "gcode/curves/g5_chopping.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "gcode/curves/g5_curve.h"
 #include "tests/support/random_curves.h"
 
 namespace batten::gcode {

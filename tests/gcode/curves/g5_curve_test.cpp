@@ -5,7 +5,6 @@
 #include <string>
 #include <variant>
 
-#include "gcode/curves/g5_format.h"
 #include "gcode/reading/parser.h"
 #include "tests/support/random_curves.h"
 

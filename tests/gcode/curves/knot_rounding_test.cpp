@@ -1,10 +1,9 @@
-#include "gcode/curves/knot_rounding.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "gcode/curves/bezier_chain.h"
+#include "gcode/curves/curve_print.h"
 #include "tests/support/curve_texts.h"
 
 namespace batten::gcode {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "gcode/curves/nurbs_rules.h"
+#include "gcode/curves/nurbs.h"
 #include "gcode/reading/parser.h"
 #include "tests/support/nurbs_alarms.h"
 

@@ -1,3 +1,5 @@
+#include "gcode/curves/nurbs.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -5,8 +7,6 @@
 #include <string>
 
 #include "gcode/curves/bezier_chain.h"
-#include "gcode/curves/nurbs_read.h"
-#include "gcode/curves/nurbs_write.h"
 #include "geometry/distance/path_distance.h"
 #include "tests/support/curve_texts.h"
 #include "tests/support/nurbs_alarms.h"

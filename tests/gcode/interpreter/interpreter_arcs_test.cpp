@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "gcode/interpreter/arc_from_words.h"
+#include "gcode/interpreter/motion_words.h"
 #include "gcode/state/reason.h"
 #include "tests/support/interpreted.h"
 

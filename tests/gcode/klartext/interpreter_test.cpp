@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "gcode/curves/spl_format.h"
+#include "gcode/curves/heidenhain_spl.h"
 #include "gcode/interpreter/program_flow.h"
 #include "gcode/state/reason.h"
 #include "tests/support/klartext_programs.h"

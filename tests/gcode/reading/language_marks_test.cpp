@@ -1,5 +1,3 @@
-#include "gcode/reading/language_marks.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gcode/reading/source_kind.h"
 #include "gcode/text/line_cursor.h"
 
 namespace batten::gcode {

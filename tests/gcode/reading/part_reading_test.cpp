@@ -12,7 +12,6 @@
 
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
-#include "gcode/reading/read_part.h"
 
 namespace batten::gcode {
 namespace {

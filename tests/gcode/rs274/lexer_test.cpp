@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "gcode/rs274/active_comment.h"
-#include "gcode/rs274/expression.h"
 
 namespace batten::gcode {
 namespace {

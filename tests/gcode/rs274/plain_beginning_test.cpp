@@ -1,10 +1,9 @@
-#include "gcode/rs274/plain_beginning.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "gcode/reading/source_kind.h"
+#include "gcode/rs274/plain_words.h"
 
 namespace batten::gcode {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "gcode/interpreter/interpreter.h"
-#include "gcode/siemens/value.h"
-#include "gcode/siemens/variables.h"
+#include "gcode/siemens/lexer.h"
+#include "gcode/siemens/name_kinds.h"
 #include "gcode/state/reason.h"
 #include "gcode/text/number_format.h"
 

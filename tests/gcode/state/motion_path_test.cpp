@@ -1,5 +1,3 @@
-#include "gcode/state/motion_path.h"
-
 #include <gtest/gtest.h>
 
 #include <utility>

@@ -1,5 +1,3 @@
-#include "gcode/state/reason_id.h"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>

@@ -8,7 +8,6 @@
 #include <sstream>
 #include <string>
 
-#include "gcode/state/conversion_reason.h"
 #include "tests/support/places.h"
 
 namespace batten::gcode::reason {
@@ -23,8 +22,7 @@ std::string text_of(const std::string& file) {
 
 // The ids as the headers declare them.
 std::set<std::string> declared_ids() {
-  const std::string header =
-      text_of("gcode/state/reason.h") + text_of("gcode/state/conversion_reason.h");
+  const std::string header = text_of("gcode/state/reason.h") + text_of("gcode/state/reason.h");
   const std::string declaration = "string_view k";
   std::set<std::string> ids;
   for (std::size_t at = header.find(declaration); at != std::string::npos;

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "gcode/controls/built_in.h"
-#include "gcode/state/units.h"
+#include "gcode/state/modal_state.h"
 #include "tests/support/places.h"
 
 namespace batten::gcode {

@@ -1,10 +1,10 @@
-#include "geometry/arcs/arc_parts.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <random>
+
+#include "geometry/arcs/biarc.h"
 
 namespace batten::geometry {
 namespace {

@@ -1,5 +1,3 @@
-#include "geometry/chords/blca.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/chords/chord_deviation.h"
+#include "geometry/chords/chord_proof.h"
+#include "geometry/chords/ilca.h"
 #include "geometry/path/path.h"
 #include "tests/support/curve_of.h"
 #include "tests/support/parabolas.h"

@@ -1,5 +1,3 @@
-#include "geometry/chords/chord_height.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-#include "geometry/path/bezier_halves.h"
+#include "geometry/path/cubic_polynomial.h"
 #include "geometry/path/path.h"
 
 namespace batten::geometry {

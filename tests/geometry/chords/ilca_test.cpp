@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/chords/chord_deviation.h"
+#include "geometry/chords/chord_proof.h"
 #include "geometry/path/curve_pieces.h"
 #include "tests/support/curve_of.h"
 #include "tests/support/parabolas.h"

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "geometry/fitting/corners/guo_path.h"
+#include "geometry/fitting/corners/guo_corner.h"
 #include "tests/support/corners.h"
 #include "tests/support/method_cases.h"
 #include "tests/support/paths.h"

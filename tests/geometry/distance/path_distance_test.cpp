@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "geometry/distance/chord_polyline.h"
-#include "geometry/distance/in_order_matching.h"
+#include "geometry/distance/free_space.h"
 #include "tests/support/processor_time.h"
 
 namespace batten::geometry {

@@ -12,7 +12,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "geometry/fitting/band_curve_barrier.h"
 #include "tests/support/corners.h"
 
 namespace batten::geometry {

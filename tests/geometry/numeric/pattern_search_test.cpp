@@ -1,5 +1,3 @@
-#include "geometry/numeric/pattern_search.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 #include <vector>
+
+#include "geometry/numeric/extrema.h"
 
 namespace batten::geometry {
 namespace {

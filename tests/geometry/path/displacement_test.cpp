@@ -1,11 +1,10 @@
-#include "geometry/path/displacement.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 #include <vector>
 
+#include "geometry/path/bspline_curve.h"
 #include "tests/support/naseath_cases.h"
 
 namespace batten::geometry {

@@ -1,5 +1,3 @@
-#include "geometry/path/parallel_path.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <variant>
 
 #include "geometry/distance/path_distance.h"
+#include "geometry/path/path.h"
 
 namespace batten::geometry {
 namespace {

@@ -6,9 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "postproc/batch/batch_progress.h"
-#include "postproc/batch/leftovers.h"
-#include "postproc/system/progress_text.h"
+#include "postproc/batch/batch_run.h"
+#include "postproc/system/terminal_colour.h"
 
 namespace batten::postproc {
 namespace {

@@ -1,4 +1,4 @@
-// Dwells between languages and controls. What G4 means on each stands in gcode/text/dwell_form.h;
+// Dwells between languages and controls. What G4 means on each stands in gcode/text/language.h;
 // every text is derived by hand from that: 1.5 s are P1.5, X1.5, P1500 or F1.5.
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "postproc/report/page_curvature.h"
+#include "postproc/report/page_speed.h"
 #include "tests/support/interpreted.h"
 #include "tests/support/paths.h"
 

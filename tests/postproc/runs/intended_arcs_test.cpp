@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "gcode/interpreter/arc_from_words.h"
+#include "gcode/interpreter/motion_words.h"
 
 namespace batten::postproc {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
-#include "postproc/runs/program_part.h"
+#include "postproc/runs/section.h"
 #include "postproc/smooth/part_runs.h"
 #include "tests/support/wavy_programs.h"
 

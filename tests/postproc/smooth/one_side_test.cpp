@@ -11,7 +11,7 @@
 
 #include "gcode/state/reason.h"
 #include "geometry/fitting/one_sided/one_sided_fair.h"
-#include "geometry/path/parallel_path.h"
+#include "geometry/path/path.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {

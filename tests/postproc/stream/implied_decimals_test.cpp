@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "gcode/state/reason.h"
-#include "gcode/text/decimals.h"
-#include "postproc/options/decimals_option.h"
+#include "gcode/text/language.h"
+#include "postproc/options/options.h"
 #include "postproc/stream/windows.h"
 #include "tests/support/constructs.h"
 

@@ -10,7 +10,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "postproc/system/spool_file.h"
 #include "tests/support/scratch_folder.h"
 
 namespace batten::postproc {

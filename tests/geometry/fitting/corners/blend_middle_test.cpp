@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/fitting/corners/blended_path.h"
+#include "geometry/fitting/corners/corner_blend.h"
 #include "geometry/path/joined_curve.h"
 
 namespace batten::geometry {

@@ -1,8 +1,8 @@
 // Blends side by side make one path whose stations go forward, whatever noise their ends have.
 
-#include "geometry/fitting/corners/blended_path.h"
-
 #include <gtest/gtest.h>
+
+#include "geometry/fitting/corners/corner_blend.h"
 
 namespace batten::geometry {
 namespace {

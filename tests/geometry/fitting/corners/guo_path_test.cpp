@@ -1,5 +1,3 @@
-#include "geometry/fitting/corners/guo_path.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,6 +14,7 @@
 #include <vector>
 
 #include "geometry/distance/path_distance.h"
+#include "geometry/fitting/corners/guo_corner.h"
 #include "tests/support/corners.h"
 #include "tests/support/paths.h"
 

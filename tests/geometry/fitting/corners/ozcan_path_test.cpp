@@ -1,5 +1,3 @@
-#include "geometry/fitting/corners/ozcan_path.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "geometry/distance/path_distance.h"
+#include "geometry/fitting/corners/ozcan_corner.h"
 #include "geometry/path/joined_curve.h"
 #include "tests/support/corners.h"
 #include "tests/support/method_cases.h"

@@ -1,5 +1,3 @@
-#include "geometry/fitting/corners/time_optimal_path.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "geometry/fitting/fair/sagittas.h"
+#include "geometry/fitting/fair/path_features.h"
 
 namespace batten::geometry {
 namespace {

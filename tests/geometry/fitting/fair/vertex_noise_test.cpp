@@ -1,5 +1,3 @@
-#include "geometry/fitting/fair/vertex_noise.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "geometry/fitting/fair/corner_test.h"
 #include "tests/support/paths.h"
 
 namespace batten::geometry {

@@ -10,7 +10,7 @@
 
 #include "geometry/distance/path_distance.h"
 #include "geometry/path/curve_pieces.h"
-#include "geometry/path/parallel_path.h"
+#include "geometry/path/path.h"
 #include "tests/support/paths.h"
 
 namespace batten::geometry {

@@ -1,5 +1,7 @@
 // What LinuxCNC does: seconds measured on the real control (2.9.0~pre1, simulated axes, 1 ms;
 // tests/bench/compare_with_linuxcnc.py), closed forms, and the joining of lines.
+#include "postproc/machine/models/linuxcnc_model.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +10,6 @@
 #include <vector>
 
 #include "postproc/machine/models/cycle_time.h"
-#include "postproc/machine/models/linuxcnc_naive_cam.h"
 #include "tests/support/machine_limits.h"
 
 namespace batten::postproc {

@@ -10,7 +10,6 @@
 
 #include "postproc/machine/planner/feed_plan.h"
 #include "postproc/machine/planner/feed_plan_path.h"
-#include "postproc/machine/planner/feed_plan_profile.h"
 #include "tests/support/planned_paths.h"
 
 namespace batten::postproc {

@@ -11,7 +11,6 @@
 #include <tuple>
 #include <vector>
 
-#include "postproc/machine/planner/feed_plan_profile.h"
 #include "postproc/machine/planner/s_curve.h"
 #include "tests/support/naseath_cases.h"
 #include "tests/support/planned_paths.h"

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "postproc/smooth/selection/joined_times.h"
 #include "postproc/smooth/selection/method_times.h"
 #include "tests/support/method_cases.h"
 #include "tests/support/wavy_programs.h"

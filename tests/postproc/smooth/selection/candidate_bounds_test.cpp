@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "postproc/runs/run_path.h"
-#include "postproc/smooth/candidate_maker.h"
+#include "postproc/smooth/curve_forms.h"
 #include "postproc/smooth/methods/run_curve.h"
 #include "postproc/smooth/selection/selection.h"
 #include "tests/support/one_run.h"

@@ -1,11 +1,10 @@
 // What is said about a run before it is fitted must hold for what is made of it.
-#include "postproc/smooth/selection/run_bound.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
+#include "postproc/smooth/selection/candidate_bounds.h"
 #include "postproc/smooth/selection/selection.h"
 #include "tests/support/wavy_programs.h"
 

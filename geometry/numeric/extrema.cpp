@@ -1,0 +1,93 @@
+#include "geometry/numeric/extrema.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace batten::geometry {
+namespace {
+
+// A vector whose angles go round evenly without ever coming back: multiples of the golden
+// section for the first plane, of other irrational numbers for the next.
+std::vector<double> turning_direction(std::size_t variables, int index) {
+  constexpr double kIrrational[] = {0.6180339887498949, 0.4142135623730951, 0.7320508075688772,
+                                    0.2360679774997898};
+  std::vector<double> direction(variables);
+  double square = 0;
+  for (std::size_t i = 0; i < variables; ++i) {
+    const double turns = (index + 1) * kIrrational[(i / 2) % 4] + 0.25 * static_cast<double>(i % 2);
+    direction[i] = std::cos(2 * std::numbers::pi * turns);
+    square += direction[i] * direction[i];
+  }
+  const double length = std::sqrt(square);
+  for (double& d : direction) d = length > 0 ? d / length : 1;
+  return direction;
+}
+
+// The variables' own directions, as many turning ones, and the last move that was a success.
+std::vector<std::vector<double>> directions_of_round(std::size_t variables, int round,
+                                                     const std::vector<double>& last_move) {
+  std::vector<std::vector<double>> directions;
+  if (!last_move.empty()) directions.push_back(last_move);
+  for (std::size_t i = 0; i < variables; ++i) {
+    directions.emplace_back(variables, 0.0);
+    directions.back()[i] = 1;
+    directions.push_back(
+        turning_direction(variables, round * static_cast<int>(variables) + static_cast<int>(i)));
+  }
+  return directions;
+}
+
+}  // namespace
+
+PatternSearchResult pattern_search(const std::function<double(const std::vector<double>&)>& f,
+                                   std::vector<double> start, const PatternSearchOptions& options) {
+  // Slow enough in narrowing that a narrow valley is met by a turning direction before the
+  // steps are too short to follow it.
+  constexpr double kNarrower = 0.7;
+  constexpr double kWider = 2;
+  const std::size_t n = start.size();
+  if (options.steps.size() != n || n == 0) {
+    throw std::invalid_argument("pattern_search: " + std::to_string(options.steps.size()) +
+                                " steps for " + std::to_string(n) +
+                                " variables, expected one each and one or more");
+  }
+  PatternSearchResult best{std::move(start), 0, 1};
+  best.value = f(best.at);
+  std::vector<double> last_move;
+  double scale = 1;
+  for (int round = 0; scale >= options.finest; ++round) {
+    const std::vector<double> center = best.at;
+    const double before = best.value;
+    std::vector<double> move;
+    for (const auto& direction : directions_of_round(n, round, last_move)) {
+      for (const double sign : {1.0, -1.0}) {
+        if (best.evaluations >= options.max_evaluations) return best;
+        std::vector<double> place = center;
+        for (std::size_t i = 0; i < n; ++i) {
+          place[i] += sign * scale * options.steps[i] * direction[i];
+        }
+        const double value = f(place);
+        ++best.evaluations;
+        if (value < best.value) {
+          best.at = std::move(place);
+          best.value = value;
+          move = direction;
+        }
+      }
+    }
+    if (best.value < before) {
+      last_move = std::move(move);
+      scale = std::min(1.0, scale * kWider);
+    } else {
+      scale *= kNarrower;
+    }
+  }
+  return best;
+}
+
+}  // namespace batten::geometry
