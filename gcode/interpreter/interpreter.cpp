@@ -222,7 +222,7 @@ class Interpreter {
   void add_barriers_of_place(const Block& block, const BlockFlow& flow) {
     tell_expression_from_decimals(block);
     const bool active = std::ranges::any_of(program_.comments_of(block), [](const Comment& c) {
-      return c.kind == CommentKind::kActive;
+      return c.kind == CommentKind::kActive || c.kind == CommentKind::kUncertain;
     });
     if (block.has_checksum) {
       block_run(reason::kChecksum);  // the host counts these lines

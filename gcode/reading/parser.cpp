@@ -323,6 +323,8 @@ class Parser {
     const std::string_view text = text_.substr(token.span.begin, token.span.size());
     if (is_active_comment(text)) {
       comment.kind = CommentKind::kActive;
+    } else if (token.unclosed || has_nested_bracket(text)) {
+      comment.kind = CommentKind::kUncertain;
     } else if (token.kind == TokenKind::kLineComment) {
       comment.kind = CommentKind::kSemicolon;
       note_foreign_language(token.span);
@@ -332,6 +334,10 @@ class Parser {
       tell(Severity::kWarning, kUnclosedComment, token.span,
            "'(' without ')'; read as a comment up to the end of the line");
     }
+  }
+
+  static bool has_nested_bracket(std::string_view comment) {
+    return comment.starts_with('(') && comment.find('(', 1) != std::string_view::npos;
   }
 
   // Words that name no value are less than words that belong to no known grammar: what was

@@ -35,7 +35,9 @@ constexpr Explanation kExplanations[] = {
      "The block starts with /: the operator chooses whether it is executed. What it changes is "
      "not known afterwards.",
      "Remove the / if the block is always meant.", false},
-    {kActiveComment, "The comment acts when it is reached: (MSG,..), (DEBUG,..), (LOGOPEN,..).",
+    {kActiveComment,
+     "The comment acts when it is reached: (MSG,..), (DEBUG,..), (LOGOPEN,..). Or its brackets are "
+     "nested or not closed: controls differ in where it ends, and some refuse it.",
      "Write it as a plain comment if it need not act.", false},
     {kReferencedLabel,
      "The block's N number is, or may be, the target of a jump, a call, or a return (M99 P) from a "

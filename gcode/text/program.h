@@ -31,6 +31,7 @@ enum class CommentKind : std::uint8_t {
   kParenthesis,  // (text)
   kSemicolon,    // ; text to the end of the line
   kActive,       // (MSG,..) (DEBUG,..) (PRINT,..) (LOG..) (PROBE..): acts when it is reached
+  kUncertain,    // brackets nested or not closed: controls differ in where it ends
 };
 
 struct Comment {

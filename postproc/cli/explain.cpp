@@ -27,9 +27,12 @@ constexpr ExplainedViolation kViolations[] = {
      "other than twice the tolerance, and one came over to the other side.",
      "Take a smaller tolerance."},
     {"arc-refused",
-     "While a program is smoothed: the target would refuse an arc of the new text, by its least "
-     "radius or its check of the radii.",
-     "Nothing: the run goes back to another form, in the end to its own blocks."},
+     "The target would refuse an arc of the new text, by its least radius or its check of the "
+     "radii.",
+     "While a program is smoothed: nothing, the run goes back to another form, in the end to its "
+     "own blocks. From verify: do not run the new program."},
+    {"line-refused", "A line of the new text is longer than the target reads.",
+     "Shorten it: comments and blanks count where the target counts them."},
     {"not-proved",
      "The distance of a stretch could be bounded from both sides, but the tolerance lies between "
      "the bounds: paths that run over themselves many times within the tolerance, or a distance "
@@ -64,9 +67,9 @@ constexpr ExplainedViolation kViolations[] = {
      "assumed where a word had set them.",
      "Look for a plane that was selected for arcs and not restored."},
     {"point-spelling",
-     "Nothing says for which control the programs are, and a length stands without a decimal point "
-     "(X5) that the old program writes with one (X5.), or the other way round: some controls take "
-     "X5 for 0.005 mm.",
+     "Nothing says for which control the programs are, and a number stands without a decimal point "
+     "(X5, F100) that the old program writes with one (X5., F100.), or the other way round: some "
+     "controls take X5 for 0.005 mm.",
      "Say --target or --source, or --decimals."},
     {"profile-words-open",
      "Words of a profile before a run without those behind it, or its header without its footer.",

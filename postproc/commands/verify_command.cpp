@@ -46,6 +46,10 @@ const gcode::CurveFormat* curves_of(const VerifyCommand& command) {
   return target != nullptr ? target->curves() : nullptr;
 }
 
+Promise promise_of(const VerifyCommand& command) {
+  return {command.tolerance_mm, command.tolerance_kind, command.side, target_of(command)};
+}
+
 std::optional<gcode::Language> language_of_target(const VerifyCommand& command) {
   const gcode::Dialect* target = target_of(command);
   return target != nullptr ? std::optional(target->language()) : std::nullopt;
@@ -310,7 +314,7 @@ std::optional<VerifiedInParts> proved_in_parts(const VerifyCommand& command,
   }
   if (!old_reading || !new_reading) return std::nullopt;
   return verify_in_parts({old_source, *old_reading}, {new_source, *new_reading},
-                         {command.tolerance_mm, command.tolerance_kind, command.side}, interrupted);
+                         promise_of(command), interrupted);
 }
 
 }  // namespace
@@ -355,7 +359,7 @@ int run(const VerifyCommand& command) {
   Verification verification =
       verify({.program = &before.program, .interpretation = &before.interpretation},
              {.program = &after.program, .interpretation = &after.interpretation},
-             {command.tolerance_mm, command.tolerance_kind, command.side});
+             promise_of(command));
   if (interrupted()) return end_interrupted();
   if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
   if (before.program.language == gcode::Language::kRs274 &&

@@ -15,19 +15,19 @@ namespace {
 
 constexpr std::size_t kPartBlocks = 8192;
 
-bool is_pointless(const gcode::Word& word) { return word.without_point && word.letter != 'F'; }
+bool is_pointless(const gcode::Word& word) { return word.without_point; }
 
 bool is_pointed(const gcode::Word& word) {
-  constexpr std::string_view kLengths = "XYZUVWIJKRQ";
+  constexpr std::string_view kNumbers = "XYZUVWIJKRQF";
   return word.has_point && word.is_number && word.value != 0 &&
-         kLengths.find(word.letter) != std::string_view::npos;
+         kNumbers.find(word.letter) != std::string_view::npos;
 }
 
 bool ends_with_point(const gcode::Word& word) { return word.has_point && word.decimals == 0; }
 
-// Calls `look(word, block)` for each length but zeros, as long as it gives true.
+// Calls `look(word, block)` for each length and feed but zeros, as long as it gives true.
 template <typename Look>
-void for_each_length(const gcode::SourceText& source, const Look& look) {
+void for_each_number(const gcode::SourceText& source, const Look& look) {
   gcode::TextCarry carry;
   const gcode::Decimals either{.pointless = gcode::PointlessNumbers::kUndeclared};
   carry.decimals = {either, gcode::Units::kUnknown};
@@ -45,7 +45,7 @@ void for_each_length(const gcode::SourceText& source, const Look& look) {
   }
 }
 
-// How a program writes its lengths.
+// How a program writes its lengths, or its feeds.
 struct Spelling {
   bool any_point = false;
   bool any_without = false;
@@ -53,20 +53,32 @@ struct Spelling {
   std::set<std::pair<char, double>> always_with_bare_point;
 };
 
-Spelling spelling_of(const gcode::SourceText& source) {
-  Spelling found;
-  for_each_length(source, [&](const gcode::Word& word, const gcode::Block&) {
+// Many write the ones with a point and the others without.
+struct Spellings {
+  Spelling lengths;
+  Spelling feeds;
+  Spelling& of(const gcode::Word& word) { return word.letter == 'F' ? feeds : lengths; }
+};
+
+Spellings spellings_of(const gcode::SourceText& source) {
+  Spellings all;
+  for_each_number(source, [&](const gcode::Word& word, const gcode::Block&) {
+    Spelling& found = all.of(word);
     (word.has_point ? found.any_point : found.any_without) = true;
     if (ends_with_point(word)) found.always_with_bare_point.emplace(word.letter, word.value);
     return true;
   });
-  found.any_bare_point = !found.always_with_bare_point.empty();
-  if (!found.any_bare_point || !found.any_without) return found;
-  for_each_length(source, [&](const gcode::Word& word, const gcode::Block&) {
-    if (!word.has_point) found.always_with_bare_point.erase({word.letter, word.value});
+  bool any_mixed = false;
+  for (Spelling* found : {&all.lengths, &all.feeds}) {
+    found->any_bare_point = !found->always_with_bare_point.empty();
+    any_mixed = any_mixed || (found->any_bare_point && found->any_without);
+  }
+  if (!any_mixed) return all;
+  for_each_number(source, [&](const gcode::Word& word, const gcode::Block&) {
+    if (!word.has_point) all.of(word).always_with_bare_point.erase({word.letter, word.value});
     return true;
   });
-  return found;
+  return all;
 }
 
 bool is_other(const gcode::Word& word, const Spelling& before) {
@@ -79,10 +91,10 @@ bool is_other(const gcode::Word& word, const Spelling& before) {
 
 std::optional<Violation> other_point_spelling(const gcode::SourceText& before,
                                               const gcode::SourceText& after) {
-  const Spelling spelling = spelling_of(before);
+  Spellings spellings = spellings_of(before);
   std::optional<Violation> violation;
-  for_each_length(after, [&](const gcode::Word& word, const gcode::Block& block) {
-    if (!is_other(word, spelling)) return true;
+  for_each_number(after, [&](const gcode::Word& word, const gcode::Block& block) {
+    if (!is_other(word, spellings.of(word))) return true;
     violation.emplace();
     violation->kind = ViolationKind::kNotProved;
     violation->id = "point-spelling";

@@ -14,6 +14,7 @@ namespace batten::postproc {
 //   - has no point, where the old one ends whole numbers with a bare point (X5.), and either all
 //     lengths of it have a point or this one always has a bare one;
 //   - ends with a bare point, where no length of the old one has a point.
+// The same for feeds, F100. and F100: the second is 1 in/min on controls of the FANUC kind.
 // Zero is zero. Programs that do not end numbers with a bare point, X5 or X5.000, are for other
 // controls. Linear time; holds the numbers of the old program that end with a bare point.
 [[nodiscard]] std::optional<Violation> other_point_spelling(const gcode::SourceText& before,

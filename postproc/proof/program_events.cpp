@@ -296,8 +296,11 @@ class Lister {
     const Code code = *code_of(word);
     const CodeGroup group = gcode::group_of_g(code);
     if (group == CodeGroup::kMotion) {
-      constexpr Code kFirstArc = 20;
-      if (!moves && code >= kFirstArc) add_word(word, moves);  // an arc to nowhere: refused, or run
+      // To nowhere: controls refuse an arc, or run it, and refuse a cut before the first feed.
+      constexpr Code kLine = 10;
+      if (!moves && (code > kLine || (code == kLine && !state_after().feed))) {
+        add_word(word, moves);
+      }
       return;
     }
     Code& set = set_by_word_[static_cast<std::size_t>(group)];
@@ -335,12 +338,18 @@ class Lister {
     return text;
   }
 
-  // An N behind other words is no block number on all controls.
+  // An N behind other words or a comment is no block number on all controls, nor is N-1.
   [[nodiscard]] bool is_block_number(const Block& block, const Word& word) const {
-    const auto stands_before = [&](const Word& other) {
+    const auto stands_before = [&](const auto& other) {
       return other.span.begin >= block.span.begin && other.span.begin < word.span.begin;
     };
-    return word.letter == 'N' && std::ranges::none_of(program_.words_of(block), stands_before);
+    return word.letter == 'N' && is_unsigned(program_.source.text(word.span)) &&
+           std::ranges::none_of(program_.words_of(block), stands_before) &&
+           std::ranges::none_of(program_.comments_of(block), stands_before);
+  }
+
+  static bool is_unsigned(std::string_view number) {
+    return number.find_first_of("+-") == std::string_view::npos;
   }
 
   // Controls number the blocks of Klartext anew, so the number is left out there. A centre that
@@ -365,7 +374,8 @@ class Lister {
 
   void list_active_comments(const Block& block) {
     for (const gcode::Comment& comment : program_.comments_of(block)) {
-      if (comment.kind == gcode::CommentKind::kActive) {
+      if (comment.kind == gcode::CommentKind::kActive ||
+          comment.kind == gcode::CommentKind::kUncertain) {
         add_text(std::string(program_.source.text(comment.span)));
       }
     }

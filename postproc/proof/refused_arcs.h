@@ -1,25 +1,21 @@
-// What the target would not run of the written text: its rules for arcs, asked of the arcs as the
-// text says them, when it is read again.
+// What the target would not run of the written text: its rules for arcs and lines, asked of the
+// text when it is read again. Blocks of the old program are its own affair: they are copied.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "gcode/control/dialect.h"
-#include "postproc/proof/verification.h"
+#include "postproc/proof/event_violations.h"
+#include "postproc/proof/program_events.h"
+#include "postproc/proof/section_comparison.h"
 
 namespace batten::postproc {
 
-// The line of the old program that a block of the new one stands for.
-using OldLine = std::function<std::uint32_t(std::uint32_t block, const Stretch& stretch)>;
-
-// A breach for each arc of a stretch that was compared which the target refuses (gcode/dialects/
-// arc_rules.h). Arcs of the old program are its own affair: they are copied.
-[[nodiscard]] std::vector<Violation> refused_arcs(const ReadProgram& before,
-                                                  const ReadProgram& after,
-                                                  const std::vector<Stretch>& stretches,
-                                                  const gcode::Dialect& target,
-                                                  const OldLine& old_line);
+// A violation for each arc of a stretch that was compared which the target refuses
+// (gcode/controls/arc_rules.h), and for each line that is longer than the target reads.
+[[nodiscard]] std::vector<Violation> refused_by_target(const ReadProgram& before,
+                                                       const ReadProgram& after,
+                                                       const std::vector<Stretch>& stretches,
+                                                       const gcode::Dialect& target);
 
 }  // namespace batten::postproc

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "gcode/control/dialect.h"
 #include "geometry/basic/point.h"
 #include "geometry/basic/tolerance_kind.h"
 #include "geometry/distance/path_distance.h"
@@ -20,11 +21,13 @@ struct Promise {
   geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
   // Where the new path may be: on the other side it may be by kOverSide of the tolerance.
   geometry::Side side = geometry::Side::kBoth;
+  // That has to take what is new (postproc/proof/refused_arcs.h); nullptr: nobody is asked.
+  const gcode::Dialect* target = nullptr;
 
   // The strict reading, when nothing else is said.
   Promise(double tolerance, geometry::ToleranceKind reading = geometry::ToleranceKind::kPath,
-          geometry::Side allowed = geometry::Side::kBoth)
-      : tolerance_mm(tolerance), kind(reading), side(allowed) {}
+          geometry::Side allowed = geometry::Side::kBoth, const gcode::Dialect* control = nullptr)
+      : tolerance_mm(tolerance), kind(reading), side(allowed), target(control) {}
 };
 
 // Printing rounds a place on the path itself to either side of it.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "postproc/proof/common_events.h"
 #include "postproc/proof/event_alignment.h"
 #include "postproc/proof/event_violations.h"
+#include "postproc/proof/refused_arcs.h"
 #include "postproc/proof/section_comparison.h"
 #include "postproc/proof/state_difference.h"
 #include "postproc/system/parallel_for.h"
@@ -318,7 +320,12 @@ Verification verify_in_parallel(const ReadProgram& before, const ReadProgram& af
     throw std::invalid_argument(fmt::format(
         "verify: tolerance {} mm, expected a finite number above 0", promise.tolerance_mm));
   }
-  return Verifier(before, after, promise, threads).run();
+  Verification found = Verifier(before, after, promise, threads).run();
+  if (promise.target != nullptr) {
+    std::ranges::move(refused_by_target(before, after, found.stretches, *promise.target),
+                      std::back_inserter(found.violations));
+  }
+  return found;
 }
 
 }  // namespace batten::postproc

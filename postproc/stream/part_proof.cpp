@@ -12,7 +12,6 @@
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
 #include "gcode/state/reason.h"
-#include "postproc/proof/refused_arcs.h"
 #include "postproc/stream/added_lines.h"
 
 namespace batten::postproc {
@@ -112,10 +111,11 @@ class Prover {
       before.before = part_.window->old_events;
       after.before = part_.window->new_text.events;
     }
-    const Promise promise(options_.tolerance_mm, options_.tolerance_kind, options_.side);
+    const Promise promise(options_.tolerance_mm, options_.tolerance_kind, options_.side,
+                          options_.target);
     round.verification = verify_in_parallel(before, after, promise, options_.threads);
     add_violations(added, after, round.verification);
-    add_refused_arcs(before, after, assembled.begins, round.verification);
+    blame_refused(program, assembled.begins, round.verification);
     round.added_lines = added.lines;
     round.blocks = program.blocks.size();
     round.proved = round.verification.proved();
@@ -129,20 +129,19 @@ class Prover {
     return round;
   }
 
-  // That the target takes each new arc is asked of the text, too, once it is known what is new.
-  void add_refused_arcs(const ReadProgram& before, const ReadProgram& after,
-                        const std::vector<std::size_t>& begins, Verification& verification) const {
-    const OldLine old_line = [&](std::uint32_t block, const Stretch& stretch) {
-      // Lines of a profile stand between the sections: nearly is near enough to find the run.
-      if (!additions_.words.empty()) return stretch.old_last_line;
-      const auto next =
-          std::ranges::upper_bound(begins, std::size_t{after.program->blocks[block].span.begin});
+  // What the target refuses is new text: it belongs to the run that it was written for. Lines of a
+  // profile stand between the sections: nearly is near enough to find the run.
+  void blame_refused(const gcode::Program& written, const std::vector<std::size_t>& begins,
+                     Verification& verification) const {
+    if (!additions_.words.empty()) return;
+    for (Violation& violation : verification.violations) {
+      if (violation.kind != ViolationKind::kTarget) continue;
+      const auto block =
+          std::ranges::lower_bound(written.blocks, violation.new_line, {}, &gcode::Block::line);
+      const auto next = std::ranges::upper_bound(begins, std::size_t{block->span.begin});
       const auto section = static_cast<std::size_t>(next - begins.begin()) - 1;
-      return part_.program.blocks[runs_.sections[section].first_block].line;
-    };
-    std::vector<Violation> refused =
-        refused_arcs(before, after, verification.stretches, *options_.target, old_line);
-    std::ranges::move(refused, std::back_inserter(verification.violations));
+      violation.old_line = part_.program.blocks[runs_.sections[section].first_block].line;
+    }
   }
 
   // Where the sections that begin at cuts begin in the new text. The proof does not rest on it: its

@@ -44,7 +44,10 @@ INSTANTIATE_TEST_SUITE_P(
         SpellingCase{"FixedDecimalsDropped", "G1 X10.000 Y5.250\n", "G1 X10 Y5.25\n", 0},
         SpellingCase{"CurveOfWholeNumbers", "G1 X10\nX20\n", "G1 X10.25\nX20\n", 0},
         SpellingCase{"Zero", "G1 X10. Y0.\n", "G1 X10. Y0\n", 0},
-        SpellingCase{"Feed", "G1 X10. F100.\n", "G1 X10. F100\n", 0},
+        SpellingCase{"Feed", "G1 X10. F100.\n", "G1 X10. F100\n", 1},
+        SpellingCase{"FeedWithNewPoint", "G1 X10. F100\n", "G1 X10. F100.\n", 1},
+        SpellingCase{"FeedsWithoutPoint", "G1 X10. F100\n", "G1 X10. F50\n", 0},
+        SpellingCase{"FixedDecimalsOfFeed", "G1 X10. F100.00\n", "G1 X10. F100\n", 0},
         SpellingCase{"Count", "G1 X10.\nG81 X5. L3\n", "G1 X10.\nG81 X5. L3 P1\n", 0}),
     [](const auto& test) { return test.param.name; });
 

@@ -19,8 +19,9 @@ std::vector<Violation> breaches_of(const std::string& before, const std::string&
   const tests::Interpreted new_read(kBegin + after);
   const ReadProgram a{&old_read.program, &old_read.read};
   const ReadProgram b{&new_read.program, &new_read.read};
-  return refused_arcs(a, b, verify(a, b, 1.0).stretches, *gcode::find_dialect("linuxcnc"),
-                      [](std::uint32_t, const Stretch& stretch) { return stretch.old_last_line; });
+  const Promise promise(1.0, geometry::ToleranceKind::kPath, geometry::Side::kBoth,
+                        gcode::find_dialect("linuxcnc"));
+  return verify(a, b, promise).violations;
 }
 
 TEST(RefusedArcs, AreFoundInTheTextByTheTargetsLeastRadius) {
@@ -41,6 +42,23 @@ TEST(RefusedArcs, AreNoneThatTheProgramHadItself) {
                         "G1 X0.3 Y0.01\nX0.5 Y0\n" + arc + "G1 X0.8 Y0.01\nX1 Y0\n")
                 .size(),
             0U);
+}
+
+// LinuxCNC reads 252 bytes, comments and blanks among them.
+TEST(RefusedLines, AreNewOnesThatAreTooLong) {
+  const std::string line = "G1 X1\n";
+  for (const std::string longer :
+       {"G1 X1 ;" + std::string(260, 'a') + "\n", "G1 X1\n(" + std::string(260, 'a') + ")\n",
+        std::string(260, ' ') + "G1 X1\n"}) {
+    const auto found = breaches_of(line, longer);
+    ASSERT_EQ(found.size(), 1U) << longer;
+    EXPECT_EQ(found[0].id, "line-refused");
+    EXPECT_EQ(found[0].kind, ViolationKind::kTarget);
+    EXPECT_GE(found[0].new_line, 4U);
+    EXPECT_TRUE(breaches_of(longer, longer).empty());
+    EXPECT_TRUE(breaches_of(longer + "G1 X2\n", "G1 X1\nG1 X1.5\nG1 X2\n").empty());
+  }
+  EXPECT_TRUE(breaches_of(line, "G1 X1 ;" + std::string(200, 'a') + "\n").empty());
 }
 
 }  // namespace
