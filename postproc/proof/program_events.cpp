@@ -167,6 +167,8 @@ class Lister {
       event.motion = meaning.motion;
     } else if (has_length(motion.piece)) {
       add_cut(meaning);
+    } else if (!state_after().feed) {
+      add_event(EventKind::kWord).text = "cut to nowhere before the first feed";  // refused, or not
     }
     if (acts_with_motion_) {
       // Controls differ in whether such a word acts before or after the motion of its block:

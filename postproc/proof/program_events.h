@@ -101,7 +101,7 @@ struct ProgramEvents {
 //
 // No events are: comments that do not act, N words before the others that nothing refers to, F
 // where the state after its block has it (state_difference compares it where it counts), motion
-// words but a G2 or G3 that goes nowhere, or a G1 before the first feed, plane and arc distance words (they only say how arcs are
+// words but a G2 or G3 that goes nowhere, or a cut to nowhere before the first feed, plane and arc distance words (they only say how arcs are
 // written), and words of other modal groups and S that repeat what a word has set before, unless
 // they do more than that: G43, G54, G64 without its P.
 //

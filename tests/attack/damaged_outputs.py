@@ -297,7 +297,7 @@ def moves_of(commands):
             for point in arc_points(command, plane, place):
                 moves.append((False, feed, place, point))
                 place = point
-        elif name not in ("MESSAGE", "COMMENT"):
+        elif name not in ("MESSAGE", "COMMENT") and others[-1:] != [command]:
             others.append(command)
     return moves, others
 
@@ -363,16 +363,17 @@ PLAIN = re.compile(r"^(N\d+|G0?[0123]|G1[789]|[XYZIJK][-+]?[\d.,]+|R[-+]?[\d.]+|
 
 def acting_words(path):
     """Every other word; an F at the next block that goes somewhere, where it is another one."""
-    words, place, feed, last_feed = [], {}, None, None
+    words, place, feed, last_feed, distance = [], {}, None, None, None
     for line in path.read_text("latin1").upper().split("\n"):
         line = re.sub(r"\([^()]*\)|;.*", "", line)
         line = re.sub(r"(?<=[\d.])(?=[A-Z])", " ", line)
         for word in line.split():
             if word.startswith("F") and word[1:2].isdigit():
                 feed = float(word[1:].rstrip("."))
-            elif not PLAIN.match(word):
+            elif not PLAIN.match(word) and word != distance and words[-1:] != [word]:
                 words.append(word)
-        moved = dict(re.findall(r"\b([XYZ])([-+]?[\d.]+)", line))
+            distance = word if word in ("G90", "G91") else distance
+        moved = {} if line.split()[:1] == ["CC"] else dict(re.findall(r"\b([XYZ])([-+]?[\d.]+)", line))
         moved = {axis: float(number) for axis, number in moved.items() if number.strip("+-.")}
         if any(place.get(axis) != number for axis, number in moved.items()) and feed != last_feed:
             last_feed = feed

@@ -7,6 +7,7 @@
 
 #include "gcode/control/dialect.h"
 #include "gcode/controls/built_in.h"
+#include "postproc/proof/verification.h"
 #include "tests/support/interpreted.h"
 
 namespace batten::postproc {
@@ -47,7 +48,7 @@ TEST(RefusedArcs, AreNoneThatTheProgramHadItself) {
 // LinuxCNC reads 252 bytes, comments and blanks among them.
 TEST(RefusedLines, AreNewOnesThatAreTooLong) {
   const std::string line = "G1 X1\n";
-  for (const std::string longer :
+  for (const std::string& longer :
        {"G1 X1 ;" + std::string(260, 'a') + "\n", "G1 X1\n(" + std::string(260, 'a') + ")\n",
         std::string(260, ' ') + "G1 X1\n"}) {
     const auto found = breaches_of(line, longer);

@@ -337,6 +337,9 @@ TEST(Verify, WantsTheFeedAgainBehindAFeedModeThatIsSaidOnceMore) {
   const std::string said = replaced(kProgram, "X20 Y20\n", "G94\nX20 Y20 F800\n");
   EXPECT_FALSE(verify_texts(said, replaced(said, "X20 Y20 F800", "X20 Y20")).proved());
   EXPECT_TRUE(verify_texts(said, replaced(said, "X20 Y20 F800", "X20 Y20 F800.0")).proved());
+  const std::string nowhere = replaced(kProgram, "X20 Y20\n", "X20 Y20\nG94\nF800\nX20 Y20\n");
+  EXPECT_TRUE(verify_texts(nowhere, replaced(nowhere, "F800\nX20", "F800.0\nX20")).proved());
+  EXPECT_FALSE(verify_texts(nowhere, replaced(nowhere, "F800\nX20", "X20")).proved());
 }
 
 // LinuxCNC runs the two lines as one, straight to the corner on the other side.
