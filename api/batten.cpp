@@ -63,7 +63,7 @@ std::vector<Message> messages_of(const gcode::Diagnostics& found, const gcode::S
 struct Reading {
   // `language`: what a text without certain marks is read in; nothing: as `target` reads.
   Reading(std::string_view text, ProgramUnits units, gcode::SourceKind kind,
-          const gcode::Dialect* target = nullptr,
+          const gcode::Control* target = nullptr,
           const std::optional<gcode::Decimals>& decimals = std::nullopt,
           std::optional<gcode::Language> language = std::nullopt)
       : source("program", std::string(text)),
@@ -73,17 +73,17 @@ struct Reading {
             inner(units))),
         program(gcode::parse(source, how, found)),
         meaning(gcode::interpret(
-            program, {inner(units), target == nullptr ? nullptr : target->curves()}, found)) {
+            program, {inner(units), target == nullptr ? nullptr : target->curves}, found)) {
     gcode::tell_of_contradictions(program, kind, found);
   }
 
-  [[nodiscard]] static std::optional<gcode::Language> language_of(const gcode::Dialect* target) {
+  [[nodiscard]] static std::optional<gcode::Language> language_of(const gcode::Control* target) {
     if (target == nullptr) return std::nullopt;
-    return target->language();
+    return target->language;
   }
 
   [[nodiscard]] static gcode::Reading how_to_read(gcode::SourceKind kind,
-                                                  const gcode::Dialect* target,
+                                                  const gcode::Control* target,
                                                   const std::optional<gcode::Decimals>& decimals,
                                                   std::optional<gcode::Language> certain,
                                                   gcode::Units units) {
@@ -126,7 +126,7 @@ gcode::SourceKind source_kind(std::string_view name) {
 }
 
 std::optional<gcode::Decimals> declared_decimals(std::string_view text, gcode::SourceKind kind,
-                                                 const gcode::Dialect* target) {
+                                                 const gcode::Control* target) {
   std::vector<std::string> problems;
   const auto declared = postproc::read_decimals(text, problems);
   if (problems.empty()) problems = postproc::problems_of_decimals(declared, kind, target);
@@ -145,7 +145,7 @@ void choose_machine(const std::string& name, InnerOptions& all,
   std::string choice = name;
   if (choice.empty()) {
     if (all.options.target == nullptr) return;
-    choice = all.options.target->default_machine();
+    choice = all.options.target->machine;
   }
   all.own_machine = postproc::choose_machine(choice, "machine", problems);
   all.options.machine = all.own_machine.get();
@@ -155,7 +155,7 @@ InnerOptions inner(const Options& given) {
   InnerOptions all;
   std::vector<std::string> problems;
   postproc::SmoothOptions& options = all.options;
-  options.target = gcode::find_dialect(given.target);
+  options.target = gcode::find_control(given.target);
   if (options.target == nullptr) problems.push_back("target: there is no '" + given.target + "'");
   choose_machine(given.machine, all, problems);
   options.tolerance_mm = given.tolerance_mm;
@@ -185,7 +185,7 @@ std::string version() { return BATTEN_VERSION; }
 
 std::vector<std::string> target_names() {
   std::vector<std::string> names;
-  for (const gcode::Dialect* dialect : gcode::dialects()) names.emplace_back(dialect->name());
+  for (const gcode::Control& each : gcode::controls()) names.emplace_back(each.name);
   return names;
 }
 
@@ -242,7 +242,7 @@ Proof verify(std::string_view old_program, std::string_view new_program, double 
   if (!(tolerance_mm > 0) || !std::isfinite(tolerance_mm)) {
     throw std::invalid_argument("tolerance_mm: expected a finite length above 0");
   }
-  const gcode::Dialect* control = target.empty() ? nullptr : gcode::find_dialect(target);
+  const gcode::Control* control = target.empty() ? nullptr : gcode::find_control(target);
   if (!target.empty() && control == nullptr) {
     refuse({"target: there is no '" + std::string(target) + "'"});
   }
@@ -274,9 +274,9 @@ Proof verify(std::string_view old_program, std::string_view new_program, double 
 ProgramTime time(std::string_view program, const TimeOptions& options) {
   std::vector<std::string> problems;
   const auto machine = postproc::choose_machine(options.machine, "machine", problems);
-  const gcode::Dialect* target = nullptr;
+  const gcode::Control* target = nullptr;
   if (!options.target.empty()) {
-    target = gcode::find_dialect(options.target);
+    target = gcode::find_control(options.target);
     if (target == nullptr) problems.push_back("target: there is no '" + options.target + "'");
   }
   if (!problems.empty()) refuse(problems);

@@ -33,72 +33,56 @@ class WordLine {
   std::string& text_;
 };
 
-class Rs274Spelling final : public BlockSpelling {
- public:
-  bool motion_stays() const override { return true; }
-  bool centers_are_places() const override { return false; }
+std::string_view number_of(MotionMode motion) {
+  constexpr std::array<std::string_view, 4> kNumbers = {"0", "1", "2", "3"};
+  return kNumbers[static_cast<std::size_t>(motion) - static_cast<std::size_t>(MotionMode::kRapid)];
+}
 
-  void add_lines(const SpokenBlock& block, bool blanks, std::string_view line_end,
-                 std::string& text) const override {
-    WordLine line(blanks, text);
-    if (block.plane) {
-      line.add('G', *block.plane == Plane::kXY ? "17" : *block.plane == Plane::kZX ? "18" : "19");
-    }
-    if (block.motion) line.add('G', number_of(*block.motion));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!block.places[axis].empty()) line.add(kPlaceLetters[axis], block.places[axis]);
-    }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!block.centers[axis].empty()) line.add(kOffsetLetters[axis], block.centers[axis]);
-    }
-    if (!block.radius.empty()) line.add('R', block.radius);
-    if (!block.feed.empty()) line.add('F', block.feed);
+// G1 X1 Y2 F500
+void add_rs274(const SpokenBlock& block, bool blanks, std::string& text) {
+  WordLine line(blanks, text);
+  if (block.plane) {
+    line.add('G', *block.plane == Plane::kXY ? "17" : *block.plane == Plane::kZX ? "18" : "19");
+  }
+  if (block.motion) line.add('G', number_of(*block.motion));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!block.places[axis].empty()) line.add(kPlaceLetters[axis], block.places[axis]);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!block.centers[axis].empty()) line.add(kOffsetLetters[axis], block.centers[axis]);
+  }
+  if (!block.radius.empty()) line.add('R', block.radius);
+  if (!block.feed.empty()) line.add('F', block.feed);
+}
+
+// In the plane of X and Y.
+void add_klartext_center(const SpokenBlock& block, std::string& text) {
+  WordLine line(true, text);
+  line.add("CC", {});
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    line.add_signed(kPlaceLetters[axis], block.centers[axis]);
+  }
+}
+
+// L X+1 Y+2 F500; CC X+0 Y+0 and C X+1 Y+2 DR+ for arcs. Block numbers are added where the place in
+// the program is known.
+void add_klartext(const SpokenBlock& block, std::string_view line_end, std::string& text) {
+  const bool clockwise = block.motion == MotionMode::kClockwise;
+  const bool arc = clockwise || block.motion == MotionMode::kCounterclockwise;
+  const bool by_radius = arc && !block.radius.empty();
+  if (arc && !by_radius) {
+    add_klartext_center(block, text);
     text += line_end;
   }
-
- private:
-  static std::string_view number_of(MotionMode motion) {
-    constexpr std::array<std::string_view, 4> kNumbers = {"0", "1", "2", "3"};
-    return kNumbers[static_cast<std::size_t>(motion) -
-                    static_cast<std::size_t>(MotionMode::kRapid)];
+  WordLine line(true, text);
+  line.add(by_radius ? "CR" : arc ? "C" : "L", {});
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!block.places[axis].empty()) line.add_signed(kPlaceLetters[axis], block.places[axis]);
   }
-};
-
-class KlartextSpelling final : public BlockSpelling {
- public:
-  bool motion_stays() const override { return false; }
-  bool centers_are_places() const override { return true; }
-
-  void add_lines(const SpokenBlock& block, bool, std::string_view line_end,
-                 std::string& text) const override {
-    const bool clockwise = block.motion == MotionMode::kClockwise;
-    const bool arc = clockwise || block.motion == MotionMode::kCounterclockwise;
-    const bool by_radius = arc && !block.radius.empty();
-    if (arc && !by_radius) {
-      add_centre(block, text);
-      text += line_end;
-    }
-    WordLine line(true, text);
-    line.add(by_radius ? "CR" : arc ? "C" : "L", {});
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!block.places[axis].empty()) line.add_signed(kPlaceLetters[axis], block.places[axis]);
-    }
-    if (by_radius) line.add_signed('R', block.radius);
-    if (arc) line.add(clockwise ? "DR-" : "DR+", {});
-    if (!block.feed.empty()) line.add('F', block.feed);
-    text += line_end;
-  }
-
- private:
-  // In the plane of X and Y.
-  static void add_centre(const SpokenBlock& block, std::string& text) {
-    WordLine line(true, text);
-    line.add("CC", {});
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      line.add_signed(kPlaceLetters[axis], block.centers[axis]);
-    }
-  }
-};
+  if (by_radius) line.add_signed('R', block.radius);
+  if (arc) line.add(clockwise ? "DR-" : "DR+", {});
+  if (!block.feed.empty()) line.add('F', block.feed);
+}
 
 }  // namespace
 
@@ -122,21 +106,14 @@ bool SpokenBlock::has_no_numbers() const {
          std::ranges::all_of(centers, is_empty_text);
 }
 
-std::string BlockSpelling::lines(const SpokenBlock& block, bool blanks,
-                                 std::string_view line_end) const {
-  std::string text;
-  add_lines(block, blanks, line_end, text);
-  return text;
-}
-
-const BlockSpelling& rs274_spelling() {
-  static const Rs274Spelling kSpelling;
-  return kSpelling;
-}
-
-const BlockSpelling& klartext_spelling() {
-  static const KlartextSpelling kSpelling;
-  return kSpelling;
+void add_lines(const SpokenBlock& block, Language language, bool blanks, std::string_view line_end,
+               std::string& text) {
+  if (language == Language::kKlartext) {
+    add_klartext(block, line_end, text);
+  } else {
+    add_rs274(block, blanks, text);
+  }
+  text += line_end;
 }
 
 }  // namespace batten::gcode

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "gcode/controls/rs274_family.h"
+#include "gcode/curves/klartext_words.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/text/number_format.h"
 
@@ -25,9 +25,22 @@ constexpr float kGreatestMismatch = 0.5F;    // mm
 constexpr float kRelativeMismatch = 0.001F;  // of the radius at the start
 
 // Below half a degree the angle that grbl computes in single precision is mostly noise, and a
-// noisy angle of the wrong sign is a full turn. Near a full turn the same noise makes it none.
+// noisy angle of the wrong sign is a full turn. Near a full turn the same noise makes it none. On
+// FANUC and Siemens such an arc is a matter of the last digit, too.
 constexpr double kLeastSweep = 0.5 * kDegree;
 constexpr double kGreatestSweep = 350 * kDegree;
+
+// LinuxCNC refuses an arc whose radii differ by more than this (mm, measured) and by more than this
+// part of the radius; never more than the last number (mm).
+constexpr double kRadiusMismatch = 0.0283;
+constexpr double kRelativeCenterError = 1e-3;
+constexpr double kGreatestCenterError = 2.83;
+
+// It takes an arc of a smaller radius (mm, measured) for one of none.
+constexpr double kLeastRadius = 0.00127;
+
+// It reads sweeps below 1e-6 rad as a full turn. Ten times that keeps clear of rounding.
+constexpr double kLeastLinuxcncSweep = 1e-5;
 
 // TinyG: one of two thresholds around which its sources and their comments disagree; refusing by
 // the relative part alone is right in both readings.
@@ -114,60 +127,121 @@ bool is_written(const geometry::Arc& arc, double unit) {
   return true;
 }
 
-// mm
-double step_of_centers(Units units, const TargetTable& table) {
-  const int decimals = units == Units::kInch ? table.centers.inch : table.centers.mm;
-  return printed_step({.decimals = decimals}, units);
+struct EndRadii {  // mm
+  double start = 0;
+  double end = 0;
+  [[nodiscard]] double mismatch() const { return std::abs(end - start); }
+};
+
+// In double precision.
+EndRadii end_radii(const geometry::Arc& arc) {
+  const auto across = [&arc](const geometry::Point3& place) {
+    const geometry::Vector3 from_center = place - arc.center;
+    return (from_center - from_center.dot(arc.axis) * arc.axis).norm();
+  };
+  return {across(arc.start), across(arc.end)};
 }
 
-}  // namespace
-
-std::string_view arc_refusal(const Dialect& target, const geometry::Arc& printed, Units units) {
-  if (!is_written(printed, millimetres_per(units))) return "numbers greater than any control takes";
-  const EndRadii radii = end_radii(printed);
-  if (!(std::min(radii.start, radii.end) >= target.min_arc_radius() * (1 - kSameRadius))) {
-    return "arc radius below the least";
-  }
-  return target.arc_complaint(printed, units);
-}
-
-std::string_view grbl_arc_rule(const geometry::Arc& printed, Units units, const TargetTable&) {
+std::string_view sweep_complaint(const geometry::Arc& printed) {
   const double sweep = std::abs(printed.sweep);
-  if (radii_differ_in_32_bits(printed, units)) {
-    return "error 33: radii at the ends of the arc differ";
-  }
   if (sweep < kLeastSweep) return "arc of less than 0.5 degrees";
   if (sweep > kGreatestSweep) return "arc of more than 350 degrees";
   return {};
 }
 
-std::string_view tinyg_arc_rule(const geometry::Arc& printed, Units, const TargetTable&) {
-  const EndRadii radii = end_radii(printed);
-  const double sweep = std::abs(printed.sweep);
-  if (radii.mismatch() > kTinygRelative * radii.start) {
-    return "radii at the ends of the arc differ by more than 0.1 %";
-  }
-  if (sweep < kLeastSweep) return "arc of less than 0.5 degrees";
-  if (sweep > kGreatestSweep) return "arc of more than 350 degrees";
-  return {};
-}
-
-std::string_view unchecked_arc_rule(const geometry::Arc& printed, Units units,
-                                    const TargetTable& table) {
-  if (end_radii(printed).start * std::abs(printed.sweep) < kLeastLength) {
-    return "arc so short that it is not run";
-  }
-  return strictest_arc_rule(printed, units, table);
-}
-
-std::string_view strictest_arc_rule(const geometry::Arc& printed, Units units,
-                                    const TargetTable& table) {
-  const EndRadii radii = end_radii(printed);
-  if (radii.mismatch() > kStepsOfMismatch * step_of_centers(units, table)) {
+// The radii agree as well as the printed digits can say, so that no control of these digits can
+// ask for more, and the sweep is no matter of rounding.
+std::string_view strictest(const geometry::Arc& printed, Units units, const Control& control) {
+  const double step = printed_step(center_format(control, units), units);
+  if (end_radii(printed).mismatch() > kStepsOfMismatch * step) {
     return "radii at the ends of the arc differ by more than the printed digits";
   }
   if (std::abs(printed.sweep) < kLeastKnownSweep) return "arc of less than 0.1 degrees";
   return {};
+}
+
+// Marlin, Klipper, Smoothieware, RepRapFirmware turn about the centre by the angle to the end and
+// take the last chord to the end itself. The centre must not print as the start, and the arc must
+// be long enough to be run at all.
+std::string_view unchecked(const geometry::Arc& printed, Units units, const Control& control) {
+  if (end_radii(printed).start * std::abs(printed.sweep) < kLeastLength) {
+    return "arc so short that it is not run";
+  }
+  return strictest(printed, units, control);
+}
+
+std::string_view tinyg(const geometry::Arc& printed) {
+  const EndRadii radii = end_radii(printed);
+  if (radii.mismatch() > kTinygRelative * radii.start) {
+    return "radii at the ends of the arc differ by more than 0.1 %";
+  }
+  return sweep_complaint(printed);
+}
+
+std::string_view linuxcnc(const geometry::Arc& printed) {
+  const EndRadii radii = end_radii(printed);
+  const double shorter = std::min(radii.start, radii.end);
+  const double allowed =
+      std::min(std::max(kRadiusMismatch, kRelativeCenterError * shorter), kGreatestCenterError);
+  if (!(shorter > kLeastRadius)) return "arc with a radius of zero";
+  if (radii.mismatch() > allowed) return "radius at the start differs from radius at the end";
+  if (std::abs(printed.sweep) < kLeastLinuxcncSweep) {
+    return "arc so short that it is read as a full turn";
+  }
+  return {};
+}
+
+// The control lets radii differ by a parameter that its builder has set. Two steps of its own last
+// digit are what rounding alone can make.
+std::string_view two_steps(const geometry::Arc& printed, Units units, DecimalsByUnit own) {
+  const int decimals = units == Units::kInch ? own.inch : own.mm;
+  if (end_radii(printed).mismatch() > 2 * printed_step({.decimals = decimals}, units)) {
+    return "radius at the start differs from radius at the end";
+  }
+  return sweep_complaint(printed);
+}
+
+std::string_view heidenhain(const geometry::Arc& printed, Units units, const Control& control) {
+  if (std::abs(printed.axis.z()) < 0.5) return "CC and C are written in the plane of X and Y";
+  if (end_radii(printed).mismatch() > kKlartextRadiusMismatch) {
+    return "radii at the ends of the arc differ";
+  }
+  return strictest(printed, units, control);
+}
+
+std::string_view complaint(const geometry::Arc& printed, Units units, const Control& control) {
+  switch (control.arc_rule) {
+    case ArcRule::kUnchecked:
+      return unchecked(printed, units, control);
+    case ArcRule::kGrbl:
+      return radii_differ_in_32_bits(printed, units)
+                 ? "error 33: radii at the ends of the arc differ"
+                 : sweep_complaint(printed);
+    case ArcRule::kTinyg:
+      return tinyg(printed);
+    case ArcRule::kLinuxcnc:
+      return linuxcnc(printed);
+    case ArcRule::kFanuc:
+      return two_steps(printed, units, {3, 4});
+    case ArcRule::kSiemens:
+      return two_steps(printed, units, {4, 5});
+    case ArcRule::kHeidenhain:
+      return heidenhain(printed, units, control);
+    case ArcRule::kStrictest:
+      break;
+  }
+  return strictest(printed, units, control);
+}
+
+}  // namespace
+
+std::string_view arc_refusal(const Control& control, const geometry::Arc& printed, Units units) {
+  if (!is_written(printed, millimetres_per(units))) return "numbers greater than any control takes";
+  const EndRadii radii = end_radii(printed);
+  if (!(std::min(radii.start, radii.end) >= control.min_radius * (1 - kSameRadius))) {
+    return "arc radius below the least";
+  }
+  return complaint(printed, units, control);
 }
 
 }  // namespace batten::gcode

@@ -1,27 +1,28 @@
-// The dialects by family, each family in the .cpp of its name: a class where a control has ways of
-// its own, a row of a table (row_dialect.h) where values and known rules say all. To add one: a row
-// in its family, or its .cpp, a line here and its place in the list of built_in.cpp.
+// The built-in controls by family, each family in the .cpp of its name. To add one: a value in its
+// family; or a .cpp for a new family, a line here and its place in the list of built_in.cpp.
 #pragma once
 
-#include "gcode/control/dialect.h"
+#include <span>
+#include <vector>
+
+#include "gcode/control/control.h"
 
 namespace batten::gcode {
 
-[[nodiscard]] const Dialect& linuxcnc_dialect();
-[[nodiscard]] const Dialect& grbl_dialect();
-[[nodiscard]] std::span<const Dialect* const> grbl_family();              // grbl first
-[[nodiscard]] std::span<const Dialect* const> printer_family();           // Marlin ..
-[[nodiscard]] std::span<const Dialect* const> pc_family();                // Mach3 ..
-[[nodiscard]] std::span<const Dialect* const> machining_center_family();  // Haas ..
-[[nodiscard]] std::span<const Dialect* const> plc_family();               // CODESYS ..
-[[nodiscard]] std::span<const Dialect* const> fanuc_family();       // FANUC, Syntec, Mitsubishi
-[[nodiscard]] std::span<const Dialect* const> siemens_family();     // by curve words
-[[nodiscard]] std::span<const Dialect* const> heidenhain_family();  // Klartext
+[[nodiscard]] std::vector<Control> linuxcnc_family();
+[[nodiscard]] std::vector<Control> grbl_family();
+[[nodiscard]] std::vector<Control> printer_family();           // Marlin ..
+[[nodiscard]] std::vector<Control> pc_family();                // Mach3 ..
+[[nodiscard]] std::vector<Control> machining_center_family();  // Haas ..
+[[nodiscard]] std::vector<Control> fanuc_family();             // FANUC, Syntec, Mitsubishi
+[[nodiscard]] std::vector<Control> plc_family();               // CODESYS ..
+[[nodiscard]] std::vector<Control> siemens_family();           // by curve words
+[[nodiscard]] std::vector<Control> heidenhain_family();        // Klartext
 
-// All built-in dialects, in the order in which `batten targets` lists them.
-[[nodiscard]] std::span<const Dialect* const> dialects();
+// All of them, in the order in which `batten targets` lists them.
+[[nodiscard]] std::span<const Control> controls();
 
-// Nothing when there is no dialect of that name.
-[[nodiscard]] const Dialect* find_dialect(std::string_view name);
+// Nothing when there is no control of that name.
+[[nodiscard]] const Control* find_control(std::string_view name);
 
 }  // namespace batten::gcode

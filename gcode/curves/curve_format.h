@@ -1,4 +1,4 @@
-// The curve words of one control, as its dialect gives them (Dialect::curves). The text itself is
+// The curve words of one control, as its control gives them (Control::curves). The text itself is
 // made and read by the pure functions beside this file.
 #pragma once
 

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/rs274/plain_words.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/line_cursor.h"
@@ -80,13 +80,13 @@ std::optional<Language> source_language(const SourceText& source, SourceKind kin
   return std::nullopt;
 }
 
-Decimals decimals_read(SourceKind kind, const Dialect* target, Language language,
+Decimals decimals_read(SourceKind kind, const Control* target, Language language,
                        const std::optional<Decimals>& declared) {
   if (language != Language::kRs274) return {};
   if (declared) return *declared;
   const SourceFamily* family = family_of(kind);
   const bool may_imply = family != nullptr ? family->may_imply_decimals
-                                           : target != nullptr && target->may_imply_decimals();
+                                           : target != nullptr && may_imply_decimals(*target);
   return {.pointless = may_imply ? PointlessNumbers::kUndeclared : PointlessNumbers::kUnits};
 }
 
@@ -95,12 +95,12 @@ DwellForm dwells_of(SourceKind kind) {
   return family != nullptr ? family->dwells : DwellForm::kUnknown;
 }
 
-std::string_view why_not_implied(SourceKind kind, const Dialect* target) {
+std::string_view why_not_implied(SourceKind kind, const Control* target) {
   const SourceFamily* family = family_of(kind);
   if (family != nullptr && !family->may_imply_decimals) {
     return "programs for this source have no such numbers";
   }
-  if (target != nullptr && !target->may_imply_decimals()) {
+  if (target != nullptr && !may_imply_decimals(*target)) {
     return "this target takes X5 for 5 mm, and blocks are copied to it";
   }
   if (family == nullptr && target == nullptr) return "say --source fanuc or haas";

@@ -14,7 +14,7 @@
 
 namespace batten::gcode {
 
-class Dialect;
+struct Control;
 
 enum class SourceKind : std::uint8_t {
   kAuto,
@@ -54,7 +54,7 @@ struct SourceFamily {
 // What numbers without a point mean in a program: what the user says, where it is said; else
 // kUndeclared for controls that may take them for increments. Which control it is says the kind,
 // with kAuto the target. Other languages than the RS-274 family have no such controls.
-[[nodiscard]] Decimals decimals_read(SourceKind kind, const Dialect* target, Language language,
+[[nodiscard]] Decimals decimals_read(SourceKind kind, const Control* target, Language language,
                                      const std::optional<Decimals>& declared);
 
 // What G4 means in programs of this kind; not known for kAuto, whatever the target.
@@ -62,7 +62,7 @@ struct SourceFamily {
 
 // Why these controls do not take a number without a point for increments, for a user who says that
 // they do: empty where they may.
-[[nodiscard]] std::string_view why_not_implied(SourceKind kind, const Dialect* target);
+[[nodiscard]] std::string_view why_not_implied(SourceKind kind, const Control* target);
 
 // Adds an error source-contradicted for each kind of mark (gcode/state/source_marks.h) that
 // programs of the given kind do not have. None for kAuto.

@@ -68,13 +68,13 @@ struct Writer::PrintedArc {
   std::string radius;                 // empty where the centre is given
 };
 
-Writer::Writer(const Dialect& dialect, WriterState state, std::string_view line_end)
-    : dialect_(dialect),
+Writer::Writer(const Control& control, WriterState state, std::string_view line_end)
+    : control_(control),
       state_(std::move(state)),
       line_end_(line_end),
       unit_((check(state_.modal), millimetres_per(state_.modal.units))),
-      coordinates_(dialect.coordinates(state_.modal.units)),
-      feeds_(dialect.feeds(state_.modal.units)) {}
+      coordinates_(place_format(control, state_.modal.units)),
+      feeds_(feed_format(control)) {}
 
 void Writer::line_to(const Point3& end, double feed) {
   const Coordinates coordinates = print(end);
@@ -109,7 +109,7 @@ void Writer::restore(const ModalState& expected) {
   if (expected.plane != Plane::kUnknown) add_plane(expected.plane);
   const bool wants_motion = expected.motion != MotionMode::kUnknown &&
                             expected.motion != state_.modal.motion &&
-                            dialect_.spelling().motion_stays();
+                            motion_stays(control_.language);
   if (wants_motion) {
     if (expected.motion != MotionMode::kLine && expected.motion != MotionMode::kRapid) {
       throw std::invalid_argument(
@@ -119,7 +119,7 @@ void Writer::restore(const ModalState& expected) {
     add_motion(expected.motion);
   }
   if (expected.feed) add_feed(*expected.feed);
-  if (block_.says_only_feed() && dialect_.repeats_words()) {
+  if (block_.says_only_feed() && control_.repeats_words) {
     const bool rapid = expected.motion == MotionMode::kRapid;
     add_motion(rapid ? MotionMode::kRapid : MotionMode::kLine);
   }
@@ -146,10 +146,10 @@ std::optional<Writer::PrintedArc> Writer::print_arc(const geometry::Arc& arc) co
   PrintedArc printed;
   printed.plane = arc_plane(arc.axis);
   const int normal = printed.plane.normal;
-  if (!dialect_.takes_arcs_in(printed.plane.plane) || !centers_understood()) return std::nullopt;
+  if (!takes_arcs_in(control_, printed.plane.plane) || !centers_understood()) return std::nullopt;
 
   printed.end = print_arc_end(arc.end, printed.plane);
-  if (printed.end[static_cast<std::size_t>(normal)].changes && !dialect_.takes_helices()) {
+  if (printed.end[static_cast<std::size_t>(normal)].changes && !control_.helices) {
     return std::nullopt;
   }
   printed.arc.start = state_.position.mm;
@@ -160,23 +160,23 @@ std::optional<Writer::PrintedArc> Writer::print_arc(const geometry::Arc& arc) co
     return std::nullopt;
   }
   const double sweep = arc.axis[normal] > 0 ? arc.sweep : -arc.sweep;
-  if (dialect_.arc_form() == ArcForm::kCenters) {
+  if (control_.arc_form == ArcForm::kCenters) {
     print_center(arc.center, sweep, printed);
   } else if (!print_radius(arc.center, sweep, printed)) {
     return std::nullopt;
   }
   if (std::abs(printed.arc.sweep - sweep) > std::numbers::pi) return std::nullopt;
-  if (!arc_refusal(dialect_, printed.arc, state_.modal.units).empty()) return std::nullopt;
+  if (!arc_refusal(control_, printed.arc, state_.modal.units).empty()) return std::nullopt;
   return printed;
 }
 
 bool Writer::absolute_centers() const {
-  if (dialect_.spelling().centers_are_places()) return true;
-  return state_.modal.arc_distance == DistanceMode::kAbsolute && dialect_.takes_arc_distance_mode();
+  if (centers_are_places(control_.language)) return true;
+  return state_.modal.arc_distance == DistanceMode::kAbsolute && control_.arc_distance_mode;
 }
 
 bool Writer::centers_understood() const {
-  return dialect_.arc_form() == ArcForm::kRadius || absolute_centers() ||
+  return control_.arc_form == ArcForm::kRadius || absolute_centers() ||
          state_.modal.arc_distance == DistanceMode::kIncremental;
 }
 
@@ -187,8 +187,8 @@ Writer::Coordinates Writer::print_arc_end(const Point3& end, const PlaneAxes& pl
   Coordinate& first = coordinates[static_cast<std::size_t>(plane.first)];
   Coordinate& second = coordinates[static_cast<std::size_t>(plane.second)];
   const bool neither = !first.changes && !second.changes;
-  if (neither || dialect_.repeats_words()) name_again(first);
-  if (dialect_.repeats_words()) name_again(second);
+  if (neither || control_.repeats_words) name_again(first);
+  if (control_.repeats_words) name_again(second);
   return coordinates;
 }
 
@@ -205,7 +205,7 @@ void Writer::name_again(Coordinate& coordinate) const {
 // The centre in the program's units, from printed start and printed end; then the sweep.
 void Writer::print_center(const Point3& wanted, double sweep, PrintedArc& printed) const {
   const PlaneAxes& plane = printed.plane;
-  const NumberFormat format = dialect_.arc_offsets(state_.modal.units);
+  const NumberFormat format = center_format(control_, state_.modal.units);
   const PlanePoint start = in_plane(printed.arc.start, plane) / unit_;
   const PlanePoint end = in_plane(printed.arc.end, plane) / unit_;
   CenterGrid grid;
@@ -240,7 +240,7 @@ bool Writer::print_radius(const Point3& wanted, double sweep, PrintedArc& printe
   const double height = (in_plane(wanted, plane) / unit_ - middle).dot(along);
 
   printed.radius =
-      to_text(std::hypot(height, half.norm()), dialect_.arc_offsets(state_.modal.units));
+      to_text(std::hypot(height, half.norm()), center_format(control_, state_.modal.units));
   const double radius = read_number(printed.radius)->value;
   if (!(radius > half.norm())) return false;
   // The centre of a short counter-clockwise arc lies to the left of its chord.
@@ -260,7 +260,7 @@ void Writer::add_plane(Plane plane) {
 }
 
 void Writer::add_motion(MotionMode motion) {
-  if (motion == state_.modal.motion && !dialect_.repeats_words()) return;
+  if (motion == state_.modal.motion && !control_.repeats_words) return;
   block_.motion = motion;
   state_.modal.motion = motion;
 }
@@ -289,7 +289,7 @@ void Writer::add_feed(double feed) {
 }
 
 void Writer::end_block() {
-  dialect_.spelling().add_lines(block_, dialect_.blanks_between_words(), line_end_, text_);
+  add_lines(block_, control_.language, control_.blanks, line_end_, text_);
   block_.clear();
 }
 
@@ -324,10 +324,10 @@ struct ReadAgain {
 
 // Nothing when the control reads the lines as anything else than curves that follow each other.
 std::optional<ReadAgain> read_again(const std::string& text, std::size_t lines,
-                                    const Dialect& dialect, const CurveStart& start) {
+                                    const Control& control, const CurveStart& start) {
   Diagnostics ignored;
-  const CurveFormat& format = *dialect.curves();
-  const Program program = parse(SourceText("", text), dialect.language(), ignored);
+  const CurveFormat& format = *control.curves;
+  const Program program = parse(SourceText("", text), control.language, ignored);
   ReadAgain read{start.position, {}};
   for (std::uint32_t block = 0; block < lines;) {
     const CurveResult result = format.read(program, block, {read.end, start.units});
@@ -343,7 +343,7 @@ std::optional<ReadAgain> read_again(const std::string& text, std::size_t lines,
 }  // namespace
 
 bool Writer::curve_to(const geometry::BsplineCurve& curve, double feed, int last_decimals) {
-  const CurveFormat* format = dialect_.curves();
+  const CurveFormat* format = control_.curves;
   if (format == nullptr || !format->complaint(state_.modal).empty()) return false;
   CurveSetting setting;
   setting.units = state_.modal.units;
@@ -356,7 +356,7 @@ bool Writer::curve_to(const geometry::BsplineCurve& curve, double feed, int last
   if (format->names_all_axes()) setting.axes = {true, true, true};
   if (!all_known(setting.axes, state_.position)) return false;
   if (!feed_is_said(feed)) setting.feed = feed;
-  setting.blanks = dialect_.blanks_between_words();
+  setting.blanks = control_.blanks;
 
   const CurveWriting written = format->write(curve, setting);
   const auto* lines = std::get_if<CurveLines>(&written);
@@ -366,7 +366,7 @@ bool Writer::curve_to(const geometry::BsplineCurve& curve, double feed, int last
     text += line;
     text += line_end_;
   }
-  const auto read = read_again(text, lines->size(), dialect_, {state_.position, setting.units});
+  const auto read = read_again(text, lines->size(), control_, {state_.position, setting.units});
   if (!read) return false;
   text_ += text;
   state_.position = read->end;
@@ -376,7 +376,7 @@ bool Writer::curve_to(const geometry::BsplineCurve& curve, double feed, int last
 }
 
 void Writer::end_curve() {
-  if (state_.modal.motion != MotionMode::kOther || !dialect_.spelling().motion_stays()) return;
+  if (state_.modal.motion != MotionMode::kOther || !motion_stays(control_.language)) return;
   add_motion(MotionMode::kLine);
   end_block();
 }

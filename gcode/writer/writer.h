@@ -1,5 +1,5 @@
-// Writes blocks for one dialect: words that change nothing are left out, numbers are
-// rounded to the dialect's decimals, and the rounded place is the writer's place.
+// Writes blocks for one control: words that change nothing are left out, numbers are
+// rounded to the control's decimals, and the rounded place is the writer's place.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "gcode/control/block_spelling.h"
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/state/modal_state.h"
 #include "geometry/path/bspline_curve.h"
 #include "geometry/path/path.h"
@@ -24,9 +24,9 @@ class Writer {
  public:
   // `line_end` as the source has it: "\n" or "\r\n". Throws std::invalid_argument unless the
   // state has known units, absolute distances and feeds per minute.
-  Writer(const Dialect& dialect, WriterState state, std::string_view line_end);
+  Writer(const Control& control, WriterState state, std::string_view line_end);
 
-  // From here on coordinates are printed so, rather than as Dialect::coordinates says.
+  // From here on coordinates are printed so, rather than as place_format says.
   void use_coordinates(const NumberFormat& format) { coordinates_ = format; }
 
   // From here on feeds are whole numbers without a decimal point.
@@ -41,17 +41,17 @@ class Writer {
   // An arc in the plane across `arc.axis` (which must be an axis of the coordinate system;
   // throws std::invalid_argument otherwise). Starts at the writer's place; arc.start is not
   // looked at. Selects the plane when it is not active. The printed centre offsets, or the radius
-  // where the dialect gives that, are computed from the printed start and end, so that both radii
+  // where the control gives that, are computed from the printed start and end, so that both radii
   // agree to within rounding. Returns false
-  // and writes nothing when the dialect's rules refuse the printed arc, when rounding would make
+  // and writes nothing when the control's rules refuse the printed arc, when rounding would make
   // it a full turn or none, or when it is not known how centres are to be given (G90.1, G91.1).
   [[nodiscard]] bool arc_to(const geometry::Arc& arc, double feed);
 
-  // A clamped cubic curve in the dialect's own words (Dialect::curves), from the writer's place,
+  // A clamped cubic curve in the control's own words (Control::curves), from the writer's place,
   // which is the curve's first point but for rounding. Axes that it does not move are not named,
   // unless the control wants them. `last_decimals`: the last place may have so many, where they are
   // more than coordinates have. What is written is read again: the writer's place is where the
-  // printed curve ends. Returns false and writes nothing where the dialect has no curves, refuses
+  // printed curve ends. Returns false and writes nothing where the control has no curves, refuses
   // this one or the state, or does not read what it wrote.
   //
   // Afterwards the motion mode is MotionMode::kOther: what follows says its motion word.
@@ -106,7 +106,7 @@ class Writer {
   [[nodiscard]] bool feed_is_said(double feed) const;
   void end_block();
 
-  const Dialect& dialect_;
+  const Control& control_;
   WriterState state_;
   std::string line_end_;
   double unit_;  // mm

@@ -69,13 +69,13 @@ LogLevel read_log_level(const Given& given, Problems& problems) {
 
 std::vector<std::string_view> target_names() {
   std::vector<std::string_view> names;
-  for (const gcode::Dialect* dialect : gcode::dialects()) names.push_back(dialect->name());
+  for (const gcode::Control& control : gcode::controls()) names.push_back(control.name);
   return names;
 }
 
-const gcode::Dialect* built_in_target(std::string_view option, const std::string& name,
+const gcode::Control* built_in_target(std::string_view option, const std::string& name,
                                       Problems& problems) {
-  const gcode::Dialect* target = gcode::find_dialect(name);
+  const gcode::Control* target = gcode::find_control(name);
   if (target == nullptr) problems.push_back(unknown_name(option, name, target_names()));
   return target;
 }

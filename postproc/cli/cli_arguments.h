@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/reading/source_kind.h"
 #include "gcode/state/modal_state.h"
 #include "postproc/cli/cli_given.h"
@@ -47,7 +47,7 @@ void read_decimals_into(std::optional<gcode::Decimals>& decimals, const Given& g
 [[nodiscard]] std::vector<std::string_view> target_names();
 
 // Adds a problem where there is none of that name.
-[[nodiscard]] const gcode::Dialect* built_in_target(std::string_view option,
+[[nodiscard]] const gcode::Control* built_in_target(std::string_view option,
                                                     const std::string& name, Problems& problems);
 
 // The machine that the options of a command name; the same options for every command.
@@ -64,7 +64,7 @@ void read_decimals_into(std::optional<gcode::Decimals>& decimals, const Given& g
 // By --target NAME, --target FILE.toml, --profile FILE.toml, or --target NAME with --profile
 // FILE.toml.
 struct GivenTarget {
-  const gcode::Dialect* built_in = nullptr;      // of --target NAME
+  const gcode::Control* built_in = nullptr;      // of --target NAME
   std::shared_ptr<const TargetProfile> profile;  // of the file
   bool is_wrong = false;                         // and that has been said
 };

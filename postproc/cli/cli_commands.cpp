@@ -104,8 +104,7 @@ VerifyCommand verify_command(const Given& given, const std::vector<std::string>&
   command.target = target.built_in;
   command.profile = std::move(target.profile);
   read_tolerance_kind_into(command.tolerance_kind, given, problems);
-  const gcode::Dialect* adapted =
-      command.profile != nullptr ? command.profile->adapted.get() : nullptr;
+  const gcode::Control* adapted = command.profile != nullptr ? &command.profile->adapted : nullptr;
   std::ranges::move(problems_of_decimals(command.decimals, command.source,
                                          command.target != nullptr ? command.target : adapted),
                     std::back_inserter(problems));
@@ -323,8 +322,8 @@ TimeCommand time_command(const Given& given, const std::vector<std::string>& fil
   std::ranges::move(problems_of_decimals(command.decimals, command.source, command.target),
                     std::back_inserter(problems));
   const std::size_t problems_before = problems.size();
-  command.machine = machine_given(
-      given, command.target == nullptr ? "" : command.target->default_machine(), problems);
+  command.machine =
+      machine_given(given, command.target == nullptr ? "" : command.target->machine, problems);
   if (command.machine == nullptr && problems.size() == problems_before) {
     problems.emplace_back(
         "--machine: no machine given; `batten machines` lists them, a file NAME.toml is your own");

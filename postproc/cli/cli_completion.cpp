@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "gcode/state/reason.h"
 #include "postproc/cli/explain.h"
@@ -128,7 +128,7 @@ std::string zsh_command(const CommandRow& command) {
 std::vector<std::string_view> names_for(const OptionRow& row) {
   std::vector<std::string_view> names = names_in(row.value);
   if (row.name == "target") {
-    for (const gcode::Dialect* dialect : gcode::dialects()) names.push_back(dialect->name());
+    for (const gcode::Control& control : gcode::controls()) names.push_back(control.name);
   } else if (row.name == "machine") {
     for (const Machine& machine : built_in_machines()) names.emplace_back(machine.name);
   } else if (row.name == "allow") {

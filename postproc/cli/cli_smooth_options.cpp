@@ -17,7 +17,7 @@ void read_target(const Given& given, SmoothCommand& command, Problems& problems)
   command.options.target = target.built_in;
   if (target.profile != nullptr) {
     command.profile = std::move(target.profile);
-    command.options.target = command.profile->adapted.get();
+    command.options.target = &command.profile->adapted;
     command.options.words = command.profile->words;
     command.options.profile = command.profile->file;
   }
@@ -31,9 +31,8 @@ void read_target(const Given& given, SmoothCommand& command, Problems& problems)
 }
 
 void read_machine(const Given& given, SmoothCommand& command, Problems& problems) {
-  const gcode::Dialect* target = command.options.target;
-  command.own_machine =
-      machine_given(given, target == nullptr ? "" : target->default_machine(), problems);
+  const gcode::Control* target = command.options.target;
+  command.own_machine = machine_given(given, target == nullptr ? "" : target->machine, problems);
   command.options.machine = command.own_machine.get();
 }
 

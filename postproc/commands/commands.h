@@ -47,7 +47,7 @@ struct VerifyCommand {
   gcode::SourceKind source = gcode::SourceKind::kAuto;
   std::optional<gcode::Decimals> decimals;       // as SmoothOptions::decimals
   std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
-  const gcode::Dialect* target = nullptr;        // whose curves are read; nullptr: none are
+  const gcode::Control* target = nullptr;        // whose curves are read; nullptr: none are
   std::vector<std::string> allowed;              // of these only `subprogram` changes what is read
   std::string json_file;
   LogLevel log_level = LogLevel::kInfo;
@@ -70,7 +70,7 @@ struct InspectCommand {
 struct TimeCommand {
   std::string input;
   std::shared_ptr<const Machine> machine;  // required
-  const gcode::Dialect* target = nullptr;  // not given: the dwell units of the machine's control
+  const gcode::Control* target = nullptr;  // not given: the dwell units of the machine's control
   gcode::Units units = gcode::Units::kUnknown;
   gcode::SourceKind source = gcode::SourceKind::kAuto;
   std::optional<gcode::Decimals> decimals;  // as SmoothOptions::decimals
@@ -111,7 +111,7 @@ struct FreecadCommand {
 enum class BuiltIn { kTargets, kMethods };
 struct ListCommand {
   BuiltIn what = BuiltIn::kTargets;
-  const gcode::Dialect* show = nullptr;  // kTargets: this one's profile instead of the table
+  const gcode::Control* show = nullptr;  // kTargets: this one's profile instead of the table
   std::string json_file;
   bool force = false;
 };

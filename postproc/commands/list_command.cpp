@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
@@ -17,10 +17,10 @@ struct Listing {
   Json json = Json::array();
 };
 
-std::string planes_of(const gcode::Dialect& target) {
+std::string planes_of(const gcode::Control& target) {
   std::string planes;
   const auto add = [&](gcode::Plane plane, std::string_view name) {
-    if (!target.takes_arcs_in(plane)) return;
+    if (!takes_arcs_in(target, plane)) return;
     if (!planes.empty()) planes += " ";
     planes += name;
   };
@@ -34,21 +34,20 @@ Listing list_targets() {
   Listing listing;
   listing.text = fmt::format("{:<15} {:>8} {:>8} {:>5}  {:<12} {:<8} {:<12} {}\n", "target",
                              "mm places", "inch pl.", "line", "arcs in", "helices", "machine", "");
-  for (const gcode::Dialect* target : gcode::dialects()) {
-    const int mm = target->coordinates(gcode::Units::kMillimetre).decimals;
-    const int inch = target->coordinates(gcode::Units::kInch).decimals;
-    listing.text += fmt::format("{:<15} {:>8} {:>8} {:>5}  {:<12} {:<8} {:<12} {}\n",
-                                target->name(), mm, inch, target->max_line_length(),
-                                planes_of(*target), target->takes_helices() ? "yes" : "no",
-                                target->default_machine(), target->description());
-    listing.json.push_back({{"name", target->name()},
-                            {"description", target->description()},
+  for (const gcode::Control& target : gcode::controls()) {
+    const int mm = place_format(target, gcode::Units::kMillimetre).decimals;
+    const int inch = place_format(target, gcode::Units::kInch).decimals;
+    listing.text += fmt::format("{:<15} {:>8} {:>8} {:>5}  {:<12} {:<8} {:<12} {}\n", target.name,
+                                mm, inch, target.max_line_length, planes_of(target),
+                                target.helices ? "yes" : "no", target.machine, target.description);
+    listing.json.push_back({{"name", target.name},
+                            {"description", target.description},
                             {"decimals_mm", mm},
                             {"decimals_inch", inch},
-                            {"max_line_length", target->max_line_length()},
-                            {"arcs_in", planes_of(*target)},
-                            {"helices", target->takes_helices()},
-                            {"default_machine", target->default_machine()}});
+                            {"max_line_length", target.max_line_length},
+                            {"arcs_in", planes_of(target)},
+                            {"helices", target.helices},
+                            {"default_machine", target.machine}});
   }
   return listing;
 }

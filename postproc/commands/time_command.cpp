@@ -60,7 +60,7 @@ int run(const TimeCommand& command) {
   if (!source) return static_cast<int>(ExitCode::kFileError);
 
   gcode::Diagnostics found;
-  const auto of_target = command.target != nullptr ? std::optional(command.target->language())
+  const auto of_target = command.target != nullptr ? std::optional(command.target->language)
                                                    : std::optional<gcode::Language>();
   const auto language = gcode::source_language(*source, command.source, of_target, found);
   if (!language) {
@@ -71,7 +71,7 @@ int run(const TimeCommand& command) {
       gcode::decimals_read(command.source, command.target, *language, command.decimals);
   const gcode::Program program = gcode::parse(*source, {*language, decimals, command.units}, found);
   gcode::tell_of_contradictions(program, command.source, found);
-  const gcode::CurveFormat* curves = command.target != nullptr ? command.target->curves() : nullptr;
+  const gcode::CurveFormat* curves = command.target != nullptr ? command.target->curves : nullptr;
   const gcode::Interpretation meaning =
       gcode::interpret(program, {.units = command.units, .curves = curves}, found);
   if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);

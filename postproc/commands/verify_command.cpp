@@ -36,14 +36,14 @@ struct Read {
 };
 
 // The one that is named, or that the profile adapts.
-const gcode::Dialect* target_of(const VerifyCommand& command) {
+const gcode::Control* target_of(const VerifyCommand& command) {
   if (command.target != nullptr) return command.target;
-  return command.profile != nullptr ? command.profile->adapted.get() : nullptr;
+  return command.profile != nullptr ? &command.profile->adapted : nullptr;
 }
 
 const gcode::CurveFormat* curves_of(const VerifyCommand& command) {
-  const gcode::Dialect* target = target_of(command);
-  return target != nullptr ? target->curves() : nullptr;
+  const gcode::Control* target = target_of(command);
+  return target != nullptr ? target->curves : nullptr;
 }
 
 Promise promise_of(const VerifyCommand& command) {
@@ -51,8 +51,8 @@ Promise promise_of(const VerifyCommand& command) {
 }
 
 std::optional<gcode::Language> language_of_target(const VerifyCommand& command) {
-  const gcode::Dialect* target = target_of(command);
-  return target != nullptr ? std::optional(target->language()) : std::nullopt;
+  const gcode::Control* target = target_of(command);
+  return target != nullptr ? std::optional(target->language) : std::nullopt;
 }
 
 // The language of the old program, where it was converted: the target reads another one, and the
@@ -235,7 +235,7 @@ AddedLines without_added_lines(const VerifyCommand& command, const Read& before,
       if (units == gcode::Units::kUnknown) units = state.units;
     }
     words =
-        filled_in(command.profile->words, command.tolerance_mm, units, *command.profile->adapted);
+        filled_in(command.profile->words, command.tolerance_mm, units, command.profile->adapted);
   }
   return take_added_lines(before.program, new_source.text(), words);
 }
@@ -346,7 +346,7 @@ int run(const VerifyCommand& command) {
   const Read after = read(gcode::SourceText(new_source->name(), added.text), command,
                           foreign ? gcode::SourceKind::kAuto : command.source,
                           foreign ? *language_of_target(command) : before.program.language,
-                          foreign ? target_of(command)->dwell_form() : before.program.dwells);
+                          foreign ? target_of(command)->dwell_form : before.program.dwells);
   if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
   if (!is_understood(before, command.log_level)) {
     say("the old program is not understood, so nothing can be proved about the new one");

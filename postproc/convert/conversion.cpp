@@ -45,7 +45,7 @@ gcode::Plane plane_of(int g_code) {
 
 class BlockCheck {
  public:
-  BlockCheck(const gcode::Program& program, const gcode::Dialect& target)
+  BlockCheck(const gcode::Program& program, const gcode::Control& target)
       : program_(program), target_(target) {}
 
   std::optional<Obstacle> obstacle_in(const gcode::Block& block) const {
@@ -55,9 +55,9 @@ class BlockCheck {
     if (block.block_delete)
       return Obstacle{block.span, "is left out by some controls, run by others"};
     if (block.has_checksum) return Obstacle{block.span, "has a check sum"};
-    if (target_.line_length(program_.source.text(block.span)) > target_.max_line_length()) {
+    if (line_length(target_, program_.source.text(block.span)) > target_.max_line_length) {
       return Obstacle{block.span,
-                      fmt::format("is longer than {} characters", target_.max_line_length())};
+                      fmt::format("is longer than {} characters", target_.max_line_length)};
     }
     const std::span<const gcode::Word> words = program_.words_of(block);
     if (const gcode::Word* dwell = coded_word(words, 'G', word_code::kDwell)) {
@@ -67,7 +67,7 @@ class BlockCheck {
     for (const gcode::Word& word : words) {
       if (std::string why = why_not(word, words); !why.empty()) return Obstacle{word.span, why};
     }
-    if (target_.repeats_words() && moves_without_saying_how(words)) {
+    if (target_.repeats_words && moves_without_saying_how(words)) {
       return Obstacle{block.span,
                       "names no G0, G1, G2 or G3, which the target needs in every block"};
     }
@@ -82,16 +82,16 @@ class BlockCheck {
   std::string why_not_dwell(std::span<const gcode::Word> words) const {
     const auto ms = gcode::dwell_ms(words, program_.dwells);
     if (!ms) return std::string(why_no_certain_dwell(words, program_.dwells));
-    const auto there = target_.dwell_form() == gcode::DwellForm::kUnknown
+    const auto there = target_.dwell_form == gcode::DwellForm::kUnknown
                            ? std::nullopt
-                           : gcode::dwell_ms(words, target_.dwell_form());
+                           : gcode::dwell_ms(words, target_.dwell_form);
     if (!there) return "waits for a time that is not certain there";
     return there == ms ? "" : "waits for another time there";
   }
 
   std::string why_not(const gcode::Word& word, std::span<const gcode::Word> words) const {
     if (!word.is_number) return "has no plain number";
-    if (target_.cannot_say(word.letter, tenths_of(word))) return "is not taken there";
+    if (refuses_word(target_, word.letter, tenths_of(word))) return "is not taken there";
     switch (word.letter) {
       case 'G':
         return why_not_g(tenths_of(word));
@@ -102,7 +102,7 @@ class BlockCheck {
       case 'I':
       case 'J':
       case 'K':
-        return target_.arc_form() == gcode::ArcForm::kCenters ? "" : "may be no offset there";
+        return target_.arc_form == gcode::ArcForm::kCenters ? "" : "may be no offset there";
       default:
         return kCommonLetters.find(word.letter) != std::string_view::npos
                    ? ""
@@ -111,12 +111,12 @@ class BlockCheck {
   }
 
   std::string why_not_g(int code) const {
-    if (const std::string_view meaning = target_.other_meaning(code); !meaning.empty()) {
+    if (const std::string_view meaning = other_meaning(target_, code); !meaning.empty()) {
       return std::string(meaning);
     }
     if (!is_in(kCommonG, code)) return "may mean something else there";
     const gcode::Plane plane = plane_of(code);
-    const bool wrong_plane = plane != gcode::Plane::kUnknown && !target_.takes_arcs_in(plane);
+    const bool wrong_plane = plane != gcode::Plane::kUnknown && !takes_arcs_in(target_, plane);
     return wrong_plane ? "is no plane of arcs there" : "";
   }
 
@@ -142,13 +142,13 @@ class BlockCheck {
   }
 
   bool can_say(const gcode::Comment& comment) const {
-    const std::string said = target_.comment("x");
+    const std::string said = comment_line(target_, "x");
     return comment.kind != gcode::CommentKind::kActive && !said.empty() &&
            program_.source.text(comment.span).front() == said.front();
   }
 
   const gcode::Program& program_;
-  const gcode::Dialect& target_;
+  const gcode::Control& target_;
 };
 
 // A dwell that waits for another time on the target.
@@ -159,8 +159,8 @@ struct OtherDwell {
 };
 
 // The first one. What G4 P means is known only where the user has named the source.
-std::optional<OtherDwell> other_dwell(const gcode::Program& program, const gcode::Dialect& target) {
-  const gcode::DwellForm there = target.dwell_form();
+std::optional<OtherDwell> other_dwell(const gcode::Program& program, const gcode::Control& target) {
+  const gcode::DwellForm there = target.dwell_form;
   if (program.dwells == gcode::DwellForm::kUnknown || there == gcode::DwellForm::kUnknown ||
       program.dwells == there) {
     return std::nullopt;
@@ -200,7 +200,7 @@ std::string evidence_of(gcode::Language language, const gcode::SourceText& sourc
 std::optional<gcode::Language> language_read(const gcode::SourceText& source,
                                              const SmoothOptions& options,
                                              gcode::Diagnostics& found) {
-  const gcode::Language of_target = options.target->language();
+  const gcode::Language of_target = options.target->language;
   const auto language = gcode::source_language(source, options.source, of_target, found);
   const bool plain = language == gcode::Language::kRs274 && of_target == gcode::Language::kSiemens;
   if (!language || *language == of_target || plain) return language;
@@ -209,7 +209,7 @@ std::optional<gcode::Language> language_read(const gcode::SourceText& source,
        fmt::format("{} a program in {}; target {} reads {}, and --convert says it there "
                    "where every block can be said",
                    evidence_of(*language, source, options), gcode::describe(*language),
-                   options.target->name(), gcode::describe(of_target))});
+                   options.target->name, gcode::describe(of_target))});
   return std::nullopt;
 }
 
@@ -218,7 +218,7 @@ std::optional<gcode::Language> language_to_translate(const gcode::SourceText& so
   if (!options.convert) return std::nullopt;
   gcode::Diagnostics uncertain;
   const auto language = gcode::source_language(source, options.source, std::nullopt, uncertain);
-  return language == options.target->language() ? std::nullopt : language;
+  return language == options.target->language ? std::nullopt : language;
 }
 
 gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language) {
@@ -230,21 +230,21 @@ gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language
           .dwells = gcode::dwells_of(options.source)};
 }
 
-bool is_of_another_family(const gcode::Program& program, const gcode::Dialect& target) {
+bool is_of_another_family(const gcode::Program& program, const gcode::Control& target) {
   return other_dwell(program, target) ||
          std::ranges::any_of(gcode::source_marks(program), [&](const gcode::FoundMark& found) {
-           return (target.known_marks() & gcode::mark(found.mark)) == 0;
+           return (target.known_marks & gcode::mark(found.mark)) == 0;
          });
 }
 
-void tell_of_other_family(const gcode::Program& program, const gcode::Dialect& target,
+void tell_of_other_family(const gcode::Program& program, const gcode::Control& target,
                           gcode::Diagnostics& found) {
   for (const gcode::FoundMark& each : gcode::source_marks(program)) {
-    if ((target.known_marks() & gcode::mark(each.mark)) != 0) continue;
+    if ((target.known_marks & gcode::mark(each.mark)) != 0) continue;
     found.push_back({gcode::Severity::kError, "other-family", each.where,
                      fmt::format("{}: a program for other controls than target {}; --convert tells "
                                  "which blocks could not be said there",
-                                 gcode::describe(each.mark), target.name())});
+                                 gcode::describe(each.mark), target.name)});
   }
   if (const auto dwell = other_dwell(program, target)) {
     found.push_back(
@@ -253,11 +253,11 @@ void tell_of_other_family(const gcode::Program& program, const gcode::Dialect& t
                      "on target {}; --convert tells which blocks could not be said "
                      "there",
                      program.source.text(dwell->where), gcode::dwell_seconds(dwell->ms, false),
-                     gcode::dwell_seconds(dwell->ms_there, false), target.name())});
+                     gcode::dwell_seconds(dwell->ms_there, false), target.name)});
   }
 }
 
-void tell_what_cannot_be_said(const gcode::Program& program, const gcode::Dialect& target,
+void tell_what_cannot_be_said(const gcode::Program& program, const gcode::Control& target,
                               gcode::Diagnostics& found) {
   const BlockCheck check(program, target);
   std::vector<Obstacle> obstacles;
@@ -280,13 +280,13 @@ std::string first_part(std::string_view text) {
 }  // namespace
 
 void tell_obstacles(const std::vector<Obstacle>& obstacles, const gcode::Program& program,
-                    const gcode::Dialect& target, gcode::Diagnostics& found) {
+                    const gcode::Control& target, gcode::Diagnostics& found) {
   const std::size_t told = std::min(obstacles.size(), kMostTold);
   for (std::size_t i = 0; i < told; ++i) {
     found.push_back(
         {gcode::Severity::kError, "cannot-convert", obstacles[i].where,
          fmt::format("{} {} (target {})", first_part(program.source.text(obstacles[i].where)),
-                     obstacles[i].why, target.name())});
+                     obstacles[i].why, target.name)});
   }
   if (obstacles.size() > told) {
     found.push_back(

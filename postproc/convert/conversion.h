@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/reading/parser.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/language.h"
@@ -43,10 +43,10 @@ namespace batten::postproc {
 // Whether the program has words of controls that the target is none of, or a dwell that, as its
 // source reads it, waits for another time than the target does.
 [[nodiscard]] bool is_of_another_family(const gcode::Program& program,
-                                        const gcode::Dialect& target);
+                                        const gcode::Control& target);
 
 // Adds an error "other-family" for each kind of such words, at its first place.
-void tell_of_other_family(const gcode::Program& program, const gcode::Dialect& target,
+void tell_of_other_family(const gcode::Program& program, const gcode::Control& target,
                           gcode::Diagnostics& found);
 
 // Adds an error "cannot-convert" for each block with a word that the target does not take, or not
@@ -54,7 +54,7 @@ void tell_of_other_family(const gcode::Program& program, const gcode::Dialect& t
 // family pass (motions, planes, units, work offsets G54 to G59, G40, G43 with H, G49, G80, G90,
 // G91, G94, M0 to M6, M8, M9, M30, F, S, T, comments in the target's form), without those that the
 // target refuses. After 50 blocks one more says how many there are.
-void tell_what_cannot_be_said(const gcode::Program& program, const gcode::Dialect& target,
+void tell_what_cannot_be_said(const gcode::Program& program, const gcode::Control& target,
                               gcode::Diagnostics& found);
 
 // What a program says that its target cannot be told.
@@ -67,6 +67,6 @@ struct Obstacle {
 // Adds an error "cannot-convert" for each, in their order; after 50 one more says how many there
 // are.
 void tell_obstacles(const std::vector<Obstacle>& obstacles, const gcode::Program& program,
-                    const gcode::Dialect& target, gcode::Diagnostics& found);
+                    const gcode::Control& target, gcode::Diagnostics& found);
 
 }  // namespace batten::postproc

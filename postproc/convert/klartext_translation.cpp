@@ -26,13 +26,13 @@ constexpr double kSameHeight = 1e-9;
 
 class KlartextSpeaker {
  public:
-  KlartextSpeaker(const TranslationSource& source, const gcode::Dialect& target,
+  KlartextSpeaker(const TranslationSource& source, const gcode::Control& target,
                   std::string_view name)
       : source_(source),
-        places_(target.coordinates(gcode::Units::kMillimetre)),
-        centers_(target.arc_offsets(gcode::Units::kMillimetre)),
-        feeds_(target.feeds(gcode::Units::kMillimetre)),
-        longest_(target.max_line_length()),
+        places_(place_format(target, gcode::Units::kMillimetre)),
+        centers_(center_format(target, gcode::Units::kMillimetre)),
+        feeds_(feed_format(target)),
+        longest_(target.max_line_length),
         name_(name) {}
 
   Translation say() {
@@ -125,7 +125,8 @@ class KlartextSpeaker {
       if (motion.axes_named[i]) block.places[i] = place(operation, end[axis], axis);
     }
     const bool rapid = motion.kind == MotionKind::kRapid;
-    std::string line = gcode::klartext_spelling().lines(block, true, "");
+    std::string line;
+    add_lines(block, gcode::Language::kKlartext, true, "", line);
     // Off is what the control begins with; said once, as posts do.
     if (!std::exchange(compensation_is_said_, true)) line += " R0";
     const std::string feed = rapid ? "MAX" : feed_of(operation);
@@ -153,7 +154,8 @@ class KlartextSpeaker {
       block.centers[i] = gcode::to_text(arc.center[axis], centers_);
     }
     block.feed = feed_of(operation);
-    const std::string lines = gcode::klartext_spelling().lines(block, true, "\n");
+    std::string lines;
+    add_lines(block, gcode::Language::kKlartext, true, "\n", lines);
     const std::size_t first = lines.find('\n');
     text_.add(std::string_view(lines).substr(0, first), line_);
     text_.add(std::string_view(lines).substr(first + 1, lines.size() - first - 2), line_);
@@ -186,7 +188,7 @@ class KlartextSpeaker {
 
 }  // namespace
 
-Translation in_klartext(const TranslationSource& source, const gcode::Dialect& target,
+Translation in_klartext(const TranslationSource& source, const gcode::Control& target,
                         std::string_view name) {
   return KlartextSpeaker(source, target, name).say();
 }

@@ -30,7 +30,7 @@ double sagitta_of(const geometry::Arc& arc, int chords) {
 
 }  // namespace
 
-PlainMoves::PlainMoves(const gcode::Dialect& target, TranslationText& text)
+PlainMoves::PlainMoves(const gcode::Control& target, TranslationText& text)
     : target_(target), text_(text) {
   modal_.units = gcode::Units::kMillimetre;
 }
@@ -41,12 +41,12 @@ void PlainMoves::use_units(gcode::Units units) {
   modal_.feed.reset();
 }
 
-std::string_view PlainMoves::unit_word() const { return target_.unit_word(modal_.units); }
+std::string_view PlainMoves::unit_word() const { return gcode::unit_word(target_, modal_.units); }
 
 std::string_view PlainMoves::other_meaning_of_units() const {
   const std::string_view word = unit_word();
-  if (word == "G20") return target_.other_meaning(200);
-  return word == "G21" ? target_.other_meaning(210) : "";
+  if (word == "G20") return other_meaning(target_, 200);
+  return word == "G21" ? other_meaning(target_, 210) : "";
 }
 
 void PlainMoves::forget_modes() {
@@ -72,26 +72,28 @@ std::string PlainMoves::say_straight(const gcode::Motion& motion, std::optional<
 }
 
 void PlainMoves::print_place(const geometry::Point3& end, int axis, gcode::SpokenBlock& block) {
-  std::string digits = text_.place(end[axis], axis, target_.coordinates(modal_.units), unit_);
+  std::string digits = text_.place(end[axis], axis, place_format(target_, modal_.units), unit_);
   place_[axis] = gcode::read_number(digits)->value * unit_;
   block.places[static_cast<std::size_t>(axis)] = std::move(digits);
 }
 
 std::string PlainMoves::say_block(gcode::SpokenBlock& block, MotionMode motion,
                                   std::optional<double> feed) {
-  if (modal_.motion != motion || target_.repeats_words()) block.motion = motion;
+  if (modal_.motion != motion || target_.repeats_words) block.motion = motion;
   modal_.motion = motion;
   if (feed && modal_.feed != feed) {
-    block.feed = gcode::to_text(*feed / unit_, target_.feeds(modal_.units));
+    block.feed = gcode::to_text(*feed / unit_, feed_format(target_));
     modal_.feed = feed;
   }
-  return add_line(target_.spelling().lines(block, target_.blanks_between_words(), ""));
+  std::string line;
+  gcode::add_lines(block, target_.language, target_.blanks, "", line);
+  return add_line(std::move(line));
 }
 
 std::string PlainMoves::add_line(std::string line) {
   line.insert(0, std::exchange(before_next_, {}));
-  if (target_.line_length(line) > target_.max_line_length()) {
-    return fmt::format("needs a line of more than {} characters", target_.max_line_length());
+  if (line_length(target_, line) > target_.max_line_length) {
+    return fmt::format("needs a line of more than {} characters", target_.max_line_length);
   }
   text_.add(line, source_line_);
   return {};
@@ -99,14 +101,15 @@ std::string PlainMoves::add_line(std::string line) {
 
 // In as many parts as the target needs: its arcs may be short, and full turns none.
 std::string PlainMoves::say_arc(const geometry::Arc& arc, double feed) {
-  if (std::abs(arc.axis.dot(arc.end - arc.start)) > kNoRise && !target_.takes_helices()) {
+  if (std::abs(arc.axis.dot(arc.end - arc.start)) > kNoRise && !target_.helices) {
     return "is a helix";
   }
   const gcode::PlaneAxes* plane = gcode::plane_across(arc.axis);
-  if (plane == nullptr || !target_.takes_arcs_in(plane->plane)) return "is an arc in another plane";
+  if (plane == nullptr || !takes_arcs_in(target_, plane->plane))
+    return "is an arc in another plane";
   constexpr double kSlack = 1e-9;  // of a part: none more for the rounding of a half turn
   const int least = std::max(
-      1, static_cast<int>(std::ceil(std::abs(arc.sweep) / target_.max_arc_sweep() - kSlack)));
+      1, static_cast<int>(std::ceil(std::abs(arc.sweep) / max_arc_sweep(target_) - kSlack)));
   for (const int parts : {least, least + 1, 2 * (least + 1)}) {
     if (const auto lines = arc_in_parts(arc, *plane, feed, parts)) return add_lines(*lines);
   }
@@ -146,7 +149,7 @@ std::optional<std::string> PlainMoves::arc_in_parts(const geometry::Arc& arc,
 }
 
 void PlainMoves::note_rounding(double mm, int axis) {
-  (void)text_.place(mm, axis, target_.coordinates(modal_.units), unit_);
+  (void)text_.place(mm, axis, place_format(target_, modal_.units), unit_);
 }
 
 std::string PlainMoves::add_lines(std::string_view lines) {
@@ -174,7 +177,7 @@ std::string PlainMoves::say_chords(const geometry::Arc& arc, const gcode::PlaneA
 }
 
 double PlainMoves::printed_step() const {
-  return gcode::printed_step(target_.coordinates(modal_.units), modal_.units);
+  return gcode::printed_step(place_format(target_, modal_.units), modal_.units);
 }
 
 }  // namespace batten::postproc

@@ -7,7 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/block_spelling.h"
+#include "gcode/control/control.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/motion.h"
 #include "postproc/convert/translation.h"
@@ -17,7 +18,7 @@ namespace batten::postproc {
 class PlainMoves {
  public:
   // Blocks go to `text`, which must outlive it.
-  PlainMoves(const gcode::Dialect& target, TranslationText& text);
+  PlainMoves(const gcode::Control& target, TranslationText& text);
 
   // From here on places are in these units. Says nothing.
   void use_units(gcode::Units units);
@@ -56,7 +57,7 @@ class PlainMoves {
   [[nodiscard]] std::string add_line(std::string line);
   [[nodiscard]] std::string add_lines(std::string_view lines);
 
-  const gcode::Dialect& target_;
+  const gcode::Control& target_;
   TranslationText& text_;
   std::uint32_t source_line_ = 1;
   gcode::ModalState modal_;                            // as the control has it

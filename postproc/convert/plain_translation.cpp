@@ -20,10 +20,10 @@ constexpr gcode::NumberFormat kSpeedFormat = {.decimals = 3};
 
 class PlainSpeaker {
  public:
-  PlainSpeaker(const TranslationSource& source, const gcode::Dialect& target, std::string_view name)
+  PlainSpeaker(const TranslationSource& source, const gcode::Control& target, std::string_view name)
       : source_(source),
         target_(target),
-        siemens_(target.language() == gcode::Language::kSiemens),
+        siemens_(target.language == gcode::Language::kSiemens),
         name_(name),
         moves_(target, text_) {}
 
@@ -57,7 +57,7 @@ class PlainSpeaker {
   // Controls that read FANUC's macros read its files: %, O0001, the program, %.
   [[nodiscard]] bool is_framed() const {
     constexpr gcode::SourceMarks kOfFanuc = gcode::mark(gcode::SourceMark::kMacroFlow);
-    return target_.known_marks() != gcode::kAllMarks && (target_.known_marks() & kOfFanuc) != 0;
+    return target_.known_marks != gcode::kAllMarks && (target_.known_marks & kOfFanuc) != 0;
   }
 
   void begin() {
@@ -73,7 +73,7 @@ class PlainSpeaker {
     std::string line(siemens_ ? "" : moves_.unit_word());
     for (const int code : {170, 400, 900, 940}) {
       // A control that refuses the word has no other mode.
-      if (target_.cannot_say('G', code)) continue;
+      if (refuses_word(target_, 'G', code)) continue;
       line += fmt::format("{}G{}", line.empty() ? "" : " ", code / 10);
     }
     text_.add(line, 1);
@@ -158,7 +158,7 @@ class PlainSpeaker {
 
   // Whether the target takes the word; tells where it does not.
   bool takes(const Operation& operation, char letter, int tenths) {
-    if (!target_.cannot_say(letter, tenths)) return true;
+    if (!refuses_word(target_, letter, tenths)) return true;
     text_.refuse(operation.where,
                  fmt::format("needs {}{}, which is not taken there", letter, tenths / 10));
     return false;
@@ -243,7 +243,7 @@ class PlainSpeaker {
   }
 
   void say_dwell(const Operation& operation) {
-    const std::string block = gcode::dwell_block(whole(operation), target_.dwell_form());
+    const std::string block = gcode::dwell_block(whole(operation), target_.dwell_form);
     if (block.empty()) {
       return text_.refuse(operation.where,
                           fmt::format("waits for {} s, and how that is said there is not "
@@ -273,7 +273,7 @@ class PlainSpeaker {
   }
 
   const TranslationSource& source_;
-  const gcode::Dialect& target_;
+  const gcode::Control& target_;
   bool siemens_;
   std::string name_;
   TranslationText text_;
@@ -284,7 +284,7 @@ class PlainSpeaker {
 
 }  // namespace
 
-Translation in_plain_words(const TranslationSource& source, const gcode::Dialect& target,
+Translation in_plain_words(const TranslationSource& source, const gcode::Control& target,
                            std::string_view name) {
   return PlainSpeaker(source, target, name).say();
 }

@@ -15,15 +15,15 @@ bool is_plain_in_comments(char c) {
 }
 
 // As it is, or without what this target does not take there.
-std::string comment_said(const gcode::Dialect& target, std::string_view text) {
-  std::string line = target.comment(text);
+std::string comment_said(const gcode::Control& target, std::string_view text) {
+  std::string line = comment_line(target, text);
   if (!line.empty()) return line;
   std::string mild(text);
   std::ranges::replace_if(
       mild, [](char c) { return !is_plain_in_comments(c); }, '-');
-  line = target.comment(mild);
+  line = comment_line(target, mild);
   // "MSG, .." acts on some controls.
-  return line.empty() ? target.comment("- " + mild) : line;
+  return line.empty() ? comment_line(target, "- " + mild) : line;
 }
 
 }  // namespace
@@ -43,10 +43,10 @@ void TranslationText::add_comment(std::string_view text, std::uint32_t source_li
   } while (!rest.empty());
 }
 
-bool TranslationText::add_comment_of(const gcode::Dialect& target, std::string_view text,
+bool TranslationText::add_comment_of(const gcode::Control& target, std::string_view text,
                                      std::uint32_t source_line) {
   constexpr std::size_t kBrackets = 2;
-  const std::size_t room = target.max_line_length() - kBrackets;
+  const std::size_t room = target.max_line_length - kBrackets;
   while (!text.empty()) {
     const std::string_view part = text.substr(0, room);
     const std::string line = comment_said(target, part);

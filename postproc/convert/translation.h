@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/state/motion.h"
 #include "gcode/text/number_format.h"
 #include "gcode/text/program.h"
@@ -49,7 +49,7 @@ struct Translation {
 // these controls. Obstacles: arcs out of the plane of X and Y, helices, arcs whose radii differ by
 // more than the control takes, places beyond its range, work offsets and motions without the length
 // of the tool that are not allowed.
-[[nodiscard]] Translation in_klartext(const TranslationSource& source, const gcode::Dialect& target,
+[[nodiscard]] Translation in_klartext(const TranslationSource& source, const gcode::Control& target,
                                       std::string_view name);
 
 // Plain words (RS-274) or Siemens words, by the target's language, in the units of the program:
@@ -68,7 +68,7 @@ struct Translation {
 // helices where it has none, G58 and G59 for Siemens, where the length of the tool is not said in a
 // Siemens program, lines longer than the target takes; for plain words a program without an end.
 [[nodiscard]] Translation in_plain_words(const TranslationSource& source,
-                                         const gcode::Dialect& target, std::string_view name);
+                                         const gcode::Control& target, std::string_view name);
 
 // A name that either control takes, from that of a file: capitals, digits and _.
 [[nodiscard]] std::string program_name(std::string_view file);
@@ -93,7 +93,7 @@ class TranslationText {
 
   // A comment of the target, in as many lines as its length takes; characters that its comments
   // cannot have become -. False where it has no comments, and none for an empty text.
-  [[nodiscard]] bool add_comment_of(const gcode::Dialect& target, std::string_view text,
+  [[nodiscard]] bool add_comment_of(const gcode::Control& target, std::string_view text,
                                     std::uint32_t source_line);
 
   // The digits of a place, whose rounding is remembered. `unit`: mm.

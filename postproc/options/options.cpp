@@ -107,17 +107,17 @@ std::string_view name_in(const std::array<Choice<Value>, count>& choices, Value 
 
 // See ToleranceShares, 2.
 double rounding_of(const SmoothOptions& options, gcode::Units units, int run_decimals) {
-  gcode::NumberFormat places = options.target->coordinates(units);
+  gcode::NumberFormat places = place_format(*options.target, units);
   places.decimals = std::max(places.decimals, run_decimals);
   const double place = std::numbers::sqrt3 / 2 * gcode::printed_step(places, units);
   if (options.output == Form::kLines) return place;
-  const double offset = gcode::printed_step(options.target->arc_offsets(units), units);
+  const double offset = gcode::printed_step(center_format(*options.target, units), units);
   return place + std::numbers::sqrt2 / 2 * offset;
 }
 
-bool takes_any_arcs(const gcode::Dialect& target) {
-  return target.takes_arcs_in(gcode::Plane::kXY) || target.takes_arcs_in(gcode::Plane::kZX) ||
-         target.takes_arcs_in(gcode::Plane::kYZ);
+bool takes_any_arcs(const gcode::Control& target) {
+  return takes_arcs_in(target, gcode::Plane::kXY) || takes_arcs_in(target, gcode::Plane::kZX) ||
+         takes_arcs_in(target, gcode::Plane::kYZ);
 }
 
 void check_tolerance(const SmoothOptions& options, std::vector<std::string>& problems) {
@@ -141,7 +141,7 @@ void check_tolerance(const SmoothOptions& options, std::vector<std::string>& pro
     problems.push_back(
         fmt::format("--tolerance: {:g} mm, expected more than the {:.5f} mm that the decimals of "
                     "target {} lose by rounding",
-                    tolerance, shares.rounding, options.target->name()));
+                    tolerance, shares.rounding, options.target->name));
   }
 }
 
@@ -183,7 +183,7 @@ bool calls_keep_modes(std::span<const std::string> allowed) {
 gcode::ReadOptions read_options_of(const SmoothOptions& options) {
   gcode::ReadOptions reading;
   reading.units = options.units;
-  if (options.target != nullptr) reading.curves = options.target->curves();
+  if (options.target != nullptr) reading.curves = options.target->curves;
   reading.calls_keep_modes = calls_keep_modes(options.allowed);
   return reading;
 }
@@ -244,12 +244,12 @@ std::vector<std::string> problems_of(const SmoothOptions& options) {
   if (options.target != nullptr && options.output == Form::kArcs &&
       !takes_any_arcs(*options.target)) {
     problems.push_back(fmt::format("--output: target {} takes no arcs; possible: auto, lines",
-                                   options.target->name()));
+                                   options.target->name));
   }
   if (options.target != nullptr && options.output == Form::kCurves &&
-      options.target->curves() == nullptr) {
+      options.target->curves == nullptr) {
     problems.push_back(fmt::format("--output: target {} reads no curves; possible: auto, {}lines",
-                                   options.target->name(),
+                                   options.target->name,
                                    takes_any_arcs(*options.target) ? "arcs, " : ""));
   }
   if (options.keep_corners_deg &&
@@ -340,7 +340,7 @@ std::string text_of(const std::optional<gcode::Decimals>& declared) {
 
 std::vector<std::string> problems_of_decimals(const std::optional<gcode::Decimals>& declared,
                                               gcode::SourceKind source,
-                                              const gcode::Dialect* target) {
+                                              const gcode::Control* target) {
   if (!declared || declared->pointless != gcode::PointlessNumbers::kIncrements) return {};
   const std::string_view why = gcode::why_not_implied(source, target);
   if (why.empty()) return {};

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/source_kind.h"
 #include "gcode/state/modal_state.h"
@@ -60,7 +60,7 @@ struct Choice {
 
 // Decisions of `smooth`, without files and messages.
 struct SmoothOptions {
-  const gcode::Dialect* target = nullptr;  // required
+  const gcode::Control* target = nullptr;  // required
   const Machine* machine = nullptr;        // required; never null after options are checked
   double tolerance_mm = 0.01;              // the full distance allowed, both ways, in order
   std::optional<double> tolerance_inch;    // as given, where it was given in inches
@@ -158,6 +158,6 @@ enum class LogLevel {
 // can.
 [[nodiscard]] std::vector<std::string> problems_of_decimals(
     const std::optional<gcode::Decimals>& declared, gcode::SourceKind source,
-    const gcode::Dialect* target);
+    const gcode::Control* target);
 
 }  // namespace batten::postproc

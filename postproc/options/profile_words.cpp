@@ -113,15 +113,14 @@ bool is_siemens(std::string_view line) {
 
 // A word that is none of plain words: of Klartext, of the ISG kernel or of Siemens controls. Those
 // of another language than the target's would be an alarm there.
-bool is_own_word(std::string_view line, const gcode::Dialect& target) {
-  const gcode::Language language = target.language();
+bool is_own_word(std::string_view line, const gcode::Control& target) {
+  const gcode::Language language = target.language;
   if (line.starts_with(kCycle32)) {
     return language == gcode::Language::kKlartext && only(line, " .:-");
   }
   if (line.starts_with("#HSC")) {
     constexpr gcode::SourceMarks kHash = gcode::mark(gcode::SourceMark::kHashCommand);
-    const bool reads_it =
-        language == gcode::Language::kRs274 && (target.known_marks() & kHash) != 0;
+    const bool reads_it = language == gcode::Language::kRs274 && (target.known_marks & kHash) != 0;
     const bool on = line.starts_with("#HSC ON") && only(line.substr(1), " .,=_[]-");
     return reads_it && (on || line == "#HSC OFF");
   }
@@ -186,7 +185,7 @@ bool acts(std::string_view line) {
   return !line.starts_with(';') && !(line.starts_with('(') && line.find(')') == line.size() - 1);
 }
 
-std::string why_not_in_profile(const std::string& line, const gcode::Dialect& target) {
+std::string why_not_in_profile(const std::string& line, const gcode::Control& target) {
   const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
   if (line.empty() || !std::ranges::all_of(line, printable)) {
     return "expected one line of printable ASCII characters";
@@ -196,16 +195,16 @@ std::string why_not_in_profile(const std::string& line, const gcode::Dialect& ta
   if (filled.find_first_of("{}") != std::string::npos) {
     return "expected no {..} but {tolerance}";
   }
-  if (target.line_length(filled) > target.max_line_length()) {
-    return fmt::format("expected at most {} characters", target.max_line_length());
+  if (line_length(target, filled) > target.max_line_length) {
+    return fmt::format("expected at most {} characters", target.max_line_length);
   }
   if (!acts(filled)) {
     const std::size_t text = filled.find_first_not_of("(; ");
     const std::string inside =
         text == std::string::npos ? "" : filled.substr(text, filled.find(')', text) - text);
-    const std::string said = target.comment(inside);
+    const std::string said = comment_line(target, inside);
     if (!said.empty() && said.front() == filled.front()) return {};
-    return "expected a comment that the target can say, such as " + target.comment("text");
+    return "expected a comment that the target can say, such as " + comment_line(target, "text");
   }
   gcode::Diagnostics ignored;
   const gcode::Program program = gcode::parse(gcode::SourceText("profile", filled), ignored);
@@ -253,10 +252,10 @@ std::vector<std::string> problems_of(const ProfileWords& words) {
 }
 
 ProfileWords filled_in(const ProfileWords& words, double tolerance_mm, gcode::Units units,
-                       const gcode::Dialect& target) {
+                       const gcode::Control& target) {
   const gcode::Units known =
       units == gcode::Units::kInch ? gcode::Units::kInch : gcode::Units::kMillimetre;
-  gcode::NumberFormat format = target.coordinates(known);
+  gcode::NumberFormat format = place_format(target, known);
   format.decimals = kToleranceDecimals;
   format.trailing_zeros = false;
   const std::string tolerance =

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/text/program.h"
 
 namespace batten::postproc {
@@ -31,7 +31,7 @@ struct ProfileWords {
 //   - CYCLE832(..), COMPON, COMPCAD, COMPCURV, COMPSURF, COMPOF, SOFT, BRISK, FFWON, FFWOF,
 //   CTOL=.., OTOL=..;
 //   - CYCL DEF 32..;  #HSC ON.., #HSC OFF.
-[[nodiscard]] std::string why_not_in_profile(const std::string& line, const gcode::Dialect& target);
+[[nodiscard]] std::string why_not_in_profile(const std::string& line, const gcode::Control& target);
 
 // All that is wrong with the words together: a line before runs without one behind them, and so on.
 [[nodiscard]] std::vector<std::string> problems_of(const ProfileWords& words);
@@ -52,6 +52,6 @@ struct SettingKey {
 
 // With the tolerance put in, printed with up to six decimals in these units.
 [[nodiscard]] ProfileWords filled_in(const ProfileWords& words, double tolerance_mm,
-                                     gcode::Units units, const gcode::Dialect& target);
+                                     gcode::Units units, const gcode::Control& target);
 
 }  // namespace batten::postproc

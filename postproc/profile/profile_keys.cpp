@@ -5,7 +5,7 @@ namespace {
 
 using gcode::ArcForm;
 using gcode::CommentStyle;
-using gcode::TargetTable;
+using gcode::Control;
 
 // What can be printed, and a block of the longest line that any control takes.
 constexpr int kMostDecimals = 9;
@@ -17,75 +17,74 @@ constexpr std::size_t kShortestLine = 40;
 constexpr std::array<std::string_view, 3> kCommentNames = {"none", "parentheses", "semicolon"};
 constexpr std::array<std::string_view, 2> kArcForms = {"centres", "radius"};
 
-constexpr WholeNumberKey decimals(int& (*place)(TargetTable&)) { return {place, 0, kMostDecimals}; }
+constexpr WholeNumberKey decimals(int& (*place)(Control&)) { return {place, 0, kMostDecimals}; }
 
 constexpr std::array kKeys = {
     ProfileKey{"", "name", "what reports call it",
-               TextKey{[](TargetTable& t) -> std::string& { return t.name; }}},
+               TextKey{[](Control& t) -> std::string& { return t.name; }}},
     ProfileKey{"", "description", "one line",
-               TextKey{[](TargetTable& t) -> std::string& { return t.description; }}},
+               TextKey{[](Control& t) -> std::string& { return t.description; }}},
     ProfileKey{"", "machine", "a built-in machine whose time counts when none is given",
-               TextKey{[](TargetTable& t) -> std::string& { return t.machine; }}},
+               TextKey{[](Control& t) -> std::string& { return t.machine; }}},
 
     ProfileKey{"numbers", "places-mm", "decimals of X Y Z along lines, millimetre programs",
-               decimals([](TargetTable& t) -> int& { return t.places.mm; })},
+               decimals([](Control& t) -> int& { return t.places.mm; })},
     ProfileKey{"numbers", "places-inch", "the same, inch programs",
-               decimals([](TargetTable& t) -> int& { return t.places.inch; })},
+               decimals([](Control& t) -> int& { return t.places.inch; })},
     ProfileKey{"numbers", "arc-ends-mm", "decimals of X Y Z in runs with arcs",
-               decimals([](TargetTable& t) -> int& { return t.arc_ends.mm; })},
+               decimals([](Control& t) -> int& { return t.arc_ends.mm; })},
     ProfileKey{"numbers", "arc-ends-inch", "the same, inch programs",
-               decimals([](TargetTable& t) -> int& { return t.arc_ends.inch; })},
+               decimals([](Control& t) -> int& { return t.arc_ends.inch; })},
     ProfileKey{"numbers", "centres-mm", "decimals of I J K R",
-               decimals([](TargetTable& t) -> int& { return t.centers.mm; })},
+               decimals([](Control& t) -> int& { return t.centers.mm; })},
     ProfileKey{"numbers", "centres-inch", "the same, inch programs",
-               decimals([](TargetTable& t) -> int& { return t.centers.inch; })},
+               decimals([](Control& t) -> int& { return t.centers.inch; })},
     ProfileKey{"numbers", "feeds", "most decimals of F, which is copied",
-               decimals([](TargetTable& t) -> int& { return t.feed_decimals; })},
+               decimals([](Control& t) -> int& { return t.feed_decimals; })},
     ProfileKey{"numbers", "decimal-point", "X5. rather than X5",
-               FlagKey{[](TargetTable& t) -> bool& { return t.decimal_point; }}},
+               FlagKey{[](Control& t) -> bool& { return t.decimal_point; }}},
     ProfileKey{"numbers", "trailing-zeros", "X1.500 rather than X1.5",
-               FlagKey{[](TargetTable& t) -> bool& { return t.trailing_zeros; }}},
+               FlagKey{[](Control& t) -> bool& { return t.trailing_zeros; }}},
 
     ProfileKey{"lines", "max-length", "characters; a run that needs more is kept",
-               LengthKey{[](TargetTable& t) -> std::size_t& { return t.max_line_length; },
+               LengthKey{[](Control& t) -> std::size_t& { return t.max_line_length; },
                          kShortestLine, kLongestLine}},
     ProfileKey{"lines", "blanks", "between words",
-               FlagKey{[](TargetTable& t) -> bool& { return t.blanks; }}},
+               FlagKey{[](Control& t) -> bool& { return t.blanks; }}},
     ProfileKey{
         "lines", "comments", "none, parentheses or semicolon",
         NameKey{kCommentNames,
-                [](const TargetTable& t) { return static_cast<std::size_t>(t.comments); },
-                [](TargetTable& t, std::size_t i) { t.comments = static_cast<CommentStyle>(i); }}},
+                [](const Control& t) { return static_cast<std::size_t>(t.comments); },
+                [](Control& t, std::size_t i) { t.comments = static_cast<CommentStyle>(i); }}},
     ProfileKey{"lines", "repeat-words", "G1 in every block, X and Y in every arc",
-               FlagKey{[](TargetTable& t) -> bool& { return t.repeats_words; }}},
+               FlagKey{[](Control& t) -> bool& { return t.repeats_words; }}},
 
     ProfileKey{"arcs", "planes", "where arcs are taken; [] for none",
-               PlanesKey{[](TargetTable& t) -> std::array<bool, 3>& { return t.planes; }}},
+               PlanesKey{[](Control& t) -> std::array<bool, 3>& { return t.planes; }}},
     ProfileKey{"arcs", "helices", "arcs that rise",
-               FlagKey{[](TargetTable& t) -> bool& { return t.helices; }}},
+               FlagKey{[](Control& t) -> bool& { return t.helices; }}},
     ProfileKey{
         "arcs", "words", "centres (I J K from the start) or radius (R)",
-        NameKey{kArcForms,
-                [](const TargetTable& t) { return static_cast<std::size_t>(t.arc_form); },
-                [](TargetTable& t, std::size_t i) { t.arc_form = static_cast<ArcForm>(i); }}},
+        NameKey{kArcForms, [](const Control& t) { return static_cast<std::size_t>(t.arc_form); },
+                [](Control& t, std::size_t i) { t.arc_form = static_cast<ArcForm>(i); }}},
     ProfileKey{"arcs", "absolute-centres", "G90.1 and G91.1 are known",
-               FlagKey{[](TargetTable& t) -> bool& { return t.arc_distance_mode; }}},
+               FlagKey{[](Control& t) -> bool& { return t.arc_distance_mode; }}},
     ProfileKey{"arcs", "max-sweep", "degrees; longer arcs are written as several",
-               DecimalKey{[](TargetTable& t) -> double& { return t.max_sweep_deg; }, 1, 360}},
+               DecimalKey{[](Control& t) -> double& { return t.max_sweep_deg; }, 1, 360}},
     ProfileKey{"arcs", "single-quadrants", "arcs end at the axes",
-               FlagKey{[](TargetTable& t) -> bool& { return t.single_quadrants; }}},
+               FlagKey{[](Control& t) -> bool& { return t.single_quadrants; }}},
     ProfileKey{"arcs", "min-radius", "mm; tighter arcs become lines",
-               DecimalKey{[](TargetTable& t) -> double& { return t.min_radius; }, 0.001, 1e6}},
+               DecimalKey{[](Control& t) -> double& { return t.min_radius; }, 0.001, 1e6}},
     ProfileKey{"arcs", "max-radius", "mm; flatter arcs become lines",
-               DecimalKey{[](TargetTable& t) -> double& { return t.max_radius; }, 0.001, 1e6}},
+               DecimalKey{[](Control& t) -> double& { return t.max_radius; }, 0.001, 1e6}},
     ProfileKey{"arcs", "chord-error", "mm by which the control's own chords leave an arc; 0: none",
-               DecimalKey{[](TargetTable& t) -> double& { return t.chords.error; }, 0, 10}},
+               DecimalKey{[](Control& t) -> double& { return t.chords.error; }, 0, 10}},
     ProfileKey{"arcs", "chord-length", "mm, of the control's own chords; 0: not by length",
-               DecimalKey{[](TargetTable& t) -> double& { return t.chords.longest; }, 0, 100}},
+               DecimalKey{[](Control& t) -> double& { return t.chords.longest; }, 0, 100}},
     ProfileKey{"arcs", "least-chord-length", "mm, where there are so many chords in a circle:",
-               DecimalKey{[](TargetTable& t) -> double& { return t.chords.shortest; }, 0, 100}},
+               DecimalKey{[](Control& t) -> double& { return t.chords.shortest; }, 0, 100}},
     ProfileKey{"arcs", "chords-per-circle", "0: chord-length alone counts",
-               DecimalKey{[](TargetTable& t) -> double& { return t.chords.per_circle; }, 0, 1e5}},
+               DecimalKey{[](Control& t) -> double& { return t.chords.per_circle; }, 0, 1e5}},
 };
 
 }  // namespace

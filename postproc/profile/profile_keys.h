@@ -8,46 +8,46 @@
 #include <string_view>
 #include <variant>
 
-#include "gcode/control/target_table.h"
+#include "gcode/control/control.h"
 
 namespace batten::postproc {
 
 struct WholeNumberKey {
-  int& (*place)(gcode::TargetTable&);
+  int& (*place)(gcode::Control&);
   int least = 0;
   int most = 0;
 };
 
 struct LengthKey {  // bytes
-  std::size_t& (*place)(gcode::TargetTable&);
+  std::size_t& (*place)(gcode::Control&);
   std::size_t least = 0;
   std::size_t most = 0;
 };
 
 struct DecimalKey {
-  double& (*place)(gcode::TargetTable&);
+  double& (*place)(gcode::Control&);
   double least = 0;
   double most = 0;
 };
 
 struct FlagKey {
-  bool& (*place)(gcode::TargetTable&);
+  bool& (*place)(gcode::Control&);
 };
 
 struct TextKey {
-  std::string& (*place)(gcode::TargetTable&);
+  std::string& (*place)(gcode::Control&);
 };
 
 // One of some names; `index` of the name and back.
 struct NameKey {
   std::span<const std::string_view> names;
-  std::size_t (*index)(const gcode::TargetTable&);
-  void (*set)(gcode::TargetTable&, std::size_t index);
+  std::size_t (*index)(const gcode::Control&);
+  void (*set)(gcode::Control&, std::size_t index);
 };
 
 // A list of G17, G18, G19.
 struct PlanesKey {
-  std::array<bool, 3>& (*place)(gcode::TargetTable&);
+  std::array<bool, 3>& (*place)(gcode::Control&);
 };
 
 struct ProfileKey {

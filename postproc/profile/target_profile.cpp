@@ -22,7 +22,7 @@ namespace batten::postproc {
 
 namespace {
 
-using gcode::TargetTable;
+using gcode::Control;
 using Lines = std::vector<std::string>;
 
 constexpr std::string_view kBasedOn = "based-on";
@@ -75,20 +75,20 @@ std::string range_of(Number least, Number most, std::string_view kind) {
 std::string expected(const WholeNumberKey& key) {
   return range_of(key.least, key.most, "a whole number");
 }
-bool set(const WholeNumberKey& key, const toml::node& node, TargetTable& table) {
+bool set(const WholeNumberKey& key, const toml::node& node, Control& table) {
   const auto value = node.value_exact<std::int64_t>();
   if (!value || *value < key.least || *value > key.most) return false;
   key.place(table) = static_cast<int>(*value);
   return true;
 }
-std::string shown(const WholeNumberKey& key, TargetTable& table) {
+std::string shown(const WholeNumberKey& key, Control& table) {
   return fmt::format("{}", key.place(table));
 }
 
 std::string expected(const LengthKey& key) {
   return range_of(key.least, key.most, "a whole number");
 }
-bool set(const LengthKey& key, const toml::node& node, TargetTable& table) {
+bool set(const LengthKey& key, const toml::node& node, Control& table) {
   const auto value = node.value_exact<std::int64_t>();
   if (!value || *value < 0 || static_cast<std::size_t>(*value) < key.least ||
       static_cast<std::size_t>(*value) > key.most) {
@@ -97,54 +97,54 @@ bool set(const LengthKey& key, const toml::node& node, TargetTable& table) {
   key.place(table) = static_cast<std::size_t>(*value);
   return true;
 }
-std::string shown(const LengthKey& key, TargetTable& table) {
+std::string shown(const LengthKey& key, Control& table) {
   return fmt::format("{}", key.place(table));
 }
 
 std::string expected(const DecimalKey& key) { return range_of(key.least, key.most, "a number"); }
-bool set(const DecimalKey& key, const toml::node& node, TargetTable& table) {
+bool set(const DecimalKey& key, const toml::node& node, Control& table) {
   const auto value = node.value<double>();
   if (!value || !node.is_number() || !(*value >= key.least && *value <= key.most)) return false;
   key.place(table) = *value;
   return true;
 }
-std::string shown(const DecimalKey& key, TargetTable& table) { return plain(key.place(table)); }
+std::string shown(const DecimalKey& key, Control& table) { return plain(key.place(table)); }
 
 std::string expected(const FlagKey&) { return "true or false"; }
-bool set(const FlagKey& key, const toml::node& node, TargetTable& table) {
+bool set(const FlagKey& key, const toml::node& node, Control& table) {
   const auto value = node.value_exact<bool>();
   if (value) key.place(table) = *value;
   return value.has_value();
 }
-std::string shown(const FlagKey& key, TargetTable& table) {
+std::string shown(const FlagKey& key, Control& table) {
   return key.place(table) ? "true" : "false";
 }
 
 std::string expected(const TextKey&) { return "a text that is not empty"; }
-bool set(const TextKey& key, const toml::node& node, TargetTable& table) {
+bool set(const TextKey& key, const toml::node& node, Control& table) {
   const auto value = node.value_exact<std::string>();
   if (!value || value->empty()) return false;
   key.place(table) = *value;
   return true;
 }
-std::string shown(const TextKey& key, TargetTable& table) {
+std::string shown(const TextKey& key, Control& table) {
   return text_of(toml::value<std::string>(key.place(table)));
 }
 
 std::string expected(const NameKey& key) { return "one of " + joined(key.names); }
-bool set(const NameKey& key, const toml::node& node, TargetTable& table) {
+bool set(const NameKey& key, const toml::node& node, Control& table) {
   const auto value = node.value_exact<std::string>();
   const auto found = value ? std::ranges::find(key.names, *value) : key.names.end();
   if (found == key.names.end()) return false;
   key.set(table, static_cast<std::size_t>(found - key.names.begin()));
   return true;
 }
-std::string shown(const NameKey& key, TargetTable& table) {
+std::string shown(const NameKey& key, Control& table) {
   return text_of(toml::value<std::string>(std::string(key.names[key.index(table)])));
 }
 
 std::string expected(const PlanesKey&) { return "a list of " + joined(kPlaneNames); }
-bool set(const PlanesKey& key, const toml::node& node, TargetTable& table) {
+bool set(const PlanesKey& key, const toml::node& node, Control& table) {
   const toml::array* list = node.as_array();
   if (list == nullptr) return false;
   std::array<bool, 3> planes = {false, false, false};
@@ -157,7 +157,7 @@ bool set(const PlanesKey& key, const toml::node& node, TargetTable& table) {
   key.place(table) = planes;
   return true;
 }
-std::string shown(const PlanesKey& key, TargetTable& table) {
+std::string shown(const PlanesKey& key, Control& table) {
   std::string list;
   for (std::size_t i = 0; i < kPlaneNames.size(); ++i) {
     if (!key.place(table)[i]) continue;
@@ -170,7 +170,7 @@ std::string shown(const PlanesKey& key, TargetTable& table) {
 
 class ProfileReader {
  public:
-  ProfileReader(const std::string& file, const gcode::Dialect* target,
+  ProfileReader(const std::string& file, const gcode::Control* target,
                 std::vector<std::string>& problems)
       : file_(file), target_(target), problems_(problems) {}
 
@@ -178,14 +178,14 @@ class ProfileReader {
     const std::size_t problems_before = problems_.size();
     find_base(root);
     if (target_ == nullptr) return nullptr;
-    table_ = gcode::table_of(*target_);
+    table_ = *target_;
     for (const auto& [key, node] : root) read_top(key.str(), node);
     check_together(root);
     if (problems_.size() != problems_before) return nullptr;
     auto profile = std::make_shared<TargetProfile>();
     profile->file = file_;
     profile->base = target_;
-    profile->adapted = target_->with_values(table_);
+    profile->adapted = table_;
     read_words(root, *profile);
     if (problems_.size() != problems_before) return nullptr;
     return profile;
@@ -207,13 +207,13 @@ class ProfileReader {
                                       target_names()));
       return;
     }
-    const gcode::Dialect* base = name ? gcode::find_dialect(*name) : nullptr;
+    const gcode::Control* base = name ? gcode::find_control(*name) : nullptr;
     if (base == nullptr) {
       complain(*node, kBasedOn, "one of " + target_names());
       target_ = nullptr;
     } else if (target_ != nullptr && target_ != base) {
       complain(*node, kBasedOn,
-               fmt::format("\"{}\", which --target names", std::string(target_->name())));
+               fmt::format("\"{}\", which --target names", std::string(target_->name)));
     } else {
       target_ = base;
     }
@@ -221,8 +221,8 @@ class ProfileReader {
 
   static std::string target_names() {
     std::string names;
-    for (const gcode::Dialect* each : gcode::dialects()) {
-      names += (names.empty() ? "" : ", ") + std::string(each->name());
+    for (const gcode::Control& each : gcode::controls()) {
+      names += (names.empty() ? "" : ", ") + std::string(each.name);
     }
     return names;
   }
@@ -291,7 +291,7 @@ class ProfileReader {
     const std::string value =
         std::visit([this](const auto& each) { return shown(each, table_); }, key->value);
     problems_.push_back(fmt::format("{}: {}: {} from target {}, expected {}", file_,
-                                    full_name(section, name), value, target_->name(), wanted));
+                                    full_name(section, name), value, target_->name, wanted));
   }
 
   void check_together(const toml::table& root) {
@@ -358,7 +358,7 @@ class ProfileReader {
         complain(each, key, "a line of text");
         continue;
       }
-      const std::string why = why_not_in_profile(*line, *profile.adapted);
+      const std::string why = why_not_in_profile(*line, profile.adapted);
       if (why.empty()) {
         (profile.words.*found->place).push_back(*line);
       } else {
@@ -370,15 +370,15 @@ class ProfileReader {
   }
 
   const std::string& file_;
-  const gcode::Dialect* target_;
+  const gcode::Control* target_;
   std::vector<std::string>& problems_;
-  TargetTable table_;
+  Control table_;
 };
 
 }  // namespace
 
 std::shared_ptr<const TargetProfile> read_target_profile(const std::string& file,
-                                                         const gcode::Dialect* target,
+                                                         const gcode::Control* target,
                                                          std::vector<std::string>& problems) {
   try {
     const toml::table root = toml::parse_file(file);
@@ -392,12 +392,12 @@ std::shared_ptr<const TargetProfile> read_target_profile(const std::string& file
   return nullptr;
 }
 
-std::string profile_text(const gcode::Dialect& target) {
-  TargetTable table = gcode::table_of(target);
+std::string profile_text(const gcode::Control& target) {
+  Control table = target;
   std::string text = fmt::format(
       "# A profile for batten: `--target THIS.toml`. Every key stands here as target {} has it;\n"
       "# change what your machine needs, and leave out what stays.\n\n{} = \"{}\"\n",
-      target.name(), kBasedOn, target.name());
+      target.name, kBasedOn, target.name);
   std::string_view section;
   for (const ProfileKey& key : profile_keys()) {
     if (key.section != section) {
@@ -416,22 +416,22 @@ std::string profile_text(const gcode::Dialect& target) {
   for (const WordsKey& key : kWordsKeys) {
     text += fmt::format("{:<34}  # {}\n", fmt::format("{} = []", key.name), key.remark);
   }
-  for (const std::string_view hint : target.smoothing_words()) text += fmt::format("# {}\n", hint);
+  for (const std::string_view hint : target.smoothing_words) text += fmt::format("# {}\n", hint);
   return text;
 }
 
-void tell_of_other_meanings(const gcode::Program& program, const gcode::Dialect& target,
+void tell_of_other_meanings(const gcode::Program& program, const gcode::Control& target,
                             gcode::Diagnostics& found) {
   std::vector<int> told;
   for (const gcode::Word& word : program.words) {
     if (word.letter != 'G' || !word.is_number) continue;
     const int code = tenths_of(word);
-    const std::string_view meaning = target.other_meaning(code);
+    const std::string_view meaning = other_meaning(target, code);
     if (meaning.empty() || std::ranges::find(told, code) != told.end()) continue;
     told.push_back(code);
     found.push_back({gcode::Severity::kError, "word-means-other", word.span,
                      fmt::format("{} for target {}: {}", program.source.text(word.span),
-                                 target.name(), meaning)});
+                                 target.name, meaning)});
   }
 }
 

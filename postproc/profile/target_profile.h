@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"
 #include "postproc/options/profile_words.h"
@@ -15,8 +15,8 @@ namespace batten::postproc {
 
 struct TargetProfile {
   std::string file;
-  const gcode::Dialect* base = nullptr;           // built in
-  std::unique_ptr<const gcode::Dialect> adapted;  // with the profile's values
+  const gcode::Control* base = nullptr;  // built in
+  gcode::Control adapted;                // with the profile's values
   ProfileWords words;
 };
 
@@ -24,18 +24,18 @@ struct TargetProfile {
 // stands there and what may, and then returns nothing. `target`: the built-in target that the user
 // named beside the file; nullptr: the file names it by based-on.
 [[nodiscard]] std::shared_ptr<const TargetProfile> read_target_profile(
-    const std::string& file, const gcode::Dialect* target, std::vector<std::string>& problems);
+    const std::string& file, const gcode::Control* target, std::vector<std::string>& problems);
 
 // The file that leaves this target as it is: every key with its value, its unit and what it means.
 // The control's own smoothing words stand in it as remarks.
-[[nodiscard]] std::string profile_text(const gcode::Dialect& target);
+[[nodiscard]] std::string profile_text(const gcode::Control& target);
 
 // Whether the words of a program mean to the target what they mean to the reader.
 
 // An error "word-means-other" for the first use of each G word that the target takes for something
 // else than the reader does (G21 mirrors on some): such a program was not read as its control reads
 // it.
-void tell_of_other_meanings(const gcode::Program& program, const gcode::Dialect& target,
+void tell_of_other_meanings(const gcode::Program& program, const gcode::Control& target,
                             gcode::Diagnostics& found);
 
 }  // namespace batten::postproc

@@ -45,7 +45,7 @@ Violation refused(std::string_view id, std::uint32_t old_line, std::uint32_t new
 }
 
 void add_refused_arcs(const ReadProgram& before, const ReadProgram& after, const Stretch& stretch,
-                      const gcode::Dialect& target, std::vector<Violation>& violations) {
+                      const gcode::Control& target, std::vector<Violation>& violations) {
   const auto is_old = [&](const geometry::Arc& arc) {
     return std::ranges::any_of(
         motions_in(before, stretch.old_first_block, stretch.old_last_block),
@@ -60,24 +60,24 @@ void add_refused_arcs(const ReadProgram& before, const ReadProgram& after, const
     if (why.empty() || is_old(*arc)) continue;
     violations.push_back(refused(
         "arc-refused", stretch.old_first_line, after.program->blocks[m.block].line,
-        fmt::format("{} refuses this arc: {}; expected one that it runs", target.name(), why)));
+        fmt::format("{} refuses this arc: {}; expected one that it runs", target.name, why)));
   }
 }
 
 // The blocks whose lines are too long, with their text.
 std::map<std::string_view, const gcode::Block*> long_lines(const ReadProgram& read,
-                                                           const gcode::Dialect& target) {
+                                                           const gcode::Control& target) {
   std::map<std::string_view, const gcode::Block*> found;
   for (const gcode::Block& block : read.program->blocks) {
-    if (block.span.size() <= target.max_line_length()) continue;
+    if (block.span.size() <= target.max_line_length) continue;
     const std::string_view line = read.program->source.text(block.span);
-    if (target.line_length(line) > target.max_line_length()) found.try_emplace(line, &block);
+    if (line_length(target, line) > target.max_line_length) found.try_emplace(line, &block);
   }
   return found;
 }
 
 void add_long_lines(const ReadProgram& before, const ReadProgram& after,
-                    const gcode::Dialect& target, std::vector<Violation>& violations) {
+                    const gcode::Control& target, std::vector<Violation>& violations) {
   const auto written = long_lines(after, target);
   if (written.empty()) return;
   const auto old = long_lines(before, target);
@@ -86,7 +86,7 @@ void add_long_lines(const ReadProgram& before, const ReadProgram& after,
     violations.push_back(
         refused("line-refused", 0, block->line,
                 fmt::format("{} bytes in this line, {} reads {} at the most",
-                            target.line_length(line), target.name(), target.max_line_length())));
+                            line_length(target, line), target.name, target.max_line_length)));
   }
 }
 
@@ -94,7 +94,7 @@ void add_long_lines(const ReadProgram& before, const ReadProgram& after,
 
 std::vector<Violation> refused_by_target(const ReadProgram& before, const ReadProgram& after,
                                          const std::vector<Stretch>& stretches,
-                                         const gcode::Dialect& target) {
+                                         const gcode::Control& target) {
   std::vector<Violation> violations;
   for (const Stretch& stretch : stretches) {
     add_refused_arcs(before, after, stretch, target, violations);

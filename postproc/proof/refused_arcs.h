@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "postproc/proof/event_violations.h"
 #include "postproc/proof/program_events.h"
 #include "postproc/proof/section_comparison.h"
@@ -16,6 +16,6 @@ namespace batten::postproc {
 [[nodiscard]] std::vector<Violation> refused_by_target(const ReadProgram& before,
                                                        const ReadProgram& after,
                                                        const std::vector<Stretch>& stretches,
-                                                       const gcode::Dialect& target);
+                                                       const gcode::Control& target);
 
 }  // namespace batten::postproc

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "geometry/basic/point.h"
 #include "geometry/basic/tolerance_kind.h"
 #include "geometry/distance/path_distance.h"
@@ -22,11 +22,11 @@ struct Promise {
   // Where the new path may be: on the other side it may be by kOverSide of the tolerance.
   geometry::Side side = geometry::Side::kBoth;
   // That has to take what is new (postproc/proof/refused_arcs.h); nullptr: nobody is asked.
-  const gcode::Dialect* target = nullptr;
+  const gcode::Control* target = nullptr;
 
   // The strict reading, when nothing else is said.
   Promise(double tolerance, geometry::ToleranceKind reading = geometry::ToleranceKind::kPath,
-          geometry::Side allowed = geometry::Side::kBoth, const gcode::Dialect* control = nullptr)
+          geometry::Side allowed = geometry::Side::kBoth, const gcode::Control* control = nullptr)
       : tolerance_mm(tolerance), kind(reading), side(allowed), target(control) {}
 };
 

@@ -100,8 +100,8 @@ Json path_of(const SmoothReport& report, std::size_t most_vertices) {
   const gcode::Interpretation old_meaning = gcode::interpret(before, reading, ignored);
   gcode::Reading new_words = words;
   if (translated) {
-    new_words = reading_of(report.options, report.options.target->language());
-    new_words.dwells = report.options.target->dwell_form();
+    new_words = reading_of(report.options, report.options.target->language);
+    new_words.dwells = report.options.target->dwell_form;
   }
   const gcode::Program after = gcode::parse(written, new_words, ignored);
   const gcode::Interpretation new_meaning = gcode::interpret(after, reading, ignored);

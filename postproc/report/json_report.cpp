@@ -21,7 +21,7 @@ std::string_view name_of_form(OutputForm form) {
 }
 
 Json json_of(const SmoothOptions& options, bool strict) {
-  Json json = {{"target", options.target->name()},
+  Json json = {{"target", options.target->name},
                {"machine", options.machine->name},
                {"tolerance_mm", options.tolerance_mm}};
   if (options.tolerance_inch) json["tolerance_inch"] = *options.tolerance_inch;
@@ -98,7 +98,7 @@ Json smooth_json(const SmoothReport& report) {
                 {{"file", report.output_file},
                  {"bytes", result.bytes_out()},
                  {"blocks", result.blocks_out},
-                 {"target", report.options.target->name()}}},
+                 {"target", report.options.target->name}}},
                {"machine",
                 {{"name", report.options.machine->name},
                  {"model", name_of(report.options.machine->model)},

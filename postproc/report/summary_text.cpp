@@ -170,7 +170,7 @@ std::string summary_text(const SmoothReport& report) {
   Lines lines;
   lines.add_head(fmt::format("{} -> {}, for {}", report.source.name(),
                              report.output_file.empty() ? "nothing written" : report.output_file,
-                             report.options.target->name()));
+                             report.options.target->name));
   lines.add("blocks", change(result.blocks_in, result.blocks_out));
   lines.add("bytes", change(report.source.text().size(), result.bytes_out()));
   add_runs(result, lines);

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/text/program.h"
 #include "postproc/stream/run_report.h"
 
@@ -15,6 +15,6 @@ namespace batten::postproc {
 // `program` may be the part of it with these runs.
 [[nodiscard]] gcode::Diagnostics form_notes(std::span<const RunReport> runs,
                                             const gcode::Program& program,
-                                            const gcode::Dialect& target);
+                                            const gcode::Control& target);
 
 }  // namespace batten::postproc

@@ -16,8 +16,9 @@ constexpr gcode::NumberFormat kTolerance = {6, false, false};
 
 }  // namespace
 
-std::string provenance_comment(const gcode::Dialect& target, double tolerance_mm) {
-  return target.comment(std::string(kSmoothed) + gcode::to_text(tolerance_mm, kTolerance) + " mm");
+std::string provenance_comment(const gcode::Control& target, double tolerance_mm) {
+  return comment_line(target,
+                      std::string(kSmoothed) + gcode::to_text(tolerance_mm, kTolerance) + " mm");
 }
 
 // Some controls have no small letters.
@@ -35,14 +36,14 @@ bool was_smoothed(const gcode::Program& program) {
 
 std::optional<gcode::Diagnostic> missing_provenance(std::span<const RunReport> runs,
                                                     const gcode::Program& program,
-                                                    const gcode::Dialect& target) {
+                                                    const gcode::Control& target) {
   if (!provenance_comment(target, 1).empty()) return std::nullopt;
   const auto first = std::ranges::find(runs, RunStatus::kRewritten, &RunReport::status);
   if (first == runs.end()) return std::nullopt;
   return gcode::Diagnostic{
       gcode::Severity::kNote, "smoothing-not-told",
       program.blocks[first->first_line - program.blocks.front().line].span,
-      "target " + std::string(target.name()) +
+      "target " + std::string(target.name) +
           " has no certain comment, so nothing in the program says that it was smoothed: smoothing "
           "it once more would add its tolerance again"};
 }

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"
 #include "postproc/stream/run_report.h"
@@ -15,7 +15,7 @@ namespace batten::postproc {
 
 // The comment as the target writes it, without a line end; empty when the target has no words
 // for it.
-[[nodiscard]] std::string provenance_comment(const gcode::Dialect& target, double tolerance_mm);
+[[nodiscard]] std::string provenance_comment(const gcode::Control& target, double tolerance_mm);
 
 // Whether a comment of the program says so.
 [[nodiscard]] bool was_smoothed(const gcode::Program& program);
@@ -25,6 +25,6 @@ namespace batten::postproc {
 // it with these runs.
 [[nodiscard]] std::optional<gcode::Diagnostic> missing_provenance(std::span<const RunReport> runs,
                                                                   const gcode::Program& program,
-                                                                  const gcode::Dialect& target);
+                                                                  const gcode::Control& target);
 
 }  // namespace batten::postproc

@@ -79,7 +79,7 @@ class TranslatedSmoothing {
 
   bool translate() {
     ProgramOperations operations = operations_of(program_, meaning_);
-    const gcode::Dialect& target = *options_.target;
+    const gcode::Control& target = *options_.target;
     const TranslationSource said{program_,
                                  meaning_,
                                  operations,
@@ -87,7 +87,7 @@ class TranslatedSmoothing {
                                  is_allowed(gcode::reason::kToolLength),
                                  is_allowed(gcode::reason::kBlankForm)};
     const std::string name = program_name(source_.name());
-    translation_ = target.language() == gcode::Language::kKlartext
+    translation_ = target.language == gcode::Language::kKlartext
                        ? in_klartext(said, target, name)
                        : in_plain_words(said, target, name);
     std::vector<Obstacle> obstacles = std::move(operations.obstacles);
@@ -107,7 +107,7 @@ class TranslatedSmoothing {
     SmoothOptions options = options_;
     options.convert = false;
     options.units = gcode::Units::kUnknown;
-    options.source = kind_of(options_.target->language());
+    options.source = kind_of(options_.target->language);
     options.decimals = gcode::Decimals{};
     options.tolerance_mm = options_.tolerance_mm - translation_.rounding_mm;
     if (options.tolerance_mm <= 0) options.method = Method::kNone;
@@ -174,16 +174,16 @@ class TranslatedSmoothing {
 
   // The text with its block numbers, as it will be written.
   bool prove(SmoothResult& result) {
-    const gcode::Language language = options_.target->language();
+    const gcode::Language language = options_.target->language;
     std::string written =
         language == gcode::Language::kKlartext ? with_numbers(result.text, 0) : result.text;
     const gcode::SourceText text(source_.name(), written);
     gcode::Diagnostics found;
-    const gcode::DwellForm dwells = options_.target->dwell_form();
+    const gcode::DwellForm dwells = options_.target->dwell_form;
     const gcode::Program program =
         gcode::parse(text, gcode::Reading{.language = language, .dwells = dwells}, found);
     const gcode::Interpretation meaning =
-        gcode::interpret(program, {.curves = options_.target->curves()}, found);
+        gcode::interpret(program, {.curves = options_.target->curves}, found);
     const Verification verification =
         verify({&program_, &meaning_}, {&program, &meaning},
                {options_.tolerance_mm, options_.tolerance_kind, options_.side});

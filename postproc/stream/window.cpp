@@ -25,7 +25,7 @@ bool knows_the_same(const TextBefore& a, const TextBefore& b) {
 void take(const WindowSetting& setting, const ProgramPart& part, PartRuns runs, ProvedText proved,
           WindowDone& done) {
   const Verification& verification = proved.verification;
-  const gcode::Dialect& target = *setting.options.target;
+  const gcode::Control& target = *setting.options.target;
   done.unchanged = proved.unchanged;
   done.proved = proved.proved;
   done.text = std::move(proved.text);

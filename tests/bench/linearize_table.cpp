@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "gcode/text/source_text.h"
 #include "geometry/chords/ilca.h"
@@ -95,8 +95,8 @@ void print_parabolas() {
 postproc::SmoothResult smoothed(const gcode::SourceText& source, const Arguments& arguments,
                                 Linearize linearize) {
   postproc::SmoothOptions options;
-  options.target = gcode::find_dialect(arguments.target);
-  options.machine = postproc::find_machine(options.target->default_machine());
+  options.target = gcode::find_control(arguments.target);
+  options.machine = postproc::find_machine(options.target->machine);
   options.tolerance_mm = arguments.tolerance;
   options.method = postproc::Method::kFair;  // the same curves for both
   options.output = postproc::Form::kLines;
@@ -140,7 +140,7 @@ void print_program(const std::string& file, const Arguments& arguments) {
 
 int main(int argument_count, char** argument_words) {
   const auto arguments = arguments_of(argument_count, argument_words);
-  if (!arguments || gcode::find_dialect(arguments->target) == nullptr ||
+  if (!arguments || gcode::find_control(arguments->target) == nullptr ||
       !(arguments->tolerance > 0)) {
     fmt::print(stderr, "usage: linearize_table [--tolerance MM] [--target NAME] [FILE ..]\n");
     return 1;

@@ -158,7 +158,7 @@ void programs(double cam, std::string_view machine, postproc::Prefer prefer,
     const std::string text =
         geometry::surface_program(geometry::surface_rows(cam, settings.noise, seed), settings.feed);
     postproc::SmoothOptions options;
-    options.target = gcode::find_dialect(machine == "router" || machine == "grbl" ? "grbl"
+    options.target = gcode::find_control(machine == "router" || machine == "grbl" ? "grbl"
                                          : machine == "linuxcnc"                  ? "linuxcnc"
                                                                                   : "fanuc");
     options.machine = postproc::find_machine(machine);

@@ -39,8 +39,8 @@ std::string wave(int blocks) {
 
 postproc::SmoothOptions smooth_options() {
   postproc::SmoothOptions options;
-  options.target = gcode::find_dialect("linuxcnc");
-  options.machine = postproc::find_machine(options.target->default_machine());
+  options.target = gcode::find_control("linuxcnc");
+  options.machine = postproc::find_machine(options.target->machine);
   options.method = postproc::Method::kFair;
   options.threads = 1;
   return options;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
@@ -30,11 +30,11 @@ inline std::uint32_t hash_of(std::string_view text) {
 }
 
 // One of the targets that read the language of the text, where that is certain; else one of all.
-inline const gcode::Dialect* target_for_text(std::string_view text, std::uint32_t hash) {
+inline const gcode::Control* target_for_text(std::string_view text, std::uint32_t hash) {
   const auto marks = gcode::language_marks(gcode::SourceText("fuzz", std::string(text)));
-  std::vector<const gcode::Dialect*> fitting;
-  for (const gcode::Dialect* target : gcode::dialects()) {
-    if (marks.empty() || target->language() == marks.front().language) fitting.push_back(target);
+  std::vector<const gcode::Control*> fitting;
+  for (const gcode::Control& target : gcode::controls()) {
+    if (marks.empty() || target.language == marks.front().language) fitting.push_back(&target);
   }
   return fitting[hash % fitting.size()];
 }
@@ -49,7 +49,7 @@ inline SmoothOptions options_for_text(std::string_view text) {
   const std::uint32_t hash = hash_of(text.substr(0, text.find('\n')));
   SmoothOptions options;
   options.target = target_for_text(text, hash);
-  options.machine = find_machine(options.target->default_machine());
+  options.machine = find_machine(options.target->machine);
   options.tolerance_mm = kTolerances[hash / 64 % kTolerances.size()];
   options.output = kForms[hash / 512 % kForms.size()];
   options.prefer = kPrefer[hash / 4096 % kPrefer.size()];
@@ -70,7 +70,7 @@ struct TextAsRead {
                        language_read(source, options, found).value_or(gcode::Language::kRs274)),
             found)),
         meaning(gcode::interpret(
-            program, {.units = options.units, .curves = options.target->curves()}, found)) {}
+            program, {.units = options.units, .curves = options.target->curves}, found)) {}
   gcode::Diagnostics found;
   gcode::Program program;
   gcode::Interpretation meaning;
@@ -123,7 +123,7 @@ inline std::string broken_by(std::string_view text, const SmoothOptions& options
     if (run.reason.empty() != (run.status == RunStatus::kRewritten)) return "kept without a reason";
   }
   // A control without comments has no place for the mark that a program was smoothed.
-  if (options.target->comment("mark").empty()) return "";
+  if (comment_line(*options.target, "mark").empty()) return "";
   const SmoothResult again = smooth_program(gcode::SourceText("fuzz", result.text), options);
   return again.text == result.text ? "" : "a second pass changes something";
 }

@@ -115,7 +115,7 @@ inline std::string reason_at(const std::vector<InspectedSection>& sections, std:
 inline void expect_kept_construct(const Construct& construct) {
   SmoothOptions options = options_for(construct.target);
   if (!construct.allowed.empty()) options.allowed = {construct.allowed};
-  const gcode::Language language = options.target->language();
+  const gcode::Language language = options.target->language;
   std::string before = head_of(language);
   const auto add_wave = [&](int index) {
     const std::uint32_t first = line_count(before) + 1;

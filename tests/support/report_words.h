@@ -53,7 +53,7 @@ inline SmoothResult five_runs() {
 
 inline SmoothOptions linuxcnc_options() {
   SmoothOptions options;
-  options.target = gcode::find_dialect("linuxcnc");
+  options.target = gcode::find_control("linuxcnc");
   options.machine = find_machine("linuxcnc");
   return options;
 }

@@ -85,8 +85,8 @@ inline std::string bend_program(const std::string& middle = "") {
 
 inline SmoothOptions options_for(std::string_view target) {
   SmoothOptions options;
-  options.target = gcode::find_dialect(target);
-  options.machine = find_machine(options.target->default_machine());
+  options.target = gcode::find_control(target);
+  options.machine = find_machine(options.target->machine);
   options.threads = 1;
   options.decimals = gcode::Decimals{};  // Z5 here is 5 mm for every target
   return options;

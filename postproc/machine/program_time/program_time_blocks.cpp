@@ -92,8 +92,8 @@ DwellTime dwell_of(const gcode::BlockWords& words, gcode::DwellUnit unit,
   return {};
 }
 
-DwellUnit dwell_unit_of(const gcode::Dialect* target, const Machine& machine) {
-  if (target != nullptr) return target->dwell_unit();
+DwellUnit dwell_unit_of(const gcode::Control* target, const Machine& machine) {
+  if (target != nullptr) return target->dwell_unit;
   return machine.model == ControllerModel::kLookAhead ? DwellUnit::kByPoint : DwellUnit::kSeconds;
 }
 

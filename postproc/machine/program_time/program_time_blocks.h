@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/state/block_words.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/motion.h"
@@ -42,7 +42,7 @@ struct DwellTime {
 
 // What P means in the programs of a control; nullptr: LinuxCNC and grbl count in seconds, whatever
 // the program was written for.
-[[nodiscard]] gcode::DwellUnit dwell_unit_of(const gcode::Dialect* target, const Machine& machine);
+[[nodiscard]] gcode::DwellUnit dwell_unit_of(const gcode::Control* target, const Machine& machine);
 
 // --- canned cycles -----------------------------------------------------------------------------
 

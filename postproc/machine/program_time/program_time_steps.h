@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/motion.h"
 #include "gcode/text/program.h"

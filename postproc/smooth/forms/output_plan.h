@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "geometry/arcs/arc_spline.h"
 #include "geometry/fitting/fair/fair.h"
 #include "geometry/path/curve_pieces.h"
@@ -45,7 +45,7 @@ struct OutputPlan {
 };
 
 struct PlanOptions {
-  const gcode::Dialect* target = nullptr;
+  const gcode::Control* target = nullptr;
   const Machine* machine = nullptr;
   gcode::Units units = gcode::Units::kMillimetre;
   gcode::Plane active_plane = gcode::Plane::kXY;

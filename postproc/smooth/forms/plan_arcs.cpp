@@ -41,11 +41,11 @@ Path chords_for(const geometry::Arc& arc, double deviation) {
   return chords;
 }
 
-geometry::ArcPartsOptions parts_for(const geometry::Arc& arc, const gcode::Dialect& target) {
+geometry::ArcPartsOptions parts_for(const geometry::Arc& arc, const gcode::Control& target) {
   geometry::ArcPartsOptions parts;
-  parts.max_sweep = target.max_arc_sweep();
+  parts.max_sweep = max_arc_sweep(target);
   const gcode::PlaneAxes* plane = gcode::plane_across(arc.axis);
-  if (target.needs_single_quadrants() && plane != nullptr) {
+  if (target.single_quadrants && plane != nullptr) {
     parts.quadrant_from = geometry::Vector3::Unit(plane->first);
   }
   return parts;
@@ -53,9 +53,9 @@ geometry::ArcPartsOptions parts_for(const geometry::Arc& arc, const gcode::Diale
 
 // The control takes it, and its own chords are no coarser than chords of ours would be.
 bool is_taken(const geometry::Arc& arc, const PlanOptions& options) {
-  const gcode::Dialect& target = *options.target;
+  const gcode::Control& target = *options.target;
   return gcode::arc_refusal(target, arc, options.units).empty() &&
-         gcode::chord_error(target.arc_chords(), radius_of(arc)) <= options.max_deviation;
+         gcode::chord_error(target.chords, radius_of(arc)) <= options.max_deviation;
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ bool is_taken(const geometry::Arc& arc, const PlanOptions& options) {
 std::vector<gcode::PlaneAxes> arc_planes(const PlanOptions& options) {
   std::vector<gcode::PlaneAxes> planes;
   for (const gcode::PlaneAxes& each : gcode::kPlaneAxes) {
-    if (options.target->takes_arcs_in(each.plane)) planes.push_back(each);
+    if (takes_arcs_in(*options.target, each.plane)) planes.push_back(each);
   }
   std::stable_partition(planes.begin(), planes.end(), [&](const gcode::PlaneAxes& each) {
     return each.plane == options.active_plane;
@@ -72,7 +72,7 @@ std::vector<gcode::PlaneAxes> arc_planes(const PlanOptions& options) {
 }
 
 double arc_grid(const PlanOptions& options) {
-  return gcode::printed_step(options.target->arc_ends(options.units), options.units);
+  return gcode::printed_step(arc_end_format(*options.target, options.units), options.units);
 }
 
 void append_taken(const geometry::PathPiece& piece, double deviation, const PlanOptions& options,
@@ -134,8 +134,8 @@ geometry::ArcFitOptions fit_options(const PlanOptions& options, const PlaneAxes&
   fit.max_deviation = fit_deviation(options);
   fit.axis = geometry::Vector3::Unit(plane.normal);
   fit.helical = helical;
-  fit.min_radius = options.target->min_arc_radius();
-  fit.max_radius = options.target->max_arc_radius();
+  fit.min_radius = options.target->min_radius;
+  fit.max_radius = options.target->max_radius;
   fit.grid = arc_grid(options);
   fit.effort = options.arc_effort;
   return fit;
@@ -217,7 +217,7 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
     auto plan = plan_in(run, fair, *flat, nullptr, fit_options(options, plane, false), options);
     if (plan) return plan;
   }
-  if (flat_somewhere || !options.target->takes_helices()) return std::nullopt;
+  if (flat_somewhere || !options.target->helices) return std::nullopt;
   // In space the planes differ much: the rows of a raster along X are arcs in G18, and in G17 they
   // are lines and steep little helices. The fewest moves win; the plane in which the run is
   // flattest comes first, so that the others are soon given up. More moves than the run has motions
@@ -344,8 +344,8 @@ class ArcSplinePlanner {
                                                        const std::vector<Point2>& points) const {
     geometry::ArcSplineOptions fit;
     fit.tolerance = (1 - kPartForArcSplineChords) * options_.max_deviation;
-    fit.min_radius = options_.target->min_arc_radius();
-    fit.max_radius = options_.target->max_arc_radius();
+    fit.min_radius = options_.target->min_radius;
+    fit.max_radius = options_.target->max_radius;
     fit.grid = arc_grid(options_);
     fit.effort = geometry::ArcEffort::kThorough;
     const geometry::Vector2 first = points[1] - points[0];

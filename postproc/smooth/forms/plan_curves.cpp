@@ -242,7 +242,7 @@ class CurvePlanner {
 
 std::optional<OutputPlan> plan_curves(const Run& run, const geometry::SmoothCurve& fair,
                                       const PlanOptions& options) {
-  const gcode::CurveFormat* format = options.target->curves();
+  const gcode::CurveFormat* format = options.target->curves;
   if (format == nullptr) return std::nullopt;
   return CurvePlanner(run, fair, options, *format).plan();
 }

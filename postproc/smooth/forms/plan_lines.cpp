@@ -171,7 +171,7 @@ OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair, const M
       options.prefer == Prefer::kAccuracy && options.linearize == Linearize::kChord;
   if (!accurate) return lines_of(run, fair, pieces, options, 0);
   const double step =
-      gcode::printed_step(options.target->coordinates(options.units), options.units);
+      gcode::printed_step(place_format(*options.target, options.units), options.units);
   const double tenth_of_rounding = step / 2 / 10;
   double finest = std::min(tenth_of_rounding, kBalanced * options.max_deviation);
   OutputPlan plan = lines_of(run, fair, pieces, options, finest);

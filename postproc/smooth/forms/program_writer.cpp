@@ -24,7 +24,7 @@ bool is_end_of_line(char c) { return c == '\n' || c == '\r'; }
 // Writes the moves of one run and counts what it writes.
 class RunWriter {
  public:
-  RunWriter(const gcode::Dialect& target, Writer writer)
+  RunWriter(const gcode::Control& target, Writer writer)
       : target_(target), writer_(std::move(writer)) {}
 
   Writer& writer() { return writer_; }
@@ -46,7 +46,7 @@ class RunWriter {
   // Curves of many blocks follow each other with the end of the one between them.
   [[nodiscard]] bool write(const PlannedCurve& curve, double feed, int last_decimals) {
     const std::size_t begin = writer_.text().size();
-    if (!target_.curves()->is_block_per_piece()) writer_.end_curve();
+    if (!target_.curves->is_block_per_piece()) writer_.end_curve();
     if (!writer_.curve_to(curve.curve, feed, last_decimals)) return false;
     count_from(begin);
     return true;
@@ -69,7 +69,7 @@ class RunWriter {
   // Chords that differ from the arc by half a printed step at the most.
   void write_chords(const geometry::Arc& arc, double feed) {
     const gcode::Units units = writer_.state().modal.units;
-    const double deviation = gcode::printed_step(target_.coordinates(units), units) / 2;
+    const double deviation = gcode::printed_step(place_format(target_, units), units) / 2;
     const geometry::Vector3 out = arc.start - arc.center;
     const double radius = (out - out.dot(arc.axis) * arc.axis).norm();
     const double half_angle = std::acos(std::max(1 - deviation / radius, 0.0));
@@ -85,7 +85,7 @@ class RunWriter {
       const std::size_t end = static_cast<std::size_t>(
           std::find_if(written.begin(), written.end(), is_end_of_line) - written.begin());
       const std::string_view line = written.substr(0, end);
-      every_line_fits_ = every_line_fits_ && target_.line_length(line) <= target_.max_line_length();
+      every_line_fits_ = every_line_fits_ && line_length(target_, line) <= target_.max_line_length;
       // SPL has lines that go on with the block.
       if (!gcode::is_blank(line.front())) ++result_.blocks;
       const std::size_t next = written.find_first_not_of("\r\n", end);
@@ -93,7 +93,7 @@ class RunWriter {
     }
   }
 
-  const gcode::Dialect& target_;
+  const gcode::Control& target_;
   Writer writer_;
   RunText result_;
   bool every_line_fits_ = true;
@@ -138,7 +138,7 @@ bool names_numbers(const OutputPlan& plan, double unit) {
 }  // namespace
 
 std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
-                                 const gcode::Program& program, const gcode::Dialect& target,
+                                 const gcode::Program& program, const gcode::Control& target,
                                  const gcode::ModalState& before, const gcode::ModalState& after,
                                  std::string_view line_end) {
   if (!names_numbers(plan, gcode::millimetres_per(before.units))) return std::nullopt;
@@ -152,15 +152,15 @@ std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
       out.writer().copy_line(program.source.text(run.comments[i].text));
     }
   };
-  NumberFormat format = plan.form == OutputForm::kLines ? target.coordinates(before.units)
-                                                        : target.arc_ends(before.units);
+  NumberFormat format = plan.form == OutputForm::kLines ? place_format(target, before.units)
+                                                        : arc_end_format(target, before.units);
   out.writer().use_coordinates(format);
   auto curve = plan.curves.begin();
   for (std::size_t i = 0; i < plan.moves.size();) {
     const PlannedMove& move = plan.moves[i];
     copy_comments(move.comments_before);
     if (curve != plan.curves.end() && curve->first == i) {
-      if (target.curves() == nullptr) return std::nullopt;
+      if (target.curves == nullptr) return std::nullopt;
       const std::size_t end = i + curve->count;
       const bool last = end == plan.moves.size();
       if (!out.write(*curve, move.feed, last ? std::min(run.decimals, kMostDecimals) : 0)) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/text/program.h"
 #include "postproc/runs/section.h"
@@ -31,11 +31,11 @@ struct RunText {
 //
 // Nothing when a curve is planned that the target cannot say, when arcs are planned and it is not
 // known how their centres are to be given, when a line would be too long, or when the last point
-// has more decimals than can be printed. An arc that the dialect refuses once it is printed is
+// has more decimals than can be printed. An arc that the control refuses once it is printed is
 // written as chords.
 [[nodiscard]] std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
                                                const gcode::Program& program,
-                                               const gcode::Dialect& target,
+                                               const gcode::Control& target,
                                                const gcode::ModalState& before,
                                                const gcode::ModalState& after,
                                                std::string_view line_end);

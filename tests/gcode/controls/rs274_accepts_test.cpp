@@ -6,7 +6,7 @@
 #include <iterator>
 #include <string>
 
-#include "tests/support/dialect_arcs.h"
+#include "tests/support/control_arcs.h"
 #include "tests/support/scratch_folder.h"
 
 namespace batten::gcode {
@@ -15,7 +15,7 @@ namespace {
 bool is_installed() { return std::system("command -v rs274 >/dev/null 2>&1") == 0; }
 
 std::string ten_thousand_arcs(Units units) {
-  const Dialect& linuxcnc = named_dialect("linuxcnc");
+  const Control& linuxcnc = named_control("linuxcnc");
   std::mt19937 random(31);
   std::string text;
   for (int i = 0; i < 10000; ++i) {

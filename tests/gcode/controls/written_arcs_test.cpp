@@ -10,7 +10,7 @@
 #include "gcode/controls/arc_rules.h"
 #include "gcode/controls/built_in.h"
 #include "gcode/state/modal_state.h"
-#include "tests/support/dialect_arcs.h"
+#include "tests/support/control_arcs.h"
 #include "tests/support/interpreted.h"
 
 namespace batten::gcode {
@@ -24,16 +24,16 @@ constexpr Units kBoth[] = {Units::kMillimetre, Units::kInch};
 
 std::vector<std::string> names_of_targets() {
   std::vector<std::string> names = {"linuxcnc"};
-  for (const auto family :
+  for (const auto& family :
        {grbl_family(), printer_family(), pc_family(), machining_center_family(), plc_family()}) {
-    for (const Dialect* each : family) names.emplace_back(each->name());
+    for (const Control& each : family) names.emplace_back(each.name);
   }
   return names;
 }
 
 class EveryTarget : public testing::TestWithParam<std::string> {
  protected:
-  const Dialect& target_ = named_dialect(GetParam());
+  const Control& target_ = named_control(GetParam());
 };
 
 // The end is the writer's own place, and the middle lies where it was meant to within rounding.
@@ -55,8 +55,8 @@ TEST_P(EveryTarget, WritesArcsThatTheReaderUnderstands) {
     const geometry::PathPiece& piece = read.read.motions.back().piece;
     ASSERT_TRUE(std::holds_alternative<Arc>(piece));
     ASSERT_LT((end_point(piece) - out.state().position.mm).norm(), 1e-9);
-    const double step = printed_step(target_.arc_offsets(units), units) +
-                        printed_step(target_.arc_ends(units), units);
+    const double step = printed_step(center_format(target_, units), units) +
+                        printed_step(arc_end_format(target_, units), units);
     ASSERT_LT((point_at(piece, 0.5) - point_at(geometry::PathPiece(wanted), 0.5)).norm(),
               2.5 * step);
   }
@@ -86,7 +86,7 @@ TEST_P(EveryTarget, KeepsItsLinesShort) {
     if (!out.arc_to(wanted, 1234.567891)) continue;
     std::istringstream lines(out.text());
     for (std::string line; std::getline(lines, line);) {
-      EXPECT_LE(target_.line_length(line), target_.max_line_length()) << line;
+      EXPECT_LE(line_length(target_, line), target_.max_line_length) << line;
     }
   }
 }
@@ -105,22 +105,22 @@ TEST_P(EveryTarget, PrintsPointsBlanksAndDigitsAsItsTableSays) {
       ++words;
       if (word[0] == 'G') continue;
       const std::size_t point = word.find('.');
-      if (target_.coordinates(units).always_point) {
+      if (place_format(target_, units).always_point) {
         EXPECT_NE(point, std::string::npos) << text;
       }
       const int most =
-          word[0] == 'F' ? target_.feeds(units).decimals : target_.arc_ends(units).decimals;
+          word[0] == 'F' ? feed_format(target_).decimals : arc_end_format(target_, units).decimals;
       if (point != std::string::npos) {
         EXPECT_LE(word.size() - point - 1, static_cast<std::size_t>(most)) << text;
       }
     }
-    if (target_.blanks_between_words()) {
+    if (target_.blanks) {
       EXPECT_GE(words, 2U) << text;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Dialects, EveryTarget, testing::ValuesIn(names_of_targets()),
+INSTANTIATE_TEST_SUITE_P(Controls, EveryTarget, testing::ValuesIn(names_of_targets()),
                          [](const auto& test) { return test.param; });
 
 // --- the rules of single controls
@@ -137,7 +137,7 @@ std::map<char, double> words_of(const std::string& line) {
 // Klipper: G2 or G3 in every line, no R, an I or J that is not 0, X and Y; then it turns by the
 // angle from start to end about start + (I, J), and goes nowhere below 0.001 mm.
 TEST(Klipper, RunsTenThousandArcsAsTheyAreMeant) {
-  const Dialect& klipper = named_dialect("klipper");
+  const Control& klipper = named_control("klipper");
   std::mt19937 random(21);
   for (int i = 0; i < 10000; ++i) {
     const Arc wanted = random_arc_for(klipper, Units::kMillimetre, 1000, random);
@@ -165,7 +165,7 @@ TEST(Klipper, RunsTenThousandArcsAsTheyAreMeant) {
 // TinyG and g2core: |r1 - r0| above 1 mm, or above 0.1 % of the radius (in the stricter reading of
 // its two thresholds).
 TEST(G2core, TakesTenThousandArcs) {
-  const Dialect& g2core = named_dialect("g2core");
+  const Control& g2core = named_control("g2core");
   std::mt19937 random(22);
   for (int i = 0; i < 10000; ++i) {
     const Arc wanted = random_arc_for(g2core, Units::kMillimetre, 1000, random);
@@ -186,14 +186,14 @@ TEST(G2core, TakesTenThousandArcs) {
 TEST(ByRadius, NamesNoCentre) {
   for (const std::string_view name : {"mach3", "mach4", "uccnc", "hurco", "num", "codesys"}) {
     std::mt19937 random(23);
-    const Dialect& dialect = named_dialect(name);
+    const Control& control = named_control(name);
     for (int i = 0; i < 200; ++i) {
-      const Arc wanted = random_arc_for(dialect, Units::kMillimetre, 300, random);
+      const Arc wanted = random_arc_for(control, Units::kMillimetre, 300, random);
       for (const DistanceMode centers :
            {DistanceMode::kIncremental, DistanceMode::kAbsolute, DistanceMode::kUnknown}) {
         ModalState modal = cutting_in(Units::kMillimetre);
         modal.arc_distance = centers;
-        Writer out(dialect, {modal, {wanted.start, {true, true, true}}}, "\n");
+        Writer out(control, {modal, {wanted.start, {true, true, true}}}, "\n");
         if (!out.arc_to(wanted, 1000)) continue;
         EXPECT_EQ(out.text().find_first_of("IJK"), std::string::npos) << out.text();
         EXPECT_NE(out.text().find(" R"), std::string::npos) << out.text();
@@ -205,7 +205,7 @@ TEST(ByRadius, NamesNoCentre) {
 TEST(ByRadius, RefusesAHalfTurnAndMore) {
   const Point3 start(10, 0, 0);
   for (const double sweep : {3.1416, 4.0, 6.28, -3.1416}) {
-    Writer out = arc_writer(named_dialect("mach3"), start, Units::kMillimetre);
+    Writer out = arc_writer(named_control("mach3"), start, Units::kMillimetre);
     EXPECT_FALSE(out.arc_to(arc_round(start, Point3::Zero(), Vector3::UnitZ(), sweep, 0), 1000));
     EXPECT_EQ(out.text(), "");
   }
@@ -214,11 +214,11 @@ TEST(ByRadius, RefusesAHalfTurnAndMore) {
 // By hand: a quarter turn of radius 10 about the origin.
 TEST(ByRadius, SaysAQuarterTurnSo) {
   const Point3 start(10, 0, 0);
-  Writer mach = arc_writer(named_dialect("mach3"), start, Units::kMillimetre);
+  Writer mach = arc_writer(named_control("mach3"), start, Units::kMillimetre);
   ASSERT_TRUE(mach.arc_to(
       arc_round(start, Point3::Zero(), Vector3::UnitZ(), std::numbers::pi / 2, 0), 1000));
   EXPECT_EQ(mach.text(), "G3 X0 Y10 R10\n");
-  Writer hurco = arc_writer(named_dialect("hurco"), start, Units::kMillimetre);
+  Writer hurco = arc_writer(named_control("hurco"), start, Units::kMillimetre);
   ASSERT_TRUE(hurco.arc_to(
       arc_round(start, Point3::Zero(), Vector3::UnitZ(), -std::numbers::pi / 2, 0), 600));
   EXPECT_EQ(hurco.text(), "G2 X0. Y-10. R10. F600.\n");
@@ -230,7 +230,7 @@ TEST(ByRadius, SaysAQuarterTurnSo) {
 TEST(Printers, NameTheMotionInEveryBlockAndBothAxesInEveryArc) {
   for (const std::string_view name : {"marlin", "klipper", "reprapfirmware", "smoothieware"}) {
     SCOPED_TRACE(name);
-    Writer out = arc_writer(named_dialect(name), Point3(0, 0, 0), Units::kMillimetre);
+    Writer out = arc_writer(named_control(name), Point3(0, 0, 0), Units::kMillimetre);
     out.line_to({1, 0, 0}, 1000);
     out.line_to({2, 0, 0}, 1000);
     ASSERT_TRUE(
@@ -243,7 +243,7 @@ TEST(Printers, NameTheMotionInEveryBlockAndBothAxesInEveryArc) {
 }
 
 TEST(Printers, SayAFeedThatIsRestoredBehindAMotionWord) {
-  Writer out = arc_writer(named_dialect("klipper"), Point3(0, 0, 0), Units::kMillimetre);
+  Writer out = arc_writer(named_control("klipper"), Point3(0, 0, 0), Units::kMillimetre);
   out.line_to({1, 0, 0}, 700);
   ModalState after = cutting_in(Units::kMillimetre);
   out.restore(after);

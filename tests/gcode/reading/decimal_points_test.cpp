@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "gcode/control/target_table.h"
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
@@ -198,9 +198,9 @@ class WhoHasSuchNumbers : public testing::TestWithParam<WhoCase> {};
 
 TEST_P(WhoHasSuchNumbers, IsSaidByTheSourceThenTheTarget) {
   const std::string target = GetParam().target;
-  const Dialect* dialect = target.empty() ? nullptr : find_dialect(target);
-  EXPECT_EQ(target.empty(), dialect == nullptr);
-  EXPECT_EQ(decimals_read(GetParam().source, dialect, Language::kRs274, {}).pointless,
+  const Control* control = target.empty() ? nullptr : find_control(target);
+  EXPECT_EQ(target.empty(), control == nullptr);
+  EXPECT_EQ(decimals_read(GetParam().source, control, Language::kRs274, {}).pointless,
             GetParam().expected);
 }
 
@@ -232,7 +232,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Decimals, OtherLanguagesHaveNoSuchNumbers) {
   for (const Language language : {Language::kSiemens, Language::kKlartext}) {
-    EXPECT_EQ(decimals_read(SourceKind::kAuto, find_dialect("fanuc"), language, kIncrements),
+    EXPECT_EQ(decimals_read(SourceKind::kAuto, find_control("fanuc"), language, kIncrements),
               gcode::Decimals{});
   }
 }
@@ -246,11 +246,10 @@ TEST(Decimals, WhatTheUserSaysCounts) {
 // A profile whose numbers have no point says how its control reads them.
 TEST(Decimals, AProfileThatWritesNoPointNeedsNone) {
   for (const char* name : {"fanuc", "haas"}) {
-    const Dialect* base = find_dialect(name);
-    TargetTable table = table_of(*base);
-    EXPECT_TRUE(base->with_values(table)->may_imply_decimals()) << name;
-    table.decimal_point = false;
-    EXPECT_FALSE(base->with_values(table)->may_imply_decimals()) << name;
+    Control mine = *find_control(name);
+    EXPECT_TRUE(may_imply_decimals(mine)) << name;
+    mine.decimal_point = false;
+    EXPECT_FALSE(may_imply_decimals(mine)) << name;
   }
 }
 

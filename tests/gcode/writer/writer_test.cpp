@@ -33,9 +33,9 @@ ModalState cutting(Units units = Units::kMillimetre) {
   return modal;
 }
 
-Writer writer_at(std::string_view dialect, const ModalState& modal, const Point3& place,
+Writer writer_at(std::string_view control, const ModalState& modal, const Point3& place,
                  std::string_view line_end = "\n") {
-  return {*find_dialect(dialect), {modal, {place, {true, true, true}}}, line_end};
+  return {*find_control(control), {modal, {place, {true, true, true}}}, line_end};
 }
 
 // Counter-clockwise seen from the tip of `axis` for a positive sweep.
@@ -93,7 +93,7 @@ TEST(Writer, MeetsAPlaceWithMoreDecimalsWhereAskedTo) {
 }
 
 TEST(Writer, AnUnknownAxisIsNamed) {
-  Writer out(*find_dialect("grbl"), {cutting(), {Point3::Zero(), {true, false, true}}}, "\n");
+  Writer out(*find_control("grbl"), {cutting(), {Point3::Zero(), {true, false, true}}}, "\n");
   out.line_to({0, 0, 0}, 1000);
   EXPECT_EQ(out.text(), "Y0\n");
 }
@@ -279,14 +279,14 @@ struct RandomArc {
   Units units;
 };
 
-// Radii from 0.1 mm to the dialect's greatest, sweeps from 1 degree to 172, all planes, both
+// Radii from 0.1 mm to the control's greatest, sweeps from 1 degree to 172, all planes, both
 // directions, some helical, both units, centres up to 300 mm out.
-RandomArc random_arc(std::mt19937& random, const Dialect& dialect) {
+RandomArc random_arc(std::mt19937& random, const Control& control) {
   std::uniform_real_distribution<double> unit(0, 1);
   // A printed centre is off by up to 0.0018 mm (half of 0.0001 in, on two axes): with less room a
-  // radius of 0.1 mm may be printed as one that the dialect does not take.
-  const double least = 1.05 * dialect.min_arc_radius();
-  const double radius = least * std::pow(0.99 * dialect.max_arc_radius() / least, unit(random));
+  // radius of 0.1 mm may be printed as one that the control does not take.
+  const double least = 1.05 * control.min_radius;
+  const double radius = least * std::pow(0.99 * control.max_radius / least, unit(random));
   const Vector3 axis =
       Vector3::Unit(static_cast<int>(3 * unit(random)) % 3) * (unit(random) < 0.5 ? -1 : 1);
   const double sweep = (0.02 + 2.98 * unit(random)) * (unit(random) < 0.5 ? -1 : 1);
@@ -299,9 +299,9 @@ RandomArc random_arc(std::mt19937& random, const Dialect& dialect) {
 }
 
 // The start, as it would have been printed.
-Point3 on_grid(const Point3& place, const Dialect& dialect, Units units) {
+Point3 on_grid(const Point3& place, const Control& control, Units units) {
   Point3 printed;
-  const int decimals = dialect.arc_ends(units).decimals;
+  const int decimals = arc_end_format(control, units).decimals;
   for (int i = 0; i < 3; ++i) {
     printed[i] = rounded(place[i] / millimetres_per(units), decimals) * millimetres_per(units);
   }
@@ -355,11 +355,11 @@ double mismatch_of(const ReadArc& arc) {
 
 class WrittenArcs : public testing::TestWithParam<std::string> {
  protected:
-  const Dialect& dialect_ = *find_dialect(GetParam());
+  const Control& control_ = *find_control(GetParam());
 
   Writer writer_from(const Point3& start, Units units) const {
-    Writer out(dialect_, {cutting(units), {start, {true, true, true}}}, "\n");
-    out.use_coordinates(dialect_.arc_ends(units));
+    Writer out(control_, {cutting(units), {start, {true, true, true}}}, "\n");
+    out.use_coordinates(arc_end_format(control_, units));
     return out;
   }
 };
@@ -369,18 +369,18 @@ TEST_P(WrittenArcs, HaveRadiiThatTheControlTakes) {
   double worst = 0;  // in steps of the offsets
   double mean = 0;
   for (int i = 0; i < 10000; ++i) {
-    const RandomArc wanted = random_arc(random, dialect_);
-    const Point3 start = on_grid(wanted.arc.start, dialect_, wanted.units);
+    const RandomArc wanted = random_arc(random, control_);
+    const Point3 start = on_grid(wanted.arc.start, control_, wanted.units);
     Writer out = writer_from(start, wanted.units);
     ASSERT_TRUE(out.arc_to(wanted.arc, *cutting(wanted.units).feed)) << "arc " << i;
     const ReadArc read = read_back(out.text(), start, wanted.units);
-    const double step = printed_step(dialect_.arc_offsets(wanted.units), wanted.units);
+    const double step = printed_step(center_format(control_, wanted.units), wanted.units);
     worst = std::max(worst, mismatch_of(read) / step);
     mean += mismatch_of(read) / step / 10000;
     ASSERT_LE(mismatch_of(read), 0.0283) << "arc " << i << ": " << out.text();
     if (GetParam() == "grbl") {
       ASSERT_FALSE(grbl_refuses(read)) << "arc " << i << ": " << out.text();
-      ASSERT_LE(dialect_.line_length(out.text()), 79U);
+      ASSERT_LE(line_length(control_, out.text()), 79U);
     }
   }
   // A centre off across the bisector by e makes a mismatch of 2 e sin(sweep / 2), and e is never
@@ -393,8 +393,8 @@ TEST_P(WrittenArcs, HaveRadiiThatTheControlTakes) {
 TEST_P(WrittenArcs, LeadToTheWritersOwnPosition) {
   std::mt19937 random(2);
   for (int i = 0; i < 2000; ++i) {
-    const RandomArc wanted = random_arc(random, dialect_);
-    const Point3 start = on_grid(wanted.arc.start, dialect_, wanted.units);
+    const RandomArc wanted = random_arc(random, control_);
+    const Point3 start = on_grid(wanted.arc.start, control_, wanted.units);
     Writer out = writer_from(start, wanted.units);
     ASSERT_TRUE(out.arc_to(wanted.arc, 1000));
     const ReadArc read = read_back(out.text(), start, wanted.units);
@@ -408,8 +408,8 @@ TEST_P(WrittenArcs, LeadToTheWritersOwnPosition) {
 TEST_P(WrittenArcs, GoTheWayThatWasWanted) {
   std::mt19937 random(3);
   for (int i = 0; i < 2000; ++i) {
-    const RandomArc wanted = random_arc(random, dialect_);
-    const Point3 start = on_grid(wanted.arc.start, dialect_, wanted.units);
+    const RandomArc wanted = random_arc(random, control_);
+    const Point3 start = on_grid(wanted.arc.start, control_, wanted.units);
     Writer out = writer_from(start, wanted.units);
     ASSERT_TRUE(out.arc_to(wanted.arc, 1000));
     const ReadArc read = read_back(out.text(), start, wanted.units);
@@ -420,7 +420,7 @@ TEST_P(WrittenArcs, GoTheWayThatWasWanted) {
     const Arc& arc = wanted.arc;
     const Arc wanted_half = arc_about(arc.start, arc.center, arc.axis, arc.sweep / 2,
                                       (arc.end - arc.start).dot(arc.axis) / 2);
-    const double step = printed_step(dialect_.coordinates(wanted.units), wanted.units);
+    const double step = printed_step(place_format(control_, wanted.units), wanted.units);
     ASSERT_LT((half.end - wanted_half.end).norm(), 2.5 * step) << out.text();
   }
 }
@@ -431,9 +431,9 @@ INSTANTIATE_TEST_SUITE_P(Writer, WrittenArcs, testing::Values("linuxcnc", "grbl"
 TEST(Writer, PrintedPlacesAreItsOwnPosition) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> place(-500, 500);
-  for (const Dialect* dialect : dialects()) {
+  for (const Control& each : controls()) {
     for (const Units units : {Units::kMillimetre, Units::kInch}) {
-      Writer out(*dialect, {cutting(units), {Point3::Zero(), {true, true, true}}}, "\n");
+      Writer out(each, {cutting(units), {Point3::Zero(), {true, true, true}}}, "\n");
       Point3 control = Point3::Zero();
       std::size_t read = 0;
       for (int i = 0; i < 2000; ++i) {
@@ -452,12 +452,12 @@ TEST(Writer, PrintedPlacesAreItsOwnPosition) {
 // --------------------------------------------------------------------------------
 
 // A contour with lines, arcs in three planes, a helix, a feed change and a comment, then restored.
-std::string contour(std::string_view dialect, Units units) {
+std::string contour(std::string_view control, Units units) {
   const double mm = millimetres_per(units);
   ModalState before = cutting(units);
   before.motion = MotionMode::kRapid;
-  Writer out = writer_at(dialect, before, Point3::Zero());
-  out.use_coordinates(find_dialect(dialect)->arc_ends(units));
+  Writer out = writer_at(control, before, Point3::Zero());
+  out.use_coordinates(arc_end_format(*find_control(control), units));
   out.line_to(mm * Point3(1.5, 0, 0), *before.feed);
   const auto arc = [&](const Point3& center, const Vector3& axis, double sweep, double rise) {
     const Point3 start = out.state().position.mm;
@@ -484,7 +484,7 @@ std::string expected_text(const std::string& file) {
 }
 
 struct ContourCase {
-  std::string dialect;
+  std::string control;
   Units units;
   std::string file;
 };
@@ -493,7 +493,7 @@ class ContourText : public testing::TestWithParam<ContourCase> {};
 
 TEST_P(ContourText, IsByteForByteTheCase) {
   const ContourCase& test = GetParam();
-  EXPECT_EQ(contour(test.dialect, test.units), expected_text(test.file));
+  EXPECT_EQ(contour(test.control, test.units), expected_text(test.file));
 }
 
 INSTANTIATE_TEST_SUITE_P(Writer, ContourText,

@@ -86,15 +86,15 @@ std::string unnumbered(const std::string& text) {
 TEST(ConversionDwells, WaitAsLongInEachLanguage) {
   for (const Waiting& from : waitings()) {
     for (const Waited& to : waiteds()) {
-      const gcode::Dialect& target = *gcode::find_dialect(to.target);
-      if (target.language() == from.language) continue;
+      const gcode::Control& target = *gcode::find_control(to.target);
+      if (target.language == from.language) continue;
       SCOPED_TRACE(std::string(from.name) + " to " + to.target);
       const std::string text = around(from.language, from.block);
       const SmoothResult result = converted(from, text, to.target);
       ASSERT_TRUE(result.proved) << testing::PrintToString(told(result, text));
       EXPECT_NE(unnumbered(result.text).find("\n" + to.block), std::string::npos) << result.text;
       const ReadAs before(text, from.language, nullptr, gcode::dwells_of(from.source));
-      const ReadAs after(result.text, target.language(), nullptr, target.dwell_form());
+      const ReadAs after(result.text, target.language, nullptr, target.dwell_form);
       EXPECT_TRUE(verify(before.read(), after.read(), 0.01).proved());
     }
   }
@@ -189,7 +189,7 @@ TEST(ConversionDwells, AreCopiedWhereTheyLastAsLong) {
   const auto first_told = [](DwellForm source, const char* block, std::string_view target) {
     const ReadAs read(std::string(block) + "\n", Language::kRs274, nullptr, source);
     gcode::Diagnostics found;
-    tell_what_cannot_be_said(read.program, *gcode::find_dialect(target), found);
+    tell_what_cannot_be_said(read.program, *gcode::find_control(target), found);
     return found.empty() ? std::string("taken") : found.front().message;
   };
   EXPECT_EQ(first_told(DwellForm::kSecondsP, "G4 P2", "grbl"), "taken");

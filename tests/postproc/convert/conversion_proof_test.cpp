@@ -49,7 +49,7 @@ TEST(ConversionWays, ThereAndBackDoTheSame) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const std::string text = RandomProgram(seed).text();
     for (const char* target : {"heidenhain", "siemens"}) {
-      const Language language = gcode::find_dialect(target)->language();
+      const Language language = gcode::find_control(target)->language;
       const SmoothResult there = smoothed(text, ways_to(target));
       ASSERT_TRUE(there.proved) << target << testing::PrintToString(told(there, text)) << text;
       EXPECT_EQ(events_of(there.text, language), events_of(text, Language::kRs274)) << target;

@@ -83,7 +83,7 @@ TEST(Conversion, ListsTheBlocksThatCannotBeSaid) {
 std::vector<std::string> obstacles(const std::string& text, std::string_view target) {
   const ReadText read(text);
   gcode::Diagnostics found;
-  tell_what_cannot_be_said(read.program, *gcode::find_dialect(target), found);
+  tell_what_cannot_be_said(read.program, *gcode::find_control(target), found);
   std::vector<std::string> messages;
   for (const gcode::Diagnostic& each : found) messages.push_back(each.message);
   return messages;

@@ -202,7 +202,7 @@ TEST_P(ConvertedWave, IsSmoothedAndProvedAgainstTheOldProgram) {
   ASSERT_TRUE(result.proved) << testing::PrintToString(told(result, text));
   EXPECT_GE(rewritten_runs(result), 1U);
   EXPECT_LT(lines_of(result.text).size(), lines_of(text).size());
-  EXPECT_TRUE(is_proved(text, GetParam().from, result.text, options.target->language()));
+  EXPECT_TRUE(is_proved(text, GetParam().from, result.text, options.target->language));
   for (const RunReport& run : result.runs) {
     if (run.status != RunStatus::kRewritten) continue;
     EXPECT_GE(run.first_line, 5U);

@@ -55,8 +55,8 @@ void expect_rising(const std::string& text) {
 
 Verification proof_of(const std::string& before, const std::string& after,
                       const SmoothOptions& options) {
-  const KlartextProgram old_program(before, options.target->curves());
-  const KlartextProgram new_program(after, options.target->curves());
+  const KlartextProgram old_program(before, options.target->curves);
+  const KlartextProgram new_program(after, options.target->curves);
   return verify({&old_program.program, &old_program.read},
                 {&new_program.program, &new_program.read},
                 {options.tolerance_mm, options.tolerance_kind, options.side});
@@ -117,7 +117,7 @@ TEST(Klartext, SplinesAreOnRequestOnly) {
 // Written as the body of a program, each curve is read back to within its digits and proved by the
 // control's own polynomials: none of its alarms sounds.
 TEST(Klartext, TwoHundredRandomCurvesAreWrittenReadAndProved) {
-  const gcode::Dialect& target = *gcode::find_dialect("itnc530");
+  const gcode::Control& target = *gcode::find_control("itnc530");
   for (unsigned seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const geometry::BsplineCurve curve = tests::random_curve(seed, seed % 2 == 1);
@@ -132,7 +132,7 @@ TEST(Klartext, TwoHundredRandomCurvesAreWrittenReadAndProved) {
                                  start.x(), start.y(), start.z()) +
                          writer.text() + "END PGM A MM\n",
                      0);
-    const KlartextProgram read(text, target.curves());
+    const KlartextProgram read(text, target.curves);
     geometry::Path path;
     for (std::size_t i = 1; i < read.read.motions.size(); ++i) {
       path.push_back(read.read.motions[i].piece);
@@ -222,7 +222,7 @@ TEST(Klartext, GoldenCurveIsWrittenAsTheManualSays) {
   gcode::ModalState modal;
   modal.units = gcode::Units::kMillimetre;
   modal.feed = 1000;
-  gcode::Writer writer(*gcode::find_dialect("itnc530"),
+  gcode::Writer writer(*gcode::find_control("itnc530"),
                        {modal, {geometry::Point3::Zero(), {true, true, true}}}, "\n");
   ASSERT_TRUE(writer.curve_to(tests::golden_curve(), 3000, 0));
   writer.line_to({50, 0, 0}, 3000);

@@ -25,9 +25,9 @@ SmoothOptions converting_to(std::string_view target) {
 // Plain words against a text of the target's language.
 Verification verdict_for(std::string_view target, const std::string& before,
                          const std::string& after, double tolerance_mm = 0.01) {
-  const gcode::Dialect& dialect = *gcode::find_dialect(target);
+  const gcode::Control& control = *gcode::find_control(target);
   const ReadAs old_text(before, gcode::Language::kRs274);
-  const ReadAs new_text(after, dialect.language(), dialect.curves());
+  const ReadAs new_text(after, control.language, control.curves);
   return verify(old_text.read(), new_text.read(), tolerance_mm);
 }
 

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "postproc/machine/machine_fields.h"
 #include "postproc/machine/machine_path_limits.h"
@@ -48,8 +48,8 @@ TEST(BuiltInMachines, AreSound) {
 }
 
 TEST(BuiltInMachines, RunTheTargetsThatNameThem) {
-  for (const gcode::Dialect* target : gcode::dialects()) {
-    EXPECT_NE(find_machine(target->default_machine()), nullptr) << target->name();
+  for (const gcode::Control& target : gcode::controls()) {
+    EXPECT_NE(find_machine(target.machine), nullptr) << target.name;
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 SmoothOptions good_options() {
   SmoothOptions options;
-  options.target = gcode::find_dialect("linuxcnc");
+  options.target = gcode::find_control("linuxcnc");
   options.machine = find_machine("linuxcnc");
   return options;
 }
@@ -89,17 +89,16 @@ TEST(Options, TakeEveryRuleThatCanBeLiftedAndNoOther) {
 }
 
 TEST(ToleranceShares, AddUpToLessThanTheTolerance) {
-  for (const gcode::Dialect* target : gcode::dialects()) {
+  for (const gcode::Control& target : gcode::controls()) {
     for (const auto units : {gcode::Units::kMillimetre, gcode::Units::kInch}) {
       for (const auto& form : forms()) {
         for (const double tolerance : {0.0005, 0.005, 0.01, 0.1, 1.0}) {
           SmoothOptions options = good_options();
-          options.target = target;
+          options.target = &target;
           options.output = form.value;
           options.tolerance_mm = tolerance;
           const ToleranceShares shares = share_tolerance(options, units);
-          SCOPED_TRACE(testing::Message()
-                       << target->name() << " " << form.name << " " << tolerance);
+          SCOPED_TRACE(testing::Message() << target.name << " " << form.name << " " << tolerance);
           EXPECT_GT(shares.rounding, 0);
           if (shares.smoothing > 0) {
             EXPECT_LE(shares.smoothing + shares.form + shares.rounding, tolerance);
@@ -119,8 +118,8 @@ TEST(ToleranceShares, AddUpToLessThanTheTolerance) {
 TEST(ToleranceShares, RoundingIsHalfAStepOnThreeAxes) {
   SmoothOptions options = good_options();
   options.output = Form::kLines;
-  const int mm = options.target->coordinates(gcode::Units::kMillimetre).decimals;
-  const int inch = options.target->coordinates(gcode::Units::kInch).decimals;
+  const int mm = place_format(*options.target, gcode::Units::kMillimetre).decimals;
+  const int inch = place_format(*options.target, gcode::Units::kInch).decimals;
   EXPECT_NEAR(share_tolerance(options, gcode::Units::kMillimetre).rounding,
               0.8660254037844386 * std::pow(10, -mm), 1e-12);
   EXPECT_NEAR(share_tolerance(options, gcode::Units::kInch).rounding,

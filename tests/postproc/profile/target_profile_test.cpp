@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "gcode/control/target_table.h"
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "tests/support/scratch_folder.h"
 
@@ -17,7 +17,7 @@ namespace {
 class ProfileFile : public testing::Test {
  protected:
   std::shared_ptr<const TargetProfile> read(const std::string& text,
-                                            const gcode::Dialect* target = nullptr) {
+                                            const gcode::Control* target = nullptr) {
     std::ofstream(file_) << text;
     problems_.clear();
     return read_target_profile(file_, target, problems_);
@@ -36,23 +36,22 @@ class ProfileFile : public testing::Test {
 };
 
 TEST_F(ProfileFile, ThatIsShownReadsBackTheSame) {
-  for (const gcode::Dialect* target : gcode::dialects()) {
-    SCOPED_TRACE(target->name());
-    const auto profile = read(profile_text(*target));
+  for (const gcode::Control& target : gcode::controls()) {
+    SCOPED_TRACE(target.name);
+    const auto profile = read(profile_text(target));
     ASSERT_NE(profile, nullptr) << (problems_.empty() ? "" : problems_[0]);
-    EXPECT_EQ(profile->base, target);
-    EXPECT_TRUE(gcode::table_of(*profile->adapted) == gcode::table_of(*target));
+    EXPECT_EQ(profile->base, &target);
     EXPECT_TRUE(profile->words.empty());
-    EXPECT_EQ(profile_text(*profile->adapted).substr(0, 40), profile_text(*target).substr(0, 40));
+    EXPECT_EQ(profile_text(profile->adapted), profile_text(target));
   }
 }
 
 // The remarks of a profile are what a user takes the sign off.
 TEST_F(ProfileFile, ShowsSmoothingWordsThatItTakes) {
   int shown = 0;
-  for (const gcode::Dialect* target : gcode::dialects()) {
-    std::string text = "based-on = \"" + std::string(target->name()) + "\"\n[words]\n";
-    for (const std::string_view hint : target->smoothing_words()) {
+  for (const gcode::Control& target : gcode::controls()) {
+    std::string text = "based-on = \"" + std::string(target.name) + "\"\n[words]\n";
+    for (const std::string_view hint : target.smoothing_words) {
       if (hint.starts_with("before-run") || hint.starts_with("after-run")) {
         text += std::string(hint) + "\n";
         ++shown;
@@ -81,7 +80,7 @@ max-sweep = 90
 min-radius = 1
 )");
   ASSERT_NE(profile, nullptr) << problems_.at(0);
-  gcode::TargetTable expected = gcode::table_of(*gcode::find_dialect("haas"));
+  gcode::Control expected = *gcode::find_control("haas");
   expected.name = "vf2";
   expected.places.mm = 4;
   expected.arc_ends.mm = 4;  // never fewer than places
@@ -93,14 +92,14 @@ min-radius = 1
   expected.max_sweep_deg = 90;
   expected.min_radius = 1;
   EXPECT_EQ(problems_.size(), 0U);
-  EXPECT_TRUE(gcode::table_of(*profile->adapted) == expected);
+  EXPECT_EQ(profile_text(profile->adapted), profile_text(expected));
 }
 
 TEST_F(ProfileFile, TakesTheTargetThatIsNamedBesideIt) {
-  const auto profile = read("[lines]\nblanks = false\n", gcode::find_dialect("grbl"));
+  const auto profile = read("[lines]\nblanks = false\n", gcode::find_control("grbl"));
   ASSERT_NE(profile, nullptr);
-  EXPECT_EQ(profile->adapted->name(), "grbl");
-  EXPECT_FALSE(profile->adapted->blanks_between_words());
+  EXPECT_EQ(profile->adapted.name, "grbl");
+  EXPECT_FALSE(profile->adapted.blanks);
 }
 
 TEST_F(ProfileFile, ReadsWords) {
@@ -113,7 +112,7 @@ after-run = ["G187"]
 )toml");
   ASSERT_NE(profile, nullptr) << problems_.at(0);
   const ProfileWords filled =
-      filled_in(profile->words, 0.0127, gcode::Units::kInch, *profile->adapted);
+      filled_in(profile->words, 0.0127, gcode::Units::kInch, profile->adapted);
   EXPECT_EQ(filled.header, std::vector<std::string>{"(smoothed within 0.0005)"});
   EXPECT_EQ(filled.before_run, std::vector<std::string>{"G187 P3 E0.0005"});
   EXPECT_EQ(filled.after_run, std::vector<std::string>{"G187"});
@@ -181,7 +180,7 @@ TEST_F(ProfileFile, NeedsATarget) {
   EXPECT_NE(problems_[0].find(":1:12: based-on: \"hass\", expected one of linuxcnc"),
             std::string::npos)
       << problems_[0];
-  EXPECT_EQ(read("based-on = \"haas\"\n", gcode::find_dialect("grbl")), nullptr);
+  EXPECT_EQ(read("based-on = \"haas\"\n", gcode::find_control("grbl")), nullptr);
   ASSERT_EQ(problems_.size(), 1U);
   EXPECT_NE(problems_[0].find("\"grbl\", which --target names"), std::string::npos);
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "postproc/proof/verification.h"
 #include "tests/support/interpreted.h"
@@ -21,7 +21,7 @@ std::vector<Violation> breaches_of(const std::string& before, const std::string&
   const ReadProgram a{&old_read.program, &old_read.read};
   const ReadProgram b{&new_read.program, &new_read.read};
   const Promise promise(1.0, geometry::ToleranceKind::kPath, geometry::Side::kBoth,
-                        gcode::find_dialect("linuxcnc"));
+                        gcode::find_control("linuxcnc"));
   return verify(a, b, promise).violations;
 }
 

@@ -91,7 +91,7 @@ TEST_F(HtmlReport, IsTheSameForTheSameResult) { EXPECT_EQ(page(), page()); }
 
 // A page that did not read the curves could match no stretch of the new path with the old one.
 TEST_F(HtmlReport, DrawsCurvesOfTheTarget) {
-  options_.target = gcode::find_dialect("fanuc");
+  options_.target = gcode::find_control("fanuc");
   options_.decimals = gcode::Decimals{};
   options_.output = Form::kCurves;
   const std::string before = bend_program();

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
-#include "gcode/controls/rs274_family.h"
 #include "gcode/curves/curve_format.h"
 #include "gcode/curves/nurbs.h"
 #include "gcode/curves/siemens_poly.h"
@@ -36,18 +36,18 @@ using geometry::Point3;
 
 std::vector<std::string> targets_with_curves() {
   std::vector<std::string> names;
-  for (const gcode::Dialect* dialect : gcode::dialects()) {
+  for (const gcode::Control& control : gcode::controls()) {
     // Klartext is no language of these programs: klartext_test.cpp.
-    const bool klartext = dialect->language() == gcode::Language::kKlartext;
-    if (dialect->curves() != nullptr && !klartext) names.emplace_back(dialect->name());
+    const bool klartext = control.language == gcode::Language::kKlartext;
+    if (control.curves != nullptr && !klartext) names.emplace_back(control.name);
   }
   return names;
 }
 
 class Curves : public testing::TestWithParam<std::string> {
  protected:
-  const gcode::Dialect& target() const { return *gcode::find_dialect(GetParam()); }
-  const gcode::CurveFormat& format() const { return *target().curves(); }
+  const gcode::Control& target() const { return *gcode::find_control(GetParam()); }
+  const gcode::CurveFormat& format() const { return *target().curves; }
 
   SmoothOptions options() const {
     SmoothOptions wanted = options_for(GetParam());
@@ -103,9 +103,9 @@ std::vector<BsplineCurve> sayable(const BsplineCurve& curve, const gcode::CurveF
 
 // Half a step of the last decimal on each of three axes is sqrt(3) / 2 of it; that of other numbers
 // moves a curve by less.
-void expect_read_back(const BsplineCurve& curve, const gcode::Dialect& target) {
+void expect_read_back(const BsplineCurve& curve, const gcode::Control& target) {
   const auto units = gcode::Units::kMillimetre;
-  const double step = gcode::printed_step(target.coordinates(units), units);
+  const double step = gcode::printed_step(place_format(target, units), units);
   const Point3 start = curve.control_points().front();
   gcode::ModalState modal;
   modal.motion = gcode::MotionMode::kLine;
@@ -114,7 +114,7 @@ void expect_read_back(const BsplineCurve& curve, const gcode::Dialect& target) {
   gcode::Writer writer(target, {modal, {start, {true, true, true}}}, "\n");
   ASSERT_TRUE(writer.curve_to(curve, 2000, 0));
   writer.end_curve();
-  const Path read = cuts_of(head_at(start) + writer.text(), *target.curves());
+  const Path read = cuts_of(head_at(start) + writer.text(), *target.curves);
   ASSERT_FALSE(read.empty()) << writer.text();
   const auto found = geometry::compare_paths(path_of(curve), read, 2 * step);
   EXPECT_EQ(found.verdict, geometry::Verdict::kProved) << found.bounds.at_least << "\n"
@@ -166,7 +166,7 @@ std::string alarms_of(const std::string& text, const std::string& target) {
   gcode::CurveAlarms alarms;
   if (target == "siemens") {
     alarms = gcode::poly_alarms(program);
-  } else if (gcode::find_dialect(target)->curves()->name() == "G06.2") {
+  } else if (gcode::find_control(target)->curves->name() == "G06.2") {
     alarms = gcode::nurbs_alarms(program, rules_of(target));
   }
   std::string all;
@@ -362,24 +362,6 @@ class CoarseFormat final : public gcode::CurveFormat {
   gcode::NurbsRules rules_;
 };
 
-class CoarseTarget final : public gcode::Rs274Dialect {
- public:
-  explicit CoarseTarget(const gcode::CurveFormat& format) : format_(format) {}
-  std::string_view name() const override { return "coarse"; }
-  std::string_view description() const override { return "curves with too few digits"; }
-  gcode::NumberFormat coordinates(gcode::Units) const override { return {.decimals = 4}; }
-  gcode::NumberFormat arc_offsets(gcode::Units) const override { return {.decimals = 5}; }
-  std::size_t max_line_length() const override { return 252; }
-  std::string_view arc_complaint(const geometry::Arc&, gcode::Units) const override { return {}; }
-  double min_arc_radius() const override { return 0.1; }
-  double max_arc_radius() const override { return 1e4; }
-  const gcode::CurveFormat* curves() const override { return &format_; }
-  std::string_view default_machine() const override { return "linuxcnc"; }
-
- private:
-  const gcode::CurveFormat& format_;
-};
-
 TEST_P(Curves, ThatAreNotVerifiedAreToldOf) {
   const SmoothResult result = smoothed(bend_program(), options());
   const bool told = std::ranges::any_of(result.diagnostics, [](const gcode::Diagnostic& found) {
@@ -390,7 +372,10 @@ TEST_P(Curves, ThatAreNotVerifiedAreToldOf) {
 
 TEST_P(Curves, OfTooFewDigitsAreNotProvedAndGoBack) {
   const CoarseFormat coarse(format(), rules_of(GetParam()));
-  const CoarseTarget coarse_target(coarse);
+  gcode::Control coarse_target;
+  coarse_target.centers = {5, 5};
+  coarse_target.places = coarse_target.arc_ends = {4, 4};
+  coarse_target.curves = &coarse;
   SmoothOptions wanted = options();
   wanted.target = &coarse_target;
   const std::string before = bend_program();

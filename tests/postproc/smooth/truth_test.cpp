@@ -161,7 +161,7 @@ double rms_of(const std::string& text, std::string_view target = "linuxcnc") {
   const gcode::Program program = gcode::parse(source, ignored);
   SurfaceDistances distances;
   gcode::ReadOptions reading;
-  reading.curves = gcode::find_dialect(target)->curves();
+  reading.curves = gcode::find_control(target)->curves;
   for (const gcode::Motion& motion : gcode::interpret(program, reading, ignored).motions) {
     if (motion.kind == gcode::MotionKind::kRapid) continue;
     const double step = geometry::length_of(motion.piece) / kPlacesPerEdge;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "gcode/control/target_table.h"
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "tests/support/wavy_programs.h"
 
@@ -13,18 +13,18 @@ namespace {
 
 std::vector<std::string> target_names() {
   std::vector<std::string> names = {"linuxcnc"};
-  for (const auto family : {gcode::grbl_family(), gcode::printer_family(), gcode::pc_family(),
-                            gcode::machining_center_family(), gcode::plc_family()}) {
-    for (const gcode::Dialect* each : family) names.emplace_back(each->name());
+  for (const auto& family : {gcode::grbl_family(), gcode::printer_family(), gcode::pc_family(),
+                             gcode::machining_center_family(), gcode::plc_family()}) {
+    for (const gcode::Control& each : family) names.emplace_back(each.name);
   }
   return names;
 }
 
 // Controls without inches refuse G20; some say units as G70 and G71, one not at all.
-std::string unit_word(const gcode::Dialect& target, gcode::Units units) {
+std::string word_of_units(const gcode::Control& target, gcode::Units units) {
   const bool inch = units == gcode::Units::kInch;
-  if (target.other_meaning(210).empty()) {
-    if (!target.other_meaning(200).empty() && inch) return "";
+  if (other_meaning(target, 210).empty()) {
+    if (!other_meaning(target, 200).empty() && inch) return "";
     return inch ? "G20" : "G21";
   }
   return inch ? "G70" : "G71";
@@ -32,7 +32,7 @@ std::string unit_word(const gcode::Dialect& target, gcode::Units units) {
 
 class EveryTargetSmooths : public testing::TestWithParam<std::string> {
  protected:
-  const gcode::Dialect& target_ = *gcode::find_dialect(GetParam());
+  const gcode::Control& target_ = *gcode::find_control(GetParam());
 
   static std::string program(const Wave& wave, const std::string& units) {
     std::string text = wave_program(wave, units);
@@ -47,9 +47,9 @@ class EveryTargetSmooths : public testing::TestWithParam<std::string> {
   void expect_fits(const std::string& before, const SmoothResult& result) const {
     const auto old_lines = lines_of(before);
     for (const std::string& line : lines_of(result.text)) {
-      EXPECT_LE(target_.line_length(line), target_.max_line_length()) << line;
+      EXPECT_LE(line_length(target_, line), target_.max_line_length) << line;
       if (std::ranges::find(old_lines, line) != old_lines.end()) continue;
-      if (target_.repeats_words() && !line.starts_with(';') && !line.starts_with('(')) {
+      if (target_.repeats_words && !line.starts_with(';') && !line.starts_with('(')) {
         EXPECT_TRUE(line.starts_with('G')) << line;
       }
     }
@@ -62,7 +62,7 @@ TEST_P(EveryTargetSmooths, AWaveInMillimetresProved) {
     options.output = form;
     options.tolerance_mm = 0.02;
     const std::string text =
-        program({.noise = 0.003}, unit_word(target_, gcode::Units::kMillimetre));
+        program({.noise = 0.003}, word_of_units(target_, gcode::Units::kMillimetre));
     const SmoothResult result = smoothed(text, options);
     ASSERT_TRUE(result.understood);
     EXPECT_TRUE(result.proved);
@@ -77,7 +77,7 @@ TEST_P(EveryTargetSmooths, AWaveInMillimetresProved) {
 }
 
 TEST_P(EveryTargetSmooths, AWaveInInchesProved) {
-  const std::string units = unit_word(target_, gcode::Units::kInch);
+  const std::string units = word_of_units(target_, gcode::Units::kInch);
   if (units.empty()) return;  // tested: Conversion refuses G20 there
   SmoothOptions options = options_for(GetParam());
   options.tolerance_mm = 0.02;
@@ -95,9 +95,10 @@ TEST_P(EveryTargetSmooths, AWaveInInchesProved) {
 TEST_P(EveryTargetSmooths, NothingASecondTime) {
   SmoothOptions options = options_for(GetParam());
   options.tolerance_mm = 0.02;
-  const std::string text = program({.noise = 0.003}, unit_word(target_, gcode::Units::kMillimetre));
+  const std::string text =
+      program({.noise = 0.003}, word_of_units(target_, gcode::Units::kMillimetre));
   const SmoothResult once = smoothed(text, options);
-  if (target_.comment("x").empty()) return;  // has no words to say that it was smoothed
+  if (comment_line(target_, "x").empty()) return;  // has no words to say that it was smoothed
   EXPECT_EQ(smoothed(once.text, options).text, once.text);
 }
 
@@ -116,7 +117,7 @@ std::vector<std::string> new_lines(const std::string& before, const SmoothResult
   return lines;
 }
 
-SmoothResult smoothed_for(const gcode::Dialect& target, const std::string& text) {
+SmoothResult smoothed_for(const gcode::Control& target, const std::string& text) {
   SmoothOptions options = options_for("haas");
   options.target = &target;
   options.output = Form::kArcs;
@@ -125,16 +126,14 @@ SmoothResult smoothed_for(const gcode::Dialect& target, const std::string& text)
 }
 
 TEST(AProfile, ChangesWhatIsWritten) {
-  const gcode::Dialect& haas = *gcode::find_dialect("haas");
-  gcode::TargetTable table = gcode::table_of(haas);
-  table.arc_form = gcode::ArcForm::kRadius;
-  table.max_sweep_deg = 60;
-  table.trailing_zeros = true;
-  table.blanks = false;
-  table.comments = gcode::CommentStyle::kSemicolon;
-  const auto mine = haas.with_values(table);
+  gcode::Control mine = *gcode::find_control("haas");
+  mine.arc_form = gcode::ArcForm::kRadius;
+  mine.max_sweep_deg = 60;
+  mine.trailing_zeros = true;
+  mine.blanks = false;
+  mine.comments = gcode::CommentStyle::kSemicolon;
   const std::string text = wave_program({.noise = 0.003});
-  const SmoothResult result = smoothed_for(*mine, text);
+  const SmoothResult result = smoothed_for(mine, text);
   ASSERT_EQ(rewritten_runs(result), 1U);
   EXPECT_TRUE(result.proved);
   const auto lines = new_lines(text, result);
@@ -161,11 +160,9 @@ TEST(AProfile, SplitsArcsAtTheAxesOfThePlane) {
     text += fmt::format("G1 X{:.4f} Y{:.4f} F1000\n", 5 * std::cos(angle), 5 * std::sin(angle));
   }
   text += "G0 Z5\nM30\n";
-  const gcode::Dialect& haas = *gcode::find_dialect("haas");
-  gcode::TargetTable table = gcode::table_of(haas);
-  table.single_quadrants = true;
-  const auto mine = haas.with_values(table);
-  const SmoothResult result = smoothed_for(*mine, text);
+  gcode::Control mine = *gcode::find_control("haas");
+  mine.single_quadrants = true;
+  const SmoothResult result = smoothed_for(mine, text);
   ASSERT_EQ(rewritten_runs(result), 1U);
   EXPECT_TRUE(result.proved);
   const ReadText read(result.text);
@@ -191,8 +188,8 @@ TEST(AProfile, OfAControlThatCutsArcsCoarselyGetsLines) {
     }
     return full;
   }();
-  const gcode::Dialect& klipper = *gcode::find_dialect("klipper");
-  const auto arcs_in = [&text](const gcode::Dialect& target) {
+  const gcode::Control& klipper = *gcode::find_control("klipper");
+  const auto arcs_in = [&text](const gcode::Control& target) {
     SmoothOptions options = options_for("klipper");
     options.target = &target;
     options.output = Form::kArcs;
@@ -204,13 +201,12 @@ TEST(AProfile, OfAControlThatCutsArcsCoarselyGetsLines) {
     }
     return arcs;
   };
-  gcode::TargetTable table = gcode::table_of(klipper);
-  table.chords = {.longest = 0.1};  // resolution: 0.1
-  const auto fine = klipper.with_values(table);
+  gcode::Control fine = klipper;
+  fine.chords = {.longest = 0.1};  // resolution: 0.1
   // The wave's tightest bends have a radius of 4.1 mm: chords of 1 mm leave them by 0.03 mm, chords
   // of 0.1 mm by 0.0003 mm.
-  EXPECT_GT(arcs_in(*fine), 3U);
-  EXPECT_LT(arcs_in(klipper), arcs_in(*fine));
+  EXPECT_GT(arcs_in(fine), 3U);
+  EXPECT_LT(arcs_in(klipper), arcs_in(fine));
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ class LongPasses {
 Verification verdict_under(const SmoothOptions& options, const std::string& before,
                            const std::string& after) {
   gcode::ReadOptions reading;
-  reading.curves = options.target->curves();
+  reading.curves = options.target->curves;
   ReadText old_text(before);
   ReadText new_text(after);
   for (ReadText* text : {&old_text, &new_text}) {

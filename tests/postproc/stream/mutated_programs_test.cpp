@@ -96,7 +96,7 @@ TEST(MutatedPrograms, AreSmoothedProvedAndOtherwiseCopied) {
     const std::string text = mutated_program(texts, number);
     const SmoothOptions options = promises::options_for_text(text);
     SCOPED_TRACE(testing::Message()
-                 << "program " << number << " for " << options.target->name() << "\n"
+                 << "program " << number << " for " << options.target->name << "\n"
                  << text);
     ASSERT_EQ(promises::broken_by(text, options), "");
     const SmoothResult result = smooth_program(gcode::SourceText("test.nc", text), options);

@@ -222,15 +222,15 @@ constexpr const char* kNoiseAlone[] = {
 TEST(NoiseAlone, BecomesNothingThatGoesFarAwayAndBack) {
   for (const char* text : kNoiseAlone) {
     const gcode::SourceText source("part.nc", text);
-    for (const gcode::Dialect* target : gcode::dialects()) {
-      if (target->language() != gcode::Language::kRs274) continue;
+    for (const gcode::Control& target : gcode::controls()) {
+      if (target.language != gcode::Language::kRs274) continue;
       for (const Prefer prefer : {Prefer::kTime, Prefer::kAccuracy, Prefer::kSize}) {
-        SmoothOptions options = options_for(target->name());
+        SmoothOptions options = options_for(target.name);
         options.tolerance_mm = 0.005;
         options.prefer = prefer;
         SmoothResult result;
-        ASSERT_NO_THROW(result = smooth_program(source, options)) << target->name();
-        EXPECT_TRUE(result.proved || !result.understood) << target->name();
+        ASSERT_NO_THROW(result = smooth_program(source, options)) << target.name;
+        EXPECT_TRUE(result.proved || !result.understood) << target.name;
       }
     }
   }

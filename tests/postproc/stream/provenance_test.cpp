@@ -12,20 +12,20 @@ namespace {
 bool says_so(const std::string& text) { return was_smoothed(tests::Interpreted(text).program); }
 
 TEST(Provenance, IsFoundAgainForEveryTarget) {
-  for (const gcode::Dialect* target : gcode::dialects()) {
-    const std::string comment = provenance_comment(*target, 0.01);
+  for (const gcode::Control& target : gcode::controls()) {
+    const std::string comment = provenance_comment(target, 0.01);
     if (comment.empty()) {
-      EXPECT_EQ(target->name(), "codesys") << "the only one of which no comment is known";
+      EXPECT_EQ(target.name, "codesys") << "the only one of which no comment is known";
       continue;
     }
     EXPECT_TRUE(says_so("G21\n" + comment + "\nG1 X1\n")) << comment;
     EXPECT_TRUE(says_so("G21\r\n" + comment + "\r\nG1 X1\r\n")) << comment;
-    EXPECT_LE(target->line_length(comment), target->max_line_length());
+    EXPECT_LE(line_length(target, comment), target.max_line_length);
   }
 }
 
 TEST(Provenance, TellsTheTolerance) {
-  const gcode::Dialect& target = *gcode::find_dialect("linuxcnc");
+  const gcode::Control& target = *gcode::find_control("linuxcnc");
   EXPECT_EQ(provenance_comment(target, 0.01), "(Batten: smoothed within 0.01 mm)");
   EXPECT_EQ(provenance_comment(target, 0.0127), "(Batten: smoothed within 0.0127 mm)");
   EXPECT_EQ(provenance_comment(target, 1), "(Batten: smoothed within 1 mm)");

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "gcode/control/target_table.h"
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "tests/support/wavy_programs.h"
 
@@ -24,7 +24,7 @@ std::string program_without_units() {
   return text.substr(text.find(' ') + 1);
 }
 
-SmoothOptions for_target(const gcode::Dialect& target) {
+SmoothOptions for_target(const gcode::Control& target) {
   SmoothOptions options = options_for("codesys");
   options.target = &target;
   options.units = gcode::Units::kMillimetre;
@@ -32,32 +32,30 @@ SmoothOptions for_target(const gcode::Dialect& target) {
 }
 
 TEST(SmoothingTold, EachTargetSaysItInTheProgramOrInANote) {
-  for (const gcode::Dialect* target : gcode::dialects()) {
-    if (target->language() == gcode::Language::kKlartext) continue;
-    const SmoothResult result = smoothed(program_without_units(), for_target(*target));
-    ASSERT_GE(rewritten_runs(result), 1U) << target->name();
+  for (const gcode::Control& target : gcode::controls()) {
+    if (target.language == gcode::Language::kKlartext) continue;
+    const SmoothResult result = smoothed(program_without_units(), for_target(target));
+    ASSERT_GE(rewritten_runs(result), 1U) << target.name;
     std::string capitals = result.text;  // some controls have no small letters
     std::ranges::transform(capitals, capitals.begin(), [](char c) {
       return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
     });
     const bool in_program = capitals.find("BATTEN: SMOOTHED WITHIN 0.01 MM") != std::string::npos;
-    EXPECT_NE(is_told(result), in_program) << target->name();
+    EXPECT_NE(is_told(result), in_program) << target.name;
   }
 }
 
 TEST(SmoothingTold, NothingIsToldWhereNothingWasSmoothed) {
   const SmoothResult result =
-      smoothed("G90 G17\nG0 X0 Y0\nG1 X5 F100\nM2\n", for_target(*gcode::find_dialect("codesys")));
+      smoothed("G90 G17\nG0 X0 Y0\nG1 X5 F100\nM2\n", for_target(*gcode::find_control("codesys")));
   EXPECT_EQ(rewritten_runs(result), 0U);
   EXPECT_FALSE(is_told(result));
 }
 
 TEST(SmoothingTold, AProfileThatKnowsAControlsCommentsEndsSecondPasses) {
-  const gcode::Dialect& codesys = *gcode::find_dialect("codesys");
-  gcode::TargetTable table = gcode::table_of(codesys);
-  table.comments = gcode::CommentStyle::kParentheses;
-  const std::unique_ptr<const gcode::Dialect> adapted = codesys.with_values(table);
-  const SmoothOptions options = for_target(*adapted);
+  gcode::Control adapted = *gcode::find_control("codesys");
+  adapted.comments = gcode::CommentStyle::kParentheses;
+  const SmoothOptions options = for_target(adapted);
   const SmoothResult once = smoothed(program_without_units(), options);
   ASSERT_GE(rewritten_runs(once), 1U);
   EXPECT_FALSE(is_told(once));

@@ -237,7 +237,7 @@ TEST(UnsafePrograms, ThatOthersCallAreKept) {
       {"fanuc", "M99"}, {"siemens", "M17"}, {"siemens", "RET"}};
   for (const auto& [target, end] : ends) {
     SCOPED_TRACE(end);
-    const auto language = options_for(target).target->language();
+    const auto language = options_for(target).target->language;
     std::string before = head_of(language) + wave_part(language, 0) + end + "\n";
     const SmoothResult result = smoothed(before, options_for(target));
     EXPECT_EQ(result.text, before);

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "gcode/control/dialect.h"
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
@@ -453,7 +453,7 @@ TEST(ProgramTimeOfCurves, IsThatOfTheirLengthWhereTheirControlIsNamed) {
       "G21 G90\nG0 X0 Y0 Z0\nG1 F600\nPOLY PO[X]=(10) PO[Y]=(5,-5)\nG1 Y10\nM2\n";
   gcode::Diagnostics found;
   const gcode::Program program = gcode::parse(gcode::SourceText("test.mpf", text), found);
-  const gcode::ReadOptions siemens = {.curves = gcode::find_dialect("siemens")->curves()};
+  const gcode::ReadOptions siemens = {.curves = gcode::find_control("siemens")->curves};
   const auto followed = gcode::interpret(program, siemens, found);
   const ProgramTime time = time_program(program, followed, m, from_zero());
   EXPECT_NEAR(time.cutting_mm, 5 * (std::sqrt(2.0) + std::asinh(1.0)) + 5, 1e-6);

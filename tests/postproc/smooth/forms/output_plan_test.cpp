@@ -60,7 +60,7 @@ struct Planning {
   Machine machine = machine_with(0.001);
   PlanOptions options;
   explicit Planning(std::string_view target = "linuxcnc", Prefer prefer = Prefer::kTime) {
-    options.target = gcode::find_dialect(target);
+    options.target = gcode::find_control(target);
     options.prefer = prefer;
     options.max_deviation = 0.005;
   }

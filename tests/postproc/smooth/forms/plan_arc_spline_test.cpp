@@ -64,7 +64,7 @@ Planned planned(Run run, double keep_corner_angle = 3.2) {
   fair.keep_corner_angle = keep_corner_angle;
   Planned result{run, *geometry::fair_path(run.points, fair), {}};
   PlanOptions options;
-  options.target = gcode::find_dialect("linuxcnc");
+  options.target = gcode::find_control("linuxcnc");
   options.max_deviation = kTolerance;
   options.keep_corner_angle = keep_corner_angle;
   result.plan = plan_arc_spline(result.run, result.fair, options);

@@ -51,7 +51,7 @@ TEST_P(CurvesOfTargets, TakePartedKnotsForOne) {
     SCOPED_TRACE(testing::Message() << steps << " steps of the last bit");
     const NearKnot near(steps);
     PlanOptions options;
-    options.target = gcode::find_dialect(GetParam());
+    options.target = gcode::find_control(GetParam());
     options.max_deviation = 0.005;
     const auto plan = plan_curves(near.run, near.fair, options);
     ASSERT_TRUE(plan);
@@ -81,7 +81,7 @@ std::vector<PlannedMove> moves_of_bow(const char* target, double bow) {
   for (const double u : fair.vertex_parameters) run.points.push_back(fair.curve.point_at(u));
   run.feeds = {{0, 1000}};
   PlanOptions options;
-  options.target = gcode::find_dialect(target);
+  options.target = gcode::find_control(target);
   options.max_deviation = 0.005;
   const auto plan = plan_curves(run, fair, options);
   return plan ? plan->moves : std::vector<PlannedMove>{};

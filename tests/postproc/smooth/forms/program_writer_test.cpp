@@ -9,8 +9,8 @@
 #include <random>
 #include <string>
 
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
-#include "gcode/controls/rs274_family.h"
 
 namespace batten::postproc {
 namespace {
@@ -54,7 +54,7 @@ struct Planned {
 
 std::optional<RunText> written(const Planned& planned, std::string_view target,
                                const ModalState& before, const ModalState& after) {
-  return write_run(planned.plan, planned.run, program_of(""), *gcode::find_dialect(target), before,
+  return write_run(planned.plan, planned.run, program_of(""), *gcode::find_control(target), before,
                    after, "\n");
 }
 
@@ -68,7 +68,7 @@ TEST(WriteRun, WritesMovesCommentsAndWhatTheNextBlockExpects) {
   planned.plan.comments_after = {1};
   ModalState before = cutting();
   before.motion = gcode::MotionMode::kRapid;
-  const auto out = write_run(planned.plan, planned.run, program, *gcode::find_dialect("grbl"),
+  const auto out = write_run(planned.plan, planned.run, program, *gcode::find_control("grbl"),
                              before, cutting(), "\r\n");
   ASSERT_TRUE(out);
   EXPECT_EQ(out->text,
@@ -165,22 +165,10 @@ TEST(WriteRun, WritesNothingOfPlacesBeyondTheNumbersOfAProgram) {
   }
 }
 
-// A control with lines of ten bytes.
-class ShortLines final : public gcode::Rs274Dialect {
- public:
-  std::string_view name() const override { return "short"; }
-  std::string_view description() const override { return "short lines"; }
-  gcode::NumberFormat coordinates(Units) const override { return {.decimals = 4}; }
-  gcode::NumberFormat arc_offsets(Units) const override { return {.decimals = 4}; }
-  std::size_t max_line_length() const override { return 10; }
-  std::string_view arc_complaint(const Arc&, Units) const override { return {}; }
-  double min_arc_radius() const override { return 0; }
-  double max_arc_radius() const override { return 1e4; }
-  std::string_view default_machine() const override { return "mill"; }
-};
-
 TEST(WriteRun, WritesNothingWhereALineWouldBeTooLong) {
-  const ShortLines target;
+  gcode::Control target;
+  target.places = {4, 4};
+  target.max_line_length = 10;
   Planned planned({0, 0, 0});
   planned.line({1, 2, 0});
   const auto write = [&] {

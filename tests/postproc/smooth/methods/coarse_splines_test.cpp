@@ -7,8 +7,8 @@
 #include <string_view>
 #include <variant>
 
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
-#include "gcode/controls/rs274_family.h"
 #include "gcode/curves/curve_format.h"
 #include "gcode/curves/heidenhain_spl.h"
 #include "gcode/state/reason.h"
@@ -65,42 +65,12 @@ class CoarseSpl final : public CurveFormat {
   mutable int written_ = 0;
 };
 
-class CoarseKlartext final : public gcode::Rs274Dialect {
- public:
-  CoarseKlartext(const gcode::Dialect& base, const CurveFormat& curves)
-      : base_(base), curves_(curves) {}
-  std::string_view name() const override { return "coarse"; }
-  std::string_view description() const override { return "splines with too few digits"; }
-  gcode::Language language() const override { return base_.language(); }
-  const gcode::BlockSpelling& spelling() const override { return base_.spelling(); }
-  gcode::NumberFormat coordinates(gcode::Units units) const override {
-    return base_.coordinates(units);
-  }
-  gcode::NumberFormat arc_offsets(gcode::Units units) const override {
-    return base_.arc_offsets(units);
-  }
-  std::size_t max_line_length() const override { return base_.max_line_length(); }
-  bool takes_arcs_in(gcode::Plane) const override { return false; }  // splines or what was there
-  bool takes_helices() const override { return false; }
-  bool repeats_words() const override { return true; }
-  std::string_view arc_complaint(const geometry::Arc&, gcode::Units) const override {
-    return "no arcs";
-  }
-  double min_arc_radius() const override { return 0.1; }
-  double max_arc_radius() const override { return 1e3; }
-  std::string comment(std::string_view text) const override { return base_.comment(text); }
-  const CurveFormat* curves() const override { return &curves_; }
-  std::string_view default_machine() const override { return "mill"; }
-
- private:
-  const gcode::Dialect& base_;
-  const CurveFormat& curves_;
-};
-
 TEST(CoarseSplines, AreNotProvedAndGoBack) {
-  const gcode::Dialect& fine = *gcode::find_dialect("itnc530");
-  const CoarseSpl coarse(*fine.curves());
-  const CoarseKlartext target(fine, coarse);
+  const gcode::Control& fine = *gcode::find_control("itnc530");
+  const CoarseSpl coarse(*fine.curves);
+  gcode::Control target = fine;
+  target.curves = &coarse;
+  target.planes = {false, false, false};  // splines or what was there
   const std::string before =
       tests::numbered_from_zero(tests::klartext_program_of(tests::random_curve(1, true)));
   SmoothOptions options = options_for("itnc530");

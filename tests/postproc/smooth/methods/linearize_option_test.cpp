@@ -80,7 +80,7 @@ struct Wave {
 
   [[nodiscard]] OutputPlan planned(Linearize linearize) const {
     PlanOptions options;
-    options.target = gcode::find_dialect("linuxcnc");
+    options.target = gcode::find_control("linuxcnc");
     options.machine = find_machine("linuxcnc");
     options.prefer = Prefer::kSize;
     options.max_deviation = 0.005;

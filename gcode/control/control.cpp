@@ -1,0 +1,129 @@
+#include "gcode/control/control.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "gcode/rs274/active_comment.h"
+#include "gcode/text/characters.h"
+
+namespace batten::gcode {
+namespace {
+
+NumberFormat format_of(const Control& control, const DecimalsByUnit& decimals, Units units) {
+  return {units == Units::kInch ? decimals.inch : decimals.mm, control.trailing_zeros,
+          control.decimal_point};
+}
+
+bool can_stand_in_comment(char c) { return c >= ' ' && c <= '~' && c != '(' && c != ')'; }
+
+}  // namespace
+
+double chord_error(const ArcChords& chords, double radius) {
+  if (!(chords.longest > 0)) return chords.error;
+  double length = chords.longest;
+  if (chords.per_circle > 0) {
+    const double wished = 2 * std::numbers::pi * radius / chords.per_circle;
+    length = std::clamp(wished, chords.shortest, chords.longest);
+  }
+  const double half_angle = std::min(length / (2 * radius), std::numbers::pi / 2);
+  return std::max(chords.error, radius * (1 - std::cos(half_angle)));
+}
+
+NumberFormat place_format(const Control& control, Units units) {
+  return format_of(control, control.places, units);
+}
+
+NumberFormat arc_end_format(const Control& control, Units units) {
+  return format_of(control, control.arc_ends, units);
+}
+
+NumberFormat center_format(const Control& control, Units units) {
+  return format_of(control, control.centers, units);
+}
+
+NumberFormat feed_format(const Control& control) {
+  return {control.feed_decimals, false, control.decimal_point};
+}
+
+std::size_t line_length(const Control& control, std::string_view line) {
+  if (control.line_count == LineCount::kAll) return line.size();
+  const bool blanks_count = control.line_count == LineCount::kWithoutComments;
+  std::size_t kept = 0;
+  bool in_parentheses = false;
+  for (const char c : line) {
+    if (in_parentheses) {
+      in_parentheses = c != ')';
+    } else if (c == ';') {
+      break;
+    } else if (c == '(') {
+      in_parentheses = true;
+    } else if (blanks_count || static_cast<unsigned char>(c) > ' ') {
+      ++kept;
+    }
+  }
+  return kept;
+}
+
+bool takes_arcs_in(const Control& control, Plane plane) {
+  switch (plane) {
+    case Plane::kXY:
+      return control.planes[0];
+    case Plane::kZX:
+      return control.planes[1];
+    case Plane::kYZ:
+      return control.planes[2];
+    case Plane::kUnknown:
+      break;
+  }
+  return false;
+}
+
+double max_arc_sweep(const Control& control) {
+  return control.max_sweep_deg * (std::numbers::pi / 180);
+}
+
+bool may_imply_decimals(const Control& control) {
+  return control.has_increments && control.decimal_point;
+}
+
+std::string_view unit_word(const Control& control, Units units) {
+  return units == Units::kInch ? control.unit_words.inch : control.unit_words.mm;
+}
+
+std::string_view other_meaning(const Control& control, int g_code) {
+  const auto found = std::ranges::find(control.other_meanings, g_code, &OtherMeaning::g_code);
+  return found == control.other_meanings.end() ? std::string_view() : found->text;
+}
+
+bool refuses_word(const Control& control, char letter, int number) {
+  std::string_view rest = control.refused;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(' '), rest.size());
+    const std::string_view word = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (word.front() != letter) continue;
+    if (word.size() == 1) return true;
+    const auto refused = read_number(word.substr(1));
+    if (refused && std::lround(refused->value * 10) == number) return true;
+  }
+  return false;
+}
+
+std::string comment_line(const Control& control, std::string_view text) {
+  std::string line = "(" + std::string(text) + ")";
+  const bool can_be_said = control.comments != CommentStyle::kNone &&
+                           std::ranges::all_of(text, can_stand_in_comment) &&
+                           text.find_first_of(control.not_in_comments) == std::string_view::npos &&
+                           !is_active_comment(line);
+  if (!can_be_said) return {};
+  if (control.comments == CommentStyle::kSemicolon) {
+    line = "; " + std::string(text);
+  } else if (control.capital_comments) {
+    std::ranges::transform(line, line.begin(), upper);
+  }
+  if (line_length(control, line) > control.max_line_length) return {};
+  return line;
+}
+
+}  // namespace batten::gcode
