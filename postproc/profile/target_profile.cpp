@@ -10,18 +10,22 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "gcode/controls/built_in.h"
 #include "postproc/machine/machine.h"
 #include "postproc/options/profile_words.h"
-#include "postproc/profile/profile_keys.h"
+#include "postproc/text/toml_text.h"
 
 namespace batten::postproc {
 
 namespace {
 
+using gcode::ArcForm;
+using gcode::CommentStyle;
 using gcode::Control;
 using Lines = std::vector<std::string>;
 
@@ -41,6 +45,103 @@ constexpr std::array kWordsKeys = {
     WordsKey{"after-run", "lines behind it", &ProfileWords::after_run},
 };
 
+constexpr std::array<std::string_view, 3> kPlaneNames = {"G17", "G18", "G19"};
+constexpr std::array<std::string_view, 3> kCommentNames = {"none", "parentheses", "semicolon"};
+constexpr std::array<std::string_view, 2> kArcForms = {"centres", "radius"};
+
+std::span<const std::string_view> names_of(CommentStyle) { return kCommentNames; }
+std::span<const std::string_view> names_of(ArcForm) { return kArcForms; }
+
+template <typename Value>
+using Place = Value& (*)(Control&);
+
+// A key of a profile: where its value lives, what is allowed, what it means.
+struct ProfileKey {
+  std::string_view section;  // empty: at the top
+  std::string_view name;
+  std::string_view remark;  // unit and meaning
+  std::variant<Place<int>, Place<std::size_t>, Place<double>, Place<bool>, Place<std::string>,
+               Place<CommentStyle>, Place<ArcForm>, Place<std::array<bool, 3>>>
+      place;
+  double least = 0;  // of numbers
+  double most = 0;
+};
+
+// What can be printed.
+constexpr int kMostDecimals = 9;
+
+// Blocks of an arc need the first; no control takes a longer one than the second.
+constexpr double kShortestLine = 40;
+constexpr double kLongestLine = 100000;
+
+// In the order in which a profile shows them; keys of a section stand together.
+constexpr std::array kKeys = {
+    ProfileKey{"", "name", "what reports call it",
+               [](Control& c) -> std::string& { return c.name; }},
+    ProfileKey{"", "description", "one line",
+               [](Control& c) -> std::string& { return c.description; }},
+    ProfileKey{"", "machine", "a built-in machine whose time counts when none is given",
+               [](Control& c) -> std::string& { return c.machine; }},
+
+    ProfileKey{"numbers", "places-mm", "decimals of X Y Z along lines, millimetre programs",
+               [](Control& c) -> int& { return c.places.mm; }, 0, kMostDecimals},
+    ProfileKey{"numbers", "places-inch", "the same, inch programs",
+               [](Control& c) -> int& { return c.places.inch; }, 0, kMostDecimals},
+    ProfileKey{"numbers", "arc-ends-mm", "decimals of X Y Z in runs with arcs",
+               [](Control& c) -> int& { return c.arc_ends.mm; }, 0, kMostDecimals},
+    ProfileKey{"numbers", "arc-ends-inch", "the same, inch programs",
+               [](Control& c) -> int& { return c.arc_ends.inch; }, 0, kMostDecimals},
+    ProfileKey{"numbers", "centres-mm", "decimals of I J K R",
+               [](Control& c) -> int& { return c.centers.mm; }, 0, kMostDecimals},
+    ProfileKey{"numbers", "centres-inch", "the same, inch programs",
+               [](Control& c) -> int& { return c.centers.inch; }, 0, kMostDecimals},
+    ProfileKey{"numbers", "feeds", "most decimals of F, which is copied",
+               [](Control& c) -> int& { return c.feed_decimals; }, 0, kMostDecimals},
+    ProfileKey{"numbers", "decimal-point", "X5. rather than X5",
+               [](Control& c) -> bool& { return c.decimal_point; }},
+    ProfileKey{"numbers", "trailing-zeros", "X1.500 rather than X1.5",
+               [](Control& c) -> bool& { return c.trailing_zeros; }},
+
+    ProfileKey{"lines", "max-length", "characters; a run that needs more is kept",
+               [](Control& c) -> std::size_t& { return c.max_line_length; }, kShortestLine,
+               kLongestLine},
+    ProfileKey{"lines", "blanks", "between words", [](Control& c) -> bool& { return c.blanks; }},
+    ProfileKey{"lines", "comments", "none, parentheses or semicolon",
+               [](Control& c) -> CommentStyle& { return c.comments; }},
+    ProfileKey{"lines", "repeat-words", "G1 in every block, X and Y in every arc",
+               [](Control& c) -> bool& { return c.repeats_words; }},
+
+    ProfileKey{"arcs", "planes", "where arcs are taken; [] for none",
+               [](Control& c) -> std::array<bool, 3>& { return c.planes; }},
+    ProfileKey{"arcs", "helices", "arcs that rise", [](Control& c) -> bool& { return c.helices; }},
+    ProfileKey{"arcs", "words", "centres (I J K from the start) or radius (R)",
+               [](Control& c) -> ArcForm& { return c.arc_form; }},
+    ProfileKey{"arcs", "absolute-centres", "G90.1 and G91.1 are known",
+               [](Control& c) -> bool& { return c.arc_distance_mode; }},
+    ProfileKey{"arcs", "max-sweep", "degrees; longer arcs are written as several",
+               [](Control& c) -> double& { return c.max_sweep_deg; }, 1, 360},
+    ProfileKey{"arcs", "single-quadrants", "arcs end at the axes",
+               [](Control& c) -> bool& { return c.single_quadrants; }},
+    ProfileKey{"arcs", "min-radius", "mm; tighter arcs become lines",
+               [](Control& c) -> double& { return c.min_radius; }, 0.001, 1e6},
+    ProfileKey{"arcs", "max-radius", "mm; flatter arcs become lines",
+               [](Control& c) -> double& { return c.max_radius; }, 0.001, 1e6},
+    ProfileKey{"arcs", "chord-error", "mm by which the control's own chords leave an arc; 0: none",
+               [](Control& c) -> double& { return c.chords.error; }, 0, 10},
+    ProfileKey{"arcs", "chord-length", "mm, of the control's own chords; 0: not by length",
+               [](Control& c) -> double& { return c.chords.longest; }, 0, 100},
+    ProfileKey{"arcs", "least-chord-length", "mm, where there are so many chords in a circle:",
+               [](Control& c) -> double& { return c.chords.shortest; }, 0, 100},
+    ProfileKey{"arcs", "chords-per-circle", "0: chord-length alone counts",
+               [](Control& c) -> double& { return c.chords.per_circle; }, 0, 1e5},
+};
+
+const ProfileKey* find_key(std::string_view section, std::string_view name) {
+  const auto found = std::ranges::find_if(
+      kKeys, [&](const ProfileKey& key) { return key.section == section && key.name == name; });
+  return found == kKeys.end() ? nullptr : &*found;
+}
+
 std::string text_of(const toml::node& node) {
   std::ostringstream stream;
   node.visit([&stream](const auto& value) {
@@ -57,138 +158,124 @@ std::string text_of(const toml::node& node) {
 // A bound or a value as a person writes it.
 std::string plain(double value) { return fmt::format("{:.10g}", value); }
 
-std::string joined(std::span<const std::string_view> names) {
-  std::string all;
-  for (const std::string_view name : names) all += (all.empty() ? "" : ", ") + std::string(name);
-  return all;
+// --- what a key expects, whether a value is that, and the value as text ------------------------
+
+std::string expected(const ProfileKey& key) {
+  const auto range = [&key](std::string_view kind) {
+    return fmt::format("{} from {} to {}", kind, plain(key.least), plain(key.most));
+  };
+  return std::visit(
+      [&]<typename Value>(Place<Value>) -> std::string {
+        if constexpr (std::is_same_v<Value, bool>) {
+          return "true or false";
+        } else if constexpr (std::is_same_v<Value, double>) {
+          return range("a number");
+        } else if constexpr (std::is_integral_v<Value>) {
+          return range("a whole number");
+        } else if constexpr (std::is_same_v<Value, std::string>) {
+          return "a text that is not empty";
+        } else if constexpr (std::is_enum_v<Value>) {
+          return fmt::format("one of {}", fmt::join(names_of(Value()), ", "));
+        } else {
+          return fmt::format("a list of {}", fmt::join(kPlaneNames, ", "));
+        }
+      },
+      key.place);
 }
 
-// --- what a key expects, whether a value is that, and the value as text
-// ---------------------------
-
-template <typename Number>
-std::string range_of(Number least, Number most, std::string_view kind) {
-  return fmt::format("{} from {} to {}", kind, plain(static_cast<double>(least)),
-                     plain(static_cast<double>(most)));
+// The place of a name; nothing where the node is none of them.
+std::optional<std::size_t> index_of(const toml::node& node,
+                                    std::span<const std::string_view> names) {
+  const auto name = node.value_exact<std::string>();
+  const auto found = name ? std::ranges::find(names, *name) : names.end();
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names.begin());
 }
 
-std::string expected(const WholeNumberKey& key) {
-  return range_of(key.least, key.most, "a whole number");
-}
-bool set(const WholeNumberKey& key, const toml::node& node, Control& table) {
-  const auto value = node.value_exact<std::int64_t>();
-  if (!value || *value < key.least || *value > key.most) return false;
-  key.place(table) = static_cast<int>(*value);
-  return true;
-}
-std::string shown(const WholeNumberKey& key, Control& table) {
-  return fmt::format("{}", key.place(table));
-}
-
-std::string expected(const LengthKey& key) {
-  return range_of(key.least, key.most, "a whole number");
-}
-bool set(const LengthKey& key, const toml::node& node, Control& table) {
-  const auto value = node.value_exact<std::int64_t>();
-  if (!value || *value < 0 || static_cast<std::size_t>(*value) < key.least ||
-      static_cast<std::size_t>(*value) > key.most) {
-    return false;
-  }
-  key.place(table) = static_cast<std::size_t>(*value);
-  return true;
-}
-std::string shown(const LengthKey& key, Control& table) {
-  return fmt::format("{}", key.place(table));
-}
-
-std::string expected(const DecimalKey& key) { return range_of(key.least, key.most, "a number"); }
-bool set(const DecimalKey& key, const toml::node& node, Control& table) {
-  const auto value = node.value<double>();
-  if (!value || !node.is_number() || !(*value >= key.least && *value <= key.most)) return false;
-  key.place(table) = *value;
-  return true;
-}
-std::string shown(const DecimalKey& key, Control& table) { return plain(key.place(table)); }
-
-std::string expected(const FlagKey&) { return "true or false"; }
-bool set(const FlagKey& key, const toml::node& node, Control& table) {
-  const auto value = node.value_exact<bool>();
-  if (value) key.place(table) = *value;
-  return value.has_value();
-}
-std::string shown(const FlagKey& key, Control& table) {
-  return key.place(table) ? "true" : "false";
-}
-
-std::string expected(const TextKey&) { return "a text that is not empty"; }
-bool set(const TextKey& key, const toml::node& node, Control& table) {
-  const auto value = node.value_exact<std::string>();
-  if (!value || value->empty()) return false;
-  key.place(table) = *value;
-  return true;
-}
-std::string shown(const TextKey& key, Control& table) {
-  return text_of(toml::value<std::string>(key.place(table)));
-}
-
-std::string expected(const NameKey& key) { return "one of " + joined(key.names); }
-bool set(const NameKey& key, const toml::node& node, Control& table) {
-  const auto value = node.value_exact<std::string>();
-  const auto found = value ? std::ranges::find(key.names, *value) : key.names.end();
-  if (found == key.names.end()) return false;
-  key.set(table, static_cast<std::size_t>(found - key.names.begin()));
-  return true;
-}
-std::string shown(const NameKey& key, Control& table) {
-  return text_of(toml::value<std::string>(std::string(key.names[key.index(table)])));
-}
-
-std::string expected(const PlanesKey&) { return "a list of " + joined(kPlaneNames); }
-bool set(const PlanesKey& key, const toml::node& node, Control& table) {
+std::optional<std::array<bool, 3>> planes_in(const toml::node& node) {
   const toml::array* list = node.as_array();
-  if (list == nullptr) return false;
+  if (list == nullptr) return std::nullopt;
   std::array<bool, 3> planes = {false, false, false};
   for (const toml::node& each : *list) {
-    const auto name = each.value_exact<std::string>();
-    const auto found = name ? std::ranges::find(kPlaneNames, *name) : kPlaneNames.end();
-    if (found == kPlaneNames.end()) return false;
-    planes[static_cast<std::size_t>(found - kPlaneNames.begin())] = true;
+    const auto plane = index_of(each, kPlaneNames);
+    if (!plane) return std::nullopt;
+    planes[*plane] = true;
   }
-  key.place(table) = planes;
-  return true;
+  return planes;
 }
-std::string shown(const PlanesKey& key, Control& table) {
-  std::string list;
-  for (std::size_t i = 0; i < kPlaneNames.size(); ++i) {
-    if (!key.place(table)[i]) continue;
-    list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", kPlaneNames[i]);
+
+// The value that the key takes from the node; nothing where it takes none.
+template <typename Value>
+std::optional<Value> value_in(const toml::node& node, const ProfileKey& key) {
+  if constexpr (std::is_same_v<Value, bool>) {
+    return node.value_exact<bool>();
+  } else if constexpr (std::is_arithmetic_v<Value>) {
+    const bool fits = std::is_same_v<Value, double> ? node.is_number() : node.is_integer();
+    const auto value = fits ? node.value<double>() : std::nullopt;
+    if (!value || !(*value >= key.least && *value <= key.most)) return std::nullopt;
+    return static_cast<Value>(*value);
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    const auto value = node.value_exact<std::string>();
+    return value && !value->empty() ? value : std::nullopt;
+  } else if constexpr (std::is_enum_v<Value>) {
+    const auto index = index_of(node, names_of(Value()));
+    return index ? std::optional(static_cast<Value>(*index)) : std::nullopt;
+  } else {
+    return planes_in(node);
   }
-  return "[" + list + "]";
+}
+
+bool set(const ProfileKey& key, const toml::node& node, Control& control) {
+  return std::visit(
+      [&]<typename Value>(Place<Value> place) {
+        const std::optional<Value> value = value_in<Value>(node, key);
+        if (value) place(control) = *value;
+        return value.has_value();
+      },
+      key.place);
+}
+
+std::string shown(const ProfileKey& key, Control control) {
+  return std::visit(
+      [&]<typename Value>(Place<Value> place) -> std::string {
+        const Value& value = place(control);
+        if constexpr (std::is_same_v<Value, double>) {
+          return plain(value);
+        } else if constexpr (std::is_arithmetic_v<Value>) {
+          return fmt::format("{}", value);
+        } else if constexpr (std::is_same_v<Value, std::string>) {
+          return toml_quoted(value);
+        } else if constexpr (std::is_enum_v<Value>) {
+          return toml_quoted(names_of(value)[static_cast<std::size_t>(value)]);
+        } else {
+          Lines planes;
+          for (std::size_t i = 0; i < kPlaneNames.size(); ++i) {
+            if (value[i]) planes.push_back(toml_quoted(kPlaneNames[i]));
+          }
+          return fmt::format("[{}]", fmt::join(planes, ", "));
+        }
+      },
+      key.place);
 }
 
 // --- reading ------------------------------------------------------------------------------------
 
 class ProfileReader {
  public:
-  ProfileReader(const std::string& file, const gcode::Control* target,
-                std::vector<std::string>& problems)
+  ProfileReader(const std::string& file, const Control* target, Lines& problems)
       : file_(file), target_(target), problems_(problems) {}
 
   std::shared_ptr<const TargetProfile> read(const toml::table& root) {
     const std::size_t problems_before = problems_.size();
     find_base(root);
     if (target_ == nullptr) return nullptr;
-    table_ = *target_;
-    for (const auto& [key, node] : root) read_top(key.str(), node);
-    check_together(root);
+    TargetProfile profile = {file_, *target_, {}};
+    for (const auto& [key, node] : root) read_top(key.str(), node, profile.adapted);
+    check_together(root, profile.adapted);
     if (problems_.size() != problems_before) return nullptr;
-    auto profile = std::make_shared<TargetProfile>();
-    profile->file = file_;
-    profile->base = target_;
-    profile->adapted = table_;
-    read_words(root, *profile);
+    read_words(root, profile);
     if (problems_.size() != problems_before) return nullptr;
-    return profile;
+    return std::make_shared<TargetProfile>(std::move(profile));
   }
 
  private:
@@ -219,118 +306,99 @@ class ProfileReader {
     }
   }
 
-  static std::string target_names() {
-    std::string names;
-    for (const gcode::Control& each : gcode::controls()) {
-      names += (names.empty() ? "" : ", ") + std::string(each.name);
-    }
-    return names;
+  template <typename Values>
+  static std::string names_in(const Values& values) {
+    Lines names;
+    for (const auto& each : values) names.push_back(each.name);
+    return fmt::format("{}", fmt::join(names, ", "));
   }
+  static std::string target_names() { return names_in(gcode::controls()); }
 
-  void read_top(std::string_view name, const toml::node& node) {
+  void read_top(std::string_view name, const toml::node& node, Control& control) {
     if (name == kBasedOn || name == kWords) return;
-    if (const toml::table* section = node.as_table()) {
-      if (!has_section(name)) return complain(node, name, "one of the sections " + sections());
-      for (const auto& [key, value] : *section) read_key(name, key.str(), value);
-      return;
+    const toml::table* section = node.as_table();
+    if (section == nullptr) return read_key("", name, node, control);
+    if (name.empty() || std::ranges::find(kKeys, name, &ProfileKey::section) == kKeys.end()) {
+      return complain(node, name, "one of the sections " + sections());
     }
-    read_key("", name, node);
-  }
-
-  static bool has_section(std::string_view name) {
-    return !name.empty() &&
-           std::ranges::find(profile_keys(), name, &ProfileKey::section) != profile_keys().end();
+    for (const auto& [key, value] : *section) read_key(name, key.str(), value, control);
   }
 
   static std::string sections() {
-    std::string names;
-    std::string_view last;
-    for (const ProfileKey& key : profile_keys()) {
-      if (key.section == last) continue;
-      last = key.section;
-      names += std::string(last) + ", ";
+    Lines names;
+    for (const ProfileKey& key : kKeys) {
+      if (!key.section.empty() && (names.empty() || names.back() != key.section)) {
+        names.emplace_back(key.section);
+      }
     }
-    return names + std::string(kWords);
+    names.emplace_back(kWords);
+    return fmt::format("{}", fmt::join(names, ", "));
   }
 
   static std::string keys_of(std::string_view section) {
-    std::string names = section.empty() ? std::string(kBasedOn) : "";
-    for (const ProfileKey& key : profile_keys()) {
-      if (key.section == section) names += (names.empty() ? "" : ", ") + std::string(key.name);
+    Lines names;
+    if (section.empty()) names.emplace_back(kBasedOn);
+    for (const ProfileKey& key : kKeys) {
+      if (key.section == section) names.emplace_back(key.name);
     }
-    return names;
+    return fmt::format("{}", fmt::join(names, ", "));
   }
 
   static std::string full_name(std::string_view section, std::string_view name) {
     return section.empty() ? std::string(name) : fmt::format("{}.{}", section, name);
   }
 
-  void read_key(std::string_view section, std::string_view name, const toml::node& node) {
-    const auto found = std::ranges::find_if(profile_keys(), [&](const ProfileKey& key) {
-      return key.section == section && key.name == name;
-    });
-    if (found == profile_keys().end()) {
+  void read_key(std::string_view section, std::string_view name, const toml::node& node,
+                Control& control) {
+    const ProfileKey* key = find_key(section, name);
+    if (key == nullptr) {
       return complain(node, full_name(section, name), "one of the keys " + keys_of(section));
     }
-    const bool fits =
-        std::visit([&](const auto& key) { return set(key, node, table_); }, found->value);
-    if (!fits) {
-      complain(node, full_name(section, name),
-               std::visit([](const auto& key) { return expected(key); }, found->value));
-    }
+    if (!set(*key, node, control)) complain(node, full_name(section, name), expected(*key));
   }
 
   // A value that is right alone and wrong beside another one, which may be the target's.
-  void complain_together(const toml::table& root, std::string_view section, std::string_view name,
-                         const std::string& wanted) {
+  void complain_together(const toml::table& root, const Control& control, std::string_view section,
+                         std::string_view name, const std::string& wanted) {
     const toml::node* node = section.empty() ? root.get(name) : root[section][name].node();
     if (node != nullptr) return complain(*node, full_name(section, name), wanted);
-    const auto key = std::ranges::find_if(profile_keys(), [&](const ProfileKey& each) {
-      return each.section == section && each.name == name;
-    });
-    const std::string value =
-        std::visit([this](const auto& each) { return shown(each, table_); }, key->value);
-    problems_.push_back(fmt::format("{}: {}: {} from target {}, expected {}", file_,
-                                    full_name(section, name), value, target_->name, wanted));
+    problems_.push_back(
+        fmt::format("{}: {}: {} from target {}, expected {}", file_, full_name(section, name),
+                    shown(*find_key(section, name), control), target_->name, wanted));
   }
 
-  void check_together(const toml::table& root) {
+  void check_together(const toml::table& root, Control& control) {
+    const auto complain_of = [&](std::string_view section, std::string_view name,
+                                 const std::string& wanted) {
+      complain_together(root, control, section, name, wanted);
+    };
     const auto numbers = root["numbers"];
     if (!numbers["arc-ends-mm"]) {
-      table_.arc_ends.mm = std::max(table_.arc_ends.mm, table_.places.mm);
+      control.arc_ends.mm = std::max(control.arc_ends.mm, control.places.mm);
     }
     if (!numbers["arc-ends-inch"]) {
-      table_.arc_ends.inch = std::max(table_.arc_ends.inch, table_.places.inch);
+      control.arc_ends.inch = std::max(control.arc_ends.inch, control.places.inch);
     }
-    if (table_.arc_ends.mm < table_.places.mm) {
-      complain_together(root, "numbers", "arc-ends-mm", "at least as many as places-mm");
+    if (control.arc_ends.mm < control.places.mm) {
+      complain_of("numbers", "arc-ends-mm", "at least as many as places-mm");
     }
-    if (table_.arc_ends.inch < table_.places.inch) {
-      complain_together(root, "numbers", "arc-ends-inch", "at least as many as places-inch");
+    if (control.arc_ends.inch < control.places.inch) {
+      complain_of("numbers", "arc-ends-inch", "at least as many as places-inch");
     }
-    if (!(table_.min_radius < table_.max_radius)) {
-      complain_together(root, "arcs", "min-radius", "less than max-radius");
+    if (!(control.min_radius < control.max_radius)) {
+      complain_of("arcs", "min-radius", "less than max-radius");
     }
     constexpr double kMostByRadius = 170;  // R says nothing certain near a half turn
-    if (table_.arc_form == gcode::ArcForm::kRadius && table_.max_sweep_deg > kMostByRadius) {
-      complain_together(
-          root, "arcs", "words",
-          fmt::format("max-sweep of {} or less beside \"radius\"", plain(kMostByRadius)));
+    if (control.arc_form == ArcForm::kRadius && control.max_sweep_deg > kMostByRadius) {
+      complain_of("arcs", "words",
+                  fmt::format("max-sweep of {} or less beside \"radius\"", plain(kMostByRadius)));
     }
-    if (table_.chords.shortest > table_.chords.longest) {
-      complain_together(root, "arcs", "least-chord-length", "chord-length or less");
+    if (control.chords.shortest > control.chords.longest) {
+      complain_of("arcs", "least-chord-length", "chord-length or less");
     }
-    if (find_machine(table_.machine) == nullptr) {
-      complain_together(root, "", "machine", "one of " + machine_names());
+    if (find_machine(control.machine) == nullptr) {
+      complain_of("", "machine", "one of " + names_in(built_in_machines()));
     }
-  }
-
-  static std::string machine_names() {
-    std::string names;
-    for (const Machine& machine : built_in_machines()) {
-      names += (names.empty() ? "" : ", ") + machine.name;
-    }
-    return names;
   }
 
   void read_words(const toml::table& root, TargetProfile& profile) {
@@ -370,9 +438,8 @@ class ProfileReader {
   }
 
   const std::string& file_;
-  const gcode::Control* target_;
-  std::vector<std::string>& problems_;
-  Control table_;
+  const Control* target_;
+  Lines& problems_;
 };
 
 }  // namespace
@@ -393,20 +460,18 @@ std::shared_ptr<const TargetProfile> read_target_profile(const std::string& file
 }
 
 std::string profile_text(const gcode::Control& target) {
-  Control table = target;
   std::string text = fmt::format(
       "# A profile for batten: `--target THIS.toml`. Every key stands here as target {} has it;\n"
       "# change what your machine needs, and leave out what stays.\n\n{} = \"{}\"\n",
       target.name, kBasedOn, target.name);
   std::string_view section;
-  for (const ProfileKey& key : profile_keys()) {
+  for (const ProfileKey& key : kKeys) {
     if (key.section != section) {
       section = key.section;
       text += fmt::format("\n[{}]\n", section);
     }
-    const std::string value =
-        std::visit([&](const auto& each) { return shown(each, table); }, key.value);
-    text += fmt::format("{:<34}  # {}\n", fmt::format("{} = {}", key.name, value), key.remark);
+    text += fmt::format("{:<34}  # {}\n", fmt::format("{} = {}", key.name, shown(key, target)),
+                        key.remark);
   }
   text += fmt::format(
       "\n# Lines that are added to a program that is rewritten. What they do on the control is "

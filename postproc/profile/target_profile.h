@@ -15,8 +15,7 @@ namespace batten::postproc {
 
 struct TargetProfile {
   std::string file;
-  const gcode::Control* base = nullptr;  // built in
-  gcode::Control adapted;                // with the profile's values
+  gcode::Control adapted;  // the built-in one with the values of the profile
   ProfileWords words;
 };
 
@@ -29,8 +28,6 @@ struct TargetProfile {
 // The file that leaves this target as it is: every key with its value, its unit and what it means.
 // The control's own smoothing words stand in it as remarks.
 [[nodiscard]] std::string profile_text(const gcode::Control& target);
-
-// Whether the words of a program mean to the target what they mean to the reader.
 
 // An error "word-means-other" for the first use of each G word that the target takes for something
 // else than the reader does (G21 mirrors on some): such a program was not read as its control reads
