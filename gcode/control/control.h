@@ -17,7 +17,7 @@
 
 namespace batten::gcode {
 
-class CurveFormat;  // gcode/curves/curve_format.h
+struct CurveFormat;  // gcode/curves/curve_format.h
 
 // Digits after the point in millimetre and in inch programs.
 struct DecimalsByUnit {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "gcode/curves/klartext_words.h"
+#include "gcode/curves/heidenhain_spl.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/text/number_format.h"
 

@@ -1,7 +1,6 @@
 // Siemens Sinumerik 840D, 828D, ONE. Facts: docs/controllers/siemens.md.
 #include "gcode/controls/built_in.h"
-#include "gcode/curves/siemens_bspline.h"
-#include "gcode/curves/siemens_poly.h"
+#include "gcode/curves/siemens_curves.h"
 
 namespace batten::gcode {
 namespace {

@@ -1,16 +1,21 @@
-// The curve words of one control, as its control gives them (Control::curves). The text itself is
-// made and read by the pure functions beside this file.
+// The curve words of one control (Control::curves), and curves in the midst of a program. The text
+// itself is made and read by the functions beside this file.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "gcode/state/block_flow.h"
+#include "gcode/state/control_state.h"
 #include "gcode/state/modal_state.h"
+#include "gcode/state/motion.h"
 #include "gcode/text/number_format.h"
 #include "gcode/text/program.h"
 #include "geometry/basic/point.h"
@@ -69,57 +74,61 @@ struct CurveReading {
 // other words between, a start that is not where the tool stands, the program ends inside it.
 using CurveResult = std::variant<CurveReading, CurveRefusal>;
 
-class CurveFormat {
- public:
-  virtual ~CurveFormat() = default;
-
-  [[nodiscard]] virtual std::string_view name() const = 0;  // "G06.2"
+// A format as a value: what differs between the curves of controls, and the functions that write
+// and read them.
+struct CurveFormat {
+  std::string_view name;  // "G06.2"
 
   // Whether curves are tried under --output auto: the control reads them without an option that
   // the user has to own, and runs them as they are meant.
-  [[nodiscard]] virtual bool is_default() const = 0;
+  bool is_default = false;
 
   // What a user has to be told when such curves were written, since it is not verified; empty where
   // there is nothing.
-  [[nodiscard]] virtual std::string_view caution() const { return {}; }
-
-  // Why no curve may start in this state (cutter compensation, feed mode, plane ..); empty where it
-  // may. Units, absolute distances and feed per minute are known already.
-  [[nodiscard]] virtual std::string_view complaint(const ModalState& state) const = 0;
-
-  // Whether the control runs this piece of a curve. What it does not is written as lines.
-  [[nodiscard]] virtual bool takes(const geometry::CubicBezier&) const { return true; }
-
-  // Whether the control runs curves as chords of its own that count. They leave a piece by
-  // chords_error (mm) at the most.
-  [[nodiscard]] virtual bool is_run_as_chords() const { return false; }
-  [[nodiscard]] virtual double chords_error(const geometry::CubicBezier&) const { return 0; }
+  std::string_view caution;
 
   // Whether every piece is a block for itself. Otherwise a curve has blocks beside those of its
   // pieces, and short curves are not worth them.
-  [[nodiscard]] virtual bool is_block_per_piece() const = 0;
+  bool is_block_per_piece = true;
 
-  // Whether the control wants X, Y and Z in every curve, moved or not.
-  [[nodiscard]] virtual bool names_all_axes() const { return false; }
+  bool names_all_axes = false;  // X, Y and Z in every curve, moved or not
+  bool only_in_xy = false;      // under G17
 
   // How knots, coefficients or offsets are printed.
-  [[nodiscard]] virtual NumberFormat other_numbers(Units units) const = 0;
+  NumberFormat other_mm;
+  NumberFormat other_inch;
 
-  [[nodiscard]] virtual CurveWriting write(const geometry::BsplineCurve& curve,
-                                           const CurveSetting& setting) const = 0;
+  std::function<CurveWriting(const geometry::BsplineCurve&, const CurveSetting&)> write;
 
   // The curve whose first block is block `first`. Quick where that block starts none.
-  [[nodiscard]] virtual CurveResult read(const Program& program, std::uint32_t first,
-                                         const CurveStart& start) const = 0;
+  std::function<CurveResult(const Program&, std::uint32_t first, const CurveStart&)> read;
+
+  // Whether the control runs this piece of a curve. What it does not is written as lines.
+  std::function<bool(const geometry::CubicBezier&)> takes = [](const auto&) { return true; };
+
+  // Where the control runs curves as chords of its own that count: how far they leave a piece at
+  // the most (mm).
+  bool is_run_as_chords = false;
+  std::function<double(const geometry::CubicBezier&)> chords_error = [](const auto&) { return 0; };
 };
 
-// What the curve blocks of most controls can hold.
+// Whether a curve may start in this state, as far as the words of a motion are its path there: no
+// compensation, no frames, absolute distances, feed per minute. What is not known is not so.
+[[nodiscard]] bool may_start(const CurveFormat& format, const ModalState& state);
 
-// A cubic that starts and ends in its outer control points.
-[[nodiscard]] inline bool is_clamped_cubic(const geometry::BsplineCurve& curve) {
-  constexpr std::size_t kOrder = 4;
-  const auto& t = curve.basis().knots();
-  return curve.degree() == 3 && t[0] == t[kOrder - 1] && t[t.size() - kOrder] == t.back();
-}
+// The curve that starts in block `first`. Nothing where `format` is nullptr or reads none there, in
+// states in which the control refuses curves, and when one of its blocks may be left out, is jumped
+// to or stands in a loop.
+[[nodiscard]] std::optional<CurveReading> curve_at(const Program& program, std::uint32_t first,
+                                                   const ControlState& state,
+                                                   const CurveFormat* format,
+                                                   std::span<const BlockFlow> flow);
+
+// Whether the feed of the curve that starts in block `first` is written without a decimal point.
+[[nodiscard]] bool is_feed_without_point(const Program& program, std::uint32_t first,
+                                         const CurveReading& curve);
+
+// One of the curve's pieces as a motion.
+[[nodiscard]] Motion motion_of(const CurveMotion& piece, const CurveReading& curve);
 
 }  // namespace batten::gcode

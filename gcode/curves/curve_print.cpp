@@ -3,18 +3,24 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
 #include <utility>
 
-#include "gcode/curves/bezier_chain.h"
 #include "gcode/state/modal_state.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::gcode {
 
+using geometry::CubicBezier;
+using geometry::Point3;
+using geometry::Vector3;
+
 PlacePrinter::PlacePrinter(const CurveSetting& setting)
     : setting_(setting), unit_(millimetres_per(setting.units)) {}
 
-PrintedPlace PlacePrinter::print(const geometry::Point3& mm, const NumberFormat& format) const {
+PrintedPlace PlacePrinter::place(const Point3& mm, bool is_last) const {
+  NumberFormat format = setting_.places;
+  if (is_last) format.decimals = std::max(format.decimals, setting_.last_decimals);
   PrintedPlace printed;
   printed.mm = setting_.start;
   for (int axis = 0; axis < 3; ++axis) {
@@ -26,22 +32,17 @@ PrintedPlace PlacePrinter::print(const geometry::Point3& mm, const NumberFormat&
   return printed;
 }
 
-PrintedPlace PlacePrinter::place(const geometry::Point3& mm) const {
-  return print(mm, setting_.places);
-}
-
-PrintedPlace PlacePrinter::last_place(const geometry::Point3& mm) const {
-  NumberFormat format = setting_.places;
-  format.decimals = std::max(format.decimals, setting_.last_decimals);
-  return print(mm, format);
-}
-
 std::optional<PrintedPlace> PlacePrinter::start() const {
-  PrintedPlace printed = last_place(setting_.start);
-  const geometry::Vector3 off = printed.mm - setting_.start;
+  PrintedPlace printed = place(setting_.start, true);
+  const Vector3 off = printed.mm - setting_.start;
   if (off.cwiseAbs().maxCoeff() > geometry::kSamePlace) return std::nullopt;
   printed.mm = setting_.start;
   return printed;
+}
+
+bool PlacePrinter::starts_at(const Point3& first) const {
+  return (first - setting_.start).cwiseAbs().maxCoeff() <=
+         printed_step(setting_.places, setting_.units);
 }
 
 std::string feed_word(const CurveSetting& setting) {
@@ -53,6 +54,45 @@ void add_word(std::string& line, std::string_view word, const CurveSetting& sett
   if (word.empty()) return;
   if (setting.blanks && !line.empty()) line.push_back(' ');
   line += word;
+}
+
+void add_place(std::string& line, const PrintedPlace& place, const CurveSetting& setting) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (place.digits[axis].empty()) continue;
+    add_word(line, kAxisNames[axis] + place.digits[axis], setting);
+  }
+}
+
+bool is_clamped_cubic(const geometry::BsplineCurve& curve) {
+  constexpr std::size_t kOrder = 4;
+  const auto& t = curve.basis().knots();
+  return curve.degree() == 3 && t[0] == t[kOrder - 1] && t[t.size() - kOrder] == t.back();
+}
+
+double greatest_move(std::span<const CubicBezier> a, std::span<const CubicBezier> b) {
+  if (a.size() != b.size()) {
+    throw std::invalid_argument("greatest_move: " + std::to_string(b.size()) +
+                                " pieces, expected " + std::to_string(a.size()));
+  }
+  double greatest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (int j = 0; j < 4; ++j) {
+      greatest = std::max(greatest, (a[i].control[j] - b[i].control[j]).norm());
+    }
+  }
+  return greatest;
+}
+
+CubicBezier between(const CubicBezier& piece, const Point3& start, const Point3& end) {
+  const Point3* p = piece.control;
+  return {{start, p[1] + (start - p[0]), p[2] + (end - p[3]), end}};
+}
+
+double kink_between(const CubicBezier& before, const CubicBezier& after) {
+  const Vector3 arriving = geometry::direction_at(before, 1);
+  const Vector3 leaving = geometry::direction_at(after, 0);
+  // Zero vectors make both parts zero, and the angle 0.
+  return std::atan2(arriving.cross(leaving).norm(), arriving.dot(leaving));
 }
 
 namespace {
@@ -81,8 +121,8 @@ std::vector<std::int64_t> in_steps(const std::vector<double>& knots, double step
   return rounded;
 }
 
-std::vector<geometry::CubicBezier> pieces_with(const geometry::BsplineCurve& curve,
-                                               std::vector<double> knots) {
+std::vector<CubicBezier> pieces_with(const geometry::BsplineCurve& curve,
+                                     std::vector<double> knots) {
   return geometry::BsplineCurve(geometry::BsplineBasis(curve.degree(), std::move(knots)),
                                 curve.control_points())
       .bezier_pieces();
@@ -93,7 +133,7 @@ std::vector<geometry::CubicBezier> pieces_with(const geometry::BsplineCurve& cur
 std::optional<PrintedKnots> print_knots(const geometry::BsplineCurve& curve,
                                         const KnotDigits& digits, double enough) {
   const std::vector<double> exact = without_noise(curve.basis().knots());
-  const std::vector<geometry::CubicBezier> wanted = pieces_with(curve, exact);
+  const std::vector<CubicBezier> wanted = pieces_with(curve, exact);
   std::optional<PrintedKnots> finest;
   const int before_point = digits.digits - digits.decimals;
   // The last knot is 10^places, a number of places + 1 digits.

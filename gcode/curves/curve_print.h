@@ -1,7 +1,10 @@
-// The numbers of curve blocks: printed, and at once as the control will read them.
+// The numbers of curve blocks: printed, and at once as the control will read them; how far the
+// printed curve is from the given one.
 #pragma once
 
+#include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +12,7 @@
 #include "gcode/curves/curve_format.h"
 #include "geometry/basic/point.h"
 #include "geometry/path/bspline_curve.h"
+#include "geometry/path/path.h"
 
 namespace batten::gcode {
 
@@ -24,19 +28,19 @@ class PlacePrinter {
   explicit PlacePrinter(const CurveSetting& setting);
 
   // Rounded to the decimals of places; the last place of a curve may have more.
-  [[nodiscard]] PrintedPlace place(const geometry::Point3& mm) const;
-  [[nodiscard]] PrintedPlace last_place(const geometry::Point3& mm) const;
+  [[nodiscard]] PrintedPlace place(const geometry::Point3& mm, bool is_last) const;
 
   // Where the curve starts, exactly; nothing when that needs more decimals than the last place
   // may have.
   [[nodiscard]] std::optional<PrintedPlace> start() const;
 
+  // Whether the curve's first point is where the tool stands, to within a printed step.
+  [[nodiscard]] bool starts_at(const geometry::Point3& first) const;
+
   // Millimetres to one unit of the program.
   [[nodiscard]] double unit() const { return unit_; }
 
  private:
-  [[nodiscard]] PrintedPlace print(const geometry::Point3& mm, const NumberFormat& format) const;
-
   const CurveSetting& setting_;
   double unit_;
 };
@@ -48,6 +52,35 @@ inline constexpr std::array<char, 3> kAxisNames = {'X', 'Y', 'Z'};
 
 // Adds `word` to `line`, after a blank where the setting wants one and the line is not empty.
 void add_word(std::string& line, std::string_view word, const CurveSetting& setting);
+
+// The words of the axes that are named.
+void add_place(std::string& line, const PrintedPlace& place, const CurveSetting& setting);
+
+// Whether the curve is a cubic that starts and ends in its outer control points: what the curve
+// blocks of most controls can hold.
+[[nodiscard]] bool is_clamped_cubic(const geometry::BsplineCurve& curve);
+
+// --- chains of cubic Bezier pieces, as curve words say them one by one --------------------------
+
+// How far two chains are apart at most (mm), pieces taken in pairs at equal parameters: the
+// greatest distance of two control points. It bounds the distance of the curves in order, both
+// ways, and counts places that slid along the curve as well as those that left it. Throws
+// std::invalid_argument unless both have the same number of pieces.
+[[nodiscard]] double greatest_move(std::span<const geometry::CubicBezier> a,
+                                   std::span<const geometry::CubicBezier> b);
+
+// The piece between two places near its ends, with the same tangents: inner control points move
+// with the end that they belong to. So rounding of ends makes no kinks.
+[[nodiscard]] geometry::CubicBezier between(const geometry::CubicBezier& piece,
+                                            const geometry::Point3& start,
+                                            const geometry::Point3& end);
+
+// The angle (radians) between the direction in which `before` arrives and the one in which
+// `after` leaves; 0 where one of them has none.
+[[nodiscard]] double kink_between(const geometry::CubicBezier& before,
+                                  const geometry::CubicBezier& after);
+
+// --- knots --------------------------------------------------------------------------------------
 
 // Knots with few digits. A knot vector may be moved and stretched without changing its curve, so
 // knots are scaled to a range that its printed digits resolve before they are rounded.

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <tuple>
 
+#include "gcode/curves/curve_print.h"
 #include "gcode/state/block_words.h"
-#include "gcode/state/control_state.h"
 #include "geometry/basic/point.h"
 #include "geometry/basic/rounding.h"
 #include "geometry/path/cubic_polynomial.h"
@@ -26,34 +26,6 @@ constexpr Code kG5 = 50;
 constexpr double kLeastTurn = 1e-4;
 constexpr int kParts = 16;
 
-double unit_of(Units units) { return units == Units::kInch ? kMillimetresPerInch : 1; }
-
-// The words of one block.
-class G5Words {
- public:
-  explicit G5Words(const CurveSetting& setting) : setting_(setting) {}
-
-  void add(char letter, std::string_view digits) {
-    if (!line_.empty() && setting_.blanks) line_ += ' ';
-    line_ += letter;
-    line_ += digits;
-  }
-
-  // Returns what the control reads, mm.
-  double add_length(char letter, double mm, const NumberFormat& format) {
-    const double unit = unit_of(setting_.units);
-    const std::string digits = to_text(mm / unit, format);
-    add(letter, digits);
-    return read_number(digits)->value * unit;
-  }
-
-  [[nodiscard]] const std::string& line() const { return line_; }
-
- private:
-  const CurveSetting& setting_;
-  std::string line_;
-};
-
 bool is_flat(const CubicBezier& piece, double height, double noise) {
   for (const Point3& point : piece.control) {
     if (!(std::abs(point.z() - height) <= noise)) return false;
@@ -63,35 +35,39 @@ bool is_flat(const CubicBezier& piece, double height, double noise) {
 
 CurveRefusal refusal(std::string_view why) { return {std::string(why)}; }
 
-}  // namespace
-
-CurveWriting write_g5(const std::vector<CubicBezier>& pieces, const CurveSetting& setting) {
+CurveWriting write_g5(const geometry::BsplineCurve& curve, const CurveSetting& setting) {
+  const double unit = millimetres_per(setting.units);
+  std::string line;
+  // Returns what the control reads, mm.
+  const auto add_length = [&](char letter, double mm, const NumberFormat& format) {
+    const std::string digits = to_text(mm / unit, format);
+    add_word(line, letter + digits, setting);
+    return read_number(digits)->value * unit;
+  };
+  const std::vector<CubicBezier> pieces = curve.bezier_pieces();
   CurveLines lines;
-  lines.reserve(pieces.size());
-  Point3 start = setting.start;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const CubicBezier& piece = pieces[i];
-    if (!is_flat(piece, start.z(), geometry::kSamePlace)) return refusal("the piece leaves XY");
+    if (!is_flat(piece, setting.start.z(), geometry::kSamePlace)) {
+      return refusal("the piece leaves XY");
+    }
     NumberFormat places = setting.places;
     if (i + 1 == pieces.size()) places.decimals = std::max(places.decimals, setting.last_decimals);
-    G5Words words(setting);
-    words.add('G', "5");
-    Point3 end = start;
-    end.x() = words.add_length('X', piece.control[3].x(), places);
-    end.y() = words.add_length('Y', piece.control[3].y(), places);
+    line = "G5";
+    (void)add_length('X', piece.control[3].x(), places);
+    (void)add_length('Y', piece.control[3].y(), places);
     // The ways of the given piece, not those from the printed ends: rounding those makes no kinks.
     const Vector3 from_start = piece.control[1] - piece.control[0];
     const Vector3 from_end = piece.control[2] - piece.control[3];
-    const double out_x = words.add_length('I', from_start.x(), setting.other);
-    const double out_y = words.add_length('J', from_start.y(), setting.other);
-    const double back_x = words.add_length('P', from_end.x(), setting.other);
-    const double back_y = words.add_length('Q', from_end.y(), setting.other);
+    const double out_x = add_length('I', from_start.x(), setting.other);
+    const double out_y = add_length('J', from_start.y(), setting.other);
+    const double back_x = add_length('P', from_end.x(), setting.other);
+    const double back_y = add_length('Q', from_end.y(), setting.other);
     if ((out_x == 0 && out_y == 0) || (back_x == 0 && back_y == 0)) {
       return refusal("an offset of a Bezier point is zero once it is printed");
     }
-    if (i == 0 && setting.feed) words.add_length('F', *setting.feed, setting.feeds);
-    lines.push_back(words.line());
-    start = end;
+    if (i == 0) add_word(line, feed_word(setting), setting);
+    lines.push_back(line);
   }
   return lines;
 }
@@ -114,7 +90,7 @@ CurveResult read_g5(const Program& program, std::uint32_t first, const CurveStar
   if (!start.position.known[0] || !start.position.known[1])
     return refusal("the place is not known");
 
-  const double unit = unit_of(start.units);
+  const double unit = millimetres_per(start.units);
   const auto value = [&](char letter) { return words.find(letter)->value * unit; };
   const Point3 from = start.position.mm;
   const Point3 to(value('X'), value('Y'), from.z());
@@ -130,6 +106,10 @@ CurveResult read_g5(const Program& program, std::uint32_t first, const CurveStar
   return reading;
 }
 
+// Whether the piece lies in a plane of XY and LinuxCNC's arcs follow it: they are two for each
+// sixteenth of it, found by tangents, and a sixteenth whose tangents are parallel gives no arcs or
+// wild ones. So each must turn, all to one side, by kLeastTurn at least, and together by less than
+// half a turn.
 bool bends_one_way(const CubicBezier& piece) {
   if (!is_flat(piece, piece.control[0].z(), geometry::kSamePlace)) return false;
   const geometry::PathPiece path = piece;
@@ -145,11 +125,6 @@ bool bends_one_way(const CubicBezier& piece) {
   }
   return std::abs(sum) < std::numbers::pi;
 }
-
-namespace {
-
-using geometry::CubicBezier;
-using geometry::Point3;
 
 // The settings of their sources, which no setting of the machine changes.
 constexpr double kNear = 0.1;  // mm, |x| + |y| between the curve and the middle of its chord
@@ -239,65 +214,43 @@ double chopping_error(const CubicBezier& piece) {
 namespace {
 
 // What all controls with G5 have in common.
-class G5Format : public CurveFormat {
- public:
-  std::string_view name() const override { return "G5"; }
-
-  // Arcs say the same with a deviation that we choose, and the controls run G5 as arcs or chords.
-  bool is_default() const override { return false; }
-
-  std::string_view complaint(const ModalState& state) const override {
-    if (state.plane != Plane::kXY) return "G5 outside G17";
-    if (state.cutter_compensation != TriState::kOff) return "G5 under cutter compensation";
-    return {};
-  }
-
+CurveFormat g5_format() {
+  CurveFormat format;
+  format.name = "G5";
+  // Arcs say the same with a deviation that we choose, and the controls run G5 as arcs or chords:
+  // so it is no default.
+  format.only_in_xy = true;
   // The pieces that LinuxCNC takes: the others have no use for pieces that are nearly straight.
-  bool takes(const geometry::CubicBezier& piece) const override { return bends_one_way(piece); }
-  bool is_block_per_piece() const override { return true; }
-
-  CurveWriting write(const geometry::BsplineCurve& curve,
-                     const CurveSetting& setting) const override {
-    return write_g5(curve.bezier_pieces(), setting);
-  }
-
-  CurveResult read(const Program& program, std::uint32_t first,
-                   const CurveStart& start) const override {
-    return read_g5(program, first, start);
-  }
-};
-
-class LinuxCncG5 final : public G5Format {
- public:
-  // As many as arc ends have: a direction that is off by half a step of the fifth decimal over the
-  // third of a millimetre turns the joint by 2e-5 radians.
-  NumberFormat other_numbers(Units units) const override {
-    return {.decimals = units == Units::kInch ? 6 : 5};
-  }
-};
-
-class ChoppedG5 final : public G5Format {
- public:
-  bool is_run_as_chords() const override { return true; }
-  double chords_error(const geometry::CubicBezier& piece) const override {
-    return chopping_error(piece);
-  }
-
-  // Chords are found in 32-bit numbers: the fifth decimal would be noise.
-  NumberFormat other_numbers(Units units) const override {
-    return {.decimals = units == Units::kInch ? 5 : 4};
-  }
-};
+  format.takes = bends_one_way;
+  format.write = write_g5;
+  format.read = read_g5;
+  return format;
+}
 
 }  // namespace
 
 const CurveFormat& linuxcnc_g5() {
-  static const LinuxCncG5 kFormat;
+  static const CurveFormat kFormat = [] {
+    CurveFormat format = g5_format();
+    // As many as arc ends have: a direction that is off by half a step of the fifth decimal over
+    // the third of a millimetre turns the joint by 2e-5 radians.
+    format.other_mm = {.decimals = 5};
+    format.other_inch = {.decimals = 6};
+    return format;
+  }();
   return kFormat;
 }
 
 const CurveFormat& chopped_g5() {
-  static const ChoppedG5 kFormat;
+  static const CurveFormat kFormat = [] {
+    CurveFormat format = g5_format();
+    format.is_run_as_chords = true;
+    format.chords_error = chopping_error;
+    // Chords are found in 32-bit numbers: the fifth decimal would be noise.
+    format.other_mm = {.decimals = 4};
+    format.other_inch = {.decimals = 5};
+    return format;
+  }();
   return kFormat;
 }
 

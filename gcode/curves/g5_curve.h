@@ -13,21 +13,6 @@
 
 namespace batten::gcode {
 
-// A refusal where a piece leaves the plane of the start, where the place is not what rounding
-// leaves of it, or where a printed offset is zero: the piece has no direction there then.
-[[nodiscard]] CurveWriting write_g5(const std::vector<geometry::CubicBezier>& pieces,
-                                    const CurveSetting& setting);
-
-// One block with G5, X, Y, I, J, P, Q, perhaps F and N, and nothing else but comments.
-[[nodiscard]] CurveResult read_g5(const Program& program, std::uint32_t first,
-                                  const CurveStart& start);
-
-// Whether the piece lies in a plane of XY and LinuxCNC's arcs follow it: they are two for each
-// sixteenth of it, found by tangents, and a sixteenth whose tangents are parallel gives no arcs or
-// wild ones. So each must turn, all to one side, by `kLeastTurn` (radians) at least, and together
-// by less than half a turn.
-[[nodiscard]] bool bends_one_way(const geometry::CubicBezier& piece);
-
 // How grblHAL and Marlin run a G5: as chords, which they find by halving and doubling the step of
 // the parameter until the middle of each chord is near its curve. Facts and sources:
 // docs/controllers/grbl_family.md.
@@ -39,7 +24,9 @@ namespace batten::gcode {
 // points of each part; right to some percent where all chords bend one way.
 [[nodiscard]] double chopping_error(const geometry::CubicBezier& piece);
 
-// G5 as the curves of a control; see gcode/curves/g5_curve.h.
+// What is written: refused where a piece leaves the plane of the start, or where a printed offset
+// is zero: the piece has no direction there then. What is read: a block with G5, X, Y, I, J, P, Q,
+// perhaps F and N, and nothing else but comments.
 
 // LinuxCNC 2.9: only under --output curves. Pieces that bend one way, in G17, not under G41, G42.
 [[nodiscard]] const CurveFormat& linuxcnc_g5();

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <numbers>
+#include <cstddef>
 #include <string>
 #include <utility>
 
-#include "gcode/curves/bezier_chain.h"
 #include "gcode/curves/curve_print.h"
 #include "gcode/klartext/statement.h"
-#include "gcode/state/modal_state.h"
+#include "gcode/text/characters.h"
+#include "gcode/text/number_format.h"
 
 namespace batten::gcode {
 namespace {
@@ -18,6 +19,111 @@ namespace {
 using geometry::CubicBezier;
 using geometry::Point3;
 using geometry::Vector3;
+
+// --- words --------------------------------------------------------------------------------------
+
+class KlartextReader {
+ public:
+  explicit KlartextReader(std::string_view text) : text_(text) {}
+
+  std::optional<KlartextLine> read() {
+    KlartextLine line;
+    if (is_digit(skip_blanks())) {
+      line.number = digits();
+      if (!line.number) return std::nullopt;
+    }
+    while (skip_blanks() != '\0' && peek() != ';') {
+      if (peek() == '~') {
+        ++at_;
+        line.continues = true;
+        if (skip_blanks() != '\0') return std::nullopt;
+        break;
+      }
+      KlartextWord word;
+      if (!read_word(word)) return std::nullopt;
+      line.words.push_back(std::move(word));
+    }
+    return line;
+  }
+
+ private:
+  char peek(std::size_t ahead = 0) const {
+    return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0';
+  }
+
+  char skip_blanks() {
+    while (is_blank(peek())) ++at_;
+    return peek();
+  }
+
+  std::optional<int> digits() {
+    int value = 0;
+    const char* begin = text_.data() + at_;
+    const auto read = std::from_chars(begin, text_.data() + text_.size(), value);
+    if (read.ec != std::errc{}) return std::nullopt;
+    at_ += static_cast<std::size_t>(read.ptr - begin);
+    return value;
+  }
+
+  bool is_spline_word() const {
+    return upper(peek()) == 'K' && peek(1) >= '1' && peek(1) <= '3' && is_letter(peek(2));
+  }
+
+  bool read_word(KlartextWord& word) {
+    if (is_spline_word()) {
+      word.name = {'K', peek(1), upper(peek(2))};
+      at_ += 3;
+      return read_value(word) && read_exponent(word);
+    }
+    while (is_letter(peek())) word.name.push_back(upper(text_[at_++]));
+    if (word.name.empty()) return false;
+    // The sense of an arc; with digits behind it, a difference of the tool's radius.
+    if (word.is("DR") && (peek() == '+' || peek() == '-') && !is_digit(peek(1)) && peek(1) != '.') {
+      word.name.push_back(text_[at_++]);
+      return true;
+    }
+    const char next = peek();
+    const bool has_value = is_digit(next) || next == '+' || next == '-' || next == '.';
+    return !has_value || read_value(word);
+  }
+
+  bool read_value(KlartextWord& word) {
+    std::string digits;
+    while (is_digit(peek()) || peek() == '.' || peek() == ',' ||
+           (digits.empty() && (peek() == '+' || peek() == '-'))) {
+      digits.push_back(peek() == ',' ? '.' : peek());
+      ++at_;
+    }
+    const auto number = read_number(digits);
+    if (!number || std::abs(number->value) >= kNumberLimit) return false;
+    word.mantissa = number->value;
+    word.value = number->value;
+    word.decimals = number->decimals;
+    return true;
+  }
+
+  // E-002, also behind a blank.
+  bool read_exponent(KlartextWord& word) {
+    std::size_t ahead = 0;
+    while (is_blank(peek(ahead))) ++ahead;
+    if (upper(peek(ahead)) != 'E') return true;
+    at_ += ahead + 1;
+    const bool negative = peek() == '-';
+    if (negative || peek() == '+') ++at_;
+    const auto exponent = digits();
+    if (!exponent || *exponent > 308) return false;
+    word.exponent = negative ? -*exponent : *exponent;
+    // Dividing by a power of ten that is exact rounds once.
+    const double power = std::pow(10.0, *exponent);
+    word.value = negative ? word.mantissa / power : word.mantissa * power;
+    return true;
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+};
+
+// --- writing ------------------------------------------------------------------------------------
 
 std::string with_sign(const std::string& digits) {
   return digits.starts_with('-') ? digits : "+" + digits;
@@ -41,7 +147,7 @@ class SplWriter {
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const Point3& wanted = pieces_[i].control[3];
       PrintedBlock block;
-      block.end = i + 1 < pieces_.size() ? printer_.place(wanted) : printer_.last_place(wanted);
+      block.end = printer_.place(wanted, i + 1 == pieces_.size());
       if (block.end.mm.cwiseAbs().maxCoeff() > kGreatestEnd * printer_.unit()) {
         return "a place beyond 99999.9999";
       }
@@ -67,13 +173,10 @@ class SplWriter {
     return false;
   }
 
-  [[nodiscard]] CurveLines lines(const SplOptions& options) const {
+  [[nodiscard]] CurveLines lines() const {
     CurveLines lines;
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       std::string line = "SPL";
-      if (options.first_number) {
-        line = std::to_string(*options.first_number + static_cast<int>(i)) + " SPL";
-      }
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (!setting_.axes[axis]) continue;
         line += std::string(" ") + kAxisNames[axis] + with_sign(blocks_[i].end.digits[axis]);
@@ -129,25 +232,87 @@ class SplWriter {
   std::vector<PrintedBlock> blocks_;
 };
 
+CurveWriting write_spl(const geometry::BsplineCurve& curve, const CurveSetting& setting) {
+  const std::vector<CubicBezier> pieces = curve.bezier_pieces();
+  if (std::ranges::count(setting.axes, true) < 2) {
+    return CurveRefusal{"SPL names two axes or more"};
+  }
+  if (!PlacePrinter(setting).starts_at(pieces.front().control[0])) {
+    return CurveRefusal{"the curve does not start where the tool stands"};
+  }
+  for (int decimals = std::min(setting.other.decimals, kMantissaDecimals);; ++decimals) {
+    SplWriter writer(pieces, setting, decimals);
+    const std::string trouble = writer.print();
+    if (trouble.empty() && !writer.adds_kinks()) return writer.lines();
+    if (decimals < kMantissaDecimals) continue;
+    return CurveRefusal{trouble.empty() ? "rounding makes a kink of 0.1 degrees or more" : trouble};
+  }
+}
+
+// --- reading ------------------------------------------------------------------------------------
+
+bool starts_spline(const Program& program, std::uint32_t block) {
+  const SourceSpan content =
+      klartext_parts(program.source.text(), program.blocks[block].span).content;
+  return klartext_kind(program.source.text(content)) == KlartextKind::kSpline;
+}
+
+// Decimals of the same number, as doubles, differ by less (mm).
+constexpr double kDecimalNoise = 1e-9;
+
+// The words that a spline of ours has: no rotary axes, no M.
+bool only_main_axes(const SplWords& block) {
+  return std::all_of(block.words.begin() + 1, block.words.end(), [](const KlartextWord& word) {
+    const char axis = word.name.back();
+    const bool main = axis >= 'X' && axis <= 'Z';
+    return word.is("F") ? word.value.has_value()
+                        : main && (is_spl_end(word) || is_spl_coefficient(word));
+  });
+}
+
+// They start where their K words say, so they chain to within 1 um, and to the rounding of doubles
+// where Batten wrote them.
+CurveResult read_spl(const Program& program, std::uint32_t first, const CurveStart& start) {
+  const bool may_be = program.blocks[first].opacity == ParseStatus::kForeign;
+  if (!may_be || !starts_spline(program, first)) return CurveRefusal{"no SPL"};
+  const double unit = millimetres_per(start.units);
+  CurveReading reading;
+  Point3 place = start.position.mm;
+  for (std::uint32_t at = first; at < program.blocks.size();) {
+    const SplWords joined = joined_at(program, at);
+    if (!joined.is("SPL")) break;
+    if (!joined.understood || !spl_word_trouble(joined).empty() || !only_main_axes(joined)) {
+      if (reading.motions.empty()) return CurveRefusal{"an SPL block that is not understood"};
+      break;
+    }
+    const SplBlock block = spl_block_of(joined, place, unit);
+    if (block.feed && !reading.motions.empty()) break;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (block.axes[axis] && !start.position.known[axis]) {
+        return CurveRefusal{"where the tool stands is not known"};
+      }
+      reading.axes[axis] = reading.axes[axis] || block.axes[axis];
+    }
+    CubicBezier piece = block.piece;
+    const double off = (piece.control[0] - place).cwiseAbs().maxCoeff();
+    if (off >= kSplClosure) {
+      return CurveRefusal{"a spline that starts 1 um or more from where the tool stands"};
+    }
+    if (off <= kDecimalNoise) piece.control[0] = place;
+    if (reading.motions.empty()) reading.feed = block.feed;
+    reading.motions.push_back({at, piece});
+    reading.blocks += joined.lines;
+    at += joined.lines;
+    place = piece.control[3];
+  }
+  if (reading.motions.empty()) return CurveRefusal{"no SPL"};
+  return reading;
+}
+
 }  // namespace
 
-std::string_view spl_complaint(const ModalState& state) {
-  if (state.feed_mode != FeedMode::kPerMinute) return "SPL needs feed per minute";
-  if (state.distance != DistanceMode::kAbsolute) return "SPL is written with absolute places only";
-  const std::array<std::pair<TriState, std::string_view>, 8> items = {{
-      {state.cutter_compensation, "SPL under RL or RR"},
-      {state.polar, "SPL in polar coordinates"},
-      {state.cylindrical, "SPL on a cylinder surface"},
-      {state.tool_center_point, "SPL under M128"},
-      {state.tilted_plane, "SPL in a tilted plane"},
-      {state.scaling, "SPL under a scaling cycle"},
-      {state.rotation, "SPL under a rotation cycle"},
-      {state.mirror, "SPL under a mirror cycle"},
-  }};
-  for (const auto& [item, complaint] : items) {
-    if (item != TriState::kOff) return complaint;
-  }
-  return {};
+std::optional<KlartextLine> read_klartext_line(std::string_view line) {
+  return KlartextReader(line).read();
 }
 
 std::optional<PrintedCoefficient> print_spl_coefficient(double value, int decimals) {
@@ -172,29 +337,6 @@ std::optional<PrintedCoefficient> print_spl_coefficient(double value, int decima
   digits += "E+" + std::string(3 - size.size(), '0') + size;
   return PrintedCoefficient{std::move(digits), mantissa * power};
 }
-
-CurveWriting write_spl(std::span<const CubicBezier> pieces, const CurveSetting& setting,
-                       const SplOptions& options) {
-  if (pieces.empty()) return CurveRefusal{"no curve"};
-  if (std::ranges::count(setting.axes, true) < 2) {
-    return CurveRefusal{"SPL names two axes or more"};
-  }
-  const double step = printed_step(setting.places, setting.units);
-  if ((pieces.front().control[0] - setting.start).cwiseAbs().maxCoeff() > step) {
-    return CurveRefusal{"the curve does not start where the tool stands"};
-  }
-  const int most = std::min(options.max_decimals, kMantissaDecimals);
-  for (int decimals = std::min(setting.other.decimals, most); decimals <= most; ++decimals) {
-    SplWriter writer(pieces, setting, decimals);
-    const std::string trouble = writer.print();
-    const bool last = decimals == most;
-    if (!trouble.empty() && last) return CurveRefusal{trouble};
-    if (trouble.empty() && !writer.adds_kinks()) return writer.lines(options);
-  }
-  return CurveRefusal{"rounding makes a kink of 0.1 degrees or more"};
-}
-
-using geometry::Point3;
 
 bool is_spl_coefficient(const KlartextWord& word) {
   return word.name.size() == 3 && word.name[0] == 'K';
@@ -253,10 +395,10 @@ std::string_view spl_word_trouble(const SplWords& block) {
   return {};
 }
 
-SplBlock spl_block_of(const SplWords& joined, std::uint32_t at, const Point3& place, double unit) {
+SplBlock spl_block_of(const SplWords& joined, const Point3& place, double unit) {
   SplBlock block;
-  block.block = at;
-  block.end = place;
+  Point3 end = place;
+  std::array<Vector3, 3> k = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};  // K1, K2, K3; mm
   for (const KlartextWord& word : joined.words) {
     if (word.is("F")) block.feed = word.value;
     if (!is_spl_end(word) && !is_spl_coefficient(word)) continue;
@@ -264,135 +406,28 @@ SplBlock spl_block_of(const SplWords& joined, std::uint32_t at, const Point3& pl
     if (axis < 'X' || axis > 'Z') continue;
     const int i = axis - 'X';
     if (is_spl_coefficient(word)) {
-      block.k[static_cast<std::size_t>(word.name[1] - '1')][i] = *word.value * unit;
+      k[static_cast<std::size_t>(word.name[1] - '1')][i] = *word.value * unit;
     } else {
       block.axes[static_cast<std::size_t>(i)] = true;
-      block.end[i] = *word.value * unit;
+      end[i] = *word.value * unit;
     }
   }
+  const Point3 begin = end + (k[0] + (k[1] + k[2]));
+  block.piece = {{begin, end + (2 * k[0] + k[1]) / 3, end + k[0] / 3, end}};
   return block;
 }
 
-namespace {
-
-bool starts_spline(const Program& program, std::uint32_t block) {
-  const SourceSpan content =
-      klartext_parts(program.source.text(), program.blocks[block].span).content;
-  return klartext_kind(program.source.text(content)) == KlartextKind::kSpline;
-}
-
-class SplFormat final : public CurveFormat {
- public:
-  std::string_view name() const override { return "SPL"; }
-
-  // A software option on the iTNC 530.
-  bool is_default() const override { return false; }
-  std::string_view complaint(const ModalState& state) const override {
-    return spl_complaint(state);
-  }
-  bool is_block_per_piece() const override { return true; }
-
-  // Of the size of the piece; write_spl takes more where a joint would have a kink.
-  NumberFormat other_numbers(Units) const override { return {.decimals = 6}; }
-
-  CurveWriting write(const geometry::BsplineCurve& curve,
-                     const CurveSetting& setting) const override {
-    return write_spl(curve.bezier_pieces(), setting, {});
-  }
-
-  CurveResult read(const Program& program, std::uint32_t first,
-                   const CurveStart& start) const override {
-    const bool may_be = program.blocks[first].opacity == ParseStatus::kForeign;
-    if (!may_be || !starts_spline(program, first)) return CurveRefusal{"no SPL"};
-    return read_spl(program, first, start);
-  }
-};
-
-}  // namespace
-
 const CurveFormat& heidenhain_spl() {
-  static const SplFormat kFormat;
+  static const CurveFormat kFormat = [] {
+    CurveFormat format;
+    format.name = "SPL";  // a software option on the iTNC 530: no default
+    // Of the size of the piece; more where a joint would have a kink.
+    format.other_mm = format.other_inch = {.decimals = 6};
+    format.write = write_spl;
+    format.read = read_spl;
+    return format;
+  }();
   return kFormat;
-}
-
-namespace {
-
-using geometry::CubicBezier;
-using geometry::Point3;
-using geometry::Vector3;
-
-// Decimals of the same number, as doubles, differ by less (mm).
-constexpr double kDecimalNoise = 1e-9;
-
-// The words that a spline of ours has: no rotary axes, no M.
-bool only_main_axes(const SplWords& block) {
-  return std::all_of(block.words.begin() + 1, block.words.end(), [](const KlartextWord& word) {
-    const char axis = word.name.back();
-    const bool main = axis >= 'X' && axis <= 'Z';
-    return word.is("F") ? word.value.has_value()
-                        : main && (is_spl_end(word) || is_spl_coefficient(word));
-  });
-}
-
-}  // namespace
-
-Point3 SplBlock::point_at(double t) const { return end + t * (k[0] + t * (k[1] + t * k[2])); }
-
-CubicBezier SplBlock::piece() const {
-  return {{point_at(1), end + (2 * k[0] + k[1]) / 3, end + k[0] / 3, end}};
-}
-
-std::variant<SplText, CurveRefusal> read_spl_text(const Program& program, std::uint32_t first,
-                                                  const CurveStart& start) {
-  const double unit = millimetres_per(start.units);
-  SplText text;
-  Point3 place = start.position.mm;
-  for (std::uint32_t at = first; at < program.blocks.size();) {
-    const SplWords joined = joined_at(program, at);
-    if (!joined.is("SPL")) break;
-    if (!joined.understood || !spl_word_trouble(joined).empty() || !only_main_axes(joined)) {
-      if (text.pieces.empty()) return CurveRefusal{"an SPL block that is not understood"};
-      break;
-    }
-    const SplBlock block = spl_block_of(joined, at, place, unit);
-    if (block.feed && !text.pieces.empty()) break;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (block.axes[axis] && !start.position.known[axis]) {
-        return CurveRefusal{"where the tool stands is not known"};
-      }
-    }
-    if ((block.point_at(1) - place).cwiseAbs().maxCoeff() >= kSplClosure) {
-      return CurveRefusal{"a spline that starts 1 um or more from where the tool stands"};
-    }
-    place = block.end;
-    text.blocks += joined.lines;
-    at += joined.lines;
-    text.pieces.push_back(block);
-  }
-  if (text.pieces.empty()) return CurveRefusal{"no SPL"};
-  return text;
-}
-
-CurveResult read_spl(const Program& program, std::uint32_t first, const CurveStart& start) {
-  auto read = read_spl_text(program, first, start);
-  if (auto* refusal = std::get_if<CurveRefusal>(&read)) return std::move(*refusal);
-  const SplText& text = std::get<SplText>(read);
-  CurveReading reading;
-  reading.blocks = text.blocks;
-  reading.feed = text.pieces.front().feed;
-  Point3 place = start.position.mm;
-  for (const SplBlock& block : text.pieces) {
-    CubicBezier piece = block.piece();
-    if ((piece.control[0] - place).cwiseAbs().maxCoeff() <= kDecimalNoise) {
-      piece.control[0] = place;
-    }
-    place = block.end;
-    reading.motions.push_back({block.block, piece});
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      reading.axes[axis] = reading.axes[axis] || block.axes[axis];
-    }
-  }
-  return reading;
 }
 
 }  // namespace batten::gcode

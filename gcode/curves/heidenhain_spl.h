@@ -6,18 +6,45 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
-#include <span>
+#include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "gcode/curves/curve_format.h"
-#include "gcode/curves/klartext_words.h"
 #include "gcode/text/program.h"
 #include "geometry/basic/point.h"
 #include "geometry/path/path.h"
 
 namespace batten::gcode {
+
+// --- Klartext lines, as far as splines and lines need them ---------------------------------------
+// `8 SPL X+24.875 Y+15.924 ~`, `K3X-4.688E-002`, `F10000`, `FMAX`, `M3`.
+
+// The control refuses an arc whose ends are not on one circle about CC, by more than this (mm; a
+// machine parameter, from memory).
+inline constexpr double kKlartextRadiusMismatch = 0.016;
+
+struct KlartextWord {
+  std::string name;  // upper case: "X", "K3X", "SPL", "FMAX", "RL", "DR+"
+  std::optional<double> value;
+  double mantissa = 0;  // the digits before an exponent; `value` without one
+  int decimals = 0;     // of the mantissa
+  std::optional<int> exponent;
+
+  [[nodiscard]] bool is(std::string_view other) const { return name == other; }
+};
+
+struct KlartextLine {
+  std::optional<int> number;  // of the block
+  std::vector<KlartextWord> words;
+  bool continues = false;  // ends with ~
+};
+
+// Comments (; to the end) are left out; a decimal comma is read as a point. Nothing where the line
+// has anything else than such words.
+[[nodiscard]] std::optional<KlartextLine> read_klartext_line(std::string_view line);
+
+// --- splines ------------------------------------------------------------------------------------
 
 // The control stops where the start that K1, K2, K3 and the end imply is further from the place
 // where the tool stands, on any axis (mm).
@@ -26,63 +53,12 @@ inline constexpr double kSplClosure = 1e-3;
 // It stops, or slows down, where one spline meets the next under this angle or more (radians).
 inline constexpr double kSplKink = 0.1 * std::numbers::pi / 180;
 
-// Why a spline may not start in this state; empty where it may.
-[[nodiscard]] std::string_view spl_complaint(const ModalState& state);
-
-struct SplOptions {
-  // Decimals of K: at the least those of `setting.other`, more where a joint would have a kink.
-  int max_decimals = 8;
-  // The number of the first block, the others follow; nothing: no numbers are written.
-  std::optional<int> first_number;
-};
-
-// A block per piece, and per block a line with the end and a line for each axis, all but the last
-// with ~. K1 is chosen so that the printed numbers of a block add up to its start: the error of
-// rounding is in the tangent, and far below the angle at which the control stops.
-//
-// Refuses an empty chain, one that starts further than one step of the printed places from the
-// tool, fewer than two named axes, numbers beyond the control's ranges, blocks that would not
-// close to within 1 um, and kinks of 0.1 degrees or more that the given pieces do not have.
-[[nodiscard]] CurveWriting write_spl(std::span<const geometry::CubicBezier> pieces,
-                                     const CurveSetting& setting, const SplOptions& options);
-
 // K as it is printed: `+5.6`, `-1.2E+001`. Nothing beyond the range of the control.
 struct PrintedCoefficient {
   std::string digits;
   double value = 0;  // as read
 };
 [[nodiscard]] std::optional<PrintedCoefficient> print_spl_coefficient(double value, int decimals);
-
-// What one block says.
-struct SplBlock {
-  std::uint32_t block = 0;  // of its first line
-  std::array<bool, 3> axes = {false, false, false};
-  geometry::Point3 end = geometry::Point3::Zero();                  // mm
-  std::array<geometry::Vector3, 3> k = {geometry::Vector3::Zero(),  // K1, K2, K3; mm
-                                        geometry::Vector3::Zero(), geometry::Vector3::Zero()};
-  std::optional<double> feed;  // as printed
-
-  [[nodiscard]] geometry::Point3 point_at(double t) const;  // t from 1 to 0
-  [[nodiscard]] geometry::CubicBezier piece() const;        // from its own start, at t = 1
-};
-
-struct SplText {
-  std::vector<SplBlock> pieces;
-  std::uint32_t blocks = 0;  // lines of the program
-};
-
-// Reads the SPL blocks from line `first` on, up to the first line that is none, or that has an F of
-// its own. Lines are joined by ~, and where a line starts with a K word. Refuses splines of other
-// axes, other words, K words that are missing or in another order, an axis whose place is not
-// known, and a start that is further from the tool than 1 um.
-[[nodiscard]] std::variant<SplText, CurveRefusal> read_spl_text(const Program& program,
-                                                                std::uint32_t first,
-                                                                const CurveStart& start);
-
-// The same as pieces. They start where their K words say, so they chain to within 1 um, and to the
-// rounding of doubles where Batten wrote them.
-[[nodiscard]] CurveResult read_spl(const Program& program, std::uint32_t first,
-                                   const CurveStart& start);
 
 // The words of one SPL block, whose lines are joined, before what they say is judged.
 
@@ -108,13 +84,31 @@ struct SplWords {
 // What is wrong with the words of a spline, as the id of an alarm; empty where nothing is.
 [[nodiscard]] std::string_view spl_word_trouble(const SplWords& block);
 
-// What the block says that begins in line `at`, where the tool stands at `place` (mm). Requires
-// words without trouble.
-[[nodiscard]] SplBlock spl_block_of(const SplWords& joined, std::uint32_t at,
-                                    const geometry::Point3& place, double unit);
+// What one block says.
+struct SplBlock {
+  std::array<bool, 3> axes = {false, false, false};
+  std::optional<double> feed;   // as printed
+  geometry::CubicBezier piece;  // from its own start, at t = 1
+};
 
-// Heidenhain SPL as a CurveFormat: for the controls that read it as an option.
+// What the block says where the tool stands at `place` (mm). Requires words without trouble.
+[[nodiscard]] SplBlock spl_block_of(const SplWords& joined, const geometry::Point3& place,
+                                    double unit);
 
+// SPL as a format: for the controls that read it as an option.
+//
+// What is written: a block per piece, and per block a line with the end and a line for each axis,
+// all but the last with ~. K1 is chosen so that the printed numbers of a block add up to its start:
+// the error of rounding is in the tangent, and far below the angle at which the control stops. K
+// has the decimals of `setting.other`, more where a joint would have a kink. Refused are a curve
+// that starts further than one step of the printed places from the tool, fewer than two named axes,
+// numbers beyond the control's ranges, blocks that would not close to within 1 um, and kinks of 0.1
+// degrees or more that the given pieces do not have.
+//
+// What is read: the SPL blocks from line `first` on, up to the first line that is none, or that has
+// an F of its own. Lines are joined by ~, and where a line starts with a K word. Refused are
+// splines of other axes, other words, K words that are missing or in another order, an axis whose
+// place is not known, and a start that is further from the tool than 1 um.
 [[nodiscard]] const CurveFormat& heidenhain_spl();
 
 // What the numbers of an SPL block may be (iTNC 530 manual, 60642x-04, p. 541).

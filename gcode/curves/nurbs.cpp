@@ -6,76 +6,25 @@
 #include <string>
 #include <utility>
 
-#include "gcode/curves/curve_format.h"
-#include "gcode/curves/curve_print.h"
-#include "gcode/state/modal_state.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::gcode {
-
-NurbsRules fanuc_nurbs(Units units) {
-  NurbsRules rules;
-  rules.control = "FANUC";
-  // Nine digits in the least increment of the reference axis: +-999999.999 in millimetres at IS-B,
-  // +-99999.9999 in inches.
-  rules.knots = {.digits = 9, .decimals = units == Units::kInch ? 4 : 3};
-  return rules;
-}
-
-NurbsRules syntec_nurbs(Units units) {
-  NurbsRules rules = fanuc_nurbs(units);
-  rules.control = "Syntec";
-  rules.weights = true;
-  rules.framed = true;
-  return rules;
-}
-
-NurbsRules mitsubishi_nurbs() {
-  NurbsRules rules;
-  rules.control = "Mitsubishi";
-  // The manual limits the decimals only. Eight digits in all are what its axis words have.
-  rules.knots = {.digits = 8, .decimals = 4};
-  rules.three_axes = true;
-  rules.framed = true;
-  rules.missing_knot = "P33";
-  rules.wrong_mode = "P29";
-  rules.wrong_start = "start-differs";
-  rules.decreasing = "P551";
-  rules.axis_too_late = "P32";
-  rules.too_many_decimals = "P33";
-  return rules;
-}
-
-std::string_view nurbs_complaint(const ModalState& state) {
-  if (state.feed_mode != FeedMode::kPerMinute) return "G06.2 needs feed per minute (G94)";
-  if (state.distance != DistanceMode::kAbsolute) return "G06.2 is written in G90 only";
-  const std::array<std::pair<TriState, std::string_view>, 11> items = {{
-      {state.cutter_compensation, "G06.2 is an alarm under G41 and G42"},
-      {state.polar, "G06.2 is an alarm under G12.1, and polar coordinates are no places"},
-      {state.cylindrical, "G06.2 in cylindrical interpolation"},
-      {state.tool_center_point, "G06.2 under tool centre point control"},
-      {state.tilted_plane, "G06.2 in a tilted plane"},
-      {state.scaling, "G06.2 under scaling"},
-      {state.rotation, "G06.2 under rotation"},
-      {state.mirror, "G06.2 under mirror image"},
-      {state.modal_macro, "G06.2 under a modal macro call"},
-      {state.constant_surface_speed, "G06.2 under constant surface speed"},
-      {state.lathe_diameter, "G06.2 with diameters"},
-  }};
-  for (const auto& [item, complaint] : items) {
-    if (item != TriState::kOff) return complaint;
-  }
-  return {};
-}
-
 namespace {
 
 using geometry::BsplineBasis;
 using geometry::BsplineCurve;
 using geometry::Point3;
 
+constexpr std::string_view kFrameBegin = "G05 P10000";
+constexpr std::string_view kFrameEnd = "G05 P0";
+
 constexpr int kLeastOrder = 2;
 constexpr int kGreatestOrder = 4;
+
+// Six digits before the point: what nine digits in the least increment leave in millimetres.
+constexpr double kGreatestNurbsPlace = 999999.999;
+
+// --- reading ------------------------------------------------------------------------------------
 
 // One block of a curve, or what is wrong with it.
 struct NurbsBlock {
@@ -152,28 +101,40 @@ class NurbsReader {
         unit_(millimetres_per(start.units)),
         place_(start.position.mm) {}
 
-  std::variant<NurbsText, CurveRefusal> read(std::uint32_t first) {
-    std::uint32_t at = first;
-    if (rules_.framed && !is_frame(program_, at++, 10000)) return refuse("no G05 P10000 before it");
-    if (!begin(at)) return CurveRefusal{trouble_};
-    for (++at; !complete(); ++at) {
-      if (at >= program_.blocks.size()) return refuse("the program ends inside the curve");
-      if (!add(at)) return CurveRefusal{trouble_};
+  CurveResult read(std::uint32_t first) {
+    if (!read_blocks(first) || !knots_fit()) return CurveRefusal{trouble_};
+    if (std::ranges::count(weights_, weights_.front()) != std::ssize(weights_)) {
+      return CurveRefusal{"weights that differ"};
     }
-    if (rules_.framed && !is_frame(program_, at++, 0)) return refuse("no G05 P0 behind it");
-    text_.blocks = at - first;
-    if (!knots_fit()) return CurveRefusal{trouble_};
-    return std::move(text_);
+    const BsplineCurve curve(BsplineBasis(order_ - 1, knots_), points_);
+    // Piece i belongs to the block of control point i + order - 1.
+    auto span = static_cast<std::size_t>(order_ - 1);
+    for (const geometry::CubicBezier& piece : curve.bezier_pieces()) {
+      while (!(knots_[span] < knots_[span + 1])) ++span;
+      reading_.motions.push_back({point_blocks_[span], piece});
+      ++span;
+    }
+    return std::move(reading_);
   }
 
  private:
-  CurveRefusal refuse(std::string why) const { return {std::move(why)}; }
   bool fail(std::string why) {
     trouble_ = std::move(why);
     return false;
   }
 
-  bool complete() const { return ending_knots_ == text_.order; }
+  bool read_blocks(std::uint32_t first) {
+    std::uint32_t at = first;
+    if (rules_.framed && !is_frame(program_, at++, 10000)) return fail("no G05 P10000 before it");
+    if (!begin(at)) return false;
+    for (++at; ending_knots_ < order_; ++at) {
+      if (at >= program_.blocks.size()) return fail("the program ends inside the curve");
+      if (!add(at)) return false;
+    }
+    if (rules_.framed && !is_frame(program_, at++, 0)) return fail("no G05 P0 behind it");
+    reading_.blocks = at - first;
+    return true;
+  }
 
   bool begin(std::uint32_t at) {
     if (at >= program_.blocks.size()) return fail("no block");
@@ -184,11 +145,12 @@ class NurbsReader {
     if (order != std::floor(order) || order < kLeastOrder || order > kGreatestOrder) {
       return fail("P" + to_text(order, {.decimals = 3}) + ", expected P2 to P4");
     }
-    text_.order = static_cast<int>(order);
-    text_.feed = block.feed;
-    for (std::size_t axis = 0; axis < 3; ++axis) text_.axes[axis] = block.place[axis].has_value();
+    order_ = static_cast<int>(order);
+    reading_.feed = block.feed;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      reading_.axes[axis] = block.place[axis].has_value();
     if (!block.has_place() || !block.knot) return fail("no point or no knot beside G06.2");
-    if (rules_.three_axes && !(text_.axes[0] && text_.axes[1] && text_.axes[2])) {
+    if (rules_.three_axes && !(reading_.axes[0] && reading_.axes[1] && reading_.axes[2])) {
       return fail("X, Y and Z are not all named beside G06.2");
     }
     return add_point(at, block) && starts_in_place();
@@ -196,10 +158,10 @@ class NurbsReader {
 
   bool starts_in_place() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!text_.axes[axis]) continue;
+      if (!reading_.axes[axis]) continue;
       if (!start_.position.known[axis]) return fail("where the tool stands is not known");
       const double off =
-          text_.points[0][static_cast<int>(axis)] - start_.position.mm[static_cast<int>(axis)];
+          points_[0][static_cast<int>(axis)] - start_.position.mm[static_cast<int>(axis)];
       if (std::abs(off) > geometry::kSamePlace) {
         return fail("the first point is not where the tool stands");
       }
@@ -218,7 +180,7 @@ class NurbsReader {
       return add_point(at, block);
     }
     if (block.weight) return fail("a weight without a point");
-    text_.knots.push_back(*block.knot);
+    knots_.push_back(*block.knot);
     ++ending_knots_;
     return true;
   }
@@ -226,21 +188,21 @@ class NurbsReader {
   bool add_point(std::uint32_t at, const NurbsBlock& block) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!block.place[axis]) continue;
-      if (!text_.axes[axis]) return fail("an axis that the first block does not name");
+      if (!reading_.axes[axis]) return fail("an axis that the first block does not name");
       place_[static_cast<int>(axis)] = *block.place[axis] * unit_;
     }
-    text_.points.push_back(place_);
-    text_.weights.push_back(block.weight.value_or(1));
-    text_.knots.push_back(*block.knot);
-    text_.point_blocks.push_back(at);
-    if (!(text_.weights.back() > 0)) return fail("a weight that is not positive");
+    points_.push_back(place_);
+    weights_.push_back(block.weight.value_or(1));
+    knots_.push_back(*block.knot);
+    point_blocks_.push_back(at);
+    if (!(weights_.back() > 0)) return fail("a weight that is not positive");
     return true;
   }
 
   bool knots_fit() {
-    const auto order = static_cast<std::size_t>(text_.order);
-    const std::vector<double>& t = text_.knots;
-    if (text_.points.size() < order) return fail("fewer points than the order");
+    const auto order = static_cast<std::size_t>(order_);
+    const std::vector<double>& t = knots_;
+    if (points_.size() < order) return fail("fewer points than the order");
     if (!std::ranges::is_sorted(t)) return fail("a knot that decreases");
     if (t[0] != t[order - 1] || t[t.size() - order] != t.back()) {
       return fail("the first or the last knots are not all the same");
@@ -261,74 +223,21 @@ class NurbsReader {
   }
 
   const Program& program_;
-  const NurbsRules& rules_;
+  NurbsRules rules_;
   const CurveStart& start_;
   double unit_;
   Point3 place_;
-  NurbsText text_;
+  CurveReading reading_;
+  int order_ = kGreatestOrder;
+  std::vector<double> knots_;
+  std::vector<double> weights_;
+  std::vector<Point3> points_;  // mm; axes that are not named stay where they were
+  std::vector<std::uint32_t> point_blocks_;
   int ending_knots_ = 0;
   std::string trouble_;
 };
 
-}  // namespace
-
-Point3 NurbsText::point_at(double u) const {
-  const BsplineBasis basis(order - 1, knots);
-  const std::size_t span = basis.find_span(u);
-  std::array<double, kGreatestOrder> values{};
-  basis.evaluate(span, std::clamp(u, basis.first(), basis.last()), values.data());
-  Point3 sum = Point3::Zero();
-  double weight = 0;
-  for (std::size_t j = 0; j < static_cast<std::size_t>(order); ++j) {
-    const std::size_t i = span + 1 + j - static_cast<std::size_t>(order);
-    sum += values[j] * weights[i] * points[i];
-    weight += values[j] * weights[i];
-  }
-  return sum / weight;
-}
-
-bool NurbsText::is_polynomial() const {
-  return std::ranges::all_of(weights, [this](double w) { return w == weights.front(); });
-}
-
-BsplineCurve NurbsText::curve() const { return {BsplineBasis(order - 1, knots), points}; }
-
-std::variant<NurbsText, CurveRefusal> read_nurbs_text(const Program& program, std::uint32_t first,
-                                                      const CurveStart& start,
-                                                      const NurbsRules& rules) {
-  return NurbsReader(program, start, rules).read(first);
-}
-
-CurveResult read_nurbs(const Program& program, std::uint32_t first, const CurveStart& start,
-                       const NurbsRules& rules) {
-  auto read = read_nurbs_text(program, first, start, rules);
-  if (auto* refusal = std::get_if<CurveRefusal>(&read)) return std::move(*refusal);
-  const NurbsText& text = std::get<NurbsText>(read);
-  if (!text.is_polynomial()) return CurveRefusal{"weights that differ"};
-  CurveReading reading;
-  reading.blocks = text.blocks;
-  reading.axes = text.axes;
-  reading.feed = text.feed;
-  const BsplineCurve curve = text.curve();
-  const auto order = static_cast<std::size_t>(text.order);
-  std::size_t span = order - 1;
-  for (const geometry::CubicBezier& piece : curve.bezier_pieces()) {
-    while (!(text.knots[span] < text.knots[span + 1])) ++span;
-    reading.motions.push_back({text.point_blocks[span], piece});
-    ++span;
-  }
-  return reading;
-}
-
-namespace {
-
-using geometry::BsplineCurve;
-using geometry::Point3;
-
-constexpr std::size_t kOrder = 4;
-
-// Six digits before the point: what nine digits in the least increment leave in millimetres.
-constexpr double kGreatestNurbsPlace = 999999.999;
+// --- writing ------------------------------------------------------------------------------------
 
 bool only_named_axes_move(const std::vector<Point3>& points, const CurveSetting& setting) {
   const double step = printed_step(setting.places, setting.units);
@@ -342,162 +251,114 @@ bool only_named_axes_move(const std::vector<Point3>& points, const CurveSetting&
   return true;
 }
 
-// The words of the control points, without knots; empty when one cannot be printed.
-struct Points {
-  std::vector<PrintedPlace> printed;
-  std::string trouble;
-};
-
-Points print_points(const std::vector<Point3>& points, const CurveSetting& setting) {
-  const PlacePrinter printer(setting);
-  Points result;
-  const auto start = printer.start();
-  if (!start) {
-    result.trouble = "the start has more decimals than the control reads";
-    return result;
-  }
-  result.printed.push_back(*start);
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    result.printed.push_back(i + 1 < points.size() ? printer.place(points[i])
-                                                   : printer.last_place(points[i]));
-    if (result.printed.back().mm.cwiseAbs().maxCoeff() > kGreatestNurbsPlace * printer.unit()) {
-      result.trouble = "a place beyond 999999.999";
-      return result;
-    }
-  }
-  return result;
-}
-
-BsplineCurve with_points(const BsplineCurve& curve, const Points& points) {
-  std::vector<Point3> places;
-  places.reserve(points.printed.size());
-  for (const PrintedPlace& place : points.printed) places.push_back(place.mm);
-  return {curve.basis(), std::move(places)};
-}
-
-class NurbsLines {
- public:
-  NurbsLines(const CurveSetting& setting, const NurbsRules& rules, int knot_decimals)
-      : setting_(setting), rules_(rules), knots_(setting.other) {
-    knots_.decimals = knot_decimals;
-  }
-
-  void point(const std::string& opening, double knot, const PrintedPlace& place,
-             const std::string& closing) {
-    std::string line = opening;
-    add_word(line, "K" + to_text(knot, knots_), setting_);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (place.digits[axis].empty()) continue;
-      add_word(line, kAxisNames[axis] + place.digits[axis], setting_);
-    }
-    if (rules_.weights) add_word(line, "R" + to_text(1, knots_), setting_);
-    add_word(line, closing, setting_);
-    lines_.push_back(std::move(line));
-  }
-
-  void knot_alone(double knot) { lines_.push_back("K" + to_text(knot, knots_)); }
-  void frame(std::string_view text) { lines_.emplace_back(text); }
-
-  [[nodiscard]] CurveLines take() { return std::move(lines_); }
-
- private:
-  const CurveSetting& setting_;
-  const NurbsRules& rules_;
-  NumberFormat knots_;
-  CurveLines lines_;
-};
-
 std::string_view trouble_with(const BsplineCurve& curve, const CurveSetting& setting,
                               const NurbsRules& rules) {
   if (!is_clamped_cubic(curve)) return "G06.2 is written for clamped cubic curves only";
   const auto named = std::ranges::count(setting.axes, true);
   if (named == 0) return "no axis is named";
   if (rules.three_axes && named < 3) return "this control's G06.2 names X, Y and Z";
-  if (!only_named_axes_move(curve.control_points(), setting))
+  if (!only_named_axes_move(curve.control_points(), setting)) {
     return "an axis moves and has no word";
+  }
   return {};
 }
 
-}  // namespace
+CurveLines lines_of(const std::vector<PrintedPlace>& places, const PrintedKnots& knots,
+                    const CurveSetting& setting, const NurbsRules& rules) {
+  NumberFormat format = setting.other;
+  format.decimals = knots.decimals;
+  CurveLines lines;
+  if (rules.framed) lines.emplace_back(kFrameBegin);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    std::string line = i == 0 ? "G06.2" : "";
+    if (i == 0) add_word(line, "P4", setting);
+    add_word(line, "K" + to_text(knots.knots[i], format), setting);
+    add_place(line, places[i], setting);
+    if (rules.weights) add_word(line, "R" + to_text(1, format), setting);
+    if (i == 0) add_word(line, feed_word(setting), setting);
+    lines.push_back(std::move(line));
+  }
+  lines.insert(lines.end(), kGreatestOrder, "K" + to_text(knots.knots.back(), format));
+  if (rules.framed) lines.emplace_back(kFrameEnd);
+  return lines;
+}
 
 CurveWriting write_nurbs(const BsplineCurve& curve, const CurveSetting& setting,
                          const NurbsRules& rules) {
   const std::string_view trouble = trouble_with(curve, setting, rules);
   if (!trouble.empty()) return CurveRefusal{std::string(trouble)};
-  const Points points = print_points(curve.control_points(), setting);
-  if (!points.trouble.empty()) return CurveRefusal{points.trouble};
-
+  const PlacePrinter printer(setting);
+  const auto start = printer.start();
+  if (!start) return CurveRefusal{"the start has more decimals than the control reads"};
+  std::vector<PrintedPlace> places = {*start};
+  std::vector<Point3> points = {start->mm};
+  for (std::size_t i = 1; i < curve.control_points().size(); ++i) {
+    const bool is_last = i + 1 == curve.control_points().size();
+    places.push_back(printer.place(curve.control_points()[i], is_last));
+    points.push_back(places.back().mm);
+    if (points.back().cwiseAbs().maxCoeff() > kGreatestNurbsPlace * printer.unit()) {
+      return CurveRefusal{"a place beyond 999999.999"};
+    }
+  }
   KnotDigits digits = rules.knots;
   if (setting.other.decimals < digits.decimals) {
     digits.digits -= digits.decimals - setting.other.decimals;
     digits.decimals = setting.other.decimals;
   }
-  const auto knots =
-      print_knots(with_points(curve, points), digits, printed_step(setting.places, setting.units));
+  const auto knots = print_knots({curve.basis(), std::move(points)}, digits,
+                                 printed_step(setting.places, setting.units));
   if (!knots) return CurveRefusal{"distinct knots meet when they are rounded"};
-
-  NurbsLines lines(setting, rules, knots->decimals);
-  std::string opening = "G06.2";
-  add_word(opening, "P4", setting);
-  if (rules.framed) lines.frame(kFrameBegin);
-  for (std::size_t i = 0; i < points.printed.size(); ++i) {
-    const bool first = i == 0;
-    lines.point(first ? opening : std::string(), knots->knots[i], points.printed[i],
-                first ? feed_word(setting) : std::string());
-  }
-  for (std::size_t i = 0; i < kOrder; ++i) lines.knot_alone(knots->knots.back());
-  if (rules.framed) lines.frame(kFrameEnd);
-  return lines.take();
+  return lines_of(places, *knots, setting, rules);
 }
-
-namespace {
-
-class NurbsFormat final : public CurveFormat {
- public:
-  using Rules = NurbsRules (*)(Units);
-  explicit NurbsFormat(Rules rules) : rules_(rules) {}
-
-  std::string_view name() const override { return "G06.2"; }
-  bool is_default() const override { return false; }
-  std::string_view complaint(const ModalState& state) const override {
-    return nurbs_complaint(state);
-  }
-  bool is_block_per_piece() const override { return false; }
-  bool names_all_axes() const override { return rules_(Units::kMillimetre).three_axes; }
-  NumberFormat other_numbers(Units units) const override {
-    return {.decimals = rules_(units).knots.decimals, .always_point = true};
-  }
-
-  CurveWriting write(const geometry::BsplineCurve& curve,
-                     const CurveSetting& setting) const override {
-    return write_nurbs(curve, setting, rules_(setting.units));
-  }
-
-  CurveResult read(const Program& program, std::uint32_t first,
-                   const CurveStart& start) const override {
-    return read_nurbs(program, first, start, rules_(start.units));
-  }
-
- private:
-  Rules rules_;
-};
-
-NurbsRules mitsubishi_in(Units) { return mitsubishi_nurbs(); }
 
 }  // namespace
 
+NurbsRules fanuc_nurbs(Units units) {
+  // Nine digits in the least increment of the reference axis: +-999999.999 in millimetres at IS-B,
+  // +-99999.9999 in inches.
+  return {.knots = {.digits = 9, .decimals = units == Units::kInch ? 4 : 3}};
+}
+
+NurbsRules syntec_nurbs(Units units) {
+  NurbsRules rules = fanuc_nurbs(units);
+  rules.weights = true;
+  rules.framed = true;
+  return rules;
+}
+
+NurbsRules mitsubishi_nurbs(Units) {
+  // The manual limits the decimals only. Eight digits in all are what its axis words have.
+  return {.knots = {.digits = 8, .decimals = 4}, .three_axes = true, .framed = true};
+}
+
+CurveFormat nurbs_format(std::function<NurbsRules(Units)> rules) {
+  CurveFormat format;
+  format.name = "G06.2";
+  format.is_block_per_piece = false;
+  format.names_all_axes = rules(Units::kMillimetre).three_axes;
+  format.other_mm = {.decimals = rules(Units::kMillimetre).knots.decimals, .always_point = true};
+  format.other_inch = {.decimals = rules(Units::kInch).knots.decimals, .always_point = true};
+  format.write = [rules](const BsplineCurve& curve, const CurveSetting& setting) {
+    return write_nurbs(curve, setting, rules(setting.units));
+  };
+  format.read = [rules](const Program& program, std::uint32_t first, const CurveStart& start) {
+    return NurbsReader(program, start, rules(start.units)).read(first);
+  };
+  return format;
+}
+
 const CurveFormat& fanuc_curves() {
-  static const NurbsFormat kFormat(&fanuc_nurbs);
+  static const CurveFormat kFormat = nurbs_format(fanuc_nurbs);
   return kFormat;
 }
 
 const CurveFormat& syntec_curves() {
-  static const NurbsFormat kFormat(&syntec_nurbs);
+  static const CurveFormat kFormat = nurbs_format(syntec_nurbs);
   return kFormat;
 }
 
 const CurveFormat& mitsubishi_curves() {
-  static const NurbsFormat kFormat(&mitsubishi_in);
+  static const CurveFormat kFormat = nurbs_format(mitsubishi_nurbs);
   return kFormat;
 }
 

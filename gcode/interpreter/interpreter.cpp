@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "gcode/curves/curve_in_program.h"
+#include "gcode/curves/curve_format.h"
 #include "gcode/interpreter/motion_words.h"
 #include "gcode/interpreter/opaque_blocks.h"
 #include "gcode/interpreter/plain_line.h"

@@ -27,7 +27,7 @@ struct ControlCarry {
   DiagnosticLimiter told;
 };
 
-class CurveFormat;  // gcode/curves/curve_format.h
+struct CurveFormat;  // gcode/curves/curve_format.h
 
 struct ReadOptions {
   Units units = Units::kUnknown;  // --units: what a program that names no unit means

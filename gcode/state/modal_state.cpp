@@ -91,11 +91,7 @@ double printed_step(const NumberFormat& format, Units units) {
   return std::pow(10.0, -format.decimals) * millimetres_per(units);
 }
 
-}  // namespace batten::gcode
-
-namespace batten::postproc {
-
-bool path_alone_counts(const gcode::ModalState& state) {
+bool path_alone_counts(const ModalState& state) {
   const std::array switches = {
       state.cutter_compensation,
       state.tool_center_point,
@@ -109,11 +105,9 @@ bool path_alone_counts(const gcode::ModalState& state) {
       state.constant_surface_speed,
       state.lathe_diameter,
   };
-  return std::ranges::all_of(switches,
-                             [](gcode::TriState item) { return item == gcode::TriState::kOff; }) &&
-         state.control_smoothing != gcode::TriState::kUnknown &&
-         state.units != gcode::Units::kUnknown && state.feed_mode == gcode::FeedMode::kPerMinute &&
-         state.distance == gcode::DistanceMode::kAbsolute;
+  return std::ranges::all_of(switches, [](TriState item) { return item == TriState::kOff; }) &&
+         state.control_smoothing != TriState::kUnknown && state.units != Units::kUnknown &&
+         state.feed_mode == FeedMode::kPerMinute && state.distance == DistanceMode::kAbsolute;
 }
 
-}  // namespace batten::postproc
+}  // namespace batten::gcode

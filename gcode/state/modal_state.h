@@ -123,14 +123,8 @@ inline constexpr std::array<PlaneAxes, 3> kPlaneAxes = {
   return nullptr;
 }
 
-}  // namespace batten::gcode
-
-// In which states of the control the words of a motion are its path.
-
-namespace batten::postproc {
-
 // A state in which the path in X, Y, Z is all there is to a cutting motion. Unknown is not. What a
 // control fits through the points by itself (COMPCAD) is its own deviation, in both programs.
-[[nodiscard]] bool path_alone_counts(const gcode::ModalState& state);
+[[nodiscard]] bool path_alone_counts(const ModalState& state);
 
-}  // namespace batten::postproc
+}  // namespace batten::gcode

@@ -344,16 +344,16 @@ std::optional<ReadAgain> read_again(const std::string& text, std::size_t lines,
 
 bool Writer::curve_to(const geometry::BsplineCurve& curve, double feed, int last_decimals) {
   const CurveFormat* format = control_.curves;
-  if (format == nullptr || !format->complaint(state_.modal).empty()) return false;
+  if (format == nullptr || !may_start(*format, state_.modal)) return false;
   CurveSetting setting;
   setting.units = state_.modal.units;
   setting.places = coordinates_;
-  setting.other = format->other_numbers(setting.units);
+  setting.other = setting.units == Units::kInch ? format->other_inch : format->other_mm;
   setting.feeds = feeds_;
   setting.last_decimals = last_decimals;
   setting.start = state_.position.mm;
   setting.axes = moved_axes(curve, setting.start);
-  if (format->names_all_axes()) setting.axes = {true, true, true};
+  if (format->names_all_axes) setting.axes = {true, true, true};
   if (!all_known(setting.axes, state_.position)) return false;
   if (!feed_is_said(feed)) setting.feed = feed;
   setting.blanks = control_.blanks;

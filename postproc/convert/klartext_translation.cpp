@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "gcode/control/block_spelling.h"
-#include "gcode/curves/klartext_words.h"
+#include "gcode/curves/heidenhain_spl.h"
 #include "gcode/state/dwell.h"
 #include "gcode/text/number_format.h"
 #include "postproc/convert/klartext_statements.h"

@@ -14,7 +14,6 @@
 #include "gcode/state/block_words.h"
 #include "gcode/state/dwell.h"
 #include "postproc/convert/klartext_statements.h"
-#include "postproc/convert/portable_motions.h"
 #include "postproc/convert/portable_words.h"
 #include "postproc/options/profile_words.h"
 
@@ -27,6 +26,129 @@ using gcode::Language;
 using gcode::Motion;
 using gcode::MotionKind;
 using gcode::Word;
+
+// Spindle and coolant while a program is read.
+
+// Nothing: the program has not said it.
+struct RunningFunctions {
+  std::optional<bool> spindle;
+  std::optional<bool> coolant;
+  std::optional<double> speed;                        // since the tool was put in
+  std::optional<gcode::SourceSpan> turned_at_change;  // of the tool; nothing said of it since
+
+  [[nodiscard]] bool may_be_on() const { return spindle != false || coolant == true; }
+
+  // M3, M4, M5, M8 or M9.
+  void switch_by(int function) {
+    const bool ends = function == 5 || function == 9;
+    const bool of_coolant = function == 8 || function == 9;
+    (of_coolant ? coolant : spindle) = !ends;
+    if (!of_coolant) turned_at_change.reset();
+  }
+
+  // `where`: what puts the tool in. Whether the spindle turns behind it is not known.
+  void change_tool(gcode::SourceSpan where) {
+    turned_at_change = spindle == true ? std::optional(where) : std::nullopt;
+    spindle.reset();
+    speed.reset();
+  }
+};
+
+// The tool in the spindle while a program is read, and whether its length counts.
+
+constexpr std::string_view kOfNoTool = "names the length of a tool that no M6 has put in";
+
+enum class LengthSaid : std::uint8_t { kNot, kCounts, kCountsNot };
+
+struct FetchedTool {
+  double number = 0;
+  gcode::SourceSpan where;
+};
+
+struct ToolInSpindle {
+  std::optional<double> number;
+  std::optional<FetchedTool> fetched;  // T without its M6 yet
+  LengthSaid length = LengthSaid::kNot;
+  std::optional<gcode::SourceSpan> without_length;  // G49, D0, and nothing moved since
+  bool moved_along = false;                         // along Z, since the tool was put in
+
+  // A whole number from 1 on.
+  [[nodiscard]] static bool is_number(double number) {
+    constexpr double kGreatest = 1e6;
+    return number >= 1 && number < kGreatest && number == std::floor(number);
+  }
+
+  // `tool` is in the spindle from here on.
+  void put_in(double tool) {
+    *this = {};
+    number = tool;
+  }
+
+  // The length does not count from here on.
+  void leave_length(gcode::SourceSpan where) {
+    without_length = where;
+    length = LengthSaid::kCountsNot;
+  }
+
+  // The length counts from here on. Whether it did not before.
+  bool count_length() {
+    without_length.reset();
+    return std::exchange(length, LengthSaid::kCounts) != LengthSaid::kCounts;
+  }
+
+  // Why G43, or a D word, is not just the length of the tool; empty where it is. `words`: of the
+  // block. A control counts the length from where the tool is put in: that is the same as long as
+  // nothing has moved along Z meanwhile.
+  [[nodiscard]] std::string_view why_not_length(std::span<const Word> words) const {
+    const Word* h = first_word(words, 'H');
+    const std::optional<double> tool = behind(words);
+    if (!tool) return kOfNoTool;
+    if (h != nullptr && h->value != *tool) return "names the length of another tool";
+    return why_too_late(words);
+  }
+  [[nodiscard]] std::string_view why_not_edge(const Word& d, std::span<const Word> words) const {
+    if (d.value == 0) return {};
+    if (d.value != 1) return "is another edge of the tool";
+    return behind(words) ? why_too_late(words) : kOfNoTool;
+  }
+
+ private:
+  // The tool in the spindle once the block's M6 is done.
+  [[nodiscard]] std::optional<double> behind(std::span<const Word> words) const {
+    if (coded_word(words, 'M', word_code::kToolChange) == nullptr) return number;
+    if (const Word* t = first_word(words, 'T')) return t->value;
+    return fetched ? std::optional(fetched->number) : std::nullopt;
+  }
+
+  [[nodiscard]] std::string_view why_too_late(std::span<const Word> words) const {
+    const bool changes = coded_word(words, 'M', word_code::kToolChange) != nullptr;
+    return moved_along && !changes ? "comes behind a motion without the length of the tool" : "";
+  }
+};
+
+// mm: an arc that rises by more is a helix.
+constexpr double kLevelArc = 1e-9;
+
+bool rises(const geometry::Arc& arc) {
+  return std::abs(arc.axis.dot(arc.end - arc.start)) > kLevelArc;
+}
+
+// Why the motion cannot be said in another language; empty where it can. `state`: behind its block.
+std::string_view why_no_certain_motion(const Motion& motion, const gcode::ModalState& state,
+                                       Language language) {
+  if (state.distance == gcode::DistanceMode::kIncremental) return "is an increment";
+  if (!path_alone_counts(state)) return "moves in a state in which its words are not the path";
+  const bool arc = motion.kind == MotionKind::kArc;
+  if (!motion.end_known || (arc && !motion.start_known)) {
+    return "moves from a place that is not known";
+  }
+  if (motion.kind == MotionKind::kCurve) return "is a curve";
+  if (motion.kind != MotionKind::kRapid && !state.feed) return "moves at a feed that is not known";
+  if (arc && language == Language::kSiemens && rises(*motion.piece.arc())) {
+    return "is a helix";
+  }
+  return {};
+}
 
 class OperationReader {
  public:
@@ -395,60 +517,6 @@ class OperationReader {
 ProgramOperations operations_of(const gcode::Program& program,
                                 const gcode::Interpretation& meaning) {
   return OperationReader(program, meaning).read();
-}
-
-namespace {
-
-constexpr std::string_view kOfNoTool = "names the length of a tool that no M6 has put in";
-
-}  // namespace
-
-bool ToolInSpindle::is_number(double number) {
-  constexpr double kGreatest = 1e6;
-  return number >= 1 && number < kGreatest && number == std::floor(number);
-}
-
-void ToolInSpindle::put_in(double tool) {
-  *this = {};
-  number = tool;
-}
-
-void ToolInSpindle::leave_length(gcode::SourceSpan where) {
-  without_length = where;
-  length = LengthSaid::kCountsNot;
-}
-
-bool ToolInSpindle::count_length() {
-  without_length.reset();
-  return std::exchange(length, LengthSaid::kCounts) != LengthSaid::kCounts;
-}
-
-std::string_view ToolInSpindle::why_not_length(std::span<const gcode::Word> words) const {
-  const gcode::Word* h = first_word(words, 'H');
-  const std::optional<double> tool = behind(words);
-  if (!tool) return kOfNoTool;
-  if (h != nullptr && h->value != *tool) return "names the length of another tool";
-  return why_too_late(words);
-}
-
-std::string_view ToolInSpindle::why_not_edge(const gcode::Word& d,
-                                             std::span<const gcode::Word> words) const {
-  if (d.value == 0) return {};
-  if (d.value != 1) return "is another edge of the tool";
-  if (!behind(words)) return kOfNoTool;
-  return why_too_late(words);
-}
-
-// The tool in the spindle once the block's M6 is done.
-std::optional<double> ToolInSpindle::behind(std::span<const gcode::Word> words) const {
-  if (coded_word(words, 'M', word_code::kToolChange) == nullptr) return number;
-  if (const gcode::Word* t = first_word(words, 'T')) return t->value;
-  return fetched ? std::optional(fetched->number) : std::nullopt;
-}
-
-std::string_view ToolInSpindle::why_too_late(std::span<const gcode::Word> words) const {
-  const bool changes = coded_word(words, 'M', word_code::kToolChange) != nullptr;
-  return moved_along && !changes ? "comes behind a motion without the length of the tool" : "";
 }
 
 }  // namespace batten::postproc

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -67,72 +66,5 @@ struct ProgramOperations {
 // Views into the program's text.
 [[nodiscard]] ProgramOperations operations_of(const gcode::Program& program,
                                               const gcode::Interpretation& meaning);
-
-// Spindle and coolant while a program is read.
-
-// Nothing: the program has not said it.
-struct RunningFunctions {
-  std::optional<bool> spindle;
-  std::optional<bool> coolant;
-  std::optional<double> speed;                        // since the tool was put in
-  std::optional<gcode::SourceSpan> turned_at_change;  // of the tool; nothing said of it since
-
-  [[nodiscard]] bool may_be_on() const { return spindle != false || coolant == true; }
-
-  // M3, M4, M5, M8 or M9.
-  void switch_by(int function) {
-    const bool ends = function == 5 || function == 9;
-    const bool of_coolant = function == 8 || function == 9;
-    (of_coolant ? coolant : spindle) = !ends;
-    if (!of_coolant) turned_at_change.reset();
-  }
-
-  // `where`: what puts the tool in. Whether the spindle turns behind it is not known.
-  void change_tool(gcode::SourceSpan where) {
-    turned_at_change = spindle == true ? std::optional(where) : std::nullopt;
-    spindle.reset();
-    speed.reset();
-  }
-};
-
-// The tool in the spindle while a program is read, and whether its length counts.
-
-enum class LengthSaid : std::uint8_t { kNot, kCounts, kCountsNot };
-
-struct FetchedTool {
-  double number = 0;
-  gcode::SourceSpan where;
-};
-
-struct ToolInSpindle {
-  std::optional<double> number;
-  std::optional<FetchedTool> fetched;  // T without its M6 yet
-  LengthSaid length = LengthSaid::kNot;
-  std::optional<gcode::SourceSpan> without_length;  // G49, D0, and nothing moved since
-  bool moved_along = false;                         // along Z, since the tool was put in
-
-  // A whole number from 1 on.
-  [[nodiscard]] static bool is_number(double number);
-
-  // `tool` is in the spindle from here on.
-  void put_in(double tool);
-
-  // The length does not count from here on.
-  void leave_length(gcode::SourceSpan where);
-
-  // The length counts from here on. Whether it did not before.
-  bool count_length();
-
-  // Why G43, or a D word, is not just the length of the tool; empty where it is. `words`: of the
-  // block. A control counts the length from where the tool is put in: that is the same as long as
-  // nothing has moved along Z meanwhile.
-  [[nodiscard]] std::string_view why_not_length(std::span<const gcode::Word> words) const;
-  [[nodiscard]] std::string_view why_not_edge(const gcode::Word& d,
-                                              std::span<const gcode::Word> words) const;
-
- private:
-  [[nodiscard]] std::optional<double> behind(std::span<const gcode::Word> words) const;
-  [[nodiscard]] std::string_view why_too_late(std::span<const gcode::Word> words) const;
-};
 
 }  // namespace batten::postproc

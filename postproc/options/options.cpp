@@ -263,10 +263,6 @@ std::vector<std::string> problems_of(const SmoothOptions& options) {
   std::ranges::move(problems_of_decimals(options.decimals, options.source, options.target),
                     std::back_inserter(problems));
   std::ranges::move(problems_of_allowed(options.allowed), std::back_inserter(problems));
-  if (options.min_motions < 2) {
-    problems.push_back(
-        fmt::format("min_motions: {}, expected 2 or more motions in a run", options.min_motions));
-  }
   if (options.threads < 0 || options.threads > kMostThreads) {
     problems.push_back(
         fmt::format("--threads: {}, expected 0 (all cores) to {}", options.threads, kMostThreads));

@@ -78,7 +78,6 @@ struct SmoothOptions {
   bool convert = false;  // a program of another family is taken where every block can be said
   ProfileWords words;    // that a profile adds; its target is `target`
   std::string profile;   // the profile's file, for reports; empty: none
-  std::size_t min_motions = 3;
   int threads = 0;  // 0: all cores
 };
 

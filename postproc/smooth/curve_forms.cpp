@@ -104,8 +104,8 @@ bool is_best(std::size_t candidate, const RunTask& task, const SmoothedRun& resu
 bool curves_wanted(const RunTask& task) {
   const SmoothOptions& options = task.options;
   const gcode::CurveFormat* format = options.target->curves;
-  if (format == nullptr || !format->complaint(task.context.before).empty()) return false;
-  return options.output == Form::kCurves || (options.output == Form::kAuto && format->is_default());
+  if (format == nullptr || !may_start(*format, task.context.before)) return false;
+  return options.output == Form::kCurves || (options.output == Form::kAuto && format->is_default);
 }
 
 CurveForms::CurveForms(const RunTask& task, const CandidateMaker& maker,

@@ -296,7 +296,6 @@ bool is_allowed(std::string_view reason, const SmoothOptions& options) {
 
 GroupingOptions grouping_of(const SmoothOptions& options) {
   GroupingOptions grouping;
-  grouping.min_motions = options.min_motions;
   grouping.tolerance_mm = options.tolerance_mm;
   for (const std::string& id : options.allowed) grouping.allowed.push_back(id);
   return grouping;

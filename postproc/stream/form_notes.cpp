@@ -25,10 +25,10 @@ void tell_first(std::span<const RunReport> runs, const gcode::Program& program, 
 gcode::Diagnostics form_notes(std::span<const RunReport> runs, const gcode::Program& program,
                               const gcode::Control& target) {
   gcode::Diagnostics notes;
-  if (target.curves != nullptr && !target.curves->caution().empty()) {
+  if (target.curves != nullptr && !target.curves->caution.empty()) {
     tell_first(
         runs, program, [](const RunReport& run) { return run.form == OutputForm::kCurves; },
-        {gcode::Severity::kWarning, "curves-unverified", {}, std::string(target.curves->caution())},
+        {gcode::Severity::kWarning, "curves-unverified", {}, std::string(target.curves->caution)},
         notes);
   }
   tell_first(

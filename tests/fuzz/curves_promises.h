@@ -10,8 +10,7 @@
 
 #include "gcode/curves/heidenhain_spl.h"
 #include "gcode/curves/nurbs.h"
-#include "gcode/curves/siemens_bspline.h"
-#include "gcode/curves/siemens_poly.h"
+#include "gcode/curves/siemens_curves.h"
 #include "gcode/reading/parser.h"
 #include "geometry/path/path.h"
 #include "tests/support/klartext_arc_alarms.h"
@@ -56,25 +55,12 @@ inline std::string broken_alarms(const CurveAlarms& alarms, const Program& progr
 
 inline std::string broken_readers_at(const Program& program, std::uint32_t first,
                                      const CurveStart& start) {
-  for (const NurbsRules& rules :
-       {fanuc_nurbs(start.units), syntec_nurbs(start.units), mitsubishi_nurbs()}) {
-    std::string broken = broken_reading(read_nurbs(program, first, start, rules), first, program);
-    if (!broken.empty()) return "G06.2: " + broken;
-    const auto text = read_nurbs_text(program, first, start, rules);
-    const auto* curve = std::get_if<NurbsText>(&text);
-    if (curve == nullptr) continue;
-    const double last = curve->knots.back();
-    if (!curve->point_at(curve->knots.front() + 0.4 * (last - curve->knots.front())).allFinite()) {
-      return "G06.2: a curve through no place";
-    }
+  for (const CurveFormat* format : {&fanuc_curves(), &syntec_curves(), &mitsubishi_curves(),
+                                    &siemens_poly(), &siemens_bspline(), &heidenhain_spl()}) {
+    std::string broken = broken_reading(format->read(program, first, start), first, program);
+    if (!broken.empty()) return std::string(format->name) + ": " + broken;
   }
-  std::string broken = broken_reading(read_poly(program, first, start), first, program);
-  if (!broken.empty()) return "POLY: " + broken;
-  const auto bspline = read_bspline(program, first, start, BsplineUse::kAcceptedUnverified);
-  broken = broken_reading(bspline, first, program);
-  if (!broken.empty()) return "BSPLINE: " + broken;
-  broken = broken_reading(read_spl(program, first, start), first, program);
-  return broken.empty() ? "" : "SPL: " + broken;
+  return "";
 }
 
 // The promise that does not hold for this text in this language; empty when all do.
@@ -93,8 +79,8 @@ inline std::string broken_curves(std::string_view text, Language language) {
   }
   for (const CurveAlarms& alarms : {nurbs_alarms(program, fanuc_nurbs(Units::kMillimetre)),
                                     nurbs_alarms(program, syntec_nurbs(Units::kInch)),
-                                    nurbs_alarms(program, mitsubishi_nurbs()), poly_alarms(program),
-                                    spl_alarms(program, Units::kMillimetre),
+                                    nurbs_alarms(program, mitsubishi_nurbs(Units::kInch)),
+                                    poly_alarms(program), spl_alarms(program, Units::kMillimetre),
                                     klartext_arc_alarms(program, Units::kMillimetre)}) {
     std::string broken = broken_alarms(alarms, program);
     if (!broken.empty()) return broken;

@@ -1,6 +1,8 @@
 // Curves for the tests of curve words: one golden curve with its values, and seeded random ones.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -67,9 +69,33 @@ inline geometry::BsplineCurve random_curve(std::uint32_t seed, bool in_space) {
   return {geometry::BsplineBasis(3, knots), points};
 }
 
-inline gcode::Program parsed(const std::string& text) {
+inline gcode::Program parsed(const std::string& text,
+                             gcode::Language language = gcode::Language::kRs274) {
   gcode::Diagnostics ignored;
-  return gcode::parse(gcode::SourceText("test", text), ignored);
+  return gcode::parse(gcode::SourceText("test", text), language, ignored);
+}
+
+inline std::string refusal_of(const gcode::CurveResult& result) {
+  const auto* refusal = std::get_if<gcode::CurveRefusal>(&result);
+  return refusal != nullptr ? refusal->why : "";
+}
+
+// Fails where it was refused.
+inline gcode::CurveReading reading_of(const gcode::CurveResult& result) {
+  EXPECT_EQ(refusal_of(result), "");
+  const auto* reading = std::get_if<gcode::CurveReading>(&result);
+  return reading != nullptr ? *reading : gcode::CurveReading{};
+}
+
+// The curve whose pieces these are, each of which ends where the next one begins.
+inline geometry::BsplineCurve curve_of(const std::vector<geometry::CubicBezier>& pieces) {
+  std::vector<double> knots(4, 0.0);
+  std::vector<geometry::Point3> points = {pieces.front().control[0]};
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    points.insert(points.end(), pieces[i].control + 1, pieces[i].control + 4);
+    knots.insert(knots.end(), i + 1 < pieces.size() ? 3 : 4, static_cast<double>(i + 1));
+  }
+  return {geometry::BsplineBasis(3, knots), points};
 }
 
 inline std::string joined(const gcode::CurveLines& lines) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "gcode/curves/klartext_words.h"
+#include "gcode/curves/heidenhain_spl.h"
 #include "gcode/text/number_format.h"
 
 namespace batten::gcode {

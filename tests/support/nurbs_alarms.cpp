@@ -31,9 +31,23 @@ int tenths(const Word& word) { return static_cast<int>(std::lround(word.value * 
 // Codes of group 01, which end a curve.
 bool ends_curve(int code) { return code == 0 || code == 10 || code == 20 || code == 30; }
 
+// What the control calls what is wrong with a block.
+struct AlarmNames {
+  std::string_view missing_knot = "PS1002";
+  std::string_view wrong_mode = "PS1006";   // G06.2 under G41, G93 ..
+  std::string_view wrong_start = "PS1009";  // the first point is not where the tool stands
+  std::string_view decreasing = "knot-decreases";
+  std::string_view axis_too_late = "axis-not-in-first-block";
+  std::string_view too_many_decimals = "too-many-decimals";
+};
+constexpr AlarmNames kMitsubishiNames = {"P33", "P29", "start-differs", "P551", "P32", "P33"};
+
 class NurbsAlarms {
  public:
-  NurbsAlarms(const Program& program, const NurbsRules& rules) : program_(program), rules_(rules) {}
+  NurbsAlarms(const Program& program, const NurbsRules& rules)
+      : program_(program),
+        rules_(rules),
+        names_(rules.three_axes ? kMitsubishiNames : AlarmNames()) {}
 
   CurveAlarms all() {
     for (const Block& block : program_.blocks) follow(block);
@@ -130,7 +144,7 @@ class NurbsAlarms {
       }
     }
     if (!forbidding_.empty()) {
-      say(block.line, rules_.wrong_mode, "G06.2 under " + forbidding_.front());
+      say(block.line, names_.wrong_mode, "G06.2 under " + forbidding_.front());
     }
     if (rules_.framed && !framed_) say(block.line, "frame", "G06.2 outside G05 P10000 and G05 P0");
     check_first_point(block, words);
@@ -145,7 +159,7 @@ class NurbsAlarms {
       named_[axis] = words.place[axis] != nullptr;
       if (!named_[axis]) {
         if (rules_.three_axes) {
-          say(block.line, rules_.axis_too_late,
+          say(block.line, names_.axis_too_late,
               std::string("no ") + kAxes[axis] + " beside G06.2, expected X, Y and Z");
         }
         continue;
@@ -153,7 +167,7 @@ class NurbsAlarms {
       const double given = words.place[axis]->value;
       const std::optional<double> wanted = incremental_ ? std::optional(0.0) : place_[axis];
       if (wanted && std::abs(given - *wanted) > kSameNumber) {
-        say(block.line, rules_.wrong_start,
+        say(block.line, names_.wrong_start,
             std::string("the first point has ") + kAxes[axis] + shown(given) +
                 ", the tool stands at " + shown(*wanted));
       }
@@ -169,7 +183,7 @@ class NurbsAlarms {
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (words.place[axis] != nullptr && !named_[axis]) {
-        say(block.line, rules_.axis_too_late,
+        say(block.line, names_.axis_too_late,
             std::string(1, kAxes[axis]) + ", which the first block of the curve does not name");
       }
     }
@@ -201,7 +215,7 @@ class NurbsAlarms {
 
   void add_knot(const Block& block, const Words& words) {
     if (words.knot == nullptr) {
-      say(block.line, rules_.missing_knot, "a block without K");
+      say(block.line, names_.missing_knot, "a block without K");
       return;
     }
     check_decimals(block, *words.knot);
@@ -211,7 +225,7 @@ class NurbsAlarms {
       say(block.line, "knot-range", "K" + shown(knot) + ", expected less than " + shown(most));
     }
     if (!knots_.empty() && knot < knots_.back().value) {
-      say(block.line, rules_.decreasing,
+      say(block.line, names_.decreasing,
           "K" + shown(knot) + " after K" + shown(knots_.back().value));
     }
     knots_.push_back({knot, block.line});
@@ -219,7 +233,7 @@ class NurbsAlarms {
 
   void check_decimals(const Block& block, const Word& word) {
     if (word.decimals <= rules_.knots.decimals) return;
-    say(block.line, rules_.too_many_decimals,
+    say(block.line, names_.too_many_decimals,
         std::string(1, word.letter) + " with " + std::to_string(word.decimals) +
             " decimals, expected at most " + std::to_string(rules_.knots.decimals));
   }
@@ -302,6 +316,7 @@ class NurbsAlarms {
 
   const Program& program_;
   const NurbsRules& rules_;
+  AlarmNames names_;
   CurveAlarms alarms_;
 
   std::array<std::optional<double>, 3> place_;  // in the program's units

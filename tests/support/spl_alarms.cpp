@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "gcode/curves/bezier_chain.h"
+#include "gcode/curves/curve_print.h"
 #include "gcode/curves/heidenhain_spl.h"
 #include "gcode/text/number_format.h"
 
@@ -29,7 +29,7 @@ class SplAlarms {
     for (std::uint32_t at = 0; at < program_.blocks.size();) {
       const SplWords joined = joined_at(program_, at);
       line_ = program_.blocks[at].line;
-      follow(joined, at);
+      follow(joined);
       at += joined.lines;
     }
     return std::move(alarms_);
@@ -40,7 +40,7 @@ class SplAlarms {
     alarms_.push_back({severity, line_, id, std::move(message)});
   }
 
-  void follow(const SplWords& joined, std::uint32_t at) {
+  void follow(const SplWords& joined) {
     if (joined.understood && joined.words.empty()) return;
     if (!joined.is("SPL")) {
       before_.reset();
@@ -60,7 +60,7 @@ class SplAlarms {
     }
     check_ranges(joined);
     check_closure(joined);
-    check_kink(joined, at);
+    check_kink(joined);
     move(joined);
   }
 
@@ -108,11 +108,11 @@ class SplAlarms {
     }
   }
 
-  void check_kink(const SplWords& joined, std::uint32_t at) {
+  void check_kink(const SplWords& joined) {
     Point3 place = Point3::Zero();
     for (int axis = 0; axis < 3; ++axis)
       place[axis] = place_[static_cast<std::size_t>(axis)] * unit_;
-    const CubicBezier piece = spl_block_of(joined, at, place, unit_).piece();
+    const CubicBezier piece = spl_block_of(joined, place, unit_).piece;
     if (before_) {
       const double kink = kink_between(*before_, piece);
       if (kink >= kSplKink) {

@@ -85,7 +85,7 @@ class CurvePlanner {
  private:
   [[nodiscard]] BsplineCurve curve_for(const Run& run, const geometry::SmoothCurve& fair) const {
     geometry::FewerKnotsOptions fewer;
-    const double for_control = format_.is_run_as_chords() ? kPartForControl : 0;
+    const double for_control = format_.is_run_as_chords ? kPartForControl : 0;
     fewer.max_deviation = (1 - kPartForCurveChords - for_control) * options_.max_deviation;
     fewer.long_line = kLongLine;
     for (const FeedFrom& change : run.feeds) {
@@ -96,7 +96,7 @@ class CurvePlanner {
   }
 
   [[nodiscard]] bool is_line(const geometry::StraightRun& straight) const {
-    if (format_.is_block_per_piece()) return true;
+    if (format_.is_block_per_piece) return true;
     const Point3 way = curve_.point_at(straight.to) - curve_.point_at(straight.from);
     return way.norm() >= kLongLine;
   }

@@ -46,7 +46,7 @@ class RunWriter {
   // Curves of many blocks follow each other with the end of the one between them.
   [[nodiscard]] bool write(const PlannedCurve& curve, double feed, int last_decimals) {
     const std::size_t begin = writer_.text().size();
-    if (!target_.curves->is_block_per_piece()) writer_.end_curve();
+    if (!target_.curves->is_block_per_piece) writer_.end_curve();
     if (!writer_.curve_to(curve.curve, feed, last_decimals)) return false;
     count_from(begin);
     return true;

@@ -7,23 +7,23 @@
 #include <numbers>
 #include <string>
 
-#include "gcode/curves/bezier_chain.h"
-#include "gcode/curves/klartext_words.h"
+#include "gcode/curves/curve_print.h"
 #include "geometry/distance/path_distance.h"
 #include "tests/support/curve_texts.h"
+#include "tests/support/klartext_arc_alarms.h"
 #include "tests/support/spl_alarms.h"
 
 namespace batten::gcode {
 namespace {
 
-using curve_tests::parsed;
+using curve_tests::curve_of;
+using curve_tests::reading_of;
+using curve_tests::refusal_of;
 using curve_tests::starting_at;
 using curve_tests::text_of;
 using geometry::BsplineCurve;
 using geometry::CubicBezier;
 using geometry::Point3;
-
-constexpr std::uint32_t kProvedSeeds = 5;
 
 CurveSetting heidenhain_setting() {
   CurveSetting setting;
@@ -40,66 +40,17 @@ CurveSetting golden_setting() {
   return setting;
 }
 
-std::string refusal_of(const CurveResult& result) {
-  const auto* refusal = std::get_if<CurveRefusal>(&result);
-  return refusal != nullptr ? refusal->why : "";
-}
+Program parsed(const std::string& text) { return curve_tests::parsed(text, Language::kKlartext); }
 
-SplText spl_of(const std::string& text, std::uint32_t first, const Point3& start) {
-  auto read = read_spl_text(parsed(text), first, starting_at(start));
-  if (const auto* refusal = std::get_if<CurveRefusal>(&read)) {
-    ADD_FAILURE() << refusal->why << "\n" << text;
-    return {};
-  }
-  return std::get<SplText>(std::move(read));
+std::string spl(const BsplineCurve& curve, const CurveSetting& setting) {
+  return text_of(heidenhain_spl().write(curve, setting));
 }
 
 CurveAlarms alarms_of(const std::string& text) {
   return spl_alarms(parsed(text), Units::kMillimetre);
 }
 
-// --- the golden curve
-// -----------------------------------------------------------------------------
-
-constexpr const char* kGolden =
-    "8 SPL X+18 Y+6.4 ~\n"
-    "  K3X-6 K2X+0 K1X-1.2E+001 ~\n"
-    "  K3Y+5.6 K2Y-4.8 K1Y-7.2 F3000\n"
-    "9 SPL X+40 Y+0 ~\n"
-    "  K3X-4 K2X+1.2E+001 K1X-3E+001 ~\n"
-    "  K3Y+6.4 K2Y-3E+001 K1Y+3E+001\n";
-
-TEST(Spl, WritesTheGoldenCurve) {
-  EXPECT_EQ(text_of(write_spl(curve_tests::golden_curve().bezier_pieces(), golden_setting(),
-                              {.first_number = 8})),
-            kGolden);
-}
-
-TEST(Spl, WritesNoNumbersWhereNoneAreAskedFor) {
-  const std::string text =
-      text_of(write_spl(curve_tests::golden_curve().bezier_pieces(), golden_setting(), {}));
-  EXPECT_EQ(text.substr(0, text.find('\n')), "SPL X+18 Y+6.4 ~");
-}
-
-TEST(Spl, ReadsTheGoldenCurveAtItsFiveValues) {
-  const SplText text =
-      spl_of("7 L X+0 Y+0 F3000\n" + std::string(kGolden) + "10 L X+50\n", 1, Point3::Zero());
-  ASSERT_EQ(text.pieces.size(), 2U);
-  EXPECT_EQ(text.blocks, 6U);
-  EXPECT_EQ(text.pieces[0].feed, 3000);
-  EXPECT_EQ(text.pieces[1].block, 4U);
-  for (const auto& [u, x, y] : curve_tests::kGoldenValues) {
-    // t runs from 1 to 0.
-    const Point3 at = u <= 0.4 ? text.pieces[0].point_at(1 - u / 0.4)
-                               : text.pieces[1].point_at(1 - (u - 0.4) / 0.6);
-    EXPECT_LT((at - Point3(x, y, 0)).norm(), 1e-12) << u;
-  }
-  EXPECT_EQ(curve_tests::short_forms(alarms_of("7 L X+0 Y+0 F3000\n" + std::string(kGolden))),
-            std::vector<std::string>{});
-}
-
-// --- samples of the maker
-// -------------------------------------------------------------------------
+// --- samples of the maker ------------------------------------------------------------------------
 
 // iTNC 530 user manual 60642x-04, p. 539: two blocks in three axes.
 constexpr const char* kManual =
@@ -114,18 +65,21 @@ constexpr const char* kManual =
     "K3Z0.000E+000 K2Z0.000E+000 K1Z0.000E+000\n";
 
 TEST(Spl, ReadsTheSampleOfTheManual) {
-  const SplText text = spl_of(kManual, 1, Point3(28.338, 19.385, -0.5));
-  ASSERT_EQ(text.pieces.size(), 2U);
-  EXPECT_EQ(text.blocks, 8U);
-  EXPECT_EQ(text.pieces[0].feed, 10000);
-  const geometry::Vector3 first = text.pieces[0].point_at(1) - Point3(28.338, 19.385, -0.5);
-  const geometry::Vector3 second = text.pieces[1].point_at(1) - text.pieces[0].end;
+  const Point3 start(28.338, 19.385, -0.5);
+  const CurveReading reading =
+      reading_of(heidenhain_spl().read(parsed(kManual), 1, starting_at(start)));
+  ASSERT_EQ(reading.motions.size(), 2U);
+  EXPECT_EQ(reading.blocks, 8U);
+  EXPECT_EQ(reading.feed, 10000);
+  const auto pieces = curve_tests::beziers_of(reading);
+  const geometry::Vector3 first = pieces[0].control[0] - start;
+  const geometry::Vector3 second = pieces[1].control[0] - pieces[0].control[3];
   // Sums of the printed numbers: 0.71 and 0.92 um, then 0.15 and 0.09 um.
   EXPECT_NEAR(first.x(), 0.00071, 1e-9);
   EXPECT_NEAR(first.y(), 0.00092, 1e-9);
   EXPECT_NEAR(second.x(), 0.00015, 1e-9);
   EXPECT_NEAR(second.y(), 0.00009, 1e-9);
-  const double kink = kink_between(text.pieces[0].piece(), text.pieces[1].piece());
+  const double kink = kink_between(pieces[0], pieces[1]);
   EXPECT_NEAR(kink * 180 / std::numbers::pi, 0.0007, 0.00005);
   EXPECT_EQ(curve_tests::short_forms(alarms_of(kManual)), std::vector<std::string>{});
 }
@@ -142,12 +96,12 @@ TEST(Spl, RefusesTheSampleOfTheManualThatDoesNotClose) {
       "K3B+0.0083 K2B-0.413 E+2 K1B-1.5724 E+1 F10000\n";
   EXPECT_EQ(curve_tests::short_forms(alarms_of(sample)),
             (std::vector<std::string>{"2 spl-closure", "2 spl-closure", "2 spl-closure"}));
-  EXPECT_EQ(refusal_of(read_spl(parsed(sample), 1, starting_at(Point3(33.909, -25.838, 75.107)))),
+  EXPECT_EQ(refusal_of(heidenhain_spl().read(parsed(sample), 1,
+                                             starting_at(Point3(33.909, -25.838, 75.107)))),
             "an SPL block that is not understood");
 }
 
-// --- numbers
-// --------------------------------------------------------------------------------------
+// --- numbers -------------------------------------------------------------------------------------
 
 struct Coefficient {
   double value;
@@ -197,78 +151,7 @@ TEST(KlartextLine, IsReadAsTheManualsPrintIt) {
   }
 }
 
-// --- random curves
-// --------------------------------------------------------------------------------
-
-TEST(Spl, RandomCurvesAreReadWithinTheirRounding) {
-  // Ends move by half a step on every axis. K3 and K2 by half of one of theirs, and K1 by what both
-  // leave: the inner control points by (K2 + 2 K3) / 3 at the most, as for POLY.
-  const double within = std::sqrt(3.0) * (0.5e-4 + 0.5e-6);
-  double worst = 0;
-  for (std::uint32_t seed = 0; seed < 200; ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const bool in_space = seed % 2 != 0;
-    const BsplineCurve curve = curve_tests::random_curve(seed, in_space);
-    CurveSetting setting = heidenhain_setting();
-    setting.start = curve.control_points().front();
-    setting.axes = {true, true, in_space};
-    const std::vector<CubicBezier> pieces = curve.bezier_pieces();
-    const std::string text = text_of(write_spl(pieces, setting, {.first_number = 2}));
-    const std::string line = "1 L X" + to_text(setting.start.x(), {.decimals = 3}) + " Y" +
-                             to_text(setting.start.y(), {.decimals = 3}) + " Z-1.5 F100\n";
-    int corners = 0;
-    for (std::size_t i = 1; i < pieces.size(); ++i) {
-      corners += kink_between(pieces[i - 1], pieces[i]) >= kSplKink ? 1 : 0;
-    }
-    const CurveAlarms alarms = alarms_of(line + text);
-    EXPECT_EQ(std::ranges::count(alarms, std::string_view("spl-kink"), &CurveAlarm::id), corners);
-    EXPECT_EQ(alarms.size(), static_cast<std::size_t>(corners)) << text;
-    const auto result = read_spl(parsed(line + text), 1, starting_at(setting.start));
-    ASSERT_TRUE(std::holds_alternative<CurveReading>(result)) << refusal_of(result) << text;
-    const auto& reading = std::get<CurveReading>(result);
-    EXPECT_EQ(reading.blocks, curve_tests::lines_in(text));
-    EXPECT_EQ(reading.axes, setting.axes);
-    const auto read = curve_tests::beziers_of(reading);
-    EXPECT_EQ(read[0].control[0], setting.start);
-    for (std::size_t i = 1; i < read.size(); ++i) {
-      EXPECT_EQ(read[i].control[0], read[i - 1].control[3]) << "blocks that do not close";
-    }
-    const double move = greatest_move(pieces, read);
-    EXPECT_LE(move, within);
-    worst = std::max(worst, move);
-    if (seed >= kProvedSeeds) continue;
-    EXPECT_EQ(geometry::compare_paths(curve_tests::pieces_of(curve),
-                                      curve_tests::pieces_of(reading), 1e-3)
-                  .verdict,
-              geometry::Verdict::kProved);
-  }
-  EXPECT_GT(worst, 0.1 * within) << "nothing was rounded";
-}
-
-TEST(Spl, TooFewDigitsAreARefusalOrADeviation) {
-  int refused = 0;
-  int off = 0;
-  for (std::uint32_t seed = 0; seed < 50; ++seed) {
-    const BsplineCurve curve = curve_tests::random_curve(seed, true);
-    CurveSetting setting = heidenhain_setting();
-    setting.start = curve.control_points().front();
-    const CurveWriting writing =
-        write_spl(curve.bezier_pieces(), setting, {.max_decimals = 1, .first_number = {}});
-    if (std::holds_alternative<CurveRefusal>(writing)) {
-      ++refused;
-      continue;
-    }
-    const auto result = read_spl(parsed(text_of(writing)), 0, starting_at(setting.start));
-    ASSERT_TRUE(std::holds_alternative<CurveReading>(result)) << refusal_of(result);
-    const auto pieces = curve_tests::pieces_of(std::get<CurveReading>(result));
-    off += geometry::compare_paths(curve_tests::pieces_of(curve), pieces, 0.01).verdict ==
-                   geometry::Verdict::kBroken
-               ? 1
-               : 0;
-  }
-  EXPECT_EQ(refused + off, 50);
-  EXPECT_GT(refused, 0);
-}
+// --- rounding -----------------------------------------------------------------------------------
 
 TEST(Spl, TakesMoreDigitsWhereAJointWouldHaveAKink) {
   // Two pieces of 0.03 mm: a coefficient that is off by 0.0005 turns the joint by half a degree.
@@ -280,11 +163,18 @@ TEST(Spl, TakesMoreDigitsWhereAJointWouldHaveAKink) {
   CurveSetting setting = heidenhain_setting();
   setting.axes = {true, true, false};
   setting.other.decimals = 3;
-  const std::vector<CubicBezier> pieces = {first, second};
-  const std::string text = text_of(write_spl(pieces, setting, {.first_number = 2}));
+  const std::string text = spl(curve_of({first, second}), setting);
   EXPECT_EQ(curve_tests::short_forms(alarms_of("1 L X+0 Y+0\n" + text)),
             std::vector<std::string>{});
-  EXPECT_EQ(text_of(write_spl(pieces, setting, {.max_decimals = 3, .first_number = {}})),
+  // The same ten thousand times as small: eight decimals are not enough.
+  CubicBezier small_first = first;
+  CubicBezier small_second = second;
+  for (int i = 0; i < 4; ++i) {
+    small_first.control[i] *= 1e-4;
+    small_second.control[i] *= 1e-4;
+  }
+  setting.places.decimals = 9;
+  EXPECT_EQ(spl(curve_of({small_first, small_second}), setting),
             "rounding makes a kink of 0.1 degrees or more");
 }
 
@@ -293,60 +183,30 @@ TEST(Spl, WritesInches) {
   setting.units = Units::kInch;
   setting.feed = 254;
   const CubicBezier piece{{{0, 0, 0}, {25.4, 0, 0}, {50.8, 25.4, 0}, {50.8, 50.8, 0}}};
-  const std::string text = text_of(write_spl(std::vector{piece}, setting, {}));
+  const std::string text = spl(curve_of({piece}), setting);
   // In inches (0,0) (1,0) (2,1) (2,2): K3 = b0 - 3 b1 + 3 b2 - b3, K2 = 3 (b1 - 2 b2 + b3), K1 =
   // 3 (b2 - b3).
   EXPECT_EQ(text, "SPL X+2 Y+2 ~\n  K3X+1 K2X-3 K1X+0 ~\n  K3Y+1 K2Y+0 K1Y-3 F10\n");
-  const auto result = read_spl(parsed(text), 0, starting_at(Point3::Zero(), Units::kInch));
-  EXPECT_LT(
-      greatest_move(std::vector{piece}, curve_tests::beziers_of(std::get<CurveReading>(result))),
-      1e-9);
+  const auto result =
+      heidenhain_spl().read(parsed(text), 0, starting_at(Point3::Zero(), Units::kInch));
+  EXPECT_LT(greatest_move(std::vector{piece}, curve_tests::beziers_of(reading_of(result))), 1e-9);
 }
 
-// --- refusals
-// -------------------------------------------------------------------------------------
+// --- refusals ------------------------------------------------------------------------------------
 
 TEST(Spl, RefusesWhatItCannotSay) {
-  const auto pieces = curve_tests::golden_curve().bezier_pieces();
-  EXPECT_EQ(text_of(write_spl({}, golden_setting(), {})), "no curve");
+  const BsplineCurve curve = curve_tests::golden_curve();
   CurveSetting one_axis = golden_setting();
   one_axis.axes = {true, false, false};
-  EXPECT_EQ(text_of(write_spl(pieces, one_axis, {})), "SPL names two axes or more");
+  EXPECT_EQ(spl(curve, one_axis), "SPL names two axes or more");
   CurveSetting elsewhere = golden_setting();
   elsewhere.start = {0.01, 0, 0};
-  EXPECT_EQ(text_of(write_spl(pieces, elsewhere, {})),
-            "the curve does not start where the tool stands");
+  EXPECT_EQ(spl(curve, elsewhere), "the curve does not start where the tool stands");
   const CubicBezier far{{{0, 0, 0}, {4e4, 0, 0}, {8e4, 1, 0}, {1.2e5, 2, 0}}};
-  EXPECT_EQ(text_of(write_spl(std::vector{far}, golden_setting(), {})),
-            "a place beyond 99999.9999");
+  EXPECT_EQ(spl(curve_of({far}), golden_setting()), "a place beyond 99999.9999");
 }
 
-struct SplState {
-  const char* name;
-  void (*change)(ModalState&);
-};
-
-class SplStates : public testing::TestWithParam<SplState> {};
-
-TEST_P(SplStates, AreComplainedAbout) {
-  ModalState state;
-  EXPECT_EQ(spl_complaint(state), "");
-  GetParam().change(state);
-  EXPECT_NE(spl_complaint(state), "");
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Spl, SplStates,
-    testing::Values(
-        SplState{"RL", [](ModalState& s) { s.cutter_compensation = TriState::kOn; }},
-        SplState{"Incremental", [](ModalState& s) { s.distance = DistanceMode::kIncremental; }},
-        SplState{"M128", [](ModalState& s) { s.tool_center_point = TriState::kUnknown; }},
-        SplState{"Mirror", [](ModalState& s) { s.mirror = TriState::kOn; }},
-        SplState{"Plane", [](ModalState& s) { s.tilted_plane = TriState::kOn; }}),
-    [](const auto& test) { return std::string(test.param.name); });
-
-// --- alarms
-// ---------------------------------------------------------------------------------------
+// --- alarms --------------------------------------------------------------------------------------
 
 struct SplTextCase {
   const char* name;
@@ -412,6 +272,22 @@ INSTANTIATE_TEST_SUITE_P(
                     {}}),
     [](const auto& test) { return std::string(test.param.name); });
 
+TEST(KlartextArcAlarms, AreGivenForArcsThatAreNone) {
+  const std::string text =
+      "1 L X+0 Y+0\n"
+      "2 C X+1 Y+1 DR+\n"
+      "3 CC X+5 Y+0\n"
+      "4 C X+10 Y+0.5\n"
+      "5 L X+0 Y+0\n"
+      "6 C X+10.015 Y+0 DR+\n"
+      "7 L X+0 Y+0\n"
+      "8 C X+10.017 Y+0 DR+\n"
+      "9 L X+100000\n";
+  EXPECT_EQ(curve_tests::short_forms(klartext_arc_alarms(parsed(text), Units::kMillimetre)),
+            (std::vector<std::string>{"2 arc-no-centre", "4 arc-no-sense", "4 arc-radius",
+                                      "8 arc-radius", "9 place-range"}));
+}
+
 struct SplRefusal {
   const char* name;
   const char* text;
@@ -421,8 +297,9 @@ struct SplRefusal {
 class SplRefusals : public testing::TestWithParam<SplRefusal> {};
 
 TEST_P(SplRefusals, AreSaid) {
-  EXPECT_EQ(refusal_of(read_spl(parsed(GetParam().text), 0, starting_at(Point3::Zero()))),
-            GetParam().why);
+  EXPECT_EQ(
+      refusal_of(heidenhain_spl().read(parsed(GetParam().text), 0, starting_at(Point3::Zero()))),
+      GetParam().why);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -444,9 +321,10 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Spl, AFeedOfItsOwnEndsACurve) {
   const std::string block = "SPL X+3 Y+0 ~\n K3X+0 K2X+0 K1X-3 ~\n K3Y+0 K2Y+0 K1Y+0 F5\n";
   const std::string next = "SPL X+6 Y+0 ~\n K3X+0 K2X+0 K1X-3 ~\n K3Y+0 K2Y+0 K1Y+0 F6\n";
-  const SplText text = spl_of(block + next, 0, Point3::Zero());
-  EXPECT_EQ(text.blocks, 3U);
-  EXPECT_EQ(text.pieces.size(), 1U);
+  const CurveReading reading =
+      reading_of(heidenhain_spl().read(parsed(block + next), 0, starting_at(Point3::Zero())));
+  EXPECT_EQ(reading.blocks, 3U);
+  EXPECT_EQ(reading.motions.size(), 1U);
 }
 
 }  // namespace

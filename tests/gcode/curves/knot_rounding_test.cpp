@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "gcode/curves/bezier_chain.h"
 #include "gcode/curves/curve_print.h"
 #include "tests/support/curve_texts.h"
 

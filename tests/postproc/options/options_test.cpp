@@ -33,11 +33,10 @@ TEST(Options, AreToldOfAllProblemsAtOnce) {
   options.keep_corners_deg = 200;
   options.allowed = {"no-such-reason"};
   options.threads = -2;
-  options.min_motions = 1;
   const auto problems = problems_of(options);
-  EXPECT_EQ(problems.size(), 7u);
-  for (const char* option : {"--target", "--machine", "--tolerance", "--keep-corners", "--allow",
-                             "--threads", "min_motions"}) {
+  EXPECT_EQ(problems.size(), 6u);
+  for (const char* option :
+       {"--target", "--machine", "--tolerance", "--keep-corners", "--allow", "--threads"}) {
     EXPECT_TRUE(mentions(problems, option)) << option;
   }
 }

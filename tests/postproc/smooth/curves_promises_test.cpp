@@ -13,7 +13,6 @@
 #include "gcode/controls/built_in.h"
 #include "gcode/curves/curve_format.h"
 #include "gcode/curves/nurbs.h"
-#include "gcode/curves/siemens_poly.h"
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
 #include "gcode/state/modal_state.h"
@@ -154,7 +153,7 @@ std::string cam_program(const BsplineCurve& curve) {
 
 gcode::NurbsRules rules_of(const std::string& target) {
   if (target == "syntec") return gcode::syntec_nurbs(gcode::Units::kMillimetre);
-  if (target == "mitsubishi") return gcode::mitsubishi_nurbs();
+  if (target == "mitsubishi") return gcode::mitsubishi_nurbs(gcode::Units::kMillimetre);
   return gcode::fanuc_nurbs(gcode::Units::kMillimetre);
 }
 
@@ -166,7 +165,7 @@ std::string alarms_of(const std::string& text, const std::string& target) {
   gcode::CurveAlarms alarms;
   if (target == "siemens") {
     alarms = gcode::poly_alarms(program);
-  } else if (gcode::find_control(target)->curves->name() == "G06.2") {
+  } else if (gcode::find_control(target)->curves->name == "G06.2") {
     alarms = gcode::nurbs_alarms(program, rules_of(target));
   }
   std::string all;
@@ -313,54 +312,33 @@ TEST_P(Curves, OfAnotherPathAreABreach) {
 
 // --- too few digits -------------------------------------------------------------------------
 
-// The same format with no digit behind the point of knots, coefficients and offsets.
-class CoarseFormat final : public gcode::CurveFormat {
- public:
-  CoarseFormat(const gcode::CurveFormat& fine, const gcode::NurbsRules& rules)
-      : fine_(fine), rules_(rules) {}
-  std::string_view name() const override { return fine_.name(); }
-  bool is_default() const override { return fine_.is_default(); }
-  std::string_view complaint(const gcode::ModalState& state) const override {
-    return fine_.complaint(state);
+// What is left of PL where no digit of it is right.
+gcode::CurveWriting with_even_knots(gcode::CurveWriting written) {
+  auto* lines = std::get_if<gcode::CurveLines>(&written);
+  if (lines == nullptr) return written;
+  for (std::string& line : *lines) {
+    const auto at = line.find("PL=") + 3;
+    const auto end = std::min(line.find(' ', at), line.size());
+    if (line.substr(at, end - at) != "0") line.replace(at, end - at, "1");
   }
-  bool takes(const CubicBezier& piece) const override { return fine_.takes(piece); }
-  bool is_block_per_piece() const override { return fine_.is_block_per_piece(); }
-  bool names_all_axes() const override { return fine_.names_all_axes(); }
-  gcode::NumberFormat other_numbers(gcode::Units units) const override {
-    gcode::NumberFormat format = fine_.other_numbers(units);
-    format.decimals = 0;
-    return format;
-  }
-  // Of G06.2 it is the digits before the point that count: knots from 0 to 100 in whole numbers.
-  gcode::CurveWriting write(const BsplineCurve& curve,
-                            const gcode::CurveSetting& setting) const override {
-    if (fine_.is_block_per_piece()) return fine_.write(curve, setting);
-    if (fine_.name() == "BSPLINE") return with_even_knots(fine_.write(curve, setting));
-    gcode::NurbsRules rules = rules_;
+  return written;
+}
+
+// The same format with no digit behind the point of knots, coefficients and offsets. Of G06.2 it is
+// the digits before the point that count: knots from 0 to 100 in whole numbers.
+gcode::CurveFormat coarse_format(const gcode::CurveFormat& fine, gcode::NurbsRules rules) {
+  gcode::CurveFormat coarse = fine;
+  coarse.other_mm.decimals = 0;
+  if (fine.name == "BSPLINE") {
+    coarse.write = [&fine](const BsplineCurve& curve, const gcode::CurveSetting& setting) {
+      return with_even_knots(fine.write(curve, setting));
+    };
+  } else if (!fine.is_block_per_piece) {
     rules.knots = {.digits = 3, .decimals = 0};
-    return gcode::write_nurbs(curve, setting, rules);
+    coarse.write = gcode::nurbs_format([rules](gcode::Units) { return rules; }).write;
   }
-  gcode::CurveResult read(const gcode::Program& program, std::uint32_t first,
-                          const gcode::CurveStart& start) const override {
-    return fine_.read(program, first, start);
-  }
-
- private:
-  // What is left of PL where no digit of it is right.
-  static gcode::CurveWriting with_even_knots(gcode::CurveWriting written) {
-    auto* lines = std::get_if<gcode::CurveLines>(&written);
-    if (lines == nullptr) return written;
-    for (std::string& line : *lines) {
-      const auto at = line.find("PL=") + 3;
-      const auto end = std::min(line.find(' ', at), line.size());
-      if (line.substr(at, end - at) != "0") line.replace(at, end - at, "1");
-    }
-    return written;
-  }
-
-  const gcode::CurveFormat& fine_;
-  gcode::NurbsRules rules_;
-};
+  return coarse;
+}
 
 TEST_P(Curves, ThatAreNotVerifiedAreToldOf) {
   const SmoothResult result = smoothed(bend_program(), options());
@@ -371,7 +349,7 @@ TEST_P(Curves, ThatAreNotVerifiedAreToldOf) {
 }
 
 TEST_P(Curves, OfTooFewDigitsAreNotProvedAndGoBack) {
-  const CoarseFormat coarse(format(), rules_of(GetParam()));
+  const gcode::CurveFormat coarse = coarse_format(format(), rules_of(GetParam()));
   gcode::Control coarse_target;
   coarse_target.centers = {5, 5};
   coarse_target.places = coarse_target.arc_ends = {4, 4};

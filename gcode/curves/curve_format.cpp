@@ -1,24 +1,11 @@
-#include "gcode/curves/curve_in_program.h"
+#include "gcode/curves/curve_format.h"
 
 #include <algorithm>
 #include <utility>
 #include <variant>
 
-#include "gcode/curves/curve_format.h"
-
 namespace batten::gcode {
 namespace {
-
-bool may_be_followed(const ModalState& state) {
-  return is_known(state) && state.distance == DistanceMode::kAbsolute &&
-         state.feed_mode == FeedMode::kPerMinute && state.cutter_compensation == TriState::kOff &&
-         state.tool_center_point == TriState::kOff && state.tilted_plane == TriState::kOff &&
-         state.scaling == TriState::kOff && state.rotation == TriState::kOff &&
-         state.mirror == TriState::kOff && state.polar == TriState::kOff &&
-         state.cylindrical == TriState::kOff && state.control_smoothing == TriState::kOff &&
-         state.modal_macro == TriState::kOff && state.constant_surface_speed == TriState::kOff &&
-         state.lathe_diameter == TriState::kOff;
-}
 
 bool is_certain(const Program& program, const Block& block, const BlockFlow& flow) {
   return !block.block_delete && !block.has_checksum && !flow.jump_target &&
@@ -30,14 +17,20 @@ bool is_certain(const Program& program, const Block& block, const BlockFlow& flo
 
 }  // namespace
 
+bool may_start(const CurveFormat& format, const ModalState& state) {
+  return path_alone_counts(state) && (!format.only_in_xy || state.plane == Plane::kXY);
+}
+
 std::optional<CurveReading> curve_at(const Program& program, std::uint32_t first,
                                      const ControlState& state, const CurveFormat* format,
                                      std::span<const BlockFlow> flow) {
-  if (format == nullptr || !may_be_followed(state.modal)) return std::nullopt;
+  const bool may_be_followed = format != nullptr && is_known(state.modal) &&
+                               state.modal.control_smoothing == TriState::kOff &&
+                               may_start(*format, state.modal);
+  if (!may_be_followed) return std::nullopt;
   CurveResult result = format->read(program, first, {state.position, state.modal.units});
   auto* curve = std::get_if<CurveReading>(&result);
   if (curve == nullptr || curve->blocks == 0 || curve->motions.empty()) return std::nullopt;
-  if (!format->complaint(state.modal).empty()) return std::nullopt;
   for (std::uint32_t i = first; i < first + curve->blocks; ++i) {
     if (!is_certain(program, program.blocks[i], flow[i])) return std::nullopt;
   }
