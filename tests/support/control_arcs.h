@@ -32,8 +32,9 @@ inline ModalState cutting_in(Units units) {
   return modal;
 }
 
+// Counter-clockwise seen from the tip of `axis` for a positive sweep.
 inline geometry::Arc arc_round(const geometry::Point3& start, const geometry::Point3& center,
-                               const geometry::Vector3& axis, double sweep, double rise) {
+                               const geometry::Vector3& axis, double sweep, double rise = 0) {
   const geometry::Vector3 out = start - center - (start - center).dot(axis) * axis;
   const geometry::Vector3 turned = std::cos(sweep) * out + std::sin(sweep) * axis.cross(out);
   return {start, start - out + turned + rise * axis, center, axis, sweep};

@@ -12,10 +12,7 @@
 #include <vector>
 
 #include "gcode/controls/built_in.h"
-#include "gcode/curves/heidenhain_spl.h"
 #include "gcode/writer/block_numbers.h"
-#include "gcode/writer/writer.h"
-#include "geometry/distance/path_distance.h"
 #include "postproc/proof/verification.h"
 #include "tests/support/klartext_arc_alarms.h"
 #include "tests/support/klartext_programs.h"
@@ -114,38 +111,6 @@ TEST(Klartext, SplinesAreOnRequestOnly) {
   EXPECT_EQ(result.text.find("SPL"), std::string::npos);
 }
 
-// Written as the body of a program, each curve is read back to within its digits and proved by the
-// control's own polynomials: none of its alarms sounds.
-TEST(Klartext, TwoHundredRandomCurvesAreWrittenReadAndProved) {
-  const gcode::Control& target = *gcode::find_control("itnc530");
-  for (unsigned seed = 0; seed < 200; ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const geometry::BsplineCurve curve = tests::random_curve(seed, seed % 2 == 1);
-    const geometry::Point3 start = curve.control_points().front();
-    gcode::ModalState modal;
-    modal.units = gcode::Units::kMillimetre;
-    modal.feed = 1000;
-    gcode::Writer writer(target, {modal, {start, {true, true, true}}}, "\n");
-    ASSERT_TRUE(writer.curve_to(curve, 2000, 0));
-    const std::string text =
-        with_numbers(fmt::format("BEGIN PGM A MM\nL X{:+.9f} Y{:+.9f} Z{:+.9f} R0 F1000\n",
-                                 start.x(), start.y(), start.z()) +
-                         writer.text() + "END PGM A MM\n",
-                     0);
-    const KlartextProgram read(text, target.curves);
-    geometry::Path path;
-    for (std::size_t i = 1; i < read.read.motions.size(); ++i) {
-      path.push_back(read.read.motions[i].piece);
-    }
-    geometry::Path wanted;
-    for (const geometry::CubicBezier& piece : curve.bezier_pieces()) wanted.push_back(piece);
-    ASSERT_EQ(path.size(), wanted.size());
-    const auto bounds = geometry::compare_paths(wanted, path, 0.0002);
-    EXPECT_EQ(bounds.verdict, geometry::Verdict::kProved) << bounds.bounds.at_least;
-    EXPECT_TRUE(gcode::spl_alarms(read.program, gcode::Units::kMillimetre).empty()) << text;
-  }
-}
-
 // Signs of the text are changed, lost and doubled: what is still read is proved, and nothing else
 // is touched.
 TEST(Klartext, DamagedProgramsAreProvedOrLeftAlone) {
@@ -215,21 +180,6 @@ TEST(Klartext, BothRunsOfAPocketAreRewritten) {
       EXPECT_NE(result.text.find(kept), std::string::npos) << kept;
     }
   }
-}
-
-// heidenhain_curves.md.
-TEST(Klartext, GoldenCurveIsWrittenAsTheManualSays) {
-  gcode::ModalState modal;
-  modal.units = gcode::Units::kMillimetre;
-  modal.feed = 1000;
-  gcode::Writer writer(*gcode::find_control("itnc530"),
-                       {modal, {geometry::Point3::Zero(), {true, true, true}}}, "\n");
-  ASSERT_TRUE(writer.curve_to(tests::golden_curve(), 3000, 0));
-  writer.line_to({50, 0, 0}, 3000);
-  EXPECT_EQ(with_numbers(writer.text(), 8),
-            "8 SPL X+18 Y+6.4 ~\n  K3X-6 K2X+0 K1X-1.2E+001 ~\n  K3Y+5.6 K2Y-4.8 K1Y-7.2 F3000\n"
-            "9 SPL X+40 Y+0 ~\n  K3X-4 K2X+1.2E+001 K1X-3E+001 ~\n"
-            "  K3Y+6.4 K2Y-3E+001 K1Y+3E+001\n10 L X+50\n");
 }
 
 TEST(Klartext, EveryOtherConstructIsCopied) {
