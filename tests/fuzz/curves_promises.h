@@ -47,7 +47,7 @@ inline std::string broken_alarms(const CurveAlarms& alarms, const Program& progr
     if (alarm.line < std::max(1U, line) || alarm.line > program.blocks.size()) {
       return "an alarm of a line that is not there, or out of order";
     }
-    if (alarm.id.empty() || alarm.message.empty()) return "an alarm without a name";
+    if (alarm.id.empty()) return "an alarm without a name";
     line = alarm.line;
   }
   return "";

@@ -7,17 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "gcode/text/number_format.h"
 
 namespace batten::gcode {
 namespace {
 
-constexpr std::array<char, 3> kAxes = {'X', 'Y', 'Z'};
-
 // Two printed numbers that differ by less are the same number: decimals as doubles.
 constexpr double kSameNumber = 1e-9;
-
-std::string shown(double value) { return to_text(value, {.decimals = 4}); }
 
 // One value of one word, and where it stands.
 struct Given {
@@ -51,7 +46,7 @@ class NurbsAlarms {
 
   CurveAlarms all() {
     for (const Block& block : program_.blocks) follow(block);
-    if (in_curve_) cut_short(program_.blocks.empty() ? 1 : program_.blocks.back().line, "the end");
+    if (in_curve_) cut_short(program_.blocks.empty() ? 1 : program_.blocks.back().line);
     // What is wrong with the first and inner knots is known at the end of the curve only.
     std::stable_sort(alarms_.begin(), alarms_.end(),
                      [](const CurveAlarm& a, const CurveAlarm& b) { return a.line < b.line; });
@@ -68,9 +63,7 @@ class NurbsAlarms {
     const Word* foreign = nullptr;  // the first word that no curve has
   };
 
-  void say(std::uint32_t line, std::string_view id, std::string message) {
-    alarms_.push_back({Severity::kError, line, id, std::move(message)});
-  }
+  void say(std::uint32_t line, std::string_view id) { alarms_.push_back({line, id}); }
 
   Words words_of(const Block& block) const {
     Words words;
@@ -108,7 +101,7 @@ class NurbsAlarms {
     if (block.word_count == 0 && block.opacity == ParseStatus::kNone) return;
     const bool begins = std::ranges::count(words.codes, 62) > 0;
     const bool changes_mode = std::ranges::any_of(words.codes, ends_curve);
-    if (in_curve_ && (begins || changes_mode)) cut_short(block.line, "another mode");
+    if (in_curve_ && (begins || changes_mode)) cut_short(block.line);
     if (begins) {
       begin(block, words);
     } else if (in_curve_) {
@@ -119,15 +112,9 @@ class NurbsAlarms {
   }
 
   // The curve ends before all its knots have come.
-  void cut_short(std::uint32_t line, const std::string& by) {
+  void cut_short(std::uint32_t line) {
     in_curve_ = false;
-    if (ending_knots_ == 0) {
-      say(line, "PS1005", by + " before a block with a knot alone");
-    } else {
-      say(line, "PS1004",
-          std::to_string(ending_knots_) + " blocks with a knot alone before " + by + ", expected " +
-              std::to_string(order_));
-    }
+    say(line, ending_knots_ == 0 ? "PS1005" : "PS1004");
   }
 
   void begin(const Block& block, const Words& words) {
@@ -139,18 +126,14 @@ class NurbsAlarms {
     if (words.order != nullptr) {
       order_ = static_cast<std::size_t>(std::max(0.0, words.order->value));
       if (order_ < 2 || order_ > 4) {
-        say(block.line, "order", "P" + shown(words.order->value) + ", expected P2 to P4");
+        say(block.line, "order");
         order_ = 4;
       }
     }
-    if (!forbidding_.empty()) {
-      say(block.line, names_.wrong_mode, "G06.2 under " + forbidding_.front());
-    }
-    if (rules_.framed && !framed_) say(block.line, "frame", "G06.2 outside G05 P10000 and G05 P0");
+    if (compensated_ || !per_minute_ || polar_) say(block.line, names_.wrong_mode);
+    if (rules_.framed && !framed_) say(block.line, "frame");
     check_first_point(block, words);
-    if (words.foreign != nullptr || words.codes.size() > 1) {
-      say(block.line, "foreign-word", "words beside G06.2 that no curve has");
-    }
+    if (words.foreign != nullptr || words.codes.size() > 1) say(block.line, "foreign-word");
     add_point(block, words);
   }
 
@@ -158,19 +141,12 @@ class NurbsAlarms {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       named_[axis] = words.place[axis] != nullptr;
       if (!named_[axis]) {
-        if (rules_.three_axes) {
-          say(block.line, names_.axis_too_late,
-              std::string("no ") + kAxes[axis] + " beside G06.2, expected X, Y and Z");
-        }
+        if (rules_.three_axes) say(block.line, names_.axis_too_late);
         continue;
       }
       const double given = words.place[axis]->value;
       const std::optional<double> wanted = incremental_ ? std::optional(0.0) : place_[axis];
-      if (wanted && std::abs(given - *wanted) > kSameNumber) {
-        say(block.line, names_.wrong_start,
-            std::string("the first point has ") + kAxes[axis] + shown(given) +
-                ", the tool stands at " + shown(*wanted));
-      }
+      if (wanted && std::abs(given - *wanted) > kSameNumber) say(block.line, names_.wrong_start);
     }
   }
 
@@ -179,16 +155,13 @@ class NurbsAlarms {
         words.place[0] != nullptr || words.place[1] != nullptr || words.place[2] != nullptr;
     if (words.foreign != nullptr || words.order != nullptr || !words.codes.empty() ||
         block.opacity != ParseStatus::kNone) {
-      say(block.line, "foreign-word", "words inside a curve that no curve has");
+      say(block.line, "foreign-word");
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (words.place[axis] != nullptr && !named_[axis]) {
-        say(block.line, names_.axis_too_late,
-            std::string(1, kAxes[axis]) + ", which the first block of the curve does not name");
-      }
+      if (words.place[axis] != nullptr && !named_[axis]) say(block.line, names_.axis_too_late);
     }
     if (has_place) {
-      if (ending_knots_ > 0) say(block.line, "point-too-late", "a point behind a knot alone");
+      if (ending_knots_ > 0) say(block.line, "point-too-late");
       add_point(block, words);
       return;
     }
@@ -206,60 +179,45 @@ class NurbsAlarms {
     }
     if (words.weight != nullptr) {
       check_decimals(block, *words.weight);
-      if (!(words.weight->value > 0)) {
-        say(block.line, "weight", "R" + shown(words.weight->value) + ", expected more than 0");
-      }
+      if (!(words.weight->value > 0)) say(block.line, "weight");
     }
     add_knot(block, words);
   }
 
   void add_knot(const Block& block, const Words& words) {
     if (words.knot == nullptr) {
-      say(block.line, names_.missing_knot, "a block without K");
+      say(block.line, names_.missing_knot);
       return;
     }
     check_decimals(block, *words.knot);
     const double knot = words.knot->value;
     const double most = std::pow(10.0, rules_.knots.digits - rules_.knots.decimals);
-    if (std::abs(knot) >= most) {
-      say(block.line, "knot-range", "K" + shown(knot) + ", expected less than " + shown(most));
-    }
-    if (!knots_.empty() && knot < knots_.back().value) {
-      say(block.line, names_.decreasing,
-          "K" + shown(knot) + " after K" + shown(knots_.back().value));
-    }
+    if (std::abs(knot) >= most) say(block.line, "knot-range");
+    if (!knots_.empty() && knot < knots_.back().value) say(block.line, names_.decreasing);
     knots_.push_back({knot, block.line});
   }
 
   void check_decimals(const Block& block, const Word& word) {
     if (word.decimals <= rules_.knots.decimals) return;
-    say(block.line, names_.too_many_decimals,
-        std::string(1, word.letter) + " with " + std::to_string(word.decimals) +
-            " decimals, expected at most " + std::to_string(rules_.knots.decimals));
+    say(block.line, names_.too_many_decimals);
   }
 
   // All knots have come.
   void finish(std::uint32_t line) {
     in_curve_ = false;
     if (points_ < order_) {
-      say(line, "few-points",
-          std::to_string(points_) + " points, expected " + std::to_string(order_) + " or more");
+      say(line, "few-points");
       return;
     }
     if (knots_.size() != points_ + order_) return;  // said already
     const auto same = [this](std::size_t from, std::size_t to) {
       return std::abs(knots_[to].value - knots_[from].value) < kSameNumber;
     };
-    if (!same(0, order_ - 1)) {
-      say(knots_[0].line, "PS1007", "the first " + std::to_string(order_) + " knots differ");
-    }
-    if (!same(knots_.size() - order_, knots_.size() - 1)) {
-      say(line, "PS1007", "the last " + std::to_string(order_) + " knots differ");
-    }
+    if (!same(0, order_ - 1)) say(knots_[0].line, "PS1007");
+    if (!same(knots_.size() - order_, knots_.size() - 1)) say(line, "PS1007");
     for (std::size_t i = 0; i + order_ < knots_.size(); ++i) {
       if (same(i, i + order_)) {
-        say(knots_[i + order_].line, "PS1008",
-            "K" + shown(knots_[i].value) + " more often than " + std::to_string(order_) + " times");
+        say(knots_[i + order_].line, "PS1008");
         return;
       }
     }
@@ -291,24 +249,9 @@ class NurbsAlarms {
   }
 
   void set_mode(int code, const Words& words) {
-    const auto on = [this](const char* mode) {
-      if (std::ranges::count(forbidding_, mode) == 0) forbidding_.emplace_back(mode);
-    };
-    const auto off = [this](std::string_view mode) { std::erase(forbidding_, mode); };
-    if (code == 400 || code == 410 || code == 420) {
-      off("G41");
-      off("G42");
-    }
-    if (code == 930 || code == 940 || code == 950) {
-      off("G93");
-      off("G95");
-    }
-    if (code == 410) on("G41");
-    if (code == 420) on("G42");
-    if (code == 930) on("G93");
-    if (code == 950) on("G95");
-    if (code == 121) on("G12.1");
-    if (code == 131) off("G12.1");
+    if (code == 400 || code == 410 || code == 420) compensated_ = code != 400;
+    if (code == 930 || code == 940 || code == 950) per_minute_ = code == 940;
+    if (code == 121 || code == 131) polar_ = code == 121;
     if (code == 900) incremental_ = false;
     if (code == 910) incremental_ = true;
     if (code == 50 && words.order != nullptr) framed_ = words.order->value == 10000;
@@ -320,7 +263,9 @@ class NurbsAlarms {
   CurveAlarms alarms_;
 
   std::array<std::optional<double>, 3> place_;  // in the program's units
-  std::vector<std::string> forbidding_;
+  bool compensated_ = false;
+  bool per_minute_ = true;
+  bool polar_ = false;
   bool incremental_ = false;
   bool framed_ = false;
 

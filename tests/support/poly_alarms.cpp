@@ -69,15 +69,11 @@ class PolyAlarms {
   }
 
  private:
-  void say(std::uint32_t line, std::string_view id, std::string message) {
-    alarms_.push_back({Severity::kError, line, id, std::move(message)});
-  }
+  void say(std::uint32_t line, std::string_view id) { alarms_.push_back({line, id}); }
 
   void follow(const Block& block) {
     const std::string_view text = program_.source.text(block.span);
-    if (text.size() > kSiemensLine) {
-      say(block.line, "line-too-long", std::to_string(text.size()) + " characters, expected 512");
-    }
+    if (text.size() > kSiemensLine) say(block.line, "line-too-long");
     const auto words = read_siemens_words(text);
     if (!words) return;
     for (const SiemensWord& word : *words) set_mode(word);
@@ -97,31 +93,24 @@ class PolyAlarms {
 
   void check(std::uint32_t line, const std::optional<std::vector<SiemensWord>>& words) {
     const PolyWords block = poly_words_of(words);
-    if (block.any_polynomial() && !active_) {
-      say(line, "poly-not-active", "PO without POLY: a straight line to the end point");
-    }
-    if (block.any_polynomial() && compensation_) {
-      say(line, "poly-compensation", "POLY under G41 or G42");
-    }
+    if (block.any_polynomial() && !active_) say(line, "poly-not-active");
+    if (block.any_polynomial() && compensation_) say(line, "poly-compensation");
     if (!block.any_polynomial()) return;
     const double length = block.length.value_or(1);
     if (length < kShortestPoly || length > kLongestPoly) {
-      say(line, "poly-length", "PL=" + std::to_string(length) + ", expected 0.0001 to 99999.9999");
+      say(line, "poly-length");
       return;
     }
     check_degrees(line, block);
     if (block.denominator == nullptr) return;
     const std::vector<double>& given = block.denominator->values;
-    if (!is_positive_until(denominator_of(given, length), length)) {
-      say(line, "poly-denominator", "the denominator is 0 inside the block");
-    }
+    if (!is_positive_until(denominator_of(given, length), length)) say(line, "poly-denominator");
   }
 
   void check_degrees(std::uint32_t line, const PolyWords& block) {
     for (const SiemensWord* word : block.polynomial) {
       if (word == nullptr || word->values.size() <= 3) continue;
-      say(line, "poly-degree",
-          word->name + " with " + std::to_string(word->values.size()) + " values, expected 3");
+      say(line, "poly-degree");
     }
   }
 
