@@ -3,7 +3,6 @@
 #include <algorithm>
 
 namespace batten::gcode {
-namespace {
 
 std::string_view name_of(Severity severity) {
   switch (severity) {
@@ -16,8 +15,6 @@ std::string_view name_of(Severity severity) {
   }
   return "error";
 }
-
-}  // namespace
 
 std::string to_text(const Diagnostic& diagnostic, const SourceText& source) {
   const SourcePlace place = source.place_of(diagnostic.where.begin);

@@ -15,6 +15,8 @@ enum class Severity {
   kError,    // the program is not understood; nothing is rewritten
 };
 
+[[nodiscard]] std::string_view name_of(Severity severity);  // "warning"
+
 struct Diagnostic {
   Severity severity = Severity::kError;
   std::string_view id;  // stable, explained in docs/diagnostics.md: "arc-radius-mismatch"

@@ -102,4 +102,10 @@ class JoinedLines {
   return begin > 0 && text[begin - 1] == '\r';
 }
 
+// How a new line ends: as the line of the source does beside which it stands; never in a CR alone,
+// which some controls leave out.
+[[nodiscard]] constexpr std::string_view written_line_end(std::string_view of_source) {
+  return of_source.starts_with('\r') ? "\r\n" : "\n";
+}
+
 }  // namespace batten::gcode

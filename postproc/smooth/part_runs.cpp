@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "gcode/state/reason.h"
+#include "gcode/text/line_cursor.h"
 #include "gcode/writer/block_numbers.h"
 #include "postproc/runs/band_notes.h"
 #include "postproc/runs/long_run_cuts.h"
@@ -19,7 +20,6 @@
 #include "postproc/smooth/run_smoother.h"
 #include "postproc/smooth/selection/selection.h"
 #include "postproc/system/parallel_for.h"
-#include "postproc/text/line_end.h"
 
 namespace batten::postproc {
 
@@ -43,7 +43,7 @@ RunContext context_of(const gcode::Program& program, const gcode::Interpretation
   return {program,
           section.first_block == 0 ? meaning.states[0] : state_after(section.first_block - 1),
           state_after(section.last_block),
-          written_line_end(program.source.text({first.span.end, first.end})),
+          gcode::written_line_end(program.source.text({first.span.end, first.end})),
           section.last_block - section.first_block + 1,
           bytes_of(program, section).size(),
           number_room(program, section.first_block, section.last_block)};

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "postproc/text/line_end.h"
+#include "gcode/text/line_cursor.h"
 
 namespace batten::postproc {
 namespace {
@@ -129,7 +129,7 @@ class Assembler {
       if (block.end > block.span.end) ending = program_.source.text({block.span.end, block.end});
       if (block.span.begin >= at) break;
     }
-    return written_line_end(ending);
+    return gcode::written_line_end(ending);
   }
 
   [[nodiscard]] bool is_rewritten(const gcode::Block& block) const {

@@ -1,24 +1,6 @@
 #include "postproc/text/json_values.h"
 
-#include <string_view>
-
 namespace batten::postproc {
-
-namespace {
-
-std::string_view name_of(gcode::Severity severity) {
-  switch (severity) {
-    case gcode::Severity::kNote:
-      return "note";
-    case gcode::Severity::kWarning:
-      return "warning";
-    case gcode::Severity::kError:
-      break;
-  }
-  return "error";
-}
-
-}  // namespace
 
 Json diagnostics_json(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source) {
   Json list = Json::array();
