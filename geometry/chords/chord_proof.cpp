@@ -14,6 +14,8 @@ namespace batten::geometry {
 
 namespace {
 
+using Eigen::Array4d;
+
 // A bend and a second one the other way have their tops; what is left after these cuts is due to
 // the twist of a curve in space, and there halves do better.
 constexpr int kCutsAtTheTop = 2;
@@ -193,13 +195,13 @@ constexpr double kTwist = 1e-4;
 constexpr int kTwistHalvings = 6;
 
 // A coordinate of the piece up to this part of its parameter. De Casteljau's algorithm.
-Four restricted(const Four& p, double part) {
+Array4d restricted(const Array4d& p, double part) {
   const double a = p[0] + part * (p[1] - p[0]);
   const double b = p[1] + part * (p[2] - p[1]);
   const double c = p[2] + part * (p[3] - p[2]);
   const double ab = a + part * (b - a);
   const double bc = b + part * (c - b);
-  return Four::of(p[0], a, ab, ab + part * (bc - ab));
+  return Array4d(p[0], a, ab, ab + part * (bc - ab));
 }
 
 double cubic_at(const double* h, double t) {
@@ -258,17 +260,17 @@ double greatest_square(const CubicBezier& piece, double known, int halvings) {
   return std::max(first, greatest_square(right, std::max(first, known), halvings - 1));
 }
 
-Four squares_of(const ControlCoordinates& p) { return p.x * p.x + p.y * p.y + p.z * p.z; }
+Array4d squares_of(const ControlCoordinates& p) { return p.x * p.x + p.y * p.y + p.z * p.z; }
 
 Point3 point_of(const ControlCoordinates& p, std::size_t i) { return {p.x[i], p.y[i], p.z[i]}; }
 
 // The same for what lies across a chord, where nearly always one look is enough.
 double greatest_square(const ControlCoordinates& across, double known) {
-  const Four squares = squares_of(across);
+  const Array4d squares = squares_of(across);
   const double ends = std::max(squares[0], squares[3]);
-  const double hull = greatest(squares);
+  const double hull = squares.maxCoeff();
   if (hull <= known || hull == ends) return hull;
-  const auto middle_of = [](const Four& p) {
+  const auto middle_of = [](const Array4d& p) {
     return 0.125 * (p[0] + p[3]) + 0.375 * (p[1] + p[2]);
   };
   Point3 bow{middle_of(across.x), middle_of(across.y), middle_of(across.z)};
@@ -276,9 +278,10 @@ double greatest_square(const ControlCoordinates& across, double known) {
   const double size = bow.norm();
   if (size > 0) {
     const Vector3 up = bow / size;
-    const Four heights = across.x * up.x() + across.y * up.y() + across.z * up.z();
-    const double twist = greatest(squares_of(
-        {across.x - heights * up.x(), across.y - heights * up.y(), across.z - heights * up.z()}));
+    const Array4d heights = across.x * up.x() + across.y * up.y() + across.z * up.z();
+    const double twist = squares_of({across.x - heights * up.x(), across.y - heights * up.y(),
+                                     across.z - heights * up.z()})
+                             .maxCoeff();
     const double h[] = {heights[0], heights[1], heights[2], heights[3]};
     const double height = greatest_of(h);
     const double square = height * height + twist;
@@ -303,9 +306,9 @@ ChordsFrom::ChordsFrom(const CurvePieces& pieces, std::size_t piece_of_start, do
 
 ControlCoordinates ChordsFrom::seen_from_start(const CubicBezier& piece) const {
   const Point3* p = piece.control;
-  return {Four::of(p[0].x(), p[1].x(), p[2].x(), p[3].x()) - start_.x(),
-          Four::of(p[0].y(), p[1].y(), p[2].y(), p[3].y()) - start_.y(),
-          Four::of(p[0].z(), p[1].z(), p[2].z(), p[3].z()) - start_.z()};
+  return {Array4d(p[0].x(), p[1].x(), p[2].x(), p[3].x()) - start_.x(),
+          Array4d(p[0].y(), p[1].y(), p[2].y(), p[3].y()) - start_.y(),
+          Array4d(p[0].z(), p[1].z(), p[2].z(), p[3].z()) - start_.z()};
 }
 
 // The piece that holds `u`, at or after the first.
@@ -336,7 +339,7 @@ ChordHeight ChordsFrom::to(double end) const {
   double square = 0;
   for (std::size_t i = first_; i <= last; ++i) {
     const ControlCoordinates seen = i == last ? ending : part_before(i, end);
-    const Four along = seen.x * direction.x() + seen.y * direction.y() + seen.z * direction.z();
+    const Array4d along = seen.x * direction.x() + seen.y * direction.y() + seen.z * direction.z();
     result.in_order =
         result.in_order && along[0] <= along[1] && along[1] <= along[2] && along[2] <= along[3];
     const ControlCoordinates across{seen.x - along * direction.x(), seen.y - along * direction.y(),

@@ -5,7 +5,6 @@
 #include <cstddef>
 
 #include "geometry/basic/point.h"
-#include "geometry/numeric/four_numbers.h"
 #include "geometry/path/curve_pieces.h"
 #include "geometry/path/path.h"
 
@@ -78,9 +77,9 @@ struct ChordHeight {
 
 // The coordinates of the control points of a piece.
 struct ControlCoordinates {
-  Four x;
-  Four y;
-  Four z;
+  Eigen::Array4d x;
+  Eigen::Array4d y;
+  Eigen::Array4d z;
 };
 
 // Chords that start at one place of the curve. The pieces must live as long.
