@@ -20,8 +20,8 @@ void BandedMatrix::fix(std::size_t i, const Point3& value, std::vector<Point3>& 
 
 // Row i of L D L^T, and of L y = right on the way: rows_[i][k] becomes L(i, i-k), rows_[i][0]
 // becomes 1 / D(i). `kBefore`: the rows above that it touches.
-template <int kBefore>
-bool BandedMatrix::eliminate(std::size_t i, std::vector<Point3>& right) {
+template <int kBefore, typename Value>
+bool BandedMatrix::eliminate(std::size_t i, std::vector<Value>& right) {
   Row row = rows_[i];
 #pragma GCC unroll 3
   for (int k = kBefore; k >= 1; --k) {
@@ -30,7 +30,7 @@ bool BandedMatrix::eliminate(std::size_t i, std::vector<Point3>& right) {
     for (int m = k + 1; m <= kBefore; ++m) row[k] -= row[m] * rows_[i - k][m - k];
   }
   double diagonal = row[0];
-  Point3 value = right[i];
+  Value value = right[i];
 #pragma GCC unroll 3
   for (int k = kBefore; k >= 1; --k) {
     const double scaled = row[k] * rows_[i - k][0];
@@ -46,15 +46,16 @@ bool BandedMatrix::eliminate(std::size_t i, std::vector<Point3>& right) {
 }
 
 // Row i of D and of the transpose of L. `kBehind`: the rows below that it touches.
-template <int kBehind>
-void BandedMatrix::back_substitute(std::size_t i, std::vector<Point3>& right) const {
-  Point3 value = right[i] * rows_[i][0];
+template <int kBehind, typename Value>
+void BandedMatrix::back_substitute(std::size_t i, std::vector<Value>& right) const {
+  Value value = right[i] * rows_[i][0];
 #pragma GCC unroll 3
   for (int k = 1; k <= kBehind; ++k) value -= rows_[i + k][k] * right[i + k];
   right[i] = value;
 }
 
-bool BandedMatrix::solve(std::vector<Point3>& right) {
+template <typename Value>
+bool BandedMatrix::solve(std::vector<Value>& right) {
   const std::size_t n = rows_.size();
   if (n > 0 && !eliminate<0>(0, right)) return false;
   if (n > 1 && !eliminate<1>(1, right)) return false;
@@ -68,6 +69,9 @@ bool BandedMatrix::solve(std::vector<Point3>& right) {
   for (std::size_t i = n; i-- > 3;) back_substitute<3>(i - 3, right);
   return true;
 }
+
+template bool BandedMatrix::solve(std::vector<Point3>& right);
+template bool BandedMatrix::solve(std::vector<double>& right);
 
 void BandedMatrix::inverse_band(BandedMatrix& inverse, std::size_t first) const {
   // From L D L^T: row i of the inverse is D^-1 minus the columns of L times the rows below,

@@ -1,5 +1,5 @@
 // Symmetric positive definite systems with three sub-diagonals, as cubic B-splines give them,
-// factored and solved for points in linear time.
+// factored and solved for points or numbers in linear time.
 #pragma once
 
 #include <array>
@@ -40,8 +40,9 @@ class BandedMatrix {
 
   // Solves in place: `right` becomes the solution. The matrix is overwritten by its factors
   // (L D L^T, with the inverse of D). Returns false when a pivot is not positive; `right` is
-  // undefined then.
-  [[nodiscard]] bool solve(std::vector<Point3>& right);
+  // undefined then. `Value`: Point3 or double.
+  template <typename Value>
+  [[nodiscard]] bool solve(std::vector<Value>& right);
 
   // After solve(): the entries of the inverse inside the band, as another banded matrix
   // (K. Takahashi et al. 1973), in its memory; only from row `first` on: the rows before it stay
@@ -49,10 +50,10 @@ class BandedMatrix {
   void inverse_band(BandedMatrix& inverse, std::size_t first) const;
 
  private:
-  template <int kBefore>
-  [[nodiscard]] bool eliminate(std::size_t i, std::vector<Point3>& right);
-  template <int kBehind>
-  void back_substitute(std::size_t i, std::vector<Point3>& right) const;
+  template <int kBefore, typename Value>
+  [[nodiscard]] bool eliminate(std::size_t i, std::vector<Value>& right);
+  template <int kBehind, typename Value>
+  void back_substitute(std::size_t i, std::vector<Value>& right) const;
 
   std::vector<Row> rows_;
 };

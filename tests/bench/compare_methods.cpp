@@ -22,10 +22,10 @@
 #include "geometry/fitting/tube/tube_smoothing.h"
 #include "geometry/path/parameter_samples.h"
 #include "postproc/machine/planner/feed_plan.h"
-#include "postproc/machine/planner/s_curve.h"
 #include "postproc/smooth/methods/run_curve.h"
 #include "tests/support/method_cases.h"
 #include "tests/support/paths.h"
+#include "tests/support/s_curve.h"
 #include "tests/support/sample_means.h"
 
 namespace {

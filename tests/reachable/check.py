@@ -20,9 +20,7 @@ LATER = (
     "geometry/band/tolerance_band_outline",  # the outline of a band as polygons
     "geometry/fitting/tube/tube_smoothing",  # curves of least time
     "postproc/machine/machine_path_limits",  # what a feed plan may ask of a machine
-    "postproc/machine/planner/feed_estimate",  # the time of a plan, without the plan
-    "postproc/machine/planner/feed_plan",  # feeds under jerk limits
-    "postproc/machine/planner/s_curve",
+    "postproc/machine/planner/",  # feeds under jerk limits, and the time of such a plan without it
 )
 
 

@@ -11,7 +11,6 @@
 #include "geometry/basic/rounding.h"
 #include "postproc/machine/planner/feed_estimate_parts.h"
 #include "postproc/machine/planner/feed_estimate_problem.h"
-#include "postproc/machine/planner/feed_estimate_search.h"
 #include "postproc/machine/planner/feed_plan_envelope.h"
 #include "postproc/machine/planner/feed_plan_path.h"
 #include "postproc/machine/planner/feed_plan_straight.h"

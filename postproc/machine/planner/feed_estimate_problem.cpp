@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "postproc/machine/planner/feed_plan_path.h"
+#include "postproc/machine/planner/feed_search.h"
 
 namespace batten::postproc {
 namespace {
@@ -206,120 +207,18 @@ EstimateStretch make_estimate_stretch(std::span<const EstimatePart> parts,
 
 namespace {
 
-using geometry::Vector3;
+// A rough start costs steps; more of them do not make an estimate better.
+constexpr SearchRule kQuick = {.first_gap = 0.3,
+                               .enough_gap = 3e-3,
+                               .enough_kept = 0.02,
+                               .least_slack = 0.5,
+                               .least_gap_part = 0.1,
+                               .per_unexplained = 0,
+                               .most_steps = 40};
 
-class ProblemMaker {
- public:
-  ProblemMaker(std::span<const geometry::PathPiece> path, const EstimateStretch& stretch,
-               const KinematicPathLimits& limits);
-
-  EstimateProblem problem;
-
- private:
-  void make_rows(EstimateCell& cell, const LengthDerivatives& x);
-  void add_row(double q, double p, double r, double limit);
-  void set_knots(const EstimateStretch& stretch);
-  void set_ends(const EstimateStretch& stretch, const LengthDerivatives& first,
-                const LengthDerivatives& last);
-
-  const KinematicPathLimits& limits_;
-};
-
-ProblemMaker::ProblemMaker(std::span<const geometry::PathPiece> path,
-                           const EstimateStretch& stretch, const KinematicPathLimits& limits)
-    : limits_(limits) {
-  problem.cells.resize(stretch.intervals.size());
-  problem.knots.resize(stretch.intervals.size() + 1);
-  problem.rows.reserve(4 * problem.cells.size());
-  LengthDerivatives first;
-  LengthDerivatives x;
-  for (std::size_t k = 0; k < problem.cells.size(); ++k) {
-    const EstimateInterval& interval = stretch.intervals[k];
-    EstimateCell& cell = problem.cells[k];
-    x = derivatives_by_length(path[interval.piece], interval.t);
-    if (k == 0) first = x;
-    cell.length = interval.length;
-    make_rows(cell, x);
-    cell.most = std::min(cell.most, interval.inner_bound * interval.inner_bound);
-  }
-  set_knots(stretch);
-  set_ends(stretch, first, x);
-}
-
-void ProblemMaker::add_row(double q, double p, double r, double limit) {
-  if (std::isinf(limit) || (q == 0 && p == 0 && r == 0)) return;
-  problem.rows.push_back({q / limit, p / limit, r / limit});
-}
-
-// mm/s^2: between rest and the greatest speed limited jerk comes to sqrt(J v). A bend may add to
-// the jerk along the path, so that much more; limits that are farther away are left out.
-double steepest_along(const LimitsAlong& along) {
-  constexpr double kMore = 1.5;
-  return kMore * std::sqrt(along.jerk * along.speed);
-}
-
-void ProblemMaker::make_rows(EstimateCell& cell, const LengthDerivatives& x) {
-  const LimitsAlong along = limits_along(x.first, limits_);
-  const double curvature = x.second.norm();
-  cell.most = along.speed * along.speed;
-  if (curvature > 0) {
-    cell.most = std::min(cell.most, limits_.normal_acceleration / curvature);
-  }
-  cell.first_row = problem.rows.size();
-  const bool straight = curvature == 0 && x.third == Vector3::Zero();
-  if (straight) {
-    add_row(0, 0, 0.5, along.jerk);
-    cell.jerk_rows = problem.rows.size() - cell.first_row;
-    if (steepest_along(along) >= along.acceleration) add_row(0, 0.5, 0, along.acceleration);
-  } else {
-    for (int i = 0; i < 3; ++i) {
-      add_row(x.third[i], 1.5 * x.second[i], 0.5 * x.first[i], limits_.jerk[i]);
-    }
-    add_row(0, 0, 0.5, limits_.tangential_jerk);
-    cell.jerk_rows = problem.rows.size() - cell.first_row;
-    const double steepest = steepest_along(along);
-    for (int i = 0; i < 3; ++i) {
-      const double most = std::abs(x.second[i]) * cell.most + std::abs(x.first[i]) * steepest;
-      if (most < limits_.acceleration[i]) continue;
-      add_row(x.second[i], 0.5 * x.first[i], 0, limits_.acceleration[i]);
-    }
-    if (steepest >= limits_.tangential_acceleration) {
-      add_row(0, 0.5, 0, limits_.tangential_acceleration);
-    }
-  }
-  cell.rows = problem.rows.size() - cell.first_row;
-}
-
-void ProblemMaker::set_knots(const EstimateStretch& stretch) {
-  const std::size_t n = problem.cells.size();
-  for (std::size_t k = 0; k <= n; ++k) {
-    const double before = k > 0 ? problem.cells[k - 1].length : 0;
-    const double after = k < n ? problem.cells[k].length : 0;
-    EstimateKnot& knot = problem.knots[k];
-    knot.before = after / (before + after);
-    knot.after = before / (before + after);
-    knot.weight = (before + after) / 6;
-    if (k > 0) {
-      const double bound = stretch.intervals[k - 1].end_bound;
-      knot.most = bound * bound;
-    }
-  }
-  for (std::size_t k = 0; k < n; ++k) {
-    EstimateCell& cell = problem.cells[k];
-    const double h = cell.length;
-    const EstimateKnot& from = problem.knots[k];
-    const EstimateKnot& to = problem.knots[k + 1];
-    // q at the ends as sums over the ordinates k, k + 1, k + 2.
-    const LimitWindow q0 = {from.before, from.after, 0};
-    const LimitWindow q1 = {0, to.before, to.after};
-    for (int i = 0; i < 3; ++i) {
-      const double middle = i == 1 ? 1 : 0;
-      cell.q_of[i] = 0.25 * (q0[i] + q1[i]) + 0.5 * middle;
-      cell.p_of[i] = (q1[i] - q0[i]) / h;
-      cell.r_of[i] = 2 * (q0[i] + q1[i] - 2 * middle) / (h * h);
-    }
-  }
-}
+// The start is this part of the envelope of speed^2, and at ends of the limit there.
+constexpr double kStartPart = 0.8;
+constexpr double kStartPartOfEnd = 0.9;
 
 // The greatest speed at the end of an arc of constant jerk that begins at v0 without acceleration:
 // jerk = 2 (v - v0) (v + 2 v0)^2 / (9 h^2).
@@ -336,52 +235,202 @@ double speed_after_arc(double v0, double length, double jerk) {
   return v;
 }
 
-void ProblemMaker::set_ends(const EstimateStretch& stretch, const LengthDerivatives& first,
-                            const LengthDerivatives& last) {
-  const auto set = [&](const EstimateEnd& end, const LengthDerivatives& x, double beside,
-                       EstimateKnot& knot, EstimateTie& tie) {
-    const double q = end.speed * end.speed;
-    switch (end.kind) {
-      case EstimateEnd::Kind::kFree:
-        knot.most = std::min(knot.most, q);
-        break;
-      case EstimateEnd::Kind::kSlow:
-      case EstimateEnd::Kind::kMoving:
-        tie.pins = true;
-        tie.value = q;
-        tie.next = q + end.acceleration * beside;
-        break;
-      case EstimateEnd::Kind::kArc: {
-        const LimitsAlong along = limits_along(x.first, limits_);
-        const double v0 = end.speed;
-        const double h = end.length;
-        const bool jerk = !std::isinf(along.jerk);
-        const double v =
-            jerk ? speed_after_arc(v0, h, along.jerk) : std::sqrt(q + 2 * along.acceleration * h);
-        knot.most = std::min(knot.most, v * v);
-        // p = 4 (v - v0) (v + 2 v0) / (3 h), v0 v taken at the greatest; without jerk limit
-        // (v^2 - v0^2) / h.
-        const double rate = (jerk ? 4.0 / 3 : 1.0) / h;
-        const double offset = jerk ? v0 * v - 2 * q : -q;
-        tie.ties = true;
-        tie.factor = 1 + rate * beside / 2;
-        tie.offset = rate * beside / 2 * offset;
-        tie.arc_length = jerk ? 3 * h : 2 * h;
-        tie.arc_speed = jerk ? 2 * v0 : v0;
-        break;
-      }
-    }
+// mm/s^2: between rest and the greatest speed limited jerk comes to sqrt(J v). A bend may add to
+// the jerk along the path, so that much more; limits that are farther away are left out.
+double steepest_along(const LimitsAlong& along) {
+  constexpr double kMore = 1.5;
+  return kMore * std::sqrt(along.jerk * along.speed);
+}
+
+// The middles of the intervals come first, then the nodes between them.
+class ProblemMaker {
+ public:
+  ProblemMaker(std::span<const geometry::PathPiece> path, const EstimateStretch& stretch,
+               const KinematicPathLimits& limits);
+
+  [[nodiscard]] std::vector<double> guess() const;
+
+  SearchProblem problem;
+
+ private:
+  // Shares of the ordinates beside a node in its q.
+  struct NodeShares {
+    double before;
+    double after;
   };
-  set(stretch.start, first, problem.cells.front().length, problem.knots.front(), problem.start);
-  set(stretch.end, last, problem.cells.back().length, problem.knots.back(), problem.end);
+
+  [[nodiscard]] std::size_t count() const { return stretch_.intervals.size(); }
+  [[nodiscard]] double length(std::size_t interval) const {
+    return interval < count() ? stretch_.intervals[interval].length : 0;
+  }
+  [[nodiscard]] NodeShares shares(std::size_t node) const;
+  void add_middle(std::size_t k, const LengthDerivatives& x);
+  void add_node(std::size_t k);
+  void set_end(bool at_start, const EstimateEnd& end, const LengthDerivatives& x);
+
+  const EstimateStretch& stretch_;
+  const KinematicPathLimits& limits_;
+};
+
+ProblemMaker::ProblemMaker(std::span<const geometry::PathPiece> path,
+                           const EstimateStretch& stretch, const KinematicPathLimits& limits)
+    : stretch_(stretch), limits_(limits) {
+  problem.unknowns = count() + 2;
+  problem.places.reserve(2 * count() + 1);
+  problem.rows.reserve(4 * count());
+  LengthDerivatives first;
+  LengthDerivatives x;
+  for (std::size_t k = 0; k < count(); ++k) {
+    const EstimateInterval& interval = stretch.intervals[k];
+    x = derivatives_by_length(path[interval.piece], interval.t);
+    if (k == 0) first = x;
+    add_middle(k, x);
+  }
+  for (std::size_t k = 0; k <= count(); ++k) add_node(k);
+  set_end(true, stretch.start, first);
+  set_end(false, stretch.end, x);
+}
+
+ProblemMaker::NodeShares ProblemMaker::shares(std::size_t node) const {
+  const double before = node > 0 ? length(node - 1) : 0;
+  const double after = length(node);
+  return {after / (before + after), before / (before + after)};
+}
+
+// q at the ends, and so q, p and r in the middle, as sums over the ordinates k, k + 1, k + 2.
+void ProblemMaker::add_middle(std::size_t k, const LengthDerivatives& x) {
+  const double h = length(k);
+  const NodeShares from = shares(k);
+  const NodeShares to = shares(k + 1);
+  const LimitWindow q0 = {from.before, from.after, 0};
+  const LimitWindow q1 = {0, to.before, to.after};
+  SearchPlace place;
+  place.first = k;
+  place.width = 3;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double middle = i == 1 ? 1 : 0;
+    place.q[i] = 0.25 * (q0[i] + q1[i]) + 0.5 * middle;
+    place.p[i] = (q1[i] - q0[i]) / h;
+    place.r[i] = 2 * (q0[i] + q1[i] - 2 * middle) / (h * h);
+  }
+  place.time = 4 * h / 6;
+  problem.add_jerk_rows(x, limits_, place);
+  problem.add_other_limits(x, limits_, steepest_along(limits_along(x.first, limits_)), place);
+  const double bound = stretch_.intervals[k].inner_bound;
+  place.most = std::min(place.most, bound * bound);
+  problem.places.push_back(place);
+}
+
+void ProblemMaker::add_node(std::size_t k) {
+  const NodeShares of_q = shares(k);
+  SearchPlace place;
+  place.first = k;
+  place.width = 2;
+  place.q = {of_q.before, of_q.after, 0, 0};
+  place.time = ((k > 0 ? length(k - 1) : 0) + length(k)) / 6;
+  if (k > 0) place.most = stretch_.intervals[k - 1].end_bound * stretch_.intervals[k - 1].end_bound;
+  problem.places.push_back(place);
+}
+
+void ProblemMaker::set_end(bool at_start, const EstimateEnd& end, const LengthDerivatives& x) {
+  const std::size_t outer = at_start ? 0 : problem.unknowns - 1;
+  const std::size_t inner = at_start ? 1 : problem.unknowns - 2;
+  // A single interval has one ordinate inside: the start's equation is the one that counts.
+  const bool inner_is_free =
+      at_start || count() > 1 || (problem.ties.empty() && problem.pins.empty());
+  SearchPlace& node = at_start ? problem.places[count()] : problem.places.back();
+  const double beside = length(at_start ? 0 : count() - 1);
+  const double q = end.speed * end.speed;
+  switch (end.kind) {
+    case EstimateEnd::Kind::kFree:
+      node.most = std::min(node.most, q);
+      break;
+    case EstimateEnd::Kind::kSlow:
+    case EstimateEnd::Kind::kMoving:
+      problem.pins.push_back({outer, q});
+      if (inner_is_free) problem.pins.push_back({inner, q + end.acceleration * beside});
+      break;
+    case EstimateEnd::Kind::kArc: {
+      const LimitsAlong along = limits_along(x.first, limits_);
+      const double v0 = end.speed;
+      const double h = end.length;
+      const bool jerk = !std::isinf(along.jerk);
+      const double v =
+          jerk ? speed_after_arc(v0, h, along.jerk) : std::sqrt(q + 2 * along.acceleration * h);
+      node.most = std::min(node.most, v * v);
+      // p = 4 (v - v0) (v + 2 v0) / (3 h), v0 v taken at the greatest; without jerk limit
+      // (v^2 - v0^2) / h.
+      const double rate = (jerk ? 4.0 / 3 : 1.0) / h;
+      const double offset = jerk ? v0 * v - 2 * q : -q;
+      if (inner_is_free) {
+        problem.ties.push_back({inner, outer, 1 + rate * beside / 2, rate * beside / 2 * offset});
+      }
+      problem.arcs.push_back({outer, jerk ? 3 * h : 2 * h, jerk ? 2 * v0 : v0});
+      break;
+    }
+  }
+}
+
+std::vector<double> ProblemMaker::guess() const {
+  const std::size_t n = count();
+  std::vector<double> u(problem.unknowns);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double v = stretch_.intervals[k].speed;
+    u[k + 1] = kStartPart * std::min(v * v, problem.places[k].most);
+  }
+  // Limited jerk rounds the envelope off; nodes are spread by the time that it takes.
+  constexpr int kPasses = 3;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    double before = u[1];
+    for (std::size_t k = 2; k + 1 <= n; ++k) {
+      const double here = u[k];
+      u[k] = std::sqrt(here * std::sqrt(before * u[k + 1]));
+      before = here;
+    }
+  }
+  u[0] = std::min(u[1], kStartPartOfEnd * problem.places[n].most);
+  u[n + 1] = std::min(u[n], kStartPartOfEnd * problem.places.back().most);
+  for (const UnknownPin& pin : problem.pins) u[pin.unknown] = pin.value;
+  for (const UnknownTie& tie : problem.ties) u[tie.tied] = tie.factor * u[tie.free] + tie.offset;
+  return u;
 }
 
 }  // namespace
 
-EstimateProblem make_estimate_problem(std::span<const geometry::PathPiece> path,
-                                      const EstimateStretch& stretch,
-                                      const KinematicPathLimits& limits) {
-  return std::move(ProblemMaker(path, stretch, limits).problem);
+EstimateSolution quick_search(std::span<const geometry::PathPiece> path,
+                              const EstimateStretch& stretch, const KinematicPathLimits& limits) {
+  const ProblemMaker maker(path, stretch, limits);
+  SearchResult found = fastest(maker.problem, maker.guess(), kQuick);
+  const std::vector<double>& u = found.unknowns;
+  EstimateSolution solution;
+  solution.found = found.found;
+  const auto root_at = [&](const SearchPlace& place) {
+    double q = 0;
+    for (std::size_t i = 0; i < place.width; ++i) q += place.q[i] * u[place.first + i];
+    return 1 / std::sqrt(q);
+  };
+  const std::size_t n = stretch.intervals.size();
+  const auto& places = maker.problem.places;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double ends = root_at(places[n + k]) + root_at(places[n + k + 1]);
+    solution.seconds.push_back(stretch.intervals[k].length / 6 * (ends + 4 * root_at(places[k])));
+  }
+  for (const ArcTime& arc : maker.problem.arcs) {
+    (arc.unknown == 0 ? solution.start_seconds : solution.end_seconds) =
+        arc.seconds(u[arc.unknown]);
+  }
+  solution.ordinates = std::move(found.unknowns);
+  return solution;
+}
+
+EstimateNode node_of(const EstimateStretch& stretch, const EstimateSolution& solution,
+                     std::size_t i) {
+  const auto& intervals = stretch.intervals;
+  const auto& u = solution.ordinates;
+  const double before = i > 0 ? intervals[i - 1].length : 0;
+  const double after = i < intervals.size() ? intervals[i].length : 0;
+  const double q = (after * u[i] + before * u[i + 1]) / (before + after);
+  return {std::sqrt(q), (u[i + 1] - u[i]) / (before + after)};
 }
 
 }  // namespace batten::postproc

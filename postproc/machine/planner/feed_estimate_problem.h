@@ -1,8 +1,10 @@
-// What the quick estimate's search solves: one stretch as sums over its ordinates, with its limits.
+// The search of the quick estimate: the least time over one stretch, on few nodes.
+//
+// q = speed^2 is a quadratic spline of the way: q and dq/ds run on, d2q/ds2 is constant over each
+// interval. Its unknowns are the Bezier ordinates, q at the start, one in the middle of each
+// interval, and q at the end.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -11,7 +13,6 @@
 #include "postproc/machine/planner/feed_estimate_parts.h"
 #include "postproc/machine/planner/feed_plan_envelope.h"
 #include "postproc/machine/planner/feed_plan_path.h"
-#include "postproc/machine/planner/feed_plan_problem.h"
 
 namespace batten::postproc {
 
@@ -55,99 +56,27 @@ struct EstimateStretch {
                                                     const EstimateEnd& start,
                                                     const EstimateEnd& end, double density);
 
-// One interval.
-struct EstimateCell {
-  double length = 0;
-  // q, p and r in the middle as sums over three neighbouring ordinates.
-  LimitWindow q_of{};
-  LimitWindow p_of{};
-  LimitWindow r_of{};
-  std::size_t first_row = 0;
-  std::size_t jerk_rows = 0;  // these first
-  std::size_t rows = 0;
-  double most = KinematicPathLimits::kNone;  // of q in the middle
+struct EstimateSolution {
+  std::vector<double> ordinates;  // one more than intervals and one: see above
+  std::vector<double> seconds;    // of each interval
+  double start_seconds = 0;       // of the arcs before and after
+  double end_seconds = 0;
+  bool found = false;  // or the search did not come to an end
 };
 
-// A node between two intervals: q = before * u[k] + after * u[k + 1].
-struct EstimateKnot {
-  double before = 0;
-  double after = 1;
-  double weight = 0;                         // mm, of 1 / sqrt(q) in the time
-  double most = KinematicPathLimits::kNone;  // of q
+// The limits are asked for in the middle of each interval and, those of joints, at its end.
+[[nodiscard]] EstimateSolution quick_search(std::span<const geometry::PathPiece> path,
+                                            const EstimateStretch& stretch,
+                                            const KinematicPathLimits& limits);
+
+// Speed and acceleration along the path at a node.
+struct EstimateNode {
+  double speed = 0;         // mm/s
+  double acceleration = 0;  // mm/s^2
 };
 
-// What holds at an end of the stretch.
-struct EstimateTie {
-  bool ties = false;  // ordinate 1 = factor * ordinate 0 + offset
-  bool pins = false;  // ordinates 0 and 1 are these
-  double factor = 0;
-  double offset = 0;
-  double value = 0;
-  double next = 0;
-  double arc_length = 0;
-  double arc_speed = 0;
-};
-
-struct EstimateProblem {
-  std::vector<EstimateCell> cells;
-  std::vector<EstimateKnot> knots;  // one more than cells
-  std::vector<LimitWindow> rows;    // over q, p and r in the middle of their cell
-  EstimateTie start;
-  EstimateTie end;
-};
-
-[[nodiscard]] EstimateProblem make_estimate_problem(std::span<const geometry::PathPiece> path,
-                                                    const EstimateStretch& stretch,
-                                                    const KinematicPathLimits& limits);
-
-// The linear system of one step of the quick estimate's search.
-
-// Symmetric, two sub-diagonals, positive. At least two rows.
-class EstimateMatrix {
- public:
-  explicit EstimateMatrix(std::size_t size) : rows_(size) {}
-
-  void set_zero() { std::fill(rows_.begin(), rows_.end(), Row{}); }
-  // The entry (row, row - left).
-  double& at(std::size_t row, int left) { return rows_[row][left]; }
-
-  // Overwrites the matrix by its factors L D L^T.
-  void factor() {
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      Row& row = rows_[i];
-      double diagonal = row[0];
-      if (i > 1) {
-        const double far = row[2];
-        row[1] -= far * rows_[i - 1][1];
-        row[2] = far * rows_[i - 2][0];
-        diagonal -= far * row[2];
-      }
-      if (i > 0) {
-        const double near = row[1];
-        row[1] = near * rows_[i - 1][0];
-        diagonal -= near * row[1];
-      }
-      row[0] = 1 / std::max(diagonal, 1e-300);
-    }
-  }
-
-  // After factor(), in place.
-  void solve(std::vector<double>& x) const {
-    const std::size_t n = rows_.size();
-    x[1] -= rows_[1][1] * x[0];
-    for (std::size_t i = 2; i < n; ++i) x[i] -= rows_[i][1] * x[i - 1] + rows_[i][2] * x[i - 2];
-    for (std::size_t i = 0; i < n; ++i) x[i] *= rows_[i][0];
-    x[n - 2] -= rows_[n - 1][1] * x[n - 1];
-    for (std::size_t i = n - 2; i-- > 0;) {
-      x[i] -= rows_[i + 1][1] * x[i + 1] + rows_[i + 2][2] * x[i + 2];
-    }
-  }
-
- private:
-  // The diagonal (after factor() its inverse), then to the left of it.
-  using Row = std::array<double, 3>;
-
-  std::vector<Row> rows_;
-};
+// Between interval `i - 1` and interval `i`.
+[[nodiscard]] EstimateNode node_of(const EstimateStretch& stretch, const EstimateSolution& solution,
+                                   std::size_t i);
 
 }  // namespace batten::postproc

@@ -15,8 +15,8 @@
 #include "postproc/machine/planner/feed_plan_path.h"
 #include "postproc/machine/planner/feed_plan_problem.h"
 #include "postproc/machine/planner/feed_plan_refine.h"
-#include "postproc/machine/planner/feed_plan_solver.h"
 #include "postproc/machine/planner/feed_plan_straight.h"
+#include "postproc/machine/planner/feed_search.h"
 
 namespace batten::postproc {
 namespace {
@@ -33,11 +33,31 @@ constexpr double kStraightDensity = 2;
 // two rests: 1.6e-5.
 constexpr double kSlowJoint = 160;
 
-// The first solution only says where nodes are missing.
-constexpr SearchRule kRough = {0.5, 1e-3, 0.2};
+// The search ends where no limit is exceeded by more than this part: a fiftieth of what is allowed
+// between the nodes.
+constexpr double kEnoughKept = 1e-4;
+
+// While the duals do not yet explain the gradient of the time, the search keeps this much distance
+// from the limits: with less, it would creep along them.
+constexpr double kPerUnexplained = 0.1;
+
+// Paths whose allowed speed changes a hundredfold within a millimetre take up to 120 steps.
+constexpr SearchRule kFirst = {.first_gap = 0.5,
+                               .enough_gap = 1e-3,  // only says where nodes are missing
+                               .enough_kept = kEnoughKept,
+                               .least_slack = 0.2,
+                               .least_gap_part = 0.08,
+                               .per_unexplained = kPerUnexplained,
+                               .most_steps = 150};
 
 // The next start from it, near to what they find.
-constexpr SearchRule kFine = {0.02, 2e-5, 0.02};
+constexpr SearchRule kNext = {.first_gap = 0.02,
+                              .enough_gap = 2e-5,
+                              .enough_kept = kEnoughKept,
+                              .least_slack = 0.02,
+                              .least_gap_part = 0.08,
+                              .per_unexplained = kPerUnexplained,
+                              .most_steps = 150};
 
 // Intervals are cut where the jerk switches, once, and where a limit is exceeded between the places
 // that were asked, until it is so by less than half a percent; three times are rarely needed.
@@ -75,11 +95,7 @@ class Planner {
   void plan_chain(const Chain& chain);
   [[nodiscard]] std::vector<std::size_t> slow_joints(const Chain& chain) const;
   void plan_part(const Chain& chain);
-  void plan_straight(const Chain& chain, double length);
-  void plan_straight_run(const Chain& chain, double length);
-  template <typename StateAt>
-  void add_straight_nodes(const Chain& chain, const std::vector<double>& ends,
-                          const std::vector<double>& times, const StateAt& state_of);
+  void plan_straight(const Chain& chain);
   void plan_bent(const Chain& chain);
   void start_nodes(const Chain& chain, double speed, double acceleration);
   void add_node(std::size_t piece, double t, double length, double seconds, double speed,
@@ -168,12 +184,7 @@ void Planner::plan_part(const Chain& chain) {
   const bool runs_on = std::all_of(chain.bounds.begin() + 1, chain.bounds.end() - 1,
                                    [](double bound) { return std::isinf(bound); });
   if (!(slow_start && slow_end && straight && runs_on)) return plan_bent(chain);
-  const double length = geometry::length_of(chain.pieces);
-  if (chain.slow_start || chain.slow_end) {
-    plan_straight_run(chain, length);
-  } else {
-    plan_straight(chain, length);
-  }
+  plan_straight(chain);
 }
 
 void Planner::start_nodes(const Chain& chain, double speed, double acceleration) {
@@ -199,33 +210,19 @@ void Planner::add_node(std::size_t piece, double t, double length, double second
   plan_.nodes.push_back(node);
 }
 
-void Planner::plan_straight(const Chain& chain, double length) {
-  const geometry::Vector3 direction = geometry::direction_at(chain.pieces.front(), 0);
-  const StraightMove move = straight_move(length, limits_along(direction, limits_));
-  start_nodes(chain, 0, state_at(move, 0).acceleration);
-  const std::vector<double> ends = ends_of_pieces(chain.pieces);
-  add_straight_nodes(chain, ends, node_times(move, ends, kStraightDensity * options_.density),
-                     [&](double time) { return state_at(move, time); });
-}
-
-void Planner::plan_straight_run(const Chain& chain, double length) {
+void Planner::plan_straight(const Chain& chain) {
   const geometry::Vector3 direction = geometry::direction_at(chain.pieces.front(), 0);
   const LimitsAlong along = limits_along(direction, limits_);
-  const StraightRun run = straight_run(length, chain.bounds.front(), chain.bounds.back(), along);
-  start_nodes(chain, run.from, 0);
+  const StraightRun run = straight_run(geometry::length_of(chain.pieces), chain.bounds.front(),
+                                       chain.bounds.back(), along);
+  // From rest the acceleration is there at once where the jerk has no limit.
+  start_nodes(chain, run.from, run.from > 0 ? 0 : state_at(run, 0, along).acceleration);
   const std::vector<double> ends = ends_of_pieces(chain.pieces);
-  add_straight_nodes(chain, ends, node_times(run, along, ends, kStraightDensity * options_.density),
-                     [&](double time) { return state_at(run, time, along); });
-}
-
-template <typename StateAt>
-void Planner::add_straight_nodes(const Chain& chain, const std::vector<double>& ends,
-                                 const std::vector<double>& times, const StateAt& state_of) {
   std::size_t piece = 0;
   StraightState last;
   double last_time = 0;
-  for (const double time : times) {
-    const StraightState state = state_of(time);
+  for (const double time : node_times(run, along, ends, kStraightDensity * options_.density)) {
+    const StraightState state = state_at(run, time, along);
     const double from = piece > 0 ? ends[piece - 1] : 0;
     double t = (state.distance - from) / (ends[piece] - from);
     if (t > 1 - kSameParameter && piece + 1 < chain.pieces.size()) {
@@ -239,30 +236,36 @@ void Planner::add_straight_nodes(const Chain& chain, const std::vector<double>& 
   }
 }
 
+SearchResult searched(const PlanProblem& problem, std::vector<double> start,
+                      const SearchRule& rule) {
+  SearchResult result = fastest(problem.search, std::move(start), rule);
+  if (result.excess > kEnoughKept) slow_down(problem.search, result.unknowns);
+  return result;
+}
+
 void Planner::plan_bent(const Chain& chain) {
   PlanGrid grid = make_plan_grid(chain.pieces, chain.bounds, limits_, options_.density);
   grid.slow_start = chain.slow_start;
   grid.slow_end = chain.slow_end;
   PlanProblem problem = make_plan_problem(chain.pieces, grid, limits_);
-  PlanSolution solution = fastest_plan(problem, rough_start(problem, grid), kRough);
+  std::vector<double> x = searched(problem, rough_start(problem, grid), kFirst).unknowns;
   const auto rounds = static_cast<std::size_t>(std::clamp(options_.refinements, 0, 4));
   for (const RefineRule& rule : std::span(kRefinements).first(rounds)) {
     PlanGrid finer_grid = grid;
-    std::vector<double> start = solution.x;
+    std::vector<double> start = x;
     const std::size_t cut = refine_plan(chain.pieces, limits_, problem, rule, finer_grid, start);
     const bool first = &rule == &kRefinements.front();
     if (cut == 0 && !first) break;
     PlanProblem finer = cut > 0 ? make_plan_problem(chain.pieces, finer_grid, limits_) : problem;
     const bool sound = raise_above_zero(finer, start);
-    PlanSolution found = sound ? fastest_plan(finer, std::move(start), kFine)
-                               : fastest_plan(finer, rough_start(finer, finer_grid), kRough);
+    SearchResult found = sound ? searched(finer, std::move(start), kNext)
+                               : searched(finer, rough_start(finer, finer_grid), kFirst);
     // The search may lose itself where the speed is next to nothing within the path.
     if (!std::isfinite(found.seconds)) break;
     grid = std::move(finer_grid);
     problem = std::move(finer);
-    solution = std::move(found);
+    x = std::move(found.unknowns);
   }
-  const auto& x = solution.x;
   const std::size_t n = problem.intervals();
   const auto& intervals = grid.intervals;
   const bool from_rest = problem.start.length > 0;
@@ -396,7 +399,7 @@ class Interval {
 
   double length_;
   double duration_;
-  PlanWindow window_;  // q and p at both ends
+  std::array<double, 4> window_;  // q and p at both ends
 };
 
 // The parameter `s` mm after t0, by Newton steps.

@@ -54,6 +54,8 @@ struct LengthDerivatives {
   geometry::Vector3 first = geometry::Vector3::Zero();   // unit direction
   geometry::Vector3 second = geometry::Vector3::Zero();  // 1/mm
   geometry::Vector3 third = geometry::Vector3::Zero();   // 1/mm^2
+
+  [[nodiscard]] bool is_straight() const { return second.isZero(0) && third.isZero(0); }
 };
 
 // Exact for lines, arcs, helices, spirals and Bezier pieces. Where a Bezier piece comes to a

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "postproc/machine/planner/feed_plan_path.h"
-
 namespace batten::postproc {
 namespace {
 
@@ -13,56 +11,31 @@ using geometry::Vector3;
 
 constexpr double kNone = KinematicPathLimits::kNone;
 
-// The limits at one place after the other.
-class RowMaker {
- public:
-  RowMaker(const KinematicPathLimits& limits, PlanProblem& problem)
-      : limits_(limits), problem_(problem) {}
+// Start, middle and end of each interval.
+constexpr std::size_t kPlaces = 3;
 
-  // The jerk is asked for at both sides of a node, the rest at one.
-  void add_place(const LengthDerivatives& x, bool with_acceleration) {
-    PlanPlace place;
-    place.first_row = problem_.rows.size();
-    add_jerk(x);
-    place.jerk_rows = problem_.rows.size() - place.first_row;
-    if (with_acceleration) {
-      add_acceleration(x);
-      const double speed = limits_along(x.first, limits_).speed;
-      const double curvature = x.second.norm();
-      place.most = speed * speed;
-      if (curvature > 0) place.most = std::min(place.most, limits_.normal_acceleration / curvature);
-    }
-    place.rows = problem_.rows.size() - place.first_row;
-    problem_.places.push_back(place);
+// The place of number `which` of an interval that is h mm long.
+SearchPlace place_of(std::size_t interval, std::size_t which, double h) {
+  const double k = 6 / (h * h);
+  SearchPlace place;
+  place.first = 2 * interval;
+  place.width = 4;
+  if (which == 0) {
+    place.q = {1, 0, 0, 0};
+    place.p = {0, 1, 0, 0};
+    place.r = {-k, -4 / h, k, -2 / h};
+  } else if (which == 1) {
+    place.q = {0.5, h / 8, 0.5, -h / 8};
+    place.p = {-1.5 / h, -0.25, 1.5 / h, -0.25};
+    place.r = {0, -1 / h, 0, 1 / h};
+  } else {
+    place.q = {0, 0, 1, 0};
+    place.p = {0, 0, 0, 1};
+    place.r = {k, 2 / h, -k, 4 / h};
   }
-
- private:
-  void add_acceleration(const LengthDerivatives& x) {
-    if (straight(x)) return row(0, 0.5, 0, limits_along(x.first, limits_).acceleration);
-    for (int i = 0; i < 3; ++i) row(x.second[i], 0.5 * x.first[i], 0, limits_.acceleration[i]);
-    row(0, 0.5, 0, limits_.tangential_acceleration);
-  }
-
-  void add_jerk(const LengthDerivatives& x) {
-    if (straight(x)) return row(0, 0, 0.5, limits_along(x.first, limits_).jerk);
-    for (int i = 0; i < 3; ++i) {
-      row(x.third[i], 1.5 * x.second[i], 0.5 * x.first[i], limits_.jerk[i]);
-    }
-    row(0, 0, 0.5, limits_.tangential_jerk);
-  }
-
-  static bool straight(const LengthDerivatives& x) {
-    return x.second == Vector3::Zero() && x.third == Vector3::Zero();
-  }
-
-  void row(double q, double p, double r, double limit) {
-    if (std::isinf(limit) || (q == 0 && p == 0 && r == 0)) return;
-    problem_.rows.push_back({q / limit, p / limit, r / limit});
-  }
-
-  const KinematicPathLimits& limits_;
-  PlanProblem& problem_;
-};
+  place.time = which == 1 ? 4 * h / 6 : h / 6;  // Simpson's rule
+  return place;
+}
 
 void lower(double& most, double speed) { most = std::min(most, speed * speed); }
 
@@ -91,17 +64,24 @@ bool jerk_is_limited(const KinematicPathLimits& limits) {
   return !std::isinf(std::min(limits.jerk.minCoeff(), limits.tangential_jerk));
 }
 
-}  // namespace
-
-std::array<PlanState, kPlanPlaces> states_at_places(const double* w, double length) {
-  const double rise = (w[2] - w[0]) / length;
-  const double turn = (w[3] - w[1]) / length;
-  const double k = 6 * rise;
-  return {PlanState{w[0], w[1], (k - 4 * w[1] - 2 * w[3]) / length},
-          PlanState{0.5 * (w[0] + w[2]) - length * length / 8 * turn,
-                    1.5 * rise - 0.25 * (w[1] + w[3]), turn},
-          PlanState{w[2], w[3], (2 * w[1] + 4 * w[3] - k) / length}};
+void add_interval(const PathPiece& piece, const GridInterval& interval, bool new_piece,
+                  const KinematicPathLimits& limits, PlanProblem& problem) {
+  const std::size_t number = problem.lengths.size();
+  problem.lengths.push_back(interval.length);
+  for (std::size_t which = 0; which < kPlaces; ++which) {
+    SearchPlace place = place_of(number, which, interval.length);
+    const double t = which == 0   ? interval.t0
+                     : which == 1 ? middle_of(piece, interval)
+                                  : interval.t1;
+    const LengthDerivatives x = derivatives_by_length(piece, t);
+    problem.search.add_jerk_rows(x, limits, place);
+    // Speed and acceleration run on from the end of the interval before, unless the bend jumps.
+    if (which > 0 || new_piece) problem.search.add_other_limits(x, limits, kNone, place);
+    problem.search.places.push_back(place);
+  }
 }
+
+}  // namespace
 
 PlanProblem make_plan_problem(std::span<const PathPiece> pieces, const PlanGrid& grid,
                               const KinematicPathLimits& limits) {
@@ -114,29 +94,38 @@ PlanProblem make_plan_problem(std::span<const PathPiece> pieces, const PlanGrid&
   if (from_rest) problem.start = {grid.intervals.front().length, power};
   if (to_rest) problem.end = {grid.intervals.back().length, power};
 
-  RowMaker maker(limits, problem);
+  SearchProblem& search = problem.search;
   for (std::size_t k = first; k < last; ++k) {
     const GridInterval& interval = grid.intervals[k];
-    const PathPiece& piece = pieces[interval.piece];
-    problem.lengths.push_back(interval.length);
-    // Speed and acceleration run on from the end of the interval before, unless the bend jumps.
     const bool new_piece = k == first || grid.intervals[k - 1].piece != interval.piece;
-    maker.add_place(derivatives_by_length(piece, interval.t0), new_piece);
-    if (grid.bounds[k] > 0) lower(problem.places.back().most, grid.bounds[k]);
-    maker.add_place(derivatives_by_length(piece, middle_of(piece, interval)), true);
-    maker.add_place(derivatives_by_length(piece, interval.t1), true);
+    add_interval(pieces[interval.piece], interval, new_piece, limits, problem);
+    double& most = search.places[search.places.size() - kPlaces].most;
+    if (grid.bounds[k] > 0) lower(most, grid.bounds[k]);
   }
+  search.unknowns = 2 * problem.intervals() + 2;
   const auto rest_speed = [&](const GridInterval& interval, const PlanRest& rest) {
     return speed_after_rest(pieces[interval.piece], interval, rest, limits);
   };
-  double& start_most = problem.places.front().most;
-  double& end_most = problem.places.back().most;
-  if (from_rest) lower(start_most, rest_speed(grid.intervals.front(), problem.start));
-  lower(end_most, to_rest ? rest_speed(grid.intervals.back(), problem.end) : grid.bounds.back());
-  problem.start_is_given = grid.slow_start;
-  problem.end_is_given = grid.slow_end;
-  if (grid.slow_start) start_most = kNone;
-  if (grid.slow_end) end_most = kNone;
+  // One end: its place, its node's q and what holds between that and p.
+  const auto set_end = [&](bool rests, bool is_given, const PlanRest& rest, double bound,
+                           const GridInterval& outer, double sign, SearchPlace& place,
+                           std::size_t q) {
+    place.time += rest.time();
+    if (rests) {
+      lower(place.most, rest_speed(outer, rest));
+      search.ties.push_back({q + 1, q, sign * rest.slope(), 0});
+    } else if (is_given) {
+      place.most = kNone;
+      search.pins.push_back({q, bound * bound});
+      search.pins.push_back({q + 1, 0});
+    } else {
+      lower(place.most, bound);
+    }
+  };
+  set_end(from_rest, grid.slow_start, problem.start, grid.bounds.front(), grid.intervals.front(), 1,
+          search.places.front(), 0);
+  set_end(to_rest, grid.slow_end, problem.end, grid.bounds.back(), grid.intervals.back(), -1,
+          search.places.back(), search.unknowns - 2);
   return problem;
 }
 
@@ -162,13 +151,73 @@ double interval_seconds(double length, const double* w) {
   return length / 6 * (1 / std::sqrt(w[0]) + 4 / std::sqrt(middle) + 1 / std::sqrt(w[2]));
 }
 
-double planned_seconds(const PlanProblem& problem, std::span<const double> x) {
-  const std::size_t n = problem.intervals();
-  double time = problem.start.time() / std::sqrt(x[0]) + problem.end.time() / std::sqrt(x[2 * n]);
-  for (std::size_t i = 0; i < n; ++i) {
-    time += interval_seconds(problem.lengths[i], x.data() + 2 * i);
+namespace {
+
+// One pass takes the mean of each inner value and its neighbours. Nodes are spread by the time
+// that the machine needs for a change, so this rounds off corners of the envelope, as limited jerk
+// does, on each scale alike.
+void smooth(std::vector<double>& values, int passes) {
+  for (int pass = 0; pass < passes; ++pass) {
+    double before = values.front();
+    for (std::size_t i = 1; i + 1 < values.size(); ++i) {
+      const double here = values[i];
+      values[i] = 0.25 * before + 0.5 * here + 0.25 * values[i + 1];
+      before = here;
+    }
   }
-  return time;
+}
+
+// The slope at a node between two intervals that keeps a cubic monotone where the values are:
+// their harmonic mean, or 0 at an extremum.
+double monotone_slope(const PlanProblem& problem, const std::vector<double>& x, std::size_t node) {
+  const auto rise = [&](std::size_t i) { return (x[2 * i + 2] - x[2 * i]) / problem.lengths[i]; };
+  const double before = rise(node - 1);
+  const double after = rise(node);
+  return before * after > 0 ? 2 * before * after / (before + after) : 0;
+}
+
+}  // namespace
+
+bool raise_above_zero(const PlanProblem& problem, std::vector<double>& x) {
+  const std::size_t n = problem.intervals();
+  const auto is_above = [&](std::size_t i) {
+    const double* w = x.data() + 2 * i;
+    return w[0] > 0 && w[2] > 0 && state_in(w, problem.lengths[i], 0.5 * problem.lengths[i]).q > 0;
+  };
+  const auto flatten = [&](std::size_t node) {
+    if (node > 0 && node < n) x[2 * node + 1] = monotone_slope(problem, x, node);
+  };
+  // Flatter slopes may take the neighbours below 0, which are flattened in the next pass.
+  constexpr int kPasses = 4;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    bool above = true;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (is_above(i)) continue;
+      above = false;
+      flatten(i);
+      flatten(i + 1);
+    }
+    if (above) return true;
+  }
+  return false;
+}
+
+std::vector<double> rough_start(const PlanProblem& problem, const PlanGrid& grid) {
+  const std::size_t n = problem.intervals();
+  const std::size_t first = problem.start.length > 0 ? 1 : 0;
+  std::vector<double> logarithms;
+  for (std::size_t i = 0; i <= n; ++i) {
+    logarithms.push_back(2 * std::log(grid.speeds[first + i]));
+  }
+  constexpr int kPasses = 12;  // about two changes of the speed, at the usual density
+  smooth(logarithms, kPasses);
+  std::vector<double> x(problem.search.unknowns);
+  for (std::size_t i = 0; i <= n; ++i) x[2 * i] = std::exp(logarithms[i]);
+  for (std::size_t i = 1; i < n; ++i) x[2 * i + 1] = monotone_slope(problem, x, i);
+  // At ends that are not at rest without acceleration: given so, or a start as good as any.
+  for (const UnknownTie& tie : problem.search.ties) x[tie.tied] = tie.factor * x[tie.free];
+  for (const UnknownPin& pin : problem.search.pins) x[pin.unknown] = pin.value;
+  return x;
 }
 
 }  // namespace batten::postproc

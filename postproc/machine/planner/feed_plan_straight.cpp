@@ -27,28 +27,6 @@ double peak_speed(double length, const LimitsAlong& limits) {
   return length * a / (half + std::sqrt(half * half + length * a));
 }
 
-// From rest, half of the move.
-StraightState rising_state(const StraightMove& move, double time) {
-  const double first = std::min(time, move.jerk_time);
-  const double second = std::clamp(time - move.jerk_time, 0.0, move.acceleration_time);
-  const double third =
-      std::clamp(time - move.jerk_time - move.acceleration_time, 0.0, move.jerk_time);
-  const double cruise = std::max(0.0, time - move.ramp_time());
-  StraightState state;
-  const auto run = [&state](double t, double jerk) {
-    state.distance += t * (state.speed + t * (state.acceleration / 2 + t * jerk / 6));
-    state.speed += t * (state.acceleration + t * jerk / 2);
-    state.acceleration += t * jerk;
-  };
-  if (move.jerk_time > 0) run(first, move.jerk);
-  if (!(move.jerk_time > 0)) state.acceleration = move.acceleration;
-  run(second, 0);
-  if (move.jerk_time > 0) run(third, -move.jerk);
-  if (cruise > 0) state.acceleration = 0;
-  run(cruise, 0);
-  return state;
-}
-
 // Speeds this close, as part of themselves, are the same: a few roundings of a step's terms.
 constexpr double kSameSpeed = 1e-13;
 
@@ -91,31 +69,6 @@ StraightState state_in_ramp(double v0, double v1, double time, const LimitsAlong
 }
 
 }  // namespace
-
-StraightMove straight_move(double length, const LimitsAlong& limits) {
-  StraightMove move;
-  move.length = length;
-  if (!(length > 0)) return move;
-  move.speed = std::min(limits.speed, peak_speed(length, limits));
-  move.jerk = limits.jerk;
-  const double ramp = ramp_time(move.speed, limits);
-  if (std::isinf(limits.jerk)) {
-    move.acceleration_time = ramp;
-    move.acceleration = limits.acceleration;
-  } else {
-    move.acceleration = std::min(limits.acceleration, std::sqrt(move.speed * limits.jerk));
-    move.jerk_time = move.acceleration / limits.jerk;
-    move.acceleration_time = std::max(0.0, ramp - 2 * move.jerk_time);
-  }
-  move.cruise_time = std::max(0.0, (length - move.speed * ramp) / move.speed);
-  return move;
-}
-
-StraightState state_at(const StraightMove& move, double time) {
-  if (2 * time <= move.time()) return rising_state(move, time);
-  const StraightState back = rising_state(move, move.time() - time);
-  return {move.length - back.distance, back.speed, -back.acceleration};
-}
 
 StraightRun straight_run(double length, double from_speed, double to_speed,
                          const LimitsAlong& limits) {
@@ -174,12 +127,6 @@ double StraightRun::speed_at(double way, const LimitsAlong& limits) const {
   return speed;
 }
 
-RampTimes ramp_times(double speed, double peak, const LimitsAlong& limits) {
-  const double whole = ramp_time(peak - speed, limits);
-  if (std::isinf(limits.jerk)) return {whole, 0};
-  return {whole, std::min(limits.acceleration / limits.jerk, 0.5 * whole)};
-}
-
 StraightState state_at(const StraightRun& run, double time, const LimitsAlong& limits) {
   const double up = ramp_time(run.peak - run.from, limits);
   const double down = ramp_time(run.peak - run.to, limits);
@@ -197,16 +144,6 @@ namespace {
 // Times this close, as part of the whole, are the same: rounding of sums.
 constexpr double kSamePart = 1e-12;
 
-double time_at(const StraightMove& move, double distance) {
-  double below = 0;
-  double above = move.time();
-  while (true) {
-    const double middle = 0.5 * (below + above);
-    if (middle <= below || middle >= above) return middle;
-    (state_at(move, middle).distance < distance ? below : above) = middle;
-  }
-}
-
 double time_at(const StraightRun& run, const LimitsAlong& limits, double distance) {
   double below = 0;
   double above = run.time;
@@ -219,40 +156,6 @@ double time_at(const StraightRun& run, const LimitsAlong& limits, double distanc
 
 }  // namespace
 
-// From rest to the end of the first phase, and in the last, the plan's intervals are exact; but
-// after an end of a piece there they are not, and must be short against the time from rest.
-std::vector<double> node_times(const StraightMove& move, const std::vector<double>& ends,
-                               double density) {
-  const bool jerk = move.jerk_time > 0;
-  const double first = jerk ? move.jerk_time : move.acceleration_time;
-  const double inner[] = {jerk ? move.acceleration_time : 0, jerk ? move.jerk_time : 0,
-                          move.cruise_time, jerk ? move.jerk_time : 0,
-                          jerk ? move.acceleration_time : 0};
-  const int parts = std::max(1, static_cast<int>(std::ceil(density)));
-  std::vector<double> times;
-  double start = first;
-  times.push_back(start);
-  for (const double phase : inner) {
-    const int count = phase > kSamePart * move.time() ? parts : 0;
-    for (int i = 1; i <= count; ++i) times.push_back(start + phase * i / count);
-    start += phase;
-  }
-  times.push_back(move.time());
-  double nearest_start = first;
-  double nearest_end = first;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    const double time = time_at(move, ends[i]);
-    times.push_back(time);
-    nearest_start = std::min(nearest_start, time);
-    nearest_end = std::min(nearest_end, move.time() - time);
-  }
-  const double growth = 1 + 1 / density;
-  for (double t = nearest_start * growth; t < first; t *= growth) times.push_back(t);
-  for (double t = nearest_end * growth; t < first; t *= growth) times.push_back(move.time() - t);
-  std::sort(times.begin(), times.end());
-  return times;
-}
-
 // Times of nodes of a run between two speeds. Near a slow end, and after the end of a piece, nodes
 // lie in geometric progression: there the plan's intervals are exact only where they are short.
 std::vector<double> node_times(const StraightRun& run, const LimitsAlong& limits,
@@ -263,22 +166,25 @@ std::vector<double> node_times(const StraightRun& run, const LimitsAlong& limits
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) joints.push_back(time_at(run, limits, ends[i]));
   std::vector<double> times = joints;
   const auto add_ramp = [&](double speed, double direction) {
-    const RampTimes ramp = ramp_times(speed, run.peak, limits);
+    // In which the acceleration grows; as long as the phase in which it falls.
+    const double whole = ramp_time(run.peak - speed, limits);
+    const double growing =
+        std::isinf(limits.jerk) ? 0 : std::min(limits.acceleration / limits.jerk, 0.5 * whole);
     const double origin = direction > 0 ? 0 : run.time;
     const auto add = [&](double time) { times.push_back(origin + direction * time); };
     const auto add_evenly = [&](double from, double to) {
       if (!(to - from > kSamePart * run.time)) return;
       for (int i = 1; i <= parts; ++i) add(from + (to - from) * i / parts);
     };
-    double nearest = speed > 0 ? std::sqrt(speed / limits.jerk) / density : ramp.growing;
+    double nearest = speed > 0 ? std::sqrt(speed / limits.jerk) / density : growing;
     for (const double joint : joints) {
       const double time = direction * (joint - origin);
       if (time > 0) nearest = std::min(nearest, time);
     }
-    for (double time = nearest; time < ramp.growing; time *= growth) add(time);
-    if (ramp.growing > 0) add(ramp.growing);
-    add_evenly(ramp.growing, ramp.whole - ramp.growing);
-    add_evenly(ramp.whole - ramp.growing, ramp.whole);
+    for (double time = nearest; time < growing; time *= growth) add(time);
+    if (growing > 0) add(growing);
+    add_evenly(growing, whole - growing);
+    add_evenly(whole - growing, whole);
   };
   add_ramp(run.from, 1);
   add_ramp(run.to, -1);

@@ -11,9 +11,9 @@
 #include <tuple>
 #include <vector>
 
-#include "postproc/machine/planner/s_curve.h"
 #include "tests/support/naseath_cases.h"
 #include "tests/support/planned_paths.h"
+#include "tests/support/s_curve.h"
 
 namespace batten::postproc {
 namespace {

@@ -13,14 +13,10 @@
 namespace batten::postproc {
 namespace {
 
-using geometry::Corner;
 using geometry::time_optimal_corner;
 using geometry::TimeOptimalBlend;
 using geometry::TimeOptimalOptions;
 using geometry::ToleranceKind;
-using geometry::with_legs;
-
-Corner square_corner() { return {{0, 0, 0}, {13, 13, 0}, {26, 0, 0}}; }
 
 TimeOptimalOptions options_for(double tolerance, ToleranceKind kind) {
   TimeOptimalOptions options;
@@ -31,7 +27,7 @@ TimeOptimalOptions options_for(double tolerance, ToleranceKind kind) {
 }
 
 double time_of(const TimeOptimalBlend& blend) {
-  return planned_time(with_legs(blend, square_corner()), corner_limits());
+  return planned_time(with_legs(blend.blend.curve), corner_limits());
 }
 
 struct Goal {
@@ -46,7 +42,7 @@ class TimeOptimalCornerTime : public testing::TestWithParam<Goal> {};
 
 TEST_P(TimeOptimalCornerTime, ReachesTheGoalAndNotTheImpossible) {
   const Goal& goal = GetParam();
-  const auto found = time_optimal_corner(square_corner(), options_for(goal.tolerance, goal.kind));
+  const auto found = time_optimal_corner(wide_corner(), options_for(goal.tolerance, goal.kind));
   ASSERT_TRUE(std::holds_alternative<TimeOptimalBlend>(found));
   const double time = time_of(std::get<TimeOptimalBlend>(found));
   fmt::print("{}: {:.5f} s, bound {:.4f}\n", goal.name, time, goal.bound);
@@ -64,21 +60,12 @@ INSTANTIATE_TEST_SUITE_P(Square, TimeOptimalCornerTime,
 
 // The blend's own time is one in which the machine can run it, so the plan needs no more.
 TEST(TimeOptimalCornerTime, IsNotAboveWhatTheBlendPromises) {
-  const auto found = time_optimal_corner(square_corner(), options_for(.1, ToleranceKind::kBand));
+  const auto found = time_optimal_corner(wide_corner(), options_for(.1, ToleranceKind::kBand));
   const auto& blend = std::get<TimeOptimalBlend>(found);
   const double length = 13 * std::sqrt(2.0);
   const double ramp = 2 * std::sqrt(25 / (5000 * std::sqrt(2.0)));
   const double legs = 2 * ramp + (2 * length - blend.before - blend.after - 25 * ramp) / 25;
   EXPECT_LE(time_of(blend), (blend.time + legs) * (1 + 5e-4));
-}
-
-TEST(TimeOptimalCornerTime, TheRoomIsChosenByTheClock) {
-  const TimeOptimalOptions options = options_for(.1, ToleranceKind::kPath);
-  const auto plain = time_optimal_corner(square_corner(), options);
-  const auto timed = time_optimal_corner(
-      square_corner(), options,
-      [](const geometry::BsplineCurve& curve) { return planned_time(curve, corner_limits()); });
-  EXPECT_LE(time_of(std::get<TimeOptimalBlend>(timed)), time_of(std::get<TimeOptimalBlend>(plain)));
 }
 
 }  // namespace

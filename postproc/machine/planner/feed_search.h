@@ -1,0 +1,106 @@
+// The search for the fastest motion along a path: an optimisation over unknowns whose sums are
+// q = (ds/dt)^2 and its first two derivatives p and r by the way, at places where limits hold. A
+// plan (feed_plan_problem.h) and a quick estimate (feed_estimate_problem.h) state such problems.
+//
+// A primal-dual interior-point method from any unknowns, also such that exceed limits, with a slack
+// of its own for each side of each limit. All is convex but the jerk, |c.x| <= 1 / sqrt(q): the
+// tangent of its right side at the present q takes its place, anew in every step. Each step is one
+// symmetric system with three sub-diagonals: linear cost.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "postproc/machine/planner/feed_plan_path.h"
+
+namespace batten::postproc {
+
+// Sums over (q, p, r).
+using LimitWindow = std::array<double, 3>;
+
+struct SearchPlace {
+  // q, p and r as sums over `width` neighbouring unknowns, `first` and on.
+  using Sums = std::array<double, 4>;
+  std::size_t first = 0;
+  std::size_t width = 0;
+  Sums q{};
+  Sums p{};
+  Sums r{};
+
+  double time = 0;                           // mm, of 1 / sqrt(q) in the time
+  double most = KinematicPathLimits::kNone;  // of q, mm^2/s^2
+
+  // Of the problem's rows: those of the jerk (<= 1 / sqrt(q)) first, then others (<= 1).
+  std::size_t first_row = 0;
+  std::size_t jerk_rows = 0;
+  std::size_t rows = 0;
+};
+
+// The unknown `tied` is factor * its neighbour `free` + offset.
+struct UnknownTie {
+  std::size_t tied = 0;
+  std::size_t free = 0;
+  double factor = 0;
+  double offset = 0;
+};
+
+struct UnknownPin {
+  std::size_t unknown = 0;
+  double value = 0;
+};
+
+// Adds length / (speed + sqrt(unknown)) to the time.
+struct ArcTime {
+  std::size_t unknown = 0;
+  double length = 0;  // mm
+  double speed = 0;   // mm/s
+
+  [[nodiscard]] double seconds(double q) const;
+};
+
+struct SearchProblem {
+  std::size_t unknowns = 0;
+  std::vector<SearchPlace> places;
+  std::vector<LimitWindow> rows;  // |c.(q, p, r)| is bounded; those of one place side by side
+  std::vector<UnknownTie> ties;
+  std::vector<UnknownPin> pins;
+  std::vector<ArcTime> arcs;
+
+  // The limits where the path is `x` become those of `place`: the jerk first. Limits on the
+  // acceleration that no motion steeper than `steepest` (mm/s^2 along the path) meets are left out.
+  void add_jerk_rows(const LengthDerivatives& x, const KinematicPathLimits& limits,
+                     SearchPlace& place);
+  void add_other_limits(const LengthDerivatives& x, const KinematicPathLimits& limits,
+                        double steepest, SearchPlace& place);
+
+ private:
+  void add_row(double q, double p, double r, double limit, SearchPlace& place);
+};
+
+struct SearchRule {
+  double first_gap = 0.5;      // products of limits and duals at the start, as part of the time
+  double enough_gap = 2e-5;    // it ends where the duals promise no more than this part,
+  double enough_kept = 1e-4;   // and no limit is exceeded by more than this part of it
+  double least_slack = 0.2;    // at the start, as part of the limit: more for a rough start
+  double least_gap_part = 0;   // the gap falls at most to this part of itself in one step
+  double per_unexplained = 0;  // of the gradient that the duals leave: the least gap
+  int most_steps = 0;
+};
+
+struct SearchResult {
+  std::vector<double> unknowns;
+  double seconds = 0;
+  double excess = 0;   // the greatest part of its limit that something is above it
+  bool found = false;  // or the search did not come to an end
+};
+
+[[nodiscard]] SearchResult fastest(const SearchProblem& problem, std::vector<double> start,
+                                   const SearchRule& rule);
+
+// Slows down as a whole until all limits are kept. Any q that keeps all limits keeps them times a
+// factor below 1.
+void slow_down(const SearchProblem& problem, std::vector<double>& unknowns);
+
+}  // namespace batten::postproc
