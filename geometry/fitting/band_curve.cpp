@@ -255,7 +255,7 @@ BandBarrier::BandBarrier(const BandRows& band, const std::vector<HeldPoint>& hel
                          std::size_t points, Widening widening)
     : band_(band), held_(held), widening_(widening), hessian_(points), factors_(points) {
   for (const BandRow& row : band.rows) {
-    if (takes_part(row)) gap_times_weight_ += row.side.isZero() ? 2 : 3;
+    if (takes_part(row)) gap_times_weight_ += 2;
   }
 }
 
@@ -296,27 +296,13 @@ void BandBarrier::add_row(const BandRow& row, const BarrierPoint& at) {
     wide_curvature_ += 4 * f * f * left * left - 2 * left;
     add_mixed(row.value, -4 * f * left * left / r * e);
   }
-  if (!row.side.isZero()) add_side(row, off, at);
-}
-
-// -log(f - 1 + side * (value - foot) / radius).
-void BandBarrier::add_side(const BandRow& row, const Vector3& off, const BarrierPoint& at) {
-  const double f = is_widened(row) ? at.wide : 1;
-  const Vector3 slope = row.side / row.radius;
-  const double left = 1 / (f - 1 + slope.dot(off));
-  add(row.value, -left * slope, left * left * slope * slope.transpose());
-  if (is_widened(row)) {
-    wide_gradient_ -= left;
-    wide_curvature_ += left * left;
-    add_mixed(row.value, left * left * slope);
-  }
 }
 
 void BandBarrier::add_energy(const BarrierPoint& at) {
   const double priced = 2 * weight * energy;
   for (const EnergyTerm& term : band_.terms) {
     const Eigen::Matrix3d metric = priced * term.metric;
-    add(term.value, metric * (term.value.of(at.points) - term.target), metric);
+    add(term.value, metric * term.value.of(at.points), metric);
   }
 }
 
@@ -384,9 +370,6 @@ void BandBarrier::find_lines(const BarrierPoint& at, const Direction& along) {
     const double f = is_widened(row) ? at.wide : 1;
     const double df = is_widened(row) ? along.wide : 0;
     lines_.push_back({f * f - e.squaredNorm(), f * df - e.dot(de), df * df - de.squaredNorm()});
-    if (row.side.isZero()) continue;
-    lines_.push_back({f - 1 + row.side.dot(off) / row.radius,
-                      0.5 * (df + row.side.dot(change) / row.radius), 0});
   }
 }
 
@@ -403,7 +386,7 @@ double BandBarrier::best_length(const BarrierPoint& at, const Direction& along) 
   double bend = 0;
   for (const EnergyTerm& term : band_.terms) {
     const Vector3 change = 2 * energy * term.metric * term.value.of(along.points);
-    slope += change.dot(term.value.of(at.points) - term.target);
+    slope += change.dot(term.value.of(at.points));
     bend += change.dot(term.value.of(along.points));
   }
   // First and second derivative of the function along the direction.

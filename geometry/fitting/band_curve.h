@@ -32,9 +32,8 @@ struct BandCurve {
   BsplineCurve curve;
   BandEnd end = BandEnd::kOutside;
   double energy = 0;
-  double worst_ratio =
-      0;          // the greatest distance over radius at a sample; with a side, at its foot 1
-  int steps = 0;  // Newton steps, each linear in samples and control points
+  double worst_ratio = 0;  // the greatest distance over radius at a sample
+  int steps = 0;           // Newton steps, each linear in samples and control points
 };
 
 // `start`: control points to begin with; held points are put where they have to be. It may be
@@ -142,7 +141,6 @@ class BandBarrier {
   [[nodiscard]] bool is_widened(const BandRow& row) const;
   void assemble(const BarrierPoint& at);
   void add_row(const BandRow& row, const BarrierPoint& at);
-  void add_side(const BandRow& row, const Vector3& off, const BarrierPoint& at);
   void add_energy(const BarrierPoint& at);
   void add(const BandCombination& value, const Vector3& gradient, const Eigen::Matrix3d& curvature);
   void add_mixed(const BandCombination& value, const Vector3& mixed);

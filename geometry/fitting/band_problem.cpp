@@ -80,7 +80,7 @@ std::vector<EnergyTerm> energy_terms(const BandProblem& problem) {
     for (const GaussPlace& place : places) {
       const double u = t[k] + 0.5 * width * (1 + place.at);
       const EnergyWeight weight = problem.weight ? problem.weight(u) : EnergyWeight{};
-      terms.push_back({combination_at(problem.basis, u, problem.energy), Point3::Zero(),
+      terms.push_back({combination_at(problem.basis, u, problem.energy),
                        width * place.weight * metric_of(weight)});
     }
   }
@@ -93,10 +93,6 @@ HeldPoint HeldPoint::at(std::size_t index, const Point3& place) {
   return {index, place, Eigen::Matrix3d::Zero()};
 }
 
-HeldPoint HeldPoint::on_line(std::size_t index, const Point3& place, const Vector3& direction) {
-  return {index, place, direction * direction.transpose()};
-}
-
 HeldPoint HeldPoint::on_plane(std::size_t index, const Point3& place, const Vector3& normal) {
   return {index, place, Eigen::Matrix3d::Identity() - normal * normal.transpose()};
 }
@@ -104,8 +100,8 @@ HeldPoint HeldPoint::on_plane(std::size_t index, const Point3& place, const Vect
 double BandRows::energy(const std::vector<Point3>& points) const {
   double sum = 0;
   for (const EnergyTerm& term : terms) {
-    const Vector3 off = term.value.of(points) - term.target;
-    sum += off.dot(term.metric * off);
+    const Vector3 value = term.value.of(points);
+    sum += value.dot(term.metric * value);
   }
   return sum;
 }
@@ -145,7 +141,6 @@ double BandRows::worst_ratio(const std::vector<Point3>& points, bool rates) cons
     if (row.rate != rates) continue;
     const Vector3 off = row.value.of(points) - row.foot;
     worst = std::max(worst, (row.across * off).norm() / row.radius);
-    if (!row.side.isZero()) worst = std::max(worst, 1 - row.side.dot(off) / row.radius);
   }
   return worst;
 }
@@ -166,10 +161,8 @@ BandRows band_rows(const BandProblem& problem, int rates_from) {
     row.foot = sample.foot;
     row.across = across_of(sample);
     row.radius = sample.radius;
-    row.side = sample.side;
     row.rate = sample.derivative >= rates_from;
     made.rows.push_back(row);
-    if (sample.pull > 0) made.terms.push_back({row.value, row.foot, sample.pull * row.across});
   }
   for (const HeldPoint& held : problem.held) {
     require(held.index < problem.basis.size(), "held point " + std::to_string(held.index) + " of " +

@@ -27,11 +27,6 @@ struct BandSample {
   BandShape shape = BandShape::kBall;
   Vector3 direction = Vector3::Zero();  // unit; kBall: not used
   double radius = 0;                    // > 0
-  // Unit or zero. Not zero: the value is not behind the foot in this direction, so that of a
-  // cylinder the half on one side of the path is left.
-  Vector3 side = Vector3::Zero();
-  // The energy has pull * distance^2 added, the distance being what the radius bounds.
-  double pull = 0;
 };
 
 // A control point that is not free to go anywhere.
@@ -41,9 +36,7 @@ struct HeldPoint {
   Eigen::Matrix3d free = Eigen::Matrix3d::Zero();  // projector on the directions it may go in
 
   [[nodiscard]] static HeldPoint at(std::size_t index, const Point3& place);
-  // `direction`, `normal`: unit.
-  [[nodiscard]] static HeldPoint on_line(std::size_t index, const Point3& place,
-                                         const Vector3& direction);
+  // `normal`: unit.
   [[nodiscard]] static HeldPoint on_plane(std::size_t index, const Point3& place,
                                           const Vector3& normal);
 };
@@ -81,14 +74,12 @@ struct BandRow {
   Point3 foot = Point3::Zero();
   Eigen::Matrix3d across = Eigen::Matrix3d::Identity();  // projector
   double radius = 1;
-  Vector3 side = Vector3::Zero();
   bool rate = false;  // its radius may be widened by itself, as least_ratio_in_band does
 };
 
-// Adds (value - target)^T metric (value - target).
+// Adds value^T metric value.
 struct EnergyTerm {
   BandCombination value;
-  Point3 target = Point3::Zero();
   Eigen::Matrix3d metric = Eigen::Matrix3d::Identity();
 };
 
@@ -105,8 +96,7 @@ struct BandRows {
   // What rounding of the points alone makes of the energy of a straight line.
   [[nodiscard]] double energy_noise(const std::vector<Point3>& points) const;
 
-  // The greatest distance over radius of the rows that are (are not) rates. At a foot with a side
-  // that is 1, and less inside.
+  // The greatest distance over radius of the rows that are (are not) rates.
   [[nodiscard]] double worst_ratio(const std::vector<Point3>& points, bool rates) const;
 };
 

@@ -205,49 +205,34 @@ double middle_of(const BsplineCurve& blend) {
   return middle;
 }
 
-// One side of a blend, cut at the middle of its parameters.
-class HalfBlend {
- public:
-  HalfBlend(const BsplineCurve& blend, bool first_half, const Point3& vertex) {
-    const double middle = middle_of(blend);
-    const BsplineCurve half =
-        first_half ? blend.part(blend.first(), middle) : blend.part(middle, blend.last());
-    pieces_ = half.bezier_pieces();
-    const Point3& on_leg = first_half ? pieces_.front().control[0] : pieces_.back().control[3];
-    const double reach = (on_leg - vertex).norm();
-    for (const double u : half.breakpoints()) {
-      const double part = (u - middle) / (half.last() - half.first());
-      from_vertex_.push_back(reach * part);
-    }
+// One side of a blend, cut at the middle of its parameters. `station`: of the vertex.
+void append_half(const BsplineCurve& blend, bool first_half, const Point3& vertex, double station,
+                 Chain& chain) {
+  const double middle = middle_of(blend);
+  const BsplineCurve half =
+      first_half ? blend.part(blend.first(), middle) : blend.part(middle, blend.last());
+  const std::vector<CubicBezier> pieces = half.bezier_pieces();
+  const Point3& on_leg = first_half ? pieces.front().control[0] : pieces.back().control[3];
+  const double reach = (on_leg - vertex).norm();
+  const std::vector<double> breaks = half.breakpoints();
+  // mm along the polyline, negative before the vertex.
+  const auto from_vertex = [&](std::size_t i) {
+    const double part = (breaks[i] - middle) / (half.last() - half.first());
+    return reach * part;
+  };
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    chain.curve(pieces[i], station + from_vertex(i), station + from_vertex(i + 1));
   }
-
-  [[nodiscard]] const Point3& start() const { return pieces_.front().control[0]; }
-
-  // `station`: of the vertex.
-  void append_to(Chain& chain, double station) const {
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      chain.curve(pieces_[i], station + from_vertex_[i], station + from_vertex_[i + 1]);
-    }
-  }
-
- private:
-  std::vector<CubicBezier> pieces_;
-  std::vector<double> from_vertex_;  // mm along the polyline, negative before it
-};
+}
 
 }  // namespace
 
-DistinctVertices distinct_vertices(std::span<const Point3> points, bool ring) {
+DistinctVertices distinct_vertices(std::span<const Point3> points) {
   DistinctVertices kept;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!kept.points.empty() && (points[i] - kept.points.back()).norm() <= kSamePlace) continue;
     kept.points.push_back(points[i]);
     kept.indices.push_back(i);
-  }
-  while (ring && kept.size() > 1 &&
-         (kept.points.back() - kept.points.front()).norm() <= kSamePlace) {
-    kept.points.pop_back();
-    kept.indices.pop_back();
   }
   return kept;
 }
@@ -263,17 +248,13 @@ ToleranceKind kind_at(const Corner& corner, ToleranceKind kind, double strict_sh
   return sharp ? ToleranceKind::kPath : kind;
 }
 
-std::vector<SharedCorner> shared_corners(std::span<const Point3> distinct, bool ring,
+std::vector<SharedCorner> shared_corners(std::span<const Point3> distinct,
                                          double keep_corner_angle) {
   const auto& q = distinct;
-  const std::size_t n = q.size();
-  if (n < 2) return {};
-  const std::size_t first = ring ? 0 : 1;
-  const std::size_t end = ring ? n : n - 1;
   std::vector<SharedCorner> corners;
-  std::vector<bool> blends(n, false);
-  for (std::size_t i = first; i < end; ++i) {
-    const Corner corner{q[(i + n - 1) % n], q[i], q[(i + 1) % n]};
+  std::vector<bool> blends(q.size(), false);
+  for (std::size_t i = 1; i + 1 < q.size(); ++i) {
+    const Corner corner{q[i - 1], q[i], q[i + 1]};
     const bool stays = turns_more(corner, keep_corner_angle);
     blends[i] = !stays && std::holds_alternative<CornerFrame>(frame_of(corner));
     corners.push_back({i, corner, 0, 0, stays});
@@ -282,42 +263,29 @@ std::vector<SharedCorner> shared_corners(std::span<const Point3> distinct, bool 
     return (q[vertex] - q[neighbour]).norm() / (blends[neighbour] ? 2 : 1);
   };
   for (SharedCorner& corner : corners) {
-    corner.share_before = share(corner.vertex, (corner.vertex + n - 1) % n);
-    corner.share_after = share(corner.vertex, (corner.vertex + 1) % n);
+    corner.share_before = share(corner.vertex, corner.vertex - 1);
+    corner.share_after = share(corner.vertex, corner.vertex + 1);
   }
   return corners;
 }
 
 BlendedPath blended_path(std::span<const Point3> distinct,
-                         std::span<const std::optional<BsplineCurve>> blends, bool ring) {
+                         std::span<const std::optional<BsplineCurve>> blends) {
   const auto& q = distinct;
-  const std::size_t n = q.size();
-  if (n < 2) return {};
-  const bool seam = ring && blends[0].has_value();
-  std::optional<HalfBlend> before_seam;
-  std::optional<HalfBlend> after_seam;
-  if (seam) {
-    before_seam.emplace(*blends[0], true, q[0]);
-    after_seam.emplace(*blends[0], false, q[0]);
-  }
-  Chain chain(seam ? after_seam->start() : q[0], 0);
-  if (seam) after_seam->append_to(chain, 0);
+  if (q.size() < 2) return {};
+  Chain chain(q[0], 0);
   double station = 0;
-  for (std::size_t i = 1; i < n; ++i) {
+  for (std::size_t i = 1; i < q.size(); ++i) {
     station += (q[i] - q[i - 1]).norm();
-    if (!ring && i + 1 == n) break;
+    if (i + 1 == q.size()) break;
     if (blends[i]) {
-      HalfBlend(*blends[i], true, q[i]).append_to(chain, station);
-      HalfBlend(*blends[i], false, q[i]).append_to(chain, station);
+      append_half(*blends[i], true, q[i], station, chain);
+      append_half(*blends[i], false, q[i], station, chain);
     } else {
       chain.line_to(q[i], station);
     }
   }
-  if (!ring) return std::move(chain).finish(q[n - 1], station);
-  station += (q[0] - q[n - 1]).norm();
-  if (!seam) return std::move(chain).finish(q[0], station);
-  before_seam->append_to(chain, station);
-  return std::move(chain).finish(after_seam->start(), station);
+  return std::move(chain).finish(q.back(), station);
 }
 
 }  // namespace batten::geometry

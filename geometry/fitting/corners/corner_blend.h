@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -97,8 +98,7 @@ struct DistinctVertices {
   [[nodiscard]] std::size_t size() const { return points.size(); }
 };
 
-// `ring`: the last point is the first one again and is left out.
-[[nodiscard]] DistinctVertices distinct_vertices(std::span<const Point3> points, bool ring);
+[[nodiscard]] DistinctVertices distinct_vertices(std::span<const Point3> points);
 
 // A corner with what it may use of its legs, mm: half of a segment whose other end is a corner
 // as well, the whole where the path ends there or the vertex stays as it is.
@@ -110,8 +110,8 @@ struct SharedCorner {
   bool stays = false;  // turns more than `keep_corner_angle`
 };
 
-// Those of the inner vertices; of all vertices of a ring. Linear cost.
-[[nodiscard]] std::vector<SharedCorner> shared_corners(std::span<const Point3> distinct, bool ring,
+// Those of the inner vertices. Linear cost.
+[[nodiscard]] std::vector<SharedCorner> shared_corners(std::span<const Point3> distinct,
                                                        double keep_corner_angle);
 
 // Whether the legs turn by more than this (radians, 0 straight on, pi back).
@@ -128,12 +128,52 @@ struct BlendedPath {
 };
 
 // `blends[i]` replaces vertex i; nothing: the vertex stays. Blends start and end on the segments
-// beside their vertex and do not overlap. A ring whose first vertex is blended starts and ends in
-// the middle of that blend, any other path in the first (and last) vertex.
+// beside their vertex and do not overlap. The path starts in the first vertex and ends in the last.
 //
 // The middle of a blend's parameters is at the station of its vertex. Degree 3 or less.
 [[nodiscard]] BlendedPath blended_path(std::span<const Point3> distinct,
-                                       std::span<const std::optional<BsplineCurve>> blends,
-                                       bool ring);
+                                       std::span<const std::optional<BsplineCurve>> blends);
+
+// What a method makes of a path: `Blend` has its curve in `blend.curve`.
+template <typename Blend>
+struct CornerPath {
+  struct Corner {
+    std::size_t vertex;  // index among the given points
+    std::variant<Blend, NoBlend> outcome;
+  };
+  std::vector<Corner> corners;   // in order of their vertices
+  Path pieces;                   // lines and Bezier pieces, joined end to end
+  std::vector<double> stations;  // mm along the polyline where they meet: see BlendedPath
+  int searched = 0;              // corners for which a blend was searched
+
+  // The path with these corners, which are those of the inner vertices.
+  void round(const DistinctVertices& vertices) {
+    std::vector<std::optional<BsplineCurve>> blends(vertices.size());
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const auto* blend = std::get_if<Blend>(&corners[i].outcome);
+      if (blend != nullptr) blends[i + 1] = blend->blend.curve;
+    }
+    BlendedPath rounded = blended_path(vertices.points, blends);
+    pieces = std::move(rounded.pieces);
+    stations = std::move(rounded.stations);
+  }
+};
+
+// Points that are one place with the one before them are passed over and have no corner. The
+// shares of two corners never overlap. `blend_of`: what becomes of a SharedCorner that does not
+// stay.
+template <typename Blend, typename BlendOf>
+[[nodiscard]] CornerPath<Blend> path_with_blends(std::span<const Point3> points,
+                                                 double keep_corner_angle, BlendOf&& blend_of) {
+  CornerPath<Blend> path;
+  const DistinctVertices vertices = distinct_vertices(points);
+  if (vertices.size() < 2) return path;
+  for (const SharedCorner& each : shared_corners(vertices.points, keep_corner_angle)) {
+    path.corners.push_back({vertices.indices[each.vertex], NoBlend::kKept});
+    if (!each.stays) path.corners.back().outcome = blend_of(each);
+  }
+  path.round(vertices);
+  return path;
+}
 
 }  // namespace batten::geometry

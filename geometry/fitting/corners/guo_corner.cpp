@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -71,30 +70,15 @@ GuoRule rule_at(const Corner& corner, const GuoOptions& options) {
   return rule;
 }
 
-// --- routine 2 with fair shares ------------------------------------------------------------
-
-std::vector<GuoPathCorner> fair_corners(const DistinctVertices& vertices,
-                                        const GuoOptions& options) {
-  std::vector<GuoPathCorner> corners;
-  for (const SharedCorner& each :
-       shared_corners(vertices.points, options.closed, options.keep_corner_angle)) {
-    corners.push_back({vertices.indices[each.vertex], NoBlend::kKept});
-    if (each.stays) continue;
-    corners.back().outcome =
-        guo_corner(each.corner, rule_at(each.corner, options), each.share_before, each.share_after);
-  }
-  return corners;
-}
-
 // --- routines 1 to 3 as the paper has them -------------------------------------------------
 
 // start = Q0; for each inner vertex Q_i: the blend that fits between start and Q_{i+1}, halved
 // where it would reach Q_{i+1} and that is a corner, too; then start = P4 + lambda (Q_{i+1} - P4).
-std::vector<GuoPathCorner> literal_corners(const DistinctVertices& vertices,
-                                           const GuoOptions& options) {
+std::vector<GuoPath::Corner> literal_corners(const DistinctVertices& vertices,
+                                             const GuoOptions& options) {
   const std::vector<Point3>& q = vertices.points;
   const std::size_t n = q.size() - 1;
-  std::vector<GuoPathCorner> corners;
+  std::vector<GuoPath::Corner> corners;
   Point3 start = q[0];
   for (std::size_t i = 1; i < n; ++i) {
     const double a = (q[i] - start).norm();
@@ -124,19 +108,6 @@ std::vector<GuoPathCorner> literal_corners(const DistinctVertices& vertices,
   return corners;
 }
 
-// --- the path -----------------------------------------------------------------------------
-
-// `corners` are those of the inner vertices, or of all vertices of a ring.
-BlendedPath rounded_path(const std::vector<Point3>& q, const std::vector<GuoPathCorner>& corners,
-                         bool ring) {
-  std::vector<std::optional<BsplineCurve>> blends(q.size());
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const auto* blend = std::get_if<GuoBlend>(&corners[i].outcome);
-    if (blend != nullptr) blends[ring ? i : i + 1] = blend->blend.curve;
-  }
-  return blended_path(q, blends, ring);
-}
-
 }  // namespace
 
 GuoOptions GuoOptions::literal(double tolerance, double lambda) {
@@ -153,15 +124,18 @@ GuoPath guo_path(std::span<const Point3> points, const GuoOptions& options) {
     throw std::invalid_argument("guo_path: lambda " + std::to_string(options.lambda) +
                                 ", expected 0 or more and less than 1");
   }
-  const bool fair = options.sharing == GuoSharing::kFair;
-  const bool ring = options.closed && fair;
-  const DistinctVertices vertices = distinct_vertices(points, ring);
-  if (vertices.size() < 2) return {};
+  if (options.sharing == GuoSharing::kFair) {
+    return path_with_blends<GuoBlend>(
+        points, options.keep_corner_angle, [&](const SharedCorner& each) {
+          return guo_corner(each.corner, rule_at(each.corner, options), each.share_before,
+                            each.share_after);
+        });
+  }
   GuoPath path;
-  path.corners = fair ? fair_corners(vertices, options) : literal_corners(vertices, options);
-  BlendedPath rounded = rounded_path(vertices.points, path.corners, ring);
-  path.pieces = std::move(rounded.pieces);
-  path.stations = std::move(rounded.stations);
+  const DistinctVertices vertices = distinct_vertices(points);
+  if (vertices.size() < 2) return path;
+  path.corners = literal_corners(vertices, options);
+  path.round(vertices);
   return path;
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -346,24 +345,11 @@ class PathBlender {
 
 OzcanPath ozcan_path(std::span<const Point3> points, const OzcanOptions& options) {
   require_positive_tolerance(options.tolerance, "ozcan_path");
-  const DistinctVertices vertices = distinct_vertices(points, options.closed);
-  if (vertices.size() < 2) return {};
-  OzcanPath path;
   PathBlender blender(options);
-  std::vector<std::optional<BsplineCurve>> blends(vertices.size());
-  for (const SharedCorner& each :
-       shared_corners(vertices.points, options.closed, options.keep_corner_angle)) {
-    path.corners.push_back({vertices.indices[each.vertex], NoBlend::kKept});
-    if (each.stays) continue;
-    auto& outcome = path.corners.back().outcome;
-    outcome = blender.blend(each);
-    const auto* blend = std::get_if<OzcanBlend>(&outcome);
-    if (blend != nullptr) blends[each.vertex] = blend->blend.curve;
-  }
+  OzcanPath path =
+      path_with_blends<OzcanBlend>(points, options.keep_corner_angle,
+                                   [&](const SharedCorner& each) { return blender.blend(each); });
   path.searched = blender.searched_corners();
-  BlendedPath rounded = blended_path(vertices.points, blends, options.closed);
-  path.pieces = std::move(rounded.pieces);
-  path.stations = std::move(rounded.stations);
   return path;
 }
 

@@ -338,64 +338,6 @@ std::variant<TimeOptimalBlend, NoBlend> time_optimal_corner(const Corner& corner
   return std::move(*found);
 }
 
-std::variant<TimeOptimalBlend, NoBlend> time_optimal_corner(const Corner& corner,
-                                                            const TimeOptimalOptions& options,
-                                                            const CurveTimer& timer) {
-  check(options);
-  const auto framed = frame_of(corner);
-  if (const auto* none = std::get_if<NoBlend>(&framed)) return *none;
-  const TimeOptimalLine line(std::get<CornerFrame>(framed), options);
-  if (!line.has_room()) return NoBlend::kNoRoom;
-  std::optional<TimeOptimalBlend> best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const double room : {0.6, 0.8, 1.0, 1.3}) {
-    auto found = line.fastest(room);
-    if (!found) continue;
-    const double time = timer(with_legs(*found, corner));
-    if (time < least) {
-      least = time;
-      best = std::move(found);
-    }
-  }
-  if (!best) return NoBlend::kNoRoom;
-  return std::move(*best);
-}
-
-BsplineCurve with_legs(const TimeOptimalBlend& blend, const Corner& corner) {
-  // Blend and legs meet with one speed and no acceleration, so the joint is a simple knot. The
-  // control points of a straight stretch lie at the means of three knots; the blend's own are
-  // kept from the third on, whose knots are the joint and the two behind it.
-  const BsplineCurve& curve = blend.blend.curve;
-  const auto inner = curve.breakpoints();
-  const auto& own = curve.control_points();
-  const double way_before = (corner.before - own.front()).norm();
-  const double way_after = (corner.after - own.back()).norm();
-  std::vector<double> breaks = inner;
-  std::vector<Point3> points(own.begin() + 2, own.end() - 2);
-  if (way_before > kSamePlace) {
-    const double start = inner.front() - way_before / blend.speed_before;
-    const Vector3 speed = (own.front() - corner.before) / (inner.front() - start);
-    const Point3 third = corner.before + (inner.front() + inner[1] - 2 * start) / 3 * speed;
-    const Point3 second = corner.before + (inner.front() - start) / 3 * speed;
-    points.insert(points.begin(), {corner.before, second, third});
-    breaks.insert(breaks.begin(), start);
-  } else {
-    points.insert(points.begin(), own.begin(), own.begin() + 2);
-  }
-  if (way_after > kSamePlace) {
-    const double end = inner.back() + way_after / blend.speed_after;
-    const Vector3 speed = (corner.after - own.back()) / (end - inner.back());
-    const Point3 third =
-        corner.after - (2 * end - inner.back() - inner[inner.size() - 2]) / 3 * speed;
-    const Point3 second = corner.after - (end - inner.back()) / 3 * speed;
-    points.insert(points.end(), {third, second, corner.after});
-    breaks.push_back(end);
-  } else {
-    points.insert(points.end(), own.end() - 2, own.end());
-  }
-  return {BsplineBasis::clamped(3, breaks), std::move(points)};
-}
-
 namespace {
 
 // Leg directions that agree in these steps, and shares (mm), are alike.
@@ -525,24 +467,11 @@ class TimeOptimalBlender {
 TimeOptimalPath time_optimal_path(std::span<const Point3> points,
                                   const TimeOptimalPathOptions& options) {
   require_positive_tolerance(options.tolerance, "time_optimal_path");
-  const DistinctVertices vertices = distinct_vertices(points, false);
-  if (vertices.size() < 2) return {};
-  TimeOptimalPath path;
   TimeOptimalBlender blender(options);
-  std::vector<std::optional<BsplineCurve>> blends(vertices.size());
-  for (const SharedCorner& each :
-       shared_corners(vertices.points, false, options.keep_corner_angle)) {
-    path.corners.push_back({vertices.indices[each.vertex], NoBlend::kKept});
-    if (each.stays) continue;
-    auto& outcome = path.corners.back().outcome;
-    outcome = blender.blend(each);
-    const auto* blend = std::get_if<TimeOptimalPathBlend>(&outcome);
-    if (blend != nullptr) blends[each.vertex] = blend->blend.curve;
-  }
+  TimeOptimalPath path = path_with_blends<TimeOptimalPathBlend>(
+      points, options.keep_corner_angle,
+      [&](const SharedCorner& each) { return blender.blend(each); });
   path.searched = blender.searched();
-  BlendedPath rounded = blended_path(vertices.points, blends, false);
-  path.pieces = std::move(rounded.pieces);
-  path.stations = std::move(rounded.stations);
   return path;
 }
 

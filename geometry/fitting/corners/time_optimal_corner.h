@@ -4,15 +4,12 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
-#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
 
 #include "geometry/basic/point.h"
 #include "geometry/fitting/corners/corner_blend.h"
-#include "geometry/fitting/tube/tube_smoothing.h"
 #include "geometry/path/kinematic_feed.h"
 #include "geometry/path/path.h"
 
@@ -46,14 +43,6 @@ struct TimeOptimalBlend {
 [[nodiscard]] std::variant<TimeOptimalBlend, NoBlend> time_optimal_corner(
     const Corner& corner, const TimeOptimalOptions& options);
 
-// The same with the room along the legs chosen by planned time: `timer` gets the whole corner,
-// legs and all.
-[[nodiscard]] std::variant<TimeOptimalBlend, NoBlend> time_optimal_corner(
-    const Corner& corner, const TimeOptimalOptions& options, const CurveTimer& timer);
-
-// The whole corner as one curve, from its `before` to its `after`.
-[[nodiscard]] BsplineCurve with_legs(const TimeOptimalBlend& blend, const Corner& corner);
-
 // A polyline with a racing line (time_optimal_corner.h) in the place of each corner that a machine
 // has to slow down for, and a five-point blend (guo_corner.h) in the place of each gentle one.
 // Method: docs/algorithms/band_curve.md, section Paths of corners.
@@ -78,17 +67,7 @@ struct TimeOptimalPathBlend {
   bool raced = false;  // else the five points
 };
 
-struct TimeOptimalPathCorner {
-  std::size_t vertex;  // index among the given points
-  std::variant<TimeOptimalPathBlend, NoBlend> outcome;
-};
-
-struct TimeOptimalPath {
-  std::vector<TimeOptimalPathCorner> corners;  // in order of their vertices
-  Path pieces;                                 // lines and Bezier pieces, joined end to end
-  std::vector<double> stations;  // mm along the polyline where they meet: see BlendedPath
-  int searched = 0;              // corners for which a racing line was searched
-};
+using TimeOptimalPath = CornerPath<TimeOptimalPathBlend>;
 
 // Segments are shared half and half where both ends are corners (shared_corners). Corners that are
 // alike (directions of the legs, and shares where these are used up) are searched once. The path

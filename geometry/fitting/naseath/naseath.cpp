@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "geometry/fitting/naseath/naseath_pass.h"
-#include "geometry/fitting/naseath/naseath_polygon.h"
 #include "geometry/fitting/naseath/naseath_setting.h"
 
 namespace batten::geometry {
@@ -42,7 +41,7 @@ NaseathResult smooth_naseath(const BsplineCurve& curve, const NaseathOptions& op
       result.stop = NaseathStop::kStalled;
       break;
     }
-    if (categories_of(polygon).turns_one_way || !mover.move(polygon, room)) {
+    if (!mover.move(polygon, room)) {
       result.stop = NaseathStop::kNothingToMove;
       break;
     }
@@ -57,7 +56,7 @@ NaseathResult smooth_naseath(const BsplineCurve& curve, const NaseathOptions& op
     result.kept_pass = best->pass();
   }
   result.displacement = naseath_displacement(setting, polygon);
-  if (result.kept_pass > 0) result.curve = setting.curve_of(polygon.points);
+  if (result.kept_pass > 0) result.curve = setting.curve_of(polygon);
   return result;
 }
 

@@ -22,7 +22,7 @@ enum class NaseathStop {
   kTouchesTube,    // nowhere more room than the accuracy
   kPassLimit,      // max_passes
   kStalled,        // stall_passes passes were no better than an earlier one
-  kNothingToMove,  // straight, held, or a ring that turns one way all round (moves would shrink it)
+  kNothingToMove,  // straight or held
 };
 
 struct NaseathResult {
@@ -34,9 +34,7 @@ struct NaseathResult {
   double displacement = 0;  // mm: |new(u) - old(u)| does not exceed it at any u
 };
 
-// `curve` is a cubic with single inner knots, either clamped or periodic: a ring whose last three
-// control points are its first three, on knots that repeat likewise (is_periodic_ring). The result
-// has its knots.
+// `curve` is a clamped cubic with single inner knots. The result has its knots.
 //
 // Throws std::invalid_argument for any other curve, and when radius, accuracy, precision or
 // max_passes is not above 0.

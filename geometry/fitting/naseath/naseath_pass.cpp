@@ -35,18 +35,17 @@ constexpr double kLeastPart = 1.0 / 64;
 }  // namespace
 
 CurvatureGuard::CurvatureGuard(const NaseathSetting& setting) : setting_(setting) {
-  const std::vector<double> old = span_curvatures(setting.curve_of(setting.original.points));
+  const std::vector<double> old = span_curvatures(setting.curve_of(setting.original));
   const std::size_t spans = old.size();
-  const bool ring = setting.original.closed;
   for (std::size_t j = 0; j < spans; ++j) {
-    const std::size_t before = j > 0 ? j - 1 : (ring ? spans - 1 : j);
-    const std::size_t after = j + 1 < spans ? j + 1 : (ring ? 0 : j);
+    const std::size_t before = j > 0 ? j - 1 : j;
+    const std::size_t after = j + 1 < spans ? j + 1 : j;
     limits_.push_back(std::max({old[before], old[j], old[after]}) * (1 + kSameBending));
   }
 }
 
 std::vector<std::size_t> CurvatureGuard::broken(const ControlPolygon& polygon) const {
-  const std::vector<double> now = span_curvatures(setting_.curve_of(polygon.points));
+  const std::vector<double> now = span_curvatures(setting_.curve_of(polygon));
   std::vector<std::size_t> spans;
   for (std::size_t j = 0; j < now.size(); ++j) {
     if (now[j] > limits_[j]) spans.push_back(j);
@@ -67,14 +66,14 @@ NaseathMover::NaseathMover(const NaseathSetting& setting)
 bool NaseathMover::move(ControlPolygon& polygon, const NaseathRoom& room) {
   const NaseathCategories categories = categories_of(polygon);
   const auto directions = naseath_directions(polygon, categories, setting_.legs);
-  const std::vector<double> sizes = sizes_of(polygon, categories, directions, room);
+  const std::vector<double> sizes = sizes_of(room);
   const ControlPolygon before = polygon;
   bool moved = false;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     if (setting_.is_held(i)) continue;
     const Vector3 step = sizes[i] * directions[i];
     moved = moved || !step.isZero(0);
-    polygon.points[i] += step;
+    polygon[i] += step;
   }
   measure(directions, sizes);
   if (guard_) take_back(polygon, before);
@@ -83,12 +82,9 @@ bool NaseathMover::move(ControlPolygon& polygon, const NaseathRoom& room) {
 
 // The nominal moves: the room, all of it for the least sensitive point, and in proportion to 1/S
 // for the others.
-std::vector<double> NaseathMover::sizes_of(const ControlPolygon& polygon,
-                                           const NaseathCategories& categories,
-                                           const std::vector<Vector3>& directions,
-                                           const NaseathRoom& room) const {
+std::vector<double> NaseathMover::sizes_of(const NaseathRoom& room) const {
   const NaseathRepairs& repairs = setting_.options.repairs;
-  const std::size_t m = polygon.size();
+  const std::size_t m = setting_.original.size();
   std::vector<double> sizes(m, 0);
   double greatest = 0;
   for (std::size_t i = 0; i < m; ++i) {
@@ -98,12 +94,7 @@ std::vector<double> NaseathMover::sizes_of(const ControlPolygon& polygon,
     greatest = std::max(greatest, sizes[i]);
   }
   for (std::size_t i = 0; i < m; ++i) {
-    if (sizes[i] <= 0) continue;
-    sizes[i] *= parts_[i] * room.per_point[i] / greatest;
-    if (repairs.clamp_moves) {
-      const double target = distance_to_target(polygon, categories, i, directions[i]);
-      sizes[i] = std::clamp(target, 0.0, sizes[i]);
-    }
+    if (sizes[i] > 0) sizes[i] *= parts_[i] * room.per_point[i] / greatest;
   }
   return sizes;
 }
@@ -114,10 +105,10 @@ void NaseathMover::take_back(ControlPolygon& polygon, const ControlPolygon& befo
   std::vector<bool> back(polygon.size(), false);
   for (auto spans = guard_->broken(polygon); !spans.empty(); spans = guard_->broken(polygon)) {
     for (const std::size_t span : spans) {
-      for (std::size_t k = span; k <= span + kNaseathDegree; ++k) back[k % polygon.size()] = true;
+      for (std::size_t k = span; k <= span + kNaseathDegree; ++k) back[k] = true;
     }
     for (std::size_t i = 0; i < polygon.size(); ++i) {
-      if (back[i]) polygon.points[i] = before.points[i];
+      if (back[i]) polygon[i] = before[i];
     }
   }
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -127,7 +118,7 @@ void NaseathMover::take_back(ControlPolygon& polygon, const ControlPolygon& befo
 
 void NaseathMover::measure(const std::vector<Vector3>& directions,
                            const std::vector<double>& sizes) {
-  std::vector<Point3> moves(sizes.size(), Point3::Zero());
+  ControlPolygon moves(sizes.size(), Point3::Zero());
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     if (!setting_.is_held(i)) moves[i] = sizes[i] * directions[i];
   }
@@ -168,7 +159,7 @@ void BestPass::confirm() {
 }
 
 Fairness BestPass::fairness_of(const ControlPolygon& polygon, int steps) const {
-  const auto samples = parameter_samples(setting_.curve_of(polygon.points), steps);
+  const auto samples = parameter_samples(setting_.curve_of(polygon), steps);
   return {geometry::max_curvature(samples), geometry::bending(samples)};
 }
 

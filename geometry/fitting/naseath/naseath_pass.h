@@ -36,10 +36,7 @@ class NaseathMover {
   bool move(ControlPolygon& polygon, const NaseathRoom& room);
 
  private:
-  [[nodiscard]] std::vector<double> sizes_of(const ControlPolygon& polygon,
-                                             const NaseathCategories& categories,
-                                             const std::vector<Vector3>& directions,
-                                             const NaseathRoom& room) const;
+  [[nodiscard]] std::vector<double> sizes_of(const NaseathRoom& room) const;
   void take_back(ControlPolygon& polygon, const ControlPolygon& before);
   void measure(const std::vector<Vector3>& directions, const std::vector<double>& sizes);
 

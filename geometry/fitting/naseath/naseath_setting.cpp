@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "geometry/basic/rounding.h"
 #include "geometry/path/bspline_curve.h"
 
 namespace batten::geometry {
@@ -47,8 +46,8 @@ bool has_single_inner_knots(const BsplineBasis& basis) {
 }
 
 BsplineCurve displacement_of(const NaseathSetting& setting, const ControlPolygon& polygon) {
-  std::vector<Point3> moves = polygon.points;
-  for (std::size_t i = 0; i < moves.size(); ++i) moves[i] -= setting.original.points[i];
+  ControlPolygon moves = polygon;
+  for (std::size_t i = 0; i < moves.size(); ++i) moves[i] -= setting.original[i];
   return setting.curve_of(std::move(moves));
 }
 
@@ -75,64 +74,33 @@ constexpr double kNoInfluence = 1e-12;
 
 }  // namespace
 
-bool is_periodic_ring(const BsplineCurve& curve) {
-  const auto& t = curve.basis().knots();
-  const auto& points = curve.control_points();
-  if (curve.degree() != static_cast<int>(kNaseathDegree) || points.size() < 2 * kNaseathDegree)
-    return false;
-  const std::size_t m = points.size() - kNaseathDegree;
-  const double period = curve.last() - curve.first();
-  for (std::size_t i = 0; i < kNaseathDegree; ++i) {
-    if ((points[i] - points[m + i]).norm() > kSamePlace) return false;
-  }
-  for (std::size_t i = 0; i <= 2 * kNaseathDegree; ++i) {
-    if (std::abs(t[m + i] - t[i] - period) > kSameKnot * period) return false;
-  }
-  return true;
-}
-
-BsplineCurve NaseathSetting::curve_of(std::vector<Point3> points) const {
-  if (original.closed) {
-    for (std::size_t i = 0; i < kNaseathDegree; ++i) points.push_back(points[i]);
-  }
-  return {basis, std::move(points)};
+BsplineCurve NaseathSetting::curve_of(ControlPolygon polygon) const {
+  return {basis, std::move(polygon)};
 }
 
 bool NaseathSetting::is_held(std::size_t i) const {
   const auto held = static_cast<std::size_t>(std::max(0, options.held_points));
-  return !original.closed && (i < held || i + held >= original.size());
+  return i < held || i + held >= original.size();
 }
 
 NaseathSetting naseath_setting(const BsplineCurve& curve, const NaseathOptions& options) {
   check(options);
-  const bool ring = is_periodic_ring(curve);
   if (curve.degree() != static_cast<int>(kNaseathDegree) ||
-      !has_single_inner_knots(curve.basis()) || !(ring || is_clamped(curve.basis()))) {
+      !has_single_inner_knots(curve.basis()) || !is_clamped(curve.basis())) {
     throw std::invalid_argument("smooth_naseath: degree " + std::to_string(curve.degree()) +
-                                ", expected a cubic, clamped or a ring, with single inner knots");
+                                ", expected a clamped cubic with single inner knots");
   }
-  ControlPolygon polygon{curve.control_points(), ring};
-  if (ring) polygon.points.resize(polygon.size() - kNaseathDegree);
-  const std::size_t m = polygon.size();
-  const EndLegs legs = end_legs(polygon);
-  return {curve.basis(), std::move(polygon), legs, parameters_of_influence(curve.basis(), m),
-          options};
+  return {curve.basis(), curve.control_points(), end_legs(curve.control_points()),
+          parameters_of_influence(curve.basis()), options};
 }
 
-std::vector<double> parameters_of_influence(const BsplineBasis& basis, std::size_t points) {
+std::vector<double> parameters_of_influence(const BsplineBasis& basis) {
   const auto& t = basis.knots();
-  const double period = basis.last() - basis.first();
+  const std::size_t points = basis.size();
   std::vector<double> parameters;
-  for (std::size_t i = 0; i < points; ++i) {
-    double u = t[i + 2];
-    if (points == basis.size()) {
-      if (i == 1) u = 0.5 * (t[3] + t[4]);
-      if (i + 2 == points) u = 0.5 * (t[points - 1] + t[points]);
-    } else if (u < basis.first()) {
-      u += period;
-    }
-    parameters.push_back(u);
-  }
+  for (std::size_t i = 0; i < points; ++i) parameters.push_back(t[i + 2]);
+  parameters[1] = 0.5 * (t[3] + t[4]);
+  parameters[points - 2] = 0.5 * (t[points - 1] + t[points]);
   return parameters;
 }
 
@@ -166,7 +134,7 @@ NaseathRoom naseath_room(const NaseathSetting& setting, const ControlPolygon& po
   if (!options.repairs.local_stop) return room;
   for (std::size_t j = 0; j < bounds.size(); ++j) {
     for (std::size_t i = j; i <= j + kNaseathDegree; ++i) {
-      double& left = room.per_point[i % m];
+      double& left = room.per_point[i];
       left = std::min(left, kInside * (radius - bounds[j]));
     }
   }

@@ -25,10 +25,8 @@ struct NaseathRepairs {
   // Sensitivities count as no less than this, since one tiny value makes all other moves tiny.
   // 0: no floor.
   double sensitivity_floor = 0.3;
-  // Ripples and ends do not go past the line through their neighbours.
-  bool clamp_moves = false;
 
-  [[nodiscard]] static NaseathRepairs none() { return {false, false, false, false, 0, 0, false}; }
+  [[nodiscard]] static NaseathRepairs none() { return {false, false, false, false, 0, 0}; }
 };
 
 struct NaseathOptions {
@@ -36,7 +34,7 @@ struct NaseathOptions {
   int precision = 5;       // p, places per span at which a displacement is measured
   double accuracy = 0.01;  // a: within this part of the radius is at it
   int max_passes = 2000;   // the literal method need not end by itself
-  int held_points = 0;     // control points at each end of an open curve that do not move:
+  int held_points = 0;     // control points at each end that do not move:
                            // 1 keeps the ends, 2 the tangents, 3 the curvatures there as well
   NaseathRepairs repairs;
 };
@@ -51,15 +49,10 @@ struct NaseathSetting {
   std::vector<double> parameters;  // of influence, per point
   NaseathOptions options;
 
-  // The curve of a polygon: on a ring its first three points come again at the end.
-  [[nodiscard]] BsplineCurve curve_of(std::vector<Point3> points) const;
+  [[nodiscard]] BsplineCurve curve_of(ControlPolygon polygon) const;
   [[nodiscard]] bool is_held(std::size_t i) const;
   [[nodiscard]] double at_tube() const { return options.accuracy * options.radius; }  // mm
 };
-
-// Whether the curve is a ring: its last three control points are its first three, on knots that
-// repeat likewise.
-[[nodiscard]] bool is_periodic_ring(const BsplineCurve& curve);
 
 // Throws as smooth_naseath says.
 [[nodiscard]] NaseathSetting naseath_setting(const BsplineCurve& curve,
@@ -68,11 +61,9 @@ struct NaseathSetting {
 // How much of a control point's move the curve follows (step 4 of docs/algorithms/naseath.md).
 //
 // The parameter at which a control point acts most, one per point: the middle knot of the five
-// of its function; beside the ends of a clamped curve, where that is the end itself, the middle
-// of the first (last) span. Requires degree 3; `points` is the number of distinct points, three
-// less than basis.size() on a ring.
-[[nodiscard]] std::vector<double> parameters_of_influence(const BsplineBasis& basis,
-                                                          std::size_t points);
+// of its function; beside the ends, where that is the end itself, the middle of the first (last)
+// span. Requires degree 3 and clamped knots.
+[[nodiscard]] std::vector<double> parameters_of_influence(const BsplineBasis& basis);
 
 // |D(t_i)| / move_i per point, where D is the spline of the moves as they were made and move_i
 // (mm) the nominal size of one, counted even if its direction was null. Where the quotient is

@@ -274,7 +274,7 @@ class OneSided {
 
 std::optional<SmoothCurve> one_sided_fair_path(std::span<const Point3> points,
                                                const OneSidedOptions& options) {
-  const DistinctVertices vertices = distinct_vertices(points, false);
+  const DistinctVertices vertices = distinct_vertices(points);
   if (vertices.size() < 2 || options.side == Side::kBoth) return fair_path(points, options.fair);
   auto path = OneSided(vertices.points, options).make();
   if (!path) return std::nullopt;

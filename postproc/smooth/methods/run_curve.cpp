@@ -128,7 +128,7 @@ using geometry::SmoothCurve;
 
 // Length along the polyline at each point of the run, as the stations of a blended path count it.
 std::vector<double> stations_of(std::span<const Point3> run) {
-  const geometry::DistinctVertices vertices = geometry::distinct_vertices(run, false);
+  const geometry::DistinctVertices vertices = geometry::distinct_vertices(run);
   std::vector<double> stations;
   stations.reserve(run.size());
   double station = 0;

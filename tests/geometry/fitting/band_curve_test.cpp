@@ -162,44 +162,14 @@ TEST(SolveBand, EnergyAlongADirectionMayBeLeftOut) {
   EXPECT_NEAR(solve_band(line, start, {}).energy, all, 1e-9 * all);
 }
 
-TEST(SolveBand, StaysOnItsSide) {
-  BandProblem line = on_knots({0, 1, 2, 3, 4}, 3);
-  for (double u = 0; u <= 4; u += 0.25) {
-    BandSample sample = along_x(u, {u, 0, 0}, 0.5);
-    sample.side = Vector3::UnitY();
-    line.samples.push_back(sample);
-  }
-  // Straight lines have no energy; the one found is on the side, and where the barrier is least.
-  const BandCurve found = solve_band(line, straight(line.basis), {});
-  ASSERT_NE(found.end, BandEnd::kOutside);
-  for (double u = 0; u <= 4; u += 0.25) {
-    EXPECT_GT(found.curve.point_at(u).y(), 0);
-    EXPECT_LT(found.curve.point_at(u).y(), 0.5);
-  }
-  EXPECT_LT(found.energy, 1e-20);
-}
-
-TEST(SolveBand, APullIsABalanceOfForces) {
-  // A spring pulls the middle of the beam towards 1: k (1 - d)^2 + 6 d^2 is least at d = k/(k+6).
-  BandProblem beam = on_knots({0, 1, 2}, 2);
-  beam.samples = {along_x(1, {1, 1, 0}, 5)};
-  beam.samples[0].pull = 3;
-  beam.held = {HeldPoint::at(0, {0, 0, 0}), HeldPoint::at(4, {2, 0, 0})};
-  const BandCurve found = solve_band(beam, straight(beam.basis), {});
-  EXPECT_NEAR(found.curve.point_at(1).y(), 1.0 / 3, 1e-4);
-}
-
 TEST(SolveBand, HeldPointsGoWhereTheyMayOnly) {
   BandProblem beam = on_knots({0, 1, 2}, 2);
   beam.samples = {ball(1, {1, 1, 1}, 0.25)};
-  const Vector3 line = Vector3(0, 0.6, 0.8);
-  beam.held = {HeldPoint::at(0, {0, 0, 0}), HeldPoint::on_line(4, {2, 0, 0}, line),
+  beam.held = {HeldPoint::at(0, {0, 0, 0}),
                HeldPoint::on_plane(2, {1, 0, 0.125}, Vector3::UnitZ())};
   const BandCurve found = solve_band(beam, straight(beam.basis), {});
   const auto& points = found.curve.control_points();
   EXPECT_LE(points[0].norm(), 1e-15);
-  EXPECT_LE((points[4] - Point3(2, 0, 0)).cross(line).norm(), 1e-12);
-  EXPECT_GT((points[4] - Point3(2, 0, 0)).norm(), 0.1);
   EXPECT_NEAR(points[2].z(), 0.125, 1e-12);
   EXPECT_GT(points[2].y(), 0.1);
 }
@@ -263,7 +233,7 @@ struct RandomBand {
 TEST(SolveBand, EndsInsideWithTheLeastEnergy) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const RandomBand band(seed);
+    const RandomBand band(seed, 0.05);
     const BandCurve found = solve_band(band.problem, band.start, {});
     ASSERT_EQ(found.end, BandEnd::kLeast);
     EXPECT_LT(found.worst_ratio, 1);
@@ -273,7 +243,10 @@ TEST(SolveBand, EndsInsideWithTheLeastEnergy) {
     for (int i = 0; i < 20; ++i) {
       BandProblem other = band.problem;
       std::vector<Point3> points = band.start;
-      for (BandSample& sample : other.samples) sample.pull = std::exp(3 * normal(random));
+      const double wild = normal(random);
+      other.weight = [wild](double u) {
+        return EnergyWeight{std::exp(wild * std::sin(3 * u)), Vector3::Zero()};
+      };
       const BandCurve away = solve_band(other, points, {});
       ASSERT_LT(away.worst_ratio, 1);
       BandProblem plain = band.problem;

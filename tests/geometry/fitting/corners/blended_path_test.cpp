@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <optional>
+#include <vector>
+
 #include "geometry/fitting/corners/corner_blend.h"
+#include "geometry/path/joined_curve.h"
 
 namespace batten::geometry {
 namespace {
@@ -22,7 +27,7 @@ TEST_P(BlendsOnOneLeg, GoForwardAlongThePolyline) {
   std::vector<std::optional<BsplineCurve>> blends(points.size());
   blends[1] = blend_between({5, 0, 0}, points[1], {10, 5 + GetParam(), 0});
   blends[2] = blend_between({10, 5, 0}, points[2], {15, 10, 0});
-  const BlendedPath path = blended_path(points, blends, false);
+  const BlendedPath path = blended_path(points, blends);
   ASSERT_EQ(path.stations.size(), path.pieces.size() + 1);
   for (std::size_t i = 0; i + 1 < path.stations.size(); ++i) {
     EXPECT_LT(path.stations[i], path.stations[i + 1]) << i;
@@ -36,6 +41,23 @@ TEST_P(BlendsOnOneLeg, GoForwardAlongThePolyline) {
 
 INSTANTIATE_TEST_SUITE_P(BlendedPath, BlendsOnOneLeg,
                          testing::Values(-1e-3, -1e-8, -1e-10, 0.0, 1e-10, 1e-8, 1e-6));
+
+// A knot in the middle of a blend that is off the middle by a rounding step cuts it once, not
+// twice.
+TEST(BlendedPath, IsCutOnceInTheMiddleOfABlend) {
+  const double end = 0.3;
+  const double middle = std::nextafter(0.5 * end, 1);
+  const BsplineCurve blend(BsplineBasis::clamped(3, {0, middle, end}),
+                           {{9, 0, 0}, {9.5, 0, 0}, {10, 0, 0}, {10, 0.5, 0}, {10, 1, 0}});
+  const std::vector<Point3> corner = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}};
+  const BlendedPath path = blended_path(
+      corner, std::vector<std::optional<BsplineCurve>>{std::nullopt, blend, std::nullopt});
+  EXPECT_EQ(path.pieces.size(), 4u) << "line, two halves, line";
+  for (std::size_t i = 0; i + 1 < path.stations.size(); ++i) {
+    EXPECT_LT(path.stations[i], path.stations[i + 1]);
+  }
+  EXPECT_NO_THROW((void)curve_of_pieces(path.pieces, path.stations));
+}
 
 }  // namespace
 }  // namespace batten::geometry

@@ -120,17 +120,6 @@ TEST(OzcanPath, LeavesCornersThatTurnMoreThanAsked) {
   EXPECT_FALSE(passes(points[1]));
 }
 
-TEST(OzcanPath, RoundsTheSeamOfAClosedPath) {
-  OzcanOptions options = with_tolerance(0.05, ToleranceKind::kPath);
-  options.closed = true;
-  const OzcanPath path = ozcan_path(guo_hexagon(), options);
-  EXPECT_EQ(blends_in(path), 6);
-  EXPECT_EQ(start_point(path.pieces.front()), end_point(path.pieces.back()));
-  EXPECT_LT((direction_at(path.pieces.front(), 0) - direction_at(path.pieces.back(), 1)).norm(),
-            1e-9);
-  EXPECT_LE((start_point(path.pieces.front()) - guo_hexagon().front()).norm(), 0.05);
-}
-
 // Stations are lengths along the polyline, so lines run at unit speed and the curve of the
 // pieces passes each vertex's station near the vertex.
 TEST(OzcanPath, HasTheStationOfEachVertexBesideIt) {

@@ -210,42 +210,6 @@ TEST(TimeOptimalCorner, ShortLegsAreEnteredSlowly) {
               blend.speed_before, 1e-9);
 }
 
-TEST(TimeOptimalCorner, TakesTheRoomThatTheClockLikesBest) {
-  const TimeOptimalOptions options = options_for(.1, ToleranceKind::kBand);
-  const TimeOptimalBlend plain = raced(square_corner(), options);
-  double least = 1e300;
-  const auto clock = [&](const BsplineCurve& curve) {
-    // Likes short blends: counts the way from the first knot inside to the vertex.
-    const double time = (curve.point_at(curve.breakpoints()[1]) - Point3(13, 13, 0)).norm();
-    least = std::min(least, time);
-    return time;
-  };
-  const auto found = time_optimal_corner(square_corner(), options, clock);
-  const auto& chosen = std::get<TimeOptimalBlend>(found);
-  EXPECT_LT(chosen.before, plain.before);
-  EXPECT_NEAR(chosen.before, least, 1e-9);
-}
-
-TEST(WithLegs, IsTheBlendBetweenStraightLegs) {
-  for (unsigned seed = 1; seed <= 4; ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    RandomCorner given(seed);
-    if (seed == 1) given.options.share_before = 3;
-    const TimeOptimalBlend blend = raced(given.corner, given.options);
-    const BsplineCurve& inner = blend.blend.curve;
-    const BsplineCurve whole = with_legs(blend, given.corner);
-    EXPECT_LE((whole.point_at(whole.first()) - given.corner.before).norm(), 1e-9);
-    EXPECT_LE((whole.point_at(whole.last()) - given.corner.after).norm(), 1e-9);
-    for (int i = 0; i <= 200; ++i) {
-      const double u = inner.first() + blend.time * i / 200;
-      EXPECT_LE((whole.point_at(u) - inner.point_at(u)).norm(), 1e-9);
-      const double v = whole.first() + (inner.first() - whole.first()) * i / 200;
-      EXPECT_LE(segment_distance(whole.point_at(v), given.corner.before, given.corner.vertex),
-                1e-9);
-    }
-  }
-}
-
 TEST(TimeOptimalCorner, SaysWhyACornerStays) {
   const TimeOptimalOptions options = options_for(.1, ToleranceKind::kPath);
   const auto why = [&](const Corner& corner, const TimeOptimalOptions& with) {

@@ -114,7 +114,7 @@ TEST(TimeOptimalPath, GentleCornersAndThoseBeyondTheMostGetTheFivePoints) {
   const TimeOptimalPath path = time_optimal_path(star_path(), few);
   EXPECT_EQ(path.searched, 1);
   EXPECT_LT(raced_in(path), 10);
-  for (const TimeOptimalPathCorner& corner : path.corners) {
+  for (const auto& corner : path.corners) {
     EXPECT_TRUE(std::holds_alternative<TimeOptimalPathBlend>(corner.outcome));
   }
 }
@@ -123,7 +123,7 @@ TEST(TimeOptimalPath, GentleCornersAndThoseBeyondTheMostGetTheFivePoints) {
 TEST(TimeOptimalPath, TakesTheFivePointsWhereARacingLineWouldStandStill) {
   const std::vector<Point3> points = zigzag_line(20, 0.5, 0.03);
   const TimeOptimalPath path = time_optimal_path(points, with_tolerance(0.05));
-  for (const TimeOptimalPathCorner& corner : path.corners) {
+  for (const auto& corner : path.corners) {
     const auto* blend = std::get_if<TimeOptimalPathBlend>(&corner.outcome);
     if (blend == nullptr) continue;
     for (double u = blend->blend.curve.first(); u < blend->blend.curve.last();

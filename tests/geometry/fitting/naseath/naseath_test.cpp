@@ -147,7 +147,6 @@ TEST(Naseath, StaysInTheTubeAndBendsNoHarder) {
     const BsplineCurve curve = random_curve(seed);
     const double radius = std::pow(10.0, -3.0 + seed % 4);
     NaseathOptions options = repaired(radius);
-    options.repairs.clamp_moves = seed % 3 == 0;
     options.held_points = seed % 5 == 0 ? 2 : 0;
     const NaseathResult result = smooth_naseath(curve, options);
     EXPECT_LE(result.displacement, radius);
@@ -196,19 +195,6 @@ TEST(Naseath, HeldPointsStay) {
   }
 }
 
-TEST(Naseath, ClampedRipplesEndOnTheLineOfTheirNeighbours) {
-  // The bisector of the right angle at the origin meets the line of the two ends at (1, 1).
-  const ControlPolygon polygon{{{2, 0, 0}, {0, 0, 0}, {0, 2, 0}, {5, 5, 0}}, false};
-  const auto categories = categories_of(polygon);
-  const auto directions = naseath_directions(polygon, categories, end_legs(polygon));
-  EXPECT_NEAR(distance_to_target(polygon, categories, 1, directions[1]), std::sqrt(2.0), 1e-12);
-  // The end goes across its leg, upwards, to the line x = 0: it never gets there.
-  EXPECT_EQ(distance_to_target(polygon, categories, 0, Vector3(0, 1, 0)), 0);
-  // Obliquely it does.
-  const Vector3 oblique = Vector3(-1, 1, 0).normalized();
-  EXPECT_NEAR(distance_to_target(polygon, categories, 0, oblique), 2 * std::sqrt(2.0), 1e-12);
-}
-
 TEST(Naseath, LeavesAStraightLineAlone) {
   const BsplineCurve line =
       uniform_cubic({{0, 0, 0}, {1, 2, 3}, {2, 4, 6}, {3, 6, 9}, {5, 10, 15}});
@@ -217,66 +203,6 @@ TEST(Naseath, LeavesAStraightLineAlone) {
     EXPECT_EQ(result.stop, NaseathStop::kNothingToMove);
     EXPECT_EQ(result.passes, 0);
     EXPECT_EQ(result.curve.control_points(), line.control_points());
-  }
-}
-
-// --- rings -------------------------------------------------------------------------------------
-
-// A periodic cubic on uniform knots.
-BsplineCurve ring_of(std::vector<Point3> points) {
-  for (std::size_t i = 0; i < 3; ++i) points.push_back(points[i]);
-  std::vector<double> knots;
-  for (std::size_t i = 0; i < points.size() + 4; ++i) knots.push_back(static_cast<double>(i));
-  return {BsplineBasis(3, knots), points};
-}
-
-std::vector<Point3> circle_points(int count, double radius, double noise, int seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> off(-noise, noise);
-  std::vector<Point3> points;
-  for (int i = 0; i < count; ++i) {
-    const double angle = 2 * std::numbers::pi * i / count;
-    const double r = radius + off(random);
-    points.emplace_back(r * std::cos(angle), r * std::sin(angle), 0);
-  }
-  return points;
-}
-
-TEST(NaseathRing, ThatTurnsOneWayIsNotShrunk) {
-  const BsplineCurve ring = ring_of(circle_points(24, 20, 0, 1));
-  ASSERT_TRUE(is_periodic_ring(ring));
-  const NaseathResult result = smooth_naseath(ring, literal(.25));
-  EXPECT_EQ(result.stop, NaseathStop::kNothingToMove);
-  EXPECT_EQ(result.curve.control_points(), ring.control_points());
-}
-
-TEST(NaseathRing, LosesItsNoiseAndStaysARing) {
-  for (int seed = 0; seed < 20; ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const BsplineCurve ring = ring_of(circle_points(60, 20, .2, seed));
-    const NaseathResult result = smooth_naseath(ring, repaired(.25));
-    EXPECT_TRUE(is_periodic_ring(result.curve));
-    EXPECT_LE(result.displacement, .25);
-    expect_no_worse(result.curve, ring);
-    const double circle = 2 * std::numbers::pi / 20;  // the bending of the ring without noise
-    EXPECT_LT(bending(parameter_samples(result.curve, 50)) - circle,
-              0.6 * (bending(parameter_samples(ring, 50)) - circle));
-  }
-}
-
-TEST(NaseathRing, DoesNotKnowWhereItStarts) {
-  for (int shift = 1; shift < 40; shift += 7) {
-    SCOPED_TRACE(testing::Message() << "shift " << shift);
-    std::vector<Point3> points = circle_points(40, 20, .3, 5);
-    const NaseathResult whole = smooth_naseath(ring_of(points), repaired(.2));
-    std::rotate(points.begin(), points.begin() + shift, points.end());
-    const NaseathResult shifted = smooth_naseath(ring_of(points), repaired(.2));
-    EXPECT_EQ(shifted.passes, whole.passes);
-    for (std::size_t i = 0; i < 40; ++i) {
-      const Point3& expected =
-          whole.curve.control_points()[(i + static_cast<std::size_t>(shift)) % 40];
-      EXPECT_LE((shifted.curve.control_points()[i] - expected).norm(), 1e-8);
-    }
   }
 }
 
