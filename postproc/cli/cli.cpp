@@ -1,6 +1,7 @@
 #include "postproc/cli/cli.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -8,91 +9,12 @@
 
 #include "postproc/cli/cli_commands.h"
 #include "postproc/cli/cli_completion.h"
-#include "postproc/cli/cli_config.h"
 #include "postproc/cli/cli_given.h"
 #include "postproc/cli/cli_table.h"
 #include "postproc/cli/explain.h"
+#include "postproc/text/nearest_name.h"
 
 namespace batten::postproc {
-
-std::vector<CommandRow> command_rows() {
-  return {
-      {"smooth",
-       "Bend fair curves through the short G01 moves of a program and write it again, proved.",
-       smooth_rows(),
-       {{"IN", "the program, - is standard input"}},
-       "Example:\n"
-       "  batten smooth part.nc --target linuxcnc --tolerance 0.01\n"
-       "writes part.smooth.nc, nowhere more than 0.01 mm from part.nc."},
-      {"verify",
-       "Prove that a new program does what the old one did, within a tolerance.",
-       verify_rows(),
-       {{"OLD", "the old program"}, {"NEW", "the new program"}},
-       "Example:\n"
-       "  batten verify part.nc part.smooth.nc --tolerance 0.01\n"
-       "exits with 0 when proved, with 3 on a breach or without a proof."},
-      {"inspect",
-       "Show the runs of a program, their segments, and why the rest would be kept.",
-       inspect_rows(),
-       {{"IN", "the program, - is standard input"}},
-       "Example:\n  batten inspect part.nc --json part.json"},
-      {"time",
-       "ProgressCallback how long a machine needs for a program, and where the time goes.",
-       time_rows(),
-       {{"FILE", "the program, - is standard input"}},
-       "Examples:\n"
-       "  batten time part.nc --machine linuxcnc\n"
-       "  batten time part.nc --machine mill --json part.json --from 0,0,50\n"
-       "  batten time part.nc --machine router.toml --profile part.csv\n"
-       "The profile has a row for each millisecond: t_s, line, x_mm, y_mm, z_mm,\n"
-       "feed_mm_per_min, then acceleration (mm/s2) and jerk (mm/s3) of X, Y and Z.\n"
-       "Times are those of the control's model; what the text does not tell is listed."},
-      {"batch",
-       "Smooth all programs of a folder tree into another one; a run that was stopped goes on.",
-       batch_rows(),
-       {{"IN_TREE", "the folder with the programs, never written to"},
-        {"OUT_TREE", "the folder for the new ones, with reports in OUT_TREE/batten-batch"}},
-       "Example:\n"
-       "  batten batch programs smooth --target linuxcnc --tolerance 0.01"},
-      {"freecad",
-       "Put the post script for FreeCAD where FreeCAD looks for posts.",
-       freecad_rows(),
-       {{"ACTION", "install"}},
-       "Example:\n"
-       "  batten freecad install\n"
-       "asks the installed FreeCAD for the folder of your macros and writes batten_post.py there."},
-      {"targets",
-       "List the controls that programs can be written for, or show one as a profile.",
-       target_list_rows(),
-       {},
-       "Example:\n"
-       "  batten targets --show haas > mine.toml\n"
-       "prints a profile; batten smooth part.nc --target mine.toml reads it."},
-      {"machines",
-       "List the built-in machines, or print one machine as a file.",
-       machines_rows(),
-       {},
-       "Examples:\n"
-       "  batten machines\n"
-       "  batten machines --show router > my.toml\n"
-       "  batten machines --show mill.ini\n"
-       "  batten machines --grbl-settings settings.txt > my.toml"},
-      {"methods", "List the ways of smoothing.", list_rows(), {}, "Example:\n  batten methods"},
-      {"explain",
-       "Say what the id of a kept run, a message or a breach means, and what to do about it.",
-       {},
-       {{"ID", "as it stands in a report; without it, all of them are listed"}},
-       "Example:\n  batten explain exact-stop"},
-      {"completion",
-       "Write the completion of commands and options for a shell.",
-       {},
-       {{"SHELL", "bash or zsh"}},
-       "Example:\n  batten completion bash > ~/.local/share/bash-completion/completions/batten"},
-      {"man", "Write the manual page.", {}, {}, "Example:\n  batten man | man -l -"},
-  };
-}
-
-std::string_view short_form_of(const OptionRow& row) { return row.name == "out" ? "-o" : ""; }
 
 namespace {
 
@@ -127,30 +49,29 @@ void add_command(const CommandRow& row, CLI::App& app) {
   for (const OptionRow& option : row.rows) add_row(option, *command);
 }
 
-Given given_in(const CLI::App& command, std::span<const OptionRow> rows) {
+Given given_in(const CLI::App& command, const CommandRow& row) {
   Given given;
-  for (const OptionRow& row : rows) {
-    const CLI::Option* option = command.get_option("--" + std::string(row.name));
-    if (option->count() == 0) continue;
-    if (row.kind == OptionKind::kFlag) {
-      given.add(row.name, "true");
+  for (const OptionRow& option : row.rows) {
+    const CLI::Option* found = command.get_option("--" + std::string(option.name));
+    if (found->count() == 0) continue;
+    if (option.kind == OptionKind::kFlag) {
+      given.add(option.name, "true");
       continue;
     }
-    for (const std::string& value : option->results()) {
-      row.kind == OptionKind::kList ? given.add_list(row.name, value) : given.add(row.name, value);
+    for (const std::string& value : found->results()) {
+      option.kind == OptionKind::kList ? given.add_list(option.name, value)
+                                       : given.add(option.name, value);
     }
   }
   return given;
 }
 
-// The words that are no options, in order; unknown options become problems.
-std::vector<std::string> files_in(const CLI::App& command, const CommandRow& row,
-                                  Problems& problems) {
-  std::vector<std::string> files;
+// The words that are no options stand in order; unknown options become problems.
+Arguments arguments_of(const CLI::App& command, const CommandRow& row) {
+  Arguments in = {given_in(command, row), {}};
   for (const auto& [name, help] : row.files) {
-    for (const std::string& file : command.get_option(std::string(name))->results()) {
-      files.push_back(file);
-    }
+    const auto& words = command.get_option(std::string(name))->results();
+    in.files.insert(in.files.end(), words.begin(), words.end());
   }
   std::vector<std::string_view> names;
   for (const OptionRow& option : row.rows) names.push_back(option.name);
@@ -158,63 +79,46 @@ std::vector<std::string> files_in(const CLI::App& command, const CommandRow& row
   for (const std::string& word : command.remaining()) {
     if (!word.starts_with("-") || word == "-") {
       // After an unknown option it is likely the value of that option.
-      if (!unknown_option) files.push_back(word);
+      if (!unknown_option) in.files.push_back(word);
       continue;
     }
     unknown_option = true;
     const std::string name = word.substr(word.find_first_not_of('-'));
     const std::string_view nearest = nearest_name(name.substr(0, name.find('=')), names);
-    problems.push_back(
+    in.problems.push_back(
         fmt::format("{}: {} has no such option{}", word, row.name,
                     nearest.empty() ? "" : fmt::format(", did you mean --{}?", nearest)));
   }
-  return files;
+  return in;
 }
 
-Command smooth_or_config(Given given, const std::vector<std::string>& files, Problems& problems) {
-  if (const auto file = given.value("config")) {
-    given.complete_from(read_config(*file, problems));
-  }
-  SmoothCommand command = smooth_command(given, files, problems);
-  if (given.flag("print-config")) return PrintText{config_text(given)};
-  return command;
-}
-
-void refuse_words_after(std::size_t expected, const std::vector<std::string>& words,
-                        Problems& problems) {
-  for (std::size_t i = expected; i < words.size(); ++i) {
-    problems.push_back(fmt::format("'{}': one word too many", words[i]));
-  }
-}
-
-PrintText explain_text(const std::vector<std::string>& words, Problems& problems) {
-  refuse_words_after(1, words, problems);
-  if (words.empty()) return {all_explanations()};
-  const auto ids = explained_ids();
-  const std::string text = explanation_of(words.front());
+PrintText explain_text(Arguments& in) {
+  refuse_words_after(1, "word", in);
+  if (in.files.empty()) return {all_explanations()};
+  const std::string& id = in.files.front();
+  const std::string text = explanation_of(id);
   if (text.empty()) {
-    const std::string_view nearest = nearest_name(words.front(), ids);
-    problems.push_back(fmt::format(
-        "there is no reason, message or breach '{}'{}; batten explain lists all", words.front(),
-        nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest)));
+    in.problems.push_back(
+        fmt::format("there is no reason, message or breach '{}'{}; batten explain lists all", id,
+                    suggestion(id, explained_ids())));
   }
   return {text};
 }
 
-PrintText completion_text(const std::vector<std::string>& words, Problems& problems) {
-  refuse_words_after(1, words, problems);
-  const auto text = completion_for(words.empty() ? "" : words.front());
+PrintText completion_text(Arguments& in) {
+  refuse_words_after(1, "word", in);
+  const auto text = completion_for(in.files.empty() ? "" : in.files.front());
   if (!text) {
-    problems.push_back(
-        words.empty()
-            ? std::string("SHELL: no shell given; possible: bash, zsh")
-            : fmt::format("there is no completion for '{}'; possible: bash, zsh", words.front()));
+    in.problems.push_back(in.files.empty()
+                              ? std::string("SHELL: no shell given; possible: bash, zsh")
+                              : fmt::format("there is no completion for '{}'; possible: bash, zsh",
+                                            in.files.front()));
   }
   return {text.value_or("")};
 }
 
-PrintText man_text(const std::vector<std::string>& words, Problems& problems) {
-  refuse_words_after(0, words, problems);
+PrintText man_text(Arguments& in) {
+  refuse_words_after(0, "word", in);
   return {man_page()};
 }
 
@@ -229,28 +133,11 @@ std::vector<std::string> with_explain_as_command(std::vector<std::string> argume
   return arguments;
 }
 
-BatchCommand batch_with_config(Given given, const std::vector<std::string>& files,
-                               Problems& problems) {
-  if (const auto file = given.value("config")) {
-    given.complete_from(read_config(*file, problems));
-  }
-  return batch_command(given, files, problems);
-}
-
-Command command_of(std::string_view name, const Given& given, const std::vector<std::string>& files,
-                   Problems& problems) {
-  if (name == "smooth") return smooth_or_config(given, files, problems);
-  if (name == "verify") return verify_command(given, files, problems);
-  if (name == "inspect") return inspect_command(given, files, problems);
-  if (name == "time") return time_command(given, files, problems);
-  if (name == "batch") return batch_with_config(given, files, problems);
-  if (name == "freecad") return freecad_command(given, files, problems);
-  if (name == "targets") return list_command(BuiltIn::kTargets, given, files, problems);
-  if (name == "machines") return machines_command(given, files, problems);
-  if (name == "methods") return list_command(BuiltIn::kMethods, given, files, problems);
-  if (name == "explain") return explain_text(files, problems);
-  if (name == "completion") return completion_text(files, problems);
-  return man_text(files, problems);
+Command any_command_of(std::string_view name, Arguments& in) {
+  if (name == "explain") return explain_text(in);
+  if (name == "completion") return completion_text(in);
+  if (name == "man") return man_text(in);
+  return command_of(name, in);
 }
 
 // The command line as one could type it again.
@@ -271,18 +158,14 @@ std::string shell_words(const std::vector<std::string>& arguments) {
   return text;
 }
 
-std::string no_command(const CLI::App& app, const std::vector<CommandRow>& rows) {
-  std::string possible;
+std::string no_command(const CLI::App& app) {
   std::vector<std::string_view> names;
-  for (const CommandRow& row : rows) {
-    possible += (possible.empty() ? "" : ", ") + std::string(row.name);
-    names.push_back(row.name);
-  }
+  for (const CommandRow& row : command_rows()) names.push_back(row.name);
   const auto words = app.remaining();
-  if (words.empty()) return "no command given; possible: " + possible;
-  const std::string_view nearest = nearest_name(words.front(), names);
-  return fmt::format("there is no command '{}'{}; possible: {}", words.front(),
-                     nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest), possible);
+  const std::string wrong = words.empty() ? "no command given"
+                                          : fmt::format("there is no command '{}'{}", words.front(),
+                                                        suggestion(words.front(), names));
+  return fmt::format("{}; possible: {}", wrong, fmt::join(names, ", "));
 }
 
 }  // namespace
@@ -294,8 +177,7 @@ CommandLine read_command_line(const std::vector<std::string>& given_arguments) {
   app.footer(std::string(kExitCodes));
   app.require_subcommand(0, 1);
   app.allow_extras();
-  const auto rows = command_rows();
-  for (const CommandRow& row : rows) add_command(row, app);
+  for (const CommandRow& row : command_rows()) add_command(row, app);
 
   CommandLine line;
   line.help_hint = "batten --help";
@@ -315,15 +197,15 @@ CommandLine read_command_line(const std::vector<std::string>& given_arguments) {
 
   const auto commands = app.get_subcommands();
   if (commands.empty()) {
-    line.problems.push_back(no_command(app, rows));
+    line.problems.push_back(no_command(app));
     return line;
   }
   const CLI::App& command = *commands.front();
-  const auto row = std::ranges::find(rows, command.get_name(), &CommandRow::name);
-  line.help_hint = "batten " + command.get_name() + " --help";
-  const Given given = given_in(command, row->rows);
-  const auto files = files_in(command, *row, line.problems);
-  line.command = command_of(command.get_name(), given, files, line.problems);
+  const std::string name = command.get_name();
+  line.help_hint = "batten " + name + " --help";
+  Arguments in = arguments_of(command, *std::ranges::find(command_rows(), name, &CommandRow::name));
+  line.command = any_command_of(name, in);
+  line.problems = std::move(in.problems);
   if (auto* smooth = std::get_if<SmoothCommand>(&line.command)) {
     smooth->command_line = shell_words(arguments);
   }

@@ -1,23 +1,12 @@
 // The command line: words to a command with checked options, or every problem at once.
 #pragma once
 
-#include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "postproc/cli/cli_values.h"
-#include "postproc/commands/commands.h"
+#include "postproc/cli/cli_commands.h"
 
 namespace batten::postproc {
-
-// --help, --version, --print-config: for standard output, and the program is done.
-struct PrintText {
-  std::string text;
-};
-
-using Command = std::variant<PrintText, SmoothCommand, VerifyCommand, InspectCommand, TimeCommand,
-                             BatchCommand, FreecadCommand, ListCommand, MachinesCommand>;
 
 struct CommandLine {
   Command command;

@@ -1,292 +1,15 @@
 #include "postproc/cli/cli_given.h"
 
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
 #include <algorithm>
-#include <array>
+
+#include "postproc/cli/cli_table.h"
+#include "postproc/text/nearest_name.h"
+#include "postproc/text/toml_text.h"
 
 namespace batten::postproc {
-
-namespace {
-
-constexpr OptionRow kJson = {
-    .name = "json", .value = "FILE", .help = "write the report as JSON, - is standard output"};
-constexpr OptionRow kForce = {
-    .name = "force", .kind = OptionKind::kFlag, .help = "replace files that exist already"};
-constexpr OptionRow kTolerance = {
-    .name = "tolerance",
-    .value = "LENGTH",
-    .help =
-        "greatest distance between old and new path: 0.01, 0.01mm or 0.0005in (without a "
-        "unit: mm)",
-    .default_value = "0.01mm",
-    .in_config = true};
-constexpr OptionRow kToleranceKind = {
-    .name = "tolerance-kind",
-    .value = "path|band",
-    .help = "what the tolerance means: both ways, or corners may be further from the new path",
-    .default_value = "path",
-    .in_config = true};
-constexpr OptionRow kSide = {
-    .name = "side",
-    .value = "both|left|right",
-    .help = "where the new path may be, seen along the way of travel from above",
-    .default_value = "both",
-    .in_config = true};
-constexpr OptionRow kUnits = {.name = "units",
-                              .value = "mm|inch",
-                              .help = "units of a program that has no G20 or G21",
-                              .in_config = true};
-constexpr OptionRow kSource = {
-    .name = "source",
-    .value = "auto|ngc|fanuc|haas|grbl|siemens|heidenhain",
-    .help = "for which control the program was written; auto: what its marks and the target say",
-    .default_value = "auto",
-    .in_config = true};
-constexpr OptionRow kDecimals = {
-    .name = "decimals",
-    .value = "auto|explicit|implied",
-    .help =
-        "what X5 means on controls like FANUC: explicit 5 mm, implied 0.005 mm or 0.0005 in "
-        "(implied:0.0001 for another increment in mm, a tenth of it in inches); auto: such "
-        "blocks are kept",
-    .default_value = "auto",
-    .in_config = true};
-constexpr OptionRow kAllow = {
-    .name = "allow",
-    .kind = OptionKind::kList,
-    .value = "REASON,..",
-    .help = "lift rules that keep runs, by their ids in the report; may be repeated",
-    .in_config = true};
-
-constexpr OptionRow kProfile = {
-    .name = "profile",
-    .value = "FILE.toml",
-    .help = "the target as your machine has it (batten targets --show NAME prints one)",
-    .in_config = true};
-// Of every command that tells times.
-constexpr OptionRow kMachine = {
-    .name = "machine",
-    .value = "NAME|FILE",
-    .help =
-        "the machine whose time counts: built in (batten machines), a NAME.toml, or the "
-        "NAME.ini of a LinuxCNC machine; default: the target's",
-    .in_config = true};
-constexpr OptionRow kGrblSettings = {.name = "grbl-settings",
-                                     .value = "FILE",
-                                     .help = "limits from what grbl answers to $$, saved as text",
-                                     .in_config = true};
-
-constexpr OptionRow kQuiet = {
-    .name = "quiet",
-    .kind = OptionKind::kFlag,
-    .help = "say nothing but what ends or stops the work, as --log-level error"};
-constexpr OptionRow kLogLevel = {.name = "log-level",
-                                 .value = "error|warning|info",
-                                 .help = "how much is said on standard error",
-                                 .default_value = "info"};
-
-constexpr std::array kSmoothRows = {
-    OptionRow{.name = "target",
-              .value = "NAME|FILE.toml",
-              .help = "the control that will run the program (batten targets), or a profile of it",
-              .in_config = true},
-    kProfile,
-    kTolerance,
-    kToleranceKind,
-    kSide,
-    kMachine,
-    kGrblSettings,
-    OptionRow{.name = "method",
-              .value = "best|fair|racing|naseath|guo|ozcan|none",
-              .help = "how runs are smoothed (batten methods)",
-              .default_value = "best",
-              .in_config = true},
-    OptionRow{.name = "output",
-              .value = "auto|curves|arcs|lines",
-              .help = "what rewritten runs are made of",
-              .default_value = "auto",
-              .in_config = true},
-    OptionRow{.name = "prefer",
-              .value = "time|accuracy|size",
-              .help = "what the tolerance is spent on",
-              .default_value = "time",
-              .in_config = true},
-    OptionRow{.name = "linearize",
-              .value = "minlink|chord|ilca|blca",
-              .help = "how lines are laid along a curve; default: chord, minlink with --prefer "
-                      "size",
-              .in_config = true},
-    OptionRow{.name = "keep-corners",
-              .value = "DEG",
-              .help = "turns of more degrees than this stay corners",
-              .in_config = true},
-    kUnits,
-    kSource,
-    kDecimals,
-    kAllow,
-    OptionRow{
-        .name = "convert",
-        .kind = OptionKind::kFlag,
-        .help = "take a program for other controls if every block says the same on the target",
-        .default_value = "false",
-        .in_config = true},
-    OptionRow{.name = "out",
-              .value = "FILE",
-              .help = "the new program, - is standard output; default: IN with .smooth before "
-                      "the suffix"},
-    OptionRow{.name = "in-place", .kind = OptionKind::kFlag, .help = "replace the input itself"},
-    kForce,
-    OptionRow{.name = "dry-run",
-              .kind = OptionKind::kFlag,
-              .help = "do everything but write the new program"},
-    OptionRow{.name = "strict",
-              .kind = OptionKind::kFlag,
-              .help = "write nothing and exit 3 when a run could not be proved",
-              .default_value = "false",
-              .in_config = true},
-    kJson,
-    OptionRow{.name = "report",
-              .value = "FILE.html",
-              .help = "write the report as a page for a browser: path, deviation, time by run"},
-    OptionRow{.name = "threads",
-              .value = "N",
-              .help = "0: all cores; the result is the same for any number",
-              .default_value = "0",
-              .in_config = true},
-    OptionRow{.name = "progress",
-              .value = "auto|on|off|linuxcnc",
-              .help = "how far the work is, on standard error",
-              .default_value = "auto",
-              .in_config = true},
-    kQuiet,
-    kLogLevel,
-    OptionRow{.name = "config",
-              .value = "FILE.toml",
-              .help = "read options from a file; the command line goes first"},
-    OptionRow{.name = "print-config",
-              .kind = OptionKind::kFlag,
-              .help = "print the options as such a file and do nothing else"},
-};
-
-constexpr std::array kTargetListRows = {
-    OptionRow{
-        .name = "show", .value = "NAME", .help = "print a profile of this target to start from"},
-    kJson, kForce};
-constexpr OptionRow kCurvesOf = {
-    .name = "target",
-    .value = "NAME|FILE.toml",
-    .help =
-        "the control whose own curves (G06.2, POLY, G5 ..) are to be read in both programs, or "
-        "a profile of it"};
-
-constexpr OptionRow kAllowedBefore = {
-    .name = "allow",
-    .kind = OptionKind::kList,
-    .value = "REASON,..",
-    .help =
-        "what smooth was allowed; subprogram: calls leave all modes as they find them, in both "
-        "programs"};
-
-constexpr std::array kVerifyRows = {kTolerance, kProfile, kCurvesOf, kToleranceKind, kSide,
-                                    kUnits,     kSource,  kDecimals, kAllowedBefore, kJson,
-                                    kForce,     kQuiet,   kLogLevel};
-constexpr std::array kInspectRows = {kUnits, kSource, kDecimals, kAllow,
-                                     kJson,  kForce,  kQuiet,    kLogLevel};
-constexpr std::array kTimeRows = {
-    kMachine,
-    kGrblSettings,
-    OptionRow{.name = "target",
-              .value = "NAME",
-              .help = "the control the program is written for (batten targets): what G4 P means"},
-    kUnits,
-    kSource,
-    kDecimals,
-    OptionRow{
-        .name = "from", .value = "X,Y,Z", .help = "where the tool stands before the program, mm"},
-    kJson,
-    OptionRow{.name = "profile",
-              .value = "FILE.csv",
-              .help = "write place, feed, acceleration and jerk each millisecond"},
-    kForce,
-    kQuiet,
-    kLogLevel,
-};
-// A worker has one thread, and LinuxCNC does not look at a batch.
-constexpr std::array<std::string_view, 2> kNotForBatch = {"threads", "progress"};
-
-constexpr std::array kOwnBatchRows = {
-    OptionRow{.name = "jobs",
-              .value = "N",
-              .help = "programs at a time, each in a process with one thread; 0: a processor each",
-              .default_value = "0"},
-    OptionRow{.name = "shard",
-              .value = "I/N",
-              .help = "only every N-th program from the I-th on, for several machines",
-              .default_value = "1/1"},
-    OptionRow{.name = "suffix",
-              .kind = OptionKind::kList,
-              .value = "SUFFIX",
-              .help =
-                  "what is a program, in place of nc, ngc, tap, cnc, gcode, ncc, eia, iso; none: "
-                  "names without a suffix, all: every file; a list with commas, or repeated"},
-    OptionRow{.name = "fail-fast",
-              .kind = OptionKind::kFlag,
-              .help = "stop at the first program that cannot be written; otherwise carry on"},
-    OptionRow{.name = "force",
-              .kind = OptionKind::kFlag,
-              .help = "replace programs in OUT_TREE that no batch wrote"},
-    OptionRow{.name = "progress",
-              .value = "auto|on|off",
-              .help = "a line with rate and time left on standard error; auto: on a terminal",
-              .default_value = "auto"},
-    OptionRow{.name = "config",
-              .value = "FILE.toml",
-              .help = "read options of smooth from a file; the command line goes first"},
-};
-
-std::vector<OptionRow> make_batch_rows() {
-  std::vector<OptionRow> rows;
-  for (const OptionRow& row : kSmoothRows) {
-    if (row.in_config && std::ranges::find(kNotForBatch, row.name) == kNotForBatch.end()) {
-      rows.push_back(row);
-    }
-  }
-  rows.insert(rows.end(), kOwnBatchRows.begin(), kOwnBatchRows.end());
-  return rows;
-}
-
-constexpr std::array kFreecadRows = {
-    OptionRow{.name = "freecad",
-              .value = "PROGRAM",
-              .help = "the FreeCAD without a window that is asked; default: the one in PATH"},
-    OptionRow{.name = "folder",
-              .value = "DIR",
-              .help = "write into this folder of macros and ask nobody"},
-    OptionRow{.name = "force",
-              .kind = OptionKind::kFlag,
-              .help = "replace a batten_post.py that is not ours"},
-};
-
-constexpr std::array kListRows = {kJson, kForce};
-constexpr std::array kMachinesRows = {
-    OptionRow{.name = "show",
-              .value = "NAME|FILE",
-              .help = "print this machine as a file for --machine, with everything in it"},
-    kGrblSettings, kJson, kForce};
-
-}  // namespace
-
-std::span<const OptionRow> smooth_rows() { return kSmoothRows; }
-std::span<const OptionRow> verify_rows() { return kVerifyRows; }
-std::span<const OptionRow> inspect_rows() { return kInspectRows; }
-std::span<const OptionRow> target_list_rows() { return kTargetListRows; }
-std::span<const OptionRow> time_rows() { return kTimeRows; }
-std::span<const OptionRow> batch_rows() {
-  static const std::vector<OptionRow> rows = make_batch_rows();
-  return rows;
-}
-std::span<const OptionRow> freecad_rows() { return kFreecadRows; }
-std::span<const OptionRow> list_rows() { return kListRows; }
-std::span<const OptionRow> machines_rows() { return kMachinesRows; }
 
 void Given::add(std::string_view name, std::string value) {
   values_[std::string(name)].push_back(std::move(value));
@@ -321,6 +44,113 @@ std::vector<std::string> Given::values(std::string_view name) const {
 
 void Given::complete_from(const Given& other) {
   for (const auto& [name, values] : other.values_) values_.try_emplace(name, values);
+}
+
+namespace {
+
+std::string place_of(const std::string& file, const toml::node& node) {
+  return fmt::format("{}:{}", file, node.source().begin.line);
+}
+
+// The text of a number, string or boolean; nothing for anything else.
+std::optional<std::string> text_of(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  return std::nullopt;
+}
+
+const OptionRow* find_row(std::string_view name) {
+  const auto& rows = option_rows("smooth");
+  const auto found = std::ranges::find(rows, name, &OptionRow::name);
+  return found == rows.end() || !found->in_config ? nullptr : &*found;
+}
+
+std::string unknown_key(const std::string& place, std::string_view key) {
+  std::vector<std::string_view> names;
+  for (const OptionRow& row : option_rows("smooth")) {
+    if (row.in_config) names.push_back(row.name);
+    if (row.name == key) {
+      return fmt::format("{}: '{}' is for the command line only", place, key);
+    }
+  }
+  const std::string_view nearest = nearest_name(key, names);
+  return fmt::format("{}: there is no option '{}'{}", place, key,
+                     nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest));
+}
+
+void add_value(const OptionRow& row, const toml::node& node, const std::string& file, Given& given,
+               Problems& problems) {
+  if (row.kind == OptionKind::kList && node.is_array()) {
+    for (const toml::node& element : *node.as_array()) {
+      if (const auto text = text_of(element)) {
+        given.add_list(row.name, *text);
+      } else {
+        problems.push_back(
+            fmt::format("{}: '{}', expected a list of strings", place_of(file, element), row.name));
+      }
+    }
+    return;
+  }
+  const auto text = text_of(node);
+  const bool fits = text && (row.kind == OptionKind::kFlag) == node.is_boolean();
+  if (fits && row.kind == OptionKind::kList) {
+    given.add_list(row.name, *text);
+  } else if (fits) {
+    given.add(row.name, *text);
+  } else {
+    problems.push_back(fmt::format(
+        "{}: '{}', expected {}", place_of(file, node), row.name,
+        row.kind == OptionKind::kFlag ? "true or false" : fmt::format("a value ({})", row.value)));
+  }
+}
+
+std::string line_of(const OptionRow& row, const Given& given) {
+  const auto values = given.values(row.name);
+  if (row.kind == OptionKind::kList) {
+    std::string list;
+    for (const std::string& value : values) list += (list.empty() ? "" : ", ") + toml_quoted(value);
+    return fmt::format("{} = [{}]", row.name, list);
+  }
+  if (row.kind == OptionKind::kFlag) {
+    return fmt::format("{} = {}", row.name, given.flag(row.name));
+  }
+  if (!values.empty()) return fmt::format("{} = {}", row.name, toml_quoted(values.front()));
+  if (!row.default_value.empty()) {
+    return fmt::format("{} = {}", row.name, toml_quoted(row.default_value));
+  }
+  return fmt::format("# {} = {}", row.name, toml_quoted(row.value));
+}
+
+}  // namespace
+
+Given read_config(const std::string& file, Problems& problems) {
+  Given given;
+  try {
+    const toml::table table = toml::parse_file(file);
+    for (const auto& [key, node] : table) {
+      if (const OptionRow* row = find_row(key.str())) {
+        add_value(*row, node, file, given, problems);
+      } else {
+        problems.push_back(unknown_key(place_of(file, node), key.str()));
+      }
+    }
+  } catch (const toml::parse_error& error) {
+    const auto line = error.source().begin.line;
+    problems.push_back(line > 0 ? fmt::format("{}:{}: {}", file, line, error.description())
+                                : fmt::format("{}: {}", file, error.description()));
+  }
+  return given;
+}
+
+std::string config_text(const Given& given) {
+  std::string text = "# Options of batten smooth, for --config.\n";
+  for (const OptionRow& row : option_rows("smooth")) {
+    if (!row.in_config) continue;
+    text += fmt::format("\n# {}\n{}\n", row.help, line_of(row, given));
+  }
+  return text;
 }
 
 }  // namespace batten::postproc

@@ -1,42 +1,17 @@
-// The options of `batten smooth` as one table, and what was given for them, still as text: on the
-// command line, in a configuration file, or both.
+// What was given for the options of a command, still as text: on the command line, in a
+// configuration file, or both.
 #pragma once
 
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace batten::postproc {
 
-enum class OptionKind {
-  kValue,  // --name VALUE, once
-  kList,   // --name VALUE, as often as wanted
-  kFlag,   // --name
-};
-
-struct OptionRow {
-  std::string_view name;  // without the dashes
-  OptionKind kind = OptionKind::kValue;
-  std::string_view value = {};          // how help calls the value
-  std::string_view help = {};           // one line
-  std::string_view default_value = {};  // what counts when it is not given; may be empty
-  bool in_config = false;               // may stand in a configuration file
-};
-
-// An option to add: a row here, a line in cli_commands.cpp that reads its value.
-[[nodiscard]] std::span<const OptionRow> smooth_rows();
-[[nodiscard]] std::span<const OptionRow> verify_rows();
-[[nodiscard]] std::span<const OptionRow> inspect_rows();
-[[nodiscard]] std::span<const OptionRow> target_list_rows();
-[[nodiscard]] std::span<const OptionRow> time_rows();
-// Those of `smooth` that a configuration file may hold, and own ones.
-[[nodiscard]] std::span<const OptionRow> batch_rows();
-[[nodiscard]] std::span<const OptionRow> freecad_rows();
-[[nodiscard]] std::span<const OptionRow> list_rows();
-[[nodiscard]] std::span<const OptionRow> machines_rows();
+// Messages for the user, one per problem.
+using Problems = std::vector<std::string>;
 
 // Option names to the values given for them; a flag that was given has the value "true".
 class Given {
@@ -50,8 +25,9 @@ class Given {
   [[nodiscard]] bool has(std::string_view name) const;
   [[nodiscard]] bool flag(std::string_view name) const;
 
-  // The value given, or nothing.
+  // The value given, or nothing; `text`: or an empty one.
   [[nodiscard]] std::optional<std::string> value(std::string_view name) const;
+  [[nodiscard]] std::string text(std::string_view name) const { return value(name).value_or(""); }
   [[nodiscard]] std::vector<std::string> values(std::string_view name) const;
 
   // Takes from `other` what is not given here.
@@ -60,5 +36,21 @@ class Given {
  private:
   std::map<std::string, std::vector<std::string>, std::less<>> values_;
 };
+
+// A configuration file is TOML, with one key per long option of `batten smooth`:
+//
+//   target = "linuxcnc"
+//   tolerance = "0.01mm"
+//   allow = ["exact-stop"]
+//   strict = true
+//
+// Numbers, strings and booleans count as the text that stands for them on the command line. A
+// file that cannot be read, a key that is no option, and a value of another kind are problems,
+// each with file and line.
+[[nodiscard]] Given read_config(const std::string& file, Problems& problems);
+
+// All options that may stand in such a file: those given and those with a default as they are,
+// the others as comments. `read_config` reads it back to the same options.
+[[nodiscard]] std::string config_text(const Given& given);
 
 }  // namespace batten::postproc

@@ -9,7 +9,6 @@
 #include "gcode/controls/built_in.h"
 #include "geometry/distance/path_distance.h"
 #include "postproc/cli/cli_commands.h"
-#include "postproc/cli/cli_given.h"
 #include "postproc/smooth/forms/output_plan.h"
 #include "tests/support/curve_of.h"
 
@@ -23,12 +22,11 @@ using geometry::SmoothCurve;
 using Words = std::vector<std::pair<std::string, std::string>>;
 
 SmoothOptions options_given(const Words& words) {
-  Given given;
-  given.add("target", "linuxcnc");
-  for (const auto& [name, value] : words) given.add(name, value);
-  Problems problems;
-  const SmoothCommand command = smooth_command(given, {"part.nc"}, problems);
-  EXPECT_TRUE(problems.empty());
+  Arguments in = {{}, {"part.nc"}};
+  in.given.add("target", "linuxcnc");
+  for (const auto& [name, value] : words) in.given.add(name, value);
+  const SmoothCommand command = smooth_command(in);
+  EXPECT_TRUE(in.problems.empty());
   return command.options;
 }
 
@@ -50,13 +48,12 @@ TEST(LinearizeOption, GoesBeforeThePreference) {
 }
 
 TEST(LinearizeOption, RefusesUnknownNames) {
-  Given given;
-  given.add("target", "linuxcnc");
-  given.add("linearize", "min-link");
-  Problems problems;
-  (void)smooth_command(given, {"part.nc"}, problems);
-  ASSERT_EQ(problems.size(), 1U);
-  EXPECT_NE(problems.front().find("minlink"), std::string::npos) << problems.front();
+  Arguments in = {{}, {"part.nc"}};
+  in.given.add("target", "linuxcnc");
+  in.given.add("linearize", "min-link");
+  (void)smooth_command(in);
+  ASSERT_EQ(in.problems.size(), 1U);
+  EXPECT_NE(in.problems.front().find("minlink"), std::string::npos) << in.problems.front();
 }
 
 // y = 5 sin(x / 5), with the feed halved half way and a comment.
