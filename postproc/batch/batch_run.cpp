@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <chrono>
 #include <exception>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 #include <string>

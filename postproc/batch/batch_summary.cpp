@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "postproc/system/terminal_colour.h"
 #include "postproc/text/json_values.h"

@@ -1,6 +1,7 @@
 #include "postproc/batch/manifest.h"
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "postproc/batch/program_tree.h"

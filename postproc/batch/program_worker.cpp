@@ -9,7 +9,7 @@
 
 #include "postproc/batch/content_hash.h"
 #include "postproc/batch/program_tree.h"
-#include "postproc/report/json_report.h"
+#include "postproc/report/smooth_report.h"
 #include "postproc/stream/pipeline.h"
 #include "postproc/stream/smooth_verdict.h"
 #include "postproc/system/exit_code.h"

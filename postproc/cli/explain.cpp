@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "gcode/reading/explained_diagnostics.h"
 #include "gcode/state/reason.h"
@@ -85,118 +86,9 @@ constexpr ExplainedViolation kViolations[] = {
      "The files do not belong together."},
 };
 
-// Broken between words, every line with the same indent.
-std::string wrapped(std::string_view text, std::size_t indent) {
-  std::string lines;
-  std::string line;
-  const auto flush = [&] {
-    if (!line.empty()) lines += std::string(indent, ' ') + line + "\n";
-    line.clear();
-  };
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(' '), text.size());
-    const std::string_view word = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (indent + line.size() + 1 + word.size() > kColumns) flush();
-    if (!line.empty()) line += ' ';
-    line += word;
-  }
-  flush();
-  return lines;
-}
-
-std::string part(std::string_view head, std::string_view text, std::string_view advice) {
-  return fmt::format("{}\n{}  What to do:\n{}", head, wrapped(text, 2), wrapped(advice, 4));
-}
-
-std::string of_reason(std::string_view id) {
-  const auto all = gcode::reason::explanations();
-  const auto found = std::ranges::find(all, id, &gcode::reason::Explanation::id);
-  if (found == all.end()) return "";
-  std::string text =
-      part(fmt::format("{}: why blocks are kept as they are", id), found->text, found->advice);
-  if (found->can_be_allowed) {
-    text += fmt::format("    batten smooth .. --allow {} lifts this rule.\n", id);
-  }
-  return text;
-}
-
-std::vector<gcode::ExplainedDiagnostic> explained_messages() {
-  std::vector<gcode::ExplainedDiagnostic> all;
-  for (const auto& each : gcode::explained_diagnostics()) all.push_back(each);
-  for (const auto& each : explained_notes()) all.push_back(each);
-  return all;
-}
-
-std::string of_diagnostic(std::string_view id) {
-  const auto all = explained_messages();
-  const auto found = std::ranges::find(all, id, &gcode::ExplainedDiagnostic::id);
-  if (found == all.end()) return "";
-  return part(fmt::format("{}: a message about a program ({})", id, found->severity), found->text,
-              found->advice);
-}
-
-std::string of_violation(std::string_view id) {
-  const auto all = explained_violations();
-  const auto found = std::ranges::find(all, id, &ExplainedViolation::id);
-  if (found == all.end()) return "";
-  return part(fmt::format("{}: a breach found by batten verify", id), found->text, found->advice);
-}
-
-// Up to the end of the first sentence. A stop within brackets or an abbreviation ends none.
-std::string_view first_sentence(std::string_view text) {
-  int brackets = 0;
-  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
-    if (text[i] == '(') ++brackets;
-    if (text[i] == ')') --brackets;
-    if (brackets == 0 && text[i] == '.' && text[i + 1] == ' ') return text.substr(0, i + 1);
-  }
-  return text;
-}
-
-void add_list(std::string& text, std::string_view head) { text += fmt::format("{}\n", head); }
-
-void add_row(std::string& text, std::string_view id, std::string_view meaning) {
-  text += fmt::format("  {:<24} {}\n", id, first_sentence(meaning));
-}
-
-}  // namespace
-
-std::span<const ExplainedViolation> explained_violations() { return kViolations; }
-
-std::vector<std::string_view> explained_ids() {
-  std::vector<std::string_view> ids;
-  for (const auto& each : gcode::reason::explanations()) ids.push_back(each.id);
-  for (const auto& each : explained_messages()) ids.push_back(each.id);
-  for (const auto& each : explained_violations()) ids.push_back(each.id);
-  std::ranges::sort(ids);
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  return ids;
-}
-
-std::string explanation_of(std::string_view id) {
-  std::string text;
-  for (const std::string& each : {of_reason(id), of_diagnostic(id), of_violation(id)}) {
-    if (each.empty()) continue;
-    text += (text.empty() ? "" : "\n") + each;
-  }
-  return text;
-}
-
-std::string all_explanations() {
-  std::string text;
-  add_list(text, "Why blocks are kept as they are:");
-  for (const auto& each : gcode::reason::explanations()) add_row(text, each.id, each.text);
-  add_list(text, "\nMessages about a program:");
-  for (const auto& each : explained_messages()) add_row(text, each.id, each.text);
-  add_list(text, "\nBreaches found by batten verify:");
-  for (const auto& each : explained_violations()) add_row(text, each.id, each.text);
-  return text;
-}
-
-namespace {
-
-constexpr gcode::ExplainedDiagnostic kExplained[] = {
+// What the messages mean that do not come from reading a program: about its target, the words of
+// its profile, the band around its runs, and what was written.
+constexpr gcode::ExplainedDiagnostic kNotes[] = {
     // --- the program and its target ---
     {"other-family", "error",
      "Words that only other controls have, in a program in which something would be rewritten.",
@@ -242,8 +134,109 @@ constexpr gcode::ExplainedDiagnostic kExplained[] = {
      "Nothing, or a larger tolerance."},
 };
 
+// Broken between words, every line with the same indent.
+std::string wrapped(std::string_view text, std::size_t indent) {
+  std::string lines;
+  std::string line;
+  const auto flush = [&] {
+    if (!line.empty()) lines += std::string(indent, ' ') + line + "\n";
+    line.clear();
+  };
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::string_view word = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (indent + line.size() + 1 + word.size() > kColumns) flush();
+    if (!line.empty()) line += ' ';
+    line += word;
+  }
+  flush();
+  return lines;
+}
+
+// Up to the end of the first sentence. A stop within brackets or an abbreviation ends none.
+std::string_view first_sentence(std::string_view text) {
+  int brackets = 0;
+  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+    if (text[i] == '(') ++brackets;
+    if (text[i] == ')') --brackets;
+    if (brackets == 0 && text[i] == '.' && text[i + 1] == ' ') return text.substr(0, i + 1);
+  }
+  return text;
+}
+
+struct Explained {
+  std::string_view id;
+  std::string what;  // it is
+  std::string_view text;
+  std::string_view advice;
+  bool can_be_allowed = false;
+};
+
+struct ExplainedGroup {
+  std::string_view title;
+  std::vector<Explained> all;
+};
+
+std::vector<ExplainedGroup> explained_groups() {
+  ExplainedGroup reasons = {"Why blocks are kept as they are:", {}};
+  for (const auto& each : gcode::reason::explanations()) {
+    reasons.all.push_back(
+        {each.id, "why blocks are kept as they are", each.text, each.advice, each.can_be_allowed});
+  }
+  ExplainedGroup messages = {"\nMessages about a program:", {}};
+  const auto add_messages = [&](std::span<const gcode::ExplainedDiagnostic> list) {
+    for (const auto& each : list) {
+      messages.all.push_back({each.id, fmt::format("a message about a program ({})", each.severity),
+                              each.text, each.advice});
+    }
+  };
+  add_messages(gcode::explained_diagnostics());
+  add_messages(kNotes);
+  ExplainedGroup breaches = {"\nBreaches found by batten verify:", {}};
+  for (const auto& each : kViolations) {
+    breaches.all.push_back({each.id, "a breach found by batten verify", each.text, each.advice});
+  }
+  return {std::move(reasons), std::move(messages), std::move(breaches)};
+}
+
 }  // namespace
 
-std::span<const gcode::ExplainedDiagnostic> explained_notes() { return kExplained; }
+std::span<const ExplainedViolation> explained_violations() { return kViolations; }
+
+std::vector<std::string_view> explained_ids() {
+  std::vector<std::string_view> ids;
+  for (const ExplainedGroup& group : explained_groups()) {
+    for (const Explained& each : group.all) ids.push_back(each.id);
+  }
+  std::ranges::sort(ids);
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+std::string explanation_of(std::string_view id) {
+  std::string text;
+  for (const ExplainedGroup& group : explained_groups()) {
+    const auto found = std::ranges::find(group.all, id, &Explained::id);
+    if (found == group.all.end()) continue;
+    text += fmt::format("{}{}: {}\n{}  What to do:\n{}", text.empty() ? "" : "\n", id, found->what,
+                        wrapped(found->text, 2), wrapped(found->advice, 4));
+    if (found->can_be_allowed) {
+      text += fmt::format("    batten smooth .. --allow {} lifts this rule.\n", id);
+    }
+  }
+  return text;
+}
+
+std::string all_explanations() {
+  std::string text;
+  for (const ExplainedGroup& group : explained_groups()) {
+    text += fmt::format("{}\n", group.title);
+    for (const Explained& each : group.all) {
+      text += fmt::format("  {:<24} {}\n", each.id, first_sentence(each.text));
+    }
+  }
+  return text;
+}
 
 }  // namespace batten::postproc

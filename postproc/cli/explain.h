@@ -6,8 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/reading/explained_diagnostics.h"
-
 namespace batten::postproc {
 
 // A breach that `batten verify` can find (Violation::id).
@@ -29,11 +27,5 @@ struct ExplainedViolation {
 
 // A line for each id.
 [[nodiscard]] std::string all_explanations();
-
-// What the messages mean that do not come from reading a program: about its target, the words of
-// its profile, the band around its runs, and what was written.
-
-// Every such id, once.
-[[nodiscard]] std::span<const gcode::ExplainedDiagnostic> explained_notes();
 
 }  // namespace batten::postproc

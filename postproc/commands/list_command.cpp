@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "postproc/commands/commands.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -14,9 +15,9 @@
 #include "postproc/convert/conversion.h"
 #include "postproc/proof/verification.h"
 #include "postproc/report/compact_numbers.h"
-#include "postproc/report/json_report.h"
 #include "postproc/report/page_files.h"
 #include "postproc/report/page_speed.h"
+#include "postproc/report/smooth_report.h"
 
 namespace batten::postproc {
 namespace {

@@ -1,5 +1,8 @@
 #include "postproc/text/json_values.h"
 
+#include <nlohmann/json.hpp>
+#include <string_view>
+
 namespace batten::postproc {
 
 Json diagnostics_json(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source) {

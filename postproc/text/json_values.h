@@ -1,7 +1,7 @@
 // Parts that every JSON report of the program has in common.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "gcode/text/diagnostic.h"
@@ -9,7 +9,8 @@
 
 namespace batten::postproc {
 
-// Keeps its fields in the order in which they were set.
+// Keeps its fields in the order in which they were set. Who looks into one includes
+// <nlohmann/json.hpp>.
 using Json = nlohmann::ordered_json;
 
 // [{"severity": "warning", "id": "", "line": 1, "column": 1, "message": ""}]

@@ -23,11 +23,11 @@
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
 #include "geometry/fitting/fair/fair_measure.h"
-#include "postproc/machine/machine_path_limits.h"
 #include "postproc/machine/planner/feed_estimate.h"
 #include "postproc/machine/planner/feed_plan.h"
 #include "postproc/smooth/methods/run_curve.h"
 #include "postproc/stream/pipeline.h"
+#include "tests/support/machine_limits.h"
 #include "tests/support/paths.h"
 #include "tests/support/surface_programs.h"
 

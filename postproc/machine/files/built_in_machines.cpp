@@ -10,43 +10,46 @@
 namespace batten::postproc {
 namespace {
 
-constexpr double kPerMinute = 1.0 / 60;
+using AllAxes = std::array<AxisLimits, kAxes>;
 
-void set_xyz(Machine& m, const AxisLimits& limits) {
-  for (const Axis axis : {Axis::kX, Axis::kY, Axis::kZ}) m.axis(axis) = limits;
+// X, Y and Z alike; A, B and C as they are where nothing is known.
+AllAxes xyz(const AxisLimits& limits) {
+  AllAxes axes = Machine().axes;
+  std::fill_n(axes.begin(), kLinearAxes, limits);
+  return axes;
 }
+
+constexpr double kPerMinute = 1.0 / 60;
 
 // LinuxCNC, with the limits under which its model was compared with the real control
 // (docs/algorithms/cycle_time.md): a fast router or engraving machine.
 Machine linuxcnc() {
-  Machine m;
-  m.name = "linuxcnc";
-  m.description = "LinuxCNC 2.9, G64 P0.01, 400 mm/s and 4000 mm/s2 on every axis, 1 ms servo";
-  m.model = ControllerModel::kLinuxcnc;
-  set_xyz(m,
-          {.velocity = 400, .acceleration = 4000, .jerk = Machine::kNone, .rapid_velocity = 400});
-  m.path_feed = 400;
-  m.block_period = 0.001;
-  m.servo_period = 0.001;
-  // What the planner optimises ([TRAJ]ARC_BLEND_OPTIMIZATION_DEPTH); its queue of 2000
-  // blocks is never the limit.
-  m.look_ahead = 50;
-  m.blend_tolerance = 0.01;
-  m.naive_cam_tolerance = 0.01;
-  return m;
+  return {
+      .name = "linuxcnc",
+      .description = "LinuxCNC 2.9, G64 P0.01, 400 mm/s and 4000 mm/s2 on every axis, 1 ms servo",
+      .model = ControllerModel::kLinuxcnc,
+      .axes = xyz({400, 4000, Machine::kNone, 400}),
+      .path_feed = 400,
+      .block_period = 0.001,
+      // What the planner optimises ([TRAJ]ARC_BLEND_OPTIMIZATION_DEPTH); its queue of 2000
+      // blocks is never the limit.
+      .look_ahead = 50,
+      .servo_period = 0.001,
+      .blend_tolerance = 0.01,
+      .naive_cam_tolerance = 0.01};
 }
 
 // What every grbl 1.1 has in common: 16 MHz, and a serial line of 115200 baud, which is 11,520
 // bytes a second: X12.345Y-6.789 and its line end take 1.3 ms.
 Machine any_grbl() {
-  Machine m;
-  m.model = ControllerModel::kGrbl;
-  m.stream_rate = 11520;
-  m.block_period = 0.0013;
-  m.servo_period = 0.01;  // speeds change in steps of a hundredth of a second (ACCELERATION_TICKS)
-  m.look_ahead = 15;      // the ring of 16 holds one block less
-  m.blend_tolerance = 0;
-  return m;
+  return {.name = "",
+          .description = "",
+          .model = ControllerModel::kGrbl,
+          .block_period = 0.0013,
+          .stream_rate = 11520,
+          .look_ahead = 15,      // the ring of 16 holds one block less
+          .servo_period = 0.01,  // speeds change in steps of a hundredth of a second
+          .blend_tolerance = 0};
 }
 
 // What a new grbl answers to `$$` (DEFAULTS_GENERIC of its defaults.h), as far as time goes.
@@ -69,10 +72,7 @@ Machine router() {
   Machine m = any_grbl();
   m.name = "router";
   m.description = "hobby router, grbl 1.1 at 115200 baud, 5000 mm/min and 400 mm/s2";
-  set_xyz(m, {.velocity = 5000 * kPerMinute,
-              .acceleration = 400,
-              .jerk = Machine::kNone,
-              .rapid_velocity = 5000 * kPerMinute});
+  m.axes = xyz({5000 * kPerMinute, 400, Machine::kNone, 5000 * kPerMinute});
   m.junction_deviation = 0.01;
   m.arc_tolerance = 0.002;
   return m;
@@ -82,59 +82,41 @@ Machine router() {
 // a fifth of g, 2 ms a block (500 blocks/s) and 200 blocks of look-ahead are what makers
 // name for mid-range controls; 6 s from chip to chip with a carousel.
 Machine mill() {
-  Machine m;
-  m.name = "mill";
-  m.description = "machining centre, 20 m/min and 2000 mm/s2 on every axis, 500 blocks/s";
-  m.model = ControllerModel::kLookAhead;
-  set_xyz(m, {.velocity = 20000 * kPerMinute,
-              .acceleration = 2000,
-              .jerk = Machine::kNone,
-              .rapid_velocity = 20000 * kPerMinute});
-  m.block_period = 0.002;
-  m.look_ahead = 200;
-  m.blend_tolerance = 0;
-  m.tool_change_time = 6;
-  m.spindle_start_time = 2;
-  return m;
+  return {.name = "mill",
+          .description = "machining centre, 20 m/min and 2000 mm/s2 on every axis, 500 blocks/s",
+          .axes = xyz({20000 * kPerMinute, 2000, Machine::kNone, 20000 * kPerMinute}),
+          .block_period = 0.002,
+          .look_ahead = 200,
+          .blend_tolerance = 0,
+          .tool_change_time = 6,
+          .spindle_start_time = 2};
 }
 
 // A high-speed mill for dies: 0.5 ms a block and 1024 blocks ahead are what Heidenhain names for
 // its iTNC 530; 40 m/min, one g and 100 m/s^3 what makers of such machines name.
 Machine high_speed_mill() {
-  Machine m;
-  m.name = "high-speed";
-  m.description = "high-speed mill, 40 m/min, 10 m/s2, jerk 100 m/s3, 2000 blocks/s";
-  m.model = ControllerModel::kLookAhead;
-  set_xyz(m, {.velocity = 40000 * kPerMinute,
-              .acceleration = 10000,
-              .jerk = 100000,
-              .rapid_velocity = 60000 * kPerMinute});
-  m.block_period = 0.0005;
-  m.servo_period = 0.0005;
-  m.look_ahead = 1024;
-  m.blend_tolerance = 0.01;
-  m.tool_change_time = 4;
-  m.spindle_start_time = 1.5;
-  return m;
+  return {.name = "high-speed",
+          .description = "high-speed mill, 40 m/min, 10 m/s2, jerk 100 m/s3, 2000 blocks/s",
+          .axes = xyz({40000 * kPerMinute, 10000, 100000, 60000 * kPerMinute}),
+          .block_period = 0.0005,
+          .look_ahead = 1024,
+          .servo_period = 0.0005,
+          .blend_tolerance = 0.01,
+          .tool_change_time = 4,
+          .spindle_start_time = 1.5};
 }
 
 // A control of the nineties that was fast then: it sees 20 blocks and brakes for what may follow.
 Machine old_mill() {
-  Machine m;
-  m.name = "old-mill";
-  m.description = "old shop control, 10 m/min, 1000 mm/s2, 1000 blocks/s, 20 blocks ahead";
-  m.model = ControllerModel::kLookAhead;
-  set_xyz(m, {.velocity = 10000 * kPerMinute,
-              .acceleration = 1000,
-              .jerk = Machine::kNone,
-              .rapid_velocity = 15000 * kPerMinute});
-  m.block_period = 0.001;
-  m.servo_period = 0.002;
-  m.look_ahead = 20;
-  m.blend_tolerance = 0;
-  m.tool_change_time = 10;
-  m.spindle_start_time = 3;
-  return m;
+  return {.name = "old-mill",
+          .description = "old shop control, 10 m/min, 1000 mm/s2, 1000 blocks/s, 20 blocks ahead",
+          .axes = xyz({10000 * kPerMinute, 1000, Machine::kNone, 15000 * kPerMinute}),
+          .block_period = 0.001,
+          .look_ahead = 20,
+          .servo_period = 0.002,
+          .blend_tolerance = 0,
+          .tool_change_time = 10,
+          .spindle_start_time = 3};
 }
 
 }  // namespace

@@ -7,14 +7,14 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <map>
 
-#include "postproc/machine/files/value_origin.h"
+#include "postproc/machine/machine_fields.h"
 
 namespace batten::postproc {
 namespace {
 
-constexpr double kSecondsPerMinute = 60;
 constexpr int kJunctionDeviation = 11;
 constexpr int kArcTolerance = 12;
 constexpr int kMaxRate = 110;       // mm/min of X, then of the other axes
@@ -121,54 +121,6 @@ class DumpReader {
   std::map<int, Setting> settings_;
 };
 
-// Puts settings into the machine and remembers where each came from.
-class Application {
- public:
-  Application(const DumpReader& dump, Machine& machine, ValueOrigins& origins)
-      : dump_(dump), machine_(machine), origins_(origins) {}
-
-  void apply() {
-    take(kJunctionDeviation, machine_.junction_deviation, {"junction-deviation"});
-    take(kArcTolerance, machine_.arc_tolerance, {"arc-tolerance"});
-    for (std::size_t i = 0; i < kAxes; ++i) take_axis(i);
-  }
-
-  [[nodiscard]] const std::string& missing() const { return missing_; }
-
- private:
-  void take_axis(std::size_t index) {
-    const auto axis = static_cast<Axis>(index);
-    AxisLimits& limits = machine_.axis(axis);
-    const int offset = static_cast<int>(index);
-    const std::string table = fmt::format("axis.{}.", name_of(axis));
-    const bool required = index < kLinearAxes;
-    if (take(kMaxRate + offset, limits.velocity, {table + "velocity", table + "rapid-velocity"},
-             required)) {
-      limits.velocity /= kSecondsPerMinute;
-      limits.rapid_velocity = limits.velocity;
-    }
-    take(kAcceleration + offset, limits.acceleration, {table + "acceleration"}, required);
-  }
-
-  bool take(int number, double& place, const std::vector<std::string>& keys, bool required = true) {
-    const Setting* setting = dump_.find(number);
-    if (setting == nullptr) {
-      if (required) missing_ += fmt::format("{}${}", missing_.empty() ? "" : ", ", number);
-      return false;
-    }
-    place = setting->value;
-    for (const std::string& key : keys) {
-      origins_.add(key, {fmt::format("${}", number), setting->line, setting->column});
-    }
-    return true;
-  }
-
-  const DumpReader& dump_;
-  Machine& machine_;
-  ValueOrigins& origins_;
-  std::string missing_;
-};
-
 }  // namespace
 
 std::optional<Machine> with_grbl_settings(const Machine& base, std::string_view dump,
@@ -182,12 +134,38 @@ std::optional<Machine> with_grbl_settings(const Machine& base, std::string_view 
   Machine machine = base;
   machine.model = ControllerModel::kGrbl;
   ValueOrigins origins(file);
-  Application application(reader, machine, origins);
-  application.apply();
-  if (!application.missing().empty()) {
-    problems.push_back(
-        fmt::format("{}: no {} in it, expected all that grbl prints when asked for $$", file,
-                    application.missing()));
+  std::string missing;
+  const auto take = [&](int number, double& place, std::initializer_list<std::string> keys,
+                        bool required) {
+    const Setting* setting = reader.find(number);
+    if (setting == nullptr) {
+      if (required) missing += fmt::format("{}${}", missing.empty() ? "" : ", ", number);
+      return false;
+    }
+    place = setting->value;
+    for (const std::string& key : keys) {
+      origins.add(key, {fmt::format("${}", number), setting->line, setting->column});
+    }
+    return true;
+  };
+  take(kJunctionDeviation, machine.junction_deviation, {"junction-deviation"}, true);
+  take(kArcTolerance, machine.arc_tolerance, {"arc-tolerance"}, true);
+  for (std::size_t i = 0; i < kAxes; ++i) {
+    const auto axis = static_cast<Axis>(i);
+    AxisLimits& limits = machine.axis(axis);
+    const std::string table = fmt::format("axis.{}.", name_of(axis));
+    const bool required = i < kLinearAxes;
+    if (take(kMaxRate + static_cast<int>(i), limits.velocity,
+             {table + "velocity", table + "rapid-velocity"}, required)) {
+      limits.velocity /= kMinute;
+      limits.rapid_velocity = limits.velocity;
+    }
+    take(kAcceleration + static_cast<int>(i), limits.acceleration, {table + "acceleration"},
+         required);
+  }
+  if (!missing.empty()) {
+    problems.push_back(fmt::format(
+        "{}: no {} in it, expected all that grbl prints when asked for $$", file, missing));
     return std::nullopt;
   }
   origins.add_problems_of(machine, problems);

@@ -1,6 +1,7 @@
 #include "postproc/machine/files/machine_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -15,7 +16,6 @@
 #include "gcode/text/source_text.h"
 #include "postproc/machine/files/grbl_settings.h"
 #include "postproc/machine/files/machine_ini.h"
-#include "postproc/machine/files/value_origin.h"
 #include "postproc/machine/machine_fields.h"
 #include "postproc/text/nearest_name.h"
 #include "postproc/text/toml_text.h"
@@ -51,19 +51,16 @@ std::vector<std::string_view> axis_names() {
 }
 
 std::string list_of(const std::vector<std::string_view>& names) {
-  std::string list;
-  for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + std::string(name);
-  return list;
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::string list_of_units(Quantity quantity) {
-  std::string list;
+  std::vector<std::string_view> names;
   for (const Unit& unit : units_of(quantity)) {
     // Names such as mm/s^2 are other spellings.
-    if (unit.name.find('^') != std::string_view::npos) continue;
-    list += (list.empty() ? "" : ", ") + std::string(unit.name);
+    if (unit.name.find('^') == std::string_view::npos) names.push_back(unit.name);
   }
-  return list;
+  return list_of(names);
 }
 
 // The value as it stands in the file.
@@ -298,22 +295,20 @@ class MachineReader {
   }
 
   void require_everything() {
-    std::string missing;
-    const auto require = [&](const std::string& key) {
-      if (!said_.contains(key)) missing += (missing.empty() ? "" : ", ") + key;
-    };
-    require(std::string(kModel));
-    require(std::string(kPathMode));
-    require(std::string(kLookAheadKey));
-    for (const MachineField& field : machine_fields()) require(std::string(field.key));
+    std::vector<std::string> needed = {std::string(kModel), std::string(kPathMode),
+                                       std::string(kLookAheadKey)};
+    for (const MachineField& field : machine_fields()) needed.emplace_back(field.key);
     for (std::size_t i = 0; i < kAxes; ++i) {
-      for (const AxisField& field : axis_fields()) require(axis_key(static_cast<Axis>(i), field));
+      for (const AxisField& field : axis_fields()) {
+        needed.push_back(axis_key(static_cast<Axis>(i), field));
+      }
     }
-    if (missing.empty()) return;
+    std::erase_if(needed, [this](const std::string& key) { return said_.contains(key); });
+    if (needed.empty()) return;
     problems_.push_back(
         fmt::format("{}: no based-on in it, and without one these are missing: {}; machines to be "
                     "based on: {}",
-                    file_, missing, possible_machines()));
+                    file_, fmt::join(needed, ", "), possible_machines()));
   }
 
   const std::string& file_;
@@ -363,9 +358,7 @@ std::shared_ptr<const Machine> read_machine_file(const std::string& file,
 }
 
 std::string possible_machines() {
-  std::string text;
-  for (const std::string_view name : built_in_names()) text += std::string(name) + ", ";
-  return text + "a file NAME.toml, or the NAME.ini of a LinuxCNC machine";
+  return list_of(built_in_names()) + ", a file NAME.toml, or the NAME.ini of a LinuxCNC machine";
 }
 
 std::shared_ptr<const Machine> choose_machine(

@@ -12,13 +12,110 @@
 #include <string_view>
 
 #include "gcode/reading/parser.h"
-#include "postproc/machine/files/ini_file.h"
-#include "postproc/machine/files/value_origin.h"
-#include "postproc/machine/machine.h"
+#include "gcode/text/source_text.h"
+#include "postproc/machine/machine_fields.h"
 
 namespace batten::postproc {
 
 namespace {
+
+// --- the file ------------------------------------------------------------------------------------
+
+// INI files as LinuxCNC reads them: [SECTION] lines, KEY = VALUE lines, comments from # or ; at the
+// beginning of a line, and `#INCLUDE FILE` lines, whose files stand in their place (and include no
+// further ones). Sections and keys keep their case; of two values the first counts.
+
+struct IniEntry {
+  std::string section;
+  std::string key;
+  std::string value;  // without blanks around it
+  std::string file;
+  std::size_t line = 0;    // from 1
+  std::size_t column = 0;  // of the value, from 1
+};
+
+std::string_view without_blanks(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r";
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+class IniFile {
+ public:
+  // Adds to `problems` what could not be read, with file and line.
+  IniFile(const std::string& file, std::vector<std::string>& problems) : problems_(problems) {
+    read(file, true);
+  }
+
+  // Null when there is none.
+  [[nodiscard]] const IniEntry* find(std::string_view section, std::string_view key) const {
+    const auto found = std::ranges::find_if(entries_, [&](const IniEntry& entry) {
+      return entry.section == section && entry.key == key;
+    });
+    return found == entries_.end() ? nullptr : &*found;
+  }
+  [[nodiscard]] bool has_section(std::string_view section) const {
+    return std::ranges::find(sections_, section) != sections_.end();
+  }
+
+ private:
+  void read(const std::string& file, bool may_include) {
+    std::string error;
+    const auto source = gcode::SourceText::map_file(file, error);
+    if (!source) {
+      problems_.push_back(error);
+      return;
+    }
+    std::string_view rest = source->text();
+    for (std::size_t number = 1; !rest.empty(); ++number) {
+      const std::size_t end = rest.find('\n');
+      read_line(rest.substr(0, end), file, number, may_include);
+      if (end == std::string_view::npos) break;
+      rest.remove_prefix(end + 1);
+    }
+  }
+
+  void read_line(std::string_view line, const std::string& file, std::size_t number,
+                 bool may_include) {
+    constexpr std::string_view kInclude = "#INCLUDE";
+    const std::string_view text = without_blanks(line);
+    if (may_include && text.starts_with(kInclude)) {
+      include(without_blanks(text.substr(kInclude.size())), file, number);
+      return;
+    }
+    if (text.empty() || text.front() == '#' || text.front() == ';') return;
+    if (text.front() == '[') {
+      section_ = std::string(text.substr(1, text.find(']') - 1));
+      sections_.push_back(section_);
+      return;
+    }
+    const std::size_t equals = text.find('=');
+    if (equals == std::string_view::npos) return;
+    const std::string_view value = without_blanks(text.substr(equals + 1));
+    if (value.empty()) return;
+    entries_.push_back({section_, std::string(without_blanks(text.substr(0, equals))),
+                        std::string(value), file, number,
+                        static_cast<std::size_t>(value.data() - line.data()) + 1});
+  }
+
+  void include(std::string_view name, const std::string& by, std::size_t line) {
+    const std::filesystem::path file = std::filesystem::path(by).parent_path() / name;
+    std::error_code error;
+    if (name.empty() || !std::filesystem::is_regular_file(file, error)) {
+      problems_.push_back(fmt::format("{}:{}: #INCLUDE: there is no file '{}'", by, line, name));
+      return;
+    }
+    read(file.string(), false);
+  }
+
+  std::vector<std::string>& problems_;
+  std::vector<IniEntry> entries_;
+  std::vector<std::string> sections_;
+  std::string section_;
+};
+
+// --- the machine ---------------------------------------------------------------------------------
 
 constexpr double kNanosecond = 1e-9;
 
@@ -269,9 +366,9 @@ class MachineIniReader {
 std::shared_ptr<const Machine> read_machine_ini(const std::string& file,
                                                 std::vector<std::string>& problems) {
   const std::size_t problems_before = problems.size();
-  const auto ini = IniFile::read(file, problems);
-  if (!ini) return nullptr;
-  Machine machine = MachineIniReader(*ini, file, problems).read();
+  const IniFile ini(file, problems);
+  if (problems.size() > problems_before) return nullptr;
+  Machine machine = MachineIniReader(ini, file, problems).read();
   if (problems.size() > problems_before) return nullptr;
   return std::make_shared<const Machine>(std::move(machine));
 }

@@ -5,35 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string_view>
 
 #include "geometry/basic/rounding.h"
+#include "postproc/machine/machine_fields.h"
 #include "postproc/machine/models/jerk_motion.h"
 #include "postproc/machine/models/junction_speed.h"
 
 namespace batten::postproc {
 namespace {
 
-void require_positive(double value, std::string_view name, const Machine& machine) {
-  if (value > 0) return;
-  throw std::invalid_argument(
-      fmt::format("machine \"{}\": {} is {}, expected above 0", machine.name, name, value));
-}
-
 void require_usable(const Machine& machine) {
-  require_positive(machine.max_velocity(), "max_velocity", machine);
-  require_positive(machine.rapid_velocity(), "rapid_velocity", machine);
-  require_positive(machine.max_acceleration(), "max_acceleration", machine);
-  require_positive(machine.path_feed, "path_feed", machine);
-  require_positive(machine.path_acceleration, "path_acceleration", machine);
-  require_positive(machine.block_period, "block_period", machine);
-  require_positive(machine.stream_rate, "stream_rate", machine);
-  require_positive(machine.look_ahead, "look_ahead", machine);
-  if (machine.model != ControllerModel::kGrbl) {
-    require_positive(machine.servo_period, "servo_period", machine);
-  } else {
-    require_positive(machine.junction_deviation, "junction_deviation", machine);
-    require_positive(machine.arc_tolerance, "arc_tolerance", machine);
+  for (const MachineProblem& problem : problems_of(machine)) {
+    throw std::invalid_argument(fmt::format("machine \"{}\": {} is {}, expected {}", machine.name,
+                                            problem.key, problem.value, problem.expected));
   }
 }
 

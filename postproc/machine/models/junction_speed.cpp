@@ -67,6 +67,12 @@ double limit_on(const geometry::PathPiece& piece, const Vector3& limits) {
   return limit_across(arc->axis, limits);
 }
 
+double greatest_curvature(const geometry::PathPiece& piece) {
+  double most = 0;
+  for (const double t : {0.0, 0.5, 1.0}) most = std::max(most, geometry::curvature_at(piece, t));
+  return most;
+}
+
 // With phi the angle between the two segments (180 degrees: straight on), the circle of
 // radius R that touches both leaves the corner by R (1 - sin(phi/2)) / sin(phi/2).
 double junction_deviation_speed(const Vector3& before, const Vector3& after, double deviation,

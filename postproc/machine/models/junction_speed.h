@@ -24,6 +24,9 @@ namespace batten::postproc {
 // of a flat arc, otherwise any.
 [[nodiscard]] double limit_on(const geometry::PathPiece& piece, const geometry::Vector3& limits);
 
+// 1/mm, of its ends and its middle.
+[[nodiscard]] double greatest_curvature(const geometry::PathPiece& piece);
+
 // grbl's junction deviation: the speed on the circle that touches both directions and
 // passes the corner at `deviation` (mm), under `acceleration` (mm/s^2) of each axis.
 // No limit where the path runs straight on, 0 where it turns back.

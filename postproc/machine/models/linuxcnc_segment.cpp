@@ -16,12 +16,6 @@ using geometry::Vector3;
 // Curvature below this (1/mm) bends a metre of path by less than 1e-4 mm: a line.
 constexpr double kNoCurvature = 1e-9;
 
-double greatest_curvature(const geometry::PathPiece& piece) {
-  double most = 0;
-  for (const double t : {0.0, 0.5, 1.0}) most = std::max(most, geometry::curvature_at(piece, t));
-  return most;
-}
-
 // The speed of the peak when a move of this length starts and ends at rest.
 double triangle_velocity(double acceleration, double length) {
   return std::sqrt(acceleration * length);

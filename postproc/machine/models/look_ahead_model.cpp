@@ -49,12 +49,6 @@ VelocityStretch bend_stretch(const PathPiece& bend, double curvature, const Vect
   return s;
 }
 
-double greatest_curvature(const PathPiece& piece) {
-  double most = 0;
-  for (const double t : {0.0, 0.5, 1.0}) most = std::max(most, geometry::curvature_at(piece, t));
-  return most;
-}
-
 class Chain {
  public:
   Chain(const Machine& machine, WithPositions places) : machine_(machine), places_(places) {}

@@ -10,7 +10,6 @@
 #include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "postproc/machine/machine_fields.h"
-#include "postproc/machine/machine_path_limits.h"
 #include "tests/support/machine_limits.h"
 
 namespace batten::postproc {

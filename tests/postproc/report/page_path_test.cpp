@@ -1,17 +1,23 @@
-// The path that the report's page draws, against programs whose distances are known by hand.
+// The path, the speeds and the columns of the report's page, against programs whose distances and
+// speeds are known by hand.
 #include "postproc/report/page_path.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "postproc/report/html_report.h"
 #include "postproc/report/page_speed.h"
 #include "tests/support/interpreted.h"
+#include "tests/support/machine_limits.h"
 #include "tests/support/paths.h"
+#include "tests/support/report_words.h"
 
 namespace batten::postproc {
 namespace {
@@ -191,6 +197,137 @@ TEST(Thinning, KeepsWhereTheKindOfMoveChanges) {
   std::vector<PageVertex> line = {vertex(0, 0), vertex(1, 0), vertex(2, 0)};
   line[2].step = PageStep::kRewritten;
   EXPECT_EQ(thinned(line, {0.001, 1}).size(), 3U);
+}
+
+// --- speeds --------------------------------------------------------------------------------------
+
+constexpr double kAcceleration = 100;  // mm/s^2
+
+Machine steady_machine() {
+  Machine m;
+  m.name = "test";
+  set_max_velocity(m, 400);
+  set_max_acceleration(m, kAcceleration);
+  set_rapid_velocity(m, 400);
+  m.look_ahead = 1000;
+  return m;
+}
+
+double speed_at(const std::string& program, std::size_t line, double share, const Machine& m) {
+  const tests::Interpreted text(program);
+  const ReadProgram read{&text.program, &text.read};
+  const ProgramSpeeds speeds(read, list_events(read), m);
+  return speeds.at(static_cast<std::uint32_t>(text.line(line).motion), share);
+}
+
+constexpr const char* kLine = "G21 G90\nG0 X0 Y0 Z0\nG1 X100 F6000\n";
+
+// From rest at 100 mm/s2: sqrt(2 a s) after s, 100 mm/s = 6000 mm/min in the middle.
+TEST(ProgramSpeeds, AreThoseOfATrapezoid) {
+  const Machine m = steady_machine();
+  const double after_a_mm = 60 * std::sqrt(2 * kAcceleration);
+  EXPECT_NEAR(speed_at(kLine, 3, 0, m), 0, 1e-9);
+  EXPECT_NEAR(speed_at(kLine, 3, 0.01, m), after_a_mm, 1e-6);
+  EXPECT_NEAR(speed_at(kLine, 3, 0.5, m), 6000, 1e-6);
+  EXPECT_NEAR(speed_at(kLine, 3, 0.99, m), after_a_mm, 1e-6);
+  EXPECT_NEAR(speed_at(kLine, 3, 1, m), 0, 1e-9);
+}
+
+TEST(ProgramSpeeds, AreNothingOnRapids) {
+  EXPECT_EQ(speed_at("G21 G90\nG0 X0 Y0 Z0\nG0 X100\nG1 X0 F600\n", 3, 0.5, steady_machine()), 0);
+}
+
+// A sharp corner of the generic control: no axis changes its speed by more than a * period.
+TEST(ProgramSpeeds, FallAtCorners) {
+  const std::string corner = "G21 G90\nG0 X0 Y0 Z0\nG1 X100 F3000\nY100\n";
+  const Machine m = steady_machine();
+  EXPECT_NEAR(speed_at(corner, 3, 1, m), 60 * kAcceleration * m.servo_period, 1e-6);
+  EXPECT_NEAR(speed_at(corner, 4, 0, m), 60 * kAcceleration * m.servo_period, 1e-6);
+  EXPECT_NEAR(speed_at(corner, 4, 0.5, m), 3000, 1e-6);
+}
+
+// With a limit on jerk: after 0.2 s at 500 mm/s3 it has 100 mm/s2, 10 mm/s and 2/3 mm behind it;
+// the rest of the first mm takes 0.0292 s at that acceleration.
+TEST(ProgramSpeeds, KeepALimitOnJerk) {
+  Machine m = steady_machine();
+  set_max_jerk(m, 500);
+  const std::string line = "G21 G90\nG0 X0 Y0 Z0\nG1 X100 F3000\n";
+  EXPECT_NEAR(speed_at(line, 3, 0.01, m), 60 * (10 + 0.0292 * kAcceleration), 4);
+  EXPECT_NEAR(speed_at(line, 3, 0.5, m), 3000, 1e-3);
+}
+
+// --- columns, taken apart again ------------------------------------------------------------------
+
+std::vector<std::uint8_t> bytes_of_base64(const std::string& text) {
+  const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<std::uint8_t> bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(letters.find(c));
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes.push_back(static_cast<std::uint8_t>(bits >> count));
+  }
+  return bytes;
+}
+
+// Numbers that were packed as steps.
+std::vector<std::int64_t> column(const Json& text) {
+  std::vector<std::int64_t> numbers;
+  std::uint64_t zigzag = 0;
+  int shift = 0;
+  std::int64_t last = 0;
+  for (const std::uint8_t byte : bytes_of_base64(text.get<std::string>())) {
+    zigzag |= static_cast<std::uint64_t>(byte & 0x7FU) << shift;
+    shift += 7;
+    if ((byte & 0x80U) != 0) continue;
+    const auto half = static_cast<std::int64_t>(zigzag >> 1U);
+    last += (zigzag & 1U) != 0 ? -half - 1 : half;
+    numbers.push_back(last);
+    zigzag = 0;
+    shift = 0;
+  }
+  return numbers;
+}
+
+// A kink of 0.02 rad at 50 mm, and the straight line that may stand for it within 1 mm.
+constexpr const char* kSlowKink = "G21 G90\nG0 X0 Y0 Z0\nG1 X50 Y0.5 F6000\nX100 Y0\n";
+constexpr const char* kFast = "G21 G90\nG0 X0 Y0 Z0\nG1 X100 F6000\n";
+
+// At the kink the Y axis turns round, from 0.01 v to -0.01 v, which this control allows by one
+// servo period's acceleration; on the straight line there is room to reach the 6000 mm/min.
+TEST(PageData, HasTheSpeedOfTheOldProgramBeforeAndOfTheNewOneAfter) {
+  const gcode::SourceText source("part.nc", kSlowKink);
+  const Machine machine = steady_machine();
+  SmoothOptions options = linuxcnc_options();
+  options.machine = &machine;
+  options.tolerance_mm = 1;
+  SmoothResult result;
+  result.understood = true;
+  result.proved = true;
+  result.text = kFast;
+  const Json path =
+      page_data({.source = source, .options = options, .result = result, .output_file = ""},
+                {.command = ""})["path"];
+
+  const std::vector<std::int64_t> x = column(path["x"]);
+  const std::vector<std::int64_t> before = column(path["speed_before"]);
+  const std::vector<std::int64_t> after = column(path["speed_after"]);
+  ASSERT_EQ(x.size(), path["count"].get<std::size_t>());
+  const double mm = path["unit_mm"];
+  const double mm_per_min = path["speed_unit"];
+  int kinks = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (std::abs(mm * static_cast<double>(x[i]) - 50) > 1e-6) continue;
+    ++kinks;
+    EXPECT_NEAR(mm_per_min * static_cast<double>(before[i]), 60 * 100 * machine.servo_period / 0.02,
+                2 * mm_per_min);
+    EXPECT_NEAR(mm_per_min * static_cast<double>(after[i]), 6000, 2 * mm_per_min);
+  }
+  EXPECT_GE(kinks, 1);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "postproc/machine/program_time/program_time_steps.h"
-#include "postproc/report/summary_text.h"
+#include "postproc/report/smooth_report.h"
 #include "postproc/stream/inspect_in_parts.h"
 #include "tests/support/in_windows.h"
 #include "tests/support/wavy_programs.h"

@@ -1,5 +1,5 @@
-// Closed forms and properties of every model. What LinuxCNC alone does is in
-// linuxcnc_model_test.cpp.
+// Times of chains: closed forms and properties of every model, the planner of grbl, chains that are
+// asked more than once. What LinuxCNC alone does is in linuxcnc_model_test.cpp.
 #include "postproc/machine/models/cycle_time.h"
 
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 #include <numbers>
 #include <random>
 #include <stdexcept>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -29,18 +30,6 @@ using std::numbers::pi;
 
 constexpr double kFeed = 6000;  // mm/min: 100 mm/s
 
-Machine machine_of(ControllerModel model) {
-  Machine m;
-  m.name = "test";
-  m.model = model;
-  set_max_velocity(m, 200);
-  set_max_acceleration(m, 1000);
-  m.block_period = 0.001;
-  m.look_ahead = 1000;
-  m.blend_tolerance = 0.01;
-  return m;
-}
-
 // A limit that a test turns.
 struct Limit {
   double (*get)(const Machine&);
@@ -55,9 +44,6 @@ constexpr Limit kBlockPeriod = {[](const Machine& m) { return m.block_period; },
 constexpr Limit kJunctionDeviation = {
     [](const Machine& m) { return m.junction_deviation; },
     [](Machine& m, double value) { m.junction_deviation = value; }};
-
-constexpr ControllerModel kModels[] = {ControllerModel::kLookAhead, ControllerModel::kLinuxcnc,
-                                       ControllerModel::kGrbl};
 
 double time_of(const std::vector<TimedPiece>& pieces, const Machine& m,
                PathMode path = PathMode::kBlending) {
@@ -75,16 +61,7 @@ TimedPiece half_circle(double radius, double from_angle, double feed = kFeed) {
 
 class EveryModel : public testing::TestWithParam<ControllerModel> {};
 
-INSTANTIATE_TEST_SUITE_P(CuttingTime, EveryModel, testing::ValuesIn(kModels), [](const auto& test) {
-  return test.param == ControllerModel::kLookAhead  ? "LookAhead"
-         : test.param == ControllerModel::kLinuxcnc ? "Linuxcnc"
-                                                    : "Grbl";
-});
-
-// LinuxCNC ends a stop with a whole period; half of it is the model's mean.
-double stop_loss(const Machine& m) {
-  return m.model == ControllerModel::kLinuxcnc ? m.block_period / 2 : 0;
-}
+INSTANTIATE_TEST_SUITE_P(CuttingTime, EveryModel, testing::ValuesIn(kModels), model_name);
 
 // 0 to 100 mm/s takes .1 s and 5 mm: .1 + (50 - 10) / 100 + .1.
 TEST_P(EveryModel, TimesALongLineAsATrapezoid) {
@@ -431,6 +408,150 @@ TEST_P(EveryModel, CostsLinearTime) {
   };
   const double small = seconds(30000);
   EXPECT_LT(seconds(240000), 8 * 3 * small);
+}
+
+// --- grbl's planner where it has a closed form: a line, a corner, its window ---------------------
+
+constexpr double kRouterAcceleration = 250;  // mm/s^2 of each axis
+constexpr double kRouterVelocity = 80;       // mm/s of each axis
+
+Machine router() {
+  Machine m;
+  m.name = "router";
+  m.model = ControllerModel::kGrbl;
+  set_max_velocity(m, kRouterVelocity);
+  set_rapid_velocity(m, kRouterVelocity);
+  set_max_acceleration(m, kRouterAcceleration);
+  m.junction_deviation = 0.012;
+  m.arc_tolerance = 0.002;
+  m.block_period = 1e-9;  // nothing that feeds it is a limit here
+  m.look_ahead = 15;
+  return m;
+}
+
+TEST(GrblPlanner, RunsOneLongLineAsATrapezoid) {
+  const double v = 50;
+  const double length = 130;
+  const double expected = 2 * v / kRouterAcceleration + (length - v * v / kRouterAcceleration) / v;
+  EXPECT_NEAR(time_of({{Line{{0, 0, 0}, {length, 0, 0}}, v * 60}}, router()), expected, 1e-6);
+}
+
+// A feed above what the axes can: along (3, 4) the Y axis has 4/5 of the speed.
+TEST(GrblPlanner, LimitsALineByItsSlowestAxis) {
+  const double v = kRouterVelocity / 0.8;
+  const double a = kRouterAcceleration / 0.8;
+  const double length = 200;
+  const double expected = 2 * v / a + (length - v * v / a) / v;
+  EXPECT_NEAR(time_of({{Line{{0, 0, 0}, {120, 160, 0}}, 60000}}, router()), expected, 1e-6);
+}
+
+// A corner that turns by `turn`: v^2 = a d sin(t/2) / (1 - sin(t/2)) with t the angle between the
+// lines, and a the acceleration along the change of direction.
+class GrblCorner : public testing::TestWithParam<int> {};
+
+TEST_P(GrblCorner, IsPassedAtItsJunctionSpeed) {
+  const double turn = GetParam() * pi / 180;
+  const Machine m = router();
+  const double sin_half = std::cos(turn / 2);
+  // From (1, 0) to (cos, sin): the change is along (cos - 1, sin), normalised; the first line
+  // runs along X, the second in the plane.
+  const double cx = std::abs(std::cos(turn) - 1);
+  const double sy = std::abs(std::sin(turn));
+  const double norm = std::hypot(cx, sy);
+  const double corner_acceleration = kRouterAcceleration / (std::max(cx, sy) / norm);
+  const double junction =
+      std::sqrt(corner_acceleration * m.junction_deviation * sin_half / (1 - sin_half));
+  const double feed = 40;  // mm/s
+  const double corner = std::min(junction, feed);
+  const double along = std::max(std::abs(std::cos(turn)), std::abs(std::sin(turn)));
+  const auto side = [&](double a, double length) {
+    const double up = feed * feed / (2 * a);
+    const double down = (feed * feed - corner * corner) / (2 * a);
+    return feed / a + (feed - corner) / a + (length - up - down) / feed;
+  };
+  const Point3 tip(30, 0, 0);
+  const Point3 end = tip + 30 * Point3(std::cos(turn), std::sin(turn), 0);
+  EXPECT_NEAR(time_of({{Line{{0, 0, 0}, tip}, feed * 60}, {Line{tip, end}, feed * 60}}, m),
+              side(kRouterAcceleration, 30) + side(kRouterAcceleration / along, 30), 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(GrblPlanner, GrblCorner, testing::Values(2, 10, 30, 45, 60, 90, 120, 150),
+                         [](const auto& test) { return "Turn" + std::to_string(test.param); });
+
+// The planner holds 15 blocks, the one that runs among them, and must be able to stop at the end
+// of the last: behind a block there are 14 of length L, so its end is passed at
+// sqrt(2 a 14 L) at most. Each block starts and ends at that speed; in between it speeds up and
+// slows down again. The first 14 and the last 14 blocks are one ramp each.
+TEST(GrblPlanner, BrakesForTheEndOfItsSixteenBlocks) {
+  constexpr double kLength = 0.1;
+  constexpr int kBlocks = 500;
+  constexpr int kAhead = 14;
+  std::vector<TimedPiece> blocks;
+  for (int i = 0; i < kBlocks; ++i) {
+    blocks.push_back({Line{{kLength * i, 0, 0}, {kLength * (i + 1), 0, 0}}, 60000});
+  }
+  const double window = std::sqrt(2 * kRouterAcceleration * kAhead * kLength);
+  const double peak = std::sqrt(window * window + kRouterAcceleration * kLength);
+  const double expected = 2 * window / kRouterAcceleration +
+                          (kBlocks - 2 * kAhead) * 2 * (peak - window) / kRouterAcceleration;
+  EXPECT_NEAR(time_of(blocks, router()), expected, 1e-6);
+}
+
+// Twice as many blocks for the same line: the window is half as long, the speed 1 / sqrt(2).
+TEST(GrblPlanner, LosesSpeedWithTheLengthOfItsBlocks) {
+  const auto time = [](double length) {
+    std::vector<TimedPiece> blocks;
+    for (int i = 0; i < 100 / length; ++i) {
+      blocks.push_back({Line{{length * i, 0, 0}, {length * (i + 1), 0, 0}}, 60000});
+    }
+    return time_of(blocks, router());
+  };
+  EXPECT_NEAR(time(0.05) / time(0.1), std::sqrt(2.0), 0.03);
+}
+
+// --- what a chain keeps from one question to the next changes no answer --------------------------
+
+std::vector<TimedPiece> wandering(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> turn(-0.8, 0.8);
+  std::uniform_real_distribution<double> length(0.02, 2);
+  std::vector<TimedPiece> chain;
+  Point3 at = Point3::Zero();
+  double angle = 0;
+  for (int i = 0; i < 200; ++i) {
+    angle += turn(random);
+    const double way = i % 17 == 0 ? 0 : length(random);
+    const Point3 next = at + way * Point3(std::cos(angle), std::sin(angle), 0.1);
+    TimedPiece piece{Line{at, next}, i % 50 < 40 ? 3000.0 : 0.0};
+    piece.bytes = 12;
+    chain.push_back(piece);
+    at = next;
+  }
+  return chain;
+}
+
+TEST(TimedChain, GivesTheTimesOfCuttingTime) {
+  for (const char* name : {"linuxcnc", "router", "grbl"}) {
+    const Machine& machine = *find_machine(name);
+    Machine unmerged = machine;
+    unmerged.naive_cam_tolerance = 0;
+    for (unsigned seed = 0; seed < 5; ++seed) {
+      SCOPED_TRACE(testing::Message() << name << " " << seed);
+      const std::vector<TimedPiece> pieces = wandering(seed);
+      TimedChain chain(pieces, machine);
+      for (const PathMode path : {PathMode::kBlending, PathMode::kExactPath}) {
+        EXPECT_EQ(chain.time(machine, path), cutting_time(pieces, machine, path));
+        EXPECT_EQ(chain.time(unmerged, path), cutting_time(pieces, unmerged, path));
+        EXPECT_EQ(chain.time(machine, path, ChainEnd::kEndOfMotion),
+                  cutting_time(pieces, machine, path, ChainEnd::kEndOfMotion));
+      }
+      std::vector<TimedPiece> unlimited = pieces;
+      for (TimedPiece& piece : unlimited) piece.feed = 0;
+      chain.lift_feeds(machine);
+      EXPECT_EQ(chain.time(machine, PathMode::kBlending),
+                cutting_time(unlimited, machine, PathMode::kBlending));
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,777 @@
+// Machines from files: TOML, the INI of LinuxCNC, and what grbl answers to $$.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "postproc/machine/files/grbl_settings.h"
+#include "postproc/machine/files/machine_file.h"
+#include "postproc/machine/machine_fields.h"
+#include "tests/support/machine_limits.h"
+#include "tests/support/scratch_folder.h"
+
+namespace batten::postproc {
+namespace {
+
+using gcode::PathMode;
+
+struct Read {
+  std::shared_ptr<const Machine> machine;
+  std::string problems;  // one a line, without the folder
+};
+
+// By its suffix, as --machine does.
+Read read(const ScratchFolder& folder, const std::string& file) {
+  std::vector<std::string> problems;
+  Read result{choose_machine(file, "--machine", problems), {}};
+  for (const std::string& problem : problems) {
+    result.problems += folder.without_folder(problem) + "\n";
+  }
+  return result;
+}
+
+Read read_toml(std::string_view text) {
+  const ScratchFolder folder;
+  return read(folder, folder.put("my.toml", text));
+}
+
+Read read_ini(std::string_view text) {
+  const ScratchFolder folder;
+  return read(folder, folder.put("my.ini", text));
+}
+
+Read read_dump(std::string_view dump) {
+  std::vector<std::string> problems;
+  const auto machine = with_grbl_settings(*find_machine("router"), dump, "dump.txt", problems);
+  Read result{machine ? std::make_shared<const Machine>(*machine) : nullptr, {}};
+  for (const std::string& problem : problems) result.problems += problem + "\n";
+  return result;
+}
+
+// Of a file in which nothing is wrong.
+Machine machine_of(const Read& result) {
+  EXPECT_EQ(result.problems, "");
+  return result.machine == nullptr ? Machine{} : *result.machine;
+}
+
+// --- TOML: what a file says
+// ----------------------------------------------------------------------------
+
+TEST(MachineFile, ChangesWhatDiffersFromItsBase) {
+  const Machine m =
+      machine_of(read_toml("based-on = \"linuxcnc\"\n"
+                           "max-velocity = 200\n"
+                           "max-acceleration = 1500\n"
+                           "rapid-velocity = 250\n"
+                           "block-period = 0.002\n"
+                           "look-ahead = 100\n"
+                           "junction-deviation = 0.02\n"
+                           "arc-tolerance = 0.003\n"
+                           "blend-tolerance = 0.05\n"
+                           "naive-cam-tolerance = 0\n"));
+  Machine expected = *find_machine("linuxcnc");
+  expected.name = "my";
+  expected.description = m.description;
+  set_max_velocity(expected, 200);
+  set_max_acceleration(expected, 1500);
+  set_rapid_velocity(expected, 250);
+  expected.block_period = 0.002;
+  expected.look_ahead = 100;
+  expected.junction_deviation = 0.02;
+  expected.arc_tolerance = 0.003;
+  expected.blend_tolerance = 0.05;
+  expected.naive_cam_tolerance = 0;
+  EXPECT_EQ(m, expected);
+}
+
+TEST(MachineFile, SaysEachAxisForItself) {
+  const Machine m =
+      machine_of(read_toml("based-on = \"mill\"\n"
+                           "name = \"five axes\"\n"
+                           "max-jerk = \"20 m/s3\"\n"
+                           "max-velocity = \"12 m/min\"\n"
+                           "[axis.z]\n"
+                           "velocity = \"6000 mm/min\"\n"
+                           "rapid-velocity = 150\n"
+                           "[axis.a]\n"
+                           "velocity = \"10 rpm\"\n"
+                           "acceleration = 300\n"
+                           "jerk = inf\n"));
+  EXPECT_EQ(m.name, "five axes");
+  EXPECT_NEAR(m.axis(Axis::kX).velocity, 200, 1e-12);
+  EXPECT_NEAR(m.axis(Axis::kY).velocity, 200, 1e-12);
+  EXPECT_NEAR(m.axis(Axis::kZ).velocity, 100, 1e-12);
+  EXPECT_EQ(m.axis(Axis::kZ).rapid_velocity, 150);
+  EXPECT_EQ(m.axis(Axis::kZ).jerk, 20000);
+  EXPECT_NEAR(m.axis(Axis::kA).velocity, 60, 1e-12);
+  EXPECT_EQ(m.axis(Axis::kA).acceleration, 300);
+  EXPECT_EQ(m.axis(Axis::kA).jerk, Machine::kNone);
+  EXPECT_EQ(m.axis(Axis::kB), find_machine("mill")->axis(Axis::kB));
+}
+
+TEST(MachineFile, SaysHowBlocksComeIn) {
+  const Machine m =
+      machine_of(read_toml("based-on = \"old-mill\"\n"
+                           "block-rate = 250\n"
+                           "stream-rate = \"9600 baud\"\n"
+                           "path-mode = \"exact-stop\"\n"
+                           "tool-change-time = \"0.5 min\"\n"));
+  EXPECT_DOUBLE_EQ(m.block_period, 0.004);
+  EXPECT_DOUBLE_EQ(m.stream_rate, 960);
+  EXPECT_EQ(m.path_mode, gcode::PathMode::kExactStop);
+  EXPECT_DOUBLE_EQ(m.tool_change_time, 30);
+}
+
+TEST(MachineFile, MayBeBasedOnAnotherBesideIt) {
+  const ScratchFolder folder;
+  (void)folder.put("shop/mill.toml", "based-on = \"mill\"\nmax-velocity = 100\nlook-ahead = 7\n");
+  const std::string file =
+      folder.put("shop/slow.toml", "based-on = \"mill.toml\"\nmax-velocity = 50\n");
+  const Read result = read(folder, file);
+  ASSERT_NE(result.machine, nullptr) << result.problems;
+  EXPECT_EQ(result.machine->max_velocity(), 50);
+  EXPECT_EQ(result.machine->look_ahead, 7);
+  EXPECT_EQ(result.machine->name, "slow");
+}
+
+TEST(MachineFile, MayNotBeBasedOnItself) {
+  const ScratchFolder folder;
+  (void)folder.put("a.toml", "based-on = \"b.toml\"\n");
+  const std::string file = folder.put("b.toml", "based-on = \"./a.toml\"\n");
+  const Read result = read(folder, file);
+  EXPECT_EQ(result.machine, nullptr);
+  EXPECT_EQ(result.problems, "a.toml:1:12: based-on: b.toml is based on itself\n");
+}
+
+TEST(MachineFile, TellsWhatIsWrongInTheFileThatItIsBasedOn) {
+  const ScratchFolder folder;
+  (void)folder.put("base.toml", "based-on = \"mill\"\nmax-velocity = 0\n");
+  const Read result = read(folder, folder.put("my.toml", "based-on = \"base.toml\"\n"));
+  EXPECT_EQ(result.machine, nullptr);
+  EXPECT_EQ(result.problems, "base.toml:2:16: max-velocity: 0, expected above 0 (mm/s)\n");
+}
+
+// --- there and back ------------------------------------------------------------------------------
+
+class RoundTrip : public testing::TestWithParam<std::string> {};
+
+TEST_P(RoundTrip, OfABuiltInMachineIsTheSameMachine) {
+  const Machine& machine = *find_machine(GetParam());
+  const Machine m = machine_of(read_toml(machine_file_text(machine)));
+  EXPECT_EQ(m, machine);
+  EXPECT_EQ(machine_file_text(m), machine_file_text(machine));
+}
+
+std::vector<std::string> names_of_machines() {
+  std::vector<std::string> names;
+  for (const Machine& machine : built_in_machines()) names.push_back(machine.name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(MachineFile, RoundTrip, testing::ValuesIn(names_of_machines()));
+
+// Every member differs from what a machine has by itself, so that a forgotten one is seen.
+TEST(MachineFile, KeepsEveryMemberThereAndBack) {
+  Machine machine;
+  machine.name = "a \"name\" \\ with C:\\signs";
+  machine.description = "µm, 日本";
+  machine.model = ControllerModel::kGrbl;
+  machine.path_mode = gcode::PathMode::kExactPath;
+  machine.look_ahead = 3;
+  double value = 1.0 / 3;
+  for (const MachineField& field : machine_fields()) machine.*field.place = value *= 1.1;
+  for (AxisLimits& limits : machine.axes) {
+    for (const AxisField& field : axis_fields()) limits.*field.place = value *= 1.1;
+  }
+  const Machine m = machine_of(read_toml(machine_file_text(machine)));
+  EXPECT_EQ(m, machine);
+}
+
+// --- what is wrong -------------------------------------------------------------------------------
+
+struct BadFile {
+  const char* name;
+  const char* text;
+  const char* problem;
+};
+
+class BadFiles : public testing::TestWithParam<BadFile> {};
+
+TEST_P(BadFiles, AreToldWithPlaceKeyValueAndWhatIsAllowed) {
+  const Read result = read_toml(std::string("based-on = \"router\"\n") + GetParam().text);
+  EXPECT_EQ(result.machine, nullptr);
+  EXPECT_EQ(result.problems, std::string("my.toml:") + GetParam().problem + "\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    MachineFile, BadFiles,
+    testing::Values(
+        BadFile{"NegativeVelocity", "max-velocity = -200",
+                "2:16: max-velocity: -200, expected above 0 (mm/s)"},
+        BadFile{"ZeroAcceleration", "\nmax-acceleration = 0",
+                "3:20: max-acceleration: 0, expected above 0 (mm/s2)"},
+        BadFile{"EndlessRapid", "rapid-velocity = inf",
+                "2:18: rapid-velocity: inf, expected above 0 (mm/s)"},
+        BadFile{"NoNumber", "max-jerk = nan",
+                "2:12: max-jerk: nan, expected above 0, or inf (mm/s3)"},
+        BadFile{"OfOneAxis", "[axis.y]\nvelocity = -1",
+                "3:12: axis.y.velocity: -1, expected above 0 (mm/s)"},
+        BadFile{"OfARotaryAxis", "[axis.c]\nacceleration = 0",
+                "3:16: axis.c.acceleration: 0, expected above 0 (deg/s2)"},
+        BadFile{"NegativeWithAUnit", "[axis.x]\nvelocity = \"-600 mm/min\"",
+                "3:12: axis.x.velocity: -10, expected above 0 (mm/s)"},
+        BadFile{"AText", "max-velocity = \"fast\"",
+                "2:16: max-velocity: \"fast\", expected a number (mm/s), or one with its unit as "
+                "text: mm/s, mm/min, m/min, m/s, in/s, in/min, ipm"},
+        BadFile{"AnotherUnit", "arc-tolerance = \"2 mm/s\"",
+                "2:17: arc-tolerance: \"2 mm/s\", expected a number (mm), or one with its unit as "
+                "text: mm, um, in, inch"},
+        BadFile{"ALinearUnitOfARotaryAxis", "axis.a.velocity = \"5 mm/s\"",
+                "2:19: axis.a.velocity: \"5 mm/s\", expected a number (deg/s), or one with its "
+                "unit as text: deg/s, deg/min, rpm, rad/s"},
+        BadFile{"AList", "max-velocity = [1, 2, 3]",
+                "2:16: max-velocity: a list, expected a number (mm/s), or one with its unit as "
+                "text: mm/s, mm/min, m/min, m/s, in/s, in/min, ipm"},
+        BadFile{"ATruth", "servo-period = true",
+                "2:16: servo-period: true, expected a number (s), or one with its unit as text: "
+                "s, ms, us, min"},
+        BadFile{"NoLookAhead", "look-ahead = 0",
+                "2:14: look-ahead: 0, expected 1 or more (blocks)"},
+        BadFile{"HalfALookAhead", "look-ahead = 1.5",
+                "2:14: look-ahead: 1.5, expected a whole number above 0 (blocks)"},
+        BadFile{"NoBlockPeriod", "block-period = 0", "2:16: block-period: 0, expected above 0 (s)"},
+        BadFile{"NoBlockRate", "block-rate = 0",
+                "2:14: block-rate: 0, expected above 0 (blocks/s)"},
+        BadFile{"BlockRateAndPeriod", "block-rate = 1000\nblock-period = 0.001",
+                "2:1: block-rate: block-period says the same in another way"},
+        BadFile{"NoStream", "stream-rate = 0",
+                "2:15: stream-rate: 0, expected above 0, or inf (bytes/s)"},
+        BadFile{"NegativeDwell", "extra-dwell-time = -0.1",
+                "2:20: extra-dwell-time: -0.1, expected 0 or more (s)"},
+        BadFile{"GrblWithoutJunctionDeviation", "junction-deviation = 0",
+                "2:22: junction-deviation: 0, expected above 0 (mm)"},
+        BadFile{"UnknownModel", "model = \"fanuc\"",
+                "2:9: model: \"fanuc\", expected one of linuxcnc, grbl, look-ahead"},
+        BadFile{"UnknownPathMode", "path-mode = 61",
+                "2:13: path-mode: 61, expected one of blend, exact-path, exact-stop"},
+        BadFile{"NameThatIsNoText", "name = 5", "2:8: name: 5, expected a text in quotes"},
+        BadFile{"SlipInAKey", "max-velocty = 5",
+                "2:1: max-velocty: there is no such key, did you mean 'max-velocity'?"},
+        BadFile{"SlipInAKeyOfAnAxis", "[axis.x]\nspeed = 1\n",
+                "3:1: axis.x.speed: there is no such key; possible: velocity, acceleration, jerk, "
+                "rapid-velocity"},
+        BadFile{"UnknownAxis", "[axis.u]\nvelocity = 1\n",
+                "2:7: axis.u: there is no such axis; possible: x, y, z, a, b, c"},
+        BadFile{"AxisThatIsNoTable", "axis.x = 5\n", "2:10: axis.x: 5, expected a table [axis.x]"},
+        BadFile{"AxesThatAreNoTable", "axis = 5\n",
+                "2:8: axis: 5, expected tables such as [axis.x]"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(MachineFile, TellsAllProblemsAtOnce) {
+  const Read result =
+      read_toml("based-on = \"mill\"\nmax-velocity = 0\nlook-ahed = 3\n[axis.x]\njerk = -5\n");
+  EXPECT_EQ(result.machine, nullptr);
+  EXPECT_EQ(std::count(result.problems.begin(), result.problems.end(), '\n'), 3) << result.problems;
+}
+
+TEST(MachineFile, TellsOfAKeyThatNothingIsLikeWhichKeysThereAre) {
+  const Read result = read_toml("based-on = \"mill\"\nzzzzzzzz = 0\n");
+  EXPECT_NE(result.problems.find("possible: based-on, name,"), std::string::npos)
+      << result.problems;
+  EXPECT_NE(result.problems.find("tool-change-time"), std::string::npos) << result.problems;
+}
+
+TEST(MachineFile, NeedsABaseOrEverything) {
+  const Read result = read_toml("max-velocity = 5\nmodel = \"grbl\"\n");
+  EXPECT_EQ(result.machine, nullptr);
+  EXPECT_EQ(result.problems.find("my.toml: no based-on in it"), 0u) << result.problems;
+  EXPECT_NE(result.problems.find("axis.x.acceleration"), std::string::npos) << result.problems;
+  EXPECT_EQ(result.problems.find("axis.x.velocity"), std::string::npos) << "that was given";
+}
+
+TEST(MachineFile, OfNoKnownBaseTellsTheChoices) {
+  const Read result = read_toml("based-on = \"rooter\"\n");
+  EXPECT_EQ(result.problems,
+            "my.toml:1:12: based-on: there is no machine 'rooter', did you mean 'router'?; "
+            "possible: linuxcnc, router, grbl, mill, high-speed, old-mill, a file NAME.toml, or "
+            "the NAME.ini of a LinuxCNC machine\n");
+}
+
+TEST(MachineFile, ThatIsNoTomlTellsWhere) {
+  const Read result = read_toml("based-on = \"mill\"\nmax-velocity = 5 mm\n");
+  EXPECT_EQ(result.machine, nullptr);
+  EXPECT_EQ(result.problems.find("my.toml:2:"), 0u) << result.problems;
+}
+
+TEST(MachineFile, ThatIsNotThereIsTold) {
+  const ScratchFolder folder;
+  const Read result = read(folder, folder.file("none.toml"));
+  EXPECT_EQ(result.machine, nullptr);
+  EXPECT_EQ(result.problems.find("none.toml: "), 0u) << result.problems;
+}
+
+// --- the INI of LinuxCNC -------------------------------------------------------------------------
+
+constexpr const char* kMillimetres =
+    "# a comment\n"
+    "[EMC]\n"
+    "MACHINE = router\n"
+    "[EMCMOT]\n"
+    "SERVO_PERIOD = 500000\n"
+    "[TRAJ]\n"
+    "COORDINATES = X Y Z\n"
+    "LINEAR_UNITS = mm\n"
+    "ANGULAR_UNITS = degree\n"
+    "MAX_LINEAR_VELOCITY = 150\n"
+    "[AXIS_X]\n"
+    "MAX_VELOCITY = 120\n"
+    "MAX_ACCELERATION = 900\n"
+    "[AXIS_Y]\n"
+    "  MAX_VELOCITY=110   \n"
+    "MAX_ACCELERATION = 800 # with a remark\n"
+    "[AXIS_Z]\n"
+    "MAX_VELOCITY = 60\n"
+    "; MAX_VELOCITY = 1\n"
+    "MAX_ACCELERATION = 400\r\n";
+
+// The same machine in inches.
+constexpr const char* kInches =
+    "[EMCMOT]\n"
+    "SERVO_PERIOD = 500000\n"
+    "[TRAJ]\n"
+    "COORDINATES = XYZ\n"
+    "LINEAR_UNITS = inch\n"
+    "MAX_LINEAR_VELOCITY = 5.905511811023622\n"
+    "[AXIS_X]\n"
+    "MAX_VELOCITY = 4.724409448818898\n"
+    "MAX_ACCELERATION = 35.43307086614173\n"
+    "[AXIS_Y]\n"
+    "MAX_VELOCITY = 4.330708661417323\n"
+    "MAX_ACCELERATION = 31.49606299212598\n"
+    "[AXIS_Z]\n"
+    "MAX_VELOCITY = 2.362204724409449\n"
+    "MAX_ACCELERATION = 15.74803149606299\n";
+
+void expect_the_machine_of_the_ini(const Machine& m) {
+  EXPECT_EQ(m.model, ControllerModel::kLinuxcnc);
+  EXPECT_EQ(m.name, "my");
+  EXPECT_NEAR(m.axis(Axis::kX).velocity, 120, 1e-9);
+  EXPECT_NEAR(m.axis(Axis::kY).velocity, 110, 1e-9);
+  EXPECT_NEAR(m.axis(Axis::kZ).velocity, 60, 1e-9);
+  EXPECT_NEAR(m.axis(Axis::kZ).rapid_velocity, 60, 1e-9);
+  EXPECT_NEAR(m.axis(Axis::kX).acceleration, 900, 1e-9);
+  EXPECT_NEAR(m.axis(Axis::kY).acceleration, 800, 1e-9);
+  EXPECT_NEAR(m.axis(Axis::kZ).acceleration, 400, 1e-9);
+  EXPECT_NEAR(m.path_feed, 150, 1e-9);
+  EXPECT_DOUBLE_EQ(m.servo_period, 0.0005);
+  EXPECT_DOUBLE_EQ(m.block_period, 0.0005);
+}
+
+TEST(MachineIni, GivesLimitsInMillimetres) {
+  const Machine m = machine_of(read_ini(kMillimetres));
+  expect_the_machine_of_the_ini(m);
+}
+
+TEST(MachineIni, GivesLimitsInInches) {
+  const Machine m = machine_of(read_ini(kInches));
+  expect_the_machine_of_the_ini(m);
+}
+
+struct UnitCase {
+  const char* text;
+  double mm;
+};
+
+class IniUnits : public testing::TestWithParam<UnitCase> {};
+
+TEST_P(IniUnits, AreThoseThatLinuxcncKnows) {
+  const Machine m = machine_of(read_ini(std::string("[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = ") +
+                                        GetParam().text +
+                                        "\n[AXIS_X]\nMAX_VELOCITY = 2\nMAX_ACCELERATION = 3\n"));
+  EXPECT_NEAR(m.axis(Axis::kX).velocity, 2 * GetParam().mm, 1e-9);
+  EXPECT_NEAR(m.axis(Axis::kX).acceleration, 3 * GetParam().mm, 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(MachineIni, IniUnits,
+                         testing::Values(UnitCase{"mm", 1}, UnitCase{"metric", 1},
+                                         UnitCase{"in", 25.4}, UnitCase{"inch", 25.4},
+                                         UnitCase{"imperial", 25.4}, UnitCase{"1.0", 1},
+                                         UnitCase{"0.03937007874015748", 25.4}));
+
+TEST(MachineIni, BlendsWithoutATolerance) {
+  const Machine m = machine_of(read_ini(kMillimetres));
+  EXPECT_EQ(m.path_mode, gcode::PathMode::kBlending);
+  EXPECT_EQ(m.blend_tolerance, 0);
+  EXPECT_EQ(m.naive_cam_tolerance, 0);
+}
+
+struct StartupCase {
+  const char* units;  // of the machine
+  const char* code;
+  gcode::PathMode mode;
+  double p;  // mm
+  double q;
+};
+
+class StartupCodes : public testing::TestWithParam<StartupCase> {};
+
+TEST_P(StartupCodes, SetTheBlending) {
+  const StartupCase& c = GetParam();
+  const Machine m = machine_of(read_ini(
+      std::string("[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = ") + c.units +
+      "\n[AXIS_X]\nMAX_VELOCITY = 2\nMAX_ACCELERATION = 3\n[RS274NGC]\nRS274NGC_STARTUP_CODE = " +
+      c.code + "\n"));
+  EXPECT_EQ(m.path_mode, c.mode);
+  EXPECT_NEAR(m.blend_tolerance, c.p, 1e-12);
+  EXPECT_NEAR(m.naive_cam_tolerance, c.q, 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    MachineIni, StartupCodes,
+    testing::Values(StartupCase{"mm", "G17 G21 G40 G49 G64 P0.02 Q0.05", PathMode::kBlending, 0.02,
+                                0.05},
+                    StartupCase{"mm", "g21 g64p.02", PathMode::kBlending, 0.02, 0.02},
+                    StartupCase{"mm", "G64", PathMode::kBlending, 0, 0},
+                    StartupCase{"mm", "G20 G64 P0.001", PathMode::kBlending, 0.0254, 0.0254},
+                    StartupCase{"inch", "G64 P0.001 Q0", PathMode::kBlending, 0.0254, 0},
+                    StartupCase{"inch", "G64 P0.02 G21", PathMode::kBlending, 0.02, 0.02},
+                    StartupCase{"mm", "G61", PathMode::kExactPath, 0, 0},
+                    StartupCase{"mm", "G61.1 (stops)", PathMode::kExactStop, 0, 0},
+                    StartupCase{"mm", "G21 (G64 P5)", PathMode::kBlending, 0, 0}));
+
+TEST(MachineIni, TakesTheLimitsOfAJointWhereAnAxisHasNone) {
+  const Machine m =
+      machine_of(read_ini("[KINS]\nKINEMATICS = trivkins coordinates=XYYZ kinstype=BOTH\n"
+                          "[TRAJ]\nCOORDINATES = X Y Z\nLINEAR_UNITS = mm\n"
+                          "[AXIS_X]\nMAX_VELOCITY = 10\nMAX_ACCELERATION = 100\n"
+                          "[JOINT_0]\nMAX_VELOCITY = 1\nMAX_ACCELERATION = 1\n"
+                          "[JOINT_1]\nMAX_VELOCITY = 20\nMAX_ACCELERATION = 200\n"
+                          "[JOINT_2]\nMAX_VELOCITY = 2\nMAX_ACCELERATION = 2\n"
+                          "[JOINT_3]\nMAX_VELOCITY = 30\nMAX_ACCELERATION = 300\n"));
+  EXPECT_EQ(m.axis(Axis::kX).velocity, 10);
+  EXPECT_EQ(m.axis(Axis::kY).velocity, 20);
+  EXPECT_EQ(m.axis(Axis::kZ).velocity, 30);
+  EXPECT_EQ(m.axis(Axis::kZ).acceleration, 300);
+}
+
+// Up to 2.7 the sections of joints were called AXIS_0, and the path's limit MAX_VELOCITY.
+TEST(MachineIni, ReadsFilesOfOlderVersions) {
+  const Machine m = machine_of(read_ini(
+      "[TRAJ]\nAXES = 4\nCOORDINATES = X Y Z A\nLINEAR_UNITS = inch\nANGULAR_UNITS = degree\n"
+      "MAX_VELOCITY = 2\n"
+      "[AXIS_0]\nMAX_VELOCITY = 1\nMAX_ACCELERATION = 10\n"
+      "[AXIS_1]\nMAX_VELOCITY = 1\nMAX_ACCELERATION = 10\n"
+      "[AXIS_2]\nMAX_VELOCITY = 0.5\nMAX_ACCELERATION = 5\n"
+      "[AXIS_3]\nTYPE = ANGULAR\nMAX_VELOCITY = 90\nMAX_ACCELERATION = 360\n"));
+  EXPECT_NEAR(m.path_feed, 50.8, 1e-9);
+  EXPECT_NEAR(m.axis(Axis::kZ).velocity, 12.7, 1e-9);
+  EXPECT_NEAR(m.axis(Axis::kA).velocity, 90, 1e-9) << "degrees are no inches";
+  EXPECT_NEAR(m.axis(Axis::kA).acceleration, 360, 1e-9);
+}
+
+TEST(MachineIni, OfALatheIsNotHeldBackByAnAxisThatItHasNot) {
+  const Machine m =
+      machine_of(read_ini("[TRAJ]\nCOORDINATES = X Z\nLINEAR_UNITS = mm\n"
+                          "[AXIS_X]\nMAX_VELOCITY = 500\nMAX_ACCELERATION = 9000\n"
+                          "[AXIS_Z]\nMAX_VELOCITY = 900\nMAX_ACCELERATION = 5000\n"));
+  EXPECT_EQ(m.max_velocity(), 500);
+  EXPECT_EQ(m.max_acceleration(), 5000);
+}
+
+TEST(MachineIni, WithoutALimitOfThePathHasNone) {
+  const Machine m =
+      machine_of(read_ini("[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = mm\n"
+                          "[AXIS_X]\nMAX_VELOCITY = 500\nMAX_ACCELERATION = 9000\n"));
+  EXPECT_EQ(m.path_feed, Machine::kNone);
+}
+
+TEST(MachineIni, TakesTheDepthOfTheOptimiserForItsLookAhead) {
+  const Machine m = machine_of(
+      read_ini(std::string(kMillimetres) + "[TRAJ]\nARC_BLEND_OPTIMIZATION_DEPTH = 100\n"));
+  EXPECT_EQ(m.look_ahead, 100);
+}
+
+TEST(MachineIni, ReadsIncludedFilesInTheirPlace) {
+  const ScratchFolder folder;
+  (void)folder.put("parts/axes.inc",
+                   "[AXIS_X]\nMAX_VELOCITY = 25\nMAX_ACCELERATION = -2\n#INCLUDE none.inc\n");
+  const std::string file = folder.put("my.ini",
+                                      "[TRAJ]\nCOORDINATES = X\n#INCLUDE parts/axes.inc\n[TRAJ]\n"
+                                      "LINEAR_UNITS = mm\n[AXIS_X]\nMAX_VELOCITY = 99\n");
+  const Read result = read(folder, file);
+  EXPECT_EQ(result.machine, nullptr);
+  EXPECT_EQ(result.problems,
+            "parts/axes.inc:3:20: [AXIS_X]MAX_ACCELERATION: -2, expected above 0 (mm/s2)\n")
+      << "the first of two values counts, and included files include no more";
+}
+
+// --- what is wrong -------------------------------------------------------------------------------
+
+struct BadIni {
+  const char* name;
+  const char* text;
+  const char* problems;
+};
+
+class BadInis : public testing::TestWithParam<BadIni> {};
+
+TEST_P(BadInis, AreToldWithPlaceAndValue) {
+  const Read result = read_ini(GetParam().text);
+  EXPECT_EQ(result.machine, nullptr);
+  EXPECT_EQ(result.problems, GetParam().problems);
+}
+
+constexpr const char* kNoUnits =
+    "my.ini: no [TRAJ]LINEAR_UNITS, so its lengths mean nothing; expected mm or inch\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    MachineIni, BadInis,
+    testing::Values(
+        BadIni{"NoUnits",
+               "[TRAJ]\nCOORDINATES = X\n[AXIS_X]\nMAX_VELOCITY = 5\nMAX_ACCELERATION = 5\n",
+               kNoUnits},
+        BadIni{"WrongUnits",
+               "[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = furlong\n[AXIS_X]\nMAX_VELOCITY = 5\n"
+               "MAX_ACCELERATION = 5\n",
+               "my.ini:3:16: [TRAJ]LINEAR_UNITS: furlong, expected one of mm, metric, in, inch, "
+               "imperial\n"},
+        BadIni{"NoVelocity",
+               "[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = mm\n[AXIS_X]\nMAX_ACCELERATION = 5\n",
+               "my.ini: no MAX_VELOCITY for axis X, expected in [AXIS_X]\n"},
+        BadIni{"VelocityThatIsNoNumber",
+               "[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = mm\n[AXIS_X]\nMAX_VELOCITY = fast\n"
+               "MAX_ACCELERATION = 5\n",
+               "my.ini:5:16: [AXIS_X]MAX_VELOCITY: fast, expected a number\n"},
+        BadIni{"ZeroVelocity",
+               "[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = mm\n[AXIS_X]\nMAX_VELOCITY = 0\n"
+               "MAX_ACCELERATION = 5\n",
+               "my.ini:5:16: [AXIS_X]MAX_VELOCITY: 0, expected above 0 (mm/s)\n"},
+        BadIni{"ZeroPeriod",
+               "[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = mm\n[AXIS_X]\nMAX_VELOCITY = 1\n"
+               "MAX_ACCELERATION = 5\n[EMCMOT]\nSERVO_PERIOD = 0\n",
+               "my.ini:8:16: [EMCMOT]SERVO_PERIOD: 0, expected above 0 (s)\n"},
+        BadIni{"NoDepth",
+               "[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = mm\nARC_BLEND_OPTIMIZATION_DEPTH = 0\n"
+               "[AXIS_X]\nMAX_VELOCITY = 1\nMAX_ACCELERATION = 5\n",
+               "my.ini:4:32: [TRAJ]ARC_BLEND_OPTIMIZATION_DEPTH: 0, expected 1 or more (blocks)\n"},
+        BadIni{"NoMachine", "[settings]\ncolour = red\n",
+               "my.ini: no [TRAJ]LINEAR_UNITS, so its lengths mean nothing; expected mm or inch\n"
+               "my.ini: no X, Y or Z in [TRAJ]COORDINATES and no [AXIS_X]: not the INI of a "
+               "machine\n"},
+        BadIni{"IncludeOfNothing", "#INCLUDE\n", "my.ini:1: #INCLUDE: there is no file ''\n"},
+        BadIni{"IncludeOfAMissingFile", "[TRAJ]\n#INCLUDE  more.inc\n",
+               "my.ini:2: #INCLUDE: there is no file 'more.inc'\n"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(MachineIni, ThatIsNotThereIsTold) {
+  const ScratchFolder folder;
+  const Read result = read(folder, folder.file("none.ini"));
+  EXPECT_EQ(result.machine, nullptr);
+  EXPECT_EQ(result.problems.find("none.ini"), 0u) << result.problems;
+}
+
+// --- settings of grbl ----------------------------------------------------------------------------
+
+// All that time depends on; each line may be replaced.
+std::string dump_with(const std::string& line = "") {
+  std::string text = "$11=0.020\r\n$12=0.003\r\n";
+  for (const char* axis : {"0=5000.000", "1=4000.000", "2=600.000"}) {
+    text += std::string("$11") + axis + "\r\n";
+  }
+  for (const char* axis : {"0=300.000", "1=250.000", "2=50.000"}) {
+    text += std::string("$12") + axis + "\r\n";
+  }
+  return text + line;
+}
+
+void expect_the_machine_of_the_dump(const Machine& m) {
+  EXPECT_EQ(m.model, ControllerModel::kGrbl);
+  EXPECT_DOUBLE_EQ(m.junction_deviation, 0.02);
+  EXPECT_DOUBLE_EQ(m.arc_tolerance, 0.003);
+  EXPECT_DOUBLE_EQ(m.axis(Axis::kX).velocity, 5000.0 / 60);  // $110 is in mm/min
+  EXPECT_DOUBLE_EQ(m.axis(Axis::kY).velocity, 4000.0 / 60);
+  EXPECT_DOUBLE_EQ(m.axis(Axis::kZ).velocity, 10);
+  EXPECT_DOUBLE_EQ(m.axis(Axis::kZ).rapid_velocity, 10) << "grbl has one limit for both";
+  EXPECT_DOUBLE_EQ(m.axis(Axis::kX).acceleration, 300);
+  EXPECT_DOUBLE_EQ(m.axis(Axis::kY).acceleration, 250);
+  EXPECT_DOUBLE_EQ(m.axis(Axis::kZ).acceleration, 50);
+}
+
+TEST(GrblSettings, AreThoseOfTheDump) {
+  const Machine m = machine_of(read_dump(dump_with()));
+  expect_the_machine_of_the_dump(m);
+}
+
+TEST(GrblSettings, KeepWhatTheDumpDoesNotSay) {
+  const Machine m = machine_of(read_dump(dump_with()));
+  const Machine& router = *find_machine("router");
+  EXPECT_EQ(m.stream_rate, router.stream_rate);
+  EXPECT_EQ(m.look_ahead, router.look_ahead);
+  EXPECT_EQ(m.axis(Axis::kA), router.axis(Axis::kA));
+}
+
+// What stands around the settings in the log of a sender: all of it is passed over.
+TEST(GrblSettings, StandAmongAnswersAndComments) {
+  const std::string dump =
+      "\xEF\xBB\xBF"
+      "; saved by hand\n"
+      "\n"
+      "Grbl 1.1h ['$' for help]\n"
+      "[MSG:'$H'|'$X' to unlock]\n"
+      ">>> $$\n"
+      "$$\n"
+      "<Idle|MPos:0.000,0.000,0.000|FS:0,0>\n"
+      "$0=10\n$1=25 (step idle delay, msec)\n$13=1 (report inches, bool)\n$32=1\n"
+      "  $11 = 0.020 (junction deviation, mm)\n"
+      "$12=0.003 (arc tolerance, mm)\n"
+      "$100=250.000 (x, step/mm)\n"
+      "$110=5000.000 (x max rate, mm/min)\n$111=4000.000\n$112=600\n"
+      "$120=300.000 (x accel, mm/sec^2)\n$121=250.000 ; mm/sec^2\n$122=50.000\n"
+      "$130=800.000 (x max travel, mm)\n"
+      "$N0=G21 G90\n"
+      "ok\n";
+  const Machine m = machine_of(read_dump(dump));
+  expect_the_machine_of_the_dump(m);
+}
+
+// grblHAL: axes beyond Z, and settings that are texts or lists.
+TEST(GrblSettings, OfGrblHalHaveMoreAxes) {
+  const Machine m =
+      machine_of(read_dump(dump_with("$70=7\n$74=home network\n$302=192.168.5.1\n$341=0\n"
+                                     "$113=3600.000\n$123=500.000\n$660=,\n")));
+  expect_the_machine_of_the_dump(m);
+  EXPECT_DOUBLE_EQ(m.axis(Axis::kA).velocity, 60);  // degrees/s
+  EXPECT_DOUBLE_EQ(m.axis(Axis::kA).acceleration, 500);
+}
+
+TEST(GrblSettings, CountAsTheyAreLast) {
+  const Machine m = machine_of(read_dump("$110=1\n" + dump_with()));
+  expect_the_machine_of_the_dump(m);
+}
+
+struct BadDump {
+  const char* name;
+  const char* line;  // behind eight good ones
+  const char* problem;
+};
+
+class BadDumps : public testing::TestWithParam<BadDump> {};
+
+TEST_P(BadDumps, AreToldWithPlaceAndSetting) {
+  const Read result = read_dump(dump_with(GetParam().line));
+  EXPECT_EQ(result.machine, nullptr);
+  EXPECT_EQ(result.problems, std::string("dump.txt:") + GetParam().problem + "\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    GrblSettings, BadDumps,
+    testing::Values(
+        BadDump{"NoRate", "$110=0.000", "9:6: $110: 0, expected above 0 (mm/s)"},
+        BadDump{"NegativeAcceleration", "  $122 = -5", "9:10: $122: -5, expected above 0 (mm/s2)"},
+        BadDump{"NoJunctionDeviation", "$11=0", "9:5: $11: 0, expected above 0 (mm)"},
+        BadDump{"NoNumber", "$12=abc", "9:1: '$12=abc', expected a setting such as $110=5000.000"},
+        BadDump{"ACommaForThePoint", "$120=10,5",
+                "9:1: '$120=10,5', expected a setting such as $110=5000.000"},
+        BadDump{"Nothing", "$110=", "9:1: '$110=', expected a setting such as $110=5000.000"},
+        BadDump{"AProgram", "G21 G90", "9:1: 'G21 G90', expected a setting such as $110=5000.000"},
+        BadDump{"AnError", "error:8",
+                "9:1: 'error:8' is what a control answers that prints no settings"},
+        BadDump{"AnAlarm", "ALARM: 1",
+                "9:1: 'ALARM: 1' is what a control answers that prints no settings"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(GrblSettings, ThatAreMissingAreToldTogether) {
+  const Read result = read_dump("$11=0.010\n$110=500\n$111=500\n$120=10\n$121=10\n$122=10\nok\n");
+  EXPECT_EQ(result.machine, nullptr);
+  EXPECT_EQ(result.problems,
+            "dump.txt: no $12, $112 in it, expected all that grbl prints when asked for $$\n");
+  EXPECT_EQ(read_dump("").machine, nullptr);
+}
+
+// --- the machine that a user names ---------------------------------------------------------------
+
+constexpr const char* kIni =
+    "[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = mm\n"
+    "[AXIS_X]\nMAX_VELOCITY = 77\nMAX_ACCELERATION = 5\n";
+
+constexpr const char* kDump =
+    "$11=0.010\n$12=0.002\n$110=6000\n$111=6000\n$112=600\n$120=500\n$121=500\n$122=60\n";
+
+TEST(ChooseMachine, GivesBuiltInOnesByName) {
+  std::vector<std::string> problems;
+  const auto machine = choose_machine("mill", "--machine", problems);
+  EXPECT_EQ(machine.get(), find_machine("mill"));
+  EXPECT_TRUE(problems.empty());
+}
+
+TEST(ChooseMachine, ReadsFilesByTheirSuffix) {
+  const ScratchFolder folder;
+  std::vector<std::string> problems;
+  const auto toml = choose_machine(folder.put("a.toml", "based-on = \"mill\"\nmax-velocity = 7\n"),
+                                   "--machine", problems);
+  ASSERT_NE(toml, nullptr);
+  EXPECT_EQ(toml->max_velocity(), 7);
+  const auto ini = choose_machine(folder.put("B.INI", kIni), "--machine", problems);
+  ASSERT_NE(ini, nullptr);
+  EXPECT_EQ(ini->axis(Axis::kX).velocity, 77);
+  EXPECT_TRUE(problems.empty());
+}
+
+TEST(ChooseMachine, LetsAFileBeBasedOnAnIni) {
+  const ScratchFolder folder;
+  (void)folder.put("mill.ini", kIni);
+  std::vector<std::string> problems;
+  const auto machine =
+      choose_machine(folder.put("a.toml", "based-on = \"mill.ini\"\ntool-change-time = 8\n"),
+                     "--machine", problems);
+  ASSERT_NE(machine, nullptr) << problems.front();
+  EXPECT_EQ(machine->axis(Axis::kX).velocity, 77);
+  EXPECT_EQ(machine->tool_change_time, 8);
+}
+
+TEST(ChooseMachine, TellsTheChoices) {
+  std::vector<std::string> problems;
+  EXPECT_EQ(choose_machine("ruter", "--machine", problems), nullptr);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0],
+            "--machine: there is no machine 'ruter', did you mean 'router'?; possible: linuxcnc, "
+            "router, grbl, mill, high-speed, old-mill, a file NAME.toml, or the NAME.ini of a "
+            "LinuxCNC machine");
+}
+
+TEST(MachineWithGrblSettings, TakesTheRestFromItsBase) {
+  const ScratchFolder folder;
+  std::vector<std::string> problems;
+  Machine base = *find_machine("router");
+  base.tool_change_time = 60;
+  const auto machine =
+      machine_with_grbl_settings(&base, folder.put("shapeoko.txt", kDump), problems);
+  ASSERT_NE(machine, nullptr);
+  EXPECT_EQ(machine->name, "shapeoko");
+  EXPECT_EQ(machine->tool_change_time, 60);
+  EXPECT_EQ(machine->axis(Axis::kX).velocity, 100);
+  EXPECT_EQ(machine->axis(Axis::kZ).acceleration, 60);
+  EXPECT_NE(machine_with_grbl_settings(nullptr, folder.file("shapeoko.txt"), problems), nullptr);
+  EXPECT_TRUE(problems.empty());
+}
+
+TEST(MachineWithGrblSettings, RefusesAnotherControl) {
+  const ScratchFolder folder;
+  std::vector<std::string> problems;
+  EXPECT_EQ(machine_with_grbl_settings(find_machine("mill"), folder.put("a.txt", kDump), problems),
+            nullptr);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0],
+            "--grbl-settings: the control of machine mill is look-ahead, expected a machine with "
+            "grbl, such as router");
+}
+
+TEST(MachineWithGrblSettings, TellsOfAMissingFile) {
+  const ScratchFolder folder;
+  std::vector<std::string> problems;
+  EXPECT_EQ(machine_with_grbl_settings(nullptr, folder.file("none.txt"), problems), nullptr);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].find("--grbl-settings: "), 0u) << problems[0];
+}
+
+}  // namespace
+}  // namespace batten::postproc
