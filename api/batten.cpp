@@ -71,10 +71,10 @@ struct Reading {
             kind, target, decimals,
             gcode::source_language(source, kind, language ? language : language_of(target), found),
             inner(units))),
-        program(gcode::parse(source, how, found)),
-        meaning(gcode::interpret(
-            program, {inner(units), target == nullptr ? nullptr : target->curves}, found)) {
-    gcode::tell_of_contradictions(program, kind, found);
+        read{gcode::parse(source, how, found), {}} {
+    read.meaning = gcode::interpret(
+        read.program, {inner(units), target == nullptr ? nullptr : target->curves}, found);
+    gcode::tell_of_contradictions(read.program, kind, found);
   }
 
   [[nodiscard]] static std::optional<gcode::Language> language_of(const gcode::Control* target) {
@@ -91,13 +91,12 @@ struct Reading {
     return {language, gcode::decimals_read(kind, target, language, decimals), units};
   }
 
-  [[nodiscard]] postproc::ReadProgram get() const { return {&program, &meaning}; }
+  [[nodiscard]] postproc::ReadProgram get() const { return {&read.program, &read.meaning}; }
 
   gcode::SourceText source;
   gcode::Diagnostics found;
   gcode::Reading how;
-  gcode::Program program;
-  gcode::Interpretation meaning;
+  gcode::ReadPart read;
 };
 
 [[noreturn]] void refuse(const std::vector<std::string>& problems) {
@@ -201,9 +200,8 @@ ReadResult read(std::string_view program, ProgramUnits units, std::string_view s
   const Reading reading(program, units, source_kind(source));
   ReadResult result;
   result.understood = !gcode::has_error(reading.found);
-  result.blocks = reading.program.blocks.size();
-  const auto sections = postproc::group_runs(reading.program, reading.meaning, {});
-  for (const auto& section : postproc::inspect(reading.program, reading.meaning, sections)) {
+  result.blocks = reading.read.program.blocks.size();
+  for (const auto& section : postproc::inspect(reading.read, {})) {
     result.parts.push_back({section.first_line, section.last_line, section.cutting_moves,
                             std::string(section.reason)});
   }
@@ -253,7 +251,7 @@ Proof verify(std::string_view old_program, std::string_view new_program, double 
     return proof;
   }
   const Reading before(old_program, units, kind, control, declared);
-  const Reading after(new_program, units, kind, control, declared, before.program.language);
+  const Reading after(new_program, units, kind, control, declared, before.read.program.language);
   for (const Reading* each : {&before, &after}) {
     for (Message& message : messages_of(each->found, each->source)) {
       if (message.severity == Severity::kError) proof.messages.push_back(std::move(message));
@@ -288,7 +286,7 @@ ProgramTime time(std::string_view program, const TimeOptions& options) {
   result.understood = !gcode::has_error(reading.found);
   if (!result.understood) return result;
   const postproc::ProgramTime found = postproc::time_program(
-      reading.program, reading.meaning, *machine,
+      reading.read.program, reading.read.meaning, *machine,
       {.dwell_unit = postproc::dwell_unit_of(target, *machine), .start = std::nullopt});
   result.seconds = found.seconds.sum();
   result.cutting = found.seconds.cutting;

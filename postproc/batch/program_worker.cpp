@@ -11,11 +11,10 @@
 #include "postproc/batch/program_tree.h"
 #include "postproc/report/smooth_report.h"
 #include "postproc/stream/pipeline.h"
-#include "postproc/stream/smooth_verdict.h"
+#include "postproc/stream/smooth_result.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 #include "postproc/system/output_file.h"
-#include "postproc/system/watched_file.h"
 
 namespace batten::postproc {
 

@@ -14,7 +14,6 @@
 #include "postproc/system/interrupt.h"
 #include "postproc/system/output_file.h"
 #include "postproc/system/terminal_colour.h"
-#include "postproc/system/valid_utf8.h"
 
 namespace batten::postproc {
 

@@ -12,12 +12,8 @@
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"
 #include "postproc/system/output_file.h"
-#include "postproc/system/watched_file.h"
 
 namespace batten::postproc {
-
-// Programs of this size (bytes) and more are read part by part, where that is enough.
-inline constexpr std::size_t kBytesForParts = std::size_t{1} << 21;
 
 // Reads a file, or standard input to its end. On failure says why and returns nothing.
 [[nodiscard]] std::optional<gcode::SourceText> read_program(const std::string& name);
@@ -58,7 +54,7 @@ void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& sourc
 void say(std::string_view message);
 
 // Whole lines on standard error, as they are but for bytes that are not UTF-8
-// (postproc/system/valid_utf8.h).
+// (postproc/system/terminal_colour.h).
 void say_lines(std::string_view text);
 
 }  // namespace batten::postproc

@@ -13,9 +13,8 @@
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
 #include "postproc/runs/run_grouping.h"
-#include "postproc/stream/chunk_reader.h"
 #include "postproc/stream/inspect.h"
-#include "postproc/stream/inspect_in_parts.h"
+#include "postproc/stream/part_reader.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 #include "postproc/text/json_values.h"
@@ -133,37 +132,6 @@ std::string json_report(const InspectedProgram& inspected, const gcode::SourceTe
   return json_text(json);
 }
 
-InspectedProgram inspect_whole(const gcode::SourceText& source, gcode::Language language,
-                               const PartReading& reading, const GroupingOptions& grouping) {
-  InspectedProgram inspected;
-  const gcode::Program program =
-      gcode::parse(source, {language, reading.decimals, reading.options.units}, inspected.found);
-  gcode::tell_of_contradictions(program, reading.source, inspected.found);
-  const gcode::Interpretation interpretation =
-      gcode::interpret(program, reading.options, inspected.found);
-  inspected.sections =
-      inspect(program, interpretation, group_runs(program, interpretation, grouping));
-  inspected.blocks = program.blocks.size();
-  inspected.unit_word_seen = interpretation.unit_word_seen;
-  return inspected;
-}
-
-// What a program is made of, in parts where it is long.
-InspectedProgram inspected(const gcode::SourceText& source, gcode::Language language,
-                           const InspectCommand& command) {
-  PartReading reading;
-  reading.source = command.source;
-  reading.decimals = gcode::decimals_read(command.source, nullptr, language, command.decimals);
-  reading.options = {.units = command.units, .calls_keep_modes = calls_keep_modes(command.allowed)};
-  GroupingOptions grouping;
-  grouping.allowed.assign(command.allowed.begin(), command.allowed.end());
-  if (language == gcode::Language::kRs274 && source.text().size() >= kBytesForParts) {
-    source.release_pages({0, static_cast<std::uint32_t>(source.text().size())});
-    if (auto parts = inspect_in_parts(source, reading, grouping)) return std::move(*parts);
-  }
-  return inspect_whole(source, language, reading, grouping);
-}
-
 }  // namespace
 
 int run(const InspectCommand& command) {
@@ -172,15 +140,22 @@ int run(const InspectCommand& command) {
   if (interrupted()) return end_interrupted();
   if (!source) return static_cast<int>(ExitCode::kFileError);
 
-  gcode::Diagnostics of_language;
-  const auto language = gcode::source_language(*source, command.source, std::nullopt, of_language);
+  PartReading reading;
+  reading.source = command.source;
+  const auto language =
+      gcode::source_language(*source, command.source, std::nullopt, reading.of_language);
   if (!language) {
-    print(of_language, *source, command.log_level);
+    print(reading.of_language, *source, command.log_level);
     return static_cast<int>(ExitCode::kNotUnderstood);
   }
-  InspectedProgram result = inspected(*source, *language, command);
-  result.found.insert(result.found.begin(), of_language.begin(), of_language.end());
-
+  reading.text.language = *language;
+  reading.text.decimals =
+      gcode::decimals_read(command.source, nullptr, *language, command.decimals);
+  reading.text.units = command.units;
+  reading.options = {.units = command.units, .calls_keep_modes = calls_keep_modes(command.allowed)};
+  GroupingOptions grouping;
+  grouping.allowed.assign(command.allowed.begin(), command.allowed.end());
+  const InspectedProgram result = inspect(*source, reading, grouping);
   if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
   print(result.found, *source, command.log_level);
   if (command.json_file != "-") {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -56,37 +57,16 @@ std::string table_of(std::span<const Machine> machines) {
 
 // --- JSON --------------------------------------------------------------------------------------
 
-std::string_view suffix_of(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::kLength:
-      return "_mm";
-    case Quantity::kVelocity:
-      return "_mm_per_s";
-    case Quantity::kAcceleration:
-      return "_mm_per_s2";
-    case Quantity::kJerk:
-      return "_mm_per_s3";
-    case Quantity::kAngularVelocity:
-      return "_deg_per_s";
-    case Quantity::kAngularAcceleration:
-      return "_deg_per_s2";
-    case Quantity::kAngularJerk:
-      return "_deg_per_s3";
-    case Quantity::kTime:
-      return "_s";
-    case Quantity::kBlockRate:
-      return "_blocks_per_s";
-    case Quantity::kByteRate:
-      break;
-  }
-  return "_bytes_per_s";
-}
+// By Quantity.
+constexpr std::array<std::string_view, 10> kSuffixes = {
+    "_mm",         "_mm_per_s",   "_mm_per_s2", "_mm_per_s3",    "_deg_per_s",
+    "_deg_per_s2", "_deg_per_s3", "_s",         "_blocks_per_s", "_bytes_per_s"};
 
 // "block-period" and seconds: "block_period_s".
 std::string json_key(std::string_view key, Quantity quantity) {
   std::string name(key);
   std::ranges::replace(name, '-', '_');
-  return name + std::string(suffix_of(quantity));
+  return name.append(kSuffixes.at(static_cast<std::size_t>(quantity)));
 }
 
 Json number_or_null(double value) { return std::isinf(value) ? Json(nullptr) : Json(value); }

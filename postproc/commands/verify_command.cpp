@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,10 +13,9 @@
 #include "gcode/reading/source_kind.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
-#include "postproc/proof/point_spelling.h"
 #include "postproc/proof/verification.h"
 #include "postproc/stream/added_lines.h"
-#include "postproc/stream/chunk_reader.h"
+#include "postproc/stream/part_reader.h"
 #include "postproc/stream/part_verification.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
@@ -28,13 +27,6 @@ namespace {
 
 // More breaches than this tell nothing new on a screen; the JSON report has them all.
 constexpr std::size_t kMostViolations = 20;
-
-struct Read {
-  gcode::SourceText source;
-  gcode::Program program;
-  gcode::Interpretation interpretation;
-  gcode::Diagnostics diagnostics;
-};
 
 // The one that is named, or that the profile adapts.
 const gcode::Control* target_of(const VerifyCommand& command) {
@@ -70,50 +62,33 @@ std::optional<gcode::Language> language_before(const gcode::SourceText& old_sour
   return before != target && after == target ? before : std::nullopt;
 }
 
-// `language`: what a text without certain marks is read in; nothing: as the target reads.
-// `dwells`: what its G4 means.
-Read read(const gcode::SourceText& source, const VerifyCommand& command, gcode::SourceKind kind,
-          std::optional<gcode::Language> language, gcode::DwellForm dwells) {
-  gcode::Diagnostics found;
-  const auto own = gcode::source_language(source, kind,
-                                          language ? language : language_of_target(command), found);
-  const gcode::Language certain = own.value_or(gcode::Language::kRs274);
-  const gcode::Decimals decimals =
-      gcode::decimals_read(kind, target_of(command), certain, command.decimals);
-  gcode::Program program = gcode::parse(source, {certain, decimals, command.units, dwells}, found);
-  gcode::tell_of_contradictions(program, kind, found);
-  gcode::Interpretation interpretation =
-      gcode::interpret(program,
-                       {.units = command.units,
-                        .curves = curves_of(command),
-                        .calls_keep_modes = calls_keep_modes(command.allowed)},
-                       found);
-  return {source, std::move(program), std::move(interpretation), std::move(found)};
+// `language`: what a text without certain marks is read in. `dwells`: what its G4 means.
+PartReading reading_of(const gcode::SourceText& source, const VerifyCommand& command,
+                       gcode::SourceKind kind, std::optional<gcode::Language> language,
+                       gcode::DwellForm dwells) {
+  PartReading reading;
+  reading.source = kind;
+  reading.text.language = gcode::source_language(source, kind, language, reading.of_language)
+                              .value_or(gcode::Language::kRs274);
+  reading.text.decimals =
+      gcode::decimals_read(kind, target_of(command), reading.text.language, command.decimals);
+  reading.text.units = command.units;
+  reading.text.dwells = dwells;
+  reading.options = {.units = command.units,
+                     .curves = curves_of(command),
+                     .calls_keep_modes = calls_keep_modes(command.allowed)};
+  return reading;
 }
 
-std::string_view name_of(ViolationKind kind) {
-  switch (kind) {
-    case ViolationKind::kDistance:
-      return "distance";
-    case ViolationKind::kNotProved:
-      return "not-proved";
-    case ViolationKind::kSide:
-      return "side";
-    case ViolationKind::kCrossing:
-      return "crossing";
-    case ViolationKind::kFeed:
-      return "feed";
-    case ViolationKind::kRapid:
-      return "rapid";
-    case ViolationKind::kEvent:
-      return "event";
-    case ViolationKind::kTarget:
-      return "target";
-    case ViolationKind::kState:
-      break;
-  }
-  return "state";
+// As the target reads, where the text has no certain marks.
+PartReading reading_of(const gcode::SourceText& source, const VerifyCommand& command) {
+  return reading_of(source, command, command.source, language_of_target(command),
+                    gcode::dwells_of(command.source));
 }
+
+// By ViolationKind.
+constexpr std::array<std::string_view, 9> kKindNames = {
+    "distance", "not-proved", "side", "crossing", "feed", "rapid", "event", "state", "target"};
 
 std::string text_of(const Violation& violation, const VerifyCommand& command) {
   const std::string place = violation.new_line > 0
@@ -166,7 +141,7 @@ std::string json_report(const Verification& verification, const VerifyCommand& c
                         const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
   Json violations = Json::array();
   for (const Violation& violation : verification.violations) {
-    violations.push_back({{"kind", name_of(violation.kind)},
+    violations.push_back({{"kind", kKindNames.at(static_cast<std::size_t>(violation.kind))},
                           {"id", violation.id},
                           {"old_line", violation.old_line},
                           {"new_line", violation.new_line},
@@ -194,9 +169,10 @@ std::string json_report(const Verification& verification, const VerifyCommand& c
 }
 
 // Moves without a unit are an error among the diagnostics: a tolerance means nothing then.
-bool is_understood(const Read& read, LogLevel level) {
-  print(read.diagnostics, read.source, level);
-  return !gcode::has_error(read.diagnostics);
+bool is_understood(const gcode::Diagnostics& found, const gcode::SourceText& source,
+                   LogLevel level) {
+  print(found, source, level);
+  return !gcode::has_error(found);
 }
 
 // 0 when written or not asked for; else says why and returns the exit code.
@@ -221,24 +197,24 @@ int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& sou
                           command.old_program));
   }
   if (command.json_file.empty()) return 0;
-  const Read same =
-      read(source, command, command.source, std::nullopt, gcode::dwells_of(command.source));
-  return write_json(command, {}, same.diagnostics, source);
+  const PartReading reading = reading_of(source, command);
+  gcode::Diagnostics found = reading.of_language;
+  (void)read_whole(source, reading, found);
+  return write_json(command, {}, found, source);
 }
 
 // The new program without the lines that a profile may add; as it is where there is no profile.
-AddedLines without_added_lines(const VerifyCommand& command, const Read& before,
+AddedLines without_added_lines(const VerifyCommand& command, const TextToVerify& before,
                                const gcode::SourceText& new_source) {
-  ProfileWords words;
-  if (command.profile != nullptr) {
-    gcode::Units units = gcode::Units::kUnknown;
-    for (const gcode::ModalState& state : before.interpretation.states) {
-      if (units == gcode::Units::kUnknown) units = state.units;
-    }
-    words =
-        filled_in(command.profile->words, command.tolerance_mm, units, command.profile->adapted);
+  gcode::Diagnostics ignored;
+  const gcode::ReadPart read = read_whole(before.source, before.reading, ignored);
+  gcode::Units units = gcode::Units::kUnknown;
+  for (const gcode::ModalState& state : read.meaning.states) {
+    if (units == gcode::Units::kUnknown) units = state.units;
   }
-  return take_added_lines(before.program, new_source.text(), words);
+  return take_added_lines(
+      read.program, new_source.text(),
+      filled_in(command.profile->words, command.tolerance_mm, units, command.profile->adapted));
 }
 
 // Nothing says for which control the programs are, nor how it counts numbers without a point.
@@ -284,40 +260,6 @@ int tell(const VerifyCommand& command, const Verification& verification, std::si
   return verification.proved() ? code : static_cast<int>(ExitCode::kNotProved);
 }
 
-// How a program of the RS-274 family is read in parts; nothing for others.
-std::optional<PartReading> part_reading(const gcode::SourceText& source,
-                                        const VerifyCommand& command) {
-  gcode::Diagnostics uncertain;
-  const auto language =
-      gcode::source_language(source, command.source, language_of_target(command), uncertain);
-  if (language != gcode::Language::kRs274) return std::nullopt;
-  PartReading reading;
-  reading.source = command.source;
-  reading.decimals =
-      gcode::decimals_read(command.source, target_of(command), *language, command.decimals);
-  reading.dwells = gcode::dwells_of(command.source);
-  reading.options = {.units = command.units,
-                     .curves = curves_of(command),
-                     .calls_keep_modes = calls_keep_modes(command.allowed)};
-  return reading;
-}
-
-// Long programs that are proved part by part; nothing: the whole is to be asked.
-std::optional<VerifiedInParts> proved_in_parts(const VerifyCommand& command,
-                                               const gcode::SourceText& old_source,
-                                               const gcode::SourceText& new_source) {
-  const std::size_t size = std::max(old_source.text().size(), new_source.text().size());
-  if (size < kBytesForParts || command.profile != nullptr) return std::nullopt;
-  const auto old_reading = part_reading(old_source, command);
-  const auto new_reading = part_reading(new_source, command);
-  for (const gcode::SourceText* source : {&old_source, &new_source}) {
-    source->release_pages({0, static_cast<std::uint32_t>(source->text().size())});
-  }
-  if (!old_reading || !new_reading) return std::nullopt;
-  return verify_in_parts({old_source, *old_reading}, {new_source, *new_reading},
-                         promise_of(command), interrupted);
-}
-
 }  // namespace
 
 int run(const VerifyCommand& command) {
@@ -332,47 +274,43 @@ int run(const VerifyCommand& command) {
     return accept_same_bytes(command, *new_source);
   }
 
-  if (auto parts = proved_in_parts(command, *old_source, *new_source)) {
-    compare_points(command, *old_source, *new_source, parts->verification);
-    if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
-    print(parts->of_old, *old_source, command.log_level);
-    print(parts->of_new, *new_source, command.log_level);
-    return tell(command, parts->verification, 0, parts->of_new, *new_source);
-  }
-  if (interrupted()) return end_interrupted();
   const auto foreign = language_before(*old_source, *new_source, command);
-  const Read before =
-      read(*old_source, command, command.source, foreign, gcode::dwells_of(command.source));
-  const AddedLines added = without_added_lines(command, before, *new_source);
-  const Read after = read(gcode::SourceText(new_source->name(), added.text), command,
-                          foreign ? gcode::SourceKind::kAuto : command.source,
-                          foreign ? *language_of_target(command) : before.program.language,
-                          foreign ? target_of(command)->dwell_form : before.program.dwells);
+  const TextToVerify before{*old_source, foreign
+                                             ? reading_of(*old_source, command, command.source,
+                                                          foreign, gcode::dwells_of(command.source))
+                                             : reading_of(*old_source, command)};
+  AddedLines added;
+  gcode::SourceText compared = *new_source;
+  if (command.profile != nullptr) {
+    added = without_added_lines(command, before, *new_source);
+    compared = gcode::SourceText(new_source->name(), std::move(added.text));
+  }
+  const TextToVerify after{
+      compared,
+      foreign ? reading_of(compared, command, gcode::SourceKind::kAuto, language_of_target(command),
+                           target_of(command)->dwell_form)
+              : reading_of(compared, command, command.source, before.reading.text.language,
+                           before.reading.text.dwells),
+      std::move(added.brackets)};
+  auto verified = verify_texts(before, after, promise_of(command), interrupted);
+  if (!verified || interrupted()) return end_interrupted();
   if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
-  if (!is_understood(before, command.log_level)) {
+  if (!is_understood(verified->of_old, *old_source, command.log_level)) {
     say("the old program is not understood, so nothing can be proved about the new one");
     return static_cast<int>(ExitCode::kNotUnderstood);
   }
-  if (!is_understood(after, command.log_level)) {
+  if (!is_understood(verified->of_new, compared, command.log_level)) {
     say("NOT PROVED: the new program is not understood, and the old one is");
     return static_cast<int>(ExitCode::kNotProved);
   }
-  Verification verification =
-      verify({.program = &before.program, .interpretation = &before.interpretation},
-             {.program = &after.program, .interpretation = &after.interpretation},
-             promise_of(command));
-  if (interrupted()) return end_interrupted();
-  if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
-  if (before.program.language == gcode::Language::kRs274 &&
-      after.program.language == gcode::Language::kRs274) {
+  Verification& verification = verified->verification;
+  if (before.reading.text.language == gcode::Language::kRs274 &&
+      after.reading.text.language == gcode::Language::kRs274) {
     compare_points(command, *old_source, *new_source, verification);
   }
   append(added.violations, verification);
-  append(events_in_brackets({.program = &after.program, .interpretation = &after.interpretation},
-                            added.brackets),
-         verification);
-
-  return tell(command, verification, added.lines, after.diagnostics, after.source);
+  append(verified->in_brackets, verification);
+  return tell(command, verification, added.lines, verified->of_new, compared);
 }
 
 }  // namespace batten::postproc

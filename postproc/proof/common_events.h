@@ -10,13 +10,11 @@ namespace batten::postproc {
 //   tool 5           T5 M6, TOOL CALL 5 Z
 //   speed 3000       S3000, TOOL CALL Z S3000: another one, or the first behind a tool
 //   M3, M4, M8       before the motion of their block, as LinuxCNC and Klartext do them; M13 and
-//   M14
-//                    of Klartext are two of them
+//                    M14 of Klartext are two of them
 //   M5, M9           in a block without motion; in Klartext behind the motion of their block, too
 //   G54              also a Klartext comment that its datum is active; the same one again is none
 //   G49              before the first motion behind it; also Siemens D0, and a Klartext comment
-//   that
-//                    lengths count
+//                    that lengths count
 //   length not said  before the first motion along Z behind a tool, where neither G43 (Siemens: D1)
 //                    nor G49 stands between; also a Klartext comment that says so
 //   BLK FORM ..      a Klartext statement, or a comment that begins so, in capitals

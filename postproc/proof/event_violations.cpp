@@ -12,45 +12,39 @@ namespace {
 // More of one gap say nothing new.
 constexpr std::size_t kMostPerGap = 20;
 
-std::uint32_t line_of(const ProgramEvent& event, const ReadProgram& read) {
-  return read.program->blocks[event.block].line;
-}
-
-std::string describe(const ProgramEvent& event, const ReadProgram& read) {
+std::string describe(const EventAt& at) {
+  const ProgramEvent& event = at.event;
   if (event.motion < 0) return event.text;
-  const auto& motion = read.interpretation->motions[static_cast<std::size_t>(event.motion)];
+  const auto& motion = at.read.interpretation->motions[static_cast<std::size_t>(event.motion)];
   const geometry::Point3 end = motion.piece.end();
   const std::string what = event.kind == EventKind::kRapid ? "rapid" : event.text;
   return fmt::format("{} to X{:.6g} Y{:.6g} Z{:.6g} mm", what, end.x(), end.y(), end.z());
 }
 
-Violation make(ViolationKind kind, std::string id, std::uint32_t old_line, std::uint32_t new_line,
-               std::string message) {
-  Violation violation;
-  violation.kind = kind;
-  violation.id = std::move(id);
-  violation.old_line = old_line;
-  violation.new_line = new_line;
-  violation.message = std::move(message);
-  return violation;
+ViolationKind kind_of(const EventAt& at) {
+  return at.event.kind == EventKind::kRapid ? ViolationKind::kRapid : ViolationKind::kEvent;
 }
 
-Violation one_sided(const ProgramEvent& event, const ReadProgram& read, bool lost) {
-  const bool rapid = event.kind == EventKind::kRapid;
-  const std::uint32_t line = line_of(event, read);
-  return make(rapid ? ViolationKind::kRapid : ViolationKind::kEvent,
-              std::string(rapid ? "rapid-" : "event-") + (lost ? "lost" : "added"), lost ? line : 0,
-              lost ? 0 : line, describe(event, read));
+// "rapid-lost", "event-changed" ..
+std::string id_of(const EventAt& at, const char* what) {
+  return (at.event.kind == EventKind::kRapid ? "rapid-" : "event-") + std::string(what);
 }
 
-Violation changed(const ProgramEvent& before, const ReadProgram& old_program,
-                  const ProgramEvent& after, const ReadProgram& new_program) {
-  const bool rapid = before.kind == EventKind::kRapid;
-  return make(rapid ? ViolationKind::kRapid : ViolationKind::kEvent,
-              rapid ? "rapid-changed" : "event-changed", line_of(before, old_program),
-              line_of(after, new_program),
-              fmt::format("found {}, expected {}", describe(after, new_program),
-                          describe(before, old_program)));
+Violation lost(const EventAt& at) {
+  return {kind_of(at), id_of(at, "lost"), at.line(), 0, 0, describe(at)};
+}
+
+Violation added(const EventAt& at) {
+  return {kind_of(at), id_of(at, "added"), 0, at.line(), 0, describe(at)};
+}
+
+Violation changed(const EventAt& before, const EventAt& after) {
+  return {kind_of(before),
+          id_of(before, "changed"),
+          before.line(),
+          after.line(),
+          0,
+          fmt::format("found {}, expected {}", describe(after), describe(before))};
 }
 
 bool moves(const EventSpan& span) {
@@ -68,23 +62,18 @@ bool is_added(const Violation& violation) {
 
 }  // namespace
 
-GapReport report_events_between(const EventSpan& lost, const EventSpan& added) {
+GapReport report_events_between(const EventSpan& before, const EventSpan& after) {
   GapReport gap;
-  gap.only_words = !moves(lost) && !moves(added);
+  gap.only_words = !moves(before) && !moves(after);
   const bool one_to_one =
-      lost.events.size() == added.events.size() &&
-      std::ranges::equal(lost.events, added.events, {}, &ProgramEvent::kind, &ProgramEvent::kind);
-  if (one_to_one) {
-    for (std::size_t i = 0; i < lost.events.size() && i < kMostPerGap; ++i) {
-      gap.violations.push_back(changed(lost.events[i], *lost.read, added.events[i], *added.read));
-    }
-    return gap;
+      before.events.size() == after.events.size() &&
+      std::ranges::equal(before.events, after.events, {}, &ProgramEvent::kind, &ProgramEvent::kind);
+  for (std::size_t i = 0; i < before.events.size() && i < kMostPerGap; ++i) {
+    const EventAt old{before.events[i], *before.read};
+    gap.violations.push_back(one_to_one ? changed(old, {after.events[i], *after.read}) : lost(old));
   }
-  for (std::size_t i = 0; i < lost.events.size() && i < kMostPerGap; ++i) {
-    gap.violations.push_back(one_sided(lost.events[i], *lost.read, true));
-  }
-  for (std::size_t i = 0; i < added.events.size() && i < kMostPerGap; ++i) {
-    gap.violations.push_back(one_sided(added.events[i], *added.read, false));
+  for (std::size_t i = 0; !one_to_one && i < after.events.size() && i < kMostPerGap; ++i) {
+    gap.violations.push_back(added({after.events[i], *after.read}));
   }
   return gap;
 }
@@ -106,51 +95,58 @@ void merge_moved_events(std::vector<Violation>& violations) {
   }
 }
 
-Violation rapid_violation(const ProgramEvent& before, const ReadProgram& old_program,
-                          const ProgramEvent& after, const ReadProgram& new_program) {
-  return make(ViolationKind::kRapid, "rapid-changed", line_of(before, old_program),
-              line_of(after, new_program),
-              fmt::format("{} starts or ends at another place; expected {}",
-                          describe(after, new_program), describe(before, old_program)));
+Violation rapid_violation(const EventAt& before, const EventAt& after) {
+  return {ViolationKind::kRapid,
+          "rapid-changed",
+          before.line(),
+          after.line(),
+          0,
+          fmt::format("{} starts or ends at another place; expected {}", describe(after),
+                      describe(before))};
 }
 
-Violation moved_event_violation(const ProgramEvent& before, const ReadProgram& old_program,
-                                const ProgramEvent& after, const ReadProgram& new_program,
-                                double moved_mm) {
-  Violation violation =
-      make(ViolationKind::kEvent, "event-moved", line_of(before, old_program),
-           line_of(after, new_program),
-           fmt::format("{}: the path is the same, but it stands at another place of it",
-                       describe(before, old_program)));
-  violation.deviation_mm = moved_mm;
-  return violation;
+Violation moved_event_violation(const EventAt& before, const EventAt& after, double moved_mm) {
+  return {ViolationKind::kEvent,
+          "event-moved",
+          before.line(),
+          after.line(),
+          moved_mm,
+          fmt::format("{}: the path is the same, but it stands at another place of it",
+                      describe(before))};
 }
 
-Violation state_violation(std::string_view item, const ProgramEvent& before,
-                          const ReadProgram& old_program, const ProgramEvent& after,
-                          const ReadProgram& new_program) {
-  return make(ViolationKind::kState, "state-changed", line_of(before, old_program),
-              line_of(after, new_program),
-              fmt::format("another {} than before at {}", item, describe(before, old_program)));
+Violation state_violation(std::string_view item, const EventAt& before, const EventAt& after) {
+  return {ViolationKind::kState,
+          "state-changed",
+          before.line(),
+          after.line(),
+          0,
+          fmt::format("another {} than before at {}", item, describe(before))};
 }
 
-Violation end_state_violation(std::string_view item, const ReadProgram& old_program,
-                              const ReadProgram& new_program) {
+Violation end_state_violation(std::string_view item, const ReadProgram& before,
+                              const ReadProgram& after) {
   const auto last_line = [](const ReadProgram& read) {
     return read.program->blocks.empty() ? 0 : read.program->blocks.back().line;
   };
-  return make(ViolationKind::kState, "state-changed", last_line(old_program),
-              last_line(new_program),
-              fmt::format("another {} than before at the end of the program", item));
+  return {ViolationKind::kState,
+          "state-changed",
+          last_line(before),
+          last_line(after),
+          0,
+          fmt::format("another {} than before at the end of the program", item)};
 }
 
-Violation too_many_differences(const EventSpan& before, std::size_t next_before,
-                               const EventSpan& after, std::size_t next_after) {
-  const auto line = [](const EventSpan& span, std::size_t next) {
-    return next < span.events.size() ? line_of(span.events[next], *span.read) : 0U;
+Violation too_many_differences(const EventSpan& before, const EventSpan& after) {
+  const auto line = [](const EventSpan& span) {
+    return span.events.empty() ? 0U : EventAt{span.events.front(), *span.read}.line();
   };
-  return make(ViolationKind::kEvent, "too-many-differences", line(before, next_before),
-              line(after, next_after), "the rest of the programs was not compared");
+  return {ViolationKind::kEvent,
+          "too-many-differences",
+          line(before),
+          line(after),
+          0,
+          "the rest of the programs was not compared"};
 }
 
 }  // namespace batten::postproc

@@ -46,28 +46,23 @@ struct GapReport {
 
 // Events between two that are the same in both programs: changed where both have one of a kind,
 // else lost or added.
-[[nodiscard]] GapReport report_events_between(const EventSpan& lost, const EventSpan& added);
+[[nodiscard]] GapReport report_events_between(const EventSpan& before, const EventSpan& after);
 
 // A lost and an added event that say the same become one that was moved.
 void merge_moved_events(std::vector<Violation>& violations);
 
-[[nodiscard]] Violation rapid_violation(const ProgramEvent& before, const ReadProgram& old_program,
-                                        const ProgramEvent& after, const ReadProgram& new_program);
+[[nodiscard]] Violation rapid_violation(const EventAt& before, const EventAt& after);
 
 // The event stands at another place of the path, at least `moved_mm` away.
-[[nodiscard]] Violation moved_event_violation(const ProgramEvent& before,
-                                              const ReadProgram& old_program,
-                                              const ProgramEvent& after,
-                                              const ReadProgram& new_program, double moved_mm);
+[[nodiscard]] Violation moved_event_violation(const EventAt& before, const EventAt& after,
+                                              double moved_mm);
 
-[[nodiscard]] Violation state_violation(std::string_view item, const ProgramEvent& before,
-                                        const ReadProgram& old_program, const ProgramEvent& after,
-                                        const ReadProgram& new_program);
-[[nodiscard]] Violation end_state_violation(std::string_view item, const ReadProgram& old_program,
-                                            const ReadProgram& new_program);
+[[nodiscard]] Violation state_violation(std::string_view item, const EventAt& before,
+                                        const EventAt& after);
+[[nodiscard]] Violation end_state_violation(std::string_view item, const ReadProgram& before,
+                                            const ReadProgram& after);
 
-// The programs have so little in common that the rest was not compared.
-[[nodiscard]] Violation too_many_differences(const EventSpan& before, std::size_t next_before,
-                                             const EventSpan& after, std::size_t next_after);
+// The programs have so little in common that the rest was not compared: from these events on.
+[[nodiscard]] Violation too_many_differences(const EventSpan& before, const EventSpan& after);
 
 }  // namespace batten::postproc

@@ -72,6 +72,14 @@ struct ProgramEvent {
   bool feed_is_new = false;
 };
 
+// An event, and the program that it is one of.
+struct EventAt {
+  const ProgramEvent& event;
+  const ReadProgram& read;
+
+  [[nodiscard]] std::uint32_t line() const { return read.program->blocks[event.block].line; }
+};
+
 // A motion at feed rate whose place is known, in a state in which the path alone counts.
 struct Cut {
   std::uint32_t motion = 0;
@@ -101,9 +109,9 @@ struct ProgramEvents {
 //
 // No events are: comments that do not act, N words before the others that nothing refers to, F
 // where the state after its block has it (state_difference compares it where it counts), motion
-// words but a G2 or G3 that goes nowhere, or a cut to nowhere before the first feed, plane and arc distance words (they only say how arcs are
-// written), and words of other modal groups and S that repeat what a word has set before, unless
-// they do more than that: G43, G54, G64 without its P.
+// words but a G2 or G3 that goes nowhere, or a cut to nowhere before the first feed, plane and arc distance
+// words (they only say how arcs are written), and words of other modal groups and S that repeat
+// what a word has set before, unless they do more than that: G43, G54, G64 without its P.
 //
 // Everything that could depend on more than the path is a kText event: blocks that are not
 // understood, other axes, motions from unknown places, loops, labels that are referred to, and

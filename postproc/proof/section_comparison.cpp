@@ -188,25 +188,26 @@ Stretch stretch_of(const PartPair& pair, geometry::BandComparison compared) {
 
 Violation distance_violation(const PartPair& pair, const PathComparison& comparison,
                              double tolerance_mm) {
-  Violation violation;
-  violation.old_line = pair.before.line(comparison.worst_piece_a);
-  violation.new_line = pair.after.line(comparison.worst_piece_b);
+  const std::uint32_t old_line = pair.before.line(comparison.worst_piece_a);
+  const std::uint32_t new_line = pair.after.line(comparison.worst_piece_b);
+  const geometry::DistanceBounds& bounds = comparison.bounds;
   if (comparison.verdict == Verdict::kBroken) {
-    violation.kind = ViolationKind::kDistance;
-    violation.id = "distance";
-    violation.deviation_mm = comparison.bounds.at_least;
-    violation.message =
-        fmt::format("the new path is {:.6g} mm or more from the old one, allowed {:.6g} mm",
-                    comparison.bounds.at_least, tolerance_mm);
-  } else {
-    violation.kind = ViolationKind::kNotProved;
-    violation.id = "not-proved";
-    violation.message = fmt::format(
-        "the distance of the paths is between {:.6g} and {:.6g} mm, allowed {:.6g} mm: neither "
-        "proved nor broken",
-        comparison.bounds.at_least, comparison.bounds.at_most, tolerance_mm);
+    return {ViolationKind::kDistance,
+            "distance",
+            old_line,
+            new_line,
+            bounds.at_least,
+            fmt::format("the new path is {:.6g} mm or more from the old one, allowed {:.6g} mm",
+                        bounds.at_least, tolerance_mm)};
   }
-  return violation;
+  return {ViolationKind::kNotProved,
+          "not-proved",
+          old_line,
+          new_line,
+          0,
+          fmt::format("the distance of the paths is between {:.6g} and {:.6g} mm, allowed {:.6g} "
+                      "mm: neither proved nor broken",
+                      bounds.at_least, bounds.at_most, tolerance_mm)};
 }
 
 // `middle`: without the pieces that are the same, which cannot be to blame.
@@ -214,17 +215,17 @@ std::optional<Violation> crossing_violation(const PartPair& pair, const PartPair
                                             double tolerance_mm) {
   const auto found = geometry::new_crossing(pair.before.path(), pair.after.path(), tolerance_mm);
   if (!found) return {};
-  Violation violation;
-  violation.kind = ViolationKind::kCrossing;
-  violation.id = "crosses-itself";
-  violation.old_line = middle.before.line_near(found->place);
-  violation.new_line = pair.after.line(found->first_piece);
-  violation.message = fmt::format(
-      "the new path meets itself at X{:.4f} Y{:.4f} Z{:.4f} (lines {} and {}), the old one does "
-      "not",
-      found->place.x(), found->place.y(), found->place.z(), violation.new_line,
-      pair.after.line(found->second_piece));
-  return violation;
+  const std::uint32_t line = pair.after.line(found->first_piece);
+  return Violation{
+      ViolationKind::kCrossing,
+      "crosses-itself",
+      middle.before.line_near(found->place),
+      line,
+      0,
+      fmt::format("the new path meets itself at X{:.4f} Y{:.4f} Z{:.4f} (lines {} and {}), the old "
+                  "one does not",
+                  found->place.x(), found->place.y(), found->place.z(), line,
+                  pair.after.line(found->second_piece))};
 }
 
 // On one side of the old path, as far as the tolerance: within half of it of the path that is half
@@ -233,27 +234,28 @@ std::optional<Violation> side_violation(const PartPair& pair, const Promise& pro
   if (promise.side == geometry::Side::kBoth) return {};
   const double half = promise.tolerance_mm / 2;
   const double over = kOverSide * promise.tolerance_mm;
-  Violation violation;
-  violation.kind = ViolationKind::kSide;
-  violation.id = "wrong-side";
   const auto beside = geometry::parallel_path(pair.before.path(), promise.side, half);
   if (!beside) {
-    violation.old_line = pair.before.line(0);
-    violation.new_line = pair.after.line(0);
-    violation.message =
-        "the old path has arcs outside the XY plane or curves: no side of it is known";
-    return violation;
+    return Violation{
+        ViolationKind::kSide,
+        "wrong-side",
+        pair.before.line(0),
+        pair.after.line(0),
+        0,
+        "the old path has arcs outside the XY plane or curves: no side of it is known"};
   }
   const PathComparison found = geometry::compare_paths(*beside, pair.after.path(), half + over);
   if (found.verdict == Verdict::kProved) return {};
-  violation.old_line = pair.before.line_near(found.worst_a);
-  violation.new_line = pair.after.line(found.worst_piece_b);
-  violation.deviation_mm = std::max(0.0, found.bounds.at_least - half);
-  violation.message = fmt::format(
-      "the new path {} on the {} of the old one by {:.6g} mm at most",
-      found.verdict == Verdict::kBroken ? "does not stay" : "could not be proved to stay",
-      promise.side == geometry::Side::kLeft ? "left" : "right", promise.tolerance_mm);
-  return violation;
+  return Violation{
+      ViolationKind::kSide,
+      "wrong-side",
+      pair.before.line_near(found.worst_a),
+      pair.after.line(found.worst_piece_b),
+      std::max(0.0, found.bounds.at_least - half),
+      fmt::format(
+          "the new path {} on the {} of the old one by {:.6g} mm at most",
+          found.verdict == Verdict::kBroken ? "does not stay" : "could not be proved to stay",
+          promise.side == geometry::Side::kLeft ? "left" : "right", promise.tolerance_mm)};
 }
 
 class StretchComparer {
@@ -289,21 +291,19 @@ class StretchComparer {
       const Cut& new_feed = new_parts[i].cut(0);
       if (same_feed(old_feed, new_feed)) continue;
       add_feed_violation(
-          "feed-changed", old_parts[i].line(0), new_parts[i].line(0),
+          old_parts[i].line(0), new_parts[i].line(0),
           fmt::format("feed {}, expected {}", feed_text(new_feed), feed_text(old_feed)));
       return false;
     }
     if (old_parts.size() > both) {
       const Part& lost = old_parts[both];
-      add_feed_violation("feed-changed", lost.line(0),
-                         new_parts.back().line(new_parts.back().size()),
+      add_feed_violation(lost.line(0), new_parts.back().line(new_parts.back().size()),
                          fmt::format("feed {} is missing", feed_text(lost.cut(0))));
       return false;
     }
     if (new_parts.size() > both) {
       const Part& added = new_parts[both];
-      add_feed_violation("feed-changed", old_parts.back().line(old_parts.back().size()),
-                         added.line(0),
+      add_feed_violation(old_parts.back().line(old_parts.back().size()), added.line(0),
                          fmt::format("feed {} was not there", feed_text(added.cut(0))));
       return false;
     }
@@ -354,15 +354,9 @@ class StretchComparer {
     }
   }
 
-  void add_feed_violation(std::string id, std::uint32_t old_line, std::uint32_t new_line,
-                          std::string message) {
-    Violation violation;
-    violation.kind = ViolationKind::kFeed;
-    violation.id = std::move(id);
-    violation.old_line = old_line;
-    violation.new_line = new_line;
-    violation.message = std::move(message);
-    result_.violations.push_back(std::move(violation));
+  void add_feed_violation(std::uint32_t old_line, std::uint32_t new_line, std::string message) {
+    result_.violations.push_back(
+        {ViolationKind::kFeed, "feed-changed", old_line, new_line, 0, std::move(message)});
   }
 
   const StretchSide& before_;

@@ -7,15 +7,17 @@
 #include <cstddef>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
+#include "gcode/reading/part_reading.h"
 #include "postproc/proof/common_events.h"
 #include "postproc/proof/event_alignment.h"
 #include "postproc/proof/event_violations.h"
 #include "postproc/proof/refused_arcs.h"
 #include "postproc/proof/section_comparison.h"
-#include "postproc/proof/state_difference.h"
 #include "postproc/system/parallel_for.h"
 
 namespace batten::postproc {
@@ -123,39 +125,55 @@ class Verifier {
     return in_common_words_ ? list_common_events(read) : list_events(read);
   }
 
+  [[nodiscard]] EventSpan old_span(std::size_t begin, std::size_t end) const {
+    return {{old_list_.events.data() + begin, end - begin}, &old_};
+  }
+  [[nodiscard]] EventSpan new_span(std::size_t begin, std::size_t end) const {
+    return {{new_list_.events.data() + begin, end - begin}, &new_};
+  }
+
   // Events up to `same` that stand in one program only. Returns whether the moves around them
   // can be compared as one path all the same.
   bool report_gap(const EventPair& next, const EventPair& same) {
-    const GapReport gap = report_events_between(
-        {{old_list_.events.data() + next.before, same.before - next.before}, &old_},
-        {{new_list_.events.data() + next.after, same.after - next.after}, &new_});
+    const GapReport gap =
+        report_events_between(old_span(next.before, same.before), new_span(next.after, same.after));
     violations_.insert(violations_.end(), gap.violations.begin(), gap.violations.end());
     return gap.only_words;
   }
 
+  [[nodiscard]] EventAt old_event(std::size_t index) const {
+    return {old_list_.events[index], old_};
+  }
+  [[nodiscard]] EventAt new_event(std::size_t index) const {
+    return {new_list_.events[index], new_};
+  }
+
   void compare_event(const EventPair& same) {
-    const ProgramEvent& before = old_list_.events[same.before];
-    const ProgramEvent& after = new_list_.events[same.after];
-    if (before.kind == EventKind::kRapid) compare_unnamed_axes(before, after);
-    const std::string_view item = in_common_words_ ? different_in_common(before, old_, after, new_)
-                                                   : different_item(before, old_, after, new_);
+    const EventAt before = old_event(same.before);
+    const EventAt after = new_event(same.after);
+    if (before.event.kind == EventKind::kRapid) compare_unnamed_axes(before, after);
+    const std::string_view item =
+        in_common_words_ ? different_in_common(before, after) : different_item(before, after);
     if (!item.empty() && item != last_different_item_) {
-      violations_.push_back(state_violation(item, before, old_, after, new_));
+      violations_.push_back(state_violation(item, before, after));
     }
     last_different_item_ = item;
   }
 
   // A rapid starts, and stays on the axes that it does not name, where the moves before it have
   // left the tool: within the tolerance.
-  void compare_unnamed_axes(const ProgramEvent& before, const ProgramEvent& after) {
-    const auto& old_motion = old_.interpretation->motions[static_cast<std::size_t>(before.motion)];
-    const auto& new_motion = new_.interpretation->motions[static_cast<std::size_t>(after.motion)];
+  void compare_unnamed_axes(const EventAt& before, const EventAt& after) {
+    const auto motion_of = [](const EventAt& at) -> const gcode::Motion& {
+      return at.read.interpretation->motions[static_cast<std::size_t>(at.event.motion)];
+    };
+    const gcode::Motion& old_motion = motion_of(before);
+    const gcode::Motion& new_motion = motion_of(after);
     const double start = (old_motion.piece.start() - new_motion.piece.start()).norm();
     const double end = (old_motion.piece.end() - new_motion.piece.end()).norm();
     // Rounding of the printed decimals is far above, that of doubles far below this share.
     constexpr double kRounding = 1e-9;
     if (std::max(start, end) <= promise_.tolerance_mm * (1 + kRounding)) return;
-    violations_.push_back(rapid_violation(before, old_, after, new_));
+    violations_.push_back(rapid_violation(before, after));
   }
 
   // --- moves --------------------------------------------------------------------------------
@@ -235,9 +253,8 @@ class Verifier {
     const StretchSide after = joined(first.after, second.after);
     if (compare_whole_path(before, after, promise_).verdict != Verdict::kProved) return;
     const double moved = first.result.violations.front().deviation_mm;
-    first.result.violations = {moved_event_violation(old_list_.events[first.event.before], old_,
-                                                     new_list_.events[first.event.after], new_,
-                                                     moved)};
+    first.result.violations = {
+        moved_event_violation(old_event(first.event.before), new_event(first.event.after), moved)};
     second.result.violations.clear();
   }
 
@@ -272,8 +289,8 @@ class Verifier {
   void finish(const EventPair& next, bool complete) {
     if (!complete) {
       flush_stretch();
-      violations_.push_back(too_many_differences({old_list_.events, &old_}, next.before,
-                                                 {new_list_.events, &new_}, next.after));
+      violations_.push_back(too_many_differences(old_span(next.before, old_list_.events.size()),
+                                                 new_span(next.after, new_list_.events.size())));
       return;
     }
     const EventPair end{old_list_.events.size(), new_list_.events.size()};
@@ -307,15 +324,8 @@ class Verifier {
 
 }  // namespace
 
-// Programs of two languages are compared in the words that all have
-// (postproc/proof/common_events.h); their rapids end at the same place to within what printing a
-// place in other digits moves it.
-Verification verify(const ReadProgram& before, const ReadProgram& after, const Promise& promise) {
-  return verify_in_parallel(before, after, promise, 1);
-}
-
-Verification verify_in_parallel(const ReadProgram& before, const ReadProgram& after,
-                                const Promise& promise, int threads) {
+Verification verify(const ReadProgram& before, const ReadProgram& after, const Promise& promise,
+                    int threads) {
   if (!(promise.tolerance_mm > 0) || !std::isfinite(promise.tolerance_mm)) {
     throw std::invalid_argument(fmt::format(
         "verify: tolerance {} mm, expected a finite number above 0", promise.tolerance_mm));
@@ -326,6 +336,105 @@ Verification verify_in_parallel(const ReadProgram& before, const ReadProgram& af
                       std::back_inserter(found.violations));
   }
   return found;
+}
+
+namespace {
+
+constexpr std::size_t kPartBlocks = 8192;
+
+bool is_pointless(const gcode::Word& word) { return word.without_point; }
+
+bool is_pointed(const gcode::Word& word) {
+  constexpr std::string_view kNumbers = "XYZUVWIJKRQF";
+  return word.has_point && word.is_number && word.value != 0 &&
+         kNumbers.find(word.letter) != std::string_view::npos;
+}
+
+bool ends_with_point(const gcode::Word& word) { return word.has_point && word.decimals == 0; }
+
+// Calls `look(word, block)` for each length and feed but zeros, as long as it gives true.
+template <typename Look>
+void for_each_number(const gcode::SourceText& source, const Look& look) {
+  gcode::TextCarry carry;
+  const gcode::Decimals either{.pointless = gcode::PointlessNumbers::kUndeclared};
+  carry.decimals = {either, gcode::Units::kUnknown};
+  gcode::Diagnostics of_text;
+  for (;;) {
+    const std::uint32_t begin = carry.begin;
+    const gcode::Program part = gcode::parse_part(source, {.blocks = kPartBlocks}, carry, of_text);
+    if (part.blocks.empty()) return;
+    for (const gcode::Block& block : part.blocks) {
+      for (const gcode::Word& word : part.words_of(block)) {
+        if ((is_pointless(word) || is_pointed(word)) && !look(word, block)) return;
+      }
+    }
+    source.release_pages({begin, carry.begin});
+  }
+}
+
+// How a program writes its lengths, or its feeds.
+struct Spelling {
+  bool any_point = false;
+  bool any_without = false;
+  bool any_bare_point = false;
+  std::set<std::pair<char, double>> always_with_bare_point;
+};
+
+// Many write the ones with a point and the others without.
+struct Spellings {
+  Spelling lengths;
+  Spelling feeds;
+  Spelling& of(const gcode::Word& word) { return word.letter == 'F' ? feeds : lengths; }
+};
+
+Spellings spellings_of(const gcode::SourceText& source) {
+  Spellings all;
+  for_each_number(source, [&](const gcode::Word& word, const gcode::Block&) {
+    Spelling& found = all.of(word);
+    (word.has_point ? found.any_point : found.any_without) = true;
+    if (ends_with_point(word)) found.always_with_bare_point.emplace(word.letter, word.value);
+    return true;
+  });
+  bool any_mixed = false;
+  for (Spelling* found : {&all.lengths, &all.feeds}) {
+    found->any_bare_point = !found->always_with_bare_point.empty();
+    any_mixed = any_mixed || (found->any_bare_point && found->any_without);
+  }
+  if (!any_mixed) return all;
+  for_each_number(source, [&](const gcode::Word& word, const gcode::Block&) {
+    if (!word.has_point) all.of(word).always_with_bare_point.erase({word.letter, word.value});
+    return true;
+  });
+  return all;
+}
+
+bool is_other(const gcode::Word& word, const Spelling& before) {
+  if (word.has_point) return ends_with_point(word) && before.any_without && !before.any_point;
+  return before.any_bare_point &&
+         (!before.any_without || before.always_with_bare_point.contains({word.letter, word.value}));
+}
+
+}  // namespace
+
+std::optional<Violation> other_point_spelling(const gcode::SourceText& before,
+                                              const gcode::SourceText& after) {
+  Spellings spellings = spellings_of(before);
+  std::optional<Violation> violation;
+  for_each_number(after, [&](const gcode::Word& word, const gcode::Block& block) {
+    if (!is_other(word, spellings.of(word))) return true;
+    violation.emplace();
+    violation->kind = ViolationKind::kNotProved;
+    violation->id = "point-spelling";
+    violation->new_line = block.line;
+    violation->message = fmt::format(
+        "found {} {} a decimal point, expected it {} one, as in the old program: some controls "
+        "take X5. for 5 mm and X5 for 0.005 mm. Say which control it is for (--target or "
+        "--source), or --decimals",
+        after.text(word.span), word.has_point ? "with" : "without",
+        word.has_point ? "without" : "with");
+    return false;
+  });
+  return violation;
 }
 
 }  // namespace batten::postproc

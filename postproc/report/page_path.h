@@ -15,7 +15,7 @@
 #include "geometry/basic/point.h"
 #include "postproc/proof/program_events.h"
 #include "postproc/proof/verification.h"
-#include "postproc/stream/run_report.h"
+#include "postproc/stream/smooth_result.h"
 
 namespace batten::postproc {
 

@@ -9,7 +9,6 @@
 
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"
-#include "postproc/stream/run_report.h"
 #include "postproc/stream/smooth_result.h"
 #include "postproc/text/json_values.h"
 

@@ -15,7 +15,7 @@
 
 #include "geometry/band/tolerance_band.h"
 #include "geometry/basic/rounding.h"
-#include "postproc/runs/run_blocks.h"
+#include "postproc/runs/run_grouping.h"
 
 namespace batten::postproc {
 

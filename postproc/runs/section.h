@@ -96,12 +96,6 @@ struct ProgramPart {
   gcode::Program program;
   gcode::Interpretation meaning;
   std::optional<WindowStart> window = {};  // nothing: the whole
-
-  // The bytes of its blocks.
-  [[nodiscard]] gcode::SourceSpan extent() const {
-    if (program.blocks.empty()) return {};
-    return {program.blocks.front().span.begin, program.blocks.back().end};
-  }
 };
 
 }  // namespace batten::postproc

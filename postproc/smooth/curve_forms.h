@@ -10,7 +10,6 @@
 #include "gcode/state/modal_state.h"
 #include "geometry/path/curve_pieces.h"
 #include "postproc/smooth/forms/output_plan.h"
-#include "postproc/smooth/methods/curvature_profile.h"
 #include "postproc/smooth/methods/run_curve.h"
 #include "postproc/smooth/selection/candidate.h"
 #include "postproc/smooth/selection/candidate_bounds.h"

@@ -10,9 +10,8 @@
 #include "gcode/text/diagnostic.h"
 #include "postproc/options/options.h"
 #include "postproc/runs/long_run_cuts.h"
-#include "postproc/runs/proximity_index.h"
 #include "postproc/runs/section.h"
-#include "postproc/smooth/run_state.h"
+#include "postproc/smooth/run_smoother.h"
 
 namespace batten::postproc {
 

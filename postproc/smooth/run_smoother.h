@@ -1,12 +1,59 @@
 // One run, smoothed: what could be written instead of it, and what each candidate costs.
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "postproc/options/options.h"
+#include "postproc/runs/section.h"
 #include "postproc/smooth/selection/candidate.h"
+#include "postproc/smooth/selection/selection.h"
 
 namespace batten::postproc {
 
 [[nodiscard]] SmoothedRun smooth_run(const Run& run, const RunContext& context,
                                      const SmoothOptions& options,
                                      CandidateScope scope = CandidateScope::kToChoose);
+
+// The runs of a program on their way through the pipeline: what became of each of them, and of
+// those that were cut into pieces.
+
+// A section that may be rewritten, and what became of it.
+struct RunState {
+  std::size_t section = 0;
+  RunContext context;
+  SmoothedRun smoothed = {};
+  Selection selection = {};
+  std::size_t tried = 0;                    // candidates that were given up
+  std::string_view reject_reason = {};      // why none of them is left
+  std::optional<std::size_t> cut_run = {};  // set for a piece: the run it belongs to
+  std::size_t first = 0;                    // vertices of that run
+  std::size_t last = 0;
+
+  [[nodiscard]] const Candidate* chosen() const;
+  void reject(std::string_view why);  // to its next candidate
+  // Makes all candidates anew, those too that were left out: where none is left of the others.
+  void start_again(const Run& run, const SmoothOptions& options);
+  // Texts and moves of candidates that were not chosen take room for nothing.
+  void drop_what_is_not_written();
+};
+
+// A run that was cut into pieces, which follow each other in the list of works.
+struct CutRun {
+  Run run;  // the whole
+  gcode::PathMode path = gcode::PathMode::kUnknown;
+  std::optional<RunFacts> facts = {};  // where the whole was smoothed first
+  std::string_view reason = {};        // why the whole was kept then
+  std::size_t first_work = 0;
+  std::size_t pieces = 0;
+  Times before = {};  // of the whole
+  Times after = {};   // with the pieces that are rewritten
+};
+
+// Pieces were chosen one by one, each beside unchanged neighbours. Gives back the original blocks
+// of those that cost most, until the run as a whole is not slower than it was.
+void revert_costly_pieces(CutRun& cut, std::vector<RunState>& works, const SmoothOptions& options);
 
 }  // namespace batten::postproc

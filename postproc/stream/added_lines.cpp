@@ -27,17 +27,6 @@ bool contains_ignoring_case(std::string_view text, std::string_view upper_case) 
          text.end();
 }
 
-Violation violation_at(std::string id, std::uint32_t old_line, std::uint32_t new_line,
-                       std::string message) {
-  Violation violation;
-  violation.kind = ViolationKind::kEvent;
-  violation.id = std::move(id);
-  violation.old_line = old_line;
-  violation.new_line = new_line;
-  violation.message = std::move(message);
-  return violation;
-}
-
 bool has_key(const gcode::Program& program, const gcode::Block& block, const SettingKey& key) {
   if (!key.name.empty()) {
     const bool plain = block.opacity == gcode::ParseStatus::kNone;
@@ -60,12 +49,12 @@ class Taker {
       i += std::max<std::size_t>(taken, 1);
     }
     if (open_) {
-      result_.violations.push_back(violation_at("profile-words-open", 0, open_line_,
-                                                "the words before a run without those behind it"));
+      result_.violations.push_back({ViolationKind::kEvent, "profile-words-open", 0, open_line_, 0,
+                                    "the words before a run without those behind it"});
     }
     if (header_taken_ && !words_.footer.empty() && !footer_taken_) {
-      result_.violations.push_back(
-          violation_at("profile-words-open", 0, 1, "the profile's header without its footer"));
+      result_.violations.push_back({ViolationKind::kEvent, "profile-words-open", 0, 1, 0,
+                                    "the profile's header without its footer"});
     }
     return std::move(result_);
   }
@@ -139,9 +128,9 @@ AddedLines take_added_lines(const gcode::Program& old_program, std::string_view 
   if (words.empty()) return nothing;
   const std::uint32_t line = line_with_words_of(old_program, words);
   if (line == 0) return Taker(new_text, words).run();
-  nothing.violations.push_back(violation_at(
-      "profile-words-in-program", line, 0,
-      "the old program has words of the profile itself; expected them in one of the two"));
+  nothing.violations.push_back(
+      {ViolationKind::kEvent, "profile-words-in-program", line, 0, 0,
+       "the old program has words of the profile itself; expected them in one of the two"});
   return nothing;
 }
 
@@ -169,10 +158,10 @@ std::vector<Violation> events_in_brackets(const ReadProgram& read,
     while (next < list.events.size() && line_of(next) <= bracket.before) ++next;
     if (next < list.events.size() && line_of(next) < bracket.after) {
       violations.push_back(
-          violation_at("profile-words-around-event", 0, line_of(next),
-                       fmt::format("between the words before and behind a run (lines {} and {}) "
-                                   "something acts that is no cutting move",
-                                   bracket.before, bracket.after)));
+          {ViolationKind::kEvent, "profile-words-around-event", 0, line_of(next), 0,
+           fmt::format("between the words before and behind a run (lines {} and {}) "
+                       "something acts that is no cutting move",
+                       bracket.before, bracket.after)});
     }
   }
   return violations;

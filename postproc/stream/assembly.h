@@ -9,7 +9,7 @@
 #include "gcode/text/program.h"
 #include "postproc/options/profile_words.h"
 #include "postproc/runs/section.h"
-#include "postproc/smooth/run_state.h"
+#include "postproc/smooth/run_smoother.h"
 
 namespace batten::postproc {
 

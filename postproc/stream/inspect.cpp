@@ -1,55 +1,134 @@
 #include "postproc/stream/inspect.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <optional>
 #include <utility>
 #include <variant>
+#include <vector>
 
+#include "gcode/state/reason.h"
+#include "gcode/text/large_pages.h"
 #include "geometry/basic/rounding.h"
 #include "geometry/path/path.h"
+#include "postproc/proof/program_events.h"
+#include "postproc/runs/run_grouping.h"
 
 namespace batten::postproc {
 
 namespace {
 
-bool moves(const gcode::Interpretation& interpretation, std::uint32_t block) {
-  const std::int32_t motion = interpretation.blocks[block].motion;
-  if (motion < 0) return false;
-  const gcode::MotionPath& path = interpretation.motions[static_cast<std::size_t>(motion)].piece;
-  const double length =
-      path.is_line() ? (path.end() - path.start()).norm() : geometry::length_of(path);
-  return length > geometry::kSamePlace;
+using geometry::Vector3;
+
+// In between, the mean of the two middle ones.
+double median_of(std::vector<double> values) {
+  const std::size_t middle = values.size() / 2;
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(middle));
+  const double upper = values[middle];
+  if (values.size() % 2 == 1) return upper;
+  return (upper +
+          *std::max_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(middle))) /
+         2;
 }
 
+// The segments of a run, counted one after the other: of all of it, or of its pieces in order.
+// Holds a length for each segment, for their median, and nothing else of them.
+class SegmentTally {
+ public:
+  // The piece starts where the one before it has ended.
+  void add(const Run& piece) {
+    if (lengths_.empty()) gcode::reserve_in_large_pages(lengths_, piece.points.size());
+    auto arc = piece.arcs.begin();
+    for (std::size_t i = 0; i + 1 < piece.points.size();) {
+      if (arc != piece.arcs.end() && arc->first == i) {
+        add_segment(geometry::length_of(arc->arc), geometry::direction_at(arc->arc, 0),
+                    geometry::direction_at(arc->arc, 1));
+        i = arc++->last;
+      } else {
+        const Vector3 way = piece.points[i + 1] - piece.points[i];
+        const double length = way.norm();
+        const Vector3 direction = length > 0 ? Vector3(way / length) : Vector3(Vector3::Zero());
+        add_segment(length, direction, direction);
+        ++i;
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t count() const { return lengths_.size(); }
+  // Of all pieces so far, from 1, the motion that ends at the greatest turn; 0: no turn.
+  [[nodiscard]] std::size_t turn_motion() const { return turn_.motion; }
+
+  // `turn_line` is 0. Begins anew.
+  [[nodiscard]] SegmentStatistics take() {
+    SegmentTally all = std::exchange(*this, {});
+    all.found_.count = all.lengths_.size();
+    all.found_.greatest_turn_deg = all.turn_.radians * 180 / std::numbers::pi;
+    if (all.found_.count > 0) all.found_.median = median_of(std::move(all.lengths_));
+    return all.found_;
+  }
+
+ private:
+  struct Turn {
+    double radians = 0;
+    std::size_t motion = 0;
+    double certainly_less = 0;  // squared sine of turns that are less than the greatest so far
+  };
+
+  // Directions are unit vectors, or zero where there is none.
+  void add_segment(double length, const Vector3& start, const Vector3& end) {
+    look_at_turn(start);
+    found_.shortest = lengths_.empty() ? length : std::min(found_.shortest, length);
+    found_.longest = std::max(found_.longest, length);
+    found_.length += length;
+    lengths_.push_back(length);
+    before_ = end;
+  }
+
+  void look_at_turn(const Vector3& to) {
+    if (before_.isZero() || to.isZero()) return;
+    const Vector3 across = before_.cross(to);
+    const double along = before_.dot(to);
+    if (along > 0 && across.squaredNorm() <= turn_.certainly_less) return;
+    // atan2 keeps small turns exact where acos loses half of the digits.
+    const double turn = std::atan2(across.norm(), along);
+    if (!(turn > turn_.radians)) return;
+    // Sines rise up to a right angle. Far above the rounding of unit vectors and of a sine.
+    constexpr double kRounding = 1e-9;
+    const double sine = std::sin(std::min(turn, std::numbers::pi / 2)) * (1 - kRounding);
+    turn_ = {turn, lengths_.size(), sine * sine};
+  }
+
+  std::vector<double> lengths_;
+  SegmentStatistics found_;
+  Turn turn_;
+  Vector3 before_ = Vector3::Zero();  // the direction of the last one
+};
+
 // The line of the section's block that moves, counted from 1 among those that do; 0 for none.
-std::uint32_t line_of_motion(std::size_t number, const gcode::Program& program,
-                             const gcode::Interpretation& interpretation, const Section& section) {
+std::uint32_t line_of_motion(std::size_t number, const gcode::ReadPart& part,
+                             const Section& section) {
+  const RunBlocks blocks(part.program, part.meaning);
   std::size_t left = number;
   for (std::uint32_t b = section.first_block; left > 0 && b <= section.last_block; ++b) {
-    if (moves(interpretation, b) && --left == 0) return program.blocks[b].line;
+    const bool moves = part.meaning.blocks[b].motion >= 0 && blocks.moves(b);
+    if (moves && --left == 0) return part.program.blocks[b].line;
   }
   return 0;
 }
 
-std::size_t cutting_moves_in(const gcode::Interpretation& interpretation, const Section& section) {
-  std::size_t count = 0;
-  for (std::uint32_t block = section.first_block; block <= section.last_block; ++block) {
-    const std::int32_t motion = interpretation.blocks[block].motion;
-    if (motion < 0) continue;
-    if (interpretation.motions[static_cast<std::size_t>(motion)].kind !=
-        gcode::MotionKind::kRapid) {
-      ++count;
-    }
-  }
-  return count;
-}
-
-InspectedSection described(const gcode::Program& program,
-                           const gcode::Interpretation& interpretation, const Section& section) {
+InspectedSection described(const gcode::ReadPart& part, const Section& section) {
   InspectedSection description;
-  description.first_line = program.blocks[section.first_block].line;
-  description.last_line = program.blocks[section.last_block].line;
+  description.first_line = part.program.blocks[section.first_block].line;
+  description.last_line = part.program.blocks[section.last_block].line;
   description.blocks = section.last_block - section.first_block + 1;
-  description.cutting_moves = cutting_moves_in(interpretation, section);
+  const RunBlocks blocks(part.program, part.meaning);
+  for (std::uint32_t block = section.first_block; block <= section.last_block; ++block) {
+    if (part.meaning.blocks[block].motion < 0) continue;
+    if (blocks.motion(block).kind != gcode::MotionKind::kRapid) ++description.cutting_moves;
+  }
   if (const auto* verbatim = std::get_if<Verbatim>(&section.content)) {
     description.reason = verbatim->reason;
   }
@@ -63,79 +142,270 @@ void add_feeds(const Run& run, bool first, InspectedSection& section) {
   section.greatest_feed = first ? greatest.feed : std::max(section.greatest_feed, greatest.feed);
 }
 
-}  // namespace
-
-void Inspection::add(const gcode::Program& part, const gcode::Interpretation& meaning,
-                     const std::vector<Section>& sections, bool goes_on) {
-  for (const Section& section : sections) {
-    if (!goes_on) {
-      end_run();
-      sections_.push_back(described(part, meaning, section));
-    }
-    if (const auto* run = std::get_if<Run>(&section.content)) {
-      if (!goes_on) begin_run(*run);
+// The sections so far, and the lengths of the segments of the run that goes on.
+class Inspection {
+ public:
+  // The sections of the next blocks. `goes_on`: the last run so far goes on in the first of them,
+  // which is a run from its first block on; their lines are those of one chain.
+  void add(const gcode::ReadPart& part, const std::vector<Section>& sections, bool goes_on) {
+    for (const Section& section : sections) {
+      const InspectedSection more = described(part, section);
       if (goes_on) {
-        const InspectedSection more = described(part, meaning, section);
         sections_.back().blocks += more.blocks;
         sections_.back().cutting_moves += more.cutting_moves;
+      } else {
+        end_run();
+        sections_.push_back(more);
       }
-      add_run(part, meaning, section);
+      if (std::holds_alternative<Run>(section.content)) add_run(part, section, !goes_on);
+      goes_on = false;
     }
-    goes_on = false;
   }
-}
 
-void Inspection::begin_run(const Run& run) {
-  in_run_ = true;
-  start_ = run.points.front();
-  turn_line_ = 0;
-  add_feeds(run, true, sections_.back());
-}
-
-void Inspection::add_run(const gcode::Program& part, const gcode::Interpretation& meaning,
-                         const Section& section) {
-  const Run& run = std::get<Run>(section.content);
-  InspectedSection& description = sections_.back();
-  const std::size_t motions_before = tally_.count();
-  const std::size_t turn_before = tally_.turn_motion();
-  tally_.add(run);
-  const std::size_t turn = tally_.turn_motion();
-  if (turn != turn_before) {
-    // A piece ends with a block that moves.
-    turn_line_ = turn == motions_before
-                     ? description.last_line
-                     : line_of_motion(turn - motions_before, part, meaning, section);
+  // As many as were added, each as it would be if the program ended here.
+  [[nodiscard]] std::size_t size() const { return sections_.size(); }
+  // Takes the sections behind the first `size` away again. None of those that stay goes on.
+  void go_back_to(std::size_t size) {
+    in_run_ = false;
+    tally_ = {};
+    sections_.resize(size);
   }
-  add_feeds(run, false, description);
-  description.last_line = part.blocks[section.last_block].line;
-  description.decimals = std::max(description.decimals, run.decimals);
-  description.closed = (run.points.back() - start_).norm() <= geometry::kSamePlace;
-}
 
-void Inspection::end_run() {
-  if (!in_run_) return;
-  in_run_ = false;
-  sections_.back().segments = tally_.take();
-  sections_.back().segments.turn_line = turn_line_;
-}
+  [[nodiscard]] std::vector<InspectedSection> take() {
+    end_run();
+    return std::move(sections_);
+  }
 
-void Inspection::go_back_to(std::size_t size) {
-  in_run_ = false;
-  tally_ = {};
-  sections_.resize(size);
-}
+ private:
+  void add_run(const gcode::ReadPart& part, const Section& section, bool begins) {
+    const Run& run = std::get<Run>(section.content);
+    InspectedSection& description = sections_.back();
+    if (begins) {
+      in_run_ = true;
+      start_ = run.points.front();
+      turn_line_ = 0;
+    }
+    const std::size_t motions_before = tally_.count();
+    const std::size_t turn_before = tally_.turn_motion();
+    tally_.add(run);
+    const std::size_t turn = tally_.turn_motion();
+    if (turn != turn_before) {
+      // A piece ends with a block that moves.
+      turn_line_ = turn == motions_before ? description.last_line
+                                          : line_of_motion(turn - motions_before, part, section);
+    }
+    add_feeds(run, begins, description);
+    description.last_line = part.program.blocks[section.last_block].line;
+    description.decimals = std::max(description.decimals, run.decimals);
+    description.closed = (run.points.back() - start_).norm() <= geometry::kSamePlace;
+  }
 
-std::vector<InspectedSection> Inspection::take() {
-  end_run();
-  return std::move(sections_);
-}
+  void end_run() {
+    if (!in_run_) return;
+    in_run_ = false;
+    sections_.back().segments = tally_.take();
+    sections_.back().segments.turn_line = turn_line_;
+  }
 
-std::vector<InspectedSection> inspect(const gcode::Program& program,
-                                      const gcode::Interpretation& interpretation,
-                                      const std::vector<Section>& sections) {
+  std::vector<InspectedSection> sections_;
+  // Of the last section, where it is a run that may go on.
+  bool in_run_ = false;
+  SegmentTally tally_;
+  geometry::Point3 start_ = geometry::Point3::Zero();
+  std::uint32_t turn_line_ = 0;
+};
+
+// The blocks that are held, as chains of motions: of lines, and of arcs that may be pieces of a
+// curve.
+class Chains {
+ public:
+  Chains(const gcode::ReadPart& part, const GroupingOptions& grouping)
+      : part_(part), blocks_(part.program, part.meaning), grouping_(grouping) {}
+
+  // Whether a chain may be cut beside it: a line that goes neither straight along Z nor nowhere.
+  [[nodiscard]] bool is_line(std::uint32_t i) const {
+    return part_.meaning.blocks[i].motion >= 0 && !ends_chain(i) && !is_arc(i) &&
+           blocks_.moves(i) && blocks_.heading(i) != RunBlocks::Heading::kAlongZ;
+  }
+
+  // Whether the chain that goes on from block to block has an arc on the way back from `from`.
+  [[nodiscard]] bool has_arc_before(std::uint32_t from) const {
+    for (std::uint32_t i = from; i > 0 && !ends_chain(i - 1); --i) {
+      if (is_arc(i - 1)) return true;
+    }
+    return false;
+  }
+  [[nodiscard]] bool has_arc_from(std::uint32_t from) const {
+    for (std::uint32_t i = from; i < part_.program.blocks.size() && !ends_chain(i); ++i) {
+      if (is_arc(i)) return true;
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] bool ends_chain(std::uint32_t i) const {
+    const gcode::BlockMeaning& block = part_.meaning.blocks[i];
+    if (block.motion < 0) return !block.barrier.empty();
+    if (block.barrier == gcode::reason::kArc) return block.kind != gcode::BlockKind::kMotion;
+    return !block.barrier.empty() || !blocks_.motion(i).start_known || is_unsafe(block.state_after);
+  }
+
+  // Of a block that does not end a chain.
+  [[nodiscard]] bool is_arc(std::uint32_t i) const {
+    return part_.meaning.blocks[i].motion >= 0 &&
+           blocks_.motion(i).kind != gcode::MotionKind::kLine;
+  }
+
+  // States are shared by many blocks: asked once for each.
+  [[nodiscard]] bool is_unsafe(std::uint32_t state) const {
+    if (asked_state_ != state) {
+      asked_state_ = state;
+      unsafe_ = !unsafe_state(part_.meaning.states[state], grouping_).empty();
+    }
+    return unsafe_;
+  }
+
+  const gcode::ReadPart& part_;
+  RunBlocks blocks_;
+  const GroupingOptions& grouping_;
+  mutable std::optional<std::uint32_t> asked_state_;
+  mutable bool unsafe_ = false;
+};
+
+class PartInspector {
+ public:
+  PartInspector(const gcode::SourceText& source, const PartReading& reading,
+                const GroupingOptions& grouping, const InspectLimits& limits, bool as_whole)
+      : reader_(source, reading, limits.parts, as_whole),
+        grouping_(grouping),
+        longest_(limits.longest),
+        cut_from_(limits.longest) {}
+
+  std::optional<InspectedProgram> run() {
+    auto next = PartReader::Next::kRead;
+    while (next == PartReader::Next::kRead) {
+      next = reader_.read_on();
+      if (next == PartReader::Next::kNeedsWhole) return std::nullopt;
+      if (next == PartReader::Next::kAtEnd) {
+        if (!take(reader_.blocks_held(), false)) next = PartReader::Next::kRead;
+      } else if (const std::uint32_t end = end_behind_rapids()) {
+        take(end, false);
+      } else if (const std::uint32_t cut = place_in_chain()) {
+        take(cut, true);
+      }
+    }
+    auto found = reader_.finish();
+    if (!found || !certain_) return std::nullopt;
+    return InspectedProgram{inspection_.take(), std::move(*found), reader_.blocks_read(),
+                            reader_.unit_word_seen(), reader_.is_whole()};
+  }
+
+ private:
+  // The last block behind plain rapids, and what says nothing behind them, that is none of them;
+  // 0: none, but where that was looked for before.
+  [[nodiscard]] std::uint32_t end_behind_rapids() {
+    const gcode::ReadPart& held = reader_.held();
+    const auto& blocks = held.meaning.blocks;
+    const auto says_nothing = [&](std::uint32_t i) {
+      return blocks[i].barrier.empty() && blocks[i].motion < 0;
+    };
+    const auto count = static_cast<std::uint32_t>(blocks.size());
+    for (std::uint32_t i = count; i > std::max(looked_at_, 1U); --i) {
+      const std::uint32_t end = i - 1;
+      if (says_nothing(end) || blocks[end].barrier == gcode::reason::kRapid) continue;
+      std::uint32_t before = end;
+      while (before > 0 && says_nothing(before - 1)) --before;
+      if (before > 0 && is_plain_rapid({&held.program, &held.meaning}, before - 1)) return end;
+    }
+    looked_at_ = count;
+    return 0;
+  }
+
+  // Where a chain of lines may be cut, near the end of what is held; 0: nowhere.
+  [[nodiscard]] std::uint32_t place_in_chain() {
+    const std::uint32_t count = reader_.blocks_held();
+    if (count < cut_from_) return 0;
+    const Chains chains(reader_.held(), grouping_);
+    const auto beside = static_cast<std::uint32_t>(std::max<std::size_t>(grouping_.min_motions, 1));
+    std::uint32_t lines = 0;  // that follow each other, from `i` on
+    constexpr std::uint32_t kFurthest = 4096;
+    for (std::uint32_t i = count; i > 0 && count - i < kFurthest; --i) {
+      lines = chains.is_line(i - 1) ? lines + 1 : 0;
+      if (lines < 2 * beside) continue;
+      const std::uint32_t place = i - 1 + beside;
+      if (!chains.has_arc_from(place) && !chains.has_arc_before(place)) return place;
+      break;
+    }
+    cut_from_ = std::size_t{2} * count;  // what was looked at is not looked at again part for part
+    return 0;
+  }
+
+  // Inspects the first blocks that are held. False: the chain of the pieces so far has an arc, and
+  // is read again from its begin, to be held as one.
+  bool take(std::uint32_t count, bool in_chain) {
+    if (!in_chain_ && in_chain) begin_.emplace(Begin{reader_, inspection_.size()});
+    const gcode::ReadPart part = reader_.take(count);
+    if (in_chain_ && Chains(part, grouping_).has_arc_from(0)) {
+      go_back();
+      return false;
+    }
+    const std::vector<Section> sections = group_runs(part.program, part.meaning, grouping_);
+    const bool is_run = !sections.empty() && sections.front().first_block == 0 &&
+                        std::holds_alternative<Run>(sections.front().content);
+    if (in_chain_ && !is_run) certain_ = false;
+    inspection_.add(part, sections, in_chain_);
+    in_chain_ = in_chain;
+    if (!in_chain) begin_.reset();
+    looked_at_ = 0;
+    cut_from_ = longest_;
+    return true;
+  }
+
+  void go_back() {
+    reader_ = std::move(begin_->reader);
+    inspection_.go_back_to(begin_->sections);
+    begin_.reset();
+    in_chain_ = false;
+    looked_at_ = 0;
+    cut_from_ = static_cast<std::size_t>(-1);
+  }
+
+  // Before the part that ends at the first cut of a chain.
+  struct Begin {
+    PartReader reader;
+    std::size_t sections = 0;
+  };
+
+  PartReader reader_;
+  const GroupingOptions& grouping_;
+  std::size_t longest_;
+  Inspection inspection_;
+  bool in_chain_ = false;        // what is held goes on a chain that was cut
+  std::uint32_t looked_at_ = 0;  // blocks that are held behind which no part ends
+  std::size_t cut_from_;         // so many blocks are held before a chain is cut
+  std::optional<Begin> begin_;
+  bool certain_ = true;  // that pieces of a chain are runs: the whole is asked where one is not
+};
+
+}  // namespace
+
+std::vector<InspectedSection> inspect(const gcode::ReadPart& program,
+                                      const GroupingOptions& grouping) {
   Inspection inspection;
-  inspection.add(program, interpretation, sections, false);
+  inspection.add(program, group_runs(program.program, program.meaning, grouping), false);
   return inspection.take();
+}
+
+InspectedProgram inspect(const gcode::SourceText& source, const PartReading& reading,
+                         const GroupingOptions& grouping, const InspectLimits& limits) {
+  const auto inspected = [&](bool as_whole) {
+    return PartInspector(source, reading, grouping, limits, as_whole).run();
+  };
+  if (reading.text.language == gcode::Language::kRs274 &&
+      source.text().size() >= limits.parts.least_text) {
+    if (auto in_parts = inspected(false)) return std::move(*in_parts);
+  }
+  return inspected(true).value();
 }
 
 }  // namespace batten::postproc

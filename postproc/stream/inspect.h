@@ -7,13 +7,23 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/state/motion.h"
-#include "gcode/text/program.h"
-#include "geometry/basic/point.h"
-#include "postproc/runs/section.h"
-#include "postproc/runs/segment_tally.h"
+#include "gcode/reading/part_reading.h"
+#include "gcode/text/diagnostic.h"
+#include "gcode/text/source_text.h"
+#include "postproc/runs/run_grouping.h"
+#include "postproc/stream/part_reader.h"
 
 namespace batten::postproc {
+
+struct SegmentStatistics {
+  std::size_t count = 0;
+  double shortest = 0;           // mm
+  double median = 0;             // mm
+  double longest = 0;            // mm
+  double length = 0;             // mm, of the whole run
+  double greatest_turn_deg = 0;  // at the vertices between the segments
+  std::uint32_t turn_line = 0;   // line of the block that ends at that vertex; 0: no turn
+};
 
 // One section of the program; a run when `reason` is empty.
 struct InspectedSection {
@@ -29,39 +39,33 @@ struct InspectedSection {
   SegmentStatistics segments;
 };
 
-[[nodiscard]] std::vector<InspectedSection> inspect(const gcode::Program& program,
-                                                    const gcode::Interpretation& interpretation,
-                                                    const std::vector<Section>& sections);
+// Of a program that is held anyway.
+[[nodiscard]] std::vector<InspectedSection> inspect(const gcode::ReadPart& program,
+                                                    const GroupingOptions& grouping);
 
-// The same of a program that is read part by part. Holds the sections, and the lengths of the
-// segments of the run that goes on.
-class Inspection {
- public:
-  // The sections of the next blocks. `goes_on`: the last run so far goes on in the first of them,
-  // which is a run from its first block on; their lines are those of one chain.
-  void add(const gcode::Program& part, const gcode::Interpretation& meaning,
-           const std::vector<Section>& sections, bool goes_on);
-
-  // As many as were added, each as it would be if the program ended here.
-  [[nodiscard]] std::size_t size() const { return sections_.size(); }
-  // Takes the sections behind the first `size` away again. None of those that stay goes on.
-  void go_back_to(std::size_t size);
-
-  // All sections.
-  [[nodiscard]] std::vector<InspectedSection> take();
-
- private:
-  void add_run(const gcode::Program& part, const gcode::Interpretation& meaning,
-               const Section& section);
-  void begin_run(const Run& run);
-  void end_run();
-
-  std::vector<InspectedSection> sections_;
-  // Of the last section, where it is a run that may go on.
-  bool in_run_ = false;
-  SegmentTally tally_;
-  geometry::Point3 start_ = geometry::Point3::Zero();
-  std::uint32_t turn_line_ = 0;
+struct InspectedProgram {
+  std::vector<InspectedSection> sections;
+  gcode::Diagnostics found;
+  std::size_t blocks = 0;
+  bool unit_word_seen = false;
+  bool as_whole = false;  // the parts were not enough
 };
+
+struct InspectLimits {
+  PartLimits parts = {};
+  std::size_t longest = 4096;  // blocks without a rapid that are held before a chain is cut
+};
+
+// Reads a long program part by part and holds its sections, some parts, and the lengths of the
+// segments of the run that goes on.
+//
+// Parts end behind plain rapids (postproc/proof/program_events.h), where something other than a
+// rapid follows: there no chain and no section goes on. A long chain of lines is cut between two
+// motions, with some more on both sides that go neither straight along Z nor nowhere: both pieces
+// end there as runs, and are counted as one. A chain with arcs is held as one: which of them were
+// meant is known at its end. A program that is short or needs the whole (PartReader) is one part.
+[[nodiscard]] InspectedProgram inspect(const gcode::SourceText& source, const PartReading& reading,
+                                       const GroupingOptions& grouping,
+                                       const InspectLimits& limits = {});
 
 }  // namespace batten::postproc

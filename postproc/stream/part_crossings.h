@@ -1,6 +1,6 @@
 // Do the parts of a long run cross each other where they did not before? Each is proved for itself;
 // here what was written of those stretches that are near to other parts
-// (postproc/runs/proximity_index.h) is looked at together. Holds these stretches, and nothing of
+// (postproc/runs/long_run_cuts.h) is looked at together. Holds these stretches, and nothing of
 // the rest.
 #pragma once
 
@@ -15,7 +15,7 @@
 #include "gcode/text/program.h"
 #include "geometry/band/self_proximity.h"
 #include "postproc/proof/program_events.h"
-#include "postproc/runs/proximity_index.h"
+#include "postproc/runs/long_run_cuts.h"
 #include "postproc/runs/section.h"
 
 namespace batten::postproc {

@@ -1,20 +1,103 @@
 #include "postproc/stream/part_verification.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <optional>
 #include <span>
+#include <unordered_map>
 #include <utility>
 
+#include "gcode/state/reason.h"
 #include "geometry/path/path.h"
 #include "postproc/proof/program_events.h"
 #include "postproc/proof/self_meeting.h"
-#include "postproc/stream/program_stream.h"
 
 namespace batten::postproc {
 
 namespace {
+
+// A part that is compared, with what it takes over.
+struct FollowedPart {
+  gcode::ReadPart part;
+  EventsBefore before;
+  std::uint32_t line_before = 0;
+
+  [[nodiscard]] ReadProgram read() const {
+    return {&part.program, &part.meaning, before, {}, line_before};
+  }
+};
+
+// mm
+double way_of(const gcode::Motion& motion) {
+  const gcode::MotionPath& path = motion.piece;
+  return path.is_line() ? (path.end() - path.start()).norm() : geometry::length_of(path);
+}
+
+// One of two programs that are compared: what of it is held, and where a part may end.
+class ProgramStream {
+ public:
+  ProgramStream(const TextToVerify& text, const PartLimits& limits, bool as_whole)
+      : reader_(text.source, text.reading, limits, as_whole) {}
+
+  // False: it needs the whole.
+  [[nodiscard]] bool read_on() {
+    const auto next = reader_.read_on();
+    if (next == PartReader::Next::kNeedsWhole) return false;
+    at_end_ = next == PartReader::Next::kAtEnd;
+    if (!reader_.is_whole()) look_at_new_blocks();
+    return true;
+  }
+  [[nodiscard]] bool at_end() const { return at_end_; }
+
+  [[nodiscard]] const gcode::ReadPart& held() const { return reader_.held(); }
+  [[nodiscard]] std::uint32_t blocks_held() const { return reader_.blocks_held(); }
+  // Blocks behind plain rapids, of those that are held; of a whole none.
+  [[nodiscard]] const std::vector<std::uint32_t>& ends() const { return ends_; }
+  // mm, of the motions behind the last of these, or since the begin of what is held.
+  [[nodiscard]] double way() const { return way_; }
+
+  // The first blocks that are held.
+  [[nodiscard]] FollowedPart take(std::uint32_t count) {
+    FollowedPart taken{reader_.take(count), before_, line_before_};
+    if (reader_.is_whole()) return taken;
+    before_ = events_before_next(taken.read());
+    if (!taken.part.program.blocks.empty()) line_before_ = taken.part.program.blocks.back().line;
+    ends_.clear();
+    looked_at_ = 0;
+    way_ = 0;
+    look_at_new_blocks();
+    return taken;
+  }
+  [[nodiscard]] std::optional<gcode::Diagnostics> finish() { return reader_.finish(); }
+
+ private:
+  void look_at_new_blocks() {
+    const gcode::ReadPart& part = reader_.held();
+    for (; looked_at_ < blocks_held(); ++looked_at_) {
+      const gcode::BlockMeaning& block = part.meaning.blocks[looked_at_];
+      if (block.motion < 0) continue;
+      if (block.barrier == gcode::reason::kRapid &&
+          is_plain_rapid({&part.program, &part.meaning}, looked_at_)) {
+        ends_.push_back(looked_at_ + 1);
+        way_ = 0;
+      } else {
+        way_ += way_of(part.meaning.motions[static_cast<std::size_t>(block.motion)]);
+      }
+    }
+  }
+
+  PartReader reader_;
+  EventsBefore before_;
+  std::uint32_t line_before_ = 0;
+  std::vector<std::uint32_t> ends_;
+  std::uint32_t looked_at_ = 0;  // blocks that are held
+  double way_ = 0;
+  bool at_end_ = false;
+};
 
 bool is_one_feed(const Cut& a, const Cut& b) {
   return a.feed == b.feed && a.feed_without_point == b.feed_without_point;
@@ -93,33 +176,107 @@ class RunsInPieces {
   Cut new_last_;
 };
 
-class PartVerifier {
+// Two ways to one place may differ by so much: noise that one of them leaves out.
+constexpr double kWaysApart = 0.1;
+
+// Where a motion at feed rate ends.
+struct PlaceOnWay {
+  std::uint64_t key = 0;  // of the place
+  double way = 0;         // mm, up to there
+  std::uint32_t motion = 0;
+};
+
+// Places that are the same have the same key; 0 and -0 are.
+std::uint64_t key_of(const geometry::Point3& place) {
+  std::uint64_t key = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    key = (key ^ std::bit_cast<std::uint64_t>(place[axis] + 0.0)) * 0x9E3779B97F4A7C15U;
+    key ^= key >> 29U;
+  }
+  return key;
+}
+
+std::vector<PlaceOnWay> places_of(const gcode::Interpretation& read) {
+  std::vector<PlaceOnWay> places;
+  places.reserve(read.motions.size());
+  double way = 0;
+  for (std::size_t i = 0; i < read.motions.size(); ++i) {
+    const gcode::Motion& motion = read.motions[i];
+    way += way_of(motion);
+    if (motion.kind == gcode::MotionKind::kRapid || !motion.end_known) continue;
+    places.push_back({key_of(motion.piece.end()), way, static_cast<std::uint32_t>(i)});
+  }
+  return places;
+}
+
+bool as_far(const PlaceOnWay& a, const PlaceOnWay& b) {
+  return std::abs(a.way - b.way) <= kWaysApart * std::max(a.way, b.way);
+}
+
+// Where two long runs that go beside each other may be cut: the last place at which a motion of
+// each ends, the same to the last digit, as far along both to within a tenth. Blocks behind these
+// motions.
+struct CommonPlace {
+  std::uint32_t old_end = 0;
+  std::uint32_t new_end = 0;
+};
+
+std::optional<CommonPlace> last_common_place(const gcode::Interpretation& before,
+                                             const gcode::Interpretation& after) {
+  const std::vector<PlaceOnWay> old_places = places_of(before);
+  const std::vector<PlaceOnWay> new_places = places_of(after);
+  std::unordered_multimap<std::uint64_t, const PlaceOnWay*> by_key;
+  by_key.reserve(new_places.size());
+  for (const PlaceOnWay& place : new_places) by_key.emplace(place.key, &place);
+  for (auto old = old_places.rbegin(); old != old_places.rend(); ++old) {
+    const PlaceOnWay* nearest = nullptr;
+    const auto [first, last] = by_key.equal_range(old->key);
+    for (auto each = first; each != last; ++each) {
+      const PlaceOnWay& place = *each->second;
+      const auto off = [&](const PlaceOnWay& p) {
+        return std::pair(std::abs(p.way - old->way), p.motion);
+      };
+      if (nearest == nullptr || off(place) < off(*nearest)) nearest = &place;
+    }
+    if (nearest == nullptr) continue;
+    const gcode::Motion& old_motion = before.motions[old->motion];
+    const gcode::Motion& new_motion = after.motions[nearest->motion];
+    if (!as_far(*old, *nearest) || old_motion.piece.end() != new_motion.piece.end()) continue;
+    return CommonPlace{old_motion.block + 1, new_motion.block + 1};
+  }
+  return std::nullopt;
+}
+
+class TextVerifier {
  public:
-  PartVerifier(const TextToVerify& before, const TextToVerify& after, const Promise& promise,
-               const VerifyLimits& limits)
-      : old_(before.source, before.reading, limits.parts),
-        new_(after.source, after.reading, limits.parts),
+  TextVerifier(const TextToVerify& before, const TextToVerify& after, const Promise& promise,
+               const VerifyLimits& limits, bool as_whole)
+      : old_(before, limits.parts, as_whole),
+        new_(after, limits.parts, as_whole),
+        brackets_(after.brackets),
         promise_(promise),
+        as_whole_(as_whole),
         longest_(limits.longest),
         cut_from_(limits.longest),
         runs_(promise.tolerance_mm) {}
 
-  std::optional<VerifiedInParts> run(const std::function<bool()>& stopped) {
+  // Nothing: the whole is to be asked.
+  std::optional<VerifiedTexts> run(const std::function<bool()>& stopped) {
     while (!(old_.at_end() && new_.at_end())) {
       if ((stopped && stopped()) || !read_on() || !compare_what_ends()) return std::nullopt;
     }
-    if (!compare(all_of(old_), all_of(new_), false)) return std::nullopt;
     auto of_old = old_.finish();
     auto of_new = new_.finish();
     if (!of_old || !of_new) return std::nullopt;
-    return VerifiedInParts{std::move(result_), std::move(*of_old), std::move(*of_new)};
+    result_.of_old = std::move(*of_old);
+    result_.of_new = std::move(*of_new);
+    result_.as_whole = as_whole_;
+    if (!result_.understood()) return std::move(result_);
+    if (!compare(old_.blocks_held(), new_.blocks_held(), false)) return std::nullopt;
+    return std::move(result_);
   }
 
  private:
-  static std::uint32_t all_of(const ProgramStream& text) {
-    return static_cast<std::uint32_t>(text.blocks_held());
-  }
-
   // One part more of the old program, and of the new one as much as goes with it.
   [[nodiscard]] bool read_on() {
     if (!old_.at_end() && !old_.read_on()) return false;
@@ -138,7 +295,8 @@ class PartVerifier {
   [[nodiscard]] bool compare_what_ends() {
     const std::size_t ends = std::min(old_.ends().size(), new_.ends().size());
     if (ends > 0) return compare(old_.ends()[ends - 1], new_.ends()[ends - 1], false);
-    if (old_.blocks_held() < cut_from_ || promise_.side != geometry::Side::kBoth) return true;
+    if (as_whole_ || old_.blocks_held() < cut_from_ || promise_.side != geometry::Side::kBoth)
+      return true;
     const auto place = last_common_place(old_.held().meaning, new_.held().meaning);
     if (place) return compare(place->old_end, place->new_end, true);
     cut_from_ = old_.blocks_held() + longest_ / 2;  // what was looked at is not asked part for part
@@ -151,37 +309,51 @@ class PartVerifier {
     const FollowedPart after = new_.take(new_end);
     cut_from_ = longest_;
     Verification found = verify(before.read(), after.read(), promise_);
-    if (!found.proved()) return false;
+    if (!found.proved() && !as_whole_) return false;
+    result_.in_brackets = events_in_brackets(after.read(), brackets_);
     add(std::move(found));
     return runs_.take(before, after, in_run);
   }
 
   void add(Verification found) {
-    if (found.deviation_mm > result_.deviation_mm) {
-      result_.deviation_mm = found.deviation_mm;
-      result_.deviation_line = found.deviation_line;
+    Verification& all = result_.verification;
+    if (found.deviation_mm > all.deviation_mm) {
+      all.deviation_mm = found.deviation_mm;
+      all.deviation_line = found.deviation_line;
     }
-    result_.corner_mm = std::max(result_.corner_mm, found.corner_mm);
-    result_.events_compared += found.events_compared;
-    std::ranges::move(found.stretches, std::back_inserter(result_.stretches));
+    all.corner_mm = std::max(all.corner_mm, found.corner_mm);
+    all.events_compared += found.events_compared;
+    std::ranges::move(found.stretches, std::back_inserter(all.stretches));
+    std::ranges::move(found.violations, std::back_inserter(all.violations));
   }
 
   ProgramStream old_;
   ProgramStream new_;
+  const std::vector<LineBracket>& brackets_;
   const Promise& promise_;
+  bool as_whole_;
   std::size_t longest_;
   std::size_t cut_from_;  // so many old blocks are held before a run is cut
   RunsInPieces runs_;
-  Verification result_;
+  VerifiedTexts result_;
 };
 
 }  // namespace
 
-std::optional<VerifiedInParts> verify_in_parts(const TextToVerify& before,
-                                               const TextToVerify& after, const Promise& promise,
-                                               const std::function<bool()>& stopped,
-                                               const VerifyLimits& limits) {
-  return PartVerifier(before, after, promise, limits).run(stopped);
+std::optional<VerifiedTexts> verify_texts(const TextToVerify& before, const TextToVerify& after,
+                                          const Promise& promise,
+                                          const std::function<bool()>& stopped,
+                                          const VerifyLimits& limits) {
+  const auto verified = [&](bool as_whole) {
+    return TextVerifier(before, after, promise, limits, as_whole).run(stopped);
+  };
+  const bool plain = before.reading.text.language == gcode::Language::kRs274 &&
+                     after.reading.text.language == gcode::Language::kRs274;
+  const std::size_t size = std::max(before.source.text().size(), after.source.text().size());
+  if (plain && size >= limits.parts.least_text && after.brackets.empty()) {
+    if (auto in_parts = verified(false)) return in_parts;
+  }
+  return stopped && stopped() ? std::nullopt : verified(true);
 }
 
 }  // namespace batten::postproc

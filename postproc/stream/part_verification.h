@@ -1,5 +1,5 @@
-// Two long programs compared part by part: what verify (postproc/proof/verification.h) says of
-// programs that keep the promise, in the memory of some parts.
+// Two texts, read and compared by verify (postproc/proof/verification.h): long ones part by part,
+// in the memory of some parts, as long as they keep the promise.
 //
 // Why the parts together are the proof. Both texts are read from their begins, with what the parts
 // before have left behind (PartReader, EventsBefore). A part of the old program is held against the
@@ -27,17 +27,20 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/source_text.h"
 #include "postproc/proof/verification.h"
-#include "postproc/stream/chunk_reader.h"
+#include "postproc/stream/added_lines.h"
+#include "postproc/stream/part_reader.h"
 
 namespace batten::postproc {
 
 struct TextToVerify {
   const gcode::SourceText& source;
   PartReading reading;
+  std::vector<LineBracket> brackets = {};  // of a new program: lines between which runs stand
 };
 
 struct VerifyLimits {
@@ -45,16 +48,26 @@ struct VerifyLimits {
   std::size_t longest = 65536;  // old blocks without a rapid that are held before a run is cut
 };
 
-struct VerifiedInParts {
-  Verification verification;  // proved; blocks of its stretches count within their parts
+struct VerifiedTexts {
+  Verification verification;  // where both are understood
   gcode::Diagnostics of_old;
   gcode::Diagnostics of_new;
+  std::vector<Violation> in_brackets;  // see events_in_brackets
+  bool as_whole = false;               // else blocks of the stretches count within their parts
+
+  // An error of either: a tolerance means nothing without a unit, say.
+  [[nodiscard]] bool understood() const {
+    return !gcode::has_error(of_old) && !gcode::has_error(of_new);
+  }
 };
 
-// Nothing where the whole is needed: all that is not proved is among that, and what PartReader does
-// not read. Nothing too where `stopped` says so; it is asked once for each part.
-[[nodiscard]] std::optional<VerifiedInParts> verify_in_parts(
-    const TextToVerify& before, const TextToVerify& after, const Promise& promise,
-    const std::function<bool()>& stopped = {}, const VerifyLimits& limits = {});
+// As one part: short programs, all that is not proved in parts, what PartReader does not read, and
+// programs with brackets. Nothing where `stopped` says so; it is asked once for each part, and
+// before the whole is read.
+[[nodiscard]] std::optional<VerifiedTexts> verify_texts(const TextToVerify& before,
+                                                        const TextToVerify& after,
+                                                        const Promise& promise,
+                                                        const std::function<bool()>& stopped = {},
+                                                        const VerifyLimits& limits = {});
 
 }  // namespace batten::postproc

@@ -3,14 +3,33 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
 
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"
 #include "postproc/runs/long_run_cuts.h"
+#include "postproc/stream/prescan.h"
 #include "postproc/stream/smooth_result.h"
-#include "postproc/stream/windows.h"
 
 namespace batten::postproc {
+
+// Takes the next part of the new program; false stops the work. Called by one thread at a time.
+using TextSink = std::function<bool(std::string_view)>;
+
+// Nothing where the program needs to be smoothed as a whole (postproc/stream/prescan.h, words of a
+// profile, and where something differs that no run of a window is to blame for): what the sink was
+// given is worth nothing then. Otherwise the result without its text; where the work was stopped,
+// it is not understood.
+//
+// `copied`: stretches of long runs that are left as they are. Where the new paths of two parts
+// cross nothing is returned and it has grown: the windows are to be made anew with it. Without it
+// the program needs the whole then.
+[[nodiscard]] std::optional<SmoothResult> smooth_in_windows(
+    const gcode::SourceText& source, const SmoothOptions& options, const TextSink& sink,
+    const Progress& progress = {}, const WindowLimits& limits = {},
+    std::vector<LineRange>* copied = nullptr);
 
 // The whole program as one window, its text in memory.
 //

@@ -3,13 +3,18 @@
 #include <oneapi/tbb/parallel_pipeline.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/source_kind.h"
 #include "gcode/state/reason.h"
+#include "postproc/convert/conversion.h"
+#include "postproc/profile/target_profile.h"
 #include "postproc/proof/program_events.h"
 #include "postproc/runs/long_run_cuts.h"
 #include "postproc/stream/provenance.h"
@@ -18,6 +23,10 @@
 namespace batten::postproc {
 
 namespace {
+
+// Blocks that are held at once: much more than what a part costs by itself, and much less than a
+// window, which is read again from the begin of a part on.
+constexpr std::size_t kBlocksAtOnce = 4096;
 
 LongRunLimits limits_of(LongRunLimits limits, const SmoothOptions& options) {
   limits.rewritten = options.method != Method::kNone;
@@ -29,8 +38,10 @@ class PrescanWork {
   PrescanWork(const gcode::SourceText& source, const SmoothOptions& options,
               const WindowLimits& limits, const ProgressCallback& tell)
       : source_(source),
-        texts_(source, options),
-        meanings_(options),
+        target_(*options.target),
+        texts_(source, {options.source, reading_of(options, gcode::Language::kRs274)},
+               {.blocks = kBlocksAtOnce}),
+        meanings_(read_options_of(options)),
         least_blocks_(limits.least_blocks),
         cuts_(limits_of(limits.long_runs, options), grouping_of(options)),
         tell_(tell),
@@ -43,7 +54,7 @@ class PrescanWork {
   }
 
  private:
-  using Part = std::shared_ptr<PrescanChunk>;
+  using Part = std::shared_ptr<PartOfText>;
 
   // Each of the three stages takes about as long as the others.
   void go_through(int threads) {
@@ -53,10 +64,12 @@ class PrescanWork {
     const auto read = [this](oneapi::tbb::flow_control& flow) -> Part {
       Part part = ended_early_ ? nullptr : texts_.next();
       if (!part) flow.stop();
+      if (part && !part->needs_whole)
+        part->needs_whole = target_takes_otherwise(part->read.program);
       return part;
     };
     const auto interpret = [this](const Part& part) {
-      if (!part->needs_whole && !ended_early_) meanings_.add_to(*part);
+      if (!part->needs_whole && !ended_early_) add_meaning(*part);
       return part;
     };
     const auto look = [this](const Part& part) {
@@ -69,12 +82,24 @@ class PrescanWork {
             make_filter<Part, void>(filter_mode::serial_in_order, look));
   }
 
+  [[nodiscard]] bool target_takes_otherwise(const gcode::Program& part) const {
+    gcode::Diagnostics others;
+    tell_of_other_meanings(part, target_, others);
+    return !others.empty() || is_of_another_family(part, target_);
+  }
+
+  void add_meaning(PartOfText& part) {
+    meanings_.add_to(part);
+    part.begin.before.events = events_;
+    events_ = events_before_next({&part.read.program, &part.read.meaning, events_});
+  }
+
   // False: the report says why it ends here.
-  [[nodiscard]] bool take(const PrescanChunk& part) {
+  [[nodiscard]] bool take(const PartOfText& part) {
     if (part.needs_whole) return false;
     starts_.push_back(part.begin);
-    look_for_ends(part.program, part.meaning);
-    take_facts(part.program, part.meaning);
+    look_for_ends(part.read.program, part.read.meaning);
+    take_facts(part.read.program, part.read.meaning);
     source_.release_pages({part.begin.text.begin, part.end});
     const bool goes_on = tell_(part.end / static_cast<double>(source_.text().size()));
     if (!goes_on) report_.outcome = PrescanOutcome::kStopped;
@@ -152,8 +177,10 @@ class PrescanWork {
   }
 
   const gcode::SourceText& source_;
-  ChunkReader texts_;
+  const gcode::Control& target_;
+  PartTexts texts_;
   PartMeanings meanings_;
+  EventsBefore events_;  // behind the last part that was interpreted
   std::size_t least_blocks_;
   LongRunCuts cuts_;
   const ProgressCallback& tell_;

@@ -11,9 +11,9 @@
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"
 #include "postproc/runs/long_run_cuts.h"
-#include "postproc/runs/proximity_index.h"
+#include "postproc/runs/section.h"
 #include "postproc/smooth/part_runs.h"
-#include "postproc/stream/prescan_chunks.h"
+#include "postproc/stream/part_reader.h"
 
 namespace batten::postproc {
 

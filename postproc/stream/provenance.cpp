@@ -1,8 +1,11 @@
 #include "postproc/stream/provenance.h"
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 
+#include "gcode/curves/curve_format.h"
+#include "gcode/text/characters.h"
 #include "gcode/text/number_format.h"
 
 namespace batten::postproc {
@@ -23,29 +26,42 @@ std::string provenance_comment(const gcode::Control& target, double tolerance_mm
 
 // Some controls have no small letters.
 bool was_smoothed(const gcode::Program& program) {
-  const auto capital = [](char c) {
-    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  };
+  const auto same = [](char a, char b) { return gcode::upper(a) == gcode::upper(b); };
   return std::ranges::any_of(program.comments, [&](const gcode::Comment& comment) {
-    const std::string_view text = program.source.text(comment.span);
-    const auto found = std::search(text.begin(), text.end(), kSmoothed.begin(), kSmoothed.end(),
-                                   [&](char a, char b) { return capital(a) == capital(b); });
-    return found != text.end();
+    return !std::ranges::search(program.source.text(comment.span), kSmoothed, same).empty();
   });
 }
 
-std::optional<gcode::Diagnostic> missing_provenance(std::span<const RunReport> runs,
-                                                    const gcode::Program& program,
-                                                    const gcode::Control& target) {
-  if (!provenance_comment(target, 1).empty()) return std::nullopt;
-  const auto first = std::ranges::find(runs, RunStatus::kRewritten, &RunReport::status);
-  if (first == runs.end()) return std::nullopt;
-  return gcode::Diagnostic{
-      gcode::Severity::kNote, "smoothing-not-told",
-      program.blocks[first->first_line - program.blocks.front().line].span,
-      "target " + std::string(target.name) +
-          " has no certain comment, so nothing in the program says that it was smoothed: smoothing "
-          "it once more would add its tolerance again"};
+gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs, const gcode::Program& program,
+                                 const gcode::Control& target) {
+  gcode::Diagnostics notes;
+  const auto tell_first = [&](gcode::Severity severity, const char* id, std::string message,
+                              const auto& holds) {
+    const auto first = std::ranges::find_if(runs, [&](const RunReport& run) {
+      return run.status == RunStatus::kRewritten && holds(run);
+    });
+    if (first == runs.end()) return;
+    notes.push_back({severity, id,
+                     program.blocks[first->first_line - program.blocks.front().line].span,
+                     std::move(message)});
+  };
+  if (provenance_comment(target, 1).empty()) {
+    tell_first(gcode::Severity::kNote, "smoothing-not-told",
+               "target " + std::string(target.name) +
+                   " has no certain comment, so nothing in the program says that it was smoothed: "
+                   "smoothing it once more would add its tolerance again",
+               [](const RunReport&) { return true; });
+  }
+  if (target.curves != nullptr && !target.curves->caution.empty()) {
+    tell_first(gcode::Severity::kWarning, "curves-unverified", std::string(target.curves->caution),
+               [](const RunReport& run) { return run.form == OutputForm::kCurves; });
+  }
+  tell_first(
+      gcode::Severity::kNote, "chords-for-steps",
+      "the equal steps of --linearize ilca are too many for this run; found chords, expected "
+      "equal steps",
+      [](const RunReport& run) { return run.chords_for_steps; });
+  return notes;
 }
 
 }  // namespace batten::postproc

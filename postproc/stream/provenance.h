@@ -9,7 +9,7 @@
 #include "gcode/control/control.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"
-#include "postproc/stream/run_report.h"
+#include "postproc/stream/smooth_result.h"
 
 namespace batten::postproc {
 
@@ -20,11 +20,14 @@ namespace batten::postproc {
 // Whether a comment of the program says so.
 [[nodiscard]] bool was_smoothed(const gcode::Program& program);
 
-// The note "smoothing-not-told" at the first run that was rewritten, where the target has no
-// certain comment: nothing in the text says then that it was smoothed. `program` may be the part of
-// it with these runs.
-[[nodiscard]] std::optional<gcode::Diagnostic> missing_provenance(std::span<const RunReport> runs,
-                                                                  const gcode::Program& program,
-                                                                  const gcode::Control& target);
+// What a user has to be told of the runs that were written, at the first run that it is true of:
+// - the note `smoothing-not-told` where the target has no certain comment: nothing in the text says
+//   then that it was smoothed;
+// - the warning `curves-unverified` for curves, in the words of the target's CurveFormat::caution;
+// - the note `chords-for-steps` for chords in the place of the equal steps that were asked for.
+// `program` may be the part of it with these runs.
+[[nodiscard]] gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs,
+                                               const gcode::Program& program,
+                                               const gcode::Control& target);
 
 }  // namespace batten::postproc

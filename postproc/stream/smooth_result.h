@@ -4,14 +4,62 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gcode/state/modal_state.h"
+#include "gcode/state/motion.h"
 #include "gcode/text/diagnostic.h"
-#include "postproc/stream/run_report.h"
+#include "gcode/text/program.h"
+#include "postproc/proof/verification.h"
+#include "postproc/runs/section.h"
+#include "postproc/smooth/forms/output_plan.h"
+#include "postproc/smooth/run_smoother.h"
+#include "postproc/smooth/selection/selection.h"
+#include "postproc/system/exit_code.h"
 
 namespace batten::postproc {
+
+enum class RunStatus { kRewritten, kKept };
+
+// One run of the report. Also verbatim chains of cutting moves appear, kept, with their reason.
+struct RunReport {
+  std::uint32_t first_line = 0;
+  std::uint32_t last_line = 0;
+  std::size_t points = 0;
+  RunStatus status = RunStatus::kKept;
+  std::string_view reason;          // why it was kept; empty when rewritten
+  std::string_view method;          // that made what stands there now; empty where it was kept
+  std::vector<MethodTime> methods;  // all that were tried, whether it was rewritten or not
+  OutputForm form = OutputForm::kLines;
+  std::size_t blocks_in = 0;
+  std::size_t blocks_out = 0;
+  double deviation_mm = 0;  // proved bound
+  bool proved = false;
+  bool chords_for_steps = false;  // see plan_lines
+  double noise_mm = 0;
+  double max_curvature_before = 0;  // 1/mm, circle through three neighbouring vertices
+  double max_curvature_after = 0;
+  double time_before_s = 0;
+  double time_after_s = 0;
+};
+
+// What became of the sections of a program; `works` in their order, `stretches` of the proof.
+struct RunsDone {
+  const gcode::Program& program;
+  const gcode::Interpretation& meaning;
+  std::span<const Section> sections;
+  std::span<const RunState> works;
+  std::span<const CutRun> cut_runs;
+  std::span<const Stretch> stretches;
+  bool proved = false;
+};
+
+// In the order of the program. Linear in sections and stretches.
+[[nodiscard]] std::vector<RunReport> report_runs(const RunsDone& done);
 
 struct SmoothResult {
   std::string text;  // the new program; the input's bytes where nothing was rewritten
@@ -28,7 +76,7 @@ struct SmoothResult {
   double time_before_s = 0;  // cutting runs only
   double time_after_s = 0;
   bool proved = false;  // of the whole text
-  // Of a text that was handed on window by window (postproc/stream/windows.h), in place of `text`.
+  // Of a text that was handed on window by window (postproc/stream/pipeline.h), in place of `text`.
   std::size_t bytes_handed_on = 0;
   [[nodiscard]] std::size_t bytes_out() const { return text.size() + bytes_handed_on; }
 };
@@ -36,5 +84,14 @@ struct SmoothResult {
 // Called now and then with the part that is done, 0..1. Returning false stops the work: the
 // result then is not understood and carries no text.
 using Progress = std::function<bool(double)>;
+
+// Whether what `smooth_program` made may be written.
+
+// kDone, kNotUnderstood or kNotProved; only what is kDone may be written. `strict`: a run that was
+// kept because it could not be proved counts as not proved.
+[[nodiscard]] ExitCode judge(const SmoothResult& result, std::string_view source, bool strict);
+
+// Why nothing was written, for the user. Requires a verdict other than kDone.
+[[nodiscard]] std::string_view complaint(ExitCode verdict, bool strict);
 
 }  // namespace batten::postproc

@@ -1,4 +1,5 @@
-// Colour in messages: on a terminal, unless the user does not want it.
+// How messages reach their readers: in colour on a terminal, unless the user does not want it, with
+// rates and times in words, in well-formed UTF-8.
 #pragma once
 
 #include <string>
@@ -22,5 +23,12 @@ enum class Ink { kError, kWarning, kNote, kGood };
 
 // "40 s", "2 min", "3 h 20 min": rounded up, since it is a guess.
 [[nodiscard]] std::string rough_time(double seconds);
+
+// Text for readers that take nothing but UTF-8, such as the Python programs that show Batten's
+// messages to the user. Names of files and words of programs may hold any bytes.
+
+// The same text, with U+FFFD for each byte that is no part of well-formed UTF-8 (RFC 3629:
+// nothing overlong, no surrogates, nothing above U+10FFFF).
+[[nodiscard]] std::string as_valid_utf8(std::string_view bytes);
 
 }  // namespace batten::postproc

@@ -118,7 +118,7 @@ void compare_polyline(const Case& given) {
       }
       const Path path = pieces_of(made->path.curve);
       print_row(name, postproc::planned_time(path, machine_limits()),
-                postproc::greatest_curvature(made->path.curve),
+                postproc::CurvatureProfile(made->path.curve).greatest(),
                 proved_deviation(input, path, kind, given.tolerance), path.size());
     }
   }

@@ -95,12 +95,12 @@ inline std::vector<InspectedSection> inspected(const std::string& text,
   const gcode::SourceText source("test.nc", text);
   const auto language = language_read(source, options, found);
   if (!language) return {};
-  const gcode::Program program = gcode::parse(source, reading_of(options, *language), found);
-  const gcode::Interpretation meaning = gcode::interpret(program, read_options_of(options), found);
+  gcode::ReadPart read{gcode::parse(source, reading_of(options, *language), found), {}};
+  read.meaning = gcode::interpret(read.program, read_options_of(options), found);
   GroupingOptions grouping;
   grouping.tolerance_mm = options.tolerance_mm;
   grouping.allowed.assign(options.allowed.begin(), options.allowed.end());
-  return inspect(program, meaning, group_runs(program, meaning, grouping));
+  return inspect(read, grouping);
 }
 
 inline std::string reason_at(const std::vector<InspectedSection>& sections, std::uint32_t line) {

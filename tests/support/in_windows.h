@@ -14,7 +14,6 @@
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/source_text.h"
 #include "postproc/stream/pipeline.h"
-#include "postproc/stream/windows.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {

@@ -97,10 +97,17 @@ inline SmoothResult smoothed(const std::string& text, const SmoothOptions& optio
   return smooth_program(gcode::SourceText("test.nc", text), options, progress);
 }
 
+// The first `what` that stands in it.
+inline std::string replaced(std::string text, std::string_view what, std::string_view by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
 // A text that was read, for as long as its meaning is needed.
 struct ReadText {
-  explicit ReadText(const std::string& text)
-      : program(gcode::parse(gcode::SourceText("test.nc", text), found)),
+  explicit ReadText(const std::string& text, gcode::Language language = gcode::Language::kRs274)
+      : program(gcode::parse(gcode::SourceText("test.nc", text), language, found)),
         meaning(gcode::interpret(program, {}, found)) {}
   gcode::Diagnostics found;
   gcode::Program program;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,7 @@
 #include "postproc/machine/models/cycle_time.h"
 #include "postproc/options/options.h"
 #include "postproc/runs/section.h"
-#include "postproc/smooth/methods/curvature_profile.h"
+#include "postproc/smooth/methods/run_curve.h"
 
 namespace batten::postproc {
 
@@ -97,8 +98,8 @@ struct PlanOptions {
                                                     const geometry::SmoothCurve& fair,
                                                     const PlanOptions& options);
 
-// The plans of postproc/smooth/forms/output_plan.h for who makes more than one of a curve, and so
-// has it in its pieces: `pieces` is all of fair.curve.
+// The same for who makes more than one plan of a curve, and so has it in its pieces: `pieces` is
+// all of fair.curve.
 
 [[nodiscard]] OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair,
                                     const geometry::MarkedPieces& pieces,
@@ -108,5 +109,41 @@ struct PlanOptions {
                                                   const geometry::MarkedPieces& pieces,
                                                   const CurvatureProfile& bends,
                                                   const PlanOptions& options);
+
+// The parts of a smoothed run between changes of feed, and where its comments go.
+
+// A part of the curve that is run at one feed.
+struct FeedStretch {
+  double from = 0;  // parameters of the curve
+  double to = 0;
+  double feed = 0;  // mm/min
+};
+
+// In order, each starting where the one before it ends, from the curve's first parameter to its
+// last. None is empty; neighbours have different feeds.
+//
+// Throws std::invalid_argument when `fair` does not have one parameter per point of the run, or
+// when the run has no feed.
+[[nodiscard]] std::vector<FeedStretch> feed_stretches(const Run& run,
+                                                      const geometry::SmoothCurve& fair);
+
+// Puts the run's comments into the plan. `starts`: the curve's parameter at the start of each
+// move, not decreasing.
+void place_comments(const Run& run, const geometry::SmoothCurve& fair,
+                    std::span<const double> starts, OutputPlan& plan);
+
+// What the plans of arcs and of curves have in common.
+
+// Planes that the target takes arcs in, the active one first.
+[[nodiscard]] std::vector<gcode::PlaneAxes> arc_planes(const PlanOptions& options);
+
+// mm: the printed step of the ends of arcs.
+[[nodiscard]] double arc_grid(const PlanOptions& options);
+
+// Appends the piece; an arc in as many parts as the target needs, and chords within `deviation` of
+// those parts that it refuses or that its own chords would leave further than
+// options.max_deviation.
+void append_taken(const geometry::PathPiece& piece, double deviation, const PlanOptions& options,
+                  geometry::Path& path);
 
 }  // namespace batten::postproc

@@ -1,4 +1,4 @@
-#include "postproc/smooth/forms/plan_arcs.h"
+#include "postproc/smooth/forms/output_plan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,6 @@
 #include "geometry/basic/rounding.h"
 #include "geometry/path/plane_curve.h"
 #include "postproc/runs/run_path.h"
-#include "postproc/smooth/forms/output_plan.h"
-#include "postproc/smooth/forms/plan_stretches.h"
 
 namespace batten::postproc {
 namespace {

@@ -9,7 +9,6 @@
 #include "geometry/fitting/fewer_knots.h"
 #include "geometry/path/curve_pieces.h"
 #include "postproc/smooth/forms/output_plan.h"
-#include "postproc/smooth/forms/plan_stretches.h"
 
 namespace batten::postproc {
 namespace {

@@ -6,7 +6,6 @@
 #include "geometry/chords/linearize.h"
 #include "geometry/chords/min_link.h"
 #include "postproc/smooth/forms/output_plan.h"
-#include "postproc/smooth/forms/plan_stretches.h"
 
 namespace batten::postproc {
 namespace {

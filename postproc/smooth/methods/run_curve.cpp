@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -19,7 +20,6 @@
 #include "geometry/fitting/one_sided/one_sided_fair.h"
 #include "geometry/path/curve_pieces.h"
 #include "geometry/path/joined_curve.h"
-#include "postproc/smooth/methods/curvature_profile.h"
 
 namespace batten::postproc {
 
@@ -57,74 +57,11 @@ std::optional<SmoothCurve> fair_curve(std::span<const Point3> run, const CurveRe
   return geometry::one_sided_fair_path(run, {options, request.side, request.side_margin});
 }
 
-std::optional<RunCurve> curve_of(Method method, std::span<const Point3> run,
-                                 const CurveRequest& request) {
-  if (request.side != geometry::Side::kBoth && method != Method::kFair) return std::nullopt;
-  const auto found = [&]() -> std::optional<SmoothCurve> {
-    switch (method) {
-      case Method::kFair:
-        return fair_curve(run, request);
-      case Method::kTimeOptimal:
-        return time_optimal_curve(run, request);
-      case Method::kNaseath:
-        return naseath_curve(run, request, false);
-      case Method::kNaseathLiteral:
-        return naseath_curve(run, request, true);
-      case Method::kGuo:
-        return guo_curve(run, request, false);
-      case Method::kGuoLiteral:
-        return guo_curve(run, request, true);
-      case Method::kOzcan:
-        return ozcan_curve(run, request);
-      case Method::kBest:
-      case Method::kNone:
-        break;
-    }
-    throw std::invalid_argument("curve_of: method " + std::string(name_of(method)) +
-                                ", expected one that makes a curve");
-  }();
-  if (!found) return std::nullopt;
-  return RunCurve{method, *found};
-}
-
-double greatest_curvature(std::span<const Point3> p) {
-  double most = 0;
-  for (std::size_t i = 1; i + 1 < p.size(); ++i) {
-    const Vector3 a = p[i] - p[i - 1];
-    const Vector3 b = p[i + 1] - p[i];
-    const double sides = a.norm() * b.norm() * (p[i + 1] - p[i - 1]).norm();
-    if (sides > 0) most = std::max(most, 2 * a.cross(b).norm() / sides);
-  }
-  return most;
-}
-
-double greatest_curvature(const geometry::BsplineCurve& curve) {
-  return CurvatureProfile(curve).greatest();
-}
-
-double chord_error(const Run& run, const SmoothCurve& meant, double rounding) {
-  double squares = 0;
-  geometry::SplineWalk curve(meant.curve.basis().knots(), meant.curve.control_points());
-  for (std::size_t i = 0; i + 1 < run.points.size(); ++i) {
-    const double u = 0.5 * (meant.vertex_parameters[i] + meant.vertex_parameters[i + 1]);
-    const Point3 middle = 0.5 * (run.points[i] + run.points[i + 1]);
-    const Vector3 off = curve.point_at(u) - middle;
-    const Vector3 along = run.points[i + 1] - run.points[i];
-    const double length = along.squaredNorm();
-    const double slide = length > 0 ? off.dot(along) / length : 0;
-    squares += (off - slide * along).squaredNorm();
-  }
-  const double chords = std::sqrt(squares / static_cast<double>(run.points.size() - 1));
-  return meant.noise > 2 * rounding ? std::max(chords, meant.noise) : chords;
-}
+namespace {
 
 // Methods that leave the lines and put a curve in the place of each vertex: guo, ozcan, racing.
 
-namespace {
-
 using geometry::NoBlend;
-using geometry::Point3;
-using geometry::SmoothCurve;
 
 // Length along the polyline at each point of the run, as the stations of a blended path count it.
 std::vector<double> stations_of(std::span<const Point3> run) {
@@ -171,8 +108,6 @@ bool can_race(const geometry::KinematicLimits& limits) {
   return std::isfinite(limits.feed) && limits.feed > 0;
 }
 
-}  // namespace
-
 std::optional<SmoothCurve> guo_curve(std::span<const Point3> run, const CurveRequest& request,
                                      bool literal) {
   geometry::GuoOptions options;
@@ -209,11 +144,7 @@ std::optional<SmoothCurve> time_optimal_curve(std::span<const Point3> run,
 
 // Naseath's tube about a spline, for a run of lines.
 
-namespace {
-
 using geometry::BsplineCurve;
-using geometry::Point3;
-using geometry::SmoothCurve;
 
 // The fit may use this part of the tolerance: enough to follow the vertices' rounding and to
 // round corners a little, since the method itself refuses corners; the tube gets the rest.
@@ -273,8 +204,9 @@ std::vector<NaseathStretch> stretches_of(const BsplineCurve& curve, bool closed)
   return stretches;
 }
 
-}  // namespace
-
+// A B-spline is fitted to the run first, within a quarter of the tolerance; what its measured
+// deviation leaves is the radius of the tube. Lines and kept corners of the fit stay; the parts
+// between them are smoothed, each with the tangent and curvature that it has where it meets a line.
 std::optional<SmoothCurve> naseath_curve(std::span<const Point3> run, const CurveRequest& request,
                                          bool literal) {
   CurveRequest fit = request;
@@ -306,6 +238,92 @@ std::optional<SmoothCurve> naseath_curve(std::span<const Point3> run, const Curv
   path->noise = 0;
   path->rounds = 0;
   return path;
+}
+
+}  // namespace
+
+std::optional<RunCurve> curve_of(Method method, std::span<const Point3> run,
+                                 const CurveRequest& request) {
+  if (request.side != geometry::Side::kBoth && method != Method::kFair) return std::nullopt;
+  const auto found = [&]() -> std::optional<SmoothCurve> {
+    switch (method) {
+      case Method::kFair:
+        return fair_curve(run, request);
+      case Method::kTimeOptimal:
+        return time_optimal_curve(run, request);
+      case Method::kNaseath:
+        return naseath_curve(run, request, false);
+      case Method::kNaseathLiteral:
+        return naseath_curve(run, request, true);
+      case Method::kGuo:
+        return guo_curve(run, request, false);
+      case Method::kGuoLiteral:
+        return guo_curve(run, request, true);
+      case Method::kOzcan:
+        return ozcan_curve(run, request);
+      case Method::kBest:
+      case Method::kNone:
+        break;
+    }
+    throw std::invalid_argument("curve_of: method " + std::string(name_of(method)) +
+                                ", expected one that makes a curve");
+  }();
+  if (!found) return std::nullopt;
+  return RunCurve{method, *found};
+}
+
+double greatest_curvature(std::span<const Point3> p) {
+  double most = 0;
+  for (std::size_t i = 1; i + 1 < p.size(); ++i) {
+    const Vector3 a = p[i] - p[i - 1];
+    const Vector3 b = p[i + 1] - p[i];
+    const double sides = a.norm() * b.norm() * (p[i + 1] - p[i - 1]).norm();
+    if (sides > 0) most = std::max(most, 2 * a.cross(b).norm() / sides);
+  }
+  return most;
+}
+
+double chord_error(const Run& run, const SmoothCurve& meant, double rounding) {
+  double squares = 0;
+  geometry::SplineWalk curve(meant.curve.basis().knots(), meant.curve.control_points());
+  for (std::size_t i = 0; i + 1 < run.points.size(); ++i) {
+    const double u = 0.5 * (meant.vertex_parameters[i] + meant.vertex_parameters[i + 1]);
+    const Point3 middle = 0.5 * (run.points[i] + run.points[i + 1]);
+    const Vector3 off = curve.point_at(u) - middle;
+    const Vector3 along = run.points[i + 1] - run.points[i];
+    const double length = along.squaredNorm();
+    const double slide = length > 0 ? off.dot(along) / length : 0;
+    squares += (off - slide * along).squaredNorm();
+  }
+  const double chords = std::sqrt(squares / static_cast<double>(run.points.size() - 1));
+  return meant.noise > 2 * rounding ? std::max(chords, meant.noise) : chords;
+}
+
+CurvatureProfile::CurvatureProfile(const geometry::BsplineCurve& curve) {
+  constexpr int kParts = 8;
+  geometry::SplineWalk walk(curve.basis().knots(), curve.control_points());
+  const std::vector<double> knots = curve.breakpoints();
+  steps_.reserve(kParts / 2 * knots.size());
+  for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+    const double span = knots[i + 1] - knots[i];
+    for (int k = 0; k < kParts; ++k) {
+      const double curvature = walk.curvature_at(knots[i] + span * k / kParts);
+      greatest_ = std::max(greatest_, curvature);
+      // The odd ones are in the middle of a quarter. The parameter is about the length.
+      if (k % 2 == 1) steps_.push_back({2 * span / kParts, std::sqrt(curvature)});
+    }
+  }
+  greatest_ = std::max(greatest_, walk.curvature_at(curve.last()));
+}
+
+double CurvatureProfile::chords(double deviation, double min_length) const {
+  const double per_bend = 1 / std::sqrt(8 * deviation);
+  double chords = 0;
+  for (const Step& step : steps_) {
+    const double per_mm = per_bend * step.bend;
+    chords += step.length * (per_mm * min_length > 1 ? std::sqrt(0.5) * per_mm : per_mm);
+  }
+  return chords;
 }
 
 }  // namespace batten::postproc

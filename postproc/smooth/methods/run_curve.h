@@ -4,10 +4,12 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "geometry/basic/point.h"
 #include "geometry/basic/tolerance_kind.h"
 #include "geometry/fitting/fair/fair.h"
+#include "geometry/path/bspline_curve.h"
 #include "geometry/path/kinematic_feed.h"
 #include "postproc/machine/machine.h"
 #include "postproc/options/options.h"
@@ -42,39 +44,47 @@ struct CurveRequest {
 // The ends of the run are met exactly. A closed run starts and ends in its seam vertex, where the
 // tool is put down and taken up; only `fair` has no corner there where the path has none.
 //
-// Returns nothing when the method finds no curve, and with a side for all methods but `fair`;
+// Every vertex that is not kept gets a blend with the methods of corners; the lines between stay.
+//
+// Returns nothing when the method finds no curve (`racing` where the machine limits neither
+// acceleration nor jerk of an axis), and with a side for all methods but `fair`;
 // throws std::invalid_argument for Method::kBest and Method::kNone, which are no methods of their
 // own.
 [[nodiscard]] std::optional<RunCurve> curve_of(Method method, std::span<const geometry::Point3> run,
                                                const CurveRequest& request);
 
-// The methods one by one.
 [[nodiscard]] std::optional<geometry::SmoothCurve> fair_curve(std::span<const geometry::Point3> run,
                                                               const CurveRequest& request);
 
-// A B-spline is fitted to the run first, within a quarter of the tolerance; what its measured
-// deviation leaves is the radius of the tube. Lines and kept corners of the fit stay; the parts
-// between them are smoothed, each with the tangent and curvature that it has where it meets a line.
-[[nodiscard]] std::optional<geometry::SmoothCurve> naseath_curve(
-    std::span<const geometry::Point3> run, const CurveRequest& request, bool literal);
-
-// Every vertex that is not kept gets a blend; the lines between stay. `racing` finds none where the
-// machine limits neither acceleration nor jerk of an axis.
-[[nodiscard]] std::optional<geometry::SmoothCurve> time_optimal_curve(
-    std::span<const geometry::Point3> run, const CurveRequest& request);
-[[nodiscard]] std::optional<geometry::SmoothCurve> guo_curve(std::span<const geometry::Point3> run,
-                                                             const CurveRequest& request,
-                                                             bool literal);
-[[nodiscard]] std::optional<geometry::SmoothCurve> ozcan_curve(
-    std::span<const geometry::Point3> run, const CurveRequest& request);
-
-// 1/mm: the greatest of the circles through three neighbouring vertices, and of a curve by samples.
+// 1/mm: the greatest of the circles through three neighbouring vertices.
 [[nodiscard]] double greatest_curvature(std::span<const geometry::Point3> points);
-[[nodiscard]] double greatest_curvature(const geometry::BsplineCurve& curve);
 
 // How far the chords of the run are from the curve that was meant, as the height of equal chords:
 // the rms distance of their middles (mm). Noisy vertices are as far off as they scatter.
 [[nodiscard]] double chord_error(const Run& run, const geometry::SmoothCurve& meant,
                                  double rounding);
+
+// How much a curve bends, and about how many chords that makes.
+
+// How a curve bends, looked at in some places of each span.
+class CurvatureProfile {
+ public:
+  explicit CurvatureProfile(const geometry::BsplineCurve& curve);
+
+  // 1/mm: the greatest curvature there.
+  [[nodiscard]] double greatest() const { return greatest_; }
+
+  // About how many chords within `deviation` (mm) the curve takes, where chords shorter than
+  // `min_length` (mm) may be twice as far off.
+  [[nodiscard]] double chords(double deviation, double min_length) const;
+
+ private:
+  struct Step {
+    double length;  // mm
+    double bend;    // the root of the curvature
+  };
+  std::vector<Step> steps_;  // a few for each span
+  double greatest_ = 0;
+};
 
 }  // namespace batten::postproc

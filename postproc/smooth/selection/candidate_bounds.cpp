@@ -7,8 +7,8 @@
 
 #include "postproc/machine/models/junction_speed.h"
 #include "postproc/runs/run_path.h"
+#include "postproc/smooth/selection/candidate.h"
 #include "postproc/smooth/selection/selection.h"
-#include "postproc/smooth/selection/setting_times.h"
 
 namespace batten::postproc {
 
@@ -37,7 +37,7 @@ double least_feed(const Run& run) {
 Times judged_times(const RunTask& task, const Times& in_place) {
   if (!task.context.is_piece()) return in_place;
   const std::vector<TimedPiece> alone = timed_pieces(task.run, 0, task.run.points.size() - 1);
-  const SettingTimes times(alone, *task.options.machine, task.context.after.path);
+  SettingTimes times(alone, *task.options.machine, task.context.after.path);
   Times judged = in_place;
   judged.as_set = times.as_set();
   judged.without_merging = times.without_merging();

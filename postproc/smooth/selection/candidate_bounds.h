@@ -9,7 +9,7 @@
 #include "postproc/machine/machine.h"
 #include "postproc/options/options.h"
 #include "postproc/runs/section.h"
-#include "postproc/smooth/methods/curvature_profile.h"
+#include "postproc/smooth/methods/run_curve.h"
 #include "postproc/smooth/selection/candidate.h"
 #include "postproc/smooth/selection/run_times.h"
 

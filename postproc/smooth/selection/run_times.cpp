@@ -23,7 +23,7 @@ RunTimes::RunTimes(const RunContext& context, const Machine& machine)
     : context_(context), machine_(machine), around_(of_neighbours()) {}
 
 Times RunTimes::of_run(const std::vector<TimedPiece>& motions) const {
-  SettingTimes place = in_place(motions);
+  SettingTimes place = in_place(motions, machine_);
   Times times;
   times.as_set = place.as_set() - around_.as_set;
   times.without_merging = place.without_merging() - around_.without_merging;
@@ -32,19 +32,13 @@ Times RunTimes::of_run(const std::vector<TimedPiece>& motions) const {
 }
 
 double RunTimes::as_set_of_run(const std::vector<TimedPiece>& motions) const {
-  return in_one_setting(motions, machine_, context_.after.path) - around_.as_set;
-}
-
-double RunTimes::in_one_setting(const std::vector<TimedPiece>& moves, const Machine& machine,
-                                gcode::PathMode path) const {
-  return has_neighbours() ? cutting_time(with_neighbours(moves), machine, path)
-                          : cutting_time(moves, machine, path);
+  return in_place(motions, machine_).as_set() - around_.as_set;
 }
 
 Times RunTimes::of_candidate(const std::vector<TimedPiece>& moves, std::size_t blocks,
                              const Times& old, bool exact_path, bool wanted) const {
   const bool much_smaller = far_smaller(blocks, context_.blocks);
-  SettingTimes place = in_place(moves);
+  SettingTimes place = in_place(moves, machine_);
   Times times = old;
   // What a piece adds may be less than nothing: there one setting says nothing of the others.
   const auto is_slower = [&] {
@@ -69,7 +63,7 @@ double RunTimes::as_set_with_less_kinks(const std::vector<TimedPiece>& moves,
   if (multiple == 0) return 0;
   const Machine stronger =
       with_accelerations(machine_, std::max(multiple, times_less * times_less));
-  return in_one_setting(moves, stronger, context_.after.path) - around_.as_set;
+  return in_place(moves, stronger).as_set() - around_.as_set;
 }
 
 double RunTimes::exact_path_with_less_kinks(const std::vector<TimedPiece>& moves,
@@ -77,7 +71,7 @@ double RunTimes::exact_path_with_less_kinks(const std::vector<TimedPiece>& moves
   const double multiple = multiple_for_kinks(moves, times_less);
   if (multiple == 0) return 0;
   const Machine stronger = with_accelerations(machine_, multiple);
-  return in_one_setting(moves, stronger, gcode::PathMode::kExactPath) - around_.exact_path;
+  return in_place(moves, stronger).exact_path() - around_.exact_path;
 }
 
 // What a kink k asks, as a part of the acceleration a, is k (v / T + a) / a at speed v and servo
@@ -93,28 +87,23 @@ double RunTimes::multiple_for_kinks(const std::vector<TimedPiece>& moves, double
   return left > 0 ? times_less * steps / left : 0;
 }
 
-Times RunTimes::alone(const std::vector<TimedPiece>& chain) const {
-  return times_of(chain, machine_, context_.after.path);
-}
-
 // What the neighbours take without this piece, each from rest to rest. Of neighbours in a long run
 // that was cut: their part of the time.
 Times RunTimes::of_neighbours() const {
   if (context_.of_neighbours) return *context_.of_neighbours;
   Times sum;
-  if (!context_.lead.empty()) sum += alone(context_.lead);
-  if (!context_.tail.empty()) sum += alone(context_.tail);
+  for (const auto* chain : {&context_.lead, &context_.tail}) {
+    if (!chain->empty()) sum += times_of(*chain, machine_, context_.after.path);
+  }
   return sum;
 }
 
-SettingTimes RunTimes::in_place(const std::vector<TimedPiece>& moves) const {
-  const auto times = [this](const std::vector<TimedPiece>& chain) {
-    return SettingTimes(chain, machine_, context_.after.path);
-  };
-  return has_neighbours() ? times(with_neighbours(moves)) : times(moves);
+SettingTimes RunTimes::in_place(const std::vector<TimedPiece>& moves,
+                                const Machine& machine) const {
+  const gcode::PathMode path = context_.after.path;
+  if (context_.lead.empty() && context_.tail.empty()) return {moves, machine, path};
+  return {with_neighbours(moves), machine, path};
 }
-
-bool RunTimes::has_neighbours() const { return !context_.lead.empty() || !context_.tail.empty(); }
 
 std::vector<TimedPiece> RunTimes::with_neighbours(const std::vector<TimedPiece>& moves) const {
   std::vector<TimedPiece> chain;

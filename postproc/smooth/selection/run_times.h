@@ -5,7 +5,6 @@
 
 #include "postproc/machine/machine.h"
 #include "postproc/smooth/selection/candidate.h"
-#include "postproc/smooth/selection/setting_times.h"
 
 namespace batten::postproc {
 
@@ -38,12 +37,9 @@ class RunTimes {
  private:
   [[nodiscard]] double multiple_for_kinks(const std::vector<TimedPiece>& moves,
                                           double times_less) const;
-  [[nodiscard]] Times alone(const std::vector<TimedPiece>& chain) const;
   [[nodiscard]] Times of_neighbours() const;
-  [[nodiscard]] SettingTimes in_place(const std::vector<TimedPiece>& moves) const;
-  [[nodiscard]] double in_one_setting(const std::vector<TimedPiece>& moves, const Machine& machine,
-                                      gcode::PathMode path) const;
-  [[nodiscard]] bool has_neighbours() const;
+  [[nodiscard]] SettingTimes in_place(const std::vector<TimedPiece>& moves,
+                                      const Machine& machine) const;
   [[nodiscard]] std::vector<TimedPiece> with_neighbours(const std::vector<TimedPiece>& moves) const;
 
   const RunContext& context_;

@@ -9,32 +9,13 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/interpreter/interpreter.h"
-#include "gcode/reading/parser.h"
-#include "gcode/text/source_text.h"
+#include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
 namespace {
 
-// A program read from its text.
-class Reading {
- public:
-  explicit Reading(std::string text)
-      : program_(gcode::parse(gcode::SourceText("test.nc", std::move(text)), found_)),
-        interpretation_(gcode::interpret(program_, {}, found_)) {}
-  [[nodiscard]] ReadProgram get() const { return {&program_, &interpretation_}; }
-
- private:
-  gcode::Diagnostics found_;
-  gcode::Program program_;
-  gcode::Interpretation interpretation_;
-};
-
-Verification verify_texts(const std::string& before, const std::string& after,
-                          double tolerance = 0.01) {
-  const Reading old_program(before);
-  const Reading new_program(after);
-  return verify(old_program.get(), new_program.get(), tolerance);
+Verification verified(const std::string& before, const std::string& after) {
+  return verdict(before, after, 0.01);
 }
 
 std::string all_violations(const Verification& found) {
@@ -48,12 +29,6 @@ std::string all_violations(const Verification& found) {
 
 bool has_violation(const Verification& found, std::string_view id) {
   return std::ranges::any_of(found.violations, [id](const Violation& b) { return b.id == id; });
-}
-
-std::string replaced(std::string text, std::string_view what, std::string_view by) {
-  const std::size_t at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return text.replace(at, what.size(), by);
 }
 
 // Two runs with a rapid between, coolant, a feed change inside the first run.
@@ -100,7 +75,7 @@ class Refuses : public testing::TestWithParam<WrongCase> {};
 
 TEST_P(Refuses, WhatDoesSomethingElse) {
   const WrongCase& test = GetParam();
-  const Verification found = verify_texts(test.before, test.after);
+  const Verification found = verdict(test.before, test.after, 0.01);
   ASSERT_FALSE(found.proved());
   const auto violation = std::ranges::find(found.violations, test.id, &Violation::id);
   ASSERT_NE(violation, found.violations.end()) << all_violations(found);
@@ -263,7 +238,7 @@ class Accepts : public testing::TestWithParam<GoodCase> {};
 
 TEST_P(Accepts, WhatDoesTheSame) {
   const GoodCase& test = GetParam();
-  const Verification found = verify_texts(test.before, test.after);
+  const Verification found = verdict(test.before, test.after, 0.01);
   EXPECT_TRUE(found.proved()) << all_violations(found);
   EXPECT_LE(found.deviation_mm, 0.01);
   EXPECT_GT(found.events_compared, 0U);
@@ -333,23 +308,23 @@ INSTANTIATE_TEST_SUITE_P(Verify, Accepts, testing::ValuesIn(good_cases()),
 
 // LinuxCNC forgets the feed at each G94, also where that mode was set.
 TEST(Verify, WantsTheFeedAgainBehindAFeedModeThatIsSaidOnceMore) {
-  EXPECT_FALSE(verify_texts(kProgram, replaced(kProgram, "X20 Y20\n", "G94\nX20 Y20\n")).proved());
+  EXPECT_FALSE(verified(kProgram, replaced(kProgram, "X20 Y20\n", "G94\nX20 Y20\n")).proved());
   const std::string said = replaced(kProgram, "X20 Y20\n", "G94\nX20 Y20 F800\n");
-  EXPECT_FALSE(verify_texts(said, replaced(said, "X20 Y20 F800", "X20 Y20")).proved());
-  EXPECT_TRUE(verify_texts(said, replaced(said, "X20 Y20 F800", "X20 Y20 F800.0")).proved());
+  EXPECT_FALSE(verified(said, replaced(said, "X20 Y20 F800", "X20 Y20")).proved());
+  EXPECT_TRUE(verified(said, replaced(said, "X20 Y20 F800", "X20 Y20 F800.0")).proved());
   const std::string nowhere = replaced(kProgram, "X20 Y20\n", "X20 Y20\nG94\nF800\nX20 Y20\n");
-  EXPECT_TRUE(verify_texts(nowhere, replaced(nowhere, "F800\nX20", "F800.0\nX20")).proved());
-  EXPECT_FALSE(verify_texts(nowhere, replaced(nowhere, "F800\nX20", "X20")).proved());
+  EXPECT_TRUE(verified(nowhere, replaced(nowhere, "F800\nX20", "F800.0\nX20")).proved());
+  EXPECT_FALSE(verified(nowhere, replaced(nowhere, "F800\nX20", "X20")).proved());
 }
 
 // LinuxCNC runs the two lines as one, straight to the corner on the other side.
 TEST(Verify, DoesNotTakeALoneReturnForALineEnd) {
   const std::string apart = "G21 G90\nG0 X0 Y0 Z0\nG1 X60 F3000\nY60\nX0\nM2\n";
-  EXPECT_TRUE(verify_texts(apart, replaced(apart, "Y60\n", "Y60\r\r\n")).proved());
-  EXPECT_FALSE(verify_texts(apart, replaced(apart, "\nY60\n", "\rY60\r\r\n")).proved());
-  EXPECT_FALSE(verify_texts(replaced(apart, "\nY60\n", "\rY60\n"), apart).proved());
+  EXPECT_TRUE(verified(apart, replaced(apart, "Y60\n", "Y60\r\r\n")).proved());
+  EXPECT_FALSE(verified(apart, replaced(apart, "\nY60\n", "\rY60\r\r\n")).proved());
+  EXPECT_FALSE(verified(replaced(apart, "\nY60\n", "\rY60\n"), apart).proved());
   const std::string same = replaced(apart, "\nY60\n", "\rY60\n");
-  EXPECT_TRUE(verify_texts(same, same).proved());
+  EXPECT_TRUE(verified(same, same).proved());
 }
 
 // LinuxCNC does not run what stands behind a NUL, grbl does.
@@ -359,15 +334,15 @@ TEST(Verify, ComparesALineWithANulByItsBytes) {
   const std::string in_front = replaced(plain, "Y60", nul + "Y60");
   const std::string behind = replaced(plain, "Y60", "Y60" + nul);
   for (const std::string& text : {in_front, behind}) {
-    EXPECT_TRUE(verify_texts(text, text).proved());
-    EXPECT_FALSE(verify_texts(plain, text).proved());
-    EXPECT_FALSE(verify_texts(text, plain).proved());
+    EXPECT_TRUE(verified(text, text).proved());
+    EXPECT_FALSE(verified(plain, text).proved());
+    EXPECT_FALSE(verified(text, plain).proved());
   }
-  EXPECT_FALSE(verify_texts(in_front, behind).proved());
+  EXPECT_FALSE(verified(in_front, behind).proved());
 }
 
 TEST(Verify, SaysHowFarAProvedPathIs) {
-  const Verification found = verify_texts(kProgram, replaced(kProgram, "X30 Y0\n", "X30.006 Y0\n"));
+  const Verification found = verified(kProgram, replaced(kProgram, "X30 Y0\n", "X30.006 Y0\n"));
   ASSERT_TRUE(found.proved());
   EXPECT_NEAR(found.deviation_mm, 0.006, 0.0003);
   EXPECT_TRUE(found.deviation_line == 11 || found.deviation_line == 12) << found.deviation_line;
@@ -377,7 +352,7 @@ TEST(Verify, SaysHowFarAProvedPathIs) {
 }
 
 TEST(Verify, ListsNoStretchWhereNothingChanged) {
-  const Verification found = verify_texts(kProgram, kProgram);
+  const Verification found = verified(kProgram, kProgram);
   EXPECT_TRUE(found.proved());
   EXPECT_TRUE(found.stretches.empty());
   EXPECT_EQ(found.deviation_mm, 0);
@@ -388,7 +363,7 @@ TEST(Verify, FindsEachBreachByItself) {
   wrong = replaced(wrong, "X30 Y0\n", "X30.5 Y0\n");
   wrong = replaced(wrong, "M9\n", "");
   wrong = replaced(wrong, "X60 Y60\n", "X60 Y61\n");
-  const Verification found = verify_texts(kProgram, wrong);
+  const Verification found = verified(kProgram, wrong);
   EXPECT_TRUE(has_violation(found, "event-changed"));
   EXPECT_TRUE(has_violation(found, "event-lost"));
   EXPECT_EQ(std::ranges::count(found.violations, std::string("distance"), &Violation::id), 2)
@@ -402,14 +377,14 @@ TEST(Verify, ComesToAnEndWhereProgramsHaveNothingInCommon) {
     before += "M" + std::to_string(100 + k % 97) + "\n";
     after += "M" + std::to_string(300 + k % 89) + "\n";
   }
-  EXPECT_FALSE(verify_texts(before, after).proved());
-  EXPECT_FALSE(verify_texts(before, "").proved());
-  EXPECT_FALSE(verify_texts("", before).proved());
-  EXPECT_TRUE(verify_texts("", "").proved());
+  EXPECT_FALSE(verified(before, after).proved());
+  EXPECT_FALSE(verified(before, "").proved());
+  EXPECT_FALSE(verified("", before).proved());
+  EXPECT_TRUE(verified("", "").proved());
 }
 
 TEST(Verify, ThrowsWhenTheToleranceIsNoLength) {
-  EXPECT_THROW(static_cast<void>(verify_texts(kProgram, kProgram, 0)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(verdict(kProgram, kProgram, 0)), std::invalid_argument);
 }
 
 TEST(Verify, FindsAPathThatCrossesItselfWhereTheOldOneDoesNot) {
@@ -419,14 +394,111 @@ TEST(Verify, FindsAPathThatCrossesItselfWhereTheOldOneDoesNot) {
   const std::string apart = replaced(before, "X5\nX10\n", "X5 Y-0.009\nX10 Y0\n");
   const std::string over = replaced(replaced(before, "X5\nX10\n", "X5 Y0.009\nX10 Y0\n"),
                                     "X5\nX0\n", "X5 Y0.006\nX0 Y0.015\n");
-  EXPECT_TRUE(verify_texts(before, apart).proved()) << all_violations(verify_texts(before, apart));
-  const Verification found = verify_texts(before, over);
+  EXPECT_TRUE(verified(before, apart).proved()) << all_violations(verified(before, apart));
+  const Verification found = verified(before, over);
   ASSERT_EQ(found.violations.size(), 1u) << all_violations(found);
   EXPECT_EQ(found.violations[0].id, "crosses-itself");
   EXPECT_EQ(found.violations[0].kind, ViolationKind::kCrossing);
   EXPECT_EQ(found.violations[0].new_line, 4u);
-  EXPECT_TRUE(verify_texts(over, over).proved()) << "where it crossed before it may cross";
+  EXPECT_TRUE(verified(over, over).proved()) << "where it crossed before it may cross";
 }
+
+// --- any number of threads ------------------------------------------------------------------
+
+// Many stretches, each between two rapids.
+std::string rows(double shift, int shifted_row) {
+  std::string text = "G21 G90 G17\nM3 S1000\n";
+  for (int row = 0; row < 30; ++row) {
+    text += fmt::format("G0 Z5\nG0 X0 Y{}\nG1 Z-1 F500\n", row);
+    for (int i = 1; i <= 20; ++i) {
+      const double off = row == shifted_row && i == 10 ? shift : 0;
+      text += fmt::format("X{:.3f} Y{:.4f}\n", 0.5 * i, row + 0.2 * std::sin(0.3 * i) + off);
+    }
+  }
+  return text + "M30\n";
+}
+
+void expect_same(const Verification& a, const Verification& b) {
+  EXPECT_EQ(a.proved(), b.proved());
+  EXPECT_EQ(a.deviation_mm, b.deviation_mm);
+  EXPECT_EQ(a.deviation_line, b.deviation_line);
+  EXPECT_EQ(a.events_compared, b.events_compared);
+  ASSERT_EQ(a.stretches.size(), b.stretches.size());
+  for (std::size_t i = 0; i < a.stretches.size(); ++i) {
+    EXPECT_EQ(a.stretches[i].old_first_block, b.stretches[i].old_first_block);
+    EXPECT_EQ(a.stretches[i].comparison.bounds.at_most, b.stretches[i].comparison.bounds.at_most);
+  }
+  ASSERT_EQ(a.violations.size(), b.violations.size());
+  for (std::size_t i = 0; i < a.violations.size(); ++i) {
+    EXPECT_EQ(a.violations[i].id, b.violations[i].id);
+    EXPECT_EQ(a.violations[i].old_line, b.violations[i].old_line);
+    EXPECT_EQ(a.violations[i].message, b.violations[i].message);
+  }
+}
+
+TEST(ParallelVerification, GivesTheProofOfOneThread) {
+  const ReadText before(rows(0, 0));
+  const std::string lost_event = [] {
+    std::string text = rows(0.004, 3);
+    return text.replace(text.find("G0 X0 Y12\n"), 10, "G0 X0 Y12 M8\n");
+  }();
+  for (const std::string& text : {rows(0.004, 17), rows(0.02, 17), rows(0.02, 0), lost_event}) {
+    const ReadText after(text);
+    const ReadProgram old_program{&before.program, &before.meaning};
+    const ReadProgram new_program{&after.program, &after.meaning};
+    const Verification one = verify(old_program, new_program, 0.01);
+    EXPECT_EQ(one.proved(), text == rows(0.004, 17));
+    for (const int threads : {0, 1, 2, 3}) {
+      SCOPED_TRACE(threads);
+      expect_same(verify(old_program, new_program, 0.01, threads), one);
+    }
+  }
+}
+
+// --- numbers with and without a point, where nobody says for which control they are ----------
+
+struct SpellingCase {
+  std::string name;
+  std::string before;
+  std::string after;
+  std::uint32_t line;  // of what is other; 0: nothing is
+};
+
+void PrintTo(const SpellingCase& test, std::ostream* out) { *out << test.name; }
+
+class PointSpelling : public testing::TestWithParam<SpellingCase> {};
+
+TEST_P(PointSpelling, IsOtherWhereSomeControlsReadAnotherLength) {
+  const gcode::SourceText before("old.nc", GetParam().before);
+  const gcode::SourceText after("new.nc", GetParam().after);
+  const auto violation = other_point_spelling(before, after);
+  ASSERT_EQ(violation.has_value(), GetParam().line > 0) << (violation ? violation->message : "");
+  if (!violation) return;
+  EXPECT_EQ(violation->id, "point-spelling");
+  EXPECT_EQ(violation->new_line, GetParam().line);
+  EXPECT_NE(violation->message.find("--target"), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Lengths, PointSpelling,
+    testing::Values(
+        SpellingCase{"LostPoint", "G1 X10.\nX20.\n", "G1 X10.\nX20\n", 2},
+        SpellingCase{"OnlyLength", "G1 X10. F100.\n", "G1 X10 F100.\n", 1},
+        SpellingCase{"AnotherNumberWithoutPoint", "G1 X10.\nX20.\n", "G1 X10.\nX7\nX20.\n", 2},
+        SpellingCase{"OneOfBothSpellings", "G1 X10.\nY10\n", "G1 X10\nY10\n", 1},
+        SpellingCase{"CentreOfAnArc", "G2 X10. I5.\n", "G2 X10. I5\n", 1},
+        SpellingCase{"AddedPoint", "G1 X10000\nX20000\n", "G1 X10000.\nX20000\n", 1},
+        SpellingCase{"SameSpelling", "G1 X10.\nX20.\n", "G1 X10.\nX15.5\nX20.\n", 0},
+        SpellingCase{"WholeNumbersWithoutPoint", "G1 X10 Y5.25\nX20\n", "G1 X10 Y5.25\nX7\n", 0},
+        SpellingCase{"FixedDecimalsDropped", "G1 X10.000 Y5.250\n", "G1 X10 Y5.25\n", 0},
+        SpellingCase{"CurveOfWholeNumbers", "G1 X10\nX20\n", "G1 X10.25\nX20\n", 0},
+        SpellingCase{"Zero", "G1 X10. Y0.\n", "G1 X10. Y0\n", 0},
+        SpellingCase{"Feed", "G1 X10. F100.\n", "G1 X10. F100\n", 1},
+        SpellingCase{"FeedWithNewPoint", "G1 X10. F100\n", "G1 X10. F100.\n", 1},
+        SpellingCase{"FeedsWithoutPoint", "G1 X10. F100\n", "G1 X10. F50\n", 0},
+        SpellingCase{"FixedDecimalsOfFeed", "G1 X10. F100.00\n", "G1 X10. F100\n", 0},
+        SpellingCase{"Count", "G1 X10.\nG81 X5. L3\n", "G1 X10.\nG81 X5. L3 P1\n", 0}),
+    [](const auto& test) { return test.param.name; });
 
 }  // namespace
 }  // namespace batten::postproc

@@ -58,65 +58,41 @@ constexpr const char* kThreeMore = "G1 X4\nX5 Y2\nX6\n";
 
 // --- what is inside a run -----------------------------------------------------------------------
 
-struct InsideCase {
+struct BetweenCase {
   const char* name;
-  const char* block;  // between two chains of three motions
-  const char* outline;
+  const char* block;     // between two chains of three motions
+  const char* why = "";  // it ends the run; empty: it does not
 };
-void PrintTo(const InsideCase& test, std::ostream* out) { *out << test.block; }
+void PrintTo(const BetweenCase& test, std::ostream* out) { *out << test.block; }
 
-class BetweenTwoChains : public testing::TestWithParam<InsideCase> {};
+class BetweenTwoChains : public testing::TestWithParam<BetweenCase> {};
 
-TEST_P(BetweenTwoChains, EndsTheRunOrNot) {
+TEST_P(BetweenTwoChains, EndsTheRunForItsReasonOrGoesWithIt) {
   const Grouped grouped(std::string(kStart) + kThree + GetParam().block + "\n" + kThreeMore);
-  EXPECT_EQ(grouped.outline(), GetParam().outline);
-}
-
-constexpr const char* kGoesOn = "1-1 state-change; 2-2 rapid; 3-9 run";
-
-std::string ended(const char* why) {
-  return std::string("1-1 state-change; 2-2 rapid; 3-5 run; 6-6 ") + why + "; 7-9 run";
+  const std::string why = GetParam().why;
+  EXPECT_EQ(grouped.outline(), "1-1 state-change; 2-2 rapid; " +
+                                   (why.empty() ? "3-9 run" : "3-5 run; 6-6 " + why + "; 7-9 run"));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     RunGrouping, BetweenTwoChains,
-    testing::Values(InsideCase{"EmptyLine", "", kGoesOn}, InsideCase{"Comment", "(text)", kGoesOn},
-                    InsideCase{"Number", "N60", kGoesOn}, InsideCase{"Feed", "F200", kGoesOn},
-                    InsideCase{"RepeatedModes", "G1 G90 G21 F100 S500", kGoesOn},
-                    InsideCase{"MotionWithFeed", "X3.5 F300", kGoesOn},
-                    InsideCase{"MotionWithoutLength", "X3", kGoesOn}),
+    testing::Values(
+        BetweenCase{"EmptyLine", ""}, BetweenCase{"Comment", "(text)"},
+        BetweenCase{"Number", "N60"}, BetweenCase{"Feed", "F200"},
+        BetweenCase{"RepeatedModes", "G1 G90 G21 F100 S500"},
+        BetweenCase{"MotionWithFeed", "X3.5 F300"}, BetweenCase{"MotionWithoutLength", "X3"},
+        BetweenCase{"Rapid", "G0 Z5", "rapid"},
+        BetweenCase{"Arc", "G2 X3 Y2 I0 J.5", "intended-arc"},
+        BetweenCase{"ArcWithCoolant", "G2 X3 Y2 J.5 M8", "coolant"},
+        BetweenCase{"Coolant", "M8", "coolant"}, BetweenCase{"Spindle", "S600", "spindle"},
+        BetweenCase{"SpindleBesideMotion", "X3.5 S600", "spindle"},
+        BetweenCase{"Dwell", "G4 P1", "dwell"}, BetweenCase{"OtherM", "M62 P0", "misc-function"},
+        BetweenCase{"Plane", "G18", "state-change"},
+        BetweenCase{"ActiveComment", "(MSG, hi)", "active-comment"},
+        BetweenCase{"Rotary", "A30", "other-axis"}, BetweenCase{"Extruder", "X3.5 E1", "extruder"},
+        BetweenCase{"Assignment", "#1=2", "parameter-assignment"},
+        BetweenCase{"Jump", "IF [#1 GT 2] GOTO 99", "program-flow"}),
     [](const auto& test) { return test.param.name; });
-
-struct EndCase {
-  const char* name;
-  const char* block;
-  const char* why;
-};
-void PrintTo(const EndCase& test, std::ostream* out) { *out << test.block; }
-
-class RunEnd : public testing::TestWithParam<EndCase> {};
-
-TEST_P(RunEnd, HasItsReason) {
-  const Grouped grouped(std::string(kStart) + kThree + GetParam().block + "\n" + kThreeMore);
-  EXPECT_EQ(grouped.outline(), ended(GetParam().why));
-}
-
-INSTANTIATE_TEST_SUITE_P(RunGrouping, RunEnd,
-                         testing::Values(EndCase{"Rapid", "G0 Z5", "rapid"},
-                                         EndCase{"Arc", "G2 X3 Y2 I0 J.5", "intended-arc"},
-                                         EndCase{"ArcWithCoolant", "G2 X3 Y2 J.5 M8", "coolant"},
-                                         EndCase{"Coolant", "M8", "coolant"},
-                                         EndCase{"Spindle", "S600", "spindle"},
-                                         EndCase{"SpindleBesideMotion", "X3.5 S600", "spindle"},
-                                         EndCase{"Dwell", "G4 P1", "dwell"},
-                                         EndCase{"OtherM", "M62 P0", "misc-function"},
-                                         EndCase{"Plane", "G18", "state-change"},
-                                         EndCase{"ActiveComment", "(MSG, hi)", "active-comment"},
-                                         EndCase{"Rotary", "A30", "other-axis"},
-                                         EndCase{"Extruder", "X3.5 E1", "extruder"},
-                                         EndCase{"Assignment", "#1=2", "parameter-assignment"},
-                                         EndCase{"Jump", "IF [#1 GT 2] GOTO 99", "program-flow"}),
-                         [](const auto& test) { return test.param.name; });
 
 // What it runs may move the axes: both have to be named again.
 TEST(RunGrouping, StartsAnewBehindAFunctionOfTheUser) {
@@ -293,86 +269,36 @@ TEST(ArcsInRuns, EndBeforeAnArcWhoseWordIsNeeded) {
 
 // --- states -------------------------------------------------------------------------------------
 
+// All others, and what ends them: tests/postproc/stream/unsafe_states_test.cpp.
 struct StateCase {
   const char* name;
-  const char* words;  // a block between kStart and the motions
-  const char* reason;
+  const char* words;        // blocks between kStart and the motions
+  const char* reason = "";  // why these are kept; empty: they are a run
 };
 void PrintTo(const StateCase& test, std::ostream* out) { *out << test.words; }
 
-class UnsafeState : public testing::TestWithParam<StateCase> {};
+class States : public testing::TestWithParam<StateCase> {};
 
-TEST_P(UnsafeState, KeepsItsMotionsForThisReason) {
-  const std::string text =
-      std::string(kStart) + GetParam().words + "\nF100\nG0 X0 Y0 Z0\n" + "G1 X1 Y1 Z1\n" + kThree;
-  const Grouped grouped(text);
-  EXPECT_TRUE(grouped.runs().empty());
-  const auto& last = std::get<Verbatim>(grouped.sections.back().content);
-  EXPECT_EQ(last.reason, GetParam().reason);
+TEST_P(States, KeepTheirMotionsOrLetThemBeRewritten) {
+  const Grouped grouped(std::string(kStart) + GetParam().words +
+                        "\nF100\nG0 X0 Y0 Z0\nG1 X1 Y1 Z1\n" + kThree);
+  const auto* kept = std::get_if<Verbatim>(&grouped.sections.back().content);
+  EXPECT_EQ(kept != nullptr ? kept->reason : "", GetParam().reason);
+  EXPECT_EQ(grouped.runs().size(), kept != nullptr ? 0U : 1U);
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    RunGrouping, UnsafeState,
-    testing::Values(StateCase{"CompensationLeft", "G41 D1", "cutter-compensation"},
-                    StateCase{"CompensationRight", "G42", "cutter-compensation"},
-                    StateCase{"CompensationDynamic", "G41.1 D3", "cutter-compensation"},
-                    StateCase{"ToolCenterPoint", "G43.4 H1", "tool-center-point"},
-                    StateCase{"ToolVector", "G43.5 H1", "tool-center-point"},
-                    StateCase{"Tcpm", "M128", "tool-center-point"},
-                    StateCase{"TiltedPlane", "G68.2 X0 Y0 Z0 I0 J30 K0", "tilted-plane"},
-                    StateCase{"Incremental", "G91", "incremental-distance"},
-                    StateCase{"InverseTime", "G93", "inverse-time-feed"},
-                    StateCase{"PerRevolution", "G95", "feed-per-revolution"},
-                    StateCase{"SurfaceSpeed", "G96 S100", "constant-surface-speed"},
-                    StateCase{"PolarInterpolation", "G12.1", "polar-coordinates"},
-                    StateCase{"PolarCoordinates", "G16", "polar-coordinates"},
-                    StateCase{"Cylindrical", "G7.1 C20", "cylindrical"},
-                    StateCase{"Scaling", "G51 X0 Y0 P2", "scaling"},
-                    StateCase{"Rotation", "G68 X0 Y0 R30", "rotation"},
-                    StateCase{"Mirror", "G51.1 X0", "mirror"},
-                    StateCase{"MirrorPerhaps", "M21", "state-unknown"},
-                    StateCase{"ExactPath", "G61", "exact-stop"},
-                    StateCase{"ExactStop", "G61.1", "exact-stop"},
+    RunGrouping, States,
+    testing::Values(StateCase{"Tcpm", "M128", "tool-center-point"},
+                    StateCase{"TcpmEnd", "M128\nM129"},
                     StateCase{"OneSidedStop", "G60", "exact-stop"},
-                    StateCase{"ControlFits", "G5.1 Q2 X0 Y0 Z0", "control-smoothing"},
-                    StateCase{"HighSpeed", "G5 P10000", "control-smoothing"},
-                    StateCase{"SuperNurbs", "G131 F1000 J1 E.01", "control-smoothing"},
-                    StateCase{"Diameter", "G7", "lathe-diameter"},
                     StateCase{"TappingMode", "G63", "state-unknown"},
                     StateCase{"LatheFeed", "G99", "state-unknown"},
                     StateCase{"Call", "M98 P1", "state-unknown"},
                     StateCase{"DeletableUnits", "/G20", "units-unknown"},
-                    StateCase{"DeletableDistance", "/G91", "state-unknown"}),
-    [](const auto& test) { return test.param.name; });
-
-struct SafeCase {
-  const char* name;
-  const char* words;
-};
-void PrintTo(const SafeCase& test, std::ostream* out) { *out << test.words; }
-
-class SafeAgain : public testing::TestWithParam<SafeCase> {};
-
-TEST_P(SafeAgain, LetsRunsBeRewritten) {
-  const Grouped grouped(std::string(kStart) + GetParam().words +
-                        "\nF100\nG0 X0 Y0 Z0\nG1 X1 Y1 Z1\n" + kThree);
-  EXPECT_EQ(grouped.runs().size(), 1U);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    RunGrouping, SafeAgain,
-    testing::Values(SafeCase{"Compensation", "G41 D1\nG40"}, SafeCase{"Tcp", "G43.4 H1\nG49"},
-                    SafeCase{"Tcpm", "M128\nM129"}, SafeCase{"Tilted", "G68.2 X0\nG69"},
-                    SafeCase{"Incremental", "G91\nG90"}, SafeCase{"InverseTime", "G93\nG94"},
-                    SafeCase{"SurfaceSpeed", "G96 S100\nG97"}, SafeCase{"Polar", "G16\nG15"},
-                    SafeCase{"PolarInterpolation", "G12.1\nG13.1"},
-                    SafeCase{"Cylindrical", "G7.1 C20\nG7.1 C0"},
-                    SafeCase{"Scaling", "G51 P2\nG50"}, SafeCase{"Rotation", "G68 R30\nG69"},
-                    SafeCase{"Mirror", "G51.1 X0\nG50.1 X0"}, SafeCase{"ExactPath", "G61\nG64"},
-                    SafeCase{"Fit", "G5.1 Q2 X0\nG5.1 Q0"}, SafeCase{"LookAhead", "G5.1 Q1"},
-                    SafeCase{"HighSpeed", "G5 P10000\nG5 P0"}, SafeCase{"Diameter", "G7\nG8"},
-                    SafeCase{"Plane", "G18"},
-                    SafeCase{"CycleReturn", "G81 X0 Y0 Z-1 R1\nG80 G99\nG94"}),
+                    StateCase{"DeletableDistance", "/G91", "state-unknown"},
+                    StateCase{"LookAhead", "G5.1 Q1"}, StateCase{"Plane", "G18"},
+                    StateCase{"CycleReturn", "G81 X0 Y0 Z-1 R1\nG80 G99\nG94"}),
     [](const auto& test) { return test.param.name; });
 
 TEST(UnsafeStates, AModalMacroIsOne) {

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "postproc/stream/pipeline.h"
-#include "postproc/stream/windows.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {

@@ -143,7 +143,7 @@ TEST_P(Truth, OfTheCurveThroughNoiseHasNoCorners) {
       const double of_noise = 4 * std::max(0.0, kNoise - tolerance) / (edge * edge);
       const double of_surface = 3.0 / 36 + 0.8 / (2.3 * 2.3);
       const double end = path.vertex_parameters[row.size() - 3];
-      EXPECT_LE(postproc::greatest_curvature(path.curve.part(path.curve.first(), end)),
+      EXPECT_LE(CurvatureProfile(path.curve.part(path.curve.first(), end)).greatest(),
                 3 * (of_noise + of_surface));
       EXPECT_EQ(path.kept_corners, 0);
     }

@@ -9,39 +9,19 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/interpreter/interpreter.h"
-#include "gcode/reading/parser.h"
-#include "gcode/text/source_text.h"
-#include "postproc/proof/verification.h"
+#include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
 namespace {
 
 using gcode::Language;
 
-class Reading {
- public:
-  Reading(std::string text, Language language)
-      : program_(gcode::parse(gcode::SourceText("test.nc", std::move(text)), language, found_)),
-        interpretation_(gcode::interpret(program_, {}, found_)) {}
-  [[nodiscard]] ReadProgram get() const { return {&program_, &interpretation_}; }
-
- private:
-  gcode::Diagnostics found_;
-  gcode::Program program_;
-  gcode::Interpretation interpretation_;
-};
-
 bool is_proved(const std::string& before, const std::string& after, Language language) {
-  const Reading old_program(before, language);
-  const Reading new_program(after, language);
-  return verify(old_program.get(), new_program.get(), 0.05).proved();
-}
-
-std::string replaced(std::string text, std::string_view what, std::string_view by) {
-  const std::size_t at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return text.replace(at, what.size(), by);
+  const ReadText old_text(before, language);
+  const ReadText new_text(after, language);
+  return verify({&old_text.program, &old_text.meaning}, {&new_text.program, &new_text.meaning},
+                0.05)
+      .proved();
 }
 
 // --- one by one ---------------------------------------------------------------------------------

@@ -10,7 +10,7 @@
 #include "gcode/state/reason.h"
 #include "gcode/text/language.h"
 #include "postproc/options/options.h"
-#include "postproc/stream/windows.h"
+#include "postproc/stream/pipeline.h"
 #include "tests/support/constructs.h"
 
 namespace batten::postproc {

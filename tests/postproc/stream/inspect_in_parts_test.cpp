@@ -1,7 +1,5 @@
 // What is inspected part by part is what the whole is: the same sections to the last bit of each
 // figure, the same messages.
-#include "postproc/stream/inspect_in_parts.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,12 +13,9 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "gcode/interpreter/interpreter.h"
-#include "gcode/reading/parser.h"
-#include "postproc/runs/run_grouping.h"
-#include "postproc/stream/chunk_reader.h"
 #include "postproc/stream/inspect.h"
 #include "tests/support/in_windows.h"
 #include "tests/support/places.h"
@@ -32,12 +27,12 @@ namespace {
 
 std::string words_of(const InspectedSection& section) {
   const SegmentStatistics& segments = section.segments;
-  return fmt::format("{}-{} {} {} {} {} {} {:a} {:a} | {} {:a} {:a} {:a} {:a} {:a} {} {}",
+  return fmt::format("{}-{} {} {} {} {} {} {:a} {:a} | {} {:a} {:a} {:a} {:a} {:a} {}",
                      section.first_line, section.last_line, section.blocks, section.cutting_moves,
                      section.reason, section.closed, section.decimals, section.least_feed,
                      section.greatest_feed, segments.count, segments.shortest, segments.median,
                      segments.longest, segments.length, segments.greatest_turn_deg,
-                     segments.turn_motion, segments.turn_line);
+                     segments.turn_line);
 }
 
 std::vector<std::string> words_of(const std::vector<InspectedSection>& sections) {
@@ -47,21 +42,15 @@ std::vector<std::string> words_of(const std::vector<InspectedSection>& sections)
 }
 
 InspectedProgram whole(const std::string& text) {
-  InspectedProgram inspected;
-  const gcode::Program program = gcode::parse(gcode::SourceText("part.nc", text), inspected.found);
-  const gcode::Interpretation meaning = gcode::interpret(program, {}, inspected.found);
-  inspected.sections = inspect(program, meaning, group_runs(program, meaning, {}));
-  inspected.blocks = program.blocks.size();
-  inspected.unit_word_seen = meaning.unit_word_seen;
-  return inspected;
+  return inspect(gcode::SourceText("part.nc", text), {}, {});
 }
 
+// Nothing where the parts are not enough.
 std::optional<InspectedProgram> in_parts(const std::string& text, std::size_t blocks,
                                          std::size_t longest) {
-  InspectLimits limits;
-  limits.parts.blocks = blocks;
-  limits.longest = longest;
-  return inspect_in_parts(gcode::SourceText("part.nc", text), {}, {}, limits);
+  const InspectLimits limits{.parts = {.blocks = blocks, .least_text = 0}, .longest = longest};
+  InspectedProgram found = inspect(gcode::SourceText("part.nc", text), {}, {}, limits);
+  return found.as_whole ? std::nullopt : std::optional(std::move(found));
 }
 
 // Returns whether it can be inspected in parts.

@@ -10,7 +10,7 @@
 
 #include "postproc/machine/program_time/program_time_steps.h"
 #include "postproc/report/smooth_report.h"
-#include "postproc/stream/inspect_in_parts.h"
+#include "postproc/stream/inspect.h"
 #include "tests/support/in_windows.h"
 #include "tests/support/wavy_programs.h"
 
@@ -297,10 +297,14 @@ TEST(LatheProgram, IsLeftToTheWholeHoweverLateItShows) {
   const std::string text = passes(100);  // more blocks than are looked at at once
   const SmoothOptions options = options_for("fanuc");
   ASSERT_TRUE(in_windows(text + "M30\n", options, 40).result);
-  ASSERT_TRUE(inspect_in_parts(gcode::SourceText("part.nc", text + "M30\n"), {}, {}, {}));
+  const auto inspected_as_whole = [](const std::string& program) {
+    const InspectLimits limits{.parts = {.least_text = 0}};
+    return inspect(gcode::SourceText("part.nc", program), {}, {}, limits).as_whole;
+  };
+  ASSERT_FALSE(inspected_as_whole(text + "M30\n"));
   for (const char* end : {"G50 S2000\nM30\n", "T0101\nG97 S800 M3\nG1 Z0 F0.2\nM30\n"}) {
     EXPECT_FALSE(in_windows(text + end, options, 40).result) << end;
-    EXPECT_FALSE(inspect_in_parts(gcode::SourceText("part.nc", text + end), {}, {}, {})) << end;
+    EXPECT_TRUE(inspected_as_whole(text + end)) << end;
   }
 }
 

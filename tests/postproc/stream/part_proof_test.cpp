@@ -1,13 +1,12 @@
 // What becomes of runs whose text does not say what was promised: the next candidate, those that
 // were left out, and in the end the blocks as they were.
-#include "postproc/stream/part_proof.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "gcode/state/reason.h"
 #include "postproc/smooth/part_runs.h"
+#include "postproc/stream/window.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {

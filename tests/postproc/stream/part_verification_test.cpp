@@ -15,8 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "gcode/interpreter/interpreter.h"
-#include "gcode/reading/parser.h"
 #include "postproc/proof/verification.h"
 #include "postproc/stream/pipeline.h"
 #include "tests/support/in_windows.h"
@@ -26,36 +24,24 @@
 namespace batten::postproc {
 namespace {
 
-struct Whole {
-  Verification verification;
-  gcode::Diagnostics of_old;
-  gcode::Diagnostics of_new;
-  bool understood = true;
-
-  [[nodiscard]] bool proved() const { return understood && verification.proved(); }
-};
-
-Whole as_a_whole(const std::string& before, const std::string& after, const Promise& promise) {
-  Whole whole;
-  const gcode::Program old_program =
-      gcode::parse(gcode::SourceText("old.nc", before), whole.of_old);
-  const gcode::Interpretation old_meaning = gcode::interpret(old_program, {}, whole.of_old);
-  const gcode::Program new_program = gcode::parse(gcode::SourceText("new.nc", after), whole.of_new);
-  const gcode::Interpretation new_meaning = gcode::interpret(new_program, {}, whole.of_new);
-  whole.understood = !gcode::has_error(whole.of_old) && !gcode::has_error(whole.of_new);
-  whole.verification = verify({&old_program, &old_meaning}, {&new_program, &new_meaning}, promise);
-  return whole;
-}
-
-std::optional<VerifiedInParts> in_parts(const std::string& before, const std::string& after,
-                                        const Promise& promise, std::size_t blocks,
-                                        std::size_t longest) {
-  VerifyLimits limits;
-  limits.parts.blocks = blocks;
-  limits.longest = longest;
+VerifiedTexts verified(const std::string& before, const std::string& after, const Promise& promise,
+                       const VerifyLimits& limits = {}) {
   const gcode::SourceText old_source("old.nc", before);
   const gcode::SourceText new_source("new.nc", after);
-  return verify_in_parts({old_source, {}}, {new_source, {}}, promise, {}, limits);
+  return verify_texts({old_source, {}}, {new_source, {}}, promise, {}, limits).value();
+}
+
+bool is_proved(const VerifiedTexts& found) {
+  return found.understood() && found.verification.proved();
+}
+
+// Nothing where the whole was asked.
+std::optional<VerifiedTexts> in_parts(const std::string& before, const std::string& after,
+                                      const Promise& promise, std::size_t blocks,
+                                      std::size_t longest) {
+  const VerifyLimits limits{.parts = {.blocks = blocks, .least_text = 0}, .longest = longest};
+  VerifiedTexts found = verified(before, after, promise, limits);
+  return found.as_whole ? std::nullopt : std::optional(std::move(found));
 }
 
 std::string words_of(const Stretch& stretch) {
@@ -81,14 +67,14 @@ constexpr std::size_t kNeverCut = 1'000'000;  // no run has as many blocks
 // bounds for the same stretches.
 bool compare_both_ways(const std::string& before, const std::string& after,
                        const Promise& promise) {
-  const Whole whole = as_a_whole(before, after, promise);
+  const VerifiedTexts whole = verified(before, after, promise);
   bool any = false;
   for (const std::size_t blocks : {1, 4, 30, 500}) {
     SCOPED_TRACE(testing::Message() << "parts of " << blocks);
     const auto parts = in_parts(before, after, promise, blocks, kNeverCut);
     if (!parts) continue;
     any = true;
-    EXPECT_TRUE(whole.proved()) << before << "\n----\n" << after;
+    EXPECT_TRUE(is_proved(whole)) << before << "\n----\n" << after;
     EXPECT_EQ(words_of(parts->verification), words_of(whole.verification));
     EXPECT_EQ(postproc::words_of(parts->of_old), postproc::words_of(whole.of_old));
     EXPECT_EQ(postproc::words_of(parts->of_new), postproc::words_of(whole.of_new));
@@ -243,11 +229,10 @@ TEST(PartVerification, StopsWhereItIsToldTo) {
   const std::string text = passes(8);
   const gcode::SourceText source("part.nc", text);
   int asked = 0;
-  VerifyLimits limits;
-  limits.parts.blocks = 3;
+  const VerifyLimits limits{.parts = {.blocks = 3, .least_text = 0}};
   const auto stopped = [&] { return ++asked > 2; };
-  EXPECT_FALSE(verify_in_parts({source, {}}, {source, {}}, {0.01}, stopped, limits));
-  EXPECT_EQ(asked, 3);
+  EXPECT_FALSE(verify_texts({source, {}}, {source, {}}, {0.01}, stopped, limits));
+  EXPECT_EQ(asked, 4);  // for three parts and before the whole
 }
 
 // --- long runs ----------------------------------------------------------------------------------
@@ -284,8 +269,8 @@ TEST(PartVerification, ProvesALongRunInPieces) {
   const SmoothResult smoothed = as_a_whole(before, options, long_runs);
   ASSERT_GT(rewritten_runs(smoothed), 5U);
   const Promise promise(options.tolerance_mm);
-  const Whole whole = as_a_whole(before, smoothed.text, promise);
-  ASSERT_TRUE(whole.proved());
+  const VerifiedTexts whole = verified(before, smoothed.text, promise);
+  ASSERT_TRUE(is_proved(whole));
   for (const std::size_t blocks : {40, 100, 333}) {
     const auto parts = in_parts(before, smoothed.text, promise, blocks, 700);
     ASSERT_TRUE(parts) << blocks;
@@ -326,7 +311,7 @@ TEST(PartVerification, SeesAFeedThatBeginsWhereARunIsCut) {
     other[at].insert(other[at].size() - 1, " F900.0005");
     const std::string after = joined(other, "");
     EXPECT_FALSE(in_parts(before, after, {0.01}, 50, 100)) << at;
-    if (at % 50 == 0) refused += as_a_whole(before, after, {0.01}).proved() ? 0 : 1;
+    if (at % 50 == 0) refused += is_proved(verified(before, after, {0.01})) ? 0 : 1;
   }
   EXPECT_GT(refused, 0U);
 }
@@ -345,7 +330,7 @@ TEST(PartVerification, SeesPiecesThatCrossEachOther) {
   }
   const std::string before = one_run(places);
   const std::string after = one_run(crossed);
-  const Whole whole = as_a_whole(before, after, {0.01});
+  const VerifiedTexts whole = verified(before, after, {0.01});
   ASSERT_EQ(whole.verification.violations.size(), 1U);
   EXPECT_EQ(whole.verification.violations[0].id, "crosses-itself");
   for (const std::size_t longest : {60, 150, 400}) {
@@ -360,7 +345,7 @@ TEST(PartVerification, LeavesARunThatMeetsItselfToTheWhole) {
   const auto places = rows(20, 50, 0);
   const std::string before = one_run(places);
   const std::string after = one_run(places, "(end)\nM30\n");
-  EXPECT_TRUE(as_a_whole(before, after, {0.01}).proved());
+  EXPECT_TRUE(is_proved(verified(before, after, {0.01})));
   EXPECT_FALSE(in_parts(before, after, {0.01}, 50, 100));
 }
 

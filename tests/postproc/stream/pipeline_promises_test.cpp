@@ -50,46 +50,38 @@ std::string strewn_program(unsigned seed) {
   return head("G21") + joined(lines, "\n") + tail();
 }
 
-class ManyPrograms : public testing::TestWithParam<ManyCase> {
- protected:
-  ManyPrograms()
-      : text_(strewn_program(GetParam().seed)), options_(options_for(GetParam().target)) {
-    options_.output = GetParam().form;
-    options_.prefer = GetParam().prefer;
-    options_.tolerance_mm = GetParam().tolerance_mm;
-  }
-  std::string text_;
-  SmoothOptions options_;
-};
+SmoothOptions options_of(const ManyCase& test) {
+  SmoothOptions options = options_for(test.target);
+  options.output = test.form;
+  options.prefer = test.prefer;
+  options.tolerance_mm = test.tolerance_mm;
+  return options;
+}
 
-TEST_P(ManyPrograms, AreProvedAndOtherwiseCopied) {
-  const SmoothResult result = smoothed(text_, options_);
+class ManyPrograms : public testing::TestWithParam<ManyCase> {};
+
+TEST_P(ManyPrograms, AreProvedOtherwiseCopiedAndTheSameForTwoThreadsAndASecondPass) {
+  const std::string text = strewn_program(GetParam().seed);
+  SmoothOptions options = options_of(GetParam());
+  const SmoothResult result = smoothed(text, options);
   EXPECT_TRUE(result.understood);
   EXPECT_TRUE(result.proved);
-  EXPECT_LE(result.deviation_mm, options_.tolerance_mm);
-  const Verification found = verdict(text_, result.text, options_.tolerance_mm);
+  EXPECT_LE(result.deviation_mm, options.tolerance_mm);
+  const Verification found = verdict(text, result.text, options.tolerance_mm);
   EXPECT_TRUE(found.proved()) << found.violations.front().message;
-  expect_rest_copied(text_, result);
+  expect_rest_copied(text, result);
   for (const RunReport& run : result.runs) {
     EXPECT_EQ(run.reason.empty(), run.status == RunStatus::kRewritten);
     EXPECT_TRUE(run.proved);
-    EXPECT_LE(run.deviation_mm, options_.tolerance_mm);
-    const double costs = options_.output == Form::kAuto ? 1.006 : 1.16;  // a form asked for by name
+    EXPECT_LE(run.deviation_mm, options.tolerance_mm);
+    const double costs = options.output == Form::kAuto ? 1.006 : 1.16;  // a form asked for by name
     EXPECT_LE(run.time_after_s, costs * run.time_before_s) << "line " << run.first_line;
   }
-}
-
-TEST_P(ManyPrograms, AreNotChangedByASecondPass) {
-  const SmoothResult once = smoothed(text_, options_);
-  const SmoothResult twice = smoothed(once.text, options_);
-  EXPECT_EQ(twice.text, once.text);
+  const SmoothResult twice = smoothed(result.text, options);
+  EXPECT_EQ(twice.text, result.text) << "a second pass";
   EXPECT_TRUE(twice.proved);
-}
-
-TEST_P(ManyPrograms, AreTheSameForOneAndTwoThreads) {
-  const SmoothResult one = smoothed(text_, options_);
-  options_.threads = 2;
-  EXPECT_EQ(smoothed(text_, options_).text, one.text);
+  options.threads = 2;
+  EXPECT_EQ(smoothed(text, options).text, result.text) << "two threads";
 }
 
 std::vector<ManyCase> many_cases() {
@@ -113,11 +105,8 @@ INSTANTIATE_TEST_SUITE_P(Pipeline, ManyPrograms, testing::ValuesIn(many_cases())
 TEST(Pipeline, RewritesMostOfTheManyPrograms) {
   std::size_t rewritten = 0;
   for (const ManyCase& test : many_cases()) {
-    SmoothOptions options = options_for(test.target);
-    options.output = test.form;
-    options.prefer = test.prefer;
-    options.tolerance_mm = test.tolerance_mm;
-    rewritten += rewritten_runs(smoothed(strewn_program(test.seed), options)) > 0 ? 1 : 0;
+    const SmoothResult result = smoothed(strewn_program(test.seed), options_of(test));
+    rewritten += rewritten_runs(result) > 0 ? 1 : 0;
   }
   EXPECT_GE(rewritten, 7u) << "of " << many_cases().size();
 }

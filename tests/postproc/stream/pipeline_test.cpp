@@ -43,26 +43,12 @@ TEST_P(Keeps, EveryByte) {
 }
 
 std::vector<KeptCase> kept_cases() {
-  const std::string lines = joined(wave_lines({}), "\n");
-  const auto in_state = [&](const std::string& words) {
-    return head("G21") + words + "\n" + lines + tail();
-  };
-  std::string fourth_axis = head("G21");
-  for (const std::string& line : wave_lines({})) fourth_axis += line + " A1.5\n";
-  std::string extruded = head("G21");
-  for (const std::string& line : wave_lines({})) extruded += line + " E0.1\n";
   return {
       {"Nothing", ""},
       {"NoMotion", "G21 G90\nM2\n"},
       {"NoLineEndAtTheEnd", "G21 G90\nG0 X1\nG1 X2 F100\nM2"},
       {"MixedLineEndsAndBlanks", "  G21\tG90 \r\n\n\r\nG0 X1  \nG1X2F100\r\nM2\r\n"},
       {"BytesThatAreNotAscii", "(Fr\xE4ser \xC3\xA4)\nG21 G90\nG0 X1\nM2\n"},
-      {"Incremental", in_state("G91")},
-      {"InverseTime", in_state("G93 G1 X0 F2000")},
-      {"CutterCompensation", in_state("G41 D1")},
-      {"ExactPath", in_state("G61")},
-      {"FourthAxis", fourth_axis + tail()},
-      {"Extruder", extruded + tail()},
       {"StraightLines", head("G21") + "G1 X10 F500\nX20 Y10\nX50 Y30\nX20 Y70\n" + tail()},
       {"Arcs", head("G21") + "G2 X10 Y0 I5 J0 F500\nG3 X20 I5\nG2 X30 I5\n" + tail()},
   };

@@ -1,15 +1,20 @@
-// The comment that a program was smoothed: written once, found again, whatever stands around it.
+// The comment that a program was smoothed: written once, found again, whatever stands around it; or
+// its user is told that there is none.
 #include "postproc/stream/provenance.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
+#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
-#include "tests/support/interpreted.h"
+#include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
 namespace {
 
-bool says_so(const std::string& text) { return was_smoothed(tests::Interpreted(text).program); }
+bool says_so(const std::string& text) { return was_smoothed(ReadText(text).program); }
 
 TEST(Provenance, IsFoundAgainForEveryTarget) {
   for (const gcode::Control& target : gcode::controls()) {
@@ -54,6 +59,53 @@ INSTANTIATE_TEST_SUITE_P(
                     CommentCase{"InsideALongerComment",
                                 "(part 7, Batten: smoothed within 0.01 mm, checked)\nG21\n", true}),
     [](const auto& test) { return test.param.name; });
+
+// --- where no comment says it --------------------------------------------------------------------
+
+bool is_told(const SmoothResult& result) {
+  return std::ranges::any_of(result.diagnostics, [](const gcode::Diagnostic& each) {
+    return each.id == "smoothing-not-told" && each.severity == gcode::Severity::kNote;
+  });
+}
+
+// Without G21, which CODESYS has not.
+std::string program_without_units() {
+  std::string text = wave_program();
+  return text.substr(text.find(' ') + 1);
+}
+
+SmoothOptions for_target(const gcode::Control& target) {
+  SmoothOptions options = options_for("codesys");
+  options.target = &target;
+  options.units = gcode::Units::kMillimetre;
+  return options;
+}
+
+TEST(SmoothingTold, EachTargetSaysItInTheProgramOrInANote) {
+  for (const gcode::Control& target : gcode::controls()) {
+    if (target.language == gcode::Language::kKlartext) continue;
+    const SmoothResult result = smoothed(program_without_units(), for_target(target));
+    ASSERT_GE(rewritten_runs(result), 1U) << target.name;
+    EXPECT_NE(is_told(result), says_so(result.text)) << target.name;
+  }
+}
+
+TEST(SmoothingTold, NothingIsToldWhereNothingWasSmoothed) {
+  const SmoothResult result =
+      smoothed("G90 G17\nG0 X0 Y0\nG1 X5 F100\nM2\n", for_target(*gcode::find_control("codesys")));
+  EXPECT_EQ(rewritten_runs(result), 0U);
+  EXPECT_FALSE(is_told(result));
+}
+
+TEST(SmoothingTold, AProfileThatKnowsAControlsCommentsEndsSecondPasses) {
+  gcode::Control adapted = *gcode::find_control("codesys");
+  adapted.comments = gcode::CommentStyle::kParentheses;
+  const SmoothOptions options = for_target(adapted);
+  const SmoothResult once = smoothed(program_without_units(), options);
+  ASSERT_GE(rewritten_runs(once), 1U);
+  EXPECT_FALSE(is_told(once));
+  EXPECT_EQ(smoothed(once.text, options).text, once.text);
+}
 
 }  // namespace
 }  // namespace batten::postproc

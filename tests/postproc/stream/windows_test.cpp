@@ -1,7 +1,5 @@
 // Programs that are smoothed window by window come out as they do as a whole: the same bytes, the
 // same report, the same messages.
-#include "postproc/stream/windows.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,6 +13,7 @@
 #include <tuple>
 #include <vector>
 
+#include "postproc/stream/pipeline.h"
 #include "postproc/stream/prescan.h"
 #include "postproc/stream/window.h"
 #include "tests/support/in_windows.h"

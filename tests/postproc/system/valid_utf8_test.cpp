@@ -1,11 +1,11 @@
 // Messages reach readers that stop at the first byte that is not UTF-8.
 
-#include "postproc/system/valid_utf8.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <random>
+
+#include "postproc/system/terminal_colour.h"
 
 namespace batten::postproc {
 namespace {

@@ -10,7 +10,6 @@
 
 #include "gcode/controls/arc_rules.h"
 #include "gcode/controls/built_in.h"
-#include "postproc/smooth/forms/plan_stretches.h"
 #include "tests/support/curve_of.h"
 #include "tests/support/machine_limits.h"
 

@@ -1,6 +1,4 @@
 // How much a curve bends, and how many chords are expected of it.
-#include "postproc/smooth/methods/curvature_profile.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "geometry/fitting/fair/fair.h"
 #include "postproc/smooth/forms/output_plan.h"
+#include "postproc/smooth/methods/run_curve.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "postproc/smooth/selection/method_times.h"
+#include "postproc/smooth/selection/selection.h"
 #include "tests/support/method_cases.h"
 #include "tests/support/wavy_programs.h"
 

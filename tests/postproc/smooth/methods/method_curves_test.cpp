@@ -186,8 +186,8 @@ TEST(CurveOf, RefusesWhatIsNoMethodOfItsOwn) {
 // at most half of it.
 TEST(MethodCurves, OfGuoUsesAllOfTheToleranceAndTheLiteralOneHalf) {
   const std::vector<Point3> star = geometry::star_path();
-  EXPECT_NEAR(guo_curve(star, request_with(0.05), false)->deviation, 0.05, 1e-9);
-  EXPECT_NEAR(guo_curve(star, request_with(0.05), true)->deviation, 0.025, 1e-9);
+  EXPECT_NEAR(curve_of(Method::kGuo, star, request_with(0.05))->path.deviation, 0.05, 1e-9);
+  EXPECT_NEAR(curve_of(Method::kGuoLiteral, star, request_with(0.05))->path.deviation, 0.025, 1e-9);
 }
 
 // A line with noise of 0.02 mm bends less when its control points may move by 0.08 mm.
@@ -198,9 +198,10 @@ TEST(MethodCurves, OfNaseathBendsLessThanItsFit) {
   for (int i = 0; i <= 100; ++i) points.emplace_back(0.8 * i, noise(random), 0);
   CurveRequest fit = request_with(0.025);
   fit.accurate = true;
-  const double before = postproc::greatest_curvature(fair_curve(points, fit)->curve);
+  const double before = CurvatureProfile(fair_curve(points, fit)->curve).greatest();
   const double after =
-      postproc::greatest_curvature(naseath_curve(points, request_with(0.1), false)->curve);
+      CurvatureProfile(curve_of(Method::kNaseath, points, request_with(0.1))->path.curve)
+          .greatest();
   EXPECT_GT(before, 0);
   EXPECT_LT(after, 0.7 * before);
 }

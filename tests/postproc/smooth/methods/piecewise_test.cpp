@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gcode/state/reason.h"
-#include "postproc/smooth/run_state.h"
+#include "postproc/smooth/run_smoother.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {

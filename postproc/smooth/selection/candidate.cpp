@@ -1,4 +1,4 @@
-#include "postproc/smooth/selection/setting_times.h"
+#include "postproc/smooth/selection/candidate.h"
 
 namespace batten::postproc {
 
@@ -20,10 +20,15 @@ Times& Times::operator-=(const Times& other) {
 
 SettingTimes::SettingTimes(std::span<const TimedPiece> chain, const Machine& machine,
                            gcode::PathMode path)
-    : machine_(machine), path_(path), chain_(chain, machine), as_set_(chain_.time(machine, path)) {}
+    : machine_(machine), path_(path), chain_(chain, machine) {}
 
-double SettingTimes::without_merging() const {
-  if (!(machine_.naive_cam_tolerance > 0)) return as_set_;
+double SettingTimes::as_set() {
+  if (!as_set_) as_set_ = chain_.time(machine_, path_);
+  return *as_set_;
+}
+
+double SettingTimes::without_merging() {
+  if (!(machine_.naive_cam_tolerance > 0)) return as_set();
   Machine unmerged = machine_;
   unmerged.naive_cam_tolerance = 0;
   return chain_.time(unmerged, path_);

@@ -1,4 +1,4 @@
-#include "postproc/stream/run_report.h"
+#include "postproc/stream/smooth_result.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -6,9 +6,10 @@
 #include <utility>
 #include <variant>
 
+#include "gcode/state/reason.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/run_smoother.h"
-#include "postproc/smooth/selection/method_times.h"
+#include "postproc/smooth/selection/selection.h"
 
 namespace batten::postproc {
 
@@ -167,5 +168,32 @@ class Reporter {
 }  // namespace
 
 std::vector<RunReport> report_runs(const RunsDone& done) { return Reporter(done).run(); }
+
+namespace {
+
+bool has_unproved_run(const SmoothResult& result) {
+  return std::ranges::any_of(result.runs, [](const RunReport& run) {
+    return run.status == RunStatus::kKept && run.reason == gcode::reason::kNotProved;
+  });
+}
+
+}  // namespace
+
+ExitCode judge(const SmoothResult& result, std::string_view source, bool strict) {
+  if (!result.understood) return ExitCode::kNotUnderstood;
+  // The same bytes need no proof: programs with words that cannot be followed come out as they
+  // were.
+  const bool proved = result.proved || result.text == source;
+  if (!proved || (strict && has_unproved_run(result))) return ExitCode::kNotProved;
+  return ExitCode::kDone;
+}
+
+std::string_view complaint(ExitCode verdict, bool strict) {
+  if (verdict == ExitCode::kNotUnderstood) {
+    return "the program is not understood well enough to be rewritten; nothing was written";
+  }
+  return strict ? "--strict: not every run could be proved; nothing was written"
+                : "the new program could not be proved; nothing was written";
+}
 
 }  // namespace batten::postproc

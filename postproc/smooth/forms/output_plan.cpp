@@ -1,4 +1,4 @@
-#include "postproc/smooth/forms/plan_stretches.h"
+#include "postproc/smooth/forms/output_plan.h"
 
 #include <algorithm>
 #include <stdexcept>
