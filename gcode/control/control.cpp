@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "gcode/rs274/active_comment.h"
+#include "gcode/rs274/lexer.h"
 #include "gcode/text/characters.h"
 
 namespace batten::gcode {

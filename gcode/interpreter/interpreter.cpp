@@ -13,7 +13,6 @@
 #include "gcode/interpreter/word_applier.h"
 #include "gcode/klartext/state.h"
 #include "gcode/siemens/flow.h"
-#include "gcode/siemens/name_kinds.h"
 #include "gcode/siemens/names.h"
 #include "gcode/state/block_words.h"
 #include "gcode/state/control_state.h"
@@ -267,7 +266,7 @@ class Interpreter {
     }
     const StateEffect effect = apply_words(words, now_);
     read_.unit_word_seen |= effect.unit_word;
-    if (effect.unknown_code >= 0) {
+    if (effect.unknown_code != kNoCode) {
       complaints_.tell_unknown_code(effect.unknown_code);
     }
     meaning_.barrier = effect.barrier;
@@ -303,8 +302,8 @@ class Interpreter {
     }
     StateEffect effect = apply_words(words, now_);
     read_.unit_word_seen |= effect.unit_word || named.unit_word;
-    if (effect.motion >= 0) {
-      set_motion_mode(effect.motion);
+    if (effect.motion != nullptr) {
+      set_motion_mode(*effect.motion);
     }
     effect.takes_axes |= named.takes_axes;
     const bool moves = words.has_any("XYZIJKR") && !effect.takes_axes;
@@ -330,13 +329,13 @@ class Interpreter {
 
   void read_motion(const BlockWords& words, const StateEffect& effect) {
     const bool settings = !effect.barrier.empty();
-    if (effect.motion >= 0) {
-      set_motion_mode(effect.motion);
+    if (effect.motion != nullptr) {
+      set_motion_mode(*effect.motion);
     }
     const MotionMode mode = now_.modal.motion;
     const bool arc_words = is_arc(mode) && words.has_any("IJKR");
     const bool moves = !effect.takes_axes && (words.has_any("XYZ") || arc_words);
-    if (effect.motion >= 0 && mode == MotionMode::kOther) {
+    if (effect.motion != nullptr && mode == MotionMode::kOther) {
       return read_other_motion(now_.other_motion);
     }
     if (!moves) {
@@ -355,14 +354,9 @@ class Interpreter {
     forget_increments(words);
   }
 
-  void set_motion_mode(Code motion) {
-    now_.modal.motion = mode_of(motion);
-    now_.other_motion =
-        now_.modal.motion == MotionMode::kOther ? other_motion_reason(motion) : std::string_view{};
-    if (motion == 310 || motion == 120 || motion == 130) {
-      // One-shot on some controls, modal on others.
-      now_.modal.motion = MotionMode::kOther;
-    }
+  void set_motion_mode(const CodeRow& motion) {
+    now_.modal.motion = motion.value.as<MotionMode>();
+    now_.other_motion = motion.why;
   }
 
   // Cycles, threads, splines, probes: where the tool is afterwards depends on the control.
@@ -373,7 +367,7 @@ class Interpreter {
   }
 
   void finish_without_motion(const BlockWords& words, const StateEffect& effect) {
-    if (effect.motion >= 0 && !effect.takes_axes) {
+    if (effect.motion != nullptr && !effect.takes_axes) {
       // G1 alone: the next block moves in this mode.
       if (read_.states.back().motion != now_.modal.motion) {
         block_run(reason::kStateChange);

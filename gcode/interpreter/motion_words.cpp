@@ -183,54 +183,6 @@ double to_mm(double value, const ControlState& state) {
 
 }  // namespace
 
-MotionMode mode_of(Code motion) {
-  switch (motion) {
-    case 0:
-      return MotionMode::kRapid;
-    case 10:
-      return MotionMode::kLine;
-    case 20:
-      return MotionMode::kClockwise;
-    case 30:
-      return MotionMode::kCounterclockwise;
-    default:
-      return MotionMode::kOther;
-  }
-}
-
-// Why a motion that is neither G0, G1, G2 nor G3 ends a run.
-std::string_view other_motion_reason(Code motion) {
-  switch (motion) {
-    case 50:
-    case 51:
-    case 52:
-    case 53:
-    case 60:
-    case 61:
-    case 62:
-    case 63:
-      return reason::kSpline;
-    case 310:
-    case 382:
-    case 383:
-    case 384:
-    case 385:
-      return reason::kProbe;
-    case 320:
-    case 330:
-    case 331:
-    case 340:
-    case 760:
-      return reason::kThreading;
-    default:
-      return reason::kCannedCycle;
-  }
-}
-
-bool is_arc(MotionMode mode) {
-  return mode == MotionMode::kClockwise || mode == MotionMode::kCounterclockwise;
-}
-
 std::string_view why_not_followed(const BlockWords& words, const StateEffect& effect,
                                   const ControlState& state) {
   const ModalState& modal = state.modal;

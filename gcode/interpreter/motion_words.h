@@ -49,12 +49,6 @@ struct ArcReading {
 // chord).
 [[nodiscard]] ArcReading arc_from_words(const ArcWords& words);
 
-[[nodiscard]] MotionMode mode_of(Code motion);
-[[nodiscard]] bool is_arc(MotionMode mode);
-
-// Why a motion that is neither G0, G1, G2 nor G3 ends a run.
-[[nodiscard]] std::string_view other_motion_reason(Code motion);
-
 // Why the motion of a block cannot be followed in this state; empty when it can. `effect` is
 // that of the block's other words.
 [[nodiscard]] std::string_view why_not_followed(const BlockWords& words, const StateEffect& effect,

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "gcode/text/characters.h"
@@ -28,31 +29,27 @@ std::size_t comment_in_line(std::string_view line) {
   return line.size();
 }
 
-struct Keyword {
-  std::string_view word;
+struct Keywords {
   KlartextKind kind;
+  std::string_view words;  // with a blank on each side
 };
 
 // Of statements that one word tells.
 constexpr std::array kKeywords = {
-    Keyword{"L", KlartextKind::kLine},          Keyword{"CC", KlartextKind::kCentre},
-    Keyword{"C", KlartextKind::kArc},           Keyword{"M", KlartextKind::kFunctions},
-    Keyword{"SPL", KlartextKind::kSpline},      Keyword{"RND", KlartextKind::kTangential},
-    Keyword{"CHF", KlartextKind::kTangential},  Keyword{"CT", KlartextKind::kTangential},
-    Keyword{"CTP", KlartextKind::kTangential},  Keyword{"DEP", KlartextKind::kTangential},
-    Keyword{"FL", KlartextKind::kTangential},   Keyword{"FLT", KlartextKind::kTangential},
-    Keyword{"FC", KlartextKind::kTangential},   Keyword{"FCT", KlartextKind::kTangential},
-    Keyword{"FPOL", KlartextKind::kTangential}, Keyword{"FSELECT", KlartextKind::kTangential},
-    Keyword{"LP", KlartextKind::kPolar},        Keyword{"CP", KlartextKind::kPolar},
-    Keyword{"CR", KlartextKind::kRadiusArc},    Keyword{"LN", KlartextKind::kOtherPath},
-    Keyword{"APPR", KlartextKind::kOtherPath},  Keyword{"X", KlartextKind::kOtherPath},
-    Keyword{"Y", KlartextKind::kOtherPath},     Keyword{"Z", KlartextKind::kOtherPath},
-    Keyword{"IX", KlartextKind::kOtherPath},    Keyword{"IY", KlartextKind::kOtherPath},
-    Keyword{"IZ", KlartextKind::kOtherPath},    Keyword{"PLANE", KlartextKind::kPlane},
-    Keyword{"STOP", KlartextKind::kStop},       Keyword{"LBL", KlartextKind::kLabel},
-    Keyword{"SEL", KlartextKind::kDefinition},  Keyword{"Q", KlartextKind::kAssignment},
-    Keyword{"QL", KlartextKind::kAssignment},   Keyword{"QR", KlartextKind::kAssignment},
-    Keyword{"QS", KlartextKind::kAssignment},
+    Keywords{KlartextKind::kLine, " L "},
+    Keywords{KlartextKind::kCentre, " CC "},
+    Keywords{KlartextKind::kArc, " C "},
+    Keywords{KlartextKind::kFunctions, " M "},
+    Keywords{KlartextKind::kSpline, " SPL "},
+    Keywords{KlartextKind::kTangential, " RND CHF CT CTP DEP FL FLT FC FCT FPOL FSELECT "},
+    Keywords{KlartextKind::kPolar, " LP CP "},
+    Keywords{KlartextKind::kRadiusArc, " CR "},
+    Keywords{KlartextKind::kOtherPath, " LN APPR X Y Z IX IY IZ "},
+    Keywords{KlartextKind::kPlane, " PLANE "},
+    Keywords{KlartextKind::kStop, " STOP "},
+    Keywords{KlartextKind::kLabel, " LBL "},
+    Keywords{KlartextKind::kDefinition, " SEL "},
+    Keywords{KlartextKind::kAssignment, " Q QL QR QS "},
 };
 
 struct KeywordPair {
@@ -148,8 +145,9 @@ KlartextKind klartext_kind(std::string_view content) {
   if (content.empty()) return KlartextKind::kNothing;
   const std::string_view first = leading_letters(content);
   if (is_same_word(first, "FN")) return kind_of_function(content);
-  for (const Keyword& keyword : kKeywords) {
-    if (is_same_word(first, keyword.word)) return keyword.kind;
+  const std::string word_alone = " " + in_capitals(first) + " ";
+  for (const Keywords& each : kKeywords) {
+    if (each.words.find(word_alone) != std::string_view::npos) return each.kind;
   }
   KlartextTokens tokens(content);
   const std::string_view word = tokens.next();
@@ -172,10 +170,6 @@ std::string_view KlartextTokens::next() {
 std::string_view KlartextTokens::peek() const {
   KlartextTokens ahead = *this;
   return ahead.next();
-}
-
-bool is_same_word(std::string_view word, std::string_view upper_case) {
-  return std::ranges::equal(word, upper_case, {}, upper);
 }
 
 }  // namespace batten::gcode

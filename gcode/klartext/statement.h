@@ -68,7 +68,4 @@ class KlartextTokens {
   std::string_view rest_;
 };
 
-// Either case; `upper_case` has capitals.
-[[nodiscard]] bool is_same_word(std::string_view word, std::string_view upper_case);
-
 }  // namespace batten::gcode

@@ -17,13 +17,10 @@ int increment_decimals(const Decimals& rule, Units units) {
   return rule.increment_decimals + (units == Units::kInch ? 1 : 0);
 }
 
-// Dwell, macro calls, high speed modes: their numbers are times, arguments and switches.
+// Dwell, macro calls, high speed modes.
 bool has_no_lengths(const BlockWords& words) {
-  const bool high_speed = words.has_g(51) || (words.has_g(50) && !words.has_any("XYZIJ"));
-  return words.has_g(40) || words.has_g(650) || words.has_g(660) || words.has_g(661) || high_speed;
+  return words.has_trait(trait::kNoLengths) || (words.has_g(50) && !words.has_any("XYZIJ"));
 }
-
-bool is_cycle(Code code) { return code >= 730 && code <= 890 && code != 800; }
 
 }  // namespace
 
@@ -52,11 +49,13 @@ bool DecimalPoints::read(std::span<Word> words) {
 void DecimalPoints::follow(const BlockWords& words) {
   units_ = units_set_by(words).value_or(units_);
   for (const Code code : words.g_codes()) {
+    constexpr Code kNurbs = 62;
+    const CodeRow& row = row_of_g(code);
     if (is_cycle(code)) {
       mode_ = Mode::kCycle;
-    } else if (code == 62) {
+    } else if (code == kNurbs) {
       mode_ = Mode::kCurve;
-    } else if (code == 0 || code == 10 || code == 20 || code == 30 || code == 800) {
+    } else if (row.is_plain_motion() || row.group == CodeGroup::kCycleEnd) {
       mode_ = Mode::kPlain;
     }
   }

@@ -10,7 +10,6 @@
 #include "gcode/reading/part_reading.h"
 #include "gcode/reading/program_marks.h"
 #include "gcode/reading/source_kind.h"
-#include "gcode/rs274/active_comment.h"
 #include "gcode/rs274/lexer.h"
 #include "gcode/rs274/plain_words.h"
 #include "gcode/siemens/block.h"

@@ -125,14 +125,9 @@ constexpr std::array<std::string_view, 7> kSiemensTypes = {"REAL",   "INT",  "BO
 
 // Takes the next word (letters, digits and _) off the front of the line.
 std::string_view next_word(std::string_view& line) {
-  while (!line.empty() && is_blank(line.front())) {
-    line.remove_prefix(1);
-  }
+  line = without_blanks_before(line);
   std::size_t length = 0;
-  while (length < line.size() &&
-         (is_letter(line[length]) || is_digit(line[length]) || line[length] == '_')) {
-    ++length;
-  }
+  while (is_name_character(char_at(line, length))) ++length;
   const std::string_view word = line.substr(0, length);
   line.remove_prefix(length);
   return word;
@@ -142,37 +137,9 @@ bool is_number(std::string_view word) {
   return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-bool same(std::string_view word, std::string_view upper_case) {
-  if (word.size() != upper_case.size()) {
-    return false;
-  }
-  for (std::size_t i = 0; i < word.size(); ++i) {
-    if (upper(word[i]) != upper_case[i]) {
-      return false;
-    }
-  }
-  return true;
-}
-
 bool is_type(std::string_view word) {
-  for (const std::string_view type : kSiemensTypes) {
-    if (same(word, type)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-// The line's place without the blanks before it.
-SourceSpan without_blanks(std::string_view text, const LineBounds& line) {
-  std::uint32_t begin = line.begin;
-  if (begin == 0 && text.starts_with(kByteOrderMark)) {
-    begin = std::min(line.text_end, static_cast<std::uint32_t>(kByteOrderMark.size()));
-  }
-  while (begin < line.text_end && is_blank(text[begin])) {
-    ++begin;
-  }
-  return {begin, line.text_end};
+  return std::ranges::any_of(kSiemensTypes,
+                             [word](std::string_view type) { return is_same_word(word, type); });
 }
 
 // A line that may be one has one of these letters: 1 for them, 0 for others. Asked without a
@@ -238,8 +205,8 @@ void add_marks_of(const SourceText& source, SourceSpan part, std::vector<Languag
       return;
     }
     at = find_letter_of_mark(part_text, line->end);
-    SourceSpan span = without_blanks(part_text, *line);
-    span = {span.begin + part.begin, span.end + part.begin};
+    const SourceSpan span{begin_of_content(part_text, *line) + part.begin,
+                          line->text_end + part.begin};
     const std::string_view text = source.text(span);
     if (!may_be_mark(text)) {
       continue;
@@ -269,10 +236,10 @@ std::optional<LanguageEvidence> language_of_line(std::string_view line) {
     first = next_word(line);
   }
   const std::string_view second = next_word(line);
-  if (same(first, "BEGIN") && same(second, "PGM")) {
+  if (is_same_word(first, "BEGIN") && is_same_word(second, "PGM")) {
     return LanguageEvidence{Language::kKlartext, "BEGIN PGM"};
   }
-  if (same(first, "DEF") && is_type(second)) {
+  if (is_same_word(first, "DEF") && is_type(second)) {
     return LanguageEvidence{Language::kSiemens, "DEF with a type"};
   }
   return std::nullopt;

@@ -21,15 +21,6 @@ constexpr std::array<std::string_view, 22> kFlowWords = {
 // strings, settings ($), JSON, host commands, polar words (@ ^), assignments, continuation.
 constexpr std::string_view kForeignCharacters = "\"'$!{}@^<>=~&|?\\`_";
 
-bool is_name_character(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
-
-bool is_flow_word(std::string_view word) {
-  return std::any_of(kFlowWords.begin(), kFlowWords.end(), [&](std::string_view flow) {
-    return std::equal(flow.begin(), flow.end(), word.begin(), word.end(),
-                      [](char a, char b) { return a == upper(b); });
-  });
-}
-
 SourceSpan span_of(std::size_t begin, std::size_t end) {
   return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
 }
@@ -65,15 +56,8 @@ const Token& LineLexer::unreadable(std::size_t where, std::string_view trouble) 
   return token_;
 }
 
-std::size_t LineLexer::after_blanks(std::size_t at) const {
-  while (at < text_.size() && is_blank(text_[at])) {
-    ++at;
-  }
-  return at;
-}
-
 const Token& LineLexer::next() {
-  at_ = after_blanks(at_);
+  at_ = after_blanks(text_, at_);
   if (at_ >= text_.size()) {
     return take(TokenKind::kEnd, text_.size());
   }
@@ -118,8 +102,8 @@ const Token& LineLexer::sign_token(char c) {
 
 const Token& LineLexer::letter_token() {
   const char letter = upper(text_[at_]);
-  const std::size_t value = after_blanks(at_ + 1);
-  const char c = peek(value);
+  const std::size_t value = after_blanks(text_, at_ + 1);
+  const char c = char_at(text_, value);
   if (letter == 'O') {
     return o_word();
   }
@@ -157,13 +141,13 @@ const Token& LineLexer::number_word(char letter, std::size_t value_at) {
     return unreadable(at_, "a number of a thousand million or more");
   }
   const std::size_t end = value_at + scanned->length;
-  const char glued = peek(end);
+  const char glued = char_at(text_, end);
   if (upper(glued) == 'E') {
     // X1E3: an exponent for some, the word E3 for others. E apart (X1 E3) is a word for all.
     return unreadable(end, "an E right behind a number, which may be an exponent or a word");
   }
-  const std::size_t following = after_blanks(end);
-  switch (peek(following)) {
+  const std::size_t following = after_blanks(text_, end);
+  switch (char_at(text_, following)) {
     case '=':
       return letter == 'R' ? assigned(following) : rest(TokenKind::kForeign, at_);
     case ':':
@@ -192,15 +176,15 @@ const Token& LineLexer::value_word(char letter, std::size_t value_at) {
 // O1000 alone is a program's number; with anything else (O100 sub, O<name> call) the order of
 // blocks changes.
 const Token& LineLexer::o_word() {
-  const std::size_t value = after_blanks(at_ + 1);
-  const auto scanned =
-      is_digit(peek(value)) ? scan_number(text_.substr(value)) : std::optional<ScannedNumber>();
+  const std::size_t value = after_blanks(text_, at_ + 1);
+  const auto scanned = is_digit(char_at(text_, value)) ? scan_number(text_.substr(value))
+                                                       : std::optional<ScannedNumber>();
   if (!scanned) {
     return rest(TokenKind::kFlow, at_);
   }
   const std::size_t end = value + scanned->length;
-  const std::size_t following = after_blanks(end);
-  const char c = peek(following);
+  const std::size_t following = after_blanks(text_, end);
+  const char c = char_at(text_, following);
   if (following < text_.size() && c != '(' && c != ';') {
     return rest(TokenKind::kFlow, at_);
   }
@@ -213,15 +197,17 @@ const Token& LineLexer::o_word() {
 // Two letters without anything between them: no word of the RS-274 family.
 const Token& LineLexer::keyword() {
   std::size_t end = at_;
-  while (is_letter(peek(end))) {
+  while (is_letter(char_at(text_, end))) {
     ++end;
   }
   const std::string_view word = text_.substr(at_, end - at_);
-  while (is_name_character(peek(end))) {
+  while (is_name_character(char_at(text_, end))) {
     ++end;
   }
-  const bool label = peek(after_blanks(end)) == ':';
-  return rest(label || is_flow_word(word) ? TokenKind::kFlow : TokenKind::kForeign, at_);
+  const bool label = char_at(text_, after_blanks(text_, end)) == ':';
+  const bool flow = std::ranges::any_of(
+      kFlowWords, [word](std::string_view each) { return is_same_word(word, each); });
+  return rest(label || flow ? TokenKind::kFlow : TokenKind::kForeign, at_);
 }
 
 // Ends with its own closing bracket. Nested comments are an error for most controls and one
@@ -243,11 +229,11 @@ const Token& LineLexer::comment() {
     }
   }
   if (depth == 0) {
-    const bool more = nested && after_blanks(at + 1) < text_.size();
+    const bool more = nested && after_blanks(text_, at + 1) < text_.size();
     return more ? unreadable(at_, "a comment in a comment, and words after it")
                 : take(TokenKind::kComment, at + 1);
   }
-  if (first_close != 0 && after_blanks(first_close + 1) < text_.size()) {
+  if (first_close != 0 && after_blanks(text_, first_close + 1) < text_.size()) {
     return unreadable(at_, "a comment in a comment, and words after it");
   }
   take(TokenKind::kComment, text_.size());
@@ -258,8 +244,8 @@ const Token& LineLexer::comment() {
 const Token& LineLexer::line_comment() { return take(TokenKind::kLineComment, text_.size()); }
 
 const Token& LineLexer::block_delete() {
-  const std::size_t end = is_digit(peek(at_ + 1)) ? at_ + 2 : at_ + 1;
-  if (is_digit(peek(end)) || peek(end) == '.') {
+  const std::size_t end = is_digit(char_at(text_, at_ + 1)) ? at_ + 2 : at_ + 1;
+  if (is_digit(char_at(text_, end)) || char_at(text_, end) == '.') {
     return unreadable(at_, "a block delete sign with a number above 9");
   }
   return take(TokenKind::kBlockDelete, end);
@@ -268,11 +254,11 @@ const Token& LineLexer::block_delete() {
 const Token& LineLexer::checksum() {
   constexpr std::size_t kMostDigits = 3;  // a sum is a byte
   std::size_t end = at_ + 1;
-  while (is_digit(peek(end))) {
+  while (is_digit(char_at(text_, end))) {
     ++end;
   }
   const std::size_t digits = end - at_ - 1;
-  if (digits == 0 || digits > kMostDigits || after_blanks(end) < text_.size()) {
+  if (digits == 0 || digits > kMostDigits || after_blanks(text_, end) < text_.size()) {
     return unreadable(at_, "a '*' that is no check sum");
   }
   const auto scanned = scan_number(text_.substr(at_ + 1, digits));
@@ -285,12 +271,12 @@ const Token& LineLexer::parameter_assignment() {
   const auto target = after_parameter(text_, at_);
   if (!target) {
     // #SPLINE ON, #HSC, #set(..)#: commands of other controls.
-    const bool command = is_letter(peek(after_blanks(at_ + 1)));
+    const bool command = is_letter(char_at(text_, after_blanks(text_, at_ + 1)));
     return command ? rest(TokenKind::kForeign, at_)
                    : unreadable(at_, "a '#' without a parameter behind it");
   }
-  const std::size_t equals = after_blanks(*target);
-  if (peek(equals) != '=') {
+  const std::size_t equals = after_blanks(text_, *target);
+  if (char_at(text_, equals) != '=') {
     return unreadable(at_, "a parameter that is neither a value nor set");
   }
   return assigned(equals);
@@ -303,9 +289,9 @@ const Token& LineLexer::assigned(std::size_t equals_at) {
 }
 
 const Token& LineLexer::corner_word() {
-  const std::size_t letter_at = after_blanks(at_ + 1);
-  const char letter = upper(peek(letter_at));
-  const std::size_t value = after_blanks(letter_at + 1);
+  const std::size_t letter_at = after_blanks(text_, at_ + 1);
+  const char letter = upper(char_at(text_, letter_at));
+  const std::size_t value = after_blanks(text_, letter_at + 1);
   if (letter != 'R' && letter != 'C' && letter != 'A') {
     return unreadable(at_, "a comma without a corner word (,R ,C ,A)");
   }
@@ -335,23 +321,6 @@ constexpr std::array<std::string_view, 22> kFunctions = {
 constexpr std::array<std::string_view, 10> kWordOperators = {"AND", "OR", "XOR", "MOD", "EQ",
                                                              "NE",  "GT", "GE",  "LT",  "LE"};
 
-char peek(std::string_view text, std::size_t at) { return at < text.size() ? text[at] : '\0'; }
-
-std::size_t after_blanks(std::string_view text, std::size_t at) {
-  while (at < text.size() && is_blank(text[at])) {
-    ++at;
-  }
-  return at;
-}
-
-bool starts_with(std::string_view text, std::size_t at, std::string_view name) {
-  if (text.size() - at < name.size()) {
-    return false;
-  }
-  return std::equal(name.begin(), name.end(), text.begin() + static_cast<std::ptrdiff_t>(at),
-                    [](char a, char b) { return a == upper(b); });
-}
-
 Place after_number(std::string_view text, std::size_t at) {
   const auto number = scan_number(text.substr(at));
   return number ? Place(at + number->length) : std::nullopt;
@@ -359,11 +328,11 @@ Place after_number(std::string_view text, std::size_t at) {
 
 // R5, R[1], as Siemens names its parameters.
 Place after_r_parameter(std::string_view text, std::size_t at) {
-  if (upper(peek(text, at)) != 'R') {
+  if (upper(char_at(text, at)) != 'R') {
     return std::nullopt;
   }
   const std::size_t value = after_blanks(text, at + 1);
-  return is_digit(peek(text, value)) ? after_number(text, value) : after_brackets(text, value);
+  return is_digit(char_at(text, value)) ? after_number(text, value) : after_brackets(text, value);
 }
 
 Place after_operand(std::string_view text, std::size_t at) {
@@ -374,21 +343,21 @@ Place after_operand(std::string_view text, std::size_t at) {
   if (const Place value = after_computed_value(text, at)) {
     return value;
   }
-  const char c = peek(text, at);
+  const char c = char_at(text, at);
   return after_r_parameter(text, c == '-' || c == '+' ? after_blanks(text, at + 1) : at);
 }
 
 Place after_operator(std::string_view text, std::size_t at) {
   at = after_blanks(text, at);
-  const char c = peek(text, at);
-  if (c == '*' && peek(text, at + 1) == '*') {
+  const char c = char_at(text, at);
+  if (c == '*' && char_at(text, at + 1) == '*') {
     return at + 2;
   }
   if (c == '+' || c == '-' || c == '*' || c == '/') {
     return at + 1;
   }
   for (const std::string_view name : kWordOperators) {
-    if (at < text.size() && starts_with(text, at, name)) {
+    if (at < text.size() && is_same_word(text.substr(at, name.size()), name)) {
       return at + name.size();
     }
   }
@@ -399,7 +368,7 @@ Place after_operator(std::string_view text, std::size_t at) {
 
 std::optional<std::size_t> after_brackets(std::string_view text, std::size_t at) {
   at = after_blanks(text, at);
-  if (peek(text, at) != '[') {
+  if (char_at(text, at) != '[') {
     return std::nullopt;
   }
   int depth = 0;
@@ -418,41 +387,41 @@ std::optional<std::size_t> after_brackets(std::string_view text, std::size_t at)
 
 std::optional<std::size_t> after_parameter(std::string_view text, std::size_t at) {
   at = after_blanks(text, at);
-  if (peek(text, at) != '#') {
+  if (char_at(text, at) != '#') {
     return std::nullopt;
   }
-  while (peek(text, at) == '#') {
+  while (char_at(text, at) == '#') {
     at = after_blanks(text, at + 1);
   }
-  if (peek(text, at) == '<') {
+  if (char_at(text, at) == '<') {
     const std::size_t close = text.find_first_of(">(;", at);
     const bool closed = close != std::string_view::npos && text[close] == '>';
     return closed ? Place(close + 1) : std::nullopt;
   }
-  if (peek(text, at) == '[') {
+  if (char_at(text, at) == '[') {
     return after_brackets(text, at);
   }
-  return is_digit(peek(text, at)) ? after_number(text, at) : std::nullopt;
+  return is_digit(char_at(text, at)) ? after_number(text, at) : std::nullopt;
 }
 
 std::optional<std::size_t> after_function(std::string_view text, std::size_t at) {
   at = after_blanks(text, at);
   std::size_t end = at;
-  while (is_letter(peek(text, end)) || (end > at && is_digit(peek(text, end)))) {
+  while (is_letter(char_at(text, end)) || (end > at && is_digit(char_at(text, end)))) {
     ++end;
   }
-  const bool known = std::any_of(kFunctions.begin(), kFunctions.end(), [&](std::string_view name) {
-    return name.size() == end - at && starts_with(text, at, name);
+  const bool known = std::ranges::any_of(kFunctions, [&](std::string_view name) {
+    return is_same_word(text.substr(at, end - at), name);
   });
   return known ? after_brackets(text, end) : std::nullopt;
 }
 
 std::optional<std::size_t> after_computed_value(std::string_view text, std::size_t at) {
   at = after_blanks(text, at);
-  if (peek(text, at) == '-' || peek(text, at) == '+') {
+  if (char_at(text, at) == '-' || char_at(text, at) == '+') {
     at = after_blanks(text, at + 1);
   }
-  switch (peek(text, at)) {
+  switch (char_at(text, at)) {
     case '#':
       return after_parameter(text, at);
     case '[':
@@ -472,6 +441,32 @@ std::optional<std::size_t> after_sum(std::string_view text, std::size_t at) {
     end = after_operand(text, *operation);
   }
   return std::nullopt;
+}
+
+namespace {
+
+// What the text of an active comment starts with, blanks left out. A comma is part of it
+// where controls ask for one: (print this first) is only text.
+constexpr std::array<std::string_view, 17> kBeginnings = {
+    "MSG,",     "DEBUG,",    "PRINT,",  "LOG,",     "LOGOPEN", "LOGAPPEND",
+    "LOGCLOSE", "PROBEOPEN", "PROBECL", "PY,",      "PYRUN,",  "PYRELOAD",
+    "ABORT,",   "SYSTEM,",   "AXIS,",   "WARNING,", "ERROR,"};
+
+constexpr std::size_t kLongest = 9;
+
+}  // namespace
+
+bool is_active_comment(std::string_view comment) {
+  std::array<char, kLongest> beginning{};
+  std::size_t length = 0;
+  for (std::size_t at = 1; at < comment.size() && length < kLongest; ++at) {
+    if (!is_blank(comment[at])) {
+      beginning[length++] = upper(comment[at]);
+    }
+  }
+  const std::string_view text(beginning.data(), length);
+  return std::any_of(kBeginnings.begin(), kBeginnings.end(),
+                     [&](std::string_view name) { return text.starts_with(name); });
 }
 
 }  // namespace batten::gcode

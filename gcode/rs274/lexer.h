@@ -69,9 +69,7 @@ class LineLexer {
   const Token& rest(TokenKind kind, std::size_t where);
   const Token& unreadable(std::size_t where, std::string_view trouble);
 
-  [[nodiscard]] std::size_t after_blanks(std::size_t at) const;
   // The character there, NUL behind the end of the line.
-  [[nodiscard]] char peek(std::size_t at) const { return at < text_.size() ? text_[at] : '\0'; }
 
   void take_number(const ReadNumber& number);
 
@@ -102,5 +100,10 @@ class LineLexer {
 
 // The right side of an assignment: values, numbers and R parameters, joined by operators.
 [[nodiscard]] std::optional<std::size_t> after_sum(std::string_view text, std::size_t at);
+
+// (MSG,..) (DEBUG,..) (PRINT,..) (LOG,..) (LOGOPEN,..) (LOGAPPEND,..) (LOGCLOSE)
+// (PROBEOPEN ..) (PROBECLOSE) (PY,..) (ABORT,..), in either case and with blanks anywhere;
+// also behind a semicolon. `comment` starts with its bracket or semicolon.
+[[nodiscard]] bool is_active_comment(std::string_view comment);
 
 }  // namespace batten::gcode

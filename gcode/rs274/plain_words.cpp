@@ -1,6 +1,5 @@
 #include "gcode/rs274/plain_words.h"
 
-#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -11,50 +10,9 @@
 namespace batten::gcode {
 namespace {
 
-// Fifteen digits are below 2^53, below which every integer is a double; and so are the powers of
-// ten up to that one. The quotient of the two is rounded once: it is the double that is nearest to
-// the decimal.
-constexpr std::size_t kMostPlainDigits = 15;
-constexpr std::array<double, kMostPlainDigits + 1> kTens = {
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
-
-// Behind the digits that stand there. The mantissa is of no use where they are too many.
-const char* behind_digits(const char* at, const char* end, std::uint64_t& mantissa) {
-  for (; at != end && is_digit(*at); ++at) {
-    mantissa = mantissa * 10 + static_cast<std::uint64_t>(*at - '0');
-  }
-  return at;
-}
-
 const char* behind_blanks(const char* at, const char* end) {
   while (at != end && is_blank(*at)) ++at;
   return at;
-}
-
-struct PlainNumber {
-  double value = 0;
-  std::size_t decimals = 0;
-  bool has_point = false;
-};
-
-// Behind the number that stands there; nullptr where there is none of this kind.
-const char* read_plain_number(const char* at, const char* end, PlainNumber& number) {
-  const bool negative = at != end && *at == '-';
-  if (negative || (at != end && *at == '+')) ++at;
-  std::uint64_t mantissa = 0;
-  const char* behind = behind_digits(at, end, mantissa);
-  auto digits = static_cast<std::size_t>(behind - at);
-  number.has_point = behind != end && *behind == '.';
-  if (number.has_point) {
-    const char* const fraction = behind + 1;
-    behind = behind_digits(fraction, end, mantissa);
-    number.decimals = static_cast<std::size_t>(behind - fraction);
-    digits += number.decimals;
-  }
-  if (digits == 0 || digits > kMostPlainDigits) return nullptr;
-  const double size = static_cast<double>(mantissa) / kTens[number.decimals];
-  number.value = negative && mantissa != 0 ? -size : size;  // -0 is read as 0
-  return size < kNumberLimit ? behind : nullptr;
 }
 
 // Behind the words of the line, and the blanks behind them; nullptr where one is of another kind.
@@ -68,7 +26,7 @@ const char* read_words(const char* text, const char* at, const char* end,
     const char letter = upper(*at);
     // An E right behind a number may be an exponent, an O begins no word.
     if (letter == 'O' || (letter == 'E' && at == behind_word)) return nullptr;
-    PlainNumber number;
+    ReadNumber number;
     behind_word = read_plain_number(at + 1, end, number);
     if (behind_word == nullptr) return nullptr;
     Word& word = words.emplace_back();
@@ -110,15 +68,6 @@ std::optional<LineBounds> read_plain_words(std::string_view text, std::size_t be
 
 namespace {
 
-// The line without the blanks before it.
-SourceSpan without_blanks(std::string_view text, std::uint32_t begin, std::uint32_t end) {
-  if (begin == 0 && text.starts_with(kByteOrderMark)) {
-    begin = static_cast<std::uint32_t>(kByteOrderMark.size());
-  }
-  while (begin < end && is_blank(text[begin])) ++begin;
-  return {begin, end};
-}
-
 std::string_view without_digits(std::string_view line) {
   while (!line.empty() && (is_digit(line.front()) || is_blank(line.front()))) line.remove_prefix(1);
   return line;
@@ -145,7 +94,7 @@ std::optional<SourceSpan> plain_beginning(const SourceText& source) {
   const std::string_view text = source.text();
   LineCursor lines(text);
   while (const auto line = lines.next()) {
-    const SourceSpan span = without_blanks(text, line->begin, line->text_end);
+    const SourceSpan span{begin_of_content(text, *line), line->text_end};
     const std::string_view said = source.text(span);
     if (says_nothing(said)) continue;
     return begins_with_g(said) ? std::optional(span) : std::nullopt;

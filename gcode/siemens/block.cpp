@@ -24,14 +24,6 @@ constexpr std::array<std::string_view, 20> kFlowNames = {
 
 constexpr std::string_view kLetters = "NGXYZIJKFSTDMHABCUVW";
 
-std::string upper_text(std::string_view text) {
-  std::string all;
-  for (const char c : text) {
-    all.push_back(upper(c));
-  }
-  return all;
-}
-
 // R5, not RND.
 bool is_r_parameter(std::string_view name) {
   return name.size() > 1 && name[0] == 'R' &&
@@ -86,7 +78,7 @@ class BlockReader {
   }
 
   [[nodiscard]] std::string name_of(const SiemensToken& token) const {
-    return upper_text(source_.substr(token.name.begin, token.name.size()));
+    return in_capitals(source_.substr(token.name.begin, token.name.size()));
   }
 
   [[nodiscard]] bool is_flow(const SiemensToken& token) const {
@@ -194,16 +186,6 @@ SiemensBlock read_siemens_block(std::string_view source, SourceSpan line,
                                 std::vector<Word>& words) {
   return BlockReader(source, line, words).read();
 }
-
-namespace {
-
-std::string in_capitals(std::string_view text) {
-  std::string capitals;
-  for (const char c : text) capitals.push_back(upper(c));
-  return capitals;
-}
-
-}  // namespace
 
 std::string siemens_name(std::string_view source, const SiemensToken& token) {
   if (token.kind == SiemensTokenKind::kName) {

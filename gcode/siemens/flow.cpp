@@ -7,7 +7,7 @@
 #include <unordered_set>
 
 #include "gcode/siemens/lexer.h"
-#include "gcode/siemens/name_kinds.h"
+#include "gcode/siemens/names.h"
 #include "gcode/text/characters.h"
 
 namespace batten::gcode {
@@ -15,11 +15,6 @@ namespace {
 
 // "LABEL" for LABEL:, ":10", "N10" whatever zeros stand in front of the digits.
 using LabelName = std::string;
-
-std::string without_blanks(std::string text) {
-  std::erase_if(text, is_blank);
-  return text;
-}
 
 // Upper case, strings and comments blanked.
 std::string plain_text(std::string_view text) {
@@ -35,11 +30,6 @@ std::string plain_text(std::string_view text) {
 
 bool is_name_start(char c) { return is_letter(c) || c == '_' || c == '$'; }
 
-std::size_t after_blanks(std::string_view text, std::size_t at) {
-  while (at < text.size() && is_blank(text[at])) ++at;
-  return at;
-}
-
 LabelName without_zeros(LabelName name) {
   const bool numbered = name.size() > 1 && (name[0] == 'N' || name[0] == ':') &&
                         name.find_first_not_of("0123456789", 1) == std::string::npos;
@@ -49,7 +39,7 @@ LabelName without_zeros(LabelName name) {
 
 // The label that is named at this place; nothing where a value is computed.
 std::optional<LabelName> label_at(std::string_view text, std::size_t at) {
-  std::size_t end = at + (at < text.size() && text[at] == ':' ? 1 : 0);
+  std::size_t end = at + (char_at(text, at) == ':' ? 1 : 0);
   end = after_siemens_name(text, end);
   if (end <= at || text[at] == '$') return std::nullopt;
   return without_zeros(LabelName(text.substr(at, end - at)));
@@ -87,7 +77,7 @@ bool contains_jump(std::string_view plain) {
 // Behind block number, skip sign and label.
 std::string_view statement_in(std::string_view plain) {
   std::size_t at = after_blanks(plain, 0);
-  if (at < plain.size() && plain[at] == '/') at = after_blanks(plain, at + 1);
+  if (char_at(plain, at) == '/') at = after_blanks(plain, at + 1);
   for (;;) {
     if (at >= plain.size()) return {};
     const std::size_t end = after_siemens_name(plain, at);
@@ -95,7 +85,7 @@ std::string_view statement_in(std::string_view plain) {
     const bool number = name.size() > 1 && name[0] == 'N' &&
                         name.find_first_not_of("0123456789", 1) == std::string_view::npos;
     const std::size_t behind = after_blanks(plain, end);
-    const bool label = !name.empty() && behind < plain.size() && plain[behind] == ':';
+    const bool label = !name.empty() && char_at(plain, behind) == ':';
     if (!number && !label) return plain.substr(at);
     at = after_blanks(plain, label ? behind + 1 : end);
   }
@@ -128,7 +118,7 @@ bool calls_program(std::string_view statement) {
       name.size() > 1 && name.find_first_not_of("0123456789", 1) == std::string_view::npos;
   if (numbered) return name[0] == 'L';
   const bool is_set = behind.starts_with('=') || behind.starts_with('[');
-  return name.size() > 1 && name[0] != '$' && !is_set && !kind_of_siemens_name(name, false);
+  return name.size() > 1 && name[0] != '$' && !is_set && !is_known_siemens_name(name);
 }
 
 class FlowReader {

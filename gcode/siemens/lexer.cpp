@@ -25,13 +25,6 @@ bool sets(std::string_view text, std::size_t at) {
 
 }  // namespace
 
-std::size_t SiemensLexer::after_blanks(std::size_t at) const {
-  while (is_blank(peek(at))) {
-    ++at;
-  }
-  return at;
-}
-
 SiemensToken SiemensLexer::token(SiemensTokenKind kind, std::size_t end) {
   SiemensToken token;
   token.kind = kind;
@@ -47,7 +40,7 @@ SiemensToken SiemensLexer::unreadable(std::string_view trouble) {
 }
 
 SiemensToken SiemensLexer::next() {
-  at_ = after_blanks(at_);
+  at_ = after_blanks(text_, at_);
   if (at_ >= text_.size()) {
     return token(SiemensTokenKind::kEnd, text_.size());
   }
@@ -56,14 +49,14 @@ SiemensToken SiemensLexer::next() {
     return token(SiemensTokenKind::kComment, text_.size());
   }
   if (c == '/' && !anything_) {
-    const std::size_t end = at_ + (is_digit(peek(at_ + 1)) ? 2 : 1);
-    return is_digit(peek(end)) ? unreadable("a block skip sign with a number above 9")
-                               : token(SiemensTokenKind::kSkip, end);
+    const std::size_t end = at_ + (is_digit(char_at(text_, at_ + 1)) ? 2 : 1);
+    return is_digit(char_at(text_, end)) ? unreadable("a block skip sign with a number above 9")
+                                         : token(SiemensTokenKind::kSkip, end);
   }
   if (is_letter(c) || c == '_' || c == '$') {
     return address();
   }
-  if (c == ':' && !anything_ && is_digit(peek(at_ + 1))) {
+  if (c == ':' && !anything_ && is_digit(char_at(text_, at_ + 1))) {
     return main_block();
   }
   if (c == '(') {
@@ -75,7 +68,7 @@ SiemensToken SiemensLexer::next() {
 // :10 is a number of a main block, to which a jump may go as to a label.
 SiemensToken SiemensLexer::main_block() {
   std::size_t end = at_ + 1;
-  while (is_digit(peek(end))) {
+  while (is_digit(char_at(text_, end))) {
     ++end;
   }
   const SourceSpan name = bytes(at_, end);
@@ -86,32 +79,33 @@ SiemensToken SiemensLexer::main_block() {
 
 SiemensToken SiemensLexer::address() {
   const char c = text_[at_];
-  const char next = peek(at_ + 1);
+  const char next = char_at(text_, at_ + 1);
   if (!is_letter(c) || is_letter(next) || next == '_' || next == '$' || next == '[' ||
       next == '(') {
     return named(after_siemens_name(text_, at_));
   }
-  const std::size_t value = after_blanks(at_ + 1);
+  const std::size_t value = after_blanks(text_, at_ + 1);
   if (sets(text_, value)) {
-    return assigned_letter(after_blanks(value + 1));
+    return assigned_letter(after_blanks(text_, value + 1));
   }
   // X1=10, M2=3: the digits are part of the address.
   std::size_t digits = at_ + 1;
-  while (is_digit(peek(digits))) {
+  while (is_digit(char_at(text_, digits))) {
     ++digits;
   }
-  const std::size_t behind = after_blanks(digits);
-  if (digits > at_ + 1 && (sets(text_, behind) || peek(digits) == '_' || peek(digits) == '[')) {
+  const std::size_t behind = after_blanks(text_, digits);
+  if (digits > at_ + 1 &&
+      (sets(text_, behind) || char_at(text_, digits) == '_' || char_at(text_, digits) == '[')) {
     return named(after_siemens_name(text_, at_));
   }
-  if (peek(value) == ':') {
+  if (char_at(text_, value) == ':') {
     return named(at_ + 1);
   }
-  if (digits > at_ + 1 && peek(behind) == ':' && upper(c) != 'N') {
+  if (digits > at_ + 1 && char_at(text_, behind) == ':' && upper(c) != 'N') {
     return named(digits);
   }
-  const auto end = starts_number(peek(value)) ? after_siemens_number(text_, value)
-                                              : std::optional<std::size_t>();
+  const auto end = starts_number(char_at(text_, value)) ? after_siemens_number(text_, value)
+                                                        : std::optional<std::size_t>();
   if (!end) {
     return unreadable("a letter without a number that can be read");
   }
@@ -150,7 +144,8 @@ SiemensToken SiemensLexer::assigned_letter(std::size_t value_at) {
 SiemensToken SiemensLexer::named(std::size_t name_end) {
   const SourceSpan name = bytes(at_, name_end);
   std::size_t end = name_end;
-  if (const std::size_t colon = after_blanks(end); peek(colon) == ':' && peek(colon + 1) != '=') {
+  if (const std::size_t colon = after_blanks(text_, end);
+      char_at(text_, colon) == ':' && char_at(text_, colon + 1) != '=') {
     if (anything_) {
       return unreadable("a label behind other words");
     }
@@ -158,7 +153,7 @@ SiemensToken SiemensLexer::named(std::size_t name_end) {
     label.name = name;
     return label;
   }
-  if (const std::size_t index = after_blanks(end); peek(index) == '[') {
+  if (const std::size_t index = after_blanks(text_, end); char_at(text_, index) == '[') {
     const auto closed = after_siemens_brackets(text_, index);
     if (!closed) {
       return unreadable("brackets that are not closed");
@@ -167,19 +162,19 @@ SiemensToken SiemensLexer::named(std::size_t name_end) {
   }
   bool assigned = false;
   bool arguments = false;
-  if (const std::size_t equals = after_blanks(end); sets(text_, equals)) {
+  if (const std::size_t equals = after_blanks(text_, end); sets(text_, equals)) {
     const auto closed = after_siemens_expression(text_, equals + 1);
     if (!closed) {
       return unreadable("a value that cannot be read");
     }
     assigned = true;
     end = *closed;
-  } else if (peek(equals) == '(') {
+  } else if (char_at(text_, equals) == '(') {
     const auto closed = after_siemens_brackets(text_, equals);
     if (!closed) {
       return unreadable("brackets that are not closed");
     }
-    arguments = after_blanks(equals + 1) + 1 < *closed;
+    arguments = after_blanks(text_, equals + 1) + 1 < *closed;
     end = *closed;
   }
   anything_ = true;
@@ -196,16 +191,7 @@ constexpr std::array<std::string_view, 14> kSiemensWordOperators = {
     "DIV",  "MOD",   "AND",   "OR", "XOR", "NOT", "B_AND",
     "B_OR", "B_XOR", "B_NOT", "TO", "==",  "<>",  "<<"};
 
-char char_at(std::string_view text, std::size_t at) { return at < text.size() ? text[at] : '\0'; }
-
-std::size_t skip_siemens_blanks(std::string_view text, std::size_t at) {
-  while (is_blank(char_at(text, at))) {
-    ++at;
-  }
-  return at;
-}
-
-bool is_name_part(char c) { return is_letter(c) || is_digit(c) || c == '_' || c == '$'; }
+bool is_name_part(char c) { return is_name_character(c) || c == '$'; }
 
 std::optional<std::size_t> after_string(std::string_view text, std::size_t at) {
   const std::size_t end = text.find('"', at + 1);
@@ -216,11 +202,8 @@ std::optional<std::size_t> after_string(std::string_view text, std::size_t at) {
 std::optional<std::size_t> after_siemens_operator(std::string_view text, std::size_t at) {
   const char c = char_at(text, at);
   if (is_letter(c)) {
-    std::string word;
     const std::size_t end = after_siemens_name(text, at);
-    for (std::size_t i = at; i < end; ++i) {
-      word.push_back(upper(text[i]));
-    }
+    const std::string word = in_capitals(text.substr(at, end - at));
     const bool known =
         std::ranges::find(kSiemensWordOperators, word) != kSiemensWordOperators.end();
     return known ? std::optional(end) : std::nullopt;
@@ -239,9 +222,9 @@ std::optional<std::size_t> after_siemens_operator(std::string_view text, std::si
 }
 
 std::optional<std::size_t> after_siemens_operand(std::string_view text, std::size_t at) {
-  at = skip_siemens_blanks(text, at);
+  at = after_blanks(text, at);
   while (char_at(text, at) == '+' || char_at(text, at) == '-') {
-    at = skip_siemens_blanks(text, at + 1);
+    at = after_blanks(text, at + 1);
   }
   const char c = char_at(text, at);
   if (is_digit(c) || c == '.') {
@@ -258,7 +241,7 @@ std::optional<std::size_t> after_siemens_operand(std::string_view text, std::siz
   }
   at = after_siemens_name(text, at);
   for (const char open : {'[', '('}) {
-    const std::size_t bracket = skip_siemens_blanks(text, at);
+    const std::size_t bracket = after_blanks(text, at);
     if (char_at(text, bracket) != open) {
       continue;
     }
@@ -327,7 +310,7 @@ std::size_t after_siemens_name(std::string_view text, std::size_t at) {
 std::optional<std::size_t> after_siemens_expression(std::string_view text, std::size_t at) {
   auto end = after_siemens_operand(text, at);
   while (end) {
-    const auto next = after_siemens_operator(text, skip_siemens_blanks(text, *end));
+    const auto next = after_siemens_operator(text, after_blanks(text, *end));
     if (!next) {
       return end;
     }

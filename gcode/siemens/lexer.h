@@ -52,8 +52,6 @@ class SiemensLexer {
   SiemensToken token(SiemensTokenKind kind, std::size_t end);
   SiemensToken unreadable(std::string_view trouble);
 
-  [[nodiscard]] char peek(std::size_t at) const { return at < text_.size() ? text_[at] : '\0'; }
-  [[nodiscard]] std::size_t after_blanks(std::size_t at) const;
 
   std::string_view text_;
   std::size_t at_;

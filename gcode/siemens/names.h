@@ -2,13 +2,22 @@
 // ROT, CYCLE832(..), G641 .. Which of them leave path and state alone: docs/controllers/siemens.md.
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <unordered_set>
 
-#include "gcode/siemens/name_kinds.h"
 #include "gcode/state/block_words.h"
 #include "gcode/state/control_state.h"
 
 namespace batten::gcode {
+
+// Variables that a Siemens program declares for itself: DEF REAL A, B = 5, C[3]. To set one changes
+// nothing but what words in which it stands will say.
+
+using SiemensVariables = std::unordered_set<std::string>;  // in upper case
+
+// `declaration` is what stands behind DEF: the type, then the names with their first values.
+void add_declared_names(std::string_view declaration, SiemensVariables& variables);
 
 struct NamedEffect {
   bool understood = true;    // false: a name is not known; it could have changed anything
@@ -22,5 +31,8 @@ struct NamedEffect {
 // known to the state. `variables` are those that the program has declared so far; DEF adds to them.
 [[nodiscard]] NamedEffect apply_names(std::string_view text, const BlockWords& words,
                                       SiemensVariables& variables, ControlState& state);
+
+// `name` in upper case. Others could do anything.
+[[nodiscard]] bool is_known_siemens_name(std::string_view name);
 
 }  // namespace batten::gcode

@@ -1,42 +1,8 @@
 #include "gcode/state/block_words.h"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
-
-#include "gcode/state/code_groups.h"
 
 namespace batten::gcode {
-namespace {
-
-// Nothing when the word is no code of at most one decimal. 9999 is above every code of every
-// control and keeps the conversion to an integer safe.
-std::optional<Code> code_of(const Word& word) {
-  constexpr double kMaxCode = 9999;
-  if (!word.is_number || !(word.value >= 0) || word.value > kMaxCode) {
-    return std::nullopt;
-  }
-  const double tenths = word.value * 10;
-  const double whole = std::round(tenths);
-  // Far above the rounding of a product of two numbers below 1e5, far below one tenth.
-  constexpr double kSameCode = 1e-6;
-  if (std::abs(tenths - whole) > kSameCode) {
-    return std::nullopt;
-  }
-  return static_cast<Code>(whole);
-}
-
-// Words of one group exclude each other. The same word twice is refused by most controls too.
-bool exclude_each_other(Code a, Code b) {
-  if (a == b) {
-    return true;
-  }
-  const CodeGroup group = group_of_g(a);
-  return group != CodeGroup::kNone && group != CodeGroup::kUnknown && group == group_of_g(b);
-}
-
-}  // namespace
-
 BlockWords::BlockWords(std::span<const Word> words) {
   for (const Word& word : words) {
     has_words_ |= word.letter != 'N';
@@ -62,17 +28,19 @@ void BlockWords::add_code(const Word& word) {
   auto& codes = is_g ? g_ : m_;
   auto& code_words = is_g ? g_words_ : m_words_;
   std::size_t& count = is_g ? g_count_ : m_count_;
-  const std::optional<Code> code = code_of(word);
-  if (!code || count == kMaxCodes || (!is_g && *code % 10 != 0)) {
+  const Code code = code_of(word);
+  if (code == kNoCode || count == kMaxCodes || (!is_g && code % 10 != 0)) {
     note(Problem::kBadCode, &word, nullptr);
     return;
   }
+  const auto row_of = is_g ? row_of_g : row_of_m;
   for (std::size_t i = 0; i < count; ++i) {
-    if (is_g ? exclude_each_other(codes[i], *code) : excludes_m(codes[i], *code)) {
+    // Most controls refuse the same G word twice, of any group.
+    if ((is_g && codes[i] == code) || exclude_each_other(row_of(codes[i]), row_of(code))) {
       note(Problem::kSameGroupTwice, code_words[i], &word);
     }
   }
-  codes[count] = *code;
+  codes[count] = code;
   code_words[count] = &word;
   ++count;
 }
@@ -91,6 +59,15 @@ bool BlockWords::has_g(Code code) const {
 
 bool BlockWords::has_m(Code code) const {
   return std::ranges::find(m_codes(), code) != m_codes().end();
+}
+
+bool BlockWords::has_group(CodeGroup group) const {
+  return std::ranges::any_of(g_codes(),
+                             [group](Code code) { return row_of_g(code).group == group; });
+}
+
+bool BlockWords::has_trait(trait::Traits any) const {
+  return std::ranges::any_of(g_codes(), [any](Code code) { return row_of_g(code).is(any); });
 }
 
 bool BlockWords::has_any(std::string_view letters) const {

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "gcode/state/code_groups.h"
+#include "gcode/state/code_table.h"
 #include "gcode/text/program.h"
 
 namespace batten::gcode {
@@ -27,6 +27,9 @@ class BlockWords {
   [[nodiscard]] std::span<const Code> m_codes() const { return {m_.data(), m_count_}; }
   [[nodiscard]] bool has_g(Code code) const;
   [[nodiscard]] bool has_m(Code code) const;
+  // Has it a G word of this group, or with one of these traits?
+  [[nodiscard]] bool has_group(CodeGroup group) const;
+  [[nodiscard]] bool has_trait(trait::Traits any) const;
 
   // The word of a letter other than G and M, nullptr where there is none.
   [[nodiscard]] const Word* find(char letter) const { return words_[slot(letter)]; }

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "gcode/state/block_words.h"
-#include "gcode/state/code_groups.h"
+#include "gcode/state/code_table.h"
 #include "gcode/state/modal_state.h"
 
 namespace batten::gcode {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/state/code_groups.h"
+#include "gcode/state/code_table.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/source_text.h"
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 
+#include "gcode/state/code_table.h"
 #include "gcode/text/characters.h"
 
 namespace batten::gcode {
@@ -31,13 +31,11 @@ enum class Where : std::uint8_t {
   kSiemensToo,
 };
 
-constexpr int kNoCode = -1;
-
-// A block with this G word (in tenths), all letters of `all`, one of `any` and of `or_any` where
-// there are such, and none of `none`.
+// A block with one of these G words (in tenths), all letters of `all`, one of `any` and of `or_any`
+// where there are such, and none of `none`.
 struct WordRow {
   LatheMark mark;
-  int code = kNoCode;
+  std::array<Code, 7> codes = {};  // up to the first 0; none: any block
   std::string_view all = {};
   std::string_view any = {};
   std::string_view or_any = {};
@@ -60,71 +58,43 @@ constexpr std::string_view kIncrements = "increments by U and W (FANUC and contr
 
 constexpr WordRow kRows[] = {
     // On a mill G50 ends scaling, and stands in a line of such words; S stands with M3.
-    {{kCertain, kLimit}, 500, "S", "", "", "YPIJKM", Beside::kNoOtherCode},
-    {{kSpindle, kLimit}, 500, "S"},
-    {{kSpindle, "G50 with X or Z, which sets coordinates (FANUC lathes)"}, 500, "", "XZUW"},
-    {{kSpindle, "G92 with S alone, a limit of the spindle"}, 920, "S", "", "", "XYZUVWABC"},
-    {{kSpindle, "constant surface speed, G96"},
-     960,
-     "S",
-     "",
-     "",
-     "",
-     Beside::kAnyCode,
-     Where::kSiemensToo},
+    {{kCertain, kLimit}, {500}, "S", "", "", "YPIJKM", Beside::kNoOtherCode},
+    {{kSpindle, kLimit}, {500}, "S"},
+    {{kSpindle, "G50 with X or Z, which sets coordinates (FANUC lathes)"}, {500}, "", "XZUW"},
+    {{kSpindle, "G92 with S alone, a limit of the spindle"}, {920}, "S", "", "", "XYZUVWABC"},
+    {.mark = {kSpindle, "constant surface speed, G96"},
+     .codes = {960},
+     .all = "S",
+     .where = Where::kSiemensToo},
 
     // A mill's G70 to G72 are units, or holes in a pattern by I, J, L; its G73 drills to Z.
-    {{kCertain, kRoughing}, 700, "PQ", "", "", "XYZ"},
-    {{kCertain, kRoughing}, 710, "PQ", "", "", "XYZ"},
-    {{kCertain, kRoughing}, 720, "PQ", "", "", "XYZ"},
-    {{kCertain, kRoughing}, 730, "PQ", "UW", "", "XYZ"},
-    {{kCertain, kRoughingDepth}, 710, "R", "UW", "", "XYZPQ"},
-    {{kCertain, kRoughingDepth}, 720, "R", "UW", "", "XYZPQ"},
-    {{kCertain, kRoughingDepth}, 730, "R", "UW", "", "XYZPQ"},
-    {{kCertain, kRoughingQ}, 700, "Q", "D", "", "Y"},
-    {{kCertain, kRoughingQ}, 710, "Q", "D", "", "Y"},
-    {{kCertain, kRoughingQ}, 711, "Q", "D", "", "Y"},
-    {{kCertain, kRoughingQ}, 712, "Q", "D", "", "Y"},
-    {{kCertain, kRoughingQ}, 720, "Q", "D", "", "Y"},
-    {{kCertain, kRoughingQ}, 721, "Q", "D", "", "Y"},
-    {{kCertain, kRoughingQ}, 722, "Q", "D", "", "Y"},
-    {{kCertain, "a thread, G32 with F (FANUC and controls like it)"}, 320, "F", "XZUW", "", "Y"},
+    {{kCertain, kRoughing}, {700, 710, 720}, "PQ", "", "", "XYZ"},
+    {{kCertain, kRoughing}, {730}, "PQ", "UW", "", "XYZ"},
+    {{kCertain, kRoughingDepth}, {710, 720, 730}, "R", "UW", "", "XYZPQ"},
+    {{kCertain, kRoughingQ}, {700, 710, 711, 712, 720, 721, 722}, "Q", "D", "", "Y"},
+    {{kCertain, "a thread, G32 with F (FANUC and controls like it)"}, {320}, "F", "XZUW", "", "Y"},
     // A mill's G76 bores with F, at X and Y.
-    {{kCertain, "a threading cycle, G76 P Z I J K (LinuxCNC)"}, 760, "PZIJK", "", "", "XYF"},
+    {{kCertain, "a threading cycle, G76 P Z I J K (LinuxCNC)"}, {760}, "PZIJK", "", "", "XYF"},
 
-    {{kCycle, kOneCut}, 900, "F", "XU", "ZW", "YVABCIJKPQ", Beside::kNoOtherCode},
-    {{kCycle, kOneCut}, 920, "F", "XU", "ZW", "YVABC", Beside::kNoOtherCode},
-    {{kCycle, kOneCut}, 940, "F", "XU", "ZW", "YVABCIJKPQ", Beside::kNoOtherCode},
-    {{kCycle, kOneCut}, 770, "F", "XU", "ZW", "YVABC", Beside::kNoOtherCode},
-    {{kCycle, kOneCut}, 780, "F", "XU", "ZW", "YVABC", Beside::kNoOtherCode},
-    {{kCycle, kOneCut}, 790, "F", "XU", "ZW", "YVABC", Beside::kNoOtherCode},
-    {{kCycle, kGrooving}, 740, "PQF", "XZUW", "", "YR"},
-    {{kCycle, kGrooving}, 740, "R", "", "", "XYZPQFK"},
-    {{kCycle, kGrooving}, 750, "PQF", "XZUW", "", "Y"},
-    {{kCycle, kGrooving}, 750, "R", "", "", "XYZPQF"},
-    {{kCycle, kGrooving}, 760, "PQ", "", "", "XYZUW"},
-    {{kCycle, kGrooving}, 760, "PQF", "XU", "ZW", "Y"},
+    {{kCycle, kOneCut}, {900, 940}, "F", "XU", "ZW", "YVABCIJKPQ", Beside::kNoOtherCode},
+    {{kCycle, kOneCut}, {920, 770, 780, 790}, "F", "XU", "ZW", "YVABC", Beside::kNoOtherCode},
+    {{kCycle, kGrooving}, {740}, "PQF", "XZUW", "", "YR"},
+    {{kCycle, kGrooving}, {740}, "R", "", "", "XYZPQFK"},
+    {{kCycle, kGrooving}, {750}, "PQF", "XZUW", "", "Y"},
+    {{kCycle, kGrooving}, {750}, "R", "", "", "XYZPQF"},
+    {{kCycle, kGrooving}, {760}, "PQ", "", "", "XYZUW"},
+    {{kCycle, kGrooving}, {760}, "PQF", "XU", "ZW", "Y"},
 
     // Beside a cycle G99 says where it ends.
-    {{kFeed, "G99 beside no cycle: feed per revolution (FANUC lathes)"},
-     990,
-     "",
-     "",
-     "",
-     "XYZRPQKL"},
-    {{kFeed, "feed per revolution, G95"},
-     950,
-     "",
-     "",
-     "",
-     "",
-     Beside::kAnyCode,
-     Where::kSiemensToo},
+    {.mark = {kFeed, "G99 beside no cycle: feed per revolution (FANUC lathes)"},
+     .codes = {990},
+     .none = "XYZRPQKL"},
+    {.mark = {kFeed, "feed per revolution, G95"}, .codes = {950}, .where = Where::kSiemensToo},
 
-    {{kIncrement, kIncrements}, kNoCode, "XW", "", "", "YV"},
-    {{kIncrement, kIncrements}, kNoCode, "ZU", "", "", "YV"},
-    {{kIncrement, kIncrements}, kNoCode, "UW", "", "", "YV"},
-    {{kIncrement, "home by U or W (FANUC and controls like it)"}, 280, "", "UW", "", "XYZV"},
+    {{kIncrement, kIncrements}, {}, "XW", "", "", "YV"},
+    {{kIncrement, kIncrements}, {}, "ZU", "", "", "YV"},
+    {{kIncrement, kIncrements}, {}, "UW", "", "", "YV"},
+    {{kIncrement, "home by U or W (FANUC and controls like it)"}, {280}, "", "UW", "", "XYZV"},
 };
 
 constexpr LatheMark kToolAndOffset = {kTool, "T with the number of an offset, as in T0101"};
@@ -202,14 +172,6 @@ bool may_hold_names(ParseStatus opacity) {
          opacity == ParseStatus::kNamedWords || opacity == ParseStatus::kFlow;
 }
 
-// In tenths; kNoCode where it is none.
-int code_of(const Word& word) {
-  constexpr double kMost = 1e4;
-  const double tenths = word.value * 10;
-  return word.is_number && tenths >= 0 && tenths <= kMost ? static_cast<int>(std::lround(tenths))
-                                                          : kNoCode;
-}
-
 // T0101, T010101 and T0100, but not T0012.
 bool names_offset(std::string_view word) {
   std::string digits;
@@ -220,15 +182,13 @@ bool names_offset(std::string_view word) {
          std::ranges::all_of(digits, is_digit);
 }
 
-bool has_g(std::span<const Word> words, int code) {
-  return std::ranges::any_of(
-      words, [code](const Word& word) { return word.letter == 'G' && code_of(word) == code; });
+bool has(std::span<const Word> words, char letter, Code code) {
+  return std::ranges::any_of(words, [letter, code](const Word& word) {
+    return word.letter == letter && code_of(word) == code;
+  });
 }
 
-bool has_m6(std::span<const Word> words) {
-  return std::ranges::any_of(
-      words, [](const Word& word) { return word.letter == 'M' && code_of(word) == 60; });
-}
+bool has_g(std::span<const Word> words, Code code) { return has(words, 'G', code); }
 
 bool fits(const WordRow& row, std::uint32_t letters, std::span<const Word> words, int codes) {
   const std::uint32_t all = bits(row.all);
@@ -236,7 +196,9 @@ bool fits(const WordRow& row, std::uint32_t letters, std::span<const Word> words
          (row.any.empty() || (letters & bits(row.any)) != 0) &&
          (row.or_any.empty() || (letters & bits(row.or_any)) != 0) &&
          (row.beside == Beside::kAnyCode || codes == 1) &&
-         (row.code == kNoCode || has_g(words, row.code));
+         (row.codes[0] == 0 || std::ranges::any_of(row.codes, [&](Code code) {
+            return code != 0 && has_g(words, code);
+          }));
 }
 
 // Nearly all blocks of a long program have no others.
@@ -305,7 +267,8 @@ void LatheWatch::look_at_words(const Program& part, const Block& block) {
     if (siemens && row.where == Where::kPlain) continue;
     if (fits(row, letters, words, codes)) note(row.mark, block.span, block.line);
   }
-  if (!siemens && tool != nullptr && names_offset(part.source.text(tool->span)) && !has_m6(words)) {
+  if (!siemens && tool != nullptr && names_offset(part.source.text(tool->span)) &&
+      !has(words, 'M', 60)) {
     note(kToolAndOffset, tool->span, block.line);
   }
 }

@@ -14,28 +14,6 @@
 
 namespace batten::gcode {
 
-enum class Units : std::uint8_t { kUnknown, kMillimetre, kInch };
-enum class Plane : std::uint8_t { kUnknown, kXY, kZX, kYZ };  // G17, G18, G19
-enum class DistanceMode : std::uint8_t { kUnknown, kAbsolute, kIncremental };
-enum class FeedMode : std::uint8_t { kUnknown, kPerMinute, kInverseTime, kPerRevolution };
-enum class PathMode : std::uint8_t {
-  kUnknown,
-  kBlending,   // G64, or the control's default
-  kExactPath,  // G61
-  kExactStop,  // G61.1, G60
-};
-enum class MotionMode : std::uint8_t {
-  kUnknown,
-  kRapid,             // G0
-  kLine,              // G1
-  kClockwise,         // G2
-  kCounterclockwise,  // G3
-  kOther,             // threading, probing, canned cycles, splines, G80: axis words are no line
-};
-
-// On, off, or unknown.
-enum class TriState : std::uint8_t { kOff, kOn, kUnknown };
-
 struct ModalState {
   MotionMode motion = MotionMode::kUnknown;
   Units units = Units::kUnknown;

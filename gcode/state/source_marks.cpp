@@ -2,24 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
+#include "gcode/state/code_table.h"
 #include "gcode/text/characters.h"
 
 namespace batten::gcode {
 namespace {
-
-// In tenths; -1 where it is no code.
-int code_in_tenths(const Word& word) {
-  const double tenths = word.value * 10;
-  constexpr double kMost = 1e5;
-  if (!word.is_number || !(tenths >= 0 && tenths <= kMost)) return -1;
-  return static_cast<int>(std::lround(tenths));
-}
 
 bool has(std::span<const Word> words, std::string_view letters) {
   return std::ranges::any_of(words, [letters](const Word& word) {
@@ -57,22 +49,13 @@ bool is_heater_word(int code, std::span<const Word> words) {
   return std::ranges::find(kCodes, code) != kCodes.end() && has(words, "S");
 }
 
-// Upper case, without blanks.
-std::string squeezed(std::string_view text) {
-  std::string bare;
-  for (const char c : text) {
-    if (!is_blank(c)) bare.push_back(upper(c));
-  }
-  return bare;
-}
-
 bool contains_one_of(std::string_view text, std::span<const std::string_view> parts) {
   return std::ranges::any_of(
       parts, [&](std::string_view part) { return text.find(part) != std::string_view::npos; });
 }
 
 std::optional<SourceMark> mark_of_text(ParseStatus opacity, std::string_view line) {
-  const std::string text = squeezed(line);
+  const std::string text = in_capitals(without_blanks(line));
   constexpr std::array<std::string_view, 9> kSubWords = {
       "SUB", "CALL", "ENDSUB", "RETURN", "ENDIF", "ENDWHILE", "REPEAT", "BREAK", "DO"};
   constexpr std::array<std::string_view, 3> kMacroWords = {"GOTO", "WHILE[", "END"};
@@ -109,8 +92,8 @@ class Marker {
  private:
   void look_at(const Word& word, std::span<const Word> words) {
     if (word.letter == 'G') {
-      note(mark_of_g(code_in_tenths(word), words), word.span);
-    } else if (word.letter == 'M' && is_heater_word(code_in_tenths(word), words)) {
+      note(mark_of_g(code_of(word), words), word.span);
+    } else if (word.letter == 'M' && is_heater_word(code_of(word), words)) {
       note(SourceMark::kHeaterWords, word.span);
     }
   }
@@ -129,31 +112,20 @@ class Marker {
 }  // namespace
 
 std::string_view describe(SourceMark mark) {
-  switch (mark) {
-    case SourceMark::kSubWords:
-      return "O words with sub, call, if, while (LinuxCNC)";
-    case SourceMark::kNamedParameters:
-      return "a named parameter (LinuxCNC)";
-    case SourceMark::kBlendTolerance:
-      return "G64 with a tolerance (LinuxCNC)";
-    case SourceMark::kUniformNurbs:
-      return "G5.2 or G5.3 (LinuxCNC)";
-    case SourceMark::kMacroFlow:
-      return "IF, GOTO, WHILE of macro B (FANUC and controls like it)";
-    case SourceMark::kHighSpeedMode:
-      return "G5.1 Q or G5 P (FANUC and controls like it)";
-    case SourceMark::kHaasSmoothness:
-      return "G187 (Haas)";
-    case SourceMark::kSuperNurbs:
-      return "G130 or G131 (Okuma)";
-    case SourceMark::kHeaterWords:
-      return "the temperature of a heater (3D printers)";
-    case SourceMark::kDollarLine:
-      return "a line that starts with $ (grbl)";
-    case SourceMark::kHashCommand:
-      return "a command such as #HSC (Beckhoff, ISG, Fagor)";
-  }
-  return "";
+  // In the order of the marks.
+  constexpr std::array<std::string_view, 11> kTexts = {
+      "O words with sub, call, if, while (LinuxCNC)",
+      "a named parameter (LinuxCNC)",
+      "G64 with a tolerance (LinuxCNC)",
+      "G5.2 or G5.3 (LinuxCNC)",
+      "IF, GOTO, WHILE of macro B (FANUC and controls like it)",
+      "G5.1 Q or G5 P (FANUC and controls like it)",
+      "G187 (Haas)",
+      "G130 or G131 (Okuma)",
+      "the temperature of a heater (3D printers)",
+      "a line that starts with $ (grbl)",
+      "a command such as #HSC (Beckhoff, ISG, Fagor)"};
+  return kTexts.at(static_cast<std::size_t>(mark));
 }
 
 std::vector<FoundMark> source_marks(const Program& program) {

@@ -1,6 +1,8 @@
 // The character classes of G-code, without the locale.
 #pragma once
 
+#include <algorithm>
+#include <string>
 #include <string_view>
 
 namespace batten::gcode {
@@ -12,6 +14,41 @@ namespace batten::gcode {
 }
 [[nodiscard]] constexpr char upper(char c) {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
+[[nodiscard]] constexpr bool is_name_character(char c) {
+  return is_letter(c) || is_digit(c) || c == '_';
+}
+
+// The character at this place; NUL behind the end.
+[[nodiscard]] constexpr char char_at(std::string_view text, std::size_t at) {
+  return at < text.size() ? text[at] : '\0';
+}
+
+[[nodiscard]] constexpr std::size_t after_blanks(std::string_view text, std::size_t at) {
+  while (is_blank(char_at(text, at))) ++at;
+  return at;
+}
+
+[[nodiscard]] constexpr std::string_view without_blanks_before(std::string_view text) {
+  return text.substr(std::min(after_blanks(text, 0), text.size()));
+}
+
+[[nodiscard]] inline std::string in_capitals(std::string_view text) {
+  std::string capitals(text);
+  std::ranges::transform(capitals, capitals.begin(), upper);
+  return capitals;
+}
+
+[[nodiscard]] inline std::string without_blanks(std::string_view text) {
+  std::string bare(text);
+  std::erase_if(bare, is_blank);
+  return bare;
+}
+
+// Whatever the case of its letters.
+[[nodiscard]] constexpr bool is_same_word(std::string_view word, std::string_view upper_case) {
+  return std::ranges::equal(word, upper_case, {}, upper);
 }
 
 // The bytes that some editors put before the first line of UTF-8.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "gcode/text/characters.h"
+
 namespace batten::gcode {
 namespace {
 
@@ -17,6 +19,13 @@ bool has_several_lines(std::string_view text) {
 }
 
 }  // namespace
+
+std::uint32_t begin_of_content(std::string_view text, const LineBounds& line) {
+  std::size_t begin = line.begin;
+  if (begin == 0 && text.starts_with(kByteOrderMark)) begin = kByteOrderMark.size();
+  begin = after_blanks(text.substr(0, line.text_end), begin);
+  return std::min(static_cast<std::uint32_t>(begin), line.text_end);
+}
 
 bool JoinedLines::holds(const LineBounds& line) {
   const bool ends_so = line.end > line.text_end && text_[line.end - 1] == '\r';

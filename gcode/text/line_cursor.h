@@ -65,6 +65,9 @@ class LineCursor {
   std::size_t next_return_ = kNotSearched;
 };
 
+// Where a line begins, without the bytes that some editors put before the first one, and blanks.
+[[nodiscard]] std::uint32_t begin_of_content(std::string_view text, const LineBounds& line);
+
 // Lines that controls read in two ways. A CR that no LF follows ends a line for grbl and is left
 // out by LinuxCNC, which then reads the words on both sides of it as one block.
 

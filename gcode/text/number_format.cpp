@@ -14,75 +14,6 @@ namespace {
 
 constexpr int kMostDecimals = 9;
 
-// A double has at most 17 significant digits in its shortest decimal.
-constexpr std::size_t kMostDigits = 17;
-
-// The decimal d0.d1d2.. times ten to the exponent.
-struct Decimal {
-  std::array<char, kMostDigits> digits{};
-  int count = 0;
-  int exponent = 0;
-  bool negative = false;
-
-  [[nodiscard]] char digit(int index) const {
-    return index >= 0 && index < count ? digits[static_cast<std::size_t>(index)] : '0';
-  }
-};
-
-// The shortest decimal that stands for this double and no other.
-Decimal shortest_decimal(double value) {
-  std::array<char, 32> text{};  // sign, 17 digits, point, e-308
-  const auto written =
-      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific);
-  Decimal decimal;
-  const char* at = text.data();
-  if (*at == '-') {
-    decimal.negative = true;
-    ++at;
-  }
-  for (; at != written.ptr && *at != 'e'; ++at) {
-    if (*at != '.') {
-      decimal.digits[static_cast<std::size_t>(decimal.count++)] = *at;
-    }
-  }
-  ++at;              // the e
-  if (*at == '+') {  // from_chars takes no plus
-    ++at;
-  }
-  std::from_chars(at, written.ptr, decimal.exponent);
-  return decimal;
-}
-
-// Adds one to the last of the first `keep` digits.
-void carry(Decimal& decimal, int keep) {
-  int index = keep - 1;
-  for (; index >= 0; --index) {
-    char& digit = decimal.digits[static_cast<std::size_t>(index)];
-    if (digit != '9') {
-      ++digit;
-      return;
-    }
-    digit = '0';
-  }
-  // All nines (or no digit was kept): the number is the next power of ten.
-  decimal.digits[0] = '1';
-  decimal.count = 1;
-  ++decimal.exponent;
-}
-
-// Half away from zero, to so many digits after the point.
-void round_to(Decimal& decimal, int decimals) {
-  const int keep = decimal.exponent + 1 + decimals;
-  if (keep >= decimal.count) {
-    return;
-  }
-  const bool up = decimal.digit(keep) >= '5';
-  decimal.count = keep > 0 ? keep : 0;
-  if (up) {
-    carry(decimal, keep);
-  }
-}
-
 void check(double value, int decimals) {
   if (!(std::abs(value) < kNumberLimit)) {
     throw std::invalid_argument("number_format: " + std::to_string(value) +
@@ -94,65 +25,29 @@ void check(double value, int decimals) {
   }
 }
 
-bool is_zero(const Decimal& decimal) {
-  for (int i = 0; i < decimal.count; ++i) {
-    if (decimal.digit(i) != '0') {
-      return false;
-    }
+// The shortest decimal that stands for this double and no other, with so many digits behind the
+// point: half goes away from zero.
+std::string rounded_decimal(double size, int decimals) {
+  std::array<char, 400> shortest{};  // the least double has 324 digits behind the point
+  const auto written = std::to_chars(shortest.data(), shortest.data() + shortest.size(), size,
+                                     std::chars_format::fixed);
+  std::string text(shortest.data(), written.ptr);
+  if (text.find('.') == std::string::npos) text += '.';
+  const std::size_t end = text.find('.') + 1 + static_cast<std::size_t>(decimals);
+  bool up = text.size() > end && text[end] >= '5';
+  text.resize(end, '0');
+  for (std::size_t i = end; up && i-- > 0;) {
+    if (text[i] == '.') continue;
+    up = text[i] == '9';
+    text[i] = up ? '0' : static_cast<char>(text[i] + 1);
   }
-  return true;
-}
-
-// How many digits after the point are written: all that are asked for, or up to the last
-// that is not zero.
-int fraction_digits(const Decimal& decimal, const NumberFormat& format) {
-  if (format.trailing_zeros) {
-    return format.decimals;
-  }
-  int last = format.decimals;
-  while (last > 0 && decimal.digit(decimal.exponent + last) == '0') {
-    --last;
-  }
-  return last;
+  return up ? "1" + text : text;
 }
 
 // Ten to the power of 0 .. 22: exact as doubles, so one division rounds once, correctly.
 constexpr std::array<double, 23> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                                  1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                                  1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-
-// The size of a number in steps of its last decimal, where it is plain: not great, and not so near
-// to the middle of two steps that the double and its shortest decimal might be rounded apart.
-std::optional<std::uint32_t> plain_steps(double value, int decimals) {
-  constexpr double kMostSteps = 1e9;  // of which a double and its decimal hold 1e-7
-  constexpr double kNearMiddle = 1e-5;
-  const double steps = std::abs(value) * kPowersOfTen[static_cast<std::size_t>(decimals)];
-  if (!(steps < kMostSteps)) return std::nullopt;
-  const auto below = static_cast<std::uint32_t>(steps);
-  const double part = steps - below;
-  if (std::abs(part - 0.5) < kNearMiddle) return std::nullopt;
-  return part > 0.5 ? below + 1 : below;
-}
-
-void append_steps(std::string& out, bool negative, std::uint32_t steps,
-                  const NumberFormat& format) {
-  std::array<char, 16> text{};
-  auto at = text.end();
-  int fraction = format.decimals;
-  bool said = format.trailing_zeros;
-  for (; fraction > 0; --fraction, steps /= 10) {
-    const auto digit = static_cast<char>(steps % 10);
-    said = said || digit != 0;
-    if (said) *--at = static_cast<char>('0' + digit);
-  }
-  if (at != text.end() || format.always_point) *--at = '.';
-  do {
-    *--at = static_cast<char>('0' + steps % 10);
-    steps /= 10;
-  } while (steps > 0);
-  if (negative) *--at = '-';
-  out.append(at, text.end());
-}
 
 // Digits and point of a number.
 struct Scan {
@@ -166,37 +61,14 @@ struct Scan {
 };
 
 // Fifteen digits are below 2^53, below which every integer is a double.
-constexpr int kExactDigits = 15;
+constexpr std::size_t kExactDigits = 15;
 
-// The way of nearly all numbers: few digits and no blanks between them. False when the number
-// is of another kind; `scan` is of no use then.
-bool scan_plain_digits(std::string_view text, std::size_t at, Scan& scan) {
-  std::uint64_t mantissa = 0;
-  const std::size_t begin = at;
-  while (at < text.size() && is_digit(text[at])) {
-    mantissa = mantissa * 10 + static_cast<std::uint64_t>(text[at++] - '0');
+// Behind the digits that stand there. The mantissa is of no use where they are too many.
+const char* behind_digits(const char* at, const char* end, std::uint64_t& mantissa) {
+  for (; at != end && is_digit(*at); ++at) {
+    mantissa = mantissa * 10 + static_cast<std::uint64_t>(*at - '0');
   }
-  std::size_t digits = at - begin;
-  if (at < text.size() && text[at] == '.') {
-    scan.has_point = true;
-    const std::size_t fraction = ++at;
-    while (at < text.size() && is_digit(text[at])) {
-      mantissa = mantissa * 10 + static_cast<std::uint64_t>(text[at++] - '0');
-    }
-    scan.decimals = static_cast<int>(at - fraction);
-    digits += at - fraction;
-  }
-  scan.mantissa = mantissa;
-  scan.digits = static_cast<int>(digits);
-  scan.end = at;
-  std::size_t following = at;
-  while (following < text.size() && is_blank(text[following])) {
-    ++following;
-  }
-  // Behind blanks the same number may go on.
-  const bool goes_on = following > at && following < text.size() &&
-                       (is_digit(text[following]) || text[following] == '.');
-  return digits > 0 && digits <= kExactDigits && !goes_on;
+  return at;
 }
 
 Scan scan_digits(std::string_view text, std::size_t at) {
@@ -229,13 +101,7 @@ Scan scan_digits(std::string_view text, std::size_t at) {
 
 // The value of more digits than a double holds. Nothing when it is too great for a double.
 std::optional<double> value_of_many_digits(std::string_view digits, bool whole_part) {
-  std::string plain;
-  plain.reserve(digits.size());
-  for (const char c : digits) {
-    if (!is_blank(c)) {
-      plain.push_back(c);
-    }
-  }
+  const std::string plain = without_blanks(digits);
   double value = 0;
   const auto result =
       std::from_chars(plain.data(), plain.data() + plain.size(), value, std::chars_format::fixed);
@@ -258,31 +124,14 @@ std::optional<double> value_of(const Scan& scan, std::string_view digits) {
 
 void append_number(std::string& out, double value, const NumberFormat& format) {
   check(value, format.decimals);
-  if (const auto steps = plain_steps(value, format.decimals)) {
-    append_steps(out, value < 0 && *steps > 0, *steps, format);
-    return;
+  std::string text = rounded_decimal(std::abs(value), format.decimals);
+  if (!format.trailing_zeros) {
+    while (text.back() == '0') text.pop_back();  // up to the point
   }
-  Decimal decimal = shortest_decimal(value);
-  round_to(decimal, format.decimals);
-  if (is_zero(decimal)) {
-    decimal = Decimal{};
-  }
-  if (decimal.negative) {
-    out.push_back('-');
-  }
-  if (decimal.exponent < 0) {
-    out.push_back('0');
-  }
-  for (int i = 0; i <= decimal.exponent; ++i) {
-    out.push_back(decimal.digit(i));
-  }
-  const int fraction = fraction_digits(decimal, format);
-  if (fraction > 0 || format.always_point) {
-    out.push_back('.');
-  }
-  for (int i = 1; i <= fraction; ++i) {
-    out.push_back(decimal.digit(decimal.exponent + i));
-  }
+  if (text.back() == '.' && !format.always_point) text.pop_back();
+  const bool is_zero = text.find_first_of("123456789") == std::string::npos;
+  if (value < 0 && !is_zero) out += '-';
+  out += text;
 }
 
 std::string to_text(double value, const NumberFormat& format) {
@@ -296,41 +145,50 @@ double rounded(double value, int decimals) {
   return scan_number(text)->number.value;
 }
 
+const char* read_plain_number(const char* at, const char* end, ReadNumber& number) {
+  const bool negative = at != end && *at == '-';
+  if (negative || (at != end && *at == '+')) ++at;
+  std::uint64_t mantissa = 0;
+  const char* behind = behind_digits(at, end, mantissa);
+  auto digits = static_cast<std::size_t>(behind - at);
+  number.decimals = 0;
+  number.has_point = behind != end && *behind == '.';
+  if (number.has_point) {
+    const char* const fraction = behind + 1;
+    behind = behind_digits(fraction, end, mantissa);
+    number.decimals = static_cast<int>(behind - fraction);
+    digits += static_cast<std::size_t>(number.decimals);
+  }
+  if (digits == 0 || digits > kExactDigits) return nullptr;
+  const double size =
+      static_cast<double>(mantissa) / kPowersOfTen[static_cast<std::size_t>(number.decimals)];
+  number.value = negative && mantissa != 0 ? -size : size;  // -0 is read as 0
+  return size < kNumberLimit ? behind : nullptr;
+}
+
 std::optional<ScannedNumber> scan_number(std::string_view text) {
-  std::size_t at = 0;
-  while (at < text.size() && is_blank(text[at])) {
-    ++at;
+  std::size_t at = after_blanks(text, 0);
+  ReadNumber plain;
+  if (const char* const behind =
+          read_plain_number(text.data() + at, text.data() + text.size(), plain)) {
+    // Behind blanks the same number may go on.
+    const auto length = static_cast<std::size_t>(behind - text.data());
+    const char next = char_at(text, after_blanks(text, length));
+    if (!is_digit(next) && next != '.') return ScannedNumber{plain, length};
   }
-  const bool negative = at < text.size() && text[at] == '-';
-  if (negative || (at < text.size() && text[at] == '+')) {
-    ++at;
-  }
-  Scan scan;
-  if (!scan_plain_digits(text, at, scan)) {
-    scan = scan_digits(text, at);
-  }
-  if (scan.digits == 0) {
-    return std::nullopt;
-  }
+  const bool negative = char_at(text, at) == '-';
+  if (negative || char_at(text, at) == '+') ++at;
+  const Scan scan = scan_digits(text, at);
+  if (scan.digits == 0) return std::nullopt;
   const std::optional<double> magnitude = value_of(scan, text.substr(at, scan.end - at));
-  if (!magnitude) {
-    return std::nullopt;
-  }
-  // -0 is read as 0, so that equal places compare equal bit by bit.
+  if (!magnitude) return std::nullopt;
   const double value = negative && *magnitude != 0 ? -*magnitude : *magnitude;
   return ScannedNumber{{value, scan.decimals, scan.has_point}, scan.end};
 }
 
 std::optional<ReadNumber> read_number(std::string_view text) {
   const std::optional<ScannedNumber> scanned = scan_number(text);
-  if (!scanned) {
-    return std::nullopt;
-  }
-  for (const char c : text.substr(scanned->length)) {
-    if (!is_blank(c)) {
-      return std::nullopt;
-    }
-  }
+  if (!scanned || after_blanks(text, scanned->length) < text.size()) return std::nullopt;
   return scanned->number;
 }
 

@@ -40,7 +40,9 @@ struct ScannedNumber {
 };
 [[nodiscard]] std::optional<ScannedNumber> scan_number(std::string_view text);
 
-// How great a number a program may hold.
+// The way of nearly all numbers: a sign, at most fifteen digits without blanks, a point; below
+// kNumberLimit. Gives the place behind it; nullptr, and `number` is of no use, for others.
+[[nodiscard]] const char* read_plain_number(const char* at, const char* end, ReadNumber& number);
 
 // No control takes numbers as great as this, and none that we write is.
 inline constexpr double kNumberLimit = 1e9;

@@ -14,34 +14,15 @@
 
 #include "gcode/reading/source_kind.h"
 #include "gcode/rs274/plain_words.h"
+#include "gcode/state/code_table.h"
 #include "gcode/state/dwell.h"
 #include "gcode/state/source_marks.h"
 #include "postproc/convert/portable_words.h"
-#include "postproc/options/profile_words.h"
 
 namespace batten::postproc {
 namespace {
 
-// In tenths. The same on every control of the family that takes them at all.
-constexpr std::array kCommonG = {0,   10,  20,  30,  170, 180, 190, 200, 210, 400, 430,
-                                 490, 540, 550, 560, 570, 580, 590, 800, 900, 910, 940};
-constexpr std::array kCommonM = {0, 10, 20, 30, 40, 50, 60, 80, 90, 300};
 constexpr std::string_view kCommonLetters = "NXYZIJKRFST";
-
-bool is_motion(int g_code) { return g_code >= 0 && g_code <= 30; }
-
-gcode::Plane plane_of(int g_code) {
-  switch (g_code) {
-    case 170:
-      return gcode::Plane::kXY;
-    case 180:
-      return gcode::Plane::kZX;
-    case 190:
-      return gcode::Plane::kYZ;
-    default:
-      return gcode::Plane::kUnknown;
-  }
-}
 
 class BlockCheck {
  public:
@@ -91,14 +72,18 @@ class BlockCheck {
 
   std::string why_not(const gcode::Word& word, std::span<const gcode::Word> words) const {
     if (!word.is_number) return "has no plain number";
-    if (refuses_word(target_, word.letter, tenths_of(word))) return "is not taken there";
+    if (refuses_word(target_, word.letter, gcode::code_of(word))) return "is not taken there";
     switch (word.letter) {
       case 'G':
-        return why_not_g(tenths_of(word));
+        return why_not_g(gcode::code_of(word));
       case 'M':
-        return is_in(kCommonM, tenths_of(word)) ? "" : "may mean something else there";
+        return gcode::row_of_m(gcode::code_of(word)).is(gcode::trait::kCommon)
+                   ? ""
+                   : "may mean something else there";
       case 'H':
-        return has_g(words, 430) ? "" : "may mean something else there";
+        return coded_word(words, 'G', word_code::kToolLengthOn) != nullptr
+                   ? ""
+                   : "may mean something else there";
       case 'I':
       case 'J':
       case 'K':
@@ -114,21 +99,11 @@ class BlockCheck {
     if (const std::string_view meaning = other_meaning(target_, code); !meaning.empty()) {
       return std::string(meaning);
     }
-    if (!is_in(kCommonG, code)) return "may mean something else there";
-    const gcode::Plane plane = plane_of(code);
-    const bool wrong_plane = plane != gcode::Plane::kUnknown && !takes_arcs_in(target_, plane);
+    const gcode::CodeRow& row = gcode::row_of_g(code);
+    if (!row.is(gcode::trait::kCommon)) return "may mean something else there";
+    const bool wrong_plane = row.group == gcode::CodeGroup::kPlane &&
+                             !takes_arcs_in(target_, row.value.as<gcode::Plane>());
     return wrong_plane ? "is no plane of arcs there" : "";
-  }
-
-  template <std::size_t count>
-  static bool is_in(const std::array<int, count>& codes, int code) {
-    return std::ranges::find(codes, code) != codes.end();
-  }
-
-  static bool has_g(std::span<const gcode::Word> words, int code) {
-    return std::ranges::any_of(words, [code](const gcode::Word& word) {
-      return word.letter == 'G' && tenths_of(word) == code;
-    });
   }
 
   static bool moves_without_saying_how(std::span<const gcode::Word> words) {
@@ -136,7 +111,8 @@ class BlockCheck {
     bool says_how = false;
     for (const gcode::Word& word : words) {
       moves = moves || (word.letter >= 'X' && word.letter <= 'Z');
-      says_how = says_how || (word.letter == 'G' && is_motion(tenths_of(word)));
+      says_how = says_how ||
+                 (word.letter == 'G' && gcode::row_of_g(gcode::code_of(word)).is_plain_motion());
     }
     return moves && !says_how;
   }

@@ -5,6 +5,7 @@
 
 #include "gcode/klartext/statement.h"
 #include "gcode/state/dwell.h"
+#include "gcode/text/characters.h"
 #include "gcode/text/number_format.h"
 
 namespace batten::postproc {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "postproc/options/profile_words.h"
+#include "gcode/state/code_table.h"
 
 namespace batten::postproc {
 namespace {
@@ -11,27 +11,21 @@ namespace {
 using gcode::Language;
 using gcode::Word;
 
-constexpr std::array kSilentCodes = {0,   10,  20,  30,  170, 180, 190, 200, 210, 400, 700,
-                                     710, 800, 900, 901, 910, 911, 940, 970, 980, 990};
-constexpr std::array kCertainFunctions = {0, 10, 20, 30, 40, 50, 60, 80, 90, 300};
 // M3 and M4, each with M8.
 constexpr std::array kKlartextFunctions = {130, 140};
 constexpr std::string_view kCertainLetters = "NGMXYZIJKRFSTH";
 
-template <std::size_t count>
-bool holds(const std::array<int, count>& codes, int code) {
-  return std::ranges::find(codes, code) != codes.end();
-}
-
 }  // namespace
 
-bool is_silent_code(int code) { return holds(kSilentCodes, code); }
-
-bool names_work_offset(int code) { return code >= 540 && code <= 590 && code % 10 == 0; }
+bool names_work_offset(int code) {
+  const gcode::CodeRow& row = gcode::row_of_g(code);
+  return row.group == gcode::CodeGroup::kWorkOffset && row.is(gcode::trait::kCommon);
+}
 
 bool is_certain_function(int code, Language language) {
-  return holds(kCertainFunctions, code) ||
-         (language == Language::kKlartext && holds(kKlartextFunctions, code));
+  return gcode::row_of_m(code).is(gcode::trait::kCommon) ||
+         (language == Language::kKlartext &&
+          std::ranges::find(kKlartextFunctions, code) != kKlartextFunctions.end());
 }
 
 bool is_certain_letter(char letter, Language language) {
@@ -54,7 +48,7 @@ const Word* first_word(std::span<const Word> words, char letter) {
 
 const Word* coded_word(std::span<const Word> words, char letter, int code) {
   const auto found = std::ranges::find_if(words, [&](const Word& word) {
-    return word.letter == letter && word.is_number && tenths_of(word) == code;
+    return word.letter == letter && gcode::code_of(word) == code;
   });
   return found == words.end() ? nullptr : &*found;
 }

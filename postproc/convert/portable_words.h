@@ -20,10 +20,6 @@ inline constexpr int kToolChange = 60;
 inline constexpr int kDwell = 40;
 }  // namespace word_code
 
-// G words that only say how others are read, which the interpreter has followed, or that end what
-// was refused where it began. `code` in tenths.
-[[nodiscard]] bool is_silent_code(int code);
-
 // G54 to G59.
 [[nodiscard]] bool names_work_offset(int code);
 

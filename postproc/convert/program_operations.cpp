@@ -15,7 +15,6 @@
 #include "gcode/state/dwell.h"
 #include "postproc/convert/klartext_statements.h"
 #include "postproc/convert/portable_words.h"
-#include "postproc/options/profile_words.h"
 
 namespace batten::postproc {
 namespace {
@@ -277,9 +276,9 @@ class OperationReader {
     if (!word.is_number) return "has no plain number";
     switch (word.letter) {
       case 'G':
-        return why_not_g(tenths_of(word), words);
+        return why_not_g(gcode::code_of(word), words);
       case 'M':
-        return is_certain_function(tenths_of(word), program_.language)
+        return is_certain_function(gcode::code_of(word), program_.language)
                    ? ""
                    : "may mean something else there";
       case 'H':
@@ -306,11 +305,14 @@ class OperationReader {
   }
 
   [[nodiscard]] std::string why_not_g(int code, std::span<const Word> words) const {
-    if (is_silent_code(code)) return {};
+    const gcode::CodeRow& row = gcode::row_of_g(code);
+    if (row.is(gcode::trait::kSilent)) return {};
     if (names_work_offset(code)) return why_not_work_offset(code);
     if (code == word_code::kToolLengthOn) return std::string(tool_.why_not_length(words));
     if (code == word_code::kToolLengthOff) return {};
-    if (code == 410 || code == 420) return "moves beside the path by the radius of the tool";
+    // G41 and G42; G41.1 is a word of some controls alone.
+    if (row.group == gcode::CodeGroup::kCutter && code % 10 == 0)
+      return "moves beside the path by the radius of the tool";
     if (code == word_code::kBlending) {
       const bool plain = std::ranges::none_of(words, [](const Word& word) {
         return std::string_view("PQRL").find(word.letter) != std::string_view::npos;
@@ -438,7 +440,7 @@ class OperationReader {
   }
 
   void add_g(const Word& word) {
-    const int code = tenths_of(word);
+    const int code = gcode::code_of(word);
     if (code == word_code::kToolLengthOff) tool_.leave_length(word.span);
     if (code == word_code::kToolLengthOn) count_length(word.span);
     if (code == word_code::kBlending) (void)add(OperationKind::kBlending, word.span);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 
 #include "gcode/reading/parser.h"
@@ -47,14 +46,14 @@ constexpr std::string_view kAllowed =
     "#HSC ..) or an M word from M100 on";
 
 const SettingWord* setting_word(const gcode::Word& word) {
-  const auto found = std::ranges::find(kSettingWords, tenths_of(word), &SettingWord::g_code);
+  const auto found = std::ranges::find(kSettingWords, gcode::code_of(word), &SettingWord::g_code);
   return found == kSettingWords.end() ? nullptr : &*found;
 }
 
 // M words below 100 stop, turn spindles, change tools and coolant on every control; of those above,
 // the ones that are known to change where the tool is.
 bool is_free_m(const gcode::Word& word) {
-  const int code = tenths_of(word);
+  const int code = gcode::code_of(word);
   return code >= 1000 && code != 1280 && code != 1290 && code != 1980;
 }
 
@@ -159,7 +158,7 @@ void append_keys(const std::string& line, std::vector<SettingKey>& keys) {
   if (block.opacity == gcode::ParseStatus::kNone) {
     for (const gcode::Word& word : program.words_of(block)) {
       if (word.letter == 'G' || word.letter == 'M')
-        keys.push_back({word.letter, tenths_of(word), {}});
+        keys.push_back({word.letter, gcode::code_of(word), {}});
     }
   } else if (line.starts_with(kCycle32)) {
     keys.push_back({0, 0, std::string(kCycle32)});
@@ -213,15 +212,6 @@ std::string why_not_in_profile(const std::string& line, const gcode::Control& ta
                      block.word_count > 0 && !block.block_delete && !block.has_checksum;
   if (plain ? is_setting(program.words_of(block)) : is_own_word(filled, target)) return {};
   return std::string(kAllowed);
-}
-
-int tenths_of(const gcode::Word& word) {
-  const double tenths = word.value * 10;
-  constexpr double kNoise = 1e-6;  // 38.2 * 10 is not 382
-  constexpr double kMost = 1e5;
-  if (!word.is_number || tenths < 0 || tenths > kMost) return -1;
-  const double whole = std::round(tenths);
-  return std::abs(tenths - whole) < kNoise ? static_cast<int>(whole) : -1;
 }
 
 std::vector<SettingKey> setting_keys(const ProfileWords& words) {

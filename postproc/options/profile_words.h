@@ -47,9 +47,6 @@ struct SettingKey {
 };
 [[nodiscard]] std::vector<SettingKey> setting_keys(const ProfileWords& words);
 
-// A word's number in tenths: G5.1 is 51, M200 is 2000; -1 where it is no code.
-[[nodiscard]] int tenths_of(const gcode::Word& word);
-
 // With the tolerance put in, printed with up to six decimals in these units.
 [[nodiscard]] ProfileWords filled_in(const ProfileWords& words, double tolerance_mm,
                                      gcode::Units units, const gcode::Control& target);

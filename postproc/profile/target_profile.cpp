@@ -490,7 +490,7 @@ void tell_of_other_meanings(const gcode::Program& program, const gcode::Control&
   std::vector<int> told;
   for (const gcode::Word& word : program.words) {
     if (word.letter != 'G' || !word.is_number) continue;
-    const int code = tenths_of(word);
+    const int code = gcode::code_of(word);
     const std::string_view meaning = other_meaning(target, code);
     if (meaning.empty() || std::ranges::find(told, code) != told.end()) continue;
     told.push_back(code);

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "gcode/state/code_groups.h"
+#include "gcode/state/code_table.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
 
@@ -22,15 +22,6 @@ using gcode::MotionKind;
 using gcode::TriState;
 using gcode::Word;
 namespace reason = gcode::reason;
-
-// Codes are kept in tenths; a word with more decimals is none of ours.
-std::optional<Code> code_of(const Word& word) {
-  const double tenths = word.value * 10;
-  const double rounded = std::round(tenths);
-  constexpr double kDecimalNoise = 1e-6;  // 38.2 * 10 is not 382
-  if (std::abs(tenths - rounded) > kDecimalNoise || rounded < 0 || rounded > 1e6) return {};
-  return static_cast<Code>(rounded);
-}
 
 // "G 1" is G1 and "g1" too: blanks and case mean nothing inside a word.
 void append_word(std::string& text, std::string_view word) {
@@ -247,29 +238,10 @@ class Lister {
       case 'K':
       case 'R':
         return moves;
-      case 'G': {
-        const std::optional<Code> code = code_of(word);
-        return code && g_can_stand_alone(*code);
-      }
+      case 'G':
+        return gcode::row_of_g(gcode::code_of(word)).is(gcode::trait::kStandsAlone);
       default:
         return false;
-    }
-  }
-
-  static bool g_can_stand_alone(Code code) {
-    switch (gcode::group_of_g(code)) {
-      case CodeGroup::kUnknown:
-      case CodeGroup::kNone:
-      case CodeGroup::kAxisUser:
-      case CodeGroup::kModalMacro:
-      case CodeGroup::kSmoothing:
-        return false;
-      case CodeGroup::kMotion:
-        return code <= 30;  // G0 G1 G2 G3
-      case CodeGroup::kPath:
-        return code != 620 && code != 630;  // G62, G63: a tapping move on some controls
-      default:
-        return true;
     }
   }
 
@@ -295,38 +267,27 @@ class Lister {
   }
 
   void list_g(const Word& word, bool moves) {
-    const Code code = *code_of(word);
-    const CodeGroup group = gcode::group_of_g(code);
-    if (group == CodeGroup::kMotion) {
+    const gcode::CodeRow& row = gcode::row_of_g(gcode::code_of(word));
+    if (row.group == CodeGroup::kMotion) {
       // To nowhere: controls refuse an arc, or run it, and refuse a cut before the first feed.
-      constexpr Code kLine = 10;
-      if (!moves && (code > kLine || (code == kLine && !state_after().feed))) {
-        add_word(word, moves);
-      }
+      const auto mode = row.value.as<gcode::MotionMode>();
+      const bool cut_without_feed = mode == gcode::MotionMode::kLine && !state_after().feed;
+      if (!moves && (gcode::is_arc(mode) || cut_without_feed)) add_word(word, moves);
       return;
     }
-    Code& set = set_by_word_[static_cast<std::size_t>(group)];
-    const bool repeats = set == code && !acts_each_time(code, group);
-    set = code;
-    if (repeats || group == CodeGroup::kPlane || group == CodeGroup::kArcDistance) return;
+    Code& set = set_by_word_[static_cast<std::size_t>(row.group)];
+    const bool repeats = set == row.code && !row.is(gcode::trait::kActsEachTime);
+    set = row.code;
+    if (repeats || row.group == CodeGroup::kPlane || row.group == CodeGroup::kArcDistance) return;
     add_word(word, moves);
-  }
-
-  // What such a word does hangs on more than the word: the tool in the spindle (G43), offsets that
-  // were changed (G54), words beside it or their absence (G64 ends the tolerance of G64 P0.01).
-  static bool acts_each_time(Code code, CodeGroup group) {
-    constexpr Code kBlending = 640;
-    return group == CodeGroup::kCycleEnd || group == CodeGroup::kToolLength ||
-           group == CodeGroup::kWorkOffset || group == CodeGroup::kFeedMode || code == kBlending;
   }
 
   // A block that stands as text sets modes too.
   void remember_words(const Block& block) {
     for (const Word& word : program_.words_of(block)) {
-      if (word.letter != 'G' || !word.is_number) continue;
-      if (const std::optional<Code> code = code_of(word)) {
-        set_by_word_[static_cast<std::size_t>(gcode::group_of_g(*code))] = *code;
-      }
+      if (word.letter != 'G') continue;
+      const gcode::CodeRow& row = gcode::row_of_g(gcode::code_of(word));
+      set_by_word_[static_cast<std::size_t>(row.group)] = row.code;
     }
   }
 

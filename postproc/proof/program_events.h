@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/state/code_groups.h"
+#include "gcode/state/code_table.h"
 #include "gcode/state/motion.h"
 #include "gcode/text/program.h"
 #include "geometry/basic/point.h"

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "gcode/state/block_words.h"
-#include "gcode/state/code_groups.h"
 #include "gcode/state/reason.h"
 #include "gcode/text/large_pages.h"
 #include "geometry/basic/rounding.h"
@@ -380,14 +379,12 @@ RunBlocks::Heading RunBlocks::heading(std::uint32_t block) const {
 
 bool RunBlocks::names_motion(std::uint32_t block) const {
   const gcode::BlockWords words(program_.words_of(program_.blocks[block]));
-  return std::ranges::any_of(words.g_codes(), [](gcode::Code code) {
-    return gcode::group_of_g(code) == gcode::CodeGroup::kMotion;
-  });
+  return words.has_group(gcode::CodeGroup::kMotion);
 }
 
 bool RunBlocks::lends_arc_word(std::uint32_t block) const {
   const MotionMode mode = read_.states[read_.blocks[block].state_after].motion;
-  if (mode != MotionMode::kClockwise && mode != MotionMode::kCounterclockwise) return false;
+  if (!gcode::is_arc(mode)) return false;
   for (std::uint32_t i = block + 1; i < read_.blocks.size(); ++i) {
     if (read_.blocks[i].kind == gcode::BlockKind::kEmpty) continue;
     if (names_motion(i)) return false;

@@ -33,7 +33,7 @@ bool has_key(const gcode::Program& program, const gcode::Block& block, const Set
     return !plain && contains_ignoring_case(program.source.text(block.span), key.name);
   }
   return std::ranges::any_of(program.words_of(block), [&](const gcode::Word& word) {
-    return word.letter == key.letter && tenths_of(word) == key.code;
+    return word.letter == key.letter && gcode::code_of(word) == key.code;
   });
 }
 

@@ -97,10 +97,6 @@ DwellUnit dwell_unit_of(const gcode::Control* target, const Machine& machine) {
   return machine.model == ControllerModel::kLookAhead ? DwellUnit::kByPoint : DwellUnit::kSeconds;
 }
 
-bool is_drilling_cycle(gcode::Code code) {
-  return code == 730 || code == 890 || (code >= 810 && code <= 860);
-}
-
 void DrillingCycle::read(const gcode::BlockWords& words, const gcode::ModalState& state,
                          std::optional<double> dwell) {
   read_into(z_, words.find('Z'), state);
@@ -112,7 +108,7 @@ void DrillingCycle::read(const gcode::BlockWords& words, const gcode::ModalState
 std::optional<std::vector<CycleMove>> DrillingCycle::moves(const gcode::BlockWords& words,
                                                            const gcode::ModalState& state,
                                                            const Point3& from) const {
-  const bool pecks = code_ == 730 || code_ == 830;
+  const bool pecks = row_->is(gcode::trait::kPecks);
   if (!z_ || !r_ || (pecks && !(peck_ && *peck_ > 0))) return std::nullopt;
   const bool incremental = state.distance == gcode::DistanceMode::kIncremental;
   const double r = incremental ? initial_z_ + *r_ : *r_;
@@ -135,15 +131,14 @@ std::optional<std::vector<CycleMove>> DrillingCycle::moves(const gcode::BlockWor
     hole.to(StepKind::kRapid, {step('X', hole.at().x()), step('Y', hole.at().y()), hole.at().z()});
     hole.to_z(StepKind::kRapid, r);
     if (pecks) {
-      peck(hole, r, bottom, *peck_, code_ == 830);
+      peck(hole, r, bottom, *peck_, row_->is(gcode::trait::kClearsHole));
     } else {
       hole.to_z(StepKind::kCut, bottom);
     }
-    if (code_ == 820 || code_ == 860 || code_ == 890) hole.dwell(dwell_);
-    const bool feeds_out = code_ == 840 || code_ == 850 || code_ == 890;
-    if (feeds_out) hole.to_z(StepKind::kCut, r);
+    if (row_->is(gcode::trait::kDwellsBelow)) hole.dwell(dwell_);
+    if (row_->is(gcode::trait::kFeedsOut)) hole.to_z(StepKind::kCut, r);
     hole.to_z(StepKind::kRapid, returns_to_initial_ ? std::max(initial_z_, r) : r);
-    if (code_ == 860) hole.start_spindle();
+    if (row_->is(gcode::trait::kStopsSpindle)) hole.start_spindle();
   }
   return moves;
 }

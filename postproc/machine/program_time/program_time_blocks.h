@@ -46,8 +46,6 @@ struct DwellTime {
 
 // --- canned cycles -----------------------------------------------------------------------------
 
-[[nodiscard]] bool is_drilling_cycle(gcode::Code code);
-
 struct CycleMove {
   StepKind kind = StepKind::kCut;  // kCut, kRapid, kDwell, kSpindle
   geometry::Line line;             // kCut, kRapid; may have no length
@@ -57,16 +55,14 @@ struct CycleMove {
 // The words of a cycle that stay for its later holes, in mm as programmed.
 class DrillingCycle {
  public:
-  explicit DrillingCycle(gcode::Code code, double initial_z) : code_(code), initial_z_(initial_z) {}
-
-  [[nodiscard]] gcode::Code code() const { return code_; }
+  DrillingCycle(const gcode::CodeRow& row, double initial_z) : row_(&row), initial_z_(initial_z) {}
 
   // `dwell` is what the P of this block means in seconds, where it stands.
   void read(const gcode::BlockWords& words, const gcode::ModalState& state,
             std::optional<double> dwell);
   // G98: back to the height at the start of the cycle; G99: to R.
   void set_return_to_initial(bool initial) { returns_to_initial_ = initial; }
-  void change_code(gcode::Code code) { code_ = code; }
+  void change(const gcode::CodeRow& row) { row_ = &row; }
 
   // The moves of one block from `from`: L (or K) times the hole. Nothing where Z or R was never
   // given, a peck has no depth, or the bottom is not below R.
@@ -75,7 +71,7 @@ class DrillingCycle {
                                                             const geometry::Point3& from) const;
 
  private:
-  gcode::Code code_;
+  const gcode::CodeRow* row_;  // of the table
   double initial_z_;
   bool returns_to_initial_ = true;
   std::optional<double> z_;

@@ -16,6 +16,8 @@ namespace {
 using gcode::BlockKind;
 using gcode::BlockWords;
 using gcode::Code;
+using gcode::CodeAct;
+using gcode::CodeGroup;
 using gcode::ModalState;
 using gcode::PathMode;
 using gcode::TriState;
@@ -141,30 +143,17 @@ class StepReader {
   }
 
   void read_m(Code code) {
-    switch (code / 10) {
-      case 3:
-      case 4:
+    switch (gcode::row_of_m(code).act) {
+      case CodeAct::kSpindleOn:
         return add_wait(StepKind::kSpindle, 0);
-      case 6:
+      case CodeAct::kChangesTool:
         return change_tool(selected_);
-      case 0:  // at the end of the block
-      case 1:
-      case 2:
-      case 30:
-      case 60:
-      case 48:  // override switches
-      case 49:
-      case 97:  // calls: said with their own reason
-      case 98:
-      case 99:
-      case 198:
+      case CodeAct::kStops:  // at the end of the block
+      case CodeAct::kEnds:
+      case CodeAct::kOverride:
+      case CodeAct::kCalls:  // said with their own reason
         return;
-      case 5:
-      case 7:
-      case 8:
-      case 9:
-      case 19:
-      case 61:
+      case CodeAct::kSwitches:
         return add_rest();
       default:
         note(reason::kMiscFunction);
@@ -173,20 +162,14 @@ class StepReader {
   }
 
   void read_late_m(Code code) {
-    switch (code / 10) {
-      case 0:
-      case 1:
-      case 60:
+    switch (gcode::row_of_m(code).act) {
+      case CodeAct::kStops:
         note(not_timed::kOperatorStop);
         return add_rest();
-      case 2:
-      case 30:
+      case CodeAct::kEnds:
         ended_ = true;
         return;
-      case 97:
-      case 98:
-      case 99:
-      case 198:
+      case CodeAct::kCalls:
         note(reason::kSubprogram);
         place_.forget();
         return add_rest();
@@ -196,65 +179,50 @@ class StepReader {
   }
 
   void read_g(Code code, const BlockWords& words) {
-    switch (code) {
-      case 40:
-        return add_dwell(words);
-      case 600:
-      case 610:
-      case 611:
-      case 620:
-      case 630:
-      case 640:
-        return set_control(code, words);
-      case 280:
-      case 300:
-      case 530:
-        return leave_for_reference(words);
-      case 920:
-        return set_coordinates(words);
-      case 430:
-      case 431:
-      case 432:
-      case 434:
-        has_tool_offset_ = true;
-        place_.doubt();
-        return add_rest();
-      case 490:
-        if (std::exchange(has_tool_offset_, false)) place_.doubt();
-        return add_rest();
-      case 540:
-      case 550:
-      case 560:
-      case 570:
-      case 580:
-      case 590:
-      case 541:
-      case 591:
-      case 592:
-      case 593:
+    const gcode::CodeRow& row = gcode::row_of_g(code);
+    switch (row.group) {
+      case CodeGroup::kPath:
+        return set_control(row.value.as<PathMode>(), words);
+      case CodeGroup::kToolLength:
+        return change_tool_length(row);
+      case CodeGroup::kWorkOffset:
         return change_work_offset(code);
-      case 100:
-      case 520:
-      case 921:
-      case 922:
-      case 923:
+      case CodeGroup::kCycleReturn:
+        returns_to_initial_ = row.value.as<TriState>() == TriState::kOn;
+        return;
+      case CodeGroup::kCycleEnd:
+        return cycle_.reset();
+      default:
+        return read_act(row.act, words);
+    }
+  }
+
+  void read_act(CodeAct act, const BlockWords& words) {
+    switch (act) {
+      case CodeAct::kDwell:
+        return add_dwell(words);
+      case CodeAct::kHome:
+      case CodeAct::kMachinePlace:
+        return leave_for_reference(words);
+      case CodeAct::kSetsPlace:
+        return set_coordinates(words);
+      case CodeAct::kWritesData:
+      case CodeAct::kMovesOrigin:
         place_.forget();
         return add_rest();
-      case 650:
-      case 660:
-      case 661:
+      case CodeAct::kCalls:
         note(reason::kSubprogram);
         place_.forget();
         return;
-      case 980:
-      case 990:
-        returns_to_initial_ = code == 980;
-        return;
-      case 800:
-        return cycle_.reset();
       default:
         return;
     }
+  }
+
+  void change_tool_length(const gcode::CodeRow& row) {
+    const bool on = row.value.as<TriState>() != TriState::kOff;
+    if (std::exchange(has_tool_offset_, on) || on) place_.doubt();
+    add_rest();
   }
 
   void change_work_offset(Code code) {
@@ -288,13 +256,10 @@ class StepReader {
     return state;
   }
 
-  void set_control(Code code, const BlockWords& words) {
+  void set_control(PathMode mode, const BlockWords& words) {
     PathControl control;
-    control.mode = code == 640                  ? PathMode::kBlending
-                   : code == 610                ? PathMode::kExactPath
-                   : code == 600 || code == 611 ? PathMode::kExactStop
-                                                : PathMode::kUnknown;
-    if (code == 640) {
+    control.mode = mode;
+    if (mode == PathMode::kBlending) {
       const double unit = state().units == gcode::Units::kInch ? gcode::kMillimetresPerInch : 1;
       const auto value = [&](char letter, double otherwise) {
         const gcode::Word* word = words.find(letter);
@@ -409,15 +374,17 @@ class StepReader {
 
   void read_other_motion(const BlockWords& words) {
     for (const Code code : words.g_codes()) {
-      if (!is_drilling_cycle(code)) continue;
+      const gcode::CodeRow& row = gcode::row_of_g(code);
+      if (row.act != CodeAct::kDrills) continue;
       if (cycle_) {
-        cycle_->change_code(code);
+        cycle_->change(row);
       } else {
-        cycle_.emplace(code, place_.mm().z());
+        cycle_.emplace(row, place_.mm().z());
       }
     }
-    if (takes_axes(words)) return;
-    if (cycle_ && !words.has_g(800)) return drill(words);
+    // Axis words may belong to a word of their own block and not to the modal motion.
+    if (words.has_trait(gcode::trait::kTakesAxes)) return;
+    if (cycle_ && !words.has_group(CodeGroup::kCycleEnd)) return drill(words);
     if (!words.has_any("XYZ")) return add_rotary(words);
     note(block_meaning().barrier.empty() ? reason::kCannedCycle : block_meaning().barrier.id());
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -426,14 +393,9 @@ class StepReader {
     add_rest();
   }
 
-  // Axis words that belong to a word of their own block and not to the modal motion.
-  static bool takes_axes(const BlockWords& words) {
-    constexpr std::array kTakers = {40, 100, 280, 300, 520, 530, 920, 921, 922, 923};
-    return std::ranges::any_of(kTakers, [&](Code code) { return words.has_g(code); });
-  }
-
   void drill(const BlockWords& words) {
-    const bool starts = std::ranges::any_of(words.g_codes(), is_drilling_cycle);
+    const bool starts = std::ranges::any_of(
+        words.g_codes(), [](Code code) { return gcode::row_of_g(code).act == CodeAct::kDrills; });
     std::optional<double> dwell;
     if (words.has('P')) {
       const DwellTime time = dwell_of(words, options_.dwell_unit, std::nullopt);

@@ -21,28 +21,12 @@ using tests::Interpreted;
 constexpr double kPi = std::numbers::pi;
 
 struct ArcCase {
-  const char* name;
   const char* text;  // the last block is the arc
   Point3 end;
   Point3 center;  // its place along the axis does not count
   Vector3 axis;
   double sweep;
 };
-void PrintTo(const ArcCase& test, std::ostream* out) { *out << test.text; }
-
-class LastArc : public testing::TestWithParam<ArcCase> {};
-
-TEST_P(LastArc, IsThisOne) {
-  const Interpreted it(GetParam().text);
-  ASSERT_FALSE(it.read.motions.empty());
-  ASSERT_EQ(it.read.motions.back().kind, MotionKind::kArc);
-  const Arc arc = *it.read.motions.back().piece.arc();
-  EXPECT_LT((arc.end - GetParam().end).norm(), 1e-9);
-  EXPECT_LT((arc.axis - GetParam().axis).norm(), 1e-15);
-  const Vector3 off = arc.center - GetParam().center;
-  EXPECT_LT((off - off.dot(arc.axis) * arc.axis).norm(), 1e-9);
-  EXPECT_NEAR(arc.sweep, GetParam().sweep, 1e-9);
-}
 
 const Vector3 kX = Vector3::UnitX();
 const Vector3 kY = Vector3::UnitY();
@@ -52,96 +36,47 @@ const Vector3 kZ = Vector3::UnitZ();
 // centre is 10 cos(30) off the chord.
 const double kOff = 10 * std::cos(kPi / 6);
 
-INSTANTIATE_TEST_SUITE_P(
-    Interpreter, LastArc,
-    testing::Values(
-        ArcCase{"QuarterLeft",
-                "G21 G0 X0 Y0 Z0\nG3 X10 Y10 I0 J10 F9",
-                {10, 10, 0},
-                {0, 10, 0},
-                kZ,
-                kPi / 2},
-        ArcCase{"ThreeQuartersRight",
-                "G21 G0 X0 Y0 Z0\nG2 X10 Y10 I0 J10 F9",
-                {10, 10, 0},
-                {0, 10, 0},
-                kZ,
-                -1.5 * kPi},
-        ArcCase{"FullTurn", "G21 G0 X0 Y0 Z0\nG2 I5 F9", {0, 0, 0}, {5, 0, 0}, kZ, -2 * kPi},
-        ArcCase{
-            "FullTurnLeft", "G21 G0 X1 Y1 Z0\nG3 X1 Y1 J-2 F9", {1, 1, 0}, {1, -1, 0}, kZ, 2 * kPi},
-        ArcCase{"OneTurnSaid", "G21 G0 X0 Y0 Z0\nG3 X10 I5 P1 F9", {10, 0, 0}, {5, 0, 0}, kZ, kPi},
-        ArcCase{"Modal", "G21 G0 X0 Y0 Z0\nG3 X10 I5 F9\nX0 I-5", {0, 0, 0}, {5, 0, 0}, kZ, kPi},
-        ArcCase{"Helix", "G21 G0 X0 Y0 Z3\nG3 X10 I5 Z-1 F9", {10, 0, -1}, {5, 0, 0}, kZ, kPi},
-        ArcCase{"ZeroAcrossThePlane",
-                "G21 G0 X0 Y0 Z0\nG3 X10 I5 J0 K0 F9",
-                {10, 0, 0},
-                {5, 0, 0},
-                kZ,
-                kPi},
-        ArcCase{"Inches", "G20 G0 X0 Y0 Z0\nG3 X2 I1 F9", {50.8, 0, 0}, {25.4, 0, 0}, kZ, kPi},
-        ArcCase{"Incremental", "G21 G0 X1 Y1 Z0\nG91 G3 X10 I5 F9", {11, 1, 0}, {6, 1, 0}, kZ, kPi},
-        ArcCase{"AbsoluteCentre",
-                "G21 G0 X1 Y1 Z0\nG90.1 G3 X11 I6 J1 F9",
-                {11, 1, 0},
-                {6, 1, 0},
-                kZ,
-                kPi},
-        ArcCase{"BackToOffsets",
-                "G21 G0 X1 Y1 Z0\nG90.1\nG91.1 G3 X11 I5 F9",
-                {11, 1, 0},
-                {6, 1, 0},
-                kZ,
-                kPi},
-        ArcCase{
-            "ShortLeft", "G21 G0 X0 Y0 Z0\nG3 X10 R10 F9", {10, 0, 0}, {5, kOff, 0}, kZ, kPi / 3},
-        ArcCase{"ShortRight",
-                "G21 G0 X0 Y0 Z0\nG2 X10 R10 F9",
-                {10, 0, 0},
-                {5, -kOff, 0},
-                kZ,
-                -kPi / 3},
-        ArcCase{"LongLeft",
-                "G21 G0 X0 Y0 Z0\nG3 X10 R-10 F9",
-                {10, 0, 0},
-                {5, -kOff, 0},
-                kZ,
-                5 * kPi / 3},
-        ArcCase{"LongRight",
-                "G21 G0 X0 Y0 Z0\nG2 X10 R-10 F9",
-                {10, 0, 0},
-                {5, kOff, 0},
-                kZ,
-                -5 * kPi / 3},
-        ArcCase{
-            "HalfTurnByRadius", "G21 G0 X0 Y0 Z0\nG2 X10 R5 F9", {10, 0, 0}, {5, 0, 0}, kZ, -kPi},
-        // From X+ to Z+: seen from +Y, Z points right and X up, so this is clockwise.
-        ArcCase{"ZxRight",
-                "G21 G18 G0 X5 Y0 Z0\nG2 X0 Z5 I-5 K0 F9",
-                {0, 0, 5},
-                {0, 0, 0},
-                kY,
-                -kPi / 2},
-        ArcCase{
-            "ZxLeft", "G21 G18 G0 X0 Y0 Z5\nG3 X5 Z0 K-5 F9", {5, 0, 0}, {0, 0, 0}, kY, kPi / 2},
-        ArcCase{"ZxShortLeft",
-                "G21 G18 G0 X0 Y1 Z0\nG3 Z10 R10 F9",
-                {0, 1, 10},
-                {kOff, 1, 5},
-                kY,
-                kPi / 3},
-        ArcCase{"ZxHelix",
-                "G21 G18 G0 X0 Y1 Z5\nG3 X5 Z0 K-5 Y7 F9",
-                {5, 7, 0},
-                {0, 1, 0},
-                kY,
-                kPi / 2},
-        // From Y+ to Z+: seen from +X, Y points right and Z up: counter-clockwise.
-        ArcCase{
-            "YzLeft", "G21 G19 G0 X2 Y5 Z0\nG3 Y0 Z5 J-5 F9", {2, 0, 5}, {2, 0, 0}, kX, kPi / 2},
-        ArcCase{
-            "YzRight", "G21 G19 G0 X2 Y0 Z5\nG2 Y5 Z0 K-5 F9", {2, 5, 0}, {2, 0, 0}, kX, -kPi / 2}),
-    [](const auto& test) { return test.param.name; });
+const ArcCase kLastArcRows[] = {
+    {"G21 G0 X0 Y0 Z0\nG3 X10 Y10 I0 J10 F9", {10, 10, 0}, {0, 10, 0}, kZ, kPi / 2},
+    {"G21 G0 X0 Y0 Z0\nG2 X10 Y10 I0 J10 F9", {10, 10, 0}, {0, 10, 0}, kZ, -1.5 * kPi},
+    {"G21 G0 X0 Y0 Z0\nG2 I5 F9", {0, 0, 0}, {5, 0, 0}, kZ, -2 * kPi},
+    {"G21 G0 X1 Y1 Z0\nG3 X1 Y1 J-2 F9", {1, 1, 0}, {1, -1, 0}, kZ, 2 * kPi},
+    {"G21 G0 X0 Y0 Z0\nG3 X10 I5 P1 F9", {10, 0, 0}, {5, 0, 0}, kZ, kPi},
+    {"G21 G0 X0 Y0 Z0\nG3 X10 I5 F9\nX0 I-5", {0, 0, 0}, {5, 0, 0}, kZ, kPi},
+    {"G21 G0 X0 Y0 Z3\nG3 X10 I5 Z-1 F9", {10, 0, -1}, {5, 0, 0}, kZ, kPi},
+    {"G21 G0 X0 Y0 Z0\nG3 X10 I5 J0 K0 F9", {10, 0, 0}, {5, 0, 0}, kZ, kPi},
+    {"G20 G0 X0 Y0 Z0\nG3 X2 I1 F9", {50.8, 0, 0}, {25.4, 0, 0}, kZ, kPi},
+    {"G21 G0 X1 Y1 Z0\nG91 G3 X10 I5 F9", {11, 1, 0}, {6, 1, 0}, kZ, kPi},
+    {"G21 G0 X1 Y1 Z0\nG90.1 G3 X11 I6 J1 F9", {11, 1, 0}, {6, 1, 0}, kZ, kPi},
+    {"G21 G0 X1 Y1 Z0\nG90.1\nG91.1 G3 X11 I5 F9", {11, 1, 0}, {6, 1, 0}, kZ, kPi},
+    {"G21 G0 X0 Y0 Z0\nG3 X10 R10 F9", {10, 0, 0}, {5, kOff, 0}, kZ, kPi / 3},
+    {"G21 G0 X0 Y0 Z0\nG2 X10 R10 F9", {10, 0, 0}, {5, -kOff, 0}, kZ, -kPi / 3},
+    {"G21 G0 X0 Y0 Z0\nG3 X10 R-10 F9", {10, 0, 0}, {5, -kOff, 0}, kZ, 5 * kPi / 3},
+    {"G21 G0 X0 Y0 Z0\nG2 X10 R-10 F9", {10, 0, 0}, {5, kOff, 0}, kZ, -5 * kPi / 3},
+    {"G21 G0 X0 Y0 Z0\nG2 X10 R5 F9", {10, 0, 0}, {5, 0, 0}, kZ, -kPi},
+    // From X+ to Z+: seen from +Y, Z points right and X up, so this is clockwise.
+    {"G21 G18 G0 X5 Y0 Z0\nG2 X0 Z5 I-5 K0 F9", {0, 0, 5}, {0, 0, 0}, kY, -kPi / 2},
+    {"G21 G18 G0 X0 Y0 Z5\nG3 X5 Z0 K-5 F9", {5, 0, 0}, {0, 0, 0}, kY, kPi / 2},
+    {"G21 G18 G0 X0 Y1 Z0\nG3 Z10 R10 F9", {0, 1, 10}, {kOff, 1, 5}, kY, kPi / 3},
+    {"G21 G18 G0 X0 Y1 Z5\nG3 X5 Z0 K-5 Y7 F9", {5, 7, 0}, {0, 1, 0}, kY, kPi / 2},
+    // From Y+ to Z+: seen from +X, Y points right and Z up: counter-clockwise.
+    {"G21 G19 G0 X2 Y5 Z0\nG3 Y0 Z5 J-5 F9", {2, 0, 5}, {2, 0, 0}, kX, kPi / 2},
+    {"G21 G19 G0 X2 Y0 Z5\nG2 Y5 Z0 K-5 F9", {2, 5, 0}, {2, 0, 0}, kX, -kPi / 2}};
+
+TEST(LastArc, IsThisOne) {
+  for (const ArcCase& test : kLastArcRows) {
+    SCOPED_TRACE(test.text);
+    const Interpreted it(test.text);
+    ASSERT_FALSE(it.read.motions.empty());
+    ASSERT_EQ(it.read.motions.back().kind, MotionKind::kArc);
+    const Arc arc = *it.read.motions.back().piece.arc();
+    EXPECT_LT((arc.end - test.end).norm(), 1e-9);
+    EXPECT_LT((arc.axis - test.axis).norm(), 1e-15);
+    const Vector3 off = arc.center - test.center;
+    EXPECT_LT((off - off.dot(arc.axis) * arc.axis).norm(), 1e-9);
+    EXPECT_NEAR(arc.sweep, test.sweep, 1e-9);
+  }
+}
 
 // Both limits of the radii: 0.0283 mm, or 0.1 % of the radius, never above 0.5 mm.
 TEST(InterpreterArcs, RefusesCentresThatAreTooFarOff) {
@@ -172,32 +107,28 @@ TEST(InterpreterArcs, TakesAHalfChordThatRoundingMadeLongerThanTheRadius) {
 }
 
 struct NoArcCase {
-  const char* name;
   const char* text;
   std::string_view barrier;
 };
-void PrintTo(const NoArcCase& test, std::ostream* out) { *out << test.text; }
 
-class NotAnArc : public testing::TestWithParam<NoArcCase> {};
+const NoArcCase kNotAnArcRows[] = {{"G3 X10 I5 P2", reason::kNotUnderstood},
+                                   {"G3 X10 I5 K1", reason::kArc},
+                                   {"G3 X0 Y0 R5", reason::kArc},
+                                   {"G3 I0 J0", reason::kArc},
+                                   {"G90.1 G3 X10 I5", reason::kArc},
+                                   {"G3 X10 I#1", reason::kExpression}};
 
-TEST_P(NotAnArc, IsOpaqueAndLosesThePlace) {
-  const Interpreted it(std::string("G21 G0 X0 Y0 Z0\nF9\n") + GetParam().text + "\nG1 X50\n");
-  EXPECT_EQ(it.line(3).kind, BlockKind::kOpaque);
-  EXPECT_EQ(it.line(3).barrier, GetParam().barrier);
-  EXPECT_EQ(it.motion_of_line(3), nullptr);
-  ASSERT_NE(it.motion_of_line(4), nullptr);
-  EXPECT_FALSE(it.motion_of_line(4)->start_known);
+TEST(NotAnArc, IsOpaqueAndLosesThePlace) {
+  for (const NoArcCase& test : kNotAnArcRows) {
+    SCOPED_TRACE(test.text);
+    const Interpreted it(std::string("G21 G0 X0 Y0 Z0\nF9\n") + test.text + "\nG1 X50\n");
+    EXPECT_EQ(it.line(3).kind, BlockKind::kOpaque);
+    EXPECT_EQ(it.line(3).barrier, test.barrier);
+    EXPECT_EQ(it.motion_of_line(3), nullptr);
+    ASSERT_NE(it.motion_of_line(4), nullptr);
+    EXPECT_FALSE(it.motion_of_line(4)->start_known);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Interpreter, NotAnArc,
-    testing::Values(NoArcCase{"TwoTurns", "G3 X10 I5 P2", reason::kNotUnderstood},
-                    NoArcCase{"CentreOfAnotherPlane", "G3 X10 I5 K1", reason::kArc},
-                    NoArcCase{"FullTurnByRadius", "G3 X0 Y0 R5", reason::kArc},
-                    NoArcCase{"CentreAtTheStart", "G3 I0 J0", reason::kArc},
-                    NoArcCase{"OneAbsoluteCentreWord", "G90.1 G3 X10 I5", reason::kArc},
-                    NoArcCase{"Expression", "G3 X10 I#1", reason::kExpression}),
-    [](const auto& test) { return test.param.name; });
 
 TEST(InterpreterArcs, NeedsTheStartInItsPlane) {
   const Interpreted it("G21\nG1 Z0 Y0 F9\nG3 X10 Y0 I5\nG1 X20\n");

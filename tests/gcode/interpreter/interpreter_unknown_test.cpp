@@ -17,158 +17,121 @@ constexpr const char* kStart =
 constexpr const char* kAfter = "\nG1 X3\nY3\nZ3\nG1 X4 Y4 Z4\n";
 
 struct PlaceCase {
-  const char* name;
   const char* block;
   bool x, y, z;  // known after it
 };
-void PrintTo(const PlaceCase& test, std::ostream* out) { *out << test.block; }
 
-class PlaceAfter : public testing::TestWithParam<PlaceCase> {};
+const PlaceCase kPlaceAfterRows[] = {
 
-TEST_P(PlaceAfter, IsKnownOnTheseAxes) {
-  const Interpreted it(std::string(kStart) + GetParam().block + kAfter);
-  const std::size_t last = it.read.blocks.size();
-  ASSERT_NE(it.motion_of_line(last - 3), nullptr);
-  EXPECT_EQ(it.motion_of_line(last - 3)->start_known, GetParam().x);
-  EXPECT_EQ(it.motion_of_line(last - 2)->start_known, GetParam().y);
-  EXPECT_EQ(it.motion_of_line(last - 1)->start_known, GetParam().z);
-  EXPECT_TRUE(it.motion_of_line(last)->start_known);  // the words said all of it again
+    // Interpreter
+    {"(text)", true, true, true},
+    {"M3 S100", true, true, true},
+    {"G4 P1", true, true, true},
+    {"G4 X1", false, true, true},
+    {"G4 X1.5", true, true, true},
+    {"G4 P1. X1.5", false, true, true},
+    {"G54", true, true, true},
+    {"G55", false, false, false},
+    {"G54.1 P3", false, false, false},
+    {"G54 P3", false, false, false},
+    {"G92 Y0", true, false, true},
+    {"G92 Y0 G69", true, false, true},
+    {"G92 E0", true, true, true},
+    {"G92.1", false, false, false},
+    {"G52 X1", false, false, false},
+    {"G10 L2 P1 X0\nG1", false, false, false},
+    {"G53 G1 Z0", true, true, false},
+    {"G28 Z0", true, true, false},
+    {"G28 W0", true, true, false},
+    {"G28 A0", true, true, true},
+    {"G30", false, false, false},
+    {"G28.1", true, true, true},
+    {"G28.1 X30", false, false, false},
+    {"G30.1 G1 X10 Y10", false, false, false},
+    {"G28.1 G2 I5", false, false, false},
+    {"G43 H1", false, false, false},
+    {"G43.1 X10 Z3", false, false, false},
+    {"G49", false, false, false},
+    {"H2", false, false, false},
+    {"M6", false, false, false},
+    {"T2", false, false, false},
+    {"G1 X5 T2", false, false, false},
+    {"G1 U5", false, true, true},
+    {"G1 X#1 ", false, true, true},
+    {"G1 X5 ,R1", false, false, false},
+    {"#100=5", true, true, true},
+    {"#<_depth>=5", true, true, true},
+    {"#5221=5", false, false, false},
+    {"##1=5", false, false, false},
+    {"G41 D1\nG40", false, false, false},
+    {"/G1 X9", false, true, true},
+    {"/G1 X2", true, true, true},
+    {"M150 P1", false, false, false},
+    {"M100", false, false, false},
+    {"G1 X5 M101", false, false, false},
+    {"M12", true, true, true},
+    // Assignments
+    {"#52 21=5", false, false, false},
+    {"N7 #5221=5", false, false, false},
+    {"#100=1 #5221=5", false, false, false},
+    {"IF[#1EQ1]THEN#100=5", true, true, true},
+    {"IF[#1EQ1]THEN#5221=1.", false, false, false},
+    {"N7 if [#1 eq 1] then # 5221 = 1.", false, false, false},
+    {"IF[#1EQ1]THEN#[#2]=1.", false, false, false}};
+
+TEST(PlaceAfter, IsKnownOnTheseAxes) {
+  for (const PlaceCase& test : kPlaceAfterRows) {
+    SCOPED_TRACE(test.block);
+    const Interpreted it(std::string(kStart) + test.block + kAfter);
+    const std::size_t last = it.read.blocks.size();
+    ASSERT_NE(it.motion_of_line(last - 3), nullptr);
+    EXPECT_EQ(it.motion_of_line(last - 3)->start_known, test.x);
+    EXPECT_EQ(it.motion_of_line(last - 2)->start_known, test.y);
+    EXPECT_EQ(it.motion_of_line(last - 1)->start_known, test.z);
+    EXPECT_TRUE(it.motion_of_line(last)->start_known);  // the words said all of it again
+  }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Interpreter, PlaceAfter,
-    testing::Values(PlaceCase{"Comment", "(text)", true, true, true},
-                    PlaceCase{"Spindle", "M3 S100", true, true, true},
-                    PlaceCase{"Dwell", "G4 P1", true, true, true},
-                    PlaceCase{"DwellWithX", "G4 X1", false, true, true},
-                    PlaceCase{"DwellOfSeconds", "G4 X1.5", true, true, true},
-                    PlaceCase{"DwellAndAPlace", "G4 P1. X1.5", false, true, true},
-                    PlaceCase{"SameOffset", "G54", true, true, true},
-                    PlaceCase{"OtherOffset", "G55", false, false, false},
-                    PlaceCase{"ExtendedOffset", "G54.1 P3", false, false, false},
-                    PlaceCase{"OffsetWithP", "G54 P3", false, false, false},
-                    PlaceCase{"OriginOfOneAxis", "G92 Y0", true, false, true},
-                    PlaceCase{"OriginOfTheExtruder", "G92 E0", true, true, true},
-                    PlaceCase{"OriginBack", "G92.1", false, false, false},
-                    PlaceCase{"LocalOffset", "G52 X1", false, false, false},
-                    PlaceCase{"Data", "G10 L2 P1 X0\nG1", false, false, false},
-                    PlaceCase{"MachinePlace", "G53 G1 Z0", true, true, false},
-                    PlaceCase{"HomeOneAxis", "G28 Z0", true, true, false},
-                    PlaceCase{"HomeByIncrement", "G28 W0", true, true, false},
-                    PlaceCase{"HomeRotary", "G28 A0", true, true, true},
-                    PlaceCase{"HomeAll", "G30", false, false, false},
-                    PlaceCase{"StoredHome", "G28.1", true, true, true},
-                    PlaceCase{"StoredHomeAndAPlace", "G28.1 X30", false, false, false},
-                    PlaceCase{"StoredHomeAndAMove", "G30.1 G1 X10 Y10", false, false, false},
-                    PlaceCase{"StoredHomeAndAnArc", "G28.1 G2 I5", false, false, false},
-                    PlaceCase{"ToolLength", "G43 H1", false, false, false},
-                    PlaceCase{"ToolOffsets", "G43.1 X10 Z3", false, false, false},
-                    PlaceCase{"ToolLengthOff", "G49", false, false, false},
-                    PlaceCase{"LengthNumber", "H2", false, false, false},
-                    PlaceCase{"ToolChange", "M6", false, false, false},
-                    PlaceCase{"Tool", "T2", false, false, false},
-                    PlaceCase{"ToolBesideMotion", "G1 X5 T2", false, false, false},
-                    PlaceCase{"LatheIncrement", "G1 U5", false, true, true},
-                    PlaceCase{"ExpressionOnX", "G1 X#1 ", false, true, true},
-                    PlaceCase{"CornerWord", "G1 X5 ,R1", false, false, false},
-                    PlaceCase{"Variable", "#100=5", true, true, true},
-                    PlaceCase{"NamedVariable", "#<_depth>=5", true, true, true},
-                    PlaceCase{"SystemVariable", "#5221=5", false, false, false},
-                    PlaceCase{"ComputedVariable", "##1=5", false, false, false},
-                    PlaceCase{"CompensationOff", "G41 D1\nG40", false, false, false},
-                    PlaceCase{"DeletableMotion", "/G1 X9", false, true, true},
-                    PlaceCase{"DeletableNothing", "/G1 X2", true, true, true},
-                    PlaceCase{"UserM", "M150 P1", false, false, false},
-                    PlaceCase{"FirstUserM", "M100", false, false, false},
-                    PlaceCase{"UserMBesideMotion", "G1 X5 M101", false, false, false},
-                    PlaceCase{"OtherM", "M12", true, true, true}),
-    [](const auto& test) { return test.param.name; });
-
-INSTANTIATE_TEST_SUITE_P(
-    Assignments, PlaceAfter,
-    testing::Values(PlaceCase{"BlanksInTheNumber", "#52 21=5", false, false, false},
-                    PlaceCase{"BehindN", "N7 #5221=5", false, false, false},
-                    PlaceCase{"AsSecond", "#100=1 #5221=5", false, false, false},
-                    PlaceCase{"ConditionalVariable", "IF[#1EQ1]THEN#100=5", true, true, true},
-                    PlaceCase{"Conditional", "IF[#1EQ1]THEN#5221=1.", false, false, false},
-                    PlaceCase{"ConditionalWithBlanks", "N7 if [#1 eq 1] then # 5221 = 1.", false,
-                              false, false},
-                    PlaceCase{"ConditionalComputed", "IF[#1EQ1]THEN#[#2]=1.", false, false, false}),
-    [](const auto& test) { return test.param.name; });
-
-struct ForgetCase {
-  const char* name;
-  const char* block;
-};
-void PrintTo(const ForgetCase& test, std::ostream* out) { *out << test.block; }
-
-class Everything : public testing::TestWithParam<ForgetCase> {};
-
-TEST_P(Everything, IsUnknownAfterIt) {
-  const Interpreted it(std::string(kStart) + GetParam().block + "\n");
-  EXPECT_EQ(it.last_state(), unknown_modal_state());
+TEST(Everything, IsUnknownAfterIt) {
+  for (const char* block : {"M98 P1000", "M97 P10", "G1 X1 M98 P1", "M99", "G65 P9010", "o100 call",
+                            "o1 if [#1 GT 2]", "WHILE [#1 LT 2] DO1", "O1234", "M30", "M72", "G777",
+                            "CYCLE832(0.01)", "$32=1", "G1 X", "/M98 P1", "G90 G91"}) {
+    SCOPED_TRACE(block);
+    const Interpreted it(std::string(kStart) + block + "\n");
+    EXPECT_EQ(it.last_state(), unknown_modal_state());
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Interpreter, Everything,
-    testing::Values(ForgetCase{"Call", "M98 P1000"}, ForgetCase{"LocalCall", "M97 P10"},
-                    ForgetCase{"CallBesideMotion", "G1 X1 M98 P1"}, ForgetCase{"Return", "M99"},
-                    ForgetCase{"Macro", "G65 P9010"}, ForgetCase{"OWord", "o100 call"},
-                    ForgetCase{"OWordIf", "o1 if [#1 GT 2]"},
-                    ForgetCase{"Loop", "WHILE [#1 LT 2] DO1"}, ForgetCase{"NextProgram", "O1234"},
-                    ForgetCase{"End", "M30"}, ForgetCase{"SavedState", "M72"},
-                    ForgetCase{"UnknownG", "G777"}, ForgetCase{"Foreign", "CYCLE832(0.01)"},
-                    ForgetCase{"Sender", "$32=1"}, ForgetCase{"Unreadable", "G1 X"},
-                    ForgetCase{"DeletableCall", "/M98 P1"}, ForgetCase{"TwoOfOneGroup", "G90 G91"}),
-    [](const auto& test) { return test.param.name; });
 
 // --- calls that keep modes ---------------------------------------------------------------------
 
-class KeptModes : public testing::TestWithParam<ForgetCase> {};
-
-TEST_P(KeptModes, AreKnownBehindACall) {
-  const Interpreted it(std::string(kStart) + GetParam().block + "\nX5 Y5 Z5\nG1 X5 Y5 Z5\nX6\n",
-                       ReadOptions{.calls_keep_modes = true});
-  ModalState expected = it.state_after_line(4);
-  expected.motion = MotionMode::kUnknown;
-  expected.feed.reset();
-  EXPECT_EQ(it.state_after_line(5), expected);
-  EXPECT_EQ(it.motion_of_line(6), nullptr);  // which kind of motion, only the program called knows
-  EXPECT_FALSE(it.motion_of_line(7)->start_known);
-  EXPECT_TRUE(it.motion_of_line(8)->start_known);
+TEST(KeptModes, AreKnownBehindACall) {
+  for (const char* block : {"M98 P1000", "M97 P10", "M198 P1", "G1 X1 M98 P1", "G65 P9010 A1.",
+                            "o100 call", "N5 o<do_if_sub> call [1] [#2]", "o#1 call"}) {
+    SCOPED_TRACE(block);
+    const Interpreted it(std::string(kStart) + block + "\nX5 Y5 Z5\nG1 X5 Y5 Z5\nX6\n",
+                         ReadOptions{.calls_keep_modes = true});
+    ModalState expected = it.state_after_line(4);
+    expected.motion = MotionMode::kUnknown;
+    expected.feed.reset();
+    EXPECT_EQ(it.state_after_line(5), expected);
+    EXPECT_EQ(it.motion_of_line(6),
+              nullptr);  // which kind of motion, only the program called knows
+    EXPECT_FALSE(it.motion_of_line(7)->start_known);
+    EXPECT_TRUE(it.motion_of_line(8)->start_known);
+  }
 }
 
-INSTANTIATE_TEST_SUITE_P(Interpreter, KeptModes,
-                         testing::Values(ForgetCase{"Call", "M98 P1000"},
-                                         ForgetCase{"LocalCall", "M97 P10"},
-                                         ForgetCase{"FromTheCard", "M198 P1"},
-                                         ForgetCase{"CallBesideMotion", "G1 X1 M98 P1"},
-                                         ForgetCase{"Macro", "G65 P9010 A1."},
-                                         ForgetCase{"OWord", "o100 call"},
-                                         ForgetCase{"OWordByName", "N5 o<do_if_sub> call [1] [#2]"},
-                                         ForgetCase{"OWordByParameter", "o#1 call"}),
-                         [](const auto& test) { return test.param.name; });
-
-class NotKeptModes : public testing::TestWithParam<ForgetCase> {};
-
-TEST_P(NotKeptModes, AreUnknownAllTheSame) {
-  const Interpreted it(std::string(kStart) + GetParam().block + "\n",
-                       ReadOptions{.calls_keep_modes = true});
-  ModalState state = it.last_state();
-  state.modal_macro = TriState::kUnknown;
-  EXPECT_EQ(state, unknown_modal_state());
+TEST(NotKeptModes, AreUnknownAllTheSame) {
+  for (const char* block :
+       {"M99", "G66 P9010", "o1 if [#1 GT 2]", "o<call> sub", "WHILE [#1 LT 2] DO1", "O1234", "M30",
+        "M72", "M98 P5 M30", "G777", "G1 X"}) {
+    SCOPED_TRACE(block);
+    const Interpreted it(std::string(kStart) + block + "\n", ReadOptions{.calls_keep_modes = true});
+    ModalState state = it.last_state();
+    state.modal_macro = TriState::kUnknown;
+    EXPECT_EQ(state, unknown_modal_state());
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Interpreter, NotKeptModes,
-    testing::Values(ForgetCase{"Return", "M99"}, ForgetCase{"ModalMacro", "G66 P9010"},
-                    ForgetCase{"OWordIf", "o1 if [#1 GT 2]"},
-                    ForgetCase{"Subprogram", "o<call> sub"},
-                    ForgetCase{"Loop", "WHILE [#1 LT 2] DO1"}, ForgetCase{"NextProgram", "O1234"},
-                    ForgetCase{"End", "M30"}, ForgetCase{"SavedState", "M72"},
-                    ForgetCase{"CallAndEnd", "M98 P5 M30"}, ForgetCase{"UnknownG", "G777"},
-                    ForgetCase{"Unreadable", "G1 X"}),
-    [](const auto& test) { return test.param.name; });
 
 // Where LinuxCNC 2.9 is behind a block of two kinds of codes that began at X5 Y6 Z3 under G1: what
 // its rs274 said.

@@ -16,107 +16,93 @@ using tests::Interpreted;
 using Lines = std::vector<std::size_t>;
 
 struct FlowCase {
-  const char* name;
   const char* text;
   Lines labels;   // lines whose N number is referenced
   Lines targets;  // lines that are jumped to
   Lines bodies;   // lines inside loops, subprograms, contours
 };
-void PrintTo(const FlowCase& test, std::ostream* out) { *out << test.text; }
 
-class Flow : public testing::TestWithParam<FlowCase> {};
+const FlowCase kFlowRows[] = {
+    {"N10 G1 X1\nN20 X2\nM98 P20\nG4 P10\n", {}, {}, {}},
+    {"N10 X1\nN20 X2\nIF [#1 EQ 2] GOTO 20\n", {2}, {2}, {}},
+    {"N10 X1\nGOTO N10\n", {1}, {1}, {}},
+    {"GOTOF N30\nN20 X1\nn 30 X2\n", {3}, {3}, {}},
+    {"GOTO 10\nN10 X1\nN20 X2\nGOTO 20\n", {2, 3}, {2, 3}, {}},
+    {"N10 X1\nX2\nN20 X3\nGOTO #5\n", {1, 3}, {1, 3}, {}},
+    {"M97 P50\nM30\nN50 X1\n", {3}, {3}, {}},
+    {"M98 P1000 H30\nN30 X1\n", {2}, {2}, {}},
+    {"N10 X1\nM30\nO5\nX1\nM99 P10\n", {1}, {1}, {3, 4, 5}},
+    {"X1\nX2\nM99\n", {}, {}, {1, 2, 3}},
+    {"O1\nX1\nM30\nO2\nX1\nM99\n", {}, {}, {4, 5, 6}},
+    {"o<subdo> call\nX1\no<endif> call [1]\nX2\n", {}, {}, {}},
+    {"o[#[1]+2] sub\nX1\no[#[1]+2] endsub\nX2\n", {}, {}, {1, 2, 3}},
+    {"o##1 sub\nX1\no##1 endsub\nX2\n", {}, {}, {1, 2, 3}},
+    {"o<call> sub\nX1\no<call> endsub\nX2\n", {}, {}, {1, 2, 3}},
+    {"X1\nWHILE [#1 LT 3] DO1\nX2\nEND1\nX3\n", {}, {}, {2, 3, 4}},
+    {"WHILE[#1LT3]DO1\nX1\nDO2\nX2\nEND2\nX3\nEND1\nX4\n", {}, {}, {1, 2, 3, 4, 5, 6, 7}},
+    {"o<part> sub\nX1\no<part> endsub\nX2\n", {}, {}, {1, 2, 3}},
+    {"o1 repeat [3]\nX1\no1 endrepeat\nX2\n", {}, {}, {1, 2, 3}},
+    {"o1 if [#1 GT 2]\nX1\no1 else\nX2\no1 endif\nX3\n", {}, {}, {1, 2, 3, 4, 5}},
+    {"o1 call [3]\nX1\n", {}, {}, {}},
+    {"G71 P10 Q20\nN10 G0 X1\nX2\nN20 X3\nX4\n", {2, 4}, {}, {2, 3, 4}},
+    {"N2 X1\nG73 X1 Z-2 R1 P1 Q2\nN1 X2\n", {}, {}, {}},
+    {"%\nN10 X1\n%\nGOTO 10\n", {}, {}, {}}};
 
-TEST_P(Flow, IsFound) {
-  Diagnostics found;
-  const Program program = parse(SourceText("test.nc", GetParam().text), found);
-  const std::vector<BlockFlow> flow = follow_flow(program, Returns::kBehindCalls).blocks;
-  Lines labels;
-  Lines targets;
-  Lines bodies;
-  for (std::size_t i = 0; i < flow.size(); ++i) {
-    if (flow[i].label_referenced) labels.push_back(i + 1);
-    if (flow[i].jump_target) targets.push_back(i + 1);
-    if (flow[i].in_body) bodies.push_back(i + 1);
+TEST(Flow, IsFound) {
+  for (const FlowCase& test : kFlowRows) {
+    SCOPED_TRACE(test.text);
+    Diagnostics found;
+    const Program program = parse(SourceText("test.nc", test.text), found);
+    const std::vector<BlockFlow> flow = follow_flow(program, Returns::kBehindCalls).blocks;
+    Lines labels;
+    Lines targets;
+    Lines bodies;
+    for (std::size_t i = 0; i < flow.size(); ++i) {
+      if (flow[i].label_referenced) labels.push_back(i + 1);
+      if (flow[i].jump_target) targets.push_back(i + 1);
+      if (flow[i].in_body) bodies.push_back(i + 1);
+    }
+    EXPECT_EQ(labels, test.labels);
+    EXPECT_EQ(targets, test.targets);
+    EXPECT_EQ(bodies, test.bodies);
   }
-  EXPECT_EQ(labels, GetParam().labels);
-  EXPECT_EQ(targets, GetParam().targets);
-  EXPECT_EQ(bodies, GetParam().bodies);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    ProgramFlow, Flow,
-    testing::Values(
-        FlowCase{"NothingRefers", "N10 G1 X1\nN20 X2\nM98 P20\nG4 P10\n", {}, {}, {}},
-        FlowCase{"Goto", "N10 X1\nN20 X2\nIF [#1 EQ 2] GOTO 20\n", {2}, {2}, {}},
-        FlowCase{"GotoN", "N10 X1\nGOTO N10\n", {1}, {1}, {}},
-        FlowCase{"GotoForward", "GOTOF N30\nN20 X1\nn 30 X2\n", {3}, {3}, {}},
-        FlowCase{"TwoJumps", "GOTO 10\nN10 X1\nN20 X2\nGOTO 20\n", {2, 3}, {2, 3}, {}},
-        FlowCase{"ComputedJump", "N10 X1\nX2\nN20 X3\nGOTO #5\n", {1, 3}, {1, 3}, {}},
-        FlowCase{"LocalCall", "M97 P50\nM30\nN50 X1\n", {3}, {3}, {}},
-        FlowCase{"CallAtABlock", "M98 P1000 H30\nN30 X1\n", {2}, {2}, {}},
-        FlowCase{"ReturnTo", "N10 X1\nM30\nO5\nX1\nM99 P10\n", {1}, {1}, {3, 4, 5}},
-        FlowCase{"SubprogramFile", "X1\nX2\nM99\n", {}, {}, {1, 2, 3}},
-        FlowCase{"MainBeforeSubprogram", "O1\nX1\nM30\nO2\nX1\nM99\n", {}, {}, {4, 5, 6}},
-        FlowCase{
-            "NamesThatLookLikeWords", "o<subdo> call\nX1\no<endif> call [1]\nX2\n", {}, {}, {}},
-        FlowCase{"ComputedNames", "o[#[1]+2] sub\nX1\no[#[1]+2] endsub\nX2\n", {}, {}, {1, 2, 3}},
-        FlowCase{"UnknownNames", "o##1 sub\nX1\no##1 endsub\nX2\n", {}, {}, {1, 2, 3}},
-        FlowCase{"NamedSubprogram", "o<call> sub\nX1\no<call> endsub\nX2\n", {}, {}, {1, 2, 3}},
-        FlowCase{"MacroLoop", "X1\nWHILE [#1 LT 3] DO1\nX2\nEND1\nX3\n", {}, {}, {2, 3, 4}},
-        FlowCase{"NestedLoops",
-                 "WHILE[#1LT3]DO1\nX1\nDO2\nX2\nEND2\nX3\nEND1\nX4\n",
-                 {},
-                 {},
-                 {1, 2, 3, 4, 5, 6, 7}},
-        FlowCase{"OWordSub", "o<part> sub\nX1\no<part> endsub\nX2\n", {}, {}, {1, 2, 3}},
-        FlowCase{"OWordRepeat", "o1 repeat [3]\nX1\no1 endrepeat\nX2\n", {}, {}, {1, 2, 3}},
-        FlowCase{
-            "OWordIf", "o1 if [#1 GT 2]\nX1\no1 else\nX2\no1 endif\nX3\n", {}, {}, {1, 2, 3, 4, 5}},
-        FlowCase{"OWordCallIsNoBody", "o1 call [3]\nX1\n", {}, {}, {}},
-        FlowCase{"LatheContour", "G71 P10 Q20\nN10 G0 X1\nX2\nN20 X3\nX4\n", {2, 4}, {}, {2, 3, 4}},
-        FlowCase{"MillPecking", "N2 X1\nG73 X1 Z-2 R1 P1 Q2\nN1 X2\n", {}, {}, {}},
-        FlowCase{"AfterTheProgram", "%\nN10 X1\n%\nGOTO 10\n", {}, {}, {}}),
-    [](const auto& test) { return test.param.name; });
-
 struct CallCase {
-  const char* name;
   const char* text;
   Lines labels;  // that may be returned to
 };
-void PrintTo(const CallCase& test, std::ostream* out) { *out << test.text; }
 
-class Calls : public testing::TestWithParam<CallCase> {};
+const CallCase kCallsRows[] = {{"N10 X1\nX2\nM98 P2000\nN20 X3\n", {1, 4}},
+                               {"N10 X1\nG65 P9010 A1\n", {1}},
+                               {"N10 X1\nG66 P9010 A1\n", {1}},
+                               {"N10 X1\nM198 P1\n", {1}},
+                               {"N10 X1\nM98 P#1\nM30\nO1\nX2\nM99\n", {1}},
+                               {"N10 X1\nM98 <PART>\n", {1}},
+                               {"N10 X1\nIF [#1 EQ 2] M98 P2000\n", {1}},
+                               {"N10 X1\nPART(1,2)\n", {1}},
+                               {"N10 X1\nM98 P2000 L3\nM30\nO2000\nX2\nM99\n", {}},
+                               {"N10 X1\nM98 P32000\nM30\nO2000\nX2\nM99\n", {}},
+                               {"N10 X1\no<part> call\n", {}},
+                               {"N10 X1\nM6 T5\nG43 H5\nX2\n", {}}};
 
 // M99 P100 in a program that stands in another file goes on at N100 of the one that called.
-TEST_P(Calls, OfProgramsThatAreNotReadMayComeBackToAnyLabel) {
-  Diagnostics found;
-  const Program program = parse(SourceText("test.nc", GetParam().text), found);
-  Lines labels;
-  const ProgramFlow flow = follow_flow(program, Returns::kToAnyLabel);
-  for (std::size_t i = 0; i < flow.blocks.size(); ++i) {
-    EXPECT_EQ(flow.blocks[i].label_referenced, flow.blocks[i].jump_target);
-    if (flow.blocks[i].label_referenced) labels.push_back(i + 1);
+TEST(Calls, OfProgramsThatAreNotReadMayComeBackToAnyLabel) {
+  for (const CallCase& test : kCallsRows) {
+    SCOPED_TRACE(test.text);
+    Diagnostics found;
+    const Program program = parse(SourceText("test.nc", test.text), found);
+    Lines labels;
+    const ProgramFlow flow = follow_flow(program, Returns::kToAnyLabel);
+    for (std::size_t i = 0; i < flow.blocks.size(); ++i) {
+      EXPECT_EQ(flow.blocks[i].label_referenced, flow.blocks[i].jump_target);
+      if (flow.blocks[i].label_referenced) labels.push_back(i + 1);
+    }
+    EXPECT_EQ(labels, test.labels);
+    for (const BlockFlow& each : follow_flow(program, Returns::kBehindCalls).blocks)
+      EXPECT_FALSE(each.label_referenced);
   }
-  EXPECT_EQ(labels, GetParam().labels);
-  for (const BlockFlow& each : follow_flow(program, Returns::kBehindCalls).blocks)
-    EXPECT_FALSE(each.label_referenced);
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    ProgramFlow, Calls,
-    testing::Values(CallCase{"Call", "N10 X1\nX2\nM98 P2000\nN20 X3\n", {1, 4}},
-                    CallCase{"Macro", "N10 X1\nG65 P9010 A1\n", {1}},
-                    CallCase{"ModalMacro", "N10 X1\nG66 P9010 A1\n", {1}},
-                    CallCase{"FromTheCard", "N10 X1\nM198 P1\n", {1}},
-                    CallCase{"ComputedNumber", "N10 X1\nM98 P#1\nM30\nO1\nX2\nM99\n", {1}},
-                    CallCase{"ByName", "N10 X1\nM98 <PART>\n", {1}},
-                    CallCase{"BehindACondition", "N10 X1\nIF [#1 EQ 2] M98 P2000\n", {1}},
-                    CallCase{"OfSiemens", "N10 X1\nPART(1,2)\n", {1}},
-                    CallCase{"OfWhatStandsHere", "N10 X1\nM98 P2000 L3\nM30\nO2000\nX2\nM99\n", {}},
-                    CallCase{"WithItsRepetitions", "N10 X1\nM98 P32000\nM30\nO2000\nX2\nM99\n", {}},
-                    CallCase{"OfLinuxCnc", "N10 X1\no<part> call\n", {}},
-                    CallCase{"NoCall", "N10 X1\nM6 T5\nG43 H5\nX2\n", {}}),
-    [](const auto& test) { return test.param.name; });
 
 TEST(ProgramFlow, CallsThatComeBackBehindThemselvesNameNoLabel) {
   const std::string text = "G21 F9\nG0 X1\nN10 G1 X2\nM98 P2000\n";

@@ -69,129 +69,98 @@ TEST(KlartextMotions, OffTheCircleAreNotFollowed) {
 // --- what is known afterwards -------------------------------------------------------------------
 
 struct EffectCase {
-  std::string name;
   std::string lines;  // from line 4 on
   bool place_known;   // X and Y, before `L Z-1` behind them
   bool state_known;
   bool feed_known = true;
 };
 
-void PrintTo(const EffectCase& test, std::ostream* out) { *out << test.name; }
+const EffectCase kKlartextEffectsRows[] = {
 
-class KlartextEffects : public testing::TestWithParam<EffectCase> {};
+    // Harmless
+    {"3 BLK FORM 0.1 Z X+0 Y+0 Z-20", true, true},
+    {"3 CYCL DEF 32.0 TOLERANCE\n4 CYCL DEF 32.1 T0.02", true, true},
+    {"3 CYCL DEF 200 DRILLING ~\n  Q200=+2", true, true},
+    {"3 Q5 = 3\n4 FN 0: Q6 = +3", true, true},
+    {"3 FN 9: IF +Q1 EQU +Q2 GOTO LBL 5", true, true},
+    {"3 LBL 7", true, true},
+    {"3 ; a\n4 * - b", true, true},
+    {"3 M8", true, true},
+    // Moves the tool
+    {"3 TOOL CALL 5 Z S5000", false, true, false},
+    {"3 CYCL CALL", false, true, false},
+    {"3 L IX+5", false, true},
+    {"3 L IX+5 F200", false, true},
+    {"3 L X+5 M91", false, true},
+    {"3 M140 MB MAX", false, true},
+    {"3 CYCL DEF 7.0 DATUM SHIFT\n4 CYCL DEF 7.1 X+5", false, true},
+    {"3 CYCL DEF 247 PRESET ~\n  Q339=+1", false, true},
+    {"3 CC X+1 Y+1\n4 LP PR+5 PA+30", false, true},
+    {"3 L X+Q5 Y+Q6", false, true},
+    {"3 L X+5 Y+5\n4 RND R1", false, true},
+    {"3 PLANE RESET STAY", false, true},
+    {"3 CYCL DEF 8.0 MIRROR\n4 CYCL DEF 8.1", false, true},
+    {"3 CYCL DEF 10.0 ROTATION\n4 CYCL DEF 10.1 ROT+0", false, true},
+    {"3 CYCL DEF 11.0 SCALING\n4 CYCL DEF 11.1 SCL1", false, true},
+    {"3 SPL X+5 Y+5 ~\n  K3X0 K2X0 K1X-5 ~\n  K3Y0 K2Y0 K1Y-5", false, true},
+    {"3 L X+5 Y+5 F AUTO", false, true, false},
+    // May change anything
+    {"3 CALL LBL 5", false, false, false},
+    {"3 CALL PGM TNC:\\A.H", false, false, false},
+    {"3 LBL 5\n4 CALL LBL 5 REP 3", false, false, false},
+    {"3 CYCL DEF 419 PRESET", false, false, false},
+    {"3 TCH PROBE 1.0 Q5", false, false, false},
+    {"3 FN 17: SYSWRITE ID5", false, false, false},
+    {"3 WHATEVER", false, false, false}};
 
-TEST_P(KlartextEffects, AreKnownOrForgotten) {
-  const EffectCase& test = GetParam();
-  const KlartextProgram p = program_with(test.lines + "\n8 L X+1 Y+1\n9 L X+2\n");
-  const std::size_t last = p.program.blocks.size();
-  const Motion* first = p.motion_of(last - 1);
-  EXPECT_EQ(first != nullptr && first->start_known, test.place_known);
-  EXPECT_EQ(is_known(p.state_after(last)), test.state_known);
-  EXPECT_EQ(p.state_after(last).feed.has_value(), test.feed_known);
-  EXPECT_EQ(p.state_after(last).units, Units::kMillimetre);
+TEST(KlartextEffects, AreKnownOrForgotten) {
+  for (const EffectCase& test : kKlartextEffectsRows) {
+    SCOPED_TRACE(test.lines);
+    const KlartextProgram p = program_with(test.lines + "\n8 L X+1 Y+1\n9 L X+2\n");
+    const std::size_t last = p.program.blocks.size();
+    const Motion* first = p.motion_of(last - 1);
+    EXPECT_EQ(first != nullptr && first->start_known, test.place_known);
+    EXPECT_EQ(is_known(p.state_after(last)), test.state_known);
+    EXPECT_EQ(p.state_after(last).feed.has_value(), test.feed_known);
+    EXPECT_EQ(p.state_after(last).units, Units::kMillimetre);
+  }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Harmless, KlartextEffects,
-    testing::Values(
-        EffectCase{"Blank", "3 BLK FORM 0.1 Z X+0 Y+0 Z-20", true, true},
-        EffectCase{"Tolerance", "3 CYCL DEF 32.0 TOLERANCE\n4 CYCL DEF 32.1 T0.02", true, true},
-        EffectCase{"CycleThatWaits", "3 CYCL DEF 200 DRILLING ~\n  Q200=+2", true, true},
-        EffectCase{"Assignment", "3 Q5 = 3\n4 FN 0: Q6 = +3", true, true},
-        EffectCase{"JumpThatFallsThrough", "3 FN 9: IF +Q1 EQU +Q2 GOTO LBL 5", true, true},
-        EffectCase{"LabelThatNothingNames", "3 LBL 7", true, true},
-        EffectCase{"CommentsOnly", "3 ; a\n4 * - b", true, true},
-        EffectCase{"Coolant", "3 M8", true, true}),
-    [](const auto& test) { return test.param.name; });
-
-INSTANTIATE_TEST_SUITE_P(
-    MovesTheTool, KlartextEffects,
-    testing::Values(
-        EffectCase{"ToolCall", "3 TOOL CALL 5 Z S5000", false, true, false},
-        EffectCase{"CycleCall", "3 CYCL CALL", false, true, false},
-        EffectCase{"Incremental", "3 L IX+5", false, true},
-        EffectCase{"IncrementalWithFeed", "3 L IX+5 F200", false, true},
-        EffectCase{"MachineCoordinates", "3 L X+5 M91", false, true},
-        EffectCase{"Retract", "3 M140 MB MAX", false, true},
-        EffectCase{"DatumShift", "3 CYCL DEF 7.0 DATUM SHIFT\n4 CYCL DEF 7.1 X+5", false, true},
-        EffectCase{"Preset", "3 CYCL DEF 247 PRESET ~\n  Q339=+1", false, true},
-        EffectCase{"Polar", "3 CC X+1 Y+1\n4 LP PR+5 PA+30", false, true},
-        EffectCase{"Parameter", "3 L X+Q5 Y+Q6", false, true},
-        EffectCase{"Rounding", "3 L X+5 Y+5\n4 RND R1", false, true},
-        EffectCase{"PlaneReset", "3 PLANE RESET STAY", false, true},
-        EffectCase{"MirrorEnds", "3 CYCL DEF 8.0 MIRROR\n4 CYCL DEF 8.1", false, true},
-        EffectCase{"RotationOfNothing", "3 CYCL DEF 10.0 ROTATION\n4 CYCL DEF 10.1 ROT+0", false,
-                   true},
-        EffectCase{"ScalingByOne", "3 CYCL DEF 11.0 SCALING\n4 CYCL DEF 11.1 SCL1", false, true},
-        EffectCase{"Spline", "3 SPL X+5 Y+5 ~\n  K3X0 K2X0 K1X-5 ~\n  K3Y0 K2Y0 K1Y-5", false,
-                   true},
-        EffectCase{"FeedOfTheToolCall", "3 L X+5 Y+5 F AUTO", false, true, false}),
-    [](const auto& test) { return test.param.name; });
-
-INSTANTIATE_TEST_SUITE_P(
-    MayChangeAnything, KlartextEffects,
-    testing::Values(EffectCase{"CallOfALabel", "3 CALL LBL 5", false, false, false},
-                    EffectCase{"CallOfAProgram", "3 CALL PGM TNC:\\A.H", false, false, false},
-                    EffectCase{"LabelThatIsCalled", "3 LBL 5\n4 CALL LBL 5 REP 3", false, false,
-                               false},
-                    EffectCase{"CycleThatIsNotKnown", "3 CYCL DEF 419 PRESET", false, false, false},
-                    EffectCase{"Probe", "3 TCH PROBE 1.0 Q5", false, false, false},
-                    EffectCase{"OtherFunction", "3 FN 17: SYSWRITE ID5", false, false, false},
-                    EffectCase{"Unknown", "3 WHATEVER", false, false, false}),
-    [](const auto& test) { return test.param.name; });
-
 struct SwitchCase {
-  std::string name;
   std::string lines;
   TriState ModalState::*item;
   TriState value;
 };
 
-void PrintTo(const SwitchCase& test, std::ostream* out) { *out << test.name; }
+const SwitchCase kKlartextSwitchesRows[] = {
+    {"3 L X+5 RL", &ModalState::cutter_compensation, TriState::kOn},
+    {"3 L X+5 RL\n4 L X+6 R0", &ModalState::cutter_compensation, TriState::kOff},
+    {"3 APPR LT X+5 Y+5 LEN5 R0", &ModalState::cutter_compensation, TriState::kOff},
+    {"3 APPR LT X+5 Y+5 LEN5 RL", &ModalState::cutter_compensation, TriState::kOn},
+    {"3 DEP LT LEN5", &ModalState::cutter_compensation, TriState::kUnknown},
+    {"3 L X+5 M128", &ModalState::tool_center_point, TriState::kOn},
+    {"3 M128\n4 M129", &ModalState::tool_center_point, TriState::kOff},
+    {"3 FUNCTION TCPM F TCP", &ModalState::tool_center_point, TriState::kOn},
+    {"3 FUNCTION RESET TCPM", &ModalState::tool_center_point, TriState::kOff},
+    {"3 PLANE SPATIAL SPA+0 SPB+30 SPC+0 MOVE", &ModalState::tilted_plane, TriState::kOn},
+    {"3 CYCL DEF 19.0 W\n4 CYCL DEF 19.1 A+0 B+5", &ModalState::tilted_plane, TriState::kOn},
+    {"3 CYCL DEF 19.1 A+1\n4 CYCL DEF 19.0 W\n5 CYCL DEF 19.1", &ModalState::tilted_plane,
+     TriState::kOff},
+    {"3 CYCL DEF 8.0 MIRROR\n4 CYCL DEF 8.1 X", &ModalState::mirror, TriState::kOn},
+    {"3 CYCL DEF 10.1 ROT+30", &ModalState::rotation, TriState::kOn},
+    {"3 CYCL DEF 10.1 IROT+0", &ModalState::rotation, TriState::kOn},
+    {"3 CYCL DEF 11.1 SCL 0.5", &ModalState::scaling, TriState::kOn},
+    {"3 CYCL DEF 26.1 X0.5\n4 CYCL DEF 11.1 SCL 1", &ModalState::scaling, TriState::kUnknown},
+    {"3 L X+5 M89", &ModalState::modal_macro, TriState::kOn},
+    {"3 M124 T0.01", &ModalState::control_smoothing, TriState::kOn}};
 
-class KlartextSwitches : public testing::TestWithParam<SwitchCase> {};
-
-TEST_P(KlartextSwitches, AreFollowed) {
-  const SwitchCase& test = GetParam();
-  const KlartextProgram p = program_with(test.lines);
-  EXPECT_EQ(p.state_after(p.program.blocks.size()).*test.item, test.value);
+TEST(KlartextSwitches, AreFollowed) {
+  for (const SwitchCase& test : kKlartextSwitchesRows) {
+    SCOPED_TRACE(test.lines);
+    const KlartextProgram p = program_with(test.lines);
+    EXPECT_EQ(p.state_after(p.program.blocks.size()).*test.item, test.value);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Klartext, KlartextSwitches,
-    testing::Values(
-        SwitchCase{"Compensation", "3 L X+5 RL", &ModalState::cutter_compensation, TriState::kOn},
-        SwitchCase{"CompensationOff", "3 L X+5 RL\n4 L X+6 R0", &ModalState::cutter_compensation,
-                   TriState::kOff},
-        SwitchCase{"Approach", "3 APPR LT X+5 Y+5 LEN5 R0", &ModalState::cutter_compensation,
-                   TriState::kOff},
-        SwitchCase{"ApproachCompensated", "3 APPR LT X+5 Y+5 LEN5 RL",
-                   &ModalState::cutter_compensation, TriState::kOn},
-        SwitchCase{"Departure", "3 DEP LT LEN5", &ModalState::cutter_compensation,
-                   TriState::kUnknown},
-        SwitchCase{"TiltedTool", "3 L X+5 M128", &ModalState::tool_center_point, TriState::kOn},
-        SwitchCase{"TiltedToolEnds", "3 M128\n4 M129", &ModalState::tool_center_point,
-                   TriState::kOff},
-        SwitchCase{"Tcpm", "3 FUNCTION TCPM F TCP", &ModalState::tool_center_point, TriState::kOn},
-        SwitchCase{"TcpmEnds", "3 FUNCTION RESET TCPM", &ModalState::tool_center_point,
-                   TriState::kOff},
-        SwitchCase{"Plane", "3 PLANE SPATIAL SPA+0 SPB+30 SPC+0 MOVE", &ModalState::tilted_plane,
-                   TriState::kOn},
-        SwitchCase{"Cycle19", "3 CYCL DEF 19.0 W\n4 CYCL DEF 19.1 A+0 B+5",
-                   &ModalState::tilted_plane, TriState::kOn},
-        SwitchCase{"Cycle19Ends", "3 CYCL DEF 19.1 A+1\n4 CYCL DEF 19.0 W\n5 CYCL DEF 19.1",
-                   &ModalState::tilted_plane, TriState::kOff},
-        SwitchCase{"Mirror", "3 CYCL DEF 8.0 MIRROR\n4 CYCL DEF 8.1 X", &ModalState::mirror,
-                   TriState::kOn},
-        SwitchCase{"Rotation", "3 CYCL DEF 10.1 ROT+30", &ModalState::rotation, TriState::kOn},
-        SwitchCase{"RotationByIncrements", "3 CYCL DEF 10.1 IROT+0", &ModalState::rotation,
-                   TriState::kOn},
-        SwitchCase{"Scaling", "3 CYCL DEF 11.1 SCL 0.5", &ModalState::scaling, TriState::kOn},
-        SwitchCase{"ScalingByAxis", "3 CYCL DEF 26.1 X0.5\n4 CYCL DEF 11.1 SCL 1",
-                   &ModalState::scaling, TriState::kUnknown},
-        SwitchCase{"CycleAtEachPlace", "3 L X+5 M89", &ModalState::modal_macro, TriState::kOn},
-        SwitchCase{"PointFilter", "3 M124 T0.01", &ModalState::control_smoothing, TriState::kOn}),
-    [](const auto& test) { return test.param.name; });
 
 // A feed in a comment of a spline's lines is none.
 TEST(KlartextEffects, CommentsAreNotRead) {

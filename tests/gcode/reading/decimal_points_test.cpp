@@ -38,50 +38,46 @@ struct ReadWith {
 };
 
 struct ValueCase {
-  const char* name;
   const char* text;
   char letter;
   double value;
 };
-void PrintTo(const ValueCase& test, std::ostream* out) { *out << test.text; }
 
-class Implied : public testing::TestWithParam<ValueCase> {};
+const ValueCase kImpliedRows[] = {{"G21 G1 X1234", 'X', 1.234},
+                                  {"G21 G1 Z-5", 'Z', -0.005},
+                                  {"G21 G1 X0", 'X', 0},
+                                  {"G21 G1 X1234.", 'X', 1234},
+                                  {"G21 G1 X.5", 'X', 0.5},
+                                  {"G20 G1 X1234", 'X', 0.1234},
+                                  {"G21\nG20 G1 X12345", 'X', 1.2345},
+                                  {"G70\nG1 X12345", 'X', 1.2345},
+                                  {"G21\nG70 P1 Q2\nG1 X1234", 'X', 1.234},
+                                  {"G21 G2 X1. Y0 I500", 'I', 0.5},
+                                  {"G21 G18 G2 X1. Z0 K500", 'K', 0.5},
+                                  {"G21 G2 X1. Y0 R1500", 'R', 1.5},
+                                  {"G21 G1 U250", 'U', 0.25},
+                                  {"G21 G83 X0 Y0 Z-5. R2. Q1500", 'Q', 1.5},
+                                  {"G21 G81 X0 Y0 Z-5. R2. K3", 'K', 3},
+                                  {"G21 G81 Z-5. R2.\nX5. K3", 'K', 3},
+                                  {"G21 G81 Z-5. R2.\nG80\nG18 G2 K500", 'K', 0.5},
+                                  {"G21 G4 X1000", 'X', 1000},
+                                  {"G21 G4 P1000", 'P', 1000},
+                                  {"G21 G65 P9010 X100", 'X', 100},
+                                  {"G21 G5 P10000", 'P', 10000},
+                                  {"G21 G5.1 Q2", 'Q', 2},
+                                  {"G21 G1 X1. F1200", 'F', 1200},
+                                  {"G21 S8000 M3", 'S', 8000},
+                                  {"G21 G0 A90", 'A', 90}};
 
 // As if the point had been written: not nearly, but the same double.
-TEST_P(Implied, NumbersHaveTheirValueInTheProgramsUnits) {
-  const ReadWith it(GetParam().text, kIncrements);
-  EXPECT_TRUE(it.word(GetParam().letter).is_number);
-  EXPECT_EQ(it.word(GetParam().letter).value, GetParam().value);
+TEST(Implied, NumbersHaveTheirValueInTheProgramsUnits) {
+  for (const ValueCase& test : kImpliedRows) {
+    SCOPED_TRACE(test.text);
+    const ReadWith it(test.text, kIncrements);
+    EXPECT_TRUE(it.word(test.letter).is_number);
+    EXPECT_EQ(it.word(test.letter).value, test.value);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    DecimalPoints, Implied,
-    testing::Values(ValueCase{"Millimetres", "G21 G1 X1234", 'X', 1.234},
-                    ValueCase{"Negative", "G21 G1 Z-5", 'Z', -0.005},
-                    ValueCase{"Zero", "G21 G1 X0", 'X', 0},
-                    ValueCase{"APointIsAPoint", "G21 G1 X1234.", 'X', 1234},
-                    ValueCase{"APointInFront", "G21 G1 X.5", 'X', 0.5},
-                    ValueCase{"Inches", "G20 G1 X1234", 'X', 0.1234},
-                    ValueCase{"InchesOfThisBlock", "G21\nG20 G1 X12345", 'X', 1.2345},
-                    ValueCase{"UnitsByOtherWords", "G70\nG1 X12345", 'X', 1.2345},
-                    ValueCase{"ALatheCycleSetsNoUnits", "G21\nG70 P1 Q2\nG1 X1234", 'X', 1.234},
-                    ValueCase{"ArcCentre", "G21 G2 X1. Y0 I500", 'I', 0.5},
-                    ValueCase{"ArcCentreAlongZ", "G21 G18 G2 X1. Z0 K500", 'K', 0.5},
-                    ValueCase{"Radius", "G21 G2 X1. Y0 R1500", 'R', 1.5},
-                    ValueCase{"LatheIncrement", "G21 G1 U250", 'U', 0.25},
-                    ValueCase{"DepthOfACycle", "G21 G83 X0 Y0 Z-5. R2. Q1500", 'Q', 1.5},
-                    ValueCase{"RepeatsOfACycle", "G21 G81 X0 Y0 Z-5. R2. K3", 'K', 3},
-                    ValueCase{"RepeatsOfACycleThatGoesOn", "G21 G81 Z-5. R2.\nX5. K3", 'K', 3},
-                    ValueCase{"CentreBehindACycle", "G21 G81 Z-5. R2.\nG80\nG18 G2 K500", 'K', 0.5},
-                    ValueCase{"DwellX", "G21 G4 X1000", 'X', 1000},
-                    ValueCase{"DwellP", "G21 G4 P1000", 'P', 1000},
-                    ValueCase{"ArgumentOfAMacro", "G21 G65 P9010 X100", 'X', 100},
-                    ValueCase{"HighSpeedMode", "G21 G5 P10000", 'P', 10000},
-                    ValueCase{"SmoothingByTheControl", "G21 G5.1 Q2", 'Q', 2},
-                    ValueCase{"Feed", "G21 G1 X1. F1200", 'F', 1200},
-                    ValueCase{"Speed", "G21 S8000 M3", 'S', 8000},
-                    ValueCase{"Rotary", "G21 G0 A90", 'A', 90}),
-    [](const auto& test) { return test.param.name; });
 
 TEST(DecimalPoints, OtherIncrementsAreATenthInInches) {
   const Decimals fine{.pointless = PointlessNumbers::kIncrements, .increment_decimals = 4};
@@ -187,48 +183,43 @@ TEST(DecimalPoints, KnotsAndWeightsNeedTheirPoint) {
 // -------------------------------------------------------------------------
 
 struct WhoCase {
-  const char* name;
   SourceKind source;
   const char* target;  // empty: none
   PointlessNumbers expected;
 };
-void PrintTo(const WhoCase& test, std::ostream* out) { *out << test.name; }
-
-class WhoHasSuchNumbers : public testing::TestWithParam<WhoCase> {};
-
-TEST_P(WhoHasSuchNumbers, IsSaidByTheSourceThenTheTarget) {
-  const std::string target = GetParam().target;
-  const Control* control = target.empty() ? nullptr : find_control(target);
-  EXPECT_EQ(target.empty(), control == nullptr);
-  EXPECT_EQ(decimals_read(GetParam().source, control, Language::kRs274, {}).pointless,
-            GetParam().expected);
-}
 
 constexpr PointlessNumbers kNobodySaid = PointlessNumbers::kUndeclared;
 constexpr PointlessNumbers kPlain = PointlessNumbers::kUnits;
 
-INSTANTIATE_TEST_SUITE_P(
-    Decimals, WhoHasSuchNumbers,
-    testing::Values(WhoCase{"SourceFanuc", SourceKind::kFanuc, "", kNobodySaid},
-                    WhoCase{"SourceHaas", SourceKind::kHaas, "", kNobodySaid},
-                    WhoCase{"SourceNgc", SourceKind::kNgc, "", kPlain},
-                    WhoCase{"SourceGrbl", SourceKind::kGrbl, "", kPlain},
-                    WhoCase{"Nothing", SourceKind::kAuto, "", kPlain},
-                    WhoCase{"TargetFanuc", SourceKind::kAuto, "fanuc", kNobodySaid},
-                    WhoCase{"TargetSyntec", SourceKind::kAuto, "syntec", kNobodySaid},
-                    WhoCase{"TargetMitsubishi", SourceKind::kAuto, "mitsubishi", kNobodySaid},
-                    WhoCase{"TargetHaas", SourceKind::kAuto, "haas", kNobodySaid},
-                    WhoCase{"TargetMazak", SourceKind::kAuto, "mazak", kNobodySaid},
-                    WhoCase{"TargetOkuma", SourceKind::kAuto, "okuma", kNobodySaid},
-                    WhoCase{"TargetBrother", SourceKind::kAuto, "brother", kNobodySaid},
-                    WhoCase{"TargetHurco", SourceKind::kAuto, "hurco", kNobodySaid},
-                    WhoCase{"TargetFagor", SourceKind::kAuto, "fagor", kPlain},
-                    WhoCase{"TargetLinuxCnc", SourceKind::kAuto, "linuxcnc", kPlain},
-                    WhoCase{"TargetGrbl", SourceKind::kAuto, "grbl", kPlain},
-                    WhoCase{"TargetMarlin", SourceKind::kAuto, "marlin", kPlain},
-                    WhoCase{"TheSourceGoesFirst", SourceKind::kNgc, "fanuc", kPlain},
-                    WhoCase{"AlsoTheOtherWay", SourceKind::kFanuc, "linuxcnc", kNobodySaid}),
-    [](const auto& test) { return test.param.name; });
+const WhoCase kWhoHasSuchNumbersRows[] = {{SourceKind::kFanuc, "", kNobodySaid},
+                                          {SourceKind::kHaas, "", kNobodySaid},
+                                          {SourceKind::kNgc, "", kPlain},
+                                          {SourceKind::kGrbl, "", kPlain},
+                                          {SourceKind::kAuto, "", kPlain},
+                                          {SourceKind::kAuto, "fanuc", kNobodySaid},
+                                          {SourceKind::kAuto, "syntec", kNobodySaid},
+                                          {SourceKind::kAuto, "mitsubishi", kNobodySaid},
+                                          {SourceKind::kAuto, "haas", kNobodySaid},
+                                          {SourceKind::kAuto, "mazak", kNobodySaid},
+                                          {SourceKind::kAuto, "okuma", kNobodySaid},
+                                          {SourceKind::kAuto, "brother", kNobodySaid},
+                                          {SourceKind::kAuto, "hurco", kNobodySaid},
+                                          {SourceKind::kAuto, "fagor", kPlain},
+                                          {SourceKind::kAuto, "linuxcnc", kPlain},
+                                          {SourceKind::kAuto, "grbl", kPlain},
+                                          {SourceKind::kAuto, "marlin", kPlain},
+                                          {SourceKind::kNgc, "fanuc", kPlain},
+                                          {SourceKind::kFanuc, "linuxcnc", kNobodySaid}};
+
+TEST(WhoHasSuchNumbers, IsSaidByTheSourceThenTheTarget) {
+  for (const WhoCase& test : kWhoHasSuchNumbersRows) {
+    SCOPED_TRACE(test.target);
+    const std::string target = test.target;
+    const Control* control = target.empty() ? nullptr : find_control(target);
+    EXPECT_EQ(target.empty(), control == nullptr);
+    EXPECT_EQ(decimals_read(test.source, control, Language::kRs274, {}).pointless, test.expected);
+  }
+}
 
 TEST(Decimals, OtherLanguagesHaveNoSuchNumbers) {
   for (const Language language : {Language::kSiemens, Language::kKlartext}) {

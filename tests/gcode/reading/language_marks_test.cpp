@@ -73,26 +73,29 @@ std::vector<LanguageMark> marks_line_by_line(const std::string& text) {
 
 // Stretches without a letter of a mark are passed over: that loses none and finds no other.
 TEST(LanguageMarks, AreThoseOfEachLineForItself) {
-  const std::vector<std::string> lines = {"X1.234 Y-5.678",
-                                          "X1Y2Z3",
-                                          "N10 G1 X5",
-                                          "",
-                                          "D1 B2",
-                                          "(a comment; B)",
-                                          "; text",
-                                          "%",
-                                          "  ",
-                                          "G1 X1 ; DEF REAL",
-                                          "0 BEGIN PGM A MM",
-                                          "  def REAL X",
-                                          "N7 BEGIN PGM B MM",
-                                          "%_N_A_MPF",
-                                          ";$PATH=/_N_A",
-                                          "BEGIN",
-                                          "X1 B5 D7",
-                                          "12BEGIN PGM",
-                                          "N5DEF INT A",
-                                          "DEFREAL"};
+  std::vector<std::string> lines;
+  for (const char* line : {"X1.234 Y-5.678",
+                           "X1Y2Z3",
+                           "N10 G1 X5",
+                           "",
+                           "D1 B2",
+                           "(a comment; B)",
+                           "; text",
+                           "%",
+                           "  ",
+                           "G1 X1 ; DEF REAL",
+                           "0 BEGIN PGM A MM",
+                           "  def REAL X",
+                           "N7 BEGIN PGM B MM",
+                           "%_N_A_MPF",
+                           ";$PATH=/_N_A",
+                           "BEGIN",
+                           "X1 B5 D7",
+                           "12BEGIN PGM",
+                           "N5DEF INT A",
+                           "DEFREAL"}) {
+    lines.emplace_back(line);
+  }
   const std::vector<std::string> ends = {"\n", "\n", "\r\n", "\r"};
   std::size_t found = 0;
   for (unsigned seed = 0; seed < 2000; ++seed) {

@@ -19,12 +19,10 @@ using Ends = std::vector<std::pair<double, double>>;  // X and Y of each motion
 enum class Read { kAll, kUpToThere };  // all motions; those before the line that is not read
 
 struct LineEndCase {
-  const char* name;
   std::string text;
   Ends linuxcnc;  // the motions of its rs274, up to its error where it gave one
   Read read = Read::kAll;
 };
-void PrintTo(const LineEndCase& test, std::ostream* out) { *out << test.name; }
 
 std::string five_lines(const std::string& end) {
   std::string text;
@@ -37,75 +35,54 @@ std::string with_line(const std::string& line) {
   return "G21 G90 F3000\nG0 X0 Y0\n" + line + "\nG1 X5 Y5\nM2\n";
 }
 
-class LineEnds : public testing::TestWithParam<LineEndCase> {};
-
-TEST_P(LineEnds, AreReadAsByLinuxCncOrNotAtAll) {
-  const Interpreted it(GetParam().text);
-  Ends ends;
-  for (const Motion& motion : it.read.motions) {
-    if (motion.start_known || ends.empty()) {
-      ends.emplace_back(motion.piece.end().x(), motion.piece.end().y());
-    }
-  }
-  const Ends& theirs = GetParam().linuxcnc;
-  if (GetParam().read == Read::kAll) {
-    EXPECT_EQ(ends, theirs);
-    return;
-  }
-  EXPECT_TRUE(it.has_diagnostic("unreadable-block"));
-  ASSERT_LE(ends.size(), theirs.size());
-  EXPECT_TRUE(std::equal(ends.begin(), ends.end(), theirs.begin()));
-}
-
 const Ends kFive = {{0, 0}, {60, 0}, {60, 60}};
 
-INSTANTIATE_TEST_SUITE_P(
-    OfWholePrograms, LineEnds,
-    testing::Values(LineEndCase{"Lf", five_lines("\n"), kFive},
-                    LineEndCase{"CrLf", five_lines("\r\n"), kFive},
-                    LineEndCase{"CrCrLf", five_lines("\r\r\n"), kFive},
-                    LineEndCase{"LfCr", five_lines("\n\r"), kFive},
-                    LineEndCase{"NoneAtTheEnd", five_lines("\n").substr(0, 39), kFive},
-                    LineEndCase{"CrAtTheEnd", five_lines("\n") + "\r", kFive},
-                    // "Two g codes used from same modal group": all of it is one line.
-                    LineEndCase{"Cr", five_lines("\r"), {}, Read::kUpToThere}),
-    [](const auto& test) { return test.param.name; });
+const LineEndCase kLineEndsRows[] = {
 
-INSTANTIATE_TEST_SUITE_P(
-    OfOneLine, LineEnds,
-    testing::Values(
-        LineEndCase{"CrInFront", with_line("\rG1 X60"), {{0, 0}, {60, 0}, {5, 5}}},
-        LineEndCase{"CrBehind", with_line("G1 X60\r"), {{0, 0}, {60, 0}, {5, 5}}},
-        LineEndCase{"CrBetweenWords",
-                    with_line("G1 X60\rY60"),
-                    {{0, 0}, {60, 60}, {5, 5}},
-                    Read::kUpToThere},
-        // "Two g codes used from same modal group"
-        LineEndCase{"CrBetweenMoves", with_line("G1 X60\rG1 Y60"), {{0, 0}}, Read::kUpToThere},
-        LineEndCase{
-            "CrInANumber", with_line("G1 X6\r0"), {{0, 0}, {60, 0}, {5, 5}}, Read::kUpToThere},
-        LineEndCase{"CrInAComment",
-                    with_line("(a\rX5) G1 X60"),
-                    {{0, 0}, {60, 0}, {5, 5}},
-                    Read::kUpToThere},
-        LineEndCase{"CrBehindASemicolon",
-                    with_line("G1 X60 ; a\rX5"),
-                    {{0, 0}, {60, 0}, {5, 5}},
-                    Read::kUpToThere},
-        LineEndCase{"NulInFront",
-                    with_line(std::string("\0G1 X60", 7)),
-                    {{0, 0}, {5, 5}},
-                    Read::kUpToThere},
-        LineEndCase{"NulInside",
-                    with_line(std::string("G1 X60\0Y60", 10)),
-                    {{0, 0}, {60, 0}, {5, 5}},
-                    Read::kUpToThere},
-        LineEndCase{"NulBehind",
-                    with_line(std::string("G1 X60\0", 7)),
-                    {{0, 0}, {60, 0}, {5, 5}},
-                    Read::kUpToThere},
-        LineEndCase{"NulsAlone", with_line(std::string("\0\0\0", 3)), {{0, 0}, {5, 5}}}),
-    [](const auto& test) { return test.param.name; });
+    // Of whole programs
+    {five_lines("\n"), kFive},
+    {five_lines("\r\n"), kFive},
+    {five_lines("\r\r\n"), kFive},
+    {five_lines("\n\r"), kFive},
+    {five_lines("\n").substr(0, 39), kFive},
+    {five_lines("\n") + "\r", kFive},
+    // "Two g codes used from same modal group": all of it is one line.
+    {five_lines("\r"), {}, Read::kUpToThere},
+
+    // Of one line
+    {with_line("\rG1 X60"), {{0, 0}, {60, 0}, {5, 5}}},
+    {with_line("G1 X60\r"), {{0, 0}, {60, 0}, {5, 5}}},
+    {with_line("G1 X60\rY60"), {{0, 0}, {60, 60}, {5, 5}}, Read::kUpToThere},
+    // "Two g codes used from same modal group"
+    {with_line("G1 X60\rG1 Y60"), {{0, 0}}, Read::kUpToThere},
+    {with_line("G1 X6\r0"), {{0, 0}, {60, 0}, {5, 5}}, Read::kUpToThere},
+    {with_line("(a\rX5) G1 X60"), {{0, 0}, {60, 0}, {5, 5}}, Read::kUpToThere},
+    {with_line("G1 X60 ; a\rX5"), {{0, 0}, {60, 0}, {5, 5}}, Read::kUpToThere},
+    {with_line(std::string("\0G1 X60", 7)), {{0, 0}, {5, 5}}, Read::kUpToThere},
+    {with_line(std::string("G1 X60\0Y60", 10)), {{0, 0}, {60, 0}, {5, 5}}, Read::kUpToThere},
+    {with_line(std::string("G1 X60\0", 7)), {{0, 0}, {60, 0}, {5, 5}}, Read::kUpToThere},
+    {with_line(std::string("\0\0\0", 3)), {{0, 0}, {5, 5}}}};
+
+TEST(LineEnds, AreReadAsByLinuxCncOrNotAtAll) {
+  for (const LineEndCase& test : kLineEndsRows) {
+    SCOPED_TRACE(test.text);
+    const Interpreted it(test.text);
+    Ends ends;
+    for (const Motion& motion : it.read.motions) {
+      if (motion.start_known || ends.empty()) {
+        ends.emplace_back(motion.piece.end().x(), motion.piece.end().y());
+      }
+    }
+    const Ends& theirs = test.linuxcnc;
+    if (test.read == Read::kAll) {
+      EXPECT_EQ(ends, theirs);
+      continue;
+    }
+    EXPECT_TRUE(it.has_diagnostic("unreadable-block"));
+    ASSERT_LE(ends.size(), theirs.size());
+    EXPECT_TRUE(std::equal(ends.begin(), ends.end(), theirs.begin()));
+  }
+}
 
 }  // namespace
 }  // namespace batten::gcode

@@ -102,64 +102,65 @@ std::string many(std::string_view line, int times) {
 }
 
 struct PartsCase {
-  std::string name;
   std::string text;
 };
 
-class PartReading : public testing::TestWithParam<PartsCase> {};
+const PartsCase kPartReadingRows[] = {
+    {"%\nO1000\nG21 G90\nG0 X1 Y2\nG1 X2 F100\nX3\nM30\n%\n"},
+    {"G21\r\nG0 X1\r\n\r\nG1 X2 F5\rX3\nX4"},
+    {"\xEF\xBB\xBFG21\nG1 X1 F1\n\xEF\xBB\xBFX2\n"},
+    {std::string("G21\nG0 X1\x1A\nM30\n\x1A\0\0\n\x1A", 20)},
+    {"(HEAD)\nO1\nG21 X1\nO2\nG0 X3\n"},
+    {"G21\nG777\nG0 X1\nG777\nG778\nG1 X2 F9\n"},
+    {"G20 G18 G91\nG0 X1\nX1\nG2 X1 Z1 I1 K0 F9\nX1 Z1 I1 K0\n"},
+    {"G21\n" + many("X1 X2\nG1 ?\n", 70) + "M30\n"},
+    {"G21 G0 X0 Y0\n" + many("G2 X3 Y3 I9 J2 F9\nG0 X0 Y0\n", 70)},
+    {"G21\n" + many("G0 X1 (open\n", 60)},
+    {"G90\nM3\nG1 X1 F2\nX2\n"},
+    {"G90\n(no)\nM30\n"}};
 
-TEST_P(PartReading, IsThatOfTheWhole) {
-  const Reading whole = as_a_whole(GetParam().text);
-  for (const std::size_t blocks : {1, 2, 3, 7}) {
-    SCOPED_TRACE(blocks);
-    const Reading parts = in_parts(GetParam().text, blocks);
-    EXPECT_EQ(parts.blocks, whole.blocks);
-    EXPECT_EQ(parts.meanings, whole.meanings);
-    EXPECT_EQ(parts.told, whole.told);
-    EXPECT_TRUE(parts.marks_close_nothing);
-    EXPECT_FALSE(parts.reaches_out);
+TEST(PartReading, IsThatOfTheWhole) {
+  for (const PartsCase& test : kPartReadingRows) {
+    SCOPED_TRACE(test.text);
+    const Reading whole = as_a_whole(test.text);
+    for (const std::size_t blocks : {1, 2, 3, 7}) {
+      SCOPED_TRACE(blocks);
+      const Reading parts = in_parts(test.text, blocks);
+      EXPECT_EQ(parts.blocks, whole.blocks);
+      EXPECT_EQ(parts.meanings, whole.meanings);
+      EXPECT_EQ(parts.told, whole.told);
+      EXPECT_TRUE(parts.marks_close_nothing);
+      EXPECT_FALSE(parts.reaches_out);
+    }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Parts, PartReading,
-    testing::Values(
-        PartsCase{"Plain", "%\nO1000\nG21 G90\nG0 X1 Y2\nG1 X2 F100\nX3\nM30\n%\n"},
-        PartsCase{"LineEnds", "G21\r\nG0 X1\r\n\r\nG1 X2 F5\rX3\nX4"},
-        PartsCase{"ByteOrderMark", "\xEF\xBB\xBFG21\nG1 X1 F1\n\xEF\xBB\xBFX2\n"},
-        PartsCase{"FillingAtTheEnd", std::string("G21\nG0 X1\x1A\nM30\n\x1A\0\0\n\x1A", 20)},
-        PartsCase{"TwoProgramNumbers", "(HEAD)\nO1\nG21 X1\nO2\nG0 X3\n"},
-        PartsCase{"UnknownCodes", "G21\nG777\nG0 X1\nG777\nG778\nG1 X2 F9\n"},
-        PartsCase{"StatesGoOn", "G20 G18 G91\nG0 X1\nX1\nG2 X1 Z1 I1 K0 F9\nX1 Z1 I1 K0\n"},
-        PartsCase{"ManyUnreadable", "G21\n" + many("X1 X2\nG1 ?\n", 70) + "M30\n"},
-        PartsCase{"ManyBadArcs", "G21 G0 X0 Y0\n" + many("G2 X3 Y3 I9 J2 F9\nG0 X0 Y0\n", 70)},
-        PartsCase{"UnclosedComments", "G21\n" + many("G0 X1 (open\n", 60)},
-        PartsCase{"NoUnits", "G90\nM3\nG1 X1 F2\nX2\n"}, PartsCase{"NoMotion", "G90\n(no)\nM30\n"}),
-    [](const auto& test) { return test.param.name; });
-
 // Parts are held while their end is not known: taken apart anywhere and put together again they are
 // what they were.
-TEST_P(PartReading, IsTheSameTakenApartAndPutTogether) {
-  const std::string text = GetParam().text;
-  Diagnostics ignored;
-  const Reading whole = as_a_whole(text);
-  const SourceText source("part.nc", text);
-  for (std::uint32_t first = 0; first <= whole.blocks.size(); ++first) {
-    TextCarry carry;
-    ControlCarry control(Units::kUnknown);
-    ReadPart held{parse_part(source, {}, carry, ignored), {}};
-    held.meaning = interpret_part(held.program, {}, control, ignored);
-    ReadPart rest = take_rest(held, first);
-    Reading apart;
-    add(held.program, held.meaning, apart);
-    add(rest.program, rest.meaning, apart);
-    EXPECT_EQ(apart.blocks, whole.blocks);
-    EXPECT_EQ(apart.meanings, whole.meanings);
-    append(held, std::move(rest));
-    Reading together;
-    add(held.program, held.meaning, together);
-    EXPECT_EQ(together.blocks, whole.blocks);
-    EXPECT_EQ(together.meanings, whole.meanings);
+TEST(PartReading, IsTheSameTakenApartAndPutTogether) {
+  for (const PartsCase& test : kPartReadingRows) {
+    SCOPED_TRACE(test.text);
+    const std::string text = test.text;
+    Diagnostics ignored;
+    const Reading whole = as_a_whole(text);
+    const SourceText source("part.nc", text);
+    for (std::uint32_t first = 0; first <= whole.blocks.size(); ++first) {
+      TextCarry carry;
+      ControlCarry control(Units::kUnknown);
+      ReadPart held{parse_part(source, {}, carry, ignored), {}};
+      held.meaning = interpret_part(held.program, {}, control, ignored);
+      ReadPart rest = take_rest(held, first);
+      Reading apart;
+      add(held.program, held.meaning, apart);
+      add(rest.program, rest.meaning, apart);
+      EXPECT_EQ(apart.blocks, whole.blocks);
+      EXPECT_EQ(apart.meanings, whole.meanings);
+      append(held, std::move(rest));
+      Reading together;
+      add(held.program, held.meaning, together);
+      EXPECT_EQ(together.blocks, whole.blocks);
+      EXPECT_EQ(together.meanings, whole.meanings);
+    }
   }
 }
 

@@ -6,7 +6,9 @@
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "tests/support/places.h"
 
@@ -22,7 +24,7 @@ std::string text_of(const std::string& file) {
 
 // The ids as the headers declare them.
 std::set<std::string> declared_ids() {
-  const std::string header = text_of("gcode/state/reason.h") + text_of("gcode/state/reason.h");
+  const std::string header = text_of("gcode/state/reason.h");
   const std::string declaration = "string_view k";
   std::set<std::string> ids;
   for (std::size_t at = header.find(declaration); at != std::string::npos;
@@ -64,6 +66,33 @@ TEST(Reason, EveryIdStandsInTheDocumentation) {
     EXPECT_NE(page.find("`" + std::string(explanation.id) + "`"), std::string::npos)
         << explanation.id;
   }
+}
+
+TEST(ReasonId, ReadsAsTheReasonThatItWasMadeOf) {
+  for (const Explanation& each : explanations()) {
+    EXPECT_EQ(ReasonId(each.id).id(), each.id);
+    EXPECT_EQ(ReasonId(each.id), each.id);
+    EXPECT_FALSE(ReasonId(each.id).empty());
+    // The same letters at another place.
+    const std::string copy(each.id);
+    EXPECT_EQ(ReasonId(copy), ReasonId(each.id));
+    for (const Explanation& other : explanations()) {
+      EXPECT_EQ(ReasonId(each.id) == ReasonId(other.id), each.id == other.id);
+    }
+  }
+}
+
+TEST(ReasonId, IsNoneAtFirstAndOfNoLetters) {
+  EXPECT_TRUE(ReasonId().empty());
+  EXPECT_TRUE(ReasonId(std::string_view()).empty());
+  EXPECT_EQ(ReasonId(), std::string_view());
+  EXPECT_NE(ReasonId(), kRapid);
+}
+
+TEST(ReasonId, RefusesWhatIsNoReason) {
+  EXPECT_THROW(ReasonId("no-such-reason"), std::invalid_argument);
+  // A part of one, at the place of the whole.
+  EXPECT_THROW(ReasonId(kPlunge.substr(0, 3)), std::invalid_argument);
 }
 
 }  // namespace
