@@ -120,7 +120,7 @@ Point3 ArcChain::rounded(const Point3& place) const {
 double ArcChain::crossing_angle(double u, double reach, double arc_length) const {
   const double before = std::max(u - reach / 2, curve_.breaks().front());
   const double after = std::min(u + reach / 2, curve_.breaks().back());
-  const double length = (curve_.place_at(after) - curve_.place_at(before)).head<2>().norm();
+  const double length = (curve_.point_at(after) - curve_.point_at(before)).head<2>().norm();
   if (length <= kSamePlace) return 0;
   const double change = (curve_.curvature_at(after) - curve_.curvature_at(before)) / length;
   const double best = std::cbrt(kBestArc * limits_.deviation / std::abs(change));
@@ -129,7 +129,7 @@ double ArcChain::crossing_angle(double u, double reach, double arc_length) const
 }
 
 ChainNode ArcChain::node_at(const ChainNode& start, double u, Tangent tangent) const {
-  Point3 place = rounded(curve_.place_at(u));
+  Point3 place = rounded(curve_.point_at(u));
   if (limits_.flat) place.z() = start.place.z();
   double angle = curve_.angle_at(u);
   if (tangent == Tangent::kCrossing) {
@@ -173,7 +173,7 @@ bool ArcChain::heights_hold(const PlaneArc& arc, double from, double to, double 
     const double b = std::min(to, curve_.breaks()[i + 1]);
     if (a >= to) break;
     for (double t : {0.25, 0.5, 0.75, 1.0}) {
-      const Point3 p = curve_.place_in(i, a + t * (b - a));
+      const Point3 p = curve_.point_in(i, a + t * (b - a));
       const double expected = from_height + (to_height - from_height) * way(in_plane(p));
       if (std::abs(p.z() - expected) > 0.9 * limits_.height_deviation) return false;
     }
@@ -195,7 +195,7 @@ bool ArcChain::holds(const PlaneArc& arc, double from, double to, double from_he
 double ArcChain::joint_parameter(const Point2& joint, const Vector2& tangent, double from,
                                  double to) const {
   const auto before = [&](std::size_t piece, double u) {
-    return (in_plane(curve_.place_in(piece, u)) - joint).dot(tangent) < 0;
+    return (in_plane(curve_.point_in(piece, u)) - joint).dot(tangent) < 0;
   };
   const auto& breaks = curve_.breaks();
   std::size_t low = curve_.index_of(from);
@@ -246,14 +246,14 @@ std::optional<ArcPair> ArcChain::pair_between(const ChainNode& start, const Chai
 // it and not against its own ends: where that part is no longer than the deviation, lines to a
 // joint far away and back would pass.
 bool ArcChain::is_passed(const Point2& joint, double u) const {
-  const double off = (in_plane(curve_.place_at(u)) - joint).norm();
+  const double off = (in_plane(curve_.point_at(u)) - joint).norm();
   return off <= kJointOff * limits_.deviation + limits_.grid;
 }
 
 bool ArcChain::holds(ArcPair& pair, const ChainNode& start) const {
   pair.joint_u = joint_parameter(pair.first.end, pair.tangent, start.u, pair.end.u);
   if (!is_passed(pair.first.end, pair.joint_u)) return false;
-  if (!limits_.flat) pair.joint_height = rounded(curve_.place_at(pair.joint_u)).z();
+  if (!limits_.flat) pair.joint_height = rounded(curve_.point_at(pair.joint_u)).z();
   return holds(pair.first, start.u, pair.joint_u, start.place.z(), pair.joint_height) &&
          holds(pair.second, pair.joint_u, pair.end.u, pair.joint_height, pair.end.place.z());
 }

@@ -78,7 +78,7 @@ class ArcCutter {
   // other one. `first` and `last`: the corners about the run.
   bool stays(const StraightRun& run, double first, double last) const {
     const double width = run.to - run.from;
-    const double length = (curve_.place_at(run.to) - curve_.place_at(run.from)).norm();
+    const double length = (curve_.point_at(run.to) - curve_.point_at(run.from)).norm();
     if (length < kLeastRunInGrids * grid_) return false;
     const double extra = (kBeyondRun - 1) * width;
     const bool room_after = run.to + extra <= last;
@@ -91,7 +91,7 @@ class ArcCutter {
   }
 
   bool reaches(double from, double to) const {
-    const ChainNode start{from, chain_.rounded(curve_.place_at(from)), curve_.angle_at(from)};
+    const ChainNode start{from, chain_.rounded(curve_.point_at(from)), curve_.angle_at(from)};
     return chain_.pair_to(start, to).has_value();
   }
 
@@ -112,7 +112,7 @@ std::vector<Stop> stops_of(const PlaneCurve& curve, const ArcChain& chain,
                            const std::vector<Stretch>& stretches, bool flat) {
   std::vector<Stop> stops;
   const auto add = [&](double u, bool exact) {
-    Point3 place = curve.place_at(u);
+    Point3 place = curve.point_at(u);
     if (!exact) {
       const double height = stops.front().place.z();
       place = chain.rounded(place);

@@ -431,11 +431,6 @@ void AdaptiveFit::add_range(IndexRange awake, std::vector<IndexRange>& found) co
   }
 }
 
-BsplineCurve AdaptiveFit::curve() const {
-  constexpr int kCubic = 3;
-  return {BsplineBasis(kCubic, spline_.knots), spline_.points};
-}
-
 std::vector<ParameterRange> AdaptiveFit::moved() const {
   constexpr std::size_t kSupport = 4;  // spans of one control point
   std::vector<ParameterRange> parts;

@@ -14,7 +14,6 @@
 
 #include "geometry/fitting/bspline_fit_system.h"
 #include "geometry/fitting/fit_problem.h"
-#include "geometry/path/bspline_curve.h"
 
 namespace batten::geometry {
 
@@ -29,7 +28,6 @@ class AdaptiveFit {
   void refit(FitProblem problem, double closest);
 
   [[nodiscard]] const FitSpline& spline() const { return spline_; }
-  [[nodiscard]] BsplineCurve curve() const;
 
   // Where the curve moved in the last fit: increasing, apart.
   [[nodiscard]] std::vector<ParameterRange> moved() const;

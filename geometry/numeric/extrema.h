@@ -1,4 +1,5 @@
-// The greatest value of a function of one variable with few extrema.
+// The greatest value, and the integral, of a function of one variable with few extrema; the least
+// value of one of a few variables.
 #pragma once
 
 #include <algorithm>
@@ -82,6 +83,21 @@ template <typename Function>
     if (refined.value > best.value) best = refined;
   }
   return best;
+}
+
+// The integral of f from a to b by Gauss and Legendre's rule with five places: exact for
+// polynomials of degree 9.
+template <typename Function>
+[[nodiscard]] double gauss5(const Function& f, double a, double b) {
+  constexpr double kPlace[] = {0.0, 0.5384693101056831, 0.9061798459386640};
+  constexpr double kWeight[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+  const double middle = (a + b) / 2;
+  const double half = (b - a) / 2;
+  double sum = kWeight[0] * f(middle);
+  for (int i = 1; i < 3; ++i) {
+    sum += kWeight[i] * (f(middle - half * kPlace[i]) + f(middle + half * kPlace[i]));
+  }
+  return half * sum;
 }
 
 // The least value of a function of a few variables that has kinks and forbidden places.

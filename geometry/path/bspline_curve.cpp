@@ -314,38 +314,6 @@ std::vector<CubicBezier> BsplineCurve::bezier_pieces() const {
   return pieces;
 }
 
-BsplineCurve BsplineCurve::reversed() const {
-  std::vector<double> knots(basis_.knots().rbegin(), basis_.knots().rend());
-  const double sum = first() + last();
-  for (double& u : knots) u = sum - u;
-  return {BsplineBasis(degree(), std::move(knots)),
-          std::vector<Point3>(control_points_.rbegin(), control_points_.rend())};
-}
-
-double length_between(const BsplineCurve& curve, double from, double to) {
-  // Gauss-Legendre, five points.
-  constexpr std::array<double, 5> kNodes = {-0.9061798459386640, -0.5384693101056831, 0.0,
-                                            0.5384693101056831, 0.9061798459386640};
-  constexpr std::array<double, 5> kWeights = {0.2369268850561891, 0.4786286704993665,
-                                              0.5688888888888889, 0.4786286704993665,
-                                              0.2369268850561891};
-  const auto& t = curve.basis().knots();
-  double length = 0;
-  double a = from;
-  auto next = std::upper_bound(t.begin(), t.end(), from);
-  while (a < to) {
-    const double b = next == t.end() ? to : std::min(*next, to);
-    const double half = 0.5 * (b - a);
-    const double mid = 0.5 * (a + b);
-    for (std::size_t i = 0; i < kNodes.size(); ++i) {
-      length += kWeights[i] * half * curve.derivative_at(mid + half * kNodes[i], 1).norm();
-    }
-    a = b;
-    next = std::upper_bound(next, t.end(), a);
-  }
-  return length;
-}
-
 namespace {
 
 // A half is nearer to its polygon by a quarter, so twenty halvings take a millimetre to 1e-12 mm.

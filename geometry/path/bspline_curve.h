@@ -82,17 +82,10 @@ class BsplineCurve {
   // [breakpoints[i], breakpoints[i + 1]]. Requires degree 3 or less. Linear cost.
   [[nodiscard]] std::vector<CubicBezier> bezier_pieces() const;
 
-  // The same curve run backwards on the same parameter interval.
-  [[nodiscard]] BsplineCurve reversed() const;
-
  private:
   BsplineBasis basis_;
   std::vector<Point3> control_points_;
 };
-
-// Length in mm between two parameters, Gauss-Legendre per span, relative error below 1e-6
-// on spans whose speed changes by less than a factor of ten.
-[[nodiscard]] double length_between(const BsplineCurve& curve, double from, double to);
 
 // How far a curve was moved, when another curve with the same knots was made of it. The
 // displacement D(u) = C(u) - C0(u) is a spline itself, its control points the moves of the control

@@ -48,20 +48,20 @@ CurvePieces::CurvePieces(const BsplineCurve& curve, double from, double to) {
   pieces_ = stretch.bezier_pieces();
 }
 
-std::size_t CurvePieces::index_of(double u) const {
+std::size_t PieceRow::index_of(double u) const {
   const auto after = std::upper_bound(breaks_.begin(), breaks_.end(), u);
   const auto i = after - breaks_.begin() - 1;
   return static_cast<std::size_t>(
       std::clamp<std::ptrdiff_t>(i, 0, static_cast<std::ptrdiff_t>(pieces_.size()) - 1));
 }
 
-double CurvePieces::local(std::size_t i, double u) const {
+double PieceRow::local(std::size_t i, double u) const {
   return std::clamp((u - breaks_[i]) / (breaks_[i + 1] - breaks_[i]), 0.0, 1.0);
 }
 
-Point3 CurvePieces::point_at(double u) const { return point_in(index_of(u), u); }
+Point3 PieceRow::point_at(double u) const { return point_in(index_of(u), u); }
 
-Point3 CurvePieces::point_in(std::size_t i, double u) const {
+Point3 PieceRow::point_in(std::size_t i, double u) const {
   return geometry::point_at(pieces_[i], local(i, u));
 }
 
@@ -76,7 +76,7 @@ Vector3 CurvePieces::leaving(double u) const {
   return geometry::direction_at(pieces_[i], local(i, u));
 }
 
-CubicBezier CurvePieces::part(std::size_t i, double from, double to) const {
+CubicBezier PieceRow::part(std::size_t i, double from, double to) const {
   const double t0 = local(i, from);
   const double t1 = local(i, to);
   if (t0 == 0 && t1 == 1) return pieces_[i];

@@ -24,28 +24,19 @@ struct StraightRun {
   double to;
 };
 
-class CurvePieces {
+// Bezier pieces one after the other: piece i runs over [breaks()[i], breaks()[i + 1]].
+class PieceRow {
  public:
-  // Requires degree 3 or less and first() <= from < to <= last(). Linear cost.
-  CurvePieces(const BsplineCurve& curve, double from, double to);
-
   [[nodiscard]] std::size_t size() const { return pieces_.size(); }
   [[nodiscard]] const CubicBezier& piece(std::size_t i) const { return pieces_[i]; }
-  // Piece i runs over [breaks()[i], breaks()[i + 1]].
   [[nodiscard]] const std::vector<double>& breaks() const { return breaks_; }
-  [[nodiscard]] double first() const { return breaks_.front(); }
-  [[nodiscard]] double last() const { return breaks_.back(); }
 
-  // The piece that holds u; the later one at a break (the last one at last()).
+  // The piece that holds u; the later one at a break (the last one at the end).
   [[nodiscard]] std::size_t index_of(double u) const;
 
   [[nodiscard]] Point3 point_at(double u) const;
   // The same for who knows the piece that holds u.
   [[nodiscard]] Point3 point_in(std::size_t i, double u) const;
-
-  // Unit tangents at u, seen from below and from above; they differ at corners only.
-  [[nodiscard]] Vector3 arriving(double u) const;
-  [[nodiscard]] Vector3 leaving(double u) const;
 
   // The piece's own parameter at u, 0..1 (clamped to the piece).
   [[nodiscard]] double local(std::size_t i, double u) const;
@@ -53,15 +44,28 @@ class CurvePieces {
   // The part of piece i between two parameters of the curve (clamped to the piece).
   [[nodiscard]] CubicBezier part(std::size_t i, double from, double to) const;
 
+ protected:
+  std::vector<double> breaks_;
+  std::vector<CubicBezier> pieces_;
+};
+
+class CurvePieces : public PieceRow {
+ public:
+  // Requires degree 3 or less and first() <= from < to <= last(). Linear cost.
+  CurvePieces(const BsplineCurve& curve, double from, double to);
+
+  [[nodiscard]] double first() const { return breaks_.front(); }
+  [[nodiscard]] double last() const { return breaks_.back(); }
+
+  // Unit tangents at u, seen from below and from above; they differ at corners only.
+  [[nodiscard]] Vector3 arriving(double u) const;
+  [[nodiscard]] Vector3 leaving(double u) const;
+
   // Places inside where the tangent turns by more than kCornerAngle, increasing.
   [[nodiscard]] std::vector<double> corners() const;
 
   // Longest stretches of whole pieces that are straight, increasing, not overlapping.
   [[nodiscard]] std::vector<StraightRun> straight_runs() const;
-
- private:
-  std::vector<double> breaks_;
-  std::vector<CubicBezier> pieces_;
 };
 
 // A stretch of curve for those who cut it more than once.

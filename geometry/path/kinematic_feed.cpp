@@ -16,25 +16,13 @@ namespace {
 double cubed(double x) { return x * x * x; }
 
 // The cube of 1 / feed at t, (s/mm)^3, so that the jerk's third root is taken once only.
-// Derivatives by length x_s .. come by the chain rule from those by t, where sigma = |C'| and
-// sigma1, sigma2 are its derivatives by t.
 double cubed_slowness(const CubicPolynomial& piece, double t, const KinematicLimits& limits) {
   const Vector3 d1 = piece.first(t);
-  const Vector3 d2 = piece.second(t);
-  const Vector3 d3 = piece.third();
-  const double sigma = d1.norm();
-  if (!(sigma > 0)) return std::numeric_limits<double>::infinity();  // a cusp: no feed at all
-  const double sigma1 = d1.dot(d2) / sigma;
-  const double sigma2 = (d2.squaredNorm() + d1.dot(d3) - sigma1 * sigma1) / sigma;
-  const Vector3 n = sigma * d2 - sigma1 * d1;
-  const double cube = cubed(sigma);
-  const Vector3 x_s = d1 / sigma;
-  const Vector3 x_ss = n / cube;
-  const Vector3 x_sss =
-      ((sigma * d3 - sigma2 * d1) / cube - 3 * sigma1 / (cube * sigma) * n) / sigma;
-  const double by_speed = x_s.cwiseAbs().cwiseQuotient(limits.speed).maxCoeff();
-  const double by_acceleration = x_ss.cwiseAbs().cwiseQuotient(limits.acceleration).maxCoeff();
-  const double by_jerk = x_sss.cwiseAbs().cwiseQuotient(limits.jerk).maxCoeff();
+  if (!(d1.norm() > 0)) return std::numeric_limits<double>::infinity();  // a cusp: no feed at all
+  const LengthDerivatives x = by_length(d1, piece.second(t), piece.third());
+  const double by_speed = x.first.cwiseAbs().cwiseQuotient(limits.speed).maxCoeff();
+  const double by_acceleration = x.second.cwiseAbs().cwiseQuotient(limits.acceleration).maxCoeff();
+  const double by_jerk = x.third.cwiseAbs().cwiseQuotient(limits.jerk).maxCoeff();
   return std::max({1 / cubed(limits.feed), cubed(by_speed),
                    by_acceleration * std::sqrt(by_acceleration), by_jerk});
 }
@@ -55,6 +43,17 @@ std::vector<double> sampled_places(const CubicPolynomial& piece) {
 }
 
 }  // namespace
+
+// With sigma = |C'| and its derivatives by the parameter.
+LengthDerivatives by_length(const Vector3& d1, const Vector3& d2, const Vector3& d3) {
+  const double sigma = d1.norm();
+  const double sigma1 = d1.dot(d2) / sigma;
+  const double sigma2 = (d2.squaredNorm() + d1.dot(d3) - sigma1 * sigma1) / sigma;
+  const Vector3 n = sigma * d2 - sigma1 * d1;
+  const double cube = cubed(sigma);
+  return {d1 / sigma, n / cube,
+          ((sigma * d3 - sigma2 * d1) / cube - 3 * sigma1 / (cube * sigma) * n) / sigma};
+}
 
 double feed_estimate(const BsplineCurve& curve, const KinematicLimits& limits) {
   double slowest = 1 / cubed(limits.feed);

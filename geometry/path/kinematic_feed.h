@@ -15,6 +15,19 @@ struct KinematicLimits {
   Vector3 jerk = Vector3::Constant(5000);            // mm/s^3
 };
 
+// Of the place x by the length s.
+struct LengthDerivatives {
+  Vector3 first = Vector3::Zero();   // unit direction
+  Vector3 second = Vector3::Zero();  // 1/mm
+  Vector3 third = Vector3::Zero();   // 1/mm^2
+
+  [[nodiscard]] bool is_straight() const { return second.isZero(0) && third.isZero(0); }
+};
+
+// From those by another parameter, the first not zero: the chain rule.
+[[nodiscard]] LengthDerivatives by_length(const Vector3& first, const Vector3& second,
+                                          const Vector3& third);
+
 // mm/s: the least over curve and axes of V / |x_s|, sqrt(A / |x_ss|) and cbrt(J / |x_sss|), no
 // more than `feed`; x_s .. are derivatives by length, the third from both sides at the knots.
 // Requires degree 3 or less. By samples that are refined around the least ones.

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "geometry/basic/rounding.h"
+#include "geometry/numeric/extrema.h"
 
 namespace batten::geometry {
 namespace {
@@ -113,20 +114,6 @@ Vector3 bezier_direction(const CubicBezier& b, double t) {
 double curvature_of(const Vector3& first, const Vector3& second) {
   const double speed = first.norm();
   return speed > 0 ? first.cross(second).norm() / (speed * speed * speed) : 0.0;
-}
-
-// Gauss-Legendre with five points on [a, b].
-template <typename Speed>
-double gauss5(const Speed& speed, double a, double b) {
-  constexpr double kNode[] = {0.0, 0.5384693101056831, 0.9061798459386640};
-  constexpr double kWeight[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
-  const double middle = (a + b) / 2;
-  const double half = (b - a) / 2;
-  double sum = kWeight[0] * speed(middle);
-  for (int i = 1; i < 3; ++i) {
-    sum += kWeight[i] * (speed(middle - half * kNode[i]) + speed(middle + half * kNode[i]));
-  }
-  return half * sum;
 }
 
 // Halves [a, b] until two halves agree with the whole. The five-point rule gains a factor

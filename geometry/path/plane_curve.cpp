@@ -112,29 +112,6 @@ void PlaneCurve::append(const CubicBezier& piece, double from, double to, int ha
   end_angles_.push_back(angle + turning.signed_sum);
 }
 
-std::size_t PlaneCurve::index_of(double u) const {
-  const auto after = std::upper_bound(breaks_.begin(), breaks_.end(), u);
-  return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
-      after - breaks_.begin() - 1, 0, static_cast<std::ptrdiff_t>(pieces_.size()) - 1));
-}
-
-double PlaneCurve::local(std::size_t i, double u) const {
-  return std::clamp((u - breaks_[i]) / (breaks_[i + 1] - breaks_[i]), 0.0, 1.0);
-}
-
-CubicBezier PlaneCurve::part(std::size_t i, double from, double to) const {
-  const double t0 = local(i, from);
-  const double t1 = local(i, to);
-  if (t0 == 0 && t1 == 1) return pieces_[i];
-  return sub_piece(pieces_[i], t0, t1);
-}
-
-Point3 PlaneCurve::place_in(std::size_t i, double u) const {
-  return geometry::point_at(pieces_[i], local(i, u));
-}
-
-Point3 PlaneCurve::place_at(double u) const { return place_in(index_of(u), u); }
-
 double PlaneCurve::angle_in(std::size_t i, double u) const {
   const double t = local(i, u);
   if (t >= 1) return end_angles_[i];

@@ -29,21 +29,11 @@ struct PlaneFrame {
   [[nodiscard]] Point3 global(const Point3& p) const { return to_local.transpose() * p; }
 };
 
-class PlaneCurve {
+class PlaneCurve : public PieceRow {
  public:
   // Pieces that turn by more than a radian are halved. `most`: of the given ones, the first so
   // many.
   PlaneCurve(const CurvePieces& pieces, std::size_t most, const PlaneFrame& frame);
-
-  // Piece i runs over [breaks()[i], breaks()[i + 1]].
-  [[nodiscard]] const std::vector<double>& breaks() const { return breaks_; }
-  [[nodiscard]] std::size_t size() const { return pieces_.size(); }
-  [[nodiscard]] std::size_t index_of(double u) const;  // the later piece at a break
-  [[nodiscard]] CubicBezier part(std::size_t i, double from, double to) const;
-
-  [[nodiscard]] Point3 place_at(double u) const;
-  // The same for who knows the piece that holds u.
-  [[nodiscard]] Point3 place_in(std::size_t i, double u) const;
 
   // Angle of the tangent in the plane, radians, continuous but for corners, where it is the
   // angle of leaving (`angle_before`: of arriving).
@@ -59,10 +49,7 @@ class PlaneCurve {
  private:
   void append(const CubicBezier& piece, double from, double to, int halvings);
   [[nodiscard]] double angle_in(std::size_t i, double u) const;
-  [[nodiscard]] double local(std::size_t i, double u) const;
 
-  std::vector<double> breaks_;
-  std::vector<CubicBezier> pieces_;
   std::vector<double> start_angles_;  // per piece
   std::vector<double> end_angles_;
 };

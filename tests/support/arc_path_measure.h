@@ -10,6 +10,7 @@
 
 #include "geometry/path/bspline_curve.h"
 #include "geometry/path/path.h"
+#include "tests/support/curve_of.h"
 
 namespace batten::geometry {
 

@@ -7,8 +7,11 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <variant>
 
+#include "geometry/basic/rounding.h"
 #include "geometry/fitting/corners/corner_blend.h"
+#include "geometry/fitting/corners/ozcan_corner.h"
 
 namespace batten::geometry {
 
@@ -45,6 +48,18 @@ inline double segment_distance(const Point3& p, const Point3& from, const Point3
   const Vector3 along = to - from;
   const double t = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
   return (p - from - t * along).norm();
+}
+
+// The eight points for a corner that may be degenerate, on so much of each leg.
+inline std::variant<OzcanBlend, NoBlend> ozcan_corner(
+    const Corner& corner, double tolerance, ToleranceKind kind, const KinematicLimits& limits = {},
+    double share = std::numeric_limits<double>::infinity()) {
+  const auto framed = frame_of(corner);
+  if (const auto* reason = std::get_if<NoBlend>(&framed)) return *reason;
+  const auto& frame = std::get<CornerFrame>(framed);
+  const OzcanLeg leg = ozcan_leg(frame, tolerance, kind, share);
+  if (!(leg[2] > kSamePlace)) return NoBlend::kNoRoom;
+  return ozcan_optimum(frame, leg, tolerance, kind, limits);
 }
 
 // The deviation by plain samples, as slowly and simply as can be.

@@ -23,4 +23,12 @@ BsplineCurve curve_of(const Function& f, double from, double to, int spans) {
   return BsplineCurve(BsplineBasis(3, knots), points).part(knots[3], knots[knots.size() - 4]);
 }
 
+// mm between two parameters.
+inline double length_between(const BsplineCurve& curve, double from, double to) {
+  double length = 0;
+  if (!(from < to)) return length;
+  for (const CubicBezier& piece : curve.part(from, to).bezier_pieces()) length += length_of(piece);
+  return length;
+}
+
 }  // namespace batten::geometry

@@ -41,10 +41,10 @@ inline geometry::Path with_legs(const geometry::BsplineCurve& blend) {
 inline geometry::Path ozcan_path(double x, double y) {
   const auto frame = std::get<geometry::CornerFrame>(geometry::frame_of(wide_corner()));
   const double r = std::sqrt(2.0);
-  const geometry::OzcanLegs legs = {{3 * r, 2.25 * r, 1.5 * r}, {3 * r, 2.25 * r, 1.5 * r}};
+  const geometry::OzcanLeg leg = {3 * r, 2.25 * r, 1.5 * r};
   const geometry::Vector3 from = geometry::Point3(x, y, 0) - frame.vertex;
   const geometry::BesideLeg fourth = {from.dot(frame.a), from.dot(frame.outward_a())};
-  return with_legs(geometry::ozcan_curve(frame, legs, fourth, fourth));
+  return with_legs(geometry::ozcan_curve(frame, leg, fourth));
 }
 
 inline geometry::Path guo_path_of(double tolerance, geometry::GuoApex apex) {

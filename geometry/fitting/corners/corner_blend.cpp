@@ -90,22 +90,6 @@ class PiecewiseCurve {
 
 }  // namespace
 
-std::string_view name_of(NoBlend reason) {
-  switch (reason) {
-    case NoBlend::kNoLeg:
-      return "no-leg";
-    case NoBlend::kStraight:
-      return "straight";
-    case NoBlend::kReversal:
-      return "reversal";
-    case NoBlend::kNoRoom:
-      return "no-room";
-    case NoBlend::kKept:
-      return "kept";
-  }
-  return "";
-}
-
 Vector3 CornerFrame::outward_a() const { return -(b - b.dot(a) * a).normalized(); }
 Vector3 CornerFrame::outward_b() const { return -(a - a.dot(b) * b).normalized(); }
 
@@ -123,11 +107,6 @@ std::variant<CornerFrame, NoBlend> frame_of(const Corner& corner) {
   if (!(sin_half >= kSameDirection)) return NoBlend::kReversal;
   if (!(cos_half >= kSameDirection)) return NoBlend::kStraight;
   return CornerFrame{corner.vertex, a, b, length_a, length_b, sin_half, cos_half};
-}
-
-CornerFrame reversed(const CornerFrame& frame) {
-  return {frame.vertex,   frame.b,        frame.a,       frame.length_b,
-          frame.length_a, frame.sin_half, frame.cos_half};
 }
 
 double deviation_of(const BlendDeviation& deviation, ToleranceKind kind) {

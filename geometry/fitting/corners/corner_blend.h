@@ -34,9 +34,6 @@ enum class NoBlend {
   kKept,      // turns more than the caller allows
 };
 
-// "no-leg", "straight", "reversal", "no-room", "kept".
-[[nodiscard]] std::string_view name_of(NoBlend reason);
-
 // A corner in its own directions.
 struct CornerFrame {
   Point3 vertex;
@@ -53,9 +50,6 @@ struct CornerFrame {
 };
 
 [[nodiscard]] std::variant<CornerFrame, NoBlend> frame_of(const Corner& corner);
-
-// The same corner travelled the other way.
-[[nodiscard]] CornerFrame reversed(const CornerFrame& frame);
 
 // How far blend and corner are apart, mm.
 struct BlendDeviation {

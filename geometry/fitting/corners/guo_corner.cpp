@@ -1,7 +1,6 @@
 #include "geometry/fitting/corners/guo_corner.h"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -55,11 +54,6 @@ std::variant<GuoBlend, NoBlend> guo_corner(const Corner& corner, const GuoRule& 
   }
   if (!(spacing > kSamePlace)) return NoBlend::kNoRoom;
   return guo_blend(frame, spacing);
-}
-
-std::variant<GuoBlend, NoBlend> guo_corner(const Corner& corner, const GuoRule& rule) {
-  constexpr double kWhole = std::numeric_limits<double>::infinity();
-  return guo_corner(corner, rule, kWhole, kWhole);
 }
 
 namespace {

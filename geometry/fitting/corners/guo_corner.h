@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <variant>
 #include <vector>
@@ -56,11 +57,10 @@ struct GuoRule {
 // The blend that takes no more than so much of each leg (mm; more than the leg counts as the
 // whole leg) and holds the tolerance: all of the lesser share where that holds it, else what
 // `apex` says. Throws std::invalid_argument when the tolerance is not a positive number.
-[[nodiscard]] std::variant<GuoBlend, NoBlend> guo_corner(const Corner& corner, const GuoRule& rule,
-                                                         double share_before, double share_after);
-
-// The same with the whole legs.
-[[nodiscard]] std::variant<GuoBlend, NoBlend> guo_corner(const Corner& corner, const GuoRule& rule);
+[[nodiscard]] std::variant<GuoBlend, NoBlend> guo_corner(
+    const Corner& corner, const GuoRule& rule,
+    double share_before = std::numeric_limits<double>::infinity(),
+    double share_after = std::numeric_limits<double>::infinity());
 
 // A polyline with a five-point blend (guo_corner.h) in the place of each corner.
 // Method: docs/algorithms/guo.md.

@@ -17,119 +17,76 @@
 namespace batten::geometry {
 namespace {
 
-void require_decreasing(const std::array<double, 3>& leg) {
+void require_decreasing(const OzcanLeg& leg) {
   if (leg[0] > leg[1] && leg[1] > leg[2] && leg[2] > 0) return;
   throw std::invalid_argument("ozcan_corner: points " + std::to_string(leg[0]) + ", " +
                               std::to_string(leg[1]) + ", " + std::to_string(leg[2]) +
                               " mm from the vertex, expected decreasing positive numbers");
 }
 
-// One corner with its legs and limits: what each pair of middle points is worth.
+// One corner with its legs and limits: what each place of P4 is worth.
 struct Problem {
   CornerFrame frame;
-  OzcanLegs legs;
+  OzcanLeg leg;
   double tolerance;
   ToleranceKind kind;
   KinematicLimits limits;
 
-  [[nodiscard]] double deviation(const BesideLeg& fourth, const BesideLeg& fifth) const {
-    return measure_deviation(ozcan_curve(frame, legs, fourth, fifth), frame, kind);
+  [[nodiscard]] double deviation(const BesideLeg& fourth) const {
+    return measure_deviation(ozcan_curve(frame, leg, fourth), frame, kind);
   }
 
-  [[nodiscard]] OzcanBlend blend(const BesideLeg& fourth, const BesideLeg& fifth,
-                                 int evaluations) const {
-    BsplineCurve curve = ozcan_curve(frame, legs, fourth, fifth);
+  [[nodiscard]] OzcanBlend blend(const BesideLeg& fourth) const {
+    BsplineCurve curve = ozcan_curve(frame, leg, fourth);
     const BlendDeviation found = measure_blend(curve, frame);
     const double feed = feed_estimate(curve, limits);
-    return {{std::move(curve), found}, fourth, fifth, feed, evaluations};
-  }
-};
-
-// The middle points between P3 and the vertex, on the leg or outside, so that the feet on the
-// legs go forward.
-bool goes_forward(const CornerFrame& frame, const BesideLeg& middle, double third) {
-  return middle.along >= 0 && middle.along <= third &&
-         middle.outward * frame.cos_half >= -middle.along * frame.sin_half;
-}
-
-// How deep a middle point pulls the middle of the curve inside, along the bisector, if the
-// other side did the same: C(2.5) = (P3 + 23 P4 + 23 P5 + P6) / 48. The search runs over this
-// depth and the distance from the leg, since the tolerance limits the one and the other.
-struct DepthAndOutward {
-  double depth;
-  double outward;
-};
-
-DepthAndOutward depth_of(const CornerFrame& frame, const BesideLeg& middle, double third) {
-  const double c = frame.cos_half;
-  const double s = frame.sin_half;
-  return {(c * third + 23 * (c * middle.along - s * middle.outward)) / 24, middle.outward};
-}
-
-BesideLeg place_of(const CornerFrame& frame, const DepthAndOutward& d, double third) {
-  const double c = frame.cos_half;
-  const double s = frame.sin_half;
-  return {((24 * d.depth - c * third) / 23 + s * d.outward) / c, d.outward};
-}
-
-// The search's variables: one depth and distance for mirrored points, two for free ones.
-class MiddlePoints {
- public:
-  MiddlePoints(const Problem& problem, bool mirrored) : problem_(problem), mirrored_(mirrored) {}
-
-  std::vector<double> variables(const BesideLeg& fourth, const BesideLeg& fifth) const {
-    const DepthAndOutward one = depth_of(problem_.frame, fourth, problem_.legs.before[2]);
-    if (mirrored_) return {one.depth, one.outward};
-    const DepthAndOutward other = depth_of(problem_.frame, fifth, problem_.legs.after[2]);
-    return {one.depth, one.outward, other.depth, other.outward};
+    return {{std::move(curve), found}, fourth, feed};
   }
 
-  std::pair<BesideLeg, BesideLeg> places(const std::vector<double>& v) const {
-    const BesideLeg fourth = place_of(problem_.frame, {v[0], v[1]}, problem_.legs.before[2]);
-    if (mirrored_) return {fourth, fourth};
-    return {fourth, place_of(problem_.frame, {v[2], v[3]}, problem_.legs.after[2])};
+  // P4 between P3 and the vertex, on the leg or outside, so that the feet on the legs go forward.
+  [[nodiscard]] bool goes_forward(const BesideLeg& fourth) const {
+    return fourth.along >= 0 && fourth.along <= leg[2] &&
+           fourth.outward * frame.cos_half >= -fourth.along * frame.sin_half;
+  }
+
+  // The search runs over how deep P4 and P5 pull the middle of the curve inside, along the
+  // bisector, C(2.5) = (P3 + 23 P4 + 23 P5 + P6) / 48, and over their distance from the legs, since
+  // the tolerance limits the one and the other.
+  [[nodiscard]] std::vector<double> variables(const BesideLeg& fourth) const {
+    const double c = frame.cos_half;
+    const double s = frame.sin_half;
+    return {(c * leg[2] + 23 * (c * fourth.along - s * fourth.outward)) / 24, fourth.outward};
+  }
+
+  [[nodiscard]] BesideLeg place(const std::vector<double>& v) const {
+    const double c = frame.cos_half;
+    const double s = frame.sin_half;
+    return {((24 * v[0] - c * leg[2]) / 23 + s * v[1]) / c, v[1]};
   }
 
   // A tolerance in either variable, less where the leg is short for that.
-  std::vector<double> steps() const {
-    const CornerFrame& frame = problem_.frame;
-    const auto pair = [&](double third) {
-      return std::pair{std::min(problem_.tolerance, frame.cos_half * third / 2),
-                       std::min(problem_.tolerance, third / 2)};
-    };
-    const auto [depth, outward] = pair(problem_.legs.before[2]);
-    if (mirrored_) return {depth, outward};
-    const auto [depth5, outward5] = pair(problem_.legs.after[2]);
-    return {depth, outward, depth5, outward5};
+  [[nodiscard]] std::vector<double> steps() const {
+    return {std::min(tolerance, frame.cos_half * leg[2] / 2), std::min(tolerance, leg[2] / 2)};
   }
 
   // The paper's objective (11): the deviation, weighed so that it outdoes all else, where the
   // tolerance is broken; else the inverse of the feed.
-  double cost(const std::vector<double>& v) const {
+  [[nodiscard]] double cost(const std::vector<double>& v) const {
     constexpr double kBroken = 1e6;  // s/mm^2; no feed is as slow as 1e-6 mm/s over 1 mm
-    const auto [fourth, fifth] = places(v);
-    const CornerFrame& frame = problem_.frame;
-    if (!goes_forward(frame, fourth, problem_.legs.before[2]) ||
-        !goes_forward(frame, fifth, problem_.legs.after[2])) {
-      return std::numeric_limits<double>::infinity();
-    }
-    const BsplineCurve curve = ozcan_curve(frame, problem_.legs, fourth, fifth);
-    const double deviation = measure_deviation(curve, frame, problem_.kind);
-    if (deviation > problem_.tolerance) return kBroken * (1 + deviation);
-    return 1 / feed_estimate(curve, problem_.limits);
+    const BesideLeg fourth = place(v);
+    if (!goes_forward(fourth)) return std::numeric_limits<double>::infinity();
+    const BsplineCurve curve = ozcan_curve(frame, leg, fourth);
+    const double off = measure_deviation(curve, frame, kind);
+    if (off > tolerance) return kBroken * (1 + off);
+    return 1 / feed_estimate(curve, limits);
   }
-
- private:
-  const Problem& problem_;
-  bool mirrored_;
 };
 
 // The greatest t in [0, 1] for which P4 and P5 at t of P3 and P6 hold the tolerance; negative
 // where none does.
 double usual_part(const Problem& problem) {
   const auto holds = [&](double t) {
-    return problem.deviation({t * problem.legs.before[2], 0}, {t * problem.legs.after[2], 0}) <=
-           problem.tolerance;
+    return problem.deviation({t * problem.leg[2], 0}) <= problem.tolerance;
   };
   if (!holds(0)) return -1;
   if (holds(1)) return 1;
@@ -146,52 +103,38 @@ double usual_part(const Problem& problem) {
 std::variant<OzcanBlend, NoBlend> usual_of(const Problem& problem) {
   const double t = usual_part(problem);
   if (t < 0) return NoBlend::kNoRoom;
-  return problem.blend({t * problem.legs.before[2], 0}, {t * problem.legs.after[2], 0}, 1);
+  return problem.blend({t * problem.leg[2], 0});
 }
 
-Problem checked_problem(const CornerFrame& frame, const OzcanLegs& legs, double tolerance,
+Problem checked_problem(const CornerFrame& frame, const OzcanLeg& leg, double tolerance,
                         ToleranceKind kind, const KinematicLimits& limits) {
   require_positive_tolerance(tolerance, "ozcan_corner");
-  require_decreasing(legs.before);
-  require_decreasing(legs.after);
-  return {frame, legs, tolerance, kind, limits};
+  require_decreasing(leg);
+  return {frame, leg, tolerance, kind, limits};
 }
 
-// Mirrored points move by two numbers, free ones by four.
-constexpr int kMirroredEvaluations = 600;
-constexpr int kFreeEvaluations = 2400;
+constexpr int kEvaluations = 600;
 
 // Of the first step, about a tolerance: a ten-thousandth of it changes no feed by a thousandth.
 constexpr double kFinest = 1e-4;
 
-OzcanBlend searched(const Problem& problem, const OzcanBlend& from, bool mirrored) {
-  const MiddlePoints points(problem, mirrored);
+OzcanBlend searched(const Problem& problem, const OzcanBlend& from) {
   PatternSearchOptions options;
-  options.steps = points.steps();
+  options.steps = problem.steps();
   options.finest = kFinest;
-  options.max_evaluations = mirrored ? kMirroredEvaluations : kFreeEvaluations;
-  const auto found = pattern_search([&](const auto& v) { return points.cost(v); },
-                                    points.variables(from.fourth, from.fifth), options);
-  const auto [fourth, fifth] = points.places(found.at);
-  OzcanBlend best = problem.blend(fourth, fifth, from.evaluations + found.evaluations);
+  options.max_evaluations = kEvaluations;
+  const auto found = pattern_search([&](const auto& v) { return problem.cost(v); },
+                                    problem.variables(from.fourth), options);
+  OzcanBlend best = problem.blend(problem.place(found.at));
   // The way from places to depths and back may lose the last digit of the start.
   const bool holds = deviation_of(best.blend.deviation, problem.kind) <= problem.tolerance;
   return holds && best.feed_estimate >= from.feed_estimate ? best : from;
 }
 
-OzcanBlend turned_back(const OzcanBlend& blend) {
-  return {{blend.blend.curve.reversed(), blend.blend.deviation},
-          blend.fifth,
-          blend.fourth,
-          blend.feed_estimate,
-          blend.evaluations};
-}
-
 }  // namespace
 
-OzcanLegs ozcan_legs(const CornerFrame& frame, double tolerance, ToleranceKind kind,
-                     double share_before, double share_after) {
-  require_positive_tolerance(tolerance, "ozcan_legs");
+OzcanLeg ozcan_leg(const CornerFrame& frame, double tolerance, ToleranceKind kind, double share) {
+  require_positive_tolerance(tolerance, "ozcan_leg");
   // With P4 and P5 in the vertex and P3, P6 at d, the middle is d cos / 24 from the vertex, and
   // sin times that from the legs.
   // Of the tolerance. Where that curve uses more, the corner is cramped; where it uses less, the
@@ -199,62 +142,39 @@ OzcanLegs ozcan_legs(const CornerFrame& frame, double tolerance, ToleranceKind k
   constexpr double kSharpest = 0.35;
   const double sine = kind == ToleranceKind::kBand ? frame.sin_half : 1;
   const double third = 24 * kSharpest * tolerance / (frame.cos_half * sine);
-  const auto leg = [&](double share, double length) -> std::array<double, 3> {
-    const double reach = std::min({share, length, 2 * third});
-    return {reach, 0.75 * reach, 0.5 * reach};
-  };
-  return {leg(share_before, frame.length_a), leg(share_after, frame.length_b)};
+  const double reach = std::min({share, frame.length_a, frame.length_b, 2 * third});
+  return {reach, 0.75 * reach, 0.5 * reach};
 }
 
-BsplineCurve ozcan_curve(const CornerFrame& frame, const OzcanLegs& legs, const BesideLeg& fourth,
-                         const BesideLeg& fifth) {
+BsplineCurve ozcan_curve(const CornerFrame& frame, const OzcanLeg& leg, const BesideLeg& fourth) {
   const Point3& q = frame.vertex;
-  const auto& before = legs.before;
-  const auto& after = legs.after;
   std::vector<Point3> points = {
-      q + before[0] * frame.a,
-      q + before[1] * frame.a,
-      q + before[2] * frame.a,
+      q + leg[0] * frame.a,
+      q + leg[1] * frame.a,
+      q + leg[2] * frame.a,
       q + fourth.along * frame.a + fourth.outward * frame.outward_a(),
-      q + fifth.along * frame.b + fifth.outward * frame.outward_b(),
-      q + after[2] * frame.b,
-      q + after[1] * frame.b,
-      q + after[0] * frame.b,
+      q + fourth.along * frame.b + fourth.outward * frame.outward_b(),
+      q + leg[2] * frame.b,
+      q + leg[1] * frame.b,
+      q + leg[0] * frame.b,
   };
   return {BsplineBasis::clamped(3, {0, 1, 2, 3, 4, 5}), std::move(points)};
 }
 
-std::variant<OzcanBlend, NoBlend> ozcan_usual(const CornerFrame& frame, const OzcanLegs& legs,
+std::variant<OzcanBlend, NoBlend> ozcan_usual(const CornerFrame& frame, const OzcanLeg& leg,
                                               double tolerance, ToleranceKind kind,
                                               const KinematicLimits& limits) {
-  return usual_of(checked_problem(frame, legs, tolerance, kind, limits));
+  return usual_of(checked_problem(frame, leg, tolerance, kind, limits));
 }
 
-std::variant<OzcanBlend, NoBlend> ozcan_optimum(const CornerFrame& frame, const OzcanLegs& legs,
+std::variant<OzcanBlend, NoBlend> ozcan_optimum(const CornerFrame& frame, const OzcanLeg& leg,
                                                 double tolerance, ToleranceKind kind,
                                                 const KinematicLimits& limits) {
-  // The longer leg first, so that a corner and the same corner reversed have one search.
-  if (legs.before[2] < legs.after[2]) {
-    auto other = ozcan_optimum(reversed(frame), {legs.after, legs.before}, tolerance, kind, limits);
-    if (const auto* blend = std::get_if<OzcanBlend>(&other)) return turned_back(*blend);
-    return other;
-  }
-  const Problem problem = checked_problem(frame, legs, tolerance, kind, limits);
+  const Problem problem = checked_problem(frame, leg, tolerance, kind, limits);
   auto usual = usual_of(problem);
   const auto* start = std::get_if<OzcanBlend>(&usual);
   if (start == nullptr) return usual;
-  return searched(problem, *start, legs.before == legs.after);
-}
-
-std::variant<OzcanBlend, NoBlend> ozcan_corner(const Corner& corner, double tolerance,
-                                               ToleranceKind kind, const KinematicLimits& limits,
-                                               double share_before, double share_after) {
-  const auto framed = frame_of(corner);
-  if (const auto* reason = std::get_if<NoBlend>(&framed)) return *reason;
-  const auto& frame = std::get<CornerFrame>(framed);
-  const OzcanLegs legs = ozcan_legs(frame, tolerance, kind, share_before, share_after);
-  if (!(std::min(legs.before[2], legs.after[2]) > kSamePlace)) return NoBlend::kNoRoom;
-  return ozcan_optimum(frame, legs, tolerance, kind, limits);
+  return searched(problem, *start);
 }
 
 namespace {
@@ -284,60 +204,46 @@ class PathBlender {
     const auto& frame = std::get<CornerFrame>(framed);
     const double share = std::min(shared.share_before, shared.share_after);
     const ToleranceKind kind = kind_at(shared.corner, options_.kind, options_.strict_sharper_than);
-    OzcanLegs legs = ozcan_legs(frame, options_.tolerance, kind, share, share);
-    // Mirrored, whatever the legs lack: the search then has two variables instead of four.
-    if (legs.before[0] < legs.after[0]) legs.after = legs.before;
-    if (legs.after[0] < legs.before[0]) legs.before = legs.after;
-    if (!(legs.before[2] > kSamePlace)) return NoBlend::kNoRoom;
-    if (!turns_more(shared.corner, options_.least_searched_turn)) {
-      return usual(frame, legs, kind);
-    }
-    return searched(frame, legs, kind);
+    const OzcanLeg leg = ozcan_leg(frame, options_.tolerance, kind, share);
+    if (!(leg[2] > kSamePlace)) return NoBlend::kNoRoom;
+    if (!turns_more(shared.corner, options_.least_searched_turn)) return usual(frame, leg, kind);
+    return searched(frame, leg, kind);
   }
 
   [[nodiscard]] int searched_corners() const { return searched_; }
 
  private:
-  // With mirrored legs both deviations are that of the middle, (P3 + 23 P4) cos / 24 from the
-  // vertex, so P4 follows from the tolerance.
+  // Both deviations are that of the middle, (P3 + 23 P4) cos / 24 from the vertex, so P4 follows
+  // from the tolerance.
   [[nodiscard]] std::variant<OzcanBlend, NoBlend> usual(const CornerFrame& frame,
-                                                        const OzcanLegs& legs,
+                                                        const OzcanLeg& leg,
                                                         ToleranceKind kind) const {
     const bool band = kind == ToleranceKind::kBand;
     const double allowed = options_.tolerance / (band ? frame.sin_half : 1);
-    const double third = legs.before[2];
+    const double third = leg[2];
     const double along = std::min(third, (24 * allowed / frame.cos_half - third) / 23);
     if (along < 0) return NoBlend::kNoRoom;
-    return blend_with(frame, legs, {along, 0}, {along, 0});
+    return Problem{frame, leg, options_.tolerance, kind, options_.limits}.blend({along, 0});
   }
 
-  [[nodiscard]] OzcanBlend blend_with(const CornerFrame& frame, const OzcanLegs& legs,
-                                      const BesideLeg& fourth, const BesideLeg& fifth) const {
-    BsplineCurve curve = ozcan_curve(frame, legs, fourth, fifth);
-    const BlendDeviation deviation = measure_blend(curve, frame);
-    const double feed = feed_estimate(curve, options_.limits);
-    return {{std::move(curve), deviation}, fourth, fifth, feed, 1};
-  }
-
-  std::variant<OzcanBlend, NoBlend> searched(const CornerFrame& frame, const OzcanLegs& legs,
+  std::variant<OzcanBlend, NoBlend> searched(const CornerFrame& frame, const OzcanLeg& leg,
                                              ToleranceKind kind) {
-    const Key key = key_of(frame, legs.before[0]);
+    const Problem problem{frame, leg, options_.tolerance, kind, options_.limits};
+    const Key key = key_of(frame, leg[0]);
     const auto known = alike_.find(key);
     if (known != alike_.end()) {
-      OzcanBlend again = blend_with(frame, legs, known->second.first, known->second.second);
+      OzcanBlend again = problem.blend(known->second);
       const double off = deviation_of(again.blend.deviation, kind);
       if (off <= options_.tolerance * (1 + kMeasuringNoise)) return again;
     }
     ++searched_;
-    auto found = ozcan_optimum(frame, legs, options_.tolerance, kind, options_.limits);
-    if (const auto* blend = std::get_if<OzcanBlend>(&found)) {
-      alike_[key] = {blend->fourth, blend->fifth};
-    }
+    auto found = ozcan_optimum(frame, leg, options_.tolerance, kind, options_.limits);
+    if (const auto* blend = std::get_if<OzcanBlend>(&found)) alike_[key] = blend->fourth;
     return found;
   }
 
   const OzcanOptions& options_;
-  std::map<Key, std::pair<BesideLeg, BesideLeg>> alike_;
+  std::map<Key, BesideLeg> alike_;
   int searched_ = 0;
 };
 

@@ -18,12 +18,9 @@
 
 namespace batten::geometry {
 
-// Where P1, P2, P3 lie on the leg that arrives and P8, P7, P6 on the leg that leaves: mm from
-// the vertex, decreasing.
-struct OzcanLegs {
-  std::array<double, 3> before;
-  std::array<double, 3> after;
-};
+// Where P1, P2, P3 lie on the leg that arrives and P8, P7, P6 on the leg that leaves: mm from the
+// vertex, decreasing.
+using OzcanLeg = std::array<double, 3>;
 
 // A place beside a leg: mm from the vertex along it, and mm from it, away from the other leg.
 struct BesideLeg {
@@ -33,48 +30,37 @@ struct BesideLeg {
 
 struct OzcanBlend {
   CornerBlend blend;
-  BesideLeg fourth;      // P4 beside the leg that arrives
-  BesideLeg fifth;       // P5 beside the leg that leaves
+  BesideLeg fourth;      // P4 beside the leg that arrives; P5 is its mirror image
   double feed_estimate;  // mm/s, see feed_estimate()
-  int evaluations;       // curves that were measured to find it
 };
 
-// Points at 1, 3/4 and 1/2 of a reach, as in the paper. Each reach is all of its share of the
-// leg (mm), or less where even the sharpest curve (P4 and P5 in the vertex) would use more than
-// 0.35 of the tolerance, about where the feed estimate of the optimum is greatest.
-[[nodiscard]] OzcanLegs ozcan_legs(const CornerFrame& frame, double tolerance, ToleranceKind kind,
-                                   double share_before, double share_after);
+// Points at 1, 3/4 and 1/2 of a reach, as in the paper. The reach is all of the share of the legs
+// (mm), or less where a leg is shorter or even the sharpest curve (P4 and P5 in the vertex) would
+// use more than 0.35 of the tolerance, about where the feed estimate of the optimum is greatest.
+[[nodiscard]] OzcanLeg ozcan_leg(const CornerFrame& frame, double tolerance, ToleranceKind kind,
+                                 double share);
 
 // Knots 0 0 0 0 1 2 3 4 5 5 5 5. The first three points of either side are on the legs, so the
 // curve leaves them with their direction and curvature 0, wherever P4 and P5 are.
-[[nodiscard]] BsplineCurve ozcan_curve(const CornerFrame& frame, const OzcanLegs& legs,
-                                       const BesideLeg& fourth, const BesideLeg& fifth);
+[[nodiscard]] BsplineCurve ozcan_curve(const CornerFrame& frame, const OzcanLeg& leg,
+                                       const BesideLeg& fourth);
 
 // P4 and P5 on the legs, as far from the vertex (in parts of P3 and P6) as the tolerance allows:
 // the paper's "usual" corner. kNoRoom where no such place is near enough.
 //
-// Throws std::invalid_argument when the tolerance is not a positive number or the legs do not
+// Throws std::invalid_argument when the tolerance is not a positive number or the leg does not
 // decrease to a positive number.
 [[nodiscard]] std::variant<OzcanBlend, NoBlend> ozcan_usual(const CornerFrame& frame,
-                                                            const OzcanLegs& legs, double tolerance,
+                                                            const OzcanLeg& leg, double tolerance,
                                                             ToleranceKind kind,
                                                             const KinematicLimits& limits);
 
 // P4 and P5 where the feed estimate is greatest within the tolerance, searched from the usual
-// corner and never worse than that. With equal legs P5 is the mirror image of P4, as in the
-// paper; with others both are free. Does not throw for other reasons than ozcan_usual.
+// corner and never worse than that. Does not throw for other reasons than ozcan_usual.
 [[nodiscard]] std::variant<OzcanBlend, NoBlend> ozcan_optimum(const CornerFrame& frame,
-                                                              const OzcanLegs& legs,
-                                                              double tolerance, ToleranceKind kind,
+                                                              const OzcanLeg& leg, double tolerance,
+                                                              ToleranceKind kind,
                                                               const KinematicLimits& limits);
-
-// All of it for a corner that may be degenerate: its frame, ozcan_legs, ozcan_optimum. The
-// shares are mm of each leg; more than the leg counts as the whole leg.
-[[nodiscard]] std::variant<OzcanBlend, NoBlend> ozcan_corner(const Corner& corner, double tolerance,
-                                                             ToleranceKind kind,
-                                                             const KinematicLimits& limits,
-                                                             double share_before,
-                                                             double share_after);
 
 // A polyline with an eight-point blend (ozcan_corner.h) in the place of each corner.
 // Method: docs/algorithms/ozcan.md, section Paths.

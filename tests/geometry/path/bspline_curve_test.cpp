@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/curve_of.h"
 #include "tests/support/knot_insertion.h"
 
 namespace batten::geometry {
@@ -131,15 +132,6 @@ TEST(BsplineCurve, BezierPiecesAreTheCurve) {
         expect_close(there, curve.point_at(knots[i] + t * (knots[i + 1] - knots[i])), 1e-12);
       }
     }
-  }
-}
-
-TEST(BsplineCurve, ReversedRunsBackwards) {
-  const BsplineCurve curve = random_curve(7, 3, 9);
-  const BsplineCurve back = curve.reversed();
-  for (int i = 0; i <= 20; ++i) {
-    const double u = curve.last() * i / 20;
-    expect_close(back.point_at(u), curve.point_at(curve.last() - u), 1e-12);
   }
 }
 

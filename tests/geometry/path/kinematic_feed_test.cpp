@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/path/bspline_curve.h"
+#include "tests/support/curve_of.h"
 
 namespace batten::geometry {
 namespace {

@@ -225,12 +225,5 @@ TEST(GuoCorner, RefusesAToleranceThatIsNone) {
   }
 }
 
-TEST(NoBlend, HasAName) {
-  EXPECT_EQ(name_of(NoBlend::kNoLeg), "no-leg");
-  EXPECT_EQ(name_of(NoBlend::kStraight), "straight");
-  EXPECT_EQ(name_of(NoBlend::kReversal), "reversal");
-  EXPECT_EQ(name_of(NoBlend::kNoRoom), "no-room");
-}
-
 }  // namespace
 }  // namespace batten::geometry

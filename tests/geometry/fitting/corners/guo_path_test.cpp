@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 #include <span>
 #include <stdexcept>
@@ -16,6 +15,7 @@
 #include "geometry/distance/path_distance.h"
 #include "geometry/fitting/corners/guo_corner.h"
 #include "tests/support/corners.h"
+#include "tests/support/method_cases.h"
 #include "tests/support/paths.h"
 
 namespace batten::geometry {
@@ -61,25 +61,8 @@ Figures figures_of(const GuoPath& path) {
   return found;
 }
 
-// r = exp(sin t) - 2 cos 4t + sin((2t - pi) / 24)^5, 80 segments, ten times as large.
-std::vector<Point3> butterfly() {
-  std::vector<Point3> points;
-  for (int i = 0; i <= 80; ++i) {
-    const double t = 2 * std::numbers::pi * i / 80;
-    const double r = std::exp(std::sin(t)) - 2 * std::cos(4 * t) +
-                     std::pow(std::sin((2 * t - std::numbers::pi) / 24), 5);
-    points.emplace_back(10 * r * std::cos(t), 10 * r * std::sin(t), 0);
-  }
-  return points;
-}
-
-std::vector<Point3> hexagon() {
-  return {{0, 0, 0},     {10, 0, 4},    {15, 8.66, 0}, {10, 17.32, 4},
-          {0, 17.32, 0}, {-5, 8.66, 4}, {0, 0, 0}};
-}
-
 TEST(GuoPath, GivesTheFiguresOfTheButterfly) {
-  const std::vector<Point3> points = butterfly();
+  const std::vector<Point3> points = guo_butterfly();
   const GuoPath literal = guo_path(points, GuoOptions::literal(0.05, 0.1));
   const Figures paper = figures_of(literal);
   const Figures ours = figures_of(guo_path(points, fair(0.05, ToleranceKind::kBand)));
@@ -114,7 +97,7 @@ TEST(GuoPath, GivesTheFiguresOfTheButterfly) {
 }
 
 TEST(GuoPath, GivesTheFiguresOfTheHexagon) {
-  const GuoPath literal = guo_path(hexagon(), GuoOptions::literal(0.05, 0.1));
+  const GuoPath literal = guo_path(guo_hexagon(), GuoOptions::literal(0.05, 0.1));
   ASSERT_EQ(blends_of(literal).size(), 5u);
   for (const GuoBlend& blend : blends_of(literal)) {
     EXPECT_NEAR(blend.spacing / 0.084102, 1, 1e-4);
@@ -124,7 +107,7 @@ TEST(GuoPath, GivesTheFiguresOfTheHexagon) {
     const auto frame = std::get<CornerFrame>(frame_of({p.front(), p[2], p.back()}));
     EXPECT_NEAR(std::asin(frame.sin_half) / kDegrees, 53.522, 0.01);
   }
-  const GuoPath ours = guo_path(hexagon(), fair(0.05, ToleranceKind::kBand));
+  const GuoPath ours = guo_path(guo_hexagon(), fair(0.05, ToleranceKind::kBand));
   ASSERT_EQ(blends_of(ours).size(), 5u);
   for (const GuoBlend& blend : blends_of(ours)) {
     EXPECT_NEAR(blend.spacing / 0.209188, 1, 1e-4);
@@ -372,7 +355,7 @@ TEST(GuoPath, LeavesCornersThatTurnMoreThanAsked) {
 
 TEST(GuoPath, RefusesALambdaThatLeavesNothing) {
   for (const double lambda : {-0.1, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THROW(static_cast<void>(guo_path(hexagon(), GuoOptions::literal(0.05, lambda))),
+    EXPECT_THROW(static_cast<void>(guo_path(guo_hexagon(), GuoOptions::literal(0.05, lambda))),
                  std::invalid_argument);
   }
 }

@@ -51,8 +51,7 @@ TEST(OzcanPath, GivesTheCornerOfOzcanAsTheCornerMethodDoes) {
   const OzcanOptions options = with_tolerance(0.1, ToleranceKind::kBand);
   const OzcanPath path = ozcan_path(points, options);
   ASSERT_EQ(path.corners.size(), 1u);
-  const auto alone = ozcan_corner({points[0], points[1], points[2]}, 0.1, ToleranceKind::kBand,
-                                  options.limits, 1e9, 1e9);
+  const auto alone = ozcan_corner({points[0], points[1], points[2]}, 0.1, ToleranceKind::kBand);
   const auto& found = std::get<OzcanBlend>(path.corners[0].outcome);
   EXPECT_NEAR(found.feed_estimate, std::get<OzcanBlend>(alone).feed_estimate, 1e-9);
   EXPECT_EQ(path.searched, 1);
