@@ -157,7 +157,8 @@ TEST_P(CurveFormats, ReadTheGoldenCurveAtItsFiveValuesWithoutAlarms) {
   if (*case_.file == '\0') return;
   const Program program = parsed(bytes_of(case_.file));
   EXPECT_EQ(curve_tests::short_forms(case_.alarms(program)), std::vector<std::string>{});
-  const auto motions = reading_of(case_.format.read(program, 1, starting_at({}))).motions;
+  const auto motions =
+      reading_of(case_.format.read(program, 1, starting_at(Point3::Zero()))).motions;
   ASSERT_EQ(motions.size(), 2U);
   for (const auto& [u, x, y] : curve_tests::kGoldenValues) {
     const Point3 at = u <= 0.4 ? geometry::point_at(motions[0].piece, u / 0.4)
