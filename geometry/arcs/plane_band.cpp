@@ -26,7 +26,7 @@ constexpr double kTightTurn = 0.1;
 constexpr double kNearest = 0.5;
 constexpr double kRoomForTight = 10;  // tolerances: a shorter edge is no leg of a corner
 
-double angle_of(const Vector2& v) { return std::atan2(v.y(), v.x()); }
+double heading_of(const Vector2& v) { return std::atan2(v.y(), v.x()); }
 
 // A fan is made for this part of the tolerance; the rest is for what arcs do between samples
 // and for the rounding of their ends.
@@ -210,7 +210,7 @@ PlaneBand::PlaneBand(std::span<const Point2> points, const Limits& limits)
     : limits_(limits), steepest_(std::tan(limits.max_sweep / 2)) {
   const std::size_t n = points.size();
   std::vector<double> angles(n - 1);
-  for (std::size_t i = 0; i + 1 < n; ++i) angles[i] = angle_of(points[i + 1] - points[i]);
+  for (std::size_t i = 0; i + 1 < n; ++i) angles[i] = heading_of(points[i + 1] - points[i]);
   samples_.reserve(2 * n);
   x_.reserve(2 * n);
   y_.reserve(2 * n);

@@ -14,11 +14,11 @@
 namespace batten::geometry {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Segment = Kernel::Segment_2;
+using PairKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Segment = PairKernel::Segment_2;
 using PairBox = CGAL::Box_intersection_d::Box_with_info_d<double, 2, std::uint32_t>;
 
-Kernel::Point_2 to_cgal(const Point2& p) { return {p.x(), p.y()}; }
+PairKernel::Point_2 to_cgal(const Point2& p) { return {p.x(), p.y()}; }
 
 Segment segment_of(const FlatEdges& edges, std::size_t edge) {
   return {to_cgal(edges.from(edge)), to_cgal(edges.to(edge))};
@@ -176,9 +176,9 @@ bool folds(const FlatEdges& edges, std::size_t before, std::size_t after) {
   // Legs that point to different half planes: the angle is not acute by far more than rounding.
   const double turned_back = (edges.from(before) - corner).dot(edges.to(after) - corner);
   if (turned_back < -kSamePlace * (edges.from(before) - corner).norm()) return false;
-  const Kernel::Point_2 start = to_cgal(edges.from(before));
-  const Kernel::Point_2 vertex = to_cgal(edges.to(before));
-  const Kernel::Point_2 end = to_cgal(edges.to(after));
+  const PairKernel::Point_2 start = to_cgal(edges.from(before));
+  const PairKernel::Point_2 vertex = to_cgal(edges.to(before));
+  const PairKernel::Point_2 end = to_cgal(edges.to(after));
   return CGAL::collinear(start, vertex, end) && CGAL::angle(start, vertex, end) == CGAL::ACUTE;
 }
 
@@ -255,9 +255,9 @@ double edge_distance(const FlatEdges& edges, std::size_t edge, const Point2& pla
 Point2 meeting_place(const FlatEdges& edges, const EdgePair& pair) {
   const Segment a = segment_of(edges, pair.first);
   const auto common = CGAL::intersection(a, segment_of(edges, pair.second));
-  Kernel::Point_2 place = a.source();
+  PairKernel::Point_2 place = a.source();
   if (common) {
-    if (const auto* point = boost::get<Kernel::Point_2>(&*common)) {
+    if (const auto* point = boost::get<PairKernel::Point_2>(&*common)) {
       place = *point;
     } else {
       const auto& shared = boost::get<Segment>(*common);

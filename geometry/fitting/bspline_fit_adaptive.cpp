@@ -37,7 +37,7 @@ constexpr double kStiffnessStep = 4;
 
 // Rounding is no excess; what is left of one this small after the last solution is no reason for
 // another knot.
-constexpr double kInside = 1 + 1e-9;
+constexpr double kInsideWhenAdapted = 1 + 1e-9;
 constexpr double kNearlyInside = 1.05;
 
 // Samples from `begin` on that share a span.
@@ -335,7 +335,7 @@ void AdaptiveFit::solve(IndexRange free, Phase phase) {
   }
   for (std::size_t i = samples.begin; i < samples.end; ++i) {
     measure(samples_[i], place_of(rows_[i], spline_.points), states_[i]);
-    if (solved && states_[i].distance > kInside * samples_[i].limit) {
+    if (solved && states_[i].distance > kInsideWhenAdapted * samples_[i].limit) {
       for (std::size_t j = 0; j < 4; ++j) {
         std::uint8_t& left = points_[rows_[i].first + j].left;
         left = std::max<std::uint8_t>(left, 1);

@@ -18,7 +18,8 @@
 namespace batten {
 namespace {
 
-constexpr const char* kSmooth = "smooth part.nc --target linuxcnc --method fair --progress off ";
+constexpr const char* kSmoothLong =
+    "smooth part.nc --target linuxcnc --method fair --progress off ";
 
 // A pass that is rewritten.
 std::string pass() {
@@ -42,8 +43,8 @@ class LongProgram : public testing::Test {
 
   // The bytes as the whole gives them.
   [[nodiscard]] std::string whole() const {
-    const ProcessResult done =
-        folder_.batten(std::string(kSmooth) + "-o whole.nc --report page.html --json whole.json");
+    const ProcessResult done = folder_.batten(std::string(kSmoothLong) +
+                                              "-o whole.nc --report page.html --json whole.json");
     EXPECT_EQ(done.exit_code, 0) << done.err;
     return folder_.text_of("whole.nc");
   }
@@ -54,7 +55,7 @@ class LongProgram : public testing::Test {
 TEST_F(LongProgram, GivesTheBytesAndTheReportOfTheWhole) {
   const std::string expected = whole();
   EXPECT_NE(expected, folder_.text_of("part.nc"));
-  const ProcessResult done = folder_.batten(std::string(kSmooth) + "-o new.nc --json new.json");
+  const ProcessResult done = folder_.batten(std::string(kSmoothLong) + "-o new.nc --json new.json");
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_TRUE(folder_.text_of("new.nc") == expected);
   std::string report = folder_.text_of("new.json");
@@ -74,17 +75,17 @@ TEST_F(LongProgram, GoesFromStandardInputToStandardOutput) {
 
 TEST_F(LongProgram, IsReplacedInPlace) {
   const std::string expected = whole();
-  const ProcessResult done = folder_.batten(std::string(kSmooth) + "--in-place");
+  const ProcessResult done = folder_.batten(std::string(kSmoothLong) + "--in-place");
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_TRUE(folder_.text_of("part.nc") == expected);
 }
 
 TEST_F(LongProgram, IsNotWrittenInADryRunNorOverAnExistingFile) {
-  const ProcessResult dry = folder_.batten(std::string(kSmooth) + "-o new.nc --dry-run");
+  const ProcessResult dry = folder_.batten(std::string(kSmoothLong) + "-o new.nc --dry-run");
   EXPECT_EQ(dry.exit_code, 0) << dry.err;
   EXPECT_FALSE(folder_.has("new.nc"));
   folder_.put("new.nc", "old\n");
-  EXPECT_EQ(folder_.batten(std::string(kSmooth) + "-o new.nc").exit_code, 4);
+  EXPECT_EQ(folder_.batten(std::string(kSmoothLong) + "-o new.nc").exit_code, 4);
   EXPECT_EQ(folder_.text_of("new.nc"), "old\n");
 }
 
@@ -92,7 +93,7 @@ TEST_F(LongProgram, IsNotWrittenInADryRunNorOverAnExistingFile) {
 TEST_F(LongProgram, ThatNeedsTheWholeIsWrittenOnce) {
   folder_.put("part.nc", long_program("M99\n"));
   const std::string expected = whole();
-  const ProcessResult done = folder_.batten(std::string(kSmooth) + "-o new.nc");
+  const ProcessResult done = folder_.batten(std::string(kSmoothLong) + "-o new.nc");
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_TRUE(folder_.text_of("new.nc") == expected);
   for (const auto& entry : std::filesystem::directory_iterator(folder_.file("."))) {
@@ -103,7 +104,7 @@ TEST_F(LongProgram, ThatNeedsTheWholeIsWrittenOnce) {
 // More threads than there are cores: no more work at once, and no word of it.
 TEST_F(LongProgram, IsSmoothedUnderAnyNumberOfThreadsWithoutAWord) {
   for (const char* threads : {"1", "200"}) {
-    const ProcessResult done = folder_.batten(std::string(kSmooth) + "--quiet --force -o " +
+    const ProcessResult done = folder_.batten(std::string(kSmoothLong) + "--quiet --force -o " +
                                               threads + ".nc --threads " + threads);
     EXPECT_EQ(done.exit_code, 0);
     EXPECT_EQ(done.err, "");

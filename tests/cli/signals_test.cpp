@@ -38,7 +38,7 @@ int signals_to_send() {
 }
 
 // Some thousand lines that are rewritten: long enough to be caught at work.
-std::string long_program(int lines) { return postproc::wave_program({.lines = lines}); }
+std::string program_of_lines(int lines) { return postproc::wave_program({.lines = lines}); }
 
 // The program at work in a folder, its messages in the file `err` there.
 class Started {
@@ -139,7 +139,7 @@ class Signals : public testing::Test {
   }
 
   BattenFolder folder_;
-  std::string old_ = long_program(1000);
+  std::string old_ = program_of_lines(1000);
   std::string new_;
   Counts counts_;
 };
@@ -241,7 +241,7 @@ struct Change {
 class ChangedInput : public testing::TestWithParam<Change> {};
 
 TEST_P(ChangedInput, IsNotReplacedInPlace) {
-  const std::string old = long_program(3000);
+  const std::string old = program_of_lines(3000);
   std::mt19937 random(3);
   int caught = 0;
   double longest = 400'000;  // microseconds

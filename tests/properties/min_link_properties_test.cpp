@@ -19,7 +19,7 @@ constexpr double kProofLooseness = 1.021;
 
 // Control points a few units apart whose direction turns to both sides, in the plane or in space;
 // every fourth curve has a straight part in its middle.
-BsplineCurve random_curve(int seed, int spans, bool in_plane, double size) {
+BsplineCurve random_min_link_curve(int seed, int spans, bool in_plane, double size) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::uniform_real_distribution<double> uniform(-1, 1);
   std::vector<double> breakpoints = {0};
@@ -68,7 +68,7 @@ TEST(MinLinkVertices, KeepTheToleranceBothWaysInOrderOnRandomCurves) {
   for (int seed = 0; seed < kCurves; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const double size = std::pow(10.0, seed % 7 - 3);
-    const BsplineCurve curve = random_curve(seed, 14, seed % 2 == 0, size);
+    const BsplineCurve curve = random_min_link_curve(seed, 14, seed % 2 == 0, size);
     const double tolerance = size * std::pow(10.0, -1 - seed % 3);
     const MinLinkOptions options{.tolerance = tolerance, .balanced = seed % 5 != 0};
     const auto vertices = min_link_vertices(curve, curve.first(), curve.last(), options);
@@ -120,7 +120,7 @@ TEST(MinLinkVertices, KeepTheToleranceWhereItIsAboveTheRadius) {
 TEST(MinLinkVertices, AreFewerAlsoInPlaceOfAPart) {
   for (int seed = 0; seed < 10; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const BsplineCurve curve = random_curve(seed, 12, seed % 2 == 0, 1);
+    const BsplineCurve curve = random_min_link_curve(seed, 12, seed % 2 == 0, 1);
     const double from = 0.7;
     const double to = curve.last() - 0.9;
     const auto vertices = min_link_vertices(curve, from, to, {.tolerance = 1e-3});
@@ -135,7 +135,7 @@ TEST(MinLinkVertices, AreFewerAlsoInPlaceOfAPart) {
 TEST(MinLinkVertices, GrowInNumberWithTheSquareRootOfTheFineness) {
   for (int seed = 0; seed < 4; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const BsplineCurve curve = random_curve(4 * seed + 1, 14, seed % 2 == 0, 10);
+    const BsplineCurve curve = random_min_link_curve(4 * seed + 1, 14, seed % 2 == 0, 10);
     const auto count = [&](double tolerance) {
       const MinLinkOptions options{.tolerance = tolerance, .balanced = false};
       return static_cast<double>(
@@ -146,7 +146,7 @@ TEST(MinLinkVertices, GrowInNumberWithTheSquareRootOfTheFineness) {
 }
 
 // Seconds of processor time, the least of three times.
-double seconds_for(const BsplineCurve& curve) {
+double seconds_of_min_link(const BsplineCurve& curve) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
     const std::clock_t start = std::clock();
@@ -160,8 +160,8 @@ double seconds_for(const BsplineCurve& curve) {
 // Four times the spans cost four times the work when it is linear, sixteen times when quadratic.
 TEST(MinLinkVertices, CostAboutLinearInTheSpans) {
   for (const bool in_plane : {true, false}) {
-    const double of_few = seconds_for(random_curve(1, 100, in_plane, 1));
-    const double of_many = seconds_for(random_curve(1, 400, in_plane, 1));
+    const double of_few = seconds_of_min_link(random_min_link_curve(1, 100, in_plane, 1));
+    const double of_many = seconds_of_min_link(random_min_link_curve(1, 400, in_plane, 1));
     EXPECT_LT(of_many, 8 * of_few) << of_few << " s, " << of_many << " s";
   }
 }

@@ -341,10 +341,10 @@ std::variant<TimeOptimalBlend, NoBlend> time_optimal_corner(const Corner& corner
 namespace {
 
 // Leg directions that agree in these steps, and shares (mm), are alike.
-constexpr double kAlike = 1e-6;
+constexpr double kAlikeCorners = 1e-6;
 
 // Measured deviations of one blend at two places differ by rounding.
-constexpr double kMeasuringNoise = 1e-9;
+constexpr double kCornerNoise = 1e-9;
 
 // A racing line that bends this many times as hard as the five points do is none: where there is
 // hardly any room (teeth of noise), the search ends with one that stands still on its way.
@@ -356,7 +356,7 @@ constexpr int kPlacesPerSpan = 8;
 using Directions = std::array<long long, 6>;
 
 Directions directions_of(const CornerFrame& frame) {
-  const auto steps = [](double x) { return std::llround(x / kAlike); };
+  const auto steps = [](double x) { return std::llround(x / kAlikeCorners); };
   return {steps(frame.a.x()), steps(frame.a.y()), steps(frame.a.z()),
           steps(frame.b.x()), steps(frame.b.y()), steps(frame.b.z())};
 }
@@ -388,8 +388,8 @@ struct Known {
 
  private:
   [[nodiscard]] static bool serves(double used, double share, double other) {
-    if (std::abs(share - other) <= kAlike) return true;
-    return used < share - kAlike && used < other - kAlike;
+    if (std::abs(share - other) <= kAlikeCorners) return true;
+    return used < share - kAlikeCorners && used < other - kAlikeCorners;
   }
 };
 
@@ -451,7 +451,7 @@ class TimeOptimalBlender {
     for (Point3& p : points) p += frame.vertex - known.vertex;
     BsplineCurve moved(curve.basis(), std::move(points));
     const BlendDeviation deviation = measure_blend(moved, frame);
-    if (deviation_of(deviation, kind) > options_.tolerance * (1 + kMeasuringNoise)) {
+    if (deviation_of(deviation, kind) > options_.tolerance * (1 + kCornerNoise)) {
       return std::nullopt;
     }
     return TimeOptimalPathBlend{{std::move(moved), deviation}, true};

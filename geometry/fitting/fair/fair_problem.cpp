@@ -47,7 +47,7 @@ constexpr double kWorthKnots = 1.6;
 
 // Noise that is more than so many of the greatest rounding errors is no rounding: no more of it is
 // taken away, for a curve that leaves less follows the noise.
-constexpr double kRoundingNoise = 2;
+constexpr double kProblemNoise = 2;
 
 // A noisy vertex is drawn towards the place that it was meant to have, by so much of the limit at
 // the most; what is left is room for the curve. With more of it the curve is nearer to what was
@@ -222,7 +222,7 @@ class ProblemMaker {
   [[nodiscard]] double expected(std::size_t i) const {
     const double noise = f_.noise[i];
     const double part = left_of_rounding(i);
-    const double left = std::max(part * noise, noise - kRoundingNoise * options_.rounding);
+    const double left = std::max(part * noise, noise - kProblemNoise * options_.rounding);
     return std::max({kNoiseMargin * left, part * options_.rounding, options_.scatter});
   }
 

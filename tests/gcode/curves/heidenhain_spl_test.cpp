@@ -33,21 +33,23 @@ CurveSetting heidenhain_setting() {
   return setting;
 }
 
-CurveSetting golden_setting() {
+CurveSetting golden_spl_setting() {
   CurveSetting setting = heidenhain_setting();
   setting.axes = {true, true, false};
   setting.feed = 3000;
   return setting;
 }
 
-Program parsed(const std::string& text) { return curve_tests::parsed(text, Language::kKlartext); }
+Program parsed_klartext(const std::string& text) {
+  return curve_tests::parsed(text, Language::kKlartext);
+}
 
 std::string spl(const BsplineCurve& curve, const CurveSetting& setting) {
   return text_of(heidenhain_spl().write(curve, setting));
 }
 
 CurveAlarms alarms_of(const std::string& text) {
-  return spl_alarms(parsed(text), Units::kMillimetre);
+  return spl_alarms(parsed_klartext(text), Units::kMillimetre);
 }
 
 // --- samples of the maker ------------------------------------------------------------------------
@@ -67,7 +69,7 @@ constexpr const char* kManual =
 TEST(Spl, ReadsTheSampleOfTheManual) {
   const Point3 start(28.338, 19.385, -0.5);
   const CurveReading reading =
-      reading_of(heidenhain_spl().read(parsed(kManual), 1, starting_at(start)));
+      reading_of(heidenhain_spl().read(parsed_klartext(kManual), 1, starting_at(start)));
   ASSERT_EQ(reading.motions.size(), 2U);
   EXPECT_EQ(reading.blocks, 8U);
   EXPECT_EQ(reading.feed, 10000);
@@ -96,7 +98,7 @@ TEST(Spl, RefusesTheSampleOfTheManualThatDoesNotClose) {
       "K3B+0.0083 K2B-0.413 E+2 K1B-1.5724 E+1 F10000\n";
   EXPECT_EQ(curve_tests::short_forms(alarms_of(sample)),
             (std::vector<std::string>{"2 spl-closure", "2 spl-closure", "2 spl-closure"}));
-  EXPECT_EQ(refusal_of(heidenhain_spl().read(parsed(sample), 1,
+  EXPECT_EQ(refusal_of(heidenhain_spl().read(parsed_klartext(sample), 1,
                                              starting_at(Point3(33.909, -25.838, 75.107)))),
             "an SPL block that is not understood");
 }
@@ -179,7 +181,7 @@ TEST(Spl, TakesMoreDigitsWhereAJointWouldHaveAKink) {
 }
 
 TEST(Spl, WritesInches) {
-  CurveSetting setting = golden_setting();
+  CurveSetting setting = golden_spl_setting();
   setting.units = Units::kInch;
   setting.feed = 254;
   const CubicBezier piece{{{0, 0, 0}, {25.4, 0, 0}, {50.8, 25.4, 0}, {50.8, 50.8, 0}}};
@@ -188,7 +190,7 @@ TEST(Spl, WritesInches) {
   // 3 (b2 - b3).
   EXPECT_EQ(text, "SPL X+2 Y+2 ~\n  K3X+1 K2X-3 K1X+0 ~\n  K3Y+1 K2Y+0 K1Y-3 F10\n");
   const auto result =
-      heidenhain_spl().read(parsed(text), 0, starting_at(Point3::Zero(), Units::kInch));
+      heidenhain_spl().read(parsed_klartext(text), 0, starting_at(Point3::Zero(), Units::kInch));
   EXPECT_LT(greatest_move(std::vector{piece}, curve_tests::beziers_of(reading_of(result))), 1e-9);
 }
 
@@ -196,14 +198,14 @@ TEST(Spl, WritesInches) {
 
 TEST(Spl, RefusesWhatItCannotSay) {
   const BsplineCurve curve = curve_tests::golden_curve();
-  CurveSetting one_axis = golden_setting();
+  CurveSetting one_axis = golden_spl_setting();
   one_axis.axes = {true, false, false};
   EXPECT_EQ(spl(curve, one_axis), "SPL names two axes or more");
-  CurveSetting elsewhere = golden_setting();
+  CurveSetting elsewhere = golden_spl_setting();
   elsewhere.start = {0.01, 0, 0};
   EXPECT_EQ(spl(curve, elsewhere), "the curve does not start where the tool stands");
   const CubicBezier far{{{0, 0, 0}, {4e4, 0, 0}, {8e4, 1, 0}, {1.2e5, 2, 0}}};
-  EXPECT_EQ(spl(curve_of({far}), golden_setting()), "a place beyond 99999.9999");
+  EXPECT_EQ(spl(curve_of({far}), golden_spl_setting()), "a place beyond 99999.9999");
 }
 
 // --- alarms --------------------------------------------------------------------------------------
@@ -283,9 +285,10 @@ TEST(KlartextArcAlarms, AreGivenForArcsThatAreNone) {
       "7 L X+0 Y+0\n"
       "8 C X+10.017 Y+0 DR+\n"
       "9 L X+100000\n";
-  EXPECT_EQ(curve_tests::short_forms(klartext_arc_alarms(parsed(text), Units::kMillimetre)),
-            (std::vector<std::string>{"2 arc-no-centre", "4 arc-no-sense", "4 arc-radius",
-                                      "8 arc-radius", "9 place-range"}));
+  EXPECT_EQ(
+      curve_tests::short_forms(klartext_arc_alarms(parsed_klartext(text), Units::kMillimetre)),
+      (std::vector<std::string>{"2 arc-no-centre", "4 arc-no-sense", "4 arc-radius", "8 arc-radius",
+                                "9 place-range"}));
 }
 
 struct SplRefusal {
@@ -297,9 +300,9 @@ struct SplRefusal {
 class SplRefusals : public testing::TestWithParam<SplRefusal> {};
 
 TEST_P(SplRefusals, AreSaid) {
-  EXPECT_EQ(
-      refusal_of(heidenhain_spl().read(parsed(GetParam().text), 0, starting_at(Point3::Zero()))),
-      GetParam().why);
+  EXPECT_EQ(refusal_of(heidenhain_spl().read(parsed_klartext(GetParam().text), 0,
+                                             starting_at(Point3::Zero()))),
+            GetParam().why);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -321,8 +324,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Spl, AFeedOfItsOwnEndsACurve) {
   const std::string block = "SPL X+3 Y+0 ~\n K3X+0 K2X+0 K1X-3 ~\n K3Y+0 K2Y+0 K1Y+0 F5\n";
   const std::string next = "SPL X+6 Y+0 ~\n K3X+0 K2X+0 K1X-3 ~\n K3Y+0 K2Y+0 K1Y+0 F6\n";
-  const CurveReading reading =
-      reading_of(heidenhain_spl().read(parsed(block + next), 0, starting_at(Point3::Zero())));
+  const CurveReading reading = reading_of(
+      heidenhain_spl().read(parsed_klartext(block + next), 0, starting_at(Point3::Zero())));
   EXPECT_EQ(reading.blocks, 3U);
   EXPECT_EQ(reading.motions.size(), 1U);
 }

@@ -32,7 +32,7 @@ CurveSetting siemens_setting() {
   return setting;
 }
 
-CurveSetting golden_setting() {
+CurveSetting golden_poly_setting() {
   CurveSetting setting = siemens_setting();
   setting.axes = {true, true, false};
   return setting;
@@ -49,7 +49,7 @@ CurveResult read_poly(const std::string& text, const Point3& start = Point3::Zer
 // --- what is written ----------------------------------------------------------------------------
 
 TEST(Poly, SaysTheFeedInTheFirstBlock) {
-  CurveSetting setting = golden_setting();
+  CurveSetting setting = golden_poly_setting();
   setting.feed = 1200;
   const std::string text = poly(curve_tests::golden_curve(), setting);
   EXPECT_EQ(text,
@@ -60,7 +60,7 @@ TEST(Poly, SaysTheFeedInTheFirstBlock) {
 
 TEST(Poly, LeavesOutZerosAtTheEnd) {
   const CubicBezier line{{{0, 0, 0}, {1, 2, 0}, {2, 4, 0}, {3, 6, 0}}};
-  EXPECT_EQ(poly(curve_of({line}), golden_setting()), "POLY PO[X]=(3) PO[Y]=(6)\n");
+  EXPECT_EQ(poly(curve_of({line}), golden_poly_setting()), "POLY PO[X]=(3) PO[Y]=(6)\n");
 }
 
 // --- samples of the maker -----------------------------------------------------------------------
@@ -145,7 +145,7 @@ TEST(Poly, TooFewDigitsAreADeviation) {
 }
 
 TEST(Poly, WritesInches) {
-  CurveSetting setting = golden_setting();
+  CurveSetting setting = golden_poly_setting();
   setting.units = Units::kInch;
   const CubicBezier piece{{{0, 0, 0}, {25.4, 0, 0}, {50.8, 25.4, 0}, {50.8, 50.8, 0}}};
   const std::string text = poly(curve_of({piece}), setting);
@@ -159,7 +159,7 @@ TEST(Poly, WritesInches) {
 // --- refusals and alarms -------------------------------------------------------------------------
 
 TEST(Poly, RefusesACurveThatStartsElsewhere) {
-  CurveSetting elsewhere = golden_setting();
+  CurveSetting elsewhere = golden_poly_setting();
   elsewhere.start = {0.01, 0, 0};
   EXPECT_EQ(poly(curve_tests::golden_curve(), elsewhere),
             "the curve does not start where the tool stands");

@@ -17,7 +17,7 @@ namespace batten::gcode {
 namespace {
 
 // Everything of a block that does not count within its part.
-std::string words_of(const Program& program, const Block& block) {
+std::string words_read(const Program& program, const Block& block) {
   std::string text =
       fmt::format("{} {}-{}-{} {} {} {}", block.line, block.span.begin, block.span.end, block.end,
                   static_cast<int>(block.opacity), block.block_delete, block.has_checksum);
@@ -30,7 +30,7 @@ std::string words_of(const Program& program, const Block& block) {
   return text;
 }
 
-std::string words_of(const Interpretation& read, const BlockMeaning& block) {
+std::string words_read(const Interpretation& read, const BlockMeaning& block) {
   const ModalState& state = read.states[block.state_after];
   std::string text =
       fmt::format("{} {} {} {} {} {}", static_cast<int>(block.kind), block.barrier.id(),
@@ -44,7 +44,7 @@ std::string words_of(const Interpretation& read, const BlockMeaning& block) {
                             from.z(), motion.end_known, to.x(), to.y(), to.z());
 }
 
-std::vector<std::string> words_of(const Diagnostics& found) {
+std::vector<std::string> words_read(const Diagnostics& found) {
   std::vector<std::string> texts;
   for (const Diagnostic& each : found) {
     texts.push_back(fmt::format("{} {} {} {}", static_cast<int>(each.severity), each.id,
@@ -53,7 +53,7 @@ std::vector<std::string> words_of(const Diagnostics& found) {
   return texts;
 }
 
-struct Reading {
+struct WordsRead {
   std::vector<std::string> blocks;
   std::vector<std::string> meanings;
   std::vector<std::string> told;
@@ -61,23 +61,23 @@ struct Reading {
   bool reaches_out = false;
 };
 
-void add(const Program& part, const Interpretation& read, Reading& reading) {
-  for (const Block& block : part.blocks) reading.blocks.push_back(words_of(part, block));
-  for (const BlockMeaning& block : read.blocks) reading.meanings.push_back(words_of(read, block));
+void add(const Program& part, const Interpretation& read, WordsRead& reading) {
+  for (const Block& block : part.blocks) reading.blocks.push_back(words_read(part, block));
+  for (const BlockMeaning& block : read.blocks) reading.meanings.push_back(words_read(read, block));
 }
 
-Reading as_a_whole(const std::string& text) {
-  Reading reading;
+WordsRead as_a_whole(const std::string& text) {
+  WordsRead reading;
   Diagnostics found;
   const Program program = parse(SourceText("part.nc", text), found);
   add(program, interpret(program, {}, found), reading);
-  reading.told = words_of(found);
+  reading.told = words_read(found);
   return reading;
 }
 
-Reading in_parts(const std::string& text, std::size_t blocks) {
+WordsRead in_parts(const std::string& text, std::size_t blocks) {
   const SourceText source("part.nc", text);
-  Reading reading;
+  WordsRead reading;
   TextCarry carry;
   ControlCarry control(Units::kUnknown);
   Diagnostics of_text;
@@ -89,7 +89,7 @@ Reading in_parts(const std::string& text, std::size_t blocks) {
   finish_text(carry, of_text);
   finish_interpretation(control, of_meaning);
   of_text.insert(of_text.end(), of_meaning.begin(), of_meaning.end());
-  reading.told = words_of(of_text);
+  reading.told = words_read(of_text);
   reading.marks_close_nothing = carry.marks.closes_nothing();
   reading.reaches_out = control.reaches_out;
   return reading;

@@ -14,7 +14,7 @@
 namespace batten::geometry {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kGrid = 0.001;
 constexpr double kSampling = 1.002;  // the chords between samples of measure()
 
@@ -27,7 +27,7 @@ ArcFitOptions on_grid() {
 BsplineCurve circle(double radius, int spans) {
   return curve_of(
       [radius](double t) { return Point3(radius * std::cos(t), radius * std::sin(t), 0); }, 0,
-      2 * kPi, spans);
+      2 * pi, spans);
 }
 
 // Lines and arcs as cubics joined by triple knots; arcs in pieces of 45 degrees or less,
@@ -43,7 +43,7 @@ class Drawing {
   }
 
   Drawing& arc_about(const Point3& center, double angle, double rise = 0) {
-    const int pieces = static_cast<int>(std::ceil(std::abs(angle) / (kPi / 4) - 1e-9));
+    const int pieces = static_cast<int>(std::ceil(std::abs(angle) / (pi / 4) - 1e-9));
     const double step = angle / pieces;
     const double handle = 4.0 / 3 * std::tan(step / 4);
     const Vector3 up(0, 0, rise / pieces);
@@ -101,9 +101,9 @@ TEST(FitArcs, ACircleIsAFewArcsOfItsRadius) {
 TEST(FitArcs, ASlotIsTwoLinesAndItsArcs) {
   const BsplineCurve slot = Drawing({0, 0, 0})
                                 .line_to({50, 0, 0})
-                                .arc_about({50, 5, 0}, kPi)
+                                .arc_about({50, 5, 0}, pi)
                                 .line_to({0, 10, 0})
-                                .arc_about({0, 5, 0}, kPi)
+                                .arc_about({0, 5, 0}, pi)
                                 .curve();
   const Path path = fitted(slot, on_grid());
   ASSERT_LE(path.size(), 6u);
@@ -118,7 +118,7 @@ TEST(FitArcs, ASlotIsTwoLinesAndItsArcs) {
 TEST(FitArcs, ARoundedCornerIsOneArcBetweenTwoLines) {
   const BsplineCurve corner = Drawing({0, 0, 0})
                                   .line_to({20, 0, 0})
-                                  .arc_about({20, 3, 0}, kPi / 2)
+                                  .arc_about({20, 3, 0}, pi / 2)
                                   .line_to({23, 30, 0})
                                   .curve();
   const Path path = fitted(corner, on_grid());
@@ -167,10 +167,10 @@ TEST(FitArcs, ARampedContourHasLinesAndHelicalArcs) {
   ArcFitOptions options = on_grid();
   options.helical = true;
   // Rise per mm 0.02 all along: 40 mm of line, a quarter of radius 10, 20 mm of line.
-  const double arc_rise = 0.02 * 5 * kPi;
+  const double arc_rise = 0.02 * 5 * pi;
   const BsplineCurve ramp = Drawing({0, 0, 0})
                                 .line_to({40, 0, 0.8})
-                                .arc_about({40, 10, 0}, kPi / 2, arc_rise)
+                                .arc_about({40, 10, 0}, pi / 2, arc_rise)
                                 .line_to({50, 30, 1.2 + arc_rise})
                                 .curve();
   const Path path = fitted(ramp, options);
@@ -206,10 +206,10 @@ TEST(FitArcs, FollowsALongHelixToItsEnd) {
   options.helical = true;
   constexpr int kPieces = 7000;
   const BsplineCurve helix =
-      Drawing({10, 0, 0}).arc_about({0, 0, 0}, kPieces * kPi / 4, 0.01 * kPieces).curve();
+      Drawing({10, 0, 0}).arc_about({0, 0, 0}, kPieces * pi / 4, 0.01 * kPieces).curve();
   const Path path = fitted(helix, options);
   // No arc sweeps more than max_sweep; some more joints come of the grid.
-  EXPECT_GE(static_cast<double>(path.size()), kPieces * kPi / 4 / options.max_sweep);
+  EXPECT_GE(static_cast<double>(path.size()), kPieces * pi / 4 / options.max_sweep);
   EXPECT_LE(path.size(), kPieces / 2U);
   EXPECT_LE((end_point(path.back()) - helix.point_at(helix.last())).norm(), 1e-12);
 }
@@ -217,7 +217,7 @@ TEST(FitArcs, FollowsALongHelixToItsEnd) {
 TEST(FitArcs, CrossesPlacesTighterThanTheLeastRadiusByShortLines) {
   const BsplineCurve bend = Drawing({0, 0, 0})
                                 .line_to({10, 0, 0})
-                                .arc_about({10, 0.05, 0}, kPi / 2)
+                                .arc_about({10, 0.05, 0}, pi / 2)
                                 .line_to({10.05, 9, 0})
                                 .curve();
   const Path path = fitted(bend, on_grid());
@@ -249,17 +249,17 @@ TEST(FitArcs, RefusesOptionsWithoutAMeaning) {
 // (|k'| / (124.7 T))^(1/3) over the length, k' the change of the curvature per mm: 23.6 for
 // the spiral, 35.3 for the sine, 22.1 for the ellipse (computed numerically). Chains whose
 // tangents are the curve's need 1.45 times as many.
-struct CountCase {
+struct ArcCountCase {
   std::string name;
   Point3 (*at)(double);
   double to;
   std::size_t most;
 };
 
-class ArcCount : public testing::TestWithParam<CountCase> {};
+class ArcCount : public testing::TestWithParam<ArcCountCase> {};
 
 TEST_P(ArcCount, IsNearTheLeastPossible) {
-  const CountCase& test = GetParam();
+  const ArcCountCase& test = GetParam();
   const BsplineCurve curve = curve_of(test.at, 0, test.to, 300);
   for (double grid : {0.0, kGrid}) {
     ArcFitOptions options;
@@ -275,9 +275,9 @@ Point3 sine(double t) { return {10 * t, 5 * std::sin(t), 0}; }
 Point3 ellipse(double t) { return {30 * std::cos(t), 5 * std::sin(t), 0}; }
 
 INSTANTIATE_TEST_SUITE_P(Curves, ArcCount,
-                         testing::Values(CountCase{"Spiral", spiral, 20, 34},
-                                         CountCase{"Sine", sine, 20, 51},
-                                         CountCase{"Ellipse", ellipse, 2 * kPi, 34}),
+                         testing::Values(ArcCountCase{"Spiral", spiral, 20, 34},
+                                         ArcCountCase{"Sine", sine, 20, 51},
+                                         ArcCountCase{"Ellipse", ellipse, 2 * pi, 34}),
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace

@@ -9,8 +9,8 @@
 namespace batten::geometry {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
+using std::numbers::pi;
+constexpr double kDegree = pi / 180;
 
 // From `from` degrees by `sweep` degrees about (2, 3, z), radius 10, rising by `rise`.
 Arc arc_of(double from, double sweep, double rise = 0) {

@@ -17,8 +17,8 @@
 namespace batten::geometry {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kGrid = 1e-5;
+using std::numbers::pi;
+constexpr double kFineGrid = 1e-5;
 
 using Shape = std::function<Point2(double)>;
 
@@ -31,7 +31,7 @@ std::vector<Point2> along(const Shape& shape, double from, double to, int count)
 ArcSplineOptions options_for(const std::vector<Point2>& points) {
   ArcSplineOptions options;
   options.min_radius = 0.05;
-  options.grid = kGrid;
+  options.grid = kFineGrid;
   const Vector2 first = points[1] - points[0];
   options.direction = std::atan2(first.y(), first.x());
   return options;
@@ -59,7 +59,7 @@ Path path_of(const ArcSpline& spline) {
 }
 
 double kink_between(const PlaneArc& a, const PlaneArc& b) {
-  return std::abs(std::remainder(b.start_angle() - a.start_angle() - a.sweep, 2 * kPi));
+  return std::abs(std::remainder(b.start_angle() - a.start_angle() - a.sweep, 2 * pi));
 }
 
 // Joints that turn more than rounding to the grid forces.
@@ -68,7 +68,7 @@ int kinks_in(const ArcSpline& spline) {
   for (std::size_t i = 1; i < spline.pieces.size(); ++i) {
     const PlaneArc& a = spline.pieces[i - 1].arc;
     const PlaneArc& b = spline.pieces[i].arc;
-    const double forced = 2 * std::numbers::sqrt2 * kGrid / std::min(a.length(), b.length());
+    const double forced = 2 * std::numbers::sqrt2 * kFineGrid / std::min(a.length(), b.length());
     if (kink_between(a, b) > forced + 1e-6) ++kinks;
   }
   return kinks;
@@ -95,7 +95,7 @@ void expect_sound(const ArcSpline& spline, const std::vector<Point2>& points,
     station = spline.pieces[i].station;
     if (i + 1 < spline.pieces.size()) {
       for (const double c : {arc.end.x(), arc.end.y()}) {
-        EXPECT_NEAR(c, std::round(c / kGrid) * kGrid, 1e-12);
+        EXPECT_NEAR(c, std::round(c / kFineGrid) * kFineGrid, 1e-12);
       }
     }
   }
@@ -108,10 +108,10 @@ void expect_sound(const ArcSpline& spline, const std::vector<Point2>& points,
 TEST(ArcSpline, ACircleIsThreeArcsOfItsRadius) {
   for (const int count : {200, 400, 5000}) {
     const auto points =
-        along([](double u) { return Point2(20 * unit_vector(u)); }, 0, 2 * kPi, count);
+        along([](double u) { return Point2(20 * unit_vector(u)); }, 0, 2 * pi, count);
     ArcSplineOptions options = options_for(points);
-    options.start_angle = kPi / 2;
-    options.end_angle = kPi / 2;
+    options.start_angle = pi / 2;
+    options.end_angle = pi / 2;
     const auto spline = fit_arc_spline(points, options);
     ASSERT_TRUE(spline);
     expect_sound(*spline, points, options);
@@ -133,7 +133,7 @@ TEST(ArcSpline, MeetsItsEndsAtTheGivenTangents) {
   EXPECT_EQ(spline->kinks, 0);
   const PlaneArc& last = spline->pieces.back().arc;
   EXPECT_NEAR(spline->pieces.front().arc.start_angle(), *options.start_angle, 1e-9);
-  const double forced = 3 * kGrid / last.length() + 1e-6;
+  const double forced = 3 * kFineGrid / last.length() + 1e-6;
   EXPECT_NEAR(last.start_angle() + last.sweep, *options.end_angle, forced);
 }
 
@@ -150,7 +150,7 @@ TEST(ArcSpline, LinesStayLinesAndTheirCornerAKink) {
 
 // A turn of 20 degrees is rounded by an arc of radius r within r (1 / cos 10 - 1) = 0.0154 r.
 TEST(ArcSpline, ABluntCornerIsRoundedInTheBand) {
-  const double turn = 20 * kPi / 180;
+  const double turn = 20 * pi / 180;
   const std::vector<Point2> points = {{0, 0}, {10, 0}, Point2(10, 0) + 10 * unit_vector(turn)};
   ArcSplineOptions options = options_for(points);
   options.effort = ArcEffort::kThorough;
@@ -190,11 +190,11 @@ TEST(ArcSpline, NeedsFewMoreArcsThanTheLeast) {
   };
   const Row rows[] = {
       {"spiral, radius 5 to 25, three turns",
-       [](double u) { return Point2((5 + 20 * u / (6 * kPi)) * unit_vector(u)); }, 0, 6 * kPi},
+       [](double u) { return Point2((5 + 20 * u / (6 * pi)) * unit_vector(u)); }, 0, 6 * pi},
       {"sine 5 sin(x/10), 200 mm", [](double u) { return Point2(u, 5 * std::sin(u / 10)); }, 0,
        200},
       {"ellipse 30 by 5", [](double u) { return Point2(30 * std::cos(u), 5 * std::sin(u)); }, 0.3,
-       0.3 + 2 * kPi},
+       0.3 + 2 * pi},
   };
   struct Looks {
     ArcEffort effort;

@@ -9,24 +9,24 @@
 namespace batten::geometry {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kNoLimit = 1e9;
 
-double angle_error(double a, double b) { return std::abs(std::remainder(a - b, 2 * kPi)); }
+double angle_error(double a, double b) { return std::abs(std::remainder(a - b, 2 * pi)); }
 
 TEST(PlaneArc, TurnsLeftForPositiveSweep) {
-  const PlaneArc arc = arc_with_sweep({1, 0}, {0, 1}, kPi / 2, kNoLimit);
+  const PlaneArc arc = arc_with_sweep({1, 0}, {0, 1}, pi / 2, kNoLimit);
   EXPECT_NEAR(arc.center.norm(), 0, 1e-15);
   EXPECT_NEAR(arc.radius, 1, 1e-15);
-  EXPECT_NEAR(angle_error(arc.start_angle(), kPi / 2), 0, 1e-15);
-  const PlaneArc right = arc_with_sweep({1, 0}, {0, 1}, -kPi / 2, kNoLimit);
+  EXPECT_NEAR(angle_error(arc.start_angle(), pi / 2), 0, 1e-15);
+  const PlaneArc right = arc_with_sweep({1, 0}, {0, 1}, -pi / 2, kNoLimit);
   EXPECT_NEAR((right.center - Point2(1, 1)).norm(), 0, 1e-15);
 }
 
 TEST(PlaneArc, MoreThanHalfATurnHasItsCenterOnTheOtherSide) {
-  const PlaneArc arc = arc_with_sweep({1, 0}, {0, -1}, 3 * kPi / 2, kNoLimit);
+  const PlaneArc arc = arc_with_sweep({1, 0}, {0, -1}, 3 * pi / 2, kNoLimit);
   EXPECT_NEAR(arc.center.norm(), 0, 1e-15);
-  EXPECT_NEAR(arc.length(), 3 * kPi / 2, 1e-14);
+  EXPECT_NEAR(arc.length(), 3 * pi / 2, 1e-14);
 }
 
 TEST(PlaneArc, IsALineWhereItIsFlatterThanTheGreatestRadius) {
@@ -43,13 +43,13 @@ TEST(PlaneArc, LeavesAndArrivesAtTheGivenAngle) {
 }
 
 TEST(Biarc, AQuarterCircleIsTwoArcsOfItself) {
-  const auto joint = biarc_joint({1, 0}, kPi / 2, {0, 1}, kPi, 1);
+  const auto joint = biarc_joint({1, 0}, pi / 2, {0, 1}, pi, 1);
   ASSERT_TRUE(joint);
   EXPECT_NEAR((joint->place - Point2(std::sqrt(0.5), std::sqrt(0.5))).norm(), 0, 1e-15);
 }
 
 TEST(Biarc, ThreeQuartersOfACircleToo) {
-  const auto joint = biarc_joint({1, 0}, kPi / 2, {0, -1}, 2 * kPi, 1);
+  const auto joint = biarc_joint({1, 0}, pi / 2, {0, -1}, 2 * pi, 1);
   ASSERT_TRUE(joint);
   EXPECT_NEAR((joint->place + Point2(std::sqrt(0.5), -std::sqrt(0.5))).norm(), 0, 1e-14);
 }
@@ -83,12 +83,12 @@ TEST(Biarc, ArcsMeetWithOneTangentWhateverTheBalance) {
 }
 
 CubicBezier quarter_of_radius(double r) {  // off the circle by at most 2.73e-4 r, outwards
-  const double handle = 4.0 / 3 * std::tan(kPi / 8) * r;
+  const double handle = 4.0 / 3 * std::tan(pi / 8) * r;
   return {{{r, 0, 0}, {r, handle, 0}, {handle, r, 0}, {0, r, 0}}};
 }
 
 TEST(StaysNear, KnowsTheErrorOfACubicCircle) {
-  const PlaneArc arc = arc_with_sweep({10, 0}, {0, 10}, kPi / 2, kNoLimit);
+  const PlaneArc arc = arc_with_sweep({10, 0}, {0, 10}, pi / 2, kNoLimit);
   EXPECT_TRUE(stays_near(quarter_of_radius(10), arc, 2.74e-3));
   EXPECT_FALSE(stays_near(quarter_of_radius(10), arc, 2.70e-3));
 }
@@ -97,7 +97,7 @@ TEST(StaysNear, RefusesTheWayBack) {
   CubicBezier back = quarter_of_radius(10);
   std::swap(back.control[0], back.control[3]);
   std::swap(back.control[1], back.control[2]);
-  const PlaneArc arc = arc_with_sweep({10, 0}, {0, 10}, kPi / 2, kNoLimit);
+  const PlaneArc arc = arc_with_sweep({10, 0}, {0, 10}, pi / 2, kNoLimit);
   EXPECT_FALSE(stays_near(back, arc, 1e-2));
   const PlaneArc line{{0, 0}, {3, 0}};
   EXPECT_FALSE(stays_near({{{3, 0, 0}, {2, 0, 0}, {1, 0, 0}, {0, 0, 0}}}, line, 1e-2));

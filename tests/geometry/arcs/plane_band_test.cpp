@@ -9,7 +9,7 @@
 namespace batten::geometry {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kTolerance = 0.01;
 
 PlaneBand::Limits limits() { return {kTolerance, 1 / 0.05, 3.0}; }
@@ -56,7 +56,7 @@ TEST(PlaneBand, TheFanOnALineClosesWithTheSquareOfTheLength) {
 
 TEST(PlaneBand, TheFanHoldsTheCircleThatTheVerticesLieOn) {
   const PlaneBand band(on_circle(20, 200, 2.5), limits());
-  const ArcFan fan = band.fan({{20, 0}, kPi / 2, 1});
+  const ArcFan fan = band.fan({{20, 0}, pi / 2, 1});
   ASSERT_EQ(fan.ranges.size(), band.samples().size() - 1);
   EXPECT_LT(fan.ranges.back().low, 1.0 / 20);
   EXPECT_GT(fan.ranges.back().high, 1.0 / 20);
@@ -99,7 +99,7 @@ TEST(PlaneBand, AnArcWithinTheToleranceIsPassed) {
   const double offs[] = {0, 0.0095, -0.0090};  // the chords' sagitta is 0.0004
   for (const double off : offs) {
     const double radius = 20 + off;
-    const BandEntry entry{{radius, 0}, kPi / 2, 1};
+    const BandEntry entry{{radius, 0}, pi / 2, 1};
     EXPECT_EQ(band.passed(entry, arc_about_origin(radius, 2.5)), band.samples().size()) << off;
   }
 }
@@ -108,14 +108,14 @@ TEST(PlaneBand, AnArcBeyondTheToleranceIsNot) {
   const PlaneBand band(on_circle(20, 200, 2.5), limits());
   for (const double off : {0.0102, -0.0102}) {
     const double radius = 20 + off;
-    const BandEntry entry{{radius, 0}, kPi / 2, 1};
+    const BandEntry entry{{radius, 0}, pi / 2, 1};
     EXPECT_FALSE(band.passed(entry, arc_about_origin(radius, 2.5))) << off;
   }
 }
 
 TEST(PlaneBand, AnArcThatEndsHalfWayPassesWhatLiesBeforeIt) {
   const PlaneBand band(on_circle(20, 200, 2.5), limits());
-  const auto passed = band.passed({{20, 0}, kPi / 2, 1}, arc_about_origin(20, 1.25));
+  const auto passed = band.passed({{20, 0}, pi / 2, 1}, arc_about_origin(20, 1.25));
   ASSERT_TRUE(passed);
   EXPECT_NEAR(band.samples()[*passed].station, 25, 0.3);
 }

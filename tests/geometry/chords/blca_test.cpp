@@ -16,16 +16,16 @@
 namespace batten::geometry {
 namespace {
 
-struct CountCase {
+struct BlcaCount {
   std::string name;
   Parabola parabola;
   double tolerance;
   std::size_t chords;
 };
 
-std::ostream& operator<<(std::ostream& out, const CountCase& test) { return out << test.name; }
+std::ostream& operator<<(std::ostream& out, const BlcaCount& test) { return out << test.name; }
 
-class Blca : public testing::TestWithParam<CountCase> {};
+class Blca : public testing::TestWithParam<BlcaCount> {};
 
 // The closed form: dx = sqrt(T sqrt(1 + slope^2) / |c1|), the last step cut at the end.
 TEST_P(Blca, StepsAsTheClosedFormSays) {
@@ -45,14 +45,14 @@ TEST_P(Blca, StepsAsTheClosedFormSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Parabolas, Blca,
-                         testing::Values(CountCase{"FlatCoarse", kFlatParabola, .05, 8},
-                                         CountCase{"FlatFine", kFlatParabola, .005, 26},
-                                         CountCase{"FlatFiner", kFlatParabola, .0005, 80},
-                                         CountCase{"FlatFinest", kFlatParabola, .00005, 251},
-                                         CountCase{"SteepCoarse", kSteepParabola, .045, 16},
-                                         CountCase{"SteepFine", kSteepParabola, .0045, 49},
-                                         CountCase{"SteepFiner", kSteepParabola, .00045, 151},
-                                         CountCase{"SteepFinest", kSteepParabola, .000045, 475}),
+                         testing::Values(BlcaCount{"FlatCoarse", kFlatParabola, .05, 8},
+                                         BlcaCount{"FlatFine", kFlatParabola, .005, 26},
+                                         BlcaCount{"FlatFiner", kFlatParabola, .0005, 80},
+                                         BlcaCount{"FlatFinest", kFlatParabola, .00005, 251},
+                                         BlcaCount{"SteepCoarse", kSteepParabola, .045, 16},
+                                         BlcaCount{"SteepFine", kSteepParabola, .0045, 49},
+                                         BlcaCount{"SteepFiner", kSteepParabola, .00045, 151},
+                                         BlcaCount{"SteepFinest", kSteepParabola, .000045, 475}),
                          [](const auto& test) { return test.param.name; });
 
 // The tool path that the paper draws over these vertices: from each a jump of length `tolerance`

@@ -11,7 +11,7 @@ namespace batten::geometry {
 namespace {
 
 // Of many places between, from the chord's line.
-double greatest_distance(const BsplineCurve& curve, double from, double to) {
+double greatest_height(const BsplineCurve& curve, double from, double to) {
   const Point3 start = curve.point_at(from);
   const Vector3 along = (curve.point_at(to) - start).normalized();
   double greatest = 0;
@@ -47,7 +47,7 @@ TEST(ChordHeight, IsTheGreatestDistanceAndHardlyMore) {
     const RandomChord chord = random_chord(seed, seed % 2 == 1);
     const CurvePieces pieces(chord.curve, chord.curve.first(), chord.curve.last());
     const ChordHeight found = ChordsFrom(pieces, chord.from).to(chord.to);
-    const double distance = greatest_distance(chord.curve, chord.from, chord.to);
+    const double distance = greatest_height(chord.curve, chord.from, chord.to);
     const Vector3 ends = chord.curve.point_at(chord.to) - chord.curve.point_at(chord.from);
     EXPECT_NEAR(found.chord, ends.norm(), 1e-12 * ends.norm());
     EXPECT_GE(found.height, distance - 1e-12);

@@ -17,7 +17,7 @@
 namespace batten::geometry {
 namespace {
 
-struct CountCase {
+struct IlcaCount {
   std::string name;
   Parabola parabola;
   double first_step;
@@ -25,9 +25,9 @@ struct CountCase {
   std::size_t chords;
 };
 
-std::ostream& operator<<(std::ostream& out, const CountCase& test) { return out << test.name; }
+std::ostream& operator<<(std::ostream& out, const IlcaCount& test) { return out << test.name; }
 
-class Ilca : public testing::TestWithParam<CountCase> {};
+class Ilca : public testing::TestWithParam<IlcaCount> {};
 
 TEST_P(Ilca, TakesAsManyEqualStepsAsTheClosedFormGives) {
   const auto& [name, parabola, first_step, tolerance, chords] = GetParam();
@@ -45,14 +45,14 @@ TEST_P(Ilca, TakesAsManyEqualStepsAsTheClosedFormGives) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Parabolas, Ilca,
-                         testing::Values(CountCase{"FlatCoarse", kFlatParabola, 3, .05, 5},
-                                         CountCase{"FlatFine", kFlatParabola, 3, .005, 14},
-                                         CountCase{"FlatFiner", kFlatParabola, 3, .0005, 42},
-                                         CountCase{"FlatFinest", kFlatParabola, 3, .00005, 132},
-                                         CountCase{"SteepCoarse", kSteepParabola, 2, .045, 15},
-                                         CountCase{"SteepFine", kSteepParabola, 2, .0045, 51},
-                                         CountCase{"SteepFiner", kSteepParabola, 2, .00045, 167},
-                                         CountCase{"SteepFinest", kSteepParabola, 2, .000045, 531}),
+                         testing::Values(IlcaCount{"FlatCoarse", kFlatParabola, 3, .05, 5},
+                                         IlcaCount{"FlatFine", kFlatParabola, 3, .005, 14},
+                                         IlcaCount{"FlatFiner", kFlatParabola, 3, .0005, 42},
+                                         IlcaCount{"FlatFinest", kFlatParabola, 3, .00005, 132},
+                                         IlcaCount{"SteepCoarse", kSteepParabola, 2, .045, 15},
+                                         IlcaCount{"SteepFine", kSteepParabola, 2, .0045, 51},
+                                         IlcaCount{"SteepFiner", kSteepParabola, 2, .00045, 167},
+                                         IlcaCount{"SteepFinest", kSteepParabola, 2, .000045, 531}),
                          [](const auto& test) { return test.param.name; });
 
 TEST(IlcaExamples, HaveTheStepsDeviationsAndLengthsOfTheClosedForm) {

@@ -19,16 +19,16 @@
 namespace batten::geometry {
 namespace {
 
-struct CountCase {
+struct ChordCount {
   std::string name;
   Parabola parabola;
   double deviation;
   std::size_t chords;
 };
 
-std::ostream& operator<<(std::ostream& out, const CountCase& test) { return out << test.name; }
+std::ostream& operator<<(std::ostream& out, const ChordCount& test) { return out << test.name; }
 
-class GreedyChords : public testing::TestWithParam<CountCase> {};
+class GreedyChords : public testing::TestWithParam<ChordCount> {};
 
 TEST_P(GreedyChords, AreAsManyAsTheClosedFormGives) {
   const auto& [name, parabola, deviation, chords] = GetParam();
@@ -52,14 +52,14 @@ TEST_P(GreedyChords, AreAsManyAsTheClosedFormGives) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Parabolas, GreedyChords,
-                         testing::Values(CountCase{"FlatCoarse", kFlatParabola, 0.05, 4},
-                                         CountCase{"FlatFine", kFlatParabola, 0.005, 13},
-                                         CountCase{"FlatFiner", kFlatParabola, 0.0005, 40},
-                                         CountCase{"FlatFinest", kFlatParabola, 0.00005, 126},
-                                         CountCase{"SteepCoarse", kSteepParabola, 0.045, 8},
-                                         CountCase{"SteepFine", kSteepParabola, 0.0045, 24},
-                                         CountCase{"SteepFiner", kSteepParabola, 0.00045, 75},
-                                         CountCase{"SteepFinest", kSteepParabola, 0.000045, 238}),
+                         testing::Values(ChordCount{"FlatCoarse", kFlatParabola, 0.05, 4},
+                                         ChordCount{"FlatFine", kFlatParabola, 0.005, 13},
+                                         ChordCount{"FlatFiner", kFlatParabola, 0.0005, 40},
+                                         ChordCount{"FlatFinest", kFlatParabola, 0.00005, 126},
+                                         ChordCount{"SteepCoarse", kSteepParabola, 0.045, 8},
+                                         ChordCount{"SteepFine", kSteepParabola, 0.0045, 24},
+                                         ChordCount{"SteepFiner", kSteepParabola, 0.00045, 75},
+                                         ChordCount{"SteepFinest", kSteepParabola, 0.000045, 238}),
                          [](const auto& test) { return test.param.name; });
 
 // The least deviation with as many chords, all equal, is .04921 for the four of the flat

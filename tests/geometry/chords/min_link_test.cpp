@@ -36,16 +36,16 @@ std::size_t links_on(const BsplineCurve& curve, double tolerance, int gates = 32
          1;
 }
 
-struct CountCase {
+struct LinkCountCase {
   std::string name;
   Parabola parabola;
   double tolerance;
   std::size_t links;
 };
 
-std::ostream& operator<<(std::ostream& out, const CountCase& test) { return out << test.name; }
+std::ostream& operator<<(std::ostream& out, const LinkCountCase& test) { return out << test.name; }
 
-class MinLink : public testing::TestWithParam<CountCase> {};
+class MinLink : public testing::TestWithParam<LinkCountCase> {};
 
 TEST_P(MinLink, NeedsTheCountsOfTheTable) {
   const auto& [name, parabola, tolerance, links] = GetParam();
@@ -66,14 +66,15 @@ TEST_P(MinLink, NeedsOneLinkMoreAtMostWithFewGates) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Parabolas, MinLink,
-                         testing::Values(CountCase{"FlatCoarse", kFlatParabola, .05, 4},
-                                         CountCase{"FlatFine", kFlatParabola, .005, 10},
-                                         CountCase{"FlatFiner", kFlatParabola, .0005, 29},
-                                         CountCase{"FlatFinest", kFlatParabola, .00005, 89},
-                                         CountCase{"SteepCoarse", kSteepParabola, .045, 6},
-                                         CountCase{"SteepFine", kSteepParabola, .0045, 18},
-                                         CountCase{"SteepFiner", kSteepParabola, .00045, 54},
-                                         CountCase{"SteepFinest", kSteepParabola, .000045, 168}),
+                         testing::Values(LinkCountCase{"FlatCoarse", kFlatParabola, .05, 4},
+                                         LinkCountCase{"FlatFine", kFlatParabola, .005, 10},
+                                         LinkCountCase{"FlatFiner", kFlatParabola, .0005, 29},
+                                         LinkCountCase{"FlatFinest", kFlatParabola, .00005, 89},
+                                         LinkCountCase{"SteepCoarse", kSteepParabola, .045, 6},
+                                         LinkCountCase{"SteepFine", kSteepParabola, .0045, 18},
+                                         LinkCountCase{"SteepFiner", kSteepParabola, .00045, 54},
+                                         LinkCountCase{"SteepFinest", kSteepParabola, .000045,
+                                                       168}),
                          [](const auto& test) { return test.param.name; });
 
 // Where the count changes: 3 links on the flat parabola need T >= .05377, 4 go down to .02865; 5 on
@@ -89,7 +90,7 @@ TEST(MinLinkCount, ChangesAtTheKnownTolerances) {
   EXPECT_EQ(links_on(kSteepParabola.curve(), .03854, kFinestGates), 7U);
 }
 
-struct Example {
+struct LinkExample {
   std::string name;
   Parabola parabola;
   double tolerance;
@@ -97,14 +98,14 @@ struct Example {
   double length;
 };
 
-std::ostream& operator<<(std::ostream& out, const Example& test) { return out << test.name; }
+std::ostream& operator<<(std::ostream& out, const LinkExample& test) { return out << test.name; }
 
-class MinLinkExample : public testing::TestWithParam<Example> {};
+class MinLinkExample : public testing::TestWithParam<LinkExample> {};
 
 // Vertices on the outer offset, links tangent to the inner one. On the flat parabola the end lies
 // on the inner side of the last tangent: one vertex more, in front of the end.
 TEST_P(MinLinkExample, HasTheVerticesOfTheClosedForm) {
-  const Example& example = GetParam();
+  const LinkExample& example = GetParam();
   const BsplineCurve curve = example.parabola.curve();
   const CurvePieces pieces(curve, curve.first(), curve.last());
   const GateChain gates(pieces, curve.first(), curve.last(), 1e-6 * example.tolerance);
@@ -119,26 +120,28 @@ TEST_P(MinLinkExample, HasTheVerticesOfTheClosedForm) {
   EXPECT_NEAR(length_of(vertices), example.length, 1e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Parabolas, MinLinkExample,
-    testing::Values(
-        Example{"Flat",
-                kFlatParabola,
-                .05,
-                {{2, 1.838}, {4.8659, 3.9156}, {8.0606, 5.3290}, {10.9983, 5.8392}, {11, 5.807}},
-                10.047039},
-        Example{"Steep",
-                kSteepParabola,
-                .045,
-                {{1, 2},
-                 {1.8012, 5.4085},
-                 {3.0433, 15.9795},
-                 {4.6438, 38.6979},
-                 {6.6037, 80.4724},
-                 {8.9232, 149.7665},
-                 {10, 191}},
-                189.320747}),
-    [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(Parabolas, MinLinkExample,
+                         testing::Values(LinkExample{"Flat",
+                                                     kFlatParabola,
+                                                     .05,
+                                                     {{2, 1.838},
+                                                      {4.8659, 3.9156},
+                                                      {8.0606, 5.3290},
+                                                      {10.9983, 5.8392},
+                                                      {11, 5.807}},
+                                                     10.047039},
+                                         LinkExample{"Steep",
+                                                     kSteepParabola,
+                                                     .045,
+                                                     {{1, 2},
+                                                      {1.8012, 5.4085},
+                                                      {3.0433, 15.9795},
+                                                      {4.6438, 38.6979},
+                                                      {6.6037, 80.4724},
+                                                      {8.9232, 149.7665},
+                                                      {10, 191}},
+                                                     189.320747}),
+                         [](const auto& test) { return test.param.name; });
 
 // On a circle of radius r a link between vertices at r + T, tangent to r - T, spans
 // 2 acos((r - T) / (r + T)); the first and the last begin on the circle and span

@@ -10,12 +10,12 @@
 namespace batten::geometry {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Path square_corner() { return {Line{{0, 0, 0}, {10, 0, 0}}, Line{{10, 0, 0}, {10, 10, 0}}}; }
 
 Arc quarter(double radius) {
-  return {{radius, 0, 0}, {0, radius, 0}, {0, 0, 0}, Vector3::UnitZ(), kPi / 2};
+  return {{radius, 0, 0}, {0, radius, 0}, {0, 0, 0}, Vector3::UnitZ(), pi / 2};
 }
 
 void expect_line(const PathPiece& piece, const Point3& start, const Point3& end) {
@@ -45,7 +45,7 @@ TEST(ParallelPath, GoesRoundACornerOnAnArcAboutIt) {
     expect_line((*made)[2], {10 - y, 0, 0}, {10 - y, 10, 0});
     const auto* arc = std::get_if<Arc>(&(*made)[1]);
     ASSERT_NE(arc, nullptr);
-    EXPECT_NEAR(arc->sweep, kPi / 2, 1e-12);
+    EXPECT_NEAR(arc->sweep, pi / 2, 1e-12);
     for (const double t : {0.0, 0.3, 0.7, 1.0}) {
       EXPECT_NEAR((point_at(*arc, t) - Point3(10, 0, 0)).norm(), 0.5, 1e-12);
     }
@@ -93,7 +93,7 @@ TEST(ParallelPath, StaysWhereItWasWhereThePathGoesStraightDown) {
 
 TEST(ParallelPath, OfWhatHasNoSideIsNone) {
   EXPECT_FALSE(parallel_path(square_corner(), Side::kBoth, 1));
-  const Arc upright = {{1, 0, 0}, {0, 0, 1}, {0, 0, 0}, -Vector3::UnitY(), kPi / 2};
+  const Arc upright = {{1, 0, 0}, {0, 0, 1}, {0, 0, 0}, -Vector3::UnitY(), pi / 2};
   EXPECT_FALSE(parallel_path(Path{upright}, Side::kLeft, 0.1));
   EXPECT_FALSE(parallel_path(Path{CubicBezier{}}, Side::kLeft, 0.1));
 }

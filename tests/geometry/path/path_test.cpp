@@ -10,7 +10,7 @@
 namespace batten::geometry {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 void expect_near(const Vector3& found, const Vector3& expected, double within) {
   EXPECT_LE((found - expected).norm(), within)
@@ -18,15 +18,15 @@ void expect_near(const Vector3& found, const Vector3& expected, double within) {
 }
 
 PathPiece quarter_circle() {  // radius 2 about (1, 0), from (3, 0) to (1, 2)
-  return Arc{{3, 0, 0}, {1, 2, 0}, {1, 0, 5}, Vector3::UnitZ(), kPi / 2};
+  return Arc{{3, 0, 0}, {1, 2, 0}, {1, 0, 5}, Vector3::UnitZ(), pi / 2};
 }
 
 PathPiece helix() {  // radius 10, two turns down about X, 3 mm each
-  return Arc{{0, 10, 0}, {6, 10, 0}, {-4, 0, 0}, Vector3::UnitX(), -4 * kPi};
+  return Arc{{0, 10, 0}, {6, 10, 0}, {-4, 0, 0}, Vector3::UnitX(), -4 * pi};
 }
 
 PathPiece spiral() {  // radius from 1 to 2 in half a turn
-  return Arc{{1, 0, 0}, {-2, 0, 0}, {0, 0, 0}, Vector3::UnitZ(), kPi};
+  return Arc{{1, 0, 0}, {-2, 0, 0}, {0, 0, 0}, Vector3::UnitZ(), pi};
 }
 
 PathPiece cubic() { return CubicBezier{{{0, 0, 0}, {1, 2, 0}, {3, 2, 1}, {4, 0, 1}}}; }
@@ -50,16 +50,16 @@ TEST(Path, ArcsRunAboutTheirCenter) {
   expect_near(direction_at(quarter_circle(), 0), {0, 1, 0}, 1e-14);
   expect_near(direction_at(quarter_circle(), 1), {-1, 0, 0}, 1e-14);
   EXPECT_NEAR(curvature_at(quarter_circle(), 0.3), 0.5, 1e-14);
-  EXPECT_NEAR(length_of(quarter_circle()), kPi, 1e-14);
+  EXPECT_NEAR(length_of(quarter_circle()), pi, 1e-14);
 }
 
 // An eighth of the way a helix of two turns has turned by a quarter; clockwise about +X
 // leads from +Y to -Z. Curvature r / (r^2 + c^2), c the rise per radian.
 TEST(Path, HelicesRiseLinearlyInTheAngle) {
   expect_near(point_at(helix(), 0.125), {0.75, 0, -10}, 1e-13);
-  const double c = 6 / (4 * kPi);
+  const double c = 6 / (4 * pi);
   EXPECT_NEAR(curvature_at(helix(), 0.7), 10 / (100 + c * c), 1e-14);
-  EXPECT_NEAR(length_of(helix()), 4 * kPi * std::hypot(10, c), 1e-11);
+  EXPECT_NEAR(length_of(helix()), 4 * pi * std::hypot(10, c), 1e-11);
 }
 
 // r = 1 + t, angle pi t. With x = pi (1 + t) the length is 1/pi times the integral of
@@ -67,13 +67,13 @@ TEST(Path, HelicesRiseLinearlyInTheAngle) {
 TEST(Path, SpiralsChangeTheirRadiusLinearly) {
   expect_near(point_at(spiral(), 0.5), {0, 1.5, 0}, 1e-14);
   const auto f = [](double x) { return (x * std::sqrt(1 + x * x) + std::asinh(x)) / 2; };
-  EXPECT_NEAR(length_of(spiral()), (f(2 * kPi) - f(kPi)) / kPi, 1e-9);
+  EXPECT_NEAR(length_of(spiral()), (f(2 * pi) - f(pi)) / pi, 1e-9);
 }
 
 TEST(Path, AFullCircleComesBack) {
-  const PathPiece circle = Arc{{5, 0, 0}, {5, 0, 0}, {0, 0, 0}, Vector3::UnitZ(), -2 * kPi};
+  const PathPiece circle = Arc{{5, 0, 0}, {5, 0, 0}, {0, 0, 0}, Vector3::UnitZ(), -2 * pi};
   expect_near(point_at(circle, 0.25), {0, -5, 0}, 1e-14);
-  EXPECT_NEAR(length_of(circle), 10 * kPi, 1e-12);
+  EXPECT_NEAR(length_of(circle), 10 * pi, 1e-12);
 }
 
 // (t, t^2) for t in [0, 1]: curvature 2 / (1 + 4 t^2)^1.5, length (2 sqrt5 + asinh 2) / 4.

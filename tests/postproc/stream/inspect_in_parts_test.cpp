@@ -73,16 +73,16 @@ bool compare_both_ways(const std::string& text) {
 
 // --- random programs ----------------------------------------------------------------------------
 
-constexpr unsigned kSeeds = 40;
+constexpr unsigned kInspectedSeeds = 40;
 
 TEST(InspectInParts, SaysOfPassesWhatTheWholeSays) {
   std::size_t in_parts = 0;
-  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+  for (unsigned seed = 0; seed < kInspectedSeeds; ++seed) {
     SCOPED_TRACE(seed);
     in_parts += compare_both_ways(RandomPasses(seed).make()) ? 1 : 0;
     if (HasFailure()) return;
   }
-  EXPECT_GE(in_parts, kSeeds / 2);
+  EXPECT_GE(in_parts, kInspectedSeeds / 2);
 }
 
 // One chain that nothing ends for long, of all that may stand in it: lines of any direction, of no
@@ -135,7 +135,7 @@ class RandomChain {
 };
 
 TEST(InspectInParts, SaysOfOneChainWhatTheWholeSays) {
-  for (unsigned seed = 0; seed < 3 * kSeeds; ++seed) {
+  for (unsigned seed = 0; seed < 3 * kInspectedSeeds; ++seed) {
     SCOPED_TRACE(seed);
     EXPECT_TRUE(compare_both_ways(RandomChain(seed).make()));
     if (HasFailure()) return;

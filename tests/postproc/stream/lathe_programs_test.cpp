@@ -57,12 +57,13 @@ void expect_copied(const std::string& text, std::string_view target, std::string
 
 TEST(LatheProgram, KeepsEachPassOfATurningCycle) {
   // Read as a mill's program these are moves along X in one line, one of which would be enough.
-  const std::string passes =
+  const std::string lathe_passes =
       "G0 X62. Z2.\nG1 X60. F0.3\nG90 X58. Z-40. F0.25\nX54.\nX50.\nX46.\nX42.\nX38.\n"
       "G0 X100. Z100.\nM30\n";
-  expect_copied("G21\nT0101\nM3 S800\n" + passes, "fanuc", "T with the number of an offset");
-  expect_copied("G21\nG50 S2000\nG97 S800 M3\n" + passes, "fanuc", "G50 S, a limit");
-  expect_copied("G21\nM3 S800\n" + passes, "haas", "a feed that only one per revolution can be");
+  expect_copied("G21\nT0101\nM3 S800\n" + lathe_passes, "fanuc", "T with the number of an offset");
+  expect_copied("G21\nG50 S2000\nG97 S800 M3\n" + lathe_passes, "fanuc", "G50 S, a limit");
+  expect_copied("G21\nM3 S800\n" + lathe_passes, "haas",
+                "a feed that only one per revolution can be");
 }
 
 // --- the marks ---------------------------------------------------------------------------------
@@ -279,7 +280,7 @@ TEST(LatheProgram, IsNotTimed) {
 // --- long programs
 // ----------------------------------------------------------------------------------
 
-std::string passes(int count) {
+std::string lathe_passes(int count) {
   std::string text = "G21 G90 G17\n";
   for (int i = 0; i < count; ++i) {
     text += "G0 X0 Z5\n";
@@ -294,7 +295,7 @@ std::string passes(int count) {
 }
 
 TEST(LatheProgram, IsLeftToTheWholeHoweverLateItShows) {
-  const std::string text = passes(100);  // more blocks than are looked at at once
+  const std::string text = lathe_passes(100);  // more blocks than are looked at at once
   const SmoothOptions options = options_for("fanuc");
   ASSERT_TRUE(in_windows(text + "M30\n", options, 40).result);
   const auto inspected_as_whole = [](const std::string& program) {
@@ -310,7 +311,8 @@ TEST(LatheProgram, IsLeftToTheWholeHoweverLateItShows) {
 
 TEST(LatheProgram, IsNoneInWindowsWhereYIsNamedBehindItsMarks) {
   const SmoothOptions options = options_for("fanuc");
-  const std::string text = "T0101\nG99\nG94\n" + passes(3) + "G0 Y5\n" + passes(100) + "M30\n";
+  const std::string text =
+      "T0101\nG99\nG94\n" + lathe_passes(3) + "G0 Y5\n" + lathe_passes(100) + "M30\n";
   const InWindows windows = in_windows(text, options, 40);
   ASSERT_TRUE(windows.result);
   EXPECT_GT(windows.parts, 3U);

@@ -19,7 +19,7 @@
 namespace batten::postproc {
 namespace {
 
-constexpr unsigned kSeeds = 30;
+constexpr unsigned kLongRunSeeds = 30;
 
 constexpr LongRunLimits kShortRuns = {.whole_at_most = 400, .shortest = 100, .longest = 200};
 
@@ -99,12 +99,12 @@ TEST_P(LongSeed, GivesTheSameBytesReportAndMessagesForAnyThreads) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(LongRunWindows, LongSeed, testing::Range(0u, kSeeds));
+INSTANTIATE_TEST_SUITE_P(LongRunWindows, LongSeed, testing::Range(0u, kLongRunSeeds));
 
 TEST(LongRunWindows, AreMadeOfLongRunsAndRewrittenThere) {
   std::size_t cut = 0;
   std::size_t proved_by_others = 0;
-  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+  for (unsigned seed = 0; seed < kLongRunSeeds; ++seed) {
     const std::string text = LongPasses(seed).make();
     const SmoothOptions options = options_of_seed(seed);
     const WindowLimits limits = {.least_blocks = 100000, .long_runs = kShortRuns};
@@ -116,7 +116,7 @@ TEST(LongRunWindows, AreMadeOfLongRunsAndRewrittenThere) {
     EXPECT_TRUE(all.proved()) << seed << ": " << all.violations.front().message;
     proved_by_others += all.proved() ? 1 : 0;
   }
-  EXPECT_GE(cut, kSeeds / 3);
+  EXPECT_GE(cut, kLongRunSeeds / 3);
   EXPECT_EQ(proved_by_others, cut);
 }
 

@@ -25,8 +25,8 @@
 namespace batten::postproc {
 namespace {
 
-constexpr double kTolerance = 0.01;
-constexpr LongRunLimits kShortRuns = {.whole_at_most = 400, .shortest = 100, .longest = 200};
+constexpr double kCrossingTolerance = 0.01;
+constexpr LongRunLimits kCrossingRuns = {.whole_at_most = 400, .shortest = 100, .longest = 200};
 constexpr LongRunLimits kAsOne = {};
 
 // Teeth of two straight sides, which are turned by `turn` (degrees) at each, and back beside them:
@@ -83,7 +83,7 @@ std::vector<Teeth> all_teeth() {
 SmoothOptions asked() {
   SmoothOptions options = options_for("linuxcnc");
   options.method = Method::kFair;
-  options.tolerance_mm = kTolerance;
+  options.tolerance_mm = kCrossingTolerance;
   return options;
 }
 
@@ -99,7 +99,7 @@ geometry::Path cuts_of(const std::string& text) {
 }
 
 bool crosses_anew(const std::string& before, const std::string& after) {
-  return geometry::new_crossing(cuts_of(before), cuts_of(after), kTolerance).has_value();
+  return geometry::new_crossing(cuts_of(before), cuts_of(after), kCrossingTolerance).has_value();
 }
 
 std::size_t kept_for_crossing(const SmoothResult& result) {
@@ -114,7 +114,7 @@ TEST(PartCrossings, StrandsInDifferentPartsDoNotCross) {
     SCOPED_TRACE(testing::Message() << teeth.turn << " " << teeth.gap << " " << teeth.more);
     const std::string text = two_clusters(teeth);
     ASSERT_FALSE(crosses_anew(text, text));
-    const SmoothResult parts = as_a_whole(text, asked(), kShortRuns);
+    const SmoothResult parts = as_a_whole(text, asked(), kCrossingRuns);
     ASSERT_TRUE(parts.proved);
     EXPECT_FALSE(crosses_anew(text, parts.text));
     EXPECT_GE(rewritten_runs(parts), 1U) << "what is not near to anything is smoothed";
@@ -131,11 +131,11 @@ TEST(PartCrossings, WindowsGiveWhatTheWholeGives) {
     SCOPED_TRACE(testing::Message() << teeth.turn << " " << teeth.gap << " " << teeth.more);
     const std::string text = two_clusters(teeth);
     SmoothOptions options = asked();
-    const SmoothResult whole = as_a_whole(text, options, kShortRuns);
+    const SmoothResult whole = as_a_whole(text, options, kCrossingRuns);
     for (const int threads : {1, 3}) {
       options.threads = threads;
       const InWindows windows =
-          in_windows(text, options, WindowLimits{.least_blocks = 100, .long_runs = kShortRuns});
+          in_windows(text, options, WindowLimits{.least_blocks = 100, .long_runs = kCrossingRuns});
       ASSERT_TRUE(windows.result);
       expect_same(windows, whole);
     }
@@ -148,7 +148,7 @@ TEST(PartCrossings, WindowsGiveWhatTheWholeGives) {
 // the whole.
 TEST(PartCrossings, AreToldByWindowsThatAreMadeOnce) {
   std::size_t crossing = 0;
-  const WindowLimits limits{.least_blocks = 100, .long_runs = kShortRuns};
+  const WindowLimits limits{.least_blocks = 100, .long_runs = kCrossingRuns};
   for (const Teeth& teeth : all_teeth()) {
     const std::string text = two_clusters(teeth);
     const gcode::SourceText source("part.nc", text);

@@ -28,16 +28,16 @@ PrescanReport prescanned(const std::string& text, int threads, const ProgressCal
   return prescan(source, options, {.least_blocks = 4000}, tell);
 }
 
-bool go_on(double) { return true; }
+bool always_on(double) { return true; }
 
 TEST(Prescanner, FindsTheSameWindowsForAnyNumberOfThreads) {
   const std::string text = passes_text(6);
-  const PrescanReport one = prescanned(text, 1, go_on);
+  const PrescanReport one = prescanned(text, 1, always_on);
   ASSERT_EQ(one.outcome, PrescanOutcome::kWindows);
   EXPECT_EQ(one.windows.size(), 7U) << "the last one has what stands behind the passes";
   EXPECT_EQ(one.units, gcode::Units::kMillimetre);
   for (const int threads : {2, 3, 8}) {
-    const PrescanReport more = prescanned(text, threads, go_on);
+    const PrescanReport more = prescanned(text, threads, always_on);
     ASSERT_EQ(more.outcome, PrescanOutcome::kWindows);
     EXPECT_EQ(more.blocks, one.blocks);
     ASSERT_EQ(more.windows.size(), one.windows.size());
@@ -56,7 +56,8 @@ TEST(Prescanner, FindsTheSameWindowsForAnyNumberOfThreads) {
 TEST(Prescanner, SaysThatTheWholeIsNeededHoweverLateThatShows) {
   for (const char* line : {"o1 while [#1 lt 2]\n", "GOTO 10\n", "%\nG1 X1\n%\n"}) {
     for (const int threads : {1, 2, 8}) {
-      EXPECT_EQ(prescanned(passes_text(3, line), threads, go_on).outcome, PrescanOutcome::kWhole)
+      EXPECT_EQ(prescanned(passes_text(3, line), threads, always_on).outcome,
+                PrescanOutcome::kWhole)
           << line;
     }
   }

@@ -115,7 +115,7 @@ TEST(Windows, GiveTheSameForAnyNumberOfThreads) {
 // --- what needs the whole ------------------------------------------------------------------------
 
 // Three passes that are rewritten.
-std::string passes(const std::string& before, const std::string& behind) {
+std::string passes_of_windows(const std::string& before, const std::string& behind) {
   std::string text = before;
   for (int i = 0; i < 3; ++i) {
     text += fmt::format("G0 X0 Y0 Z{}\nG1 Z-1 F300\n", 5 + i);
@@ -128,7 +128,7 @@ constexpr std::string_view kHead = "G21 G90 G17\nS12000 M3\n";
 
 TEST(Windows, AreMadeOfPlainPasses) {
   const InWindows windows =
-      in_windows(passes(std::string(kHead), "M30\n"), options_for("linuxcnc"), 1);
+      in_windows(passes_of_windows(std::string(kHead), "M30\n"), options_for("linuxcnc"), 1);
   ASSERT_TRUE(windows.result);
   EXPECT_EQ(windows.parts, 4U);  // the head with the first rapid, two passes, the last with the end
   EXPECT_EQ(rewritten_runs(*windows.result), 3U);
@@ -136,7 +136,7 @@ TEST(Windows, AreMadeOfPlainPasses) {
 
 TEST(Windows, SayOnceThatTheProgramIsSmoothed) {
   const InWindows windows =
-      in_windows(passes(std::string(kHead), "M30\n"), options_for("linuxcnc"), 1);
+      in_windows(passes_of_windows(std::string(kHead), "M30\n"), options_for("linuxcnc"), 1);
   ASSERT_TRUE(windows.result);
   const std::string comment = "Batten: smoothed within";
   const std::size_t first = windows.text.find(comment);
@@ -146,7 +146,7 @@ TEST(Windows, SayOnceThatTheProgramIsSmoothed) {
 
 TEST(Windows, KeepAProgramThatWasSmoothedWhereverThatStands) {
   const std::string text =
-      passes(std::string(kHead), "M5\n(Batten: smoothed within 0.01 mm)\nM30\n");
+      passes_of_windows(std::string(kHead), "M5\n(Batten: smoothed within 0.01 mm)\nM30\n");
   const InWindows windows = in_windows(text, options_for("linuxcnc"), 1);
   ASSERT_TRUE(windows.result);
   EXPECT_EQ(windows.text, text);
@@ -162,7 +162,7 @@ struct WholeCase {
 class NeedsTheWhole : public testing::TestWithParam<WholeCase> {};
 
 TEST_P(NeedsTheWhole, AndIsNotCut) {
-  const std::string text = passes(GetParam().before, GetParam().behind);
+  const std::string text = passes_of_windows(GetParam().before, GetParam().behind);
   EXPECT_FALSE(in_windows(text, options_for("linuxcnc"), 1).result) << text;
 }
 
@@ -182,13 +182,13 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Windows, LeaveWordsOfAProfileToTheWhole) {
   SmoothOptions options = options_for("linuxcnc");
   options.words.header = {"(made in the shop)"};
-  EXPECT_FALSE(in_windows(passes(std::string(kHead), "M30\n"), options, 1).result);
+  EXPECT_FALSE(in_windows(passes_of_windows(std::string(kHead), "M30\n"), options, 1).result);
 }
 
 // --- stopping ------------------------------------------------------------------------------------
 
 TEST(Windows, StopWhereTheSinkTakesNoMore) {
-  const gcode::SourceText source("part.nc", passes(std::string(kHead), "M30\n"));
+  const gcode::SourceText source("part.nc", passes_of_windows(std::string(kHead), "M30\n"));
   std::size_t parts = 0;
   const TextSink sink = [&](std::string_view) { return ++parts < 2; };
   const auto result =
@@ -199,7 +199,7 @@ TEST(Windows, StopWhereTheSinkTakesNoMore) {
 }
 
 TEST(Windows, StopWhereTheUserWantsItAndTellHowFarTheyAre) {
-  const gcode::SourceText source("part.nc", passes(std::string(kHead), "M30\n"));
+  const gcode::SourceText source("part.nc", passes_of_windows(std::string(kHead), "M30\n"));
   std::vector<double> told;
   const auto all = [&](double part) {
     told.push_back(part);
@@ -244,7 +244,7 @@ Streamed streamed(const std::string& text, const StreamLimits& limits) {
 }
 
 TEST(Pipeline, HandsOnTheSameTextInWindowsAndAsOne) {
-  const std::string text = passes(std::string(kHead), "M30\n");
+  const std::string text = passes_of_windows(std::string(kHead), "M30\n");
   const SmoothResult whole = as_a_whole(text, options_for("linuxcnc"));
   const Streamed as_one = streamed(text, {});
   const Streamed windows = streamed(text, {.bytes_for_windows = 0, .windows = {.least_blocks = 1}});
@@ -256,7 +256,7 @@ TEST(Pipeline, HandsOnTheSameTextInWindowsAndAsOne) {
 }
 
 TEST(Pipeline, BeginsTheTextAnewWhereWindowsAreNotEnough) {
-  const std::string text = passes(std::string(kHead), "M99\n");
+  const std::string text = passes_of_windows(std::string(kHead), "M99\n");
   const Streamed done = streamed(text, {.bytes_for_windows = 0, .windows = {.least_blocks = 1}});
   EXPECT_EQ(done.restarts, 1U);
   EXPECT_EQ(done.text, as_a_whole(text, options_for("linuxcnc")).text);

@@ -39,11 +39,11 @@ double whole_time(const TimeOptimalBlend& blend) {
 }
 
 // Corners of all angles, turned into space, legs of different length.
-struct RandomCorner {
+struct SeededCorner {
   Corner corner;
   TimeOptimalOptions options;
 
-  explicit RandomCorner(unsigned seed) {
+  explicit SeededCorner(unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> part(0, 1);
     const double half_angle = 10 + 75 * part(random);
@@ -62,7 +62,7 @@ constexpr unsigned kCorners = 10;
 TEST(TimeOptimalCorner, StaysWithinTheTolerance) {
   for (unsigned seed = 1; seed <= kCorners; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const RandomCorner given(seed);
+    const SeededCorner given(seed);
     const TimeOptimalBlend blend = raced(given.corner, given.options);
     const BlendDeviation sampled = sampled_deviation(blend.blend.curve, given.corner);
     EXPECT_LE(deviation_of(blend.blend.deviation, given.options.kind), given.options.tolerance);
@@ -73,7 +73,7 @@ TEST(TimeOptimalCorner, StaysWithinTheTolerance) {
 TEST(TimeOptimalCorner, GoesOnAsTheLegsEnd) {
   for (unsigned seed = 1; seed <= kCorners; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const RandomCorner given(seed);
+    const SeededCorner given(seed);
     const JointMeasure joints =
         measure_joints(raced(given.corner, given.options).blend.curve, given.corner);
     EXPECT_LE(joints.off_leg, 1e-9);
@@ -85,7 +85,7 @@ TEST(TimeOptimalCorner, GoesOnAsTheLegsEnd) {
 TEST(TimeOptimalCorner, IsWithinTheMachinesLimitsInItsTime) {
   for (unsigned seed = 1; seed <= kCorners; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const RandomCorner given(seed);
+    const SeededCorner given(seed);
     const TimeOptimalBlend blend = raced(given.corner, given.options);
     const BsplineCurve& curve = blend.blend.curve;
     EXPECT_NEAR(curve.last() - curve.first(), blend.time, 1e-12);
@@ -150,7 +150,7 @@ TEST(TimeOptimalCorner, NeedsNoJerkLimit) {
 TEST(TimeOptimalCorner, TravelledTheOtherWayTakesAsLong) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const RandomCorner given(seed);
+    const SeededCorner given(seed);
     const double there = raced(given.corner, given.options).time;
     const double back = raced(turned_back(given.corner), given.options).time;
     EXPECT_NEAR(there, back, 2e-3 * there);

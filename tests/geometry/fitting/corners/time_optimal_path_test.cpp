@@ -15,7 +15,7 @@
 namespace batten::geometry {
 namespace {
 
-TimeOptimalPathOptions with_tolerance(double tolerance, ToleranceKind kind = ToleranceKind::kPath) {
+TimeOptimalPathOptions within(double tolerance, ToleranceKind kind = ToleranceKind::kPath) {
   TimeOptimalPathOptions options;
   options.tolerance = tolerance;
   options.kind = kind;
@@ -39,7 +39,7 @@ std::vector<Point3> stairs(int steps, double length) {
 
 TEST(TimeOptimalPath, GivesOneCornerAsTheCornerMethodDoes) {
   const std::vector<Point3> points = ozcan_corner_path();
-  const TimeOptimalPath path = time_optimal_path(points, with_tolerance(0.1, ToleranceKind::kBand));
+  const TimeOptimalPath path = time_optimal_path(points, within(0.1, ToleranceKind::kBand));
   ASSERT_EQ(path.corners.size(), 1u);
   TimeOptimalOptions alone;
   alone.tolerance = 0.1;
@@ -56,7 +56,7 @@ TEST(TimeOptimalPath, GivesOneCornerAsTheCornerMethodDoes) {
 
 TEST(TimeOptimalPath, StaysWithinTheToleranceInOrder) {
   for (const std::vector<Point3>& points : {star_path(), guo_hexagon(), stairs(12, 3)}) {
-    const TimeOptimalPath path = time_optimal_path(points, with_tolerance(0.05));
+    const TimeOptimalPath path = time_optimal_path(points, within(0.05));
     EXPECT_EQ(raced_in(path), static_cast<int>(points.size()) - 2);
     const PathComparison proof = compare_paths(path_through(points), path.pieces, 0.0515);
     EXPECT_EQ(proof.verdict, Verdict::kProved) << proof.bounds.at_most;
@@ -66,7 +66,7 @@ TEST(TimeOptimalPath, StaysWithinTheToleranceInOrder) {
 }
 
 TEST(TimeOptimalPath, MeetsItsLegsWithTheirDirectionAndWithoutCurvature) {
-  const TimeOptimalPath path = time_optimal_path(star_path(), with_tolerance(0.05));
+  const TimeOptimalPath path = time_optimal_path(star_path(), within(0.05));
   for (std::size_t i = 0; i + 1 < path.pieces.size(); ++i) {
     const PathPiece& before = path.pieces[i];
     const PathPiece& after = path.pieces[i + 1];
@@ -80,14 +80,14 @@ TEST(TimeOptimalPath, MeetsItsLegsWithTheirDirectionAndWithoutCurvature) {
 // To the left and to the right; and at both ends of the stairs once more, where a leg is no
 // corner's but its own.
 TEST(TimeOptimalPath, SearchesCornersThatAreAlikeOnce) {
-  const TimeOptimalPath path = time_optimal_path(stairs(40, 2), with_tolerance(0.05));
+  const TimeOptimalPath path = time_optimal_path(stairs(40, 2), within(0.05));
   EXPECT_EQ(raced_in(path), 39);
   EXPECT_LE(path.searched, 4);
 }
 
 // With legs far longer than the machine needs their length is no matter.
 TEST(TimeOptimalPath, LongLegsOfAnyLengthAreAlike) {
-  TimeOptimalPathOptions options = with_tolerance(0.05);
+  TimeOptimalPathOptions options = within(0.05);
   options.limits.jerk.setConstant(5e5);
   std::vector<Point3> points = {Point3::Zero()};
   for (int i = 0; i < 12; ++i) {
@@ -105,11 +105,11 @@ TEST(TimeOptimalPath, GentleCornersAndThoseBeyondTheMostGetTheFivePoints) {
     const double angle = i * std::numbers::pi / 180;
     ring.emplace_back(10 * std::cos(angle), 10 * std::sin(angle), 0);
   }
-  const TimeOptimalPath gentle = time_optimal_path(ring, with_tolerance(0.01));
+  const TimeOptimalPath gentle = time_optimal_path(ring, within(0.01));
   EXPECT_EQ(gentle.searched, 0);
   EXPECT_EQ(gentle.corners.size(), 359u);
   EXPECT_EQ(raced_in(gentle), 0);
-  TimeOptimalPathOptions few = with_tolerance(0.05);
+  TimeOptimalPathOptions few = within(0.05);
   few.most_raced = 1;
   const TimeOptimalPath path = time_optimal_path(star_path(), few);
   EXPECT_EQ(path.searched, 1);
@@ -136,7 +136,7 @@ TEST(TimeOptimalPath, TakesTheFivePointsWhereARacingLineWouldStandStill) {
 
 TEST(TimeOptimalPath, LeavesCornersThatTurnMoreThanAsked) {
   const std::vector<Point3> points = {{0, 0, 0}, {10, 0, 0}, {20, 3, 0}, {20, 13, 0}};
-  TimeOptimalPathOptions options = with_tolerance(0.01);
+  TimeOptimalPathOptions options = within(0.01);
   options.keep_corner_angle = 1;
   const TimeOptimalPath path = time_optimal_path(points, options);
   ASSERT_EQ(path.corners.size(), 2u);
@@ -145,7 +145,7 @@ TEST(TimeOptimalPath, LeavesCornersThatTurnMoreThanAsked) {
 }
 
 TEST(TimeOptimalPath, RefusesAToleranceThatIsNone) {
-  EXPECT_THROW((void)time_optimal_path(star_path(), with_tolerance(0)), std::invalid_argument);
+  EXPECT_THROW((void)time_optimal_path(star_path(), within(0)), std::invalid_argument);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace batten::geometry {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kDegreeOfTurn = std::numbers::pi / 180;
 
 struct Chain {
   std::vector<Point3> points;
@@ -34,10 +34,10 @@ Chain broken_line(std::size_t before, std::size_t behind, double step, double an
 TEST(Kink, IsTheAngleOfTwoLinesWhereverTheirEndsAre) {
   for (const double degrees : {0.0, 1.0, 20.0, 90.0, 150.0}) {
     for (const std::size_t before : {2, 3, 4, 6, 9}) {
-      const Chain chain = broken_line(before, 5, 0.4, degrees * kDegree);
+      const Chain chain = broken_line(before, 5, 0.4, degrees * kDegreeOfTurn);
       const auto kink = kink_at(chain.points, chain.parameters, before, 0.01);
       ASSERT_TRUE(kink);
-      EXPECT_NEAR(kink->angle, degrees * kDegree, 1e-7) << before;
+      EXPECT_NEAR(kink->angle, degrees * kDegreeOfTurn, 1e-7) << before;
     }
   }
 }

@@ -15,7 +15,7 @@
 namespace batten::geometry {
 namespace {
 
-constexpr double kTolerance = 0.01;
+constexpr double kNeedTolerance = 0.01;
 constexpr double kStep = 0.25;      // mm along x from vertex to vertex
 constexpr double kRippleAt = 100;   // mm, its middle
 constexpr double kRippleWay = 4.5;  // mm to either side: three waves
@@ -42,7 +42,7 @@ std::vector<Point3> path_with_a_ripple(unsigned seed) {
 
 FairOptions options_at(double feed) {
   FairOptions options;
-  options.tolerance = kTolerance;
+  options.tolerance = kNeedTolerance;
   options.rounding = 5e-5;
   options.feed = feed;
   options.acceleration = 1e9;
@@ -89,12 +89,12 @@ void expect_room_at_the_ripple_only(const FairOptions& options) {
     ASSERT_TRUE(needy && true_to_it);
     EXPECT_GT(needy->rounds, 0);
     EXPECT_EQ(true_to_it->rounds, 0);
-    EXPECT_LE(needy->deviation, kTolerance);
+    EXPECT_LE(needy->deviation, kNeedTolerance);
     EXPECT_GT(slowest(*needy, limits, kRippleAt - 10, kRippleAt + 10),
               1.2 * slowest(*true_to_it, limits, kRippleAt - 10, kRippleAt + 10));
     // Beyond it the fit settles anew, within what its vertices scatter.
-    EXPECT_LE(moved_beyond(*needy, *true_to_it, kRippleWay + 20 * kStep), 0.03 * kTolerance);
-    EXPECT_GT(moved_beyond(*needy, *true_to_it, 0), 0.3 * kTolerance);
+    EXPECT_LE(moved_beyond(*needy, *true_to_it, kRippleWay + 20 * kStep), 0.03 * kNeedTolerance);
+    EXPECT_GT(moved_beyond(*needy, *true_to_it, 0), 0.3 * kNeedTolerance);
   }
 }
 

@@ -16,7 +16,7 @@
 namespace batten::geometry {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kDegreeOfFeature = std::numbers::pi / 180;
 
 // The inner vertices: s smooth, c corner, k kept.
 std::string kinds_of(const PathFeatures& features) {
@@ -38,7 +38,7 @@ std::vector<Point3> turtle(const std::vector<std::pair<double, double>>& steps) 
   std::vector<Point3> points = {Point3::Zero()};
   double heading = 0;
   for (const auto& [turn, length] : steps) {
-    heading += turn * kDegree;
+    heading += turn * kDegreeOfFeature;
     points.push_back(points.back() + length * Vector3(std::cos(heading), std::sin(heading), 0));
   }
   return points;
@@ -48,8 +48,8 @@ TEST(PathFeatures, MeasureLengthsAndTurns) {
   const auto f = find_features(turtle({{0, 3}, {90, 4}, {-30, 5}}), {});
   const std::vector<double> lengths = {0, 3, 7, 12};
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(f.parameters[i], lengths[i], 1e-12);
-  EXPECT_NEAR(f.turns[1], 90 * kDegree, 1e-12);
-  EXPECT_NEAR(f.turns[2], 30 * kDegree, 1e-12);
+  EXPECT_NEAR(f.turns[1], 90 * kDegreeOfFeature, 1e-12);
+  EXPECT_NEAR(f.turns[2], 30 * kDegreeOfFeature, 1e-12);
   EXPECT_EQ(f.turns[0], 0);
   EXPECT_EQ(f.turns[3], 0);
   EXPECT_EQ(f.kinds.front(), VertexKind::kKeptCorner);
@@ -81,8 +81,11 @@ INSTANTIATE_TEST_SUITE_P(
         FeatureCase{"OneLine", turtle({{0, 10}}), {}, "", "-"},
         FeatureCase{"ACorner", turtle({{0, 10}, {90, 10}}), {}, "c", "--"},
         FeatureCase{"AReversalIsKept", turtle({{0, 10}, {175, 10}}), {}, "k", "--"},
-        FeatureCase{
-            "AKeptTurn", turtle({{0, 10}, {50, 10}, {40, 10}}), {0.01, 45 * kDegree}, "kc", "---"},
+        FeatureCase{"AKeptTurn",
+                    turtle({{0, 10}, {50, 10}, {40, 10}}),
+                    {0.01, 45 * kDegreeOfFeature},
+                    "kc",
+                    "---"},
         FeatureCase{
             "AGentleTurnIsNoCorner", turtle({{0, 1}, {1, 1}, {1, 1}, {1, 1}}), {}, "sss", "...."},
         // Chords of 10 degrees and 1 mm leave the arc by 1 * 10 deg / 8 = 0.022: a CAM system that
@@ -142,7 +145,7 @@ TEST(PathFeatures, NoiseMakesNoCornersAndNoLines) {
 
 TEST(PathFeatures, NoiseIsSmoothThoughItTurnsMoreThanCorners) {
   const auto f = find_features(noisy_half_circle(20, 400, 0.03), {0.05, 3.2});
-  EXPECT_GT(f.turns[200], 30 * kDegree);
+  EXPECT_GT(f.turns[200], 30 * kDegreeOfFeature);
   EXPECT_EQ(kinds_of(f), std::string(399, 's'));
 }
 
@@ -176,7 +179,7 @@ NoisyPolygon noisy_polygon(double turn_degrees, double noise, unsigned seed) {
   NoisyPolygon polygon{{Point3::Zero()}, ""};
   Point3 corner = Point3::Zero();
   for (int side = 0; side < 4; ++side) {
-    const double heading = side * turn_degrees * kDegree;
+    const double heading = side * turn_degrees * kDegreeOfFeature;
     const Vector3 along(std::cos(heading), std::sin(heading), 0);
     constexpr int kEdges = 50;
     for (int i = 1; i <= kEdges; ++i) {

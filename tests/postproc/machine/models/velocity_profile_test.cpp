@@ -168,14 +168,14 @@ TEST(StretchMotion, CoversItsWayWithinItsLimits) {
 
 // --- limits on jerk ------------------------------------------------------------------------------
 
-constexpr double kAcceleration = 1000;
+constexpr double kRampAcceleration = 1000;
 constexpr double kJerk = 10000;
 
 VelocityStretch stretch(double length, double velocity) {
   VelocityStretch s;
   s.length = length;
   s.max_velocity = velocity;
-  s.acceleration = kAcceleration;
+  s.acceleration = kRampAcceleration;
   s.jerk = kJerk;
   return s;
 }
@@ -242,7 +242,7 @@ TEST(JerkMotion, SpeedsUpNoMoreThanTheWayAllows) {
   EXPECT_NEAR(motion.velocity_at(motion.time_at(100.5)), low, 1e-3);
 }
 
-std::vector<VelocityStretch> random_chain(unsigned seed) {
+std::vector<VelocityStretch> random_stretches(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<VelocityStretch> chain;
@@ -263,7 +263,7 @@ std::vector<VelocityStretch> random_chain(unsigned seed) {
 TEST(JerkMotion, CoversTheWayWithinItsLimits) {
   for (unsigned seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    std::vector<VelocityStretch> chain = random_chain(seed);
+    std::vector<VelocityStretch> chain = random_stretches(seed);
     const JerkMotion motion = motion_of(chain);
     double length = 0;
     for (const VelocityStretch& s : chain) length += s.length;
@@ -294,7 +294,7 @@ TEST(JerkMotion, CoversTheWayWithinItsLimits) {
 TEST(JerkMotion, NearsTheProfileWithoutALimitAsTheJerkGrows) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    std::vector<VelocityStretch> chain = random_chain(seed);
+    std::vector<VelocityStretch> chain = random_stretches(seed);
     double before = 1e9;
     for (const double jerk : {1e3, 1e4, 1e5, 1e6, 1e8}) {
       for (VelocityStretch& s : chain) s.jerk = jerk;

@@ -22,7 +22,7 @@ using geometry::Path;
 using geometry::Point3;
 using geometry::Vector3;
 
-constexpr double kNone = KinematicPathLimits::kNone;
+constexpr double kNoSuchLimit = KinematicPathLimits::kNone;
 constexpr int kPaths = 50;
 
 // Lines and tangent arcs of random radii in turn, in the plane.
@@ -122,7 +122,7 @@ TEST(FeedPlanProperties, RaisingALimitNeverCostsTime) {
     raised([](auto& l) { l.acceleration *= 1.2; });
     raised([](auto& l) { l.jerk *= 1.2; });
     raised([](auto& l) { l.tangential_jerk *= 1.2; });
-    raised([](auto& l) { l.normal_acceleration = kNone; });
+    raised([](auto& l) { l.normal_acceleration = kNoSuchLimit; });
   }
   fmt::print("greatest loss {:.2e}\n", worst);
 }
@@ -206,8 +206,8 @@ TEST(FeedPlanProperties, HalvedLimitsTakeTheirLawsTime) {
     EXPECT_LE(all, 2 * (1 + 1e-3));
     EXPECT_NEAR(ratio(divided(test.limits, 1e-3, 1e-3, 1)) / std::cbrt(2), 1, 1e-3);
     KinematicPathLimits without_jerk = test.limits;
-    without_jerk.jerk.setConstant(kNone);
-    without_jerk.tangential_jerk = kNone;
+    without_jerk.jerk.setConstant(kNoSuchLimit);
+    without_jerk.tangential_jerk = kNoSuchLimit;
     EXPECT_NEAR(ratio(divided(without_jerk, 1e-3, 1, 1)) / std::sqrt(2), 1, 1e-3);
   }
   // The feed alone: a circle that is entered and left at speed.
@@ -215,7 +215,7 @@ TEST(FeedPlanProperties, HalvedLimitsTakeTheirLawsTime) {
   KinematicPathLimits feed;
   feed.feed = 100;
   feed.acceleration.setConstant(1e4);
-  const PlanEnds ends = {kNone, kNone};
+  const PlanEnds ends = {kNoSuchLimit, kNoSuchLimit};
   EXPECT_NEAR(planned_time(circle, feed, ends), 0.4 * std::numbers::pi, 1e-4);
   EXPECT_NEAR(planned_time(circle, divided(feed, 2, 2, 2), ends), 0.8 * std::numbers::pi, 2e-4);
 }
@@ -330,8 +330,8 @@ TEST(FeedPlanProperties, WithoutJerkLimitTheTimeIsThatOfReachabilityAnalysis) {
   for (int seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Case test = random_case(5 * seed);  // curves, whose curvature runs on
-    test.limits.jerk.setConstant(kNone);
-    test.limits.tangential_jerk = kNone;
+    test.limits.jerk.setConstant(kNoSuchLimit);
+    test.limits.tangential_jerk = kNoSuchLimit;
     const double expected = Reachability(test.path, test.limits, 3000).time();
     const double time = planned_time(test.path, test.limits);
     EXPECT_NEAR(time / expected, 1, 2e-3);

@@ -9,7 +9,7 @@
 namespace batten::postproc {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kNoLimitHere = std::numeric_limits<double>::infinity();
 
 StraightRun from_rest(double length, const LimitsAlong& limits) {
   return straight_run(length, 0, 0, limits);

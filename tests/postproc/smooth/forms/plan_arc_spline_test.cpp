@@ -46,23 +46,23 @@ Run circle_across(int normal, int count = 300) {
 }
 
 // y = 4 sin(x / 5), vertices every half millimetre or so.
-Run wave() {
+Run arc_wave() {
   std::vector<Point3> points;
   for (int i = 0; i <= 120; ++i) points.emplace_back(0.5 * i, 4 * std::sin(0.1 * i), -1);
   return run_of(std::move(points));
 }
 
-struct Planned {
+struct PlannedArcs {
   Run run;
   geometry::SmoothCurve fair;
   std::optional<OutputPlan> plan;
 };
 
-Planned planned(Run run, double keep_corner_angle = 3.2) {
+PlannedArcs planned(Run run, double keep_corner_angle = 3.2) {
   geometry::FairOptions fair;
   fair.tolerance = kTolerance;
   fair.keep_corner_angle = keep_corner_angle;
-  Planned result{run, *geometry::fair_path(run.points, fair), {}};
+  PlannedArcs result{run, *geometry::fair_path(run.points, fair), {}};
   PlanOptions options;
   options.target = gcode::find_control("linuxcnc");
   options.max_deviation = kTolerance;
@@ -71,7 +71,7 @@ Planned planned(Run run, double keep_corner_angle = 3.2) {
   return result;
 }
 
-void expect_proved(const Planned& planned) {
+void expect_proved(const PlannedArcs& planned) {
   Path path;
   for (const PlannedMove& move : planned.plan->moves) path.push_back(move.piece);
   EXPECT_EQ(geometry::start_point(path.front()), planned.run.points.front());
@@ -83,7 +83,7 @@ void expect_proved(const Planned& planned) {
 
 TEST(PlanArcSpline, ACircleInEveryPlaneIsAFewArcs) {
   for (int normal = 0; normal < 3; ++normal) {
-    const Planned circle = planned(circle_across(normal));
+    const PlannedArcs circle = planned(circle_across(normal));
     ASSERT_TRUE(circle.plan) << normal;
     expect_proved(circle);
     EXPECT_LE(circle.plan->moves.size(), 5U);
@@ -97,7 +97,7 @@ TEST(PlanArcSpline, ACircleInEveryPlaneIsAFewArcs) {
 }
 
 TEST(PlanArcSpline, AClosedRunHasNoSeam) {
-  const Planned circle = planned(circle_across(2));
+  const PlannedArcs circle = planned(circle_across(2));
   ASSERT_TRUE(circle.plan);
   const geometry::Vector3 first = geometry::direction_at(circle.plan->moves.front().piece, 0);
   const geometry::Vector3 last = geometry::direction_at(circle.plan->moves.back().piece, 1);
@@ -105,9 +105,9 @@ TEST(PlanArcSpline, AClosedRunHasNoSeam) {
 }
 
 TEST(PlanArcSpline, ChangesTheFeedAtItsVertexWithoutAKink) {
-  postproc::Run run = wave();
+  postproc::Run run = arc_wave();
   run.feeds = {{0, 1000}, {50, 400}};
-  const Planned wavy = planned(run);
+  const PlannedArcs wavy = planned(run);
   ASSERT_TRUE(wavy.plan);
   expect_proved(wavy);
   int changes = 0;
@@ -123,9 +123,9 @@ TEST(PlanArcSpline, ChangesTheFeedAtItsVertexWithoutAKink) {
 }
 
 TEST(PlanArcSpline, KeepsEveryCommentInOrder) {
-  postproc::Run run = wave();
+  postproc::Run run = arc_wave();
   run.comments = {{10, {0, 1}}, {60, {1, 2}}, {60, {2, 3}}, {120, {3, 4}}};
-  const Planned wavy = planned(run);
+  const PlannedArcs wavy = planned(run);
   ASSERT_TRUE(wavy.plan);
   std::vector<std::size_t> found;
   for (const PlannedMove& move : wavy.plan->moves) {
@@ -143,7 +143,7 @@ TEST(PlanArcSpline, AKeptCornerStandsWhereItStood) {
     const double angle = -kPi / 2 + 0.05 * i;  // an arc that leaves at a right angle
     points.emplace_back(30 + 10 * std::sin(angle), 10 * std::cos(angle), 0);
   }
-  const Planned kept = planned(run_of(points), 0.5);
+  const PlannedArcs kept = planned(run_of(points), 0.5);
   ASSERT_TRUE(kept.plan);
   expect_proved(kept);
   const bool stands = std::ranges::any_of(kept.plan->moves, [&](const PlannedMove& move) {
@@ -153,7 +153,7 @@ TEST(PlanArcSpline, AKeptCornerStandsWhereItStood) {
 }
 
 TEST(PlanArcSpline, PlansNothingForARunThatRises) {
-  postproc::Run run = wave();
+  postproc::Run run = arc_wave();
   for (std::size_t i = 0; i < run.points.size(); ++i) run.points[i].z() = 0.01 * std::sin(0.3 * i);
   EXPECT_FALSE(planned(run).plan);
 }

@@ -30,7 +30,7 @@ double time_of(const TimeOptimalBlend& blend) {
   return planned_time(with_legs(blend.blend.curve), corner_limits());
 }
 
-struct Goal {
+struct RacingGoal {
   std::string name;
   double tolerance;
   ToleranceKind kind;
@@ -38,7 +38,7 @@ struct Goal {
   double bound;  // s: no curve can be faster; numerical, good to .001
 };
 
-class TimeOptimalCornerTime : public testing::TestWithParam<Goal> {};
+class TimeOptimalCornerTime : public testing::TestWithParam<RacingGoal> {};
 
 TEST_P(TimeOptimalCornerTime, ReachesTheGoalAndNotTheImpossible) {
   const Goal& goal = GetParam();
@@ -61,13 +61,13 @@ TEST_P(TimeOptimalCornerTime, ReachesTheGoalAndNotTheImpossible) {
   EXPECT_GE(blend.time + legs, goal.bound - .002);
 }
 
-INSTANTIATE_TEST_SUITE_P(Square, TimeOptimalCornerTime,
-                         testing::Values(Goal{"Band100", .1, ToleranceKind::kBand, 1.6190, 1.6160},
-                                         Goal{"Band050", .05, ToleranceKind::kBand, 1.6340, 1.6306},
-                                         Goal{"Path100", .1, ToleranceKind::kPath, 1.6260, 1.6211},
-                                         Goal{"Path050", .05, ToleranceKind::kPath, 1.6385,
-                                              1.6338}),
-                         [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Square, TimeOptimalCornerTime,
+    testing::Values(RacingGoal{"Band100", .1, ToleranceKind::kBand, 1.6190, 1.6160},
+                    RacingGoal{"Band050", .05, ToleranceKind::kBand, 1.6340, 1.6306},
+                    RacingGoal{"Path100", .1, ToleranceKind::kPath, 1.6260, 1.6211},
+                    RacingGoal{"Path050", .05, ToleranceKind::kPath, 1.6385, 1.6338}),
+    [](const auto& test) { return test.param.name; });
 
 }  // namespace
 }  // namespace batten::postproc
