@@ -242,8 +242,8 @@ void LatheWatch::look_at_words(const Program& part, const Block& block) {
     if (!is_letter(word.letter)) continue;
     letters |= bit(word.letter);
     if (word.letter == 'G') {
-      codes += code_in(word) == kLathePlane ? 0 : 1;
-      plain = plain && code_in(word) <= kLastPlainMotion;
+      codes += code_of(word) == kLathePlane ? 0 : 1;
+      plain = plain && code_of(word) <= kLastPlainMotion;
     } else if (word.letter == 'F') {
       feed = &word;
     } else if (word.letter == 'T') {
