@@ -8,8 +8,6 @@
 namespace batten::gcode {
 namespace {
 
-using namespace trait;
-
 // One block's words at work on the control.
 class WordApplier {
  public:
@@ -65,12 +63,12 @@ class WordApplier {
 
   // What the row says of any word.
   void apply_traits(const CodeRow& row) {
-    if (row.is(kEndsRun)) block(row.why);
-    if (row.is(kTakesAxes)) effect_.takes_axes = true;
-    if (row.is(kTakesParameters)) effect_.takes_parameters = true;
-    if (row.is(kNotUnderstood)) effect_.understood = false;
-    if (row.is(kLosesPlace)) forget_position(state_);
-    if (row.is(kLosesNamed)) forget_named_axes(state_, words_);
+    if (row.is(trait::kEndsRun)) block(row.why);
+    if (row.is(trait::kTakesAxes)) effect_.takes_axes = true;
+    if (row.is(trait::kTakesParameters)) effect_.takes_parameters = true;
+    if (row.is(trait::kNotUnderstood)) effect_.understood = false;
+    if (row.is(trait::kLosesPlace)) forget_position(state_);
+    if (row.is(trait::kLosesNamed)) forget_named_axes(state_, words_);
   }
 
   void apply_g(Code code) {
@@ -163,7 +161,7 @@ class WordApplier {
   std::optional<double> feed_of(const Word& f) const {
     const ModalState& now = state_.modal;
     const bool known = f.is_number && f.value > 0 && now.feed_mode != FeedMode::kUnknown &&
-                       !words_.has_trait(kOwnFeed);
+                       !words_.has_trait(trait::kOwnFeed);
     if (!known) {
       return std::nullopt;  // also: F of a dwell or a thread is no feed
     }
@@ -177,7 +175,7 @@ class WordApplier {
       return;
     }
     // S of a dwell or of a speed limit is not the speed.
-    const bool is_speed = s->is_number && !words_.has_trait(kOwnSpeed);
+    const bool is_speed = s->is_number && !words_.has_trait(trait::kOwnSpeed);
     const std::optional<double> speed = is_speed ? std::optional(s->value) : std::nullopt;
     if (!speed || modal().spindle_speed != speed) {
       block(reason::kSpindle);
@@ -241,7 +239,7 @@ class WordApplier {
   }
 
   void apply_rotation(const CodeRow& row) {
-    if (row.is(kTilts)) return set_frame(row, modal().tilted_plane);
+    if (row.is(trait::kTilts)) return set_frame(row, modal().tilted_plane);
     if (row.value.as<TriState>() == TriState::kOff) {
       CodeRow tilting = row;
       tilting.why = reason::kTiltedPlane;
@@ -331,7 +329,7 @@ class WordApplier {
   }
 
   void apply_work_offset(const CodeRow& row) {
-    const bool extended = row.is(kExtended) || words_.has('P');
+    const bool extended = row.is(trait::kExtended) || words_.has('P');
     if (extended || state_.work_offset != row.code) forget_position(state_);
     state_.work_offset = extended ? 0 : row.code;
   }
@@ -358,13 +356,13 @@ StateEffect apply_words(const BlockWords& words, ControlState& state) {
 void apply_late_words(const BlockWords& words, ControlState& state) {
   for (const Code code : words.m_codes()) {
     const CodeRow& row = row_of_m(code);
-    if (row.is(kUnknownBehind)) return forget_everything(state);
-    if (row.is(kCallsAtEnd)) forget_what_calls_change(state);
-    if (row.is(kLosesPlace)) forget_position(state);
+    if (row.is(trait::kUnknownBehind)) return forget_everything(state);
+    if (row.is(trait::kCallsAtEnd)) forget_what_calls_change(state);
+    if (row.is(trait::kLosesPlace)) forget_position(state);
   }
   if (words.has('T')) forget_position(state);
-  if (words.has_trait(kCallsAtEnd)) forget_what_calls_change(state);
-  if (words.has_trait(kUnknownBehind)) {
+  if (words.has_trait(trait::kCallsAtEnd)) forget_what_calls_change(state);
+  if (words.has_trait(trait::kUnknownBehind)) {
     forget_everything(state);
     state.modal.modal_macro = TriState::kOn;
   }

@@ -44,11 +44,6 @@ std::string rounded_decimal(double size, int decimals) {
   return up ? "1" + text : text;
 }
 
-// Ten to the power of 0 .. 22: exact as doubles, so one division rounds once, correctly.
-constexpr std::array<double, 23> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                                 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-
 // Digits and point of a number.
 struct Scan {
   std::uint64_t mantissa = 0;  // of all digits, while it is exact
@@ -59,17 +54,6 @@ struct Scan {
   bool whole_part = false;  // a digit other than 0 stands before the point
   std::size_t end = 0;      // after the last character of the number
 };
-
-// Fifteen digits are below 2^53, below which every integer is a double.
-constexpr std::size_t kExactDigits = 15;
-
-// Behind the digits that stand there. The mantissa is of no use where they are too many.
-const char* behind_digits(const char* at, const char* end, std::uint64_t& mantissa) {
-  for (; at != end && is_digit(*at); ++at) {
-    mantissa = mantissa * 10 + static_cast<std::uint64_t>(*at - '0');
-  }
-  return at;
-}
 
 Scan scan_digits(std::string_view text, std::size_t at) {
   // A mantissa below this takes one digit more without leaving 2^53, below which every
@@ -143,27 +127,6 @@ std::string to_text(double value, const NumberFormat& format) {
 double rounded(double value, int decimals) {
   const std::string text = to_text(value, NumberFormat{.decimals = decimals});
   return scan_number(text)->number.value;
-}
-
-const char* read_plain_number(const char* at, const char* end, ReadNumber& number) {
-  const bool negative = at != end && *at == '-';
-  if (negative || (at != end && *at == '+')) ++at;
-  std::uint64_t mantissa = 0;
-  const char* behind = behind_digits(at, end, mantissa);
-  auto digits = static_cast<std::size_t>(behind - at);
-  number.decimals = 0;
-  number.has_point = behind != end && *behind == '.';
-  if (number.has_point) {
-    const char* const fraction = behind + 1;
-    behind = behind_digits(fraction, end, mantissa);
-    number.decimals = static_cast<int>(behind - fraction);
-    digits += static_cast<std::size_t>(number.decimals);
-  }
-  if (digits == 0 || digits > kExactDigits) return nullptr;
-  const double size =
-      static_cast<double>(mantissa) / kPowersOfTen[static_cast<std::size_t>(number.decimals)];
-  number.value = negative && mantissa != 0 ? -size : size;  // -0 is read as 0
-  return size < kNumberLimit ? behind : nullptr;
 }
 
 std::optional<ScannedNumber> scan_number(std::string_view text) {

@@ -1,10 +1,14 @@
 // Numbers as controls read them: plain decimals, no exponent, no "-0".
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include "gcode/text/characters.h"
 
 namespace batten::gcode {
 
@@ -40,11 +44,47 @@ struct ScannedNumber {
 };
 [[nodiscard]] std::optional<ScannedNumber> scan_number(std::string_view text);
 
-// The way of nearly all numbers: a sign, at most fifteen digits without blanks, a point; below
-// kNumberLimit. Gives the place behind it; nullptr, and `number` is of no use, for others.
-[[nodiscard]] const char* read_plain_number(const char* at, const char* end, ReadNumber& number);
-
 // No control takes numbers as great as this, and none that we write is.
 inline constexpr double kNumberLimit = 1e9;
+
+// Ten to the power of 0 .. 22: exact as doubles, so one division rounds once, correctly.
+inline constexpr std::array<double, 23> kPowersOfTen = {
+    1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+    1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+// Fifteen digits are below 2^53, below which every integer is a double.
+inline constexpr std::size_t kExactDigits = 15;
+
+// Behind the digits that stand there. The mantissa is of no use where they are too many.
+inline const char* behind_digits(const char* at, const char* end, std::uint64_t& mantissa) {
+  for (; at != end && is_digit(*at); ++at) {
+    mantissa = mantissa * 10 + static_cast<std::uint64_t>(*at - '0');
+  }
+  return at;
+}
+
+// The way of nearly all numbers: a sign, at most fifteen digits without blanks, a point; below
+// kNumberLimit. Gives the place behind it; nullptr, and `number` is of no use, for others.
+[[nodiscard]] inline const char* read_plain_number(const char* at, const char* end,
+                                                   ReadNumber& number) {
+  const bool negative = at != end && *at == '-';
+  if (negative || (at != end && *at == '+')) ++at;
+  std::uint64_t mantissa = 0;
+  const char* behind = behind_digits(at, end, mantissa);
+  auto digits = static_cast<std::size_t>(behind - at);
+  number.decimals = 0;
+  number.has_point = behind != end && *behind == '.';
+  if (number.has_point) {
+    const char* const fraction = behind + 1;
+    behind = behind_digits(fraction, end, mantissa);
+    number.decimals = static_cast<int>(behind - fraction);
+    digits += static_cast<std::size_t>(number.decimals);
+  }
+  if (digits == 0 || digits > kExactDigits) return nullptr;
+  const double size =
+      static_cast<double>(mantissa) / kPowersOfTen[static_cast<std::size_t>(number.decimals)];
+  number.value = negative && mantissa != 0 ? -size : size;  // -0 is read as 0
+  return size < kNumberLimit ? behind : nullptr;
+}
 
 }  // namespace batten::gcode
