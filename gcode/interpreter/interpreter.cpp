@@ -495,7 +495,7 @@ Interpretation interpret(const Program& program, const ReadOptions& options, Dia
 
 Interpretation interpret_part(const Program& part, const ReadOptions& options, ControlCarry& carry,
                               Diagnostics& found) {
-  if (options.lathes) carry.lathe.see(part);
+  carry.lathe.see(part);
   if (!carry.lathe.is_lathe()) return Interpreter(part, options, carry, found).run();
   // What is told of single blocks would be told of a mill.
   Diagnostics of_a_mill;

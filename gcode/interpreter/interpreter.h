@@ -37,7 +37,6 @@ struct ReadOptions {
   // Subprograms and macros leave all modes as they find them (M97, M98, M198, G65, O-word calls,
   // CALL LBL, CALL PGM): behind a call only place, feed, speed and kind of motion are unknown.
   bool calls_keep_modes = false;
-  bool lathes = true;  // are told by their marks; else every program is read as a mill's
   bool short_ways =
       true;  // for simple blocks (gcode/interpreter/plain_line.h); they change nothing
 };

@@ -166,7 +166,6 @@ const BlockCase kBlockInAProgramRows[] = {
     {"G92 X0", BlockKind::kSettings, reason::kCoordinateChange},
     {"G10 L2 P1 X0", BlockKind::kSettings, reason::kCoordinateChange},
     {"G81 X5 Z-3 R1", BlockKind::kSettings, reason::kCannedCycle},
-    {"G71 P10 Q20 U.5", BlockKind::kSettings, reason::kCannedCycle},
     {"G33 Z-5 K1", BlockKind::kSettings, reason::kThreading},
     {"G38.2 Z-5", BlockKind::kSettings, reason::kProbe},
     {"G5 X5 I1 J1 P-1 Q-1", BlockKind::kSettings, reason::kSpline},
@@ -197,7 +196,7 @@ const BlockCase kBlockInAProgramRows[] = {
 TEST(BlockInAProgram, HasThisMeaning) {
   for (const BlockCase& test : kBlockInAProgramRows) {
     SCOPED_TRACE(test.block);
-    const Interpreted it(std::string(kPreamble) + test.block, {.lathes = false});
+    const Interpreted it(std::string(kPreamble) + test.block);
     ASSERT_EQ(it.read.blocks.size(), 4U);
     EXPECT_EQ(it.line(4).kind, test.kind);
     EXPECT_EQ(it.line(4).barrier, test.barrier);

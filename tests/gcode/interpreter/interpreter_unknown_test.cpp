@@ -16,12 +16,12 @@ constexpr const char* kStart =
     "G21 G90 G94 G17 G40 G49 G64 F100\nG54\nG0 X1 Y1 Z1\nG1 X2\n";  // 4 lines
 constexpr const char* kAfter = "\nG1 X3\nY3\nZ3\nG1 X4 Y4 Z4\n";
 
-struct PlaceCase {
+struct UnknownPlaceCase {
   const char* block;
   bool x, y, z;  // known after it
 };
 
-const PlaceCase kPlaceAfterRows[] = {
+const UnknownPlaceCase kPlaceAfterRows[] = {
 
     // Interpreter
     {"(text)", true, true, true},
@@ -80,7 +80,7 @@ const PlaceCase kPlaceAfterRows[] = {
     {"IF[#1EQ1]THEN#[#2]=1.", false, false, false}};
 
 TEST(PlaceAfter, IsKnownOnTheseAxes) {
-  for (const PlaceCase& test : kPlaceAfterRows) {
+  for (const UnknownPlaceCase& test : kPlaceAfterRows) {
     SCOPED_TRACE(test.block);
     const Interpreted it(std::string(kStart) + test.block + kAfter);
     const std::size_t last = it.read.blocks.size();

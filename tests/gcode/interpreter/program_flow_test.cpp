@@ -119,8 +119,7 @@ TEST(ProgramFlow, JumpTargetsAreEnteredWithNothingKnown) {
 }
 
 TEST(ProgramFlow, BarriersNameTheLabelAndTheBody) {
-  const Interpreted it("G21 F9\nG0 X1\nG71 P10 Q20\nN10 G1 X3\nX4\nN20 X5\nX6\n",
-                       {.lathes = false});
+  const Interpreted it("G21 F9\nG0 X1\nG73 P10 Q20\nN10 G1 X3\nX4\nN20 X5\nX6\n");
   EXPECT_EQ(it.line(5).barrier, reason::kLoopBody);
   EXPECT_EQ(it.line(7).barrier, std::string_view());
   const Interpreted jump("G21 F9\nG0 X1\nN10 F9\nGOTO 10\n");

@@ -122,10 +122,10 @@ const PartsCase kPartReadingRows[] = {
 TEST(PartReading, IsThatOfTheWhole) {
   for (const PartsCase& test : kPartReadingRows) {
     SCOPED_TRACE(test.text);
-    const Reading whole = as_a_whole(test.text);
+    const WordsRead whole = as_a_whole(test.text);
     for (const std::size_t blocks : {1, 2, 3, 7}) {
       SCOPED_TRACE(blocks);
-      const Reading parts = in_parts(test.text, blocks);
+      const WordsRead parts = in_parts(test.text, blocks);
       EXPECT_EQ(parts.blocks, whole.blocks);
       EXPECT_EQ(parts.meanings, whole.meanings);
       EXPECT_EQ(parts.told, whole.told);
@@ -142,7 +142,7 @@ TEST(PartReading, IsTheSameTakenApartAndPutTogether) {
     SCOPED_TRACE(test.text);
     const std::string text = test.text;
     Diagnostics ignored;
-    const Reading whole = as_a_whole(text);
+    const WordsRead whole = as_a_whole(text);
     const SourceText source("part.nc", text);
     for (std::uint32_t first = 0; first <= whole.blocks.size(); ++first) {
       TextCarry carry;
@@ -150,13 +150,13 @@ TEST(PartReading, IsTheSameTakenApartAndPutTogether) {
       ReadPart held{parse_part(source, {}, carry, ignored), {}};
       held.meaning = interpret_part(held.program, {}, control, ignored);
       ReadPart rest = take_rest(held, first);
-      Reading apart;
+      WordsRead apart;
       add(held.program, held.meaning, apart);
       add(rest.program, rest.meaning, apart);
       EXPECT_EQ(apart.blocks, whole.blocks);
       EXPECT_EQ(apart.meanings, whole.meanings);
       append(held, std::move(rest));
-      Reading together;
+      WordsRead together;
       add(held.program, held.meaning, together);
       EXPECT_EQ(together.blocks, whole.blocks);
       EXPECT_EQ(together.meanings, whole.meanings);

@@ -185,7 +185,7 @@ TEST(CodeTable, TheReasonOfTheRowStandsInTheBlock) {
         const std::string word = (rows == &kG ? "G" : "M") + std::to_string(code / 10) +
                                  (code % 10 == 0 ? "" : "." + std::to_string(code % 10));
         SCOPED_TRACE(word);
-        const tests::Interpreted it("X1\n" + word + "\n", {.lathes = false});
+        const tests::Interpreted it("X1\n" + word + "\n");
         // G69 ends a tilted plane, too, and that first. G0 .. G3 alone change the mode.
         const std::string_view why = code == 690 && rows == &kG ? "tilted-plane"
                                      : each.why.empty()         ? "state-change"

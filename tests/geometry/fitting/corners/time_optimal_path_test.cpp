@@ -122,7 +122,7 @@ TEST(TimeOptimalPath, GentleCornersAndThoseBeyondTheMostGetTheFivePoints) {
 // Teeth of noise: room for a tenth of a millimetre, and the search finds nothing there.
 TEST(TimeOptimalPath, TakesTheFivePointsWhereARacingLineWouldStandStill) {
   const std::vector<Point3> points = zigzag_line(20, 0.5, 0.03);
-  const TimeOptimalPath path = time_optimal_path(points, with_tolerance(0.05));
+  const TimeOptimalPath path = time_optimal_path(points, within(0.05));
   for (const auto& corner : path.corners) {
     const auto* blend = std::get_if<TimeOptimalPathBlend>(&corner.outcome);
     if (blend == nullptr) continue;
