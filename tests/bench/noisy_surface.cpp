@@ -83,7 +83,7 @@ CurveFigures figures_of(const Rows& rows, double tolerance, const postproc::Mach
       length += step;
       f.most = std::max(f.most, bend);
     }
-    f.time += postproc::estimated_time(path.curve, limits);
+    f.time += postproc::planned_time(path.curve, limits, {}, postproc::kQuickPlan);
     f.corners += path.kept_corners;
     f.rounds += path.rounds;
     f.points += path.curve.control_points().size();
@@ -120,7 +120,7 @@ void curves(double cam, const Settings& settings) {
     std::size_t points = 0;
     for (const auto& row : rows) {
       most = std::max(most, postproc::greatest_curvature(row));
-      time += postproc::estimated_time(geometry::path_through(row), limits);
+      time += postproc::planned_time(geometry::path_through(row), limits, {}, postproc::kQuickPlan);
       points += row.size();
     }
     const CurveFigures f = figures_of(rows, 2 * cam, machine, settings.feed);

@@ -9,8 +9,9 @@
 #include <variant>
 
 #include "geometry/basic/rounding.h"
+#include "postproc/machine/planner/feed_estimate_parts.h"
 #include "postproc/machine/planner/feed_estimate_problem.h"
-#include "postproc/machine/planner/feed_parts.h"
+#include "postproc/machine/planner/feed_plan_envelope.h"
 #include "postproc/machine/planner/feed_plan_path.h"
 #include "postproc/machine/planner/feed_plan_straight.h"
 

@@ -24,12 +24,70 @@ constexpr double kEstimateNodesPerBend = 1;
 // A group of parts is complete with so many nodes' worth.
 constexpr double kFullGroup = 0.75;
 
+// How the potential may rise and fall over a part.
+struct PartRise {
+  double w0 = 0;
+  double w1 = 0;
+  double top = 0;
+  double up = 0;    // mm
+  double flat = 0;  // mm
+  double slope = 0;
+  // Natural logarithms of the rise and the fall, and the flat way in the same measure.
+  double rising = 0;
+  double running = 0;
+  double falling = 0;
+
+  [[nodiscard]] double measure() const { return rising + running + falling; }
+
+  // mm from the start of the part to the place before which there is so much of the measure.
+  [[nodiscard]] double place(double m) const {
+    if (m < rising) return w0 * std::expm1(m) / slope;
+    m -= rising;
+    if (m < running) return up + flat * m / running;
+    m -= running;
+    return up + flat - top * std::expm1(-m) / slope;
+  }
+
+  [[nodiscard]] double potential_at(double s) const {
+    if (s < up) return w0 + slope * s;
+    return std::max(w1, top - slope * std::max(0.0, s - up - flat));
+  }
+};
+
+PartRise rise_over(double length, double cap, double slope, double w0, double w1) {
+  PartRise rise;
+  rise.w0 = w0;
+  rise.w1 = w1;
+  rise.slope = slope;
+  rise.top = std::max({w0, w1, std::min(cap, 0.5 * (w0 + w1 + slope * length))});
+  rise.up = std::min(length, (rise.top - w0) / slope);
+  const double down = std::min(length - rise.up, (rise.top - w1) / slope);
+  rise.flat = std::max(0.0, length - rise.up - down);
+  rise.rising = std::log(rise.top / w0);
+  rise.falling = std::log(rise.top / w1);
+  rise.running = rise.flat * slope / rise.top;
+  return rise;
+}
+
+// How high the potential comes from one end before it falls again.
+double first_rise(std::span<const EstimatePart> parts, std::span<const double> w, bool from_start) {
+  double highest = 0;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const std::size_t i = from_start ? k : parts.size() - 1 - k;
+    const PartRise rise = rise_over(parts[i].length, parts[i].cap, parts[i].slope,
+                                    std::max(w[i], 1e-300), std::max(w[i + 1], 1e-300));
+    highest = std::max(highest, rise.top);
+    if (from_start ? w[i + 1] < w[i] : w[i] < w[i + 1]) break;
+  }
+  return highest;
+}
+
 // Makes an arc of a slow end where that fits. Returns the potential at the first node.
-double settle_end(std::span<const PathPart> parts, std::span<const double> w, bool at_start,
+double settle_end(std::span<const EstimatePart> parts, std::span<const double> w, bool at_start,
                   EstimateEnd& end) {
   const double w0 = at_start ? w.front() : w.back();
   if (end.kind != EstimateEnd::Kind::kSlow) return w0;
-  const PathPart& outer = at_start ? parts.front() : parts.back();
+  const EstimatePart& outer = at_start ? parts.front() : parts.back();
   const double rise = kArcShare * std::min(first_rise(parts, w, at_start), outer.top);
   const double length = std::min(rise / outer.slope, 0.25 * outer.length);
   const double reached = w0 + length * outer.slope;
@@ -45,9 +103,9 @@ class StretchMaker {
       : potential_(potential), nodes_per_measure_(density * potential.rate()) {}
 
   // The way [from, to[ of a part, between these potentials.
-  void add(const PathPart& part, double from, double to, double w0, double w1) {
+  void add(const EstimatePart& part, double from, double to, double w0, double w1) {
     const double length = to - from;
-    const PartRise rise(part, length, w0, w1);
+    const PartRise rise = rise_over(length, part.cap, part.slope, w0, w1);
     const double nodes = nodes_per_measure_ * rise.measure() + kEstimateNodesPerBend * part.bend;
     if (group_nodes_ > 0 && (group_nodes_ + nodes > 1 || part.straight != group_straight_)) close();
     if (nodes < kFullGroup) {
@@ -80,11 +138,11 @@ class StretchMaker {
   std::vector<EstimateInterval> intervals;
 
  private:
-  [[nodiscard]] static double parameter(const PathPart& part, double place) {
+  [[nodiscard]] static double parameter(const EstimatePart& part, double place) {
     return part.t0 + (part.t1 - part.t0) * place / part.length;
   }
 
-  void emit(const PathPart& part, double place, double length, double w) {
+  void emit(const EstimatePart& part, double place, double length, double w) {
     EstimateInterval interval;
     interval.piece = part.piece;
     interval.t = parameter(part, place);
@@ -94,7 +152,7 @@ class StretchMaker {
   }
 
   // The most demanding part's derivatives stand for the group.
-  void join(const PathPart& part, double place, double length, double w, double nodes) {
+  void join(const EstimatePart& part, double place, double length, double w, double nodes) {
     if (!(group_nodes_ > 0)) {
       group_ = {};
       group_.speed = KinematicPathLimits::kNone;
@@ -124,9 +182,10 @@ class StretchMaker {
 
 }  // namespace
 
-EstimateStretch make_estimate_stretch(std::span<const PathPart> parts, std::span<const double> w,
-                                      const Potential& potential, const EstimateEnd& start,
-                                      const EstimateEnd& end, double density) {
+EstimateStretch make_estimate_stretch(std::span<const EstimatePart> parts,
+                                      std::span<const double> w, const Potential& potential,
+                                      const EstimateEnd& start, const EstimateEnd& end,
+                                      double density) {
   EstimateStretch stretch;
   stretch.start = start;
   stretch.end = end;
@@ -134,7 +193,7 @@ EstimateStretch make_estimate_stretch(std::span<const PathPart> parts, std::span
   const double last = settle_end(parts, w, false, stretch.end);
   StretchMaker maker(potential, density);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const PathPart& part = parts[i];
+    const EstimatePart& part = parts[i];
     const bool outer_start = i == 0;
     const bool outer_end = i + 1 == parts.size();
     maker.add(part, outer_start ? stretch.start.length : 0,

@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "geometry/path/path.h"
-#include "postproc/machine/planner/feed_parts.h"
+#include "postproc/machine/planner/feed_estimate_parts.h"
+#include "postproc/machine/planner/feed_plan_envelope.h"
 #include "postproc/machine/planner/feed_plan_path.h"
 
 namespace batten::postproc {
@@ -49,7 +50,7 @@ struct EstimateStretch {
 // time sqrt(v / jerk). Parts that are shorter than that are joined. `w` is the greatest potential
 // at the ends of the parts, one more than parts. Of `start` and `end` kind and speed are given;
 // a slow end becomes an arc where the speed soon is much greater.
-[[nodiscard]] EstimateStretch make_estimate_stretch(std::span<const PathPart> parts,
+[[nodiscard]] EstimateStretch make_estimate_stretch(std::span<const EstimatePart> parts,
                                                     std::span<const double> w,
                                                     const Potential& potential,
                                                     const EstimateEnd& start,

@@ -9,10 +9,12 @@
 #include <variant>
 
 #include "geometry/basic/rounding.h"
-#include "geometry/numeric/extrema.h"
-#include "postproc/machine/planner/feed_parts.h"
+#include "postproc/machine/planner/feed_estimate_parts.h"
+#include "postproc/machine/planner/feed_plan_envelope.h"
+#include "postproc/machine/planner/feed_plan_grid.h"
 #include "postproc/machine/planner/feed_plan_path.h"
 #include "postproc/machine/planner/feed_plan_problem.h"
+#include "postproc/machine/planner/feed_plan_refine.h"
 #include "postproc/machine/planner/feed_plan_straight.h"
 #include "postproc/machine/planner/feed_search.h"
 
@@ -135,7 +137,12 @@ FeedPlan Planner::run(std::span<const PathPiece> path, const PlanEnds& ends) {
 
 // The joints, as numbers of the pieces after them, at which the chain falls into parts.
 std::vector<std::size_t> Planner::slow_joints(const Chain& chain) const {
-  const PartChain envelope = parts_of(chain.pieces, chain.bounds, potential_, limits_);
+  PartChain envelope;
+  for (std::size_t i = 0; i < chain.pieces.size(); ++i) {
+    if (i > 0) envelope.parts.back().end_bound = chain.bounds[i];
+    append_parts(chain.pieces[i], i, ends_of(chain.pieces[i]), potential_, limits_, envelope.parts);
+  }
+  envelope.find_potentials(chain.bounds.front(), chain.bounds.back(), potential_);
   std::vector<std::size_t> joints;
   for (const std::size_t part : envelope.slow_joints(kSlowJoint, potential_)) {
     joints.push_back(envelope.parts[part].piece);
@@ -242,7 +249,8 @@ void Planner::plan_bent(const Chain& chain) {
   grid.slow_end = chain.slow_end;
   PlanProblem problem = make_plan_problem(chain.pieces, grid, limits_);
   std::vector<double> x = searched(problem, rough_start(problem, grid), kFirst).unknowns;
-  for (const RefineRule& rule : kRefinements) {
+  const auto rounds = static_cast<std::size_t>(std::clamp(options_.refinements, 0, 4));
+  for (const RefineRule& rule : std::span(kRefinements).first(rounds)) {
     PlanGrid finer_grid = grid;
     std::vector<double> start = x;
     const std::size_t cut = refine_plan(chain.pieces, limits_, problem, rule, finer_grid, start);
@@ -379,13 +387,31 @@ class Interval {
 
   // From the start to s, by five-point Gauss-Legendre.
   [[nodiscard]] double seconds(double s) const {
-    return geometry::gauss5([&](double at_s) { return 1 / std::sqrt(at(at_s).q); }, 0, s);
+    constexpr std::array<double, 5> kPlaces = {0.0469100770306680, 0.2307653449471585, 0.5,
+                                               0.7692346550528415, 0.9530899229693320};
+    constexpr std::array<double, 5> kWeights = {0.1184634425280945, 0.2393143352496832,
+                                                0.2844444444444444, 0.2393143352496832,
+                                                0.1184634425280945};
+    double sum = 0;
+    for (int i = 0; i < 5; ++i) sum += kWeights[i] / std::sqrt(at(s * kPlaces[i]).q);
+    return s * sum;
   }
 
   double length_;
   double duration_;
   std::array<double, 4> window_;  // q and p at both ends
 };
+
+// The parameter `s` mm after t0, by Newton steps.
+double parameter_after(const PathPiece& piece, double t0, double t1, double length, double s) {
+  double t = t0 + (t1 - t0) * s / length;
+  for (int i = 0; i < 6; ++i) {
+    const double missing = s - length_between(piece, t0, t);
+    if (std::abs(missing) < 1e-12 * length) break;
+    t = std::clamp(t + missing * (t1 - t0) / length, t0, t1);
+  }
+  return t;
+}
 
 MotionSample sample_at(const PathPiece& piece, double t, const PlanState& at, double time) {
   const LengthDerivatives x = derivatives_by_length(piece, t);

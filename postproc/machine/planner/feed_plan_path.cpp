@@ -9,7 +9,6 @@
 #include <variant>
 
 #include "geometry/basic/rounding.h"
-#include "geometry/numeric/extrema.h"
 #include "geometry/path/cubic_polynomial.h"
 
 namespace batten::postproc {
@@ -123,6 +122,17 @@ Derivatives derivatives_at(const CubicBezier& bezier, double t) {
   return {piece.first(t), piece.second(t), piece.third()};
 }
 
+// The chain rule, with sigma = |C'| and its derivatives by t.
+LengthDerivatives by_length(const Derivatives& d) {
+  const double sigma = d.first.norm();
+  const double sigma1 = d.first.dot(d.second) / sigma;
+  const double sigma2 = (d.second.squaredNorm() + d.first.dot(d.third) - sigma1 * sigma1) / sigma;
+  const Vector3 n = sigma * d.second - sigma1 * d.first;
+  const double cube = sigma * sigma * sigma;
+  return {d.first / sigma, n / cube,
+          ((sigma * d.third - sigma2 * d.first) / cube - 3 * sigma1 / (cube * sigma) * n) / sigma};
+}
+
 double parameter_speed(const geometry::PathPiece& piece, double t) {
   return std::visit(
       [t](const auto& p) {
@@ -175,8 +185,7 @@ LengthDerivatives derivatives_by_length(const geometry::PathPiece& piece, double
         if constexpr (std::is_same_v<Piece, Line>) {
           return {(p.end - p.start).normalized(), Vector3::Zero(), Vector3::Zero()};
         } else {
-          const Derivatives d = derivatives_at(p, t);
-          return geometry::by_length(d.first, d.second, d.third);
+          return by_length(derivatives_at(p, t));
         }
       },
       piece);
@@ -184,19 +193,18 @@ LengthDerivatives derivatives_by_length(const geometry::PathPiece& piece, double
 
 double length_between(const geometry::PathPiece& piece, double t0, double t1) {
   if (std::holds_alternative<Line>(piece)) return (t1 - t0) * parameter_speed(piece, 0);
-  return geometry::gauss5([&](double t) { return parameter_speed(piece, t); }, t0, t1);
-}
-
-// Newton steps.
-double parameter_after(const geometry::PathPiece& piece, double t0, double t1, double length,
-                       double s) {
-  double t = t0 + (t1 - t0) * s / length;
-  for (int i = 0; i < 6; ++i) {
-    const double missing = s - length_between(piece, t0, t);
-    if (std::abs(missing) < 1e-12 * length) break;
-    t = std::clamp(t + missing * (t1 - t0) / length, t0, t1);
+  // Gauss-Legendre on [-1, 1].
+  constexpr std::array<double, 3> kPlaces = {0, 0.5384693101056831, 0.9061798459386640};
+  constexpr std::array<double, 3> kWeights = {0.5688888888888889, 0.4786286704993665,
+                                              0.2369268850561891};
+  const double middle = 0.5 * (t0 + t1);
+  const double half = 0.5 * (t1 - t0);
+  double sum = kWeights[0] * parameter_speed(piece, middle);
+  for (int i = 1; i < 3; ++i) {
+    sum += kWeights[i] * (parameter_speed(piece, middle - half * kPlaces[i]) +
+                          parameter_speed(piece, middle + half * kPlaces[i]));
   }
-  return t;
+  return half * sum;
 }
 
 double joint_speed(const LengthDerivatives& before, const LengthDerivatives& after,

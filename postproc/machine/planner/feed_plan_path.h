@@ -49,7 +49,14 @@ struct LimitsAlong {
 [[nodiscard]] LimitsAlong limits_along(const geometry::Vector3& direction,
                                        const KinematicPathLimits& limits);
 
-using geometry::LengthDerivatives;
+// Of the place x by the length s.
+struct LengthDerivatives {
+  geometry::Vector3 first = geometry::Vector3::Zero();   // unit direction
+  geometry::Vector3 second = geometry::Vector3::Zero();  // 1/mm
+  geometry::Vector3 third = geometry::Vector3::Zero();   // 1/mm^2
+
+  [[nodiscard]] bool is_straight() const { return second.isZero(0) && third.isZero(0); }
+};
 
 // Exact for lines, arcs, helices, spirals and Bezier pieces. Where a Bezier piece comes to a
 // rest in its parameter (control points that coincide), those of a place close by.
@@ -58,10 +65,6 @@ using geometry::LengthDerivatives;
 // mm between two parameters, five-point Gauss-Legendre: for parts over which the speed of the
 // parameter changes little.
 [[nodiscard]] double length_between(const geometry::PathPiece& piece, double t0, double t1);
-
-// The parameter between t0 and t1 that is `s` mm after t0, of `length` mm between them.
-[[nodiscard]] double parameter_after(const geometry::PathPiece& piece, double t0, double t1,
-                                     double length, double s);
 
 // What a joint of two pieces allows: mm/s, infinity where the path runs on in direction and
 // curvature.

@@ -2,158 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-
-#include "postproc/machine/planner/feed_parts.h"
 
 namespace batten::postproc {
+namespace {
 
 using geometry::PathPiece;
 using geometry::Vector3;
-
-namespace {
-
-// The first interval from rest has constant jerk in a plan, so it must be short against the way to
-// the first greatest speed: a third of the first jerk phase by time, a 27th by way; and at the
-// end of that phase, at half the speed, w is 0.35 of its greatest.
-constexpr double kRestShare = 0.35 / 27;
-
-// Nodes for a bend whose share of a limit goes from nothing to all, whatever the time it takes.
-constexpr double kNodesPerBend = 2;
-
-// Cuts the interval that leaves (or comes to) rest off the first (or last) part.
-void cut_off_rest(PartChain& chain, std::span<const PathPiece> pieces, bool at_start) {
-  const std::size_t number = at_start ? 0 : chain.parts.size() - 1;
-  const PathPart outer = chain.parts[number];
-  const PathPiece& piece = pieces[outer.piece];
-  const double rise = std::min(first_rise(chain.parts, chain.w, at_start), outer.top);
-  const double length = std::min(kRestShare * rise / outer.slope, 0.25 * outer.length);
-  const double from = at_start ? length : outer.length - length;
-  const double t = parameter_after(piece, outer.t0, outer.t1, outer.length, from);
-  const auto set = [&](PathPart& part, double t0, double t1) {
-    part = outer;
-    part.t0 = t0;
-    part.t1 = t1;
-    part.length = length_between(piece, t0, t1);
-    part.bend = outer.bend * part.length / outer.length;
-  };
-  const auto at = [](auto& list, std::size_t i) {
-    return list.begin() + static_cast<std::ptrdiff_t>(i);
-  };
-  chain.parts.insert(at(chain.parts, number), outer);
-  set(chain.parts[number], outer.t0, t);
-  set(chain.parts[number + 1], t, outer.t1);
-  const double w = outer.slope * chain.parts[at_start ? number : number + 1].length;
-  chain.w.insert(at(chain.w, number + 1), w);
-}
-
-class GridMaker {
- public:
-  GridMaker(std::span<const PathPiece> pieces, const PartChain& chain, const Potential& potential,
-            double density)
-      : pieces_(pieces), chain_(chain), nodes_per_measure_(density * potential.rate()) {}
-
-  void add_rest(std::size_t part) {
-    const PathPart& p = chain_.parts[part];
-    close_interval(p.piece, p.t0, p.t1, chain_.w[part + 1]);
-  }
-
-  // The parts [first, last[, which are of one piece and not from rest.
-  void add_piece(std::size_t first, std::size_t last) {
-    std::vector<PartRise> rises;
-    std::vector<double> nodes;  // how many each part should have
-    for (std::size_t i = first; i < last; ++i) {
-      const PathPart& part = chain_.parts[i];
-      rises.emplace_back(part, part.length, chain_.w[i], chain_.w[i + 1]);
-      nodes.push_back(nodes_per_measure_ * rises.back().measure() + kNodesPerBend * part.bend);
-    }
-    const double total = std::accumulate(nodes.begin(), nodes.end(), 0.0);
-    const double count = std::max(1.0, std::ceil(total));
-    const std::size_t piece = chain_.parts[first].piece;
-    double t = chain_.parts[first].t0;
-    double passed = 0;
-    double next = 1;
-    for (std::size_t i = 0; i < rises.size(); ++i) {
-      const PathPart& part = chain_.parts[first + i];
-      for (; next < count && next * total / count < passed + nodes[i]; ++next) {
-        const double share = (next * total / count - passed) / nodes[i];
-        const double place = rises[i].place(share * rises[i].measure());
-        const double t1 = part.t0 + (part.t1 - part.t0) * place / part.length;
-        if (!(t1 > t)) continue;
-        close_interval(piece, t, t1, rises[i].potential_at(place));
-        t = t1;
-      }
-      passed += nodes[i];
-    }
-    close_interval(piece, t, chain_.parts[last - 1].t1, chain_.w[last]);
-  }
-
-  std::vector<GridInterval> intervals;
-  std::vector<double> w;  // at their ends
-
- private:
-  void close_interval(std::size_t piece, double t0, double t1, double w1) {
-    intervals.push_back({piece, t0, t1, length_between(pieces_[piece], t0, t1)});
-    w.push_back(w1);
-  }
-
-  std::span<const PathPiece> pieces_;
-  const PartChain& chain_;
-  double nodes_per_measure_;
-};
-
-}  // namespace
-
-PlanGrid make_plan_grid(std::span<const PathPiece> pieces, std::span<const double> bounds,
-                        const KinematicPathLimits& limits, double density) {
-  const Potential potential(limits);
-  PartChain chain = parts_of(pieces, bounds, potential, limits);
-  const bool from_rest = bounds.front() == 0;
-  const bool to_rest = bounds.back() == 0;
-  const double first_w = chain.w.front();
-  if (from_rest) cut_off_rest(chain, pieces, true);
-  if (to_rest) cut_off_rest(chain, pieces, false);
-
-  GridMaker maker(pieces, chain, potential, density);
-  const std::size_t end = chain.parts.size() - (to_rest ? 1 : 0);
-  std::size_t i = 0;
-  if (from_rest) maker.add_rest(i++);
-  while (i < end) {
-    std::size_t last = i + 1;
-    while (last < end && chain.parts[last].piece == chain.parts[i].piece) ++last;
-    maker.add_piece(i, last);
-    i = last;
-  }
-  if (to_rest) maker.add_rest(end);
-
-  PlanGrid grid;
-  grid.intervals = std::move(maker.intervals);
-  grid.bounds.assign(grid.intervals.size() + 1, KinematicPathLimits::kNone);
-  grid.bounds.front() = bounds.front();
-  grid.bounds.back() = bounds.back();
-  grid.speeds.push_back(potential.speed(first_w));
-  for (std::size_t k = 0; k < grid.intervals.size(); ++k) {
-    const GridInterval& interval = grid.intervals[k];
-    const auto x = derivatives_by_length(pieces[interval.piece], interval.t1);
-    grid.speeds.push_back(
-        std::min(potential.speed(maker.w[k]), limits_along(x.first, limits).speed));
-    if (k + 1 < grid.intervals.size() && grid.intervals[k + 1].piece != interval.piece) {
-      grid.bounds[k + 1] = bounds[interval.piece + 1];
-    }
-  }
-  return grid;
-}
-
-namespace {
-
-// One Newton step from the middle by parameter.
-double middle_of(const PathPiece& piece, const GridInterval& interval) {
-  const double t = 0.5 * (interval.t0 + interval.t1);
-  const double missing = 0.5 * interval.length - length_between(piece, interval.t0, t);
-  const double rate = length_between(piece, interval.t0, interval.t1) / (interval.t1 - interval.t0);
-  const double quarter = 0.25 * (interval.t1 - interval.t0);
-  return t + std::clamp(missing / rate, -quarter, quarter);
-}
 
 constexpr double kNone = KinematicPathLimits::kNone;
 
@@ -283,6 +137,15 @@ PlanState state_in(const double* w, double length, double s) {
           r0 + s * third};
 }
 
+// One Newton step from the middle by parameter.
+double middle_of(const PathPiece& piece, const GridInterval& interval) {
+  const double t = 0.5 * (interval.t0 + interval.t1);
+  const double missing = 0.5 * interval.length - length_between(piece, interval.t0, t);
+  const double rate = length_between(piece, interval.t0, interval.t1) / (interval.t1 - interval.t0);
+  const double quarter = 0.25 * (interval.t1 - interval.t0);
+  return t + std::clamp(missing / rate, -quarter, quarter);
+}
+
 double interval_seconds(double length, const double* w) {
   const double middle = 0.5 * (w[0] + w[2]) + length / 8 * (w[1] - w[3]);
   return length / 6 * (1 / std::sqrt(w[0]) + 4 / std::sqrt(middle) + 1 / std::sqrt(w[2]));
@@ -355,96 +218,6 @@ std::vector<double> rough_start(const PlanProblem& problem, const PlanGrid& grid
   for (const UnknownTie& tie : problem.search.ties) x[tie.tied] = tie.factor * x[tie.free];
   for (const UnknownPin& pin : problem.search.pins) x[pin.unknown] = pin.value;
   return x;
-}
-
-namespace {
-
-double greatest_part(const Vector3& value, const Vector3& limit) {
-  return value.cwiseAbs().cwiseQuotient(limit).maxCoeff();
-}
-
-// The greatest part of any limit that a state uses.
-double use_of_limits(const LengthDerivatives& x, const PlanState& at,
-                     const KinematicPathLimits& limits) {
-  const double v = std::sqrt(at.q);
-  const Vector3 acceleration = x.second * at.q + x.first * (at.p / 2);
-  const Vector3 jerk = (x.third * at.q + x.second * (1.5 * at.p) + x.first * (0.5 * at.r)) * v;
-  return std::max({v / limits.feed, greatest_part(x.first * v, limits.speed),
-                   x.second.norm() * at.q / limits.normal_acceleration,
-                   greatest_part(acceleration, limits.acceleration),
-                   greatest_part(jerk, limits.jerk),
-                   0.5 * std::abs(at.p) / limits.tangential_acceleration,
-                   0.5 * std::abs(at.r) * v / limits.tangential_jerk});
-}
-
-// How much of its limit the jerk along the path changes by, or the acceleration where the
-// jerk has no limit.
-double change_along(const LengthDerivatives& x, const PlanState& from, const PlanState& to,
-                    const KinematicPathLimits& limits) {
-  const LimitsAlong along = limits_along(x.first, limits);
-  if (std::isinf(along.jerk)) return 0.5 * std::abs(to.p - from.p) / along.acceleration;
-  return 0.5 * std::abs(to.r * std::sqrt(to.q) - from.r * std::sqrt(from.q)) / along.jerk;
-}
-
-bool is_too_long(const PathPiece& piece, const GridInterval& interval, const double* window,
-                 const KinematicPathLimits& limits, const RefineRule& rule) {
-  const double h = interval.length;
-  const LengthDerivatives middle = derivatives_by_length(piece, 0.5 * (interval.t0 + interval.t1));
-  const PlanState from = state_in(window, h, 0);
-  const PlanState to = state_in(window, h, h);
-  if (change_along(middle, from, to, limits) > rule.switching) return true;
-  // The limits are kept at both ends and in the middle: look between those.
-  for (const double part : {0.125, 0.25, 0.375, 0.625, 0.75, 0.875}) {
-    const double t = interval.t0 + part * (interval.t1 - interval.t0);
-    const double s = length_between(piece, interval.t0, t);
-    const LengthDerivatives x = derivatives_by_length(piece, t);
-    if (use_of_limits(x, state_in(window, h, s), limits) > 1 + rule.excess) return true;
-  }
-  return false;
-}
-
-}  // namespace
-
-std::size_t refine_plan(std::span<const PathPiece> pieces, const KinematicPathLimits& limits,
-                        const PlanProblem& problem, const RefineRule& rule, PlanGrid& grid,
-                        std::vector<double>& x) {
-  const std::size_t first = problem.start.length > 0 ? 1 : 0;
-  const std::size_t end = first + problem.intervals();
-  PlanGrid finer;
-  std::vector<double> finer_x = {x[0], x[1]};
-  std::size_t cut = 0;
-  for (std::size_t k = 0; k < grid.intervals.size(); ++k) {
-    const GridInterval& interval = grid.intervals[k];
-    finer.bounds.push_back(grid.bounds[k]);
-    finer.speeds.push_back(grid.speeds[k]);
-    if (k < first || k >= end) {
-      finer.intervals.push_back(interval);
-      continue;
-    }
-    const PathPiece& piece = pieces[interval.piece];
-    const double* window = x.data() + 2 * (k - first);
-    if (is_too_long(piece, interval, window, limits, rule)) {
-      ++cut;
-      const double t = middle_of(piece, interval);
-      const double length = length_between(piece, interval.t0, t);
-      const PlanState middle = state_in(window, interval.length, length);
-      finer.intervals.push_back({interval.piece, interval.t0, t, length});
-      finer.intervals.push_back({interval.piece, t, interval.t1, interval.length - length});
-      finer.bounds.push_back(KinematicPathLimits::kNone);
-      finer.speeds.push_back(std::sqrt(middle.q));
-      finer_x.insert(finer_x.end(), {middle.q, middle.p});
-    } else {
-      finer.intervals.push_back(interval);
-    }
-    finer_x.insert(finer_x.end(), {window[2], window[3]});
-  }
-  finer.slow_start = grid.slow_start;
-  finer.slow_end = grid.slow_end;
-  finer.bounds.push_back(grid.bounds.back());
-  finer.speeds.push_back(grid.speeds.back());
-  grid = std::move(finer);
-  x = std::move(finer_x);
-  return cut;
 }
 
 }  // namespace batten::postproc

@@ -10,37 +10,11 @@
 #include <vector>
 
 #include "geometry/path/path.h"
+#include "postproc/machine/planner/feed_plan_grid.h"
 #include "postproc/machine/planner/feed_plan_path.h"
 #include "postproc/machine/planner/feed_search.h"
 
 namespace batten::postproc {
-
-// Where a feed plan has its nodes: dense where the machine changes its speed within a short way,
-// near rest and around slow places, and sparse where it runs on.
-
-// A part of one piece between two neighbouring nodes.
-struct GridInterval {
-  std::size_t piece = 0;
-  double t0 = 0;
-  double t1 = 1;
-  double length = 0;  // mm
-};
-
-struct PlanGrid {
-  std::vector<GridInterval> intervals;
-  std::vector<double> bounds;  // mm/s at each node: what its joint allows, mostly infinity
-  std::vector<double> speeds;  // mm/s at each node: a rough upper bound
-  bool slow_start = false;     // the bound there is the speed, and the acceleration is 0
-  bool slow_end = false;
-};
-
-// Nodes for pieces of some length that are run without a stop between them. `bounds` are the
-// greatest speeds at their ends (one more than pieces, mm/s; 0 only at the first and the last:
-// rest). `density` is the number of nodes in the time sqrt(v / jerk), half of what the machine
-// needs for a change of its speed by v.
-[[nodiscard]] PlanGrid make_plan_grid(std::span<const geometry::PathPiece> pieces,
-                                      std::span<const double> bounds,
-                                      const KinematicPathLimits& limits, double density);
 
 // q, dq/ds and d2q/ds2 themselves.
 struct PlanState {
@@ -91,21 +65,10 @@ struct PlanProblem {
 // that does not help.
 [[nodiscard]] bool raise_above_zero(const PlanProblem& problem, std::vector<double>& x);
 
+// The parameter of the place in the middle of an interval, by length.
+[[nodiscard]] double middle_of(const geometry::PathPiece& piece, const GridInterval& interval);
+
 // Seconds that these unknowns take over one interval, Simpson's rule on 1 / sqrt(q).
 [[nodiscard]] double interval_seconds(double length, const double* window);
-
-// More nodes where those that a plan has are too few.
-
-struct RefineRule {
-  double excess = 0.002;  // an interval is cut where it exceeds a limit by this part of it,
-  double switching = 2;   // or where the jerk (without jerk limit the acceleration) along the path
-                          // changes by this part of its limit; above 2: never
-};
-
-// Cuts intervals in two; x becomes the unknowns of the same speeds on the new grid. Returns how
-// many were cut.
-std::size_t refine_plan(std::span<const geometry::PathPiece> pieces,
-                        const KinematicPathLimits& limits, const PlanProblem& problem,
-                        const RefineRule& rule, PlanGrid& grid, std::vector<double>& x);
 
 }  // namespace batten::postproc

@@ -168,16 +168,17 @@ TEST(Spl, TakesMoreDigitsWhereAJointWouldHaveAKink) {
   const std::string text = spl(curve_of({first, second}), setting);
   EXPECT_EQ(curve_tests::short_forms(alarms_of("1 L X+0 Y+0\n" + text)),
             std::vector<std::string>{});
-  // The same ten thousand times as small: eight decimals are not enough.
+  // The same a hundred thousand times as small: eight decimals are not enough.
   CubicBezier small_first = first;
   CubicBezier small_second = second;
   for (int i = 0; i < 4; ++i) {
-    small_first.control[i] *= 1e-4;
-    small_second.control[i] *= 1e-4;
+    small_first.control[i] *= 1e-5;
+    small_second.control[i] *= 1e-5;
   }
   setting.places.decimals = 9;
+  setting.other.decimals = 8;
   EXPECT_EQ(spl(curve_of({small_first, small_second}), setting),
-            "rounding makes a kink of 0.1 degrees or more");
+            "rounding bends a joint by 0.1 degrees or more");
 }
 
 TEST(Spl, WritesInches) {
@@ -203,9 +204,9 @@ TEST(Spl, RefusesWhatItCannotSay) {
   EXPECT_EQ(spl(curve, one_axis), "SPL names two axes or more");
   CurveSetting elsewhere = golden_spl_setting();
   elsewhere.start = {0.01, 0, 0};
-  EXPECT_EQ(spl(curve, elsewhere), "the curve does not start where the tool stands");
+  EXPECT_EQ(spl(curve, elsewhere), "the curve does not start at the tool's position");
   const CubicBezier far{{{0, 0, 0}, {4e4, 0, 0}, {8e4, 1, 0}, {1.2e5, 2, 0}}};
-  EXPECT_EQ(spl(curve_of({far}), golden_spl_setting()), "a place beyond 99999.9999");
+  EXPECT_EQ(spl(curve_of({far}), golden_spl_setting()), "a position beyond 99999.9999");
 }
 
 // --- alarms --------------------------------------------------------------------------------------
@@ -310,7 +311,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(SplRefusal{"NoSpline", "1 L X+0 Y+0\n", "no SPL"},
                     SplRefusal{"OneMicrometreAndMoreOff",
                                "2 SPL X+3 Y+0 ~\n K3X+0 K2X+0 K1X-2.9989 ~\n K3Y+0 K2Y+0 K1Y+0\n",
-                               "a spline that starts 1 um or more from where the tool stands"},
+                               "a spline that starts 1 um or more from the tool's position"},
                     SplRefusal{"RotaryAxis",
                                "2 SPL X+3 A+0 ~\n K3X+0 K2X+0 K1X-3 ~\n K3A+0 K2A+0 K1A+0\n",
                                "an SPL block that is not understood"},

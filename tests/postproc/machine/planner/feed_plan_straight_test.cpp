@@ -45,7 +45,7 @@ TEST(StraightMove, HoldsTheAccelerationLimit) {
 }
 
 TEST(StraightMove, WithoutJerkLimitIsATrapezoid) {
-  const LimitsAlong limits{50, 100, kNone};  // .5 s and 12.5 mm to ramp up
+  const LimitsAlong limits{50, 100, kNoLimitHere};  // .5 s and 12.5 mm to ramp up
   EXPECT_NEAR(from_rest(100, limits).time, 0.5 + 0.5 + 75.0 / 50, 1e-12);
   EXPECT_NEAR(from_rest(1, limits).time, 0.2, 1e-12);
 }

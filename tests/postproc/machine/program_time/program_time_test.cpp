@@ -388,9 +388,9 @@ TEST_P(IsSaid, WithItsCount) {
 INSTANTIATE_TEST_SUITE_P(
     NotTimed, IsSaid,
     testing::Values(
-        NotKnown{"ThePlaceBeforeTheFirstMove", "G0 X10 Y10\nG1 X20 F500\n", "place-unknown", 1},
+        NotKnown{"ThePlaceBeforeTheFirstMove", "G0 X10 Y10\nG1 X20 F500\n", "start-unknown", 1},
         NotKnown{"ThePlaceAfterAToolChange", "G0 X1 Y1 Z1\nT1 M6\nG0 X10 Y10 Z5\nG1 X2 F9\n",
-                 "place-assumed", 1},
+                 "position-assumed", 1},
         NotKnown{"ThePlaceAfterReference", "G0 X1 Y1 Z1\nG28 Z0\nG0 Z5\n", "reference-move", 1},
         NotKnown{"TheFeed", "G0 X1 Y1\nG1 X5\nG1 X6\n", "feed-unknown", 2},
         NotKnown{"Expressions", "G0 X1 Y1\nG1 X[1+1] F100\n", "expression", 1},
@@ -420,7 +420,7 @@ TEST(ProgramTimePlaces, FollowSetCoordinates) {
   const Machine m = machine_of(ControllerModel::kLookAhead);
   const ProgramTime time = timed("G21 G90\nG0 X100\nG92 X0\nG0 X200\nM2\n", m);
   EXPECT_NEAR(time.rapid_mm, 300, 1e-9);
-  EXPECT_EQ(count_of(time, "place-assumed"), 0u);
+  EXPECT_EQ(count_of(time, "position-assumed"), 0u);
 }
 
 // --- curves of the control ----------------------------------------------------------------------

@@ -41,7 +41,7 @@ struct RacingGoal {
 class TimeOptimalCornerTime : public testing::TestWithParam<RacingGoal> {};
 
 TEST_P(TimeOptimalCornerTime, ReachesTheGoalAndNotTheImpossible) {
-  const Goal& goal = GetParam();
+  const RacingGoal& goal = GetParam();
   const auto found = time_optimal_corner(wide_corner(), options_for(goal.tolerance, goal.kind));
   ASSERT_TRUE(std::holds_alternative<TimeOptimalBlend>(found));
   const auto& blend = std::get<TimeOptimalBlend>(found);

@@ -1,4 +1,4 @@
-#include "postproc/machine/planner/feed_parts.h"
+#include "postproc/machine/planner/feed_estimate_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +9,6 @@ namespace {
 
 using geometry::PathPiece;
 using geometry::Vector3;
-
-// A joint whose speed the machine reaches from rest within this way is a stop: the way is a
-// thousandth of the last printed decimal.
-constexpr double kStopWay = 1e-6;  // mm
-
-// Stands for "no limit at all in this direction"; w itself is 1e6 at 1e4 mm/s.
-constexpr double kSteep = 1e9;
 
 // Speeds this many times the feed are of no interest: bends that allow more do not matter.
 constexpr double kEstimateAboveFeed = 2;
@@ -76,8 +69,8 @@ double first_top(const Vector3& direction, const Potential& potential,
 
 void append_line(const PathPiece& piece, std::size_t number, const Vector3& direction,
                  const Potential& potential, const KinematicPathLimits& limits,
-                 std::vector<PathPart>& parts) {
-  PathPart part;
+                 std::vector<EstimatePart>& parts) {
+  EstimatePart part;
   part.piece = number;
   part.length = geometry::length_of(piece);
   part.cap = potential.of_speed(kAboveFeedOnLines * limits_along(direction, limits).speed);
@@ -106,7 +99,7 @@ class CubicCutter {
  public:
   CubicCutter(const PathPiece& piece, std::size_t number, const PieceEnds& ends,
               const Potential& potential, const KinematicPathLimits& limits,
-              std::vector<PathPart>& parts)
+              std::vector<EstimatePart>& parts)
       : piece_(piece), potential_(potential), limits_(limits), parts_(parts) {
     part_.piece = number;
     part_.straight = false;
@@ -137,60 +130,31 @@ class CubicCutter {
   const PathPiece& piece_;
   const Potential& potential_;
   const KinematicPathLimits& limits_;
-  std::vector<PathPart>& parts_;
-  PathPart part_;
+  std::vector<EstimatePart>& parts_;
+  EstimatePart part_;
 };
 
 // A long arc has more than its parts of a cubic; its needs are found one part after the other.
-void append_arc(const PathPiece& piece, std::size_t number, const PieceEnds& ends, double sweep,
+void append_arc(const PathPiece& piece, std::size_t number, double sweep,
                 const Potential& potential, const KinematicPathLimits& limits,
-                std::vector<PathPart>& parts) {
+                std::vector<EstimatePart>& parts) {
   const int count = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / kArcPart)));
-  PlaceNeeds from = needs_of(ends.start, limits);
   for (int i = 0; i < count; ++i) {
-    PathPart part;
+    EstimatePart part;
     part.piece = number;
     part.t0 = static_cast<double>(i) / count;
     part.t1 = static_cast<double>(i + 1) / count;
     part.length = length_between(piece, part.t0, part.t1);
-    const LengthDerivatives x = derivatives_by_length(piece, 0.5 * (part.t0 + part.t1));
-    const PlaceNeeds middle = needs_of(x, limits);
-    const PlaceNeeds to = needs_of(derivatives_by_length(piece, part.t1), limits);
-    part.cap = potential.of_speed(middle.speed);
-    part.slope = potential.slope(x.first, limits);
-    part.top = first_top(x.first, potential, limits);
-    part.bend = bend_between(from, middle) + bend_between(middle, to);
+    const LengthDerivatives middle = derivatives_by_length(piece, 0.5 * (part.t0 + part.t1));
+    part.cap = potential.of_speed(needs_of(middle, limits).speed);
+    part.slope = potential.slope(middle.first, limits);
+    part.top = first_top(middle.first, potential, limits);
     part.straight = false;
     parts.push_back(part);
-    from = to;
   }
 }
 
 }  // namespace
-
-Potential::Potential(const KinematicPathLimits& limits)
-    : jerk_limited_(!std::isinf(std::min(limits.jerk.minCoeff(), limits.tangential_jerk))) {}
-
-double Potential::of_speed(double v) const { return jerk_limited_ ? v * std::sqrt(v) : v * v; }
-
-double Potential::speed(double w) const { return jerk_limited_ ? std::cbrt(w * w) : std::sqrt(w); }
-
-double Potential::slope(const Vector3& direction, const KinematicPathLimits& limits) const {
-  const LimitsAlong along = limits_along(direction, limits);
-  return std::min(kSteep, jerk_limited_ ? std::sqrt(4.5 * along.jerk) : 2 * along.acceleration);
-}
-
-double Potential::rate() const { return jerk_limited_ ? 1 / std::sqrt(4.5) : 0.5; }
-
-double passing_speed(const LengthDerivatives& before, const LengthDerivatives& after,
-                     const Potential& potential, const KinematicPathLimits& limits) {
-  const double speed = joint_speed(before, after, limits);
-  if (std::isinf(speed)) return speed;
-  // Rounding of control points looks like a jump, but a tiny one.
-  if (speed >= limits_along(before.first, limits).speed) return KinematicPathLimits::kNone;
-  const double slowest = potential.speed(potential.slope(before.first, limits) * kStopWay);
-  return speed < slowest ? 0 : speed;
-}
 
 PieceEnds ends_of(const PathPiece& piece) {
   const LengthDerivatives start = derivatives_by_length(piece, 0);
@@ -200,12 +164,12 @@ PieceEnds ends_of(const PathPiece& piece) {
 
 void append_parts(const PathPiece& piece, std::size_t number, const PieceEnds& ends,
                   const Potential& potential, const KinematicPathLimits& limits,
-                  std::vector<PathPart>& parts) {
+                  std::vector<EstimatePart>& parts) {
   if (std::holds_alternative<geometry::Line>(piece)) {
     return append_line(piece, number, ends.start.first, potential, limits, parts);
   }
   if (const auto* arc = std::get_if<geometry::Arc>(&piece)) {
-    return append_arc(piece, number, ends, arc->sweep, potential, limits, parts);
+    return append_arc(piece, number, arc->sweep, potential, limits, parts);
   }
   const bool even = runs_evenly(std::get<geometry::CubicBezier>(piece));
   CubicCutter(piece, number, ends, potential, limits, parts)
@@ -235,7 +199,7 @@ std::vector<std::size_t> PartChain::slow_joints(double times, const Potential& p
   double highest = 0;         // since the last joint whose bound the envelope meets
   std::size_t candidate = 0;  // that joint, if what is before it is fast enough
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const PathPart& part = parts[i];
+    const EstimatePart& part = parts[i];
     const double top = std::min(part.cap, 0.5 * (w[i] + w[i + 1] + part.slope * part.length));
     highest = std::max(highest, top);
     if (candidate > 0 && highest >= much * w[candidate]) {
@@ -248,53 +212,6 @@ std::vector<std::size_t> PartChain::slow_joints(double times, const Potential& p
     highest = 0;
   }
   return joints;
-}
-
-PartChain parts_of(std::span<const PathPiece> pieces, std::span<const double> bounds,
-                   const Potential& potential, const KinematicPathLimits& limits) {
-  PartChain chain;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (i > 0) chain.parts.back().end_bound = bounds[i];
-    append_parts(pieces[i], i, ends_of(pieces[i]), potential, limits, chain.parts);
-  }
-  chain.find_potentials(bounds.front(), bounds.back(), potential);
-  return chain;
-}
-
-PartRise::PartRise(const PathPart& part, double length, double from, double to)
-    : w0(from), w1(to), slope(part.slope) {
-  top = std::max({w0, w1, std::min(part.cap, 0.5 * (w0 + w1 + slope * length))});
-  up = std::min(length, (top - w0) / slope);
-  const double down = std::min(length - up, (top - w1) / slope);
-  flat = std::max(0.0, length - up - down);
-  rising = std::log(top / w0);
-  falling = std::log(top / w1);
-  running = flat * slope / top;
-}
-
-double PartRise::place(double m) const {
-  if (m < rising) return w0 * std::expm1(m) / slope;
-  m -= rising;
-  if (m < running) return up + flat * m / running;
-  m -= running;
-  return up + flat - top * std::expm1(-m) / slope;
-}
-
-double PartRise::potential_at(double s) const {
-  if (s < up) return w0 + slope * s;
-  return std::max(w1, top - slope * std::max(0.0, s - up - flat));
-}
-
-double first_rise(std::span<const PathPart> parts, std::span<const double> w, bool from_start) {
-  double highest = 0;
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    const std::size_t i = from_start ? k : parts.size() - 1 - k;
-    const PartRise rise(parts[i], parts[i].length, std::max(w[i], 1e-300),
-                        std::max(w[i + 1], 1e-300));
-    highest = std::max(highest, rise.top);
-    if (from_start ? w[i + 1] < w[i] : w[i] < w[i + 1]) break;
-  }
-  return highest;
 }
 
 }  // namespace batten::postproc
