@@ -88,7 +88,7 @@ CurveResult read_g5(const Program& program, std::uint32_t first, const CurveStar
     if (!words.has(letter)) return refusal("one of X Y I J P Q is missing");
   }
   if (!start.position.known[0] || !start.position.known[1])
-    return refusal("the place is not known");
+    return refusal("the position is not known");
 
   const double unit = millimetres_per(start.units);
   const auto value = [&](char letter) { return words.find(letter)->value * unit; };

@@ -149,7 +149,7 @@ class SplWriter {
       PrintedBlock block;
       block.end = printer_.place(wanted, i + 1 == pieces_.size());
       if (block.end.mm.cwiseAbs().maxCoeff() > kGreatestEnd * printer_.unit()) {
-        return "a place beyond 99999.9999";
+        return "a position beyond 99999.9999";
       }
       if (!print_coefficients(between(pieces_[i], place, block.end.mm), place, block)) {
         return "a coefficient beyond the control's range";
@@ -238,14 +238,15 @@ CurveWriting write_spl(const geometry::BsplineCurve& curve, const CurveSetting& 
     return CurveRefusal{"SPL names two axes or more"};
   }
   if (!PlacePrinter(setting).starts_at(pieces.front().control[0])) {
-    return CurveRefusal{"the curve does not start where the tool stands"};
+    return CurveRefusal{"the curve does not start at the tool's position"};
   }
   for (int decimals = std::min(setting.other.decimals, kMantissaDecimals);; ++decimals) {
     SplWriter writer(pieces, setting, decimals);
     const std::string trouble = writer.print();
     if (trouble.empty() && !writer.adds_kinks()) return writer.lines();
     if (decimals < kMantissaDecimals) continue;
-    return CurveRefusal{trouble.empty() ? "rounding makes a kink of 0.1 degrees or more" : trouble};
+    return CurveRefusal{trouble.empty() ? "rounding bends a joint by 0.1 degrees or more"
+                                        : trouble};
   }
 }
 
@@ -289,14 +290,14 @@ CurveResult read_spl(const Program& program, std::uint32_t first, const CurveSta
     if (block.feed && !reading.motions.empty()) break;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (block.axes[axis] && !start.position.known[axis]) {
-        return CurveRefusal{"where the tool stands is not known"};
+        return CurveRefusal{"the tool's position is not known"};
       }
       reading.axes[axis] = reading.axes[axis] || block.axes[axis];
     }
     CubicBezier piece = block.piece;
     const double off = (piece.control[0] - place).cwiseAbs().maxCoeff();
     if (off >= kSplClosure) {
-      return CurveRefusal{"a spline that starts 1 um or more from where the tool stands"};
+      return CurveRefusal{"a spline that starts 1 um or more from the tool's position"};
     }
     if (off <= kDecimalNoise) piece.control[0] = place;
     if (reading.motions.empty()) reading.feed = block.feed;

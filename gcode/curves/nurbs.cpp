@@ -131,7 +131,7 @@ class NurbsReader {
       if (at >= program_.blocks.size()) return fail("the program ends inside the curve");
       if (!add(at)) return false;
     }
-    if (rules_.framed && !is_frame(program_, at++, 0)) return fail("no G05 P0 behind it");
+    if (rules_.framed && !is_frame(program_, at++, 0)) return fail("no G05 P0 after it");
     reading_.blocks = at - first;
     return true;
   }
@@ -159,11 +159,11 @@ class NurbsReader {
   bool starts_in_place() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!reading_.axes[axis]) continue;
-      if (!start_.position.known[axis]) return fail("where the tool stands is not known");
+      if (!start_.position.known[axis]) return fail("the tool's position is not known");
       const double off =
           points_[0][static_cast<int>(axis)] - start_.position.mm[static_cast<int>(axis)];
       if (std::abs(off) > geometry::kSamePlace) {
-        return fail("the first point is not where the tool stands");
+        return fail("the first point is not the tool's position");
       }
     }
     return true;
@@ -176,7 +176,7 @@ class NurbsReader {
     }
     if (!block.knot) return fail("a block without a knot");
     if (block.has_place()) {
-      if (ending_knots_ > 0) return fail("a point behind the ending knots");
+      if (ending_knots_ > 0) return fail("a point after the ending knots");
       return add_point(at, block);
     }
     if (block.weight) return fail("a weight without a point");
@@ -212,12 +212,12 @@ class NurbsReader {
     // degree says.
     for (std::size_t i = 1; i + order < t.size(); ++i) {
       if (t[i] > t[0] && t[i + order - 1] < t.back() && t[i] == t[i + order - 1]) {
-        return fail("an inner knot stands as often as the order");
+        return fail("an inner knot is repeated as often as the order");
       }
     }
     // At an end, too, points would be left out.
     for (std::size_t i = 0; i + order < t.size(); ++i) {
-      if (t[i] == t[i + order]) return fail("a knot stands more often than the order");
+      if (t[i] == t[i + order]) return fail("a knot is repeated more often than the order");
     }
     return true;
   }
@@ -297,7 +297,7 @@ CurveWriting write_nurbs(const BsplineCurve& curve, const CurveSetting& setting,
     places.push_back(printer.place(curve.control_points()[i], is_last));
     points.push_back(places.back().mm);
     if (points.back().cwiseAbs().maxCoeff() > kGreatestNurbsPlace * printer.unit()) {
-      return CurveRefusal{"a place beyond 999999.999"};
+      return CurveRefusal{"a position beyond 999999.999"};
     }
   }
   KnotDigits digits = rules.knots;

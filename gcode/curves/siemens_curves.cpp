@@ -140,7 +140,7 @@ CurveWriting write_poly(const BsplineCurve& curve, const CurveSetting& setting) 
   const std::vector<CubicBezier> pieces = curve.bezier_pieces();
   const PlacePrinter printer(setting);
   if (!printer.starts_at(pieces.front().control[0])) {
-    return CurveRefusal{"the curve does not start where the tool stands"};
+    return CurveRefusal{"the curve does not start at the tool's position"};
   }
   CurveLines lines;
   Point3 place = setting.start;
@@ -230,7 +230,7 @@ class PolyReader {
       const SiemensWord* word =
           words.polynomial[axis] != nullptr ? words.polynomial[axis] : words.straight[axis];
       if (word == nullptr) continue;  // stays where it is
-      if (!place_.known[axis]) return "where the tool stands is not known";
+      if (!place_.known[axis]) return "the tool's position is not known";
       reading_.axes[axis] = true;
       const auto i = static_cast<int>(axis);
       end[i] = word->value() * unit_;
@@ -327,7 +327,7 @@ CurveWriting write_bspline(const BsplineCurve& curve, const CurveSetting& settin
   const PlacePrinter printer(setting);
   const auto& points = curve.control_points();
   if (!printer.starts_at(points.front())) {
-    return CurveRefusal{"the curve does not start where the tool stands"};
+    return CurveRefusal{"the curve does not start at the tool's position"};
   }
   const auto knots =
       print_knots(curve, {.digits = kDigits, .decimals = std::min(setting.other.decimals, 4)},
@@ -363,7 +363,7 @@ CurveResult read_bspline(const Program& program, std::uint32_t first, const Curv
     Point3 place = points.back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!block.place[axis]) continue;
-      if (!start.position.known[axis]) return CurveRefusal{"where the tool stands is not known"};
+      if (!start.position.known[axis]) return CurveRefusal{"the tool's position is not known"};
       reading.axes[axis] = true;
       place[static_cast<int>(axis)] = *block.place[axis] * unit;
     }

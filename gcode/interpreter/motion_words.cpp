@@ -146,7 +146,7 @@ ArcReading arc_from_words(const ArcWords& words) {
   }
   const bool has_center = words.center[words.plane.axis0] || words.center[words.plane.axis1];
   if (has_center && words.radius) {
-    return problem("arc-words-conflict", "R stands beside centre words; expected one of them");
+    return problem("arc-words-conflict", "R beside centre words; expected one of them");
   }
   if (words.radius) {
     return arc_with_radius(words, *words.radius);

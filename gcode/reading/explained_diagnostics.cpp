@@ -35,7 +35,8 @@ constexpr ExplainedDiagnostic kExplained[] = {
      "A length has no decimal point (X1000), in a program for a control of the FANUC kind: there "
      "it "
      "is 1000 mm or 1000 least increments, 1.000 mm, as a parameter of the control says. Such "
-     "blocks are copied, and the place is unknown after them. Told once, at the first; 0 is 0 in "
+     "blocks are copied, and the position is unknown after them. Reported once, at the first; 0 is "
+     "0 in "
      "either reading.",
      "Say --decimals explicit where X5 is 5 mm, or --decimals implied where it is 0.005 mm "
      "(implied:0.0001 for another increment); look the parameter up in the control's manual."},
@@ -62,7 +63,7 @@ constexpr ExplainedDiagnostic kExplained[] = {
      "A G or M word that is no code (G1.25, M-3), or more codes than a block can hold.",
      "Correct the word."},
     {"unknown-g-code", "warning",
-     "A G code that is not known, told once for each code. It could have changed anything, so "
+     "A G code that is not known, reported once for each code. It could have changed anything, so "
      "everything is unknown after it.",
      "Take it out, or set every mode again after it."},
     {"arc-centre-missing", "warning",
@@ -76,7 +77,7 @@ constexpr ExplainedDiagnostic kExplained[] = {
      "the radius, or by more than 2.83 mm. LinuxCNC refuses such arcs.",
      "Let the CAM system write more decimals; look for G90.1, G91.1."},
     {"arc-radius-too-small", "warning",
-     "The ends are further apart than twice R, the ends of an arc with R are one place, the centre "
+     "The ends are further apart than twice R, the ends of an arc with R are one point, the centre "
      "is one of the ends, or the arc turns by so little that controls disagree whether it is a "
      "full "
      "turn.",

@@ -144,7 +144,7 @@ const Token& LineLexer::number_word(char letter, std::size_t value_at) {
   const char glued = char_at(text_, end);
   if (upper(glued) == 'E') {
     // X1E3: an exponent for some, the word E3 for others. E apart (X1 E3) is a word for all.
-    return unreadable(end, "an E right behind a number, which may be an exponent or a word");
+    return unreadable(end, "an E right after a number, which may be an exponent or a word");
   }
   const std::size_t following = after_blanks(text_, end);
   switch (char_at(text_, following)) {
@@ -273,7 +273,7 @@ const Token& LineLexer::parameter_assignment() {
     // #SPLINE ON, #HSC, #set(..)#: commands of other controls.
     const bool command = is_letter(char_at(text_, after_blanks(text_, at_ + 1)));
     return command ? rest(TokenKind::kForeign, at_)
-                   : unreadable(at_, "a '#' without a parameter behind it");
+                   : unreadable(at_, "a '#' without a parameter after it");
   }
   const std::size_t equals = after_blanks(text_, *target);
   if (char_at(text_, equals) != '=') {

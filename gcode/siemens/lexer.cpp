@@ -147,7 +147,7 @@ SiemensToken SiemensLexer::named(std::size_t name_end) {
   if (const std::size_t colon = after_blanks(text_, end);
       char_at(text_, colon) == ':' && char_at(text_, colon + 1) != '=') {
     if (anything_) {
-      return unreadable("a label behind other words");
+      return unreadable("a label after other words");
     }
     SiemensToken label = token(SiemensTokenKind::kLabel, colon + 1);
     label.name = name;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kCopied = "Nothing: such blocks are copied as they are.";
 constexpr std::string_view kSeparate =
-    "Put it in a block of its own, outside the cutting moves, if it is not needed at this place.";
+    "Put it in a block of its own, outside the cutting moves, if it is not needed there.";
 
 constexpr Explanation kExplanations[] = {
     {kNotUnderstood,
@@ -42,7 +42,7 @@ constexpr Explanation kExplanations[] = {
     {kReferencedLabel,
      "The block's N number is, or may be, the target of a jump, a call, or a return (M99 P) from a "
      "called program that is not read.",
-     "--allow subprogram where called programs come back behind their calls; otherwise nothing: "
+     "--allow subprogram where called programs return after their calls; otherwise nothing: "
      "such blocks are copied as they are.",
      false},
     {kOtherAxis, "The block moves or names an axis other than X, Y, Z.",
@@ -54,11 +54,11 @@ constexpr Explanation kExplanations[] = {
     {kRapid, "A rapid move.", kCopied, false},
     {kPlunge, "A move straight along Z into or out of a cut: its end is a corner that was meant.",
      "Nothing: the cuts on either side are smoothed by themselves.", false},
-    {kArc, "An arc that is not understood, or one whose G2 or G3 is needed behind it.", kCopied,
+    {kArc, "An arc that is not understood, or one whose G2 or G3 is needed after it.", kCopied,
      false},
     {kIntendedArc,
      "An arc that was meant as one: a full circle, or it meets its neighbours tangentially or in "
-     "corners. Arcs that meet in small kinks are pieces of a curve, and are smoothed.",
+     "corners. Arcs that meet at small angles are pieces of a curve, and are smoothed.",
      kCopied, false},
     {kDwell, "A dwell (G4).", kCopied, false},
     {kProbe, "A probing move.", kCopied, false},
@@ -75,13 +75,13 @@ constexpr Explanation kExplanations[] = {
      false},
     {kStateChange, "The block changes a mode (units, plane, distance, feed, path ..).", kCopied,
      false},
-    {kComment, "Comments or empty lines that stand alone.", kCopied, false},
+    {kComment, "Comments or empty lines alone.", kCopied, false},
     {kChecksum, "The line has a check sum: the sender counts such lines.",
      "Take numbers and sums off; the sender adds them when it sends.", false},
     {kSubprogram, "A subprogram is called, or ends. Nothing is known afterwards.",
      "Smooth the called programs as files of their own; and --allow subprogram where they "
      "leave all modes (units, plane, G90, compensation, rotation ..) as they find them and come "
-     "back behind the call: then only place and feed are unknown there, and N numbers are no "
+     "back behind the call: then only position and feed are unknown there, and N numbers are no "
      "targets.",
      true},
     {kProgramEnd, "The program stops or ends (M0, M1, M2, M30, M60).", kCopied, false},
@@ -93,7 +93,7 @@ constexpr Explanation kExplanations[] = {
      "Look for the call, jump or unknown word above; set the modes again after it. Behind "
      "calls that keep all modes: --allow subprogram.",
      false},
-    {kPositionUnknown, "The tool's place before this motion is not known.",
+    {kPositionUnknown, "The tool's position before this motion is not known.",
      "The first motion after a call, tool change or offset change is always kept.", false},
     {kCutterCompensation, "Cutter compensation is on (G41, G42): the path is not the tool's.",
      "Let the CAM system compute the tool's path.", false},

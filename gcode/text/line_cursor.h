@@ -74,7 +74,7 @@ class LineCursor {
 // What people are told of such a line.
 inline constexpr std::string_view kJoinedLine =
     "a CR without LF between words, which ends a line for some controls and is left out by others; "
-    "expected LF or CRLF behind every line: convert the line ends";
+    "expected LF or CRLF after every line: convert the line ends";
 
 // LinuxCNC drops what stands behind a NUL in its line, grbl the NUL alone.
 inline constexpr std::string_view kNulInLine =

@@ -15,7 +15,7 @@ constexpr double kWayNoise = 1e-8;
 // How often the last place of a link is halved out: to 1e-12 of the way between two gates.
 constexpr int kEndHalvings = 40;
 
-// What so many links reach: of the gates `first` and on, and of a place beyond the last of them
+// What so many links reach: of the gates `first` and on, and of a position beyond the last of them
 // that only the farthest links get to.
 struct Layer {
   std::size_t first = 0;

@@ -45,7 +45,7 @@ enum class Verdict {
 struct PathComparison {
   Verdict verdict = Verdict::kNotProved;
   DistanceBounds bounds;
-  std::size_t worst_piece_a = 0;  // where the greatest distance was met (or the breach seen)
+  std::size_t worst_piece_a = 0;  // where the greatest distance was met (or the violation seen)
   std::size_t worst_piece_b = 0;
   Point3 worst_a = Point3::Zero();
   Point3 worst_b = Point3::Zero();

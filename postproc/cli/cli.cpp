@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view kExitCodes =
     "Exit codes: 0 done, 1 wrong options, 2 program not understood, 3 not proved, 4 file error,\n"
-    "5 internal error. `batten COMMAND --help` tells more about a command, `batten explain ID`\n"
+    "5 internal error. `batten COMMAND --help` shows more about a command, `batten explain ID`\n"
     "about an id in a message or a report.";
 
 void add_row(const OptionRow& row, CLI::App& command) {
@@ -99,7 +99,7 @@ PrintText explain_text(Arguments& in) {
   const std::string text = explanation_of(id);
   if (text.empty()) {
     in.problems.push_back(
-        fmt::format("there is no reason, message or breach '{}'{}; batten explain lists all", id,
+        fmt::format("there is no reason, message or violation '{}'{}; batten explain lists all", id,
                     suggestion(id, explained_ids())));
   }
   return {text};

@@ -332,7 +332,7 @@ void check_outputs(const SmoothCommand& command, Arguments& in) {
   const bool to_standard_output =
       command.output == "-" || (command.output.empty() && command.input == "-");
   if (command.in_place && !command.output.empty()) {
-    problems.emplace_back("--in-place: the input is replaced, so --out has no place");
+    problems.emplace_back("--in-place: the input is replaced, so --out cannot be given");
   }
   if (command.in_place && command.input == "-") {
     problems.emplace_back("--in-place: standard input cannot be replaced");

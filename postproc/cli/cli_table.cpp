@@ -158,9 +158,10 @@ std::vector<OptionRow> time_rows() {
       kUnits,
       kSource,
       kDecimals,
-      {"from", kValue, "X,Y,Z", "where the tool stands before the program, mm"},
+      {"from", kValue, "X,Y,Z", "the tool's position before the program, mm"},
       kJson,
-      {"profile", kValue, "FILE.csv", "write place, feed, acceleration and jerk each millisecond"},
+      {"profile", kValue, "FILE.csv",
+       "write position, feed, acceleration and jerk each millisecond"},
       kForce,
       kQuiet,
       kLogLevel,
@@ -229,7 +230,7 @@ std::vector<CommandRow> make_command_rows() {
        {{"OLD", "the old program"}, {"NEW", "the new program"}},
        "Example:\n"
        "  batten verify part.nc part.smooth.nc --tolerance 0.01\n"
-       "exits with 0 when proved, with 3 on a breach or without a proof."},
+       "exits with 0 when proved, with 3 on a violation or without a proof."},
       {"inspect",
        "Show the runs of a program, their segments, and why the rest would be kept.",
        {kUnits, kSource, kDecimals, kAllow, kJson, kForce, kQuiet, kLogLevel},
@@ -278,9 +279,9 @@ std::vector<CommandRow> make_command_rows() {
        "  batten machines --grbl-settings settings.txt > my.toml"},
       {"methods", "List the ways of smoothing.", {kJson, kForce}, {}, "Example:\n  batten methods"},
       {"explain",
-       "Say what the id of a kept run, a message or a breach means, and what to do about it.",
+       "Say what the id of a kept run, a message or a violation means, and what to do about it.",
        {},
-       {{"ID", "as it stands in a report; without it, all of them are listed"}},
+       {{"ID", "as in a report; without it, all of them are listed"}},
        "Example:\n  batten explain exact-stop"},
       {"completion",
        "Write the completion of commands and options for a shell.",
@@ -351,7 +352,7 @@ constexpr std::string_view kDescription =
 constexpr std::string_view kExitStatus =
     ".TP\n0\nDone; for verify: proved.\n.TP\n1\nWrong options; no file was touched.\n.TP\n2\nThe "
     "input is not understood; nothing was written.\n.TP\n3\nNot proved, or verify found a "
-    "breach.\n.TP\n4\nA file could not be read or written.\n.TP\n5\nInternal error; nothing was "
+    "violation.\n.TP\n4\nA file could not be read or written.\n.TP\n5\nInternal error; nothing was "
     "written.\n";
 
 constexpr std::string_view kEnvironment =

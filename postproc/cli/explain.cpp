@@ -16,15 +16,15 @@ constexpr std::size_t kColumns = 78;
 
 constexpr ExplainedViolation kViolations[] = {
     {"distance",
-     "A stretch of cutting moves leaves the tolerance, both ways and in order. The message gives a "
+     "A section of cutting moves leaves the tolerance, both ways and in order. The message gives a "
      "distance that is certainly reached, the lines say where.",
      "The new program cuts something else there: do not run it."},
     {"wrong-side",
-     "With --side: a stretch of the new path comes over to the side that is not allowed, or could "
+     "With --side: a section of the new path comes over to the side that is not allowed, or could "
      "not be proved to stay on the other.",
      "A larger tolerance or more decimals: a tenth of the tolerance is allowed for rounding."},
     {"crosses-itself",
-     "A flat stretch meets itself where the old one does not: two parts of it are nearer to each "
+     "A flat section meets itself where the old one does not: two parts of it are nearer to each "
      "other than twice the tolerance, and one came over to the other side.",
      "Take a smaller tolerance."},
     {"arc-refused",
@@ -35,34 +35,35 @@ constexpr ExplainedViolation kViolations[] = {
     {"line-refused", "A line of the new text is longer than the target reads.",
      "Shorten it: comments and blanks count where the target counts them."},
     {"not-proved",
-     "The distance of a stretch could be bounded from both sides, but the tolerance lies between "
+     "The distance of a section could be bounded from both sides, but the tolerance lies between "
      "the bounds: paths that run over themselves many times within the tolerance, or a distance "
      "that equals it.",
      "Ask with another tolerance."},
     {"feed-changed",
-     "Another feed, or one that is missing or new in the order of feeds of a stretch.",
-     "F was lost, or stands on another block."},
+     "Another feed, or one that is missing or new in the order of feeds of a section.",
+     "F was lost, or is on another block."},
     {"feed-moved",
-     "The path is right, but a feed begins or ends at another place of it, further off than the "
+     "The path is right, but a feed begins or ends at another position on it, further off than the "
      "tolerance.",
-     "F stands on another block."},
+     "F is on another block."},
     {"rapid-changed",
-     "A rapid ends at another place on an axis that it names, or starts or ends further off than "
+     "A rapid ends at another position on an axis that it names, or starts or ends further off "
+     "than "
      "the tolerance on one that it does not name.",
      "Look at the two lines: the rapid itself, or where the moves before it end."},
-    {"rapid-lost", "A rapid stands in the old program only.", "Put it back."},
-    {"rapid-added", "A rapid stands in the new program only.", "Take it out."},
+    {"rapid-lost", "A rapid is in the old program only.", "Put it back."},
+    {"rapid-added", "A rapid is in the new program only.", "Take it out."},
     {"event-lost",
      "A word that acts (M, S, T, H, D, a G word that sets a mode), a message, a dwell, or a block "
-     "that has to be copied stands in the old program only.",
+     "that has to be copied is in the old program only.",
      "Put it back."},
-    {"event-added", "Such a word or block stands in the new program only.", "Take it out."},
+    {"event-added", "Such a word or block is in the new program only.", "Take it out."},
     {"event-changed",
-     "At the same place stand different words; other blanks count too in a block that is not "
+     "At the same position are different words; other blanks count too in a block that is not "
      "understood.",
      "Look at the two lines."},
-    {"event-moved", "An event stands at another place of the path, or has moved past other events.",
-     "Look at the two lines: coolant or spindle would change at another place of the cut."},
+    {"event-moved", "An event is at another position on the path, or has moved past other events.",
+     "Look at the two lines: coolant or spindle would change at another position of the cut."},
     {"state-changed",
      "Plane, units, a mode or the feed are different where a copied block depends on them, or only "
      "assumed where a word had set them.",
@@ -73,10 +74,10 @@ constexpr ExplainedViolation kViolations[] = {
      "controls take X5 for 0.005 mm.",
      "Say --target or --source, or --decimals."},
     {"profile-words-open",
-     "Words of a profile before a run without those behind it, or its header without its footer.",
+     "Words of a profile before a run without those after it, or its header without its footer.",
      "Something was taken out by hand: put it back."},
     {"profile-words-around-event",
-     "Between the words before and behind a run something acts that is no cutting move.",
+     "Between the words before and after a run something acts that is no cutting move.",
      "The words were moved by hand: put them back."},
     {"profile-words-in-program",
      "The old program has words of the profile itself, so none in the new one are taken for the "
@@ -92,7 +93,7 @@ constexpr gcode::ExplainedDiagnostic kNotes[] = {
     // --- the program and its target ---
     {"other-family", "error",
      "Words that only other controls have, in a program in which something would be rewritten.",
-     "Choose another target; --convert tells which blocks could not be said."},
+     "Choose another target; --convert lists which blocks could not be said."},
     {"cannot-convert", "error",
      "With --convert: the block does not say the same on the target, or not for certain.",
      "Where the message names a choice (--source, --allow ..), take it if it is right for this "
@@ -117,7 +118,7 @@ constexpr gcode::ExplainedDiagnostic kNotes[] = {
      "A flat run bends with a radius below the tolerance. The place is the first such bend.",
      "Nothing, or a smaller tolerance where the bend matters."},
     // --- what was written ---
-    {"smoothing-not-told", "note",
+    {"missing-provenance", "note",
      "The target has no comment that all its controls take, so nothing in the new program says "
      "that "
      "it was smoothed. Batten would smooth it again, and the tolerances would add up.",
@@ -193,11 +194,12 @@ std::vector<ExplainedGroup> explained_groups() {
   };
   add_messages(gcode::explained_diagnostics());
   add_messages(kNotes);
-  ExplainedGroup breaches = {"\nBreaches found by batten verify:", {}};
+  ExplainedGroup violations = {"\nViolations found by batten verify:", {}};
   for (const auto& each : kViolations) {
-    breaches.all.push_back({each.id, "a breach found by batten verify", each.text, each.advice});
+    violations.all.push_back(
+        {each.id, "a violation found by batten verify", each.text, each.advice});
   }
-  return {std::move(reasons), std::move(messages), std::move(breaches)};
+  return {std::move(reasons), std::move(messages), std::move(violations)};
 }
 
 }  // namespace

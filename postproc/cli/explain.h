@@ -1,4 +1,4 @@
-// `batten explain ID`: what a reason, a message or a breach means, and what to do about it.
+// `batten explain ID`: what a reason, a message or a violation means, and what to do about it.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace batten::postproc {
 
-// A breach that `batten verify` can find (Violation::id).
+// A violation that `batten verify` can find (Violation::id).
 struct ExplainedViolation {
   std::string_view id;
   std::string_view text;
@@ -19,7 +19,7 @@ struct ExplainedViolation {
 [[nodiscard]] std::span<const ExplainedViolation> explained_violations();
 
 // All ids that can be asked for, sorted, each once: reasons why runs are kept, messages about a
-// program, breaches. Some are both a reason and a breach.
+// program, violations. Some are both a reason and a violation.
 [[nodiscard]] std::vector<std::string_view> explained_ids();
 
 // Some lines of text for a terminal; empty where there is no such id.

@@ -169,7 +169,7 @@ int run(const InspectCommand& command) {
   }
   if (!result.unit_word_seen) {
     say(source->name() +
-        ": no G20 or G21 tells whether its numbers are inches or millimetres; say --units mm or "
+        ": no G20 or G21 says whether its numbers are inches or millimetres; say --units mm or "
         "--units inch");
     return static_cast<int>(ExitCode::kNotUnderstood);
   }

@@ -25,7 +25,7 @@ namespace batten::postproc {
 
 namespace {
 
-// More breaches than this tell nothing new on a screen; the JSON report has them all.
+// More violations than this tell nothing new on a screen; the JSON report has them all.
 constexpr std::size_t kMostViolations = 20;
 
 // The one that is named, or that the profile adapts.
@@ -105,8 +105,8 @@ std::string summary_of(const Verification& verification, const VerifyCommand& co
   if (!verification.proved()) {
     return fmt::format("NOT PROVED: {} of the new program against the old one\n",
                        verification.violations.size() == 1
-                           ? "1 breach"
-                           : fmt::format("{} breaches", verification.violations.size()));
+                           ? "1 violation"
+                           : fmt::format("{} violations", verification.violations.size()));
   }
   const bool band = command.tolerance_kind == geometry::ToleranceKind::kBand;
   const std::string corners =
@@ -115,7 +115,7 @@ std::string summary_of(const Verification& verification, const VerifyCommand& co
           : "";
   return fmt::format(
       "proved: {} keeps {:g} mm to {}, {}\n"
-      "  greatest deviation {:.4f} mm{}{}; {} changed stretches, {} acting words and blocks the "
+      "  greatest deviation {:.4f} mm{}{}; {} changed sections, {} acting words and blocks the "
       "same\n",
       command.new_program, command.tolerance_mm, command.old_program,
       band ? "in order, in the band reading" : "both ways and in order", verification.deviation_mm,
@@ -163,8 +163,8 @@ std::string json_report(const Verification& verification, const VerifyCommand& c
                     {"deviation_line", verification.deviation_line},
                     {"corner_mm", verification.corner_mm},
                     {"events_compared", verification.events_compared},
-                    {"breaches", std::move(violations)},
-                    {"stretches", std::move(stretches)},
+                    {"violations", std::move(violations)},
+                    {"sections", std::move(stretches)},
                     {"diagnostics", diagnostics_json(of_new, new_source)}});
 }
 
@@ -244,7 +244,7 @@ int tell(const VerifyCommand& command, const Verification& verification, std::si
     say_lines(text_of(verification.violations[i], command));
   }
   if (verification.violations.size() > kMostViolations) {
-    say(fmt::format("{} more breaches, see --json",
+    say(fmt::format("{} more violations, see --json",
                     verification.violations.size() - kMostViolations));
   }
   if (!verification.proved() || command.log_level >= LogLevel::kInfo) {

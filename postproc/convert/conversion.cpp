@@ -218,7 +218,7 @@ void tell_of_other_family(const gcode::Program& program, const gcode::Control& t
   for (const gcode::FoundMark& each : gcode::source_marks(program)) {
     if ((target.known_marks & gcode::mark(each.mark)) != 0) continue;
     found.push_back({gcode::Severity::kError, "other-family", each.where,
-                     fmt::format("{}: a program for other controls than target {}; --convert tells "
+                     fmt::format("{}: a program for other controls than target {}; --convert lists "
                                  "which blocks could not be said there",
                                  gcode::describe(each.mark), target.name)});
   }
@@ -226,7 +226,7 @@ void tell_of_other_family(const gcode::Program& program, const gcode::Control& t
     found.push_back(
         {gcode::Severity::kError, "other-family", dwell->where,
          fmt::format("{} waits for {} s on the control that --source names, and for {} s "
-                     "on target {}; --convert tells which blocks could not be said "
+                     "on target {}; --convert lists which blocks could not be said "
                      "there",
                      program.source.text(dwell->where), gcode::dwell_seconds(dwell->ms, false),
                      gcode::dwell_seconds(dwell->ms_there, false), target.name)});

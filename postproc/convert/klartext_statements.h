@@ -44,7 +44,7 @@ struct CalledTool {
 // The same for motions behind G49.
 inline constexpr std::string_view kLengthRemark = "G49: the length of the tool counts";
 
-// For motions along Z behind a tool change without G43.
+// For motions along Z after a tool change without G43.
 inline constexpr std::string_view kUnsaidLengthRemark = "no G43: the length of the tool counts";
 
 // What other languages say before their M30, where Klartext ends by its END PGM alone.

@@ -63,7 +63,7 @@ class KlartextSpeaker {
         return say_no_length(operation, kLengthRemark, "without the length of the tool, which");
       case OperationKind::kLengthUnsaid:
         return say_no_length(operation, kUnsaidLengthRemark,
-                             "along Z behind a tool change without G43 or D, and the length");
+                             "along Z after a tool change without G43 or D, and the length");
       case OperationKind::kTool: {
         speed_is_said_ = next != nullptr && next->kind == OperationKind::kSpeed;
         const std::string speed =

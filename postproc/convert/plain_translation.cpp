@@ -367,7 +367,7 @@ class PlainSpeaker {
   void say_unsaid_length(const Operation& operation) {
     if (source_.program.language != gcode::Language::kSiemens) return;
     text_.refuse(operation.where,
-                 "moves along Z behind a tool change without D, where the control's data say "
+                 "moves along Z after a tool change without D, where the control's data say "
                  "whether the length of the tool counts");
   }
 

@@ -121,7 +121,7 @@ struct ToolInSpindle {
 
   [[nodiscard]] std::string_view why_too_late(std::span<const Word> words) const {
     const bool changes = coded_word(words, 'M', word_code::kToolChange) != nullptr;
-    return moved_along && !changes ? "comes behind a motion without the length of the tool" : "";
+    return moved_along && !changes ? "comes after a motion without the length of the tool" : "";
   }
 };
 
@@ -139,7 +139,7 @@ std::string_view why_no_certain_motion(const Motion& motion, const gcode::ModalS
   if (!path_alone_counts(state)) return "moves in a state in which its words are not the path";
   const bool arc = motion.kind == MotionKind::kArc;
   if (!motion.end_known || (arc && !motion.start_known)) {
-    return "moves from a place that is not known";
+    return "moves from a position that is not known";
   }
   if (motion.kind == MotionKind::kCurve) return "is a curve";
   if (motion.kind != MotionKind::kRapid && !state.feed) return "moves at a feed that is not known";
@@ -177,7 +177,7 @@ class OperationReader {
         block.opacity == gcode::ParseStatus::kNone) {
       return;
     }
-    if (ended_) return refuse(block.span, "stands behind the end of the program");
+    if (ended_) return refuse(block.span, "is after the end of the program");
     if (coded_word(words, 'G', word_code::kDwell) != nullptr) return read_dwell(block, words);
     if (block.opacity == gcode::ParseStatus::kNamedWords) check_names(block);
     for (const Word& word : words) {
@@ -325,7 +325,7 @@ class OperationReader {
   [[nodiscard]] std::string why_not_work_offset(int code) const {
     if (work_offset_ == code) return {};
     if (work_offset_) return "names another work offset";
-    return moved_ ? "names a work offset behind the first motion" : "";
+    return moved_ ? "names a work offset after the first motion" : "";
   }
 
   // --- acts ---------------------------------------------------------------------------------
@@ -345,7 +345,7 @@ class OperationReader {
 
   void add_operations(std::span<const Word> words, const BlockMeaning& meaning) {
     const bool moves = meaning.motion >= 0;
-    // Klartext says of each function whether it acts before or behind the motion of its block.
+    // Klartext says of each function whether it acts before or after the motion of its block.
     const bool known_order = in(Language::kKlartext);
     if (const Word* t = first_word(words, 'T')) tool_.fetched = {t->value, t->span};
     if (const Word* change = coded_word(words, 'M', word_code::kToolChange)) change_tool(*change);
@@ -416,7 +416,7 @@ class OperationReader {
       const Word* word = coded_word(words, 'M', code);
       if (word == nullptr) continue;
       beside_motion
-          ? refuse(word->span, "acts before or behind the motion of its block: controls differ")
+          ? refuse(word->span, "acts before or after the motion of its block: controls differ")
           : add_function(code / 10, word->span);
     }
   }
@@ -427,7 +427,7 @@ class OperationReader {
   }
 
   void add_pause(const Word& word, bool moves) {
-    if (moves) return refuse(word.span, "acts before or behind the motion of its block");
+    if (moves) return refuse(word.span, "acts before or after the motion of its block");
     if (running_.may_be_on()) {
       return refuse(word.span, "stops spindle and coolant on some controls, and they may be on");
     }
@@ -479,7 +479,7 @@ class OperationReader {
     }
     if (motion.kind != MotionKind::kRapid && running_.turned_at_change) {
       refuse(*std::exchange(running_.turned_at_change, std::nullopt),
-             "finds the spindle on, and controls differ in whether it turns in the cut behind it");
+             "finds the spindle on, and controls differ in whether it turns in the cut after it");
     }
     Operation& operation = add(OperationKind::kMotion, here);
     operation.motion = meaning.motion;

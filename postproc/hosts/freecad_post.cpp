@@ -139,7 +139,7 @@ std::optional<FreecadAnswer> ask_freecad(const std::string& program, std::string
   ::unsetenv("BATTEN_ANSWER");
   if (!status) return std::nullopt;
   auto found = read_answer(answer);
-  if (!found) error = program + ": did not say where its macros are; --folder names the place";
+  if (!found) error = program + ": did not say where its macros are; name the folder with --folder";
   return found;
 }
 

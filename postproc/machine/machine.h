@@ -62,7 +62,7 @@ struct Machine {
   int look_ahead = 2000;       // blocks
 
   // Settings of the control. Each model reads those that its control has.
-  double servo_period = 0.001;                             // s: how often the axes get a new place
+  double servo_period = 0.001;  // s: how often the axes get a new position
   gcode::PathMode path_mode = gcode::PathMode::kBlending;  // until the program says G61 or G64
   double junction_deviation = 0.01;                        // mm (grbl's $11)
   double arc_tolerance = 0.002;    // mm: arcs become chords this near to them (grbl's $12)

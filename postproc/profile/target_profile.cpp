@@ -42,7 +42,7 @@ constexpr std::array kWordsKeys = {
              &ProfileWords::header},
     WordsKey{"footer", "lines before its end", &ProfileWords::footer},
     WordsKey{"before-run", "lines before each rewritten run", &ProfileWords::before_run},
-    WordsKey{"after-run", "lines behind it", &ProfileWords::after_run},
+    WordsKey{"after-run", "lines after it", &ProfileWords::after_run},
 };
 
 constexpr std::array<std::string_view, 3> kPlaneNames = {"G17", "G18", "G19"};
@@ -461,7 +461,7 @@ std::shared_ptr<const TargetProfile> read_target_profile(const std::string& file
 
 std::string profile_text(const gcode::Control& target) {
   std::string text = fmt::format(
-      "# A profile for batten: `--target THIS.toml`. Every key stands here as target {} has it;\n"
+      "# A profile for batten: `--target THIS.toml`. Every key has the value of target {};\n"
       "# change what your machine needs, and leave out what stays.\n\n{} = \"{}\"\n",
       target.name, kBasedOn, target.name);
   std::string_view section;

@@ -424,7 +424,7 @@ class CommonLister {
   [[nodiscard]] std::string described(const Motion& motion) const {
     std::string text = motion.kind == MotionKind::kRapid  ? "rapid of"
                        : motion.kind == MotionKind::kLine ? "line of"
-                                                          : "arc from a place that is not known";
+                                                          : "arc from a position that is not known";
     for (int axis = 0; axis < 3; ++axis) {
       if (motion.axes_named[static_cast<std::size_t>(axis)])
         text += fmt::format(" {}", "XYZ"[axis]);

@@ -101,7 +101,7 @@ Violation rapid_violation(const EventAt& before, const EventAt& after) {
           before.line(),
           after.line(),
           0,
-          fmt::format("{} starts or ends at another place; expected {}", describe(after),
+          fmt::format("{} starts or ends at another position; expected {}", describe(after),
                       describe(before))};
 }
 
@@ -111,7 +111,7 @@ Violation moved_event_violation(const EventAt& before, const EventAt& after, dou
           before.line(),
           after.line(),
           moved_mm,
-          fmt::format("{}: the path is the same, but it stands at another place of it",
+          fmt::format("{}: the path is the same, but it is at another position on it",
                       describe(before))};
 }
 

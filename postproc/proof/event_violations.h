@@ -28,7 +28,7 @@ enum class ViolationKind {
 struct Violation {
   ViolationKind kind = ViolationKind::kDistance;
   std::string id;  // stable, all listed in docs/diagnostics.md: "distance", "event-lost" ..
-  std::uint32_t old_line = 0;  // of the breach itself, as near as it is known; 0: none
+  std::uint32_t old_line = 0;  // of the violation itself, as near as it is known; 0: none
   std::uint32_t new_line = 0;
   double deviation_mm = 0;  // kDistance: at least this much
   std::string message;      // found and expected

@@ -349,7 +349,7 @@ class StretchComparer {
       violation.kind = ViolationKind::kFeed;
       violation.id = "feed-moved";
       violation.message = fmt::format(
-          "the path is the same within {:.6g} mm, but a feed begins or ends at another place",
+          "the path is the same within {:.6g} mm, but a feed begins or ends at another position",
           tolerance_);
     }
   }

@@ -229,7 +229,7 @@ class RunGrouper {
   }
 
   // Motions of no length at the ends of a chain say nothing about its path: they are copied. So are
-  // arcs at its end whose G2 or G3 is needed behind it.
+  // arcs at its end whose G2 or G3 is needed after it.
   void close_part() {
     const auto moving = [this](std::uint32_t block) { return blocks_.moves(block); };
     const auto first = std::find_if(chain_.begin(), chain_.end(), moving);

@@ -50,7 +50,7 @@ class Taker {
     }
     if (open_) {
       result_.violations.push_back({ViolationKind::kEvent, "profile-words-open", 0, open_line_, 0,
-                                    "the words before a run without those behind it"});
+                                    "the words before a run without those after it"});
     }
     if (header_taken_ && !words_.footer.empty() && !footer_taken_) {
       result_.violations.push_back({ViolationKind::kEvent, "profile-words-open", 0, 1, 0,
@@ -159,7 +159,7 @@ std::vector<Violation> events_in_brackets(const ReadProgram& read,
     if (next < list.events.size() && line_of(next) < bracket.after) {
       violations.push_back(
           {ViolationKind::kEvent, "profile-words-around-event", 0, line_of(next), 0,
-           fmt::format("between the words before and behind a run (lines {} and {}) "
+           fmt::format("between the words before and after a run (lines {} and {}) "
                        "something acts that is no cutting move",
                        bracket.before, bracket.after)});
     }

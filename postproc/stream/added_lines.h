@@ -38,7 +38,7 @@ struct AddedLines {
 [[nodiscard]] std::uint32_t line_with_words_of(const gcode::Program& program,
                                                const ProfileWords& words);
 
-// Between the lines before and behind runs nothing acts but cutting moves: one breach for each
+// Between the lines before and behind runs nothing acts but cutting moves: one violation for each
 // bracket in which something does. `read` is the program of AddedLines::text.
 [[nodiscard]] std::vector<Violation> events_in_brackets(const ReadProgram& read,
                                                         const std::vector<LineBracket>& brackets);

@@ -46,7 +46,7 @@ gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs, const gcode::P
                      std::move(message)});
   };
   if (provenance_comment(target, 1).empty()) {
-    tell_first(gcode::Severity::kNote, "smoothing-not-told",
+    tell_first(gcode::Severity::kNote, "missing-provenance",
                "target " + std::string(target.name) +
                    " has no certain comment, so nothing in the program says that it was smoothed: "
                    "smoothing it once more would add its tolerance again",

@@ -21,7 +21,7 @@ namespace batten::postproc {
 [[nodiscard]] bool was_smoothed(const gcode::Program& program);
 
 // What a user has to be told of the runs that were written, at the first run that it is true of:
-// - the note `smoothing-not-told` where the target has no certain comment: nothing in the text says
+// - the note `missing-provenance` where the target has no certain comment: nothing in the text says
 //   then that it was smoothed;
 // - the warning `curves-unverified` for curves, in the words of the target's CurveFormat::caution;
 // - the note `chords-for-steps` for chords in the place of the equal steps that were asked for.

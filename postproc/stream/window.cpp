@@ -343,7 +343,7 @@ class Prover {
   }
 
   // The rewritten run that holds a line of the input; the nearest rewritten one before it where
-  // the line stands behind a run, for a breach may be noticed late.
+  // the line stands behind a run, for a violation may be noticed late.
   RunState* rewritten_run_at(std::uint32_t line) {
     RunState* found = nullptr;
     for (RunState& work : runs_.works) {
@@ -384,7 +384,7 @@ class Prover {
     if (reject(std::move(over), gcode::reason::kWrongSide)) return true;
     if (reject(std::move(refused), gcode::reason::kTargetCannot)) return true;
     if (blamed.empty()) {
-      // A breach that belongs to no run: believe none of them.
+      // A violation that belongs to no run: believe none of them.
       for (RunState& work : runs_.works) {
         if (work.chosen() != nullptr) blamed.push_back(&work);
       }
@@ -412,7 +412,7 @@ class Prover {
   const Additions& additions_;
   const ProgressCallback& tell_;
   PartRuns& runs_;
-  bool stands_alone_ = true;  // no breach has to do with other windows
+  bool stands_alone_ = true;  // no violation has to do with other windows
 };
 
 }  // namespace

@@ -62,8 +62,8 @@ TEST_F(TimeCommandLine, WritesJsonWhosePartsSumToTheWhole) {
 
 TEST_F(TimeCommandLine, SaysWhatItDoesNotKnow) {
   const ProcessResult result = time("--machine mill");
-  EXPECT_TRUE(contains(result.out, "place-unknown")) << result.out;
-  EXPECT_FALSE(contains(time("--machine mill --from 0,0,0").out, "place-unknown"));
+  EXPECT_TRUE(contains(result.out, "start-unknown")) << result.out;
+  EXPECT_FALSE(contains(time("--machine mill --from 0,0,0").out, "start-unknown"));
 }
 
 TEST_F(TimeCommandLine, WritesAProfileOfOneRowPerMillisecond) {

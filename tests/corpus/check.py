@@ -83,7 +83,7 @@ class Check:
             self.wrong.append("rs274 takes the old program, but not the new one")
 
     def check_verify(self):
-        done = self.run("verify", "old.nc", "new.nc")
+        done = self.run("verify", "old.nc", "new.nc", "--target", "linuxcnc")
         if done.returncode != 0:
             self.wrong.append(f"verify: exit code {done.returncode}: {done.stderr[-500:]!r}")
 

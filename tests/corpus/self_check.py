@@ -53,7 +53,7 @@ def main():
     for name, (before, after, report) in PLANTED.items():
         if not rules.all_rules(before, after, report, 0.01):
             failures.append(f"not found: {name}")
-    print("\n".join(failures) or f"{len(PLANTED)} planted breaches found")
+    print("\n".join(failures) or f"{len(PLANTED)} planted violations found")
     return 1 if failures else 0
 
 

@@ -6,7 +6,7 @@ include. A folder may include only folders of rows above its own, so the table i
 all headers and sources. Besides: no two headers with their sources include each other, over any number of
 steps; CGAL and CLI11 are included where the table's notes say; nothing is included by a relative path.
 
-Ends with 1 and a line for each breach, or for each way in which the table cannot be read."""
+Ends with 1 and a line for each violation, or for each way in which the table cannot be read."""
 import pathlib
 import re
 import sys
@@ -22,7 +22,7 @@ ONLY_IN = {
 }
 
 
-def layers_of(document, breaches):
+def layers_of(document, violations):
     """Folder -> folders that it may include, in the order of the table. A row may name a folder with all
     below it: `geometry/..`."""
     layers = {}
@@ -37,11 +37,11 @@ def layers_of(document, breaches):
             else:
                 named = {name.rstrip("/")} & set(layers)
             if not named:
-                breaches.append(f"docs/ARCHITECTURE.md: {folder} may include {name}, which is no row above it")
+                violations.append(f"docs/ARCHITECTURE.md: {folder} may include {name}, which is no row above it")
             allowed |= named
         layers[folder] = allowed
     if not layers:
-        breaches.append(f"docs/ARCHITECTURE.md: no table of layers under '{BEGIN}'")
+        violations.append(f"docs/ARCHITECTURE.md: no table of layers under '{BEGIN}'")
     return layers
 
 
@@ -100,40 +100,40 @@ def pair_of(file):
 
 
 def check(root):
-    breaches = []
+    violations = []
     document = root / "docs/ARCHITECTURE.md"
-    layers = layers_of(document.read_text(encoding="utf-8") if document.is_file() else "", breaches)
+    layers = layers_of(document.read_text(encoding="utf-8") if document.is_file() else "", violations)
     graph, files = {}, 0
     for path in sources_of(root):
         files += 1
         file = path.relative_to(root).as_posix()
         folder = file.rpartition("/")[0]
         if folder not in layers:
-            breaches.append(f"{file}: {folder}/ is no row of the table of layers")
+            violations.append(f"{file}: {folder}/ is no row of the table of layers")
             continue
         others = graph.setdefault(pair_of(file), set())
         for quote, header in INCLUDE.findall(path.read_text(encoding="utf-8")):
             if complaint := judge_include(file, folder, quote, header, layers):
-                breaches.append(f"{file}: {header}: {complaint}")
+                violations.append(f"{file}: {header}: {complaint}")
             elif quote == '"' and pair_of(header) != pair_of(file):
                 others.add(pair_of(header))
     for others in list(graph.values()):
         for other in others:
             graph.setdefault(other, set())
-    breaches += [f"include each other: {', '.join(cycle)}" for cycle in pair_cycles(graph)]
+    violations += [f"include each other: {', '.join(cycle)}" for cycle in pair_cycles(graph)]
     if files == 0:
-        breaches.append(f"no sources below {root}")
-    return breaches, files
+        violations.append(f"no sources below {root}")
+    return violations, files
 
 
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else __file__ + "/../../..").resolve()
-    breaches, files = check(root)
-    for breach in breaches:
-        print(breach)
-    if not breaches:
+    violations, files = check(root)
+    for violation in violations:
+        print(violation)
+    if not violations:
         print(f"layers kept by {files} files")
-    return 1 if breaches else 0
+    return 1 if violations else 0
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ one that is reached names a symbol that it defines. What is not reached only tes
 tests/support/ or nowhere. LATER names what is written and still to be put on the way; it may hold nothing
 that is reached or gone.
 
-Ends with 1 and a line for each breach; with 77 (skipped) where objects hold many sources each (unity builds)."""
+Ends with 1 and a line for each violation; with 77 (skipped) where objects hold many sources each (unity builds)."""
 import collections
 import pathlib
 import subprocess
@@ -68,24 +68,24 @@ def reached_from(roots, symbols):
 
 
 def judge(symbols, later=LATER):
-    """A line for each breach."""
+    """A line for each violation."""
     missing = [f"no object of {root}" for root in ROOTS if root not in symbols]
     ours = [source for source in symbols if source not in ROOTS]
     missing += [f"no objects of {top}/" for top in LIBRARIES if not any(s.startswith(top + "/") for s in ours)]
     if missing:
         return missing
     reached = reached_from(ROOTS, symbols)
-    breaches = []
+    violations = []
     for source in ours:
         planned = source.startswith(later)
         if source not in reached and not planned:
-            breaches.append(f"{source}: neither the program nor the library reaches it (tests/reachable/check.py)")
+            violations.append(f"{source}: neither the program nor the library reaches it (tests/reachable/check.py)")
         if source in reached and planned:
-            breaches.append(f"{source}: is reached now, so LATER must not name it")
+            violations.append(f"{source}: is reached now, so LATER must not name it")
     for name in later:
         if not any(source.startswith(name) for source in ours):
-            breaches.append(f"{name}: LATER names it, and there is no such object")
-    return breaches
+            violations.append(f"{name}: LATER names it, and there is no such object")
+    return violations
 
 
 def main():
@@ -94,12 +94,12 @@ def main():
     if any("/Unity/" in source for source in objects):
         print("skipped: objects of this build hold many sources each")
         return SKIPPED
-    breaches = judge(symbols_of(objects, *sys.argv[2:3]))
-    for breach in breaches:
-        print(breach)
-    if not breaches:
+    violations = judge(symbols_of(objects, *sys.argv[2:3]))
+    for violation in violations:
+        print(violation)
+    if not violations:
         print(f"{len(objects)} objects, all reached but those of LATER")
-    return 1 if breaches else 0
+    return 1 if violations else 0
 
 
 if __name__ == "__main__":

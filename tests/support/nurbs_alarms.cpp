@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-
 namespace batten::gcode {
 namespace {
 
@@ -30,7 +29,7 @@ bool ends_curve(int code) { return code == 0 || code == 10 || code == 20 || code
 struct AlarmNames {
   std::string_view missing_knot = "PS1002";
   std::string_view wrong_mode = "PS1006";   // G06.2 under G41, G93 ..
-  std::string_view wrong_start = "PS1009";  // the first point is not where the tool stands
+  std::string_view wrong_start = "PS1009";  // the first point is not the tool's position
   std::string_view decreasing = "knot-decreases";
   std::string_view axis_too_late = "axis-not-in-first-block";
   std::string_view too_many_decimals = "too-many-decimals";

@@ -8,7 +8,7 @@
 namespace batten::gcode {
 
 // What the control would say about the splines of a program whose lengths are in these units:
-//   spl-closure       the start is 1 um or more from where the tool stands
+//   spl-closure       the start is 1 um or more from the tool's position
 //   spl-first         no L before the first SPL
 //   spl-order         K3, K2, K1 of an end axis are missing, repeated, or in another order
 //   spl-axes          fewer than two axes, or more than five

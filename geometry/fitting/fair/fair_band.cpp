@@ -29,7 +29,7 @@ constexpr int kWatchedAmongNoise = 2;
 constexpr double kSlightly = 1.2;
 
 // Violations of an edge after which it stays a line between kept corners, and with it, at every
-// further breach, twice as many edges around it. Fits until nothing is tried any more but the
+// further violation, twice as many edges around it. Fits until nothing is tried any more but the
 // polyline itself.
 constexpr int kWatched = 1;
 constexpr int kAttempts = 9;

@@ -408,7 +408,7 @@ std::string line_of(std::string_view key, double value, std::string_view unit,
 
 std::string machine_file_text(const Machine& machine) {
   std::string text =
-      "# A machine for --machine FILE.toml; docs/machine_file.md tells about the keys. A value in\n"
+      "# A machine for --machine FILE.toml; docs/machine_file.md describes the keys. A value in\n"
       "# another unit is a text: \"5000 mm/min\". With based-on = \"NAME\" only what differs is "
       "needed.\n";
   text += fmt::format("name = {}\n", toml_quoted(machine.name));

@@ -18,9 +18,9 @@ struct NotTimedText {
 constexpr std::array kTexts = {
     NotTimedText{
         not_timed::kPlaceUnknown,
-        "the tool's place before the move is not known: the axes without one take no time"},
+        "the tool's position before the move is not known: the axes without one take no time"},
     NotTimedText{not_timed::kPlaceAssumed,
-                 "after a tool change or an offset: timed from the last programmed place"},
+                 "after a tool change or an offset: timed from the last programmed position"},
     NotTimedText{reason::kFeedUnknown, "no feed is known: timed as fast as the machine cuts"},
     NotTimedText{not_timed::kSpindleUnknown,
                  "feed per revolution without a known spindle speed: timed as fast as the machine "
@@ -31,9 +31,9 @@ constexpr std::array kTexts = {
     NotTimedText{reason::kLoopBody, "in a loop or subprogram: timed once"},
     NotTimedText{not_timed::kDwellUnknown, "a dwell whose length is not known: not timed"},
     NotTimedText{not_timed::kDwellAssumed,
-                 "G4 P without a decimal point: taken for milliseconds (--target tells)"},
+                 "G4 P without a decimal point: taken for milliseconds (--target decides)"},
     NotTimedText{not_timed::kReferenceMove,
-                 "G28, G30, G53: the way to a place of the machine is not timed"},
+                 "G28, G30, G53: the path to a machine position is not timed"},
     NotTimedText{not_timed::kOperatorStop, "M0, M1, M60: waits for the operator, not timed"},
     NotTimedText{reason::kMiscFunction,
                  "M functions of the machine's builder or the user: not timed"},
@@ -47,9 +47,9 @@ constexpr std::array kTexts = {
     NotTimedText{reason::kBlockDelete, "blocks with / : not timed"},
     NotTimedText{reason::kStateUnknown,
                  "moves in a state that is not known (after a call or an unknown word): not timed"},
-    NotTimedText{reason::kPositionUnknown, "arcs from a place that is not known: not timed"},
+    NotTimedText{reason::kPositionUnknown, "arcs from a position that is not known: not timed"},
     NotTimedText{reason::kArc, "arcs that are not understood: not timed"},
-    NotTimedText{not_timed::kAfterEnd, "blocks behind the end of the program (M2, M30): not timed"},
+    NotTimedText{not_timed::kAfterEnd, "blocks after the end of the program (M2, M30): not timed"},
 };
 
 std::string_view text_of(std::string_view id) {

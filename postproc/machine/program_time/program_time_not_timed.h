@@ -10,8 +10,8 @@ namespace batten::postproc {
 
 // Ids besides the reasons of gcode/state/reason.h, some of which count here too.
 namespace not_timed {
-inline constexpr std::string_view kPlaceUnknown = "place-unknown";
-inline constexpr std::string_view kPlaceAssumed = "place-assumed";
+inline constexpr std::string_view kPlaceUnknown = "start-unknown";
+inline constexpr std::string_view kPlaceAssumed = "position-assumed";
 inline constexpr std::string_view kRotaryAxis = "rotary-axis";
 inline constexpr std::string_view kPathChanged = "path-changed-by-control";
 inline constexpr std::string_view kSpindleUnknown = "spindle-speed-unknown";
@@ -23,7 +23,7 @@ inline constexpr std::string_view kAfterEnd = "after-end";
 }  // namespace not_timed
 
 struct NotTimed {
-  std::string_view id;  // stable: "place-unknown"
+  std::string_view id;  // stable: "start-unknown"
   std::string_view text;
   std::size_t count = 0;
   std::uint32_t first_line = 0;

@@ -206,7 +206,7 @@ INSTANTIATE_TEST_SUITE_P(
                                  [](CurveSetting&, NurbsRules&, std::vector<Point3>& points) {
                                    points[2].x() = 1e6;
                                  },
-                                 "a place beyond 999999.999"},
+                                 "a position beyond 999999.999"},
                     RefusedCurve{"KnotsThatMeet",
                                  [](CurveSetting&, NurbsRules& rules, std::vector<Point3>&) {
                                    rules.knots = {.digits = 1,
@@ -275,15 +275,15 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"KnotTooOften",
                 "G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nK1 X4 Y0\nK1 X5 Y0\nK1 X6 Y0\n"
                 "K1 X7 Y0\nK1 X8 Y0\nK2\nK2\nK2\nK2\n",
-                "an inner knot stands as often as the order",
+                "an inner knot is repeated as often as the order",
                 {"10 PS1008"}},
         BadText{"FirstKnotTooOften",
                 "G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nK0 X4 Y0\nK1\nK1\nK1\nK1\n",
-                "a knot stands more often than the order",
+                "a knot is repeated more often than the order",
                 {"6 PS1008"}},
         BadText{"StartsElsewhere",
                 "G06.2 K0 X.001 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1\nK1\nK1\n",
-                "the first point is not where the tool stands",
+                "the first point is not the tool's position",
                 {"2 PS1009"}},
         BadText{"MiscFunctionInside",
                 "G06.2 K0 X0 Y0\nK0 X1 Y0 M8\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1\nK1\nK1\n",
@@ -308,7 +308,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"8 few-points"}},
         BadText{"PointBehindTheEnd",
                 "G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1 X4 Y0\nK1\nK1\nK1\n",
-                "a point behind the ending knots",
+                "a point after the ending knots",
                 {"7 point-too-late", "10 PS1008"}},
         BadText{"WeightZero",
                 "G06.2 K0 X0 Y0\nK0 X1 Y0 R0\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1\nK1\nK1\n",
@@ -319,7 +319,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Nurbs, KnowsWhereTheToolStandsOrRefuses) {
   const CurveStart start = {{Point3::Zero(), {true, false, true}}, Units::kMillimetre};
   EXPECT_EQ(refusal_of(fanuc_curves().read(parsed(kGolden), 0, start)),
-            "where the tool stands is not known");
+            "the tool's position is not known");
 }
 
 TEST(Nurbs, ReadsNothingElse) {

@@ -162,7 +162,7 @@ TEST(Poly, RefusesACurveThatStartsElsewhere) {
   CurveSetting elsewhere = golden_poly_setting();
   elsewhere.start = {0.01, 0, 0};
   EXPECT_EQ(poly(curve_tests::golden_curve(), elsewhere),
-            "the curve does not start where the tool stands");
+            "the curve does not start at the tool's position");
 }
 
 struct PolyTextCase {

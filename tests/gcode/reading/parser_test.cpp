@@ -246,7 +246,7 @@ TEST(ParserDiagnostics, NameTheForeignLanguageOnce) {
 
 TEST(ParserDiagnostics, SayWhatCannotBeReadAndWhere) {
   EXPECT_EQ(only_diagnostic("G21\nG1 X1E3\n"),
-            "part.nc:2:6: warning: unreadable-block: an E right behind a number, which may be an "
+            "part.nc:2:6: warning: unreadable-block: an E right after a number, which may be an "
             "exponent or a word; the block is copied as it is");
   EXPECT_EQ(only_diagnostic("(a\nG1 X1\n"),
             "part.nc:1:1: warning: unclosed-comment: '(' without ')'; read as a comment up to the "

@@ -114,7 +114,7 @@ TEST(Explain, KeepsItsLinesShort) {
 TEST(Explain, TellsBothMeaningsOfAnIdThatIsAReasonAndABreach) {
   const std::string text = explanation_of("not-proved");
   EXPECT_NE(text.find("why blocks are kept"), std::string::npos);
-  EXPECT_NE(text.find("a breach found"), std::string::npos);
+  EXPECT_NE(text.find("a violation found"), std::string::npos);
 }
 
 TEST(Explain, NamesTheOptionThatLiftsARule) {

@@ -170,7 +170,7 @@ TEST(ConversionWays, ListTheBlocksOfSiemensProgramsThatCannotBeSaid) {
        {"5:1: D1 names the length of a tool that no M6 has put in"}},
       {"EdgeTooLate",
        "T1 M6\nG0 Z5\nD1\nG0 X0 Y0 Z5\n",
-       {"7:1: D1 comes behind a motion without the length of the tool"}},
+       {"7:1: D1 comes after a motion without the length of the tool"}},
       {"Jump",
        "GOTOF ENDE\nENDE:\n",
        {"5:1: GOTOF ENDE is no block of plain words", "6:1: ENDE: is jumped to"}},
@@ -183,7 +183,7 @@ TEST(ConversionWays, ListTheBlocksOfSiemensProgramsThatCannotBeSaid) {
        {"5:1: /G0 X3 is left out by some controls, run by others"}},
       {"SpindleStopInMotion",
        "G0 X5 M5\n",
-       {"5:7: M5 acts before or behind the motion of its block: controls differ"}},
+       {"5:7: M5 acts before or after the motion of its block: controls differ"}},
       {"Turns", "G4 S20\n", {"5:1: G4 S20 waits for turns of the spindle, which is no time"}},
   };
   for (const WayRefused& refused : kRefused) {

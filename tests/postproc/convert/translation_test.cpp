@@ -226,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedCase{"StopWithSpindleOn", "M0\n",
                     "M0 stops spindle and coolant on some controls, and they may be on"},
         RefusedCase{"SpindleStopInMotion", "G0 X5 M5\nM3\n",
-                    "M5 acts before or behind the motion of its block: controls differ"},
+                    "M5 acts before or after the motion of its block: controls differ"},
         RefusedCase{"SpeedInCut", "G1 X5 S4000 F100\n",
                     "S4000 changes the speed in a cutting move"},
         RefusedCase{"ToolOnly", "T3\nG0 X0 Y0 Z5\n",
@@ -235,9 +235,9 @@ INSTANTIATE_TEST_SUITE_P(
                     "G43 names the length of another tool"},
         RefusedCase{"ToolWithSpindleOn", "T3 M6\nG43 H3\nG0 X0 Y0 Z5\n",
                     "M6 finds the spindle on, and controls differ in whether it turns in the cut "
-                    "behind it"},
+                    "after it"},
         RefusedCase{"LengthNotSaid", "T3 M6\nM3\nG0 Z5\nX0 Y0\n",
-                    "G0 Z5 moves along Z behind a tool change without G43 or D, and the length "
+                    "G0 Z5 moves along Z after a tool change without G43 or D, and the length "
                     "always counts there; --allow tool-length takes it all the same"},
         RefusedCase{"NoLength", "G49\nG0 X0 Y0 Z5\n",
                     "G49 moves without the length of the tool, which always counts there; --allow "
@@ -255,7 +255,7 @@ TEST(Translation, TakesNoLengthBehindAMotionAlongZ) {
   options.allowed = {"tool-length"};
   EXPECT_EQ(messages_of(smoothed(text, options)),
             std::vector<std::string>{
-                "G43 comes behind a motion without the length of the tool (target heidenhain)"});
+                "G43 comes after a motion without the length of the tool (target heidenhain)"});
 }
 
 TEST(Translation, ListsEveryBlockThatCannotBeSaid) {

@@ -64,7 +64,7 @@ struct WrongCase {
   std::string name;
   std::string before;
   std::string after;
-  std::string id;          // that the breach must have
+  std::string id;          // that the violation must have
   std::uint32_t old_line;  // 0: not asked
   std::uint32_t new_line;
 };

@@ -194,7 +194,7 @@ TEST(Pipeline, KeepsFeedsInTheirOrderAndAtTheirPlaces) {
   std::vector<std::string> feeds;
   for (const std::string& line : lines_of(result.text)) {
     const std::size_t at = line.find('F');
-    if (at != std::string::npos) feeds.push_back(line.substr(at));
+    if (at != std::string::npos) feeds.push_back(line.substr(at, line.find('\n') - at));
   }
   EXPECT_EQ(feeds, (std::vector<std::string>{"F300", "F2000", "F1000", "F1500"}));
 }

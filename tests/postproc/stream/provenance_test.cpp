@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 bool is_told(const SmoothResult& result) {
   return std::ranges::any_of(result.diagnostics, [](const gcode::Diagnostic& each) {
-    return each.id == "smoothing-not-told" && each.severity == gcode::Severity::kNote;
+    return each.id == "missing-provenance" && each.severity == gcode::Severity::kNote;
   });
 }
 
