@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geometry/basic/point.h"
-#include "geometry/numeric/cubic_roots.h"
+#include "geometry/numeric/extrema.h"
 #include "geometry/path/path.h"
 
 namespace batten::geometry {

@@ -14,8 +14,8 @@
 #include "gcode/reading/parser.h"
 #include "postproc/convert/conversion.h"
 #include "postproc/proof/verification.h"
-#include "postproc/report/compact_numbers.h"
 #include "postproc/report/page_files.h"
+#include "postproc/report/page_path.h"
 #include "postproc/report/page_speed.h"
 #include "postproc/report/smooth_report.h"
 

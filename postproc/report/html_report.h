@@ -27,7 +27,7 @@ struct HtmlReportOptions {
 // that of json_report, its runs as one list per field.
 [[nodiscard]] Json page_data(const SmoothReport& report, const HtmlReportOptions& options);
 
-// {"count": n, "unit_mm": 0.0001, .. and a text per column (postproc/report/compact_numbers.h)}
+// {"count": n, "unit_mm": 0.0001, .. and a text per column (postproc/report/page_path.h)}
 [[nodiscard]] Json path_columns(const PagePath& path);
 
 }  // namespace batten::postproc

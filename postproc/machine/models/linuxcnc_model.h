@@ -1,3 +1,4 @@
+// LinuxCNC's canon layer in front of the planner: under G64 P Q it joins lines that are nearly one.
 #pragma once
 
 #include <cstdint>

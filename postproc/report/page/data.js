@@ -1,5 +1,5 @@
 'use strict';
-// The data of the page: columns of numbers as postproc/report/compact_numbers.h writes them.
+// The data of the page: columns of numbers as postproc/report/page_path.h writes them.
 
 function bytesOf(text) {
   const raw = atob(text);

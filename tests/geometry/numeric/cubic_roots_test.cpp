@@ -1,10 +1,10 @@
-#include "geometry/numeric/cubic_roots.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 #include <vector>
+
+#include "geometry/numeric/extrema.h"
 
 namespace batten::geometry {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "gcode/controls/built_in.h"
-#include "postproc/report/compact_numbers.h"
 #include "postproc/report/page_files.h"
+#include "postproc/report/page_path.h"
 #include "postproc/report/smooth_report.h"
 #include "tests/support/places.h"
 #include "tests/support/report_words.h"
