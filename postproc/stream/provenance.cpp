@@ -28,7 +28,9 @@ std::string provenance_comment(const gcode::Control& target, double tolerance_mm
 bool was_smoothed(const gcode::Program& program) {
   const auto same = [](char a, char b) { return gcode::upper(a) == gcode::upper(b); };
   return std::ranges::any_of(program.comments, [&](const gcode::Comment& comment) {
-    return !std::ranges::search(program.source.text(comment.span), kSmoothed, same).empty();
+    const std::string_view text = program.source.text(comment.span);
+    return std::search(text.begin(), text.end(), kSmoothed.begin(), kSmoothed.end(), same) !=
+           text.end();
   });
 }
 
