@@ -331,7 +331,7 @@ NurbsRules mitsubishi_nurbs(Units) {
   return {.knots = {.digits = 8, .decimals = 4}, .three_axes = true, .framed = true};
 }
 
-CurveFormat nurbs_format(std::function<NurbsRules(Units)> rules) {
+CurveFormat nurbs_format(const std::function<NurbsRules(Units)>& rules) {
   CurveFormat format;
   format.name = "G06.2";
   format.is_block_per_piece = false;

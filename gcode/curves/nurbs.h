@@ -38,7 +38,7 @@ struct NurbsRules {
 // (or in the one after G05 P10000), points, as many blocks of K alone as the order says (2 to 4),
 // nothing between them but N words. Everything that would be an alarm of the control is refused,
 // and weights that differ.
-[[nodiscard]] CurveFormat nurbs_format(std::function<NurbsRules(Units)> rules);
+[[nodiscard]] CurveFormat nurbs_format(const std::function<NurbsRules(Units)>& rules);
 
 // All only under --output curves: whether a control has the option is known to its owner alone.
 [[nodiscard]] const CurveFormat& fanuc_curves();

@@ -25,8 +25,7 @@ struct LengthDerivatives {
 };
 
 // From those by another parameter, the first not zero: the chain rule.
-[[nodiscard]] LengthDerivatives by_length(const Vector3& first, const Vector3& second,
-                                          const Vector3& third);
+[[nodiscard]] LengthDerivatives by_length(const Vector3& d1, const Vector3& d2, const Vector3& d3);
 
 // mm/s: the least over curve and axes of V / |x_s|, sqrt(A / |x_ss|) and cbrt(J / |x_sss|), no
 // more than `feed`; x_s .. are derivatives by length, the third from both sides at the knots.

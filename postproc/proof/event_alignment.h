@@ -34,7 +34,7 @@ struct EventAlignment {
 // own. The feed is asked for at kText events, whatever uses it there, and where an F stands in
 // either program that no cut has used: a rapid may run with it, that of its own block too, and
 // behind G20, G93 or M2 it is not known any more.
-[[nodiscard]] std::string_view different_item(const EventAt& before, const EventAt& after);
+[[nodiscard]] std::string_view different_item(const EventAt& old, const EventAt& now);
 
 // Between programs of two languages: what bends the path, or the meaning of a feed. How arcs and
 // units are read does not count, since motions are compared in millimetres.
