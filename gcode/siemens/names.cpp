@@ -41,6 +41,8 @@ using enum Axes;
 using enum NameAct;
 using Modal = ModalState;
 
+// In the order in which rows are read.
+// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
 struct NameRow {
   std::string_view names;  // with a blank on each side
   std::string_view why;    // the reason why they end a run

@@ -33,6 +33,7 @@ enum class Where : std::uint8_t {
 
 // A block with one of these G words (in tenths), all letters of `all`, one of `any` and of `or_any`
 // where there are such, and none of `none`.
+// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding): in the order in which rows are read
 struct WordRow {
   LatheMark mark;
   std::array<Code, 7> codes = {};  // up to the first 0; none: any block

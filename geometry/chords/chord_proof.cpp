@@ -262,7 +262,7 @@ double greatest_square(const CubicBezier& piece, double known, int halvings) {
 
 Array4d squares_of(const ControlCoordinates& p) { return p.x * p.x + p.y * p.y + p.z * p.z; }
 
-Point3 point_of(const ControlCoordinates& p, std::size_t i) { return {p.x[i], p.y[i], p.z[i]}; }
+Point3 point_of(const ControlCoordinates& p, Eigen::Index i) { return {p.x[i], p.y[i], p.z[i]}; }
 
 // The same for what lies across a chord, where nearly always one look is enough.
 double greatest_square(const ControlCoordinates& across, double known) {
@@ -320,7 +320,7 @@ std::size_t ChordsFrom::piece_at(double u) const {
 
 // Of piece i, what lies between the start and `end`, seen from the start.
 ControlCoordinates ChordsFrom::part_before(std::size_t i, double end) const {
-  const ControlCoordinates whole = i == first_ ? rest_ : seen_from_start(pieces_.piece(i));
+  ControlCoordinates whole = i == first_ ? rest_ : seen_from_start(pieces_.piece(i));
   if (pieces_.breaks()[i + 1] <= end) return whole;
   double part = pieces_.local(i, end);
   if (i == first_) part = left_ > 0 ? std::max(1 - (1 - part) / left_, 0.0) : 0;

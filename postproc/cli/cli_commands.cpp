@@ -245,7 +245,7 @@ struct GivenTarget {
 };
 
 GivenTarget target_given(Arguments& in) {
-  const GivenTarget wrong = {.built_in = nullptr, .profile = nullptr, .is_wrong = true};
+  GivenTarget wrong = {.built_in = nullptr, .profile = nullptr, .is_wrong = true};
   const auto name = in.given.value("target");
   const bool names_file = name && name->ends_with(".toml");
   if (names_file && in.given.has("profile")) {

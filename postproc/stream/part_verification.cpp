@@ -228,20 +228,21 @@ std::optional<CommonPlace> last_common_place(const gcode::Interpretation& before
   std::unordered_multimap<std::uint64_t, const PlaceOnWay*> by_key;
   by_key.reserve(new_places.size());
   for (const PlaceOnWay& place : new_places) by_key.emplace(place.key, &place);
-  for (auto old = old_places.rbegin(); old != old_places.rend(); ++old) {
+  for (std::size_t i = old_places.size(); i-- > 0;) {
+    const PlaceOnWay& old = old_places[i];
     const PlaceOnWay* nearest = nullptr;
-    const auto [first, last] = by_key.equal_range(old->key);
+    const auto [first, last] = by_key.equal_range(old.key);
     for (auto each = first; each != last; ++each) {
       const PlaceOnWay& place = *each->second;
       const auto off = [&](const PlaceOnWay& p) {
-        return std::pair(std::abs(p.way - old->way), p.motion);
+        return std::pair(std::abs(p.way - old.way), p.motion);
       };
       if (nearest == nullptr || off(place) < off(*nearest)) nearest = &place;
     }
     if (nearest == nullptr) continue;
-    const gcode::Motion& old_motion = before.motions[old->motion];
+    const gcode::Motion& old_motion = before.motions[old.motion];
     const gcode::Motion& new_motion = after.motions[nearest->motion];
-    if (!as_far(*old, *nearest) || old_motion.piece.end() != new_motion.piece.end()) continue;
+    if (!as_far(old, *nearest) || old_motion.piece.end() != new_motion.piece.end()) continue;
     return CommonPlace{old_motion.block + 1, new_motion.block + 1};
   }
   return std::nullopt;
