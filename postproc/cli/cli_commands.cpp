@@ -229,7 +229,8 @@ std::shared_ptr<const Machine> machine_given(std::string_view otherwise, Argumen
 }
 
 std::string_view default_machine(const gcode::Control* target) {
-  return target == nullptr ? "" : target->machine;
+  if (target == nullptr) return {};
+  return target->machine;
 }
 
 // By --target NAME, --target FILE.toml, --profile FILE.toml, or --target NAME with --profile
