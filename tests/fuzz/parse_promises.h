@@ -112,10 +112,11 @@ inline std::string broken_block(const Program& program, const Block& block) {
   return "";
 }
 
-// At most one for each block, in the order of the program.
+// At most one for each block, in the order of the program, beside one about the whole file.
 inline std::string broken_diagnostics(const Program& program, const Diagnostics& found) {
   auto block = program.blocks.begin();
   for (const Diagnostic& diagnostic : found) {
+    if (diagnostic.id == "sixteen-bit-text") continue;
     while (block != program.blocks.end() && block->end <= diagnostic.where.begin) {
       ++block;
     }
