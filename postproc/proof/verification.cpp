@@ -16,7 +16,7 @@
 #include "postproc/proof/common_events.h"
 #include "postproc/proof/event_alignment.h"
 #include "postproc/proof/event_violations.h"
-#include "postproc/proof/refused_arcs.h"
+#include "postproc/proof/refused_by_target.h"
 #include "postproc/proof/section_comparison.h"
 #include "postproc/system/parallel_for.h"
 

@@ -356,6 +356,16 @@ TEST(ProgramTimeOfCycles, RepeatsIncrementalHoles) {
   EXPECT_NEAR(time.rapid_mm, 10 + 5 + 8 + 3 * 5 + 4 * 6, 1e-9) << "from X0 Y0 Z0";
 }
 
+// Axis words that belong to another code of their block are no hole, which would be 7 mm more.
+TEST(ProgramTimeOfCycles, DrillOnlyWhereTheAxisWordsAreTheirs) {
+  const Machine m = machine_of(ControllerModel::kLookAhead);
+  const std::string cycle = "G21 G90\nG0 X0 Y0 Z2\nG81 X0 Y0 Z-5 R2 F600\n";
+  EXPECT_NEAR(timed(cycle + "X5\nG80\nM2\n", m).cutting_mm, 14, 1e-9);
+  for (const char* other : {"G65 P9000 X5", "G68 X5 Y5 R30", "G51 X5 Y5 P2"}) {
+    EXPECT_NEAR(timed(cycle + other + "\nG80\nM2\n", m).cutting_mm, 7, 1e-9) << other;
+  }
+}
+
 TEST(ProgramTimeOfCycles, CountsWhatItDoesNotFollow) {
   const Machine m = machine_of(ControllerModel::kLookAhead);
   const std::string head = "G21 G90\nG0 X0 Y0 Z2\n";

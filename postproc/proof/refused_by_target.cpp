@@ -1,4 +1,4 @@
-#include "postproc/proof/refused_arcs.h"
+#include "postproc/proof/refused_by_target.h"
 
 #include <fmt/format.h>
 
