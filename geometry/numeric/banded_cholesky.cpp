@@ -18,55 +18,44 @@ void BandedMatrix::fix(std::size_t i, const Point3& value, std::vector<Point3>& 
   right[i] = value;
 }
 
-// Row i of L D L^T, and of L y = right on the way: rows_[i][k] becomes L(i, i-k), rows_[i][0]
-// becomes 1 / D(i). `kBefore`: the rows above that it touches.
-template <int kBefore, typename Value>
-bool BandedMatrix::eliminate(std::size_t i, std::vector<Value>& right) {
-  Row row = rows_[i];
-#pragma GCC unroll 3
-  for (int k = kBefore; k >= 1; --k) {
-    // row[k] still holds L(i, i-k) * D(i-k) of the entries further left.
-#pragma GCC unroll 3
-    for (int m = k + 1; m <= kBefore; ++m) row[k] -= row[m] * rows_[i - k][m - k];
-  }
-  double diagonal = row[0];
-  Value value = right[i];
-#pragma GCC unroll 3
-  for (int k = kBefore; k >= 1; --k) {
-    const double scaled = row[k] * rows_[i - k][0];
-    diagonal -= scaled * row[k];
-    row[k] = scaled;
-    value -= scaled * right[i - k];
-  }
-  if (!(diagonal > 0)) return false;
-  row[0] = 1 / diagonal;
-  rows_[i] = row;
-  right[i] = value;
-  return true;
-}
-
-// Row i of D and of the transpose of L. `kBehind`: the rows below that it touches.
-template <int kBehind, typename Value>
-void BandedMatrix::back_substitute(std::size_t i, std::vector<Value>& right) const {
-  Value value = right[i] * rows_[i][0];
-#pragma GCC unroll 3
-  for (int k = 1; k <= kBehind; ++k) value -= rows_[i + k][k] * right[i + k];
-  right[i] = value;
-}
-
 template <typename Value>
 bool BandedMatrix::solve(std::vector<Value>& right) {
+  // Row i of L D L^T, and of L y = right on the way: rows_[i][k] becomes L(i, i-k), rows_[i][0]
+  // becomes 1 / D(i). `before`: the rows above that it touches; known while compiling but for the
+  // first rows, so that loops are unrolled.
+  const auto eliminate = [&](std::size_t i, int before) __attribute__((always_inline)) {
+    Row row = rows_[i];
+#pragma GCC unroll 3
+    for (int k = before; k >= 1; --k) {
+      // row[k] still holds L(i, i-k) * D(i-k) of the entries further left.
+#pragma GCC unroll 3
+      for (int m = k + 1; m <= before; ++m) row[k] -= row[m] * rows_[i - k][m - k];
+    }
+    double diagonal = row[0];
+    Value value = right[i];
+#pragma GCC unroll 3
+    for (int k = before; k >= 1; --k) {
+      const double scaled = row[k] * rows_[i - k][0];
+      diagonal -= scaled * row[k];
+      row[k] = scaled;
+      value -= scaled * right[i - k];
+    }
+    if (!(diagonal > 0)) return false;
+    row[0] = 1 / diagonal;
+    rows_[i] = row;
+    right[i] = value;
+    return true;
+  };
   const std::size_t n = rows_.size();
-  if (n > 0 && !eliminate<0>(0, right)) return false;
-  if (n > 1 && !eliminate<1>(1, right)) return false;
-  if (n > 2 && !eliminate<2>(2, right)) return false;
-  for (std::size_t i = 3; i < n; ++i) {
-    if (!eliminate<3>(i, right)) return false;
+  for (std::size_t i = 0; i < n; ++i) {
+    const int before = static_cast<int>(std::min<std::size_t>(i, kBands));
+    if (!(before < kBands ? eliminate(i, before) : eliminate(i, kBands))) return false;
   }
-  if (n > 0) back_substitute<0>(n - 1, right);
-  if (n > 1) back_substitute<1>(n - 2, right);
-  if (n > 2) back_substitute<2>(n - 3, right);
-  for (std::size_t i = n; i-- > 3;) back_substitute<3>(i - 3, right);
+  for (std::size_t i = n; i-- > 0;) {
+    Value value = right[i] * rows_[i][0];
+    for (std::size_t k = 1; k <= kBands && i + k < n; ++k) value -= rows_[i + k][k] * right[i + k];
+    right[i] = value;
+  }
   return true;
 }
 

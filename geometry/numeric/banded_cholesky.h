@@ -50,11 +50,6 @@ class BandedMatrix {
   void inverse_band(BandedMatrix& inverse, std::size_t first) const;
 
  private:
-  template <int kBefore, typename Value>
-  [[nodiscard]] bool eliminate(std::size_t i, std::vector<Value>& right);
-  template <int kBehind, typename Value>
-  void back_substitute(std::size_t i, std::vector<Value>& right) const;
-
   std::vector<Row> rows_;
 };
 

@@ -100,8 +100,7 @@ template <typename Function>
   return half * sum;
 }
 
-// The least value of a function of a few variables that has kinks and forbidden places.
-
+// For functions of a few variables that have kinks and forbidden places.
 struct PatternSearchOptions {
   std::vector<double> steps;  // first step of each variable, > 0
   int max_evaluations = 1000;
@@ -125,10 +124,8 @@ struct PatternSearchResult {
     const std::function<double(const std::vector<double>&)>& f, std::vector<double> start,
     const PatternSearchOptions& options);
 
-// Where a cubic polynomial is zero between 0 and 1.
-
 // Appends offset + t for every t in [0, 1] where c0 + c1 t + c2 t^2 + c3 t^3 changes its sign or
-// is 0 at an end of a stretch on which it only rises or only falls, to about 1e-13 in t. Places
+// is 0 at an end of an interval on which it only rises or only falls, to about 1e-13 in t. Places
 // where it touches 0 without crossing may be missed by rounding. No place at all where every
 // coefficient is 0.
 void append_cubic_roots(double c0, double c1, double c2, double c3, double offset,
