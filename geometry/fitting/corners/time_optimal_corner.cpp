@@ -248,7 +248,7 @@ TimeOptimalLine::Timed TimeOptimalLine::solved(const Joint& in, const Joint& out
                               : u / (made.basis.last() - apex) * out.room * out.leg.away));
     }
   }
-  const BandCurve curve = least_ratio_in_band(made, std::move(points), 2, {});
+  const BandCurve curve = least_ratio_in_band(made, std::move(points), 2);
   return {curve.curve.control_points(), lost, curve.worst_ratio, curve.end != BandEnd::kOutside};
 }
 

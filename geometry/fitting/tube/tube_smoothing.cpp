@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "geometry/fitting/band_curve.h"
 #include "geometry/fitting/naseath/naseath.h"
-#include "geometry/fitting/tube/tube_smoothing_solver.h"
 #include "geometry/numeric/extrema.h"
 #include "geometry/path/parameter_samples.h"
 
@@ -19,24 +17,80 @@ namespace batten::geometry {
 
 namespace {
 
-// Rounds of weighting by the curve of the round before, and after which of them a candidate is
-// taken: the first changes most, the last has settled.
-constexpr int kRounds = 9;
-bool is_taken(int round) { return round == 1 || round == 3 || round == kRounds; }
+std::vector<HeldPoint> held_ends(const BsplineCurve& curve, int held_points) {
+  const auto& points = curve.control_points();
+  const std::size_t last = points.size() - 1;
+  if (held_points == 0) {
+    return {HeldPoint::on_plane(0, points[0], curve.direction_at(curve.first())),
+            HeldPoint::on_plane(last, points[last], curve.direction_at(curve.last()))};
+  }
+  std::vector<HeldPoint> held;
+  const std::size_t most = std::min<std::size_t>(held_points, points.size() / 2);
+  for (std::size_t i = 0; i < most; ++i) {
+    held.push_back(HeldPoint::at(i, points[i]));
+    held.push_back(HeldPoint::at(last - i, points[last - i]));
+  }
+  return held;
+}
 
-// The time at the speed min(V, sqrt(A/kappa)), with the corner between the two rounded, is the
-// integral of (1/V^4 + (kappa/A)^2)^(1/4) ds. As a function of kappa^2 it is concave, so its
-// tangent, which has this power, is above it: lowering the integral of tangent slope times kappa^2
-// lowers the time, and the tangent is taken anew each round. (A local least: it depends on the
-// start.)
-constexpr double kQuickPower = -0.75;
+std::vector<BandSample> tube_samples(const BsplineCurve& curve, double radius) {
+  std::vector<BandSample> samples;
+  for (const ParameterSample& at : parameter_samples(curve, kTubeTuning.watched)) {
+    BandSample sample;
+    sample.parameter = at.parameter;
+    sample.foot = curve.point_at(at.parameter);
+    sample.radius = radius;
+    samples.push_back(sample);
+  }
+  return samples;
+}
 
-// What is twice too much is weighted so much more in the next round; more would swing.
-constexpr double kRaise = 0.5;
-constexpr std::size_t kCurvaturePlaces = 8;  // per span
+// Curves of least energy in the tube about one curve, on its knots.
+class TubeSolver {
+ public:
+  TubeSolver(const BsplineCurve& curve, const TubeOptions& options)
+      : original_(curve), radius_(options.radius), problem_{curve.basis(), 3, {}, {}, {}} {
+    problem_.samples = tube_samples(curve, options.radius);
+    problem_.held = held_ends(curve, options.held_points);
+  }
 
-// A parameter that stands still has no curvature to speak of.
-constexpr double kLeastSpeed = 1e-3;
+  // The curve with the least integral of weight * |C^(energy)|^2, energy 2 or 3.
+  [[nodiscard]] BsplineCurve least(int energy, std::function<EnergyWeight(double)> weight) {
+    problem_.energy = energy;
+    problem_.weight = std::move(weight);
+    return pulled_inside(solve_band(problem_, original_.control_points(), kTubeTuning.gap).curve);
+  }
+
+  // The part of the way from the old curve to `moved`, which has its knots, that is inside the
+  // tube at every parameter: all of it, if that is.
+  [[nodiscard]] BsplineCurve pulled_inside(const BsplineCurve& moved) const {
+    const double far = displacement(moved);
+    if (far <= radius_) return moved;
+    // The bound of the shorter displacement is rounded again: a slack less is surely enough.
+    const double part = radius_ * (1 - kTubeTuning.slack) / far;
+    std::vector<Point3> points = original_.control_points();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i] += part * (moved.control_points()[i] - points[i]);
+    }
+    return {original_.basis(), std::move(points)};
+  }
+
+  // mm: a bound on |curve(u) - old(u)| for every u.
+  [[nodiscard]] double displacement(const BsplineCurve& moved) const {
+    std::vector<Point3> moves = moved.control_points();
+    for (std::size_t i = 0; i < moves.size(); ++i) moves[i] -= original_.control_points()[i];
+    const auto bounds = displacement_bounds(BsplineCurve(original_.basis(), std::move(moves)),
+                                            kTubeTuning.slack * radius_);
+    return *std::max_element(bounds.begin(), bounds.end());
+  }
+
+  [[nodiscard]] const BsplineCurve& original() const { return original_; }
+
+ private:
+  BsplineCurve original_;
+  double radius_;
+  BandProblem problem_;
+};
 
 class TubeCandidates {
  public:
@@ -57,10 +111,10 @@ class TubeCandidates {
     add(TubeMethod::kThirdDerivative, third);
     for (const BsplineCurve& start : {bending, third}) {
       add_weighted(TubeMethod::kCurvature, start, 0);
-      add_weighted(TubeMethod::kQuick, start, kQuickPower);
+      add_weighted(TubeMethod::kQuick, start, kTubeTuning.quick_power);
       add_even(start);
     }
-    add_weighted(TubeMethod::kQuick, solver_.original(), kQuickPower);
+    add_weighted(TubeMethod::kQuick, solver_.original(), kTubeTuning.quick_power);
   }
 
   void add_naseath(const NaseathRepairs& repairs, TubeMethod method) {
@@ -70,7 +124,7 @@ class TubeCandidates {
     options.repairs = repairs;
     const BsplineCurve moved = smooth_naseath(solver_.original(), options).curve;
     add(method, solver_.pulled_inside(moved));
-    add_weighted(TubeMethod::kQuick, moved, kQuickPower);
+    add_weighted(TubeMethod::kQuick, moved, kTubeTuning.quick_power);
   }
 
   std::vector<TubeCandidate> found;
@@ -80,13 +134,13 @@ class TubeCandidates {
   // round before. kappa^2 ds is the square of what C'' has across C', over the third power of the
   // speed, du.
   void add_weighted(TubeMethod method, BsplineCurve curve, double power) {
-    for (int round = 1; round <= kRounds; ++round) {
+    for (int round = 1; round <= kTubeTuning.rounds; ++round) {
       const BsplineCurve before = curve;
       curve = solver_.least(2, [&](double u) {
         const double ratio = before.curvature_at(u) / slow_curvature_;
         return weight_at(before, u, std::pow(1 + ratio * ratio, power));
       });
-      if (is_taken(round)) add(method, curve);
+      if (kTubeTuning.is_taken(round)) add(method, curve);
     }
   }
 
@@ -95,31 +149,32 @@ class TubeCandidates {
   void add_even(BsplineCurve curve) {
     const auto breaks = curve.breakpoints();
     std::vector<double> raised(breaks.size() - 1, 1);
-    for (int round = 1; round <= kRounds; ++round) {
+    for (int round = 1; round <= kTubeTuning.rounds; ++round) {
       const BsplineCurve before = curve;
       raise(raised, before);
       curve = solver_.least(2, [&](double u) {
         const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, u);
         return weight_at(before, u, raised[static_cast<std::size_t>(above - breaks.begin() - 1)]);
       });
-      if (is_taken(round)) add(TubeMethod::kEven, curve);
+      if (kTubeTuning.is_taken(round)) add(TubeMethod::kEven, curve);
     }
   }
 
   void raise(std::vector<double>& weights, const BsplineCurve& curve) const {
-    const auto samples = parameter_samples(curve, kCurvaturePlaces);
+    constexpr std::size_t kSteps = kTubeTuning.curvature_samples;
+    const auto samples = parameter_samples(curve, kTubeTuning.curvature_samples);
     for (std::size_t i = 0; i < weights.size(); ++i) {
       double most = slow_curvature_;
-      for (std::size_t k = 0; k <= kCurvaturePlaces; ++k) {
-        most = std::max(most, samples[i * kCurvaturePlaces + k].curvature);
+      for (std::size_t k = 0; k <= kSteps; ++k) {
+        most = std::max(most, samples[i * kSteps + k].curvature);
       }
-      weights[i] *= std::pow(most / slow_curvature_, kRaise);
+      weights[i] *= std::pow(most / slow_curvature_, kTubeTuning.raise);
     }
   }
 
   [[nodiscard]] static EnergyWeight weight_at(const BsplineCurve& curve, double u, double weight) {
     const Vector3 speed = curve.derivative_at(u, 1);
-    const double size = std::max(speed.norm(), kLeastSpeed);
+    const double size = std::max(speed.norm(), kTubeTuning.least_speed);
     return {weight / (size * size * size), speed / size};
   }
 
@@ -150,27 +205,33 @@ void check(const BsplineCurve& curve, const TubeOptions& options) {
 }  // namespace
 
 std::string_view name_of(TubeMethod method) {
-  switch (method) {
-    case TubeMethod::kOriginal:
-      return "original";
-    case TubeMethod::kNaseath:
-      return "naseath";
-    case TubeMethod::kNaseathLiteral:
-      return "naseath-literal";
-    case TubeMethod::kBending:
-      return "bending";
-    case TubeMethod::kThirdDerivative:
-      return "third-derivative";
-    case TubeMethod::kCurvature:
-      return "curvature";
-    case TubeMethod::kEven:
-      return "even";
-    case TubeMethod::kQuick:
-      return "quick";
-    case TubeMethod::kMixture:
-      return "mixture";
+  constexpr std::string_view kNames[] = {
+      "original",  "naseath", "naseath-literal", "bending", "third-derivative",
+      "curvature", "even",    "quick",           "mixture"};
+  return kNames[static_cast<std::size_t>(method)];
+}
+
+BsplineCurve with_spans_halved(const BsplineCurve& curve, int times) {
+  if (times == 0) return curve;
+  std::vector<double> knots;
+  for (const double u : curve.basis().knots()) {
+    if (!knots.empty() && knots.back() < u) knots.push_back(0.5 * (knots.back() + u));
+    knots.push_back(u);
   }
-  return "";
+  std::vector<Point3> points;
+  for (std::size_t i = 0; i + 4 < knots.size(); ++i) {
+    // Control point i is the value for the three knots after i of the symmetric polynomial, affine
+    // in each of them, that is the curve's where all three are equal (L. Ramshaw 1987), on any span
+    // that they surround.
+    const double inside = 0.5 * (knots[i + 1] + knots[i + 3]);
+    const double x = knots[i + 1] - inside;
+    const double y = knots[i + 2] - inside;
+    const double z = knots[i + 3] - inside;
+    points.push_back(curve.point_at(inside) + (x + y + z) / 3 * curve.derivative_at(inside, 1) +
+                     (x * y + x * z + y * z) / 6 * curve.derivative_at(inside, 2) +
+                     x * y * z / 6 * curve.derivative_at(inside, 3));
+  }
+  return with_spans_halved({BsplineBasis(3, std::move(knots)), std::move(points)}, times - 1);
 }
 
 std::vector<TubeCandidate> smooth_in_tube(const BsplineCurve& curve, const TubeOptions& options) {
@@ -190,17 +251,6 @@ std::vector<TubeCandidate> smooth_in_tube(const BsplineCurve& curve, const TubeO
 }
 
 namespace {
-
-constexpr int kCurvatureSteps = 64;  // per span
-constexpr std::size_t kMixed = 4;    // candidates that a mixture is made of, at most
-constexpr int kMixtures = 100;       // that are timed, at most
-constexpr double kFirstShare = 0.25;
-
-// A gain that is less than this part of the time is none: the curve stays where it was.
-constexpr double kWorthMoving = 1e-6;
-
-// Curvature above the old one's by less is rounding.
-constexpr double kSameCurvature = 1e-9;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -223,13 +273,14 @@ class Chooser {
     const Timed best = best_of(timed_);
     const Timed mixed = mixture(best);
     const Timed& better = mixed.time < best.time ? mixed : best;
-    const Timed& chosen = better.time < before * (1 - kWorthMoving) ? better : timed_.front();
+    const Timed& chosen =
+        better.time < before * (1 - kTubeTuning.worth_moving) ? better : timed_.front();
     return {chosen.candidate, before, chosen.time, calls_};
   }
 
  private:
   static double bend_of(const BsplineCurve& curve) {
-    return max_curvature(parameter_samples(curve, kCurvatureSteps));
+    return max_curvature(parameter_samples(curve, kTubeTuning.curvature_steps));
   }
 
   double time_of(const BsplineCurve& curve) {
@@ -239,7 +290,7 @@ class Chooser {
 
   Timed judged(TubeCandidate candidate) {
     const double time = time_of(candidate.curve);
-    const bool harder = bend_of(candidate.curve) > bend_ * (1 + kSameCurvature);
+    const bool harder = bend_of(candidate.curve) > bend_ * (1 + kTubeTuning.same_curvature);
     return {std::move(candidate), time, harder};
   }
 
@@ -251,7 +302,7 @@ class Chooser {
       if (t.time < any->time) any = &t;
       if (!t.bends_harder && t.time < soft->time) soft = &t;
     }
-    return any->time < soft->time * (1 - kWorthBending) ? *any : *soft;
+    return any->time < soft->time * (1 - kTubeTuning.worth_bending) ? *any : *soft;
   }
 
   // Tubes are convex: a mean of curves in the tube is in it.
@@ -280,7 +331,7 @@ class Chooser {
     const auto time = [&](const std::vector<double>& shares) {
       if (*std::min_element(shares.begin(), shares.end()) < 0) return kNever;
       const BsplineCurve curve = mixed(shares);
-      if (!best.bends_harder && bend_of(curve) > bend_ * (1 + kSameCurvature)) {
+      if (!best.bends_harder && bend_of(curve) > bend_ * (1 + kTubeTuning.same_curvature)) {
         return kNever;
       }
       return time_of(curve);
@@ -288,9 +339,9 @@ class Chooser {
     std::vector<double> start(parts.size(), 0);
     start[0] = 1;
     PatternSearchOptions search;
-    search.steps.assign(parts.size(), kFirstShare);
-    search.max_evaluations = kMixtures;
-    search.finest = 0.01;
+    search.steps.assign(parts.size(), kTubeTuning.first_share);
+    search.max_evaluations = kTubeTuning.mixtures;
+    search.finest = kTubeTuning.finest_share;
     const PatternSearchResult found = pattern_search(time, start, search);
     const BsplineCurve curve = mixed(found.at);
     const TubeSolver tube(base, options_);
@@ -312,7 +363,7 @@ class Chooser {
       const bool known = std::any_of(parts.begin(), parts.end(), [&](const Timed* p) {
         return p->candidate.method == t->candidate.method;
       });
-      if (!known && parts.size() < kMixed) parts.push_back(t);
+      if (!known && parts.size() < kTubeTuning.mixed) parts.push_back(t);
     }
     return parts;
   }

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
-#include "geometry/fitting/tube/tube_smoothing_solver.h"
 #include "tests/support/corners.h"
 #include "tests/support/knot_insertion.h"
 #include "tests/support/naseath_cases.h"
@@ -52,11 +51,15 @@ double sampled_displacement(const BsplineCurve& a, const BsplineCurve& b) {
   return most;
 }
 
-TEST(SmoothInTube, EveryCandidateStaysInTheTubeAtEveryParameter) {
+TEST(SmoothInTube, TheOldCurveComesFirstAndAllStayInTheTubeAtEveryParameter) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const BsplineCurve curve = random_curve(seed);
     const double radius = radius_for(seed);
-    for (const TubeCandidate& candidate : smooth_in_tube(curve, tube(radius))) {
+    const auto candidates = smooth_in_tube(curve, tube(radius));
+    EXPECT_EQ(candidates.front().method, TubeMethod::kOriginal);
+    EXPECT_EQ(candidates.front().displacement, 0);
+    EXPECT_EQ(farthest(candidates.front().curve.control_points(), curve.control_points()), 0);
+    for (const TubeCandidate& candidate : candidates) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << " " << name_of(candidate.method)
                                       << " halvings " << candidate.halvings);
       EXPECT_LE(candidate.displacement, radius);
@@ -64,14 +67,6 @@ TEST(SmoothInTube, EveryCandidateStaysInTheTubeAtEveryParameter) {
                 candidate.displacement * (1 + 1e-9) + 1e-12);
     }
   }
-}
-
-TEST(SmoothInTube, TheOldCurveComesFirst) {
-  const BsplineCurve curve = random_curve(3);
-  const auto candidates = smooth_in_tube(curve, tube(.1));
-  EXPECT_EQ(candidates.front().method, TubeMethod::kOriginal);
-  EXPECT_EQ(candidates.front().displacement, 0);
-  EXPECT_EQ(farthest(candidates.front().curve.control_points(), curve.control_points()), 0);
 }
 
 double energy_of(const BsplineCurve& curve, int derivative) {
@@ -84,26 +79,20 @@ double energy_of(const BsplineCurve& curve, int derivative) {
   return sum;
 }
 
+// Candidates are pulled back inside by some permille, and energies are by samples.
 TEST(SmoothInTube, EachEnergyIsTheLeastOfTheCandidatesOnItsKnots) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     TubeOptions options = tube(radius_for(seed));
     options.halvings = 0;
     const auto candidates = smooth_in_tube(random_curve(seed), options);
-    double least[2] = {0, 0};
-    double best[2] = {1e300, 1e300};
-    for (const TubeCandidate& candidate : candidates) {
-      for (int i = 0; i < 2; ++i) {
-        best[i] = std::min(best[i], energy_of(candidate.curve, 2 + i));
-      }
-      if (candidate.method == TubeMethod::kBending) least[0] = energy_of(candidate.curve, 2);
-      if (candidate.method == TubeMethod::kThirdDerivative) {
-        least[1] = energy_of(candidate.curve, 3);
+    for (const auto& [method, order] :
+         {std::pair(TubeMethod::kBending, 2), std::pair(TubeMethod::kThirdDerivative, 3)}) {
+      const auto least = std::ranges::find(candidates, method, &TubeCandidate::method);
+      for (const TubeCandidate& candidate : candidates) {
+        EXPECT_LE(energy_of(least->curve, order), energy_of(candidate.curve, order) * 1.02);
       }
     }
-    // Pulled back inside by some permille, and energies by samples.
-    EXPECT_LE(least[0], best[0] * 1.02);
-    EXPECT_LE(least[1], best[1] * 1.02);
   }
 }
 
@@ -231,7 +220,7 @@ TEST(BestInTube, KeepsTheCurveWhereNothingIsWon) {
 TEST(BestInTube, BendsHarderOnlyWhereThatIsWorthIt) {
   const BsplineCurve curve = random_curve(4);
   const double bend = greatest_curvature(curve);
-  for (const double gain : {0.5 * kWorthBending, 4 * kWorthBending}) {
+  for (const double gain : {0.5 * kTubeTuning.worth_bending, 4 * kTubeTuning.worth_bending}) {
     // All that bends harder is quicker, by so much and no more.
     const auto clock = [&](const BsplineCurve& c) {
       return greatest_curvature(c) > bend * (1 + 1e-6) ? 1 - gain : 1.0;
@@ -240,7 +229,7 @@ TEST(BestInTube, BendsHarderOnlyWhereThatIsWorthIt) {
     ASSERT_TRUE(std::any_of(candidates.begin(), candidates.end(),
                             [&](const auto& c) { return clock(c.curve) < 1; }));
     const TubeChoice choice = best_in_tube(curve, tube(.1), clock);
-    EXPECT_EQ(choice.time<1, gain> kWorthBending);
+    EXPECT_EQ(choice.time<1, gain> kTubeTuning.worth_bending);
   }
 }
 
