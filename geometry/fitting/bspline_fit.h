@@ -1,4 +1,4 @@
-// The smoothest cubic B-spline that keeps given distances from given places, on few knots.
+// The smoothest cubic B-spline that keeps given distances from given points, on few knots.
 // Method: docs/algorithms/bspline_fit.md. A fit whose problem changes here and there is made
 // again by PartedFit.
 //
@@ -11,9 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/fitting/bspline_fit_adaptive.h"
 #include "geometry/fitting/bspline_fit_system.h"
-#include "geometry/fitting/fit_problem.h"
 #include "geometry/path/bspline_curve.h"
 
 namespace batten::geometry {
@@ -26,17 +24,26 @@ struct BsplineFit {
 
 // Always returns a curve; worst_ratio says whether it keeps the limits. Linear time.
 // Requires two pins or more and the order that FitProblem promises.
-[[nodiscard]] BsplineFit fit_bspline(const FitProblem& problem, const FitOptions& options);
+[[nodiscard]] BsplineFit fit_bspline(const FitProblem& problem,
+                                     int max_refinements = kFitTuning.max_refinements);
+
+class AdaptiveFit;
 
 // A fit in parts that do not know of each other: pins and straight zones part the curve, for
 // whatever happens on one side of them does not move the other.
 class PartedFit {
  public:
   // Fits. Throws std::invalid_argument as fit_bspline does.
-  PartedFit(const FitProblem& problem, const FitOptions& options);
+  PartedFit(const FitProblem& problem, int max_refinements = kFitTuning.max_refinements);
+
+  PartedFit(const PartedFit& other);
+  PartedFit(PartedFit&& other) noexcept;
+  PartedFit& operator=(const PartedFit& other);
+  PartedFit& operator=(PartedFit&& other) noexcept;
+  ~PartedFit();
 
   // Fits another problem on the same interval, and works only where it differs. `closest` (mm): a
-  // pin or the end of a zone takes the place of knots nearer than this.
+  // pin or the end of a zone replaces knots nearer than this.
   void refit(const FitProblem& problem, double closest);
 
   [[nodiscard]] const FitSpline& spline() const { return spline_; }
@@ -53,7 +60,7 @@ class PartedFit {
   [[nodiscard]] std::vector<FitProblem> parted(const FitProblem& problem) const;
   void assemble(const FitProblem& problem);
 
-  FitOptions options_;
+  int max_refinements_;
   std::vector<double> borders_;  // between the parts, and both ends
   std::vector<AdaptiveFit> parts_;
   FitSpline spline_;  // of the parts in a row, with these pins and zones

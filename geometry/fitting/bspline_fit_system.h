@@ -1,6 +1,7 @@
-// The cubic spline of a fit while it is made: its knots, what is known of its control points, its
-// energy, and the basis values at the samples. And the normal equations for a range of its control
-// points, all others held where they are.
+// What a fit (bspline_fit.h) is asked for: samples to keep near, straight zones and pins to keep
+// exactly, and where spans start. Its cubic spline while it is made: knots, what is known of the
+// control points, the energy, and the basis values at the samples. And the normal equations for a
+// range of the control points, all others held where they are.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +12,139 @@
 #include <vector>
 
 #include "geometry/basic/point.h"
-#include "geometry/fitting/fit_problem.h"
 #include "geometry/numeric/banded_cholesky.h"
 
 namespace batten::geometry {
 
+struct FitSample {
+  double parameter = 0;
+  Point3 target = Point3::Zero();
+  Vector3 along = Vector3::Zero();  // unit direction of free sliding; zero: all of it counts
+  double limit = 0;                 // mm, > 0: no distance is greater
+  double scatter = 0;               // mm, rms distance expected here; 0: only the limit counts
+};
+
+// The curve is exactly the straight line from `start` to `end` over [from, to], run at even
+// speed, and so are its first two derivatives at both ends.
+struct StraightZone {
+  double from = 0;
+  double to = 0;
+  Point3 start = Point3::Zero();
+  Point3 end = Point3::Zero();
+};
+
+// The curve passes here exactly, and may have a corner.
+struct Pin {
+  double parameter = 0;
+  Point3 place = Point3::Zero();
+};
+
+struct FitProblem {
+  std::vector<FitSample> samples;   // parameters increase
+  std::vector<StraightZone> zones;  // do not overlap, in order
+  std::vector<Pin> pins;            // in order; first and last are the ends of the curve
+  std::vector<double> breakpoints;  // where spans start at first, strictly increasing, with the
+                                    // ends, every pin and every end of a zone; none inside a zone
+};
+
+// Every pin and both ends of every zone, increasing, each once.
+[[nodiscard]] std::vector<double> required_breaks(const FitProblem& problem);
+
+// Parts of the parameter; single parameters have from == to.
+struct ParameterRange {
+  double from = 0;
+  double to = 0;
+};
+
+// Indices [begin, end[.
+struct IndexRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+struct FitTuning {
+  int max_refinements = 10;  // rounds of splitting the spans that cannot hold their samples
+  int passes = 8;            // solutions per round that tell which spans those are
+  int last_passes = 16;      // solutions, when weights have settled, to bring all inside
+
+  // Weights stay above this part of the stiffness of the curve, so that a section whose samples all
+  // have room is still held somewhere and the system stays regular; and below this multiple of it:
+  // heavier weights no longer move the curve where its knots cannot follow.
+  double weight_floor = 1e-8;
+  double weight_cap = 1e4;
+  double tight_start = 30;  // stiffnesses, where weights start: close to the least-squares curve
+  // From one control point to the next the stiffness changes by this factor at the most: samples
+  // that weigh much less than their neighbours are left to the swing of these.
+  double stiffness_step = 4;
+  double least_share = 1e-3;  // of its samples in a control point, for its stiffness
+  // In one step a weight grows by this factor at the most. Falling is quicker: distances grow no
+  // faster than weights fall, so a weight that falls by the ratio does not fall too far.
+  double growth = 8;
+  double fall = 1.0 / 32;
+  // What is left of the base weight of a sample without scatter after each step: little enough to
+  // vanish soon, enough for the weights of limits to follow.
+  double let_go = 0.25;
+  // Scatter is judged over this many neighbours on either side: enough for a standard error of a
+  // fifth, few enough to follow a change of noise along the path.
+  std::size_t scatter_window = 10;
+  // A distance that went less than this part of the way hardly follows its falling weight.
+  double numb = 0.5;
+  // The distance that weights of limits aim at, in limits: they approach their values from both
+  // sides, and a curve that is a little outside is of no use.
+  double aim_inside = 0.995;
+  double press = 0.5;  // the part of Newton's step that the weight of a limit takes; all at the end
+
+  // Sliding along is drawn back by this part in every solution, so that the parameter stays near
+  // the one it was made for and the curve cannot fold.
+  double slide_pull = 0.05;
+  double slide_room = 2;  // limits that a sample slides at most: the path turns from its direction
+
+  // A sample this far above its limit asks for another knot; so does a span whose samples scatter
+  // this much more than expected (a tight fit leaves about half of the scatter).
+  double too_far = 1.05;
+  double too_scattered = 1.5;
+  double hopeless = 2.5;  // heavier weights would leave distances smaller by this at most
+  // Rounding is no excess; what is left of one this small after the last solution is no reason for
+  // another knot.
+  double inside_when_adapted = 1 + 1e-9;
+  double nearly_inside = 1.05;
+
+  // A control point that wakes is solved for so many times, whatever comes of it: a number that is
+  // the same for all does not depend on rounding, and weights have settled by then.
+  int solutions = 20;
+  // A solution in which it moves by less than this part of its limit counts as several: what the
+  // solutions that are left would still move it by is a fiftieth of the limit at the most.
+  double still = 1e-3;
+  int still_counts = 4;
+  // One that rests wakes when it is moved by this part of its limit, for so many solutions.
+  double moved = 0.01;
+  int woken = 8;
+  // Control points on either side that are solved for with those that are awake: the influence of a
+  // sample dies out over some of them. Where more of them move, these wake in turn.
+  std::size_t reach = 8;
+  std::size_t wall = 3;  // control points known beforehand in a row part the spline in two
+};
+inline constexpr FitTuning kFitTuning;
+
+inline constexpr std::size_t kSplineDegree = 3;
+inline constexpr std::size_t kNoPoint = static_cast<std::size_t>(-1);
+
+// The four basis functions that are not zero at a sample.
+struct FitRow {
+  std::size_t first = kNoPoint;  // the first of four control points
+  std::array<double, 4> value{};
+
+  // The curve at the sample.
+  [[nodiscard, gnu::always_inline]] Point3 on(std::span<const Point3> points) const {
+    const Point3* p = &points[first];
+    return value[0] * p[0] + value[1] * p[1] + value[2] * p[2] + value[3] * p[3];
+  }
+};
+
 // What the fit knows of a sample from one solution to the next.
 struct SampleState {
+  FitRow row;
+  bool tight = true;               // its weights are still those of a start on new knots
   Point3 target = Point3::Zero();  // slid along the path
   double stiffness = 0;            // of the curve there: what weights are compared with
   double base = 0;                 // weight that makes the distances scatter as expected
@@ -26,89 +153,11 @@ struct SampleState {
   double rms = 0;                  // of the distances around over their scatter, one step before
 };
 
-// Weights stay above this part of the stiffness, so that a stretch whose samples all have
-// room is still held somewhere and the system stays regular; and below this multiple of it:
-// heavier weights no longer move the curve where its knots cannot follow.
-inline constexpr double kWeightFloor = 1e-8;
-inline constexpr double kWeightCap = 1e4;
-
-// In one step a weight grows by this factor at the most. Falling is quicker: distances grow no
-// faster than weights fall, so a weight that falls by the ratio does not fall too far.
-inline constexpr double kGrowth = 8;
-inline constexpr double kFall = 1.0 / 32;
-
-// What is left of the base weight of a sample without scatter after each step: little enough to
-// vanish soon, enough for the weights of limits to follow.
-inline constexpr double kLetGo = 0.25;
-
-inline double bounded_weight(double weight, double stiffness) {
-  return std::clamp(weight, kWeightFloor * stiffness, kWeightCap * stiffness);
-}
-
-// Weights close to those of the least-squares curve: they fall from there where there is room.
-void start_tight(SampleState& state);
-
-// Sliding along is drawn back by this part in every solution, so that the parameter stays near
-// the place it was made for and the curve cannot fold.
-inline constexpr double kSlidePull = 0.05;
-
-// No sample slides further than this many limits: the path turns away from its direction.
-inline constexpr double kSlideRoom = 2;
-
-// Slides the target to the foot of the curve and measures what is left.
-inline void measure(const FitSample& sample, const Point3& on_curve, SampleState& state) {
-  const Vector3 off = on_curve - sample.target;
-  const double room = kSlideRoom * sample.limit;
-  const Vector3 slide = std::clamp(off.dot(sample.along), -room, room) * sample.along;
-  state.target = sample.target + (1 - kSlidePull) * slide;
-  state.distance = (off - slide).norm();
-}
-
-// The distance that weights of limits aim at, in limits: weights approach their values from both
-// sides, and a curve that is a little outside is of no use.
-inline constexpr double kAimInside = 0.995;
-
-// The discrepancy principle, locally: the base weights of [begin, end[ fall where the distances of
-// the neighbourhood are smaller than their scatter and grow where they are greater.
-enum class ScatterStep { kBothWays, kGrow };
-void reweight_scatter(std::span<const FitSample> samples, std::span<SampleState> states,
-                      std::size_t begin, std::size_t end, ScatterStep step);
-
-// Where a limit leaves room its weight falls by the ratio of distance and limit (C. L. Lawson's
-// reweighting), so that it vanishes where the limit is not felt.
-inline void relax_limit(double ratio, SampleState& state) {
-  state.push =
-      bounded_weight(state.push * std::clamp(ratio / kAimInside, kFall, 1.0), state.stiffness);
-}
-
-// Where a limit is passed its weight takes a part of Newton's step: with leverage h, the compliance
-// of the curve at the sample, a weight w leaves a distance proportional to 1 / (w + k),
-// k = 1 / h - w, so that w + (ratio - 1) / h would meet the limit if no other sample moved.
-void press_limit(double ratio, double leverage, double part, SampleState& state);
-
-// A sample without scatter is held by its limit alone in the end: its base weight fades.
-inline void let_go(SampleState& state) {
-  state.base = bounded_weight(kLetGo * state.base, state.stiffness);
-}
-
-// The limit is told again if need be.
-void forget_limit(SampleState& state);
-
-// Whether the samples show that their span cannot follow them: `far` when not even heavier weights
-// could help.
-struct SpanNeed {
-  double worst = 0;  // the greatest distance over its limit
-  bool knot = false;
-  bool far = false;
-};
-[[nodiscard]] SpanNeed need_of(std::span<const FitSample> samples,
-                               std::span<const SampleState> states);
-
 struct FitSpline {
   std::vector<double> breaks;       // distinct knots, increasing
   std::vector<double> knots;        // fourfold at the ends, threefold at inner pins
   std::vector<Point3> points;       // control points
-  std::vector<std::uint8_t> fixed;  // per control point: its place is known, by a pin or a zone
+  std::vector<std::uint8_t> fixed;  // per control point: it is known, by a pin or a zone
 
   // Integrals of the products of third derivatives: energy[i][k] belongs to i and i - k.
   std::vector<std::array<double, 4>> energy;
@@ -116,63 +165,34 @@ struct FitSpline {
   [[nodiscard]] std::size_t size() const { return points.size(); }
 };
 
-// The spline on these breakpoints; control points that are not fixed are at the origin. Throws
-// std::invalid_argument when a pin or the end of a zone is no breakpoint.
+// The spline on these breakpoints, among them every pin; control points that are not fixed are at
+// the origin. Throws std::invalid_argument when a straight zone is no span.
 [[nodiscard]] FitSpline spline_on(std::vector<double> breaks, std::span<const Pin> pins,
                                   std::span<const StraightZone> zones);
 
-inline constexpr std::size_t kNotCarried = static_cast<std::size_t>(-1);
-
-// Takes over the control points of `before` whose knots are the same in `after`; a place that is
-// fixed in one of them has to be so in the other. Gives the new index of every old one, or
-// kNotCarried.
-[[nodiscard]] std::vector<std::size_t> carry_points(const FitSpline& before, FitSpline& after);
-
-// The four basis functions that are not zero at a sample.
-struct FitRow {
-  std::size_t first = 0;  // the first of four control points
-  std::array<double, 4> value{};
-};
-
-// The row at u, on the last span from `span` on that does not start behind it; `span` moves there.
+// The row at u, on the last span from `span` on that does not start after it; `span` moves there.
 [[nodiscard]] FitRow row_at(const FitSpline& spline, double u, std::size_t& span);
-
-// The curve at a sample.
-[[nodiscard, gnu::always_inline]] inline Point3 place_of(const FitRow& row,
-                                                         std::span<const Point3> points) {
-  const Point3* p = &points[row.first];
-  return row.value[0] * p[0] + row.value[1] * p[1] + row.value[2] * p[2] + row.value[3] * p[3];
-}
-
-// Indices [begin, end[.
-struct IndexRange {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-};
 
 // The normal equations. Memory is kept from one solution to the next.
 class FitSystem {
  public:
   // Minimises energy + sum of weight * |curve - target|^2 over the control points `free`.
   // `samples` are those whose rows touch them. Returns false when the system is singular.
-  [[nodiscard]] bool solve(const FitSpline& spline, std::span<const FitRow> rows,
-                           std::span<const SampleState> states, IndexRange samples,
-                           IndexRange free);
+  [[nodiscard]] bool solve(const FitSpline& spline, std::span<const SampleState> states,
+                           IndexRange samples, IndexRange free);
 
-  // After solve(): the new place of a control point of `free`.
+  // After solve(): the new position of a control point of `free`.
   [[nodiscard]] const Point3& place(std::size_t point) const { return right_[point - offset_]; }
 
   // After solve(): the inverse, as far as leverage() needs it for rows that start at `first_point`
-  // or behind.
+  // or after it.
   void invert(const FitSpline& spline, std::size_t first_point);
 
   // After invert(): the compliance of the curve at a sample, how far a unit force moves it.
   [[nodiscard]] double leverage(const FitRow& row) const;
 
  private:
-  void add_samples(std::span<const FitRow> rows, std::span<const SampleState> states,
-                   IndexRange samples);
-  void add_sample(const FitRow& row, const SampleState& state);
+  void add_samples(std::span<const SampleState> states);
   [[nodiscard]] bool is_held(const FitSpline& spline, std::size_t point) const {
     return point < free_.begin || point >= free_.end || spline.fixed[point] != 0;
   }

@@ -40,7 +40,7 @@ class Reducer {
     add_samples();
     add_breakpoints();
     for (int i = 0; i < kTries; ++i) {
-      BsplineFit fit = fit_bspline(problem_, {});
+      BsplineFit fit = fit_bspline(problem_);
       if (!(fit.worst_ratio <= 1 / kAtSamples)) return std::nullopt;
       if (fit.curve.control_points().size() >= curve_.control_points().size()) return std::nullopt;
       const double off = greatest_distance(fit.curve);

@@ -10,6 +10,7 @@
 
 #include "geometry/basic/point.h"
 #include "geometry/basic/rounding.h"
+#include "geometry/path/bspline_curve.h"
 #include "geometry/path/path.h"
 
 namespace batten::geometry {
@@ -144,6 +145,11 @@ struct FinishSurface {
                          cam_tolerance, 3);
   }
 };
+
+inline Path beziers_of(const BsplineCurve& curve) {
+  const std::vector<CubicBezier> pieces = curve.bezier_pieces();
+  return {pieces.begin(), pieces.end()};
+}
 
 // The straight chain through `points`, as pieces. Neighbours that are one place are joined.
 inline Path path_through(std::span<const Point3> points) {

@@ -13,63 +13,29 @@ namespace batten::geometry {
 
 namespace {
 
-// Fewer vertices than this tell nothing of their noise.
-constexpr std::size_t kFewest = 8;
-
-// A vertex that turns by so many times what its noise turns it (standard deviations) was meant to.
-constexpr double kSurelyMeant = 4;
-
-// The weight is looked for on so many vertices at the most, from the middle of a stretch: enough
-// to know it to some percent, and few enough for the search to cost little.
-constexpr std::size_t kJudged = 1000;
-
-// Decades of the weight over the stiffness of the spline that are looked at. At the lower end a
-// wave of a hundred vertices is smoothed away, at the upper one nothing is.
-constexpr int kLowestDecade = -12;
-constexpr int kHighestDecade = 1;
-constexpr int kClosings = 6;  // of the interval around the best decade, by the golden section
-
-// Where this part of the vertices is further from the meant path than the limit, noise fills the
-// band: the curve that the others would allow has no room between these.
-constexpr double kFillsBand = 0.125;
-
-// Vertices that scatter by more than this part of the limit, and by more than so many of the
-// greatest rounding errors, are drawn to their places. A curve that is only expected to leave their
-// scatter leaves some of the path, too, where they are coarse, and would find room for the feed on
-// any side of it.
-constexpr double kMuch = 0.2;
-constexpr double kRoundingNoise = 2;
-
-// Of normal noise an eighth is beyond 1.5 standard deviations, and noise is known to a third.
-constexpr double kMayFill = 0.4;
-
-// Vertices are counted over so many on either side.
-constexpr std::size_t kAround = 40;
-
-bool parts_stretches(const PathFeatures& f, std::size_t i) {
+bool parts_sections(const PathFeatures& f, std::size_t i) {
   if (f.kinds[i] == VertexKind::kKeptCorner) return true;
   if (i > 0 && f.lines[i - 1]) return true;
   if (i < f.lines.size() && f.lines[i]) return true;
   if (f.kinds[i] == VertexKind::kSmooth) return false;
   const double before = f.parameters[i] - f.parameters[i - 1];
   const double after = f.parameters[i + 1] - f.parameters[i];
-  return f.turns[i] > kSurelyMeant * f.noise[i] * (1 / before + 1 / after);
+  return f.turns[i] > kDenoiseTuning.surely_meant * f.noise[i] * (1 / before + 1 / after);
 }
 
-// The spline on a stretch of vertices; its ends are the first and the last of them.
-class StretchSpline {
+// The spline on a section of vertices; its ends are the first and the last of them.
+class SectionSpline {
  public:
-  StretchSpline(std::span<const Point3> points, std::span<const double> parameters)
+  SectionSpline(std::span<const Point3> points, std::span<const double> parameters)
       : spline_(spline_on({parameters.begin(), parameters.end()},
                           std::array{Pin{parameters.front(), points.front()},
                                      Pin{parameters.back(), points.back()}},
-                          {})) {
-    constexpr std::size_t kDegree = 3;
-    std::size_t span = kDegree;
+                          {})),
+        states_(points.size()) {
+    std::size_t span = kSplineDegree;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      rows_.push_back(row_at(spline_, parameters[i], span));
-      states_.push_back({});
-      states_.back().target = points[i];
+      states_[i].row = row_at(spline_, parameters[i], span);
+      states_[i].target = points[i];
     }
     std::vector<double> stiffness;
     for (const auto& row : spline_.energy) stiffness.push_back(row[0]);
@@ -81,8 +47,7 @@ class StretchSpline {
   // `weight`: of the squared distances, in stiffnesses.
   void solve(double weight) {
     for (SampleState& state : states_) state.base = weight * stiffness_;
-    const IndexRange all{0, spline_.size()};
-    if (!system_.solve(spline_, rows_, states_, {0, rows_.size()}, all)) return;
+    if (!system_.solve(spline_, states_, {0, states_.size()}, {0, spline_.size()})) return;
     for (std::size_t i = 0; i < spline_.size(); ++i) {
       if (spline_.fixed[i] == 0) spline_.points[i] = system_.place(i);
     }
@@ -95,56 +60,54 @@ class StretchSpline {
     system_.invert(spline_, 0);
     double squares = 0;
     double freedom = 0;
-    for (std::size_t i = 1; i + 1 < rows_.size(); ++i) {
+    for (std::size_t i = 1; i + 1 < states_.size(); ++i) {
       squares += (place(i) - states_[i].target).squaredNorm();
-      freedom += 1 - states_[i].base * system_.leverage(rows_[i]);
+      freedom += 1 - states_[i].base * system_.leverage(states_[i].row);
     }
     return freedom > 0 ? squares / (freedom * freedom) : HUGE_VAL;
   }
 
-  [[nodiscard]] Point3 place(std::size_t i) const { return place_of(rows_[i], spline_.points); }
+  [[nodiscard]] Point3 place(std::size_t i) const { return states_[i].row.on(spline_.points); }
 
  private:
   FitSpline spline_;
   FitSystem system_;
-  std::vector<FitRow> rows_;
   std::vector<SampleState> states_;
   double stiffness_ = 0;
 };
 
 // Decades of the best weight.
-double best_weight(StretchSpline& spline) {
+double best_weight(SectionSpline& spline) {
   const auto of = [&](double decades) { return spline.validation(std::pow(10, decades)); };
-  double best = kHighestDecade;
+  double best = kDenoiseTuning.highest_decade;
   double least = of(best);
-  for (int decade = kHighestDecade - 1; decade >= kLowestDecade; --decade) {
+  for (int decade = kDenoiseTuning.highest_decade - 1; decade >= kDenoiseTuning.lowest_decade;
+       --decade) {
     const double value = of(decade);
-    if (value < least) {
-      least = value;
-      best = decade;
-    }
+    if (value < least) best = decade;
+    least = std::min(least, value);
   }
   const auto worth = [&](double decades) { return -of(decades); };
-  return golden_maximum(worth, best - 1, best + 1, kClosings).at;
+  return golden_maximum(worth, best - 1, best + 1, kDenoiseTuning.closings).at;
 }
 
-void place_stretch(std::span<const Point3> points, std::span<const double> parameters,
-                   std::span<Point3> meant) {
-  const std::size_t judged = std::min(points.size(), kJudged);
+void denoise_section(std::span<const Point3> points, std::span<const double> parameters,
+                     std::span<Point3> denoised) {
+  const std::size_t judged = std::min(points.size(), kDenoiseTuning.judged);
   const std::size_t first = (points.size() - judged) / 2;
-  StretchSpline part(points.subspan(first, judged), parameters.subspan(first, judged));
+  SectionSpline part(points.subspan(first, judged), parameters.subspan(first, judged));
   const double weight = std::pow(10, best_weight(part));
-  StretchSpline whole(points, parameters);
+  SectionSpline whole(points, parameters);
   whole.solve(weight);
-  for (std::size_t i = 1; i + 1 < points.size(); ++i) meant[i] = whole.place(i);
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) denoised[i] = whole.place(i);
 }
 
-// Calls `found` with the first and the last vertex of each stretch.
+// Calls `found` with the first and the last vertex of each section.
 template <typename Function>
-void each_stretch(std::size_t vertices, const PathFeatures& features, const Function& found) {
+void each_section(std::size_t vertices, const PathFeatures& features, const Function& found) {
   std::size_t begin = 0;
   for (std::size_t i = 1; i < vertices; ++i) {
-    if (i + 1 < vertices && !parts_stretches(features, i)) continue;
+    if (i + 1 < vertices && !parts_sections(features, i)) continue;
     found(begin, i);
     begin = i;
   }
@@ -152,12 +115,12 @@ void each_stretch(std::size_t vertices, const PathFeatures& features, const Func
 
 // A straight line from its first to its last vertex would do: nothing is smoother, and the ends
 // stay where they are.
-bool is_straight_within(std::span<const Point3> stretch, double limit) {
-  const Vector3 way = stretch.back() - stretch.front();
-  const double length = way.norm();
+bool is_straight_within(std::span<const Point3> section, double limit) {
+  const Vector3 chord = section.back() - section.front();
+  const double length = chord.norm();
   if (!(length > 0)) return false;
-  return std::ranges::all_of(stretch, [&](const Point3& p) {
-    return way.cross(p - stretch.front()).norm() <= limit * length;
+  return std::ranges::all_of(section, [&](const Point3& p) {
+    return chord.cross(p - section.front()).norm() <= limit * length;
   });
 }
 
@@ -165,47 +128,52 @@ bool is_straight_within(std::span<const Point3> stretch, double limit) {
 
 std::vector<Point3> denoised_positions(std::span<const Point3> points,
                                        const PathFeatures& features) {
-  std::vector<Point3> meant(points.begin(), points.end());
+  std::vector<Point3> denoised(points.begin(), points.end());
   const std::span<const double> parameters = features.parameters;
-  each_stretch(points.size(), features, [&](std::size_t first, std::size_t last) {
+  each_section(points.size(), features, [&](std::size_t first, std::size_t last) {
     const std::size_t count = last + 1 - first;
-    if (count < kFewest) return;
-    place_stretch(points.subspan(first, count), parameters.subspan(first, count),
-                  std::span(meant).subspan(first, count));
+    if (count < kDenoiseTuning.fewest) return;
+    denoise_section(points.subspan(first, count), parameters.subspan(first, count),
+                    std::span(denoised).subspan(first, count));
   });
-  return meant;
+  return denoised;
 }
 
-std::vector<Point3> meant_among_noise(std::span<const Point3> points, const PathFeatures& features,
-                                      double limit, double rounding) {
+std::vector<Point3> denoised_among_noise(std::span<const Point3> points,
+                                         const PathFeatures& features, double limit,
+                                         double rounding) {
   const auto is_much = [&](double noise) {
-    return noise > kMuch * limit && noise > kRoundingNoise * rounding;
+    return noise > kDenoiseTuning.much * limit && noise > kDenoiseTuning.rounding_noise * rounding;
   };
-  const auto may_fill = [&](double noise) { return is_much(noise) || noise > kMayFill * limit; };
+  const auto may_fill = [&](double noise) {
+    return is_much(noise) || noise > kDenoiseTuning.may_fill * limit;
+  };
   if (std::ranges::none_of(features.noise, may_fill)) return {};
-  std::vector<Point3> meant = denoised_positions(points, features);
+  std::vector<Point3> denoised = denoised_positions(points, features);
   std::vector<std::size_t> beyond = {0};  // so many of the vertices before
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool is_beyond = (meant[i] - points[i]).norm() > limit;
+    const bool is_beyond = (denoised[i] - points[i]).norm() > limit;
     beyond.push_back(beyond.back() + (is_beyond ? 1 : 0));
   }
   bool any = false;
+  constexpr std::size_t kAround = kDenoiseTuning.around;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::size_t begin = i < kAround ? 0 : i - kAround;
     const std::size_t end = std::min(i + kAround + 1, points.size());
     const auto count = static_cast<double>(beyond[end] - beyond[begin]);
-    if (is_much(features.noise[i]) || count > kFillsBand * static_cast<double>(end - begin)) {
+    if (is_much(features.noise[i]) ||
+        count > kDenoiseTuning.fills_band * static_cast<double>(end - begin)) {
       any = true;
     } else {
-      meant[i] = points[i];
+      denoised[i] = points[i];
     }
   }
-  each_stretch(points.size(), features, [&](std::size_t first, std::size_t last) {
-    const auto stretch = points.subspan(first, last + 1 - first);
-    if (is_straight_within(stretch, limit)) std::ranges::copy(stretch, &meant[first]);
+  each_section(points.size(), features, [&](std::size_t first, std::size_t last) {
+    const auto section = points.subspan(first, last + 1 - first);
+    if (is_straight_within(section, limit)) std::ranges::copy(section, &denoised[first]);
   });
-  if (!any) meant.clear();
-  return meant;
+  if (!any) denoised.clear();
+  return denoised;
 }
 
 }  // namespace batten::geometry

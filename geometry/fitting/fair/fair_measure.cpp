@@ -47,23 +47,15 @@ double worst_of_piece(SplineWalk& curve, std::span<const Point3> points, std::si
 }  // namespace
 
 SplineWalk::SplineWalk(std::span<const double> knots, std::span<const Point3> control_points)
-    : t_(knots), p_(control_points), span_(kFairDegree) {
-  while (span_ + 1 < p_.size() && t_[span_ + 1] <= t_[span_]) ++span_;
-  take_span();
+    : t_(knots), p_(control_points) {
+  find_span(knots[kFairDegree]);
 }
 
 void SplineWalk::find_span(double u) {
-  constexpr std::size_t kNear = 8;  // spans that are tried one by one
-  if (u >= t_[span_] && (span_ + kNear >= p_.size() || u < t_[span_ + kNear])) {
-    while (span_ + 1 < p_.size() && t_[span_ + 1] <= u) ++span_;
-  } else if (u < t_[span_] && span_ >= kFairDegree + kNear && u >= t_[span_ - kNear]) {
-    while (u < t_[span_]) --span_;
-  } else {
-    const auto begin = t_.begin() + kFairDegree;
-    const auto end = t_.begin() + static_cast<std::ptrdiff_t>(p_.size());
-    const auto above = std::upper_bound(begin, end, u);
-    span_ = std::max(static_cast<std::size_t>(above - t_.begin()), kFairDegree + 1) - 1;
-  }
+  const auto begin = t_.begin() + kFairDegree;
+  const auto end = t_.begin() + static_cast<std::ptrdiff_t>(p_.size());
+  const auto above = std::upper_bound(begin, end, u);
+  span_ = std::max(static_cast<std::size_t>(above - t_.begin()), kFairDegree + 1) - 1;
   take_span();
 }
 
@@ -91,23 +83,22 @@ void SplineWalk::take_span() {
   power[3] = (s1 - s0) / (6 * (t[1] - t[0]));
 }
 
-double SplineWalk::curvature_at(double u) {
+SplineWalk::Derivatives SplineWalk::derivatives_at(double u) {
   go_to(u);
   const std::array<Vector3, 4>& power = power_[span_ % kKept];
   const double x = u - t_[span_];
-  const Vector3 first = power[1] + x * (2 * power[2] + 3 * x * power[3]);
-  const Vector3 second = 2 * power[2] + 6 * x * power[3];
+  return {power[1] + x * (2 * power[2] + 3 * x * power[3]), 2 * power[2] + 6 * x * power[3],
+          6 * power[3]};
+}
+
+double SplineWalk::curvature_at(double u) {
+  const auto [first, second, third] = derivatives_at(u);
   const double speed = first.norm();
   return speed == 0 ? 0 : first.cross(second).norm() / (speed * speed * speed);
 }
 
 double SplineWalk::third_by_length_at(double u) {
-  go_to(u);
-  const std::array<Vector3, 4>& power = power_[span_ % kKept];
-  const double x = u - t_[span_];
-  const Vector3 first = power[1] + x * (2 * power[2] + 3 * x * power[3]);
-  const Vector3 second = 2 * power[2] + 6 * x * power[3];
-  const Vector3 third = 6 * power[3];
+  const auto [first, second, third] = derivatives_at(u);
   const double speed = first.norm();
   if (speed == 0) return 0;
   // Of speed: its first and second derivative by the parameter.
@@ -119,10 +110,7 @@ double SplineWalk::third_by_length_at(double u) {
 }
 
 double SplineWalk::nearer(double u, const Point3& p) {
-  go_to(u);
-  const std::array<Vector3, 4>& power = power_[span_ % kKept];
-  const double x = u - t_[span_];
-  const Vector3 first = power[1] + x * (2 * power[2] + 3 * x * power[3]);
+  const Vector3 first = derivatives_at(u).first;
   const double squared = first.squaredNorm();
   return squared == 0 ? u : u + (p - point_at(u)).dot(first) / squared;
 }
@@ -158,6 +146,15 @@ double edge_deviation(SplineWalk& curve, const VertexPlaces& path, std::size_t e
     a = b;
   }
   return std::max(worst, (curve.point_at(to) - path.points[edge + 1]).norm());
+}
+
+double greatest_deviation(const BsplineCurve& curve, const VertexPlaces& path, double limit) {
+  SplineWalk walk(curve.basis().knots(), curve.control_points());
+  double worst = 0;
+  for (std::size_t edge = 0; edge + 1 < path.points.size(); ++edge) {
+    worst = std::max(worst, edge_deviation(walk, path, edge, limit));
+  }
+  return worst;
 }
 
 double speed_at(SplineWalk& curve, double u, const TravelLimits& limits) {

@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "geometry/basic/point.h"
+#include "geometry/path/bspline_curve.h"
 
 namespace batten::geometry {
 
-// A cubic spline, quick to evaluate at places that mostly go forward.
+// A cubic spline, quick to evaluate at parameters that mostly go forward.
 class SplineWalk {
  public:
   // Both must outlive it. Clamped at the ends.
@@ -29,16 +30,22 @@ class SplineWalk {
   // 1/mm^2: length of the third derivative by length; 0 where the first derivative vanishes.
   [[nodiscard]] double third_by_length_at(double u);
 
-  // The parameter after one Newton step from u towards the place nearest to p.
+  // The parameter after one Newton step from u towards the point nearest to p.
   [[nodiscard]] double nearer(double u, const Point3& p);
 
-  // The end of the polynomial piece that holds u: the first knot behind it.
+  // The end of the polynomial piece that holds u: the first knot after it.
   [[nodiscard]] double end_of_piece(double u);
 
  private:
   // Spans whose coefficients are kept: an edge and its neighbours are looked at in turn.
   static constexpr std::size_t kKept = 8;
 
+  struct Derivatives {
+    Vector3 first;
+    Vector3 second;
+    Vector3 third;
+  };
+  [[nodiscard]] Derivatives derivatives_at(double u);
   void go_to(double u) {
     if (!(u >= t_[span_] && (u < t_[span_ + 1] || span_ + 1 == p_.size()))) find_span(u);
   }
@@ -47,7 +54,7 @@ class SplineWalk {
 
   std::span<const double> t_;
   std::span<const Point3> p_;
-  std::size_t span_;
+  std::size_t span_ = 0;
   // Coefficients by the parameter since the start of a span, and which spans these are.
   std::array<std::array<Vector3, 4>, kKept> power_;
   std::array<std::size_t, kKept> kept_{};
@@ -59,15 +66,19 @@ struct VertexPlaces {
   std::span<const double> parameters;
 };
 
-// The place on the curve that is nearest to a vertex, near `start[vertex]`: not past the middle of
-// the way to its neighbours there; the first and the last vertex stay.
+// The parameter of the point of the curve nearest to a vertex, near `start[vertex]`: not past the
+// middle of the way to its neighbours there; the first and the last vertex stay.
 [[nodiscard]] double nearest_parameter(SplineWalk& curve, std::span<const Point3> points,
                                        std::span<const double> start, std::size_t vertex);
 
 // The greatest distance between an edge and the curve beside it, by samples, near in order; that
-// of its vertices counts. Places where it may exceed `limit` are looked at more closely.
+// of its vertices counts. Parts that may exceed `limit` are looked at more closely.
 [[nodiscard]] double edge_deviation(SplineWalk& curve, const VertexPlaces& path, std::size_t edge,
                                     double limit);
+
+// The greatest of them.
+[[nodiscard]] double greatest_deviation(const BsplineCurve& curve, const VertexPlaces& path,
+                                        double limit);
 
 struct TravelLimits {
   double speed = 0;                                       // mm/s

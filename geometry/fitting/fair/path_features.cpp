@@ -4,56 +4,34 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
-
-#include "geometry/fitting/fair/corner_test.h"
 
 namespace batten::geometry {
 
 namespace {
 
-// Turns beyond this are reversals: rounding one inside the band would need a radius of a
-// hundredth of the tolerance, and the machine stops there anyway.
-constexpr double kReversal = 170 * std::numbers::pi / 180;
+// One value per vertex of a window.
+using WindowColumn = std::array<double, 2 * kFeatureTuning.most_beside_kink + 1>;
 
-// A corner turns this many times more than the vertices around it. Samples of a smooth curve
-// have turns that change slowly from one to the next.
-constexpr double kStandsOut = 4;
+double dot_of(const WindowColumn& a, const WindowColumn& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
 
-// But vertices of a bend turn gradually, by no more than this many times what their neighbours do,
-// however tight the bend is for the chords along it.
-constexpr double kGradual = 6;
+void take_out(WindowColumn& from, const WindowColumn& other) {
+  const double part = dot_of(from, other) / dot_of(other, other);
+  for (std::size_t i = 0; i < from.size(); ++i) from[i] -= part * other[i];
+}
 
-// A turn below this is no corner, whatever its neighbours: where a line meets an arc of chords
-// the turn is that of half a chord.
-constexpr double kLeastCorner = 2 * std::numbers::pi / 180;
-
-// Noise of standard deviation s turns a vertex between edges a and b by about s (1/a + 1/b);
-// a corner turns more than this many standard deviations.
-constexpr double kNoiseTurns = 4;
-
-// Noise is known to a third: where it seems less than it usually is on the path, it may be more by
-// this factor.
-constexpr double kKnown = 1.5;
-
-// What scatters by more than the tolerance and more than this part of the edges is no noise, but
-// stairs and teeth: noise of that size would turn every vertex by 35 degrees (rms).
-constexpr double kNoiseOfEdge = 0.25;
-
-// Noise above this part of the tolerance may make corners.
-constexpr double kMuchNoise = 0.25;
-
-// The sides of a corner among noise meet at so many standard deviations of what noise explains. A
-// vertex that alone is 4.5 noises off makes 3.3 of it.
-constexpr double kSureKink = 5;
-
-// A line that was cut into blocks does not turn between them, but for rounding.
-constexpr double kNoTurn = 1e-6;
-
-// A line is this many times longer than the edges beside it. Chords of a curve whose
-// curvature changes smoothly differ less from their neighbours.
-constexpr double kLineIsLonger = 6;
+// A bend that changes along the window must not count as a kink: the higher the degree, the less it
+// does, and the less is a kink told from noise. Beyond a short side a bend is known least.
+std::size_t degree_for(std::size_t before, std::size_t behind) {
+  const std::size_t beside = std::min(before, behind);
+  if (beside >= 6) return 4;
+  if (beside >= 3) return 3;
+  return std::min<std::size_t>(4, before + behind - 3);
+}
 
 double turn_between(const Vector3& a, const Vector3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -63,8 +41,7 @@ double turn_between(const Vector3& a, const Vector3& b) {
 double turn_around(const std::vector<double>& turns, std::size_t i) {
   std::array<double, 6> near{};
   std::size_t count = 0;
-  const std::size_t begin = i < 3 ? 1 : i - 3;
-  for (std::size_t j = std::max<std::size_t>(begin, 1); j <= i + 3 && j + 1 < turns.size(); ++j) {
+  for (std::size_t j = std::max<std::size_t>(i, 4) - 3; j <= i + 3 && j + 1 < turns.size(); ++j) {
     if (j != i) near[count++] = turns[j];
   }
   if (count == 0) return 0;
@@ -85,8 +62,9 @@ std::vector<double> cornerless_scatter(const PathFeatures& f, const FeatureOptio
   for (std::size_t i = 1; i + 1 < scatter.size(); ++i) {
     const double before = f.parameters[i] - f.parameters[i - 1];
     const double after = f.parameters[i + 1] - f.parameters[i];
-    double noise = std::max(f.noise[i], std::min(usual, kKnown * f.noise[i]));
-    if (noise > kNoiseOfEdge * std::min(before, after)) noise = std::min(noise, options.tolerance);
+    double noise = std::max(f.noise[i], std::min(usual, kFeatureTuning.known * f.noise[i]));
+    if (noise > kFeatureTuning.noise_of_edge * std::min(before, after))
+      noise = std::min(noise, options.tolerance);
     scatter[i] = std::max(noise, options.rounding);
   }
   return scatter;
@@ -95,7 +73,8 @@ std::vector<double> cornerless_scatter(const PathFeatures& f, const FeatureOptio
 // Whether the path turns on at vertex i as it does at the one before it, in the same sense and
 // neither much more nor much less.
 bool turns_on(std::span<const Point3> p, const PathFeatures& f, std::size_t i) {
-  if (f.turns[i] > kGradual * f.turns[i - 1] || f.turns[i - 1] > kGradual * f.turns[i])
+  if (f.turns[i] > kFeatureTuning.gradual * f.turns[i - 1] ||
+      f.turns[i - 1] > kFeatureTuning.gradual * f.turns[i])
     return false;
   const Vector3 before = (p[i - 1] - p[i - 2]).cross(p[i] - p[i - 1]);
   const Vector3 here = (p[i] - p[i - 1]).cross(p[i + 1] - p[i]);
@@ -114,15 +93,16 @@ bool is_bend(std::span<const Point3> p, const PathFeatures& f, std::size_t i) {
 VertexKind kind_of(std::span<const Point3> points, const PathFeatures& f, std::size_t i,
                    double scatter, const FeatureOptions& options) {
   const double turn = f.turns[i];
-  if (turn > std::min(options.keep_corner_angle, kReversal)) return VertexKind::kKeptCorner;
+  if (turn > std::min(options.keep_corner_angle, kFeatureTuning.reversal))
+    return VertexKind::kKeptCorner;
   const double before = f.parameters[i] - f.parameters[i - 1];
   const double after = f.parameters[i + 1] - f.parameters[i];
-  const double from_noise = kNoiseTurns * scatter * (1 / before + 1 / after);
-  if (turn < std::max(kLeastCorner, from_noise)) return VertexKind::kSmooth;
-  // Chords of a curve leave it by about (edge * turn / 8): if that is far more than the
-  // tolerance, these edges are no chords that a CAM system would have written for it.
-  const bool too_coarse = turn * std::min(before, after) / 8 > 2 * options.tolerance;
-  const bool stands_out = turn > kStandsOut * turn_around(f.turns, i) && !is_bend(points, f, i);
+  const double from_noise = kFeatureTuning.noise_turns * scatter * (1 / before + 1 / after);
+  if (turn < std::max(kFeatureTuning.least_corner, from_noise)) return VertexKind::kSmooth;
+  const bool too_coarse =
+      turn * std::min(before, after) / 8 > kFeatureTuning.too_coarse * options.tolerance;
+  const bool stands_out =
+      turn > kFeatureTuning.sticks_out * turn_around(f.turns, i) && !is_bend(points, f, i);
   return too_coarse || stands_out ? VertexKind::kCorner : VertexKind::kSmooth;
 }
 
@@ -136,13 +116,14 @@ void drop_corners_of_noise(std::span<const Point3> points, std::span<const doubl
     if (found[i] == VertexKind::kSmooth) continue;
     const std::size_t first = std::exchange(last, i);
     if (found[i] != VertexKind::kCorner) continue;
-    if (!(scatter[i] > kMuchNoise * tolerance)) continue;
+    if (!(scatter[i] > kFeatureTuning.much_noise * tolerance)) continue;
     std::size_t end = i + 1;
-    while (end <= i + kMostBesideKink && found[end] == VertexKind::kSmooth) ++end;
+    while (end <= i + kFeatureTuning.most_beside_kink && found[end] == VertexKind::kSmooth) ++end;
     const std::size_t count = end + 1 - first;
     const auto kink = kink_at(points.subspan(first, count),
                               std::span(f.parameters).subspan(first, count), i - first, scatter[i]);
-    if (kink && kink->angle < kSureKink * kink->deviation) f.kinds[i] = VertexKind::kSmooth;
+    if (kink && kink->angle < kFeatureTuning.sure_kink * kink->deviation)
+      f.kinds[i] = VertexKind::kSmooth;
   }
 }
 
@@ -155,7 +136,7 @@ std::vector<bool> lines_of(const PathFeatures& f) {
   // `further` what lies beyond that one.
   const auto beyond = [&](std::size_t v, std::size_t next, double further) {
     if (f.kinds[v] != VertexKind::kSmooth) return 0.0;
-    return f.turns[v] > kNoTurn ? length(next) : further;
+    return f.turns[v] > kFeatureTuning.no_turn ? length(next) : further;
   };
   std::vector<double> after(edges, 0);
   for (std::size_t e = edges - 1; e-- > 0;) after[e] = beyond(e + 1, e + 1, after[e + 1]);
@@ -163,9 +144,38 @@ std::vector<bool> lines_of(const PathFeatures& f) {
   double before = 0;
   for (std::size_t e = 0; e < edges; ++e) {
     if (e > 0) before = beyond(e, e - 1, before);
-    lines[e] = length(e) > kLineIsLonger * before && length(e) > kLineIsLonger * after[e];
+    lines[e] = length(e) > kFeatureTuning.line_is_longer * before &&
+               length(e) > kFeatureTuning.line_is_longer * after[e];
   }
   return lines;
+}
+
+// Whether the path turns to one side before an edge and to the other after it.
+bool turns_back(std::span<const Point3> points, std::size_t edge) {
+  const Vector3 along = points[edge + 1] - points[edge];
+  const Vector3 before = (points[edge] - points[edge - 1]).cross(along);
+  const Vector3 after = along.cross(points[edge + 2] - points[edge + 1]);
+  return before.dot(after) < 0;
+}
+
+// The distance of vertex i from the cubic through its four neighbours, across the path, scaled
+// so that noise of standard deviation s gives residuals of standard deviation s.
+Vector3 residual(std::span<const Point3> p, std::span<const double> s, std::size_t i) {
+  const std::array<std::size_t, 4> at = {i - 2, i - 1, i + 1, i + 2};
+  Vector3 off = p[i];
+  double squares = 1;
+  for (const std::size_t j : at) {
+    double weight = 1;
+    for (const std::size_t k : at) {
+      if (k != j) weight *= (s[i] - s[k]) / (s[j] - s[k]);
+    }
+    off -= weight * p[j];
+    squares += weight * weight;
+  }
+  const Vector3 chord = p[i + 1] - p[i - 1];
+  const double length = chord.norm();
+  if (length > 0) off -= (off.dot(chord) / (length * length)) * chord;
+  return off / std::sqrt(squares);
 }
 
 }  // namespace
@@ -182,7 +192,7 @@ PathFeatures find_features(std::span<const Point3> points, const FeatureOptions&
     f.turns[i] = turn_between(points[i] - points[i - 1], points[i + 1] - points[i]);
   }
   f.noise = vertex_noise(points, f.parameters);
-  f.bows = sagittas(points, f.parameters, f.turns, f.noise);
+  f.sagittas = sagittas(points, f.parameters, f.turns, f.noise);
   f.kinds.assign(n, VertexKind::kKeptCorner);
   const std::vector<double> scatter = cornerless_scatter(f, options);
   for (std::size_t i = 1; i + 1 < n; ++i) {
@@ -193,44 +203,101 @@ PathFeatures find_features(std::span<const Point3> points, const FeatureOptions&
   return f;
 }
 
-namespace {
+// Least squares with the columns 1, t, t^2 .. and |t|: what is left of |t| when the others are
+// taken out of it gives its coefficient alone.
+std::optional<Kink> kink_at(std::span<const Point3> points, std::span<const double> parameters,
+                            std::size_t vertex, double noise) {
+  const std::size_t before = std::min(vertex, kFeatureTuning.most_beside_kink);
+  const std::size_t behind = std::min(points.size() - 1 - vertex, kFeatureTuning.most_beside_kink);
+  if (std::min(before, behind) == 0 || before + behind < kFeatureTuning.fewest_around_kink)
+    return std::nullopt;
+  const std::size_t first = vertex - before;
+  const std::size_t count = before + behind + 1;
+  const double scale = parameters[first + count - 1] - parameters[first];
 
-// A vertex turns more than by noise when it turns by so many noises over its edge: four standard
-// deviations of a second difference, sqrt(6) noises.
-constexpr double kSureTurn = 4 * 2.45;
+  WindowColumn place{};  // t; entries beyond the window stay 0
+  WindowColumn broken{};
+  for (std::size_t i = 0; i < count; ++i) {
+    place[i] = (parameters[first + i] - parameters[vertex]) / scale;
+    broken[i] = std::abs(place[i]);
+  }
+  std::array<WindowColumn, 5> powers{};
+  const std::size_t degree = degree_for(before, behind);
+  for (std::size_t i = 0; i < count; ++i) powers[0][i] = 1;
+  for (std::size_t k = 1; k <= degree; ++k) {
+    for (std::size_t i = 0; i < count; ++i) powers[k][i] = powers[k - 1][i] * place[i];
+  }
+  for (std::size_t k = 0; k <= degree; ++k) {
+    for (std::size_t j = 0; j < k; ++j) take_out(powers[k], powers[j]);
+    take_out(broken, powers[k]);
+  }
 
-// Whether the path turns to one side before an edge and to the other behind it.
-bool turns_back(std::span<const Point3> points, std::size_t edge) {
-  const Vector3 along = points[edge + 1] - points[edge];
-  const Vector3 before = (points[edge] - points[edge - 1]).cross(along);
-  const Vector3 behind = along.cross(points[edge + 2] - points[edge + 1]);
-  return before.dot(behind) < 0;
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t i = 0; i < count; ++i) sum += broken[i] * (points[first + i] - points[vertex]);
+  const double square = dot_of(broken, broken);
+  // The directions of the two sides are of unit length, and this is their difference.
+  const double jump = 2 / (square * scale) * sum.norm();
+  return Kink{2 * std::asin(std::min(1.0, 0.5 * jump)), 2 * noise / (std::sqrt(square) * scale)};
 }
 
-}  // namespace
+std::vector<double> vertex_noise(std::span<const Point3> points,
+                                 std::span<const double> parameters) {
+  constexpr std::size_t kWindow = kFeatureTuning.noise_window;
+  const std::size_t n = points.size();
+  std::vector<double> noise(n, 0);
+  if (n < 6) return noise;
+  // products[i] belongs to vertices i + 2 and i + 3.
+  std::vector<double> products;
+  products.reserve(n - 5);
+  Vector3 before = residual(points, parameters, 2);
+  for (std::size_t i = 3; i + 2 < n; ++i) {
+    const Vector3 here = residual(points, parameters, i);
+    products.push_back(-before.dot(here));
+    before = here;
+  }
+  // For white noise the residuals of neighbours have correlation -1.556 / 1.944 = -0.8, and the
+  // median of the negative product of two such normal variables of unit variance is 0.36
+  // (0.9 chi^2 - 0.1 chi^2).
+  constexpr double kMedianOfProducts = 0.36;
+  std::vector<double> window;  // in order of size
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t center = std::clamp<std::size_t>(i, 2, n - 4) - 2;
+    for (; begin + kWindow < center; ++begin) {
+      window.erase(std::ranges::lower_bound(window, products[begin]));
+    }
+    for (; end < products.size() && end <= center + kWindow; ++end) {
+      window.insert(std::ranges::upper_bound(window, products[end]), products[end]);
+    }
+    noise[i] = std::sqrt(std::max(0.0, window[window.size() / 2]) / kMedianOfProducts);
+  }
+  return noise;
+}
 
 std::vector<double> sagittas(std::span<const Point3> points, std::span<const double> parameters,
                              std::span<const double> turns, std::span<const double> noise) {
   const std::size_t edges = points.size() - 1;
-  std::vector<double> bows(edges);
+  std::vector<double> heights(edges);
   for (std::size_t edge = 0; edge < edges; ++edge) {
     const double length = parameters[edge + 1] - parameters[edge];
     const double start = 0.5 * turns[edge];
     const double end = 0.5 * turns[edge + 1];
-    const double by_noise = kSureTurn * std::max(noise[edge], noise[edge + 1]) / length;
+    const double by_noise =
+        kFeatureTuning.sure_turn * std::max(noise[edge], noise[edge + 1]) / length;
     const bool inside = edge > 0 && edge + 1 < edges;
     const bool surely = inside && std::min(turns[edge], turns[edge + 1]) > by_noise;
     if (!surely || !turns_back(points, edge)) {
-      bows[edge] = length * (start + end) / 8;
+      heights[edge] = length * (start + end) / 8;
       continue;
     }
     double height = 0;
     for (const double t : {0.1, 0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9}) {
       height = std::max(height, std::abs(t * (1 - t) * (start * (1 - t) - end * t)));
     }
-    bows[edge] = length * height;
+    heights[edge] = length * height;
   }
-  return bows;
+  return heights;
 }
 
 }  // namespace batten::geometry

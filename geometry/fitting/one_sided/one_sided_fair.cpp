@@ -16,37 +16,6 @@ namespace batten::geometry {
 
 namespace {
 
-// The fair curve gets this part of the tolerance about the moved vertices; the move the rest.
-constexpr double kCurvePart = 0.5;
-
-// A move comes and goes over so many tolerances along the path.
-constexpr double kRamp = 16;
-
-// Rounds of moving on where the last curve still came over. Each moves a little further than
-// that curve needed, since the next one is another curve.
-constexpr int kRounds = 6;
-constexpr double kFurther = 1.1;
-
-// A curve that comes over by this part of the tolerance is let through: the proof allows twice
-// that.
-constexpr double kLetThrough = 0.05;
-
-// Vertices whose neighbours leave less than this of the way round (1 + cosine of the turn) move no
-// further than others with it: the corner of the moved path would be far off.
-constexpr double kSharpest = 0.5;
-
-// Where the path turns to the other side, the path beside it turns round the vertex on an arc. Its
-// corner is held back by this many moves, for beyond 75 degrees the corner of the moved edges
-// would leave too little room.
-constexpr double kFurthestCorner = 1.25;
-
-// The room that a curve has at the ends of a run, where nothing is moved yet: less than what is let
-// through, in parts of the tolerance.
-constexpr double kLeastRoom = 0.8 * kLetThrough;
-
-// Places beside each edge at which the curve is looked at.
-constexpr int kPlaces = 8;
-
 class OneSided {
  public:
   OneSided(std::span<const Point3> points, const OneSidedOptions& options)
@@ -59,15 +28,11 @@ class OneSided {
 
   std::optional<SmoothCurve> make() {
     if (normals_.empty()) return std::nullopt;
-    FairOptions fair = options_.fair;
-    fair.tolerance *= kCurvePart;
-    fair.scatter = std::min(fair.scatter, kCurvePart * fair.tolerance);
-    for (int round = 0; round < kRounds; ++round) {
-      auto path = fair_path(moved(), fair);
+    for (int round = 0; round < kOneSidedTuning.rounds; ++round) {
+      auto path = faired(moved(), {});
       if (!path) return std::nullopt;
       std::vector<double> lacking = lacking_beside(*path);
-      if (*std::ranges::max_element(lacking) <= kLetThrough * options_.fair.tolerance) {
-        path->deviation = deviation_of(*path);
+      if (is_let_through(lacking)) {
         if (path->deviation > options_.fair.tolerance) break;
         return path;
       }
@@ -77,31 +42,41 @@ class OneSided {
   }
 
  private:
+  [[nodiscard]] std::optional<SmoothCurve> faired(const std::vector<Point3>& points,
+                                                  std::span<const double> rooms) const {
+    FairOptions fair = options_.fair;
+    fair.tolerance *= kOneSidedTuning.curve_part;
+    fair.scatter = std::min(fair.scatter, kOneSidedTuning.curve_part * fair.tolerance);
+    fair.rooms = rooms;
+    auto path = fair_path(points, fair);
+    if (path) {
+      path->deviation =
+          greatest_deviation(path->curve, {p_, path->vertex_parameters}, options_.fair.tolerance);
+    }
+    return path;
+  }
+
+  [[nodiscard]] bool is_let_through(const std::vector<double>& lacking) const {
+    return *std::ranges::max_element(lacking) <=
+           kOneSidedTuning.let_through * options_.fair.tolerance;
+  }
+
   // Where noise or corners leave no curve that is moved by less: all in the middle of the allowed
   // half of the band.
   [[nodiscard]] std::optional<SmoothCurve> beside() const {
     std::vector<Point3> points(p_.begin(), p_.end());
     std::vector<double> free(p_.size(), 0);  // mm around the moved vertices
     for (std::size_t i = 1; i + 1 < points.size(); ++i) free[i] = move_beside(i, points[i]);
-    const double half = kCurvePart * options_.fair.tolerance;
+    const double half = kOneSidedTuning.curve_part * options_.fair.tolerance;
+    const double least_room = kOneSidedTuning.least_room / kOneSidedTuning.curve_part;
     std::vector<double> rooms(p_.size() - 1);
     for (std::size_t edge = 0; edge < rooms.size(); ++edge) {
-      const double least = std::min(free[edge], free[edge + 1]);
-      rooms[edge] = std::clamp(least / half, kLeastRoom / kCurvePart, 1.0);
+      rooms[edge] = std::clamp(std::min(free[edge], free[edge + 1]) / half, least_room, 1.0);
     }
-    FairOptions fair = options_.fair;
-    fair.tolerance = half;
-    fair.scatter = std::min(fair.scatter, kCurvePart * half);
-    fair.rooms = rooms;
-    auto path = fair_path(points, fair);
-    if (!path) return std::nullopt;
-    const std::vector<double> lacking = lacking_beside(*path);
-    if (*std::ranges::max_element(lacking) > kLetThrough * options_.fair.tolerance) {
-      return std::nullopt;
-    }
-    path->deviation = deviation_of(*path);
-    if (path->deviation > options_.fair.tolerance) return std::nullopt;
-    return path;
+    auto path = faired(points, rooms);
+    const bool holds =
+        path && path->deviation <= options_.fair.tolerance && is_let_through(lacking_beside(*path));
+    return holds ? std::move(path) : std::nullopt;
   }
 
   // Moves a vertex to the middle of what is allowed and gives how far from there (mm) a curve may
@@ -111,7 +86,7 @@ class OneSided {
     const Vector3& before = normals_[i - 1];
     const Vector3& after = normals_[i];
     const double gentle = gentle_at(stations_[i]);
-    const double move = gentle * (1 - kCurvePart) * options_.fair.tolerance;
+    const double move = gentle * (1 - kOneSidedTuning.curve_part) * options_.fair.tolerance;
     const double half_cosine = std::sqrt(std::max(0.0, 0.5 * (1 + before.dot(after))));
     const double half_sine = std::sqrt(std::max(0.0, 0.5 * (1 - before.dot(after))));
     const Vector3 middle = 0.5 * (before + after);
@@ -121,7 +96,7 @@ class OneSided {
       place += move * middle;
       room = move * std::min(1 - half_sine, half_cosine * half_cosine);
     } else {
-      const double far = std::min(1 / std::max(half_cosine, 1e-6), kFurthestCorner);
+      const double far = std::min(1 / std::max(half_cosine, 1e-6), kOneSidedTuning.furthest_corner);
       if (middle.norm() > kSameDirection) place += far * move * middle.normalized();
       room = move * std::min(2 - far, far * half_cosine);
     }
@@ -156,7 +131,8 @@ class OneSided {
     for (std::size_t i = 1; i + 1 < points.size(); ++i) {
       const Vector3& before = normals_[i - 1];
       const Vector3& after = normals_[i];
-      points[i] += move_[i] / std::max(kSharpest, 1 + before.dot(after)) * (before + after);
+      points[i] +=
+          move_[i] / std::max(kOneSidedTuning.sharpest, 1 + before.dot(after)) * (before + after);
     }
     return points;
   }
@@ -167,13 +143,13 @@ class OneSided {
     std::vector<double> lacking(p_.size() - 1, 0);
     for (std::size_t edge = 0; edge + 1 < p_.size(); ++edge) {
       const double from = path.vertex_parameters[edge];
-      const double step = (path.vertex_parameters[edge + 1] - from) / kPlaces;
-      for (int k = 0; k <= kPlaces; ++k) {
+      const double step = (path.vertex_parameters[edge + 1] - from) / kOneSidedTuning.samples;
+      for (int k = 0; k <= kOneSidedTuning.samples; ++k) {
         const double u = from + k * step;
         const double over = over_at(curve.point_at(u), edge);
         const bool bends = curve.curvature_at(u) > kSameDirection;
-        const double station =
-            std::lerp(stations_[edge], stations_[edge + 1], static_cast<double>(k) / kPlaces);
+        const double station = std::lerp(stations_[edge], stations_[edge + 1],
+                                         static_cast<double>(k) / kOneSidedTuning.samples);
         const double margin = bends ? options_.margin * gentle_at(station) : 0;
         lacking[edge] = std::max(lacking[edge], over + margin);
       }
@@ -199,11 +175,11 @@ class OneSided {
 
   // Moves the vertices on by what the edges around them lack, and gently what is around.
   void move_on(std::vector<double> lacking) {
-    const double ramp = kRamp * options_.fair.tolerance;
-    for (double& each : lacking) each = each > 0 ? kFurther * each : 0;
+    const double ramp = kOneSidedTuning.ramp * options_.fair.tolerance;
+    for (double& each : lacking) each = each > 0 ? kOneSidedTuning.further * each : 0;
     std::vector<double> more = greatest_within(lacking, 2 * ramp);
     more = mean_within(more, ramp);
-    const double most = (1 - kCurvePart) * options_.fair.tolerance;
+    const double most = (1 - kOneSidedTuning.curve_part) * options_.fair.tolerance;
     for (std::size_t i = 0; i < move_.size(); ++i) {
       const double gentle = gentle_at(stations_[i]);
       move_[i] = std::min(move_[i] + gentle * more[i], gentle * most);
@@ -213,7 +189,7 @@ class OneSided {
   // 0 at the ends of the run, which stay, 1 from a ramp behind them on.
   [[nodiscard]] double gentle_at(double station) const {
     const double to_end = std::min(station, stations_.back() - station);
-    const double part = std::min(1.0, to_end / (kRamp * options_.fair.tolerance));
+    const double part = std::min(1.0, to_end / (kOneSidedTuning.ramp * options_.fair.tolerance));
     return part * part * (3 - 2 * part);
   }
 
@@ -221,7 +197,7 @@ class OneSided {
   [[nodiscard]] std::vector<double> greatest_within(const std::vector<double>& of_edges,
                                                     double way) const {
     std::vector<double> greatest(p_.size());
-    std::deque<std::size_t> falling;  // edges, those behind are less than those before
+    std::deque<std::size_t> falling;  // edges, later ones are less than earlier ones
     std::size_t next = 0;
     for (std::size_t i = 0; i < p_.size(); ++i) {
       while (next < of_edges.size() && (next <= i || stations_[next] <= stations_[i] + way)) {
@@ -250,16 +226,6 @@ class OneSided {
       means[i] = (sums[end] - sums[first]) / static_cast<double>(end - first);
     }
     return means;
-  }
-
-  [[nodiscard]] double deviation_of(const SmoothCurve& path) const {
-    SplineWalk curve(path.curve.basis().knots(), path.curve.control_points());
-    const VertexPlaces places{p_, path.vertex_parameters};
-    double worst = 0;
-    for (std::size_t edge = 0; edge + 1 < p_.size(); ++edge) {
-      worst = std::max(worst, edge_deviation(curve, places, edge, options_.fair.tolerance));
-    }
-    return worst;
   }
 
   std::span<const Point3> p_;

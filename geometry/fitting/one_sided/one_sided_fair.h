@@ -11,6 +11,30 @@
 
 namespace batten::geometry {
 
+struct OneSidedTuning {
+  double curve_part = 0.5;  // of the tolerance, for the curve about the moved vertices
+  double ramp = 16;         // tolerances along the path, over which a move comes and goes
+  // Rounds of moving on where the last curve still came over. Each moves a little further than that
+  // curve needed, since the next one is another curve.
+  int rounds = 6;
+  double further = 1.1;
+  // A curve that comes over by this part of the tolerance is let through: the proof allows twice
+  // that.
+  double let_through = 0.05;
+  // The room that a curve has at the ends of a run, where nothing is moved yet: less than what is
+  // let through, in parts of the tolerance.
+  double least_room = 0.8 * let_through;
+  // Vertices whose neighbours leave less than this of the way round (1 + cosine of the turn) move
+  // no further than others with it: the corner of the moved path would be far off.
+  double sharpest = 0.5;
+  // Where the path turns to the other side, the path beside it turns round the vertex on an arc.
+  // Its corner is held back by this many moves, for beyond 75 degrees the corner of the moved edges
+  // would leave too little room.
+  double furthest_corner = 1.25;
+  int samples = 8;  // beside each edge, at which the curve is looked at
+};
+inline constexpr OneSidedTuning kOneSidedTuning;
+
 struct OneSidedOptions {
   FairOptions fair;  // its tolerance is all that the curve may use, on the one side
   Side side = Side::kLeft;

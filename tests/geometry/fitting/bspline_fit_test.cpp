@@ -65,7 +65,7 @@ Point3 wave(double u) { return {u, 3 * std::sin(u / 8), 0}; }
 // Lines and parabolas have no third derivative: they are met whatever the weights are.
 TEST(FitBspline, ReproducesLinesAndParabolas) {
   for (const Function& f : {Function(line), Function(parabola)}) {
-    const BsplineFit fit = fit_bspline(problem_of(f, 40, 8, 0.1, 0.01), {});
+    const BsplineFit fit = fit_bspline(problem_of(f, 40, 8, 0.1, 0.01));
     for (double u = 0; u <= 40; u += 0.37) {
       EXPECT_LE((fit.curve.point_at(u) - f(u)).norm(), 1e-5) << u;  // of 40 mm
     }
@@ -84,9 +84,8 @@ TEST(FitBspline, FindsTheLeastEnergyBetweenTheLimits) {
                      {2, Point3(2, -kHeight, 0), Vector3::UnitX(), kLimit, 0}};
   problem.pins = {{0, Point3::Zero()}, {3, Point3(3, 0, 0)}};
   problem.breakpoints = {0, 3};
-  FitOptions options;
-  options.max_refinements = 0;
-  const BsplineFit fit = fit_bspline(problem, options);
+
+  const BsplineFit fit = fit_bspline(problem, 0);
   EXPECT_NEAR(fit.worst_ratio, 1, 0.1);
   const double a = kHeight - fit.worst_ratio * kLimit;
   EXPECT_NEAR(energy_of(fit.curve), 3 * 36 * a * a, 0.005 * 3 * 36 * a * a);
@@ -101,7 +100,7 @@ TEST(FitBspline, KeepsItsLimitsAndSaysHowWell) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     FitProblem problem = problem_of(wave, 120, 16, 0.05, 0);
     shake(problem, 0.02, seed);
-    const BsplineFit fit = fit_bspline(problem, {});
+    const BsplineFit fit = fit_bspline(problem);
     ASSERT_EQ(fit.ratios.size(), problem.samples.size());
     double worst = 0;
     for (std::size_t i = 0; i < fit.ratios.size(); ++i) {
@@ -126,7 +125,7 @@ TEST(FitBspline, UsesTheRoomThatItHas) {
   for (const double limit : {0.001, 0.01, 0.1}) {
     FitProblem problem = problem_of(wave, 120, 4, limit, 0);
     shake(problem, 0.0003, 3);
-    const double energy = energy_of(fit_bspline(problem, {}).curve);
+    const double energy = energy_of(fit_bspline(problem).curve);
     EXPECT_LT(energy, before) << limit;
     before = energy;
   }
@@ -140,7 +139,7 @@ TEST(FitBspline, LeavesTheScatterThatIsExpected) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     FitProblem problem = problem_of(wave, 200, 10, 0.2, kScatter);
     shake(problem, kScatter, seed);
-    const BsplineFit fit = fit_bspline(problem, {});
+    const BsplineFit fit = fit_bspline(problem);
     double squares = 0;
     double off_truth = 0;
     for (const FitSample& sample : problem.samples) {
@@ -156,21 +155,20 @@ TEST(FitBspline, LeavesTheScatterThatIsExpected) {
 
 TEST(FitBspline, SlidesAlongFreely) {
   FitProblem problem = problem_of(wave, 120, 10, 0.01, 0.001);
-  const double energy = energy_of(fit_bspline(problem, {}).curve);
+  const double energy = energy_of(fit_bspline(problem).curve);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-0.01, 0.01);
   for (FitSample& sample : problem.samples) sample.target += uniform(random) * sample.along;
-  const BsplineFit moved = fit_bspline(problem, {});
+  const BsplineFit moved = fit_bspline(problem);
   EXPECT_LE(moved.worst_ratio, 1 + 1e-9);
   EXPECT_NEAR(energy_of(moved.curve), energy, 0.05 * energy);
 }
 
 TEST(FitBspline, RefinesWhereTheKnotsCannotFollow) {
   const FitProblem problem = problem_of(wave, 200, 200, 0.001, 0);
-  FitOptions none;
-  none.max_refinements = 0;
-  EXPECT_GT(fit_bspline(problem, none).worst_ratio, 10);
-  const BsplineFit fit = fit_bspline(problem, {});
+
+  EXPECT_GT(fit_bspline(problem, 0).worst_ratio, 10);
+  const BsplineFit fit = fit_bspline(problem);
   EXPECT_LE(fit.worst_ratio, kInside);
   EXPECT_LT(fit.curve.control_points().size(), problem.samples.size() / 2);
 }
@@ -185,7 +183,7 @@ TEST(FitBspline, KeepsStraightZonesExactly) {
   const StraightZone zone{20, 40, Point3(20, 0.3, 0), Point3(40, 0.3, 0)};
   problem.zones = {zone};
   std::erase_if(problem.breakpoints, [](double u) { return u > 20 && u < 40; });
-  const BsplineFit fit = fit_bspline(problem, {});
+  const BsplineFit fit = fit_bspline(problem);
   for (double u = 20; u <= 40; u += 0.7) {
     EXPECT_LE((fit.curve.point_at(u) - Point3(u, 0.3, 0)).norm(), 1e-12) << u;
   }
@@ -210,8 +208,8 @@ TEST(FitBspline, SeesWhatIsOffWhereNothingIsFree) {
   FitProblem problem = problem_of(bump, 60, 5, 0.05, 0);
   problem.zones = {{0, 20, bump(0), bump(20)}, {40, 60, bump(40), bump(60)}};
   problem.breakpoints = {0, 20, 30, 40, 60};
-  EXPECT_GT(fit_bspline(problem, {.max_refinements = 0}).worst_ratio, 1);
-  const BsplineFit fit = fit_bspline(problem, {});
+  EXPECT_GT(fit_bspline(problem, 0).worst_ratio, 1);
+  const BsplineFit fit = fit_bspline(problem);
   EXPECT_LE(fit.worst_ratio, 1 + 1e-9);
   EXPECT_NEAR(fit.curve.point_at(30).y(), 1, 0.06);
   for (double u = 0; u <= 20; u += 0.7) {
@@ -224,7 +222,7 @@ TEST(FitBspline, PassesThroughPinsWithCorners) {
   FitProblem problem = problem_of(roof, 40, 5, 0.01, 0);
   std::erase_if(problem.samples, [](const FitSample& s) { return s.parameter == 20; });
   problem.pins.insert(problem.pins.begin() + 1, Pin{20, roof(20)});
-  const BsplineFit fit = fit_bspline(problem, {});
+  const BsplineFit fit = fit_bspline(problem);
   for (const Pin& pin : problem.pins) {
     EXPECT_LE((fit.curve.point_at(pin.parameter) - pin.place).norm(), 1e-12);
   }
@@ -238,10 +236,10 @@ TEST(FitBspline, PassesThroughPinsWithCorners) {
 TEST(FitBspline, RefusesWhatIsNoProblem) {
   FitProblem problem = problem_of(line, 10, 5, 0.1, 0);
   problem.pins.pop_back();
-  EXPECT_THROW((void)fit_bspline(problem, {}), std::invalid_argument);
+  EXPECT_THROW((void)fit_bspline(problem), std::invalid_argument);
   problem = problem_of(line, 10, 5, 0.1, 0);
   problem.pins.insert(problem.pins.begin() + 1, Pin{3.3, line(3.3)});
-  EXPECT_THROW((void)fit_bspline(problem, {}), std::invalid_argument);
+  EXPECT_THROW((void)fit_bspline(problem), std::invalid_argument);
 }
 
 }  // namespace

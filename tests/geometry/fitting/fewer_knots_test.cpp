@@ -9,16 +9,11 @@
 #include "geometry/distance/path_distance.h"
 #include "geometry/path/curve_pieces.h"
 #include "tests/support/knot_insertion.h"
+#include "tests/support/paths.h"
 #include "tests/support/random_curves.h"
 
 namespace batten::geometry {
 namespace {
-
-Path path_of(const BsplineCurve& curve) {
-  Path path;
-  for (const CubicBezier& piece : curve.bezier_pieces()) path.push_back(piece);
-  return path;
-}
 
 // The same curve on many more knots: each span gets seven more, at uneven places.
 BsplineCurve crowded(BsplineCurve curve, unsigned seed) {
@@ -59,7 +54,7 @@ TEST(FewerKnots, StaysWithinTheDeviationAndMeetsTheEnds) {
     EXPECT_EQ(fewer->control_points().back(), curve.control_points().back());
     EXPECT_EQ(fewer->first(), curve.first());
     EXPECT_EQ(fewer->last(), curve.last());
-    const PathComparison found = compare_paths(path_of(curve), path_of(*fewer), 0.0055);
+    const PathComparison found = compare_paths(beziers_of(curve), beziers_of(*fewer), 0.0055);
     EXPECT_EQ(found.verdict, Verdict::kProved) << found.bounds.at_most;
   }
 }

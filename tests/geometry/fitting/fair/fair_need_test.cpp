@@ -77,37 +77,29 @@ double moved_beyond(const SmoothCurve& a, const SmoothCurve& b, double away) {
 // The ripple's curvature is 0.006 (2 pi / 3)^2 = 0.026/mm, the bend's 0.005/mm and less; its third
 // derivative 0.006 (2 pi / 3)^3 = 0.055/mm^2, and the bend has next to none. So at 100 mm/s the one
 // asks for 260 mm/s^2 and 55000 mm/s^3, the other for 50 mm/s^2.
-void expect_room_at_the_ripple_only(const FairOptions& options) {
-  const TravelLimits limits{options.feed / 60, options.acceleration, options.jerk};
-  for (unsigned seed = 1; seed <= 5; ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const std::vector<Point3> points = path_with_a_ripple(seed);
-    const auto needy = fair_path(points, options);
-    FairOptions patient = options;
-    patient.feed = 60;
-    const auto true_to_it = fair_path(points, patient);
-    ASSERT_TRUE(needy && true_to_it);
-    EXPECT_GT(needy->rounds, 0);
-    EXPECT_EQ(true_to_it->rounds, 0);
-    EXPECT_LE(needy->deviation, kNeedTolerance);
-    EXPECT_GT(slowest(*needy, limits, kRippleAt - 10, kRippleAt + 10),
-              1.2 * slowest(*true_to_it, limits, kRippleAt - 10, kRippleAt + 10));
-    // Beyond it the fit settles anew, within what its vertices scatter.
-    EXPECT_LE(moved_beyond(*needy, *true_to_it, kRippleWay + 20 * kStep), 0.03 * kNeedTolerance);
-    EXPECT_GT(moved_beyond(*needy, *true_to_it, 0), 0.3 * kNeedTolerance);
+TEST(FairNeed, MovesARippleThatIsTooTightAndNothingElse) {
+  for (const bool by_jerk : {false, true}) {
+    FairOptions options = options_at(6000);
+    (by_jerk ? options.jerk : options.acceleration) = by_jerk ? 5000 : 60;
+    const TravelLimits limits{options.feed / 60, options.acceleration, options.jerk};
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+      SCOPED_TRACE(testing::Message() << (by_jerk ? "jerk" : "acceleration") << ", seed " << seed);
+      const std::vector<Point3> points = path_with_a_ripple(seed);
+      const auto needy = fair_path(points, options);
+      FairOptions patient = options;
+      patient.feed = 60;
+      const auto true_to_it = fair_path(points, patient);
+      ASSERT_TRUE(needy && true_to_it);
+      EXPECT_GT(needy->rounds, 0);
+      EXPECT_EQ(true_to_it->rounds, 0);
+      EXPECT_LE(needy->deviation, kNeedTolerance);
+      EXPECT_GT(slowest(*needy, limits, kRippleAt - 10, kRippleAt + 10),
+                1.2 * slowest(*true_to_it, limits, kRippleAt - 10, kRippleAt + 10));
+      // Beyond it the fit settles anew, within what its vertices scatter.
+      EXPECT_LE(moved_beyond(*needy, *true_to_it, kRippleWay + 20 * kStep), 0.03 * kNeedTolerance);
+      EXPECT_GT(moved_beyond(*needy, *true_to_it, 0), 0.3 * kNeedTolerance);
+    }
   }
-}
-
-TEST(FairNeed, MovesARippleThatIsTooTightForTheAccelerationAndNothingElse) {
-  FairOptions options = options_at(6000);
-  options.acceleration = 60;
-  expect_room_at_the_ripple_only(options);
-}
-
-TEST(FairNeed, MovesARippleThatIsTooTightForTheJerkAndNothingElse) {
-  FairOptions options = options_at(6000);
-  options.jerk = 5000;
-  expect_room_at_the_ripple_only(options);
 }
 
 // With a machine that can hold the feed, nothing is spent on it.

@@ -50,10 +50,8 @@ std::vector<Point3> noisy_path(unsigned seed, double noise, double corner) {
 Verdict verdict_of(const std::vector<Point3>& points, const BsplineCurve& curve, Side side) {
   const auto beside = parallel_path(path_through(points), side, kTolerance / 2);
   EXPECT_TRUE(beside);
-  const std::vector<CubicBezier> beziers = curve.bezier_pieces();
-  return compare_paths(*beside, Path(beziers.begin(), beziers.end()),
-                       kTolerance / 2 + kWrongSide * kTolerance)
-      .verdict;
+  const double tolerance = kTolerance / 2 + kWrongSide * kTolerance;
+  return compare_paths(*beside, beziers_of(curve), tolerance).verdict;
 }
 
 void expect_curves_on_both_sides(double noise, double corner) {
