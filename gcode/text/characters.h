@@ -20,7 +20,7 @@ namespace batten::gcode {
   return is_letter(c) || is_digit(c) || c == '_';
 }
 
-// The character at this place; NUL behind the end.
+// The character at this position; NUL after the end.
 [[nodiscard]] constexpr char char_at(std::string_view text, std::size_t at) {
   return at < text.size() ? text[at] : '\0';
 }
@@ -52,7 +52,6 @@ namespace batten::gcode {
 }
 
 // The bytes that some editors put before the first line of UTF-8.
-
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 }  // namespace batten::gcode

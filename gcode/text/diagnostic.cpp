@@ -1,37 +1,24 @@
 #include "gcode/text/diagnostic.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace batten::gcode {
 
 std::string_view name_of(Severity severity) {
-  switch (severity) {
-    case Severity::kNote:
-      return "note";
-    case Severity::kWarning:
-      return "warning";
-    case Severity::kError:
-      return "error";
-  }
-  return "error";
+  constexpr std::string_view kNames[] = {"note", "warning", "error"};
+  return kNames[static_cast<std::size_t>(severity)];
 }
 
 std::string to_text(const Diagnostic& diagnostic, const SourceText& source) {
   const SourcePlace place = source.place_of(diagnostic.where.begin);
-  std::string text = source.name();
-  text += ':' + std::to_string(place.line) + ':' + std::to_string(place.column) + ": ";
-  text += name_of(diagnostic.severity);
-  text += ": ";
-  text += diagnostic.id;
-  text += ": ";
-  text += diagnostic.message;
-  return text;
+  return fmt::format("{}:{}:{}: {}: {}: {}", source.name(), place.line, place.column,
+                     name_of(diagnostic.severity), diagnostic.id, diagnostic.message);
 }
 
 bool has_error(const Diagnostics& diagnostics) {
-  return std::any_of(diagnostics.begin(), diagnostics.end(), [](const Diagnostic& diagnostic) {
-    return diagnostic.severity == Severity::kError;
-  });
+  return std::ranges::count(diagnostics, Severity::kError, &Diagnostic::severity) > 0;
 }
 
 }  // namespace batten::gcode

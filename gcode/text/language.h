@@ -1,6 +1,7 @@
 // In which language a program is written: how its text is cut into blocks and words.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -13,12 +14,15 @@ enum class Language : std::uint8_t {
 };
 
 // For people: "Siemens Sinumerik".
-[[nodiscard]] std::string_view describe(Language language);
+[[nodiscard]] constexpr std::string_view describe(Language language) {
+  constexpr std::string_view kNames[] = {"the RS-274 family", "Siemens Sinumerik",
+                                         "Heidenhain Klartext"};
+  return kNames[static_cast<std::size_t>(language)];
+}
 
 // What a number without a decimal point means. Controls of the FANUC kind take X1000 for 1000 mm or
 // for 1000 least increments (1.000 mm), as a parameter of theirs says: no program tells which. All
 // others take it for 1000 mm.
-
 enum class PointlessNumbers : std::uint8_t {
   kUnits,       // X5 is X5.
   kIncrements,  // X5 is five least increments
@@ -37,7 +41,6 @@ struct Decimals {
 inline constexpr int kMostIncrementDecimals = 5;
 
 // How a control says how long it waits.
-
 enum class DwellForm : std::uint8_t {
   kUnknown,         // not known, or a parameter of the machine says it; X1.5 alone is seconds
   kSecondsP,        // G4 P1.5: LinuxCNC, grbl

@@ -20,15 +20,13 @@ class LineCursor {
   // `from`: the begin of a line.
   explicit LineCursor(std::string_view text, std::size_t from = 0) : text_(text), at_(from) {}
 
-  // Goes on at the begin of a line, behind the last one.
+  // Goes on at the begin of a line, after the last one.
   void go_to(std::size_t at) { at_ = at; }
 
   // The next line; nothing after the last one. An empty text has no line, and a line end at
   // the end of the text starts no further line.
   [[nodiscard]] std::optional<LineBounds> next() {
-    if (at_ >= text_.size()) {
-      return std::nullopt;
-    }
+    if (at_ >= text_.size()) return std::nullopt;
     const std::size_t feed = find_from(at_, '\n', next_feed_);
     const std::size_t carriage = find_from(at_, '\r', next_return_);
     std::size_t text_end = text_.size();
@@ -48,7 +46,7 @@ class LineCursor {
   }
 
  private:
-  // The place of the next `c` at or after `from`. `known` keeps it from call to call: a text
+  // The position of the next `c` at or after `from`. `known` keeps it from call to call: a text
   // with one kind of line end is not searched for the other again for every line.
   std::size_t find_from(std::size_t from, char c, std::size_t& known) const {
     if (known < from || known == kNotSearched) {
@@ -68,15 +66,13 @@ class LineCursor {
 // Where a line begins, without the bytes that some editors put before the first one, and blanks.
 [[nodiscard]] std::uint32_t begin_of_content(std::string_view text, const LineBounds& line);
 
-// Lines that controls read in two ways. A CR that no LF follows ends a line for grbl and is left
+// Lines that controls read differently. A CR that no LF follows ends a line for grbl and is left
 // out by LinuxCNC, which then reads the words on both sides of it as one block.
-
-// What people are told of such a line.
 inline constexpr std::string_view kJoinedLine =
     "a CR without LF between words, which ends a line for some controls and is left out by others; "
     "expected LF or CRLF after every line: convert the line ends";
 
-// LinuxCNC drops what stands behind a NUL in its line, grbl the NUL alone.
+// LinuxCNC drops what is after a NUL in its line, grbl the NUL alone.
 inline constexpr std::string_view kNulInLine =
     "a NUL beside words, where some controls end the line and which others leave out; expected "
     "none: take it out";
@@ -100,12 +96,12 @@ class JoinedLines {
   bool joined_ = false;
 };
 
-// False: nothing joins the line that begins there to what stands before it.
+// False: nothing joins the line that begins there to what is before it.
 [[nodiscard]] constexpr bool follows_lone_return(std::string_view text, std::size_t begin) {
   return begin > 0 && text[begin - 1] == '\r';
 }
 
-// How a new line ends: as the line of the source does beside which it stands; never in a CR alone,
+// How a new line ends: as the line of the source beside it does; never in a CR alone,
 // which some controls leave out.
 [[nodiscard]] constexpr std::string_view written_line_end(std::string_view of_source) {
   return of_source.starts_with('\r') ? "\r\n" : "\n";

@@ -3,7 +3,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <stdexcept>
 
@@ -25,10 +24,10 @@ void check(double value, int decimals) {
   }
 }
 
-// The shortest decimal that stands for this double and no other, with so many digits behind the
+// The shortest decimal that means this double and no other, with so many digits after the
 // point: half goes away from zero.
 std::string rounded_decimal(double size, int decimals) {
-  std::array<char, 400> shortest{};  // the least double has 324 digits behind the point
+  std::array<char, 400> shortest{};  // the least double has 324 digits after the point
   const auto written = std::to_chars(shortest.data(), shortest.data() + shortest.size(), size,
                                      std::chars_format::fixed);
   std::string text(shortest.data(), written.ptr);
@@ -42,66 +41,6 @@ std::string rounded_decimal(double size, int decimals) {
     text[i] = up ? '0' : static_cast<char>(text[i] + 1);
   }
   return up ? "1" + text : text;
-}
-
-// Digits and point of a number.
-struct Scan {
-  std::uint64_t mantissa = 0;  // of all digits, while it is exact
-  int digits = 0;
-  int decimals = 0;
-  bool exact = true;  // mantissa still holds every digit
-  bool has_point = false;
-  bool whole_part = false;  // a digit other than 0 stands before the point
-  std::size_t end = 0;      // after the last character of the number
-};
-
-Scan scan_digits(std::string_view text, std::size_t at) {
-  // A mantissa below this takes one digit more without leaving 2^53, below which every
-  // integer is a double.
-  constexpr std::uint64_t kOneMoreDigit = 900'000'000'000'000;
-  Scan scan;
-  for (; at < text.size(); ++at) {
-    const char c = text[at];
-    if (is_digit(c)) {
-      if (scan.mantissa < kOneMoreDigit) {
-        scan.mantissa = scan.mantissa * 10 + static_cast<std::uint64_t>(c - '0');
-      } else {
-        scan.exact = false;
-      }
-      ++scan.digits;
-      scan.decimals += scan.has_point ? 1 : 0;
-      scan.whole_part = scan.whole_part || (!scan.has_point && c != '0');
-    } else if (c == '.' && !scan.has_point) {
-      scan.has_point = true;
-    } else if (is_blank(c)) {
-      continue;
-    } else {
-      break;
-    }
-    scan.end = at + 1;
-  }
-  return scan;
-}
-
-// The value of more digits than a double holds. Nothing when it is too great for a double.
-std::optional<double> value_of_many_digits(std::string_view digits, bool whole_part) {
-  const std::string plain = without_blanks(digits);
-  double value = 0;
-  const auto result =
-      std::from_chars(plain.data(), plain.data() + plain.size(), value, std::chars_format::fixed);
-  if (result.ec == std::errc{}) {
-    return value;
-  }
-  // Out of range: smaller than any double when nothing stands before the point.
-  return whole_part ? std::nullopt : std::optional<double>(0.0);
-}
-
-std::optional<double> value_of(const Scan& scan, std::string_view digits) {
-  if (scan.exact && static_cast<std::size_t>(scan.decimals) < kPowersOfTen.size()) {
-    return static_cast<double>(scan.mantissa) /
-           kPowersOfTen[static_cast<std::size_t>(scan.decimals)];
-  }
-  return value_of_many_digits(digits, scan.whole_part);
 }
 
 }  // namespace
@@ -131,22 +70,30 @@ double rounded(double value, int decimals) {
 
 std::optional<ScannedNumber> scan_number(std::string_view text) {
   std::size_t at = after_blanks(text, 0);
-  ReadNumber plain;
-  if (const char* const behind =
-          read_plain_number(text.data() + at, text.data() + text.size(), plain)) {
-    // Behind blanks the same number may go on.
-    const auto length = static_cast<std::size_t>(behind - text.data());
-    const char next = char_at(text, after_blanks(text, length));
-    if (!is_digit(next) && next != '.') return ScannedNumber{plain, length};
-  }
   const bool negative = char_at(text, at) == '-';
   if (negative || char_at(text, at) == '+') ++at;
-  const Scan scan = scan_digits(text, at);
-  if (scan.digits == 0) return std::nullopt;
-  const std::optional<double> magnitude = value_of(scan, text.substr(at, scan.end - at));
-  if (!magnitude) return std::nullopt;
-  const double value = negative && *magnitude != 0 ? -*magnitude : *magnitude;
-  return ScannedNumber{{value, scan.decimals, scan.has_point}, scan.end};
+  ScannedNumber found;
+  auto& [value, decimals, has_point] = found.number;
+  std::string digits;  // with the point, without blanks
+  for (; at < text.size(); ++at) {
+    const char c = text[at];
+    if (is_blank(c)) continue;
+    if (!is_digit(c) && (c != '.' || has_point)) break;
+    decimals += has_point ? 1 : 0;
+    has_point = has_point || c == '.';
+    digits += c;
+    found.length = at + 1;
+  }
+  if (digits.empty() || digits == ".") return std::nullopt;
+  const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value,
+                                    std::chars_format::fixed);
+  // Out of range: too great for a double, or smaller than any where nothing but zeros is before the
+  // point.
+  if (read.ec != std::errc{} && digits.find_first_of("123456789") < digits.find('.')) {
+    return std::nullopt;
+  }
+  if (negative && value != 0) value = -value;
+  return found;
 }
 
 std::optional<ReadNumber> read_number(std::string_view text) {

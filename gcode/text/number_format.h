@@ -55,7 +55,7 @@ inline constexpr std::array<double, 23> kPowersOfTen = {
 // Fifteen digits are below 2^53, below which every integer is a double.
 inline constexpr std::size_t kExactDigits = 15;
 
-// Behind the digits that stand there. The mantissa is of no use where they are too many.
+// After the digits there. The mantissa is of no use where they are too many.
 inline const char* behind_digits(const char* at, const char* end, std::uint64_t& mantissa) {
   for (; at != end && is_digit(*at); ++at) {
     mantissa = mantissa * 10 + static_cast<std::uint64_t>(*at - '0');
@@ -63,8 +63,8 @@ inline const char* behind_digits(const char* at, const char* end, std::uint64_t&
   return at;
 }
 
-// The way of nearly all numbers: a sign, at most fifteen digits without blanks, a point; below
-// kNumberLimit. Gives the place behind it; nullptr, and `number` is of no use, for others.
+// Fast path for nearly all numbers: a sign, at most fifteen digits without blanks, a point; below
+// kNumberLimit. Gives the position after it; nullptr, and `number` is of no use, for others.
 [[nodiscard]] inline const char* read_plain_number(const char* at, const char* end,
                                                    ReadNumber& number) {
   const bool negative = at != end && *at == '-';

@@ -22,53 +22,8 @@ namespace {
 // Bytes: Linux maps 64 KiB about the page that is asked for, or what the disk gives at once.
 constexpr std::size_t kReadAround = std::size_t{1} << 20;
 
-// Places are 32 bit numbers, and the place after the last byte is one too.
+// Positions are 32 bit numbers, and the one after the last byte is one too.
 constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
-
-// Closes the file when it goes.
-class OpenFile {
- public:
-  explicit OpenFile(const std::filesystem::path& file)
-      : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  ~OpenFile() {
-    if (descriptor_ >= 0) {
-      ::close(descriptor_);
-    }
-  }
-  [[nodiscard]] int descriptor() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
-
-// A read-only view of a file, given back when it goes.
-class Mapping {
- public:
-  Mapping() = default;
-  Mapping(int descriptor, std::size_t size)
-      : address_(::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0)), size_(size) {}
-  Mapping(const Mapping&) = delete;
-  Mapping& operator=(const Mapping&) = delete;
-  ~Mapping() {
-    if (valid()) {
-      ::munmap(address_, size_);
-    }
-  }
-  [[nodiscard]] bool valid() const { return address_ != MAP_FAILED; }
-  [[nodiscard]] std::string_view text() const {
-    return {static_cast<const char*>(address_), size_};
-  }
-  // What the system does with the advice changes no byte.
-  void give_back(std::size_t begin, std::size_t end) const {
-    (void)::madvise(static_cast<char*>(address_) + begin, end - begin, MADV_DONTNEED);
-  }
-
- private:
-  void* address_ = MAP_FAILED;
-  std::size_t size_ = 0;
-};
 
 std::string system_message(const std::string& name) { return name + ": " + std::strerror(errno); }
 
@@ -82,9 +37,7 @@ bool read_all(int descriptor, const std::string& name, std::string& text, std::s
   std::array<char, 1 << 16> part{};
   for (;;) {
     const ssize_t count = ::read(descriptor, part.data(), part.size());
-    if (count == 0) {
-      return true;
-    }
+    if (count == 0) return true;
     if (count < 0) {
       error = system_message(name);
       return false;
@@ -106,9 +59,7 @@ std::vector<std::uint32_t> line_begins(std::string_view text) {
   std::size_t ends = 0;
   LineCursor lines(text);
   while (const auto line = lines.next()) {
-    if (line->end > line->text_end && ++ends % kLinesApart == 0) {
-      begins.push_back(line->end);
-    }
+    if (line->end > line->text_end && ++ends % kLinesApart == 0) begins.push_back(line->end);
   }
   return begins;
 }
@@ -116,12 +67,7 @@ std::vector<std::uint32_t> line_begins(std::string_view text) {
 }  // namespace
 
 struct SourceText::Bytes {
-  Bytes(std::string file_name, std::string owned_text)
-      : name(std::move(file_name)), owned(std::move(owned_text)), text(owned) {}
-  Bytes(std::string file_name, std::unique_ptr<const Mapping> mapping)
-      : name(std::move(file_name)), mapped(std::move(mapping)), text(mapped->text()) {}
-
-  // Made when a place is first asked for: most programs have nothing to complain about.
+  // Made when a position is first asked for: most programs have nothing to complain about.
   const std::vector<std::uint32_t>& lines() const {
     std::call_once(lines_made, [this] { line_table = line_begins(text); });
     return line_table;
@@ -129,51 +75,56 @@ struct SourceText::Bytes {
 
   std::string name;
   std::string owned;
-  std::unique_ptr<const Mapping> mapped;
-  std::string_view text;
+  std::shared_ptr<char> mapped;  // the file, if it is
+  std::string_view text;         // of either
   mutable std::once_flag lines_made;
   mutable std::vector<std::uint32_t> line_table;
 };
 
 SourceText::SourceText(std::string name, std::string text) {
-  if (text.size() > kMostBytes) {
-    throw std::length_error(too_large(name));
-  }
-  bytes_ = std::make_shared<const Bytes>(std::move(name), std::move(text));
+  if (text.size() > kMostBytes) throw std::length_error(too_large(name));
+  const auto bytes = std::make_shared<Bytes>();
+  bytes->name = std::move(name);
+  bytes->owned = std::move(text);
+  bytes->text = bytes->owned;
+  bytes_ = bytes;
 }
 
 std::optional<SourceText> SourceText::map_file(const std::filesystem::path& file,
-                                               std::string& error) {
-  return map_file(file, error, file.string());
-}
-
-std::optional<SourceText> SourceText::map_file(const std::filesystem::path& file,
-                                               std::string& error, const std::string& name) {
-  const OpenFile opened(file);
+                                               std::string& error, std::string name) {
+  if (name.empty()) name = file.string();
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat status {};
-  if (opened.descriptor() < 0 || ::fstat(opened.descriptor(), &status) != 0) {
+  if (descriptor < 0) {
+    error = system_message(name);
+    return std::nullopt;
+  }
+  const std::shared_ptr<void> closes(nullptr, [descriptor](void*) { ::close(descriptor); });
+  if (::fstat(descriptor, &status) != 0) {
     error = system_message(name);
     return std::nullopt;
   }
   if (!S_ISREG(status.st_mode) || status.st_size == 0) {
     std::string text;
-    if (!read_all(opened.descriptor(), name, text, error)) {
-      return std::nullopt;
-    }
-    return SourceText(name, std::move(text));
+    if (!read_all(descriptor, name, text, error)) return std::nullopt;
+    return SourceText(std::move(name), std::move(text));
   }
-  const auto size = static_cast<std::uint64_t>(status.st_size);
+  const auto size = static_cast<std::size_t>(status.st_size);
   if (size > kMostBytes) {
     error = too_large(name);
     return std::nullopt;
   }
-  auto mapping = std::make_unique<const Mapping>(opened.descriptor(), size);
-  if (!mapping->valid()) {
+  void* const address = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+  if (address == MAP_FAILED) {
     error = system_message(name);
     return std::nullopt;
   }
-  SourceText source(name, std::string());
-  source.bytes_ = std::make_shared<const Bytes>(name, std::move(mapping));
+  SourceText source(std::move(name), std::string());
+  const auto bytes = std::make_shared<Bytes>();
+  bytes->name = source.name();
+  bytes->mapped = {static_cast<char*>(address), [size](char* begin) { ::munmap(begin, size); }};
+  bytes->text = {bytes->mapped.get(), size};
+  source.bytes_ = bytes;
   return source;
 }
 
@@ -186,17 +137,14 @@ std::string_view SourceText::text(SourceSpan span) const {
 }
 
 void SourceText::release_pages(SourceSpan span) const {
-  if (bytes_->mapped == nullptr) {
-    return;
-  }
+  if (bytes_->mapped == nullptr) return;
   // A mapping begins with a page. Who reads the first byte of a span is given pages before it too.
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
   const std::size_t begin =
       (span.begin - std::min<std::size_t>(span.begin, kReadAround)) / page * page;
   const std::size_t end = std::min<std::size_t>(span.end, bytes_->text.size()) / page * page;
-  if (begin < end) {
-    bytes_->mapped->give_back(begin, end);
-  }
+  // What the system does with the advice changes no byte.
+  if (begin < end) (void)::madvise(bytes_->mapped.get() + begin, end - begin, MADV_DONTNEED);
 }
 
 SourcePlace SourceText::place_of(std::uint32_t offset) const {

@@ -1,4 +1,4 @@
-// The bytes of a program, and where a byte stands in them.
+// The bytes of a program, and the line and column of each.
 #pragma once
 
 #include <cstdint>
@@ -27,17 +27,15 @@ struct SourcePlace {
 // The whole text, unchanged: any bytes, any line ends. Cheap to copy (shares the bytes).
 class SourceText {
  public:
-  // `name` stands in messages: a file name, or "<stdin>".
+  // `name`: for messages, a file name, or "<stdin>".
   SourceText(std::string name, std::string text);
 
   // Maps the file read-only. On failure returns nothing and sets `error` to a message with
   // the file name and the reason of the operating system. Files above 4 GiB are refused.
-  [[nodiscard]] static std::optional<SourceText> map_file(const std::filesystem::path& file,
-                                                          std::string& error);
-  // The same with another name in messages.
+  // `name`: for messages; empty: that of the file.
   [[nodiscard]] static std::optional<SourceText> map_file(const std::filesystem::path& file,
                                                           std::string& error,
-                                                          const std::string& name);
+                                                          std::string name = {});
 
   [[nodiscard]] const std::string& name() const;
   [[nodiscard]] std::string_view text() const;

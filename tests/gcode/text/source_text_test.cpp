@@ -4,9 +4,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "gcode/text/diagnostic.h"
 #include "gcode/text/line_cursor.h"
 #include "tests/support/scratch_folder.h"
 
@@ -24,13 +27,20 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 using Lines = std::vector<std::string>;
 
-TEST(LineCursor, TakesAnyLineEnd) {
-  EXPECT_EQ(lines_of("a\nb\n"), (Lines{"a", "b"}));
-  EXPECT_EQ(lines_of("a\r\nb\r\n"), (Lines{"a", "b"}));
-  EXPECT_EQ(lines_of("a\rb\r"), (Lines{"a", "b"}));
-  EXPECT_EQ(lines_of("a\rb\nc\r\nd"), (Lines{"a", "b", "c", "d"}));
-  EXPECT_EQ(lines_of("a\n\rb"), (Lines{"a", "", "b"}));
-  EXPECT_EQ(lines_of("a\r\r\nb"), (Lines{"a", "", "b"}));
+TEST(LineCursor, TakesAnyLineEndAndNoneAtTheEnd) {
+  const std::pair<std::string, Lines> rows[] = {{"a\nb\n", {"a", "b"}},
+                                                {"a\r\nb\r\n", {"a", "b"}},
+                                                {"a\rb\r", {"a", "b"}},
+                                                {"a\rb\nc\r\nd", {"a", "b", "c", "d"}},
+                                                {"a\n\rb", {"a", "", "b"}},
+                                                {"a\r\r\nb", {"a", "", "b"}},
+                                                {"a\nb", {"a", "b"}},
+                                                {"a", {"a"}},
+                                                {"a\r", {"a"}},
+                                                {"", {}},
+                                                {"\n", {""}},
+                                                {"\n\n", {"", ""}}};
+  for (const auto& [text, lines] : rows) EXPECT_EQ(lines_of(text), lines) << text;
 }
 
 TEST(LineCursor, EndsWithTheText) {
@@ -43,15 +53,6 @@ TEST(LineCursor, EndsWithTheText) {
     }
     EXPECT_EQ(end, text.size());
   }
-}
-
-TEST(LineCursor, AMissingLastLineEndLosesNothing) {
-  EXPECT_EQ(lines_of("a\nb"), (Lines{"a", "b"}));
-  EXPECT_EQ(lines_of("a"), (Lines{"a"}));
-  EXPECT_EQ(lines_of("a\r"), (Lines{"a"}));
-  EXPECT_EQ(lines_of(""), Lines{});
-  EXPECT_EQ(lines_of("\n"), (Lines{""}));
-  EXPECT_EQ(lines_of("\n\n"), (Lines{"", ""}));
 }
 
 TEST(SourceText, KeepsEveryByte) {
@@ -75,7 +76,7 @@ void expect_place(const SourceText& source, std::uint32_t offset, std::uint32_t 
   EXPECT_EQ(place.column, column) << "offset " << offset;
 }
 
-TEST(SourceText, PlacesCountLinesAndBytesFromOne) {
+TEST(SourceText, PositionsCountLinesAndBytesFromOne) {
   const SourceText source("part.nc", "ab\ncd\r\ne\rf");
   expect_place(source, 0, 1, 1);
   expect_place(source, 1, 1, 2);
@@ -85,9 +86,6 @@ TEST(SourceText, PlacesCountLinesAndBytesFromOne) {
   expect_place(source, 7, 3, 1);
   expect_place(source, 9, 4, 1);
   expect_place(source, 10, 4, 2);  // the end of the text
-}
-
-TEST(SourceText, ThePlaceAfterALastLineEndIsTheNextLine) {
   expect_place(SourceText("p", "a\n"), 2, 2, 1);
   expect_place(SourceText("p", ""), 0, 1, 1);
 }
@@ -114,66 +112,79 @@ TEST(SourceText, PlacesOfALongTextAreCountedByHand) {
 
 class MapFile : public testing::Test {
  protected:
-  [[nodiscard]] std::filesystem::path file_with(const std::string& text) const {
-    return scratch_.put("part.nc", text);
+  [[nodiscard]] SourceText mapped(const std::string& text, const std::string& name = {}) {
+    auto source = SourceText::map_file(scratch_.put("part.nc", text), error_, name);
+    if (!source) throw std::runtime_error(error_);
+    return *source;
   }
 
   ScratchFolder scratch_;
   const std::filesystem::path folder_ = scratch_.path();
+  std::string error_;
 };
 
 TEST_F(MapFile, GivesTheBytesOfTheFile) {
   const std::string text("G1 X1\r\n\0%\n", 10);
-  std::string error;
-  const auto source = SourceText::map_file(file_with(text), error);
-  ASSERT_TRUE(source) << error;
-  EXPECT_EQ(source->text(), text);
-  EXPECT_EQ(source->name(), (folder_ / "part.nc").string());
-  expect_place(*source, 7, 2, 1);
+  const SourceText source = mapped(text);
+  EXPECT_EQ(source.text(), text);
+  EXPECT_EQ(source.name(), (folder_ / "part.nc").string());
+  expect_place(source, 7, 2, 1);
+  EXPECT_TRUE(mapped("").text().empty());
 }
 
-TEST_F(MapFile, GivesBytesThatWereSetAsideAgain) {
+TEST_F(MapFile, GivesBytesThatWereReleasedAgain) {
   std::string text;
   for (int i = 0; i < 5000; ++i) text += std::to_string(i) + "\n";
-  std::string error;
-  const auto source = SourceText::map_file(file_with(text), error, "a name");
-  ASSERT_TRUE(source) << error;
-  EXPECT_EQ(source->name(), "a name");
-  source->release_pages({5, static_cast<std::uint32_t>(text.size() - 7)});
-  EXPECT_EQ(source->text(), text);
+  const SourceText source = mapped(text, "a name");
+  EXPECT_EQ(source.name(), "a name");
+  source.release_pages({5, static_cast<std::uint32_t>(text.size() - 7)});
+  EXPECT_EQ(source.text(), text);
   SourceText("short", text).release_pages({0, 10000});  // not mapped: nothing to do
 }
 
-TEST_F(MapFile, TakesAnEmptyFile) {
-  std::string error;
-  const auto source = SourceText::map_file(file_with(""), error);
-  ASSERT_TRUE(source) << error;
-  EXPECT_TRUE(source->text().empty());
-}
-
 TEST_F(MapFile, KeepsItsBytesWhenTheFileIsReplaced) {
-  std::string error;
-  const auto source = SourceText::map_file(file_with("G1 X1\n"), error);
-  ASSERT_TRUE(source) << error;
+  const SourceText source = mapped("G1 X1\n");
   std::ofstream(folder_ / "new.nc", std::ios::binary) << "G1 X2\n";
   std::filesystem::rename(folder_ / "new.nc", folder_ / "part.nc");
-  EXPECT_EQ(source->text(), "G1 X1\n");
+  EXPECT_EQ(source.text(), "G1 X1\n");
 }
 
 TEST_F(MapFile, SaysWhichFileAndWhy) {
-  std::string error;
-  EXPECT_FALSE(SourceText::map_file(folder_ / "none.nc", error));
-  EXPECT_EQ(error, (folder_ / "none.nc").string() + ": No such file or directory");
-  EXPECT_FALSE(SourceText::map_file(folder_, error));
-  EXPECT_EQ(error, folder_.string() + ": Is a directory");
+  const auto file = scratch_.put("long.nc", "");
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 32);  // sparse: no room is taken
+  const std::pair<std::filesystem::path, std::string> rows[] = {
+      {folder_ / "none.nc", ": No such file or directory"},
+      {folder_, ": Is a directory"},
+      {file, ": larger than 4 GiB, which is the most that one program may be"}};
+  for (const auto& [path, reason] : rows) {
+    EXPECT_FALSE(SourceText::map_file(path, error_));
+    EXPECT_EQ(error_, path.string() + reason);
+  }
 }
 
-TEST_F(MapFile, RefusesMoreThanPlacesCanCount) {
-  const auto file = file_with("");
-  std::filesystem::resize_file(file, std::uintmax_t{1} << 32);  // sparse: no room is taken
-  std::string error;
-  EXPECT_FALSE(SourceText::map_file(file, error));
-  EXPECT_NE(error.find("4 GiB"), std::string::npos) << error;
+// --- diagnostics -------------------------------------------------------------------------------
+
+TEST(Diagnostic, SaysFilePlaceSeverityIdAndMessage) {
+  const SourceText source("part.nc", "G21\nG2 X1 R5\n");
+  const Diagnostic radius{Severity::kError, "arc-radius-mismatch", SourceSpan{7, 9},
+                          "start radius 10.000 mm, end radius 10.412 mm"};
+  EXPECT_EQ(to_text(radius, source),
+            "part.nc:2:4: error: arc-radius-mismatch: start radius 10.000 mm, end radius "
+            "10.412 mm");
+  const Diagnostic note{Severity::kNote, "a-note", SourceSpan{0, 3}, "text"};
+  EXPECT_EQ(to_text(note, source), "part.nc:1:1: note: a-note: text");
+  const Diagnostic warning{Severity::kWarning, "a-warning", SourceSpan{4, 4}, "text"};
+  EXPECT_EQ(to_text(warning, source), "part.nc:2:1: warning: a-warning: text");
+}
+
+TEST(Diagnostic, OnlyAnErrorIsAnError) {
+  Diagnostics found;
+  EXPECT_FALSE(has_error(found));
+  found.push_back({Severity::kNote, "a-note", {}, ""});
+  found.push_back({Severity::kWarning, "a-warning", {}, ""});
+  EXPECT_FALSE(has_error(found));
+  found.push_back({Severity::kError, "an-error", {}, ""});
+  EXPECT_TRUE(has_error(found));
 }
 
 }  // namespace
