@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <limits>
 #include <random>
 #include <vector>
 
-#include "geometry/basic/rounding.h"
 #include "geometry/chords/linearize.h"
+#include "tests/support/processor_time.h"
 
 namespace batten::geometry {
 namespace {
@@ -54,13 +52,14 @@ ChordMeasure measure(const BsplineCurve& curve, double from, double to) {
   return found;
 }
 
-TEST(ChordVertices, KeepTheDeviationInOrderOnRandomCurves) {
+TEST(ChordVertices, KeepTheDeviationInOrderAndTheGreatestLengthOnRandomCurves) {
   constexpr int kCurves = 100;
   for (int seed = 0; seed < kCurves; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const BsplineCurve curve = random_curve(seed, 12);
     ChordOptions options;
     options.max_deviation = std::pow(10.0, -1 - seed % 4);
+    if (seed % 3 == 1) options.max_length = 0.5;
     const double from = seed % 3 == 0 ? 0.7 : curve.first();
     const auto u = chord_vertices(curve, from, curve.last(), options);
     EXPECT_EQ(u.front(), from);
@@ -70,6 +69,9 @@ TEST(ChordVertices, KeepTheDeviationInOrderOnRandomCurves) {
       const ChordMeasure found = measure(curve, u[i - 1], u[i]);
       EXPECT_LE(found.away, options.max_deviation * (1 + 1e-9));
       EXPECT_LE(found.back, 2 * options.max_deviation);
+      if (options.max_length == 0.5) {
+        EXPECT_LE((curve.point_at(u[i]) - curve.point_at(u[i - 1])).norm(), 0.5 + 1e-5);
+      }
     }
   }
 }
@@ -91,35 +93,13 @@ TEST(ChordVertices, AreNotMoreThanNeeded) {
   EXPECT_LE(joinable, pairs / 100);
 }
 
-TEST(ChordVertices, KeepToTheGreatestLengthOnRandomCurves) {
-  constexpr int kCurves = 30;
-  for (int seed = 0; seed < kCurves; ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const BsplineCurve curve = random_curve(seed, 12);
-    ChordOptions options;
-    options.max_deviation = 0.05;
-    options.max_length = 0.5;
-    const auto u = chord_vertices(curve, curve.first(), curve.last(), options);
-    for (std::size_t i = 1; i < u.size(); ++i) {
-      EXPECT_LE((curve.point_at(u[i]) - curve.point_at(u[i - 1])).norm(), 0.5 + 1e-5);
-    }
-  }
-}
-
 // 100,000 spans take some 0.2 s optimised; the bound leaves room for sanitizers and a busy
 // machine, and still finds a quadratic scan (which takes minutes).
-// Seconds of processor time for one curve, the least of three times.
 double seconds_for(const BsplineCurve& curve, double deviation) {
-  ChordOptions options;
-  options.max_deviation = deviation;
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 3; ++i) {
-    const std::clock_t start = std::clock();
-    const auto u = chord_vertices(curve, curve.first(), curve.last(), options);
-    EXPECT_GT(u.size(), 1U);
-    least = std::min(least, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
-  }
-  return least;
+  return least_processor_seconds(3, [&] {
+    const ChordOptions options{.max_deviation = deviation};
+    EXPECT_GT(chord_vertices(curve, curve.first(), curve.last(), options).size(), 1U);
+  });
 }
 
 // Four times the spans cost four times the work when it is linear and sixteen times when it is

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <limits>
 #include <random>
 #include <vector>
 
 #include "geometry/chords/linearize.h"
 #include "geometry/chords/min_link.h"
 #include "geometry/distance/path_distance.h"
+#include "tests/support/paths.h"
+#include "tests/support/processor_time.h"
 
 namespace batten::geometry {
 namespace {
@@ -42,12 +42,6 @@ BsplineCurve random_min_link_curve(int seed, int spans, bool in_plane, double si
   return {BsplineBasis::clamped(3, breakpoints), points};
 }
 
-Path as_path(const BsplineCurve& curve) {
-  Path path;
-  for (const CubicBezier& piece : curve.bezier_pieces()) path.push_back(piece);
-  return path;
-}
-
 Path as_path(const std::vector<LinkVertex>& vertices) {
   Path path;
   for (std::size_t i = 1; i < vertices.size(); ++i) {
@@ -56,7 +50,7 @@ Path as_path(const std::vector<LinkVertex>& vertices) {
   return path;
 }
 
-std::size_t greedy_chords(const BsplineCurve& curve, double tolerance) {
+std::size_t greedy_count(const BsplineCurve& curve, double tolerance) {
   const ChordOptions options{.max_deviation = tolerance};
   return chord_vertices(curve, curve.first(), curve.last(), options).size() - 1;
 }
@@ -76,10 +70,10 @@ TEST(MinLinkVertices, KeepTheToleranceBothWaysInOrderOnRandomCurves) {
     EXPECT_EQ(vertices.back().place, curve.point_at(curve.last()));
     EXPECT_TRUE(std::ranges::is_sorted(vertices, {}, &LinkVertex::parameter));
     const PathComparison compared =
-        compare_paths(as_path(curve), as_path(vertices), kProofLooseness * tolerance);
+        compare_paths(beziers_of(curve), as_path(vertices), kProofLooseness * tolerance);
     EXPECT_EQ(compared.verdict, Verdict::kProved);
     EXPECT_LE(compared.bounds.at_least, tolerance * (1 + 1e-9));
-    const std::size_t greedy = greedy_chords(curve, tolerance);
+    const std::size_t greedy = greedy_count(curve, tolerance);
     EXPECT_LE(vertices.size() - 1, greedy);
     links += vertices.size() - 1;
     chords += greedy;
@@ -109,10 +103,10 @@ TEST(MinLinkVertices, KeepTheToleranceWhereItIsAboveTheRadius) {
       const auto vertices =
           min_link_vertices(curve, curve.first(), curve.last(), {.tolerance = tolerance});
       const PathComparison compared =
-          compare_paths(as_path(curve), as_path(vertices), kProofLooseness * tolerance);
+          compare_paths(beziers_of(curve), as_path(vertices), kProofLooseness * tolerance);
       EXPECT_NE(compared.verdict, Verdict::kBroken);
       EXPECT_LE(compared.bounds.at_least, tolerance * (1 + 1e-9));
-      EXPECT_LE(vertices.size() - 1, greedy_chords(curve, tolerance));
+      EXPECT_LE(vertices.size() - 1, greedy_count(curve, tolerance));
     }
   }
 }
@@ -127,7 +121,7 @@ TEST(MinLinkVertices, AreFewerAlsoInPlaceOfAPart) {
     EXPECT_EQ(vertices.front().parameter, from);
     EXPECT_EQ(vertices.back().parameter, to);
     const PathComparison compared =
-        compare_paths(as_path(curve.part(from, to)), as_path(vertices), kProofLooseness * 1e-3);
+        compare_paths(beziers_of(curve.part(from, to)), as_path(vertices), kProofLooseness * 1e-3);
     EXPECT_EQ(compared.verdict, Verdict::kProved);
   }
 }
@@ -145,16 +139,11 @@ TEST(MinLinkVertices, GrowInNumberWithTheSquareRootOfTheFineness) {
   }
 }
 
-// Seconds of processor time, the least of three times.
 double seconds_of_min_link(const BsplineCurve& curve) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 3; ++i) {
-    const std::clock_t start = std::clock();
+  return least_processor_seconds(3, [&] {
     EXPECT_GT(min_link_vertices(curve, curve.first(), curve.last(), {.tolerance = 0.01}).size(),
               1U);
-    least = std::min(least, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
-  }
-  return least;
+  });
 }
 
 // Four times the spans cost four times the work when it is linear, sixteen times when quadratic.
