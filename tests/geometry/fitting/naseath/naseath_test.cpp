@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/fitting/naseath/naseath_polygon.h"
 #include "geometry/path/parameter_samples.h"
 #include "tests/support/naseath_cases.h"
 #include "tests/support/noisy_curves.h"
@@ -33,8 +32,6 @@ double greatest_displacement(const BsplineCurve& a, const BsplineCurve& b) {
   return most;
 }
 
-// --- space -------------------------------------------------------------------------------------
-
 TEST(Naseath, TurnsWithTheCurveIntoSpace) {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(1.1, Vector3(1, 2, -0.5).normalized()).toRotationMatrix();
@@ -55,20 +52,6 @@ TEST(Naseath, TurnsWithTheCurveIntoSpace) {
   }
 }
 
-TEST(Naseath, OnANoisyHelixIsWorseLiterallyAndNotWithRepairs) {
-  const BsplineCurve helix = helix_with_two_wrong_points();
-  const double before = greatest_curvature(helix);
-  EXPECT_NEAR(before, .0678, 5e-5);
-  const std::vector<std::pair<double, double>> table = {{.025, .0680}, {.125, .0687}, {.25, .0696}};
-  for (const auto& [radius, expected] : table) {
-    SCOPED_TRACE(testing::Message() << "radius " << radius);
-    EXPECT_NEAR(greatest_curvature(smooth_naseath(helix, literal(radius)).curve), expected, 6e-5);
-    expect_no_worse(smooth_naseath(helix, repaired(radius)).curve, helix);
-  }
-}
-
-// --- what the repairs promise ------------------------------------------------------------------
-
 // After 200 passes, as the table has it; it ends after 983 with points moved by .248 mm.
 TEST(Naseath, AddsWavesToASawtoothLiterallyAndNoneWithRepairs) {
   const BsplineCurve line = line_with_sawtooth();
@@ -84,22 +67,34 @@ TEST(Naseath, AddsWavesToASawtoothLiterallyAndNoneWithRepairs) {
   EXPECT_LE(result.displacement, 1e-5);
 }
 
-TEST(Naseath, BendsAUShapeHarderLiterallyAndNotWithRepairs) {
-  const BsplineCurve u = u_shaped_curve();
-  EXPECT_NEAR(greatest_curvature(u), .393, 5e-4);
-  const std::vector<std::pair<double, double>> table = {
-      {.25, .395}, {1, .400}, {2, .407}, {4, .416}};
-  for (const auto& [radius, expected] : table) {
-    SCOPED_TRACE(testing::Message() << "radius " << radius);
-    EXPECT_NEAR(greatest_curvature(smooth_naseath(u, literal(radius)).curve), expected, 6e-4);
-    expect_no_worse(smooth_naseath(u, repaired(radius)).curve, u);
+TEST(Naseath, BendsCurvesHarderLiterallyAndNotWithRepairs) {
+  struct Row {
+    std::string name;
+    BsplineCurve curve;
+    double before;
+    std::vector<std::pair<double, double>> table;  // radius, greatest curvature
+    double precision;
+  };
+  const Row rows[] = {
+      {"noisy helix",
+       helix_with_two_wrong_points(),
+       .0678,
+       {{.025, .0680}, {.125, .0687}, {.25, .0696}},
+       6e-5},
+      {"U", u_shaped_curve(), .393, {{.25, .395}, {1, .400}, {2, .407}, {4, .416}}, 6e-4},
+  };
+  for (const auto& [name, curve, before, table, precision] : rows) {
+    EXPECT_NEAR(greatest_curvature(curve), before, precision) << name;
+    for (const auto& [radius, expected] : table) {
+      SCOPED_TRACE(testing::Message() << name << ", radius " << radius);
+      EXPECT_NEAR(greatest_curvature(smooth_naseath(curve, literal(radius)).curve), expected,
+                  precision);
+      expect_no_worse(smooth_naseath(curve, repaired(radius)).curve, curve);
+    }
   }
-}
-
-TEST(Naseath, BendsG3HarderLiterallyAndNotWithRepairs) {
-  const BsplineCurve curve = curve_of_case("G3");
-  EXPECT_GT(greatest_curvature(smooth_naseath(curve, literal(.25)).curve), .060);
-  expect_no_worse(smooth_naseath(curve, repaired(.25)).curve, curve);
+  const BsplineCurve g3 = curve_of_case("G3");
+  EXPECT_GT(greatest_curvature(smooth_naseath(g3, literal(.25)).curve), .060);
+  expect_no_worse(smooth_naseath(g3, repaired(.25)).curve, g3);
 }
 
 // A line with noise that the tube holds.
@@ -206,30 +201,22 @@ TEST(Naseath, LeavesAStraightLineAlone) {
   }
 }
 
-// --- refusals ----------------------------------------------------------------------------------
-
 TEST(Naseath, RefusesWhatItCannotSmooth) {
   const BsplineCurve line = curve_of_case("G1");
-  NaseathOptions options = repaired(0);
-  EXPECT_THROW((void)smooth_naseath(line, options), std::invalid_argument);
-  options = repaired(.1);
-  options.accuracy = 0;
-  EXPECT_THROW((void)smooth_naseath(line, options), std::invalid_argument);
-  options = repaired(.1);
-  options.precision = 0;
-  EXPECT_THROW((void)smooth_naseath(line, options), std::invalid_argument);
-  options = repaired(.1);
-  options.max_passes = 0;
-  EXPECT_THROW((void)smooth_naseath(line, options), std::invalid_argument);
-
-  options = repaired(.1);
-  const std::vector<Point3> points = line.control_points();
-  const BsplineCurve quadratic(BsplineBasis(2, {0, 0, 0, 1, 2, 3, 4, 5, 5, 5}), points);
-  EXPECT_THROW((void)smooth_naseath(quadratic, options), std::invalid_argument);
-  const BsplineCurve corner(BsplineBasis(3, {0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2}), points);
-  EXPECT_THROW((void)smooth_naseath(corner, options), std::invalid_argument);
-  const BsplineCurve unclamped(BsplineBasis(3, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}), points);
-  EXPECT_THROW((void)smooth_naseath(unclamped, options), std::invalid_argument);
+  for (const int wrong : {0, 1, 2, 3}) {
+    NaseathOptions options = repaired(wrong == 0 ? 0 : .1);
+    if (wrong == 1) options.accuracy = 0;
+    if (wrong == 2) options.precision = 0;
+    if (wrong == 3) options.max_passes = 0;
+    EXPECT_THROW((void)smooth_naseath(line, options), std::invalid_argument) << wrong;
+  }
+  const std::vector<Point3>& points = line.control_points();
+  const BsplineBasis quadratic(2, {0, 0, 0, 1, 2, 3, 4, 5, 5, 5});
+  const BsplineBasis with_corner(3, {0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2});
+  const BsplineBasis unclamped(3, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
+  for (const BsplineBasis& basis : {quadratic, with_corner, unclamped}) {
+    EXPECT_THROW((void)smooth_naseath({basis, points}, repaired(.1)), std::invalid_argument);
+  }
 }
 
 }  // namespace
