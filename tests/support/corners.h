@@ -59,7 +59,7 @@ inline std::variant<OzcanBlend, NoBlend> ozcan_corner(
   const auto& frame = std::get<CornerFrame>(framed);
   const OzcanLeg leg = ozcan_leg(frame, tolerance, kind, share);
   if (!(leg[2] > kSamePlace)) return NoBlend::kNoRoom;
-  return ozcan_optimum(frame, leg, tolerance, kind, limits);
+  return ozcan_optimum({frame, leg, tolerance, kind, limits});
 }
 
 // The deviation by plain samples, as slowly and simply as can be.

@@ -37,11 +37,7 @@ class PiecewiseCurve {
 
   // Greatest distance from the nearer leg.
   double off_legs() const {
-    const auto away = [this](double s) {
-      const Vector3 from = from_vertex(s);
-      return std::min(from_a(from), from_b(from));
-    };
-    return greatest(away, places_).value;
+    return greatest([this](double s) { return std::min(from_a(s), from_b(s)); }, places_).value;
   }
 
   // With its distance from the vertex as a negative value.
@@ -50,15 +46,14 @@ class PiecewiseCurve {
   }
 
   double in_order(const Extremum& nearest) const {
-    const auto before = [this](double s) { return from_a(from_vertex(s)); };
-    const auto after = [this](double s) { return from_b(from_vertex(s)); };
     const auto first_after = std::upper_bound(places_.begin(), places_.end(), nearest.at);
     std::vector<double> to_nearest(places_.begin(), first_after);
     to_nearest.push_back(nearest.at);
     std::vector<double> from_nearest = {nearest.at};
     from_nearest.insert(from_nearest.end(), first_after, places_.end());
-    return std::max(
-        {-nearest.value, greatest(before, to_nearest).value, greatest(after, from_nearest).value});
+    const double before = greatest([this](double s) { return from_a(s); }, to_nearest).value;
+    const double after = greatest([this](double s) { return from_b(s); }, from_nearest).value;
+    return std::max({-nearest.value, before, after});
   }
 
  private:
@@ -80,8 +75,8 @@ class PiecewiseCurve {
     const std::size_t i = std::min(static_cast<std::size_t>(s), pieces_.size() - 1);
     return pieces_[i].value(s - static_cast<double>(i));
   }
-  double from_a(const Vector3& from) const { return leg_distance(from, frame_.a, frame_.length_a); }
-  double from_b(const Vector3& from) const { return leg_distance(from, frame_.b, frame_.length_b); }
+  double from_a(double s) const { return leg_distance(from_vertex(s), frame_.a, frame_.length_a); }
+  double from_b(double s) const { return leg_distance(from_vertex(s), frame_.b, frame_.length_b); }
 
   const CornerFrame& frame_;
   std::vector<CubicPolynomial> pieces_;
@@ -222,21 +217,17 @@ bool turns_more(const Corner& corner, double angle) {
   return std::atan2(in.cross(out).norm(), in.dot(out)) > angle;
 }
 
-ToleranceKind kind_at(const Corner& corner, ToleranceKind kind, double strict_sharper_than) {
-  const bool sharp = turns_more(corner, std::numbers::pi - strict_sharper_than);
-  return sharp ? ToleranceKind::kPath : kind;
-}
-
 std::vector<SharedCorner> shared_corners(std::span<const Point3> distinct,
-                                         double keep_corner_angle) {
+                                         const CornerPathOptions& options) {
   const auto& q = distinct;
   std::vector<SharedCorner> corners;
   std::vector<bool> blends(q.size(), false);
   for (std::size_t i = 1; i + 1 < q.size(); ++i) {
     const Corner corner{q[i - 1], q[i], q[i + 1]};
-    const bool stays = turns_more(corner, keep_corner_angle);
-    blends[i] = !stays && std::holds_alternative<CornerFrame>(frame_of(corner));
-    corners.push_back({i, corner, 0, 0, stays});
+    const bool sharp = turns_more(corner, std::numbers::pi - options.strict_sharper_than);
+    corners.push_back({i, corner, NoBlend::kKept, sharp ? ToleranceKind::kPath : options.kind});
+    if (!turns_more(corner, options.keep_corner_angle)) corners.back().frame = frame_of(corner);
+    blends[i] = std::holds_alternative<CornerFrame>(corners.back().frame);
   }
   const auto share = [&](std::size_t vertex, std::size_t neighbour) {
     return (q[vertex] - q[neighbour]).norm() / (blends[neighbour] ? 2 : 1);
@@ -246,6 +237,12 @@ std::vector<SharedCorner> shared_corners(std::span<const Point3> distinct,
     corner.share_after = share(corner.vertex, corner.vertex + 1);
   }
   return corners;
+}
+
+AlikeLegs alike_legs(const CornerFrame& frame) {
+  const auto steps = [](double x) { return std::llround(x / kCornerTuning.alike); };
+  return {steps(frame.a.x()), steps(frame.a.y()), steps(frame.a.z()),
+          steps(frame.b.x()), steps(frame.b.y()), steps(frame.b.z())};
 }
 
 BlendedPath blended_path(std::span<const Point3> distinct,

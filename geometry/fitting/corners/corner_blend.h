@@ -4,11 +4,11 @@
 // on the other. Methods: docs/algorithms/guo.md, docs/algorithms/ozcan.md.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -84,6 +84,14 @@ void require_positive_tolerance(double tolerance, std::string_view caller);
 // A polyline with a short curve in the place of each corner: what all corner methods share,
 // whatever the curve is.
 
+struct CornerPathOptions {
+  double tolerance = 0.01;  // mm
+  ToleranceKind kind = ToleranceKind::kPath;
+  double keep_corner_angle = 3.2;  // radians: vertices that turn more stay (> pi: none)
+  // Radians between the legs: sharper corners are held to ToleranceKind::kPath.
+  double strict_sharper_than = 0;
+};
+
 // The points that are apart from the one before them.
 struct DistinctVertices {
   std::vector<Point3> points;
@@ -99,22 +107,29 @@ struct DistinctVertices {
 struct SharedCorner {
   std::size_t vertex;  // index among the distinct vertices
   Corner corner;
-  double share_before;
-  double share_after;
-  bool stays = false;  // turns more than `keep_corner_angle`
+  std::variant<CornerFrame, NoBlend> frame;  // or why it stays
+  ToleranceKind kind;                        // that it is held to
+  double share_before = 0;
+  double share_after = 0;
 };
 
 // Those of the inner vertices. Linear cost.
 [[nodiscard]] std::vector<SharedCorner> shared_corners(std::span<const Point3> distinct,
-                                                       double keep_corner_angle);
+                                                       const CornerPathOptions& options);
 
 // Whether the legs turn by more than this (radians, 0 straight on, pi back).
 [[nodiscard]] bool turns_more(const Corner& corner, double angle);
 
-// The reading that a corner is held to where `kind` is asked for: sharper corners than
-// `strict_sharper_than` (radians between the legs) are held to kPath.
-[[nodiscard]] ToleranceKind kind_at(const Corner& corner, ToleranceKind kind,
-                                    double strict_sharper_than);
+struct CornerTuning {
+  double alike = 1e-6;            // leg directions, and mm, that agree in these steps are alike
+  double measuring_noise = 1e-9;  // relative, of the deviations of one blend at two corners
+};
+inline constexpr CornerTuning kCornerTuning;
+
+// The directions of the legs, in steps of CornerTuning::alike. A blend found for one corner is
+// measured for each other one that is alike before it is taken there.
+using AlikeLegs = std::array<long long, 6>;
+[[nodiscard]] AlikeLegs alike_legs(const CornerFrame& frame);
 
 struct BlendedPath {
   Path pieces;                   // lines and Bezier pieces, joined end to end
@@ -130,15 +145,13 @@ struct BlendedPath {
 
 // What a method makes of a path: `Blend` has its curve in `blend.curve`.
 template <typename Blend>
-struct CornerPath {
+struct CornerPath : BlendedPath {
   struct Corner {
     std::size_t vertex;  // index among the given points
     std::variant<Blend, NoBlend> outcome;
   };
-  std::vector<Corner> corners;   // in order of their vertices
-  Path pieces;                   // lines and Bezier pieces, joined end to end
-  std::vector<double> stations;  // mm along the polyline where they meet: see BlendedPath
-  int searched = 0;              // corners for which a blend was searched
+  std::vector<Corner> corners;  // in order of their vertices
+  int searched = 0;             // corners for which a blend was searched
 
   // The path with these corners, which are those of the inner vertices.
   void round(const DistinctVertices& vertices) {
@@ -147,24 +160,23 @@ struct CornerPath {
       const auto* blend = std::get_if<Blend>(&corners[i].outcome);
       if (blend != nullptr) blends[i + 1] = blend->blend.curve;
     }
-    BlendedPath rounded = blended_path(vertices.points, blends);
-    pieces = std::move(rounded.pieces);
-    stations = std::move(rounded.stations);
+    BlendedPath::operator=(blended_path(vertices.points, blends));
   }
 };
 
 // Points that are one place with the one before them are passed over and have no corner. The
-// shares of two corners never overlap. `blend_of`: what becomes of a SharedCorner that does not
-// stay.
+// shares of two corners never overlap. `blend_of`: what becomes of a SharedCorner with a frame.
 template <typename Blend, typename BlendOf>
 [[nodiscard]] CornerPath<Blend> path_with_blends(std::span<const Point3> points,
-                                                 double keep_corner_angle, BlendOf&& blend_of) {
+                                                 const CornerPathOptions& options,
+                                                 BlendOf&& blend_of) {
   CornerPath<Blend> path;
   const DistinctVertices vertices = distinct_vertices(points);
-  if (vertices.size() < 2) return path;
-  for (const SharedCorner& each : shared_corners(vertices.points, keep_corner_angle)) {
+  for (const SharedCorner& each : shared_corners(vertices.points, options)) {
+    const auto* frame = std::get_if<CornerFrame>(&each.frame);
     path.corners.push_back({vertices.indices[each.vertex], NoBlend::kKept});
-    if (!each.stays) path.corners.back().outcome = blend_of(each);
+    path.corners.back().outcome =
+        frame != nullptr ? blend_of(each, *frame) : std::get<NoBlend>(each.frame);
   }
   path.round(vertices);
   return path;

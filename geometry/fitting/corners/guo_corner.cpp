@@ -7,37 +7,30 @@
 #include <vector>
 
 #include "geometry/basic/rounding.h"
-#include "geometry/fitting/corners/corner_blend.h"
 
 namespace batten::geometry {
+namespace {
 
-double guo_apex_distance(const CornerFrame& frame, double spacing) {
+// mm, e = (L / 2) cos theta.
+double apex_distance(const CornerFrame& frame, double spacing) {
   return spacing / 2 * frame.cos_half;
 }
 
-double guo_allowed_apex(const CornerFrame& frame, double tolerance, ToleranceKind kind) {
-  return kind == ToleranceKind::kBand ? tolerance / frame.sin_half : tolerance;
-}
-
-double guo_spacing_for_apex(const CornerFrame& frame, double apex_distance) {
-  return 2 * apex_distance / frame.cos_half;
-}
-
-double guo_greatest_curvature(const CornerFrame& frame, double spacing) {
-  return 4 * frame.cos_half / (3 * spacing * frame.sin_half * frame.sin_half);
-}
+}  // namespace
 
 GuoBlend guo_blend(const CornerFrame& frame, double spacing) {
   const Point3& q = frame.vertex;
   std::vector<Point3> points = {q + 2 * spacing * frame.a, q + spacing * frame.a, q,
                                 q + spacing * frame.b, q + 2 * spacing * frame.b};
   BsplineCurve curve(BsplineBasis::clamped(3, {0, 0.5, 1}), std::move(points));
-  // The vertex is nearest to the middle, which is also the place farthest from the legs; up
+  // The vertex is nearest to the middle, which is also the point farthest from the legs; up
   // to there the Bezier points lie on the one leg but for the last, so in order, too, nothing
   // is further apart than vertex and middle.
-  const double e = guo_apex_distance(frame, spacing);
+  const double e = apex_distance(frame, spacing);
   const BlendDeviation deviation{e * frame.sin_half, e, e};
-  return {{std::move(curve), deviation}, spacing, guo_greatest_curvature(frame, spacing)};
+  return {{std::move(curve), deviation},
+          spacing,
+          4 * frame.cos_half / (3 * spacing * frame.sin_half * frame.sin_half)};
 }
 
 std::variant<GuoBlend, NoBlend> guo_corner(const Corner& corner, const GuoRule& rule,
@@ -47,10 +40,12 @@ std::variant<GuoBlend, NoBlend> guo_corner(const Corner& corner, const GuoRule& 
   if (const auto* reason = std::get_if<NoBlend>(&framed)) return *reason;
   const auto& frame = std::get<CornerFrame>(framed);
   double spacing = std::min({share_before, share_after, frame.length_a, frame.length_b}) / 2;
-  const double allowed = guo_allowed_apex(frame, rule.tolerance, rule.kind);
-  if (guo_apex_distance(frame, spacing) > allowed) {
-    spacing =
-        guo_spacing_for_apex(frame, rule.apex == GuoApex::kAllowed ? allowed : rule.tolerance / 2);
+  // The e that is allowed. Exact: the blend's deviation of that kind is the tolerance then.
+  const double allowed =
+      rule.kind == ToleranceKind::kBand ? rule.tolerance / frame.sin_half : rule.tolerance;
+  if (apex_distance(frame, spacing) > allowed) {
+    const double apex = rule.apex == GuoApex::kAllowed ? allowed : rule.tolerance / 2;
+    spacing = 2 * apex / frame.cos_half;
   }
   if (!(spacing > kSamePlace)) return NoBlend::kNoRoom;
   return guo_blend(frame, spacing);
@@ -58,46 +53,38 @@ std::variant<GuoBlend, NoBlend> guo_corner(const Corner& corner, const GuoRule& 
 
 namespace {
 
-GuoRule rule_at(const Corner& corner, const GuoOptions& options) {
-  GuoRule rule = options.rule;
-  rule.kind = kind_at(corner, rule.kind, options.strict_sharper_than);
-  return rule;
-}
-
-// --- routines 1 to 3 as the paper has them -------------------------------------------------
-
-// start = Q0; for each inner vertex Q_i: the blend that fits between start and Q_{i+1}, halved
-// where it would reach Q_{i+1} and that is a corner, too; then start = P4 + lambda (Q_{i+1} - P4).
+// Routines 1 to 3 as the paper has them: start = Q0; for each inner vertex Q_i: the blend that fits
+// between start and Q_{i+1}, halved where it would reach Q_{i+1} and that is a corner, too; then
+// start = P4 + lambda (Q_{i+1} - P4).
 std::vector<GuoPath::Corner> literal_corners(const DistinctVertices& vertices,
                                              const GuoOptions& options) {
   const std::vector<Point3>& q = vertices.points;
-  const std::size_t n = q.size() - 1;
   std::vector<GuoPath::Corner> corners;
   Point3 start = q[0];
-  for (std::size_t i = 1; i < n; ++i) {
+  for (const SharedCorner& each : shared_corners(q, options)) {
+    const std::size_t i = each.vertex;
     const double a = (q[i] - start).norm();
     const double b = (q[i + 1] - q[i]).norm();
-    const Corner corner{q[i - 1], q[i], q[i + 1]};
-    if (turns_more(corner, options.keep_corner_angle)) {
-      corners.push_back({vertices.indices[i], NoBlend::kKept});
-      start = q[i];
+    start = q[i];
+    corners.push_back({vertices.indices[i], NoBlend::kKept});
+    if (const auto* reason = std::get_if<NoBlend>(&each.frame)) {
+      corners.back().outcome = *reason;
       continue;
     }
-    const GuoRule rule = rule_at(corner, options);
-    auto outcome = guo_corner(corner, rule, a, b);
+    const GuoRule rule{options.tolerance, each.kind, options.apex};
+    auto outcome = guo_corner(each.corner, rule, a, b);
     // Only a blend that the segments limit can fill the next one, so the tolerance has its say
     // before this rule.
     const auto* blend = std::get_if<GuoBlend>(&outcome);
-    if (blend != nullptr && i + 1 < n && 2 * blend->spacing >= b) {
-      outcome = guo_corner(corner, rule, b / 2, b / 2);
+    if (blend != nullptr && i + 2 < q.size() && 2 * blend->spacing >= b) {
+      outcome = guo_corner(each.corner, rule, b / 2, b / 2);
       blend = std::get_if<GuoBlend>(&outcome);
     }
-    start = q[i];
     if (blend != nullptr) {
       const Point3& p4 = blend->blend.curve.control_points().back();
       start = p4 + options.lambda * (q[i + 1] - p4);
     }
-    corners.push_back({vertices.indices[i], std::move(outcome)});
+    corners.back().outcome = std::move(outcome);
   }
   return corners;
 }
@@ -106,23 +93,25 @@ std::vector<GuoPath::Corner> literal_corners(const DistinctVertices& vertices,
 
 GuoOptions GuoOptions::literal(double tolerance, double lambda) {
   GuoOptions options;
-  options.rule = {tolerance, ToleranceKind::kBand, GuoApex::kHalfTolerance};
+  options.tolerance = tolerance;
+  options.kind = ToleranceKind::kBand;
+  options.apex = GuoApex::kHalfTolerance;
   options.sharing = GuoSharing::kLiteral;
   options.lambda = lambda;
   return options;
 }
 
 GuoPath guo_path(std::span<const Point3> points, const GuoOptions& options) {
-  require_positive_tolerance(options.rule.tolerance, "guo_path");
+  require_positive_tolerance(options.tolerance, "guo_path");
   if (!(options.lambda >= 0 && options.lambda < 1)) {
     throw std::invalid_argument("guo_path: lambda " + std::to_string(options.lambda) +
                                 ", expected 0 or more and less than 1");
   }
   if (options.sharing == GuoSharing::kFair) {
     return path_with_blends<GuoBlend>(
-        points, options.keep_corner_angle, [&](const SharedCorner& each) {
-          return guo_corner(each.corner, rule_at(each.corner, options), each.share_before,
-                            each.share_after);
+        points, options, [&](const SharedCorner& each, const CornerFrame& /*frame*/) {
+          return guo_corner(each.corner, {options.tolerance, each.kind, options.apex},
+                            each.share_before, each.share_after);
         });
   }
   GuoPath path;

@@ -1,4 +1,4 @@
-// The five-point corner: a cubic B-spline over two equal stretches of the legs, with closed
+// The five-point corner: a cubic B-spline over two equal sections of the legs, with closed
 // forms for everything. Method: docs/algorithms/guo.md.
 //
 // Source: Y. Guo, J. Yan, X. Wang, Journal of Engineering Research and Reports 25(12), 2023,
@@ -8,43 +8,26 @@
 // of the vertex from the blend, theta half the angle between the legs, delta the tolerance.
 #pragma once
 
-#include <cstddef>
 #include <limits>
 #include <span>
 #include <variant>
-#include <vector>
 
 #include "geometry/fitting/corners/corner_blend.h"
-#include "geometry/path/path.h"
 
 namespace batten::geometry {
 
 struct GuoBlend {
   CornerBlend blend;  // control points on the legs, 2L and L from the vertex, and the vertex
   double spacing;     // mm, L: the blend replaces 2L of either leg
-  double greatest_curvature;  // 1/mm, in the middle
+  double greatest_curvature;  // 1/mm, in the middle: (4/3) cos theta / (L sin^2 theta)
 };
-
-// mm, e = (L / 2) cos theta.
-[[nodiscard]] double guo_apex_distance(const CornerFrame& frame, double spacing);
-
-// mm, the e that a tolerance allows: delta / sin theta in the band reading, delta in the path
-// reading. Both are exact: the blend's deviation of that kind is the tolerance then.
-[[nodiscard]] double guo_allowed_apex(const CornerFrame& frame, double tolerance,
-                                      ToleranceKind kind);
-
-// mm, the L that has this e.
-[[nodiscard]] double guo_spacing_for_apex(const CornerFrame& frame, double apex_distance);
-
-// 1/mm, (4/3) cos theta / (L sin^2 theta).
-[[nodiscard]] double guo_greatest_curvature(const CornerFrame& frame, double spacing);
 
 // The blend of that spacing. Requires 0 < 2 * spacing <= both legs.
 [[nodiscard]] GuoBlend guo_blend(const CornerFrame& frame, double spacing);
 
 // What becomes of a corner that has more room than the tolerance allows.
 enum class GuoApex {
-  kAllowed,        // as great a blend as the tolerance allows: e = epsilon
+  kAllowed,        // as great a blend as the tolerance allows
   kHalfTolerance,  // the paper's: e = delta / 2
 };
 
@@ -62,24 +45,18 @@ struct GuoRule {
     double share_before = std::numeric_limits<double>::infinity(),
     double share_after = std::numeric_limits<double>::infinity());
 
-// A polyline with a five-point blend (guo_corner.h) in the place of each corner.
-// Method: docs/algorithms/guo.md.
-
 // How a segment between two corners is shared.
 enum class GuoSharing {
   kFair,     // half and half; the whole where the other end needs none
   kLiteral,  // the paper's: the earlier corner takes what it wants, the later what is left
 };
 
-struct GuoOptions {
-  GuoRule rule;
+struct GuoOptions : CornerPathOptions {
+  GuoApex apex = GuoApex::kAllowed;
   GuoSharing sharing = GuoSharing::kFair;
   // kLiteral only: the next blend may begin after this part of what a blend leaves of the
-  // segment behind it. In [0, 1[.
+  // segment after it. In [0, 1[.
   double lambda = 0;
-  double keep_corner_angle = 3.2;  // radians: vertices that turn more stay (> pi: none)
-  // Radians between the legs: sharper corners are held to ToleranceKind::kPath, whatever the rule.
-  double strict_sharper_than = 0;
 
   // The paper's routines, word for word but for the guards of degenerate corners.
   [[nodiscard]] static GuoOptions literal(double tolerance, double lambda);
@@ -87,8 +64,9 @@ struct GuoOptions {
 
 using GuoPath = CornerPath<GuoBlend>;
 
-// Starts and ends at the given ends. With kFair the path reversed gives the reversed blends. With
-// kLiteral only the order of the joints along each segment is promised.
+// A polyline with such a blend in the place of each corner. Starts and ends at the given ends. With
+// kFair the path reversed gives the reversed blends. With kLiteral only the order of the joints
+// along each segment is promised.
 //
 // Cost: linear. Throws std::invalid_argument when the tolerance is not a positive number or
 // lambda is not in [0, 1[.

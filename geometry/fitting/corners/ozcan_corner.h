@@ -7,14 +7,11 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <span>
 #include <variant>
-#include <vector>
 
 #include "geometry/fitting/corners/corner_blend.h"
 #include "geometry/path/kinematic_feed.h"
-#include "geometry/path/path.h"
 
 namespace batten::geometry {
 
@@ -45,33 +42,37 @@ struct OzcanBlend {
 [[nodiscard]] BsplineCurve ozcan_curve(const CornerFrame& frame, const OzcanLeg& leg,
                                        const BesideLeg& fourth);
 
+struct OzcanProblem {
+  CornerFrame frame;
+  OzcanLeg leg;
+  double tolerance;  // mm
+  ToleranceKind kind;
+  KinematicLimits limits;
+};
+
 // P4 and P5 on the legs, as far from the vertex (in parts of P3 and P6) as the tolerance allows:
 // the paper's "usual" corner. kNoRoom where no such place is near enough.
 //
-// Throws std::invalid_argument when the tolerance is not a positive number or the leg does not
-// decrease to a positive number.
-[[nodiscard]] std::variant<OzcanBlend, NoBlend> ozcan_usual(const CornerFrame& frame,
-                                                            const OzcanLeg& leg, double tolerance,
-                                                            ToleranceKind kind,
-                                                            const KinematicLimits& limits);
+// Throws std::invalid_argument when the tolerance is not a positive number.
+[[nodiscard]] std::variant<OzcanBlend, NoBlend> ozcan_usual(const OzcanProblem& problem);
 
 // P4 and P5 where the feed estimate is greatest within the tolerance, searched from the usual
 // corner and never worse than that. Does not throw for other reasons than ozcan_usual.
-[[nodiscard]] std::variant<OzcanBlend, NoBlend> ozcan_optimum(const CornerFrame& frame,
-                                                              const OzcanLeg& leg, double tolerance,
-                                                              ToleranceKind kind,
-                                                              const KinematicLimits& limits);
+[[nodiscard]] std::variant<OzcanBlend, NoBlend> ozcan_optimum(const OzcanProblem& problem);
 
-// A polyline with an eight-point blend (ozcan_corner.h) in the place of each corner.
-// Method: docs/algorithms/ozcan.md, section Paths.
+struct OzcanTuning {
+  // Of the tolerance, that the sharpest curve uses: with more the corner is cramped; with less the
+  // curve has less length to turn on. docs/algorithms/ozcan.md has the table.
+  double sharpest = 0.35;
+  int halvings = 48;  // of the usual corner's places: the deviation is right to 1e-14 of the blend
+  int evaluations = 600;  // of one search
+  double finest = 1e-4;   // of the first step, about a tolerance: changes no feed by a thousandth
+  double broken = 1e6;    // s/mm^2: no feed is as slow as 1e-6 mm/s over 1 mm
+};
+inline constexpr OzcanTuning kOzcanTuning;
 
-struct OzcanOptions {
-  double tolerance = 0.01;  // mm
-  ToleranceKind kind = ToleranceKind::kPath;
+struct OzcanOptions : CornerPathOptions {
   KinematicLimits limits;
-  double keep_corner_angle = 3.2;  // radians: vertices that turn more stay (> pi: none)
-  // Radians between the legs: sharper corners are held to ToleranceKind::kPath.
-  double strict_sharper_than = 0;
   // Radians: vertices that turn less get the "usual" corner, in closed form. The feed that the
   // search would win there is little, and a smooth curve has thousands of them.
   double least_searched_turn = 0.1;
@@ -79,8 +80,9 @@ struct OzcanOptions {
 
 using OzcanPath = CornerPath<OzcanBlend>;
 
-// Segments are shared as by guo_path with kFair, and both legs of a blend are as long as the
-// lesser share. Corners that are alike (half angle, legs and directions of the legs to a
+// A polyline with such a blend in the place of each corner (docs/algorithms/ozcan.md, section
+// Paths). Segments are shared as by guo_path with kFair, and both legs of a blend are as long as
+// the lesser share. Corners that are alike (half angle, legs and directions of the legs to a
 // millionth) are searched once.
 //
 // Cost: linear, but some 12 ms for each corner that has to be searched. Throws

@@ -3,15 +3,11 @@
 // are used all the way. Our own. Method: docs/algorithms/band_curve.md, section Corner.
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <variant>
-#include <vector>
 
-#include "geometry/basic/point.h"
 #include "geometry/fitting/corners/corner_blend.h"
 #include "geometry/path/kinematic_feed.h"
-#include "geometry/path/path.h"
 
 namespace batten::geometry {
 
@@ -23,8 +19,33 @@ struct TimeOptimalOptions {
   // mm of each leg that the curve may take, all of it at most.
   double share_before = 0;
   double share_after = 0;
-  int spans = 32;  // of the curve, 8 or more: more are nearer to the fastest, and cost as much more
 };
+
+struct TimeOptimalTuning {
+  int spans_each =
+      16;  // of the curve, to each side: more are faster by little and cost as much more
+  double growth = 1.05;  // of spans from the apex outwards: all that is quick happens near it
+  int watched = 4;       // samples per span where the band is held
+  // The speed may be above the feed by this part: the planner that runs the curve caps it, which
+  // costs no more than that, and the ends, which have the feed itself, are strictly inside.
+  double overspeed = 2e-4;
+  double time_error = 2e-4;  // of what a stop costs: the time is found to this
+  int time_tries = 16;
+  // The lost time is between these parts of the ramps' and of a stop's: with a wide tolerance the
+  // way is shorter, and time is won. First it is thought to be the third.
+  double least_lost = -1.5;
+  double most_lost = 1.2;
+  double first_lost = 0.4;
+  double from_ends = 0.05;  // of the interval of times: the next try keeps so far from its ends
+  // Rounds of solving again further inside, since the band is held at samples only.
+  int band_rounds = 4;
+  double further_inside = 1e-4;
+  // A curve that bends this many times as hard as the five points do is none: where there is
+  // hardly any room (teeth of noise), the search ends with one that stops on its way.
+  double sharper = 2;
+  int curvatures_per_span = 8;  // looked at for that
+};
+inline constexpr TimeOptimalTuning kTimeOptimalTuning;
 
 struct TimeOptimalBlend {
   CornerBlend blend;  // its parameter is the time in s that the machine takes it in
@@ -43,22 +64,16 @@ struct TimeOptimalBlend {
 [[nodiscard]] std::variant<TimeOptimalBlend, NoBlend> time_optimal_corner(
     const Corner& corner, const TimeOptimalOptions& options);
 
-// A polyline with a racing line (time_optimal_corner.h) in the place of each corner that a machine
-// has to slow down for, and a five-point blend (guo_corner.h) in the place of each gentle one.
+// A polyline with such a curve in the place of each corner that a machine has to slow down for, and
+// a five-point blend (guo_corner.h) in the place of each gentle one.
 // Method: docs/algorithms/band_curve.md, section Paths of corners.
-
-struct TimeOptimalPathOptions {
-  double tolerance = 0.01;  // mm
-  ToleranceKind kind = ToleranceKind::kPath;
-  KinematicLimits limits;          // as for time_optimal_corner
-  double keep_corner_angle = 3.2;  // radians: vertices that turn more stay (> pi: none)
-  // Radians between the legs: sharper corners are held to ToleranceKind::kPath.
-  double strict_sharper_than = 0;
-  // Radians: vertices that turn less get the five-point blend, in closed form. A racing line would
-  // win little there, and a smooth curve has thousands of them.
+struct TimeOptimalPathOptions : CornerPathOptions {
+  KinematicLimits limits;  // as for time_optimal_corner
+  // Radians: vertices that turn less get the five-point blend, in closed form. A search would win
+  // little there, and a smooth curve has thousands of them.
   double least_raced_turn = 0.1;
-  // Corners, different ones, for which a racing line is searched; those behind them get the
-  // five-point blend. Bounds the time for paths that are no paths of corners.
+  // Corners, different ones, that are searched; those after them get the five-point blend. Bounds
+  // the time for paths that are no paths of corners.
   int most_raced = 40;
 };
 

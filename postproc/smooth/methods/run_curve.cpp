@@ -108,36 +108,34 @@ bool can_race(const geometry::KinematicLimits& limits) {
   return std::isfinite(limits.feed) && limits.feed > 0;
 }
 
-std::optional<SmoothCurve> guo_curve(std::span<const Point3> run, const CurveRequest& request,
-                                     bool literal) {
-  geometry::GuoOptions options;
-  if (literal) options = geometry::GuoOptions::literal(request.tolerance, 0);
-  options.rule.tolerance = request.tolerance;
-  options.rule.kind = request.kind;
+template <typename Options>
+Options corner_options(const CurveRequest& request, Options options = {}) {
+  options.tolerance = request.tolerance;
+  options.kind = request.kind;
   options.keep_corner_angle = request.keep_corner_angle;
   options.strict_sharper_than = geometry::kSharpestCut;
+  return options;
+}
+
+std::optional<SmoothCurve> guo_curve(std::span<const Point3> run, const CurveRequest& request,
+                                     bool literal) {
+  const auto options =
+      corner_options(request, literal ? geometry::GuoOptions::literal(request.tolerance, 0)
+                                      : geometry::GuoOptions{});
   return as_one_curve<geometry::GuoBlend>(run, geometry::guo_path(run, options), request.kind);
 }
 
 std::optional<SmoothCurve> ozcan_curve(std::span<const Point3> run, const CurveRequest& request) {
-  geometry::OzcanOptions options;
-  options.tolerance = request.tolerance;
-  options.kind = request.kind;
+  auto options = corner_options<geometry::OzcanOptions>(request);
   options.limits = request.limits;
-  options.keep_corner_angle = request.keep_corner_angle;
-  options.strict_sharper_than = geometry::kSharpestCut;
   return as_one_curve<geometry::OzcanBlend>(run, geometry::ozcan_path(run, options), request.kind);
 }
 
 std::optional<SmoothCurve> time_optimal_curve(std::span<const Point3> run,
                                               const CurveRequest& request) {
   if (!can_race(request.limits)) return std::nullopt;
-  geometry::TimeOptimalPathOptions options;
-  options.tolerance = request.tolerance;
-  options.kind = request.kind;
+  auto options = corner_options<geometry::TimeOptimalPathOptions>(request);
   options.limits = request.limits;
-  options.keep_corner_angle = request.keep_corner_angle;
-  options.strict_sharper_than = geometry::kSharpestCut;
   return as_one_curve<geometry::TimeOptimalPathBlend>(
       run, geometry::time_optimal_path(run, options), request.kind);
 }

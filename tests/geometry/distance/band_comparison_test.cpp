@@ -23,7 +23,8 @@ std::vector<Point3> legs(double half_angle_degrees, double length = 10) {
 
 Path blended(const std::vector<Point3>& points, double tolerance) {
   GuoOptions options;
-  options.rule = {tolerance, ToleranceKind::kBand, GuoApex::kAllowed};
+  options.tolerance = tolerance;
+  options.kind = ToleranceKind::kBand;
   return guo_path(points, options).pieces;
 }
 
@@ -151,7 +152,8 @@ TEST(CompareInBand, ProvesWhatIsInsideAndNeverWhatIsOutside) {
       points.push_back(points.back() + length(random) * direction);
     }
     GuoOptions options;
-    options.rule = {0.03, ToleranceKind::kBand, GuoApex::kAllowed};
+    options.tolerance = 0.03;
+    options.kind = ToleranceKind::kBand;
     options.strict_sharper_than = kSharpestCut;
     const Path blends = guo_path(points, options).pieces;
     const auto moved = [&](double noise) {

@@ -57,48 +57,29 @@ struct SeededCorner {
   }
 };
 
-constexpr unsigned kCorners = 10;
-
-TEST(TimeOptimalCorner, StaysWithinTheTolerance) {
-  for (unsigned seed = 1; seed <= kCorners; ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const SeededCorner given(seed);
-    const TimeOptimalBlend blend = raced(given.corner, given.options);
-    const BlendDeviation sampled = sampled_deviation(blend.blend.curve, given.corner);
-    EXPECT_LE(deviation_of(blend.blend.deviation, given.options.kind), given.options.tolerance);
-    EXPECT_LE(deviation_of(sampled, given.options.kind), given.options.tolerance * (1 + 1e-6));
-  }
-}
-
-TEST(TimeOptimalCorner, GoesOnAsTheLegsEnd) {
-  for (unsigned seed = 1; seed <= kCorners; ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const SeededCorner given(seed);
-    const JointMeasure joints =
-        measure_joints(raced(given.corner, given.options).blend.curve, given.corner);
-    EXPECT_LE(joints.off_leg, 1e-9);
-    EXPECT_LE(joints.turn, 1e-9);
-    EXPECT_LE(joints.curvature, 1e-9);
-  }
-}
-
-TEST(TimeOptimalCorner, IsWithinTheMachinesLimitsInItsTime) {
-  for (unsigned seed = 1; seed <= kCorners; ++seed) {
+TEST(TimeOptimalCorner, KeepsTheToleranceTheLegsAndTheMachinesLimitsInItsTime) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const SeededCorner given(seed);
     const TimeOptimalBlend blend = raced(given.corner, given.options);
     const BsplineCurve& curve = blend.blend.curve;
+    const BlendDeviation sampled = sampled_deviation(curve, given.corner);
+    EXPECT_LE(deviation_of(blend.blend.deviation, given.options.kind), given.options.tolerance);
+    EXPECT_LE(deviation_of(sampled, given.options.kind), given.options.tolerance * (1 + 1e-6));
+    const JointMeasure joints = measure_joints(curve, given.corner);
+    EXPECT_LE(joints.off_leg, 1e-9);
+    EXPECT_LE(joints.turn, 1e-9);
+    EXPECT_LE(joints.curvature, 1e-9);
     EXPECT_NEAR(curve.last() - curve.first(), blend.time, 1e-12);
     EXPECT_LE(blend.load, 1);
+    const KinematicLimits& limits = given.options.limits;
     constexpr int kPlaces = 1000;
     for (int i = 0; i <= kPlaces; ++i) {
       const double u = curve.first() + blend.time * i / kPlaces;
-      EXPECT_LE(curve.derivative_at(u, 1).norm(), given.options.limits.feed * 1.001);
+      EXPECT_LE(curve.derivative_at(u, 1).norm(), limits.feed * 1.001);
       for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_LE(std::abs(curve.derivative_at(u, 2)[axis]),
-                  given.options.limits.acceleration[axis] * 1.0001);
-        EXPECT_LE(std::abs(curve.derivative_at(u, 3)[axis]),
-                  given.options.limits.jerk[axis] * 1.0001);
+        EXPECT_LE(std::abs(curve.derivative_at(u, 2)[axis]), limits.acceleration[axis] * 1.0001);
+        EXPECT_LE(std::abs(curve.derivative_at(u, 3)[axis]), limits.jerk[axis] * 1.0001);
       }
     }
   }

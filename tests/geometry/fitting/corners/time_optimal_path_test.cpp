@@ -65,18 +65,6 @@ TEST(TimeOptimalPath, StaysWithinTheToleranceInOrder) {
   }
 }
 
-TEST(TimeOptimalPath, MeetsItsLegsWithTheirDirectionAndWithoutCurvature) {
-  const TimeOptimalPath path = time_optimal_path(star_path(), within(0.05));
-  for (std::size_t i = 0; i + 1 < path.pieces.size(); ++i) {
-    const PathPiece& before = path.pieces[i];
-    const PathPiece& after = path.pieces[i + 1];
-    EXPECT_LT((direction_at(before, 1) - direction_at(after, 0)).norm(), 1e-6) << i;
-    EXPECT_NEAR(curvature_at(before, 1), curvature_at(after, 0),
-                1e-5 + 1e-5 * curvature_at(before, 1))
-        << i;
-  }
-}
-
 // To the left and to the right; and at both ends of the stairs once more, where a leg is no
 // corner's but its own.
 TEST(TimeOptimalPath, SearchesCornersThatAreAlikeOnce) {
@@ -132,16 +120,6 @@ TEST(TimeOptimalPath, TakesTheFivePointsWhereARacingLineWouldStandStill) {
       EXPECT_LE(blend->blend.curve.curvature_at(u), 4);
     }
   }
-}
-
-TEST(TimeOptimalPath, LeavesCornersThatTurnMoreThanAsked) {
-  const std::vector<Point3> points = {{0, 0, 0}, {10, 0, 0}, {20, 3, 0}, {20, 13, 0}};
-  TimeOptimalPathOptions options = within(0.01);
-  options.keep_corner_angle = 1;
-  const TimeOptimalPath path = time_optimal_path(points, options);
-  ASSERT_EQ(path.corners.size(), 2u);
-  EXPECT_TRUE(std::holds_alternative<TimeOptimalPathBlend>(path.corners[0].outcome));
-  EXPECT_EQ(std::get<NoBlend>(path.corners[1].outcome), NoBlend::kKept);
 }
 
 TEST(TimeOptimalPath, RefusesAToleranceThatIsNone) {
