@@ -1,11 +1,10 @@
-// One smooth stretch of a plane curve as a chain of arcs, greedily: each step takes the
+// One smooth section of a plane curve as a chain of arcs, greedily: each step takes the
 // pair of arcs (or the single arc) that reaches farthest inside the allowed deviation.
 // Method: docs/algorithms/arc_fit.md, steps 4 to 6.
 #pragma once
 
 #include <cstddef>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "geometry/arcs/biarc.h"
@@ -13,19 +12,53 @@
 
 namespace batten::geometry {
 
-struct ArcChainLimits {
+struct ArcChainLimits : ArcRange {
   double deviation = 0;         // mm in the plane
   double height_deviation = 0;  // mm along the axis, at equal angles
-  double min_radius = 0;        // mm
-  double max_radius = 0;        // mm
-  double max_sweep = 0;         // radians
-  double grid = 0;              // mm; 0: none
   bool flat = true;             // heights play no part
-  // A step's end is searched to this part of its length: a hundred pieces lose a third of one.
-  double precision = 3e-3;
 };
 
-// A place that the chain passes with a known tangent.
+struct ArcChainTuning {
+  double precision = 3e-3;  // of a step: its end is searched to this; 100 steps lose a third of one
+  // A single arc is taken instead of a pair when it reaches this part of the pair's length:
+  // one arc then covers more than each of the pair does.
+  double single_reach = 0.6;
+  double stumble = 0.5;    // of the step before: shorter ones may have failed by the end's tangent
+  double remainder = 0.3;  // of a step: what is left after it would make a last step too short
+  // Beyond `pace_known` of the way a chain that has used up `hopeless_pace` times its share of the
+  // pieces will not do with them; nor one that is `pieces_ahead` beyond that, however short the
+  // way.
+  double pace_known = 0.2;
+  double hopeless_pace = 1.5;
+  double pieces_ahead = 64;
+  double kink_noise = 1e-5;  // radians, of a single arc at a fixed tangent of a fitted curve
+  // How much of the best crossing angle is used. With all of it only chains of just the best length
+  // hold, shorter ones swing too far, and the search would fall between; half of it already gives
+  // 16 % longer arcs than tangents of the curve, and holds at every length.
+  double crossing_share = 0.5;
+  double crossing_noise = 2;  // T / L: a single arc's miss of that angle; more costs the next arc
+  // The error of a helix' rise per mm against the curve's, so that the direction in space does not
+  // jump where heights are within their tolerance.
+  double slope_error = 5e-3;
+  double sampled_part = 0.9;  // of height_deviation; the rest is for what lies between samples
+  double most_turned = 1;     // radians that arcs and curve may turn apart: no loop more or less
+  // The deviation is narrowed by halving the doubt so often; only for chains so short that
+  // the last step can be a remainder that is worth spreading.
+  int balancing_rounds = 5;
+  std::size_t balanced_pieces = 60;
+  double shortest_in_grids = 10;  // a shorter step's tangent is turned 0.1 radians by rounding
+  double shortest = 1e-5;         // mm, without a grid
+  double part_of_section = 0.01;  // is short in any case: a closed section has no span
+  // A joint is about as far from the curve as the arcs that meet there. One that is farther away by
+  // this many times the deviation, and a step of the grid, is none, whatever noise there is.
+  double joint_off = 10;
+  int joint_halvings = 24;    // 1e-7 of a piece
+  int joint_places = 40;      // to each side, that are tried for a joint near the grid
+  double widest_joint = 1.3;  // balance: beyond, one arc is much shorter than the other
+};
+inline constexpr ArcChainTuning kArcChainTuning;
+
+// A point that the chain passes with a known tangent.
 struct ChainNode {
   double u;      // on the curve
   Point3 place;  // local coordinates of the curve, rounded to the grid
@@ -35,106 +68,25 @@ struct ChainNode {
 struct ChainPiece {
   PlaneArc arc;
   double end_height;
-  double end_u;
-};
-
-struct ArcPair {
-  PlaneArc first;
-  PlaneArc second;
-  Vector2 tangent;      // at the joint, before rounding
-  double joint_u;       // where the curve passes the joint
-  double joint_height;  // of the curve there, rounded
-  double kink;          // radians at the joint, which rounding forces
-  ChainNode end;
 };
 
 // Whether a chain that has used so many pieces on a part of its way (`done`, 0..1) is so far behind
 // its pace that it will not do with `most` of them.
 [[nodiscard]] bool falls_behind(double done, std::size_t used, std::size_t most);
 
-class ArcChain {
- public:
-  ArcChain(const PlaneCurve& curve, const ArcChainLimits& limits)
-      : curve_(curve), limits_(limits) {}
-
-  // Pieces from one node to the other, the fewest first, then the least deviation. Nothing
-  // when neither arcs nor short lines hold, or when more than `at_most` would be needed.
-  [[nodiscard]] std::optional<std::vector<ChainPiece>> between(const ChainNode& start,
+// Pieces from one node to the other, the fewest first, then the least deviation. Nothing
+// when neither arcs nor short lines hold, or when more than `at_most` would be needed.
+[[nodiscard]] std::optional<std::vector<ChainPiece>> arc_chain(const PlaneCurve& curve,
+                                                               const ArcChainLimits& limits,
+                                                               const ChainNode& start,
                                                                const ChainNode& end,
-                                                               std::size_t at_most) const;
+                                                               std::size_t at_most);
 
-  // Whether the chain from `start` already falls behind its pace before `end`, or sticks long
-  // before it, where it would go on to `whole` (the parameter at which its stretch ends): between()
-  // would give it up.
-  [[nodiscard]] bool fails_before(const ChainNode& start, const ChainNode& end, double whole,
-                                  std::size_t at_most) const;
+// Whether a pair of arcs leads from the curve at one parameter to the curve at another one.
+[[nodiscard]] bool pair_of_arcs_holds(const PlaneCurve& curve, const ArcChainLimits& limits,
+                                      double from, double to);
 
-  // A pair of arcs from `start` to the place at u, in the search's form.
-  [[nodiscard]] std::optional<ArcPair> pair_to(const ChainNode& start, double u) const;
-
-  [[nodiscard]] Point3 rounded(const Point3& place) const;
-
- private:
-  // A pair of arcs whose joint is still to be chosen (best_pair).
-  struct OpenPair {
-    ChainNode start;
-    ArcPair found;
-  };
-
-  struct Step {
-    std::vector<ChainPiece> pieces;
-    ChainNode end;
-    std::optional<OpenPair> open;  // the two pieces are one
-  };
-
-  // The pieces of a chain, pairs by the place of their first piece, and why it ends.
-  enum class Outcome { kArrived, kBehind, kStuck };
-  struct Walk {
-    std::vector<ChainPiece> pieces;
-    std::vector<std::pair<std::size_t, OpenPair>> open;
-    double reached = 0;  // parameter
-    Outcome outcome = Outcome::kArrived;
-  };
-
-  // `whole`: the end of the way that the pace is told by.
-  Walk walk(const ChainNode& start, const ChainNode& end, double whole, std::size_t at_most) const;
-  std::optional<std::vector<ChainPiece>> greedy(const ChainNode& start, const ChainNode& end,
-                                                std::size_t at_most) const;
-  std::optional<std::vector<ChainPiece>> balanced(
-      const ChainNode& start, const ChainNode& end,
-      std::optional<std::vector<ChainPiece>> best) const;
-  // Steps end at `limit` at the latest, which is end.u or before it.
-  std::optional<Step> next_step(const ChainNode& start, const ChainNode& end, double limit,
-                                double guess) const;
-  std::optional<Step> line_step(const ChainNode& start, const ChainNode& end) const;
-
-  // What the chain's tangent is taken from where it meets the curve.
-  enum class Tangent { kCurve, kCrossing };
-
-  double crossing_angle(double u, double reach, double arc_length) const;
-  ChainNode node_at(const ChainNode& start, double u, Tangent tangent) const;
-  double shortest_step(const ChainNode& start, const ChainNode& end) const;
-  std::optional<ArcPair> farthest_pair(const ChainNode& start, const ChainNode& end, double limit,
-                                       double guess, Tangent tangent) const;
-  std::optional<Step> farthest_single(const ChainNode& start, const ChainNode& end, double limit,
-                                      double least, double guess) const;
-  std::optional<ArcPair> pair_between(const ChainNode& start, const ChainNode& end,
-                                      double balance) const;
-  ArcPair best_pair(const ChainNode& start, const ArcPair& found) const;
-  static std::vector<ChainPiece> pieces_of(const ArcPair& pair);
-  std::optional<ChainPiece> single_to(const ChainNode& start, const ChainNode& end) const;
-
-  bool holds(ArcPair& pair, const ChainNode& start) const;  // finds where the joint is
-  bool holds(const PlaneArc& arc, double from, double to, double from_height,
-             double to_height) const;
-  bool allowed(const PlaneArc& arc) const;
-  bool is_passed(const Point2& joint, double u) const;
-  bool heights_hold(const PlaneArc& arc, double from, double to, double from_height,
-                    double to_height) const;
-  double joint_parameter(const Point2& joint, const Vector2& tangent, double from, double to) const;
-
-  const PlaneCurve& curve_;
-  ArcChainLimits limits_;
-};
+// To multiples of `grid`; where that is 0, not at all.
+[[nodiscard]] Point3 rounded_to(double grid, const Point3& place);
 
 }  // namespace batten::geometry

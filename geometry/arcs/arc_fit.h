@@ -13,25 +13,32 @@
 
 namespace batten::geometry {
 
-struct ArcFitOptions {
-  double max_deviation = 0.005;     // mm, both ways, curve to arcs and arcs to curve; > 0
-  Vector3 axis = Vector3::UnitZ();  // the arcs' axis: normal of the plane that the target runs
-  bool helical = false;             // may arcs rise along the axis (linearly in the angle)
-  double min_radius = 0.1;          // mm; tighter places become short lines
-  double max_radius = 1e4;          // mm; flatter ones become lines
-  double max_sweep = 3.0;           // radians; below pi, so that no arc is ambiguous when rounded
-  // Places are rounded to multiples of this (mm) before the arcs are computed, so that the
-  // printed ends are the ends that the arcs were made for. 0: no rounding. The first and the
-  // last place are met exactly and are not rounded.
-  double grid = 0;
+struct ArcFitOptions : ArcRange {
+  double max_deviation = 0.005;          // mm, both ways, curve to arcs and arcs to curve; > 0
+  Vector3 axis = Vector3::UnitZ();       // the arcs' axis: normal of the plane that the target runs
+  bool helical = false;                  // may arcs rise along the axis (linearly in the angle)
   ArcEffort effort = ArcEffort::kQuick;  // of a flat curve
   // Chains off the plane that take more pieces are not looked for.
   std::size_t at_most = std::numeric_limits<std::size_t>::max();
 };
 
+struct ArcFitTuning {
+  double one_height = 1e-6;  // mm: the last decimal that any program carries
+  // Of the deviation of a helix. The two parts are at right angles: 0.8^2 + 0.6^2 = 1.
+  double plane_share = 0.8;
+  double height_share = 0.6;
+  double beyond_run = 1.5;  // arcs that hold a straight run and half as much besides go on over it
+  double least_run_in_grids = 50;  // a shorter run would have its direction from rounding
+  // In the plane the curve is held against chords that leave it by no more than this part of
+  // the deviation: below what the band takes for one edge without samples between.
+  double chord_part = 0.018;
+  int chords_read = 3;  // of a piece, for chords_along
+};
+inline constexpr ArcFitTuning kArcFitTuning;
+
 // Lines and arcs along `curve` between two parameters. The pieces chain exactly; where the
 // curve is smooth, neighbouring pieces share their tangent to within the rounding that
-// `grid` forces (see docs/algorithms/arc_fit.md), or where a place tighter than min_radius
+// `grid` forces (see docs/algorithms/arc_fit.md), or where a bend tighter than min_radius
 // has to be crossed by short lines. Returns nothing when the curve leaves the planes across
 // `axis` and `helical` is false, when its rise cannot be held by helices and lines, or when
 // that takes more pieces than chords would be.

@@ -4,9 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
-#include <numbers>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -34,27 +33,15 @@ struct Effort {
 
 constexpr std::array kBriefParts = {1.0, 0.9, 0.75, 0.5};
 constexpr std::array kBriefInRange = {0.1, 0.5, 0.9};
-constexpr Effort kBrief = {5, 2, kBriefParts, kBriefInRange, 4};
-
 constexpr std::array kQuickParts = {1.0, 0.93, 0.84, 0.74, 0.6, 0.4};
 constexpr std::array kQuickInRange = {0.05, 0.3, 0.5, 0.7, 0.95};
-constexpr Effort kQuick = {8, 2, kQuickParts, kQuickInRange};
-
 constexpr std::array kManyParts = {1.0, 0.95, 0.9, 0.84, 0.77, 0.7, 0.6, 0.5, 0.35};
 constexpr std::array kManyInRange = {0.03, 0.15, 0.3, 0.42, 0.5, 0.58, 0.7, 0.85, 0.97};
-constexpr Effort kThorough = {12, 3, kManyParts, kManyInRange};
 
-const Effort& effort_for(ArcEffort effort) {
-  switch (effort) {
-    case ArcEffort::kBrief:
-      return kBrief;
-    case ArcEffort::kThorough:
-      return kThorough;
-    case ArcEffort::kQuick:
-      break;
-  }
-  return kQuick;
-}
+// In the order of ArcEffort.
+constexpr Effort kEfforts[] = {{5, 2, kBriefParts, kBriefInRange, 4},
+                               {8, 2, kQuickParts, kQuickInRange},
+                               {12, 3, kManyParts, kManyInRange}};
 
 // Directions in which a chain may start, about the given one, radians.
 constexpr std::array kStarts = {0.0,   1e-4, -1e-4, 3e-4, -3e-4, 1e-3, -1e-3, 3e-3,
@@ -63,27 +50,10 @@ constexpr std::array kStarts = {0.0,   1e-4, -1e-4, 3e-4, -3e-4, 1e-3, -1e-3, 3e
 // No bound on the arcs.
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-// A kink counts as so many arcs.
-constexpr std::size_t kKinkCosts = 3;
-
-// Levels that may pass without one that sees farther: as many as a kink costs, and some more.
-constexpr std::size_t kStuck = kKinkCosts + 4;
-
-// Turns of the polyline beyond this may become kinks.
-constexpr double kKinkTurn = 0.2;
-
 // Where a pair of arcs meets: see biarc_joint.
 constexpr std::array kBalances = {1.0, 0.7, 1.4, 0.5, 2.0, 0.3, 3.0};
 
-// An angle that differs less is the same tangent; rounding of an end by a grid step turns the
-// tangent by two steps over the arc's length.
-constexpr double kSameTurn = 1e-6;
-
-// Chains of no more arcs than this are tried again with a part of the tolerance: circles and
-// fillets come out with their own radius.
-constexpr std::size_t kFew = 8;
-constexpr double kNearer = 0.3;
-constexpr int kNearerRounds = 3;
+constexpr ArcSplineTuning kSpline = kArcSplineTuning;
 
 struct Node {
   BandEntry entry;
@@ -100,7 +70,7 @@ class Search {
   Search(std::span<const Point2> points, const ArcSplineOptions& options,
          std::size_t at_most = kNone - 1)
       : options_(options),
-        effort_(effort_for(options.effort)),
+        effort_(kEfforts[static_cast<std::size_t>(options.effort)]),
         band_(points,
               {options.tolerance, 1 / options.min_radius, options.max_sweep, effort_.stride}),
         count_(band_.samples().size()),
@@ -117,7 +87,7 @@ class Search {
         farthest = nodes_[level.front()].score;
         improved = arcs;
       }
-      if (arcs > improved + kStuck) break;
+      if (arcs > improved + kSpline.kink_costs + kSpline.patience) break;
       grow(level, arcs);
     }
     return chain();
@@ -133,7 +103,7 @@ class Search {
       spread(i, found);
       if (options_.kinks) turn_at_corner(i, arcs);
     }
-    follow(found, arcs + 1);
+    follow(std::move(found), arcs + 1);
     if (options_.kinks && levels_.size() <= arcs + 1 && !best_) turn_where_stuck(level, arcs);
   }
 
@@ -169,9 +139,8 @@ class Search {
 
   // The farthest-seeing ones, not too many of one place.
   void keep_best(std::vector<std::size_t>& level) const {
-    std::stable_sort(level.begin(), level.end(), [this](std::size_t a, std::size_t b) {
-      return nodes_[a].score > nodes_[b].score;
-    });
+    std::ranges::stable_sort(level, std::greater<>(),
+                             [this](std::size_t i) { return nodes_[i].score; });
     if (level.size() > effort_.width) level.resize(effort_.width);
   }
 
@@ -181,7 +150,17 @@ class Search {
             std::round(p.y() / options_.grid) * options_.grid};
   }
 
-  // The place beside sample j on the arc of this curvature.
+  // The arc from a node to there.
+  [[nodiscard]] Node node_to(std::size_t from, const Point2& end, std::size_t next) const {
+    const BandEntry& entry = nodes_[from].entry;
+    Node node;
+    node.arc = arc_leaving(entry.place, entry.angle, end, options_.max_radius);
+    node.before = static_cast<std::ptrdiff_t>(from);
+    node.entry = {end, node.arc.start_angle() + node.arc.sweep, next};
+    return node;
+  }
+
+  // The point beside sample j on the arc of this curvature.
   static Point2 place_on(const BandEntry& entry, double curvature, const Point2& sample) {
     const Vector2 along = unit_vector(entry.angle);
     const Vector2 left(-along.y(), along.x());
@@ -193,13 +172,9 @@ class Search {
 
   [[nodiscard]] std::optional<Node> node_on(std::size_t from, double curvature,
                                             std::size_t sample) const {
-    const BandEntry& entry = nodes_[from].entry;
-    const Point2 end = rounded(place_on(entry, curvature, band_.samples()[sample].place));
-    Node node;
-    node.arc = arc_leaving(entry.place, entry.angle, end, options_.max_radius);
+    const Point2 beside = place_on(nodes_[from].entry, curvature, band_.samples()[sample].place);
+    const Node node = node_to(from, rounded(beside), sample + 1);
     if (node.arc.length() <= 2 * options_.grid + kSamePlace) return std::nullopt;
-    node.before = static_cast<std::ptrdiff_t>(from);
-    node.entry = {end, node.arc.start_angle() + node.arc.sweep, sample + 1};
     // A flat arc that is written as a line would make a kink of half its sweep.
     if (node.arc.is_line() && curvature != 0) return std::nullopt;
     return node;
@@ -210,15 +185,15 @@ class Search {
     const ArcFan fan = band_.fan(nodes_[i].entry);
     const auto& samples = band_.samples();
     const std::size_t next = nodes_[i].entry.next;
-    if (fan.ranges.empty()) return;
+    if (fan.empty()) return;
     const double start = samples[next - 1].station;
-    const double reach = samples[next + fan.ranges.size() - 1].station - start;
+    const double reach = samples[next + fan.size() - 1].station - start;
     std::size_t last = count_;
     for (const double part : effort_.parts) {
-      const std::size_t j = sample_at(start + part * reach, next, next + fan.ranges.size() - 1);
+      const std::size_t j = sample_at(start + part * reach, next, next + fan.size() - 1);
       if (j == last || j + 1 == count_) continue;
       last = j;
-      const CurvatureRange& range = fan.ranges[j - next];
+      const CurvatureRange& range = fan[j - next];
       const auto add = [&](double curvature) {
         if (auto node = node_on(i, curvature, j)) {
           judge(*node);
@@ -245,17 +220,12 @@ class Search {
   }
 
   // Keeps the best of the found ones that hold.
-  void follow(const std::vector<Node>& found, std::size_t arcs) {
-    std::vector<std::size_t> order(found.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&found](std::size_t a, std::size_t b) {
-      return found[a].score > found[b].score;
-    });
+  void follow(std::vector<Node> found, std::size_t arcs) {
+    std::ranges::stable_sort(found, std::greater<>(), &Node::score);
     std::vector<std::pair<std::size_t, int>> of_place;  // how many were kept of a place
     std::size_t kept = 0;
-    for (const std::size_t i : order) {
+    for (Node& node : found) {
       if (kept == effort_.width) break;
-      Node node = found[i];
       const std::size_t place = node.entry.next;
       auto same = std::ranges::find(of_place, place, &std::pair<std::size_t, int>::first);
       if (same != of_place.end() && same->second == effort_.of_one_place) continue;
@@ -288,17 +258,14 @@ class Search {
     if (!options_.end_angle || arcs + 2 >= best_arcs_) return;
     const double reached = samples[nodes_[i].reach - 1].station;
     const double left = samples.back().station - reached;
-    if (left > 1.5 * (reached - samples[entry.next - 1].station)) return;
+    if (left > kSpline.two_reach * (reached - samples[entry.next - 1].station)) return;
     finish_with_two(i, entry, end, arcs);
   }
 
   bool finish_with_one(std::size_t i, const BandEntry& entry, const Point2& end, std::size_t arcs) {
-    Node node;
-    node.arc = arc_leaving(entry.place, entry.angle, end, options_.max_radius);
-    node.before = static_cast<std::ptrdiff_t>(i);
-    node.entry = {end, node.arc.start_angle() + node.arc.sweep, count_};
+    const Node node = node_to(i, end, count_);
     if (!allowed(node.arc)) return false;
-    const double sharp = kSameTurn + 2 * options_.grid / node.arc.length();
+    const double sharp = kSpline.same_turn + 2 * options_.grid / node.arc.length();
     if (node.arc.is_line() && std::abs(wrapped(node.arc.start_angle() - entry.angle)) > sharp) {
       return false;
     }
@@ -316,13 +283,11 @@ class Search {
       const auto joint = biarc_joint(entry.place, entry.angle, end, angle, balance);
       if (!joint) continue;
       const Point2 middle = rounded(joint->place);
-      Node first;
-      first.arc = arc_leaving(entry.place, entry.angle, middle, options_.max_radius);
+      Node first = node_to(i, middle, 0);
       if (!allowed(first.arc)) continue;
       const auto next = band_.passed(entry, first.arc);
       if (!next || *next == count_) continue;
-      first.before = static_cast<std::ptrdiff_t>(i);
-      first.entry = {middle, first.arc.start_angle() + first.arc.sweep, *next};
+      first.entry.next = *next;
       Node second;
       second.arc = arc_arriving(middle, end, angle, options_.max_radius);
       if (!allowed(second.arc) || band_.passed(first.entry, second.arc) != count_) continue;
@@ -339,17 +304,16 @@ class Search {
            (arc.is_line() || arc.radius >= options_.min_radius);
   }
 
-  // Where a corner of the polyline stands among the last samples that arcs from node i pass,
+  // Where a corner of the polyline is among the last samples that arcs from node i pass,
   // or the first that they do not, the chain may turn as sharply as it.
   void turn_at_corner(std::size_t i, std::size_t arcs) {
     const auto& samples = band_.samples();
     const ArcFan fan = band_.fan(nodes_[i].entry);
     const std::size_t next = nodes_[i].entry.next;
-    constexpr std::size_t kBack = 16;
-    const std::size_t end = next + fan.ranges.size();
-    for (std::size_t c = std::max(next, end - std::min(end, kBack)); c < end; ++c) {
-      if (c + 1 >= count_ || std::abs(samples[c].turn) < kKinkTurn) continue;
-      const CurvatureRange& range = fan.ranges[c - next];
+    const std::size_t end = next + fan.size();
+    for (std::size_t c = std::max(next, end - std::min(end, kSpline.corner_back)); c < end; ++c) {
+      if (c + 1 >= count_ || std::abs(samples[c].turn) < kSpline.kink_turn) continue;
+      const CurvatureRange& range = fan[c - next];
       add_turns(node_on(i, range.middle(), c), c, arcs);
       add_turns(node_on(i, nearest_in(range, i, c), c), c, arcs);
       return;
@@ -361,9 +325,9 @@ class Search {
     for (const std::size_t i : level) {
       const ArcFan fan = band_.fan(nodes_[i].entry);
       const std::size_t next = nodes_[i].entry.next;
-      for (std::size_t j = next + fan.ranges.size(); j-- > next;) {
+      for (std::size_t j = next + fan.size(); j-- > next;) {
         if (j + 1 >= count_) continue;
-        if (add_turns(node_on(i, fan.ranges[j - next].middle(), j), j, arcs)) break;
+        if (add_turns(node_on(i, fan[j - next].middle(), j), j, arcs)) break;
       }
     }
   }
@@ -374,7 +338,7 @@ class Search {
     const BandEntry& entry = nodes_[i].entry;
     const Vector2 way = band_.samples()[sample].place - entry.place;
     const double through = 2 * cross(unit_vector(entry.angle), way) / way.squaredNorm();
-    const double margin = 0.05 * (range.high - range.low);
+    const double margin = kSpline.range_margin * (range.high - range.low);
     return std::clamp(through, range.low + margin, range.high - margin);
   }
 
@@ -389,7 +353,7 @@ class Search {
     for (const double off : kStarts) {
       node->entry = {node->arc.end, band_.samples()[sample + 1].edge_angle + off, *passed};
       judge(*node);
-      add_to(arcs + 1 + kKinkCosts, *node);
+      add_to(arcs + 1 + kSpline.kink_costs, *node);
     }
     return true;
   }
@@ -398,12 +362,10 @@ class Search {
     if (!best_) return std::nullopt;
     ArcSpline spline;
     const auto& samples = band_.samples();
-    for (auto i = static_cast<std::ptrdiff_t>(*best_);
-         nodes_[static_cast<std::size_t>(i)].before >= 0;
-         i = nodes_[static_cast<std::size_t>(i)].before) {
-      const Node& node = nodes_[static_cast<std::size_t>(i)];
-      spline.pieces.push_back({node.arc, samples[node.entry.next - 1].station});
-      if (node.kink) ++spline.kinks;
+    for (const Node* node = &nodes_[*best_]; node->before >= 0;
+         node = &nodes_[static_cast<std::size_t>(node->before)]) {
+      spline.pieces.push_back({node->arc, samples[node->entry.next - 1].station});
+      if (node->kink) ++spline.kinks;
     }
     std::reverse(spline.pieces.begin(), spline.pieces.end());
     return spline;
@@ -433,15 +395,15 @@ void check(const ArcSplineOptions& options) {
 }
 
 std::size_t cost_of(const ArcSpline& spline) {
-  return spline.pieces.size() + kKinkCosts * static_cast<std::size_t>(spline.kinks);
+  return spline.pieces.size() + kSpline.kink_costs * static_cast<std::size_t>(spline.kinks);
 }
 
 // With as many arcs, how much nearer can the chain be?
 ArcSpline drawn_near(std::span<const Point2> points, const ArcSplineOptions& options,
                      ArcSpline found) {
   ArcSplineOptions nearer = options;
-  for (int round = 0; round < kNearerRounds; ++round) {
-    nearer.tolerance *= kNearer;
+  for (int round = 0; round < kSpline.nearer_rounds; ++round) {
+    nearer.tolerance *= kSpline.nearer;
     auto next = Search(points, nearer, cost_of(found)).run();
     if (!next) break;
     found = std::move(*next);
@@ -455,7 +417,7 @@ std::optional<ArcSpline> fit_arc_spline(std::span<const Point2> points,
                                         const ArcSplineOptions& options) {
   check(options);
   auto found = Search(points, options).run();
-  if (found && found->pieces.size() <= kFew) {
+  if (found && found->pieces.size() <= kSpline.few) {
     return drawn_near(points, options, std::move(*found));
   }
   return found;

@@ -2,6 +2,7 @@
 // Method: docs/algorithms/arc_spline.md.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,19 +16,30 @@ namespace batten::geometry {
 // times the work; brief: some percent more for a quarter of it.
 enum class ArcEffort { kBrief, kQuick, kThorough };
 
-struct ArcSplineOptions {
-  double tolerance = 0.01;  // mm, both ways and in order; > 0
-  double min_radius = 0.1;  // mm; a place that is tighter becomes a kink
-  double max_radius = 1e4;  // mm; flatter arcs are lines
-  double max_sweep = 3.0;   // radians, in ]0, pi[
-  double grid = 0;          // mm: ends of arcs are multiples of it, but for the first and the
-                            // last; > 0 where they will be printed
-  double direction = 0;     // radians: in which the path starts, about
+struct ArcSplineOptions : ArcRange {
+  double tolerance = 0.01;            // mm, both ways and in order; > 0
+  double direction = 0;               // radians: in which the path starts, about
   std::optional<double> start_angle;  // radians: of the tangent in which it starts, exactly;
   std::optional<double> end_angle;    // and in which it ends. Free where there is none
   bool kinks = true;                  // whether the chain may turn where no arc fits
   ArcEffort effort = ArcEffort::kQuick;
 };
+
+struct ArcSplineTuning {
+  std::size_t kink_costs = 3;    // a kink counts as so many arcs
+  std::size_t patience = 4;      // levels beyond a kink's that may pass without seeing farther
+  double kink_turn = 0.2;        // radians: vertices of the polyline that turn more may be kinks
+  std::size_t corner_back = 16;  // samples before the end of the reach where such are looked for
+  double range_margin = 0.05;    // of a range of curvatures: arcs to a corner keep off its ends
+  double same_turn = 1e-6;       // radians: what differs less is the same tangent
+  double two_reach = 1.5;        // two arcs get so much farther than one, at most
+  // Chains of no more arcs than `few` are tried again with a part of the tolerance: circles and
+  // fillets come out with their own radius.
+  std::size_t few = 8;
+  double nearer = 0.3;
+  int nearer_rounds = 3;
+};
+inline constexpr ArcSplineTuning kArcSplineTuning;
 
 struct ArcSplinePiece {
   PlaneArc arc;

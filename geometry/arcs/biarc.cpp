@@ -22,55 +22,51 @@ struct PlaneCubic {
   std::array<Point2, 4> control;
 };
 
-struct Range {
-  double least;
-  double greatest;
-
-  bool holds(double x) const { return least <= x && x <= greatest; }
-};
-
-// `piece` relative to the center; `allowed` bounds the squared distance from it.
-bool in_ring(const PlaneCubic& piece, const Range& allowed, int halvings) {
-  const auto& q = piece.control;
-  const double first = q[0].squaredNorm();
-  const double last = q[3].squaredNorm();
-  if (!allowed.holds(first) || !allowed.holds(last)) return false;  // places of the curve
-  if (allowed.holds(q[0].dot(q[1])) && allowed.holds(q[2].dot(q[3])) &&
-      allowed.holds((2 * q[0].dot(q[2]) + 3 * q[1].squaredNorm()) / 5) &&
-      allowed.holds((2 * q[1].dot(q[3]) + 3 * q[2].squaredNorm()) / 5) &&
-      allowed.holds((q[0].dot(q[3]) + 9 * q[1].dot(q[2])) / 10)) {
-    return true;
-  }
+// Whether `holds` is shown for all of the piece by bounds on it, or on its parts, as long as it
+// holds for their ends.
+template <typename Ends, typename Bounds>
+bool holds_all_along(const PlaneCubic& piece, int halvings, const Ends& ends,
+                     const Bounds& bounds) {
+  if (!ends(piece.control)) return false;
+  if (bounds(piece.control)) return true;
   if (halvings == 0) return false;
   const auto [left, right] = halves(piece);
-  return in_ring(left, allowed, halvings - 1) && in_ring(right, allowed, halvings - 1);
+  return holds_all_along(left, halvings - 1, ends, bounds) &&
+         holds_all_along(right, halvings - 1, ends, bounds);
+}
+
+// `piece` relative to the center.
+bool stays_near_circle(const PlaneCubic& piece, const PlaneArc& arc, double deviation) {
+  for (int i = 0; i < 3; ++i) {
+    const Vector2 leg = piece.control[i + 1] - piece.control[i];
+    const double forward = cross(piece.control[i], leg) * (arc.sweep > 0 ? 1 : -1);
+    if (forward < -deviation * piece.control[i].norm()) return false;
+  }
+  const double inner = std::max(arc.radius - deviation, 0.0);
+  const double outer = arc.radius + deviation;
+  const auto allowed = [least = inner * inner, most = outer * outer](double squared) {
+    return least <= squared && squared <= most;
+  };
+  return holds_all_along(
+      piece, kHalvings,
+      [&](const auto& q) { return allowed(q[0].squaredNorm()) && allowed(q[3].squaredNorm()); },
+      [&](const auto& q) {
+        return allowed(q[0].dot(q[1])) && allowed(q[2].dot(q[3])) &&
+               allowed((2 * q[0].dot(q[2]) + 3 * q[1].squaredNorm()) / 5) &&
+               allowed((2 * q[1].dot(q[3]) + 3 * q[2].squaredNorm()) / 5) &&
+               allowed((q[0].dot(q[3]) + 9 * q[1].dot(q[2])) / 10);
+      });
 }
 
 // `piece` in coordinates (along, across) of the line.
-bool in_strip(const PlaneCubic& piece, double deviation, int halvings) {
-  const auto& q = piece.control;
+bool stays_near_line(const PlaneCubic& piece, double deviation) {
+  for (int i = 0; i < 3; ++i) {
+    if (piece.control[i + 1].x() < piece.control[i].x() - deviation) return false;
+  }
   const auto near = [deviation](const Point2& p) { return std::abs(p.y()) <= deviation; };
-  if (!near(q[0]) || !near(q[3])) return false;
-  if (near(q[1]) && near(q[2])) return true;
-  if (halvings == 0) return false;
-  const auto [left, right] = halves(piece);
-  return in_strip(left, deviation, halvings - 1) && in_strip(right, deviation, halvings - 1);
-}
-
-bool goes_forward_around(const PlaneCubic& piece, double sweep, double noise) {
-  for (int i = 0; i < 3; ++i) {
-    const Vector2 leg = piece.control[i + 1] - piece.control[i];
-    const double forward = cross(piece.control[i], leg) * (sweep > 0 ? 1 : -1);
-    if (forward < -noise * piece.control[i].norm()) return false;
-  }
-  return true;
-}
-
-bool goes_forward_along(const PlaneCubic& piece, double noise) {
-  for (int i = 0; i < 3; ++i) {
-    if (piece.control[i + 1].x() < piece.control[i].x() - noise) return false;
-  }
-  return true;
+  return holds_all_along(
+      piece, kHalvings, [&](const auto& q) { return near(q[0]) && near(q[3]); },
+      [&](const auto& q) { return near(q[1]) && near(q[2]); });
 }
 
 }  // namespace
@@ -136,13 +132,10 @@ bool stays_near(const CubicBezier& piece, const PlaneArc& arc, double deviation)
       const Vector2 q = piece.control[i].head<2>() - arc.start;
       local.control[i] = {along.dot(q), cross(along, q)};
     }
-    return goes_forward_along(local, deviation) && in_strip(local, deviation, kHalvings);
+    return stays_near_line(local, deviation);
   }
   for (int i = 0; i < 4; ++i) local.control[i] = piece.control[i].head<2>() - arc.center;
-  const double inner = std::max(arc.radius - deviation, 0.0);
-  const double outer = arc.radius + deviation;
-  return goes_forward_around(local, arc.sweep, deviation) &&
-         in_ring(local, {inner * inner, outer * outer}, kHalvings);
+  return stays_near_circle(local, arc, deviation);
 }
 
 namespace {
@@ -153,16 +146,14 @@ constexpr double kQuarter = std::numbers::pi / 2;
 constexpr double kSameAngle = 1e-6;
 
 // Radians from the start of the arc to the directions that it goes across, in its own sense.
-std::vector<double> crossings(const Arc& arc, const Vector3& quadrant_from) {
+void append_crossings(const Arc& arc, const Vector3& quadrant_from, std::vector<double>& found) {
   const Vector3 out = arc.start - arc.center;
   const Vector3 side = arc.axis.cross(quadrant_from);
   const double angle = std::atan2(out.dot(side), out.dot(quadrant_from));
   const double along = arc.sweep > 0 ? angle : -angle;
   const double length = std::abs(arc.sweep);
-  std::vector<double> found;
   const double first = std::ceil((along + kSameAngle) / kQuarter) * kQuarter - along;
   for (double at = first; at < length - kSameAngle; at += kQuarter) found.push_back(at);
-  return found;
 }
 
 }  // namespace
@@ -170,10 +161,7 @@ std::vector<double> crossings(const Arc& arc, const Vector3& quadrant_from) {
 std::vector<Arc> arc_parts(const Arc& arc, const ArcPartsOptions& options) {
   const double length = std::abs(arc.sweep);
   std::vector<double> cuts = {0};
-  if (!options.quadrant_from.isZero()) {
-    const std::vector<double> across = crossings(arc, options.quadrant_from);
-    cuts.insert(cuts.end(), across.begin(), across.end());
-  }
+  if (!options.quadrant_from.isZero()) append_crossings(arc, options.quadrant_from, cuts);
   cuts.push_back(length);
 
   std::vector<Arc> parts;

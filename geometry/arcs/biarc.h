@@ -1,4 +1,4 @@
-// Arcs and pairs of arcs in a plane, from places and tangents.
+// Arcs and pairs of arcs in a plane, from points and tangents.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,17 @@ struct PlaneArc {
   [[nodiscard]] double start_angle() const;  // of the tangent, radians
 };
 
-// The arc between two places that turns by `sweep`; a line when it is flatter than
+// Which arcs may be made, and where they may end.
+struct ArcRange {
+  double min_radius = 0.1;  // mm; a tighter bend becomes short lines, or a kink
+  double max_radius = 1e4;  // mm; flatter arcs become lines
+  double max_sweep = 3.0;   // radians; in ]0, pi[, so that no arc is ambiguous when rounded
+  // mm: inner ends are rounded to multiples of it before the arcs are computed, so that the printed
+  // ends are the ends that the arcs were made for. The first and the last are not. 0: no rounding.
+  double grid = 0;
+};
+
+// The arc between two points that turns by `sweep`; a line when it is flatter than
 // `max_radius`.
 [[nodiscard]] PlaneArc arc_with_sweep(const Point2& start, const Point2& end, double sweep,
                                       double max_radius);
@@ -35,7 +45,7 @@ struct PlaneArc {
                                     double max_radius);
 
 // Two arcs that leave `start` and arrive at `end` at given angles can meet, with a common
-// tangent, on a circle of places. `first` is the length from `start` along its tangent to
+// tangent, on a circle of points. `first` is the length from `start` along its tangent to
 // the corner of the first arc's tangents; it and the length `second` before `end` obey
 //   v.v - 2 first v.t0 - 2 second v.t1 - 2 first second (1 - t0.t1) = 0,  v = end - start,
 // which says that the two corners are first + second apart. K. M. Bolton, Biarc curves,
@@ -56,8 +66,6 @@ struct BiarcJoint {
 // center, which is a polynomial of degree six; the piece is halved where they are not sharp.
 [[nodiscard]] bool stays_near(const CubicBezier& piece, const PlaneArc& arc, double deviation);
 
-// An arc in several, for controls that do not take long ones.
-
 struct ArcPartsOptions {
   double max_sweep = 0;  // radians, > 0
   // Directions from the centre that no part goes across: this one and its quarter turns. A unit
@@ -65,8 +73,9 @@ struct ArcPartsOptions {
   Vector3 quadrant_from = Vector3::Zero();
 };
 
-// Parts of the same circle or helix that follow each other from the arc's start to its end; the arc
-// itself where it is short enough. Where only the sweep counts all parts are alike.
+// An arc in several, for controls that do not take long ones: parts of the same circle or helix
+// that follow each other from the arc's start to its end; the arc itself where it is short enough.
+// Where only the sweep counts all parts are alike.
 //
 // A start or end beside a direction by less than a millionth of a radian counts as on it: a part of
 // that length would be none for most controls.

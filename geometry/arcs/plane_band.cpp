@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "geometry/basic/point.h"
 #include "geometry/basic/rounding.h"
@@ -11,28 +10,11 @@
 namespace batten::geometry {
 namespace {
 
-// What a curve with the polyline's turns does between two samples is at most this part of the
-// tolerance.
-constexpr double kBetween = 0.02;
-constexpr double kMostParts = 8;
-
-// Edges longer than this many tolerances could hide an arc's bulge between their ends.
-constexpr double kLongEdge = 200;
-constexpr int kPartsOfLong = 4;
-
-// About vertices that turn more, samples stand at distances that double from this part of the
-// tolerance: arcs that round them are that small.
-constexpr double kTightTurn = 0.1;
-constexpr double kNearest = 0.5;
-constexpr double kRoomForTight = 10;  // tolerances: a shorter edge is no leg of a corner
+constexpr PlaneBandTuning kBand = kPlaneBandTuning;
 
 double heading_of(const Vector2& v) { return std::atan2(v.y(), v.x()); }
 
-// A fan is made for this part of the tolerance; the rest is for what arcs do between samples
-// and for the rounding of their ends.
-constexpr double kFanPart = 0.97;
-
-// Places that a fan meets together.
+// Samples that a fan meets together.
 constexpr std::size_t kTogether = 8;
 
 // A fan that closes sample by sample. An arc from the origin along the first axis with
@@ -46,7 +28,7 @@ class ClosingFan {
   ClosingFan(const BandEntry& entry, const PlaneBand::Limits& limits, double steepest)
       : place_(entry.place),
         along_(unit_vector(entry.angle)),
-        tolerance_(kFanPart * limits.tolerance),
+        tolerance_(kBand.fan_part * limits.tolerance),
         range_{-limits.max_curvature, limits.max_curvature},
         steepest_(steepest) {}
 
@@ -66,8 +48,8 @@ class ClosingFan {
     return true;
   }
 
-  // The same for each `step`-th of kTogether places, without a branch between them. `after`: the
-  // range behind each. False where one of them is too near or not passed: then nothing has changed,
+  // The same for each `step`-th of kTogether samples, without a branch between them. `after`: the
+  // range after each. False where one of them is too near or not passed: then nothing has changed,
   // and they must be asked for one by one.
   bool narrow_together(const double* xs, const double* ys, std::size_t step, Ranges& after) {
     std::array<double, kTogether> ways_x;
@@ -95,7 +77,7 @@ class ClosingFan {
       range = {std::max(range.low, lows[k]), std::min(range.high, highs[k])};
       after[k] = range;
     }
-    // Ranges only close: what is open behind the last was open behind each.
+    // Ranges only close: what is open after the last was open after each.
     if (!ahead || range.low > range.high) return false;
     range_ = range;
     squared_ = beyonds.back();
@@ -218,7 +200,7 @@ PlaneBand::PlaneBand(std::span<const Point2> points, const Limits& limits)
   double turn_before = 0;
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const double turn_after = i + 2 < n ? wrapped(angles[i + 1] - angles[i]) : 0;
-    add_edge({points[i], points[i + 1], angles[i], turn_before, turn_after});
+    add_edge(points[i], points[i + 1], angles[i], turn_before, turn_after);
     turn_before = turn_after;
   }
 }
@@ -229,34 +211,36 @@ void PlaneBand::add_sample(const Sample& sample) {
   y_.push_back(sample.place.y());
 }
 
-void PlaneBand::add_edge(const Edge& edge) {
-  const Vector2 way = edge.to - edge.from;
+void PlaneBand::add_edge(const Point2& from, const Point2& to, double angle, double turn_before,
+                         double turn_after) {
+  const Vector2 way = to - from;
   const double length = way.norm();
-  const Vector2 edge_way = unit_vector(edge.angle);
-  std::vector<double> places;
-  const double nearest = kNearest * limits_.tolerance;
+  const Vector2 edge_way = unit_vector(angle);
+  std::vector<double> inner;  // mm from the edge's start
+  const double nearest = kBand.nearest * limits_.tolerance;
   const auto add_about = [&](double turn, bool at_end) {
-    if (std::abs(turn) < kTightTurn || length < kRoomForTight * limits_.tolerance) return;
-    for (double d = nearest; d < length / 2; d *= 2) places.push_back(at_end ? length - d : d);
+    if (std::abs(turn) < kBand.tight_turn || length < kBand.room_for_tight * limits_.tolerance)
+      return;
+    for (double d = nearest; d < length / 2; d *= 2) inner.push_back(at_end ? length - d : d);
   };
-  add_about(edge.turn_before, false);
-  add_about(edge.turn_after, true);
+  add_about(turn_before, false);
+  add_about(turn_after, true);
   const double gentle =
-      std::min(kTightTurn, std::max(std::abs(edge.turn_before), std::abs(edge.turn_after)));
+      std::min(kBand.tight_turn, std::max(std::abs(turn_before), std::abs(turn_after)));
   const double sagitta = length * gentle / 8;
-  double parts = std::ceil(std::sqrt(sagitta / (kBetween * limits_.tolerance)));
-  parts =
-      std::clamp(parts, length > kLongEdge * limits_.tolerance ? kPartsOfLong : 1.0, kMostParts);
-  for (int i = 1; i < static_cast<int>(parts); ++i) places.push_back(length * i / parts);
-  std::sort(places.begin(), places.end());
+  const double least = length > kBand.long_edge * limits_.tolerance ? kBand.parts_of_long : 1;
+  const double parts = std::clamp(
+      std::ceil(std::sqrt(sagitta / (kBand.between * limits_.tolerance))), least, kBand.most_parts);
+  for (int i = 1; i < static_cast<int>(parts); ++i) inner.push_back(length * i / parts);
+  std::ranges::sort(inner);
   const double start = samples_.back().station;
   double last = 0;
-  for (const double place : places) {
-    if (place - last < nearest / 2) continue;
-    add_sample({edge.from + (place / length) * way, start + place, edge.angle, 0, edge_way});
-    last = place;
+  for (const double at : inner) {
+    if (at - last < nearest / 2) continue;
+    add_sample({from + (at / length) * way, start + at, angle, 0, edge_way});
+    last = at;
   }
-  add_sample({edge.to, start + length, edge.angle, edge.turn_after, edge_way});
+  add_sample({to, start + length, angle, turn_after, edge_way});
 }
 
 ArcFan PlaneBand::fan(const BandEntry& entry) const {
@@ -266,14 +250,14 @@ ArcFan PlaneBand::fan(const BandEntry& entry) const {
   const std::size_t count = samples_.size();
   for (std::size_t i = entry.next; i < count;) {
     if (i + kTogether <= count && closing.narrow_together(&x_[i], &y_[i], 1, after)) {
-      fan.ranges.insert(fan.ranges.end(), after.begin(), after.end());
+      fan.insert(fan.end(), after.begin(), after.end());
       i += kTogether;
       continue;
     }
     const std::size_t end = std::min(i + kTogether, count);
     for (; i < end; ++i) {
       if (!closing.narrow(samples_[i].place)) return fan;
-      fan.ranges.push_back(closing.range());
+      fan.push_back(closing.range());
     }
   }
   return fan;

@@ -13,6 +13,20 @@
 
 namespace batten::geometry {
 
+struct PlaneBandTuning {
+  double between = 0.02;     // of the tolerance, at most: what a curve does between two samples
+  double most_parts = 8;     // of an edge, for that
+  double long_edge = 200;    // tolerances: a longer edge could hide an arc's bulge,
+  double parts_of_long = 4;  // and has so many parts at least
+  double tight_turn = 0.1;   // radians: about vertices that turn more samples are at distances that
+  double nearest = 0.5;      // double from so many tolerances: arcs that round them are that small
+  double room_for_tight = 10;  // tolerances: a shorter edge is no leg of a corner
+  // A fan is made for this part of the tolerance; the rest is for what arcs do between samples
+  // and for the rounding of their ends.
+  double fan_part = 0.97;
+};
+inline constexpr PlaneBandTuning kPlaneBandTuning;
+
 // Signed curvatures, 1/mm, positive to the left.
 struct CurvatureRange {
   double low;
@@ -28,11 +42,9 @@ struct BandEntry {
   std::size_t next = 1;  // first sample that lies ahead
 };
 
-// The arcs from one entry: ranges[i] are the curvatures that pass every sample from the next
-// one to the i-th after it within the tolerance. No range is empty.
-struct ArcFan {
-  std::vector<CurvatureRange> ranges;
-};
+// The arcs from one entry: element i holds the curvatures that pass every sample from the next
+// one to the i-th after it within the tolerance. None is empty.
+using ArcFan = std::vector<CurvatureRange>;
 
 struct ArcReach {
   std::size_t end;    // the first sample that no arc from the entry passes
@@ -62,7 +74,6 @@ class PlaneBand {
   PlaneBand(std::span<const Point2> points, const Limits& limits);
 
   [[nodiscard]] const std::vector<Sample>& samples() const { return samples_; }
-  [[nodiscard]] const Limits& limits() const { return limits_; }
 
   [[nodiscard]] ArcFan fan(const BandEntry& entry) const;
   // The end of that fan; with a stride narrow places between the samples may be overlooked.
@@ -75,15 +86,8 @@ class PlaneBand {
                                                   const PlaneArc& arc) const;
 
  private:
-  // An edge of the polyline, with the turns at its ends.
-  struct Edge {
-    Point2 from;
-    Point2 to;
-    double angle;
-    double turn_before;
-    double turn_after;
-  };
-  void add_edge(const Edge& edge);
+  void add_edge(const Point2& from, const Point2& to, double angle, double turn_before,
+                double turn_after);
   void add_sample(const Sample& sample);
 
   Limits limits_;

@@ -31,9 +31,8 @@ struct PlaneFrame {
 
 class PlaneCurve : public PieceRow {
  public:
-  // Pieces that turn by more than a radian are halved. `most`: of the given ones, the first so
-  // many.
-  PlaneCurve(const CurvePieces& pieces, std::size_t most, const PlaneFrame& frame);
+  // Pieces that turn by more than a radian are halved.
+  PlaneCurve(const CurvePieces& pieces, const PlaneFrame& frame);
 
   // Angle of the tangent in the plane, radians, continuous but for corners, where it is the
   // angle of leaving (`angle_before`: of arriving).

@@ -1,6 +1,9 @@
 // Cubic B-splines for tests: through a given function, or with given straight parts.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
+#include <numbers>
 #include <vector>
 
 #include "geometry/path/bspline_curve.h"
@@ -22,6 +25,51 @@ BsplineCurve curve_of(const Function& f, double from, double to, int spans) {
   }
   return BsplineCurve(BsplineBasis(3, knots), points).part(knots[3], knots[knots.size() - 4]);
 }
+
+// Lines and arcs as cubics joined by triple knots; arcs in pieces of 45 degrees or less,
+// which a cubic follows to within 4e-6 of the radius.
+class Drawing {
+ public:
+  explicit Drawing(const Point3& start) : points_{start} {}
+
+  Drawing& line_to(const Point3& end) {
+    const Point3 start = points_.back();
+    add(start + (end - start) / 3, start + 2 * (end - start) / 3, end);
+    return *this;
+  }
+
+  Drawing& arc_about(const Point3& center, double angle, double rise = 0) {
+    const int pieces = static_cast<int>(std::ceil(std::abs(angle) / (std::numbers::pi / 4) - 1e-9));
+    const double step = angle / pieces;
+    const double handle = 4.0 / 3 * std::tan(step / 4);
+    const Vector3 up(0, 0, rise / pieces);
+    for (int i = 0; i < pieces; ++i) {
+      const Point3 start = points_.back();
+      const Vector3 r(start.x() - center.x(), start.y() - center.y(), 0);
+      const Vector3 forward(-r.y(), r.x(), 0);
+      const Vector3 turned = std::cos(step) * r + std::sin(step) * forward;
+      const Vector3 turned_forward(-turned.y(), turned.x(), 0);
+      const Point3 end = start - r + turned + up;
+      add(start + handle * forward + up / 3, end - handle * turned_forward - up / 3, end);
+    }
+    return *this;
+  }
+
+  BsplineCurve curve() const {
+    const std::size_t spans = (points_.size() - 1) / 3;
+    std::vector<double> knots(4, 0.0);
+    for (std::size_t i = 1; i < spans; ++i) knots.insert(knots.end(), 3, static_cast<double>(i));
+    knots.insert(knots.end(), 4, static_cast<double>(spans));
+    return {BsplineBasis(3, knots), points_};
+  }
+
+ private:
+  void add(const Point3& a, const Point3& b, const Point3& c) {
+    points_.insert(points_.end(), {a, b, c});
+  }
+
+  std::vector<Point3> points_;
+};
 
 // mm between two parameters.
 inline double length_between(const BsplineCurve& curve, double from, double to) {

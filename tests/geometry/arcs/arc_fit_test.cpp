@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "tests/support/arc_path_measure.h"
 #include "tests/support/curve_of.h"
@@ -29,51 +27,6 @@ BsplineCurve circle(double radius, int spans) {
       [radius](double t) { return Point3(radius * std::cos(t), radius * std::sin(t), 0); }, 0,
       2 * pi, spans);
 }
-
-// Lines and arcs as cubics joined by triple knots; arcs in pieces of 45 degrees or less,
-// which a cubic follows to within 4e-6 of the radius.
-class Drawing {
- public:
-  explicit Drawing(const Point3& start) : points_{start} {}
-
-  Drawing& line_to(const Point3& end) {
-    const Point3 start = points_.back();
-    add(start + (end - start) / 3, start + 2 * (end - start) / 3, end);
-    return *this;
-  }
-
-  Drawing& arc_about(const Point3& center, double angle, double rise = 0) {
-    const int pieces = static_cast<int>(std::ceil(std::abs(angle) / (pi / 4) - 1e-9));
-    const double step = angle / pieces;
-    const double handle = 4.0 / 3 * std::tan(step / 4);
-    const Vector3 up(0, 0, rise / pieces);
-    for (int i = 0; i < pieces; ++i) {
-      const Point3 start = points_.back();
-      const Vector3 r(start.x() - center.x(), start.y() - center.y(), 0);
-      const Vector3 forward(-r.y(), r.x(), 0);
-      const Vector3 turned = std::cos(step) * r + std::sin(step) * forward;
-      const Vector3 turned_forward(-turned.y(), turned.x(), 0);
-      const Point3 end = start - r + turned + up;
-      add(start + handle * forward + up / 3, end - handle * turned_forward - up / 3, end);
-    }
-    return *this;
-  }
-
-  BsplineCurve curve() const {
-    const std::size_t spans = (points_.size() - 1) / 3;
-    std::vector<double> knots(4, 0.0);
-    for (std::size_t i = 1; i < spans; ++i) knots.insert(knots.end(), 3, static_cast<double>(i));
-    knots.insert(knots.end(), 4, static_cast<double>(spans));
-    return {BsplineBasis(3, knots), points_};
-  }
-
- private:
-  void add(const Point3& a, const Point3& b, const Point3& c) {
-    points_.insert(points_.end(), {a, b, c});
-  }
-
-  std::vector<Point3> points_;
-};
 
 Path fitted(const BsplineCurve& curve, const ArcFitOptions& options) {
   const auto path = fit_arcs(curve, curve.first(), curve.last(), options);
@@ -178,27 +131,22 @@ TEST(FitArcs, ARampedContourHasLinesAndHelicalArcs) {
   EXPECT_LE(measure(ramp, path, 0.02).kink_grids, 2 * kGrid);
 }
 
-TEST(FitArcs, GivesNothingOffThePlaneWithoutHelices) {
-  const BsplineCurve wave = curve_of(
-      [](double t) { return Point3(10 * t, 5 * std::sin(t), std::sin(2 * t)); }, 0, 6, 100);
-  EXPECT_FALSE(fit_arcs(wave, wave.first(), wave.last(), on_grid()));
-}
-
-TEST(FitArcs, GivesNothingWhereHelicesDoNotPay) {
-  ArcFitOptions options = on_grid();
-  options.helical = true;
-  const BsplineCurve wave = curve_of(
-      [](double t) { return Point3(10 * t, 5 * std::sin(t), 3 * std::sin(2 * t)); }, 0, 20, 300);
-  EXPECT_FALSE(fit_arcs(wave, wave.first(), wave.last(), options));
-}
-
-// Thousands of pieces, of which the first tell whether it is worth looking at the others.
-TEST(FitArcs, GivesNothingWhereLongHelicesDoNotPay) {
-  ArcFitOptions options = on_grid();
-  options.helical = true;
-  const BsplineCurve wave = curve_of(
-      [](double t) { return Point3(10 * t, 5 * std::sin(t), 3 * std::sin(2 * t)); }, 0, 450, 6750);
-  EXPECT_FALSE(fit_arcs(wave, wave.first(), wave.last(), options));
+TEST(FitArcs, GivesNothingOffThePlaneWhereHelicesAreNotAllowedOrDoNotPay) {
+  struct Row {
+    bool helical;
+    double rise;
+    double to;
+    int spans;
+  };
+  for (const Row& row : {Row{false, 1, 6, 100}, {true, 3, 20, 300}, {true, 3, 450, 6750}}) {
+    ArcFitOptions options = on_grid();
+    options.helical = row.helical;
+    const auto at = [&row](double t) {
+      return Point3(10 * t, 5 * std::sin(t), row.rise * std::sin(2 * t));
+    };
+    const BsplineCurve wave = curve_of(at, 0, row.to, row.spans);
+    EXPECT_FALSE(fit_arcs(wave, wave.first(), wave.last(), options)) << row.spans;
+  }
 }
 
 TEST(FitArcs, FollowsALongHelixToItsEnd) {
@@ -249,36 +197,32 @@ TEST(FitArcs, RefusesOptionsWithoutAMeaning) {
 // (|k'| / (124.7 T))^(1/3) over the length, k' the change of the curvature per mm: 23.6 for
 // the spiral, 35.3 for the sine, 22.1 for the ellipse (computed numerically). Chains whose
 // tangents are the curve's need 1.45 times as many.
-struct ArcCountCase {
-  std::string name;
-  Point3 (*at)(double);
-  double to;
-  std::size_t most;
-};
-
-class ArcCount : public testing::TestWithParam<ArcCountCase> {};
-
-TEST_P(ArcCount, IsNearTheLeastPossible) {
-  const ArcCountCase& test = GetParam();
-  const BsplineCurve curve = curve_of(test.at, 0, test.to, 300);
-  for (double grid : {0.0, kGrid}) {
-    ArcFitOptions options;
-    options.grid = grid;
-    const Path path = fitted(curve, options);
-    EXPECT_LE(path.size(), test.most);
-    EXPECT_LE(measure(curve, path, 0.02).away, 0.005 * kSampling);
+TEST(FitArcs, NeedsFewMoreArcsThanTheLeastPossible) {
+  struct Row {
+    const char* name;
+    Point3 (*at)(double);
+    double to;
+    std::size_t most;
+  };
+  const Row rows[] = {
+      {"spiral", [](double t) { return Point3((5 + t) * std::cos(t), (5 + t) * std::sin(t), 0); },
+       20, 34},
+      {"sine", [](double t) { return Point3(10 * t, 5 * std::sin(t), 0); }, 20, 51},
+      {"ellipse", [](double t) { return Point3(30 * std::cos(t), 5 * std::sin(t), 0); }, 2 * pi,
+       34},
+  };
+  for (const Row& row : rows) {
+    const BsplineCurve curve = curve_of(row.at, 0, row.to, 300);
+    for (double grid : {0.0, kGrid}) {
+      SCOPED_TRACE(testing::Message() << row.name << ", grid " << grid);
+      ArcFitOptions options;
+      options.grid = grid;
+      const Path path = fitted(curve, options);
+      EXPECT_LE(path.size(), row.most);
+      EXPECT_LE(measure(curve, path, 0.02).away, 0.005 * kSampling);
+    }
   }
 }
-
-Point3 spiral(double t) { return {(5 + t) * std::cos(t), (5 + t) * std::sin(t), 0}; }
-Point3 sine(double t) { return {10 * t, 5 * std::sin(t), 0}; }
-Point3 ellipse(double t) { return {30 * std::cos(t), 5 * std::sin(t), 0}; }
-
-INSTANTIATE_TEST_SUITE_P(Curves, ArcCount,
-                         testing::Values(ArcCountCase{"Spiral", spiral, 20, 34},
-                                         ArcCountCase{"Sine", sine, 20, 51},
-                                         ArcCountCase{"Ellipse", ellipse, 2 * pi, 34}),
-                         [](const auto& test) { return test.param.name; });
 
 }  // namespace
 }  // namespace batten::geometry

@@ -260,15 +260,13 @@ TEST(ArcSpline, TurnedByARightAngleItIsTheSameSpline) {
 
 TEST(ArcSpline, RefusesOptionsOutOfRange) {
   const std::vector<Point2> points = {{0, 0}, {1, 0}};
-  ArcSplineOptions options = options_for(points);
-  options.tolerance = 0;
-  EXPECT_THROW((void)fit_arc_spline(points, options), std::invalid_argument);
-  options = options_for(points);
-  options.max_sweep = 3.2;
-  EXPECT_THROW((void)fit_arc_spline(points, options), std::invalid_argument);
-  options = options_for(points);
-  options.max_radius = 0.01;
-  EXPECT_THROW((void)fit_arc_spline(points, options), std::invalid_argument);
+  for (const int wrong : {0, 1, 2}) {
+    ArcSplineOptions options = options_for(points);
+    if (wrong == 0) options.tolerance = 0;
+    if (wrong == 1) options.max_sweep = 3.2;
+    if (wrong == 2) options.max_radius = 0.01;
+    EXPECT_THROW((void)fit_arc_spline(points, options), std::invalid_argument) << wrong;
+  }
 }
 
 }  // namespace

@@ -45,21 +45,21 @@ TEST(PlaneBand, TheFanOnALineClosesWithTheSquareOfTheLength) {
   for (int i = 0; i <= 100; ++i) points.push_back({0.1 * i, 0});
   const PlaneBand band(points, limits());
   const ArcFan fan = band.fan({{0, 0}, 0, 1});
-  ASSERT_EQ(fan.ranges.size(), band.samples().size() - 1);
-  for (const std::size_t i : {49UL, fan.ranges.size() - 1}) {
+  ASSERT_EQ(fan.size(), band.samples().size() - 1);
+  for (const std::size_t i : {49UL, fan.size() - 1}) {
     const double length = band.samples()[i + 1].station;
     const double expected = 2 * kTolerance / (length * length);
-    EXPECT_NEAR(fan.ranges[i].high, expected, 0.05 * expected);
-    EXPECT_NEAR(fan.ranges[i].low, -expected, 0.05 * expected);
+    EXPECT_NEAR(fan[i].high, expected, 0.05 * expected);
+    EXPECT_NEAR(fan[i].low, -expected, 0.05 * expected);
   }
 }
 
 TEST(PlaneBand, TheFanHoldsTheCircleThatTheVerticesLieOn) {
   const PlaneBand band(on_circle(20, 200, 2.5), limits());
   const ArcFan fan = band.fan({{20, 0}, pi / 2, 1});
-  ASSERT_EQ(fan.ranges.size(), band.samples().size() - 1);
-  EXPECT_LT(fan.ranges.back().low, 1.0 / 20);
-  EXPECT_GT(fan.ranges.back().high, 1.0 / 20);
+  ASSERT_EQ(fan.size(), band.samples().size() - 1);
+  EXPECT_LT(fan.back().low, 1.0 / 20);
+  EXPECT_GT(fan.back().high, 1.0 / 20);
 }
 
 TEST(PlaneBand, ReachEndsAtACorner) {
@@ -85,7 +85,7 @@ TEST(PlaneBand, ReachIsTheEndOfTheFan) {
   for (std::size_t next = 1; next + 1 < samples.size(); next += 7) {
     for (const double off : {0.0, 0.004, -0.004}) {
       const BandEntry entry{samples[next - 1].place, samples[next].edge_angle + off, next};
-      const std::size_t end = next + band.fan(entry).ranges.size();
+      const std::size_t end = next + band.fan(entry).size();
       const std::size_t reach = band.reach(entry).end;
       EXPECT_GE(reach, end);
       EXPECT_LE(reach, end + 4);
