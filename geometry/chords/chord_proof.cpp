@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -12,9 +11,24 @@
 
 namespace batten::geometry {
 
-namespace {
+StraightLine::StraightLine(const Point3& start, const Point3& end)
+    : start_(start), length_((end - start).norm()) {
+  if (length_ > 0) along_ = (end - start) / length_;
+}
 
-using Eigen::Array4d;
+double StraightLine::foot(const Point3& p) const {
+  return std::clamp(along_.dot(p - start_), 0.0, length_);
+}
+
+Vector3 StraightLine::off(const Point3& p) const {
+  return p - start_ - along_.dot(p - start_) * along_;
+}
+
+double StraightLine::squared_distance(const Point3& p, double at) const {
+  return (p - start_ - at * along_).squaredNorm();
+}
+
+namespace {
 
 // A bend and a second one the other way have their tops; what is left after these cuts is due to
 // the twist of a curve in space, and there halves do better.
@@ -23,36 +37,24 @@ constexpr int kCutsAtTheTop = 2;
 }  // namespace
 
 ChordProof::ChordProof(const Point3& start, const Point3& end, double deviation, int cuts)
-    : start_(start),
-      along_(Vector3::Zero()),
-      length_((end - start).norm()),
-      allowed_(deviation * deviation),
-      cuts_(cuts) {
-  if (length_ > 0) along_ = (end - start) / length_;
-}
+    : line_(start, end), allowed_(deviation * deviation), cuts_(cuts) {}
 
 bool ChordProof::holds(const CubicBezier& piece, int cuts) {
   double at = reached_;
-  bool near = true;
-  for (const Point3& control : piece.control) {
-    at = std::max(at, std::clamp(along_.dot(control - start_), 0.0, length_));
-    if ((control - start_ - at * along_).squaredNorm() > allowed_) {
-      near = false;
-      break;
-    }
-  }
+  const bool near = std::ranges::all_of(piece.control, [&](const Point3& control) {
+    at = std::max(at, line_.foot(control));
+    return line_.squared_distance(control, at) <= allowed_;
+  });
   if (near) {
     reached_ = at;
     return true;
   }
-  if (cuts == 0 || !near_end(piece.control[0]) || !near_end(piece.control[3])) return false;
+  // The ends are points of the curve itself: too far from the chord, and no cut will help.
+  const auto is_off = [this](const Point3& p) { return line_.squared_distance(p) > allowed_; };
+  if (cuts == 0 || is_off(piece.control[0]) || is_off(piece.control[3])) return false;
   const bool early = cuts + kCutsAtTheTop > cuts_;
   const auto [left, right] = early ? parts_at(piece, farthest(piece)) : halves(piece);
   return holds(left, cuts - 1) && holds(right, cuts - 1);
-}
-
-Vector3 ChordProof::off_chord(const Point3& p) const {
-  return p - start_ - along_.dot(p - start_) * along_;
 }
 
 // Where the piece runs along the chord at its greatest height, seen in the direction of its bow.
@@ -60,8 +62,8 @@ Vector3 ChordProof::off_chord(const Point3& p) const {
 double ChordProof::farthest(const CubicBezier& piece) const {
   constexpr double kMiddle = 0.5;
   constexpr double kInside = 0.02;
-  const Vector3 off[] = {off_chord(piece.control[0]), off_chord(piece.control[1]),
-                         off_chord(piece.control[2]), off_chord(piece.control[3])};
+  const Vector3 off[] = {line_.off(piece.control[0]), line_.off(piece.control[1]),
+                         line_.off(piece.control[2]), line_.off(piece.control[3])};
   const Vector3 bow = off[1] + off[2] - off[0] - off[3];
   const double heights[] = {bow.dot(off[0]), bow.dot(off[1]), bow.dot(off[2]), bow.dot(off[3])};
   // The slope is a (1-t)^2 + 2 b t (1-t) + c t^2; of its two zeros the bow's top is where it falls.
@@ -74,27 +76,17 @@ double ChordProof::farthest(const CubicBezier& piece) const {
   return t > kInside && t < 1 - kInside ? t : kMiddle;
 }
 
-// A point of the curve itself: too far from the chord, and no cut will help.
-bool ChordProof::near_end(const Point3& p) const {
-  const double at = std::clamp(along_.dot(p - start_), 0.0, length_);
-  return (p - start_ - at * along_).squaredNorm() <= allowed_;
-}
-
 bool chord_proved(const CurvePieces& pieces, double from, double to, ChordProof proof) {
-  return chord_proved(pieces, pieces.index_of(from), from, to, std::move(proof));
-}
-
-bool chord_proved(const CurvePieces& pieces, std::size_t first, double from, double to,
-                  ChordProof proof) {
   if (!(from < to)) return true;
-  for (std::size_t i = first; i < pieces.size(); ++i) {
-    if (pieces.breaks()[i] >= to) break;
+  for (std::size_t i = pieces.index_of(from); i < pieces.size() && pieces.breaks()[i] < to; ++i) {
     if (!proof.holds(pieces.part(i, from, to))) return false;
   }
   return true;
 }
 
 namespace {
+
+using Eigen::Array4d;
 
 // A bound is sharp when it is too great by less than this part. Each halving of a Bezier piece
 // quarters what its bound has too much, so twenty are enough.
@@ -107,55 +99,33 @@ constexpr int kAllHalvings = 50;
 // Rounding of a distance, as a part of the coordinates.
 constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
 
-// Squared distance to a segment; to a line where it has no end.
-class StraightLine {
- public:
-  StraightLine(const Point3& start, const Point3& end)
-      : start_(start), length_((end - start).norm()) {
-    if (length_ > 0) along_ = (end - start) / length_;
-  }
-  static StraightLine through(const Point3& start, const Vector3& along) {
-    StraightLine line(start, start + along);
-    line.endless_ = true;
-    return line;
-  }
-
-  [[nodiscard]] double squared_distance(const Point3& p) const {
-    const double at = along_.dot(p - start_);
-    const double nearest = endless_ ? at : std::clamp(at, 0.0, length_);
-    return (p - start_ - nearest * along_).squaredNorm();
-  }
-
- private:
-  Point3 start_;
-  double length_;
-  Vector3 along_ = Vector3::Zero();
-  bool endless_ = false;
-};
-
-// The distance from a convex set is a convex function: on the piece it is at most what it is at
-// the farthest control point.
-double bound(const CubicBezier& piece, const StraightLine& line) {
+// The greatest of the control points' squared distances. The distance from a convex set is a convex
+// function: on the piece it is at most that.
+template <typename Squared>
+double bound(const CubicBezier& piece, const Squared& squared) {
   double farthest = 0;
-  for (const Point3& p : piece.control) farthest = std::max(farthest, line.squared_distance(p));
+  for (const Point3& p : piece.control) farthest = std::max(farthest, squared(p));
   return farthest;
 }
 
-void raise_to(const CubicBezier& piece, const StraightLine& line, int halvings, double& greatest) {
-  greatest = std::max(
-      {greatest, line.squared_distance(piece.control[0]), line.squared_distance(piece.control[3])});
+// `greatest`: raised to the greatest squared distance of the piece from the chord.
+void raise_to(const CubicBezier& piece, const StraightLine& chord, int halvings, double& greatest) {
+  const auto squared = [&chord](const Point3& p) { return chord.squared_distance(p); };
+  greatest = std::max({greatest, squared(piece.control[0]), squared(piece.control[3])});
   const double noise = kRounding * piece.control[0].cwiseAbs().maxCoeff();
   const double open = 2 * greatest * kSharp + 2 * std::sqrt(greatest) * noise + noise * noise;
-  if (halvings == 0 || bound(piece, line) <= greatest + open) return;
+  if (halvings == 0 || bound(piece, squared) <= greatest + open) return;
   const auto [left, right] = halves(piece);
-  raise_to(left, line, halvings - 1, greatest);
-  raise_to(right, line, halvings - 1, greatest);
+  raise_to(left, chord, halvings - 1, greatest);
+  raise_to(right, chord, halvings - 1, greatest);
 }
 
-// The first t of the piece where the squared distance is reached.
+// The first t of the piece where the squared distance from the line is reached.
 std::optional<double> first_at(const CubicBezier& piece, const StraightLine& line, double squared,
                                int halvings) {
-  if (bound(piece, line) < squared) return std::nullopt;
+  if (bound(piece, [&line](const Point3& p) { return line.off(p).squaredNorm(); }) < squared) {
+    return std::nullopt;
+  }
   if (halvings == 0) return 0.5;
   const auto [left, right] = halves(piece);
   if (const auto t = first_at(left, line, squared, halvings - 1)) return *t / 2;
@@ -175,7 +145,8 @@ double chord_deviation(const CurvePieces& pieces, double from, double to) {
 }
 
 double leaves_tangent_at(const CurvePieces& pieces, double from, double to, double distance) {
-  const auto tangent = StraightLine::through(pieces.point_at(from), pieces.leaving(from));
+  const Point3 foot = pieces.point_at(from);
+  const StraightLine tangent(foot, foot + pieces.leaving(from));
   for (std::size_t i = pieces.index_of(from); i < pieces.size() && pieces.breaks()[i] < to; ++i) {
     const double start = std::max(from, pieces.breaks()[i]);
     const double end = std::min(to, pieces.breaks()[i + 1]);
@@ -194,23 +165,26 @@ constexpr double kTwist = 1e-4;
 // Halves of a piece twist a quarter as much.
 constexpr int kTwistHalvings = 6;
 
-// A coordinate of the piece up to this part of its parameter. De Casteljau's algorithm.
-Array4d restricted(const Array4d& p, double part) {
-  const double a = p[0] + part * (p[1] - p[0]);
-  const double b = p[1] + part * (p[2] - p[1]);
-  const double c = p[2] + part * (p[3] - p[2]);
-  const double ab = a + part * (b - a);
-  const double bc = b + part * (c - b);
-  return Array4d(p[0], a, ab, ab + part * (bc - ab));
+// The piece up to this part of its parameter. De Casteljau's algorithm.
+ControlCoordinates restricted(const ControlCoordinates& piece, double part) {
+  const auto one = [part](const Array4d& p) {
+    const double a = p[0] + part * (p[1] - p[0]);
+    const double b = p[1] + part * (p[2] - p[1]);
+    const double c = p[2] + part * (p[3] - p[2]);
+    const double ab = a + part * (b - a);
+    const double bc = b + part * (c - b);
+    return Array4d(p[0], a, ab, ab + part * (bc - ab));
+  };
+  return {one(piece.x), one(piece.y), one(piece.z)};
 }
 
-double cubic_at(const double* h, double t) {
+double cubic_at(const Array4d& h, double t) {
   const double s = 1 - t;
   return s * s * (s * h[0] + 3 * t * h[1]) + t * t * (3 * s * h[2] + t * h[3]);
 }
 
 // The greatest size of a cubic over [0, 1], by its Bezier coefficients.
-double greatest_of(const double* h) {
+double greatest_of(const Array4d& h) {
   double greatest = std::max(std::abs(h[0]), std::abs(h[3]));
   if (std::max(std::abs(h[1]), std::abs(h[2])) <= greatest) return greatest;
   // The slope is a (1-t)^2 + 2 b t (1-t) + c t^2.
@@ -230,72 +204,54 @@ double greatest_of(const double* h) {
   return greatest;
 }
 
-// Not less than the greatest square of the piece's size over [0, 1]; what is below `known` need not
-// be told from it.
-double greatest_square(const CubicBezier& piece, double known, int halvings) {
-  const Vector3* o = piece.control;
-  const double start = o[0].squaredNorm();
-  const double end = o[3].squaredNorm();
-  const double hull =
-      std::max(std::max(start, end), std::max(o[1].squaredNorm(), o[2].squaredNorm()));
-  if (hull <= known || hull == std::max(start, end)) return hull;
-  const Vector3 middle = 0.125 * (o[0] + o[3]) + 0.375 * (o[1] + o[2]);
-  const double top = middle.squaredNorm();
-  const Vector3& bow = top >= std::max(start, end) ? middle : (start >= end ? o[0] : o[3]);
-  const double size = bow.norm();
-  if (size > 0) {
-    const Vector3 up = bow / size;
-    const double h[] = {up.dot(o[0]), up.dot(o[1]), up.dot(o[2]), up.dot(o[3])};
-    double twist = 0;
-    for (int i = 0; i < 4; ++i) twist = std::max(twist, (o[i] - h[i] * up).squaredNorm());
-    const double height = greatest_of(h);
-    const double square = height * height + twist;
-    if (square <= known || twist <= kTwist * height * height) return std::min(square, hull);
-    if (halvings == 0) return std::min(square, hull);
-  } else if (halvings == 0) {
-    return hull;
-  }
-  const auto [left, right] = halves(piece);
-  const double first = greatest_square(left, known, halvings - 1);
-  return std::max(first, greatest_square(right, std::max(first, known), halvings - 1));
-}
-
 Array4d squares_of(const ControlCoordinates& p) { return p.x * p.x + p.y * p.y + p.z * p.z; }
 
 Point3 point_of(const ControlCoordinates& p, Eigen::Index i) { return {p.x[i], p.y[i], p.z[i]}; }
 
-// The same for what lies across a chord, where nearly always one look is enough.
-double greatest_square(const ControlCoordinates& across, double known) {
-  const Array4d squares = squares_of(across);
+Array4d part_along(const ControlCoordinates& p, const Vector3& direction) {
+  return p.x * direction.x() + p.y * direction.y() + p.z * direction.z();
+}
+
+ControlCoordinates without_part(const ControlCoordinates& p, const Array4d& part,
+                                const Vector3& direction) {
+  return {p.x - part * direction.x(), p.y - part * direction.y(), p.z - part * direction.z()};
+}
+
+// Not less than the greatest square of the piece's size over [0, 1]; what is below `known` need not
+// be told from it.
+double greatest_square(const ControlCoordinates& piece, double known, int halvings) {
+  const Array4d squares = squares_of(piece);
   const double ends = std::max(squares[0], squares[3]);
   const double hull = squares.maxCoeff();
   if (hull <= known || hull == ends) return hull;
   const auto middle_of = [](const Array4d& p) {
     return 0.125 * (p[0] + p[3]) + 0.375 * (p[1] + p[2]);
   };
-  Point3 bow{middle_of(across.x), middle_of(across.y), middle_of(across.z)};
-  if (bow.squaredNorm() < ends) bow = point_of(across, squares[0] >= squares[3] ? 0 : 3);
+  Point3 bow{middle_of(piece.x), middle_of(piece.y), middle_of(piece.z)};
+  if (bow.squaredNorm() < ends) bow = point_of(piece, squares[0] >= squares[3] ? 0 : 3);
   const double size = bow.norm();
   if (size > 0) {
     const Vector3 up = bow / size;
-    const Array4d heights = across.x * up.x() + across.y * up.y() + across.z * up.z();
-    const double twist = squares_of({across.x - heights * up.x(), across.y - heights * up.y(),
-                                     across.z - heights * up.z()})
-                             .maxCoeff();
-    const double h[] = {heights[0], heights[1], heights[2], heights[3]};
-    const double height = greatest_of(h);
+    const Array4d heights = part_along(piece, up);
+    const double twist = squares_of(without_part(piece, heights, up)).maxCoeff();
+    const double height = greatest_of(heights);
     const double square = height * height + twist;
-    if (square <= known || twist <= kTwist * height * height) return std::min(square, hull);
+    if (square <= known || twist <= kTwist * height * height || halvings == 0) {
+      return std::min(square, hull);
+    }
+  } else if (halvings == 0) {
+    return hull;
   }
-  const CubicBezier piece{
-      {point_of(across, 0), point_of(across, 1), point_of(across, 2), point_of(across, 3)}};
-  return greatest_square(piece, known, kTwistHalvings);
+  const ControlCoordinates back{piece.x.reverse(), piece.y.reverse(), piece.z.reverse()};
+  const double first = greatest_square(restricted(piece, 0.5), known, halvings - 1);
+  return std::max(first,
+                  greatest_square(restricted(back, 0.5), std::max(first, known), halvings - 1));
 }
 
 }  // namespace
 
-ChordsFrom::ChordsFrom(const CurvePieces& pieces, std::size_t piece_of_start, double from)
-    : pieces_(pieces), from_(from), first_(piece_of_start) {
+ChordsFrom::ChordsFrom(const CurvePieces& pieces, double from)
+    : pieces_(pieces), from_(from), first_(pieces.index_of(from)) {
   const double at = pieces.local(first_, from);
   const CubicBezier& piece = pieces.piece(first_);
   const CubicBezier rest = at > 0 ? parts_at(piece, at).second : piece;
@@ -311,24 +267,17 @@ ControlCoordinates ChordsFrom::seen_from_start(const CubicBezier& piece) const {
           Array4d(p[0].z(), p[1].z(), p[2].z(), p[3].z()) - start_.z()};
 }
 
-// The piece that holds `u`, at or after the first.
-std::size_t ChordsFrom::piece_at(double u) const {
-  std::size_t piece = first_;
-  while (piece + 1 < pieces_.size() && pieces_.breaks()[piece + 1] <= u) ++piece;
-  return piece;
-}
-
 // Of piece i, what lies between the start and `end`, seen from the start.
 ControlCoordinates ChordsFrom::part_before(std::size_t i, double end) const {
   ControlCoordinates whole = i == first_ ? rest_ : seen_from_start(pieces_.piece(i));
   if (pieces_.breaks()[i + 1] <= end) return whole;
   double part = pieces_.local(i, end);
   if (i == first_) part = left_ > 0 ? std::max(1 - (1 - part) / left_, 0.0) : 0;
-  return {restricted(whole.x, part), restricted(whole.y, part), restricted(whole.z, part)};
+  return restricted(whole, part);
 }
 
 ChordHeight ChordsFrom::to(double end) const {
-  std::size_t last = piece_at(end);
+  std::size_t last = pieces_.index_of(end);
   if (last > first_ && pieces_.breaks()[last] >= end) --last;
   const ControlCoordinates ending = part_before(last, end);
   const Vector3 chord = point_of(ending, 3);
@@ -339,19 +288,17 @@ ChordHeight ChordsFrom::to(double end) const {
   double square = 0;
   for (std::size_t i = first_; i <= last; ++i) {
     const ControlCoordinates seen = i == last ? ending : part_before(i, end);
-    const Array4d along = seen.x * direction.x() + seen.y * direction.y() + seen.z * direction.z();
-    result.in_order =
-        result.in_order && along[0] <= along[1] && along[1] <= along[2] && along[2] <= along[3];
-    const ControlCoordinates across{seen.x - along * direction.x(), seen.y - along * direction.y(),
-                                    seen.z - along * direction.z()};
-    square = std::max(square, greatest_square(across, square));
+    const Array4d on = part_along(seen, direction);
+    result.in_order = result.in_order && on[0] <= on[1] && on[1] <= on[2] && on[2] <= on[3];
+    square = std::max(square,
+                      greatest_square(without_part(seen, on, direction), square, kTwistHalvings));
   }
   result.height = std::sqrt(square);
   return result;
 }
 
 bool ChordsFrom::leaves(double end, double distance) const {
-  const std::size_t last = piece_at(end);
+  const std::size_t last = pieces_.index_of(end);
   const Vector3 chord = pieces_.point_in(last, end) - start_;
   const double squared = chord.squaredNorm();
   const auto is_off = [&](const Point3& place) {

@@ -1,4 +1,4 @@
-// The proof that a stretch of curve and one straight chord stay near each other, in order.
+// The proof that a section of curve and one straight chord stay near each other, in order.
 // Method: docs/algorithms/linearize.md, step 2.
 #pragma once
 
@@ -17,8 +17,27 @@ namespace batten::geometry {
 inline constexpr int kProofCuts = 9;
 inline constexpr int kSharpProofCuts = 12;
 
-// Each control point is matched to a place on the chord, never going back; curve and chord then
-// are the same convex combinations of near places, in order. The chord's own ends need not lie
+// From a start along a unit vector, which is zero where both ends are one point.
+class StraightLine {
+ public:
+  StraightLine(const Point3& start, const Point3& end);
+
+  [[nodiscard]] double foot(const Point3& p) const;  // mm from the start, on the line's length
+  [[nodiscard]] Vector3 off(const Point3& p) const;  // from the line without ends
+  // From the point of the line at so many mm, and from the nearest one.
+  [[nodiscard]] double squared_distance(const Point3& p, double at) const;
+  [[nodiscard]] double squared_distance(const Point3& p) const {
+    return squared_distance(p, foot(p));
+  }
+
+ private:
+  Point3 start_;
+  double length_;
+  Vector3 along_ = Vector3::Zero();
+};
+
+// Each control point is matched to a point of the chord, never going back; curve and chord then
+// are the same convex combinations of near points, in order. The chord's own ends need not lie
 // on the curve: whoever puts them elsewhere shows that they are near the curve's ends too.
 class ChordProof {
  public:
@@ -30,13 +49,9 @@ class ChordProof {
 
  private:
   bool holds(const CubicBezier& piece, int cuts);
-  [[nodiscard]] Vector3 off_chord(const Point3& p) const;
   [[nodiscard]] double farthest(const CubicBezier& piece) const;
-  [[nodiscard]] bool near_end(const Point3& p) const;
 
-  Point3 start_;
-  Vector3 along_;
-  double length_;
+  StraightLine line_;
   double allowed_;  // mm^2
   int cuts_;
   double reached_ = 0;  // mm along the chord, matched so far
@@ -46,16 +61,9 @@ class ChordProof {
 [[nodiscard]] bool chord_proved(const CurvePieces& pieces, double from, double to,
                                 ChordProof proof);
 
-// The same for who knows the piece that holds `from`.
-[[nodiscard]] bool chord_proved(const CurvePieces& pieces, std::size_t first, double from,
-                                double to, ChordProof proof);
-
-// How far a stretch of a curve is from a straight line or chord: the greatest distance itself, not
-// a distance at samples.
-
 // Greatest distance (mm) of the curve between two parameters, from < to, from the chord between its
-// places there. Right to 1e-12 of itself and to rounding: pieces are halved until their control
-// points, which bound them, and their ends agree.
+// points there; not at samples. Right to 1e-12 of itself and to rounding: pieces are halved until
+// their control points, which bound them, and their ends agree.
 [[nodiscard]] double chord_deviation(const CurvePieces& pieces, double from, double to);
 
 // The first parameter after `from` where the curve is `distance` (mm, > 0) away from its tangent at
@@ -63,14 +71,11 @@ class ChordProof {
 [[nodiscard]] double leaves_tangent_at(const CurvePieces& pieces, double from, double to,
                                        double distance);
 
-// How far a stretch of curve leaves the chord between two of its places.
-// Method: docs/algorithms/linearize.md, step 2.
-
-// A chord and the stretch of curve between its ends.
+// A chord and the section of curve between its ends.
 struct ChordHeight {
   double chord = 0;   // mm, its length
-  double height = 0;  // mm: no place of the curve is farther from the chord's line
-  // Whether the curve goes forward along the chord from its start to its end. Then each place is
+  double height = 0;  // mm: no point of the curve is farther from the chord's line
+  // Whether the curve goes forward along the chord from its start to its end. Then each point is
   // matched with its foot, in order, and curve and chord are within `height` of each other.
   bool in_order = false;
 };
@@ -82,19 +87,16 @@ struct ControlCoordinates {
   Eigen::Array4d z;
 };
 
-// Chords that start at one place of the curve. The pieces must live as long.
+// Chords that start at one point of the curve. The pieces must live as long.
 class ChordsFrom {
  public:
-  ChordsFrom(const CurvePieces& pieces, double from)
-      : ChordsFrom(pieces, pieces.index_of(from), from) {}
-  // The same for who knows the piece that holds `from`.
-  ChordsFrom(const CurvePieces& pieces, std::size_t piece, double from);
+  ChordsFrom(const CurvePieces& pieces, double from);
 
   // The chord to `end` > from. Its height is greater than the greatest distance of the curve by
   // less than 1e-4 of it; by less than 1e-3 where the curve twists wildly between two knots.
   [[nodiscard]] ChordHeight to(double end) const;
 
-  // Whether a place between two knots, or a knot, is farther than `distance` (mm) from the chord to
+  // Whether a point between two knots, or a knot, is farther than `distance` (mm) from the chord to
   // `end`: a quick answer to whether it is hopeless.
   [[nodiscard]] bool leaves(double end, double distance) const;
 
@@ -103,7 +105,6 @@ class ChordsFrom {
   [[nodiscard]] std::size_t first_piece() const { return first_; }
 
  private:
-  [[nodiscard]] std::size_t piece_at(double u) const;
   [[nodiscard]] ControlCoordinates seen_from_start(const CubicBezier& piece) const;
   [[nodiscard]] ControlCoordinates part_before(std::size_t i, double end) const;
 
@@ -111,7 +112,7 @@ class ChordsFrom {
   double from_;
   std::size_t first_;
   Point3 start_;
-  double left_ = 1;          // of the first piece's parameter, behind the start
+  double left_ = 1;          // of the first piece's parameter, after the start
   ControlCoordinates rest_;  // of the first piece there, seen from the start
 };
 

@@ -1,8 +1,6 @@
-// Chords over equal steps, as many as the tolerance asks for: Hamdan's ILCA, for any curve.
+// Hamdan's ways to linearize, for any curve: W. K. Hamdan, H. L. Alwan, B. M. Hussein, 2005.
+// Reproductions: chord_vertices (geometry/chords/linearize.h) needs fewer chords.
 // Method: docs/algorithms/hamdan.md.
-//
-// W. K. Hamdan, H. L. Alwan, B. M. Hussein, 2005. A reproduction: chord_vertices
-// (geometry/chords/linearize.h) needs fewer chords.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +12,7 @@
 namespace batten::geometry {
 
 // How many chords may be looked for, for each piece of the curve, and how many deviations be read
-// for each of these chords: equal steps are as short everywhere as the tightest place asks for, and
+// for each of these chords: equal steps are as short everywhere as the tightest bend asks for, and
 // cusps of a noisy path may ask for millions.
 inline constexpr double kIlcaChordsPerPiece = 16;
 inline constexpr double kIlcaLeastBound = 1000;  // chords, of a curve of few pieces
@@ -27,33 +25,26 @@ struct IlcaOptions {
 
 // A curve's chords, each between neighbours of `parameters`.
 struct ChordRow {
-  std::vector<double> parameters;  // increasing, both ends included
+  std::vector<double> parameters;  // increasing, both ends included; corners are always vertices
   double deviation = 0;            // mm, greatest distance of the curve from its chords
   std::size_t readings = 0;        // deviations of chords that were asked for (ilca)
 };
 
-// n equal steps of the parameter between two corners of the curve, n the least number from
-// ceil(length / first_step) on for which no chord deviates by more than max_deviation. A corner is
-// always a vertex. Numbers n are passed over where the deviation found for a smaller one says
-// that they are too few: it goes with 1 / n^2.
-//
-// Nothing where that takes more chords or more work than the bounds above allow.
+// ILCA: n equal steps of the parameter between two corners of the curve, n the least number from
+// ceil(length / first_step) on for which no chord deviates by more than max_deviation. Numbers n
+// are passed over where the deviation found for a smaller one says that they are too few: it goes
+// with 1 / n^2. Nothing where that takes more chords or more work than the bounds above allow.
 //
 // Requires degree 3 or less and first() <= from < to <= last(). Throws std::invalid_argument when
 // an option is outside its range.
 [[nodiscard]] std::optional<ChordRow> ilca(const BsplineCurve& curve, double from, double to,
                                            const IlcaOptions& options);
 
-// Chords whose ends are as far from the tangent at their starts as the tolerance: Hamdan's BLCA,
-// for any curve. Method: docs/algorithms/hamdan.md. A reproduction; see geometry/chords/ilca.h.
-
-// From each vertex on to where the curve has left the tangent there by `tolerance` (mm, > 0). A
-// step is shortened where a chord over it would deviate by more than the tolerance: an inflection,
-// or a curve that turns back; on a curve that bends to one side no chord does. A corner is always a
-// vertex.
+// BLCA: from each vertex on to where the curve has left the tangent there by `tolerance` (mm, > 0).
+// A step is shortened where a chord over it would deviate by more than the tolerance: an
+// inflection, or a curve that turns back; on a curve that bends to one side no chord does.
 //
-// Requires degree 3 or less and first() <= from < to <= last(). Throws std::invalid_argument when
-// `tolerance` is not above 0.
+// Requires and throws as ilca.
 [[nodiscard]] ChordRow blca(const BsplineCurve& curve, double from, double to, double tolerance);
 
 }  // namespace batten::geometry

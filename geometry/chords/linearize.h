@@ -1,7 +1,8 @@
-// Chords for a curve: vertices on the curve, each chord as long as it may be.
+// Chords for a curve: vertices on the curve, each chord as long as it may be; or beside it.
 // Method: docs/algorithms/linearize.md.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "geometry/path/bspline_curve.h"
@@ -11,13 +12,25 @@ namespace batten::geometry {
 
 struct ChordOptions {
   double max_deviation = 0.01;  // mm, curve to chord; > 0
-  double max_length = 0;        // mm; 0: no limit
-  // Chords are not made shorter than this (mm) unless max_deviation forces it.
-  double min_length = 0;
   // A chord's end is searched to this part of its length: with this one, a thousand chords lose a
   // quarter of a chord.
   double precision = 5e-4;
 };
+
+struct ChordTuning {
+  int secants = 12;     // that look for one end before its interval is halved
+  double widest = 4;    // by this factor the length changes from one to the next at most
+  double growth = 1.5;  // of the first guess over the chord before, at most
+  // The last chord is no remainder when it is this part of a full one. The limits are narrowed for
+  // one that is a little longer, for with a whole one there is often another after it.
+  double full = 0.98;
+  double wanted = 0.99;
+  int balancing_rounds = 8;  // in which the limits are narrowed
+  // Only so many chords at the end are narrowed: over these a remainder is spread thin, and
+  // the cost of the rounds does not grow with the run.
+  std::size_t balanced = 50;
+};
+inline constexpr ChordTuning kChordTuning;
 
 // Parameters of the vertices, increasing, both ends of [from, to] included. Every chord
 // keeps max_deviation, shown by the control points of the Bezier pieces under it, not by
@@ -29,8 +42,28 @@ struct ChordOptions {
 [[nodiscard]] std::vector<double> chord_vertices(const BsplineCurve& curve, double from, double to,
                                                  const ChordOptions& options);
 
-// The same between two places of a curve that is in its pieces already.
+// The same between two parameters of a curve that is in its pieces already.
 [[nodiscard]] std::vector<double> chord_vertices(const MarkedPieces& curve, double from, double to,
                                                  const ChordOptions& options);
+
+// A vertex near a curve, and the parameter of the curve's point that it is for.
+struct LinkVertex {
+  Point3 place;
+  double parameter = 0;
+};
+
+// Chords that lie on both sides of their curve instead of on its inside (section Balanced chords).
+//
+// Vertices beside the curve at these parameters (increasing): each is moved to the outside of its
+// bend by two thirds of the height of the chords that meet there. So the area between chords and
+// curve vanishes, their mean square distance is the least, and the greatest is two thirds of what
+// it was. The first and the last vertex and corners of the curve (triple knots) stay on it.
+[[nodiscard]] std::vector<LinkVertex> balanced_chords(const BsplineCurve& curve,
+                                                      std::span<const double> parameters);
+
+// The rms distance of such chords over the height of the chords between the same parameters:
+// sqrt(4/45), that of a parabola from its mean; sqrt(8/15) for chords whose ends are on the curve.
+inline constexpr double kBalancedError = 0.298;
+inline constexpr double kChordError = 0.730;
 
 }  // namespace batten::geometry

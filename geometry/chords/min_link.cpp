@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -15,218 +14,28 @@
 #include <utility>
 
 #include "geometry/chords/chord_proof.h"
-#include "geometry/chords/linearize.h"
 #include "geometry/chords/min_link_gates.h"
+#include "geometry/chords/min_link_plane.h"
 #include "geometry/path/curve_pieces.h"
 #include "geometry/path/plane_curve.h"
 
 namespace batten::geometry {
 namespace {
 
+constexpr MinLinkTuning kLink = kMinLinkTuning;
+
 using Vertices = std::vector<LinkVertex>;
 
-// Fewer gates than this are no picture of a link.
-constexpr int kLeastGates = 8;
-
-// A curve this near to a plane, as a part of the tolerance, is taken as plane: two places of a
-// link and the curve may be apart twice that across the plane, which costs 0.1 % of the tolerance.
-constexpr double kFlat = 0.02;
-
-// How often the tolerance is halved in on while looking for the least one that needs as many links.
-constexpr int kBalancingRounds = 4;
-
-// A tolerance that is 9/16 of another one needs a third more links.
-constexpr double kNarrowest = 9.0 / 16;
-
-// Only so many links at the end are balanced: the cost of the rounds does not grow with the run.
-constexpr std::size_t kBalancedLinks = 40;
-
-// A link that is not proved is cut in two, so often.
-constexpr int kMostCuts = 12;
-
-// Along a stretch without corners.
-class Stretch {
- public:
-  // `chords`: vertices of proved chords over the stretch, its ends included.
-  Stretch(const CurvePieces& pieces, std::span<const double> chords, const MinLinkOptions& options)
-      : pieces_(pieces),
-        chords_(chords),
-        from_(chords.front()),
-        to_(chords.back()),
-        options_(options) {
-    const double gates = options.gates_per_link;
-    gap_ = 2 * options.tolerance / (gates * gates);
-    find_plane();
-  }
-
-  // Proved links where they are fewer than the chords, otherwise these.
-  Vertices links() const {
-    Vertices found = continued({{pieces_.point_at(from_), from_}}, options_.tolerance);
-    if (options_.balanced && found.size() > 2) balance(found);
-    if (prove(found) && found.size() < chords_.size()) return found;
-    Vertices on_curve;
-    on_curve.reserve(chords_.size());
-    for (const double u : chords_) on_curve.push_back({pieces_.point_at(u), u});
-    return on_curve;
-  }
-
- private:
-  void find_plane() {
-    std::vector<Point3> points;
-    for (std::size_t i = pieces_.index_of(from_); i < pieces_.size() && pieces_.breaks()[i] < to_;
-         ++i) {
-      const CubicBezier part = pieces_.part(i, from_, to_);
-      points.insert(points.end(), std::begin(part.control), std::end(part.control));
-    }
-    Point3 middle = Point3::Zero();
-    for (const Point3& p : points) middle += p / static_cast<double>(points.size());
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (const Point3& p : points) spread += (p - middle) * (p - middle).transpose();
-    const Vector3 normal =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
-    for (const Point3& p : points) {
-      height_ = std::max(height_, std::abs((p - middle).dot(normal)));
-    }
-    if (height_ <= kFlat * options_.tolerance) normal_ = normal;
-  }
-
-  // From the last of `start` to the end of the stretch, with this tolerance.
-  [[nodiscard]] Vertices continued(const Vertices& start, double tolerance) const {
-    const LinkVertex& last = start.back();
-    const GateChain gates(pieces_, last.parameter, to_, gap_);
-    std::optional<Vertices> more;
-    if (normal_) {
-      const double width = std::sqrt(tolerance * tolerance - 4 * height_ * height_);
-      more = min_link_in_plane(gates, *normal_, last.place, width);
-    }
-    if (!more) more = few_links_in_space(gates, last.place, tolerance, chords_);
-    Vertices all(start.begin(), start.end() - 1);
-    all.insert(all.end(), more->begin(), more->end());
-    return all;
-  }
-
-  // Narrows the tube over the last links as long as they do not become more.
-  void balance(Vertices& vertices) const {
-    const std::size_t links = vertices.size() - 1;
-    const std::size_t kept = links > kBalancedLinks ? links - kBalancedLinks : 0;
-    const Vertices start(vertices.begin(),
-                         vertices.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
-    double good = 1;
-    double bad = kNarrowest;
-    for (int round = 0; round < kBalancingRounds; ++round) {
-      const double middle = (good + bad) / 2;
-      Vertices narrower = continued(start, middle * options_.tolerance);
-      if (narrower.size() <= vertices.size()) {
-        vertices = std::move(narrower);
-        good = middle;
-      } else {
-        bad = middle;
-      }
-    }
-  }
-
-  // Proves each link; cuts those that are not proved, with new vertices on the curve.
-  bool prove(Vertices& vertices) const {
-    Vertices proved = {vertices.front()};
-    for (std::size_t i = 1; i < vertices.size(); ++i) {
-      const bool again = vertices[i].place == proved.back().place && i + 1 < vertices.size();
-      if (again) continue;
-      if (!is_near_curve(vertices[i])) return false;
-      if (!prove_link(vertices[i], kMostCuts, proved)) return false;
-    }
-    vertices = std::move(proved);
-    return true;
-  }
-
-  bool prove_link(const LinkVertex& end, int cuts, Vertices& proved) const {
-    const LinkVertex start = proved.back();
-    if (chord_proved(pieces_, start.parameter, end.parameter,
-                     ChordProof(start.place, end.place, options_.tolerance, kSharpProofCuts))) {
-      proved.push_back(end);
-      return true;
-    }
-    const double middle = (start.parameter + end.parameter) / 2;
-    if (cuts == 0 || !(start.parameter < middle && middle < end.parameter)) return false;
-    return prove_link({pieces_.point_at(middle), middle}, cuts - 1, proved) &&
-           prove_link(end, cuts - 1, proved);
-  }
-
-  [[nodiscard]] bool is_near_curve(const LinkVertex& vertex) const {
-    return (vertex.place - pieces_.point_at(vertex.parameter)).norm() <= options_.tolerance;
-  }
-
-  const CurvePieces& pieces_;
-  std::span<const double> chords_;
-  double from_;
-  double to_;
-  MinLinkOptions options_;
-  double gap_;         // mm, curve to chord between two gates
-  double height_ = 0;  // mm, greatest distance from the plane
-  std::optional<Vector3> normal_;
-};
-
-void check(const MinLinkOptions& options) {
-  if (!(options.tolerance > 0)) {
-    throw std::invalid_argument("min_link_vertices: tolerance " +
-                                std::to_string(options.tolerance) + ", expected > 0");
-  }
-  if (options.gates_per_link < kLeastGates) {
-    throw std::invalid_argument("min_link_vertices: gates_per_link " +
-                                std::to_string(options.gates_per_link) + ", expected " +
-                                std::to_string(kLeastGates) + " or more");
-  }
-}
-
-}  // namespace
-
-std::vector<LinkVertex> min_link_vertices(const BsplineCurve& curve, double from, double to,
-                                          const MinLinkOptions& options) {
-  check(options);
-  const CurvePieces pieces(curve, from, to);
-  const std::vector<double> chords =
-      chord_vertices(curve, from, to, {.max_deviation = options.tolerance});
-  std::vector<double> ends = pieces.corners();
-  ends.push_back(to);
-  Vertices vertices = {{pieces.point_at(from), from}};
-  auto chord = chords.begin();  // corners are vertices of the chords too
-  for (const double end : ends) {
-    const auto chord_end = std::lower_bound(chord, chords.end(), end);
-    const Vertices links = Stretch(pieces, {chord, chord_end + 1}, options).links();
-    vertices.insert(vertices.end(), links.begin() + 1, links.end());
-    chord = chord_end;
-  }
-  vertices.front().place = curve.point_at(from);
-  vertices.back().place = curve.point_at(to);
-  return vertices;
-}
-
-namespace {
-
-// Corners of the polygon in a gate's circle. Between two of them it is 2 % narrower; to where the
-// curve bends, where the width is needed, it is not.
-constexpr int kCorners = 16;
+// Few links in the tolerance tube of a curve in space, each as long as it can be.
 
 // The corners after the first, which is at (1, 0), and that again.
-const std::array<Point2, kCorners> kCircle = [] {
-  std::array<Point2, kCorners> corners;
-  for (int i = 0; i < kCorners; ++i) {
-    corners[static_cast<std::size_t>(i)] = unit_vector(2 * std::numbers::pi * (i + 1) / kCorners);
+const std::array<Point2, kLink.corners> kCircle = [] {
+  std::array<Point2, kLink.corners> corners;
+  for (int i = 0; i < kLink.corners; ++i) {
+    corners[static_cast<std::size_t>(i)] = unit_vector(2 * kPi * (i + 1) / kLink.corners);
   }
   return corners;
 }();
-
-// How often the last place of a link is halved out: to 1e-4 of the way between two gates.
-constexpr int kLinkEndHalvings = 13;
-
-// Where a link may turn before the farthest place it gets to, as parts of its gates: there the
-// link after it may see more, when the curve begins to bend another way.
-constexpr std::array kEarlierTurns = {0.125, 0.25, 0.5};
-
-// Bends whose directions differ by less than 60 degrees are one bend (the cosine).
-constexpr double kSameBend = 0.5;
-
-// A link turns from the curve's direction at its start by less than 45 degrees.
-constexpr double kWidestView = 1;
 
 struct Circle {
   Point3 center;
@@ -248,15 +57,15 @@ class View {
   View(const Point3& eye, const Vector3& ahead) : eye_(eye), ahead_(ahead) {
     right_ = ahead.unitOrthogonal();
     up_ = ahead.cross(right_);
-    polygon_ = {{-kWidestView, -kWidestView},
-                {kWidestView, -kWidestView},
-                {kWidestView, kWidestView},
-                {-kWidestView, kWidestView}};
+    polygon_ = {{-kLink.widest_view, -kLink.widest_view},
+                {kLink.widest_view, -kLink.widest_view},
+                {kLink.widest_view, kLink.widest_view},
+                {-kLink.widest_view, kLink.widest_view}};
   }
 
   // Only ways through this circle from now on. Nothing is changed when there are none.
   bool pass(const Circle& circle) {
-    const double inner = circle.radius * std::cos(std::numbers::pi / kCorners);
+    const double inner = circle.radius * std::cos(kPi / kLink.corners);
     const double distance = (circle.center - eye_).dot(circle.along);
     if (distance <= 0) return true;  // beside the eye
     if (std::ranges::all_of(polygon_, [&](const Point2& p) {
@@ -337,7 +146,7 @@ class View {
 };
 
 // A vertex, and how far links from it get.
-struct Stand {
+struct Lookout {
   LinkVertex vertex;
   std::size_t next = 1;  // the first gate ahead
   std::size_t last = 0;  // the last gate that links from here pass; next - 1 where none
@@ -349,25 +158,31 @@ struct Stand {
   }
 };
 
-class Walk {
+// Links from a point near the first gate's centre to the centre of the last one, through all
+// gates in order, each inside a polygon in the circle of radius `width` (mm) about the gate's
+// centre; a corner points to where the curve bends.
+class SpaceWalk {
  public:
-  Walk(const GateChain& gates, double width) : gates_(gates), width_(width) {
+  SpaceWalk(const GateChain& gates, double width) : gates_(gates), width_(width) {
     circles_.reserve(gates.size());
     for (std::size_t i = 0; i < gates.size(); ++i) circles_.push_back(circle_of(gates[i], width));
   }
 
-  std::vector<LinkVertex> links_from(const Point3& start, std::span<const double> places) const {
-    std::vector<LinkVertex> vertices;
-    Stand stand = look({start, gates_[0].parameter}, 1, gates_[0].along);
-    while (!stand.sees_end) {
-      vertices.push_back(stand.vertex);
-      if (stand.last < stand.next) {
-        stand = on_the_curve(stand, places, vertices);
+  // Where the curve bends so closely that no link gets on, the way goes over the next of `chords`:
+  // parameters of the curve, increasing, between which chords are known to be near it. The last of
+  // them is the last gate's.
+  Vertices links_from(const Point3& start, std::span<const double> chords) const {
+    Vertices vertices;
+    Lookout out = look({start, gates_[0].parameter}, 1, gates_[0].along);
+    while (!out.sees_end) {
+      vertices.push_back(out.vertex);
+      if (out.last < out.next) {
+        out = on_the_curve(out, chords, vertices);
       } else {
-        stand = stand.last == last_gate() ? before_end(stand) : best_after(stand);
+        out = out.last == last_gate() ? before_end(out) : best_after(out);
       }
     }
-    vertices.push_back(stand.vertex);
+    vertices.push_back(out.vertex);
     vertices.push_back({gates_.back().center, gates_.back().parameter});
     return vertices;
   }
@@ -375,60 +190,61 @@ class Walk {
  private:
   [[nodiscard]] std::size_t last_gate() const { return gates_.size() - 1; }
 
-  [[nodiscard]] Stand look(const LinkVertex& vertex, std::size_t next, const Vector3& ahead) const {
-    Stand stand{vertex, next, next - 1, vertex, next > last_gate()};
+  [[nodiscard]] Lookout look(const LinkVertex& vertex, std::size_t next,
+                             const Vector3& ahead) const {
+    Lookout out{vertex, next, next - 1, vertex, next > last_gate()};
     View view(vertex.place, ahead);
-    while (stand.last < last_gate() && view.pass(circles_[stand.last + 1])) ++stand.last;
-    if (stand.last < next) return stand;
-    if (stand.last == last_gate()) {
-      stand.sees_end = view.sees(gates_.back().center);
-      stand.farthest = {view.middle_on(gates_.back()), gates_.back().parameter};
-      return stand;
+    while (out.last < last_gate() && view.pass(circles_[out.last + 1])) ++out.last;
+    if (out.last < next) return out;
+    if (out.last == last_gate()) {
+      out.sees_end = view.sees(gates_.back().center);
+      out.farthest = {view.middle_on(gates_.back()), gates_.back().parameter};
+      return out;
     }
     double good = 0;
     double bad = 1;
-    for (int i = 0; i < kLinkEndHalvings; ++i) {
+    for (int i = 0; i < kLink.end_halvings; ++i) {
       const double middle = (good + bad) / 2;
-      const bool passed = view.pass(circle_of(gates_.between(stand.last, middle), width_));
+      const bool passed = view.pass(circle_of(gates_.between(out.last, middle), width_));
       (passed ? good : bad) = middle;
     }
-    const Gate gate = gates_.between(stand.last, good);
-    stand.farthest = {view.middle_on(gate), gate.parameter};
-    return stand;
+    const Gate gate = gates_.between(out.last, good);
+    out.farthest = {view.middle_on(gate), gate.parameter};
+    return out;
   }
 
-  // On to the next of `places`, by way of the curve's own place here.
-  [[nodiscard]] Stand on_the_curve(const Stand& stand, std::span<const double> places,
-                                   std::vector<LinkVertex>& vertices) const {
-    const Gate here = gates_.at(stand.vertex.parameter);
-    if (stand.vertex.place != here.center) vertices.push_back({here.center, here.parameter});
-    const auto next = std::upper_bound(places.begin(), places.end(), here.parameter);
-    if (next == places.end() || *next >= gates_.back().parameter) return at_end(vertices.back());
+  // On to the next of `chords`, by way of the curve's own place here.
+  [[nodiscard]] Lookout on_the_curve(const Lookout& out, std::span<const double> chords,
+                                     Vertices& vertices) const {
+    const Gate here = gates_.at(out.vertex.parameter);
+    if (out.vertex.place != here.center) vertices.push_back({here.center, here.parameter});
+    const auto next = std::upper_bound(chords.begin(), chords.end(), here.parameter);
+    if (next == chords.end() || *next >= gates_.back().parameter) return at_end(vertices.back());
     const Gate gate = gates_.at(*next);
     return look({gate.center, gate.parameter}, gates_.index_of(*next) + 1, gate.along);
   }
 
   // Nothing between this vertex and the end.
-  [[nodiscard]] Stand at_end(const LinkVertex& vertex) const {
+  [[nodiscard]] Lookout at_end(const LinkVertex& vertex) const {
     return {vertex, last_gate() + 1, last_gate(), vertex, true};
   }
 
-  // Where the farthest link from `stand` passes gate `i`.
-  [[nodiscard]] Stand turned_on(const Stand& stand, std::size_t i) const {
-    const Vector3 way = stand.farthest.place - stand.vertex.place;
+  // Where the farthest link from `out` passes gate `i`.
+  [[nodiscard]] Lookout turned_on(const Lookout& out, std::size_t i) const {
+    const Vector3 way = out.farthest.place - out.vertex.place;
     const double part =
-        (gates_[i].center - stand.vertex.place).dot(gates_[i].along) / way.dot(gates_[i].along);
-    return look({stand.vertex.place + part * way, gates_[i].parameter}, i + 1, gates_[i].along);
+        (gates_[i].center - out.vertex.place).dot(gates_[i].along) / way.dot(gates_[i].along);
+    return look({out.vertex.place + part * way, gates_[i].parameter}, i + 1, gates_[i].along);
   }
 
-  [[nodiscard]] Stand best_after(const Stand& stand) const {
-    Stand best = look(stand.farthest, stand.last + 1, gates_[stand.last].along);
-    const std::size_t passed = stand.last + 1 - stand.next;
-    if (!bend_changes(stand.last, best.last)) return best;
-    for (const double part : kEarlierTurns) {
+  [[nodiscard]] Lookout best_after(const Lookout& out) const {
+    Lookout best = look(out.farthest, out.last + 1, gates_[out.last].along);
+    const std::size_t passed = out.last + 1 - out.next;
+    if (!bend_changes(out.last, best.last)) return best;
+    for (const double part : kLink.earlier_turns) {
       const auto back = static_cast<std::size_t>(part * static_cast<double>(passed));
       if (back == 0 || best.sees_end) continue;
-      Stand other = turned_on(stand, stand.last - back);
+      Lookout other = turned_on(out, out.last - back);
       if (other.reach() > best.reach()) best = std::move(other);
     }
     return best;
@@ -437,17 +253,17 @@ class Walk {
   // Does the curve bend anywhere else than at gate `from`, up to gate `to`?
   [[nodiscard]] bool bend_changes(std::size_t from, std::size_t to) const {
     for (std::size_t i = from; i <= to; ++i) {
-      if (gates_[i].bend.dot(gates_[from].bend) < kSameBend) return true;
+      if (gates_[i].bend.dot(gates_[from].bend) < kLink.same_bend) return true;
     }
     return false;
   }
 
   // The farthest link gets to the last gate, but not to its centre. It turns as early as the end
   // can be seen from: at the last gate it always can.
-  [[nodiscard]] Stand before_end(const Stand& stand) const {
-    Stand best = at_end(stand.farthest);
-    for (std::size_t i = last_gate(); i-- > stand.next;) {
-      Stand other = turned_on(stand, i);
+  [[nodiscard]] Lookout before_end(const Lookout& out) const {
+    Lookout best = at_end(out.farthest);
+    for (std::size_t i = last_gate(); i-- > out.next;) {
+      Lookout other = turned_on(out, i);
       if (!other.sees_end) break;
       best = std::move(other);
     }
@@ -459,11 +275,161 @@ class Walk {
   std::vector<Circle> circles_;
 };
 
+// Along a section without corners.
+class LinkSection {
+ public:
+  // `chords`: vertices of proved chords over the section, its ends included.
+  LinkSection(const CurvePieces& pieces, std::span<const double> chords,
+              const MinLinkOptions& options)
+      : pieces_(pieces),
+        chords_(chords),
+        from_(chords.front()),
+        to_(chords.back()),
+        options_(options) {
+    const double gates = options.gates_per_link;
+    gap_ = 2 * options.tolerance / (gates * gates);
+    find_plane();
+  }
+
+  // Proved links where they are fewer than the chords, otherwise these.
+  Vertices links() const {
+    Vertices found = continued({{pieces_.point_at(from_), from_}}, options_.tolerance);
+    if (options_.balanced && found.size() > 2) balance(found);
+    if (prove(found) && found.size() < chords_.size()) return found;
+    Vertices on_curve;
+    on_curve.reserve(chords_.size());
+    for (const double u : chords_) on_curve.push_back({pieces_.point_at(u), u});
+    return on_curve;
+  }
+
+ private:
+  void find_plane() {
+    std::vector<Point3> points;
+    for (std::size_t i = pieces_.index_of(from_); i < pieces_.size() && pieces_.breaks()[i] < to_;
+         ++i) {
+      const CubicBezier part = pieces_.part(i, from_, to_);
+      points.insert(points.end(), std::begin(part.control), std::end(part.control));
+    }
+    Point3 middle = Point3::Zero();
+    for (const Point3& p : points) middle += p / static_cast<double>(points.size());
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const Point3& p : points) spread += (p - middle) * (p - middle).transpose();
+    const Vector3 normal =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+    for (const Point3& p : points) {
+      height_ = std::max(height_, std::abs((p - middle).dot(normal)));
+    }
+    if (height_ <= kLink.flat * options_.tolerance) normal_ = normal;
+  }
+
+  // From the last of `start` to the end of the section, with this tolerance.
+  [[nodiscard]] Vertices continued(const Vertices& start, double tolerance) const {
+    const LinkVertex& last = start.back();
+    const GateChain gates(pieces_, last.parameter, to_, gap_);
+    std::optional<Vertices> more;
+    if (normal_) {
+      const double width = std::sqrt(tolerance * tolerance - 4 * height_ * height_);
+      more = min_link_in_plane(gates, *normal_, last.place, width);
+    }
+    if (!more) more = SpaceWalk(gates, tolerance).links_from(last.place, chords_);
+    Vertices all(start.begin(), start.end() - 1);
+    all.insert(all.end(), more->begin(), more->end());
+    return all;
+  }
+
+  // Narrows the tube over the last links as long as they do not become more.
+  void balance(Vertices& vertices) const {
+    const std::size_t links = vertices.size() - 1;
+    const std::size_t kept = links > kLink.balanced ? links - kLink.balanced : 0;
+    const Vertices start(vertices.begin(),
+                         vertices.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
+    double good = 1;
+    double bad = kLink.narrowest;
+    for (int round = 0; round < kLink.balancing_rounds; ++round) {
+      const double middle = (good + bad) / 2;
+      Vertices narrower = continued(start, middle * options_.tolerance);
+      if (narrower.size() <= vertices.size()) {
+        vertices = std::move(narrower);
+        good = middle;
+      } else {
+        bad = middle;
+      }
+    }
+  }
+
+  // Proves each link; cuts those that are not proved, with new vertices on the curve.
+  bool prove(Vertices& vertices) const {
+    Vertices proved = {vertices.front()};
+    for (std::size_t i = 1; i < vertices.size(); ++i) {
+      const bool again = vertices[i].place == proved.back().place && i + 1 < vertices.size();
+      if (again) continue;
+      if (!is_near_curve(vertices[i])) return false;
+      if (!prove_link(vertices[i], kLink.most_cuts, proved)) return false;
+    }
+    vertices = std::move(proved);
+    return true;
+  }
+
+  bool prove_link(const LinkVertex& end, int cuts, Vertices& proved) const {
+    const LinkVertex start = proved.back();
+    if (chord_proved(pieces_, start.parameter, end.parameter,
+                     ChordProof(start.place, end.place, options_.tolerance, kSharpProofCuts))) {
+      proved.push_back(end);
+      return true;
+    }
+    const double middle = (start.parameter + end.parameter) / 2;
+    if (cuts == 0 || !(start.parameter < middle && middle < end.parameter)) return false;
+    return prove_link({pieces_.point_at(middle), middle}, cuts - 1, proved) &&
+           prove_link(end, cuts - 1, proved);
+  }
+
+  [[nodiscard]] bool is_near_curve(const LinkVertex& vertex) const {
+    return (vertex.place - pieces_.point_at(vertex.parameter)).norm() <= options_.tolerance;
+  }
+
+  const CurvePieces& pieces_;
+  std::span<const double> chords_;
+  double from_;
+  double to_;
+  MinLinkOptions options_;
+  double gap_;         // mm, curve to chord between two gates
+  double height_ = 0;  // mm, greatest distance from the plane
+  std::optional<Vector3> normal_;
+};
+
+void check(const MinLinkOptions& options) {
+  if (!(options.tolerance > 0)) {
+    throw std::invalid_argument("min_link_vertices: tolerance " +
+                                std::to_string(options.tolerance) + ", expected > 0");
+  }
+  if (options.gates_per_link < kLink.least_gates) {
+    throw std::invalid_argument("min_link_vertices: gates_per_link " +
+                                std::to_string(options.gates_per_link) + ", expected " +
+                                std::to_string(kLink.least_gates) + " or more");
+  }
+}
+
 }  // namespace
 
-std::vector<LinkVertex> few_links_in_space(const GateChain& gates, const Point3& start,
-                                           double width, std::span<const double> places) {
-  return Walk(gates, width).links_from(start, places);
+std::vector<LinkVertex> min_link_vertices(const BsplineCurve& curve, double from, double to,
+                                          const MinLinkOptions& options) {
+  check(options);
+  const CurvePieces pieces(curve, from, to);
+  const std::vector<double> chords =
+      chord_vertices(curve, from, to, {.max_deviation = options.tolerance});
+  std::vector<double> ends = pieces.corners();
+  ends.push_back(to);
+  Vertices vertices = {{pieces.point_at(from), from}};
+  auto chord = chords.begin();  // corners are vertices of the chords too
+  for (const double end : ends) {
+    const auto chord_end = std::lower_bound(chord, chords.end(), end);
+    const Vertices links = LinkSection(pieces, {chord, chord_end + 1}, options).links();
+    vertices.insert(vertices.end(), links.begin() + 1, links.end());
+    chord = chord_end;
+  }
+  vertices.front().place = curve.point_at(from);
+  vertices.back().place = curve.point_at(to);
+  return vertices;
 }
 
 }  // namespace batten::geometry

@@ -9,19 +9,7 @@
 namespace batten::geometry {
 namespace {
 
-// A piece that is this many times longer than the steps beside it is cut into about as long
-// parts, but not into more than kMostInLine: places to turn are wanted near its ends.
-constexpr double kGrowth = 4;
-constexpr double kMostInLine = 16;
-
-// Halvings of one Bezier piece: a million gates on it are enough for any.
-constexpr int kMostHalvings = 20;
-
-// Gates keep this part of the width up to which their inner ends do not cross.
-constexpr double kRoom = 0.9;
-
-// Tangents that differ by less (radians) make no bend: rounding of points and tangents.
-constexpr double kNoBend = 1e-12;
+constexpr GateTuning kGates = kGateTuning;
 
 // A part of the curve between two gates, or more where it is long.
 struct PieceSteps {
@@ -67,7 +55,8 @@ void cut_long_pieces(std::vector<PieceSteps>& cuts) {
     if (i > 0) beside = std::min(beside, cuts[i - 1].step());
     if (i + 1 < cuts.size()) beside = std::min(beside, cuts[i + 1].step());
     if (beside > 0)
-      wanted[i] = std::min(std::ceil(cuts[i].length / (kGrowth * beside)), kMostInLine);
+      wanted[i] =
+          std::min(std::ceil(cuts[i].length / (kGates.growth * beside)), kGates.most_in_line);
   }
   for (std::size_t i = 0; i < cuts.size(); ++i) cuts[i].steps = std::max(cuts[i].steps, wanted[i]);
 }
@@ -76,7 +65,7 @@ void cut_long_pieces(std::vector<PieceSteps>& cuts) {
 double room_between(const Gate& a, const Gate& b, const Vector3& bend) {
   const double turned = (b.along - a.along).dot(bend);
   const double way = (b.center - a.center).norm();
-  return turned > kNoBend ? way / turned : std::numeric_limits<double>::infinity();
+  return turned > kGates.no_bend ? way / turned : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -86,7 +75,7 @@ GateChain::GateChain(const CurvePieces& pieces, double from, double to, double g
   std::vector<PieceSteps> cuts;
   for (std::size_t i = pieces.index_of(from); i < pieces.size() && pieces.breaks()[i] < to; ++i) {
     append_parts(pieces.part(i, from, to), std::max(from, pieces.breaks()[i]),
-                 std::min(to, pieces.breaks()[i + 1]), gap, kMostHalvings, cuts);
+                 std::min(to, pieces.breaks()[i + 1]), gap, kGates.most_halvings, cuts);
   }
   cut_long_pieces(cuts);
   gates_.push_back(gate_at(from));
@@ -117,13 +106,13 @@ void GateChain::find_bends() {
     gate.bend = turn - turn.dot(gate.along) * gate.along;
     const double size = gate.bend.norm();
     gate.room = std::numeric_limits<double>::infinity();
-    if (size <= kNoBend) {
+    if (size <= kGates.no_bend) {
       gate.bend = Vector3::Zero();
       continue;
     }
     gate.bend /= size;
-    gate.room = kRoom * std::min(room_between(before, gate, gate.bend),
-                                 room_between(gate, after, gate.bend));
+    gate.room = kGates.room * std::min(room_between(before, gate, gate.bend),
+                                       room_between(gate, after, gate.bend));
   }
 }
 
@@ -154,7 +143,7 @@ Gate GateChain::between(std::size_t i, double part) const {
   const Vector3 bend = before.bend + after.bend;
   const Vector3 across = bend - bend.dot(gate.along) * gate.along;
   const double size = across.norm();
-  gate.bend = size > kNoBend ? Vector3(across / size) : Vector3(Vector3::Zero());
+  gate.bend = size > kGates.no_bend ? Vector3(across / size) : Vector3(Vector3::Zero());
   return gate;
 }
 

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "geometry/path/plane_curve.h"
+
 namespace batten::geometry {
 namespace {
 
@@ -12,8 +14,170 @@ namespace {
 // lines, which is 1e-16 of the coordinates.
 constexpr double kWayNoise = 1e-8;
 
-// How often the last place of a link is halved out: to 1e-12 of the way between two gates.
+// How often the last point of a link is halved out: to 1e-12 of the way between two gates.
 constexpr int kEndHalvings = 40;
+
+// A line that crosses a gate's way by so little of its length (the sine of the angle) counts as
+// running along the gate.
+constexpr double kAlongGate = 1e-6;
+
+// Offsets from a gate's centre along its normal, to the left positive; empty when low > high.
+struct Offsets {
+  double low = 1;
+  double high = -1;
+
+  [[nodiscard]] bool empty() const { return low > high; }
+
+  [[nodiscard]] Offsets common_with(const Offsets& other) const {
+    return {std::max(low, other.low), std::min(high, other.high)};
+  }
+
+  [[nodiscard]] Offsets hull_with(const Offsets& other) const {
+    if (empty()) return other;
+    if (other.empty()) return *this;
+    return {std::min(low, other.low), std::max(high, other.high)};
+  }
+};
+
+struct PlaneGate {
+  Point2 center;
+  Vector2 normal;  // unit length, to the left of the way
+  Offsets open;
+
+  [[nodiscard]] Point2 at(double offset) const { return center + offset * normal; }
+};
+
+// A directed line.
+struct SightLine {
+  Point2 from;
+  Point2 to;
+
+  // Where the line crosses the gate's line, from right to left as seen from the front; nothing
+  // when it turns from the gate's way by nearly a right angle or more.
+  [[nodiscard]] std::optional<double> offset_on(const PlaneGate& gate) const {
+    const Vector2 way = to - from;
+    const double crossing = cross(way, gate.normal);
+    if (!(crossing > kAlongGate * way.norm())) return std::nullopt;
+    return cross(way, from - gate.center) / crossing;
+  }
+};
+
+// What lies between two lines, of `part` of the gate.
+Offsets between_lines(const SightLine& low_line, const SightLine& high_line, const PlaneGate& gate,
+                      const Offsets& part) {
+  const auto low = low_line.offset_on(gate);
+  const auto high = high_line.offset_on(gate);
+  return low && high ? part.common_with({*low, *high}) : Offsets{};
+}
+
+// The two lines that bound what is seen: on every gate ahead, lines through all gates so far
+// end between them.
+struct SightLimits {
+  SightLine left;   // turns most to the left: past a gate's right end first, a left end then
+  SightLine right;  // the other way round
+
+  // What is seen of a gate ahead of the others.
+  [[nodiscard]] Offsets seen_on(const PlaneGate& gate) const {
+    return between_lines(right, left, gate, gate.open);
+  }
+};
+
+// All straight ways from a part of one gate through the gates after it. Each gate costs
+// a few operations, amortised: J. O'Rourke, An on-line algorithm for fitting straight lines
+// between data ranges, Communications of the ACM 24 (1981) 574-578.
+class Sight {
+ public:
+  Sight(const PlaneGate& source, const Offsets& part)
+      : left_{{source.at(part.high)}, 0, 1}, right_{{source.at(part.low)}, 0, -1} {}
+
+  // What is seen of the next gate; nothing is changed when that is empty.
+  Offsets pass(const PlaneGate& gate) {
+    const Point2 left = gate.at(gate.open.high);
+    const Point2 right = gate.at(gate.open.low);
+    Offsets seen = gate.open;
+    if (!started_) {
+      limits_ = {{right_.points.front(), left}, {left_.points.front(), right}};
+      if (!limits_.left.offset_on(gate) || !limits_.right.offset_on(gate)) return {};
+      started_ = true;
+    } else {
+      seen = limits_.seen_on(gate);
+      if (seen.empty()) return seen;
+      if (seen.high >= gate.open.high) limits_.left = {right_.support_of(left), left};
+      if (seen.low <= gate.open.low) limits_.right = {left_.support_of(right), right};
+    }
+    left_.add(left);
+    right_.add(right);
+    return seen;
+  }
+
+  [[nodiscard]] const SightLimits& limits() const { return limits_; }
+
+ private:
+  // Ends of the gates on one side as a chain that is convex towards the way; what lies before
+  // `first` is never a support again.
+  struct Chain {
+    std::vector<Point2> points;
+    std::size_t first = 0;
+    double side;  // +1: left ends, -1: right ends
+
+    // Whether the way from a over b to c turns away from the side, or goes straight on.
+    [[nodiscard]] bool turns_off(const Point2& a, const Point2& b, const Point2& c) const {
+      return side * cross(b - a, c - b) <= 0;
+    }
+
+    void add(const Point2& end) {
+      while (points.size() >= first + 2 &&
+             turns_off(points[points.size() - 2], points.back(), end)) {
+        points.pop_back();
+      }
+      points.push_back(end);
+    }
+
+    // The support of the line that ends in `to` and passes all points on its inner side.
+    const Point2& support_of(const Point2& to) {
+      while (first + 1 < points.size() && turns_off(points[first], to, points[first + 1])) ++first;
+      return points[first];
+    }
+  };
+
+  Chain left_;
+  Chain right_;
+  SightLimits limits_;
+  bool started_ = false;
+};
+
+// The straight ways that end in one point, followed backwards through the gates before it. Gates
+// are taken wider by `noise` (mm), so that a way along their very ends is not lost to rounding.
+class BackwardSight {
+ public:
+  BackwardSight(Point2 target, double noise) : target_(std::move(target)), noise_(noise) {}
+
+  // From where on the gate the target is seen; the middle of a gap no wider than the noise.
+  [[nodiscard]] Offsets seen_on(const PlaneGate& gate, const Offsets& part) const {
+    Offsets seen = part;
+    if (bounds_) {
+      seen = between_lines({bounds_->first, target_}, {bounds_->second, target_}, gate, part);
+    }
+    if (seen.low > seen.high && seen.low <= seen.high + 2 * noise_) {
+      const double middle = std::clamp((seen.low + seen.high) / 2, part.low, part.high);
+      return {middle, middle};
+    }
+    return seen;
+  }
+
+  // Only ways through this gate from now on. False when there are none.
+  bool pass(const PlaneGate& gate) {
+    const Offsets seen = seen_on(gate, {gate.open.low - noise_, gate.open.high + noise_});
+    if (seen.empty()) return false;
+    bounds_ = {gate.at(seen.low), gate.at(seen.high)};
+    return true;
+  }
+
+ private:
+  Point2 target_;
+  double noise_;
+  std::optional<std::pair<Point2, Point2>> bounds_;  // rightmost, leftmost point passed
+};
 
 // What so many links reach: of the gates `first` and on, and of a position beyond the last of them
 // that only the farthest links get to.
@@ -35,8 +199,8 @@ struct Layer {
   }
 };
 
-// A place of a path: on gate `gate`, or (beyond) between it and the next.
-struct Place {
+// A vertex of a path: on gate `gate`, or (beyond) between it and the next.
+struct GateTurn {
   std::size_t gate = 0;
   bool beyond = false;
   double part = 0;  // of the parameter to the next gate, if beyond
@@ -60,11 +224,16 @@ class GateSweep {
     while (!end_is_seen_) {
       if (!grow()) return std::nullopt;
     }
-    const auto places = places_back_from_end();
-    if (!places) return std::nullopt;
-    std::vector<LinkVertex> vertices = {{start, chain_[0].parameter}};
-    for (std::size_t k = 1; k < places->size(); ++k) vertices.push_back(vertex_at((*places)[k]));
-    vertices.push_back({chain_.back().center, chain_.back().parameter});
+    // From the end back to the start.
+    std::vector<LinkVertex> vertices = {{chain_.back().center, chain_.back().parameter}};
+    GateTurn turn{last_gate(), false, 0, 0};
+    for (std::size_t k = layers_.size(); k-- > 0;) {
+      const auto before = turn_before(turn, layers_[k]);
+      if (!before) return std::nullopt;
+      turn = *before;
+      vertices.push_back(k > 0 ? vertex_at(turn) : LinkVertex{start, chain_[0].parameter});
+    }
+    std::ranges::reverse(vertices);
     return vertices;
   }
 
@@ -84,10 +253,11 @@ class GateSweep {
     return plane;
   }
 
-  // Calls `see(sight, next gate)` for every place where a link may start after this layer: on the
-  // last gate where it is still in reach. On the gate after that it is not, which leaves few ways.
+  // Calls `see(sight, next gate)` for every part of a gate where a link may start after this layer:
+  // on the last gate where it is still in reach. On the gate after that it is not, which leaves few
+  // ways.
   template <typename See>
-  void from_each_place(const Layer& layer, const See& see) const {
+  void from_each_start(const Layer& layer, const See& see) const {
     if (layer.end) see(Sight(*layer.end, layer.end_reached), layer.last() + 1);
     see(Sight(gates_[layer.last()], layer.on(layer.last())), layer.last() + 1);
     for (std::size_t i = layer.last(); i-- > layer.first;) {
@@ -111,7 +281,7 @@ class GateSweep {
     next.first = now.last();
     next.reached = {gates_[now.last()].open};  // by a link along the gate
     std::vector<SightLimits> farthest;         // what got to the last gate of `next`
-    from_each_place(now, [&](Sight sight, std::size_t j) {
+    from_each_start(now, [&](Sight sight, std::size_t j) {
       for (; j <= last_gate(); ++j) {
         const Offsets seen = sight.pass(gates_[j]);
         if (seen.empty()) break;
@@ -150,37 +320,26 @@ class GateSweep {
     }
   }
 
-  // Where the links turn, from the start to the last turn before the end.
-  [[nodiscard]] std::optional<std::vector<Place>> places_back_from_end() const {
-    std::vector<Place> places = {{last_gate(), false, 0, 0}};
-    for (std::size_t k = layers_.size(); k-- > 0;) {
-      const auto before = turn_before(places.back(), layers_[k]);
-      if (!before) return std::nullopt;
-      places.push_back(*before);
+  // The last point of the layer that sees this turn; there, the one nearest to the curve.
+  [[nodiscard]] std::optional<GateTurn> turn_before(const GateTurn& turn,
+                                                    const Layer& layer) const {
+    if (!turn.beyond && turn.gate <= layer.last() && !layer.on(turn.gate).empty()) {
+      const Offsets& part = layer.on(turn.gate);
+      return GateTurn{turn.gate, false, 0, std::clamp(turn.offset, part.low, part.high)};
     }
-    std::reverse(places.begin(), places.end());
-    places.pop_back();
-    return places;
-  }
-
-  // The last place of the layer that sees this one; there, the one nearest to the curve.
-  [[nodiscard]] std::optional<Place> turn_before(const Place& place, const Layer& layer) const {
-    if (!place.beyond && place.gate <= layer.last() && !layer.on(place.gate).empty()) {
-      const Offsets& part = layer.on(place.gate);
-      return Place{place.gate, false, 0, std::clamp(place.offset, part.low, part.high)};
-    }
-    BackwardSight sight(point_of(place), noise_);
-    std::size_t i = place.beyond ? place.gate + 1 : place.gate;  // one gate ahead of the next
+    BackwardSight sight(point_of(turn), noise_);
+    std::size_t i = turn.beyond ? turn.gate + 1 : turn.gate;  // one gate ahead of the next
     for (; i > layer.last() + 1; --i) {
       if (!sight.pass(gates_[i - 1])) return std::nullopt;
     }
-    if (layer.end && place.gate > layer.last()) {
+    if (layer.end && turn.gate > layer.last()) {
       const Offsets part = sight.seen_on(*layer.end, layer.end_reached);
-      if (!part.empty()) return Place{layer.last(), true, layer.end_part, nearest_to_curve(part)};
+      if (!part.empty())
+        return GateTurn{layer.last(), true, layer.end_part, nearest_to_curve(part)};
     }
     for (; i > layer.first; --i) {
       const Offsets part = sight.seen_on(gates_[i - 1], layer.on(i - 1));
-      if (!part.empty()) return Place{i - 1, false, 0, nearest_to_curve(part)};
+      if (!part.empty()) return GateTurn{i - 1, false, 0, nearest_to_curve(part)};
       if (!sight.pass(gates_[i - 1])) return std::nullopt;
     }
     return std::nullopt;
@@ -190,18 +349,15 @@ class GateSweep {
     return std::clamp(0.0, part.low, part.high);
   }
 
-  [[nodiscard]] PlaneGate gate_of(const Place& place) const {
-    return place.beyond ? plane_gate(chain_.between(place.gate, place.part)) : gates_[place.gate];
+  [[nodiscard]] Point2 point_of(const GateTurn& turn) const {
+    return (turn.beyond ? plane_gate(chain_.between(turn.gate, turn.part)) : gates_[turn.gate])
+        .at(turn.offset);
   }
 
-  [[nodiscard]] Point2 point_of(const Place& place) const {
-    return gate_of(place).at(place.offset);
-  }
-
-  [[nodiscard]] LinkVertex vertex_at(const Place& place) const {
-    const Gate gate = place.beyond ? chain_.between(place.gate, place.part) : chain_[place.gate];
+  [[nodiscard]] LinkVertex vertex_at(const GateTurn& turn) const {
+    const Gate gate = turn.beyond ? chain_.between(turn.gate, turn.part) : chain_[turn.gate];
     const Vector3 normal = in_space(plane_gate(gate).normal);
-    return {gate.center + place.offset * normal, gate.parameter};
+    return {gate.center + turn.offset * normal, gate.parameter};
   }
 
   const GateChain& chain_;
@@ -219,99 +375,6 @@ std::optional<std::vector<LinkVertex>> min_link_in_plane(const GateChain& gates,
                                                          const Vector3& normal, const Point3& start,
                                                          double width) {
   return GateSweep(gates, normal, start, width).fewest_links(start);
-}
-
-namespace {
-
-// A line that crosses a gate's way by so little of its length (the sine of the angle) counts as
-// running along the gate.
-constexpr double kAlongGate = 1e-6;
-
-double turn(const Point2& a, const Point2& b, const Point2& c) { return cross(b - a, c - b); }
-
-}  // namespace
-
-Offsets Offsets::common_with(const Offsets& other) const {
-  return {std::max(low, other.low), std::min(high, other.high)};
-}
-
-Offsets Offsets::hull_with(const Offsets& other) const {
-  if (empty()) return other;
-  if (other.empty()) return *this;
-  return {std::min(low, other.low), std::max(high, other.high)};
-}
-
-std::optional<double> SightLine::offset_on(const PlaneGate& gate) const {
-  const Vector2 way = to - from;
-  const double crossing = cross(way, gate.normal);
-  if (!(crossing > kAlongGate * way.norm())) return std::nullopt;
-  return cross(way, from - gate.center) / crossing;
-}
-
-Offsets SightLimits::seen_on(const PlaneGate& gate) const {
-  const auto high = left.offset_on(gate);
-  const auto low = right.offset_on(gate);
-  if (!high || !low) return {};
-  return gate.open.common_with({*low, *high});
-}
-
-void Sight::Chain::add(const Point2& end) {
-  while (points.size() >= first + 2 &&
-         side * turn(points[points.size() - 2], points.back(), end) <= 0) {
-    points.pop_back();
-  }
-  points.push_back(end);
-}
-
-const Point2& Sight::Chain::support_of(const Point2& to) {
-  while (first + 1 < points.size() && side * turn(points[first], to, points[first + 1]) <= 0) {
-    ++first;
-  }
-  return points[first];
-}
-
-Sight::Sight(const PlaneGate& source, const Offsets& part)
-    : left_{{source.at(part.high)}, 0, 1}, right_{{source.at(part.low)}, 0, -1} {}
-
-Offsets Sight::pass(const PlaneGate& gate) {
-  const Point2 left = gate.at(gate.open.high);
-  const Point2 right = gate.at(gate.open.low);
-  Offsets seen = gate.open;
-  if (!started_) {
-    limits_ = {{right_.points.front(), left}, {left_.points.front(), right}};
-    if (!limits_.left.offset_on(gate) || !limits_.right.offset_on(gate)) return {};
-    started_ = true;
-  } else {
-    seen = limits_.seen_on(gate);
-    if (seen.empty()) return seen;
-    if (seen.high >= gate.open.high) limits_.left = {right_.support_of(left), left};
-    if (seen.low <= gate.open.low) limits_.right = {left_.support_of(right), right};
-  }
-  left_.add(left);
-  right_.add(right);
-  return seen;
-}
-
-Offsets BackwardSight::seen_on(const PlaneGate& gate, const Offsets& part) const {
-  Offsets seen = part;
-  if (bounds_) {
-    const auto low = SightLine{bounds_->first, target_}.offset_on(gate);
-    const auto high = SightLine{bounds_->second, target_}.offset_on(gate);
-    if (!low || !high) return {};
-    seen = part.common_with({*low, *high});
-  }
-  if (seen.low > seen.high && seen.low <= seen.high + 2 * noise_) {
-    const double middle = std::clamp((seen.low + seen.high) / 2, part.low, part.high);
-    return {middle, middle};
-  }
-  return seen;
-}
-
-bool BackwardSight::pass(const PlaneGate& gate) {
-  const Offsets seen = seen_on(gate, {gate.open.low - noise_, gate.open.high + noise_});
-  if (seen.empty()) return false;
-  bounds_ = {gate.at(seen.low), gate.at(seen.high)};
-  return true;
 }
 
 }  // namespace batten::geometry

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -52,6 +53,26 @@ struct Parabola {
 
 inline constexpr Parabola kFlatParabola{-0.043, 1, 0.01, 2, 11};
 inline constexpr Parabola kSteepParabola{2, -1, 1, 1, 10};
+
+// How many chords or links each method needs for them.
+struct ParabolaRow {
+  const char* name;
+  Parabola parabola;
+  double tolerance;
+  double first_step;  // of ILCA
+  std::size_t ilca, blca, greedy, links;
+};
+
+inline constexpr ParabolaRow kParabolaRows[] = {
+    {"flat, coarse", kFlatParabola, .05, 3, 5, 8, 4, 4},
+    {"flat, fine", kFlatParabola, .005, 3, 14, 26, 13, 10},
+    {"flat, finer", kFlatParabola, .0005, 3, 42, 80, 40, 29},
+    {"flat, finest", kFlatParabola, .00005, 3, 132, 251, 126, 89},
+    {"steep, coarse", kSteepParabola, .045, 2, 15, 16, 8, 6},
+    {"steep, fine", kSteepParabola, .0045, 2, 51, 49, 24, 18},
+    {"steep, finer", kSteepParabola, .00045, 2, 167, 151, 75, 54},
+    {"steep, finest", kSteepParabola, .000045, 2, 531, 475, 238, 168},
+};
 
 // The same curve turned out of the plane and moved.
 inline BsplineCurve in_space(const BsplineCurve& curve) {

@@ -70,7 +70,7 @@ struct PlanOptions {
 //             way of one block period at the feed: the control would slow down for them;
 //   accuracy  as fine as the block period and most_moves allow, down to a tenth of the rounding of
 //             the printed numbers, and all of max_deviation where even that is too much for the
-//             control; balanced (geometry/chords/balanced_chords.h);
+//             control; balanced (geometry/chords/linearize.h);
 //   size      all of max_deviation.
 [[nodiscard]] OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair,
                                     const PlanOptions& options);

@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "gcode/state/modal_state.h"
-#include "geometry/chords/balanced_chords.h"
 #include "geometry/chords/ilca.h"
 #include "geometry/chords/linearize.h"
 #include "geometry/chords/min_link.h"

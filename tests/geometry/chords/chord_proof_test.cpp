@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "geometry/path/cubic_polynomial.h"
 #include "geometry/path/path.h"
+#include "tests/support/random_curves.h"
 
 namespace batten::geometry {
 namespace {
@@ -59,16 +61,98 @@ TEST(ChordProof, RefusesWhatGoesBack) {
   EXPECT_TRUE(holds(piece, 1.1));
 }
 
-TEST(ChordProof, HasTwoPartsThatAreThePiece) {
-  std::mt19937 random(8);
-  for (const double cut : {0.1, 0.5, 0.77}) {
-    const CubicBezier piece = random_piece(random, true);
-    const auto [before, behind] = parts_at(piece, cut);
-    for (const double t : {0.0, 0.3, 0.8, 1.0}) {
-      EXPECT_LT((point_at(before, t) - point_at(piece, t * cut)).norm(), 1e-14);
-      EXPECT_LT((point_at(behind, t) - point_at(piece, cut + t * (1 - cut))).norm(), 1e-14);
-    }
+// Of many places between, from the chord's line.
+double greatest_height(const BsplineCurve& curve, double from, double to) {
+  const Point3 start = curve.point_at(from);
+  const Vector3 along = (curve.point_at(to) - start).normalized();
+  double greatest = 0;
+  constexpr int kPlaces = 20000;
+  for (int i = 0; i <= kPlaces; ++i) {
+    const Vector3 off = curve.point_at(from + (to - from) * i / kPlaces) - start;
+    greatest = std::max(greatest, (off - off.dot(along) * along).norm());
   }
+  return greatest;
+}
+
+struct RandomChord {
+  BsplineCurve curve;
+  double from;
+  double to;
+};
+
+// From a hundredth of a random curve to a third of it.
+RandomChord random_chord(unsigned seed, bool in_space) {
+  BsplineCurve curve = tests::random_curve(seed, in_space);
+  std::mt19937 random(seed + 1000);
+  std::uniform_real_distribution<double> part(0, 1);
+  const double all = curve.last() - curve.first();
+  const double length = all * (0.01 + 0.32 * part(random));
+  const double from = curve.first() + part(random) * (all - length);
+  return {std::move(curve), from, from + length};
+}
+
+TEST(ChordHeight, IsTheGreatestDistanceAndHardlyMore) {
+  int wild = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const RandomChord chord = random_chord(seed, seed % 2 == 1);
+    const CurvePieces pieces(chord.curve, chord.curve.first(), chord.curve.last());
+    const ChordHeight found = ChordsFrom(pieces, chord.from).to(chord.to);
+    const double distance = greatest_height(chord.curve, chord.from, chord.to);
+    const Vector3 ends = chord.curve.point_at(chord.to) - chord.curve.point_at(chord.from);
+    EXPECT_NEAR(found.chord, ends.norm(), 1e-12 * ends.norm());
+    EXPECT_GE(found.height, distance - 1e-12);
+    // A ten-thousandth, and what the places between the measured ones are farther off.
+    if (found.height > (1 + 1.1e-4) * distance + 1e-9) ++wild;
+    EXPECT_LE(found.height, (1 + 1e-3) * distance + 1e-9);
+  }
+  EXPECT_LE(wild, 4);
+}
+
+// A curve that goes forward along its chord is within its height of it, in order: another proof
+// says so too, and no proof says so of less.
+TEST(ChordHeight, ProvesChordsThatAreInOrder) {
+  int in_order = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const RandomChord chord = random_chord(seed, seed % 2 == 1);
+    const CurvePieces pieces(chord.curve, chord.curve.first(), chord.curve.last());
+    const ChordHeight found = ChordsFrom(pieces, chord.from).to(chord.to);
+    if (!found.in_order) continue;
+    ++in_order;
+    const auto proved = [&](double deviation) {
+      return chord_proved(pieces, chord.from, chord.to,
+                          ChordProof(pieces.point_at(chord.from), pieces.point_at(chord.to),
+                                     deviation, kSharpProofCuts));
+    };
+    EXPECT_TRUE(proved(1.001 * found.height + 1e-9));
+    EXPECT_FALSE(proved(0.999 * found.height - 1e-9));
+  }
+  EXPECT_GE(in_order, 50);
+}
+
+TEST(ChordHeight, IsNotInOrderWhereTheCurveGoesBack) {
+  // There, back by a part of the way, and on.
+  const BsplineCurve curve(BsplineBasis(3, {0, 0, 0, 0, 1, 1, 1, 1}),
+                           {{0, 0, 0}, {3, 0.01, 0}, {-2, 0.01, 0}, {1, 0, 0}});
+  const CurvePieces pieces(curve, 0, 1);
+  const ChordHeight found = ChordsFrom(pieces, 0).to(1);
+  EXPECT_FALSE(found.in_order);
+  EXPECT_NEAR(found.height, 0.0075, 1e-6);  // of the cubic, 3/4 of its two control points
+}
+
+TEST(ChordHeight, SaysQuicklyWhatIsHopelessAndOnlyThat) {
+  int left = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const RandomChord chord = random_chord(seed, seed % 2 == 1);
+    const CurvePieces pieces(chord.curve, chord.curve.first(), chord.curve.last());
+    const ChordsFrom chords(pieces, chord.from);
+    const double height = chords.to(chord.to).height;
+    EXPECT_FALSE(chords.leaves(chord.to, height + 1e-9));
+    left += chords.leaves(chord.to, 0.5 * height) ? 1 : 0;
+  }
+  EXPECT_GE(left, 150);
 }
 
 }  // namespace

@@ -4,56 +4,38 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ostream>
+#include <span>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "geometry/chords/chord_proof.h"
 #include "geometry/path/curve_pieces.h"
+#include "geometry/path/path.h"
 #include "tests/support/curve_of.h"
 #include "tests/support/parabolas.h"
 
 namespace batten::geometry {
 namespace {
 
-struct IlcaCount {
-  std::string name;
-  Parabola parabola;
-  double first_step;
-  double tolerance;
-  std::size_t chords;
-};
-
-std::ostream& operator<<(std::ostream& out, const IlcaCount& test) { return out << test.name; }
-
-class Ilca : public testing::TestWithParam<IlcaCount> {};
-
-TEST_P(Ilca, TakesAsManyEqualStepsAsTheClosedFormGives) {
-  const auto& [name, parabola, first_step, tolerance, chords] = GetParam();
-  for (const BsplineCurve& curve : {parabola.curve(), in_space(parabola.curve())}) {
-    const ChordRow row = ilca(curve, parabola.from, parabola.to, {tolerance, first_step}).value();
-    ASSERT_EQ(row.parameters.size(), chords + 1);
-    const double step = (parabola.to - parabola.from) / static_cast<double>(chords);
-    for (std::size_t i = 0; i <= chords; ++i) {
-      EXPECT_NEAR(row.parameters[i], parabola.from + static_cast<double>(i) * step, 1e-12);
+TEST(Ilca, TakesAsManyEqualStepsAsTheClosedFormGives) {
+  for (const ParabolaRow& given : kParabolaRows) {
+    SCOPED_TRACE(given.name);
+    const Parabola& parabola = given.parabola;
+    for (const BsplineCurve& curve : {parabola.curve(), in_space(parabola.curve())}) {
+      const ChordRow row =
+          ilca(curve, parabola.from, parabola.to, {given.tolerance, given.first_step}).value();
+      ASSERT_EQ(row.parameters.size(), given.ilca + 1);
+      const double step = (parabola.to - parabola.from) / static_cast<double>(given.ilca);
+      for (std::size_t i = 0; i <= given.ilca; ++i) {
+        EXPECT_NEAR(row.parameters[i], parabola.from + static_cast<double>(i) * step, 1e-12);
+      }
+      EXPECT_EQ(row.parameters.back(), parabola.to);
+      EXPECT_LE(row.deviation, given.tolerance);
+      EXPECT_NEAR(row.deviation, parabola.greatest_deviation(row.parameters),
+                  1e-9 * given.tolerance);
     }
-    EXPECT_EQ(row.parameters.back(), parabola.to);
-    EXPECT_LE(row.deviation, tolerance);
-    EXPECT_NEAR(row.deviation, parabola.greatest_deviation(row.parameters), 1e-9 * tolerance);
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Parabolas, Ilca,
-                         testing::Values(IlcaCount{"FlatCoarse", kFlatParabola, 3, .05, 5},
-                                         IlcaCount{"FlatFine", kFlatParabola, 3, .005, 14},
-                                         IlcaCount{"FlatFiner", kFlatParabola, 3, .0005, 42},
-                                         IlcaCount{"FlatFinest", kFlatParabola, 3, .00005, 132},
-                                         IlcaCount{"SteepCoarse", kSteepParabola, 2, .045, 15},
-                                         IlcaCount{"SteepFine", kSteepParabola, 2, .0045, 51},
-                                         IlcaCount{"SteepFiner", kSteepParabola, 2, .00045, 167},
-                                         IlcaCount{"SteepFinest", kSteepParabola, 2, .000045, 531}),
-                         [](const auto& test) { return test.param.name; });
 
 TEST(IlcaExamples, HaveTheStepsDeviationsAndLengthsOfTheClosedForm) {
   const ChordRow flat = ilca(kFlatParabola.curve(), 2, 11, {.05, 3}).value();
@@ -137,6 +119,118 @@ TEST(IlcaRow, HasEveryCornerAsAVertex) {
 TEST(IlcaRow, RefusesOptionsOutsideTheirRange) {
   EXPECT_THROW((void)ilca(kFlatParabola.curve(), 2, 11, {0, 3}), std::invalid_argument);
   EXPECT_THROW((void)ilca(kFlatParabola.curve(), 2, 11, {1, -3}), std::invalid_argument);
+}
+
+// The closed form: dx = sqrt(T sqrt(1 + slope^2) / |c1|), the last step cut at the end.
+TEST(Blca, StepsAsTheClosedFormSays) {
+  for (const ParabolaRow& given : kParabolaRows) {
+    SCOPED_TRACE(given.name);
+    const Parabola& parabola = given.parabola;
+    for (const BsplineCurve& curve : {parabola.curve(), in_space(parabola.curve())}) {
+      const ChordRow row = blca(curve, parabola.from, parabola.to, given.tolerance);
+      ASSERT_EQ(row.parameters.size(), given.blca + 1);
+      for (std::size_t i = 0; i + 1 < given.blca; ++i) {
+        const double slope = parabola.slope(row.parameters[i]);
+        const double step =
+            std::sqrt(given.tolerance * std::hypot(1, slope) / std::abs(parabola.c1));
+        EXPECT_NEAR(row.parameters[i + 1] - row.parameters[i], step, 1e-9 * step);
+      }
+      EXPECT_EQ(row.parameters.back(), parabola.to);
+      EXPECT_NEAR(row.deviation, parabola.greatest_deviation(row.parameters),
+                  1e-9 * given.tolerance);
+      EXPECT_LE(row.deviation, given.tolerance);
+    }
+  }
+}
+
+// The tool path that the paper draws over these vertices: from each a jump of length `tolerance`
+// across the tangent, to the side where the curve goes, then along the tangent until abeam of the
+// next vertex, which is met there when the step was a whole one. Not a path to be cut: it leaves
+// the curve by the tolerance in every step.
+//
+// Requires `parameters` of the curve, increasing.
+Path blca_tool_path(const BsplineCurve& curve, std::span<const double> parameters,
+                    double tolerance) {
+  Path path;
+  for (std::size_t i = 0; i + 1 < parameters.size(); ++i) {
+    const Point3 start = curve.point_at(parameters[i]);
+    const Vector3 way = curve.point_at(parameters[i + 1]) - start;
+    const Vector3 tangent = curve.direction_at(parameters[i]);
+    const double along = way.dot(tangent);
+    const Vector3 across = way - along * tangent;
+    const Point3 moved = start + tolerance * across.stableNormalized();
+    path.push_back(Line{start, moved});
+    path.push_back(Line{moved, moved + along * tangent});
+  }
+  return path;
+}
+
+TEST(Blca, HasTheFiguresOfTheRestatedMethod) {
+  struct Example {
+    Parabola parabola;
+    double tolerance;
+    std::vector<double> x;
+    double secants, with_jumps, chords, deviation;
+  };
+  const Example examples[] = {{kFlatParabola,
+                               .05,
+                               {2, 3.2287, 4.4264, 5.5959, 6.7404, 7.8635, 8.9690, 10.0612, 11},
+                               9.997480,
+                               10.397480,
+                               10.005079,
+                               .012826},
+                              {kSteepParabola,
+                               .045,
+                               {1, 1.2667, 1.5737, 1.9219, 2.3120, 2.7443, 3.2193, 3.7372, 4.2981,
+                                4.9023, 5.5498, 6.2409, 6.9755, 7.7537, 8.5758, 9.4416, 10},
+                               189.314273,
+                               190.034273,
+                               189.317958,
+                               .010694}};
+  for (const auto& [parabola, tolerance, x, secants, with_jumps, chords, deviation] : examples) {
+    SCOPED_TRACE(testing::Message() << "tolerance " << tolerance);
+    const BsplineCurve curve = parabola.curve();
+    const ChordRow row = blca(curve, parabola.from, parabola.to, tolerance);
+    ASSERT_EQ(row.parameters.size(), x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(row.parameters[i], x[i], 1e-4);
+    const Path path = blca_tool_path(curve, row.parameters, tolerance);
+    ASSERT_EQ(path.size(), 2 * (x.size() - 1));
+    double length = 0;
+    for (std::size_t i = 1; i < path.size(); i += 2) length += length_of(path[i]);
+    EXPECT_NEAR(length, secants, 1e-6);
+    EXPECT_NEAR(length_of(path), with_jumps, 1e-6);
+    EXPECT_NEAR(parabola.chords_length(row.parameters), chords, 1e-6);
+    EXPECT_NEAR(row.deviation, deviation, 1e-6);
+    // A whole step ends on the curve: the secant meets the next vertex.
+    for (std::size_t i = 0; i + 2 < x.size(); ++i) {
+      EXPECT_NEAR(length_of(path[2 * i]), tolerance, 1e-12);
+      EXPECT_LE((end_point(path[2 * i + 1]) - curve.point_at(row.parameters[i + 1])).norm(), 1e-9);
+    }
+  }
+}
+
+// y = x^3 bends to the other side at 0: the tangent of a place before it comes near again.
+TEST(BlcaRow, KeepsTheToleranceAcrossInflections) {
+  const auto cubic = [](double x) { return Point3(x, x * x * x, 0); };
+  const BsplineCurve curve = curve_of(cubic, -1.5, 1.5, 3);
+  for (const double tolerance : {1e-4, 1e-3, 1e-2, 0.1, 1.0}) {
+    const ChordRow row = blca(curve, -1.5, 1.5, tolerance);
+    EXPECT_LE(row.deviation, tolerance);
+    const CurvePieces pieces(curve, -1.5, 1.5);
+    for (std::size_t i = 0; i + 1 < row.parameters.size(); ++i) {
+      EXPECT_LE(chord_deviation(pieces, row.parameters[i], row.parameters[i + 1]), tolerance);
+    }
+  }
+}
+
+TEST(BlcaRow, CoversALineWithOneChord) {
+  const BsplineCurve line(BsplineBasis::clamped(3, {0, 1}),
+                          {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}});
+  EXPECT_EQ(blca(line, 0, 1, 1e-3).parameters, (std::vector<double>{0, 1}));
+}
+
+TEST(BlcaRow, RefusesAToleranceOfZero) {
+  EXPECT_THROW((void)blca(kFlatParabola.curve(), 2, 11, 0), std::invalid_argument);
 }
 
 }  // namespace

@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
-#include <ostream>
 #include <stdexcept>
-#include <string>
+#include <utility>
 #include <vector>
 
-#include "geometry/chords/linearize.h"
+#include "geometry/chords/min_link_gates.h"
+#include "geometry/chords/min_link_plane.h"
 #include "geometry/path/plane_curve.h"
 #include "tests/support/curve_of.h"
 #include "tests/support/parabolas.h"
@@ -36,112 +35,76 @@ std::size_t links_on(const BsplineCurve& curve, double tolerance, int gates = 32
          1;
 }
 
-struct LinkCountCase {
-  std::string name;
-  Parabola parabola;
-  double tolerance;
-  std::size_t links;
-};
-
-std::ostream& operator<<(std::ostream& out, const LinkCountCase& test) { return out << test.name; }
-
-class MinLink : public testing::TestWithParam<LinkCountCase> {};
-
-TEST_P(MinLink, NeedsTheCountsOfTheTable) {
-  const auto& [name, parabola, tolerance, links] = GetParam();
-  EXPECT_EQ(links_on(parabola.curve(), tolerance, kFineGates), links);
-  EXPECT_EQ(links_on(in_space(parabola.curve()), tolerance, kFineGates), links);
-}
-
 // With fewer gates the count is one too many where it is nearly so by itself: 89 links need all but
 // 2e-4 of the tolerance .00005.
-TEST_P(MinLink, NeedsOneLinkMoreAtMostWithFewGates) {
-  const auto& [name, parabola, tolerance, links] = GetParam();
-  const std::size_t found = links_on(parabola.curve(), tolerance);
-  EXPECT_GE(found, links);
-  EXPECT_LE(found, name == "FlatFinest" ? links + 1 : links);
-  const auto balanced =
-      min_link_vertices(parabola.curve(), parabola.from, parabola.to, {.tolerance = tolerance});
-  EXPECT_EQ(balanced.size() - 1, found);
+TEST(MinLinkCount, IsThatOfTheTable) {
+  for (const ParabolaRow& row : kParabolaRows) {
+    SCOPED_TRACE(row.name);
+    const BsplineCurve curve = row.parabola.curve();
+    EXPECT_EQ(links_on(curve, row.tolerance, kFineGates), row.links);
+    EXPECT_EQ(links_on(in_space(curve), row.tolerance, kFineGates), row.links);
+    const std::size_t found = links_on(curve, row.tolerance);
+    EXPECT_GE(found, row.links);
+    EXPECT_LE(found, row.links == 89 ? row.links + 1 : row.links);
+    const auto balanced =
+        min_link_vertices(curve, row.parabola.from, row.parabola.to, {.tolerance = row.tolerance});
+    EXPECT_EQ(balanced.size() - 1, found);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(Parabolas, MinLink,
-                         testing::Values(LinkCountCase{"FlatCoarse", kFlatParabola, .05, 4},
-                                         LinkCountCase{"FlatFine", kFlatParabola, .005, 10},
-                                         LinkCountCase{"FlatFiner", kFlatParabola, .0005, 29},
-                                         LinkCountCase{"FlatFinest", kFlatParabola, .00005, 89},
-                                         LinkCountCase{"SteepCoarse", kSteepParabola, .045, 6},
-                                         LinkCountCase{"SteepFine", kSteepParabola, .0045, 18},
-                                         LinkCountCase{"SteepFiner", kSteepParabola, .00045, 54},
-                                         LinkCountCase{"SteepFinest", kSteepParabola, .000045,
-                                                       168}),
-                         [](const auto& test) { return test.param.name; });
 
 // Where the count changes: 3 links on the flat parabola need T >= .05377, 4 go down to .02865; 5 on
 // the steep one need T >= .05651, 6 go down to .03856.
 TEST(MinLinkCount, ChangesAtTheKnownTolerances) {
-  EXPECT_EQ(links_on(kFlatParabola.curve(), .05379, kFinestGates), 3U);
-  EXPECT_EQ(links_on(kFlatParabola.curve(), .05375, kFinestGates), 4U);
-  EXPECT_EQ(links_on(kFlatParabola.curve(), .02867, kFinestGates), 4U);
-  EXPECT_EQ(links_on(kFlatParabola.curve(), .02863, kFinestGates), 5U);
-  EXPECT_EQ(links_on(kSteepParabola.curve(), .05653, kFinestGates), 5U);
-  EXPECT_EQ(links_on(kSteepParabola.curve(), .05649, kFinestGates), 6U);
-  EXPECT_EQ(links_on(kSteepParabola.curve(), .03858, kFinestGates), 6U);
-  EXPECT_EQ(links_on(kSteepParabola.curve(), .03854, kFinestGates), 7U);
+  for (const auto& [tolerance, links] : {std::pair{.05377, 3U}, {.02865, 4U}}) {
+    EXPECT_EQ(links_on(kFlatParabola.curve(), tolerance + 2e-5, kFinestGates), links);
+    EXPECT_EQ(links_on(kFlatParabola.curve(), tolerance - 2e-5, kFinestGates), links + 1);
+  }
+  for (const auto& [tolerance, links] : {std::pair{.05651, 5U}, {.03856, 6U}}) {
+    EXPECT_EQ(links_on(kSteepParabola.curve(), tolerance + 2e-5, kFinestGates), links);
+    EXPECT_EQ(links_on(kSteepParabola.curve(), tolerance - 2e-5, kFinestGates), links + 1);
+  }
 }
-
-struct LinkExample {
-  std::string name;
-  Parabola parabola;
-  double tolerance;
-  std::vector<Point2> vertices;
-  double length;
-};
-
-std::ostream& operator<<(std::ostream& out, const LinkExample& test) { return out << test.name; }
-
-class MinLinkExample : public testing::TestWithParam<LinkExample> {};
 
 // Vertices on the outer offset, links tangent to the inner one. On the flat parabola the end lies
 // on the inner side of the last tangent: one vertex more, in front of the end.
-TEST_P(MinLinkExample, HasTheVerticesOfTheClosedForm) {
-  const LinkExample& example = GetParam();
-  const BsplineCurve curve = example.parabola.curve();
-  const CurvePieces pieces(curve, curve.first(), curve.last());
-  const GateChain gates(pieces, curve.first(), curve.last(), 1e-6 * example.tolerance);
-  const auto found = min_link_in_plane(gates, Vector3::UnitZ(), gates[0].center, example.tolerance);
-  ASSERT_TRUE(found);
-  const std::vector<LinkVertex>& vertices = *found;
-  ASSERT_EQ(vertices.size(), example.vertices.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    EXPECT_NEAR(vertices[i].place.x(), example.vertices[i].x(), 1e-4) << i;
-    EXPECT_NEAR(vertices[i].place.y(), example.vertices[i].y(), 1.5e-3) << i;
+TEST(MinLinkInPlane, HasTheVerticesOfTheClosedForm) {
+  struct Example {
+    Parabola parabola;
+    double tolerance;
+    std::vector<Point2> vertices;
+    double length;
+  };
+  const Example examples[] = {
+      {kFlatParabola,
+       .05,
+       {{2, 1.838}, {4.8659, 3.9156}, {8.0606, 5.3290}, {10.9983, 5.8392}, {11, 5.807}},
+       10.047039},
+      {kSteepParabola,
+       .045,
+       {{1, 2},
+        {1.8012, 5.4085},
+        {3.0433, 15.9795},
+        {4.6438, 38.6979},
+        {6.6037, 80.4724},
+        {8.9232, 149.7665},
+        {10, 191}},
+       189.320747}};
+  for (const Example& example : examples) {
+    SCOPED_TRACE(testing::Message() << "tolerance " << example.tolerance);
+    const BsplineCurve curve = example.parabola.curve();
+    const CurvePieces pieces(curve, curve.first(), curve.last());
+    const GateChain gates(pieces, curve.first(), curve.last(), 1e-6 * example.tolerance);
+    const auto found =
+        min_link_in_plane(gates, Vector3::UnitZ(), gates[0].center, example.tolerance);
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->size(), example.vertices.size());
+    for (std::size_t i = 0; i < found->size(); ++i) {
+      EXPECT_NEAR((*found)[i].place.x(), example.vertices[i].x(), 1e-4) << i;
+      EXPECT_NEAR((*found)[i].place.y(), example.vertices[i].y(), 1.5e-3) << i;
+    }
+    EXPECT_NEAR(length_of(*found), example.length, 1e-6);
   }
-  EXPECT_NEAR(length_of(vertices), example.length, 1e-6);
 }
-
-INSTANTIATE_TEST_SUITE_P(Parabolas, MinLinkExample,
-                         testing::Values(LinkExample{"Flat",
-                                                     kFlatParabola,
-                                                     .05,
-                                                     {{2, 1.838},
-                                                      {4.8659, 3.9156},
-                                                      {8.0606, 5.3290},
-                                                      {10.9983, 5.8392},
-                                                      {11, 5.807}},
-                                                     10.047039},
-                                         LinkExample{"Steep",
-                                                     kSteepParabola,
-                                                     .045,
-                                                     {{1, 2},
-                                                      {1.8012, 5.4085},
-                                                      {3.0433, 15.9795},
-                                                      {4.6438, 38.6979},
-                                                      {6.6037, 80.4724},
-                                                      {8.9232, 149.7665},
-                                                      {10, 191}},
-                                                     189.320747}),
-                         [](const auto& test) { return test.param.name; });
 
 // On a circle of radius r a link between vertices at r + T, tangent to r - T, spans
 // 2 acos((r - T) / (r + T)); the first and the last begin on the circle and span
