@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "gcode/state/block_flow.h"
-#include "gcode/state/control_state.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/motion.h"
 #include "gcode/text/number_format.h"

@@ -7,21 +7,84 @@
 
 #include "gcode/curves/curve_format.h"
 #include "gcode/interpreter/motion_words.h"
-#include "gcode/interpreter/opaque_blocks.h"
-#include "gcode/interpreter/plain_line.h"
 #include "gcode/interpreter/program_flow.h"
 #include "gcode/interpreter/word_applier.h"
 #include "gcode/klartext/state.h"
 #include "gcode/siemens/flow.h"
 #include "gcode/siemens/names.h"
 #include "gcode/state/block_words.h"
-#include "gcode/state/control_state.h"
 #include "gcode/state/dwell.h"
+#include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
 #include "gcode/text/large_pages.h"
 
 namespace batten::gcode {
 namespace {
+
+// What is reported of blocks that cannot be followed: at most one diagnostic per block, and not the
+// same one a thousand times.
+class BlockDiagnostics {
+ public:
+  // `limiter`: of the whole program, `found`: where the diagnostics go.
+  BlockDiagnostics(const Program& program, DiagnosticLimiter& limiter, Diagnostics& found)
+      : program_(program), limiter_(limiter), found_(found) {}
+
+  // What follows is about this block.
+  void begin_block(std::uint32_t block) {
+    block_ = block;
+    is_reported_ = false;
+  }
+
+  // Its words cannot be taken together. Of expressions nothing is reported.
+  void report_words(const BlockWords& words) {
+    const auto text = [this](const Word* word) { return program_.source.text(word->span); };
+    const std::string_view first = text(words.first());
+    switch (words.problem()) {
+      case BlockWords::Problem::kNone:
+        return;
+      case BlockWords::Problem::kSameGroupTwice:
+        return report("two-words-of-one-group", words.second()->span,
+                      fmt::format("{} and {} in one block; expected one word of their group", first,
+                                  text(words.second())));
+      case BlockWords::Problem::kLetterTwice:
+        return report("word-repeated", words.second()->span,
+                      fmt::format("{} and {} in one block; expected one {} word", first,
+                                  text(words.second()), words.first()->letter));
+      case BlockWords::Problem::kBadCode:
+        if (!words.all_numbers()) return;
+        return report(
+            "bad-code", words.first()->span,
+            fmt::format("{} is no code; expected a G or M number that a block can hold", first));
+    }
+  }
+
+  // A code that no control is known to have: once per code.
+  void report_unknown_code(Code code) {
+    if (!limiter_.is_new(code)) return;
+    report("unknown-g-code",
+           fmt::format("G{} is not known and may change anything; what follows is left alone until "
+                       "the program has set every mode again",
+                       code % 10 == 0 ? fmt::format("{}", code / 10)
+                                      : fmt::format("{}.{}", code / 10, code % 10)));
+  }
+
+  // The whole block is at fault. `id`: of a warning (gcode/reading/explained_diagnostics.h).
+  void report(std::string_view id, std::string message) {
+    report(id, program_.blocks[block_].span, std::move(message));
+  }
+
+ private:
+  void report(std::string_view id, SourceSpan where, std::string message) {
+    if (std::exchange(is_reported_, true) || !limiter_.counts(id, where)) return;
+    found_.push_back({Severity::kWarning, id, where, std::move(message)});
+  }
+
+  const Program& program_;
+  DiagnosticLimiter& limiter_;
+  Diagnostics& found_;
+  std::uint32_t block_ = 0;
+  bool is_reported_ = false;  // the block has its diagnostic
+};
 
 class Interpreter {
  public:
@@ -31,16 +94,16 @@ class Interpreter {
         curves_(options.curves),
         has_plain_way_(options.short_ways && program.language == Language::kRs274),
         carry_(carry),
-        complaints_(program, carry.told, found),
+        diagnostics_(program, carry.told, found),
         now_(carry.state) {
     now_.calls_keep_modes = options.calls_keep_modes;
     carry.is_klartext = is_klartext();
     if (is_klartext()) start_klartext(now_);
     read_.unit_word_seen = carry.unit_word_seen;
     read_.states.push_back(now_.modal);
+    // Nearly every block of a long program moves.
     reserve_in_large_pages(read_.blocks, program.blocks.size());
-    reserve_in_large_pages(read_.motions,
-                           program.blocks.size());  // nearly every block of a long program moves
+    reserve_in_large_pages(read_.motions, program.blocks.size());
   }
 
   Interpretation run() {
@@ -74,25 +137,25 @@ class Interpreter {
     const Block& block = program_.blocks[index];
     meaning_ = BlockMeaning{};
     block_index_ = index;
-    complaints_.begin_block(index);
+    diagnostics_.begin_block(index);
     meaning_.label_referenced = flow.label_referenced;
     if (flow.jump_target) {
       meaning_.entered_from_elsewhere = true;
       is_klartext() ? forget_klartext(now_) : forget_everything(now_);
     }
-    if (block.block_delete) {
-      read_deletable(block);
-    } else {
-      read_words_or_text(block);
-    }
-    add_barriers_of_place(block, flow);
+    block.block_delete ? read_deletable(block) : read_words_or_text(block);
+    add_barriers_of_surroundings(block, flow);
     forget_motion_word();
-    remember_arc_distance();
-    if (read_.states.back() != now_.modal) {
-      read_.states.push_back(now_.modal);
-    }
-    meaning_.state_after = static_cast<std::uint32_t>(read_.states.size() - 1);
+    // No word of Siemens programs changes it: AC() and IC() say it of one number.
+    if (is_siemens()) now_.modal.arc_distance = DistanceMode::kIncremental;
+    meaning_.state_after = state_now();
     read_.blocks.push_back(meaning_);
+  }
+
+  // The index of the state that is known now.
+  std::uint32_t state_now() {
+    if (read_.states.back() != now_.modal) read_.states.push_back(now_.modal);
+    return static_cast<std::uint32_t>(read_.states.size() - 1);
   }
 
   // The blocks of a curve together. Until it is over nothing but the curve happens.
@@ -104,16 +167,13 @@ class Interpreter {
       now_.modal.feed = *curve.feed * (now_.modal.units == Units::kInch ? kMillimetresPerInch : 1);
       now_.modal.feed_without_point = is_feed_without_point(program_, first, curve);
     }
-    if (read_.states.back() != now_.modal) {
-      read_.states.push_back(now_.modal);
-    }
     auto next = curve.motions.begin();
     for (std::uint32_t i = first; i < first + curve.blocks; ++i) {
       meaning_ = BlockMeaning{};
       meaning_.kind = BlockKind::kSettings;  // it says a knot, or that the curve begins
       meaning_.barrier = reason::kSpline;
       meaning_.of_curve = true;
-      meaning_.state_after = static_cast<std::uint32_t>(read_.states.size() - 1);
+      meaning_.state_after = state_now();
       if (next != curve.motions.end() && next->block == i) {
         meaning_.kind = BlockKind::kMotion;
         meaning_.motion = static_cast<std::int32_t>(read_.motions.size());
@@ -121,7 +181,7 @@ class Interpreter {
       }
       read_.blocks.push_back(meaning_);
     }
-    // It started where the place was known, and so it ends.
+    // It started where the position was known, and so it ends.
     now_.position.mm = read_.motions.back().piece.end();
   }
 
@@ -130,11 +190,8 @@ class Interpreter {
     const ControlState skipped = now_;
     read_words_or_text(block);
     now_ = either(skipped, now_);
-    const bool acts = meaning_.kind != BlockKind::kEmpty;
     drop_motion();
-    if (acts) {
-      meaning_.kind = BlockKind::kOpaque;
-    }
+    if (meaning_.kind != BlockKind::kEmpty) meaning_.kind = BlockKind::kOpaque;
     meaning_.barrier = reason::kBlockDelete;
   }
 
@@ -154,28 +211,24 @@ class Interpreter {
       case ParseStatus::kContinued:
         return make_opaque(opacity_reason(block.opacity));
       default:
-        if (is_klartext()) return read_klartext(block);
-        if (is_siemens() && block.opacity == ParseStatus::kFlow) return read_siemens_flow(block);
-        return read_opaque(block);
+        return is_klartext() ? read_klartext(block) : read_opaque(block);
     }
   }
 
   void read_opaque(const Block& block) {
     const std::string_view text = program_.source.text(block.span);
+    const bool is_flow = block.opacity == ParseStatus::kFlow;
+    if (is_siemens() && is_flow) {
+      if (siemens_flow_effect(text) != FlowEffect::kNothing) forget_everything(now_);
+      return make_opaque(reason::kProgramFlow);
+    }
     apply_opaque(block.opacity, text, now_);
-    const bool calls =
-        block.opacity == ParseStatus::kFlow && flow_effect(text) == FlowEffect::kCall;
+    const bool calls = is_flow && flow_effect(text) == FlowEffect::kCall;
     make_opaque(calls ? reason::kSubprogram : opacity_reason(block.opacity));
   }
 
   [[nodiscard]] bool is_siemens() const { return program_.language == Language::kSiemens; }
   [[nodiscard]] bool is_klartext() const { return program_.language == Language::kKlartext; }
-
-  void read_siemens_flow(const Block& block) {
-    const FlowEffect effect = siemens_flow_effect(program_.source.text(block.span));
-    if (effect != FlowEffect::kNothing) forget_everything(now_);
-    make_opaque(reason::kProgramFlow);
-  }
 
   void read_klartext(const Block& block) {
     if (block.opacity == ParseStatus::kUnreadable) {
@@ -192,25 +245,19 @@ class Interpreter {
     if (is_klartext()) now_.modal.motion = MotionMode::kUnknown;
   }
 
-  // No word of Siemens programs changes it: AC() and IC() say it of one number.
-  void remember_arc_distance() {
-    if (is_siemens()) now_.modal.arc_distance = DistanceMode::kIncremental;
-  }
-
   void make_opaque(std::string_view why) {
     meaning_.kind = BlockKind::kOpaque;
     meaning_.barrier = why;
   }
 
   void drop_motion() {
-    if (meaning_.motion >= 0) {
-      read_.motions.pop_back();
-      meaning_.motion = -1;
-    }
+    if (meaning_.motion < 0) return;
+    read_.motions.pop_back();
+    meaning_.motion = -1;
   }
 
   // Which of two reasons it is that a value is not known.
-  void tell_expression_from_decimals(const Block& block) {
+  void distinguish_expression_from_decimals(const Block& block) {
     if (meaning_.barrier != reason::kExpression) return;
     const bool no_point = std::ranges::any_of(program_.words_of(block), [](const Word& word) {
       return word.without_point && !word.is_number;
@@ -218,14 +265,12 @@ class Interpreter {
     if (no_point) meaning_.barrier = reason::kImpliedDecimals;
   }
 
-  void add_barriers_of_place(const Block& block, const BlockFlow& flow) {
-    tell_expression_from_decimals(block);
+  void add_barriers_of_surroundings(const Block& block, const BlockFlow& flow) {
+    distinguish_expression_from_decimals(block);
     const bool active = std::ranges::any_of(program_.comments_of(block), [](const Comment& c) {
       return c.kind == CommentKind::kActive || c.kind == CommentKind::kUncertain;
     });
-    if (block.has_checksum) {
-      block_run(reason::kChecksum);  // the host counts these lines
-    }
+    if (block.has_checksum) block_run(reason::kChecksum);  // the host counts these lines
     if (active) {
       block_run(reason::kActiveComment);
       if (meaning_.kind == BlockKind::kEmpty) {
@@ -234,12 +279,8 @@ class Interpreter {
         meaning_.kind = BlockKind::kMotionAndMore;
       }
     }
-    if (meaning_.label_referenced) {
-      block_run(reason::kReferencedLabel);
-    }
-    if (flow.in_body && meaning_.kind != BlockKind::kEmpty) {
-      block_run(reason::kLoopBody);
-    }
+    if (meaning_.label_referenced) block_run(reason::kReferencedLabel);
+    if (flow.in_body && meaning_.kind != BlockKind::kEmpty) block_run(reason::kLoopBody);
     // Last: an arc that may stand in a run has this barrier alone.
     if (meaning_.motion >= 0 && read_.motions.back().kind == MotionKind::kArc) {
       block_run(reason::kArc);
@@ -247,53 +288,41 @@ class Interpreter {
   }
 
   void block_run(std::string_view why) {
-    if (meaning_.barrier.empty()) {
-      meaning_.barrier = why;
-    }
+    if (meaning_.barrier.empty()) meaning_.barrier = why;
   }
 
   // --- words --------------------------------------------------------------------------------
 
   void read_words(const Block& block) {
     const BlockWords words(program_.words_of(block));
-    if (words.problem() != BlockWords::Problem::kNone) {
-      return refuse_words(words);
-    }
-    if (words.has_g(40) && waits_alone(block)) {
+    if (words.problem() != BlockWords::Problem::kNone) return refuse_words(words);
+    if (waits_alone(block)) {
       meaning_.kind = BlockKind::kSettings;
       meaning_.barrier = reason::kDwell;
       return;
     }
     const StateEffect effect = apply_words(words, now_);
     read_.unit_word_seen |= effect.unit_word;
-    if (effect.unknown_code != kNoCode) {
-      complaints_.tell_unknown_code(effect.unknown_code);
-    }
+    if (effect.unknown_code != kNoCode) diagnostics_.report_unknown_code(effect.unknown_code);
     meaning_.barrier = effect.barrier;
     read_motion(words, effect);
     apply_late_words(words, now_);
-    if (!words.all_numbers()) {
-      drop_motion();
-      make_opaque(reason::kExpression);
-    } else if (!effect.understood && meaning_.kind != BlockKind::kOpaque) {
-      drop_motion();
-      make_opaque(effect.barrier);
-    }
+    const bool refused = !effect.understood && meaning_.kind != BlockKind::kOpaque;
+    if (words.all_numbers() && !refused) return;
+    drop_motion();
+    make_opaque(words.all_numbers() ? effect.barrier : reason::kExpression);
   }
 
-  // A dwell whose one word is a time on every control that reads it, not a place, feed or speed.
+  // A dwell whose one word is a time on every control that reads it, not a position, feed or speed.
   [[nodiscard]] bool waits_alone(const Block& block) const {
-    const bool siemens = program_.language == Language::kSiemens;
-    const DwellForm form = siemens ? DwellForm::kSecondsF : DwellForm::kUnknown;
+    const DwellForm form = is_siemens() ? DwellForm::kSecondsF : DwellForm::kUnknown;
     return dwell_ms(program_.words_of(block), form).has_value();
   }
 
   // Siemens: the block is copied; what it does to the state is known where all its names are.
   void read_named(const Block& block) {
     const BlockWords words(program_.words_of(block));
-    if (words.problem() != BlockWords::Problem::kNone) {
-      return refuse_words(words);
-    }
+    if (words.problem() != BlockWords::Problem::kNone) return refuse_words(words);
     const NamedEffect named =
         apply_names(program_.source.text(block.span), words, variables_, now_);
     if (!named.understood) {
@@ -302,9 +331,7 @@ class Interpreter {
     }
     StateEffect effect = apply_words(words, now_);
     read_.unit_word_seen |= effect.unit_word || named.unit_word;
-    if (effect.motion != nullptr) {
-      set_motion_mode(*effect.motion);
-    }
+    if (effect.motion != nullptr) set_motion_mode(*effect.motion);
     effect.takes_axes |= named.takes_axes;
     const bool moves = words.has_any("XYZIJKR") && !effect.takes_axes;
     if (moves && now_.modal.motion != MotionMode::kOther &&
@@ -324,33 +351,23 @@ class Interpreter {
   void refuse_words(const BlockWords& words) {
     forget_everything(now_);
     make_opaque(words.all_numbers() ? reason::kNotUnderstood : reason::kExpression);
-    complaints_.tell_words(words);
+    diagnostics_.report_words(words);
   }
 
   void read_motion(const BlockWords& words, const StateEffect& effect) {
-    const bool settings = !effect.barrier.empty();
-    if (effect.motion != nullptr) {
-      set_motion_mode(*effect.motion);
-    }
+    if (effect.motion != nullptr) set_motion_mode(*effect.motion);
     const MotionMode mode = now_.modal.motion;
     const bool arc_words = is_arc(mode) && words.has_any("IJKR");
     const bool moves = !effect.takes_axes && (words.has_any("XYZ") || arc_words);
-    if (effect.motion != nullptr && mode == MotionMode::kOther) {
-      return read_other_motion(now_.other_motion);
+    if (mode == MotionMode::kOther && (moves || effect.motion != nullptr)) {
+      return read_other_motion();
     }
-    if (!moves) {
-      return finish_without_motion(words, effect);
-    }
-    if (mode == MotionMode::kOther) {
-      return read_other_motion(now_.other_motion);
-    }
+    if (!moves) return finish_without_motion(words, effect);
     if (const std::string_view why = why_not_followed(words, effect, now_); !why.empty()) {
       return lose_motion(words, why);
     }
-    if (!(is_arc(mode) ? add_arc(words) : add_line(words))) {
-      return;
-    }
-    meaning_.kind = settings ? BlockKind::kMotionAndMore : BlockKind::kMotion;
+    if (!add_motion(words)) return;
+    meaning_.kind = effect.barrier.empty() ? BlockKind::kMotion : BlockKind::kMotionAndMore;
     forget_increments(words);
   }
 
@@ -360,18 +377,17 @@ class Interpreter {
   }
 
   // Cycles, threads, splines, probes: where the tool is afterwards depends on the control.
-  void read_other_motion(std::string_view why) {
+  void read_other_motion() {
     forget_position(now_);
-    block_run(why);
+    block_run(now_.other_motion);
     meaning_.kind = BlockKind::kSettings;
   }
 
   void finish_without_motion(const BlockWords& words, const StateEffect& effect) {
-    if (effect.motion != nullptr && !effect.takes_axes) {
-      // G1 alone: the next block moves in this mode.
-      if (read_.states.back().motion != now_.modal.motion) {
-        block_run(reason::kStateChange);
-      }
+    // G1 alone: the next block moves in this mode.
+    if (effect.motion != nullptr && !effect.takes_axes &&
+        read_.states.back().motion != now_.modal.motion) {
+      block_run(reason::kStateChange);
     }
     forget_increments(words);
     if (!effect.takes_parameters && words.has_any("PQLIJKR")) {
@@ -385,9 +401,7 @@ class Interpreter {
   // U, V, W move X, Y, Z by increments on lathes, and axes of their own elsewhere.
   void forget_increments(const BlockWords& words) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (words.has("UVW"[axis])) {
-        forget_axis(now_, axis);
-      }
+      if (words.has("UVW"[axis])) forget_axis(now_, axis);
     }
   }
 
@@ -406,36 +420,26 @@ class Interpreter {
 
   // --- geometry -----------------------------------------------------------------------------
 
-  bool add_line(const BlockWords& words) {
+  // False: the words say no arc.
+  bool add_motion(const BlockWords& words) {
     const Position end = end_of_motion(words, now_);
     Motion motion;
-    motion.kind = now_.modal.motion == MotionMode::kRapid ? MotionKind::kRapid : MotionKind::kLine;
-    motion.piece = geometry::Line{now_.position.mm, end.mm};
-    const bool rapid = motion.kind == MotionKind::kRapid;
-    add_motion(std::move(motion), words, end);
-    if (rapid) {
-      block_run(reason::kRapid);
-    }
-    return true;
-  }
-
-  bool add_arc(const BlockWords& words) {
-    const Position end = end_of_motion(words, now_);
-    const ArcReading reading = arc_from_words(arc_words(words, now_, end));
-    if (!reading.arc) {
-      complaints_.tell(reading.problem, reading.message);
-      lose_motion(words, reason::kArc);
-      return false;
-    }
-    Motion motion;
-    motion.kind = MotionKind::kArc;
-    motion.piece = *reading.arc;
-    add_motion(std::move(motion), words, end);
-    return true;
-  }
-
-  void add_motion(Motion motion, const BlockWords& words, const Position& end) {
     motion.block = block_index_;
+    if (is_arc(now_.modal.motion)) {
+      const ArcReading reading = arc_from_words(arc_words(words, now_, end));
+      if (!reading.arc) {
+        diagnostics_.report(reading.problem, reading.message);
+        lose_motion(words, reason::kArc);
+        return false;
+      }
+      motion.kind = MotionKind::kArc;
+      motion.piece = *reading.arc;
+    } else {
+      const bool rapid = now_.modal.motion == MotionMode::kRapid;
+      motion.kind = rapid ? MotionKind::kRapid : MotionKind::kLine;
+      motion.piece = geometry::Line{now_.position.mm, end.mm};
+      if (rapid) block_run(reason::kRapid);
+    }
     motion.start_known = true;
     motion.end_known = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -446,13 +450,14 @@ class Interpreter {
     now_.position = end;
     meaning_.motion = static_cast<std::int32_t>(read_.motions.size());
     read_.motions.push_back(std::move(motion));
+    return true;
   }
 
   const Program& program_;
   const CurveFormat* curves_;
   bool has_plain_way_;
   ControlCarry& carry_;
-  BlockComplaints complaints_;
+  BlockDiagnostics diagnostics_;
   ControlState now_;
   SiemensVariables variables_;
   Interpretation read_;
@@ -465,11 +470,9 @@ void make_all_opaque(const Program& program, Interpretation& read) {
   for (std::size_t i = 0; i < read.blocks.size(); ++i) {
     BlockMeaning& meaning = read.blocks[i];
     const Block& block = program.blocks[i];
-    const bool says_nothing = block.opacity == ParseStatus::kNone && block.word_count == 0;
-    if ((says_nothing && meaning.kind == BlockKind::kEmpty) ||
-        meaning.barrier == reason::kProgramMark) {
-      continue;
-    }
+    const bool says_nothing = block.opacity == ParseStatus::kNone && block.word_count == 0 &&
+                              meaning.kind == BlockKind::kEmpty;
+    if (says_nothing || meaning.barrier == reason::kProgramMark) continue;
     meaning.kind = BlockKind::kOpaque;
     meaning.barrier = reason::kLatheProgram;
     meaning.of_curve = false;
@@ -510,9 +513,7 @@ Interpretation interpret_part(const Program& part, const ReadOptions& options, C
 
 void finish_interpretation(const ControlCarry& carry, Diagnostics& found) {
   carry.told.tell_rest(found);
-  if (carry.unit_word_seen || !carry.any_motion) {
-    return;
-  }
+  if (carry.unit_word_seen || !carry.any_motion) return;
   const std::string_view missing =
       carry.is_klartext ? "no BEGIN PGM with MM or INCH" : "no G20 or G21";
   found.push_back({Severity::kError, "units-missing", carry.first_motion,

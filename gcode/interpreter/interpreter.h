@@ -1,11 +1,10 @@
 // Blocks to motions in millimetres: the only place that knows inches and increments.
 #pragma once
 
-#include "gcode/state/control_state.h"
 #include "gcode/state/diagnostic_limiter.h"
-#include "gcode/state/lathe_marks.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/motion.h"
+#include "gcode/state/source_marks.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"
 #include "gcode/text/source_text.h"
@@ -37,8 +36,7 @@ struct ReadOptions {
   // Subprograms and macros leave all modes as they find them (M97, M98, M198, G65, O-word calls,
   // CALL LBL, CALL PGM): behind a call only place, feed, speed and kind of motion are unknown.
   bool calls_keep_modes = false;
-  bool short_ways =
-      true;  // for simple blocks (gcode/interpreter/plain_line.h); they change nothing
+  bool short_ways = true;  // for plain lines (read_plain_line); they change nothing
 };
 
 // Follows the program from its first block to its last, as a control would, without loops
@@ -53,9 +51,9 @@ struct ReadOptions {
 // units-missing: motions in a program that names no unit, without ReadOptions::units. At most
 // one diagnostic per block. Linear time.
 //
-// A program for a lathe (gcode/state/lathe_marks.h) gives one warning, lathe-program: nothing of it
-// is followed, all its blocks that say anything are opaque. Its motions are listed as a mill would
-// do them, so that they can be counted.
+// A program for a lathe (gcode/state/source_marks.h) gives one warning, lathe-program: nothing of
+// it is followed, all its blocks that say anything are opaque. Its motions are listed as a mill
+// would do them, so that they can be counted.
 //
 // Positions are those of the program's own coordinates. In states that no motion may be
 // rewritten in (scaling, rotation, tilted planes ..) they are not where the tool is.

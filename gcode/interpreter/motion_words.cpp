@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "gcode/state/reason.h"
 #include "geometry/basic/rounding.h"
@@ -32,32 +36,24 @@ constexpr double kHalfChordSlack = 0.00127;  // mm
 // meaning.
 constexpr double kDoubtfulAngle = 5e-7;  // radians
 
-Vector3 unit(std::size_t axis) { return Vector3::Unit(static_cast<Eigen::Index>(axis)); }
-
-double component(const Vector3& v, std::size_t axis) { return v[static_cast<Eigen::Index>(axis)]; }
-
 // The part of v that lies in the plane.
-Vector3 in_plane(const Vector3& v, const ArcAxes& plane) {
-  return v - component(v, plane.normal) * unit(plane.normal);
+Vector3 part_in_plane(Vector3 v, const PlaneAxes& plane) {
+  v[plane.normal] = 0;
+  return v;
 }
 
-double angle_in_plane(const Vector3& v, const ArcAxes& plane) {
-  return std::atan2(component(v, plane.axis1), component(v, plane.axis0));
+double angle_in_plane(const Vector3& v, const PlaneAxes& plane) {
+  return std::atan2(v[plane.second], v[plane.first]);
 }
 
 ArcReading problem(std::string_view id, std::string message) {
   return {std::nullopt, id, std::move(message)};
 }
 
-bool is_one_place_in_plane(const ArcWords& words) {
-  return in_plane(words.end - words.start, words.plane).norm() < geometry::kSamePlace;
-}
-
-// Signed, never 0. A full turn when the ends are one place.
+// Signed, never 0. A full turn when the ends are one position.
 double sweep_about(const Point3& center, const ArcWords& words) {
-  const double full = words.clockwise ? -kFullTurn : kFullTurn;
-  if (is_one_place_in_plane(words)) {
-    return full;
+  if (part_in_plane(words.end - words.start, words.plane).norm() < geometry::kSamePlace) {
+    return words.clockwise ? -kFullTurn : kFullTurn;
   }
   const double turn = angle_in_plane(words.end - center, words.plane) -
                       angle_in_plane(words.start - center, words.plane);
@@ -74,11 +70,13 @@ ArcReading arc_about(const Point3& center, const ArcWords& words) {
                                "others",
                                std::abs(sweep)));
   }
-  return {geometry::Arc{words.start, words.end, center, unit(words.plane.normal), sweep}, {}, {}};
+  return {geometry::Arc{words.start, words.end, center, Vector3::Unit(words.plane.normal), sweep},
+          {},
+          {}};
 }
 
 ArcReading arc_with_radius(const ArcWords& words, double radius) {
-  const Vector3 chord = in_plane(words.end - words.start, words.plane);
+  const Vector3 chord = part_in_plane(words.end - words.start, words.plane);
   const double half = chord.norm() / 2;
   if (half < geometry::kSamePlace / 2) {
     return problem("arc-radius-too-small",
@@ -92,25 +90,29 @@ ArcReading arc_with_radius(const ArcWords& words, double radius) {
   const double height = std::sqrt(std::max(0.0, radius * radius - half * half));
   // The centre of a short counter-clockwise arc lies to the left of its chord.
   const bool left = words.clockwise != (radius > 0);
-  const Vector3 to_left = unit(words.plane.normal).cross(chord) / (2 * half);
+  const Vector3 to_left = Vector3::Unit(words.plane.normal).cross(chord) / (2 * half);
   const Point3 center = words.start + chord / 2 + (left ? height : -height) * to_left;
   return arc_about(center, words);
 }
 
+const std::optional<double>& center_word(const ArcWords& words, int axis) {
+  return words.center[static_cast<std::size_t>(axis)];
+}
+
 ArcReading arc_with_center(const ArcWords& words) {
-  const auto& first = words.center[words.plane.axis0];
-  const auto& second = words.center[words.plane.axis1];
+  const auto& [plane, axis0, axis1, normal] = words.plane;
+  const auto& first = center_word(words, axis0);
+  const auto& second = center_word(words, axis1);
   if (words.center_absolute && !(first && second)) {
     return problem("arc-centre-missing", "absolute arc centres (G90.1) need both centre words");
   }
   Point3 center = words.center_absolute ? Point3::Zero() : words.start;
-  center[static_cast<Eigen::Index>(words.plane.axis0)] += first.value_or(0);
-  center[static_cast<Eigen::Index>(words.plane.axis1)] += second.value_or(0);
-  const auto normal = static_cast<Eigen::Index>(words.plane.normal);
+  center[axis0] += first.value_or(0);
+  center[axis1] += second.value_or(0);
   center[normal] = words.start[normal];
 
-  const double at_start = in_plane(words.start - center, words.plane).norm();
-  const double at_end = in_plane(words.end - center, words.plane).norm();
+  const double at_start = part_in_plane(words.start - center, words.plane).norm();
+  const double at_end = part_in_plane(words.end - center, words.plane).norm();
   const double slack =
       std::clamp(kRelativeRadiusSlack * at_start, kRadiusSlack, kGreatestRadiusSlack);
   if (std::abs(at_start - at_end) > slack) {
@@ -125,50 +127,17 @@ ArcReading arc_with_center(const ArcWords& words) {
   return arc_about(center, words);
 }
 
-}  // namespace
-
-ArcAxes axes_of(Plane plane) {
-  switch (plane) {
-    case Plane::kZX:
-      return {2, 0, 1};
-    case Plane::kYZ:
-      return {1, 2, 0};
-    default:
-      return {0, 1, 2};
-  }
-}
-
-ArcReading arc_from_words(const ArcWords& words) {
-  // K0 in the XY plane says nothing; FreeCAD writes it for grbl.
-  if (words.center[words.plane.normal].value_or(0) != 0) {
-    return problem("arc-words-conflict", fmt::format("{} is no centre word of the active plane",
-                                                     "IJK"[words.plane.normal]));
-  }
-  const bool has_center = words.center[words.plane.axis0] || words.center[words.plane.axis1];
-  if (has_center && words.radius) {
-    return problem("arc-words-conflict", "R beside centre words; expected one of them");
-  }
-  if (words.radius) {
-    return arc_with_radius(words, *words.radius);
-  }
-  if (!has_center) {
-    return problem("arc-centre-missing", "an arc without R and without centre words");
-  }
-  return arc_with_center(words);
-}
-
-namespace {
-
 std::string_view why_arc_not_followed(const BlockWords& words, const StateEffect& effect,
                                       const ControlState& state) {
   const ModalState& modal = state.modal;
   if (modal.plane == Plane::kUnknown || modal.arc_distance == DistanceMode::kUnknown) {
     return reason::kStateUnknown;
   }
-  const ArcAxes plane = axes_of(modal.plane);
-  if (!state.position.known[plane.axis0] || !state.position.known[plane.axis1]) {
-    return reason::kPositionUnknown;
-  }
+  const auto known = [&state](int axis) {
+    return state.position.known[static_cast<std::size_t>(axis)];
+  };
+  const PlaneAxes& plane = axes_of(modal.plane);
+  if (!known(plane.first) || !known(plane.second)) return reason::kPositionUnknown;
   const Word* turns = words.find('P');
   const bool several_turns = turns != nullptr && turns->value != 1;
   if (!effect.takes_parameters && (several_turns || words.has_any("QL"))) {
@@ -181,14 +150,83 @@ double to_mm(double value, const ControlState& state) {
   return state.modal.units == Units::kInch ? value * kMillimetresPerInch : value;
 }
 
+// But for the kind of motion, which the block may say.
+bool is_plain_state(const ModalState& modal) {
+  return modal.distance == DistanceMode::kAbsolute && modal.polar == TriState::kOff &&
+         modal.modal_macro == TriState::kOff;
+}
+
+bool is_plain_block(const Block& block, const BlockFlow& flow) {
+  return block.opacity == ParseStatus::kNone && !block.block_delete && !block.has_checksum &&
+         block.comment_count == 0 && block.word_count > 0 && !flow.label_referenced &&
+         !flow.jump_target && !flow.in_body;
+}
+
+// What the words of a block say, each at most once.
+struct PlainWords {
+  std::array<const Word*, 3> places{};  // X, Y, Z
+  const Word* number = nullptr;         // N
+  const Word* motion = nullptr;         // G0 or G1
+  const Word* feed = nullptr;           // F
+
+  [[nodiscard]] bool moves() const {
+    return places[0] != nullptr || places[1] != nullptr || places[2] != nullptr;
+  }
+};
+
+// Nothing where the interpreter has more to do or to report: other words, one of them twice.
+std::optional<PlainWords> plain_words_of(std::span<const Word> words) {
+  PlainWords found;
+  for (const Word& word : words) {
+    const char c = word.letter;
+    const Word** const slot = c >= 'X' && c <= 'Z'
+                                  ? &found.places[static_cast<std::size_t>(c - 'X')]
+                              : c == 'N'                                         ? &found.number
+                              : c == 'F'                                         ? &found.feed
+                              : c == 'G' && (word.value == 0 || word.value == 1) ? &found.motion
+                                                                                 : nullptr;
+    if (slot == nullptr || !word.is_number || std::exchange(*slot, &word) != nullptr) {
+      return std::nullopt;
+    }
+  }
+  return found.moves() ? std::optional(found) : std::nullopt;
+}
+
+// The feed that the block says, in the state's way of saying feeds; nothing where it says one in
+// another way.
+bool take_feed(const Word* word, ModalState& modal) {
+  if (word == nullptr) return true;
+  if (modal.feed_mode != FeedMode::kPerMinute || !(word->value > 0) ||
+      word->without_point != modal.feed_without_point) {
+    return false;
+  }
+  modal.feed = modal.units == Units::kInch ? word->value * kMillimetresPerInch : word->value;
+  return true;
+}
+
 }  // namespace
+
+ArcReading arc_from_words(const ArcWords& words) {
+  // K0 in the XY plane says nothing; FreeCAD writes it for grbl.
+  if (center_word(words, words.plane.normal).value_or(0) != 0) {
+    return problem("arc-words-conflict", fmt::format("{} is no centre word of the active plane",
+                                                     "IJK"[words.plane.normal]));
+  }
+  const bool has_center =
+      center_word(words, words.plane.first) || center_word(words, words.plane.second);
+  if (has_center && words.radius) {
+    return problem("arc-words-conflict", "R beside centre words; expected one of them");
+  }
+  if (!has_center && !words.radius) {
+    return problem("arc-centre-missing", "an arc without R and without centre words");
+  }
+  return has_center ? arc_with_center(words) : arc_with_radius(words, *words.radius);
+}
 
 std::string_view why_not_followed(const BlockWords& words, const StateEffect& effect,
                                   const ControlState& state) {
   const ModalState& modal = state.modal;
-  if (!words.all_numbers()) {
-    return reason::kExpression;
-  }
+  if (!words.all_numbers()) return reason::kExpression;
   if (modal.motion == MotionMode::kUnknown || modal.distance == DistanceMode::kUnknown) {
     return reason::kStateUnknown;
   }
@@ -197,31 +235,23 @@ std::string_view why_not_followed(const BlockWords& words, const StateEffect& ef
            : modal.modal_macro == TriState::kOn ? reason::kModalMacro
                                                 : reason::kStateUnknown;
   }
-  if (is_arc(modal.motion)) {
-    return why_arc_not_followed(words, effect, state);
-  }
-  if (!effect.takes_parameters && words.has('R')) {
-    return reason::kCornerWord;  // G1 X10 R2: a rounded corner
-  }
-  if (!effect.takes_parameters && words.has_any("IJKPQL")) {
-    return reason::kNotUnderstood;
-  }
-  return {};
+  if (is_arc(modal.motion)) return why_arc_not_followed(words, effect, state);
+  if (effect.takes_parameters) return {};
+  if (words.has('R')) return reason::kCornerWord;  // G1 X10 R2: a rounded corner
+  return words.has_any("IJKPQL") ? reason::kNotUnderstood : std::string_view();
 }
 
 Position end_of_motion(const BlockWords& words, const ControlState& state) {
   Position end = state.position;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Word* word = words.find("XYZ"[axis]);
-    if (word == nullptr) {
-      continue;
-    }
-    double& place = end.mm[static_cast<Eigen::Index>(axis)];
+    if (word == nullptr) continue;
+    double& mm = end.mm[static_cast<Eigen::Index>(axis)];
     if (state.modal.distance == DistanceMode::kAbsolute) {
-      place = to_mm(word->value, state);
+      mm = to_mm(word->value, state);
       end.known[axis] = true;
     } else {
-      place += end.known[axis] ? to_mm(word->value, state) : 0;
+      mm += end.known[axis] ? to_mm(word->value, state) : 0;
     }
   }
   return end;
@@ -235,14 +265,54 @@ ArcWords arc_words(const BlockWords& words, const ControlState& state, const Pos
   arc.clockwise = state.modal.motion == MotionMode::kClockwise;
   arc.center_absolute = state.modal.arc_distance == DistanceMode::kAbsolute;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (const Word* word = words.find("IJK"[axis])) {
-      arc.center[axis] = to_mm(word->value, state);
-    }
+    if (const Word* word = words.find("IJK"[axis])) arc.center[axis] = to_mm(word->value, state);
   }
-  if (const Word* word = words.find('R')) {
-    arc.radius = to_mm(word->value, state);
-  }
+  if (const Word* word = words.find('R')) arc.radius = to_mm(word->value, state);
   return arc;
+}
+
+bool read_plain_line(const Program& program, std::uint32_t index, const BlockFlow& flow,
+                     ControlState& now, Interpretation& read) {
+  const Block& block = program.blocks[index];
+  if (!is_plain_state(now.modal) || !is_plain_block(block, flow)) return false;
+  const auto words = plain_words_of(program.words_of(block));
+  const ModalState& modal = now.modal;
+  const bool straight = modal.motion == MotionMode::kLine || modal.motion == MotionMode::kRapid;
+  if (!words || (words->motion == nullptr && !straight) || !take_feed(words->feed, now.modal)) {
+    return false;
+  }
+  if (words->motion != nullptr) {
+    now.modal.motion = words->motion->value == 0 ? MotionMode::kRapid : MotionMode::kLine;
+    now.other_motion = {};
+  }
+  if (words->motion != nullptr || words->feed != nullptr) {
+    if (read.states.back() != modal) read.states.push_back(modal);
+  }
+
+  const bool rapid = modal.motion == MotionMode::kRapid;
+  BlockMeaning& meaning = read.blocks.emplace_back();
+  meaning.kind = BlockKind::kMotion;
+  meaning.motion = static_cast<std::int32_t>(read.motions.size());
+  meaning.state_after = static_cast<std::uint32_t>(read.states.size() - 1);
+  if (rapid) meaning.barrier = reason::kRapid;
+
+  const geometry::Point3 start = now.position.mm;
+  const double unit = modal.units == Units::kInch ? kMillimetresPerInch : 1;
+  Motion& motion = read.motions.emplace_back();
+  motion.block = index;
+  motion.kind = rapid ? MotionKind::kRapid : MotionKind::kLine;
+  motion.end_known = true;
+  motion.start_known = true;
+  for (std::size_t axis = 0; axis < words->places.size(); ++axis) {
+    const Word* const place = words->places[axis];
+    if (place == nullptr) continue;
+    motion.axes_named[axis] = true;
+    motion.start_known &= now.position.known[axis];
+    now.position.mm[static_cast<Eigen::Index>(axis)] = place->value * unit;
+    now.position.known[axis] = true;
+  }
+  motion.piece = geometry::Line{start, now.position.mm};
+  return true;
 }
 
 }  // namespace batten::gcode

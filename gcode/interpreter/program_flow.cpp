@@ -1,7 +1,6 @@
 #include "gcode/interpreter/program_flow.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -22,24 +21,15 @@ std::string bare_words(std::string_view text) {
   std::string bare;
   bool in_comment = false;
   for (const char c : text) {
-    if (c == ';' && !in_comment) {
-      break;
-    }
+    if (c == ';' && !in_comment) break;
     in_comment |= c == '(';
-    if (!in_comment && c != ' ' && c != '\t') {
-      bare.push_back(static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
-    }
+    if (!in_comment && !is_blank(c)) bare.push_back(upper(c));
     in_comment &= c != ')';
   }
-  std::size_t from = 0;
-  if (from < bare.size() && bare[from] == '/') {
+  std::size_t from = bare.starts_with('/') ? 1 : 0;
+  if (char_at(bare, from) == 'N' && is_digit(char_at(bare, from + 1))) {
     ++from;
-  }
-  if (from + 1 < bare.size() && bare[from] == 'N' && is_digit(bare[from + 1])) {
-    ++from;
-    while (from < bare.size() && is_digit(bare[from])) {
-      ++from;
-    }
+    while (is_digit(char_at(bare, from))) ++from;
   }
   return bare.substr(from);
 }
@@ -49,7 +39,7 @@ bool contains(std::string_view text, std::string_view part) {
 }
 
 bool starts_with_word_and_digit(std::string_view text, std::string_view word) {
-  return text.starts_with(word) && text.size() > word.size() && is_digit(text[word.size()]);
+  return text.starts_with(word) && is_digit(char_at(text, word.size()));
 }
 
 bool is_program_number(std::string_view bare) {
@@ -74,15 +64,14 @@ constexpr std::string_view kOWordKeywords[] = {
 // Of an O-word the part behind its number or name: CALL.., SUB, ENDIF .. What is named otherwise
 // than is known here is given whole: a word anywhere in it counts then.
 std::string_view o_word_keyword(std::string_view bare) {
-  if (bare.empty() || bare[0] != 'O') return {};
-  std::size_t at = 1;
-  if (at < bare.size() && bare[at] == '#') ++at;
-  if (at < bare.size() && bare[at] == '<') {
+  if (!bare.starts_with('O')) return {};
+  std::size_t at = char_at(bare, 1) == '#' ? 2 : 1;
+  if (char_at(bare, at) == '<') {
     at = std::min(bare.find('>', at), bare.size() - 1) + 1;
-  } else if (at < bare.size() && bare[at] == '[') {
+  } else if (char_at(bare, at) == '[') {
     at = std::min(closing_bracket(bare, at), bare.size() - 1) + 1;
   } else {
-    while (at < bare.size() && is_digit(bare[at])) ++at;
+    while (is_digit(char_at(bare, at))) ++at;
   }
   const std::string_view keyword = bare.substr(at);
   const bool known = std::ranges::any_of(
@@ -92,15 +81,9 @@ std::string_view o_word_keyword(std::string_view bare) {
 
 // +1 where a body begins, -1 where it ends.
 int body_step(std::string_view bare) {
-  if (starts_with_word_and_digit(bare, "END")) {
-    return -1;  // macro B: END1
-  }
-  if (starts_with_word_and_digit(bare, "DO")) {
-    return 1;
-  }
-  if (bare.starts_with("WHILE") && contains(bare, "]DO")) {
-    return 1;
-  }
+  if (starts_with_word_and_digit(bare, "END")) return -1;  // macro B: END1
+  if (starts_with_word_and_digit(bare, "DO")) return 1;
+  if (bare.starts_with("WHILE") && contains(bare, "]DO")) return 1;
   const std::string_view keyword = o_word_keyword(bare);
   const bool unknown = keyword.size() == bare.size();
   const auto says = [&](std::string_view word) {
@@ -128,8 +111,7 @@ std::optional<Label> whole_number(const Word* word) {
 }
 
 const Word* find_word(std::span<const Word> words, char letter) {
-  const auto found =
-      std::ranges::find_if(words, [letter](const Word& word) { return word.letter == letter; });
+  const auto found = std::ranges::find(words, letter, &Word::letter);
   return found == words.end() ? nullptr : &*found;
 }
 
@@ -144,29 +126,18 @@ bool names_flow(const Word& word) {
   return word.letter == 'N' || word.letter == 'M' || word.letter == 'G';
 }
 
-struct LabelledBlock {
-  std::size_t block = 0;
-  Label label = 0;
-};
-
 class FlowFinder {
  public:
   FlowFinder(const Program& program, Returns returns)
       : program_(program), returns_(returns), flow_(program.blocks.size()) {}
 
   ProgramFlow find() {
-    for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
-      read_block(i);
-    }
+    for (std::size_t i = 0; i < program_.blocks.size(); ++i) read_block(i);
     close_segment(program_.blocks.size());
     judge_calls();
     const bool refers = !jump_targets_.empty() || any_label_ || !contours_.empty();
     reaches_out_ |= refers;
-    if (refers) {
-      find_labels();
-      mark_labels();
-      mark_contours();
-    }
+    if (refers) mark_blocks_referred_to();
     return {std::move(flow_), reaches_out_};
   }
 
@@ -183,15 +154,9 @@ class FlowFinder {
       flow_[i].in_body |= depth_ > 0;
       return;
     }
-    if (block.opacity != ParseStatus::kNone) {
-      read_text(i, block.opacity == ParseStatus::kFlow);
-    }
-    if (find_word(words, 'M') != nullptr) {
-      read_calls(words);
-    }
-    if (find_word(words, 'G') != nullptr) {
-      read_lathe_cycle(words);
-    }
+    if (block.opacity != ParseStatus::kNone) read_text(i, block.opacity == ParseStatus::kFlow);
+    if (find_word(words, 'M') != nullptr) read_calls(words);
+    if (find_word(words, 'G') != nullptr) read_lathe_cycle(words);
     note_call(words);
     flow_[i].in_body |= depth_ > 0;
   }
@@ -201,9 +166,7 @@ class FlowFinder {
     const std::string bare = bare_words(text);
     find_jumps(bare);
     note_hidden_call(program_.blocks[i].opacity, text, bare);
-    if (!is_flow) {
-      return;
-    }
+    if (!is_flow) return;
     if (is_program_number(bare)) {
       close_segment(i);
       note_program(find_word(program_.words_of(program_.blocks[i]), 'O'));
@@ -215,11 +178,8 @@ class FlowFinder {
   }
 
   static std::optional<Label> leading_label(std::string_view text) {
-    std::size_t at = text.find_first_not_of("/ \t");
-    if (at == std::string_view::npos || std::toupper(static_cast<unsigned char>(text[at])) != 'N') {
-      return std::nullopt;
-    }
-    return number_at(text, at + 1);
+    const std::size_t at = std::min(text.find_first_not_of("/ \t"), text.size());
+    return upper(char_at(text, at)) == 'N' ? number_at(text, at + 1) : std::nullopt;
   }
 
   static std::optional<Label> number_at(std::string_view text, std::size_t at) {
@@ -237,32 +197,24 @@ class FlowFinder {
     for (std::size_t at = bare.find("GOTO"); at != std::string_view::npos;
          at = bare.find("GOTO", at + 4)) {
       std::size_t to = at + 4;
-      while (to < bare.size() && bare[to] == 'N') {
-        ++to;
-      }
+      while (char_at(bare, to) == 'N') ++to;
       if (const auto label = number_at(bare, to)) {
         jump_targets_.insert(*label);
-      } else if (to < bare.size() && (bare[to] == '#' || bare[to] == '[' || bare[to] == '(')) {
-        any_label_ = true;
+      } else {
+        any_label_ |= to < bare.size() && contains("#[(", bare.substr(to, 1));
       }
     }
     for (std::size_t at = bare.find('N'); at != std::string_view::npos;
          at = bare.find('N', at + 1)) {
-      if (const auto label = number_at(bare, at + 1)) {
-        jump_targets_.insert(*label);
-      }
+      if (const auto label = number_at(bare, at + 1)) jump_targets_.insert(*label);
     }
   }
 
   // M97 P, M99 P and M98 P.. H name a block; M98 P alone names a program.
   void read_calls(std::span<const Word> words) {
     const bool ends_subprogram = has_code(words, 'M', 99, 99);
-    if (ends_subprogram || has_code(words, 'M', 97, 97)) {
-      add_target(find_word(words, 'P'));
-    }
-    if (has_code(words, 'M', 98, 98)) {
-      add_target(find_word(words, 'H'));
-    }
+    if (ends_subprogram || has_code(words, 'M', 97, 97)) add_target(find_word(words, 'P'));
+    if (has_code(words, 'M', 98, 98)) add_target(find_word(words, 'H'));
     segment_is_subprogram_ |= ends_subprogram;
     reaches_out_ |= ends_subprogram;
   }
@@ -299,15 +251,8 @@ class FlowFinder {
   }
 
   void add_target(const Word* word) {
-    if (word == nullptr) {
-      return;
-    }
-    const auto label = whole_number(word);
-    if (label) {
-      jump_targets_.insert(*label);
-    } else if (!word->is_number) {
-      any_label_ = true;
-    }
+    if (const auto label = whole_number(word)) jump_targets_.insert(*label);
+    any_label_ |= word != nullptr && !word->is_number;
   }
 
   // G70 to G73 P Q of lathes name the first and the last block of a contour. On mills G73 drills,
@@ -319,9 +264,7 @@ class FlowFinder {
     }
     const auto first = whole_number(find_word(words, 'P'));
     const auto last = whole_number(find_word(words, 'Q'));
-    if (first && last) {
-      contours_.emplace_back(*first, *last);
-    }
+    if (first && last) contours_.emplace_back(*first, *last);
   }
 
   // A program with M99 is a subprogram, or starts again from its beginning: its blocks can be
@@ -334,46 +277,28 @@ class FlowFinder {
     segment_is_subprogram_ = false;
   }
 
-  void find_labels() {
-    for (std::size_t i = 0; i < program_.blocks.size(); ++i) {
-      if (const auto label = label_of(program_.blocks[i])) {
-        labels_.push_back({i, *label});
-      }
-    }
-  }
-
   [[nodiscard]] std::optional<Label> label_of(const Block& block) const {
-    if (block.opacity == ParseStatus::kProgramMark) {
-      return std::nullopt;
-    }
+    if (block.opacity == ParseStatus::kProgramMark) return std::nullopt;
     const auto label = whole_number(find_word(program_.words_of(block), 'N'));
     return label || block.opacity == ParseStatus::kNone
                ? label
                : leading_label(program_.source.text(block.span));
   }
 
-  void mark_labels() {
-    for (const LabelledBlock& each : labels_) {
-      if (any_label_ || jump_targets_.contains(each.label)) {
-        flow_[each.block].label_referenced = true;
-        flow_[each.block].jump_target = true;
-      }
-    }
-  }
-
-  void mark_contours() {
-    for (const auto& [first, last] : contours_) {
-      bool inside = false;
-      auto next = labels_.begin();
-      for (std::size_t i = 0; i < flow_.size(); ++i) {
-        const bool labelled = next != labels_.end() && next->block == i;
-        const bool is_first = labelled && next->label == first;
-        const bool is_last = labelled && next->label == last;
-        if (labelled) ++next;
-        flow_[i].label_referenced |= is_first || is_last;
-        inside |= is_first;
-        flow_[i].in_body |= inside;
-        inside &= !is_last;
+  void mark_blocks_referred_to() {
+    std::vector<bool> inside(contours_.size());
+    for (std::size_t i = 0; i < flow_.size(); ++i) {
+      BlockFlow& flow = flow_[i];
+      const std::optional<Label> label = label_of(program_.blocks[i]);
+      flow.jump_target = label && (any_label_ || jump_targets_.contains(*label));
+      flow.label_referenced = flow.jump_target;
+      for (std::size_t k = 0; k < contours_.size(); ++k) {
+        const bool is_first = label == contours_[k].first;
+        const bool is_last = label == contours_[k].second;
+        flow.label_referenced |= is_first || is_last;
+        inside[k] = inside[k] || is_first;
+        flow.in_body |= inside[k];
+        inside[k] = inside[k] && !is_last;
       }
     }
   }
@@ -381,7 +306,6 @@ class FlowFinder {
   const Program& program_;
   Returns returns_;
   std::vector<BlockFlow> flow_;
-  std::vector<LabelledBlock> labels_;  // in order; found where something refers to one
   std::unordered_set<Label> jump_targets_;
   std::unordered_set<Label> programs_;        // that stand here
   std::vector<std::optional<Label>> called_;  // nothing: by a name or a computed number
@@ -403,9 +327,7 @@ ProgramFlow follow_flow(const Program& program, Returns returns) {
 
 FlowEffect flow_effect(std::string_view text) {
   const std::string bare = bare_words(text);
-  if (is_program_number(bare)) {
-    return FlowEffect::kProgramNumber;
-  }
+  if (is_program_number(bare)) return FlowEffect::kProgramNumber;
   const bool jumps = bare.starts_with("GOTO") || (bare.starts_with("IF") && contains(bare, "GOTO"));
   const bool assigns = bare.starts_with("IF") && contains(bare, "THEN#");
   if (o_word_keyword(bare).starts_with("CALL")) return FlowEffect::kCall;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "gcode/state/modal_state.h"
-#include "gcode/state/reason.h"
+#include "gcode/interpreter/program_flow.h"
+#include "gcode/text/characters.h"
 
 namespace batten::gcode {
 namespace {
@@ -41,25 +41,23 @@ class WordApplier {
   // Sets the item of the word's group. Only a word that repeats an earlier word changes nothing.
   template <typename Item>
   void set(const CodeRow& row, Item& item) {
-    set(row, item, row.value.as<Item>());
-  }
-  template <typename Item>
-  void set(const CodeRow& row, Item& item, Item value) {
+    const Item value = row.value.as<Item>();
     if (item != value || !state_.is_set(row.group)) block(row.why);
     item = value;
     state_.mark_set(row.group);
   }
 
-  // Switches a transformation of the coordinates. When it changes, the place of the tool has other
-  // coordinates than before.
+  // Switches a transformation of the coordinates. When it changes, the position of the tool has
+  // other coordinates than before.
   void set_frame(const CodeRow& row, TriState& item) {
-    set_frame(row, item, row.value.as<TriState>());
+    const bool on = is_on(row);
+    if (item != row.value.as<TriState>() || on) forget_position(state_);
+    set(row, item);
+    if (on) acts(row.why);
   }
-  void set_frame(const CodeRow& row, TriState& item, TriState value) {
-    if (item != value || value == TriState::kOn) forget_position(state_);
-    set(row, item, value);
-    if (value == TriState::kOn) acts(row.why);
-  }
+
+  static bool is_on(const CodeRow& row) { return row.value.as<TriState>() == TriState::kOn; }
+  static bool is_off(const CodeRow& row) { return row.value.as<TriState>() == TriState::kOff; }
 
   // What the row says of any word.
   void apply_traits(const CodeRow& row) {
@@ -98,11 +96,8 @@ class WordApplier {
       case CodeGroup::kUnits:
         return apply_units(row);
       case CodeGroup::kCutter:
-        // Behind it the tool stands beside the programmed place.
-        if (row.value.as<TriState>() == TriState::kOff &&
-            modal().cutter_compensation != TriState::kOff) {
-          forget_position(state_);
-        }
+        // After it the tool is beside the programmed position.
+        if (is_off(row) && modal().cutter_compensation != TriState::kOff) forget_position(state_);
         return set(row, modal().cutter_compensation);
       case CodeGroup::kToolLength:
         // Offsets lie along Z on mills, along X and Z on lathes, along any axis on LinuxCNC.
@@ -134,7 +129,7 @@ class WordApplier {
         return apply_smoothing(row);
       case CodeGroup::kModalMacro:
         // On: apply_late_words forgets everything.
-        if (row.value.as<TriState>() == TriState::kOff) modal().modal_macro = TriState::kOff;
+        if (is_off(row)) modal().modal_macro = TriState::kOff;
         return;
       case CodeGroup::kNone:
       case CodeGroup::kStop:
@@ -145,14 +140,10 @@ class WordApplier {
 
   void apply_feed() {
     const Word* f = words_.find('F');
-    if (f == nullptr) {
-      return;
-    }
+    if (f == nullptr) return;
     const std::optional<double> before = modal().feed;
     // A run has one way of writing feeds.
-    if (before && modal().feed_without_point != f->without_point) {
-      block(reason::kStateChange);
-    }
+    if (before && modal().feed_without_point != f->without_point) block(reason::kStateChange);
     modal().feed = feed_of(*f);
     modal().feed_without_point = f->without_point;
     effect_.feed_changed = before != modal().feed || !modal().feed;
@@ -160,40 +151,29 @@ class WordApplier {
 
   std::optional<double> feed_of(const Word& f) const {
     const ModalState& now = state_.modal;
+    // F of a dwell or a thread is no feed.
     const bool known = f.is_number && f.value > 0 && now.feed_mode != FeedMode::kUnknown &&
                        !words_.has_trait(trait::kOwnFeed);
-    if (!known) {
-      return std::nullopt;  // also: F of a dwell or a thread is no feed
-    }
+    if (!known) return std::nullopt;
     const bool inches = now.units == Units::kInch && now.feed_mode != FeedMode::kInverseTime;
     return inches ? f.value * kMillimetresPerInch : f.value;
   }
 
   void apply_spindle_speed() {
     const Word* s = words_.find('S');
-    if (s == nullptr) {
-      return;
-    }
+    if (s == nullptr) return;
     // S of a dwell or of a speed limit is not the speed.
     const bool is_speed = s->is_number && !words_.has_trait(trait::kOwnSpeed);
     const std::optional<double> speed = is_speed ? std::optional(s->value) : std::nullopt;
-    if (!speed || modal().spindle_speed != speed) {
-      block(reason::kSpindle);
-    }
+    if (!speed || modal().spindle_speed != speed) block(reason::kSpindle);
     modal().spindle_speed = speed;
   }
 
   // T changes the tool and its offsets at once on lathes; H and D may name other offsets.
   void apply_tool_words() {
-    if (words_.has('T') || (words_.has('H') && !effect_.takes_parameters)) {
-      forget_position(state_);
-    }
-    if (words_.has_any("THD") && !effect_.takes_parameters) {
-      block(reason::kToolChange);
-    }
-    if (words_.has('T')) {
-      block(reason::kToolChange);
-    }
+    const bool tool = words_.has('T');
+    if (tool || (words_.has('H') && !effect_.takes_parameters)) forget_position(state_);
+    if (tool || (words_.has_any("HD") && !effect_.takes_parameters)) block(reason::kToolChange);
   }
 
   void apply_m(const CodeRow& row) {
@@ -231,7 +211,7 @@ class WordApplier {
 
   // G51 scales. G50 ends that on mills; on lathes it limits the spindle (S) or sets coordinates.
   void apply_scaling(const CodeRow& row) {
-    if (row.value.as<TriState>() == TriState::kOff && words_.has_any("XYZUVWS")) {
+    if (is_off(row) && words_.has_any("XYZUVWS")) {
       acts(reason::kCoordinateChange);
       return forget_named_axes(state_, words_);
     }
@@ -240,7 +220,7 @@ class WordApplier {
 
   void apply_rotation(const CodeRow& row) {
     if (row.is(trait::kTilts)) return set_frame(row, modal().tilted_plane);
-    if (row.value.as<TriState>() == TriState::kOff) {
+    if (is_off(row)) {
       CodeRow tilting = row;
       tilting.why = reason::kTiltedPlane;
       set_frame(tilting, modal().tilted_plane);
@@ -255,7 +235,9 @@ class WordApplier {
       const Word* word = words_.find(letter);
       ends |= word != nullptr && word->is_number && word->value == 0;
     }
-    set_frame(row, modal().cylindrical, ends ? TriState::kOff : TriState::kOn);
+    CodeRow turned = row;
+    turned.value = ends ? TriState::kOff : TriState::kOn;
+    set_frame(turned, modal().cylindrical);
   }
 
   // G5.1 Q0, Q1: look-ahead only. Q2, Q3: the control fits a curve. With I, J: a spline.
@@ -306,19 +288,17 @@ class WordApplier {
       effect_.takes_axes = true;
       return forget_position(state_);
     }
-    const auto units = row.value.as<Units>();
-    if (modal().units != units || !state_.is_set(row.group)) block(row.why);
+    Units units = modal().units;
+    set(row, units);
     set_units(state_, units);
-    state_.mark_set(row.group);
     effect_.unit_word = true;
   }
 
   // Mills: where cycles retract to. Lathes of one kind: feed per minute and per revolution.
   void apply_cycle_return(const CodeRow& row) {
-    const bool to_start = row.value.as<TriState>() == TriState::kOn;  // G98
     const bool of_a_cycle =
         modal().motion == MotionMode::kOther || std::ranges::any_of(words_.g_codes(), is_cycle);
-    if (to_start) {
+    if (is_on(row)) {  // G98
       if (modal().feed_mode != FeedMode::kUnknown) return;
       modal().feed_mode = FeedMode::kPerMinute;
     } else {
@@ -336,9 +316,8 @@ class WordApplier {
 
   // G7: X is a diameter. G8 ends it; G8 P1 is look-ahead on FANUC.
   void apply_diameter(const CodeRow& row) {
-    const auto wanted = row.value.as<TriState>();
-    if (wanted == TriState::kOff && words_.has('P')) return acts(row.why);
-    if (modal().lathe_diameter != wanted) forget_axis(state_, 0);
+    if (is_off(row) && words_.has('P')) return acts(row.why);
+    if (modal().lathe_diameter != row.value.as<TriState>()) forget_axis(state_, 0);
     set(row, modal().lathe_diameter);
   }
 
@@ -346,6 +325,30 @@ class WordApplier {
   ControlState& state_;
   StateEffect effect_;
 };
+
+// Parameter assignments of LinuxCNC and macro B change no modal state, but high numbers are
+// windows into the control: FANUC's tool offsets begin at #2000, work offsets lie above #5000.
+bool assigns_only_variables(std::string_view text) {
+  constexpr int kFirstSystemVariable = 2000;
+  for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1)) {
+    int number = -1;
+    std::size_t digit = at + 1;
+    for (; digit < text.size() && (is_digit(text[digit]) || is_blank(text[digit])); ++digit) {
+      if (is_blank(text[digit])) continue;  // they mean nothing within a number
+      number = std::max(number, 0) * 10 + (text[digit] - '0');
+      if (number >= kFirstSystemVariable) return false;
+    }
+    const bool named = digit < text.size() && text[digit] == '<';
+    if (number < 0 && !named) return false;
+  }
+  return true;
+}
+
+void apply_assignment(std::string_view text, ControlState& state) {
+  if (assigns_only_variables(text)) return;
+  forget_position(state);
+  state.work_offset = 0;
+}
 
 }  // namespace
 
@@ -365,6 +368,45 @@ void apply_late_words(const BlockWords& words, ControlState& state) {
   if (words.has_trait(trait::kUnknownBehind)) {
     forget_everything(state);
     state.modal.modal_macro = TriState::kOn;
+  }
+}
+
+std::string_view opacity_reason(ParseStatus opacity) {
+  switch (opacity) {
+    case ParseStatus::kExpression:
+      return reason::kExpression;
+    case ParseStatus::kCornerWord:
+      return reason::kCornerWord;
+    case ParseStatus::kAssignment:
+      return reason::kAssignment;
+    case ParseStatus::kFlow:
+      return reason::kProgramFlow;
+    case ParseStatus::kForeign:
+    case ParseStatus::kContinued:
+    case ParseStatus::kNamedWords:
+      return reason::kForeignWords;
+    case ParseStatus::kProgramMark:
+      return reason::kProgramMark;
+    default:
+      return reason::kNotUnderstood;
+  }
+}
+
+void apply_opaque(ParseStatus opacity, std::string_view text, ControlState& state) {
+  if (opacity == ParseStatus::kProgramMark) return;  // and text that no control reads
+  if (opacity == ParseStatus::kAssignment) return apply_assignment(text, state);
+  const FlowEffect effect =
+      opacity == ParseStatus::kFlow ? flow_effect(text) : FlowEffect::kEverything;
+  switch (effect) {
+    case FlowEffect::kNothing:
+      return;
+    case FlowEffect::kAssignment:
+      return apply_assignment(text, state);
+    case FlowEffect::kCall:
+      return forget_what_calls_change(state);
+    case FlowEffect::kProgramNumber:
+    case FlowEffect::kEverything:
+      return forget_everything(state);
   }
 }
 

@@ -1,12 +1,12 @@
-// What the words of a block do to the control, other than a motion along X, Y, Z.
+// What the words of a block do to the control, other than a motion along X, Y, Z; and what a block
+// that was not split into words may have done.
 #pragma once
 
-#include <optional>
 #include <string_view>
 
-#include "gcode/state/block_words.h"
-#include "gcode/state/control_state.h"
+#include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
+#include "gcode/text/program.h"
 
 namespace batten::gcode {
 
@@ -31,5 +31,13 @@ struct StateEffect {
 
 // What only happens at the end of the block, after its motion: calls, program end, tool change.
 void apply_late_words(const BlockWords& words, ControlState& state);
+
+// Why a block that was not split into words is kept.
+[[nodiscard]] std::string_view opacity_reason(ParseStatus opacity);
+
+// Forgets what a block with this text could have changed: nothing for program marks, jumps and
+// plain variables, the position for parameters that are windows into the control, otherwise
+// everything. Not for blocks that list all their words.
+void apply_opaque(ParseStatus opacity, std::string_view text, ControlState& state);
 
 }  // namespace batten::gcode

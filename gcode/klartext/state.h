@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "gcode/state/control_state.h"
+#include "gcode/state/modal_state.h"
 #include "gcode/text/program.h"
 
 namespace batten::gcode {

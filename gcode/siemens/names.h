@@ -7,7 +7,7 @@
 #include <unordered_set>
 
 #include "gcode/state/block_words.h"
-#include "gcode/state/control_state.h"
+#include "gcode/state/modal_state.h"
 
 namespace batten::gcode {
 

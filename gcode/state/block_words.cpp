@@ -11,23 +11,16 @@ BlockWords::BlockWords(std::span<const Word> words) {
       add_code(word);
       continue;
     }
-    if (word.letter < 'A' || word.letter > 'Z') {
-      continue;  // a corner word: its block says so
-    }
-    const Word*& place = words_[slot(word.letter)];
-    if (place != nullptr) {
-      note(Problem::kLetterTwice, place, &word);
-    } else {
-      place = &word;
-    }
+    if (word.letter < 'A' || word.letter > 'Z') continue;  // a corner word: its block says so
+    const Word*& first = words_[slot(word.letter)];
+    if (first != nullptr) note(Problem::kLetterTwice, first, &word);
+    if (first == nullptr) first = &word;
   }
 }
 
 void BlockWords::add_code(const Word& word) {
   const bool is_g = word.letter == 'G';
-  auto& codes = is_g ? g_ : m_;
-  auto& code_words = is_g ? g_words_ : m_words_;
-  std::size_t& count = is_g ? g_count_ : m_count_;
+  auto& [codes, code_words, count] = is_g ? g_ : m_;
   const Code code = code_of(word);
   if (code == kNoCode || count == kMaxCodes || (!is_g && code % 10 != 0)) {
     note(Problem::kBadCode, &word, nullptr);
@@ -41,16 +34,14 @@ void BlockWords::add_code(const Word& word) {
     }
   }
   codes[count] = code;
-  code_words[count] = &word;
-  ++count;
+  code_words[count++] = &word;
 }
 
 void BlockWords::note(Problem problem, const Word* first, const Word* second) {
-  if (problem_ == Problem::kNone) {
-    problem_ = problem;
-    first_ = first;
-    second_ = second;
-  }
+  if (problem_ != Problem::kNone) return;
+  problem_ = problem;
+  first_ = first;
+  second_ = second;
 }
 
 bool BlockWords::has_g(Code code) const {

@@ -23,8 +23,8 @@ class BlockWords {
 
   explicit BlockWords(std::span<const Word> words);
 
-  [[nodiscard]] std::span<const Code> g_codes() const { return {g_.data(), g_count_}; }
-  [[nodiscard]] std::span<const Code> m_codes() const { return {m_.data(), m_count_}; }
+  [[nodiscard]] std::span<const Code> g_codes() const { return g_.all(); }
+  [[nodiscard]] std::span<const Code> m_codes() const { return m_.all(); }
   [[nodiscard]] bool has_g(Code code) const;
   [[nodiscard]] bool has_m(Code code) const;
   // Has it a G word of this group, or with one of these traits?
@@ -49,18 +49,21 @@ class BlockWords {
   // RS-274 has 15 modal groups; with several words without a group a block stays below this.
   static constexpr std::size_t kMaxCodes = 16;
 
+  // Filled up to its count only: clearing it would take longer than reading a block.
+  struct Codes {
+    std::array<Code, kMaxCodes> codes;
+    std::array<const Word*, kMaxCodes> words;
+    std::size_t count = 0;
+    [[nodiscard]] std::span<const Code> all() const { return {codes.data(), count}; }
+  };
+
   static std::size_t slot(char letter) { return static_cast<std::size_t>(letter - 'A'); }
   void add_code(const Word& word);
   void note(Problem problem, const Word* first, const Word* second);
 
   std::array<const Word*, 26> words_{};
-  // Filled up to their counts only: clearing them would take longer than reading a block.
-  std::array<Code, kMaxCodes> g_;
-  std::array<Code, kMaxCodes> m_;
-  std::array<const Word*, kMaxCodes> g_words_;
-  std::array<const Word*, kMaxCodes> m_words_;
-  std::size_t g_count_ = 0;
-  std::size_t m_count_ = 0;
+  Codes g_;
+  Codes m_;
   bool has_words_ = false;
   bool all_numbers_ = true;
   Problem problem_ = Problem::kNone;

@@ -119,7 +119,7 @@ inline constexpr Traits kStandsAlone = 1U << 14U;  // means the same without its
 // Said again, it acts again: it hangs on the tool in the spindle (G43), on offsets that were
 // changed (G54), or on words beside it or their absence (G64 ends the tolerance of G64 P0.01).
 inline constexpr Traits kActsEachTime = 1U << 15U;
-// For --convert.
+// For --convert, and the proof of programs of two languages.
 inline constexpr Traits kCommon = 1U << 16U;  // the same on every control that takes it at all
 inline constexpr Traits kSilent = 1U << 17U;  // only says how others are read, or ends what was
                                               // refused where it began

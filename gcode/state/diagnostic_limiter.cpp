@@ -12,12 +12,6 @@ bool DiagnosticLimiter::counts(std::string_view id, SourceSpan where) {
   return known->count.counts(where);
 }
 
-bool DiagnosticLimiter::is_new(Code code) {
-  if (std::ranges::find(codes_, code) != codes_.end()) return false;
-  codes_.push_back(code);
-  return true;
-}
-
 void DiagnosticLimiter::tell_rest(Diagnostics& found) const {
   for (const OfId& each : ids_) {
     if (each.count.untold == 0) continue;

@@ -1,7 +1,8 @@
-// How often the same trouble was told of: a program of rubbish must not bury its reader.
+// How often the same trouble was reported: a program of rubbish must not bury its reader.
 #pragma once
 
 #include <cstddef>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -11,7 +12,7 @@
 
 namespace batten::gcode {
 
-// Of one id, as much as is told one by one.
+// Of one id, as much as is reported one by one.
 inline constexpr std::size_t kMostTold = 50;
 
 // Counts diagnostics of one id.
@@ -26,8 +27,7 @@ struct ToldCount {
       ++told;
       return true;
     }
-    first_untold = untold == 0 ? where : first_untold;
-    ++untold;
+    if (untold++ == 0) first_untold = where;
     return false;
   }
 };
@@ -37,7 +37,7 @@ class DiagnosticLimiter {
  public:
   // May one more of this id be told?
   bool counts(std::string_view id, SourceSpan where);
-  bool is_new(Code code);
+  bool is_new(Code code) { return codes_.insert(code).second; }
   // One warning for each id of which more was to tell.
   void tell_rest(Diagnostics& found) const;
 
@@ -47,7 +47,7 @@ class DiagnosticLimiter {
     ToldCount count;
   };
   std::vector<OfId> ids_;
-  std::vector<Code> codes_;
+  std::set<Code> codes_;
 };
 
 }  // namespace batten::gcode

@@ -10,44 +10,42 @@ namespace {
 
 constexpr double kMsPerSecond = 1000;
 
-bool is_dwell_code(const Word& word) { return word.letter == 'G' && word.value == 4; }
-
 // The only word beside G4 and N; nullptr where there are others, or G4 stands twice.
 const Word* time_word(std::span<const Word> words) {
   const Word* time = nullptr;
   int codes = 0;
   for (const Word& word : words) {
     if (word.letter == 'N') continue;
-    if (!word.is_number) return nullptr;
-    if (is_dwell_code(word)) {
-      ++codes;
-    } else if (time == nullptr) {
-      time = &word;
-    } else {
-      return nullptr;
-    }
+    const bool is_dwell = word.letter == 'G' && word.value == 4;
+    if (!word.is_number || (!is_dwell && time != nullptr)) return nullptr;
+    if (!is_dwell) time = &word;
+    codes += is_dwell ? 1 : 0;
   }
   return codes == 1 ? time : nullptr;
 }
 
-// Milliseconds in the unit of the word; 0 where that is not known.
+// A word that says a time under a form, the one that is written first, in milliseconds without a
+// point and with one; 0: its unit is not certain.
+struct TimeWord {
+  DwellForm form;
+  char letter;
+  double without_point;
+  double with_point;
+};
+constexpr TimeWord kTimeWords[] = {
+    {DwellForm::kUnknown, 'X', 0, kMsPerSecond},
+    {DwellForm::kSecondsP, 'P', kMsPerSecond, kMsPerSecond},
+    {DwellForm::kSecondsX, 'X', kMsPerSecond, kMsPerSecond},
+    {DwellForm::kSecondsXOrMsP, 'X', 0, kMsPerSecond},
+    {DwellForm::kSecondsXOrMsP, 'P', 1, 0},
+    {DwellForm::kSecondsByPoint, 'P', 1, kMsPerSecond},
+    {DwellForm::kSecondsF, 'F', kMsPerSecond, kMsPerSecond},
+};
+
 double unit_of(const Word& word, DwellForm form) {
-  const bool with_point = word.has_point;
-  switch (form) {
-    case DwellForm::kUnknown:
-      return word.letter == 'X' && with_point ? kMsPerSecond : 0;
-    case DwellForm::kSecondsP:
-      return word.letter == 'P' ? kMsPerSecond : 0;
-    case DwellForm::kSecondsX:
-      return word.letter == 'X' ? kMsPerSecond : 0;
-    case DwellForm::kSecondsXOrMsP:
-      if (word.letter == 'X') return with_point ? kMsPerSecond : 0;
-      return word.letter == 'P' && !with_point ? 1 : 0;
-    case DwellForm::kSecondsByPoint:
-      if (word.letter != 'P') return 0;
-      return with_point ? kMsPerSecond : 1;
-    case DwellForm::kSecondsF:
-      return word.letter == 'F' ? kMsPerSecond : 0;
+  for (const TimeWord& each : kTimeWords) {
+    if (each.form != form || each.letter != word.letter) continue;
+    return word.has_point ? each.with_point : each.without_point;
   }
   return 0;
 }
@@ -73,20 +71,11 @@ std::string dwell_seconds(std::int32_t ms, bool point) {
 }
 
 std::string dwell_block(std::int32_t ms, DwellForm form) {
-  switch (form) {
-    case DwellForm::kUnknown:
-      return {};
-    case DwellForm::kSecondsP:
-      return "G4 P" + dwell_seconds(ms, false);
-    case DwellForm::kSecondsX:
-    case DwellForm::kSecondsXOrMsP:
-      return "G4 X" + dwell_seconds(ms, true);
-    case DwellForm::kSecondsByPoint:
-      return "G4 P" + dwell_seconds(ms, true);
-    case DwellForm::kSecondsF:
-      return "G4 F" + dwell_seconds(ms, false);
-  }
-  return {};
+  if (form == DwellForm::kUnknown) return {};
+  const TimeWord& word = *std::ranges::find(kTimeWords, form, &TimeWord::form);
+  // X of other controls has another unit without a point.
+  const bool point = word.letter == 'X' || word.without_point != word.with_point;
+  return fmt::format("G4 {}{}", word.letter, dwell_seconds(ms, point));
 }
 
 }  // namespace batten::gcode

@@ -1,19 +1,13 @@
 #include "gcode/state/modal_state.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <stdexcept>
 
 namespace batten::gcode {
 namespace {
 
-template <typename Item>
-Item same_or(Item a, Item b, Item otherwise) {
-  return a == b ? a : otherwise;
-}
-
-// Visits the items that is_known() asks for, in pairs of two states.
+// Calls `visit` with the items of two states and what each is where it is not known: those that
+// is_known() asks for, then the others but feeds and speeds.
 template <typename Visit>
 void for_each_mode(ModalState& a, const ModalState& b, Visit visit) {
   visit(a.units, b.units, Units::kUnknown);
@@ -22,13 +16,20 @@ void for_each_mode(ModalState& a, const ModalState& b, Visit visit) {
   visit(a.arc_distance, b.arc_distance, DistanceMode::kUnknown);
   visit(a.feed_mode, b.feed_mode, FeedMode::kUnknown);
   visit(a.path, b.path, PathMode::kUnknown);
-  for (const auto item :
-       {&ModalState::cutter_compensation, &ModalState::tool_center_point, &ModalState::tilted_plane,
-        &ModalState::scaling, &ModalState::rotation, &ModalState::mirror, &ModalState::polar,
-        &ModalState::cylindrical, &ModalState::control_smoothing, &ModalState::modal_macro,
-        &ModalState::constant_surface_speed, &ModalState::lathe_diameter}) {
-    visit(a.*item, b.*item, TriState::kUnknown);
+  visit(a.motion, b.motion, MotionMode::kUnknown);
+  for (const ModalSwitch& each : kModalSwitches) {
+    visit(a.*each.item, b.*each.item, TriState::kUnknown);
   }
+}
+
+ModalState either(const ModalState& a, const ModalState& b) {
+  ModalState both = a;
+  for_each_mode(both, b, [](auto& item, auto other, auto unknown) {
+    if (item != other) item = unknown;
+  });
+  if (a.feed != b.feed || a.feed_without_point != b.feed_without_point) both.feed.reset();
+  if (a.spindle_speed != b.spindle_speed) both.spindle_speed.reset();
+  return both;
 }
 
 }  // namespace
@@ -36,28 +37,79 @@ void for_each_mode(ModalState& a, const ModalState& b, Visit visit) {
 ModalState unknown_modal_state() {
   ModalState state;
   for_each_mode(state, state, [](auto& item, auto, auto unknown) { item = unknown; });
-  state.motion = MotionMode::kUnknown;
-  state.laser_power_mode = TriState::kUnknown;
   return state;
 }
 
-ModalState either(const ModalState& a, const ModalState& b) {
-  ModalState both = a;
-  for_each_mode(both, b,
-                [](auto& item, auto other, auto unknown) { item = same_or(item, other, unknown); });
-  both.motion = same_or(a.motion, b.motion, MotionMode::kUnknown);
-  both.laser_power_mode = same_or(a.laser_power_mode, b.laser_power_mode, TriState::kUnknown);
-  both.feed =
-      a.feed == b.feed && a.feed_without_point == b.feed_without_point ? a.feed : std::nullopt;
-  both.spindle_speed = a.spindle_speed == b.spindle_speed ? a.spindle_speed : std::nullopt;
+bool is_known(const ModalState& state) {
+  ModalState asked = state;
+  asked.motion = MotionMode::kLine;
+  asked.laser_power_mode = TriState::kOff;
+  bool known = true;
+  for_each_mode(asked, state,
+                [&known](auto item, auto, auto unknown) { known &= item != unknown; });
+  return known;
+}
+
+bool path_alone_counts(const ModalState& state) {
+  const auto leaves_path = [&state](const ModalSwitch& each) {
+    return !each.bends_path || state.*each.item == TriState::kOff;
+  };
+  return std::ranges::all_of(kModalSwitches, leaves_path) &&
+         state.control_smoothing != TriState::kUnknown && state.units != Units::kUnknown &&
+         state.feed_mode == FeedMode::kPerMinute && state.distance == DistanceMode::kAbsolute;
+}
+
+void forget_axis(ControlState& state, std::size_t axis) {
+  state.position.known[axis] = false;
+  state.position.mm[static_cast<Eigen::Index>(axis)] = 0;
+}
+
+void forget_position(ControlState& state) { state.position = Position{}; }
+
+void forget_everything(ControlState& state) {
+  const bool keeps = state.calls_keep_modes;
+  state = {};
+  state.modal = unknown_modal_state();
+  state.calls_keep_modes = keeps;
+}
+
+void forget_what_calls_change(ControlState& state) {
+  if (!state.calls_keep_modes) return forget_everything(state);
+  state.modal.motion = MotionMode::kUnknown;
+  state.modal.feed.reset();
+  state.modal.spindle_speed.reset();
+  forget_position(state);
+  state.other_motion = {};
+}
+
+void forget_named_axes(ControlState& state, const BlockWords& words) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (words.has("XYZ"[axis]) || words.has("UVW"[axis])) forget_axis(state, axis);
+  }
+}
+
+ControlState either(const ControlState& a, const ControlState& b) {
+  ControlState both = a;
+  both.modal = either(a.modal, b.modal);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    const bool same =
+        a.position.known[axis] && b.position.known[axis] && a.position.mm[i] == b.position.mm[i];
+    if (!same) forget_axis(both, axis);
+  }
+  // What is programmed next has no certain length.
+  if (a.modal.units != b.modal.units) forget_position(both);
+  if (a.other_motion != b.other_motion) both.other_motion = {};
+  if (a.work_offset != b.work_offset) both.work_offset = 0;
+  both.set_by_word = a.set_by_word & b.set_by_word;
   return both;
 }
 
-bool is_known(const ModalState& state) {
-  bool known = true;
-  ModalState copy = state;
-  for_each_mode(copy, state, [&known](auto item, auto, auto unknown) { known &= item != unknown; });
-  return known;
+void set_units(ControlState& state, Units units) {
+  if (state.modal.units == units) return;
+  if (state.modal.units == Units::kUnknown || units == Units::kUnknown) forget_position(state);
+  state.modal.units = units;
+  state.modal.feed.reset();
 }
 
 bool is_lathe_cycle(Code code, const BlockWords& words) {
@@ -75,38 +127,14 @@ std::optional<Units> units_set_by(const BlockWords& words) {
 }
 
 double millimetres_per(Units units) {
-  switch (units) {
-    case Units::kMillimetre:
-      return 1;
-    case Units::kInch:
-      return 25.4;
-    case Units::kUnknown:
-      break;
+  if (units == Units::kUnknown) {
+    throw std::invalid_argument("millimetres_per: units unknown, expected millimetre or inch");
   }
-  throw std::invalid_argument("millimetres_per: units unknown, expected millimetre or inch");
+  return units == Units::kInch ? kMillimetresPerInch : 1;
 }
 
 double printed_step(const NumberFormat& format, Units units) {
   return std::pow(10.0, -format.decimals) * millimetres_per(units);
-}
-
-bool path_alone_counts(const ModalState& state) {
-  const std::array switches = {
-      state.cutter_compensation,
-      state.tool_center_point,
-      state.tilted_plane,
-      state.scaling,
-      state.rotation,
-      state.mirror,
-      state.polar,
-      state.cylindrical,
-      state.modal_macro,
-      state.constant_surface_speed,
-      state.lathe_diameter,
-  };
-  return std::ranges::all_of(switches, [](TriState item) { return item == TriState::kOff; }) &&
-         state.control_smoothing != TriState::kUnknown && state.units != Units::kUnknown &&
-         state.feed_mode == FeedMode::kPerMinute && state.distance == DistanceMode::kAbsolute;
 }
 
 }  // namespace batten::gcode

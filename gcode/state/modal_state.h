@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "gcode/state/block_words.h"
 #include "gcode/text/number_format.h"
@@ -13,6 +14,9 @@
 #include "geometry/basic/rounding.h"
 
 namespace batten::gcode {
+
+// Inch to millimetre.
+inline constexpr double kMillimetresPerInch = 25.4;
 
 struct ModalState {
   MotionMode motion = MotionMode::kUnknown;
@@ -22,21 +26,20 @@ struct ModalState {
   DistanceMode arc_distance = DistanceMode::kIncremental;  // G91.1; G90.1 is absolute
   FeedMode feed_mode = FeedMode::kPerMinute;
   PathMode path = PathMode::kBlending;
-  TriState cutter_compensation = TriState::kOff;  // G41, G42 (any form)
-  TriState tool_center_point = TriState::kOff;    // G43.4, G43.5, TRAORI, M128
-  TriState tilted_plane = TriState::kOff;         // G68.2, CYCLE800, PLANE
-  TriState scaling = TriState::kOff;              // G51, G50
-  TriState rotation = TriState::kOff;             // G68, G69
-  TriState mirror = TriState::kOff;               // G51.1, M21 ..
-  TriState polar = TriState::kOff;                // G16, G12.1, G112
-  TriState cylindrical = TriState::kOff;          // G07.1, G107
-  TriState control_smoothing =
-      TriState::kOff;  // G05.1 Q2/Q3, G05 P10000, G131: the control refits points
+  TriState cutter_compensation = TriState::kOff;     // G41, G42 (any form)
+  TriState tool_center_point = TriState::kOff;       // G43.4, G43.5, TRAORI, M128
+  TriState tilted_plane = TriState::kOff;            // G68.2, CYCLE800, PLANE
+  TriState scaling = TriState::kOff;                 // G51, G50
+  TriState rotation = TriState::kOff;                // G68, G69
+  TriState mirror = TriState::kOff;                  // G51.1, M21 ..
+  TriState polar = TriState::kOff;                   // G16, G12.1, G112
+  TriState cylindrical = TriState::kOff;             // G07.1, G107
+  TriState control_smoothing = TriState::kOff;       // G05.1 Q2: the control refits points
   TriState modal_macro = TriState::kOff;             // G66
   TriState constant_surface_speed = TriState::kOff;  // G96
   TriState lathe_diameter = TriState::kOff;          // G7 (LinuxCNC)
-  TriState laser_power_mode =
-      TriState::kOff;          // grbl M4 with $32: never known; M4 alone does not set it
+  // grbl M4 with $32: never known; M4 alone does not set it
+  TriState laser_power_mode = TriState::kOff;
   std::optional<double> feed;  // F as last programmed, in mm/min, 1/min or mm/rev by feed_mode
   // F1000 rather than F1000., on controls where these may be two feeds (Word::without_point).
   bool feed_without_point = false;
@@ -44,23 +47,86 @@ struct ModalState {
   bool operator==(const ModalState&) const = default;
 };
 
+// What may be on or off, in the words of messages.
+struct ModalSwitch {
+  TriState ModalState::*item;
+  std::string_view name;
+  bool bends_path = true;  // where it is on, the path in X, Y, Z is not all that counts
+};
+inline constexpr std::array kModalSwitches = {
+    ModalSwitch{&ModalState::cutter_compensation, "cutter compensation"},
+    ModalSwitch{&ModalState::tool_center_point, "tool centre point control"},
+    ModalSwitch{&ModalState::tilted_plane, "tilted plane"},
+    ModalSwitch{&ModalState::scaling, "scaling"},
+    ModalSwitch{&ModalState::rotation, "rotation"},
+    ModalSwitch{&ModalState::mirror, "mirroring"},
+    ModalSwitch{&ModalState::polar, "polar coordinates"},
+    ModalSwitch{&ModalState::cylindrical, "cylindrical coordinates"},
+    // What a control fits through the points by itself is its own deviation, in both programs.
+    ModalSwitch{&ModalState::control_smoothing, "smoothing by the control", false},
+    ModalSwitch{&ModalState::modal_macro, "modal macro"},
+    ModalSwitch{&ModalState::constant_surface_speed, "constant surface speed"},
+    ModalSwitch{&ModalState::lathe_diameter, "diameter mode"},
+    ModalSwitch{&ModalState::laser_power_mode, "laser power mode", false},
+};
+
 // Nothing is known: after a call, or a block that could have changed anything.
 [[nodiscard]] ModalState unknown_modal_state();
-
-// What is known when either of two states may hold: items in which they differ are unknown.
-[[nodiscard]] ModalState either(const ModalState& a, const ModalState& b);
 
 // Does every item have a value? The motion mode, the feed, the spindle speed and the laser
 // mode are not asked for: a block names the first itself, the others do not bend the path.
 [[nodiscard]] bool is_known(const ModalState& state);
+
+// A state in which the path in X, Y, Z is all there is to a cutting motion. Unknown is not.
+[[nodiscard]] bool path_alone_counts(const ModalState& state);
 
 // The programmed position, mm. An axis that is not known has no value: before its first
 // word, and after blocks that moved it in ways that were not understood.
 struct Position {
   geometry::Point3 mm = geometry::Point3::Zero();  // 0 on unknown axes
   std::array<bool, 3> known = {false, false, false};
-  [[nodiscard]] bool all_known() const { return known[0] && known[1] && known[2]; }
+  bool operator==(const Position&) const = default;
 };
+
+// All that the interpreter knows about the control between two blocks.
+struct ControlState {
+  ModalState modal;
+  Position position;
+  // With MotionMode::kOther: which kind of motion, as the reason to keep its blocks.
+  std::string_view other_motion;
+  Code work_offset = 0;  // G54 .. as programmed; 0: not known
+  // Groups (bit = CodeGroup) that a word has set. A word that repeats what is only assumed of
+  // the control at power-on is no repetition: it must stay.
+  std::uint32_t set_by_word = 0;
+  bool calls_keep_modes = false;  // ReadOptions
+
+  [[nodiscard]] bool is_set(CodeGroup group) const { return (set_by_word & bit(group)) != 0; }
+  void mark_set(CodeGroup group) { set_by_word |= bit(group); }
+  bool operator==(const ControlState&) const = default;
+
+ private:
+  static std::uint32_t bit(CodeGroup group) { return 1U << static_cast<unsigned>(group); }
+};
+
+void forget_axis(ControlState& state, std::size_t axis);
+void forget_position(ControlState& state);
+
+// State and position: the block could have changed anything.
+void forget_everything(ControlState& state);
+
+// What a subprogram or a macro could have changed.
+void forget_what_calls_change(ControlState& state);
+
+// The axes that the block names. U, V, W are increments of X, Y, Z on lathes.
+void forget_named_axes(ControlState& state, const BlockWords& words);
+
+// What is known when either state may hold: items in which they differ are unknown.
+[[nodiscard]] ControlState either(const ControlState& a, const ControlState& b);
+
+// Units that become known or unknown take the position with them: it was numbers without a
+// meaning. Between inch and millimetre it stays (as LinuxCNC and grbl keep it), while the
+// meaning of the last F differs from control to control: it is forgotten.
+void set_units(ControlState& state, Units units);
 
 // Units: G20, G21 and what other controls say in their place, and the sizes of printed numbers.
 
@@ -77,8 +143,6 @@ struct Position {
 // The step between neighbouring numbers of a format, in mm.
 [[nodiscard]] double printed_step(const NumberFormat& format, Units units);
 
-// The three planes of G17, G18 and G19 by their axes.
-
 // A plane's axes (0, 1, 2 for X, Y, Z) in the order in which its normal is right-handed: seen from
 // the tip of +Y, the way from Z to X is counter-clockwise, so G18 has Z before X and G3 is
 // counter-clockwise in all three.
@@ -92,6 +156,11 @@ struct PlaneAxes {
 inline constexpr std::array<PlaneAxes, 3> kPlaneAxes = {
     PlaneAxes{Plane::kXY, 0, 1, 2}, PlaneAxes{Plane::kZX, 2, 0, 1}, PlaneAxes{Plane::kYZ, 1, 2, 0}};
 
+// Those of a known plane.
+[[nodiscard]] inline const PlaneAxes& axes_of(Plane plane) {
+  return kPlaneAxes[plane == Plane::kZX ? 1 : plane == Plane::kYZ ? 2 : 0];
+}
+
 // The plane across a unit vector of either sign; nothing when it is no axis of the coordinate
 // system.
 [[nodiscard]] inline const PlaneAxes* plane_across(const geometry::Vector3& axis) {
@@ -100,9 +169,5 @@ inline constexpr std::array<PlaneAxes, 3> kPlaneAxes = {
   }
   return nullptr;
 }
-
-// A state in which the path in X, Y, Z is all there is to a cutting motion. Unknown is not. What a
-// control fits through the points by itself (COMPCAD) is its own deviation, in both programs.
-[[nodiscard]] bool path_alone_counts(const ModalState& state);
 
 }  // namespace batten::gcode

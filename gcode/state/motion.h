@@ -20,7 +20,7 @@ namespace batten::gcode {
 // Copies are cheap for lines.
 class MotionPath {
  public:
-  MotionPath() = default;  // no way, at the origin
+  MotionPath() = default;  // no length, at the origin
   MotionPath(const geometry::Line& line) : start_(line.start), end_(line.end) {}
   MotionPath(const geometry::PathPiece& piece)
       : start_(geometry::start_point(piece)), end_(geometry::end_point(piece)) {
@@ -30,14 +30,10 @@ class MotionPath {
   }
   MotionPath(const geometry::Arc& arc) : MotionPath(geometry::PathPiece(arc)) {}
 
-  MotionPath(const MotionPath& other)
-      : start_(other.start_), end_(other.end_), bend_(copy_of(other)) {}
-  MotionPath& operator=(const MotionPath& other) {
-    start_ = other.start_;
-    end_ = other.end_;
-    bend_ = copy_of(other);
-    return *this;
+  MotionPath(const MotionPath& other) : start_(other.start_), end_(other.end_) {
+    if (other.bend_ != nullptr) bend_ = std::make_unique<const geometry::PathPiece>(*other.bend_);
   }
+  MotionPath& operator=(const MotionPath& other) { return *this = MotionPath(other); }
   MotionPath(MotionPath&&) noexcept = default;
   MotionPath& operator=(MotionPath&&) noexcept = default;
   ~MotionPath() = default;
@@ -55,11 +51,6 @@ class MotionPath {
   }
 
  private:
-  static std::unique_ptr<const geometry::PathPiece> copy_of(const MotionPath& other) {
-    return other.bend_ != nullptr ? std::make_unique<const geometry::PathPiece>(*other.bend_)
-                                  : nullptr;
-  }
-
   geometry::Point3 start_ = geometry::Point3::Zero();
   geometry::Point3 end_ = geometry::Point3::Zero();
   std::unique_ptr<const geometry::PathPiece> bend_;  // an arc or a cubic piece

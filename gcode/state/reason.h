@@ -1,5 +1,5 @@
 // Why blocks are kept as they are: stable ids, shown in reports, lifted by --allow where
-// that can be safe. Every id is explained in docs/diagnostics.md.
+// that can be safe. Every id is explained in reason.cpp and in docs/diagnostics.md.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,7 @@ namespace batten::gcode::reason {
 // --- a block that cannot be part of a run -------------------------------------------------
 inline constexpr std::string_view kNotUnderstood = "not-understood";
 inline constexpr std::string_view kExpression = "expression";
-inline constexpr std::string_view kImpliedDecimals =
-    "implied-decimals";  // X1000 without a point, where that may be 1.000
+inline constexpr std::string_view kImpliedDecimals = "implied-decimals";
 inline constexpr std::string_view kAssignment = "parameter-assignment";
 inline constexpr std::string_view kProgramFlow = "program-flow";
 inline constexpr std::string_view kForeignWords = "foreign-words";
@@ -20,30 +19,28 @@ inline constexpr std::string_view kProgramMark = "program-mark";
 inline constexpr std::string_view kBlockDelete = "block-delete";
 inline constexpr std::string_view kActiveComment = "active-comment";
 inline constexpr std::string_view kReferencedLabel = "referenced-label";
-inline constexpr std::string_view kOtherAxis = "other-axis";    // A B C U V W, vectors
-inline constexpr std::string_view kExtruder = "extruder";       // E
-inline constexpr std::string_view kCornerWord = "corner-word";  // ,R ,C direct drawing
+inline constexpr std::string_view kOtherAxis = "other-axis";  // A B C U V W, vectors
+inline constexpr std::string_view kExtruder = "extruder";
+inline constexpr std::string_view kCornerWord = "corner-word";
 inline constexpr std::string_view kRapid = "rapid";
-inline constexpr std::string_view kPlunge =
-    "plunge";  // straight down or up between moves in the plane
+inline constexpr std::string_view kPlunge = "plunge";
 inline constexpr std::string_view kArc = "arc";
-inline constexpr std::string_view kIntendedArc = "intended-arc";  // no piece of a curve
+inline constexpr std::string_view kIntendedArc = "intended-arc";
 inline constexpr std::string_view kDwell = "dwell";
 inline constexpr std::string_view kProbe = "probe";
 inline constexpr std::string_view kCannedCycle = "canned-cycle";
 inline constexpr std::string_view kThreading = "threading";
 inline constexpr std::string_view kSpline = "spline";  // G5, G5.1, G5.2, G6.x
-inline constexpr std::string_view kCoordinateChange =
-    "coordinate-change";                                            // G92 G52 G10 G54 G53 G28 G30
-inline constexpr std::string_view kToolChange = "tool-change";      // T, M6, D, H, G43, G49
-inline constexpr std::string_view kSpindle = "spindle";             // S, M3, M4, M5, M19
-inline constexpr std::string_view kCoolant = "coolant";             // M7, M8, M9
-inline constexpr std::string_view kMiscFunction = "misc-function";  // any other M word
-inline constexpr std::string_view kStateChange = "state-change";    // units, plane, distance, modes
+inline constexpr std::string_view kCoordinateChange = "coordinate-change";
+inline constexpr std::string_view kToolChange = "tool-change";
+inline constexpr std::string_view kSpindle = "spindle";
+inline constexpr std::string_view kCoolant = "coolant";
+inline constexpr std::string_view kMiscFunction = "misc-function";
+inline constexpr std::string_view kStateChange = "state-change";
 inline constexpr std::string_view kComment = "comment";    // only where comments must stand alone
-inline constexpr std::string_view kChecksum = "checksum";  // N5 G1 X1*71: the host counts lines
-inline constexpr std::string_view kSubprogram = "subprogram";   // M98, M99, G65, O..
-inline constexpr std::string_view kProgramEnd = "program-end";  // M0 M1 M2 M30
+inline constexpr std::string_view kChecksum = "checksum";  // N5 G1 X1*71
+inline constexpr std::string_view kSubprogram = "subprogram";
+inline constexpr std::string_view kProgramEnd = "program-end";
 
 // --- a state in which nothing is rewritten ------------------------------------------------
 inline constexpr std::string_view kUnitsUnknown = "units-unknown";
@@ -65,29 +62,32 @@ inline constexpr std::string_view kExactStop = "exact-stop";
 inline constexpr std::string_view kControlSmoothing = "control-smoothing";
 inline constexpr std::string_view kModalMacro = "modal-macro";
 inline constexpr std::string_view kLatheDiameter = "lathe-diameter";
-inline constexpr std::string_view kLatheProgram =
-    "lathe-program";  // X may be a diameter, G90 a cycle: nothing of it is certain
+inline constexpr std::string_view kLatheProgram = "lathe-program";
 inline constexpr std::string_view kFeedUnknown = "feed-unknown";
-inline constexpr std::string_view kLoopBody =
-    "loop-body";  // between DO/WHILE and END, or a subprogram's body
+inline constexpr std::string_view kLoopBody = "loop-body";
 
 // --- a run that was tried and went back -----------------------------------------------------
 inline constexpr std::string_view kTooShort = "too-short";  // fewer motions than --min-points
-inline constexpr std::string_view kNoGain = "no-gain";      // not faster, smaller or nearer
+inline constexpr std::string_view kNoGain = "no-gain";
 inline constexpr std::string_view kSlower = "slower";
 inline constexpr std::string_view kNotProved = "not-proved";
 inline constexpr std::string_view kCrossesItself = "crosses-itself";
 inline constexpr std::string_view kWrongSide = "wrong-side";
 inline constexpr std::string_view kAlreadySmoothed = "already-smoothed";
-inline constexpr std::string_view kNoFit = "no-fit";  // no curve in the band was found
-inline constexpr std::string_view kTargetCannot = "target-cannot";  // the target cannot say it
+inline constexpr std::string_view kNoFit = "no-fit";
+inline constexpr std::string_view kTargetCannot = "target-cannot";
 inline constexpr std::string_view kMethodNone = "method-none";
+
+// --- a program that is not converted, where the user may say that it can be ------------------
+inline constexpr std::string_view kWorkOffset = "work-offset";
+inline constexpr std::string_view kToolLength = "tool-length";
+inline constexpr std::string_view kBlankForm = "blank-form";
 
 struct Explanation {
   std::string_view id;
-  std::string_view text;    // what it means, one or two sentences
-  std::string_view advice;  // what a user can do about it
-  bool can_be_allowed;      // --allow ID lifts it
+  std::string_view text;        // what it means, one or two sentences
+  std::string_view advice;      // what a user can do about it
+  bool can_be_allowed = false;  // --allow ID lifts it
 };
 
 // Every id above, in this order.
@@ -95,19 +95,17 @@ struct Explanation {
 
 }  // namespace batten::gcode::reason
 
-// A reason of gcode/state/reason.h in one byte, for what is held once per block.
-
 namespace batten::gcode {
 
-// Reads as its id, empty where there is none.
+// A reason in one byte, for what is held once per block. Reads as its id, empty where there is
+// none.
 class ReasonId {
  public:
   ReasonId() = default;
-  // Requires an id that is explained in reason::explanations(), or none; throws
-  // std::invalid_argument for another.
+  // Throws std::invalid_argument for an id that is none of the above, nor empty.
   ReasonId(std::string_view id);
 
-  [[nodiscard]] bool empty() const { return place_ == 0; }
+  [[nodiscard]] bool empty() const { return number_ == 0; }
   [[nodiscard]] std::string_view id() const;
   operator std::string_view() const { return id(); }
 
@@ -115,18 +113,7 @@ class ReasonId {
   friend bool operator==(ReasonId a, std::string_view b) { return a.id() == b; }
 
  private:
-  std::uint8_t place_ = 0;  // in reason::explanations(), from 1; 0: none
+  std::uint8_t number_ = 0;  // in reason::explanations(), from 1; 0: none
 };
 
 }  // namespace batten::gcode
-
-// Why a program cannot be converted to another language, where the user may say that it can: ids
-// for --allow beside those of gcode/state/reason.h, explained with them.
-
-namespace batten::gcode::reason {
-
-inline constexpr std::string_view kWorkOffset = "work-offset";  // G54, where there is none
-inline constexpr std::string_view kToolLength = "tool-length";  // G49, where lengths always count
-inline constexpr std::string_view kBlankForm = "blank-form";    // BLK FORM, where there is none
-
-}  // namespace batten::gcode::reason

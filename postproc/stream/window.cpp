@@ -12,7 +12,7 @@
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
 #include "gcode/reading/part_reading.h"
-#include "gcode/state/control_state.h"
+#include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
 #include "postproc/runs/long_run_cuts.h"
 #include "postproc/stream/added_lines.h"
@@ -26,7 +26,7 @@ namespace {
 constexpr double kAfterRuns = 0.7;
 
 bool knows_the_same(const TextBefore& a, const TextBefore& b) {
-  return gcode::same_knowledge(a.control.state, b.control.state) && a.events == b.events;
+  return a.control.state == b.control.state && a.events == b.events;
 }
 
 // What the proof and the reports of the runs say of a part.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <variant>
 
-#include "gcode/state/control_state.h"
+#include "gcode/state/modal_state.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::postproc {

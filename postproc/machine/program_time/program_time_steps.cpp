@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "gcode/state/control_state.h"
+#include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
 #include "postproc/machine/program_time/program_time_blocks.h"
 

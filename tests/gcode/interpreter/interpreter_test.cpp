@@ -254,16 +254,10 @@ TEST(Trouble, IsToldOnceAndLeavesTheBlockAlone) {
   }
 }
 
-TEST(Interpreter, TellsAnUnknownCodeOnce) {
-  const Interpreted it("G21\nG777\nG777\nG778\n");
-  EXPECT_EQ(it.found.size(), 2U);
-}
-
-TEST(Interpreter, CountsTroublesThatAreTooManyToTell) {
+TEST(Interpreter, ReportsAnUnknownCodeOnceAndCountsWhatIsTooMuch) {
+  EXPECT_EQ(Interpreted("G21\nG777\nG777\nG778\n").found.size(), 2U);
   std::string text = "G21 G0 X0 Y0 Z0\n";
-  for (int i = 0; i < 60; ++i) {
-    text += "G2 X1 Y1 F9\nG0 X0 Y0\n";
-  }
+  for (int i = 0; i < 60; ++i) text += "G2 X1 Y1 F9\nG0 X0 Y0\n";
   const Interpreted it(text);
   EXPECT_EQ(it.found.size(), 51U);
   EXPECT_EQ(it.found.back().message, "this and 9 more blocks after it have the same trouble");

@@ -22,8 +22,6 @@ struct UnknownPlaceCase {
 };
 
 const UnknownPlaceCase kPlaceAfterRows[] = {
-
-    // Interpreter
     {"(text)", true, true, true},
     {"M3 S100", true, true, true},
     {"G4 P1", true, true, true},
@@ -210,12 +208,9 @@ TEST(InterpreterUnknown, ADeletableBlockMakesUnknownWhatItChanges) {
   EXPECT_EQ(it.last_state().feed, std::nullopt);
   EXPECT_EQ(it.last_state().units, Units::kMillimetre);
   EXPECT_EQ(it.last_state().plane, Plane::kXY);
-}
-
-TEST(InterpreterUnknown, DeletableUnitsTakeThePlaceAlong) {
-  const Interpreted it(std::string(kStart) + "/G20\nG1 X2 Y2 Z2\nX3\n");
-  EXPECT_EQ(it.last_state().units, Units::kUnknown);
-  EXPECT_FALSE(it.motion_of_line(6)->start_known);
+  const Interpreted units(std::string(kStart) + "/G20\nG1 X2 Y2 Z2\nX3\n");
+  EXPECT_EQ(units.last_state().units, Units::kUnknown);
+  EXPECT_FALSE(units.motion_of_line(6)->start_known) << "units take the position along";
 }
 
 TEST(InterpreterUnknown, ModesThatAreSetAgainAreKnownAgain) {
