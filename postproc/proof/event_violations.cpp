@@ -3,48 +3,170 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <string>
-#include <utility>
+
+#include "gcode/state/modal_state.h"
+#include "geometry/basic/rounding.h"
 
 namespace batten::postproc {
 namespace {
 
+using gcode::ModalState;
+
+// How many events may be lost or added at one position and still be reported one by one.
+constexpr std::size_t kFurthest = 400;
+
+// Positions at which the lists may differ before the rest is given up. A person reads the first
+// few; each costs up to kFurthest^2 comparisons.
+constexpr std::size_t kMostDifferences = 50;
+
 // More of one gap say nothing new.
 constexpr std::size_t kMostPerGap = 20;
 
+// mm: half a step of what is printed where the numbers of another language are not the source's:
+// Klartext and Siemens words have 4 decimals of a millimetre, 5 of an inch, plain words 3 and 4.
+constexpr double kPrintedAnew = 0.00013;
+constexpr double kPrintedInPlainMillimetres = 0.0005 + 1e-6;
+constexpr double kPrintedInPlainInches = 0.00127 + 1e-6;
+
+bool of_two_languages(const EventAt& old, const EventAt& now) {
+  return old.read.program->language != now.read.program->language;
+}
+
+// How far the ends of rapids that are the same may be apart.
+double same_end(const EventAt& old, const EventAt& now) {
+  if (!of_two_languages(old, now)) return geometry::kSamePlace;
+  if (now.read.program->language != gcode::Language::kRs274) return kPrintedAnew;
+  const bool inch = now.state_after().units == gcode::Units::kInch;
+  return inch ? kPrintedInPlainInches : kPrintedInPlainMillimetres;
+}
+
+// Do two events do the same? Rapids do when every axis that one of them names ends at the same
+// position; the axes that none names stay where the path before has left them.
+bool same_event(const EventAt& old, const EventAt& now) {
+  if (old.event.kind != now.event.kind || old.event.text != now.event.text) return false;
+  if (old.event.motion < 0 || now.event.motion < 0) return old.event.motion == now.event.motion;
+  const gcode::Motion& before = old.motion();
+  const gcode::Motion& after = now.motion();
+  const double allowed = same_end(old, now);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    const bool named = before.axes_named[i] || after.axes_named[i];
+    if (named && std::abs(before.piece.end()[axis] - after.piece.end()[axis]) > allowed) {
+      return false;
+    }
+  }
+  return true;
+}
+
+class Aligner {
+ public:
+  Aligner(const EventSpan& before, const EventSpan& after) : before_(before), after_(after) {}
+
+  EventAlignment run() {
+    EventAlignment found;
+    EventPair here;
+    std::size_t differences = 0;
+    while (is_in_both(here)) {
+      if (same(here)) {
+        found.same.push_back(here);
+        here = {here.before + 1, here.after + 1};
+        continue;
+      }
+      const std::optional<EventPair> next = same_again_after(here);
+      if (++differences > kMostDifferences || !next) {
+        found.complete = differences <= kMostDifferences &&
+                         before_.events.size() - here.before <= kFurthest &&
+                         after_.events.size() - here.after <= kFurthest;
+        return found;
+      }
+      here = *next;
+    }
+    return found;
+  }
+
+ private:
+  [[nodiscard]] bool is_in_both(const EventPair& pair) const {
+    return pair.before < before_.events.size() && pair.after < after_.events.size();
+  }
+
+  [[nodiscard]] bool same(const EventPair& pair) const {
+    return same_event({before_.events[pair.before], *before_.read},
+                      {after_.events[pair.after], *after_.read});
+  }
+
+  // The fewest events are left out in both together. Of the next pair the same is asked, where both
+  // programs go on.
+  [[nodiscard]] std::optional<EventPair> same_again_after(const EventPair& here) const {
+    for (std::size_t sum = 1; sum <= kFurthest; ++sum) {
+      for (std::size_t lost = 0; lost <= sum; ++lost) {
+        const EventPair pair{here.before + lost, here.after + (sum - lost)};
+        if (!is_in_both(pair) || !same(pair)) continue;
+        const EventPair next{pair.before + 1, pair.after + 1};
+        if (!is_in_both(next) || same(next)) return pair;
+      }
+    }
+    return {};
+  }
+
+  const EventSpan& before_;
+  const EventSpan& after_;
+};
+
+std::string_view different_switch(const ModalState& before, const ModalState& after) {
+  for (const gcode::ModalSwitch& each : gcode::kModalSwitches) {
+    if (before.*each.item != after.*each.item) return each.name;
+  }
+  return {};
+}
+
+std::string_view different_mode(const ModalState& before, const ModalState& after) {
+  if (before.units != after.units) return "units";
+  if (before.plane != after.plane) return "plane";
+  if (before.distance != after.distance) return "distance mode";
+  if (before.arc_distance != after.arc_distance) return "arc distance mode";
+  if (before.feed_mode != after.feed_mode) return "feed mode";
+  if (before.path != after.path) return "path mode";
+  if (const std::string_view item = different_switch(before, after); !item.empty()) return item;
+  if (before.spindle_speed != after.spindle_speed) return "spindle speed";
+  return {};
+}
+
+std::string_view different_feed(const ModalState& before, const ModalState& after) {
+  const bool as_written = before.feed_without_point == after.feed_without_point;
+  return same_feed(before.feed, after.feed) && as_written ? "" : "feed";
+}
+
+std::string_view different_in_common(const ModalState& before, const ModalState& after) {
+  if (before.distance != after.distance) return "distance mode";
+  if (before.feed_mode != after.feed_mode) return "feed mode";
+  return different_switch(before, after);
+}
+
+const ModalState& last_state(const ReadProgram& read) {
+  const auto& blocks = read.interpretation->blocks;
+  return read.interpretation->states[blocks.empty() ? 0 : blocks.back().state_after];
+}
+
 std::string describe(const EventAt& at) {
-  const ProgramEvent& event = at.event;
-  if (event.motion < 0) return event.text;
-  const auto& motion = at.read.interpretation->motions[static_cast<std::size_t>(event.motion)];
-  const geometry::Point3 end = motion.piece.end();
-  const std::string what = event.kind == EventKind::kRapid ? "rapid" : event.text;
+  if (at.event.motion < 0) return at.event.text;
+  const geometry::Point3 end = at.motion().piece.end();
+  const std::string what = at.event.kind == EventKind::kRapid ? "rapid" : at.event.text;
   return fmt::format("{} to X{:.6g} Y{:.6g} Z{:.6g} mm", what, end.x(), end.y(), end.z());
 }
 
-ViolationKind kind_of(const EventAt& at) {
-  return at.event.kind == EventKind::kRapid ? ViolationKind::kRapid : ViolationKind::kEvent;
-}
-
-// "rapid-lost", "event-changed" ..
-std::string id_of(const EventAt& at, const char* what) {
-  return (at.event.kind == EventKind::kRapid ? "rapid-" : "event-") + std::string(what);
-}
-
-Violation lost(const EventAt& at) {
-  return {kind_of(at), id_of(at, "lost"), at.line(), 0, 0, describe(at)};
-}
-
-Violation added(const EventAt& at) {
-  return {kind_of(at), id_of(at, "added"), 0, at.line(), 0, describe(at)};
-}
-
-Violation changed(const EventAt& before, const EventAt& after) {
-  return {kind_of(before),
-          id_of(before, "changed"),
-          before.line(),
-          after.line(),
+// With the id "rapid-lost", "event-changed" ..
+Violation of_event(const EventAt& at, std::string_view what, std::uint32_t old_line,
+                   std::uint32_t new_line, std::string message) {
+  const bool rapid = at.event.kind == EventKind::kRapid;
+  return {rapid ? ViolationKind::kRapid : ViolationKind::kEvent,
+          fmt::format("{}-{}", rapid ? "rapid" : "event", what),
+          old_line,
+          new_line,
           0,
-          fmt::format("found {}, expected {}", describe(after), describe(before))};
+          std::move(message)};
 }
 
 bool moves(const EventSpan& span) {
@@ -52,15 +174,45 @@ bool moves(const EventSpan& span) {
                              [](const ProgramEvent& e) { return e.kind != EventKind::kWord; });
 }
 
-bool is_lost(const Violation& violation) {
-  return violation.id == "event-lost" || violation.id == "rapid-lost";
-}
-
-bool is_added(const Violation& violation) {
-  return violation.id == "event-added" || violation.id == "rapid-added";
+bool is_one_of(const Violation& violation, std::string_view id, std::string_view other) {
+  return violation.id == id || violation.id == other;
 }
 
 }  // namespace
+
+EventAlignment align_events(const EventSpan& before, const EventSpan& after) {
+  return Aligner(before, after).run();
+}
+
+std::string_view different_item(const EventAt& old, const EventAt& now) {
+  const ProgramEvent& before = old.event;
+  const ProgramEvent& after = now.event;
+  const ModalState& old_state = old.state_before();
+  const ModalState& new_state = now.state_before();
+  if (of_two_languages(old, now)) return different_in_common(old_state, new_state);
+  if (const std::string_view item = different_mode(old_state, new_state); !item.empty()) {
+    return item;
+  }
+  if (before.plane_set && !after.plane_set) return "plane (no word has set it)";
+  if (before.arc_distance_set && !after.arc_distance_set) {
+    return "arc distance mode (no word has set it)";
+  }
+  if (before.kind == EventKind::kText && old_state.motion != new_state.motion) {
+    return "motion word";
+  }
+  const bool counts = before.kind == EventKind::kText || before.feed_is_new || after.feed_is_new;
+  if (!counts) return {};
+  if (before.kind != EventKind::kRapid) return different_feed(old_state, new_state);
+  return different_feed(old.state_after(), now.state_after());
+}
+
+std::string_view different_item_at_end(const ReadProgram& old_program,
+                                       const ReadProgram& new_program, bool feed_counts) {
+  const ModalState& old_state = last_state(old_program);
+  const ModalState& new_state = last_state(new_program);
+  const std::string_view item = different_mode(old_state, new_state);
+  return item.empty() && feed_counts ? different_feed(old_state, new_state) : item;
+}
 
 GapReport report_events_between(const EventSpan& before, const EventSpan& after) {
   GapReport gap;
@@ -70,19 +222,27 @@ GapReport report_events_between(const EventSpan& before, const EventSpan& after)
       std::ranges::equal(before.events, after.events, {}, &ProgramEvent::kind, &ProgramEvent::kind);
   for (std::size_t i = 0; i < before.events.size() && i < kMostPerGap; ++i) {
     const EventAt old{before.events[i], *before.read};
-    gap.violations.push_back(one_to_one ? changed(old, {after.events[i], *after.read}) : lost(old));
+    if (!one_to_one) {
+      gap.violations.push_back(of_event(old, "lost", old.line(), 0, describe(old)));
+      continue;
+    }
+    const EventAt now{after.events[i], *after.read};
+    gap.violations.push_back(
+        of_event(old, "changed", old.line(), now.line(),
+                 fmt::format("found {}, expected {}", describe(now), describe(old))));
   }
   for (std::size_t i = 0; !one_to_one && i < after.events.size() && i < kMostPerGap; ++i) {
-    gap.violations.push_back(added({after.events[i], *after.read}));
+    const EventAt now{after.events[i], *after.read};
+    gap.violations.push_back(of_event(now, "added", 0, now.line(), describe(now)));
   }
   return gap;
 }
 
 void merge_moved_events(std::vector<Violation>& violations) {
   for (std::size_t i = 0; i < violations.size(); ++i) {
-    if (!is_lost(violations[i])) continue;
+    if (!is_one_of(violations[i], "event-lost", "rapid-lost")) continue;
     const auto twin = std::ranges::find_if(violations, [&](const Violation& other) {
-      return is_added(other) && other.kind == violations[i].kind &&
+      return is_one_of(other, "event-added", "rapid-added") && other.kind == violations[i].kind &&
              other.message == violations[i].message;
     });
     if (twin == violations.end()) continue;
@@ -96,32 +256,20 @@ void merge_moved_events(std::vector<Violation>& violations) {
 }
 
 Violation rapid_violation(const EventAt& before, const EventAt& after) {
-  return {ViolationKind::kRapid,
-          "rapid-changed",
-          before.line(),
-          after.line(),
-          0,
-          fmt::format("{} starts or ends at another position; expected {}", describe(after),
-                      describe(before))};
+  const std::string message = fmt::format("{} starts or ends at another position; expected {}",
+                                          describe(after), describe(before));
+  return {ViolationKind::kRapid, "rapid-changed", before.line(), after.line(), 0, message};
 }
 
 Violation moved_event_violation(const EventAt& before, const EventAt& after, double moved_mm) {
-  return {ViolationKind::kEvent,
-          "event-moved",
-          before.line(),
-          after.line(),
-          moved_mm,
-          fmt::format("{}: the path is the same, but it is at another position on it",
-                      describe(before))};
+  const std::string message =
+      describe(before) + ": the path is the same, but it is at another position on it";
+  return {ViolationKind::kEvent, "event-moved", before.line(), after.line(), moved_mm, message};
 }
 
 Violation state_violation(std::string_view item, const EventAt& before, const EventAt& after) {
-  return {ViolationKind::kState,
-          "state-changed",
-          before.line(),
-          after.line(),
-          0,
-          fmt::format("another {} than before at {}", item, describe(before))};
+  const std::string message = fmt::format("another {} than before at {}", item, describe(before));
+  return {ViolationKind::kState, "state-changed", before.line(), after.line(), 0, message};
 }
 
 Violation end_state_violation(std::string_view item, const ReadProgram& before,
@@ -129,12 +277,8 @@ Violation end_state_violation(std::string_view item, const ReadProgram& before,
   const auto last_line = [](const ReadProgram& read) {
     return read.program->blocks.empty() ? 0 : read.program->blocks.back().line;
   };
-  return {ViolationKind::kState,
-          "state-changed",
-          last_line(before),
-          last_line(after),
-          0,
-          fmt::format("another {} than before at the end of the program", item)};
+  const std::string message = fmt::format("another {} than before at the end of the program", item);
+  return {ViolationKind::kState, "state-changed", last_line(before), last_line(after), 0, message};
 }
 
 Violation too_many_differences(const EventSpan& before, const EventSpan& after) {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "gcode/state/code_table.h"
@@ -27,7 +27,7 @@ struct EventsBefore {
   // The last word of each modal group, in tenths; -1: none has set it.
   std::array<gcode::Code, kCodeGroups> set_by_word = nothing_set();
   std::optional<geometry::Point3> place;  // mm: where the last motion ends, if that is known
-  bool feed_is_new = false;               // feed_is_new_at_end
+  bool feed_is_new = false;               // the last F is after the last cut
 
   bool operator==(const EventsBefore&) const = default;
 
@@ -78,6 +78,17 @@ struct EventAt {
   const ReadProgram& read;
 
   [[nodiscard]] std::uint32_t line() const { return read.program->blocks[event.block].line; }
+  // Of an event that has one.
+  [[nodiscard]] const gcode::Motion& motion() const {
+    return read.interpretation->motions[static_cast<std::size_t>(event.motion)];
+  }
+  // Of the control, before and after the event's block.
+  [[nodiscard]] const gcode::ModalState& state_before() const {
+    return read.interpretation->states[event.state_before];
+  }
+  [[nodiscard]] const gcode::ModalState& state_after() const {
+    return read.interpretation->states[read.interpretation->blocks[event.block].state_after];
+  }
 };
 
 // A motion at feed rate whose place is known, in a state in which the path alone counts.
@@ -91,6 +102,7 @@ struct ProgramEvents {
   std::vector<ProgramEvent> events;
   std::vector<Cut> cuts;                 // those that move; in order
   std::vector<std::size_t> cuts_before;  // for each event, and once more for the end
+  EventsBefore at_end;                   // what the next part takes over; of list_events
 
   // Stretch k stands before event k; the last one after all events.
   [[nodiscard]] std::size_t stretch_begin(std::size_t k) const {
@@ -105,26 +117,80 @@ struct ProgramEvents {
 // And written alike: with a point both, or without.
 [[nodiscard]] bool same_feed(const Cut& a, const Cut& b);
 
+// Whether they are equal to the last bit: neighbouring cuts like that are compared together.
+[[nodiscard]] bool is_one_feed(const Cut& a, const Cut& b);
+
 // The pieces of curves that are read exactly (gcode::ReadOptions::curves) are cuts as lines are.
 //
 // No events are: comments that do not act, N words before the others that nothing refers to, F
-// where the state after its block has it (state_difference compares it where it counts), motion
-// words but a G2 or G3 that goes nowhere, or a cut to nowhere before the first feed, plane and arc distance
-// words (they only say how arcs are written), and words of other modal groups and S that repeat
-// what a word has set before, unless they do more than that: G43, G54, G64 without its P.
+// where the state after its block has it (different_item compares it where it counts), motion
+// words but a G2 or G3 that goes nowhere, or a cut to nowhere before the first feed, plane and arc
+// distance words (they only say how arcs are written), and words of other modal groups and S that
+// repeat what a word has set before, unless they do more than that: G43, G54, G64 without its P.
 //
 // Everything that could depend on more than the path is a kText event: blocks that are not
-// understood, other axes, motions from unknown places, loops, labels that are referred to, and
+// understood, other axes, motions from unknown positions, loops, labels that are referred to, and
 // motions in states where the text is not the path (cutter compensation, inverse time ..).
 [[nodiscard]] ProgramEvents list_events(const ReadProgram& read);
+
+// What a program does in words that all languages have, to compare programs of different ones: as
+// list_events, but for:
+//   tool 5           T5 M6, TOOL CALL 5 Z
+//   speed 3000       S3000, TOOL CALL Z S3000: another one, or the first behind a tool
+//   M3, M4, M8       before the motion of their block, as LinuxCNC and Klartext do them; M13 and
+//                    M14 of Klartext are two of them
+//   M5, M9           in a block without motion; in Klartext behind the motion of their block, too
+//   G54              also a Klartext comment that its datum is active; the same one again is none
+//   G49              before the first motion behind it; also Siemens D0, and a Klartext comment
+//                    that lengths count
+//   length not said  before the first motion along Z behind a tool, where neither G43 (Siemens: D1)
+//                    nor G49 stands between; also a Klartext comment that says so
+//   BLK FORM ..      a Klartext statement, or a comment that begins so, in capitals
+//   line of X F500   motions from a place that is not known, by the axes that they name; where they
+//                    go is compared as that of rapids
+// No events: program marks and names, words that say how others are read (units, planes, G90, G94,
+// G40 ..; what they change is compared where it counts), G64 without a tolerance, G43 and Siemens
+// D1 behind the change of their tool as long as nothing moved along Z, and M30 behind a comment END
+// PGM. Everything else is an event of its own text, which no other language has; G70 too, which
+// leaves feeds in millimetres.
+[[nodiscard]] ProgramEvents list_common_events(const ReadProgram& read);
 
 // What the next part takes over.
 [[nodiscard]] EventsBefore events_before_next(const ReadProgram& read);
 
-// Whether the last F is behind the last cut.
-[[nodiscard]] bool feed_is_new_at_end(const ReadProgram& read);
-
-// Whether the block is a rapid whose place is known, and says nothing else.
+// Whether the block is a rapid whose ends are known, and says nothing else.
 [[nodiscard]] bool is_plain_rapid(const ReadProgram& read, std::uint32_t block);
+
+// What list_events and list_common_events make their lists with.
+class EventLister {
+ protected:
+  explicit EventLister(const ReadProgram& read)
+      : program_(*read.program), interpretation_(*read.interpretation) {}
+
+  // Of the block `block_index_`.
+  ProgramEvent& add_event(EventKind kind);
+  void add_word(std::string text) { add_event(EventKind::kWord).text = std::move(text); }
+  void add_text(std::string text) { add_event(EventKind::kText).text = std::move(text); }
+  void add_cut(const gcode::BlockMeaning& meaning, bool feed_without_point);
+  // A rapid or a cut between known positions. False: it goes nowhere, and nothing is added.
+  bool add_motion(const gcode::BlockMeaning& meaning, bool feed_without_point);
+
+  [[nodiscard]] const gcode::Motion& motion_of(const gcode::BlockMeaning& meaning) const {
+    return interpretation_.motions[static_cast<std::size_t>(meaning.motion)];
+  }
+  [[nodiscard]] std::uint32_t state_index_before() const {
+    return block_index_ > 0 ? interpretation_.blocks[block_index_ - 1].state_after : 0;
+  }
+  [[nodiscard]] const gcode::ModalState& state_after() const {
+    return interpretation_.states[interpretation_.blocks[block_index_].state_after];
+  }
+
+  const gcode::Program& program_;
+  const gcode::Interpretation& interpretation_;
+  ProgramEvents list_;
+  std::uint32_t block_index_ = 0;
+  std::array<gcode::Code, kCodeGroups> set_by_word_ = EventsBefore::nothing_set();
+  bool feed_is_new_ = false;  // before the block that is listed
+};
 
 }  // namespace batten::postproc

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <iterator>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -41,10 +39,6 @@ bool same_piece(const gcode::MotionPath& a, const gcode::MotionPath& b) {
 
 const gcode::Motion& motion_of(const Cut& cut, const ReadProgram& read) {
   return read.interpretation->motions[cut.motion];
-}
-
-std::uint32_t line_of(const Cut& cut, const ReadProgram& read) {
-  return read.program->blocks[motion_of(cut, read).block].line;
 }
 
 std::string feed_text(const Cut& cut) {
@@ -82,33 +76,31 @@ struct Part {
     }
     return result;
   }
-  // Line of the i-th cut; of the nearest one where there are fewer.
-  [[nodiscard]] std::uint32_t line(std::size_t i) const {
-    if (side->cuts.empty()) return side->line;
+  // Block of the i-th cut, of the nearest one where there are fewer; 0 where there are none.
+  [[nodiscard]] std::uint32_t block(std::size_t i) const {
+    if (side->cuts.empty()) return 0;
     const std::size_t index = std::min(begin + i, side->cuts.size() - 1);
-    return line_of(side->cuts[index], *side->read);
+    return motion_of(side->cuts[index], *side->read).block;
   }
-  // Line of the cut with an end nearest to the place.
-  [[nodiscard]] std::uint32_t line_near(const geometry::Point3& place) const {
+  // Its line.
+  [[nodiscard]] std::uint32_t line(std::size_t i) const {
+    return side->cuts.empty() ? side->line : side->read->program->blocks[block(i)].line;
+  }
+  [[nodiscard]] std::size_t last() const { return std::max<std::size_t>(size(), 1) - 1; }
+  // Line of the cut with an end nearest to the point.
+  [[nodiscard]] std::uint32_t line_near(const geometry::Point3& point) const {
     std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < size(); ++i) {
-      const double distance =
-          std::min((piece(i).start() - place).norm(), (piece(i).end() - place).norm());
-      if (distance < least) {
-        least = distance;
-        nearest = i;
-      }
+    const auto distance = [&](std::size_t i) {
+      return std::min((piece(i).start() - point).norm(), (piece(i).end() - point).norm());
+    };
+    for (std::size_t i = 1; i < size(); ++i) {
+      if (distance(i) < distance(nearest)) nearest = i;
     }
     return line(nearest);
   }
 };
 
 Part all_of(const StretchSide& side) { return {&side, 0, side.cuts.size()}; }
-
-bool is_one_feed(const Cut& a, const Cut& b) {
-  return a.feed == b.feed && a.feed_without_point == b.feed_without_point;
-}
 
 // The longest parts that have one feed, in order.
 std::vector<Part> parts_of_one_feed(const StretchSide& side) {
@@ -127,27 +119,18 @@ struct PartPair {
   Part after;
 };
 
-// How many pieces at the begin (at the end) are the same.
-std::size_t same_at_begin(const PartPair& pair, std::size_t most) {
-  std::size_t count = 0;
-  while (count < most && same_piece(pair.before.piece(count), pair.after.piece(count))) ++count;
-  return count;
-}
-
-std::size_t same_at_end(const PartPair& pair, std::size_t most) {
-  std::size_t count = 0;
-  while (count < most && same_piece(pair.before.piece(pair.before.size() - 1 - count),
-                                    pair.after.piece(pair.after.size() - 1 - count))) {
-    ++count;
-  }
-  return count;
-}
-
 // A proof for the middle is a proof for the whole: the same pieces are passed together.
 PartPair without_same_ends(const PartPair& pair) {
-  const std::size_t most = std::min(pair.before.size(), pair.after.size());
-  const std::size_t first = same_at_begin(pair, most);
-  const std::size_t last = same_at_end(pair, most - first);
+  const std::size_t old_size = pair.before.size();
+  const std::size_t new_size = pair.after.size();
+  const auto same = [&pair](std::size_t i, std::size_t k) {
+    return same_piece(pair.before.piece(i), pair.after.piece(k));
+  };
+  const std::size_t most = std::min(old_size, new_size);
+  std::size_t first = 0;
+  while (first < most && same(first, first)) ++first;
+  std::size_t last = 0;
+  while (last < most - first && same(old_size - 1 - last, new_size - 1 - last)) ++last;
   return {pair.before.without(first, last), pair.after.without(first, last)};
 }
 
@@ -161,27 +144,19 @@ geometry::BandComparison compare(const PartPair& pair, const Promise& promise) {
 }
 
 Stretch stretch_of(const PartPair& pair, geometry::BandComparison compared) {
-  PathComparison& comparison = compared.paths;
-  const auto block = [](const Part& part, std::size_t i) {
-    return part.side->cuts.empty()
-               ? 0
-               : motion_of(part.side->cuts[std::min(part.begin + i, part.side->cuts.size() - 1)],
-                           *part.side->read)
-                     .block;
-  };
+  const auto& [before, after] = pair;
   Stretch stretch;
-  stretch.old_first_block = block(pair.before, 0);
-  stretch.old_last_block = block(pair.before, std::max<std::size_t>(pair.before.size(), 1) - 1);
-  stretch.new_first_block = block(pair.after, 0);
-  stretch.new_last_block = block(pair.after, std::max<std::size_t>(pair.after.size(), 1) - 1);
-  const auto last = [](const Part& part) { return std::max<std::size_t>(part.size(), 1) - 1; };
-  stretch.old_first_line = pair.before.line(0);
-  stretch.old_last_line = pair.before.line(last(pair.before));
-  stretch.new_first_line = pair.after.line(0);
-  stretch.new_last_line = pair.after.line(last(pair.after));
-  stretch.old_worst_line = pair.before.line(comparison.worst_piece_a);
-  stretch.new_worst_line = pair.after.line(comparison.worst_piece_b);
-  stretch.comparison = std::move(comparison);
+  stretch.old_first_block = before.block(0);
+  stretch.old_last_block = before.block(before.last());
+  stretch.new_first_block = after.block(0);
+  stretch.new_last_block = after.block(after.last());
+  stretch.old_first_line = before.line(0);
+  stretch.old_last_line = before.line(before.last());
+  stretch.new_first_line = after.line(0);
+  stretch.new_last_line = after.line(after.last());
+  stretch.old_worst_line = before.line(compared.paths.worst_piece_a);
+  stretch.new_worst_line = after.line(compared.paths.worst_piece_b);
+  stretch.comparison = std::move(compared.paths);
   stretch.corner_mm = compared.corner_at_most;
   return stretch;
 }
@@ -190,24 +165,18 @@ Violation distance_violation(const PartPair& pair, const PathComparison& compari
                              double tolerance_mm) {
   const std::uint32_t old_line = pair.before.line(comparison.worst_piece_a);
   const std::uint32_t new_line = pair.after.line(comparison.worst_piece_b);
-  const geometry::DistanceBounds& bounds = comparison.bounds;
+  const auto& [at_least, at_most] = comparison.bounds;
   if (comparison.verdict == Verdict::kBroken) {
-    return {ViolationKind::kDistance,
-            "distance",
-            old_line,
-            new_line,
-            bounds.at_least,
-            fmt::format("the new path is {:.6g} mm or more from the old one, allowed {:.6g} mm",
-                        bounds.at_least, tolerance_mm)};
+    const std::string message =
+        fmt::format("the new path is {:.6g} mm or more from the old one, allowed {:.6g} mm",
+                    at_least, tolerance_mm);
+    return {ViolationKind::kDistance, "distance", old_line, new_line, at_least, message};
   }
-  return {ViolationKind::kNotProved,
-          "not-proved",
-          old_line,
-          new_line,
-          0,
-          fmt::format("the distance of the paths is between {:.6g} and {:.6g} mm, allowed {:.6g} "
-                      "mm: neither proved nor broken",
-                      bounds.at_least, bounds.at_most, tolerance_mm)};
+  const std::string message = fmt::format(
+      "the distance of the paths is between {:.6g} and {:.6g} mm, allowed {:.6g} mm: neither "
+      "proved nor broken",
+      at_least, at_most, tolerance_mm);
+  return {ViolationKind::kNotProved, "not-proved", old_line, new_line, 0, message};
 }
 
 // `middle`: without the pieces that are the same, which cannot be to blame.
@@ -216,16 +185,17 @@ std::optional<Violation> crossing_violation(const PartPair& pair, const PartPair
   const auto found = geometry::new_crossing(pair.before.path(), pair.after.path(), tolerance_mm);
   if (!found) return {};
   const std::uint32_t line = pair.after.line(found->first_piece);
-  return Violation{
-      ViolationKind::kCrossing,
-      "crosses-itself",
-      middle.before.line_near(found->place),
-      line,
-      0,
-      fmt::format("the new path meets itself at X{:.4f} Y{:.4f} Z{:.4f} (lines {} and {}), the old "
-                  "one does not",
-                  found->place.x(), found->place.y(), found->place.z(), line,
-                  pair.after.line(found->second_piece))};
+  const std::string message = fmt::format(
+      "the new path meets itself at X{:.4f} Y{:.4f} Z{:.4f} (lines {} and {}), the old one does "
+      "not",
+      found->place.x(), found->place.y(), found->place.z(), line,
+      pair.after.line(found->second_piece));
+  return Violation{ViolationKind::kCrossing,
+                   "crosses-itself",
+                   middle.before.line_near(found->place),
+                   line,
+                   0,
+                   message};
 }
 
 // On one side of the old path, as far as the tolerance: within half of it of the path that is half
@@ -246,16 +216,17 @@ std::optional<Violation> side_violation(const PartPair& pair, const Promise& pro
   }
   const PathComparison found = geometry::compare_paths(*beside, pair.after.path(), half + over);
   if (found.verdict == Verdict::kProved) return {};
-  return Violation{
-      ViolationKind::kSide,
-      "wrong-side",
-      pair.before.line_near(found.worst_a),
-      pair.after.line(found.worst_piece_b),
-      std::max(0.0, found.bounds.at_least - half),
-      fmt::format(
-          "the new path {} on the {} of the old one by {:.6g} mm at most",
-          found.verdict == Verdict::kBroken ? "does not stay" : "could not be proved to stay",
-          promise.side == geometry::Side::kLeft ? "left" : "right", promise.tolerance_mm)};
+  const std::string message = fmt::format(
+      "the new path {} on the {} of the old one by {:.6g} mm at most",
+      found.verdict == Verdict::kBroken ? "does not stay" : "could not be proved to stay",
+      promise.side == geometry::Side::kLeft ? "left" : "right", promise.tolerance_mm);
+  const double beyond = std::max(0.0, found.bounds.at_least - half);
+  return Violation{ViolationKind::kSide,
+                   "wrong-side",
+                   pair.before.line_near(found.worst_a),
+                   pair.after.line(found.worst_piece_b),
+                   beyond,
+                   message};
 }
 
 class StretchComparer {
@@ -286,26 +257,29 @@ class StretchComparer {
 
   bool same_feeds(const std::vector<Part>& old_parts, const std::vector<Part>& new_parts) {
     const std::size_t both = std::min(old_parts.size(), new_parts.size());
+    const auto violate = [this](std::uint32_t old_line, std::uint32_t new_line,
+                                const std::string& message) {
+      result_.violations.push_back(
+          {ViolationKind::kFeed, "feed-changed", old_line, new_line, 0, message});
+      return false;
+    };
     for (std::size_t i = 0; i < both; ++i) {
       const Cut& old_feed = old_parts[i].cut(0);
       const Cut& new_feed = new_parts[i].cut(0);
       if (same_feed(old_feed, new_feed)) continue;
-      add_feed_violation(
-          old_parts[i].line(0), new_parts[i].line(0),
-          fmt::format("feed {}, expected {}", feed_text(new_feed), feed_text(old_feed)));
-      return false;
+      return violate(old_parts[i].line(0), new_parts[i].line(0),
+                     fmt::format("feed {}, expected {}", feed_text(new_feed), feed_text(old_feed)));
     }
+    const auto end_line = [](const Part& part) { return part.line(part.size()); };
     if (old_parts.size() > both) {
       const Part& lost = old_parts[both];
-      add_feed_violation(lost.line(0), new_parts.back().line(new_parts.back().size()),
-                         fmt::format("feed {} is missing", feed_text(lost.cut(0))));
-      return false;
+      return violate(lost.line(0), end_line(new_parts.back()),
+                     fmt::format("feed {} is missing", feed_text(lost.cut(0))));
     }
     if (new_parts.size() > both) {
       const Part& added = new_parts[both];
-      add_feed_violation(old_parts.back().line(old_parts.back().size()), added.line(0),
-                         fmt::format("feed {} was not there", feed_text(added.cut(0))));
-      return false;
+      return violate(end_line(old_parts.back()), added.line(0),
+                     fmt::format("feed {} was not there", feed_text(added.cut(0))));
     }
     return true;
   }
@@ -352,11 +326,6 @@ class StretchComparer {
           "the path is the same within {:.6g} mm, but a feed begins or ends at another position",
           tolerance_);
     }
-  }
-
-  void add_feed_violation(std::uint32_t old_line, std::uint32_t new_line, std::string message) {
-    result_.violations.push_back(
-        {ViolationKind::kFeed, "feed-changed", old_line, new_line, 0, std::move(message)});
   }
 
   const StretchSide& before_;

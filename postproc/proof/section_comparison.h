@@ -21,7 +21,7 @@ struct Promise {
   geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
   // Where the new path may be: on the other side it may be by kOverSide of the tolerance.
   geometry::Side side = geometry::Side::kBoth;
-  // That has to take what is new (postproc/proof/refused_by_target.h); nullptr: nobody is asked.
+  // That has to take what is new; nullptr: nobody is asked.
   const gcode::Control* target = nullptr;
 
   // The strict reading, when nothing else is said.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <compare>
 #include <utility>
 
 #include "geometry/distance/chord_polyline.h"
@@ -36,8 +36,6 @@ constexpr std::size_t kMostEntries = std::size_t{1} << 21;
 // Pairs of chords that are looked at, for each chord: above this the path lies in a heap.
 constexpr std::size_t kMostPairs = 1000;
 
-double share_in_unit(double share) { return std::clamp(share, 0.0, 1.0); }
-
 // mm, of two segments that both have a length.
 double distance(const Point3& a, const Point3& b, const Point3& c, const Point3& d) {
   const Vector3 first = b - a;
@@ -49,24 +47,26 @@ double distance(const Point3& a, const Point3& b, const Point3& c, const Point3&
   const double along_second = second.dot(between);
   const double both = first.dot(second);
   const double across = aa * ee - both * both;
-  double s = across > 0 ? share_in_unit((both * along_second - along_first * ee) / across) : 0;
+  double s =
+      across > 0 ? std::clamp((both * along_second - along_first * ee) / across, 0.0, 1.0) : 0;
   double t = (both * s + along_second) / ee;
   if (t < 0 || t > 1) {
-    t = share_in_unit(t);
-    s = share_in_unit((both * t - along_first) / aa);
+    t = std::clamp(t, 0.0, 1.0);
+    s = std::clamp((both * t - along_first) / aa, 0.0, 1.0);
   }
   return (between + s * first - t * second).norm();
 }
 
-double distance(const Point3& place, const Point3& a, const Point3& b) {
-  const Vector3 way = b - a;
-  const double t = share_in_unit((place - a).dot(way) / way.squaredNorm());
-  return (a + t * way - place).norm();
+double distance(const Point3& point, const Point3& a, const Point3& b) {
+  const Vector3 edge = b - a;
+  const double t = std::clamp((point - a).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+  return (a + t * edge - point).norm();
 }
 
 struct Entry {
   std::uint32_t cell = 0;  // its number, of few: others may have the same
   std::uint32_t edge = 0;
+  auto operator<=>(const Entry&) const = default;
 };
 
 // The cells of a grid in space through which the edges of a path go.
@@ -84,53 +84,47 @@ class Cells {
     entries_ = length / size_ * 8 + static_cast<double>(corners.size()) * 8;
   }
 
-  // An upper bound of all entries.
-  [[nodiscard]] double most_entries() const { return entries_; }
+  // Into how many parts the cells have to be divided, so that each has few entries.
+  [[nodiscard]] std::uint32_t parts() const {
+    return static_cast<std::uint32_t>(std::ceil(entries_ / static_cast<double>(kMostEntries)));
+  }
 
   // Those of the cells whose numbers leave this rest.
   [[nodiscard]] std::vector<Entry> entries(std::uint32_t parts, std::uint32_t rest) const {
     std::vector<Entry> found;
-    for (std::uint32_t i = 0; i + 1 < corners_.size(); ++i) add_edge(i, parts, rest, found);
-    std::ranges::sort(found, [](const Entry& a, const Entry& b) {
-      return a.cell != b.cell ? a.cell < b.cell : a.edge < b.edge;
-    });
-    const auto is_same = [](const Entry& a, const Entry& b) {
-      return a.cell == b.cell && a.edge == b.edge;
+    const auto add = [&](std::uint32_t cell, std::uint32_t edge) {
+      if (cell % parts == rest) found.push_back({cell, edge});
     };
-    found.erase(std::unique(found.begin(), found.end(), is_same), found.end());
+    for (std::uint32_t i = 0; i + 1 < corners_.size(); ++i) add_edge(i, add);
+    std::ranges::sort(found);
+    found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;
   }
 
  private:
-  void add_edge(std::uint32_t edge, std::uint32_t parts, std::uint32_t rest,
-                std::vector<Entry>& found) const {
+  // Calls `add(cell, edge)` for each cell that a step of the edge may go through.
+  template <typename Add>
+  void add_edge(std::uint32_t edge, const Add& add) const {
     const Point3& from = corners_[edge];
-    const Vector3 way = corners_[edge + 1] - from;
-    const auto steps = static_cast<std::size_t>(std::floor(way.norm() / size_)) + 1;
-    for (std::size_t k = 0; k < steps; ++k) {
-      const auto share = [&](std::size_t step) {
-        return static_cast<double>(step) / static_cast<double>(steps);
-      };
-      add_box(from + share(k) * way, from + share(k + 1) * way, edge, parts, rest, found);
-    }
-  }
-
-  void add_box(const Point3& a, const Point3& b, std::uint32_t edge, std::uint32_t parts,
-               std::uint32_t rest, std::vector<Entry>& found) const {
-    const Point3 low = a.cwiseMin(b).array() - apart_;
-    const Point3 high = a.cwiseMax(b).array() + apart_;
-    for (std::int64_t x = index(low.x()); x <= index(high.x()); ++x) {
-      for (std::int64_t y = index(low.y()); y <= index(high.y()); ++y) {
-        for (std::int64_t z = index(low.z()); z <= index(high.z()); ++z) {
-          const std::uint32_t cell = number(x, y, z);
-          if (cell % parts == rest) found.push_back({cell, edge});
+    const Vector3 whole = corners_[edge + 1] - from;
+    const auto steps = std::floor(whole.norm() / size_) + 1;
+    for (double k = 0; k < steps; ++k) {
+      const Point3 a = from + k / steps * whole;
+      const Point3 b = from + (k + 1) / steps * whole;
+      const Point3 low = a.cwiseMin(b).array() - apart_;
+      const Point3 high = a.cwiseMax(b).array() + apart_;
+      for (std::int64_t x = index(low.x()); x <= index(high.x()); ++x) {
+        for (std::int64_t y = index(low.y()); y <= index(high.y()); ++y) {
+          for (std::int64_t z = index(low.z()); z <= index(high.z()); ++z) {
+            add(number(x, y, z), edge);
+          }
         }
       }
     }
   }
 
-  [[nodiscard]] std::int64_t index(double place) const {
-    return static_cast<std::int64_t>(std::floor(place / size_));
+  [[nodiscard]] std::int64_t index(double mm) const {
+    return static_cast<std::int64_t>(std::floor(mm / size_));
   }
 
   static std::uint32_t number(std::int64_t x, std::int64_t y, std::int64_t z) {
@@ -142,8 +136,8 @@ class Cells {
 
   std::span<const Point3> corners_;
   double apart_;
-  double size_ = 1;  // mm
-  double entries_ = 0;
+  double size_ = 1;     // mm
+  double entries_ = 0;  // at most
 };
 
 bool boxes_apart(const Point3& a, const Point3& b, const Point3& c, const Point3& d, double apart) {
@@ -152,13 +146,13 @@ bool boxes_apart(const Point3& a, const Point3& b, const Point3& c, const Point3
   return ((low - high).array() > apart).any();
 }
 
-// Whether edges that share a cell are so near that they may meet, other than neighbours; nothing:
-// too many are to be looked at.
-std::optional<bool> any_meet(std::span<const Point3> corners, std::span<const Entry> entries,
-                             double apart, std::size_t& left) {
+// Whether edges that share a cell are so near that they may meet, other than neighbours, or too
+// many are to be looked at.
+bool may_any_meet(std::span<const Point3> corners, std::span<const Entry> entries, double apart,
+                  std::size_t& left) {
   for (std::size_t i = 0; i < entries.size(); ++i) {
     for (std::size_t k = i + 1; k < entries.size() && entries[k].cell == entries[i].cell; ++k) {
-      if (left-- == 0) return std::nullopt;
+      if (left-- == 0) return true;
       const std::uint32_t first = entries[i].edge;
       const std::uint32_t second = entries[k].edge;
       if (second == first + 1) continue;
@@ -206,11 +200,9 @@ bool SelfMeeting::may_meet() const {
   if (edges() < 2) return false;
   const double apart = least_distance(tolerance_, bent_chords_);
   const Cells cells(corners_, apart);
-  const double parts = std::ceil(cells.most_entries() / static_cast<double>(kMostEntries));
   std::size_t left = kMostPairs * edges();
-  for (std::uint32_t rest = 0; rest < static_cast<std::uint32_t>(parts); ++rest) {
-    const std::vector<Entry> entries = cells.entries(static_cast<std::uint32_t>(parts), rest);
-    if (any_meet(corners_, entries, apart, left).value_or(true)) return true;
+  for (std::uint32_t rest = 0; rest < cells.parts(); ++rest) {
+    if (may_any_meet(corners_, cells.entries(cells.parts(), rest), apart, left)) return true;
   }
   return false;
 }

@@ -4,20 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <utility>
 
+#include "gcode/controls/arc_rules.h"
 #include "gcode/reading/part_reading.h"
-#include "postproc/proof/common_events.h"
-#include "postproc/proof/event_alignment.h"
-#include "postproc/proof/event_violations.h"
-#include "postproc/proof/refused_by_target.h"
-#include "postproc/proof/section_comparison.h"
+#include "geometry/basic/rounding.h"
 #include "postproc/system/parallel_for.h"
 
 namespace batten::postproc {
@@ -25,16 +24,16 @@ namespace {
 
 using geometry::Verdict;
 
-// Follows one program from event to event and knows where the tool stands.
+// Follows one program from event to event and knows where the tool is.
 class Follower {
  public:
   Follower(const ReadProgram& read, const ProgramEvents& list)
       : read_(read), list_(list), line_(read.line_before) {}
 
-  // Goes behind event `index`, or to the end. Returns the moves on the way, with all events
+  // Goes past event `index`, or to the end. Returns the moves on the way, with all events
   // between left out.
   StretchSide move_to(std::size_t index) {
-    StretchSide side = here();
+    StretchSide side{&read_, {}, position(), line_};
     const std::size_t begin = cut_;
     for (; next_event_ < index; ++next_event_) pass(list_.events[next_event_]);
     cut_ = list_.cuts_before[index];
@@ -53,24 +52,12 @@ class Follower {
     }
   }
 
-  [[nodiscard]] StretchSide here() const {
-    StretchSide side;
-    side.read = &read_;
-    side.start = place();
-    side.line = line_;
-    return side;
-  }
-
   // The end of the last motion that happened before or in the block of the last event.
-  [[nodiscard]] std::optional<geometry::Point3> place() const {
+  [[nodiscard]] std::optional<geometry::Point3> position() const {
     if (!block_) return read_.before.place;
     const auto& motions = read_.interpretation->motions;
-    const auto next = std::upper_bound(
-        motions.begin(), motions.end(), *block_,
-        [](std::uint32_t block, const gcode::Motion& m) { return block < m.block; });
-    if (next == motions.begin()) {
-      return lost_after_ ? std::nullopt : read_.before.place;
-    }
+    const auto next = std::ranges::upper_bound(motions, *block_, {}, &gcode::Motion::block);
+    if (next == motions.begin()) return lost_after_ ? std::nullopt : read_.before.place;
     const gcode::Motion& last = *(next - 1);
     if (!last.end_known || (lost_after_ && last.block <= *lost_after_)) return {};
     return last.piece.end();
@@ -91,29 +78,33 @@ class Verifier {
       : old_(before),
         new_(after),
         promise_(promise),
-        in_common_words_(before.program->language != after.program->language),
+        two_languages_(before.program->language != after.program->language),
         threads_(threads),
         old_list_(events_of(before)),
-        new_list_(events_of(after)),
-        old_follower_(old_, old_list_),
-        new_follower_(new_, new_list_) {}
+        new_list_(events_of(after)) {}
 
   Verification run() {
-    const EventAlignment aligned = align_events(old_list_, old_, new_list_, new_);
-    find_moves(aligned);
+    const EventPair end{old_list_.events.size(), new_list_.events.size()};
+    const EventAlignment aligned = align_events(old_span(0, end.before), new_span(0, end.after));
+    find_moves(aligned, end);
     compare_ahead();
-    EventPair next{0, 0};  // the first events not looked at yet
-    for (const EventPair& same : aligned.same) {
-      const bool can_compare = report_gap(next, same);
-      compare_moves_before(same, can_compare,
-                           next.before == same.before && next.after == same.after);
-      compare_event(same);
-      next = {same.before + 1, same.after + 1};
+    for (Moves& moves : moves_) {
+      GapReport gap = report_events_between(old_span(moves.from.before, moves.to.before),
+                                            new_span(moves.from.after, moves.to.after));
+      std::ranges::move(gap.violations, std::back_inserter(result_.violations));
+      compare_moves(moves, gap.only_words);
+      if (moves.to != end) compare_event(moves.to);
     }
-    finish(next, aligned.complete);
+    if (!aligned.complete) {
+      flush_stretch();
+      const EventPair next = behind_last_of(aligned);
+      result_.violations.push_back(
+          too_many_differences(old_span(next.before, end.before), new_span(next.after, end.after)));
+    } else if (!two_languages_) {
+      compare_end();
+    }
     flush_stretch();
-    merge_moved_events(violations_);
-    for (Violation& violation : violations_) result_.violations.push_back(std::move(violation));
+    merge_moved_events(result_.violations);
     result_.events_compared = aligned.same.size();
     return std::move(result_);
   }
@@ -122,7 +113,7 @@ class Verifier {
   // --- events -------------------------------------------------------------------------------
 
   [[nodiscard]] ProgramEvents events_of(const ReadProgram& read) const {
-    return in_common_words_ ? list_common_events(read) : list_events(read);
+    return two_languages_ ? list_common_events(read) : list_events(read);
   }
 
   [[nodiscard]] EventSpan old_span(std::size_t begin, std::size_t end) const {
@@ -131,31 +122,20 @@ class Verifier {
   [[nodiscard]] EventSpan new_span(std::size_t begin, std::size_t end) const {
     return {{new_list_.events.data() + begin, end - begin}, &new_};
   }
-
-  // Events up to `same` that stand in one program only. Returns whether the moves around them
-  // can be compared as one path all the same.
-  bool report_gap(const EventPair& next, const EventPair& same) {
-    const GapReport gap =
-        report_events_between(old_span(next.before, same.before), new_span(next.after, same.after));
-    violations_.insert(violations_.end(), gap.violations.begin(), gap.violations.end());
-    return gap.only_words;
+  [[nodiscard]] EventAt old_event(const EventPair& pair) const {
+    return {old_list_.events[pair.before], old_};
   }
-
-  [[nodiscard]] EventAt old_event(std::size_t index) const {
-    return {old_list_.events[index], old_};
-  }
-  [[nodiscard]] EventAt new_event(std::size_t index) const {
-    return {new_list_.events[index], new_};
+  [[nodiscard]] EventAt new_event(const EventPair& pair) const {
+    return {new_list_.events[pair.after], new_};
   }
 
   void compare_event(const EventPair& same) {
-    const EventAt before = old_event(same.before);
-    const EventAt after = new_event(same.after);
+    const EventAt before = old_event(same);
+    const EventAt after = new_event(same);
     if (before.event.kind == EventKind::kRapid) compare_unnamed_axes(before, after);
-    const std::string_view item =
-        in_common_words_ ? different_in_common(before, after) : different_item(before, after);
+    const std::string_view item = different_item(before, after);
     if (!item.empty() && item != last_different_item_) {
-      violations_.push_back(state_violation(item, before, after));
+      result_.violations.push_back(state_violation(item, before, after));
     }
     last_different_item_ = item;
   }
@@ -163,61 +143,61 @@ class Verifier {
   // A rapid starts, and stays on the axes that it does not name, where the moves before it have
   // left the tool: within the tolerance.
   void compare_unnamed_axes(const EventAt& before, const EventAt& after) {
-    const auto motion_of = [](const EventAt& at) -> const gcode::Motion& {
-      return at.read.interpretation->motions[static_cast<std::size_t>(at.event.motion)];
-    };
-    const gcode::Motion& old_motion = motion_of(before);
-    const gcode::Motion& new_motion = motion_of(after);
-    const double start = (old_motion.piece.start() - new_motion.piece.start()).norm();
-    const double end = (old_motion.piece.end() - new_motion.piece.end()).norm();
+    const gcode::MotionPath& old_path = before.motion().piece;
+    const gcode::MotionPath& new_path = after.motion().piece;
+    const double start = (old_path.start() - new_path.start()).norm();
+    const double end = (old_path.end() - new_path.end()).norm();
     // Rounding of the printed decimals is far above, that of doubles far below this share.
     constexpr double kRounding = 1e-9;
     if (std::max(start, end) <= promise_.tolerance_mm * (1 + kRounding)) return;
-    violations_.push_back(rapid_violation(before, after));
+    result_.violations.push_back(rapid_violation(before, after));
+  }
+
+  // The end of a program of another language leaves what that control leaves.
+  void compare_end() {
+    const bool feed_counts = old_list_.at_end.feed_is_new || new_list_.at_end.feed_is_new;
+    const std::string_view item = different_item_at_end(old_, new_, feed_counts);
+    if (item.empty() || item == last_different_item_) return;
+    result_.violations.push_back(end_state_violation(item, old_, new_));
   }
 
   // --- moves --------------------------------------------------------------------------------
 
-  struct Compared {
-    StretchSide before;
-    StretchSide after;
-    StretchResult result;
-    EventPair event;  // that ends it
-    bool joins_next = false;
-  };
-
-  // The moves before a pair of events, and what comparing them gives where that was done ahead.
+  // The moves before a pair of events that are the same, or before the ends of both programs.
   struct Moves {
+    EventPair from;  // the first events after the pair before: others than `to` are a gap
+    EventPair to;
     StretchSide before;
     StretchSide after;
-    bool gap = false;  // events between stand in one program only
-    std::optional<StretchResult> result;
+    std::optional<StretchResult> result = {};
 
     [[nodiscard]] bool any() const { return !before.cuts.empty() || !after.cuts.empty(); }
   };
 
-  void find_moves(const EventAlignment& aligned) {
-    moves_.reserve(aligned.same.size() + 1);
-    EventPair next{0, 0};
-    for (const EventPair& same : aligned.same) {
-      add_moves(next, same);
-      next = {same.before + 1, same.after + 1};
-    }
-    if (aligned.complete) add_moves(next, {old_list_.events.size(), new_list_.events.size()});
+  static EventPair behind_last_of(const EventAlignment& aligned) {
+    if (aligned.same.empty()) return {};
+    return {aligned.same.back().before + 1, aligned.same.back().after + 1};
   }
 
-  void add_moves(const EventPair& next, const EventPair& same) {
-    const bool gap = next.before != same.before || next.after != same.after;
-    const StretchSide before = old_follower_.move_to(same.before);
-    const StretchSide after = new_follower_.move_to(same.after);
-    moves_.push_back({before, after, gap, {}});
+  void find_moves(const EventAlignment& aligned, const EventPair& end) {
+    Follower old_follower(old_, old_list_);
+    Follower new_follower(new_, new_list_);
+    EventPair next;
+    const auto add = [&](const EventPair& to) {
+      const StretchSide before = old_follower.move_to(to.before);
+      moves_.push_back({next, to, before, new_follower.move_to(to.after)});
+      next = {to.before + 1, to.after + 1};
+    };
+    moves_.reserve(aligned.same.size() + 1);
+    for (const EventPair& same : aligned.same) add(same);
+    if (aligned.complete) add(end);
   }
 
   // Around a gap it is not known yet whether there is anything to compare.
   void compare_ahead() {
     std::vector<Moves*> asked;
     for (Moves& moves : moves_) {
-      if (!moves.gap && moves.any()) asked.push_back(&moves);
+      if (moves.from == moves.to && moves.any()) asked.push_back(&moves);
     }
     if (threads_ == 1 || asked.size() < 2) return;
     parallel_for(threads_, asked.size(), [&](std::size_t i) {
@@ -225,37 +205,29 @@ class Verifier {
     });
   }
 
-  void compare_moves_before(const EventPair& same, bool can_compare, bool no_gap) {
-    Moves& moves = moves_[next_moves_++];
+  void compare_moves(Moves& now, bool can_compare) {
     if (!can_compare) return flush_stretch();
-    Compared now{moves.before, moves.after, {}, same, false};
-    if (moves.result) {
-      now.result = std::move(*moves.result);
-    } else if (moves.any()) {
-      now.result = compare_stretch(moves.before, moves.after, promise_);
+    if (!now.result) {
+      now.result = now.any() ? compare_stretch(now.before, now.after, promise_) : StretchResult{};
     }
-    if (no_gap && last_ && last_->joins_next) join_if_event_moved(*last_, now);
+    if (last_ != nullptr && now.from == now.to) join_if_event_moved(*last_, now);
     flush_stretch();
-    now.joins_next =
-        same.before < old_list_.events.size() && may_move(old_list_.events[same.before].kind);
-    last_ = std::move(now);
-  }
-
-  static bool may_move(EventKind kind) {
-    return kind == EventKind::kWord || kind == EventKind::kText;
+    last_ = &now;
   }
 
   // Both stretches beside an event break the tolerance, but together they keep it: the path is
-  // right, and the event stands at another place of it.
-  void join_if_event_moved(Compared& first, Compared& second) const {
-    if (first.result.violations.empty() || second.result.violations.empty()) return;
+  // right, and the event is at another position of it.
+  void join_if_event_moved(Moves& first, Moves& second) const {
+    const EventKind kind = old_event(first.to).event.kind;
+    if (kind != EventKind::kWord && kind != EventKind::kText) return;
+    if (first.result->violations.empty() || second.result->violations.empty()) return;
     const StretchSide before = joined(first.before, second.before);
     const StretchSide after = joined(first.after, second.after);
     if (compare_whole_path(before, after, promise_).verdict != Verdict::kProved) return;
-    const double moved = first.result.violations.front().deviation_mm;
-    first.result.violations = {
-        moved_event_violation(old_event(first.event.before), new_event(first.event.after), moved)};
-    second.result.violations.clear();
+    const double moved = first.result->violations.front().deviation_mm;
+    first.result->violations = {
+        moved_event_violation(old_event(first.to), new_event(first.to), moved)};
+    second.result->violations.clear();
   }
 
   static StretchSide joined(const StretchSide& first, const StretchSide& second) {
@@ -267,11 +239,10 @@ class Verifier {
 
   // The stretch before the last one can no longer turn out to be half of a moved event.
   void flush_stretch() {
-    if (!last_) return;
-    for (Stretch& stretch : last_->result.stretches) add_stretch(std::move(stretch));
-    for (Violation& violation : last_->result.violations)
-      violations_.push_back(std::move(violation));
-    last_.reset();
+    if (last_ == nullptr) return;
+    for (Stretch& stretch : last_->result->stretches) add_stretch(std::move(stretch));
+    std::ranges::move(last_->result->violations, std::back_inserter(result_.violations));
+    last_ = nullptr;
   }
 
   void add_stretch(Stretch stretch) {
@@ -284,61 +255,88 @@ class Verifier {
     result_.stretches.push_back(std::move(stretch));
   }
 
-  // --- end ----------------------------------------------------------------------------------
-
-  void finish(const EventPair& next, bool complete) {
-    if (!complete) {
-      flush_stretch();
-      violations_.push_back(too_many_differences(old_span(next.before, old_list_.events.size()),
-                                                 new_span(next.after, new_list_.events.size())));
-      return;
-    }
-    const EventPair end{old_list_.events.size(), new_list_.events.size()};
-    const bool no_gap = next.before == end.before && next.after == end.after;
-    const bool can_compare = report_gap(next, end);
-    compare_moves_before(end, can_compare, no_gap);
-    // The end of a program of another language leaves behind what that control leaves.
-    if (in_common_words_) return;
-    const std::string_view item = different_item_at_end(old_, new_);
-    if (!item.empty() && item != last_different_item_) {
-      violations_.push_back(end_state_violation(item, old_, new_));
-    }
-  }
-
   const ReadProgram& old_;
   const ReadProgram& new_;
   Promise promise_;
-  bool in_common_words_ = false;  // the programs are of two languages
+  bool two_languages_ = false;
   int threads_;
   ProgramEvents old_list_;
   ProgramEvents new_list_;
-  Follower old_follower_;
-  Follower new_follower_;
   Verification result_;
-  std::vector<Violation> violations_;
-  std::vector<Moves> moves_;  // one for each pair of events that are the same, and behind them
-  std::size_t next_moves_ = 0;
-  std::optional<Compared> last_;
+  std::vector<Moves> moves_;
+  Moves* last_ = nullptr;  // compared, and not in the result yet
   std::string_view last_different_item_;
 };
 
-}  // namespace
+// --- what the target would not run -----------------------------------------------------------
 
-Verification verify(const ReadProgram& before, const ReadProgram& after, const Promise& promise,
-                    int threads) {
-  if (!(promise.tolerance_mm > 0) || !std::isfinite(promise.tolerance_mm)) {
-    throw std::invalid_argument(fmt::format(
-        "verify: tolerance {} mm, expected a finite number above 0", promise.tolerance_mm));
+std::span<const gcode::Motion> motions_in(const ReadProgram& read, std::uint32_t first,
+                                          std::uint32_t last) {
+  const auto& motions = read.interpretation->motions;
+  const auto begin = std::ranges::lower_bound(motions, first, {}, &gcode::Motion::block);
+  const auto end = std::ranges::upper_bound(motions, last, {}, &gcode::Motion::block);
+  return {begin, end};
+}
+
+bool is_same(const geometry::Arc& a, const geometry::Arc& b) {
+  const auto same = [](const geometry::Point3& p, const geometry::Point3& q) {
+    return (p - q).norm() <= geometry::kSamePlace;
+  };
+  return same(a.start, b.start) && same(a.end, b.end) && same(a.center, b.center) &&
+         a.sweep * b.sweep > 0;
+}
+
+// A violation for each arc of a stretch that was compared which the target refuses
+// (gcode/controls/arc_rules.h).
+void add_refused_arcs(const ReadProgram& before, const ReadProgram& after, const Stretch& stretch,
+                      const gcode::Control& target, std::vector<Violation>& violations) {
+  const auto is_old = [&](const geometry::Arc& arc) {
+    return std::ranges::any_of(motions_in(before, stretch.old_first_block, stretch.old_last_block),
+                               [&](const gcode::Motion& m) {
+                                 return m.piece.arc() != nullptr && is_same(*m.piece.arc(), arc);
+                               });
+  };
+  for (const gcode::Motion& m :
+       motions_in(after, stretch.new_first_block, stretch.new_last_block)) {
+    const geometry::Arc* arc = m.piece.arc();
+    if (arc == nullptr) continue;
+    const auto& meaning = after.interpretation->blocks[m.block];
+    const gcode::Units units = after.interpretation->states[meaning.state_after].units;
+    const std::string_view why = gcode::arc_refusal(target, *arc, units);
+    if (why.empty() || is_old(*arc)) continue;
+    const std::string message =
+        fmt::format("{} refuses this arc: {}; expected one that it runs", target.name, why);
+    violations.push_back({ViolationKind::kTarget, "arc-refused", stretch.old_first_line,
+                          after.program->blocks[m.block].line, 0, message});
   }
-  Verification found = Verifier(before, after, promise, threads).run();
-  if (promise.target != nullptr) {
-    std::ranges::move(refused_by_target(before, after, found.stretches, *promise.target),
-                      std::back_inserter(found.violations));
+}
+
+// The blocks whose lines are too long, with their text.
+std::map<std::string_view, const gcode::Block*> long_lines(const ReadProgram& read,
+                                                           const gcode::Control& target) {
+  std::map<std::string_view, const gcode::Block*> found;
+  for (const gcode::Block& block : read.program->blocks) {
+    if (block.span.size() <= target.max_line_length) continue;
+    const std::string_view line = read.program->source.text(block.span);
+    if (line_length(target, line) > target.max_line_length) found.try_emplace(line, &block);
   }
   return found;
 }
 
-namespace {
+// A violation for each new line that is longer than the target reads.
+void add_long_lines(const ReadProgram& before, const ReadProgram& after,
+                    const gcode::Control& target, std::vector<Violation>& violations) {
+  const auto written = long_lines(after, target);
+  if (written.empty()) return;
+  const auto old = long_lines(before, target);
+  for (const auto& [line, block] : written) {
+    if (old.contains(line)) continue;
+    const std::string message =
+        fmt::format("{} bytes in this line, {} reads {} at the most", line_length(target, line),
+                    target.name, target.max_line_length);
+    violations.push_back({ViolationKind::kTarget, "line-refused", 0, block->line, 0, message});
+  }
+}
 
 constexpr std::size_t kPartBlocks = 8192;
 
@@ -415,6 +413,22 @@ bool is_other(const gcode::Word& word, const Spelling& before) {
 }
 
 }  // namespace
+
+Verification verify(const ReadProgram& before, const ReadProgram& after, const Promise& promise,
+                    int threads) {
+  if (!(promise.tolerance_mm > 0) || !std::isfinite(promise.tolerance_mm)) {
+    throw std::invalid_argument(fmt::format(
+        "verify: tolerance {} mm, expected a finite number above 0", promise.tolerance_mm));
+  }
+  Verification found = Verifier(before, after, promise, threads).run();
+  if (promise.target == nullptr) return found;
+  // Blocks of the old program are its own affair: they are copied.
+  for (const Stretch& stretch : found.stretches) {
+    add_refused_arcs(before, after, stretch, *promise.target, found.violations);
+  }
+  add_long_lines(before, after, *promise.target, found.violations);
+  return found;
+}
 
 std::optional<Violation> other_point_spelling(const gcode::SourceText& before,
                                               const gcode::SourceText& after) {

@@ -35,7 +35,7 @@ struct Verification {
 // the same for any number, since stretches do not look at each other.
 //
 // Programs of two languages are compared in the words that all have
-// (postproc/proof/common_events.h); their rapids end at the same place to within what printing a
+// (list_common_events); their rapids end at the same place to within what printing a
 // place in other digits moves it.
 [[nodiscard]] Verification verify(const ReadProgram& before, const ReadProgram& after,
                                   const Promise& promise, int threads = 1);

@@ -99,10 +99,6 @@ class ProgramStream {
   bool at_end_ = false;
 };
 
-bool is_one_feed(const Cut& a, const Cut& b) {
-  return a.feed == b.feed && a.feed_without_point == b.feed_without_point;
-}
-
 // The cutting moves of a part at its two ends.
 class MovesOfPart {
  public:

@@ -53,7 +53,6 @@ Ids ids_in_sources_of_the_verifier() {
   add_ids_in(source_folder() / "postproc/stream/added_lines.cpp", ids);
   add_ids_in(source_folder() / "postproc/proof/event_violations.cpp", ids);
   add_ids_in(source_folder() / "postproc/proof/verification.cpp", ids);
-  add_ids_in(source_folder() / "postproc/proof/refused_by_target.cpp", ids);
   add_ids_in(source_folder() / "postproc/proof/section_comparison.cpp", ids);
   return ids;
 }

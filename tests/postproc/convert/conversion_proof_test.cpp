@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gcode/controls/built_in.h"
-#include "postproc/proof/common_events.h"
+#include "postproc/proof/program_events.h"
 #include "tests/support/conversion_programs.h"
 
 namespace batten::postproc {

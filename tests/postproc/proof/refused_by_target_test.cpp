@@ -1,11 +1,8 @@
-#include "postproc/proof/refused_by_target.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "postproc/proof/verification.h"
 #include "tests/support/interpreted.h"
