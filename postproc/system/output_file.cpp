@@ -35,29 +35,6 @@ WriteResult failed(const fs::path& file, std::string_view what, int error) {
           file.string() + ": " + std::string(what) + ": " + std::generic_category().message(error)};
 }
 
-// A descriptor that is closed at the end of its life.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close_now(); }
-
-  [[nodiscard]] bool is_open() const { return number_ >= 0; }
-  [[nodiscard]] int number() const { return number_; }
-
-  // Some file systems tell of a full disk only here.
-  bool close_now() {
-    if (number_ < 0) return true;
-    const int number = number_;
-    number_ = -1;
-    return ::close(number) == 0;
-  }
-
- private:
-  int number_;
-};
-
 // A file that is removed at the end of its life unless it was renamed to its target.
 class HalfWrittenFile {
  public:
@@ -98,6 +75,10 @@ fs::path half_written_path(const fs::path& target) {
   const std::string end = "." + std::to_string(::getpid()) + ".batten-part";
   return folder_of(target) /
          ("." + target.filename().string().substr(0, NAME_MAX - 1 - end.size()) + end);
+}
+
+bool begins_anew(int descriptor) {
+  return ::ftruncate(descriptor, 0) == 0 && ::lseek(descriptor, 0, SEEK_SET) == 0;
 }
 
 WriteResult exists_already(const fs::path& target) {
@@ -212,8 +193,7 @@ WriteResult write_request_to_descriptor(int descriptor, std::string_view name,
     return result.status == WriteStatus::kWritten;
   };
   const auto restart = [&] {
-    return result.status == WriteStatus::kWritten && ::ftruncate(descriptor, 0) == 0 &&
-           ::lseek(descriptor, 0, SEEK_SET) == 0;
+    return result.status == WriteStatus::kWritten && begins_anew(descriptor);
   };
   request.parts({write, restart});
   return result;
@@ -233,53 +213,43 @@ WriteResult write_to_descriptor(int descriptor, std::string_view name, std::stri
   return {};
 }
 
-namespace {
-
-constexpr std::size_t kPartBytes = std::size_t{1} << 20;
-
-std::string reason(int error) { return std::generic_category().message(error); }
-
-}  // namespace
+bool Descriptor::close_now() {
+  const int number = std::exchange(number_, -1);
+  return number < 0 || ::close(number) == 0;
+}
 
 std::optional<SpoolFile> SpoolFile::make(std::string& error) {
   std::error_code no_folder;
   std::filesystem::path folder = std::filesystem::temp_directory_path(no_folder);
   if (no_folder) folder = "/tmp";
   std::string name = (folder / "batten-XXXXXX").string();
-  const int descriptor = ::mkostemp(name.data(), O_CLOEXEC);
-  if (descriptor < 0) {
-    error = folder.string() + ": no temporary file can be made: " + reason(errno);
+  Descriptor file(::mkostemp(name.data(), O_CLOEXEC));
+  if (!file.is_open()) {
+    error = failed(folder, "no temporary file can be made", errno).message;
     return std::nullopt;
   }
   ::unlink(name.c_str());
-  return SpoolFile(descriptor);
-}
-
-SpoolFile::SpoolFile(SpoolFile&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), error_(std::move(other.error_)) {}
-
-SpoolFile::~SpoolFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  return SpoolFile(std::move(file));
 }
 
 bool SpoolFile::append(std::string_view bytes) {
-  const WriteResult result = write_to_descriptor(descriptor_, "temporary file", bytes);
+  const WriteResult result = write_to_descriptor(file_.number(), "temporary file", bytes);
   if (result.status == WriteStatus::kWritten) return true;
   error_ = result.message;
   return false;
 }
 
 bool SpoolFile::restart() {
-  const bool empty = ::ftruncate(descriptor_, 0) == 0 && ::lseek(descriptor_, 0, SEEK_SET) == 0;
+  const bool empty = begins_anew(file_.number());
   if (!empty) error_ = std::string("a temporary file cannot be emptied: ") + std::strerror(errno);
   return empty;
 }
 
 void SpoolFile::write_to(const PartWriter& writer) const {
-  std::vector<char> part(kPartBytes);
+  std::vector<char> part(kPartSize);
   off_t at = 0;
   for (;;) {
-    const ssize_t count = ::pread(descriptor_, part.data(), part.size(), at);
+    const ssize_t count = ::pread(file_.number(), part.data(), part.size(), at);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0 || !writer({part.data(), static_cast<std::size_t>(count)})) return;
     at += count;
@@ -287,38 +257,24 @@ void SpoolFile::write_to(const PartWriter& writer) const {
 }
 
 std::optional<gcode::SourceText> SpoolFile::as_text(const std::string& name) {
-  const std::string path = "/proc/self/fd/" + std::to_string(descriptor_);
+  const std::string path = "/proc/self/fd/" + std::to_string(file_.number());
   return gcode::SourceText::map_file(path, error_, name);
 }
-
-namespace {
-
-bool same_time(const struct timespec& one, const struct timespec& other) {
-  return one.tv_sec == other.tv_sec && one.tv_nsec == other.tv_nsec;
-}
-
-}  // namespace
 
 WatchedFile::WatchedFile(std::filesystem::path file) : path_(std::move(file)) {
   // Opening a pipe would be seen by its writer.
   struct stat status = {};
   if (::stat(path_.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return;
-  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor_ >= 0 && ::fstat(descriptor_, &before_) != 0) {
-    ::close(descriptor_);
-    descriptor_ = -1;
-  }
-}
-
-WatchedFile::~WatchedFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  file_ = Descriptor(::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  if (file_.is_open() && ::fstat(file_.number(), &before_) != 0) file_.close_now();
 }
 
 FileNow WatchedFile::now() const {
-  if (descriptor_ < 0) return FileNow::kSame;
+  if (!file_.is_open()) return FileNow::kSame;
   struct stat status = {};
-  if (::fstat(descriptor_, &status) != 0 || status.st_size != before_.st_size ||
-      !same_time(status.st_mtim, before_.st_mtim)) {
+  if (::fstat(file_.number(), &status) != 0 || status.st_size != before_.st_size ||
+      status.st_mtim.tv_sec != before_.st_mtim.tv_sec ||
+      status.st_mtim.tv_nsec != before_.st_mtim.tv_nsec) {
     return FileNow::kChanged;
   }
   const bool there = ::stat(path_.c_str(), &status) == 0 && status.st_dev == before_.st_dev &&

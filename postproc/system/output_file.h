@@ -14,6 +14,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "gcode/text/source_text.h"
 
@@ -74,23 +75,36 @@ struct WriteRequest {
 [[nodiscard]] WriteResult write_request_to_descriptor(int descriptor, std::string_view name,
                                                       const WriteRequest& request);
 
+// A descriptor that is closed at the end of its life.
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~Descriptor() { close_now(); }
+
+  [[nodiscard]] bool is_open() const { return number_ >= 0; }
+  [[nodiscard]] int number() const { return number_; }
+  // False: the system refused. Some file systems report a full disk only here.
+  bool close_now();
+
+ private:
+  int number_;
+};
+
 // Bytes that are too many to be held in memory and may not be seen by anybody yet: a file without a
 // name in the folder for temporary files (TMPDIR), gone when it is closed.
-
 class SpoolFile {
  public:
   // On failure returns nothing and sets `error`.
   [[nodiscard]] static std::optional<SpoolFile> make(std::string& error);
 
-  SpoolFile(SpoolFile&& other) noexcept;
-  SpoolFile(const SpoolFile&) = delete;
-  SpoolFile& operator=(const SpoolFile&) = delete;
-  SpoolFile& operator=(SpoolFile&&) = delete;
-  ~SpoolFile();
-
   // False: the system refused, error() says why.
   [[nodiscard]] bool append(std::string_view bytes);
-  // Nothing stands in it any more. False: the system refused.
+  // Nothing is in it any more. False: the system refused.
   [[nodiscard]] bool restart();
   [[nodiscard]] const std::string& error() const { return error_; }
 
@@ -100,9 +114,9 @@ class SpoolFile {
   [[nodiscard]] std::optional<gcode::SourceText> as_text(const std::string& name);
 
  private:
-  explicit SpoolFile(int descriptor) : descriptor_(descriptor) {}
+  explicit SpoolFile(Descriptor file) : file_(std::move(file)) {}
 
-  int descriptor_;
+  Descriptor file_;
   std::string error_;
 };
 
@@ -122,9 +136,6 @@ enum class FileNow {
 class WatchedFile {
  public:
   explicit WatchedFile(std::filesystem::path file);
-  WatchedFile(const WatchedFile&) = delete;
-  WatchedFile& operator=(const WatchedFile&) = delete;
-  ~WatchedFile();
 
   // By its size, the time of its last change, and by what its name leads to.
   [[nodiscard]] FileNow now() const;
@@ -132,7 +143,7 @@ class WatchedFile {
 
  private:
   std::filesystem::path path_;
-  int descriptor_ = -1;
+  Descriptor file_;
   struct stat before_ = {};
 };
 

@@ -30,6 +30,30 @@ std::string_view code_of(Ink ink) {
   return "\x1b[1;32m";
 }
 
+constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
+
+// Bytes of the well-formed character that `bytes` begin with; 0 when there is none. The table of
+// RFC 3629, section 4: only the second byte has limits of its own.
+std::size_t character_size(std::string_view bytes) {
+  const auto is_between = [bytes](std::size_t at, unsigned least, unsigned greatest) {
+    const auto byte = at < bytes.size() ? static_cast<std::uint8_t>(bytes[at]) : 0U;
+    return byte >= least && byte <= greatest;
+  };
+  if (is_between(0, 0, 0x7F)) return 1;
+  const std::size_t size = is_between(0, 0xC2, 0xDF)   ? 2
+                           : is_between(0, 0xE0, 0xEF) ? 3
+                           : is_between(0, 0xF0, 0xF4) ? 4
+                                                       : 0;
+  const auto first = static_cast<std::uint8_t>(bytes[0]);
+  const unsigned least = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
+  const unsigned greatest = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
+  if (size == 0 || !is_between(1, least, greatest)) return 0;
+  for (std::size_t i = 2; i < size; ++i) {
+    if (!is_between(i, 0x80, 0xBF)) return 0;
+  }
+  return size;
+}
+
 }  // namespace
 
 bool shows_colour() {
@@ -53,40 +77,6 @@ std::string rough_time(double seconds) {
   if (minutes < 60) return fmt::format("{} min", minutes);
   return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
 }
-
-namespace {
-
-constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
-
-std::uint8_t byte_at(std::string_view bytes, std::size_t index) {
-  return index < bytes.size() ? static_cast<std::uint8_t>(bytes[index]) : 0;
-}
-
-bool is_between(std::uint8_t byte, unsigned least, unsigned greatest) {
-  return byte >= least && byte <= greatest;
-}
-
-// Bytes of the well-formed character that `bytes` begin with; 0 when there is none. The table of
-// RFC 3629, section 4: only the second byte has limits of its own.
-std::size_t character_size(std::string_view bytes) {
-  const std::uint8_t first = byte_at(bytes, 0);
-  if (first < 0x80) return 1;
-  const bool of_two = is_between(first, 0xC2, 0xDF);
-  const bool of_three = is_between(first, 0xE0, 0xEF);
-  const bool of_four = is_between(first, 0xF0, 0xF4);
-  if (!of_two && !of_three && !of_four) return 0;
-
-  const unsigned least = first == 0xE0 ? 0xA0 : (first == 0xF0 ? 0x90 : 0x80);
-  const unsigned greatest = first == 0xED ? 0x9F : (first == 0xF4 ? 0x8F : 0xBF);
-  if (!is_between(byte_at(bytes, 1), least, greatest)) return 0;
-  const std::size_t size = of_two ? 2 : (of_three ? 3 : 4);
-  for (std::size_t i = 2; i < size; ++i) {
-    if (!is_between(byte_at(bytes, i), 0x80, 0xBF)) return 0;
-  }
-  return size;
-}
-
-}  // namespace
 
 std::string as_valid_utf8(std::string_view bytes) {
   std::string text;

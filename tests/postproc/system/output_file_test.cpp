@@ -44,26 +44,23 @@ TEST(DefaultOutputPath, PutsSmoothBeforeTheSuffix) {
   EXPECT_EQ(default_output_path(".nc"), ".nc.smooth");
 }
 
-TEST_F(OutputFile, IsWrittenWholeAndAlone) {
-  const WriteResult result = write_file({.target = file("new.nc"), .bytes = "G1 X1\n"});
-  EXPECT_EQ(result.status, WriteStatus::kWritten) << result.message;
-  EXPECT_EQ(text_of("new.nc"), "G1 X1\n");
-  EXPECT_EQ(files_in_folder(), 1u);
-}
-
-TEST_F(OutputFile, HoldsWhatCameBehindTheLastRestart) {
-  WriteRequest request;
-  request.target = file("new.nc");
-  request.parts = [](const PartWriter& write) {
+TEST_F(OutputFile, IsWrittenWholeAndAloneFromTheLastRestartOn) {
+  WriteRequest in_parts;
+  in_parts.parts = [](const PartWriter& write) {
     EXPECT_TRUE(write("a text that is worth nothing\n"));
     EXPECT_TRUE(write("and more of it\n"));
     EXPECT_TRUE(write.restart());
     EXPECT_TRUE(write("G1 X1\n"));
   };
-  const WriteResult result = write_file(request);
-  EXPECT_EQ(result.status, WriteStatus::kWritten) << result.message;
-  EXPECT_EQ(text_of("new.nc"), "G1 X1\n");
-  EXPECT_EQ(files_in_folder(), 1u);
+  std::size_t files = 0;
+  for (WriteRequest request : {WriteRequest{.target = {}, .bytes = "G1 X1\n"}, in_parts}) {
+    const std::string name = std::to_string(++files) + ".nc";
+    request.target = file(name);
+    const WriteResult result = write_file(request);
+    EXPECT_EQ(result.status, WriteStatus::kWritten) << result.message;
+    EXPECT_EQ(text_of(name), "G1 X1\n");
+    EXPECT_EQ(files_in_folder(), files);
+  }
 }
 
 // What went into a pipe was seen.
@@ -114,7 +111,7 @@ TEST_F(OutputFile, KeepsThePermissionsOfTheFileItReplaces) {
   EXPECT_EQ(fs::status(file("old.nc")).permissions(), fs::perms{0640});
 }
 
-TEST_F(OutputFile, FollowsLinksAndKeepsThem) {
+TEST_F(OutputFile, FollowsLinksAndKeepsThemAlsoToNothing) {
   fs::create_directory(file("real"));
   put("real/part.nc", "old");
   fs::create_symlink("real/part.nc", file("one.nc"));
@@ -124,9 +121,6 @@ TEST_F(OutputFile, FollowsLinksAndKeepsThem) {
   EXPECT_TRUE(fs::is_symlink(file("two.nc")));
   EXPECT_TRUE(fs::is_symlink(file("one.nc")));
   EXPECT_EQ(text_of("real/part.nc"), "new");
-}
-
-TEST_F(OutputFile, WritesWhereALinkToNothingLeads) {
   fs::create_symlink("later.nc", file("link.nc"));
   ASSERT_EQ(write_file({.target = file("link.nc"), .bytes = "new"}).status, WriteStatus::kWritten);
   EXPECT_TRUE(fs::is_symlink(file("link.nc")));
