@@ -1,6 +1,6 @@
 // Prints the tables of docs/algorithms/methods.md: what each method makes of each case, and how
 // long a machine takes for it.
-//   compare_methods [--cases FILE]      FILE: tests/cases/naseath.json, from where it is called
+//   compare_methods      from the project's folder
 //
 // First table: polylines. Planned time from rest to rest by the jerk-limited planner, machine of
 // Ozcan 2018; greatest curvature; deviation as the comparison of paths proves it; pieces.
@@ -180,17 +180,11 @@ void compare_curve(const std::string& name, const BsplineCurve& curve) {
 
 }  // namespace
 
-int main(int count, char** words) {
-  std::string file = "tests/cases/naseath.json";
-  if (count == 3 && std::string_view(words[1]) == "--cases") {
-    file = words[2];
-  } else if (count != 1) {
-    fmt::print(stderr, "usage: compare_methods [--cases FILE]\n");
-    return 1;
-  }
-  std::ifstream stream(file);
+int main() {
+  constexpr const char* kFile = "tests/cases/naseath.json";
+  std::ifstream stream(kFile);
   if (!stream) {
-    fmt::print(stderr, "{}: cannot be read\n", file);
+    fmt::print(stderr, "{}: cannot be read\n", kFile);
     return 1;
   }
   const nlohmann::json cases = nlohmann::json::parse(stream);

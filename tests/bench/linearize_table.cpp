@@ -1,19 +1,16 @@
 // Prints how many lines the ways of laying them along a curve need:
-//   linearize_table [--tolerance MM] [--target NAME] [FILE ..]
+//   linearize_table [FILE ..]
 // First two parabolas at four tolerances: ilca, blca, chord, minlink (docs/algorithms/hamdan.md).
-// Then for each program, smoothed with --method fair --output lines --prefer size: lines in the
+// Then for each program, smoothed within 0.01 mm for linuxcnc with --method fair --output lines
+// --prefer size: lines in the
 // runs that both ways rewrite, laid as chords and as minlink, what is saved, and whether both texts
 // are proved.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
@@ -31,31 +28,6 @@ using postproc::Linearize;
 
 // 89 links need all but 2e-4 of the tolerance in one case: with fewer gates they are 90.
 constexpr int kFineGates = 96;
-
-struct Arguments {
-  double tolerance = 0.01;
-  std::string target = "linuxcnc";
-  std::vector<std::string> files;
-};
-
-std::optional<Arguments> arguments_of(int count, char** words) {
-  Arguments a;
-  for (int i = 1; i < count; ++i) {
-    const std::string_view word = words[i];
-    if (!word.starts_with("--")) {
-      a.files.emplace_back(word);
-    } else if (i + 1 == count) {
-      return std::nullopt;
-    } else if (word == "--tolerance") {
-      a.tolerance = std::atof(words[++i]);
-    } else if (word == "--target") {
-      a.target = words[++i];
-    } else {
-      return std::nullopt;
-    }
-  }
-  return a;
-}
 
 // y = c1 x^2 + c2 x + c3, x being the parameter.
 BsplineCurve parabola(double c1, double c2, double c3, double from, double to) {
@@ -92,12 +64,11 @@ void print_parabolas() {
   }
 }
 
-postproc::SmoothResult smoothed(const gcode::SourceText& source, const Arguments& arguments,
-                                Linearize linearize) {
+postproc::SmoothResult smoothed(const gcode::SourceText& source, Linearize linearize) {
   postproc::SmoothOptions options;
-  options.target = gcode::find_control(arguments.target);
+  options.target = gcode::find_control("linuxcnc");
   options.machine = postproc::find_machine(options.target->machine);
-  options.tolerance_mm = arguments.tolerance;
+  options.tolerance_mm = 0.01;
   options.method = postproc::Method::kFair;  // the same curves for both
   options.output = postproc::Form::kLines;
   options.prefer = postproc::Prefer::kSize;
@@ -105,15 +76,15 @@ postproc::SmoothResult smoothed(const gcode::SourceText& source, const Arguments
   return smooth_program(source, options);
 }
 
-void print_program(const std::string& file, const Arguments& arguments) {
+void print_program(const std::string& file) {
   std::string error;
   const auto source = gcode::SourceText::map_file(file, error);
   if (!source) {
     fmt::print("{}: {}\n", file, error);
     return;
   }
-  const auto chords = smoothed(*source, arguments, Linearize::kChord);
-  const auto links = smoothed(*source, arguments, Linearize::kMinLink);
+  const auto chords = smoothed(*source, Linearize::kChord);
+  const auto links = smoothed(*source, Linearize::kMinLink);
   std::size_t before = 0;
   std::size_t as_chords = 0;
   std::size_t as_links = 0;
@@ -139,16 +110,10 @@ void print_program(const std::string& file, const Arguments& arguments) {
 }  // namespace
 
 int main(int argument_count, char** argument_words) {
-  const auto arguments = arguments_of(argument_count, argument_words);
-  if (!arguments || gcode::find_control(arguments->target) == nullptr ||
-      !(arguments->tolerance > 0)) {
-    fmt::print(stderr, "usage: linearize_table [--tolerance MM] [--target NAME] [FILE ..]\n");
-    return 1;
-  }
   print_parabolas();
-  if (arguments->files.empty()) return 0;
+  if (argument_count < 2) return 0;
   fmt::print("\n{:<44} {:>7} {:>7} {:>7} {:>8} {:>8} {:>8}\n", "program", "before", "chord",
              "minlink", "saved", "bytes", "bytes");
-  for (const std::string& file : arguments->files) print_program(file, *arguments);
+  for (int i = 1; i < argument_count; ++i) print_program(argument_words[i]);
   return 0;
 }

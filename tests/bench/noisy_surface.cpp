@@ -1,6 +1,6 @@
 // What noise costs and what is left of it: finishing rows of a known surface, +-0.02 mm added to
 // their vertices, smoothed at twice the CAM tolerance.
-//   noisy_surface [--seeds N] [--noise MM] [--feed MM_PER_MIN] [--dump FOLDER]
+//   noisy_surface [--seeds N] [--noise MM] [--feed MM_PER_MIN]
 //
 // First table: per CAM tolerance and seed, rms distance from the surface of the chords and of the
 // fair curve, the greatest and rms curvature of both (of the chords by the circle through three
@@ -8,13 +8,12 @@
 // built-in machine "high-speed". Second table: of the programs, for each machine, the seconds
 // before and after, runs that were rewritten, blocks and rms. Third table: what the need of the
 // machine gains at twice the feed, as the curve's own limits on speed tell it and as the quick
-// planner does, on rows with and without noise. --dump writes the first row of each as columns.
+// planner does, on rows with and without noise.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,7 +40,6 @@ struct Settings {
   unsigned seeds = 6;
   double noise = 0.02;  // mm
   double feed = 6000;   // mm/min
-  std::string dump;
 };
 
 geometry::SmoothCurve fair_of(const std::vector<Point3>& row, double tolerance,
@@ -93,23 +91,6 @@ CurveFigures figures_of(const Rows& rows, double tolerance, const postproc::Mach
   return f;
 }
 
-void dump(const std::vector<Point3>& row, const geometry::SmoothCurve& path,
-          const std::string& name) {
-  std::ofstream chords(name + "_chords.txt");
-  for (const Point3& p : row) {
-    chords << fmt::format("{} {} {}\n", p.x(), p.z(), geometry::FinishSurface::distance(p));
-  }
-  std::ofstream curve(name + "_curve.txt");
-  geometry::SplineWalk walk(path.curve.basis().knots(), path.curve.control_points());
-  constexpr int kSteps = 6000;
-  for (int k = 0; k <= kSteps; ++k) {
-    const double u = std::lerp(path.curve.first(), path.curve.last(), 1.0 * k / kSteps);
-    const Point3 p = walk.point_at(u);
-    curve << fmt::format("{} {} {} {} {}\n", p.x(), p.z(), geometry::FinishSurface::distance(p),
-                         walk.curvature_at(u), walk.third_by_length_at(u));
-  }
-}
-
 void curves(double cam, const Settings& settings) {
   const postproc::Machine& machine = *postproc::find_machine("high-speed");
   const auto limits = postproc::path_limits_of(machine, settings.feed / 60);
@@ -129,10 +110,6 @@ void curves(double cam, const Settings& settings) {
         "{:>7.3f} | {:>5} {:>5}\n",
         cam, seed, geometry::rms_of_rows(rows), f.rms, most, f.most, f.mean, f.corners, f.rounds,
         time, f.time, points, f.points);
-    if (seed == 1 && !settings.dump.empty()) {
-      dump(rows[0], fair_of(rows[0], 2 * cam, machine, settings.feed),
-           fmt::format("{}/cam{}", settings.dump, cam));
-    }
   }
 }
 
@@ -225,7 +202,6 @@ Settings settings_of(int count, char** arguments) {
     if (name == "--seeds") settings.seeds = static_cast<unsigned>(std::atoi(value));
     if (name == "--noise") settings.noise = std::atof(value);
     if (name == "--feed") settings.feed = std::atof(value);
-    if (name == "--dump") settings.dump = value;
   }
   return settings;
 }

@@ -155,7 +155,7 @@ void sizes(benchmark::internal::Benchmark* stage) {
 BENCHMARK(parse)->Apply(sizes);
 BENCHMARK(interpret)->Apply(sizes);
 BENCHMARK(group_runs)->Apply(sizes);
-BENCHMARK(fair_curve)->Apply(sizes);
+BENCHMARK(fair_curve)->Apply(sizes)->Arg(1'000'000);
 BENCHMARK(plan_lines)->Apply(sizes);
 BENCHMARK(plan_arcs)->Apply(sizes);
 BENCHMARK(cutting_time)->Apply(sizes);

@@ -1,12 +1,5 @@
 // The readers of curve words (G06.2, POLY, BSPLINE, SPL, Klartext), for libFuzzer; see
 // docs/development.md.
-#include <cstddef>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <string>
-#include <string_view>
-
 #include "tests/fuzz/curves_promises.h"
 #include "tests/fuzz/parse_promises.h"
 #include "tests/fuzz/program_mutator.h"
@@ -14,11 +7,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text = batten::fuzz::text_of(data, size);
   for (const auto language : batten::gcode::promises::kLanguages) {
-    const std::string broken = batten::gcode::promises::broken_curves(text, language);
-    if (!broken.empty()) {
-      std::fprintf(stderr, "broken promise: %s\n", broken.c_str());
-      std::abort();
-    }
+    batten::fuzz::judge(batten::gcode::promises::broken_curves(text, language));
   }
   return 0;
 }

@@ -1,11 +1,6 @@
 // For libFuzzer, see preset `fuzz` in docs/development.md.
 // See docs/diagnostics.md for what the reader may say; here only its promises count.
-#include <cstddef>
-#include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <string>
-#include <string_view>
 
 #include "tests/fuzz/parse_promises.h"
 

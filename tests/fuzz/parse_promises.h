@@ -1,6 +1,7 @@
 // What the reader promises for any bytes whatever. Used by the fuzzer and by the unit tests.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -39,9 +40,7 @@ inline std::string broken_cover(const Program& program) {
 
 // Does the word stand for what its bytes say?
 inline bool word_is_true(const Word& word, std::string_view text) {
-  if (word.letter == ',' || !word.is_number) {
-    return true;
-  }
+  if (word.letter == ',' || !word.is_number) return true;
   const auto number = read_number(text.substr(1));
   const char letter = text.front() == ':' ? 'O' : upper(text.front());
   return letter == word.letter && number && number->value == word.value &&
@@ -70,23 +69,18 @@ inline std::string broken_block(const Program& program, const Block& block) {
     if (span.begin < block.span.begin || span.end > block.span.end || span.begin >= span.end) {
       return false;
     }
-    for (std::uint32_t at = span.begin; at < span.end; ++at) {
-      char& owner = owned[at - block.span.begin];
-      if (owner != 0) {
-        return false;
-      }
-      owner = 1;
-    }
-    return true;
+    const auto begin = owned.begin() + (span.begin - block.span.begin);
+    const auto end = begin + (span.end - span.begin);
+    const bool is_free = std::all_of(begin, end, [](char owner) { return owner == 0; });
+    std::fill(begin, end, '\1');
+    return is_free;
   };
   for (const Word& word : program.words_of(block)) {
     // A centre of Klartext stands in the block of its CC, and has no value once the coordinates
     // may be others.
     const bool elsewhere = program.language == Language::kKlartext &&
                            word.span.begin < word.span.end && word.span.end <= block.span.begin;
-    if (!elsewhere && !own(word.span)) {
-      return "a word is not at its own place" + where;
-    }
+    if (!elsewhere && !own(word.span)) return "a word is not at its own place" + where;
     if (plain && !word_is_true(word, program.source.text(word.span))) {
       return "a word is not what its bytes say" + where;
     }
@@ -96,18 +90,12 @@ inline std::string broken_block(const Program& program, const Block& block) {
     }
   }
   for (const Comment& comment : program.comments_of(block)) {
-    if (!own(comment.span)) {
-      return "a comment is not at its own place" + where;
-    }
+    if (!own(comment.span)) return "a comment is not at its own place" + where;
   }
-  if (!plain || block.opacity != ParseStatus::kNone) {
-    return "";
-  }
+  if (!plain || block.opacity != ParseStatus::kNone) return "";
   const std::string_view text = program.source.text(block.span);
   for (std::size_t at = 0; at < text.size(); ++at) {
-    if (owned[at] == 0 && !may_stand_between(text[at], block)) {
-      return "a byte was skipped" + where;
-    }
+    if (owned[at] == 0 && !may_stand_between(text[at], block)) return "a byte was skipped" + where;
   }
   return "";
 }
@@ -117,9 +105,7 @@ inline std::string broken_diagnostics(const Program& program, const Diagnostics&
   auto block = program.blocks.begin();
   for (const Diagnostic& diagnostic : found) {
     if (diagnostic.id == "sixteen-bit-text") continue;
-    while (block != program.blocks.end() && block->end <= diagnostic.where.begin) {
-      ++block;
-    }
+    while (block != program.blocks.end() && block->end <= diagnostic.where.begin) ++block;
     if (block == program.blocks.end() || diagnostic.where.begin < block->span.begin) {
       return "two diagnostics for one block, or one outside the program: " + diagnostic.message;
     }
@@ -139,9 +125,7 @@ inline std::string broken_by(std::string_view text, Language language = Language
   std::uint32_t words = 0;
   std::uint32_t comments = 0;
   for (const Block& block : program.blocks) {
-    if (!broken.empty()) {
-      return broken;
-    }
+    if (!broken.empty()) return broken;
     if (block.first_word < words || block.first_comment < comments) {
       return "blocks share words or comments";
     }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <string_view>
@@ -17,6 +19,13 @@ namespace batten::fuzz {
 
 inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
+}
+
+// What a fuzzer says of a text: the promise that does not hold, or nothing.
+inline int judge(const std::string& broken) {
+  if (broken.empty()) return 0;
+  std::fprintf(stderr, "broken promise: %s\n", broken.c_str());
+  std::abort();
 }
 
 inline std::size_t put(std::string_view text, std::uint8_t* out, std::size_t most) {
