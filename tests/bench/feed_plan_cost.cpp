@@ -14,7 +14,6 @@
 #include "geometry/path/bspline_curve.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/models/cycle_time.h"
-#include "postproc/machine/planner/feed_estimate.h"
 #include "postproc/machine/planner/feed_plan.h"
 #include "tests/support/paths.h"
 

@@ -22,7 +22,6 @@
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
 #include "geometry/fitting/fair/fair_measure.h"
-#include "postproc/machine/planner/feed_estimate.h"
 #include "postproc/machine/planner/feed_plan.h"
 #include "postproc/smooth/methods/run_curve.h"
 #include "postproc/stream/pipeline.h"
@@ -81,7 +80,7 @@ CurveFigures figures_of(const Rows& rows, double tolerance, const postproc::Mach
       length += step;
       f.most = std::max(f.most, bend);
     }
-    f.time += postproc::planned_time(path.curve, limits, {}, postproc::kQuickPlan);
+    f.time += postproc::planned_time(postproc::path_of(path.curve), limits);
     f.corners += path.kept_corners;
     f.rounds += path.rounds;
     f.points += path.curve.control_points().size();
@@ -101,7 +100,7 @@ void curves(double cam, const Settings& settings) {
     std::size_t points = 0;
     for (const auto& row : rows) {
       most = std::max(most, postproc::greatest_curvature(row));
-      time += postproc::planned_time(geometry::path_through(row), limits, {}, postproc::kQuickPlan);
+      time += postproc::planned_time(geometry::path_through(row), limits);
       points += row.size();
     }
     const CurveFigures f = figures_of(rows, 2 * cam, machine, settings.feed);
@@ -186,7 +185,7 @@ void needs(double cam, double noise, const Settings& settings) {
     for (const int needy : {0, 1}) {
       const auto path = fair_of(row, 2 * cam, machine, needy == 1 ? feed : 60);
       places[needy] += time_by_places(path.curve, limits);
-      planned[needy] += postproc::estimated_time(path.curve, planner);
+      planned[needy] += postproc::estimated_time(postproc::path_of(path.curve), planner);
     }
   }
   fmt::print("{:<6} {:<5} | {:>7.3f} {:>7.3f} {:>5.1f} % | {:>7.3f} {:>7.3f} {:>5.1f} %\n", cam,

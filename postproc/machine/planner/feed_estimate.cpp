@@ -1,266 +1,150 @@
-#include "postproc/machine/planner/feed_estimate.h"
-
+// The planned time of a path, quickly: unknowns for q = speed^2 as a quadratic spline of the way,
+// on few nodes. q and dq/ds run on, d2q/ds2 is constant over each interval. The unknowns are its
+// Bezier ordinates: q at the start, one in the middle of each interval, and q at the end.
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <stdexcept>
-#include <string>
 #include <utility>
-#include <variant>
+#include <vector>
 
-#include "geometry/basic/rounding.h"
-#include "postproc/machine/planner/feed_estimate_parts.h"
-#include "postproc/machine/planner/feed_estimate_problem.h"
-#include "postproc/machine/planner/feed_plan_envelope.h"
-#include "postproc/machine/planner/feed_plan_path.h"
+#include "postproc/machine/planner/feed_plan.h"
 #include "postproc/machine/planner/feed_plan_straight.h"
+#include "postproc/machine/planner/feed_search.h"
+#include "postproc/machine/planner/feed_sections.h"
 
 namespace batten::postproc {
 namespace {
 
-using geometry::PathPiece;
-
-// No speed is found yet.
-constexpr double kUnset = -1;
-
-// Nodes in the time sqrt(v / jerk).
-constexpr double kDensity = 3;
-
-// A joint that is this much slower than the ways before and after it let the machine be is passed
-// without acceleration: what an acceleration there wins on one side it loses on the other, and
-// the difference is 0.15 times the square of the ratio at the most, as part of the time of a ramp.
-// The envelope is 1.65 times the speed that jerk allows between two rests.
+// At most 1.6e-3 of a ramp's time is lost at a joint that counts as slow.
 constexpr double kSlowEstimateJoint = 16;
 
-// A longer stretch is searched in windows of so many intervals. The last ones of a window, which
-// do not see what follows, are searched again with the next: the machine changes its speed several
-// times within them.
-constexpr std::size_t kWindow = 320;
-constexpr std::size_t kAgain = 64;
+// Half of the first jerk phase by time is an eighth of its way, and at its end, at half the speed,
+// the potential is 0.35 of its greatest.
+constexpr GridRule kEstimateGrid = {
+    .density = 3, .nodes_per_bend = 1, .rest_share = 0.35 / 8, .joins_parts = true};
 
-bool has_length(const PathPiece& piece) {
-  const geometry::Vector3 way = geometry::end_point(piece) - geometry::start_point(piece);
-  return way.norm() > geometry::kSamePlace || geometry::length_of(piece) > geometry::kSamePlace;
-}
+// A rough start costs steps; more of them do not make an estimate better.
+constexpr SearchRule kQuick = {.first_gap = 0.3,
+                               .enough_gap = 3e-3,
+                               .enough_kept = 0.02,
+                               .least_slack = 0.5,
+                               .least_gap_part = 0.1,
+                               .per_unexplained = 0,
+                               .most_steps = 40};
 
-// Collects the pieces between two stops and adds up the times.
-class Estimator {
+// The start is this part of the envelope of speed^2.
+constexpr double kStartPart = 0.8;
+
+// The middles of the intervals come first, then the nodes between them.
+class EstimateProblem {
  public:
-  Estimator(std::span<const PathPiece> path, const KinematicPathLimits& limits, bool with_speeds)
-      : path_(path), limits_(limits), potential_(limits), with_speeds_(with_speeds) {}
+  EstimateProblem(std::span<const geometry::PathPiece> path, const FeedSection& section,
+                  const KinematicPathLimits& limits)
+      : limits_(limits), intervals_(intervals_of(section, path, limits, kEstimateGrid)) {
+    RestMotion start;
+    RestMotion end;
+    if (section.start.is_rest()) {
+      start = rest_motion(path[intervals_.front().piece], intervals_.front(), limits);
+      intervals_.erase(intervals_.begin());
+    }
+    if (section.end.is_rest()) {
+      end = rest_motion(path[intervals_.back().piece], intervals_.back(), limits);
+      intervals_.pop_back();
+    }
+    const std::size_t n = intervals_.size();
+    problem_.unknowns = n + 2;
+    for (std::size_t k = 0; k < n; ++k) add_middle(path, k);
+    for (std::size_t k = 0; k <= n; ++k) add_node(k);
+    const auto factor = [&](const RestMotion& rest, const FeedInterval& outer) {
+      return 1 + rest.slope() * outer.length / 2;
+    };
+    set_end(section.start, start, {0, 1, factor(start, intervals_.front()), 1}, problem_.places[n],
+            problem_);
+    // A single interval has one ordinate inside: the start's equation is the one that counts.
+    const bool is_given = n == 1 && !problem_.ties.empty();
+    set_end(section.end, end, {n + 1, is_given ? n + 1 : n, factor(end, intervals_.back()), 1},
+            problem_.places.back(), problem_);
+  }
 
-  FeedEstimate run(const PlanEnds& ends);
+  [[nodiscard]] double seconds() const { return fastest(problem_, guess(), kQuick).seconds; }
 
  private:
-  void fill_speeds(double start_speed);
-  void add_piece(std::size_t number, const PieceEnds& ends);
-  void finish_chain(double end_bound, bool free_end);
-  void add_stretch(std::size_t first, std::size_t last, const EstimateEnd& start,
-                   const EstimateEnd& end);
-  [[nodiscard]] bool is_straight(std::size_t first, std::size_t last) const;
-  double search(const EstimateStretch& stretch, std::size_t first_part);
-  void commit(const EstimateStretch& stretch, const EstimateSolution& solution, std::size_t count);
-  void pass_parts(double way, double length, double q0, double middle, double q1);
-  void set_speed(std::size_t part, double speed);
-
-  std::span<const PathPiece> path_;
-  const KinematicPathLimits& limits_;
-  Potential potential_;
-  bool with_speeds_;
-  FeedEstimate estimate_;
-  // Of the chain between two stops:
-  PartChain chain_;
-  double start_bound_ = 0;
-  bool free_start_ = false;
-  // Of the stretch that is searched, where speeds are asked for:
-  std::size_t part_ = 0;  // the next whose end is to come
-  double part_end_ = 0;   // mm from the start of the stretch
-  double way_ = 0;        // mm that are done
-};
-
-void Estimator::add_piece(std::size_t number, const PieceEnds& ends) {
-  append_parts(path_[number], number, ends, potential_, limits_, chain_.parts);
-}
-
-FeedEstimate Estimator::run(const PlanEnds& ends) {
-  start_bound_ = ends.start_speed;
-  free_start_ = ends.start_speed > 0;
-  if (with_speeds_) estimate_.speeds.assign(path_.size() + 1, kUnset);
-  LengthDerivatives last;
-  for (std::size_t i = 0; i < path_.size(); ++i) {
-    if (!has_length(path_[i])) continue;
-    const PieceEnds piece = ends_of(path_[i]);
-    if (!chain_.parts.empty()) {
-      const double bound = passing_speed(last, piece.start, potential_, limits_);
-      if (bound == 0) {
-        finish_chain(0, false);
-        start_bound_ = 0;
-        free_start_ = false;
-      } else {
-        chain_.parts.back().end_bound = bound;
-      }
-    }
-    add_piece(i, piece);
-    last = piece.end;
-  }
-  if (!chain_.parts.empty()) finish_chain(ends.end_speed, ends.end_speed > 0);
-  fill_speeds(ends.start_speed);
-  return std::move(estimate_);
-}
-
-// Pieces without length end at the speed at which they start.
-void Estimator::fill_speeds(double start_speed) {
-  double last = start_speed;
-  for (double& speed : estimate_.speeds) last = speed = speed == kUnset ? last : speed;
-}
-
-void Estimator::finish_chain(double end_bound, bool free_end) {
-  chain_.find_potentials(start_bound_, end_bound, potential_);
-  EstimateEnd start;
-  start.kind = free_start_ ? EstimateEnd::Kind::kFree : EstimateEnd::Kind::kSlow;
-  start.speed = start_bound_;
-  std::size_t first = 0;
-  const auto close = [&](std::size_t last, EstimateEnd end) {
-    add_stretch(first, last, start, end);
-    start = end;
-    first = last;
+  // Shares of the ordinates beside a node in its q.
+  struct NodeShares {
+    double before;
+    double after;
   };
-  for (const std::size_t joint : chain_.slow_joints(kSlowEstimateJoint, potential_)) {
-    close(joint, {EstimateEnd::Kind::kSlow, potential_.speed(chain_.w[joint]), 0, 0});
-  }
-  EstimateEnd end;
-  end.kind = free_end ? EstimateEnd::Kind::kFree : EstimateEnd::Kind::kSlow;
-  end.speed = end_bound;
-  close(chain_.parts.size(), end);
-  chain_.parts.clear();
-}
 
-bool Estimator::is_straight(std::size_t first, std::size_t last) const {
-  for (std::size_t i = first; i < last; ++i) {
-    if (!chain_.parts[i].straight) return false;
-    if (i + 1 < last && !std::isinf(chain_.parts[i].end_bound)) return false;
+  [[nodiscard]] double length(std::size_t interval) const {  // 0 beyond the ends
+    return interval < intervals_.size() ? intervals_[interval].length : 0;
   }
-  return true;
-}
 
-void Estimator::add_stretch(std::size_t first, std::size_t last, const EstimateEnd& start,
-                            const EstimateEnd& end) {
-  const bool slow = start.kind == EstimateEnd::Kind::kSlow && end.kind == EstimateEnd::Kind::kSlow;
-  if (slow && is_straight(first, last)) {
-    double length = 0;
-    for (std::size_t i = first; i < last; ++i) length += chain_.parts[i].length;
-    const geometry::Vector3 direction = geometry::direction_at(path_[chain_.parts[first].piece], 0);
-    const LimitsAlong along = limits_along(direction, limits_);
-    const StraightRun run = straight_run(length, start.speed, end.speed, along);
-    estimate_.time += run.time;
-    if (!with_speeds_) return;
-    double way = 0;
-    for (std::size_t i = first; i < last; ++i) {
-      way += chain_.parts[i].length;
-      set_speed(i, i + 1 < last ? run.speed_at(way, along) : run.to);
+  [[nodiscard]] NodeShares shares(std::size_t node) const {
+    const double before = length(node - 1);
+    const double after = length(node);
+    return {after / (before + after), before / (before + after)};
+  }
+
+  // q at the ends, and so q, p and r in the middle, as sums over the ordinates k, k + 1, k + 2.
+  void add_middle(std::span<const geometry::PathPiece> path, std::size_t k) {
+    const FeedInterval& interval = intervals_[k];
+    const double h = interval.length;
+    const Eigen::RowVector3d q0(shares(k).before, shares(k).after, 0);
+    const Eigen::RowVector3d q1(0, shares(k + 1).before, shares(k + 1).after);
+    const Eigen::RowVector3d inner(0, 1, 0);
+    SearchPlace place;
+    place.first = k;
+    place.width = 3;
+    place.sums.row(0).head<3>() = 0.25 * (q0 + q1) + 0.5 * inner;
+    place.sums.row(1).head<3>() = (q1 - q0) / h;
+    place.sums.row(2).head<3>() = 2 / (h * h) * (q0 + q1 - 2 * inner);
+    place.time = 4 * h / 6;
+    const LengthDerivatives x =
+        derivatives_by_length(path[interval.piece], 0.5 * (interval.t0 + interval.t1));
+    problem_.add_jerk_rows(x, limits_, place);
+    problem_.add_other_limits(x, limits_, place);
+    place.lower_speed(interval.inner_bound);
+    problem_.places.push_back(place);
+  }
+
+  void add_node(std::size_t k) {
+    SearchPlace place;
+    place.first = k;
+    place.width = 2;
+    place.sums.row(0).head<2>() << shares(k).before, shares(k).after;
+    place.time = (length(k - 1) + length(k)) / 6;
+    if (k > 0) place.lower_speed(intervals_[k - 1].end_bound);
+    problem_.places.push_back(place);
+  }
+
+  [[nodiscard]] std::vector<double> guess() const {
+    std::vector<double> u;
+    for (std::size_t k = 0; k < intervals_.size(); ++k) {
+      const double v = intervals_[k].speed;
+      u.push_back(kStartPart * std::min(v * v, problem_.places[k].most));
     }
-    return;
+    smooth(u, 3);
+    const auto& places = problem_.places;
+    u.insert(u.begin(), std::min(u.front(), 0.9 * places[intervals_.size()].most));
+    u.push_back(std::min(u.back(), 0.9 * places.back().most));
+    problem_.tie(u);
+    return u;
   }
-  const auto parts = std::span(chain_.parts).subspan(first, last - first);
-  const auto w = std::span(chain_.w).subspan(first, last - first + 1);
-  const double speed =
-      search(make_estimate_stretch(parts, w, potential_, start, end, kDensity), first);
-  set_speed(last - 1, end.kind == EstimateEnd::Kind::kFree ? speed : end.speed);
-}
 
-// Window by window. Returns the speed at the last node.
-double Estimator::search(const EstimateStretch& stretch, std::size_t first_part) {
-  const std::vector<EstimateInterval>& all = stretch.intervals;
-  part_ = first_part;
-  part_end_ = chain_.parts[first_part].length;
-  way_ = stretch.start.length;
-  std::size_t first = 0;
-  EstimateStretch window;
-  window.start = stretch.start;
-  while (first < all.size()) {
-    const bool last = all.size() - first <= kWindow + kAgain;
-    const std::size_t count = last ? all.size() - first : kWindow;
-    window.intervals.assign(all.begin() + static_cast<std::ptrdiff_t>(first),
-                            all.begin() + static_cast<std::ptrdiff_t>(first + count));
-    window.end = stretch.end;
-    if (!last) {
-      window.end = {};
-      window.end.speed = window.intervals.back().speed;
-    }
-    EstimateSolution solution = quick_search(path_, window, limits_);
-    if (!solution.found && window.start.kind == EstimateEnd::Kind::kMoving) {
-      // What came before has not seen what follows: go on from a lower speed.
-      window.start.kind = EstimateEnd::Kind::kFree;
-      solution = quick_search(path_, window, limits_);
-    }
-    const std::size_t kept = last ? count : count - kAgain;
-    commit(window, solution, kept);
-    const EstimateNode node = node_of(window, solution, kept);
-    window.start = {EstimateEnd::Kind::kMoving, node.speed, node.acceleration, 0};
-    first += kept;
-  }
-  return window.start.speed;
-}
-
-// The speed at the end of a piece.
-void Estimator::set_speed(std::size_t part, double speed) {
-  const std::size_t piece = chain_.parts[part].piece;
-  const bool last = part + 1 == chain_.parts.size() || chain_.parts[part + 1].piece != piece;
-  if (with_speeds_ && last) estimate_.speeds[piece + 1] = speed;
-}
-
-// The speeds at the ends of parts in an interval `way` mm from the start of the stretch, given the
-// Bezier ordinates of speed^2.
-void Estimator::pass_parts(double way, double length, double q0, double middle, double q1) {
-  for (; part_ < chain_.parts.size() && part_end_ <= way + length; ++part_) {
-    const double x = (part_end_ - way) / length;
-    const double q = q0 + x * (2 * (middle - q0) + x * (q0 - 2 * middle + q1));
-    set_speed(part_, std::sqrt(std::max(q, 0.0)));
-    if (part_ + 1 < chain_.parts.size()) part_end_ += chain_.parts[part_ + 1].length;
-  }
-}
-
-void Estimator::commit(const EstimateStretch& stretch, const EstimateSolution& solution,
-                       std::size_t count) {
-  estimate_.time += solution.start_seconds;
-  for (std::size_t i = 0; i < count; ++i) estimate_.time += solution.seconds[i];
-  if (count == stretch.intervals.size()) estimate_.time += solution.end_seconds;
-  if (!with_speeds_) return;
-  double q0 = solution.ordinates.front();
-  for (std::size_t i = 0; i < count; ++i) {
-    const double speed = node_of(stretch, solution, i + 1).speed;
-    const double length = stretch.intervals[i].length;
-    pass_parts(way_, length, q0, solution.ordinates[i + 1], speed * speed);
-    q0 = speed * speed;
-    way_ += length;
-  }
-}
-
-void require_speeds(const PlanEnds& ends) {
-  if (ends.start_speed >= 0 && ends.end_speed >= 0) return;
-  throw std::invalid_argument("estimate_feed: end speeds " + std::to_string(ends.start_speed) +
-                              " and " + std::to_string(ends.end_speed) + ", expected 0 or more");
-}
+  const KinematicPathLimits& limits_;
+  std::vector<FeedInterval> intervals_;
+  SearchProblem problem_;
+};
 
 }  // namespace
 
-FeedEstimate estimate_feed(std::span<const PathPiece> path, const KinematicPathLimits& limits,
-                           const PlanEnds& ends) {
-  require_sound(limits);
-  require_speeds(ends);
-  return Estimator(path, limits, true).run(ends);
-}
-
-double estimated_time(std::span<const PathPiece> path, const KinematicPathLimits& limits,
+double estimated_time(std::span<const geometry::PathPiece> path, const KinematicPathLimits& limits,
                       const PlanEnds& ends) {
-  require_sound(limits);
-  require_speeds(ends);
-  return Estimator(path, limits, false).run(ends).time;
-}
-
-double estimated_time(const geometry::BsplineCurve& curve, const KinematicPathLimits& limits,
-                      const PlanEnds& ends) {
-  return estimated_time(path_of(curve), limits, ends);
+  double time = 0;
+  for_each_section(path, limits, ends, kSlowEstimateJoint, [&](const FeedSection& section) {
+    time += section.is_straight() ? straight_run(section, path, limits).time
+                                  : EstimateProblem(path, section, limits).seconds();
+  });
+  return time;
 }
 
 }  // namespace batten::postproc

@@ -17,26 +17,6 @@
 
 namespace batten::postproc {
 
-// The greatest speeds at both ends, mm/s, each passed with any acceleration; 0 is rest, with
-// acceleration 0.
-struct PlanEnds {
-  double start_speed = 0;
-  double end_speed = 0;
-};
-
-struct FeedPlanOptions {
-  // Nodes in the time sqrt(v / jerk), half of what the machine needs for a change of its speed
-  // by v; more where the plan needs them. The error of the time falls with the square of it.
-  double density = 6;
-  // Rounds in which the plan gets nodes where they are missing, at most 4; fewer are made where
-  // fewer do.
-  int refinements = 4;
-};
-
-// For a choice between many candidates: a time that is right to about 0.2 %, mostly too long, of a
-// plan that may exceed limits by a quarter for an instant between its nodes.
-inline constexpr FeedPlanOptions kQuickPlan = {4, 0};
-
 // Between two nodes speed^2 is a cubic of the distance; next to rest it is a power of the distance,
 // that of constant jerk (of constant acceleration where the jerk has no limit).
 struct FeedPlanNode {
@@ -55,34 +35,36 @@ struct FeedPlan {
   int passed_jumps = 0;             // joints passed with an allowed jump in speed or acceleration
 };
 
+// Nodes in the time sqrt(v / jerk), half of what the machine needs for a change of its speed by v;
+// the plan gets more where it needs them. The error of the time falls with the square of it.
+inline constexpr double kPlanDensity = 6;
+
 // No limit is exceeded at the nodes and in the middle between them; between those by some 0.1 %
-// and at most 0.5 % with the default options. The time is that of a local optimum (the jerk limit
-// is not convex), from above, within a few 1e-4 on the paths whose optimum is known.
+// and at most 0.5 % with the default density. The time is that of a local optimum (the jerk limit
+// is not convex), from above, within a few 1e-4 on the paths whose optimum is known. Linear cost.
 //
 // Throws std::invalid_argument for limits that are not sound (require_sound) or negative end
 // speeds.
 [[nodiscard]] FeedPlan plan_feed(std::span<const geometry::PathPiece> path,
                                  const KinematicPathLimits& limits, const PlanEnds& ends = {},
-                                 const FeedPlanOptions& options = {});
+                                 double density = kPlanDensity);
 
-// Requires degree 3 or less.
-[[nodiscard]] FeedPlan plan_feed(const geometry::BsplineCurve& curve,
-                                 const KinematicPathLimits& limits, const PlanEnds& ends = {},
-                                 const FeedPlanOptions& options = {});
-
-// Seconds; the time of the plan. Linear cost.
+// Seconds; the time of the plan.
 [[nodiscard]] double planned_time(std::span<const geometry::PathPiece> path,
                                   const KinematicPathLimits& limits, const PlanEnds& ends = {},
-                                  const FeedPlanOptions& options = {});
-[[nodiscard]] double planned_time(const geometry::BsplineCurve& curve,
-                                  const KinematicPathLimits& limits, const PlanEnds& ends = {},
-                                  const FeedPlanOptions& options = {});
+                                  double density = kPlanDensity);
 
-// The curve as a path: its Bezier pieces.
+// Seconds: the planned time within a percent or two, at a hundredth of its cost, for a choice
+// between many candidates. The same limits, ends and stops; straight moves from rest to rest have
+// their exact time. Elsewhere limits are kept in the middle of each interval of a grid that is as
+// coarse as the estimate allows, so the motion is no plan. Linear cost. Throws as plan_feed does.
+[[nodiscard]] double estimated_time(std::span<const geometry::PathPiece> path,
+                                    const KinematicPathLimits& limits, const PlanEnds& ends = {});
+
+// A curve of degree 3 or less as a path: its Bezier pieces.
 [[nodiscard]] geometry::Path path_of(const geometry::BsplineCurve& curve);
 
 // A feed plan in time, as a control would send it to the axes.
-
 struct MotionSample {
   double time = 0;                     // s
   double speed = 0;                    // mm/s along the path

@@ -1,14 +1,13 @@
 #include "postproc/machine/planner/feed_plan_path.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <variant>
 
 #include "geometry/basic/rounding.h"
+#include "geometry/numeric/extrema.h"
 #include "geometry/path/cubic_polynomial.h"
 
 namespace batten::postproc {
@@ -16,19 +15,21 @@ namespace {
 
 using geometry::Vector3;
 
-void require_positive(double value, const char* name) {
-  if (value > 0) return;
+void require(bool holds, double value, const char* name, const char* expected) {
+  if (holds) return;
   throw std::invalid_argument("KinematicPathLimits: " + std::string(name) + " is " +
-                              std::to_string(value) + ", expected above 0");
+                              std::to_string(value) + ", expected " + expected);
+}
+
+void require_positive(double value, const char* name) {
+  require(value > 0, value, name, "above 0");
 }
 
 void require_not_negative(double value, const char* name) {
-  if (value >= 0) return;
-  throw std::invalid_argument("KinematicPathLimits: " + std::string(name) + " is " +
-                              std::to_string(value) + ", expected 0 or more");
+  require(value >= 0, value, name, "0 or more");
 }
 
-// The length along `direction` at which the first axis meets its limit.
+// How far `direction` goes until the first axis meets its limit.
 double along(const Vector3& direction, const Vector3& limit) {
   double least = KinematicPathLimits::kNone;
   for (int axis = 0; axis < 3; ++axis) {
@@ -57,6 +58,10 @@ void require_sound(const KinematicPathLimits& limits) {
   }
 }
 
+bool has_jerk_limit(const KinematicPathLimits& limits) {
+  return !std::isinf(std::min(limits.jerk.minCoeff(), limits.tangential_jerk));
+}
+
 LimitsAlong limits_along(const Vector3& direction, const KinematicPathLimits& limits) {
   return {std::min(limits.feed, along(direction, limits.speed)),
           std::min(limits.tangential_acceleration, along(direction, limits.acceleration)),
@@ -69,7 +74,6 @@ using geometry::Arc;
 using geometry::CubicBezier;
 using geometry::CubicPolynomial;
 using geometry::Line;
-using geometry::Vector3;
 
 // By the parameter of the piece.
 struct Derivatives {
@@ -116,36 +120,15 @@ constexpr double kCloseBy = 1e-3;
 
 Derivatives derivatives_at(const CubicBezier& bezier, double t) {
   const CubicPolynomial piece(bezier);
-  if (!(piece.first(t).norm() > kNoDerivative * size_of(bezier))) {
-    t += t < 0.5 ? kCloseBy : -kCloseBy;
-  }
   return {piece.first(t), piece.second(t), piece.third()};
 }
 
-// The chain rule, with sigma = |C'| and its derivatives by t.
-LengthDerivatives by_length(const Derivatives& d) {
-  const double sigma = d.first.norm();
-  const double sigma1 = d.first.dot(d.second) / sigma;
-  const double sigma2 = (d.second.squaredNorm() + d.first.dot(d.third) - sigma1 * sigma1) / sigma;
-  const Vector3 n = sigma * d.second - sigma1 * d.first;
-  const double cube = sigma * sigma * sigma;
-  return {d.first / sigma, n / cube,
-          ((sigma * d.third - sigma2 * d.first) / cube - 3 * sigma1 / (cube * sigma) * n) / sigma};
+Derivatives derivatives_at(const Line& line, double) {
+  return {line.end - line.start, Vector3::Zero(), Vector3::Zero()};
 }
 
-double parameter_speed(const geometry::PathPiece& piece, double t) {
-  return std::visit(
-      [t](const auto& p) {
-        using Piece = std::decay_t<decltype(p)>;
-        if constexpr (std::is_same_v<Piece, Line>) {
-          return (p.end - p.start).norm();
-        } else if constexpr (std::is_same_v<Piece, Arc>) {
-          return derivatives_at(p, t).first.norm();
-        } else {
-          return CubicPolynomial(p).first(t).norm();
-        }
-      },
-      piece);
+Derivatives derivatives_at(const geometry::PathPiece& piece, double t) {
+  return std::visit([t](const auto& p) { return derivatives_at(p, t); }, piece);
 }
 
 // What an axis may jump at a kink and where the curvature jumps, mm/s and mm/s^2.
@@ -166,58 +149,56 @@ Vector3 acceleration_jump(const KinematicPathLimits& limits) {
   return allowed;
 }
 
-// The greatest speed at which no axis of `jump` (per mm/s of speed) is above its limit.
-double speed_for(const Vector3& jump, const Vector3& limit) {
-  double speed = KinematicPathLimits::kNone;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double size = std::abs(jump[axis]);
-    if (size > 0) speed = std::min(speed, limit[axis] / size);
-  }
-  return speed;
-}
+// A joint whose speed the machine reaches from rest within this way is a stop: the way is a
+// thousandth of the last printed decimal.
+constexpr double kStopWay = 1e-6;  // mm
 
 }  // namespace
 
 LengthDerivatives derivatives_by_length(const geometry::PathPiece& piece, double t) {
-  return std::visit(
-      [t](const auto& p) -> LengthDerivatives {
-        using Piece = std::decay_t<decltype(p)>;
-        if constexpr (std::is_same_v<Piece, Line>) {
-          return {(p.end - p.start).normalized(), Vector3::Zero(), Vector3::Zero()};
-        } else {
-          return by_length(derivatives_at(p, t));
-        }
-      },
-      piece);
+  Derivatives d = derivatives_at(piece, t);
+  const auto* bezier = std::get_if<CubicBezier>(&piece);
+  if (bezier != nullptr && !(d.first.norm() > kNoDerivative * size_of(*bezier))) {
+    d = derivatives_at(*bezier, t + (t < 0.5 ? kCloseBy : -kCloseBy));
+  }
+  return geometry::by_length(d.first, d.second, d.third);
 }
 
 double length_between(const geometry::PathPiece& piece, double t0, double t1) {
-  if (std::holds_alternative<Line>(piece)) return (t1 - t0) * parameter_speed(piece, 0);
-  // Gauss-Legendre on [-1, 1].
-  constexpr std::array<double, 3> kPlaces = {0, 0.5384693101056831, 0.9061798459386640};
-  constexpr std::array<double, 3> kWeights = {0.5688888888888889, 0.4786286704993665,
-                                              0.2369268850561891};
-  const double middle = 0.5 * (t0 + t1);
-  const double half = 0.5 * (t1 - t0);
-  double sum = kWeights[0] * parameter_speed(piece, middle);
-  for (int i = 1; i < 3; ++i) {
-    sum += kWeights[i] * (parameter_speed(piece, middle - half * kPlaces[i]) +
-                          parameter_speed(piece, middle + half * kPlaces[i]));
+  const auto speed = [&](double t) { return derivatives_at(piece, t).first.norm(); };
+  if (std::holds_alternative<Line>(piece)) return (t1 - t0) * speed(0);
+  return geometry::gauss5(speed, t0, t1);
+}
+
+// By Newton steps.
+double parameter_after(const geometry::PathPiece& piece, double t0, double t1, double length,
+                       double s) {
+  double t = t0 + (t1 - t0) * s / length;
+  for (int i = 0; i < 6; ++i) {
+    const double missing = s - length_between(piece, t0, t);
+    if (std::abs(missing) < 1e-12 * length) break;
+    t = std::clamp(t + missing * (t1 - t0) / length, t0, t1);
   }
-  return half * sum;
+  return t;
 }
 
 double joint_speed(const LengthDerivatives& before, const LengthDerivatives& after,
                    const KinematicPathLimits& limits) {
   double speed = KinematicPathLimits::kNone;
   const Vector3 turn = after.first - before.first;
-  if (turn.norm() > geometry::kSameDirection) speed = speed_for(turn, speed_jump(limits));
+  if (turn.norm() > geometry::kSameDirection) speed = along(turn, speed_jump(limits));
   const Vector3 bend = after.second - before.second;
   const double scale = std::max(before.second.norm(), after.second.norm());
   if (bend.norm() > geometry::kSameDirection * scale) {
-    speed = std::min(speed, std::sqrt(speed_for(bend, acceleration_jump(limits))));
+    speed = std::min(speed, std::sqrt(along(bend, acceleration_jump(limits))));
   }
-  return speed;
+  if (std::isinf(speed)) return speed;
+  const LimitsAlong here = limits_along(before.first, limits);
+  // Rounding of control points looks like a jump, but a tiny one.
+  if (speed >= here.speed) return KinematicPathLimits::kNone;
+  const double slowest = has_jerk_limit(limits) ? std::cbrt(4.5 * here.jerk * kStopWay * kStopWay)
+                                                : std::sqrt(2 * here.acceleration * kStopWay);
+  return speed < slowest ? 0 : speed;
 }
 
 }  // namespace batten::postproc

@@ -35,6 +35,13 @@ struct KinematicPathLimits {
       : feed(axes.feed), speed(axes.speed), acceleration(axes.acceleration), jerk(axes.jerk) {}
 };
 
+// The greatest speeds at both ends, mm/s, each passed with any acceleration; 0 is rest, with
+// acceleration 0.
+struct PlanEnds {
+  double start_speed = 0;
+  double end_speed = 0;
+};
+
 // Throws std::invalid_argument, with the name of the limit, when one is not as said above, or when
 // there is neither a feed nor a speed for every axis.
 void require_sound(const KinematicPathLimits& limits);
@@ -46,17 +53,13 @@ struct LimitsAlong {
   double jerk = 0;          // mm/s^3
 };
 
+// Is the jerk of an axis or along the path limited?
+[[nodiscard]] bool has_jerk_limit(const KinematicPathLimits& limits);
+
 [[nodiscard]] LimitsAlong limits_along(const geometry::Vector3& direction,
                                        const KinematicPathLimits& limits);
 
-// Of the place x by the length s.
-struct LengthDerivatives {
-  geometry::Vector3 first = geometry::Vector3::Zero();   // unit direction
-  geometry::Vector3 second = geometry::Vector3::Zero();  // 1/mm
-  geometry::Vector3 third = geometry::Vector3::Zero();   // 1/mm^2
-
-  [[nodiscard]] bool is_straight() const { return second.isZero(0) && third.isZero(0); }
-};
+using geometry::LengthDerivatives;
 
 // Exact for lines, arcs, helices, spirals and Bezier pieces. Where a Bezier piece comes to a
 // rest in its parameter (control points that coincide), those of a place close by.
@@ -66,8 +69,12 @@ struct LengthDerivatives {
 // parameter changes little.
 [[nodiscard]] double length_between(const geometry::PathPiece& piece, double t0, double t1);
 
-// What a joint of two pieces allows: mm/s, infinity where the path runs on in direction and
-// curvature.
+// The parameter `s` mm after t0, on a part of this length up to t1.
+[[nodiscard]] double parameter_after(const geometry::PathPiece& piece, double t0, double t1,
+                                     double length, double s);
+
+// What a joint of two pieces allows, mm/s: 0 is a stop, infinity where the path runs on in
+// direction and curvature, or where the joint allows what the machine can do at all.
 [[nodiscard]] double joint_speed(const LengthDerivatives& before, const LengthDerivatives& after,
                                  const KinematicPathLimits& limits);
 

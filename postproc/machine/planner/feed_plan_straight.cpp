@@ -72,10 +72,8 @@ StraightState state_in_ramp(double v0, double v1, double time, const LimitsAlong
 
 StraightRun straight_run(double length, double from_speed, double to_speed,
                          const LimitsAlong& limits) {
-  StraightRun run;
-  run.length = length;
-  run.from = std::min(from_speed, limits.speed);
-  run.to = std::min(to_speed, limits.speed);
+  StraightRun run{limits, length, std::min(from_speed, limits.speed),
+                  std::min(to_speed, limits.speed)};
   double below = std::max(run.from, run.to);
   run.peak = below;
   if (!(length > 0)) return run;
@@ -106,37 +104,16 @@ StraightRun straight_run(double length, double from_speed, double to_speed,
   return run;
 }
 
-double StraightRun::speed_at(double way, const LimitsAlong& limits) const {
-  const double up = ramp_way(from, peak, limits).way;
-  const double down = ramp_way(to, peak, limits).way;
-  if (way >= up && length - way >= down) return peak;
-  const bool rising = way < up;
-  const double start = rising ? from : to;
-  const double distance = rising ? way : length - way;
-  const double whole = ramp_time(peak - start, limits);
-  double below = 0;
-  double above = whole;
-  constexpr int kHalvings = 50;  // all bits of the time
-  double speed = start;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = 0.5 * (below + above);
-    const StraightState state = state_in_ramp(start, peak, middle, limits);
-    speed = state.speed;
-    (state.distance < distance ? below : above) = middle;
-  }
-  return speed;
-}
-
-StraightState state_at(const StraightRun& run, double time, const LimitsAlong& limits) {
-  const double up = ramp_time(run.peak - run.from, limits);
-  const double down = ramp_time(run.peak - run.to, limits);
-  if (time < up) return state_in_ramp(run.from, run.peak, time, limits);
-  const double left = run.time - time;
+StraightState StraightRun::state_at(double at) const {
+  const double up = ramp_time(peak - from, limits);
+  const double down = ramp_time(peak - to, limits);
+  if (at < up) return state_in_ramp(from, peak, at, limits);
+  const double left = time - at;
   if (left < down) {
-    const StraightState back = state_in_ramp(run.to, run.peak, left, limits);
-    return {run.length - back.distance, back.speed, -back.acceleration};
+    const StraightState back = state_in_ramp(to, peak, left, limits);
+    return {length - back.distance, back.speed, -back.acceleration};
   }
-  return {0.5 * (run.from + run.peak) * up + run.peak * (time - up), run.peak, 0};
+  return {0.5 * (from + peak) * up + peak * (at - up), peak, 0};
 }
 
 namespace {
@@ -144,51 +121,49 @@ namespace {
 // Times this close, as part of the whole, are the same: rounding of sums.
 constexpr double kSamePart = 1e-12;
 
-double time_at(const StraightRun& run, const LimitsAlong& limits, double distance) {
+double time_at(const StraightRun& run, double distance) {
   double below = 0;
   double above = run.time;
   while (true) {
     const double middle = 0.5 * (below + above);
     if (middle <= below || middle >= above) return middle;
-    (state_at(run, middle, limits).distance < distance ? below : above) = middle;
+    (run.state_at(middle).distance < distance ? below : above) = middle;
   }
 }
 
 }  // namespace
 
-// Times of nodes of a run between two speeds. Near a slow end, and after the end of a piece, nodes
-// lie in geometric progression: there the plan's intervals are exact only where they are short.
-std::vector<double> node_times(const StraightRun& run, const LimitsAlong& limits,
-                               const std::vector<double>& ends, double density) {
-  const double growth = 1 + 1 / density;
+// Near a slow end, and after a joint, nodes lie in geometric progression: there the plan's
+// intervals are exact only where they are short.
+std::vector<double> node_times(const StraightRun& run, std::span<const double> joints,
+                               double density) {
+  std::vector<double> times = {0, run.time};
+  for (const double joint : joints) times.push_back(time_at(run, joint));
+  const std::vector<double> fixed = times;
   const int parts = std::max(1, static_cast<int>(std::ceil(density)));
-  std::vector<double> joints = {0, run.time};
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) joints.push_back(time_at(run, limits, ends[i]));
-  std::vector<double> times = joints;
   const auto add_ramp = [&](double speed, double direction) {
+    const double whole = ramp_time(run.peak - speed, run.limits);
     // In which the acceleration grows; as long as the phase in which it falls.
-    const double whole = ramp_time(run.peak - speed, limits);
-    const double growing =
-        std::isinf(limits.jerk) ? 0 : std::min(limits.acceleration / limits.jerk, 0.5 * whole);
+    const double growing = std::isinf(run.limits.jerk)
+                               ? 0
+                               : std::min(run.limits.acceleration / run.limits.jerk, 0.5 * whole);
     const double origin = direction > 0 ? 0 : run.time;
-    const auto add = [&](double time) { times.push_back(origin + direction * time); };
-    const auto add_evenly = [&](double from, double to) {
-      if (!(to - from > kSamePart * run.time)) return;
-      for (int i = 1; i <= parts; ++i) add(from + (to - from) * i / parts);
-    };
-    double nearest = speed > 0 ? std::sqrt(speed / limits.jerk) / density : growing;
-    for (const double joint : joints) {
-      const double time = direction * (joint - origin);
-      if (time > 0) nearest = std::min(nearest, time);
+    double nearest = speed > 0 ? std::sqrt(speed / run.limits.jerk) / density : growing;
+    for (const double time : fixed) {
+      const double after = direction * (time - origin);
+      if (after > 0) nearest = std::min(nearest, after);
     }
-    for (double time = nearest; time < growing; time *= growth) add(time);
-    if (growing > 0) add(growing);
-    add_evenly(growing, whole - growing);
-    add_evenly(whole - growing, whole);
+    std::vector<double> added;
+    for (double t = nearest; t < growing; t *= 1 + 1 / density) added.push_back(t);
+    for (int i = 0; i <= parts; ++i) {
+      added.push_back(growing + (whole - 2 * growing) * i / parts);
+      added.push_back(whole - growing + growing * i / parts);
+    }
+    for (const double t : added) times.push_back(origin + direction * t);
   };
   add_ramp(run.from, 1);
   add_ramp(run.to, -1);
-  std::sort(times.begin(), times.end());
+  std::ranges::sort(times);
   const auto same = [&](double a, double b) { return b - a <= kSamePart * run.time; };
   times.erase(std::unique(times.begin(), times.end(), same), times.end());
   times.erase(times.begin());

@@ -1,6 +1,7 @@
 // The fastest straight move between two speeds, in closed form.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "postproc/machine/planner/feed_plan_path.h"
@@ -13,36 +14,30 @@ struct StraightState {
   double acceleration = 0;  // mm/s^2
 };
 
-// A straight move between two speeds, with acceleration 0 at both ends: up to the peak, cruise,
-// down, seven phases of constant jerk. Speeds above limits.speed count as that. Without a jerk
-// limit phases of changing acceleration last no time.
+// With acceleration 0 at both ends: up to the peak, cruise, down, seven phases of constant jerk.
+// Without a jerk limit phases of changing acceleration last no time.
 struct StraightRun {
+  LimitsAlong limits;
   double length = 0;  // mm
   double from = 0;    // mm/s
   double to = 0;      // mm/s
   double peak = 0;    // mm/s
   double time = 0;    // s
 
-  // mm/s, so many mm from the start.
-  [[nodiscard]] double speed_at(double way, const LimitsAlong& limits) const;
+  // At a time between 0 and the whole. Not for a run that is too short for its speeds.
+  [[nodiscard]] StraightState state_at(double time) const;
 };
 
-// At a time between 0 and run.time. Not for a run that is too short for its speeds.
-[[nodiscard]] StraightState state_at(const StraightRun& run, double time,
-                                     const LimitsAlong& limits);
-
-// Where the way is too short to change from the one speed to the other, the peak is the greater
-// speed and the time that of their mean over the way.
+// Speeds above limits.speed count as that. Where the way is too short to change from the one speed
+// to the other, the peak is the greater speed and the time that of their mean over the way.
 //
 // Requires length >= 0 and limits above 0; speed and at least one of the others finite.
 [[nodiscard]] StraightRun straight_run(double length, double from_speed, double to_speed,
                                        const LimitsAlong& limits);
 
-// Where the plan of a straight move has its nodes.
-
-// Seconds, rising, the end of the move included: where the jerk changes, `density` places between
-// those, and at `ends`, the distances of the ends of its pieces in mm.
-[[nodiscard]] std::vector<double> node_times(const StraightRun& run, const LimitsAlong& limits,
-                                             const std::vector<double>& ends, double density);
+// Where the plan of a straight move has its nodes: seconds, rising, the end of the move included:
+// where the jerk changes, `density` between those, and at `joints`, mm from the start.
+[[nodiscard]] std::vector<double> node_times(const StraightRun& run, std::span<const double> joints,
+                                             double density);
 
 }  // namespace batten::postproc

@@ -1,33 +1,26 @@
 // The search for the fastest motion along a path: an optimisation over unknowns whose sums are
-// q = (ds/dt)^2 and its first two derivatives p and r by the way, at places where limits hold. A
-// plan (feed_plan_problem.h) and a quick estimate (feed_estimate_problem.h) state such problems.
+// q = (ds/dt)^2 and its first two derivatives p and r by the way, at positions where limits hold. A
+// plan (feed_plan.cpp) and a quick estimate (feed_estimate.cpp) state such problems.
 //
 // A primal-dual interior-point method from any unknowns, also such that exceed limits, with a slack
 // of its own for each side of each limit. All is convex but the jerk, |c.x| <= 1 / sqrt(q): the
-// tangent of its right side at the present q takes its place, anew in every step. Each step is one
+// tangent of its right side at the present q replaces it, anew in every step. Each step is one
 // symmetric system with three sub-diagonals: linear cost.
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "postproc/machine/planner/feed_plan_path.h"
 
 namespace batten::postproc {
 
-// Sums over (q, p, r).
-using LimitWindow = std::array<double, 3>;
-
 struct SearchPlace {
-  // q, p and r as sums over `width` neighbouring unknowns, `first` and on.
-  using Sums = std::array<double, 4>;
+  // q, p and r (rows) as sums over `width` neighbouring unknowns, `first` and on.
+  Eigen::Matrix<double, 3, 4> sums = Eigen::Matrix<double, 3, 4>::Zero();
   std::size_t first = 0;
   std::size_t width = 0;
-  Sums q{};
-  Sums p{};
-  Sums r{};
 
   double time = 0;                           // mm, of 1 / sqrt(q) in the time
   double most = KinematicPathLimits::kNone;  // of q, mm^2/s^2
@@ -36,9 +29,13 @@ struct SearchPlace {
   std::size_t first_row = 0;
   std::size_t jerk_rows = 0;
   std::size_t rows = 0;
+
+  void lower_speed(double speed) { most = std::min(most, speed * speed); }
+  [[nodiscard]] Eigen::Vector3d state_of(const std::vector<double>& unknowns) const;  // q, p, r
 };
 
-// The unknown `tied` is factor * its neighbour `free` + offset.
+// The unknown `tied` is factor * `free`, which is beside it, + offset. With a factor of 0 it is
+// given.
 struct UnknownTie {
   std::size_t tied = 0;
   std::size_t free = 0;
@@ -46,34 +43,20 @@ struct UnknownTie {
   double offset = 0;
 };
 
-struct UnknownPin {
-  std::size_t unknown = 0;
-  double value = 0;
-};
-
-// Adds length / (speed + sqrt(unknown)) to the time.
-struct ArcTime {
-  std::size_t unknown = 0;
-  double length = 0;  // mm
-  double speed = 0;   // mm/s
-
-  [[nodiscard]] double seconds(double q) const;
-};
-
 struct SearchProblem {
   std::size_t unknowns = 0;
   std::vector<SearchPlace> places;
-  std::vector<LimitWindow> rows;  // |c.(q, p, r)| is bounded; those of one place side by side
+  std::vector<Eigen::Vector3d> rows;  // |c.(q, p, r)| is bounded; those of one place side by side
   std::vector<UnknownTie> ties;
-  std::vector<UnknownPin> pins;
-  std::vector<ArcTime> arcs;
 
-  // The limits where the path is `x` become those of `place`: the jerk first. Limits on the
-  // acceleration that no motion steeper than `steepest` (mm/s^2 along the path) meets are left out.
+  // The limits where the path is `x` become those of `place`: the jerk first.
   void add_jerk_rows(const LengthDerivatives& x, const KinematicPathLimits& limits,
                      SearchPlace& place);
   void add_other_limits(const LengthDerivatives& x, const KinematicPathLimits& limits,
-                        double steepest, SearchPlace& place);
+                        SearchPlace& place);
+
+  // Puts unknowns where the ties have them.
+  void tie(std::vector<double>& x) const;
 
  private:
   void add_row(double q, double p, double r, double limit, SearchPlace& place);
@@ -92,15 +75,20 @@ struct SearchRule {
 struct SearchResult {
   std::vector<double> unknowns;
   double seconds = 0;
-  double excess = 0;   // the greatest part of its limit that something is above it
-  bool found = false;  // or the search did not come to an end
+  double excess = 0;  // the greatest part of its limit that something is above it
 };
 
+// The best found where the search does not come to an end.
 [[nodiscard]] SearchResult fastest(const SearchProblem& problem, std::vector<double> start,
                                    const SearchRule& rule);
 
 // Slows down as a whole until all limits are kept. Any q that keeps all limits keeps them times a
 // factor below 1.
 void slow_down(const SearchProblem& problem, std::vector<double>& unknowns);
+
+// Values at neighbouring nodes, smoothed by their logarithms: a pass takes the mean of each inner
+// one and its neighbours. Nodes are spread by the time that a change of speed takes, so this rounds
+// off corners of an envelope as limited jerk does, on each scale alike.
+void smooth(std::vector<double>& values, int passes);
 
 }  // namespace batten::postproc

@@ -249,7 +249,7 @@ TEST(FeedPlanProperties, MoreNodesChangeLittle) {
   double worst = 0;
   for (int seed = 0; seed < kPaths; seed += 3) {
     const Case test = random_case(seed);
-    const double fine = planned_time(test.path, test.limits, {}, {60});
+    const double fine = planned_time(test.path, test.limits, {}, 60);
     worst = std::max(worst, std::abs(planned_time(test.path, test.limits) / fine - 1));
   }
   fmt::print("greatest difference {:.2e}\n", worst);

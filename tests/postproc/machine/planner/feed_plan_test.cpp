@@ -19,7 +19,6 @@ namespace batten::postproc {
 namespace {
 
 using geometry::Arc;
-using geometry::BsplineBasis;
 using geometry::BsplineCurve;
 using geometry::CubicBezier;
 using geometry::GuoApex;
@@ -41,10 +40,9 @@ TEST(PlanFeed, OfALineIsItsClosedForm) {
 
 // The same line as a curve is planned by the search.
 TEST(PlanFeed, FindsTheClosedFormOfALine) {
-  const BsplineCurve line(BsplineBasis::clamped(3, {0, 1}),
-                          {{0, 0, 0}, {9, 9, 0}, {17, 17, 0}, {26, 26, 0}});
+  const Path line = {CubicBezier{{{0, 0, 0}, {9, 9, 0}, {17, 17, 0}, {26, 26, 0}}}};
   EXPECT_NEAR(planned_time(line, corner_limits()) / 1.589703, 1, 1e-4);
-  EXPECT_NEAR(planned_time(line, corner_limits(), {}, {48}) / 1.589703, 1, 1e-5);
+  EXPECT_NEAR(planned_time(line, corner_limits(), {}, 48) / 1.589703, 1, 1e-5);
 }
 
 TEST(PlanFeed, DoesNotFeelWhereALineIsCut) {
@@ -211,7 +209,7 @@ TEST_P(ThesisPath, TakesTheTimeOfTheReference) {
   limits.tangential_acceleration = limits.normal_acceleration = 4000;
   limits.tangential_jerk = 20000;
   const PlanEnds ends = {s_curve.front().velocity, s_curve.back().velocity};
-  const FeedPlan plan = plan_feed(curve, limits, ends);
+  const FeedPlan plan = plan_feed(path_of(curve), limits, ends);
   const Use use = greatest_use(path_of(curve), plan, limits, 1e-4);
   fmt::print("{} {:.4f} s, reference {:.3f}, S-curve {:.4f}, {} nodes, {:.4f} of {}\n", test.name,
              plan.time, test.reference, s_curve_time(samples, {}), plan.nodes.size(), use.share,
