@@ -41,102 +41,48 @@ constexpr std::array kTimes = {Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6},
 constexpr std::array kBlockRates = {Unit{"blocks/s", 1}, Unit{"blocks/min", 1 / kMinute}};
 constexpr std::array kByteRates = {Unit{"bytes/s", 1}, Unit{"baud", 1 / kBitsPerByte}};
 
+constexpr Allowed kPositive;
+constexpr Allowed kOrZero{.zero = true};
+constexpr Allowed kOrInfinite{.infinite = true};
+
 constexpr std::array kMachineFields = {
-    MachineField{.key = "path-feed",
-                 .quantity = Quantity::kVelocity,
-                 .place = &Machine::path_feed,
-                 .text = "greatest speed along the path of X Y Z",
-                 .may_be_infinite = true},
-    MachineField{.key = "path-acceleration",
-                 .quantity = Quantity::kAcceleration,
-                 .place = &Machine::path_acceleration,
-                 .text = "greatest acceleration along the path",
-                 .may_be_infinite = true},
-    MachineField{.key = "path-jerk",
-                 .quantity = Quantity::kJerk,
-                 .place = &Machine::path_jerk,
-                 .text = "greatest jerk along the path",
-                 .may_be_infinite = true},
-    MachineField{.key = "block-period",
-                 .quantity = Quantity::kTime,
-                 .place = &Machine::block_period,
-                 .text = "no block is passed faster"},
-    MachineField{.key = "stream-rate",
-                 .quantity = Quantity::kByteRate,
-                 .place = &Machine::stream_rate,
-                 .text = "of the line that feeds the control; inf: it reads a file",
-                 .may_be_infinite = true},
-    MachineField{.key = "servo-period",
-                 .quantity = Quantity::kTime,
-                 .place = &Machine::servo_period,
-                 .text = "how often the axes get a new position"},
-    MachineField{.key = "junction-deviation",
-                 .quantity = Quantity::kLength,
-                 .place = &Machine::junction_deviation,
-                 .text = "grbl's $11",
-                 .may_be_zero = true},
-    MachineField{.key = "arc-tolerance",
-                 .quantity = Quantity::kLength,
-                 .place = &Machine::arc_tolerance,
-                 .text = "arcs become chords this near to them: grbl's $12"},
-    MachineField{.key = "blend-tolerance",
-                 .quantity = Quantity::kLength,
-                 .place = &Machine::blend_tolerance,
-                 .text = "LinuxCNC's G64 P when the program sets none; 0: no P",
-                 .may_be_zero = true},
-    MachineField{.key = "naive-cam-tolerance",
-                 .quantity = Quantity::kLength,
-                 .place = &Machine::naive_cam_tolerance,
-                 .text = "LinuxCNC's G64 Q when the program sets none; 0: no lines are joined",
-                 .may_be_zero = true},
-    MachineField{.key = "tool-change-time",
-                 .quantity = Quantity::kTime,
-                 .place = &Machine::tool_change_time,
-                 .text = "for each tool change",
-                 .may_be_zero = true},
-    MachineField{.key = "spindle-start-time",
-                 .quantity = Quantity::kTime,
-                 .place = &Machine::spindle_start_time,
-                 .text = "until a spindle that was started or turned round is up",
-                 .may_be_zero = true},
-    MachineField{.key = "extra-dwell-time",
-                 .quantity = Quantity::kTime,
-                 .place = &Machine::extra_dwell_time,
-                 .text = "that each dwell takes beyond what it says",
-                 .may_be_zero = true},
+    MachineField{"path-feed", Quantity::kVelocity, &Machine::path_feed, kOrInfinite,
+                 "greatest speed along the path of X Y Z"},
+    MachineField{"path-acceleration", Quantity::kAcceleration, &Machine::path_acceleration,
+                 kOrInfinite, "greatest acceleration along the path"},
+    MachineField{"path-jerk", Quantity::kJerk, &Machine::path_jerk, kOrInfinite,
+                 "greatest jerk along the path"},
+    MachineField{"block-period", Quantity::kTime, &Machine::block_period, kPositive,
+                 "no block is passed faster"},
+    MachineField{"stream-rate", Quantity::kByteRate, &Machine::stream_rate, kOrInfinite,
+                 "of the line that feeds the control; inf: it reads a file"},
+    MachineField{"servo-period", Quantity::kTime, &Machine::servo_period, kPositive,
+                 "how often the axes get a new position"},
+    MachineField{"junction-deviation", Quantity::kLength, &Machine::junction_deviation, kOrZero,
+                 "grbl's $11"},
+    MachineField{"arc-tolerance", Quantity::kLength, &Machine::arc_tolerance, kPositive,
+                 "arcs become chords this near to them: grbl's $12"},
+    MachineField{"blend-tolerance", Quantity::kLength, &Machine::blend_tolerance, kOrZero,
+                 "LinuxCNC's G64 P when the program sets none; 0: no P"},
+    MachineField{"naive-cam-tolerance", Quantity::kLength, &Machine::naive_cam_tolerance, kOrZero,
+                 "LinuxCNC's G64 Q when the program sets none; 0: no lines are joined"},
+    MachineField{"tool-change-time", Quantity::kTime, &Machine::tool_change_time, kOrZero,
+                 "for each tool change"},
+    MachineField{"spindle-start-time", Quantity::kTime, &Machine::spindle_start_time, kOrZero,
+                 "until a spindle that was started or turned round is up"},
+    MachineField{"extra-dwell-time", Quantity::kTime, &Machine::extra_dwell_time, kOrZero,
+                 "that each dwell takes beyond what it says"},
 };
 
 constexpr std::array kAxisFields = {
-    AxisField{.key = "velocity",
-              .key_of_xyz = "max-velocity",
-              .linear = Quantity::kVelocity,
-              .rotary = Quantity::kAngularVelocity,
-              .place = &AxisLimits::velocity,
-              .text = "while cutting"},
-    AxisField{.key = "acceleration",
-              .key_of_xyz = "max-acceleration",
-              .linear = Quantity::kAcceleration,
-              .rotary = Quantity::kAngularAcceleration,
-              .place = &AxisLimits::acceleration,
-              .text = "always"},
-    AxisField{.key = "jerk",
-              .key_of_xyz = "max-jerk",
-              .linear = Quantity::kJerk,
-              .rotary = Quantity::kAngularJerk,
-              .place = &AxisLimits::jerk,
-              .text = "inf: no limit",
-              .may_be_infinite = true},
-    AxisField{.key = "rapid-velocity",
-              .key_of_xyz = "rapid-velocity",
-              .linear = Quantity::kVelocity,
-              .rotary = Quantity::kAngularVelocity,
-              .place = &AxisLimits::rapid_velocity,
-              .text = "in a rapid move"},
-};
-
-struct Allowed {
-  bool zero = false;
-  bool infinite = false;
+    AxisField{"velocity", "max-velocity", Quantity::kVelocity, Quantity::kAngularVelocity,
+              &AxisLimits::velocity, kPositive, "while cutting"},
+    AxisField{"acceleration", "max-acceleration", Quantity::kAcceleration,
+              Quantity::kAngularAcceleration, &AxisLimits::acceleration, kPositive, "always"},
+    AxisField{"jerk", "max-jerk", Quantity::kJerk, Quantity::kAngularJerk, &AxisLimits::jerk,
+              kOrInfinite, "inf: no limit"},
+    AxisField{"rapid-velocity", "rapid-velocity", Quantity::kVelocity, Quantity::kAngularVelocity,
+              &AxisLimits::rapid_velocity, kPositive, "in a rapid move"},
 };
 
 bool is_within(double value, Allowed allowed) {
@@ -157,30 +103,15 @@ void check(double value, Allowed allowed, Quantity quantity, std::string key,
 
 }  // namespace
 
+// In the order of Quantity.
 std::span<const Unit> units_of(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::kLength:
-      return kLengths;
-    case Quantity::kVelocity:
-      return kVelocities;
-    case Quantity::kAcceleration:
-      return kAccelerations;
-    case Quantity::kJerk:
-      return kJerks;
-    case Quantity::kAngularVelocity:
-      return kAngularVelocities;
-    case Quantity::kAngularAcceleration:
-      return kAngularAccelerations;
-    case Quantity::kAngularJerk:
-      return kAngularJerks;
-    case Quantity::kTime:
-      return kTimes;
-    case Quantity::kBlockRate:
-      return kBlockRates;
-    case Quantity::kByteRate:
-      break;
-  }
-  return kByteRates;
+  static constexpr std::array<std::span<const Unit>, 10> kUnits = {
+      kLengths,           kVelocities,
+      kAccelerations,     kJerks,
+      kAngularVelocities, kAngularAccelerations,
+      kAngularJerks,      kTimes,
+      kBlockRates,        kByteRates};
+  return kUnits[static_cast<std::size_t>(quantity)];
 }
 
 std::optional<double> read_quantity(std::string_view text, Quantity quantity) {
@@ -208,13 +139,13 @@ std::vector<MachineProblem> problems_of(const Machine& machine) {
     // A corner within 0 would stop grbl at every joint; its model needs something to go by.
     const bool stops =
         machine.model == ControllerModel::kGrbl && field.place == &Machine::junction_deviation;
-    check(machine.*field.place, {field.may_be_zero && !stops, field.may_be_infinite},
+    check(machine.*field.place, {field.allowed.zero && !stops, field.allowed.infinite},
           field.quantity, std::string(field.key), problems);
   }
   for (std::size_t i = 0; i < kAxes; ++i) {
     const auto axis = static_cast<Axis>(i);
     for (const AxisField& field : axis_fields()) {
-      check(machine.axis(axis).*field.place, {false, field.may_be_infinite},
+      check(machine.axis(axis).*field.place, field.allowed,
             i < kLinearAxes ? field.linear : field.rotary, axis_key(axis, field), problems);
     }
   }

@@ -45,13 +45,18 @@ struct Unit {
 // "5000 mm/min" as mm/s; nothing when it is no number with a unit of the quantity.
 [[nodiscard]] std::optional<double> read_quantity(std::string_view text, Quantity quantity);
 
+// Above 0, and what else a value may be.
+struct Allowed {
+  bool zero = false;
+  bool infinite = false;
+};
+
 struct MachineField {
   std::string_view key;  // in a machine file
   Quantity quantity;
   double Machine::*place;
+  Allowed allowed;
   std::string_view text;  // what it is, for people
-  bool may_be_zero = false;
-  bool may_be_infinite = false;
 };
 
 struct AxisField {
@@ -60,8 +65,8 @@ struct AxisField {
   Quantity linear;
   Quantity rotary;
   double AxisLimits::*place;
+  Allowed allowed;
   std::string_view text;
-  bool may_be_infinite = false;
 };
 
 [[nodiscard]] std::span<const MachineField> machine_fields();

@@ -1,12 +1,11 @@
 // LinuxCNC 2.9: naive CAM, blend arcs, tangent joints, trapezoids per move.
 
-#include "postproc/machine/models/linuxcnc_model.h"
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -15,13 +14,24 @@
 #include "postproc/machine/models/linuxcnc_segment.h"
 #include "postproc/machine/models/velocity_profile.h"
 
-namespace batten::postproc::linuxcnc {
+namespace batten::postproc {
+namespace linuxcnc {
 namespace {
 
+using gcode::PathMode;
 using geometry::Arc;
 using geometry::Line;
+using geometry::PathPiece;
 using geometry::Point3;
 using geometry::Vector3;
+
+// --- the canon layer in front of the planner: under G64 P Q it joins lines that are nearly one ---
+
+// A move as the planner gets it: the pieces of the program from the first to the last.
+struct JoinedPiece : TimedPiece {
+  std::uint32_t first_piece = 0;
+  std::uint32_t last_piece = 0;
+};
 
 // A joined move is closed when it holds more points than this.
 constexpr std::size_t kMostPoints = 100;
@@ -29,71 +39,18 @@ constexpr std::size_t kMostPoints = 100;
 // Axes this near to Z belong to arcs of G17; printed programs give them exactly.
 constexpr double kAlongZ = 1e-6;
 
-// Places that are asked for together, without a branch between them.
-constexpr std::size_t kAskedTogether = 4;
-
-// The ends of the lines that are one so far, as ways from where that one starts.
-class JoinedEnds {
- public:
-  void clear() { size_ = 0; }
-  [[nodiscard]] std::size_t size() const { return size_; }
-
-  void add(const Vector3& end) {
-    // The rest of those that are asked for with it is the same place until it gets its own.
-    const std::size_t last = size_ % kAskedTogether == 0 ? size_ + kAskedTogether : size_ + 1;
-    for (std::size_t i = size_; i < last; ++i) {
-      x_[i] = end.x();
-      y_[i] = end.y();
-      z_[i] = end.z();
-    }
-    ++size_;
-  }
-
-  // Whether all of them are within `tolerance` of the line to `way`, which has a length.
-  [[nodiscard]] bool are_near(const Vector3& way, double tolerance) const {
-    for (std::size_t i = 0; i < size_; i += kAskedTogether) {
-      if (std::sqrt(farthest_square(i, way)) > tolerance) return false;
-    }
-    return true;
-  }
-
- private:
-  // Squared distance of the farthest of kAskedTogether places.
-  [[nodiscard]] double farthest_square(std::size_t first, const Vector3& way) const {
-    const double square = way.squaredNorm();
-    std::array<double, kAskedTogether> squares;
-    for (std::size_t k = 0; k < kAskedTogether; ++k) {
-      const double x = x_[first + k];
-      const double y = y_[first + k];
-      const double z = z_[first + k];
-      const double along = (way.x() * x + (way.y() * y + way.z() * z)) / square;
-      const double t = along < 0 ? 0 : (along > 1 ? 1 : along);
-      const double off_x = x - t * way.x();
-      const double off_y = y - t * way.y();
-      const double off_z = z - t * way.z();
-      squares[k] = off_x * off_x + (off_y * off_y + off_z * off_z);
-    }
-    return std::max(std::max(squares[0], squares[1]), std::max(squares[2], squares[3]));
-  }
-
-  std::size_t size_ = 0;
-  std::array<double, kMostPoints + kAskedTogether> x_;
-  std::array<double, kMostPoints + kAskedTogether> y_;
-  std::array<double, kMostPoints + kAskedTogether> z_;
-};
-
 class Joiner {
  public:
   explicit Joiner(double tolerance) : tolerance_(tolerance) {}
 
   void add_line(const Point3& from, const Point3& to, const TimedPiece& piece,
                 std::uint32_t index) {
-    if (ends_.size() > 0 && (piece.feed != open_.feed || !can_reach(to))) flush();
-    if (ends_.size() == 0) {
+    if (!ends_.empty() && (piece.feed != open_.feed || !can_reach(to))) flush();
+    if (ends_.empty()) {
       start_ = from;
       open_ = {piece, index, index};
     }
-    ends_.add(to - start_);
+    ends_.push_back(to - start_);
     end_ = to;
     open_.last_piece = index;
   }
@@ -112,11 +69,16 @@ class Joiner {
   [[nodiscard]] bool can_reach(const Point3& to) const {
     if (ends_.size() > kMostPoints) return false;
     const Vector3 way = to - start_;
-    return way.norm() > geometry::kSamePlace && ends_.are_near(way, tolerance_);
+    if (!(way.norm() > geometry::kSamePlace)) return false;
+    const double square = way.squaredNorm();
+    return std::ranges::all_of(ends_, [&](const Vector3& end) {
+      const double t = std::clamp(way.dot(end) / square, 0.0, 1.0);
+      return (end - t * way).norm() <= tolerance_;
+    });
   }
 
   void flush() {
-    if (ends_.size() == 0) return;
+    if (ends_.empty()) return;
     open_.piece = Line{start_, end_};
     joined_.push_back(open_);
     ends_.clear();
@@ -125,8 +87,8 @@ class Joiner {
   double tolerance_;
   Point3 start_ = Point3::Zero();
   Point3 end_ = Point3::Zero();
-  JoinedPiece open_;  // what is joined so far, but for its line
-  JoinedEnds ends_;
+  JoinedPiece open_;           // what is joined so far, but for its line
+  std::vector<Vector3> ends_;  // of its lines, as ways from where it starts
   std::vector<JoinedPiece> joined_;
 };
 
@@ -141,8 +103,10 @@ bool becomes_lines(const Arc& arc, double tolerance) {
   return flat && std::abs(arc.sweep) < std::numbers::pi && rise_of(arc) < tolerance;
 }
 
-}  // namespace
-
+// Lines that are joined become one line. Flat arcs in a plane of constant Z whose middle is less
+// than `tolerance` (mm) off the chord become two lines, which then may be joined too. Rapids stay
+// as they are. A tolerance of 0 changes nothing. Cost: linear, since a joined move has some 100
+// parts.
 std::vector<JoinedPiece> join_within(std::span<const TimedPiece> pieces, double tolerance) {
   Joiner joiner(tolerance);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -164,15 +128,7 @@ std::vector<JoinedPiece> join_within(std::span<const TimedPiece> pieces, double 
   return joiner.finish();
 }
 
-}  // namespace batten::postproc::linuxcnc
-
-namespace batten::postproc {
-namespace linuxcnc {
-namespace {
-
-using gcode::PathMode;
-using geometry::PathPiece;
-using geometry::Point3;
+// --- the planner ------------------------------------------------------------------------------
 
 // A line that a corner leaves shorter than this many periods joins the blend arc.
 constexpr double kGapPeriods = 4;
@@ -190,16 +146,8 @@ constexpr int kArcsPerBezier = 32;
 constexpr double kSharpTurn = 2.0 / 180 * std::numbers::pi;
 
 Joint joint_of(PathMode path) {
-  switch (path) {
-    case PathMode::kExactStop:
-      return Joint::kStop;
-    case PathMode::kExactPath:
-      return Joint::kExactPath;
-    case PathMode::kBlending:
-    case PathMode::kUnknown:
-      break;
-  }
-  return Joint::kParabolic;
+  if (path == PathMode::kExactStop) return Joint::kStop;
+  return path == PathMode::kExactPath ? Joint::kExactPath : Joint::kParabolic;
 }
 
 class Queue {
@@ -215,11 +163,10 @@ class Queue {
     moves_.reserve(kHeld + kHandedOn + 1);
   }
 
-  // The pieces of the program from the first to the last are one move.
-  void add(const TimedPiece& timed, std::uint32_t first_piece, std::uint32_t last_piece) {
+  void add(const JoinedPiece& timed) {
     Segment next = segment_of(timed, limits_, joint_);
-    next.first_piece = first_piece;
-    next.last_piece = last_piece;
+    next.first_piece = timed.first_piece;
+    next.last_piece = timed.last_piece;
     if (!moves_.empty()) {
       connect(next, timed.piece);
       finish_segment(moves_.back(), machine_.servo_period);
@@ -283,7 +230,7 @@ class Queue {
     return std::min({velocity * velocity / slower / 2, before.length / 2, after.length / 2});
   }
 
-  // The place `cut` mm before the end of what corners leave of the move, or after its start.
+  // The position `cut` mm before the end of what corners leave of the move, or after its start.
   static Point3 place_before_end(const Segment& s, const PathPiece& path, double cut) {
     return point_at(path, std::clamp(1 - (s.cut_at_end + cut) / s.nominal_length, 0.0, 1.0));
   }
@@ -460,27 +407,19 @@ class Queue {
 
 StretchChain linuxcnc_stretches(std::span<const TimedPiece> pieces, const Machine& machine,
                                 gcode::PathMode path, ChainEnd end, WithPositions places) {
-  const bool blends = path == gcode::PathMode::kBlending || path == gcode::PathMode::kUnknown;
   linuxcnc::Queue queue(machine, path, places);
-  const auto add = [&queue](const TimedPiece& timed, std::uint32_t first, std::uint32_t last) {
+  const bool joins = path != gcode::PathMode::kExactStop && path != gcode::PathMode::kExactPath;
+  const double tolerance = joins ? machine.naive_cam_tolerance : 0;
+  for (const auto& timed : linuxcnc::join_within(pieces, tolerance)) {
     if (!std::holds_alternative<geometry::CubicBezier>(timed.piece)) {
-      return queue.add(timed, first, last);
+      queue.add(timed);
+      continue;
     }
     for (int i = 0; i < linuxcnc::kArcsPerBezier; ++i) {
-      TimedPiece part = timed;
+      linuxcnc::JoinedPiece part = timed;
       part.piece = geometry::sub_piece(timed.piece, double(i) / linuxcnc::kArcsPerBezier,
                                        double(i + 1) / linuxcnc::kArcsPerBezier);
-      if (geometry::length_of(part.piece) > 0) queue.add(part, first, last);
-    }
-  };
-  if (blends && machine.naive_cam_tolerance > 0) {
-    for (const auto& timed : linuxcnc::join_within(pieces, machine.naive_cam_tolerance)) {
-      add(timed, timed.first_piece, timed.last_piece);
-    }
-  } else {
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const auto index = static_cast<std::uint32_t>(i);
-      add(pieces[i], index, index);
+      if (geometry::length_of(part.piece) > 0) queue.add(part);
     }
   }
   return queue.finish(end);

@@ -1,11 +1,11 @@
 #include "postproc/machine/program_time/program_time.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <utility>
 
 #include "postproc/machine/machine.h"
-#include "postproc/machine/models/chain_motion.h"
 #include "postproc/machine/program_time/program_time_chains.h"
 
 namespace batten::postproc {
@@ -21,24 +21,18 @@ constexpr int kBlocksAtSpeed = 5;
 // Slow places beyond these are not worth a look.
 constexpr std::size_t kMostSlowPlaces = 50;
 
-double& part_of(TimeParts& parts, StepKind kind) {
-  switch (kind) {
-    case StepKind::kCut:
-      return parts.cutting;
-    case StepKind::kRapid:
-      return parts.rapids;
-    case StepKind::kToolChange:
-      return parts.tool_changes;
-    case StepKind::kSpindle:
-      return parts.spindle;
-    case StepKind::kRotary:
-      return parts.rotary;
-    case StepKind::kDwell:
-    case StepKind::kRest:
-      break;
-  }
-  return parts.dwells;
-}
+// Where a step counts, in the order of StepKind.
+struct KindRow {
+  double TimeParts::*seconds;
+  std::size_t StepCounts::*count;
+};
+constexpr std::array<KindRow, 7> kKinds = {{{&TimeParts::cutting, &StepCounts::cuts},
+                                            {&TimeParts::rapids, &StepCounts::rapids},
+                                            {&TimeParts::dwells, &StepCounts::dwells},
+                                            {&TimeParts::tool_changes, &StepCounts::tool_changes},
+                                            {&TimeParts::spindle, &StepCounts::spindle_starts},
+                                            {&TimeParts::rotary, nullptr},
+                                            {&TimeParts::dwells, nullptr}}};
 
 // Seconds of each step of a program, and of each the part below half its feed.
 class StepTimes {
@@ -66,22 +60,20 @@ class StepTimes {
     if (step.feed > 0) {
       below_half_feed_ += motion.time_below(i, kSlowShare * step.feed / kMinute);
     }
-    if (place.first_piece == place.last_piece) {
-      seconds_[chain.steps[place.first_piece]] += duration;
-      return;
-    }
+    const auto add = [&](std::uint32_t piece, double part) {
+      seconds_[chain.steps[piece]] += part;
+    };
+    if (place.first_piece == place.last_piece) return add(place.first_piece, duration);
     if (place.is_corner) {
-      seconds_[chain.steps[place.first_piece]] += duration / 2;
-      seconds_[chain.steps[place.last_piece]] += duration / 2;
-      return;
+      add(place.first_piece, duration / 2);
+      return add(place.last_piece, duration / 2);
     }
     double length = 0;
     for (auto p = place.first_piece; p <= place.last_piece; ++p) {
       length += geometry::length_of(chain.pieces[p].piece);
     }
     for (auto p = place.first_piece; p <= place.last_piece; ++p) {
-      const double share = geometry::length_of(chain.pieces[p].piece) / length;
-      seconds_[chain.steps[p]] += duration * share;
+      add(p, duration * (geometry::length_of(chain.pieces[p].piece) / length));
     }
   }
 
@@ -95,29 +87,6 @@ ToolTime& tool_of(std::vector<ToolTime>& tools, std::int32_t number) {
   if (known != tools.end()) return *known;
   tools.push_back({number, {}});
   return tools.back();
-}
-
-void count(StepKind kind, StepCounts& counts) {
-  switch (kind) {
-    case StepKind::kCut:
-      ++counts.cuts;
-      return;
-    case StepKind::kRapid:
-      ++counts.rapids;
-      return;
-    case StepKind::kDwell:
-      ++counts.dwells;
-      return;
-    case StepKind::kToolChange:
-      ++counts.tool_changes;
-      return;
-    case StepKind::kSpindle:
-      ++counts.spindle_starts;
-      return;
-    case StepKind::kRotary:
-    case StepKind::kRest:
-      return;
-  }
 }
 
 // Collects the blocks that run slowly into places.
@@ -181,9 +150,10 @@ ProgramTime time_steps(const gcode::Program& program, const ProgramSteps& steps,
   for (std::size_t i = 0; i < steps.steps.size(); ++i) {
     const ProgramStep& step = steps.steps[i];
     const double seconds = times.seconds(i);
-    part_of(result.seconds, step.kind) += seconds;
-    part_of(tool_of(result.tools, step.tool).seconds, step.kind) += seconds;
-    count(step.kind, result.counts);
+    const KindRow& kind = kKinds[static_cast<std::size_t>(step.kind)];
+    result.seconds.*kind.seconds += seconds;
+    tool_of(result.tools, step.tool).seconds.*kind.seconds += seconds;
+    if (kind.count != nullptr) ++(result.counts.*kind.count);
     if (step.kind == StepKind::kRapid) result.rapid_mm += geometry::length_of(step.piece);
     if (step.kind != StepKind::kCut) {
       if (step.kind != StepKind::kRest) slow.close();

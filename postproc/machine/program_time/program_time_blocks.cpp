@@ -28,13 +28,13 @@ constexpr double kPeckClearance = 0.254;
 // More repeats or pecks than a drill can stand are a slip in the program.
 constexpr int kMostRepeats = 10000;
 
-double millimetres(double value, const gcode::ModalState& state) {
-  return state.units == gcode::Units::kInch ? value * gcode::kMillimetresPerInch : value;
+double millimetres(const gcode::Word& word, const gcode::ModalState& state) {
+  return state.units == gcode::Units::kInch ? word.value * gcode::kMillimetresPerInch : word.value;
 }
 
-void read_into(std::optional<double>& place, const gcode::Word* word,
+void read_into(std::optional<double>& value, const gcode::Word* word,
                const gcode::ModalState& state) {
-  if (word != nullptr && word->is_number) place = millimetres(word->value, state);
+  if (word != nullptr && word->is_number) value = millimetres(*word, state);
 }
 
 // The moves of one hole, and where the tool is.
@@ -63,12 +63,8 @@ class HoleMoves {
 void peck(HoleMoves& hole, double r, double bottom, double depth, bool to_top) {
   for (double z = r - depth; z > bottom + geometry::kSamePlace; z -= depth) {
     hole.to_z(StepKind::kCut, z);
-    if (to_top) {
-      hole.to_z(StepKind::kRapid, r);
-      hole.to_z(StepKind::kRapid, std::min(r, z + kPeckClearance));
-    } else {
-      hole.to_z(StepKind::kRapid, std::min(r, z + kPeckClearance));
-    }
+    if (to_top) hole.to_z(StepKind::kRapid, r);
+    hole.to_z(StepKind::kRapid, std::min(r, z + kPeckClearance));
   }
   hole.to_z(StepKind::kCut, bottom);
 }
@@ -122,7 +118,7 @@ std::optional<std::vector<CycleMove>> DrillingCycle::moves(const gcode::BlockWor
   const auto step = [&](char axis, double at) {
     const gcode::Word* word = words.find(axis);
     if (word == nullptr) return at;
-    return millimetres(word->value, state) + (incremental ? at : 0);
+    return millimetres(*word, state) + (incremental ? at : 0);
   };
   std::vector<CycleMove> moves;
   HoleMoves hole(moves, from);
@@ -144,13 +140,6 @@ std::optional<std::vector<CycleMove>> DrillingCycle::moves(const gcode::BlockWor
 }
 
 namespace {
-
-using gcode::DistanceMode;
-using geometry::Point3;
-
-double millimetres(const gcode::Word& word, const gcode::ModalState& state) {
-  return state.units == gcode::Units::kInch ? word.value * gcode::kMillimetresPerInch : word.value;
-}
 
 Eigen::Index index_of(std::size_t axis) { return static_cast<Eigen::Index>(axis); }
 
@@ -198,7 +187,7 @@ PlacedMotion line_of_words(const gcode::BlockWords& words, const gcode::ModalSta
     const gcode::Word* word = words.find("XYZ"[axis]);
     if (word == nullptr) continue;
     const auto i = index_of(axis);
-    if (state.distance == DistanceMode::kIncremental) {
+    if (state.distance == gcode::DistanceMode::kIncremental) {
       line.end[i] += millimetres(*word, state);
       continue;  // the way is known, wherever it begins
     }
@@ -242,7 +231,7 @@ PlacedMotion place_motion(const gcode::Motion& motion, const gcode::BlockWords& 
 void move_to_end(ToolPlace& place, const PlacedMotion& motion, const gcode::BlockWords& words,
                  const gcode::ModalState& state) {
   const Point3 end = geometry::end_point(motion.piece);
-  const bool absolute = state.distance == DistanceMode::kAbsolute;
+  const bool absolute = state.distance == gcode::DistanceMode::kAbsolute;
   const bool is_line = std::holds_alternative<geometry::Line>(motion.piece);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!words.has("XYZ"[axis])) continue;

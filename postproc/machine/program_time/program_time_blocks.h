@@ -2,6 +2,7 @@
 // canned cycles of drilling along Z (G73, G81 to G86 and G89 in the plane XY).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -80,7 +81,7 @@ class DrillingCycle {
   double dwell_ = 0;  // s
 };
 
-// Where the tool stands as far as a program's text tells, axis by axis.
+// Where the tool is as far as a program's text says, axis by axis.
 
 enum class Certainty : std::uint8_t {
   kUnknown,  // never said
@@ -99,6 +100,9 @@ class ToolPlace {
 
   [[nodiscard]] const geometry::Point3& mm() const { return mm_; }
   [[nodiscard]] Certainty certainty(std::size_t axis) const { return certainty_[axis]; }
+  [[nodiscard]] bool is_known() const {  // or assumed, on every axis
+    return std::ranges::find(certainty_, Certainty::kUnknown) == certainty_.end();
+  }
 
  private:
   geometry::Point3 mm_ = geometry::Point3::Zero();

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "postproc/machine/machine.h"
-#include "postproc/machine/models/chain_motion.h"
 #include "postproc/machine/program_time/program_time_chains.h"
 
 namespace batten::postproc {

@@ -13,6 +13,73 @@
 namespace batten::postproc {
 namespace {
 
+namespace reason = gcode::reason;
+
+struct NotTimedText {
+  std::string_view id;
+  std::string_view text;
+};
+
+constexpr std::array kTexts = {
+    NotTimedText{
+        not_timed::kPlaceUnknown,
+        "the tool's position before the move is not known: the axes without one take no time"},
+    NotTimedText{not_timed::kPlaceAssumed,
+                 "after a tool change or an offset: timed from the last programmed position"},
+    NotTimedText{reason::kFeedUnknown, "no feed is known: timed as fast as the machine cuts"},
+    NotTimedText{not_timed::kSpindleUnknown,
+                 "feed per revolution without a known spindle speed: timed as fast as the machine "
+                 "cuts"},
+    NotTimedText{not_timed::kRotaryAxis, "A, B, C, U, V or W move too: only X, Y and Z are timed"},
+    NotTimedText{not_timed::kPathChanged,
+                 "cutter compensation, scaling, rotation or the like is on: timed as programmed"},
+    NotTimedText{reason::kLoopBody, "in a loop or subprogram: timed once"},
+    NotTimedText{not_timed::kDwellUnknown, "a dwell whose length is not known: not timed"},
+    NotTimedText{not_timed::kDwellAssumed,
+                 "G4 P without a decimal point: taken for milliseconds (--target decides)"},
+    NotTimedText{not_timed::kReferenceMove,
+                 "G28, G30, G53: the path to a machine position is not timed"},
+    NotTimedText{not_timed::kOperatorStop, "M0, M1, M60: waits for the operator, not timed"},
+    NotTimedText{reason::kMiscFunction,
+                 "M functions of the machine's builder or the user: not timed"},
+    NotTimedText{reason::kCannedCycle, "canned cycles that are not followed: not timed"},
+    NotTimedText{reason::kSpline, "splines (G5, G6.2 ..): not timed"},
+    NotTimedText{reason::kProbe, "probing moves: not timed"},
+    NotTimedText{reason::kThreading, "threading and tapping moves: not timed"},
+    NotTimedText{reason::kSubprogram, "calls of subprograms and macros: not timed"},
+    NotTimedText{reason::kProgramFlow, "jumps, loops and calls: not followed"},
+    NotTimedText{reason::kExpression, "words with parameters or expressions: not timed"},
+    NotTimedText{reason::kBlockDelete, "blocks with / : not timed"},
+    NotTimedText{reason::kStateUnknown,
+                 "moves in a state that is not known (after a call or an unknown word): not timed"},
+    NotTimedText{reason::kPositionUnknown, "arcs from a position that is not known: not timed"},
+    NotTimedText{reason::kArc, "arcs that are not understood: not timed"},
+    NotTimedText{not_timed::kAfterEnd, "blocks after the end of the program (M2, M30): not timed"},
+};
+
+std::string_view text_of(std::string_view id) {
+  for (const NotTimedText& known : kTexts) {
+    if (known.id == id) return known.text;
+  }
+  for (const auto& known : reason::explanations()) {
+    if (known.id == id) return known.text;
+  }
+  return "not understood: not timed";
+}
+
+}  // namespace
+
+void NotTimedList::add(std::string_view id, std::uint32_t line) {
+  const auto known = std::ranges::find(entries_, id, &NotTimed::id);
+  if (known == entries_.end()) {
+    entries_.push_back({id, text_of(id), 1, line});
+  } else {
+    ++known->count;
+  }
+}
+
+namespace {
+
 using gcode::BlockKind;
 using gcode::BlockWords;
 using gcode::Code;
@@ -60,6 +127,9 @@ class StepReader {
   [[nodiscard]] const ModalState& state() const {
     return meaning_.states[block_meaning().state_after];
   }
+  [[nodiscard]] const gcode::Motion& motion() const {
+    return meaning_.motions[static_cast<std::size_t>(block_meaning().motion)];
+  }
   void note(std::string_view id) { read_.not_timed.add(id, block().line); }
 
   void read_block() {
@@ -92,12 +162,16 @@ class StepReader {
       return;
     }
     if (words.has_words() || block().opacity != gcode::ParseStatus::kNone) note(m.barrier);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (words.has("XYZ"[axis])) place_.forget_axis(axis);
-    }
+    forget_named(words);
     if (state().motion == gcode::MotionMode::kUnknown) place_.forget();
     cycle_.reset();
     add_rest();
+  }
+
+  void forget_named(const BlockWords& words) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (words.has("XYZ"[axis])) place_.forget_axis(axis);
+    }
   }
 
   [[nodiscard]] bool is_line_mode() const {
@@ -235,10 +309,7 @@ class StepReader {
   void leave_for_reference(const BlockWords& words) {
     note(not_timed::kReferenceMove);
     add_rest();
-    const bool named = words.has_any("XYZ");
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!named || words.has("XYZ"[axis])) place_.forget_axis(axis);
-    }
+    words.has_any("XYZ") ? forget_named(words) : place_.forget();
   }
 
   void set_coordinates(const BlockWords& words) {
@@ -310,10 +381,8 @@ class StepReader {
   }
 
   void add_motion(const BlockWords& words) {
-    const gcode::Motion& motion =
-        meaning_.motions[static_cast<std::size_t>(block_meaning().motion)];
     cycle_.reset();
-    add_placed(place_motion(motion, words, state(), place_), words);
+    add_placed(place_motion(motion(), words, state(), place_), words);
   }
 
   void add_placed(const PlacedMotion& placed, const BlockWords& words) {
@@ -333,14 +402,12 @@ class StepReader {
   void add_curve_piece() {
     cycle_.reset();
     if (block_meaning().motion < 0) return;
-    const gcode::Motion& motion =
-        meaning_.motions[static_cast<std::size_t>(block_meaning().motion)];
     ProgramStep& step = add_step(StepKind::kCut);
-    step.piece = motion.piece;
-    step.feed = feed_along(motion.piece);
-    const geometry::Point3& end = motion.piece.end();
+    step.piece = motion().piece;
+    step.feed = feed_along(step.piece);
+    const geometry::Point3& end = motion().piece.end();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!motion.axes_named[axis]) continue;
+      if (!motion().axes_named[axis]) continue;
       place_.set_axis(axis, end[static_cast<Eigen::Index>(axis)], Certainty::kKnown);
     }
   }
@@ -387,9 +454,7 @@ class StepReader {
     if (cycle_ && !words.has_group(CodeGroup::kCycleEnd)) return drill(words);
     if (!words.has_any("XYZ")) return add_rotary(words);
     note(block_meaning().barrier.empty() ? reason::kCannedCycle : block_meaning().barrier.id());
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (words.has("XYZ"[axis])) place_.forget_axis(axis);
-    }
+    forget_named(words);
     add_rest();
   }
 
@@ -406,10 +471,7 @@ class StepReader {
     cycle_->set_return_to_initial(returns_to_initial_);
     if (!starts && !words.has_any("XYZ")) return;
     const bool plane_xy = state().plane == gcode::Plane::kXY;
-    const bool place_known = std::ranges::all_of(std::array{0, 1, 2}, [&](int axis) {
-      return place_.certainty(static_cast<std::size_t>(axis)) != Certainty::kUnknown;
-    });
-    const auto moves = plane_xy && place_known && words.all_numbers()
+    const auto moves = plane_xy && place_.is_known() && words.all_numbers()
                            ? cycle_->moves(words, state(), place_.mm())
                            : std::nullopt;
     if (!moves) {

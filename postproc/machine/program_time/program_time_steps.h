@@ -2,8 +2,10 @@
 // cannot be told from the text. No machine is asked here.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "gcode/control/control.h"
@@ -12,9 +14,39 @@
 #include "gcode/text/program.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/program_time/program_time_blocks.h"
-#include "postproc/machine/program_time/program_time_not_timed.h"
 
 namespace batten::postproc {
+
+// Ids besides the reasons of gcode/state/reason.h, some of which count here too.
+namespace not_timed {
+inline constexpr std::string_view kPlaceUnknown = "start-unknown";
+inline constexpr std::string_view kPlaceAssumed = "position-assumed";
+inline constexpr std::string_view kRotaryAxis = "rotary-axis";
+inline constexpr std::string_view kPathChanged = "path-changed-by-control";
+inline constexpr std::string_view kSpindleUnknown = "spindle-speed-unknown";
+inline constexpr std::string_view kDwellUnknown = "dwell-unknown";
+inline constexpr std::string_view kDwellAssumed = "dwell-unit-assumed";
+inline constexpr std::string_view kReferenceMove = "reference-move";
+inline constexpr std::string_view kOperatorStop = "operator-stop";
+inline constexpr std::string_view kAfterEnd = "after-end";
+}  // namespace not_timed
+
+struct NotTimed {
+  std::string_view id;  // stable: "start-unknown"
+  std::string_view text;
+  std::size_t count = 0;
+  std::uint32_t first_line = 0;
+};
+
+class NotTimedList {
+ public:
+  // Once more; the first call of an id says its line.
+  void add(std::string_view id, std::uint32_t line);
+  [[nodiscard]] const std::vector<NotTimed>& entries() const { return entries_; }
+
+ private:
+  std::vector<NotTimed> entries_;
+};
 
 // How joints of motions are passed: what G61, G61.1 and G64 P Q say.
 struct PathControl {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
 #include <stdexcept>
@@ -30,20 +29,14 @@ using std::numbers::pi;
 
 constexpr double kFeed = 6000;  // mm/min: 100 mm/s
 
-// A limit that a test turns.
-struct Limit {
-  double (*get)(const Machine&);
-  void (*set)(Machine&, double);
-};
-constexpr Limit kVelocity = {[](const Machine& m) { return m.max_velocity(); },
-                             [](Machine& m, double value) { set_max_velocity(m, value); }};
-constexpr Limit kAcceleration = {[](const Machine& m) { return m.max_acceleration(); },
-                                 [](Machine& m, double value) { set_max_acceleration(m, value); }};
-constexpr Limit kBlockPeriod = {[](const Machine& m) { return m.block_period; },
-                                [](Machine& m, double value) { m.block_period = value; }};
-constexpr Limit kJunctionDeviation = {
-    [](const Machine& m) { return m.junction_deviation; },
-    [](Machine& m, double value) { m.junction_deviation = value; }};
+// Limits that a test turns.
+using Limit = void (*)(Machine&, double factor);
+void velocity(Machine& m, double factor) { set_max_velocity(m, factor * m.max_velocity()); }
+void acceleration(Machine& m, double factor) {
+  set_max_acceleration(m, factor * m.max_acceleration());
+}
+void block_period(Machine& m, double factor) { m.block_period *= factor; }
+void junction_deviation(Machine& m, double factor) { m.junction_deviation *= factor; }
 
 double time_of(const std::vector<TimedPiece>& pieces, const Machine& m,
                PathMode path = PathMode::kBlending) {
@@ -63,31 +56,23 @@ class EveryModel : public testing::TestWithParam<ControllerModel> {};
 
 INSTANTIATE_TEST_SUITE_P(CuttingTime, EveryModel, testing::ValuesIn(kModels), model_name);
 
-// 0 to 100 mm/s takes .1 s and 5 mm: .1 + (50 - 10) / 100 + .1.
-TEST_P(EveryModel, TimesALongLineAsATrapezoid) {
+TEST_P(EveryModel, TimesALineAsATrapezoidOrATriangle) {
+  const double root = std::sqrt(2.0);
+  const struct {
+    TimedPiece piece;
+    double seconds;
+    const char* why;
+  } rows[] = {
+      {line({0, 0, 0}, {50, 0, 0}), 0.6, "100 mm/s in .1 s and 5 mm: .1 + (50 - 10) / 100 + .1"},
+      {line({0, 0, 0}, {0, 0, 2.5}), 0.1, "half of it in sqrt(2.5 / 1000) s, below 100 mm/s"},
+      {line({0, 0, 0}, {50, -50, 0}), 50 * root / 100 + 100 / (1000 * root),
+       "along the diagonal two axes share the acceleration: 1000 sqrt(2)"},
+      {line({0, 0, 0}, {100, 0, 0}, 60000), 0.7, "no faster than the axis: 200 mm/s in .2 s"},
+      {line({0, 0, 0}, {100, 0, 0}, 0), 0.7, "no feed: as fast as the machine cuts"}};
   const Machine m = machine_of(GetParam());
-  EXPECT_NEAR(time_of({line({0, 0, 0}, {50, 0, 0})}, m), 0.6 + stop_loss(m), 1e-12);
-}
-
-// Half of 2.5 mm at 1000 mm/s^2 takes sqrt(2.5 / 1000) s, below 100 mm/s.
-TEST_P(EveryModel, TimesAShortLineAsATriangle) {
-  const Machine m = machine_of(GetParam());
-  EXPECT_NEAR(time_of({line({0, 0, 0}, {0, 0, 2.5})}, m), 0.1 + stop_loss(m), 1e-12);
-}
-
-// Along the diagonal two axes share the acceleration: 1000 sqrt(2). Length 50 sqrt(2).
-TEST_P(EveryModel, LetsAxesAddUpOnDiagonals) {
-  const Machine m = machine_of(GetParam());
-  const double expected = 50 * std::sqrt(2.0) / 100 + 100 / (1000 * std::sqrt(2.0));
-  EXPECT_NEAR(time_of({line({0, 0, 0}, {50, -50, 0})}, m), expected + stop_loss(m), 1e-12);
-}
-
-TEST_P(EveryModel, NeverExceedsTheAxes) {
-  const Machine m = machine_of(GetParam());
-  // 200 mm/s takes .2 s and 20 mm each way.
-  EXPECT_NEAR(time_of({line({0, 0, 0}, {100, 0, 0}, 60000)}, m), 0.7 + stop_loss(m), 1e-12);
-  EXPECT_NEAR(time_of({line({0, 0, 0}, {100, 0, 0}, 0)}, m), 0.7 + stop_loss(m), 1e-12)
-      << "no feed: as fast as the machine cuts";
+  for (const auto& [piece, seconds, why] : rows) {
+    EXPECT_NEAR(time_of({piece}, m), seconds + stop_loss(m), 1e-12) << why;
+  }
 }
 
 TEST_P(EveryModel, TakesCollinearLinesAsOne) {
@@ -146,12 +131,12 @@ TEST_P(EveryModel, BrakesForTheEndOfTheLookAhead) {
 
 TEST_P(EveryModel, RefusesLimitsThatCannotMove) {
   const std::vector<TimedPiece> one = {line({0, 0, 0}, {1, 0, 0})};
-  for (const Limit& limit : {kVelocity, kAcceleration, kBlockPeriod}) {
-    Machine m = machine_of(GetParam());
-    limit.set(m, 0);
-    EXPECT_THROW((void)time_of(one, m), std::invalid_argument);
-    limit.set(m, std::numeric_limits<double>::quiet_NaN());
-    EXPECT_THROW((void)time_of(one, m), std::invalid_argument);
+  for (const Limit limit : {velocity, acceleration, block_period}) {
+    for (const double factor : {0.0, std::nan("")}) {
+      Machine m = machine_of(GetParam());
+      limit(m, factor);
+      EXPECT_THROW((void)time_of(one, m), std::invalid_argument);
+    }
   }
   const Machine m = machine_of(GetParam());
   EXPECT_THROW((void)time_of({line({0, 0, 0}, {1, 0, 0}, -1)}, m), std::invalid_argument);
@@ -209,19 +194,6 @@ TEST(LookAheadTime, PassesACornerByTheAccelerationOfTheAxes) {
   const double one = 0.1 + 0.099 + (30 - 5 - down_way) / 100;
   EXPECT_NEAR(time_of({line({0, 0, 0}, {30, 0, 0}), line({30, 0, 0}, {30, 30, 0})}, m), 2 * one,
               1e-12);
-}
-
-// v^2 = a d s / (1 - s), s = sin 45 degrees; the change of direction is along a diagonal,
-// where two axes give a = 1000 sqrt(2).
-TEST(GrblTime, PassesACornerByJunctionDeviation) {
-  Machine m = machine_of(ControllerModel::kGrbl);
-  m.junction_deviation = 0.02;
-  const double s = std::sqrt(0.5);
-  const double v = std::sqrt(1000 * std::sqrt(2.0) * 0.02 * s / (1 - s));
-  const double down_way = (100.0 * 100 - v * v) / 2000;
-  const double one = 0.1 + (100 - v) / 1000 + (30 - 5 - down_way) / 100;
-  EXPECT_NEAR(time_of({line({0, 0, 0}, {30, 0, 0}), line({30, 0, 0}, {30, 30, 0})}, m), 2 * one,
-              1e-9);
 }
 
 // r = 10, tolerance .002: half a chord is sqrt(.002 (20 - .002)) = .19999 mm, so that a half
@@ -316,10 +288,10 @@ TEST_P(MonotoneModel, NeverTakesLongerWhenALimitRises) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     std::vector<TimedPiece> chain = random_chain(seed);
     const double time = time_of(chain, m);
-    for (const Limit& limit : {kVelocity, kAcceleration, kJunctionDeviation}) {
+    for (const Limit limit : {velocity, acceleration, junction_deviation}) {
       for (const double factor : {1.01, 1.5, 4.0}) {
         Machine better = m;
-        limit.set(better, factor * limit.get(m));
+        limit(better, factor);
         EXPECT_LE(time_of(chain, better), time + 1e-9);
       }
     }
@@ -355,8 +327,8 @@ TEST_P(EveryModel, TakesTheSameTimeInAnyUnitOfLength) {
   const Machine m = machine_of(GetParam());
   constexpr double kBy = 25.4;
   Machine big = m;
-  set_max_velocity(big, kBy * m.max_velocity());
-  set_max_acceleration(big, kBy * m.max_acceleration());
+  velocity(big, kBy);
+  acceleration(big, kBy);
   for (double Machine::*length : {&Machine::junction_deviation, &Machine::arc_tolerance,
                                   &Machine::blend_tolerance, &Machine::naive_cam_tolerance}) {
     big.*length *= kBy;
@@ -410,39 +382,18 @@ TEST_P(EveryModel, CostsLinearTime) {
   EXPECT_LT(seconds(240000), 8 * 3 * small);
 }
 
-// --- grbl's planner where it has a closed form: a line, a corner, its window ---------------------
+// --- grbl's planner where it has a closed form: a corner, its window -----------------------------
 
 constexpr double kRouterAcceleration = 250;  // mm/s^2 of each axis
-constexpr double kRouterVelocity = 80;       // mm/s of each axis
 
 Machine router() {
-  Machine m;
-  m.name = "router";
-  m.model = ControllerModel::kGrbl;
-  set_max_velocity(m, kRouterVelocity);
-  set_rapid_velocity(m, kRouterVelocity);
+  Machine m = machine_of(ControllerModel::kGrbl);
+  set_max_velocity(m, 80);
   set_max_acceleration(m, kRouterAcceleration);
   m.junction_deviation = 0.012;
-  m.arc_tolerance = 0.002;
   m.block_period = 1e-9;  // nothing that feeds it is a limit here
   m.look_ahead = 15;
   return m;
-}
-
-TEST(GrblPlanner, RunsOneLongLineAsATrapezoid) {
-  const double v = 50;
-  const double length = 130;
-  const double expected = 2 * v / kRouterAcceleration + (length - v * v / kRouterAcceleration) / v;
-  EXPECT_NEAR(time_of({{Line{{0, 0, 0}, {length, 0, 0}}, v * 60}}, router()), expected, 1e-6);
-}
-
-// A feed above what the axes can: along (3, 4) the Y axis has 4/5 of the speed.
-TEST(GrblPlanner, LimitsALineByItsSlowestAxis) {
-  const double v = kRouterVelocity / 0.8;
-  const double a = kRouterAcceleration / 0.8;
-  const double length = 200;
-  const double expected = 2 * v / a + (length - v * v / a) / v;
-  EXPECT_NEAR(time_of({{Line{{0, 0, 0}, {120, 160, 0}}, 60000}}, router()), expected, 1e-6);
 }
 
 // A corner that turns by `turn`: v^2 = a d sin(t/2) / (1 - sin(t/2)) with t the angle between the
@@ -497,38 +448,7 @@ TEST(GrblPlanner, BrakesForTheEndOfItsSixteenBlocks) {
   EXPECT_NEAR(time_of(blocks, router()), expected, 1e-6);
 }
 
-// Twice as many blocks for the same line: the window is half as long, the speed 1 / sqrt(2).
-TEST(GrblPlanner, LosesSpeedWithTheLengthOfItsBlocks) {
-  const auto time = [](double length) {
-    std::vector<TimedPiece> blocks;
-    for (int i = 0; i < 100 / length; ++i) {
-      blocks.push_back({Line{{length * i, 0, 0}, {length * (i + 1), 0, 0}}, 60000});
-    }
-    return time_of(blocks, router());
-  };
-  EXPECT_NEAR(time(0.05) / time(0.1), std::sqrt(2.0), 0.03);
-}
-
 // --- what a chain keeps from one question to the next changes no answer --------------------------
-
-std::vector<TimedPiece> wandering(unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> turn(-0.8, 0.8);
-  std::uniform_real_distribution<double> length(0.02, 2);
-  std::vector<TimedPiece> chain;
-  Point3 at = Point3::Zero();
-  double angle = 0;
-  for (int i = 0; i < 200; ++i) {
-    angle += turn(random);
-    const double way = i % 17 == 0 ? 0 : length(random);
-    const Point3 next = at + way * Point3(std::cos(angle), std::sin(angle), 0.1);
-    TimedPiece piece{Line{at, next}, i % 50 < 40 ? 3000.0 : 0.0};
-    piece.bytes = 12;
-    chain.push_back(piece);
-    at = next;
-  }
-  return chain;
-}
 
 TEST(TimedChain, GivesTheTimesOfCuttingTime) {
   for (const char* name : {"linuxcnc", "router", "grbl"}) {
@@ -537,7 +457,10 @@ TEST(TimedChain, GivesTheTimesOfCuttingTime) {
     unmerged.naive_cam_tolerance = 0;
     for (unsigned seed = 0; seed < 5; ++seed) {
       SCOPED_TRACE(testing::Message() << name << " " << seed);
-      const std::vector<TimedPiece> pieces = wandering(seed);
+      std::vector<TimedPiece> pieces = random_chain(seed);
+      for (TimedPiece& piece : pieces) piece.bytes = 12;
+      pieces[2].feed = 0;
+      pieces.insert(pieces.begin() + 3, line({1, 1, 1}, {1, 1, 1}));
       TimedChain chain(pieces, machine);
       for (const PathMode path : {PathMode::kBlending, PathMode::kExactPath}) {
         EXPECT_EQ(chain.time(machine, path), cutting_time(pieces, machine, path));

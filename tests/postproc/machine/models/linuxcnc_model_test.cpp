@@ -1,7 +1,5 @@
 // What LinuxCNC does: seconds measured on the real control (2.9.0~pre1, simulated axes, 1 ms;
 // tests/bench/compare_with_linuxcnc.py), closed forms, and the joining of lines.
-#include "postproc/machine/models/linuxcnc_model.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -213,19 +211,31 @@ TEST(LinuxcncTime, StopsAtCornersOfTheExactPath) {
 
 // --- naive CAM ----------------------------------------------------------------------------
 
+// The moves that are left, without corners.
+std::vector<geometry::PathPiece> joined(const Chain& chain, double tolerance) {
+  Machine m = bench_machine(0.01);
+  m.naive_cam_tolerance = tolerance;
+  std::vector<geometry::PathPiece> moves;
+  for (const StretchPlace& at :
+       stretches_of(chain, m, kG64, ChainEnd::kStop, WithPositions::kYes).places) {
+    if (!at.is_corner) moves.push_back(at.path);
+  }
+  return moves;
+}
+
 std::size_t joined_count(const Chain& chain, double tolerance) {
-  return linuxcnc::join_within(chain, tolerance).size();
+  return joined(chain, tolerance).size();
 }
 
 TEST(NaiveCam, JoinsLinesWithinTheTolerance) {
   Program p(1000);
   p.line(1, 0.009).line(2, 0).line(3, 0.009);
-  EXPECT_EQ(joined_count(p.chain(), 0.01), 1u);
   EXPECT_EQ(joined_count(p.chain(), 0.001), 3u);
   EXPECT_EQ(joined_count(p.chain(), 0), 3u);
-  const auto joined = linuxcnc::join_within(p.chain(), 0.01);
-  EXPECT_EQ(geometry::start_point(joined[0].piece), Point3(0, 0, 0));
-  EXPECT_EQ(geometry::end_point(joined[0].piece), Point3(3, 0.009, 0));
+  const auto moves = joined(p.chain(), 0.01);
+  ASSERT_EQ(moves.size(), 1u);
+  EXPECT_EQ(geometry::start_point(moves[0]), Point3(0, 0, 0));
+  EXPECT_EQ(geometry::end_point(moves[0]), Point3(3, 0.009, 0));
 }
 
 TEST(NaiveCam, JoinsAHundredAndOnePoints) {
@@ -247,14 +257,13 @@ TEST(NaiveCam, TakesFlatArcsOfThePlaneXyForLines) {
   const double angle = 2 * std::asin(1.0 / 50);
   Program p(1000);
   p.arc(2, 0, 1, std::sqrt(50.0 * 50 - 1), angle);
-  EXPECT_TRUE(std::holds_alternative<Arc>(linuxcnc::join_within(p.chain(), 0.0099)[0].piece));
-  EXPECT_TRUE(std::holds_alternative<Line>(linuxcnc::join_within(p.chain(), 0.0101)[0].piece));
+  EXPECT_TRUE(std::holds_alternative<Arc>(joined(p.chain(), 0.0099)[0]));
+  EXPECT_TRUE(std::holds_alternative<Line>(joined(p.chain(), 0.0101)[0]));
 
   Arc upright = std::get<Arc>(p.chain()[0].piece);  // turned into the plane of X and Z
   for (Point3* q : {&upright.start, &upright.end, &upright.center}) *q = {q->x(), 0, q->y()};
   upright.axis = -Vector3::UnitY();
-  EXPECT_TRUE(
-      std::holds_alternative<Arc>(linuxcnc::join_within(Chain{{upright, 1000}}, 0.0101)[0].piece));
+  EXPECT_TRUE(std::holds_alternative<Arc>(joined(Chain{{upright, 1000}}, 0.0101)[0]));
 }
 
 TEST(NaiveCam, IsOffUnderTheExactPath) {

@@ -15,16 +15,14 @@
 namespace batten::postproc {
 namespace {
 
+VelocityStretch without_jerk(double length, double velocity, double acceleration) {
+  return {.length = length, .max_velocity = velocity, .acceleration = acceleration};
+}
+
 // Ten millimetres, a short stretch between two joints of 50 mm/s, ten millimetres.
 std::vector<VelocityStretch> short_stretch_between_joints(double length) {
-  VelocityStretch wide;
-  wide.length = 10;
-  wide.max_velocity = 50;
-  wide.acceleration = 2000;
-  VelocityStretch narrow = wide;
-  narrow.length = length;
-  narrow.max_velocity = 100;
-  return {wide, narrow, wide};
+  const VelocityStretch wide = without_jerk(10, 50, 2000);
+  return {wide, without_jerk(length, 100, 2000), wide};
 }
 
 // The two long ones: 50 mm/s after .025 s and .625 mm, the rest evenly.
@@ -38,8 +36,7 @@ TEST(ProfileTime, SpeedsUpWithinAStretch) {
 }
 
 TEST(ProfileTime, CrossesShortStretchesEvenlyWhereTheControlDoes) {
-  ProfileRules rules;
-  rules.ramp_time = 0.01;
+  const ProfileRules rules{.ramp_time = 0.01};
   EXPECT_NEAR(profile_time(short_stretch_between_joints(0.4), rules), kBothEnds + 0.4 / 50, 1e-12);
   std::vector<VelocityStretch> chain = short_stretch_between_joints(0.4);
   chain[1].runs_on = false;
@@ -51,8 +48,7 @@ TEST(ProfileTime, CrossesShortStretchesEvenlyWhereTheControlDoes) {
 TEST(ProfileTime, CountsTheLossOfEveryStop) {
   std::vector<VelocityStretch> chain = short_stretch_between_joints(0.4);
   chain[0].exit_velocity = 0;
-  ProfileRules rules;
-  rules.stop_time = 0.25;
+  const ProfileRules rules{.stop_time = 0.25};
   EXPECT_NEAR(profile_time(chain, rules), profile_time(chain, {}) + 0.5, 1e-12);
 }
 
@@ -62,10 +58,7 @@ TEST(ProfileTime, IsZeroForNothing) { EXPECT_EQ(profile_time({}, {}), 0); }
 
 // 0 to 20 mm/s in .02 s and .2 mm, .6 mm at it, .02 s and .2 mm down again.
 TEST(StretchMotion, GoesThroughATrapezoid) {
-  VelocityStretch s;
-  s.length = 1;
-  s.max_velocity = 20;
-  s.acceleration = 1000;
+  const VelocityStretch s = without_jerk(1, 20, 1000);
   const StretchMotion motion(s, 0, 0, {});
   EXPECT_NEAR(motion.duration(), 0.02 + 0.03 + 0.02, 1e-12);
   EXPECT_EQ(motion.way_at(0), 0);
@@ -76,28 +69,15 @@ TEST(StretchMotion, GoesThroughATrapezoid) {
   EXPECT_NEAR(motion.time_below(10), 0.02, 1e-12);
   EXPECT_NEAR(motion.time_below(20), 0.07, 1e-12);
   EXPECT_EQ(motion.time_below(0), 0);
-}
-
-TEST(StretchMotion, RestsAfterAStop) {
-  VelocityStretch s;
-  s.length = 1;
-  s.max_velocity = 20;
-  s.acceleration = 1000;
-  ProfileRules rules;
-  rules.stop_time = 0.25;
-  const StretchMotion motion(s, 0, 0, rules);
-  EXPECT_NEAR(motion.duration(), 0.32, 1e-12);
-  EXPECT_EQ(motion.way_at(0.3), 1);
-  EXPECT_NEAR(motion.time_below(1e-9), 0.25, 1e-9);
+  const StretchMotion rests(s, 0, 0, {.stop_time = 0.25});
+  EXPECT_NEAR(rests.duration(), 0.32, 1e-12);
+  EXPECT_EQ(rests.way_at(0.3), 1);
+  EXPECT_NEAR(rests.time_below(1e-9), 0.25, 1e-9);
 }
 
 TEST(StretchMotion, ChangesItsSpeedEvenlyOverAShortStretch) {
-  VelocityStretch s;
-  s.length = 0.3;
-  s.max_velocity = 100;
-  s.acceleration = 10000;
-  ProfileRules rules;
-  rules.ramp_time = 0.01;
+  const VelocityStretch s = without_jerk(0.3, 100, 10000);
+  const ProfileRules rules{.ramp_time = 0.01};
   const StretchMotion motion(s, 40, 60, rules);
   EXPECT_NEAR(motion.duration(), 0.3 / 50, 1e-12);
   // s = 40 t + a t^2 / 2 with a = 20 / .006.
@@ -172,10 +152,7 @@ constexpr double kRampAcceleration = 1000;
 constexpr double kJerk = 10000;
 
 VelocityStretch stretch(double length, double velocity) {
-  VelocityStretch s;
-  s.length = length;
-  s.max_velocity = velocity;
-  s.acceleration = kRampAcceleration;
+  VelocityStretch s = without_jerk(length, velocity, kRampAcceleration);
   s.jerk = kJerk;
   return s;
 }

@@ -52,6 +52,10 @@ struct Spread {
     squares += error * error;
     ++count;
   }
+  ~Spread() {
+    fmt::print("{} paths: {:+.2f} to {:+.2f} %, mean {:+.2f} %, root mean square {:.2f} %\n", count,
+               100 * least, 100 * most, 100 * sum / count, 100 * std::sqrt(squares / count));
+  }
 };
 
 TEST(FeedEstimate, IsNearThePlanOnPathsOfAllKinds) {
@@ -65,9 +69,6 @@ TEST(FeedEstimate, IsNearThePlanOnPathsOfAllKinds) {
     EXPECT_LT(std::abs(error), 0.02) << test.name;
     spread.add(error);
   }
-  fmt::print("{} paths: {:+.2f} to {:+.2f} %, mean {:+.2f} %, root mean square {:.2f} %\n",
-             spread.count, 100 * spread.least, 100 * spread.most, 100 * spread.sum / spread.count,
-             100 * std::sqrt(spread.squares / spread.count));
   EXPECT_LT(std::abs(spread.sum / spread.count), 0.005);
 }
 
@@ -78,13 +79,9 @@ TEST(FeedEstimate, IsNearThePlanOnRandomCurves) {
     const Path path = path_of(random_curve(random));
     const KinematicPathLimits limits = random_limits(random);
     const double error = estimated_time(path, limits) / planned_time(path, limits) - 1;
-    if (std::abs(error) > 0.015) fmt::print("seed {}: {:+.2f} %\n", seed, 100 * error);
     EXPECT_LT(std::abs(error), 0.02) << seed;
     spread.add(error);
   }
-  fmt::print("{} paths: {:+.2f} to {:+.2f} %, mean {:+.2f} %, root mean square {:.2f} %\n",
-             spread.count, 100 * spread.least, 100 * spread.most, 100 * spread.sum / spread.count,
-             100 * std::sqrt(spread.squares / spread.count));
 }
 
 // Curves that bend so sharply that the tool next to stops: nodes that were added there once made

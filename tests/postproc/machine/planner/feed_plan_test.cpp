@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -146,32 +145,9 @@ struct CornerCase {
   double bound;
 };
 
-void PrintTo(const CornerCase& test, std::ostream* out) { *out << test.name; }
-
-class PlannedCorner : public testing::TestWithParam<CornerCase> {};
-
-TEST_P(PlannedCorner, TakesTheTimeOfTheReference) {
-  const CornerCase& test = GetParam();
-  const FeedPlan plan = plan_feed(test.path, corner_limits());
-  const Use use = greatest_use(test.path, plan, corner_limits(), 1e-4);
-  double slowest = kNone;
-  for (const FeedPlanNode& node : plan.nodes) {
-    if (std::abs(node.distance - plan.nodes.back().distance / 2) < 2) {
-      slowest = std::min(slowest, node.speed);
-    }
-  }
-  fmt::print("{:14} {:.5f} s, reference {:.4f}, slowest {:.3f} m/min, {} nodes, {:.4f} of {}\n",
-             test.name, plan.time, test.expected, 0.06 * slowest, plan.nodes.size(), use.share,
-             use.where);
-  EXPECT_NEAR(plan.time, test.expected, 0.003);
-  EXPECT_GT(plan.time, test.bound - 0.002);
-  EXPECT_LE(use.share, 1.005);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Corners, PlannedCorner,
-    testing::Values(
-        CornerCase{"Usual100", ozcan_path(12.92, 12.92), 1.6459, 1.6160},
+TEST(PlannedCorner, TakesTheTimeOfTheReference) {
+  for (const CornerCase& test :
+       {CornerCase{"Usual100", ozcan_path(12.92, 12.92), 1.6459, 1.6160},
         CornerCase{"Usual50", ozcan_path(12.99, 12.99), 1.6605, 1.6306},
         CornerCase{"Optimum100", ozcan_path(12.67, 12.95), 1.6226, 1.6160},
         CornerCase{"Optimum50", ozcan_path(12.86, 12.99), 1.6390, 1.6306},
@@ -179,8 +155,24 @@ INSTANTIATE_TEST_SUITE_P(
         CornerCase{"Guo100", guo_path_of(0.1, GuoApex::kAllowed), 1.6307, 1.6160},
         CornerCase{"Guo50", guo_path_of(0.05, GuoApex::kAllowed), 1.6554, 1.6306},
         CornerCase{"GuoHalf100", guo_path_of(0.1, GuoApex::kHalfTolerance), 1.6654, 1.6160},
-        CornerCase{"GuoHalf50", guo_path_of(0.05, GuoApex::kHalfTolerance), 1.6804, 1.6306}),
-    [](const auto& test) { return test.param.name; });
+        CornerCase{"GuoHalf50", guo_path_of(0.05, GuoApex::kHalfTolerance), 1.6804, 1.6306}}) {
+    SCOPED_TRACE(test.name);
+    const FeedPlan plan = plan_feed(test.path, corner_limits());
+    const Use use = greatest_use(test.path, plan, corner_limits(), 1e-4);
+    double slowest = kNone;
+    for (const FeedPlanNode& node : plan.nodes) {
+      if (std::abs(node.distance - plan.nodes.back().distance / 2) < 2) {
+        slowest = std::min(slowest, node.speed);
+      }
+    }
+    fmt::print("{:14} {:.5f} s, reference {:.4f}, slowest {:.3f} m/min, {} nodes, {:.4f} of {}\n",
+               test.name, plan.time, test.expected, 0.06 * slowest, plan.nodes.size(), use.share,
+               use.where);
+    EXPECT_NEAR(plan.time, test.expected, 0.003);
+    EXPECT_GT(plan.time, test.bound - 0.002);
+    EXPECT_LE(use.share, 1.005);
+  }
+}
 
 // --- the paths of Naseath's thesis --------------------------------------------------------------
 
@@ -195,37 +187,31 @@ struct ThesisCase {
   double at_most;
 };
 
-void PrintTo(const ThesisCase& test, std::ostream* out) { *out << test.name; }
-
-class ThesisPath : public testing::TestWithParam<ThesisCase> {};
-
-TEST_P(ThesisPath, TakesTheTimeOfTheReference) {
-  const ThesisCase& test = GetParam();
-  const BsplineCurve curve = geometry::curve_of_case(test.name);
-  const auto samples = geometry::parameter_samples(curve, geometry::kNaseathSteps);
-  const auto s_curve = s_curve_nodes(samples, {});
-  KinematicPathLimits limits;
-  limits.feed = 400;
-  limits.tangential_acceleration = limits.normal_acceleration = 4000;
-  limits.tangential_jerk = 20000;
-  const PlanEnds ends = {s_curve.front().velocity, s_curve.back().velocity};
-  const FeedPlan plan = plan_feed(path_of(curve), limits, ends);
-  const Use use = greatest_use(path_of(curve), plan, limits, 1e-4);
-  fmt::print("{} {:.4f} s, reference {:.3f}, S-curve {:.4f}, {} nodes, {:.4f} of {}\n", test.name,
-             plan.time, test.reference, s_curve_time(samples, {}), plan.nodes.size(), use.share,
-             use.where);
-  EXPECT_GE(plan.time / test.reference, test.at_least);
-  EXPECT_LE(plan.time / test.reference, test.at_most);
-  EXPECT_LT(plan.time, s_curve_time(samples, {}));
-  EXPECT_LE(use.share, 1.005);
+TEST(ThesisPath, TakesTheTimeOfTheReference) {
+  for (const ThesisCase& test :
+       {ThesisCase{"tc5a", .704, .97, 1}, ThesisCase{"tc5b", .826, .97, 1},
+        ThesisCase{"tc6", 1.472, .97, 1}, ThesisCase{"tc3", 3.679, 1, 1.01},
+        ThesisCase{"tc2", 1.283, 1, 1.08}, ThesisCase{"tc1", 3.668, .97, 1.001}}) {
+    SCOPED_TRACE(test.name);
+    const BsplineCurve curve = geometry::curve_of_case(test.name);
+    const auto samples = geometry::parameter_samples(curve, geometry::kNaseathSteps);
+    const auto s_curve = s_curve_nodes(samples, {});
+    KinematicPathLimits limits;
+    limits.feed = 400;
+    limits.tangential_acceleration = limits.normal_acceleration = 4000;
+    limits.tangential_jerk = 20000;
+    const PlanEnds ends = {s_curve.front().velocity, s_curve.back().velocity};
+    const FeedPlan plan = plan_feed(path_of(curve), limits, ends);
+    const Use use = greatest_use(path_of(curve), plan, limits, 1e-4);
+    fmt::print("{} {:.4f} s, reference {:.3f}, S-curve {:.4f}, {} nodes, {:.4f} of {}\n", test.name,
+               plan.time, test.reference, s_curve_time(samples, {}), plan.nodes.size(), use.share,
+               use.where);
+    EXPECT_GE(plan.time / test.reference, test.at_least);
+    EXPECT_LE(plan.time / test.reference, test.at_most);
+    EXPECT_LT(plan.time, s_curve_time(samples, {}));
+    EXPECT_LE(use.share, 1.005);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Naseath, ThesisPath,
-    testing::Values(ThesisCase{"tc5a", .704, .97, 1}, ThesisCase{"tc5b", .826, .97, 1},
-                    ThesisCase{"tc6", 1.472, .97, 1}, ThesisCase{"tc3", 3.679, 1, 1.01},
-                    ThesisCase{"tc2", 1.283, 1, 1.08}, ThesisCase{"tc1", 3.668, .97, 1.001}),
-    [](const auto& test) { return std::string(test.param.name); });
 
 // --- wrong calls --------------------------------------------------------------------------------
 

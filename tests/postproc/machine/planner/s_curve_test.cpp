@@ -28,64 +28,6 @@ using geometry::naseath_case;
 using geometry::NaseathOptions;
 using geometry::NaseathRepairs;
 using geometry::parameter_samples;
-using geometry::ParameterSample;
-
-// A path 1 mm per sample with these allowed speeds (mm/s).
-std::vector<ParameterSample> path_with(const std::vector<double>& speeds) {
-  std::vector<ParameterSample> samples;
-  for (std::size_t i = 0; i < speeds.size(); ++i) {
-    const double v = speeds[i];
-    const auto place = static_cast<double>(i);
-    samples.push_back({place, place, 1, 4000 / (v * v)});
-  }
-  return samples;
-}
-
-TEST(SCurve, RunsAStraightLineAtFullSpeed) {
-  std::vector<ParameterSample> line = path_with({400, 400, 400});
-  for (ParameterSample& sample : line) sample.curvature = 0;
-  EXPECT_NEAR(s_curve_time(line, {}), 2.0 / 400, 1e-15);
-}
-
-TEST(SCurve, HasItsNodesAtTheEndsAndTheExtremaOfTheAllowedSpeed) {
-  const auto nodes = s_curve_nodes(path_with({30, 31, 32, 31.5, 31, 31.5, 33}), {});
-  ASSERT_EQ(nodes.size(), 4u);
-  const double places[] = {0, 2, 4, 6};
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(nodes[i].distance, places[i]);
-}
-
-TEST(SCurve, TakesTheMiddleSampleOfAnEvenStretch) {
-  const auto nodes = s_curve_nodes(path_with({30, 31, 32, 32, 32, 32, 31, 30}), {});
-  ASSERT_EQ(nodes.size(), 3u);
-  EXPECT_EQ(nodes[1].distance, 3);
-}
-
-TEST(SCurve, LowersTheHigherNodeUntilTheCurveFits) {
-  // From v0 = 10 in 2 mm: (v0 + v)/2 * 2 sqrt((v - v0)/J) = 2.
-  const SCurveLimits limits;
-  const auto nodes = s_curve_nodes(path_with({10, 200, 390}), limits);
-  ASSERT_EQ(nodes.size(), 2u);
-  const double v = nodes[1].velocity;
-  EXPECT_LT(v, 390);
-  EXPECT_NEAR((10 + v) * std::sqrt((v - 10) / limits.jerk), 2, 1e-9);
-  EXPECT_NEAR(s_curve_time(path_with({10, 200, 390}), limits), 4 / (10 + v), 1e-12);
-  // The same the other way round.
-  EXPECT_NEAR(s_curve_time(path_with({390, 200, 10}), limits), 4 / (10 + v), 1e-12);
-}
-
-TEST(SCurve, BeyondTheAccelerationLimitAddsAnEvenPart) {
-  // A^2/J = 1: the change from 0.1 to 5 takes dv/A + A/J = 4.9 + 1 s and 15.045 mm.
-  const SCurveLimits limits{400, 1, 1};
-  std::vector<ParameterSample> path(2);
-  path[0].curvature = 1 / (0.1 * 0.1);
-  path[1].curvature = 1 / 25.0;
-  path[1].distance = 0.5 * 5.1 * 5.9;
-  EXPECT_NEAR(s_curve_nodes(path, limits)[1].velocity, 5, 1e-9);
-  path[1].distance *= 0.99;
-  EXPECT_LT(s_curve_nodes(path, limits)[1].velocity, 4.99);
-}
-
-TEST(SCurve, OfNothingTakesNoTime) { EXPECT_EQ(s_curve_time({}, {}), 0); }
 
 // --- the tables --------------------------------------------------------------------------------
 

@@ -33,7 +33,9 @@ StepOptions from_zero() {
   return options;
 }
 
-ProgramTime timed(const std::string& text, const Machine& machine,
+// On a control of no name, unless one is given.
+ProgramTime timed(const std::string& text,
+                  const Machine& machine = machine_of(ControllerModel::kLookAhead),
                   const StepOptions& options = from_zero()) {
   const tests::Interpreted program(text);
   return time_program(program.program, program.read, machine, options);
@@ -81,31 +83,17 @@ std::string random_program(unsigned seed) {
   for (int i = 0; i < 120; ++i) {
     const double x = 40 * unit(random);
     const double y = 30 * unit(random);
-    switch (static_cast<int>(unit(random) * 12)) {
-      case 0:
-        text += fmt::format("G0 X{:.3f} Y{:.3f} Z5\n", x, y);
-        break;
-      case 1:
-        text += fmt::format("G4 P{:.2f}\n", unit(random));
-        break;
-      case 2:
-        text += fmt::format("F{:.0f}\n", 300 + 4000 * unit(random));
-        break;
-      case 3:
-        text += fmt::format("T{} M6\n", 1 + static_cast<int>(unit(random) * 3));
-        break;
-      case 4:
-        text += "M5\nM3\n";
-        break;
-      case 5:
-        text += fmt::format("G64 P{:.2f}\n", 0.1 * unit(random));
-        break;
-      case 6:
-        text += "G91\nG1 X1 Y1\nG3 X2 Y0 I1\nG90\n";
-        break;
-      default:
-        text += fmt::format("G1 X{:.3f} Y{:.3f} Z{:.3f}\n", x, y, -unit(random));
-    }
+    const std::string cut = fmt::format("G1 X{:.3f} Y{:.3f} Z{:.3f}\n", x, y, -unit(random));
+    const std::vector<std::string> others = {
+        fmt::format("G0 X{:.3f} Y{:.3f} Z5\n", x, y),
+        fmt::format("G4 P{:.2f}\n", unit(random)),
+        fmt::format("F{:.0f}\n", 300 + 4000 * unit(random)),
+        fmt::format("T{} M6\n", 1 + static_cast<int>(unit(random) * 3)),
+        "M5\nM3\n",
+        fmt::format("G64 P{:.2f}\n", 0.1 * unit(random)),
+        "G91\nG1 X1 Y1\nG3 X2 Y0 I1\nG90\n"};
+    const auto kind = static_cast<std::size_t>(unit(random) * 12);
+    text += kind < others.size() ? others[kind] : cut;
   }
   return text + "M30\n";
 }
@@ -213,7 +201,6 @@ TEST_P(EveryControl, HalvedLimitsStretchTheirOwnPartOfAMove) {
 }
 
 TEST(ProgramTimeOfAGenericControl, IsTheSameBackward) {
-  const Machine m = machine_of(ControllerModel::kLookAhead);
   for (unsigned seed = 0; seed < kPrograms; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     std::mt19937 random(seed);
@@ -228,9 +215,9 @@ TEST(ProgramTimeOfAGenericControl, IsTheSameBackward) {
       for (const std::string& place : through) text += place;
       return text + "M2\n";
     };
-    const double forward = timed(program(places), m).seconds.cutting;
+    const double forward = timed(program(places)).seconds.cutting;
     std::ranges::reverse(places);
-    EXPECT_NEAR(timed(program(places), m).seconds.cutting, forward, 1e-6);
+    EXPECT_NEAR(timed(program(places)).seconds.cutting, forward, 1e-6);
   }
 }
 
@@ -331,26 +318,24 @@ TEST_P(EveryControl, DrillsAsTheMovesOfTheCycleWouldDo) {
 }
 
 TEST(ProgramTimeOfCycles, PecksAndDwells) {
-  const Machine m = machine_of(ControllerModel::kLookAhead);
   const std::string head = "G21 G90\nG0 X0 Y0 Z2\n";
-  const ProgramTime pecks = timed(head + "G83 X0 Y0 Z-5 R2 Q3 F600\nG80\nM2\n", m);
+  const ProgramTime pecks = timed(head + "G83 X0 Y0 Z-5 R2 Q3 F600\nG80\nM2\n");
   // 2 to -1, up to 2, down to -.746, to -4, up, down to -3.746, to -5, up.
   EXPECT_NEAR(pecks.cutting_mm, 3 + 3.254 + 1.254, 1e-9);
   // The first rapid to Z2 too.
   EXPECT_NEAR(pecks.rapid_mm, 2 + 3 + 2.746 + 6 + 5.746 + 7, 1e-9);
-  const ProgramTime chips = timed(head + "G73 X0 Y0 Z-5 R2 Q3 F600\nG80\nM2\n", m);
+  const ProgramTime chips = timed(head + "G73 X0 Y0 Z-5 R2 Q3 F600\nG80\nM2\n");
   EXPECT_NEAR(chips.rapid_mm, 2 + 0.254 + 0.254 + 7, 1e-9);
-  const ProgramTime dwells = timed(head + "G82 X0 Y0 Z-5 R2 P1.5 F600\nX5\nX10\nG80\nM2\n", m);
+  const ProgramTime dwells = timed(head + "G82 X0 Y0 Z-5 R2 P1.5 F600\nX5\nX10\nG80\nM2\n");
   EXPECT_NEAR(dwells.seconds.dwells, 4.5, 1e-12);
-  const ProgramTime bores = timed(head + "G85 X0 Y0 Z-5 R2 F600\nG80\nM2\n", m);
+  const ProgramTime bores = timed(head + "G85 X0 Y0 Z-5 R2 F600\nG80\nM2\n");
   EXPECT_NEAR(bores.cutting_mm, 14, 1e-9);
   EXPECT_TRUE(bores.not_timed.empty());
 }
 
 TEST(ProgramTimeOfCycles, RepeatsIncrementalHoles) {
-  const Machine m = machine_of(ControllerModel::kLookAhead);
   const ProgramTime time =
-      timed("G21 G90\nG0 X0 Y0 Z10\nG91 G99 G81 X5 Z-6 R-8 L4 F600\nG80\nM2\n", m);
+      timed("G21 G90\nG0 X0 Y0 Z10\nG91 G99 G81 X5 Z-6 R-8 L4 F600\nG80\nM2\n");
   EXPECT_EQ(time.counts.cuts, 4u);
   EXPECT_NEAR(time.cutting_mm, 4 * 6, 1e-9);
   EXPECT_NEAR(time.rapid_mm, 10 + 5 + 8 + 3 * 5 + 4 * 6, 1e-9) << "from X0 Y0 Z0";
@@ -358,20 +343,18 @@ TEST(ProgramTimeOfCycles, RepeatsIncrementalHoles) {
 
 // Axis words that belong to another code of their block are no hole, which would be 7 mm more.
 TEST(ProgramTimeOfCycles, DrillOnlyWhereTheAxisWordsAreTheirs) {
-  const Machine m = machine_of(ControllerModel::kLookAhead);
   const std::string cycle = "G21 G90\nG0 X0 Y0 Z2\nG81 X0 Y0 Z-5 R2 F600\n";
-  EXPECT_NEAR(timed(cycle + "X5\nG80\nM2\n", m).cutting_mm, 14, 1e-9);
+  EXPECT_NEAR(timed(cycle + "X5\nG80\nM2\n").cutting_mm, 14, 1e-9);
   for (const char* other : {"G65 P9000 X5", "G68 X5 Y5 R30", "G51 X5 Y5 P2"}) {
-    EXPECT_NEAR(timed(cycle + other + "\nG80\nM2\n", m).cutting_mm, 7, 1e-9) << other;
+    EXPECT_NEAR(timed(cycle + other + "\nG80\nM2\n").cutting_mm, 7, 1e-9) << other;
   }
 }
 
 TEST(ProgramTimeOfCycles, CountsWhatItDoesNotFollow) {
-  const Machine m = machine_of(ControllerModel::kLookAhead);
   const std::string head = "G21 G90\nG0 X0 Y0 Z2\n";
-  EXPECT_EQ(count_of(timed(head + "G87 X0 Y0 Z-5 R2 F600\nM2\n", m), "canned-cycle"), 1u);
-  EXPECT_EQ(count_of(timed(head + "G18 G81 X0 Z-5 R2 F600\nM2\n", m), "canned-cycle"), 1u);
-  EXPECT_EQ(count_of(timed(head + "G81 X0 Y0 Z-5 F600\nM2\n", m), "canned-cycle"), 1u) << "no R";
+  EXPECT_EQ(count_of(timed(head + "G87 X0 Y0 Z-5 R2 F600\nM2\n"), "canned-cycle"), 1u);
+  EXPECT_EQ(count_of(timed(head + "G18 G81 X0 Z-5 R2 F600\nM2\n"), "canned-cycle"), 1u);
+  EXPECT_EQ(count_of(timed(head + "G81 X0 Y0 Z-5 F600\nM2\n"), "canned-cycle"), 1u) << "no R";
 }
 
 // --- what is not known is said -------------------------------------------------------------------
@@ -419,16 +402,11 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 // The start counts where it is said; an axis that nobody knows takes no time.
-TEST(ProgramTimePlaces, ComeFromTheStartThatIsGiven) {
-  const Machine m = machine_of(ControllerModel::kLookAhead);
+TEST(ProgramTimePositions, ComeFromTheStartThatIsGivenAndFromSetCoordinates) {
   const std::string text = "G21 G90\nG0 X300\nM2\n";
-  EXPECT_EQ(timed(text, m, {}).seconds.sum(), 0);
-  EXPECT_NEAR(timed(text, m).seconds.sum(), 1.3, 1e-9);
-}
-
-TEST(ProgramTimePlaces, FollowSetCoordinates) {
-  const Machine m = machine_of(ControllerModel::kLookAhead);
-  const ProgramTime time = timed("G21 G90\nG0 X100\nG92 X0\nG0 X200\nM2\n", m);
+  EXPECT_EQ(timed(text, machine_of(ControllerModel::kLookAhead), {}).seconds.sum(), 0);
+  EXPECT_NEAR(timed(text).seconds.sum(), 1.3, 1e-9);
+  const ProgramTime time = timed("G21 G90\nG0 X100\nG92 X0\nG0 X200\nM2\n");
   EXPECT_NEAR(time.rapid_mm, 300, 1e-9);
   EXPECT_EQ(count_of(time, "position-assumed"), 0u);
 }
@@ -454,9 +432,8 @@ TEST(ProgramTimeOfCurves, IsThatOfTheirLengthWhereTheirControlIsNamed) {
 // --- tools, slow places -------------------------------------------------------------------------
 
 TEST(ProgramTimeByTool, GivesEachToolItsOwn) {
-  const Machine m = machine_of(ControllerModel::kLookAhead);
   const ProgramTime time =
-      timed("G21 G90\nT3 M6\nG1 X50 F6000\nT7 M6\nG1 X0 F3000\nT3 M6\nG1 X50 F6000\nM2\n", m);
+      timed("G21 G90\nT3 M6\nG1 X50 F6000\nT7 M6\nG1 X0 F3000\nT3 M6\nG1 X50 F6000\nM2\n");
   ASSERT_EQ(time.tools.size(), 2u);
   EXPECT_EQ(time.tools[0].tool, 3);
   EXPECT_EQ(time.tools[1].tool, 7);
@@ -467,8 +444,7 @@ TEST(ProgramTimeByTool, GivesEachToolItsOwn) {
 
 // Half of 100 mm/s is passed .05 s after the start and before the end.
 TEST(ProgramTimeBelowHalfTheFeed, IsCountedToTheMoment) {
-  const Machine m = machine_of(ControllerModel::kLookAhead);
-  EXPECT_NEAR(timed("G21 G90\nG1 X50 F6000\nM2\n", m).below_half_feed, 0.1, 1e-9);
+  EXPECT_NEAR(timed("G21 G90\nG1 X50 F6000\nM2\n").below_half_feed, 0.1, 1e-9);
 }
 
 TEST(ProgramTimeSlowPlaces, AreWhereTheCornersAre) {
@@ -496,9 +472,7 @@ struct SampledProgram {
 
 SampledProgram sampled(const std::string& text, const Machine& m, double period = 0.001) {
   const tests::Interpreted program(text);
-  StepOptions options;
-  options.start = Point3::Zero();
-  const ProgramSteps steps = read_steps(program.program, program.read, options);
+  const ProgramSteps steps = read_steps(program.program, program.read, from_zero());
   SampledProgram result;
   EXPECT_TRUE(sample_program(program.program, steps, m, period, [&](const ProfileSample& s) {
     result.samples.push_back(s);
@@ -508,11 +482,8 @@ SampledProgram sampled(const std::string& text, const Machine& m, double period 
   return result;
 }
 
-class ProfileOf : public testing::TestWithParam<ControllerModel> {};
-INSTANTIATE_TEST_SUITE_P(ProgramProfile, ProfileOf, testing::ValuesIn(kModels), model_name);
-
 // 0 to 100 mm/s in .1 s, .4 s at it, .1 s down; the rapid behind it makes it come to rest.
-TEST_P(ProfileOf, ALineIsATrapezoid) {
+TEST_P(EveryControl, SamplesALineAsATrapezoid) {
   const SampledProgram p = sampled("G21 G90\nG1 X50 F6000\nG0 Z1\nM2\n", machine_of(GetParam()));
   ASSERT_GE(p.samples.size(), 601u);
   const auto& s = p.samples;
@@ -525,7 +496,7 @@ TEST_P(ProfileOf, ALineIsATrapezoid) {
   EXPECT_EQ(s[300].line, 2u);
 }
 
-TEST_P(ProfileOf, LastsAsLongAsTheProgram) {
+TEST_P(EveryControl, SamplesTheWholeProgram) {
   const Machine m = machine_of(GetParam());
   const std::string text =
       "G21 G90\nG0 X10 Y10 Z5\nM3 S100\nG1 Z-1 F300\nX30 F2000\nY20\nG3 X20 Y30 I-10\nG1 X0 Y0\n"
@@ -543,7 +514,7 @@ TEST_P(ProfileOf, LastsAsLongAsTheProgram) {
 // Between the corners no axis has more than its acceleration; in a corner of the generic model
 // it may have a step of speed of what one period allows, which a period's difference shows as
 // the acceleration once more. grbl's corners are steps by design.
-TEST_P(ProfileOf, KeepsTheLimitsOfTheAxes) {
+TEST_P(EveryControl, SamplesKeepTheLimitsOfTheAxes) {
   const Machine m = machine_of(GetParam());
   if (m.model == ControllerModel::kGrbl) return;
   for (unsigned seed = 0; seed < 20; ++seed) {
@@ -569,7 +540,7 @@ TEST_P(ProfileOf, KeepsTheLimitsOfTheAxes) {
 }
 
 // An arc at 50 mm/s on a radius of 10 mm: v^2 / r = 250 mm/s^2 towards the centre.
-TEST_P(ProfileOf, ABendPullsTowardsItsCentre) {
+TEST_P(EveryControl, SamplesABendThatPullsTowardsItsCentre) {
   const SampledProgram p =
       sampled("G21 G90\nG0 X0 Y0\nG3 X0 Y0 I-10 J0 F3000\nG0 Z1\nM2\n", machine_of(GetParam()));
   const ProfileSample& s = p.samples[p.samples.size() / 2];
@@ -594,9 +565,7 @@ TEST(ProfileOnLinuxcnc, RunsThroughTheBlendArcs) {
 
 TEST(Profile, StopsWhenItIsTold) {
   const tests::Interpreted program("G21 G90\nG1 X50 F6000\nM2\n");
-  StepOptions options;
-  options.start = Point3::Zero();
-  const ProgramSteps steps = read_steps(program.program, program.read, options);
+  const ProgramSteps steps = read_steps(program.program, program.read, from_zero());
   int samples = 0;
   EXPECT_FALSE(sample_program(program.program, steps, machine_of(ControllerModel::kLookAhead),
                               0.001, [&](const ProfileSample&) { return ++samples < 10; }));
