@@ -12,7 +12,7 @@ namespace batten::postproc {
 
 // `base` with what a dump sets: $11, $12, and $110 to $112 and $120 to $122 for X Y Z (a dump of
 // grblHAL goes on for A B C). All other settings, answers of the control and lines of comment are
-// passed over; a setting that stands there twice counts as it is last.
+// passed over; a setting that is there twice counts as it is last.
 //
 // Adds a sentence with `file` and place to `problems` for everything that is wrong, and then
 // returns nothing: a line that is none of these, a value that is no number or too small, a

@@ -63,7 +63,7 @@ std::string list_of_units(Quantity quantity) {
   return list_of(names);
 }
 
-// The value as it stands in the file.
+// The value as it is in the file.
 std::string text_of(const toml::node& node) {
   if (node.is_table()) return "a table";
   if (node.is_array()) return "a list";
@@ -132,7 +132,7 @@ class MachineReader {
 
   std::shared_ptr<const Machine> based_on(const std::string& choice, const std::string& asked_by) {
     if (!fs::path(choice).has_extension()) return choose_machine(choice, asked_by, problems_);
-    // A file stands beside the one that is based on it.
+    // A file is beside the one that is based on it.
     const fs::path base = (fs::path(file_).parent_path() / choice).lexically_normal();
     std::vector<fs::path> being_read = being_read_;
     being_read.push_back(whole_path(file_));

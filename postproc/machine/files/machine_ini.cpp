@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "gcode/reading/parser.h"
@@ -119,23 +120,16 @@ class IniFile {
 
 constexpr double kNanosecond = 1e-9;
 
-struct NamedUnit {
-  std::string_view name;
-  double size;
-};
-
 // As LinuxCNC knows them; mm.
-constexpr std::array kLengthUnits = {NamedUnit{"mm", 1}, NamedUnit{"metric", 1},
-                                     NamedUnit{"in", kInch}, NamedUnit{"inch", kInch},
-                                     NamedUnit{"imperial", kInch}};
+constexpr std::array kLengthUnits = {Unit{"mm", 1}, Unit{"metric", 1}, Unit{"in", kInch},
+                                     Unit{"inch", kInch}, Unit{"imperial", kInch}};
 
 // Degrees.
-constexpr std::array kAngleUnits = {NamedUnit{"deg", 1},         NamedUnit{"degree", 1},
-                                    NamedUnit{"degrees", 1},     NamedUnit{"grad", 0.9},
-                                    NamedUnit{"gon", 0.9},       NamedUnit{"rad", kRadian},
-                                    NamedUnit{"radian", kRadian}};
+constexpr std::array kAngleUnits = {Unit{"deg", 1},         Unit{"degree", 1}, Unit{"degrees", 1},
+                                    Unit{"grad", 0.9},      Unit{"gon", 0.9},  Unit{"rad", kRadian},
+                                    Unit{"radian", kRadian}};
 
-// The number that the text starts with: what stands behind it does not matter to LinuxCNC.
+// The number that the text starts with: what follows it does not matter to LinuxCNC.
 std::optional<double> number_of(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
@@ -176,8 +170,7 @@ class MachineIniReader {
 
   // 1 where it is not known, which has been said then. Older files say how many of their units a
   // millimetre or a degree has.
-  template <std::size_t count>
-  double unit_of(std::string_view key, const std::array<NamedUnit, count>& units) {
+  double unit_of(std::string_view key, std::span<const Unit> units) {
     const IniEntry* entry = ini_.find("TRAJ", key);
     if (entry == nullptr) {
       problems_.push_back(fmt::format(
@@ -185,8 +178,8 @@ class MachineIniReader {
       return 1;
     }
     std::string names;
-    for (const NamedUnit& unit : units) {
-      if (unit.name == entry->value) return unit.size;
+    for (const Unit& unit : units) {
+      if (unit.name == entry->value) return unit.factor;
       names += (names.empty() ? "" : ", ") + std::string(unit.name);
     }
     const auto per_unit = number_of(entry->value);
@@ -231,7 +224,7 @@ class MachineIniReader {
     return letters;
   }
 
-  // The section where the limit stands: the axis' own, else that of its joint. Null: nowhere.
+  // Where the limit is: the axis' own, else that of its joint. Null: nowhere.
   [[nodiscard]] const IniEntry* find_limit(char letter, const std::string& joints,
                                            std::string_view key) const {
     const IniEntry* entry = ini_.find(fmt::format("AXIS_{}", letter), key);

@@ -20,7 +20,7 @@ struct TimedPiece {
   int bytes = 0;       // of its block, for a control that is fed by a line; 0: not known
 };
 
-// What stands behind the chain. It matters on LinuxCNC alone, which brakes with half the
+// What follows the chain. It matters on LinuxCNC alone, which brakes with half the
 // acceleration where it blends and no more motion comes.
 enum class ChainEnd {
   kStop,         // a rapid or another block that ends in a stop

@@ -54,8 +54,8 @@ class Planner {
   }
 
   StretchChain finish() {
-    // The block that runs keeps its place in the planner until it has ended: beyond the joint
-    // behind it there is one block less.
+    // The block that runs stays in the planner until it has ended: beyond the joint after it there
+    // is one block less.
     chain_.rules.look_ahead = std::max(1, machine_.look_ahead - 1);
     return std::move(chain_);
   }

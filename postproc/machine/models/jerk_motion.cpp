@@ -32,7 +32,7 @@ struct SpeedChange {
 struct SpeedLevel {
   double velocity = 0;  // mm/s
   double way = 0;       // mm
-  SpeedChange after;    // to the next level; nothing behind the last one
+  SpeedChange after;    // to the next level; none after the last one
 };
 
 // Seconds of the S-curve between two speeds under a limit of acceleration and one of jerk.
@@ -265,7 +265,7 @@ JerkMotion::JerkMotion(std::span<const VelocityStretch> chain, std::span<const d
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const SpeedLevel& level = levels[i];
     velocity_ = level.velocity;
-    if (level.velocity > 0) add_cruise(level.way, level.velocity);
+    if (level.velocity > 0) add_phase(level.way / level.velocity, 0, 0);
     if (i + 1 < levels.size()) {
       add_change(level.velocity, levels[i + 1].velocity, level.after.acceleration,
                  level.after.jerk);
@@ -282,8 +282,6 @@ void JerkMotion::add_phase(double duration, double acceleration, double jerk) {
   velocity_ = std::max(0.0, velocity_in(phase, duration));
 }
 
-void JerkMotion::add_cruise(double way, double velocity) { add_phase(way / velocity, 0, 0); }
-
 void JerkMotion::add_change(double from, double to, double acceleration, double jerk) {
   const double change = std::abs(to - from);
   const double sign = to > from ? 1 : -1;
@@ -297,39 +295,28 @@ void JerkMotion::add_change(double from, double to, double acceleration, double 
   add_phase(build_up, sign * peak, -sign * jerk);
 }
 
-const JerkPhase& JerkMotion::phase_at(double time) const {
-  const auto after = std::upper_bound(phases_.begin(), phases_.end(), time,
-                                      [](double t, const JerkPhase& p) { return t < p.start; });
-  return after == phases_.begin() ? *after : *(after - 1);
-}
-
 double JerkMotion::way_at(double time) const {
   if (phases_.empty() || time >= duration_) return way_;
-  const JerkPhase& phase = phase_at(time);
+  const JerkPhase& phase = *phase_at(phases_, time);
   return std::min(way_, phase.way + way_in(phase, std::max(0.0, time - phase.start)));
 }
 
 double JerkMotion::velocity_at(double time) const {
   if (phases_.empty() || time >= duration_) return 0;
-  const JerkPhase& phase = phase_at(time);
+  const JerkPhase& phase = *phase_at(phases_, time);
   return std::max(0.0, velocity_in(phase, std::max(0.0, time - phase.start)));
 }
 
 double JerkMotion::time_at(double way) const {
   if (phases_.empty() || way >= way_) return duration_;
-  const auto after = std::upper_bound(phases_.begin(), phases_.end(), way,
-                                      [](double w, const JerkPhase& p) { return w < p.way; });
-  const JerkPhase& phase = after == phases_.begin() ? *after : *(after - 1);
+  const JerkPhase& phase = *phase_at(phases_, way, &JerkPhase::way);
   return phase.start +
          time_of([&](double t) { return way_in(phase, t); }, way - phase.way, 0, phase.duration);
 }
 
 double JerkMotion::time_below(double velocity, double from, double to) const {
   double time = 0;
-  auto phase = std::upper_bound(phases_.begin(), phases_.end(), from,
-                                [](double t, const JerkPhase& p) { return t < p.start; });
-  if (phase != phases_.begin()) --phase;
-  for (; phase != phases_.end() && phase->start < to; ++phase) {
+  for (auto phase = phase_at(phases_, from); phase != phases_.end() && phase->start < to; ++phase) {
     const double low = std::clamp(from - phase->start, 0.0, phase->duration);
     const double high = std::clamp(to - phase->start, 0.0, phase->duration);
     const double at_low = velocity_in(*phase, low);

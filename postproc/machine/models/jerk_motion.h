@@ -41,10 +41,8 @@ class JerkMotion {
   [[nodiscard]] double time_below(double velocity, double from, double to) const;
 
  private:
-  [[nodiscard]] const JerkPhase& phase_at(double time) const;
   void add_phase(double duration, double acceleration, double jerk);
   void add_change(double from, double to, double acceleration, double jerk);
-  void add_cruise(double way, double velocity);
 
   std::vector<JerkPhase> phases_;
   double duration_ = 0;

@@ -253,7 +253,7 @@ Side side_of(const Segment& s, const Vector3& binormal, double heading) {
   return side;
 }
 
-// The circle of radius R that touches a line and an arc: its centre stands R inside the
+// The circle of radius R that touches a line and an arc: its centre is R inside the
 // line, and r - R or r + R from the centre of the arc. Of the two the one nearer to the corner.
 std::optional<Vector2> center_at_line_and_arc(const Side& line, const Side& arc, double radius) {
   const double apart = arc.radius - arc.bend * radius;

@@ -205,9 +205,7 @@ void StretchMotion::add_change(const VelocityStretch& stretch, double from_veloc
 
 double StretchMotion::way_at(double time) const {
   if (phases_.empty() || time >= moving_) return length_;
-  const auto after = std::upper_bound(phases_.begin(), phases_.end(), time,
-                                      [](double t, const MotionPhase& p) { return t < p.start; });
-  const MotionPhase& phase = after == phases_.begin() ? *after : *(after - 1);
+  const MotionPhase& phase = *phase_at(phases_, time);
   // On a bend the duration is that of the profile, the way that of even acceleration: they differ
   // by the error of the profile's integral, which no place is to show as a step.
   const auto way_after = [&](double t) {

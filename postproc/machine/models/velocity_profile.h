@@ -3,6 +3,7 @@
 // top of it. Method: docs/algorithms/cycle_time.md.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <span>
 #include <vector>
@@ -59,7 +60,7 @@ struct ProfileRules {
 // Seconds for the same.
 [[nodiscard]] double speeding_up_time(const VelocityStretch& stretch, double v0, double v1);
 
-// --- the way along one stretch in time: what its duration stands for ------------------------
+// --- the way along one stretch in time: which its duration is of ------------------------
 
 // The speed changes evenly within a phase.
 struct MotionPhase {
@@ -70,6 +71,14 @@ struct MotionPhase {
   double velocity = 0;      // mm/s at its start
   double acceleration = 0;  // mm/s^2
 };
+
+// The phase in which `member` (its time or way at the start) comes up to `value`; one is there.
+template <typename Phase>
+[[nodiscard]] auto phase_at(const std::vector<Phase>& phases, double value,
+                            double Phase::*member = &Phase::start) {
+  const auto after = std::ranges::upper_bound(phases, value, {}, member);
+  return after == phases.begin() ? after : after - 1;
+}
 
 // A bend whose curvature takes its share of the acceleration has many phases; everything else
 // three at the most.

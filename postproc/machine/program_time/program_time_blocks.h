@@ -58,7 +58,7 @@ class DrillingCycle {
  public:
   DrillingCycle(const gcode::CodeRow& row, double initial_z) : row_(&row), initial_z_(initial_z) {}
 
-  // `dwell` is what the P of this block means in seconds, where it stands.
+  // `dwell` is what the P of this block means in seconds, where it is there.
   void read(const gcode::BlockWords& words, const gcode::ModalState& state,
             std::optional<double> dwell);
   // G98: back to the height at the start of the cycle; G99: to R.

@@ -33,7 +33,7 @@ class Sampler {
     start_ += motion.duration();
   }
 
-  // The sample behind the end.
+  // The sample after the end.
   void finish() {
     if (!stopped_ && !(samples_ == 0 && start_ == 0)) emit(place_);
   }

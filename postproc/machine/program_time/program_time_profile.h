@@ -22,7 +22,7 @@ struct ProfileSample {
   geometry::Vector3 jerk = geometry::Vector3::Zero();          // mm/s^3 of each axis
 };
 
-// Calls `use` every `period` seconds from 0 on; the last sample is the first one at or behind
+// Calls `use` every `period` seconds from 0 on; the last sample is the first one at or after
 // the end. Stops where `use` says false, and returns false then. Samples are not kept.
 //
 // The places are those of the programmed path and of the bends that the control puts into its

@@ -71,7 +71,7 @@ struct ProgramStep {
 
 struct StepOptions {
   gcode::DwellUnit dwell_unit = gcode::DwellUnit::kByPoint;
-  std::optional<geometry::Point3> start;  // mm: where the tool stands before the program
+  std::optional<geometry::Point3> start;  // mm: where the tool is before the program
 };
 
 struct ProgramSteps {
@@ -81,7 +81,7 @@ struct ProgramSteps {
 };
 
 // The steps up to the end of the program (M2, M30). Loops and subprograms are not followed;
-// what stands in them counts once. Canned cycles of drilling along Z are followed
+// what is in them counts once. Canned cycles of drilling along Z are followed
 // (program_time_blocks.h). Linear cost.
 //
 // Where the interpreter does not know where a motion starts, the last programmed place is

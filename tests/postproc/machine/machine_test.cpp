@@ -78,62 +78,7 @@ TEST(Machine, HasTheLeastOfXyzForRulesThatKnowOneLimit) {
   EXPECT_EQ(m.axis(Axis::kA).velocity, 1);
 }
 
-// --- what no model can work with ---------------------------------------------------------------
-
-struct BadMachine {
-  const char* name;
-  void (*spoil)(Machine&);
-  const char* key;
-  const char* expected;
-};
-
-class BadMachines : public testing::TestWithParam<BadMachine> {};
-
-TEST_P(BadMachines, AreToldByTheirKey) {
-  Machine m = *find_machine("router");
-  GetParam().spoil(m);
-  const auto problems = problems_of(m);
-  ASSERT_EQ(problems.size(), 1u);
-  EXPECT_EQ(problems[0].key, GetParam().key);
-  EXPECT_EQ(problems[0].expected, GetParam().expected);
-}
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-INSTANTIATE_TEST_SUITE_P(
-    Machine, BadMachines,
-    testing::Values(
-        BadMachine{"NoVelocity", [](Machine& m) { m.axis(Axis::kX).velocity = 0; },
-                   "axis.x.velocity", "above 0 (mm/s)"},
-        BadMachine{"EndlessVelocity",
-                   [](Machine& m) { m.axis(Axis::kC).velocity = Machine::kNone; },
-                   "axis.c.velocity", "above 0 (deg/s)"},
-        BadMachine{"NegativeAcceleration", [](Machine& m) { m.axis(Axis::kZ).acceleration = -1; },
-                   "axis.z.acceleration", "above 0 (mm/s2)"},
-        BadMachine{"NoJerk", [](Machine& m) { m.axis(Axis::kY).jerk = 0; }, "axis.y.jerk",
-                   "above 0, or inf (mm/s3)"},
-        BadMachine{"JerkThatIsNoNumber", [](Machine& m) { m.axis(Axis::kA).jerk = kNan; },
-                   "axis.a.jerk", "above 0, or inf (deg/s3)"},
-        BadMachine{"NoRapid", [](Machine& m) { m.axis(Axis::kB).rapid_velocity = 0; },
-                   "axis.b.rapid-velocity", "above 0 (deg/s)"},
-        BadMachine{"NoPathFeed", [](Machine& m) { m.path_feed = 0; }, "path-feed",
-                   "above 0, or inf (mm/s)"},
-        BadMachine{"NoBlockPeriod", [](Machine& m) { m.block_period = 0; }, "block-period",
-                   "above 0 (s)"},
-        BadMachine{"NoStream", [](Machine& m) { m.stream_rate = 0; }, "stream-rate",
-                   "above 0, or inf (bytes/s)"},
-        BadMachine{"NoLookAhead", [](Machine& m) { m.look_ahead = 0; }, "look-ahead",
-                   "1 or more (blocks)"},
-        BadMachine{"NoArcTolerance", [](Machine& m) { m.arc_tolerance = 0; }, "arc-tolerance",
-                   "above 0 (mm)"},
-        BadMachine{"NoJunctionDeviationOfGrbl", [](Machine& m) { m.junction_deviation = 0; },
-                   "junction-deviation", "above 0 (mm)"},
-        BadMachine{"NegativeBlend", [](Machine& m) { m.blend_tolerance = -1e-9; },
-                   "blend-tolerance", "0 or more (mm)"},
-        BadMachine{"NegativeToolChange", [](Machine& m) { m.tool_change_time = -1; },
-                   "tool-change-time", "0 or more (s)"}),
-    [](const auto& test) { return std::string(test.param.name); });
-
+// What no model can work with is asked for in machine_files_test.cpp.
 TEST(Machine, NeedsNoJunctionDeviationWithoutGrbl) {
   Machine m = *find_machine("mill");
   m.junction_deviation = 0;

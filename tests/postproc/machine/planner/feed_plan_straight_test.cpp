@@ -15,16 +15,6 @@ StraightRun from_rest(double length, const LimitsAlong& limits) {
   return straight_run(length, 0, 0, limits);
 }
 
-// The line of 26 sqrt 2 mm at 45 degrees with A 2500 and J 5000 per axis, F 25: two ramps of
-// 2 sqrt(25 / (5000 sqrt 2)) = 0.118921 s over 1.486509 mm each, and 33.796534 mm at 25 mm/s.
-TEST(StraightMove, TakesTheTimeOfTheRampsAndTheCruise) {
-  const double root = std::sqrt(2.0);
-  const LimitsAlong limits{25, 2500 * root, 5000 * root};
-  EXPECT_NEAR(from_rest(26 * root, limits).time, 1.589703, 5e-7);
-  // Half of it, twice: a corner with a stop.
-  EXPECT_NEAR(2 * from_rest(13 * root, limits).time, 1.708624, 5e-7);
-}
-
 // v(t) = J t^2 / 2 up to half the peak, so four phases of (L / 2J)^(1/3).
 TEST(StraightMove, OfShortLengthIsFourPhasesOfJerk) {
   const LimitsAlong limits{1000, 1000, 1000};
