@@ -10,10 +10,13 @@
 #include <initializer_list>
 #include <map>
 
+#include "gcode/text/characters.h"
 #include "postproc/machine/machine_fields.h"
 
 namespace batten::postproc {
 namespace {
+
+using gcode::without_blanks_before;
 
 constexpr int kJunctionDeviation = 11;
 constexpr int kArcTolerance = 12;
@@ -25,10 +28,6 @@ struct Setting {
   std::size_t line = 0;
   std::size_t column = 0;
 };
-
-std::string_view without_blanks_before(std::string_view text) {
-  return text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
-}
 
 // What controls and senders write beside settings: "ok", "[MSG:..]", "<Idle|..>", ">>> $$", the
 // greeting, comments; "$$" itself and settings with names, such as "$N0=".
@@ -48,8 +47,7 @@ class DumpReader {
       : file_(file), problems_(problems) {}
 
   void read(std::string_view dump) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (dump.starts_with(kByteOrderMark)) dump.remove_prefix(kByteOrderMark.size());
+    if (dump.starts_with(gcode::kByteOrderMark)) dump.remove_prefix(gcode::kByteOrderMark.size());
     for (std::size_t line = 1; !dump.empty(); ++line) {
       const std::size_t end = dump.find('\n');
       read_line(dump.substr(0, end), line);
@@ -70,14 +68,11 @@ class DumpReader {
     const std::string_view text = without_blanks_before(line);
     if (is_passed_over(text)) return;
     const auto column = static_cast<std::size_t>(text.data() - line.data()) + 1;
-    if (text.starts_with("error") || text.starts_with("ALARM")) {
-      complain(number, column,
-               fmt::format("'{}' is what a control answers that prints no settings", text));
-      return;
-    }
-    if (!read_setting(text, number, column)) {
-      complain(number, column, fmt::format("'{}', expected a setting such as $110=5000.000", text));
-    }
+    const bool is_error = text.starts_with("error") || text.starts_with("ALARM");
+    if (!is_error && read_setting(text, number, column)) return;
+    problems_.push_back(fmt::format("{}:{}:{}: '{}'{}", file_, number, column, text,
+                                    is_error ? " is what a control answers that prints no settings"
+                                             : ", expected a setting such as $110=5000.000"));
   }
 
   // "$110=5000.000 (x max rate, mm/min)"
@@ -110,10 +105,6 @@ class DumpReader {
     };
     return number == kJunctionDeviation || number == kArcTolerance || is_of_axis(kMaxRate) ||
            is_of_axis(kAcceleration);
-  }
-
-  void complain(std::size_t line, std::size_t column, const std::string& what) {
-    problems_.push_back(fmt::format("{}:{}:{}: {}", file_, line, column, what));
   }
 
   const std::string& file_;

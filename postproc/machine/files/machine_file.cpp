@@ -13,9 +13,9 @@
 #include <string_view>
 #include <system_error>
 
+#include "gcode/text/characters.h"
 #include "gcode/text/source_text.h"
 #include "postproc/machine/files/grbl_settings.h"
-#include "postproc/machine/files/machine_ini.h"
 #include "postproc/machine/machine_fields.h"
 #include "postproc/text/nearest_name.h"
 #include "postproc/text/toml_text.h"
@@ -330,12 +330,8 @@ std::shared_ptr<const Machine> shared_built_in(const Machine& machine) {
   return {std::shared_ptr<const Machine>(), &machine};
 }
 
-bool has_suffix(const std::string& file, std::string_view suffix) {
-  std::string last = std::filesystem::path(file).extension().string();
-  for (char& letter : last) {
-    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-  }
-  return last == suffix;
+bool has_suffix(const std::string& file, std::string_view in_capitals) {
+  return gcode::is_same_word(fs::path(file).extension().string(), in_capitals);
 }
 
 }  // namespace
@@ -365,8 +361,8 @@ std::shared_ptr<const Machine> choose_machine(
     const std::string& choice, const std::string& asked_by, std::vector<std::string>& problems,
     const std::vector<std::filesystem::path>& being_read) {
   if (const Machine* machine = find_machine(choice)) return shared_built_in(*machine);
-  if (has_suffix(choice, ".toml")) return read_machine_file(choice, problems, being_read);
-  if (has_suffix(choice, ".ini")) return read_machine_ini(choice, problems);
+  if (has_suffix(choice, ".TOML")) return read_machine_file(choice, problems, being_read);
+  if (has_suffix(choice, ".INI")) return read_machine_ini(choice, problems);
   problems.push_back(fmt::format("{}: there is no machine '{}'{}; possible: {}", asked_by, choice,
                                  suggestion(choice, built_in_names()), possible_machines()));
   return nullptr;

@@ -1,5 +1,3 @@
-#include "postproc/machine/files/machine_ini.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +11,9 @@
 #include <string_view>
 
 #include "gcode/reading/parser.h"
+#include "gcode/text/characters.h"
 #include "gcode/text/source_text.h"
+#include "postproc/machine/files/machine_file.h"
 #include "postproc/machine/machine_fields.h"
 
 namespace batten::postproc {
@@ -35,7 +35,7 @@ struct IniEntry {
   std::size_t column = 0;  // of the value, from 1
 };
 
-std::string_view without_blanks(std::string_view text) {
+std::string_view without_blanks_around(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r";
   const std::size_t first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) return {};
@@ -80,9 +80,9 @@ class IniFile {
   void read_line(std::string_view line, const std::string& file, std::size_t number,
                  bool may_include) {
     constexpr std::string_view kInclude = "#INCLUDE";
-    const std::string_view text = without_blanks(line);
+    const std::string_view text = without_blanks_around(line);
     if (may_include && text.starts_with(kInclude)) {
-      include(without_blanks(text.substr(kInclude.size())), file, number);
+      include(without_blanks_around(text.substr(kInclude.size())), file, number);
       return;
     }
     if (text.empty() || text.front() == '#' || text.front() == ';') return;
@@ -93,9 +93,9 @@ class IniFile {
     }
     const std::size_t equals = text.find('=');
     if (equals == std::string_view::npos) return;
-    const std::string_view value = without_blanks(text.substr(equals + 1));
+    const std::string_view value = without_blanks_around(text.substr(equals + 1));
     if (value.empty()) return;
-    entries_.push_back({section_, std::string(without_blanks(text.substr(0, equals))),
+    entries_.push_back({section_, std::string(without_blanks_around(text.substr(0, equals))),
                         std::string(value), file, number,
                         static_cast<std::size_t>(value.data() - line.data()) + 1});
   }
@@ -217,11 +217,7 @@ class MachineIniReader {
     }
     const IniEntry* coordinates = ini_.find("TRAJ", "COORDINATES");
     if (letters.empty() && coordinates != nullptr) letters = coordinates->value;
-    std::erase_if(letters, [](char letter) { return letter == ' ' || letter == '\t'; });
-    for (char& letter : letters) {
-      if (letter >= 'a' && letter <= 'z') letter = static_cast<char>(letter - 'a' + 'A');
-    }
-    return letters;
+    return gcode::in_capitals(gcode::without_blanks(letters));
   }
 
   // Where the limit is: the axis' own, else that of its joint. Null: nowhere.
