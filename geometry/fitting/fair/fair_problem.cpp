@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <ranges>
 #include <utility>
 
 namespace batten::geometry {
@@ -38,10 +37,9 @@ class ProblemMaker {
       const auto before = static_cast<std::ptrdiff_t>(problem_.samples.size());
       add_edge(i);
       // Samples that watch the edge came first.
-      const auto added =
-          std::ranges::subrange(problem_.samples.begin() + before, problem_.samples.end());
-      if (!std::ranges::is_sorted(added, {}, &FitSample::parameter)) {
-        std::ranges::sort(added, {}, &FitSample::parameter);
+      const auto added = problem_.samples.begin() + before;
+      if (!std::ranges::is_sorted(added, problem_.samples.end(), {}, &FitSample::parameter)) {
+        std::ranges::sort(added, problem_.samples.end(), {}, &FitSample::parameter);
       }
     }
     sort_knots();
