@@ -2,11 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <optional>
-#include <span>
 #include <stdexcept>
-#include <variant>
 
 #include "gcode/controls/built_in.h"
 #include "gcode/interpreter/interpreter.h"
@@ -24,28 +20,17 @@
 namespace batten {
 namespace {
 
+// The public enumerations have the values of those inside, in the same order.
 gcode::Units inner(ProgramUnits units) {
-  switch (units) {
-    case ProgramUnits::kMillimetre:
-      return gcode::Units::kMillimetre;
-    case ProgramUnits::kInch:
-      return gcode::Units::kInch;
-    case ProgramUnits::kAsWritten:
-      break;
-  }
-  return gcode::Units::kUnknown;
+  static_assert(static_cast<int>(gcode::Units::kUnknown) == int(ProgramUnits::kAsWritten) &&
+                static_cast<int>(gcode::Units::kInch) == int(ProgramUnits::kInch));
+  return static_cast<gcode::Units>(units);
 }
 
 Severity outer(gcode::Severity severity) {
-  switch (severity) {
-    case gcode::Severity::kNote:
-      return Severity::kNote;
-    case gcode::Severity::kWarning:
-      return Severity::kWarning;
-    case gcode::Severity::kError:
-      break;
-  }
-  return Severity::kError;
+  static_assert(static_cast<int>(gcode::Severity::kNote) == int(Severity::kNote) &&
+                static_cast<int>(gcode::Severity::kError) == int(Severity::kError));
+  return static_cast<Severity>(severity);
 }
 
 std::vector<Message> messages_of(const gcode::Diagnostics& found, const gcode::SourceText& source) {
@@ -67,60 +52,62 @@ struct Reading {
           const std::optional<gcode::Decimals>& decimals = std::nullopt,
           std::optional<gcode::Language> language = std::nullopt)
       : source("program", std::string(text)),
-        how(how_to_read(
-            kind, target, decimals,
-            gcode::source_language(source, kind, language ? language : language_of(target), found),
-            inner(units))),
-        read{gcode::parse(source, how, found), {}} {
+        read{parse(units, kind, target, decimals, language), {}} {
     read.meaning = gcode::interpret(
         read.program, {inner(units), target == nullptr ? nullptr : target->curves}, found);
     gcode::tell_of_contradictions(read.program, kind, found);
   }
 
-  [[nodiscard]] static std::optional<gcode::Language> language_of(const gcode::Control* target) {
-    if (target == nullptr) return std::nullopt;
-    return target->language;
-  }
-
-  [[nodiscard]] static gcode::Reading how_to_read(gcode::SourceKind kind,
-                                                  const gcode::Control* target,
-                                                  const std::optional<gcode::Decimals>& decimals,
-                                                  std::optional<gcode::Language> certain,
-                                                  gcode::Units units) {
-    const gcode::Language language = certain.value_or(gcode::Language::kRs274);
-    return {language, gcode::decimals_read(kind, target, language, decimals), units};
+  [[nodiscard]] gcode::Program parse(ProgramUnits units, gcode::SourceKind kind,
+                                     const gcode::Control* target,
+                                     const std::optional<gcode::Decimals>& decimals,
+                                     std::optional<gcode::Language> language) {
+    if (!language && target != nullptr) language = target->language;
+    language = gcode::source_language(source, kind, language, found);
+    const gcode::Language certain = language.value_or(gcode::Language::kRs274);
+    const gcode::Decimals numbers = gcode::decimals_read(kind, target, certain, decimals);
+    return gcode::parse(source, {certain, numbers, inner(units)}, found);
   }
 
   [[nodiscard]] postproc::ReadProgram get() const { return {&read.program, &read.meaning}; }
 
   gcode::SourceText source;
   gcode::Diagnostics found;
-  gcode::Reading how;
   gcode::ReadPart read;
 };
 
-[[noreturn]] void refuse(const std::vector<std::string>& problems) {
+void refuse_if_any(const std::vector<std::string>& problems) {
+  if (problems.empty()) return;
   std::string text;
   for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
   throw std::invalid_argument(text);
 }
 
 template <typename Value>
-void choose(Value& place, std::string_view option, std::string_view name,
+void choose(Value& field, std::string_view option, std::string_view name,
             std::span<const postproc::Choice<Value>> choices, std::vector<std::string>& problems) {
   const auto found = std::ranges::find(choices, name, &postproc::Choice<Value>::name);
   if (found != choices.end()) {
-    place = found->value;
+    field = found->value;
   } else {
     problems.push_back(std::string(option) + ": there is no '" + std::string(name) + "'");
   }
+}
+
+// Null for no name, and with a problem where there is no such target.
+const gcode::Control* find_target(std::string_view name, std::vector<std::string>& problems) {
+  const gcode::Control* target = gcode::find_control(name);
+  if (target == nullptr && !name.empty()) {
+    problems.push_back("target: there is no '" + std::string(name) + "'");
+  }
+  return target;
 }
 
 gcode::SourceKind source_kind(std::string_view name) {
   gcode::SourceKind kind = gcode::SourceKind::kAuto;
   std::vector<std::string> problems;
   choose(kind, "source", name, postproc::sources(), problems);
-  if (!problems.empty()) refuse(problems);
+  refuse_if_any(problems);
   return kind;
 }
 
@@ -129,7 +116,7 @@ std::optional<gcode::Decimals> declared_decimals(std::string_view text, gcode::S
   std::vector<std::string> problems;
   const auto declared = postproc::read_decimals(text, problems);
   if (problems.empty()) problems = postproc::problems_of_decimals(declared, kind, target);
-  if (!problems.empty()) refuse(problems);
+  refuse_if_any(problems);
   return declared;
 }
 
@@ -139,24 +126,17 @@ struct InnerOptions {
   std::shared_ptr<const postproc::Machine> own_machine;
 };
 
-void choose_machine(const std::string& name, InnerOptions& all,
-                    std::vector<std::string>& problems) {
-  std::string choice = name;
-  if (choice.empty()) {
-    if (all.options.target == nullptr) return;
-    choice = all.options.target->machine;
-  }
-  all.own_machine = postproc::choose_machine(choice, "machine", problems);
-  all.options.machine = all.own_machine.get();
-}
-
 InnerOptions inner(const Options& given) {
   InnerOptions all;
   std::vector<std::string> problems;
   postproc::SmoothOptions& options = all.options;
-  options.target = gcode::find_control(given.target);
-  if (options.target == nullptr) problems.push_back("target: there is no '" + given.target + "'");
-  choose_machine(given.machine, all, problems);
+  options.target = find_target(given.target, problems);
+  if (given.target.empty()) problems.emplace_back("target: there is no ''");
+  if (!given.machine.empty() || options.target != nullptr) {
+    const std::string choice = given.machine.empty() ? options.target->machine : given.machine;
+    all.own_machine = postproc::choose_machine(choice, "machine", problems);
+    options.machine = all.own_machine.get();
+  }
   options.tolerance_mm = given.tolerance_mm;
   options.tolerance_kind =
       given.band_reading ? geometry::ToleranceKind::kBand : geometry::ToleranceKind::kPath;
@@ -174,7 +154,7 @@ InnerOptions inner(const Options& given) {
   options.units = inner(given.units);
   options.threads = given.threads;
   if (problems.empty()) problems = postproc::problems_of(options);
-  if (!problems.empty()) refuse(problems);
+  refuse_if_any(problems);
   return all;
 }
 
@@ -240,10 +220,9 @@ Proof verify(std::string_view old_program, std::string_view new_program, double 
   if (!(tolerance_mm > 0) || !std::isfinite(tolerance_mm)) {
     throw std::invalid_argument("tolerance_mm: expected a finite length above 0");
   }
-  const gcode::Control* control = target.empty() ? nullptr : gcode::find_control(target);
-  if (!target.empty() && control == nullptr) {
-    refuse({"target: there is no '" + std::string(target) + "'"});
-  }
+  std::vector<std::string> problems;
+  const gcode::Control* control = find_target(target, problems);
+  refuse_if_any(problems);
   const auto declared = declared_decimals(decimals, kind, control);
   Proof proof;
   if (old_program == new_program) {
@@ -272,12 +251,8 @@ Proof verify(std::string_view old_program, std::string_view new_program, double 
 ProgramTime time(std::string_view program, const TimeOptions& options) {
   std::vector<std::string> problems;
   const auto machine = postproc::choose_machine(options.machine, "machine", problems);
-  const gcode::Control* target = nullptr;
-  if (!options.target.empty()) {
-    target = gcode::find_control(options.target);
-    if (target == nullptr) problems.push_back("target: there is no '" + options.target + "'");
-  }
-  if (!problems.empty()) refuse(problems);
+  const gcode::Control* target = find_target(options.target, problems);
+  refuse_if_any(problems);
   const gcode::SourceKind kind = source_kind(options.source);
   const Reading reading(program, options.units, kind, target,
                         declared_decimals(options.decimals, kind, target));

@@ -11,20 +11,205 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <optional>
-#include <string>
 #include <system_error>
 #include <thread>
 
 #include "gcode/text/characters.h"
+#include "postproc/batch/batch_summary.h"
 #include "postproc/batch/process_pool.h"
+#include "postproc/report/smooth_report.h"
+#include "postproc/stream/pipeline.h"
+#include "postproc/stream/smooth_result.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
+#include "postproc/system/output_file.h"
 #include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 
+namespace fs = std::filesystem;
+
 namespace {
+
+std::optional<std::string> bytes_of(const fs::path& file) {
+  std::string error;
+  const auto source = gcode::SourceText::map_file(file, error);
+  if (!source) return std::nullopt;
+  return std::string(source->text());
+}
+
+// Empty when there is no such file.
+std::string hash_of(const fs::path& file) {
+  const auto bytes = bytes_of(file);
+  return bytes ? sha256(*bytes) : std::string();
+}
+
+ProgramStatus status_of(ExitCode verdict, bool same_bytes) {
+  if (verdict == ExitCode::kNotUnderstood) return ProgramStatus::kNotUnderstood;
+  if (verdict == ExitCode::kNotProved) return ProgramStatus::kNotProved;
+  if (verdict != ExitCode::kDone) return ProgramStatus::kFailed;
+  return same_bytes ? ProgramStatus::kUnchanged : ProgramStatus::kSmoothed;
+}
+
+// The first error about the program itself says more than the verdict.
+std::string message_of(ExitCode verdict, const SmoothResult& result,
+                       const gcode::SourceText& source, bool strict) {
+  if (verdict == ExitCode::kDone) return "";
+  const auto error =
+      std::ranges::find(result.diagnostics, gcode::Severity::kError, &gcode::Diagnostic::severity);
+  if (error != result.diagnostics.end()) return gcode::to_text(*error, source);
+  return std::string(complaint(verdict, strict));
+}
+
+struct WorkerResult {
+  ProgramRecord record;
+  bool was_done = false;  // by an earlier run; nothing was written now
+};
+
+// A program is done when its record has the same input and settings and its files still have the
+// bytes that the record says. Otherwise it is smoothed, and written in the order report, program,
+// record.
+//
+// A program in the new tree that no record explains and that is not what would be written now is
+// left as it is, without `force`. When nothing may be written, a program that an earlier batch
+// wrote is removed: it no longer belongs to its source. Nothing is written where a link leads into
+// the input tree.
+//
+// The status is kFailed after file errors and kNotDone after an interrupt; these leave no record.
+class Worker {
+ public:
+  Worker(const BatchPlan& plan, const std::string& program)
+      : plan_(plan), places_(places_of(plan.output_tree, program)) {
+    record_.program = program;
+    record_.settings_sha256 = plan.settings_sha256;
+  }
+
+  WorkerResult work() {
+    const fs::path input = plan_.input_tree / record_.program;
+    std::string error;
+    const WatchedFile watched(input);
+    const auto mapped = gcode::SourceText::map_file(input, error);
+    if (!mapped) return failed(error);
+    // Messages and reports name the program by its place in the tree.
+    const gcode::SourceText source(record_.program, std::string(mapped->text()));
+    if (watched.now() == FileNow::kChanged) {
+      return failed(input.string() + ": was changed while it was read; nothing was written");
+    }
+    record_.input_sha256 = sha256(source.text());
+    record_.bytes_in = source.text().size();
+    if (const auto bytes = bytes_of(places_.record)) before_ = read_record(*bytes);
+    output_sha256_ = hash_of(places_.output);
+    if (is_done()) return {.record = *before_, .was_done = true};
+    for (const fs::path& place : {places_.output, places_.report, places_.record}) {
+      if (leads_into(place, plan_.input_tree)) {
+        return failed(place.string() + ": leads into the input tree; nothing was written");
+      }
+    }
+    return smooth(source);
+  }
+
+ private:
+  [[nodiscard]] bool is_done() const {
+    return before_ && before_->input_sha256 == record_.input_sha256 &&
+           before_->settings_sha256 == record_.settings_sha256 &&
+           before_->output_sha256 == output_sha256_ &&
+           before_->report_sha256 == hash_of(places_.report);
+  }
+
+  WorkerResult smooth(const gcode::SourceText& source) {
+    SmoothOptions options = plan_.options;
+    options.threads = 1;
+    const SmoothResult result =
+        smooth_program(source, options, [](double) { return !interrupted(); });
+    if (interrupted()) return {.record = record_};
+
+    const ExitCode verdict = judge(result, source.text(), plan_.strict);
+    record_.status = status_of(verdict, result.text == source.text());
+    record_.exit_code = static_cast<int>(verdict);
+    record_.message = message_of(verdict, result, source, plan_.strict);
+    take_figures(result);
+    const bool writes = verdict == ExitCode::kDone;
+    const std::string report = json_report({.source = source,
+                                            .options = options,
+                                            .result = result,
+                                            .output_file = writes ? record_.program : "",
+                                            .strict = plan_.strict});
+    record_.report_sha256 = sha256(report);
+    if (writes) record_.output_sha256 = sha256(result.text);
+    return write(result.text, report);
+  }
+
+  void take_figures(const SmoothResult& result) {
+    record_.blocks_in = result.blocks_in;
+    record_.blocks_out = result.blocks_out;
+    record_.bytes_out = record_.exit_code == 0 ? result.text.size() : 0;
+    const auto rewritten =
+        std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status);
+    record_.runs_rewritten = static_cast<std::size_t>(rewritten);
+    record_.runs_kept = result.runs.size() - record_.runs_rewritten;
+    record_.time_before_s = result.time_before_s;
+    record_.time_after_s = result.time_after_s;
+    record_.deviation_mm = result.deviation_mm;
+  }
+
+  WorkerResult write(std::string_view text, std::string_view report) {
+    const bool ours =
+        !output_sha256_.empty() && before_ && before_->output_sha256 == output_sha256_;
+    const bool writes = record_.exit_code == 0 && record_.output_sha256 != output_sha256_;
+    if (writes && !output_sha256_.empty() && !ours && !plan_.force) {
+      return failed(places_.output.string() +
+                    ": exists already, is not what this batch wrote, and was left as it is; "
+                    "--force replaces it");
+    }
+    const bool done = put(places_.report, report, true) &&
+                      (!writes || put(places_.output, text, ours || plan_.force)) &&
+                      (record_.exit_code == 0 || !ours || remove_output()) &&
+                      put(places_.record, record_text(record_), true);
+    return done ? WorkerResult{.record = record_} : failed(error_);
+  }
+
+  bool put(const fs::path& file, std::string_view bytes, bool replace) {
+    std::error_code error;
+    fs::create_directories(file.parent_path(), error);
+    if (error) {
+      error_ = file.parent_path().string() + ": cannot be made: " + error.message();
+      return false;
+    }
+    const WriteResult result = write_file(
+        {.target = file, .bytes = bytes, .replace_existing = replace, .stop = interrupted});
+    error_ = result.message;
+    return result.status == WriteStatus::kWritten;
+  }
+
+  // It belongs to an older version of its source.
+  bool remove_output() {
+    std::error_code error;
+    fs::remove(places_.output, error);
+    if (error) error_ = places_.output.string() + ": cannot be removed: " + error.message();
+    return !error;
+  }
+
+  [[nodiscard]] WorkerResult failed(const std::string& message) {
+    if (interrupted()) {
+      record_.status = ProgramStatus::kNotDone;
+      record_.exit_code = 0;
+      return {.record = record_};
+    }
+    record_.status = ProgramStatus::kFailed;
+    record_.exit_code = static_cast<int>(ExitCode::kFileError);
+    record_.message = message;
+    return {.record = record_};
+  }
+
+  const BatchPlan& plan_;
+  ProgramPlaces places_;
+  ProgramRecord record_;                 // what is being made
+  std::optional<ProgramRecord> before_;  // what an earlier run left
+  std::string output_sha256_;            // of what is in the new tree now; empty: nothing
+  std::string error_;
+};
+
+// --- all programs, several at a time -------------------------------------------------------------
 
 // Often enough for a moving number on the screen and for Ctrl-C, too seldom to cost anything.
 constexpr std::chrono::milliseconds kBetweenLooks{200};
@@ -41,12 +226,11 @@ ProgramRecord without_result(const std::string& program, const std::string& what
 std::string answer_of(const BatchPlan& plan, const std::string& program) {
   WorkerResult result;
   try {
-    result = process_program(plan, program);
+    result = Worker(plan, program).work();
   } catch (const std::exception& error) {
     result.record = without_result(program, error.what());
   }
-  return json_text(
-      {{"was_done", result.was_done}, {"record", Json::parse(record_text(result.record))}});
+  return json_text({{"was_done", result.was_done}, {"record", json_of_record(result.record)}});
 }
 
 std::optional<WorkerResult> read_answer(const std::string& text) {
@@ -174,23 +358,6 @@ BatchResult run_batch(const BatchRequest& request, const BatchObserver& observer
   return BatchRun(request, observer).run();
 }
 
-namespace {
-
-// The processes of a run that was killed end with it, but on a busy machine not at once.
-constexpr int kTries = 20;
-constexpr std::chrono::milliseconds kBetweenTries{100};
-
-// False when somebody else holds it.
-bool lock_file(int descriptor, int operation) {
-  for (int i = 0; i < kTries; ++i) {
-    if (::flock(descriptor, operation | LOCK_NB) == 0 || errno != EWOULDBLOCK) return true;
-    std::this_thread::sleep_for(kBetweenTries);
-  }
-  return false;
-}
-
-}  // namespace
-
 BatchLock::BatchLock(const std::filesystem::path& folder, const Shard& shard) {
   const bool whole_tree = shard.count == 1;
   take(folder / "lock", whole_tree ? LOCK_EX : LOCK_SH);
@@ -209,12 +376,15 @@ void BatchLock::take(const std::filesystem::path& file, int operation) {
     return;
   }
   descriptors_.push_back(descriptor);
-  if (!lock_file(descriptor, operation)) {
-    problem_ = file.string() + ": another run of this batch is at work on these programs";
+  // The processes of a run that was killed end with it, but on a busy machine not at once.
+  constexpr int kTries = 20;
+  constexpr std::chrono::milliseconds kBetweenTries{100};
+  for (int i = 0; i < kTries; ++i) {
+    if (::flock(descriptor, operation | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    std::this_thread::sleep_for(kBetweenTries);
   }
+  problem_ = file.string() + ": another run of this batch is at work on these programs";
 }
-
-namespace fs = std::filesystem;
 
 std::optional<std::string> intended_name(std::string_view half_written) {
   constexpr std::string_view kEnd = ".batten-part";
@@ -227,9 +397,7 @@ std::optional<std::string> intended_name(std::string_view half_written) {
   if (dot == std::string_view::npos || dot == 0 || dot + 1 == half_written.size()) {
     return std::nullopt;
   }
-  for (const char c : half_written.substr(dot + 1)) {
-    if (!gcode::is_digit(c)) return std::nullopt;
-  }
+  if (!std::ranges::all_of(half_written.substr(dot + 1), gcode::is_digit)) return std::nullopt;
   return std::string(half_written.substr(0, dot));
 }
 

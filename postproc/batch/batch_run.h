@@ -12,11 +12,19 @@
 #include <vector>
 
 #include "postproc/batch/batch_summary.h"
-#include "postproc/batch/manifest.h"
 #include "postproc/batch/program_tree.h"
-#include "postproc/batch/program_worker.h"
+#include "postproc/options/options.h"
 
 namespace batten::postproc {
+
+struct BatchPlan {
+  std::filesystem::path input_tree;
+  std::filesystem::path output_tree;
+  SmoothOptions options;        // its `threads` do not count: a worker has one
+  std::string settings_sha256;  // of everything that the bytes of the result depend on
+  bool strict = false;
+  bool force = false;  // programs in the new tree may be replaced whoever wrote them
+};
 
 struct BatchRequest {
   BatchPlan plan;
@@ -42,18 +50,14 @@ using BatchObserver = std::function<void(const BatchCount& count, const ProgramR
 [[nodiscard]] BatchResult run_batch(const BatchRequest& request, const BatchObserver& observer);
 
 // Two runs of one batch at a time would do the same work twice, each removing the half-written
-// files of the other.
-
-// Held until the end of its life, and let go by the system however the process ends. Shards of
-// one batch may run together, a run of the whole tree only alone.
+// files of the other. Held until the end of its life, and let go by the system however the process
+// ends. Shards of one batch may run together, a run of the whole tree only alone.
 class BatchLock {
  public:
   // `folder` is where the batch keeps its manifest; it must exist.
   BatchLock(const std::filesystem::path& folder, const Shard& shard);
   BatchLock(const BatchLock&) = delete;
   BatchLock& operator=(const BatchLock&) = delete;
-  BatchLock(BatchLock&&) = delete;
-  BatchLock& operator=(BatchLock&&) = delete;
   ~BatchLock();
 
   // Why the lock was not taken; empty when it was. File systems that know no locks count as taken.
@@ -66,9 +70,8 @@ class BatchLock {
   std::string problem_;
 };
 
-// What killed runs left half written (postproc/system/output_file.h).
-
-// The name that a half-written file would have got: "part.nc" of ".part.nc.4711.batten-part".
+// What killed runs left half written (postproc/system/output_file.h): the name that a half-written
+// file would have got: "part.nc" of ".part.nc.4711.batten-part".
 [[nodiscard]] std::optional<std::string> intended_name(std::string_view half_written);
 
 // Removes below `root` the half-written files of these targets, links to folders not followed.

@@ -3,36 +3,41 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "postproc/batch/program_tree.h"
 #include "postproc/system/terminal_colour.h"
-#include "postproc/text/json_values.h"
+#include "postproc/text/words.h"
 
 namespace batten::postproc {
 
 namespace {
 
-bool is_written(const ProgramRecord& record) {
-  return record.status == ProgramStatus::kSmoothed || record.status == ProgramStatus::kUnchanged;
+// By ProgramStatus.
+constexpr std::array<std::string_view, kStatuses> kNames = {
+    "smoothed", "unchanged", "not understood", "not proved", "failed", "not done"};
+
+// What a record says besides whose it is and its status.
+template <typename Record, typename Take>
+void each_field(Record& record, const Take& take) {
+  take("exit_code", record.exit_code);
+  take("message", record.message);
+  take("input_sha256", record.input_sha256);
+  take("settings_sha256", record.settings_sha256);
+  take("output_sha256", record.output_sha256);
+  take("report_sha256", record.report_sha256);
+  take("runs_rewritten", record.runs_rewritten);
+  take("runs_kept", record.runs_kept);
+  each_figure(record, take);
 }
 
-std::size_t& count_of(ProgramStatus status, BatchTotals& totals) {
-  switch (status) {
-    case ProgramStatus::kSmoothed:
-      return totals.smoothed;
-    case ProgramStatus::kUnchanged:
-      return totals.unchanged;
-    case ProgramStatus::kNotUnderstood:
-      return totals.not_understood;
-    case ProgramStatus::kNotProved:
-      return totals.not_proved;
-    case ProgramStatus::kFailed:
-      return totals.failed;
-    case ProgramStatus::kNotDone:
-      break;
-  }
-  return totals.not_done;
+bool is_written(ProgramStatus status) {
+  return status == ProgramStatus::kSmoothed || status == ProgramStatus::kUnchanged;
 }
 
 std::string arrow(std::size_t before, std::size_t after) {
@@ -40,46 +45,150 @@ std::string arrow(std::size_t before, std::size_t after) {
 }
 
 std::string counts_line(const BatchTotals& totals) {
-  std::string text =
-      fmt::format("{} program{}: {} smoothed, {} unchanged", totals.programs,
-                  totals.programs == 1 ? "" : "s", totals.smoothed, totals.unchanged);
-  const auto add = [&](std::size_t count, std::string_view what) {
-    if (count > 0) text += fmt::format(", {} {}", count, what);
-  };
-  add(totals.not_understood, "not understood");
-  add(totals.not_proved, "not proved");
-  add(totals.failed, "failed");
-  add(totals.not_done, "not done");
+  std::string text = plural(totals.programs, "program") + ":";
+  for (std::size_t i = 0; i < kStatuses; ++i) {
+    const auto status = static_cast<ProgramStatus>(i);
+    if (totals.with_status[i] == 0 && !is_written(status)) continue;
+    text += fmt::format("{} {} {}", i == 0 ? "" : ",", totals.with_status[i], name_of(status));
+  }
   return text + "\n";
 }
 
 // A field of RFC 4180.
 std::string csv_field(std::string_view text) {
   if (text.find_first_of("\",\r\n") == std::string_view::npos) return std::string(text);
-  std::string field = "\"";
-  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return field + "\"";
+  return "\"" + escaped(text, {{'"', "\"\""}}) + "\"";
 }
 
 Json json_of(const BatchTotals& totals) {
-  Json json = {{"programs", totals.programs},     {"smoothed", totals.smoothed},
-               {"unchanged", totals.unchanged},   {"not_understood", totals.not_understood},
-               {"not_proved", totals.not_proved}, {"failed", totals.failed},
-               {"not_done", totals.not_done}};
+  Json json = {{"programs", totals.programs}};
+  for (std::size_t i = 0; i < kStatuses; ++i) {
+    std::string name(name_of(static_cast<ProgramStatus>(i)));
+    std::ranges::replace(name, ' ', '_');
+    json[name] = totals.with_status[i];
+  }
   each_figure(totals, [&](const char* name, const auto& value) { json[name] = value; });
   json["exit_code"] = totals.exit_code;
   return json;
 }
 
+// --- SHA-256 ---
+
+// Names and numbers of sections are those of FIPS 180-4.
+
+using Word = std::uint32_t;
+using HashValue = std::array<Word, 8>;
+
+constexpr std::size_t kBlockBytes = 64;
+
+// Section 4.2.2: the first 32 bits behind the point of the cube roots of the first 64 primes.
+constexpr std::array<Word, 64> kConstants = {
+    0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
+    0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
+    0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da,
+    0x983e5152, 0xa831c66d, 0xb00327c8, 0xbf597fc7, 0xc6e00bf3, 0xd5a79147, 0x06ca6351, 0x14292967,
+    0x27b70a85, 0x2e1b2138, 0x4d2c6dfc, 0x53380d13, 0x650a7354, 0x766a0abb, 0x81c2c92e, 0x92722c85,
+    0xa2bfe8a1, 0xa81a664b, 0xc24b8b70, 0xc76c51a3, 0xd192e819, 0xd6990624, 0xf40e3585, 0x106aa070,
+    0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
+    0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
+
+// Section 5.3.3: the same of the square roots of the first 8 primes.
+constexpr HashValue kInitial = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
+                                0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
+
+// Section 6.2.2, step 1: the message schedule W.
+std::array<Word, 64> schedule_of(std::string_view block) {
+  std::array<Word, 64> w{};
+  for (std::size_t t = 0; t < 16; ++t) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      w[t] = (w[t] << 8) | static_cast<std::uint8_t>(block[4 * t + i]);
+    }
+  }
+  for (std::size_t t = 16; t < 64; ++t) {
+    const Word s0 = std::rotr(w[t - 15], 7) ^ std::rotr(w[t - 15], 18) ^ (w[t - 15] >> 3);
+    const Word s1 = std::rotr(w[t - 2], 17) ^ std::rotr(w[t - 2], 19) ^ (w[t - 2] >> 10);
+    w[t] = s1 + w[t - 7] + s0 + w[t - 16];
+  }
+  return w;
+}
+
+// Steps 2 to 4. The working variables a .. h stand in `v` in this order.
+void take_block(std::string_view block, HashValue& hash) {
+  const std::array<Word, 64> w = schedule_of(block);
+  HashValue v = hash;
+  for (std::size_t t = 0; t < 64; ++t) {
+    const auto [a, b, c, d, e, f, g, h] = v;
+    const Word sum1 = std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25);
+    const Word choice = (e & f) ^ (~e & g);
+    const Word t1 = h + sum1 + choice + kConstants[t] + w[t];
+    const Word sum0 = std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22);
+    const Word majority = (a & b) ^ (a & c) ^ (b & c);
+    v = {t1 + sum0 + majority, a, b, c, d + t1, e, f, g};
+  }
+  for (std::size_t i = 0; i < hash.size(); ++i) hash[i] += v[i];
+}
+
+// Section 5.1.1: what is left behind the whole blocks, a bit 1, zeros, and the length in bits.
+std::string padded_end(std::string_view rest, std::size_t all_bytes) {
+  std::string end(rest);
+  end += static_cast<char>(0x80);
+  while (end.size() % kBlockBytes != kBlockBytes - 8) end += '\0';
+  const std::uint64_t bits = std::uint64_t{all_bytes} * 8;
+  for (int shift = 56; shift >= 0; shift -= 8) {
+    end += static_cast<char>(static_cast<std::uint8_t>(bits >> shift));
+  }
+  return end;
+}
+
+void take_blocks(std::string_view bytes, HashValue& hash) {
+  for (; bytes.size() >= kBlockBytes; bytes.remove_prefix(kBlockBytes)) {
+    take_block(bytes.substr(0, kBlockBytes), hash);
+  }
+}
+
 }  // namespace
+
+std::string_view name_of(ProgramStatus status) {
+  return kNames.at(static_cast<std::size_t>(status));
+}
+
+Json json_of_record(const ProgramRecord& record) {
+  Json json = {{"program", record.program}, {"status", name_of(record.status)}};
+  each_field(record, [&](const char* name, const auto& value) { json[name] = value; });
+  return json;
+}
+
+std::string record_text(const ProgramRecord& record) { return json_text(json_of_record(record)); }
+
+std::optional<ProgramRecord> read_record(std::string_view text) {
+  try {
+    const Json json = Json::parse(text);
+    const auto status = std::ranges::find(kNames, json.at("status").get<std::string>());
+    if (status == kNames.end()) return std::nullopt;
+    ProgramRecord record;
+    record.status = static_cast<ProgramStatus>(status - kNames.begin());
+    json.at("program").get_to(record.program);
+    each_field(record, [&](const char* name, auto& place) { json.at(name).get_to(place); });
+    return record;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+ProgramPlaces places_of(const std::filesystem::path& output_tree, const std::string& program) {
+  const std::filesystem::path batch = output_tree / kBatchFolder;
+  return {.output = output_tree / program,
+          .report = batch / "reports" / (program + ".json"),
+          .record = batch / "manifest" / (program + ".json")};
+}
 
 BatchTotals totals_of(std::span<const ProgramRecord> records) {
   BatchTotals totals;
   totals.programs = records.size();
   for (const ProgramRecord& record : records) {
-    ++count_of(record.status, totals);
+    ++totals.with_status[static_cast<std::size_t>(record.status)];
     totals.exit_code = std::max(totals.exit_code, record.exit_code);
-    if (!is_written(record)) continue;
+    if (!is_written(record.status)) continue;
     totals.bytes_in += record.bytes_in;
     totals.bytes_out += record.bytes_out;
     totals.blocks_in += record.blocks_in;
@@ -104,7 +213,7 @@ std::string summary_table(std::span<const ProgramRecord> records) {
         fmt::format("{:.2f} -> {:.2f}", row.time_before_s, row.time_after_s), row.deviation_mm);
   };
   for (const ProgramRecord& record : records) {
-    if (is_written(record)) {
+    if (is_written(record.status)) {
       add_row(record.program, name_of(record.status), record);
     } else {
       fmt::format_to(std::back_inserter(text), "{:<{}}  {:<14}  {}\n", record.program, width,
@@ -131,28 +240,17 @@ std::string summary_csv(std::span<const ProgramRecord> records) {
 }
 
 std::string summary_json(std::span<const ProgramRecord> records) {
-  Json programs = Json::array();
-  for (const ProgramRecord& record : records) programs.push_back(Json::parse(record_text(record)));
   return json_text({{"batten", BATTEN_VERSION},
                     {"totals", json_of(totals_of(records))},
-                    {"programs", std::move(programs)}});
+                    {"programs", json_list(records, &json_of_record)}});
 }
-
-namespace {
-
-constexpr std::size_t kBarWidth = 20;  // characters, so that the line fits into 80
-
-std::string bar_of(std::size_t part, std::size_t whole) {
-  const std::size_t full = whole > 0 ? kBarWidth * part / whole : kBarWidth;
-  return "[" + std::string(full, '#') + std::string(kBarWidth - full, '-') + "]";
-}
-
-}  // namespace
 
 std::string progress_line(const BatchCount& count) {
-  std::string line =
-      fmt::format("{}  {} of {} programs", bar_of(count.programs_over, count.programs),
-                  count.programs_over, count.programs);
+  constexpr std::size_t kBarWidth = 20;  // characters, so that the line fits into 80
+  const std::size_t full =
+      count.programs > 0 ? kBarWidth * count.programs_over / count.programs : kBarWidth;
+  std::string line = fmt::format("[{:#<{}}{:->{}}]  {} of {} programs", "", full, "",
+                                 kBarWidth - full, count.programs_over, count.programs);
   if (count.bytes_over == 0 || !(count.seconds > 0)) return line;
   const double rate = static_cast<double>(count.bytes_over) / count.seconds;
   line += "  " + rate_text(rate);
@@ -161,6 +259,16 @@ std::string progress_line(const BatchCount& count) {
                         rough_time(static_cast<double>(count.bytes - count.bytes_over) / rate));
   }
   return line;
+}
+
+std::string sha256(std::string_view bytes) {
+  HashValue hash = kInitial;
+  take_blocks(bytes, hash);
+  take_blocks(padded_end(bytes.substr(bytes.size() / kBlockBytes * kBlockBytes), bytes.size()),
+              hash);
+  std::string digits;
+  for (const Word word : hash) digits += fmt::format("{:08x}", word);
+  return digits;
 }
 
 }  // namespace batten::postproc

@@ -1,8 +1,6 @@
 // Jobs in processes of their own, several at a time: a job that crashes or takes too much memory
-// ends alone, and jobs share nothing.
-//
-// The processes are copies of this one (fork), so it must have no other threads. They end when it
-// ends, however it ends.
+// ends alone, and jobs share nothing. The processes are copies of this one (fork), so it must have
+// no other threads; they end when it ends, however it ends.
 #pragma once
 
 #include <sys/types.h>
@@ -24,13 +22,10 @@ struct JobEnd {
 
 class ProcessPool {
  public:
-  // `work` runs in the new process; what it throws is an end without an answer. Requires
-  // `most` >= 1.
+  // `work` runs in the new process; what it throws is an end without an answer. `most` >= 1.
   ProcessPool(std::size_t most, std::function<std::string(std::size_t job)> work);
   ProcessPool(const ProcessPool&) = delete;
   ProcessPool& operator=(const ProcessPool&) = delete;
-  ProcessPool(ProcessPool&&) = delete;
-  ProcessPool& operator=(ProcessPool&&) = delete;
   ~ProcessPool();  // ends what still runs, at once
 
   [[nodiscard]] bool has_room() const { return running_.size() < most_; }

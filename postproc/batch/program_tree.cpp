@@ -16,21 +16,15 @@ namespace {
 constexpr std::array<std::string_view, 8> kSuffixes = {"nc",    "ngc", "tap", "cnc",
                                                        "gcode", "ncc", "eia", "iso"};
 
-bool same_word(std::string_view one, std::string_view other) {
-  return std::ranges::equal(one, other,
-                            [](char a, char b) { return gcode::upper(a) == gcode::upper(b); });
-}
-
 bool is_program(const fs::path& file, std::span<const std::string> suffixes) {
   const std::string extension = file.extension().string();
   return std::ranges::any_of(suffixes, [&](const std::string& suffix) {
     if (suffix == "all") return true;
     if (suffix == "none") return extension.empty();
-    return extension.size() > 1 && same_word(std::string_view(extension).substr(1), suffix);
+    return extension.size() > 1 &&
+           gcode::is_same_word(extension.substr(1), gcode::in_capitals(suffix));
   });
 }
-
-bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
 
 // One folder, without what lies in its folders; those are added to `folders`.
 void list_folder(const fs::path& folder, const fs::path& root,
@@ -40,7 +34,7 @@ void list_folder(const fs::path& folder, const fs::path& root,
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
     const fs::directory_entry& entry = *at;
     std::error_code entry_error;
-    if (is_hidden(entry.path())) continue;
+    if (entry.path().filename().string().starts_with('.')) continue;
     if (entry.is_directory(entry_error)) {
       if (folder == root && entry.path().filename() == kBatchFolder) continue;
       if (entry.is_symlink(entry_error)) {

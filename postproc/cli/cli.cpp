@@ -7,12 +7,9 @@
 #include <algorithm>
 #include <array>
 
-#include "postproc/cli/cli_commands.h"
-#include "postproc/cli/cli_completion.h"
-#include "postproc/cli/cli_given.h"
 #include "postproc/cli/cli_table.h"
 #include "postproc/cli/explain.h"
-#include "postproc/text/nearest_name.h"
+#include "postproc/text/words.h"
 
 namespace batten::postproc {
 
@@ -41,7 +38,7 @@ void add_row(const OptionRow& row, CLI::App& command) {
 
 void add_command(const CommandRow& row, CLI::App& app) {
   CLI::App* command = app.add_subcommand(std::string(row.name), std::string(row.description));
-  command->allow_extras();  // told of together with everything else
+  command->allow_extras();  // reported together with everything else
   command->footer(std::string(row.example));
   for (const auto& [name, help] : row.files) {
     command->add_option(std::string(name))->description(std::string(help))->type_name("");
@@ -66,7 +63,7 @@ Given given_in(const CLI::App& command, const CommandRow& row) {
   return given;
 }
 
-// The words that are no options stand in order; unknown options become problems.
+// The words that are no options in their order; unknown options become problems.
 Arguments arguments_of(const CLI::App& command, const CommandRow& row) {
   Arguments in = {given_in(command, row), {}};
   for (const auto& [name, help] : row.files) {
@@ -85,9 +82,8 @@ Arguments arguments_of(const CLI::App& command, const CommandRow& row) {
     unknown_option = true;
     const std::string name = word.substr(word.find_first_not_of('-'));
     const std::string_view nearest = nearest_name(name.substr(0, name.find('=')), names);
-    in.problems.push_back(
-        fmt::format("{}: {} has no such option{}", word, row.name,
-                    nearest.empty() ? "" : fmt::format(", did you mean --{}?", nearest)));
+    in.complain("{}: {} has no such option{}", word, row.name,
+                nearest.empty() ? "" : fmt::format(", did you mean --{}?", nearest));
   }
   return in;
 }
@@ -98,9 +94,8 @@ PrintText explain_text(Arguments& in) {
   const std::string& id = in.files.front();
   const std::string text = explanation_of(id);
   if (text.empty()) {
-    in.problems.push_back(
-        fmt::format("there is no reason, message or violation '{}'{}; batten explain lists all", id,
-                    suggestion(id, explained_ids())));
+    in.complain("there is no reason, message or violation '{}'{}; batten explain lists all", id,
+                suggestion(id, explained_ids()));
   }
   return {text};
 }
@@ -108,18 +103,11 @@ PrintText explain_text(Arguments& in) {
 PrintText completion_text(Arguments& in) {
   refuse_words_after(1, "word", in);
   const auto text = completion_for(in.files.empty() ? "" : in.files.front());
-  if (!text) {
-    in.problems.push_back(in.files.empty()
-                              ? std::string("SHELL: no shell given; possible: bash, zsh")
-                              : fmt::format("there is no completion for '{}'; possible: bash, zsh",
-                                            in.files.front()));
+  if (!text && in.files.empty()) in.complain("SHELL: no shell given; possible: bash, zsh");
+  if (!text && !in.files.empty()) {
+    in.complain("there is no completion for '{}'; possible: bash, zsh", in.files.front());
   }
   return {text.value_or("")};
-}
-
-PrintText man_text(Arguments& in) {
-  refuse_words_after(0, "word", in);
-  return {man_page()};
 }
 
 // `batten --explain ID` is `batten explain ID`.
@@ -136,8 +124,9 @@ std::vector<std::string> with_explain_as_command(std::vector<std::string> argume
 Command any_command_of(std::string_view name, Arguments& in) {
   if (name == "explain") return explain_text(in);
   if (name == "completion") return completion_text(in);
-  if (name == "man") return man_text(in);
-  return command_of(name, in);
+  if (name != "man") return command_of(name, in);
+  refuse_words_after(0, "word", in);
+  return PrintText{man_page()};
 }
 
 // The command line as one could type it again.
@@ -151,9 +140,7 @@ std::string shell_words(const std::vector<std::string>& arguments) {
       text += word;
       continue;
     }
-    text += '\'';
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    text += '\'';
+    text += "'" + escaped(word, {{'\'', "'\\''"}}) + "'";
   }
   return text;
 }

@@ -1,5 +1,3 @@
-#include "postproc/cli/cli_commands.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,18 +6,16 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
-#include <memory>
-#include <optional>
-#include <span>
 
 #include "gcode/controls/built_in.h"
 #include "gcode/state/modal_state.h"
 #include "postproc/batch/program_tree.h"
+#include "postproc/cli/cli.h"
 #include "postproc/cli/cli_table.h"
 #include "postproc/machine/files/machine_file.h"
 #include "postproc/options/options.h"
 #include "postproc/system/output_file.h"
-#include "postproc/text/nearest_name.h"
+#include "postproc/text/words.h"
 
 namespace batten::postproc {
 
@@ -27,98 +23,87 @@ namespace {
 
 // --- values of options: text to numbers and names ------------------------------------------------
 
-std::string_view without_blanks_around(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
-}
-
 bool take_suffix(std::string_view& text, std::string_view suffix) {
   if (!text.ends_with(suffix)) return false;
   text.remove_suffix(suffix.size());
-  text = without_blanks_around(text);
+  text = trimmed(text);
   return true;
+}
+
+// All of the text is one number.
+template <typename Number, typename... Format>
+std::optional<Number> whole_text(std::string_view text, Format... format) {
+  Number value = 0;
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value, format...);
+  return error == std::errc{} && end == last ? std::optional(value) : std::nullopt;
 }
 
 // A plain decimal: no exponent, no unit, no blanks.
 std::optional<double> decimal(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);  // from_chars takes none
-  if (text.starts_with('+') || text.empty()) return std::nullopt;
-  double value = 0;
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  // from_chars reads "inf" and "nan" too.
-  const char last = text.back();
-  if (last != '.' && (last < '0' || last > '9')) return std::nullopt;
-  return value;
+  // from_chars takes no +, but "inf" and "nan".
+  if (text.find_first_not_of("+-.0123456789") != std::string_view::npos) return std::nullopt;
+  if (text.starts_with('+')) text.remove_prefix(1);
+  return whole_text<double>(text, std::chars_format::fixed);
 }
 
-std::optional<int> whole_number(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-struct Tolerance {
-  double mm = 0;
-  std::optional<double> inch;  // as given, where it was given in inches
-};
-
-// "0.01" and "0.01mm" are millimetres, "0.0005in" (or inch) inches. A blank may stand before the
-// unit. Whether the size makes sense is not asked here.
-std::optional<Tolerance> tolerance_given(Arguments& in) {
+// "0.01" and "0.01mm" are millimetres, "0.0005in" (or inch) inches, a blank before the unit or not.
+// Returns millimetres; `inch` is set where inches are given. Whether the size makes sense is not
+// asked here.
+std::optional<double> tolerance_given(Arguments& in, std::optional<double>& inch) {
   const auto text = in.given.value("tolerance");
   if (!text) return std::nullopt;
-  std::string_view number = without_blanks_around(*text);
+  std::string_view number = trimmed(*text);
   const bool inches = take_suffix(number, "inch") || take_suffix(number, "in");
   if (!inches) take_suffix(number, "mm");
   const auto value = decimal(number);
   if (!value) {
     const bool comma = number.find(',') != std::string_view::npos;
-    in.problems.push_back(
-        fmt::format("--tolerance: '{}', expected a length such as 0.01, 0.01mm or 0.0005in{}",
-                    *text, comma ? " (with a point, not a comma)" : ""));
-    return std::nullopt;
+    in.complain("--tolerance: '{}', expected a length such as 0.01, 0.01mm or 0.0005in{}", *text,
+                comma ? " (with a point, not a comma)" : "");
   }
-  if (!inches) return Tolerance{.mm = *value, .inch = std::nullopt};
-  return Tolerance{.mm = *value * gcode::millimetres_per(gcode::Units::kInch), .inch = value};
+  if (!value || !inches) return value;
+  inch = value;
+  return *value * gcode::millimetres_per(gcode::Units::kInch);
 }
 
-std::optional<double> read_decimal(std::string_view option, std::string_view text,
-                                   Problems& problems) {
+std::optional<double> read_decimal(std::string_view option, std::string_view text, Arguments& in) {
   const auto value = decimal(text);
-  if (!value) problems.push_back(fmt::format("--{}: '{}', expected a number", option, text));
+  if (!value) in.complain("--{}: '{}', expected a number", option, text);
   return value;
 }
 
-// The place stays as it is where the option was not given or is wrong.
-void read_integer_into(int& place, std::string_view option, Arguments& in) {
+// The field stays as it is where the option was not given or is wrong.
+void read_integer_into(int& field, std::string_view option, Arguments& in) {
   const auto text = in.given.value(option);
-  if (!text) return;
-  const auto value = whole_number(*text);
-  if (value) {
-    place = *value;
-  } else {
-    in.problems.push_back(fmt::format("--{}: '{}', expected a whole number", option, *text));
+  const auto value = text ? whole_text<int>(*text) : std::nullopt;
+  if (value) field = *value;
+  if (text && !value) {
+    in.complain("--{}: '{}', expected a whole number", option, *text);
   }
 }
 
-template <typename Place, typename Value>
-void choose(Place& place, std::string_view option, std::span<const Choice<Value>> choices,
+// "--output: there is no 'arc'; did you mean arcs? Possible: auto, arcs, lines"
+void complain_of_name(std::string_view option, std::string_view text,
+                      const std::vector<std::string_view>& names, Arguments& in) {
+  in.complain("--{}: there is no '{}'{}; possible: {}", option, text, suggestion(text, names),
+              fmt::join(names, ", "));
+}
+
+template <typename Field, typename Value>
+void choose(Field& field, std::string_view option, std::span<const Choice<Value>> choices,
             Arguments& in) {
   const auto text = in.given.value(option);
   if (!text) return;
   std::vector<std::string_view> names;
   for (const auto& choice : choices) {
     if (choice.name == *text) {
-      place = choice.value;
+      field = choice.value;
       return;
     }
     names.push_back(choice.name);
   }
-  in.problems.push_back(unknown_name(option, *text, names));
+  complain_of_name(option, *text, names, in);
 }
 
 void add_problems(std::vector<std::string> found, Arguments& in) {
@@ -130,11 +115,11 @@ void add_problems(std::vector<std::string> found, Arguments& in) {
 // Exactly as many as are expected; "-" at most once.
 void check_files(const std::vector<std::string_view>& expected, Arguments& in) {
   for (std::size_t i = in.files.size(); i < expected.size(); ++i) {
-    in.problems.push_back(fmt::format("{}: no file given (- is standard input)", expected[i]));
+    in.complain("{}: no file given (- is standard input)", expected[i]);
   }
   refuse_words_after(expected.size(), "file", in);
   if (std::ranges::count(in.files, "-") > 1) {
-    in.problems.emplace_back("-: standard input can be read only once");
+    in.complain("-: standard input can be read only once");
   }
 }
 
@@ -143,30 +128,31 @@ std::string file_at(const Arguments& in, std::size_t index) {
   return index < in.files.size() ? in.files[index] : std::string();
 }
 
+// Two names that people gave for the same file, which is none of the standard streams.
+bool is_one_file(const std::string& one, const std::string& other) {
+  const auto names_file = [](const std::string& name) { return !name.empty() && name != "-"; };
+  return names_file(one) && names_file(other) && same_file(one, other);
+}
+
 // A report must not land on a program.
 void check_report(const std::string& file, const std::vector<std::string>& programs, Arguments& in,
                   std::string_view option = "json") {
-  if (file.empty() || file == "-") return;
   for (const std::string& program : programs) {
-    if (!program.empty() && program != "-" && same_file(file, program)) {
-      in.problems.push_back(
-          fmt::format("--{}: {} is the program {} itself", option, file, program));
-    }
+    if (!is_one_file(file, program)) continue;
+    in.complain("--{}: {} is the program {} itself", option, file, program);
   }
 }
 
 // --quiet, --log-level
 LogLevel log_level(Arguments& in) {
   LogLevel level = LogLevel::kInfo;
-  if (in.given.flag("quiet")) {
-    const auto text = in.given.value("log-level");
-    if (text && *text != "error") {
-      in.problems.push_back(fmt::format("--quiet: --log-level {} says something else", *text));
-    }
-    return LogLevel::kError;
+  if (!in.given.flag("quiet")) {
+    choose(level, "log-level", log_levels(), in);
+    return level;
   }
-  choose(level, "log-level", log_levels(), in);
-  return level;
+  const auto text = in.given.value("log-level");
+  if (text && *text != "error") in.complain("--quiet: --log-level {} says something else", *text);
+  return LogLevel::kError;
 }
 
 // In which words a program is read: of options or a command.
@@ -183,8 +169,6 @@ void read_language_into(Reading& reading, Arguments& in) {
   }
 }
 
-// Of the commands that read programs and write none.
-template <typename ReadingCommand>
 void read_common_into(ReadingCommand& command, Arguments& in) {
   command.json_file = in.given.text("json");
   command.force = in.given.flag("force");
@@ -196,7 +180,7 @@ void read_common_into(ReadingCommand& command, Arguments& in) {
 
 std::vector<std::string_view> target_names() {
   std::vector<std::string_view> names;
-  for (const gcode::Control& dialect : gcode::controls()) names.push_back(dialect.name);
+  for (const gcode::Control& target : gcode::controls()) names.push_back(target.name);
   return names;
 }
 
@@ -205,20 +189,20 @@ const gcode::Control* built_in_target(std::string_view option, Arguments& in) {
   const auto name = in.given.value(option);
   if (!name) return nullptr;
   const gcode::Control* target = gcode::find_control(*name);
-  if (target == nullptr) in.problems.push_back(unknown_name(option, *name, target_names()));
+  if (target == nullptr) complain_of_name(option, *name, target_names(), in);
   return target;
 }
 
-// --machine, or the built-in machine `otherwise` (may be empty) when that is not given, with what
-// --grbl-settings says. Null when there is none, and when something was wrong, which `problems`
-// tell then.
-std::shared_ptr<const Machine> machine_given(std::string_view otherwise, Arguments& in,
+// --machine, or that of the target (may be null) when that is not given, with what --grbl-settings
+// says. Null when there is none, and when something was wrong, which is said then.
+std::shared_ptr<const Machine> machine_given(const gcode::Control* target, Arguments& in,
                                              std::string_view option = "machine") {
   const auto choice = in.given.value(option);
   const auto settings = in.given.value("grbl-settings");
   std::shared_ptr<const Machine> machine;
-  if (choice || !otherwise.empty()) {
-    machine = choose_machine(choice.value_or(std::string(otherwise)), "--machine", in.problems);
+  const std::string name = choice ? *choice : target != nullptr ? target->machine : "";
+  if (choice || !name.empty()) {
+    machine = choose_machine(name, "--machine", in.problems);
     if (machine == nullptr) return nullptr;
   }
   if (!settings) return machine;
@@ -226,11 +210,6 @@ std::shared_ptr<const Machine> machine_given(std::string_view otherwise, Argumen
   const bool contradicts = machine != nullptr && machine->model != ControllerModel::kGrbl;
   const Machine* base = contradicts && !choice ? nullptr : machine.get();
   return machine_with_grbl_settings(base, *settings, in.problems);
-}
-
-std::string_view default_machine(const gcode::Control* target) {
-  if (target == nullptr) return {};
-  return target->machine;
 }
 
 // By --target NAME, --target FILE.toml, --profile FILE.toml, or --target NAME with --profile
@@ -250,7 +229,7 @@ GivenTarget target_given(Arguments& in) {
   const auto name = in.given.value("target");
   const bool names_file = name && name->ends_with(".toml");
   if (names_file && in.given.has("profile")) {
-    in.problems.emplace_back("--profile: --target names a profile already");
+    in.complain("--profile: --target names a profile already");
     return wrong;
   }
   GivenTarget target;
@@ -272,7 +251,7 @@ GivenTarget target_given(Arguments& in) {
 
 // --- smooth, and what batch has of it ------------------------------------------------------------
 
-void read_target(SmoothCommand& command, Arguments& in) {
+void read_target(SmoothingCommand& command, Arguments& in) {
   GivenTarget target = target_given(in);
   if (target.is_wrong) return;
   command.options.target = target.control();
@@ -282,9 +261,8 @@ void read_target(SmoothCommand& command, Arguments& in) {
     command.profile = std::move(target.profile);
   }
   if (command.options.target != nullptr) return;
-  in.problems.push_back(
-      fmt::format("--target: no target given; possible: {}, or a profile NAME.toml",
-                  fmt::join(target_names(), ", ")));
+  in.complain("--target: no target given; possible: {}, or a profile NAME.toml",
+              fmt::join(target_names(), ", "));
 }
 
 // What was missing or unreadable has been said; the check of the options would say it again.
@@ -300,19 +278,16 @@ void check_options(const SmoothOptions& options, Arguments& in) {
   }
 }
 
-// The command's options, its machine and its profile.
-void read_smooth_options(SmoothCommand& command, Arguments& in) {
+// What smooth and batch have in common, but for the progress.
+void read_smooth_options(SmoothingCommand& command, Arguments& in) {
   SmoothOptions& options = command.options;
   if (const auto file = in.given.value("config")) {
     in.given.complete_from(read_config(*file, in.problems));
   }
   read_target(command, in);
-  command.own_machine = machine_given(default_machine(options.target), in);
+  command.own_machine = machine_given(options.target, in);
   options.machine = command.own_machine.get();
-  if (const auto tolerance = tolerance_given(in)) {
-    options.tolerance_mm = tolerance->mm;
-    options.tolerance_inch = tolerance->inch;
-  }
+  options.tolerance_mm = tolerance_given(in, options.tolerance_inch).value_or(options.tolerance_mm);
   choose(options.tolerance_kind, "tolerance-kind", tolerance_kinds(), in);
   choose(options.side, "side", sides(), in);
   read_language_into(options, in);
@@ -321,61 +296,51 @@ void read_smooth_options(SmoothCommand& command, Arguments& in) {
   choose(options.prefer, "prefer", preferences(), in);
   choose(options.linearize, "linearize", linearizations(), in);
   if (const auto text = in.given.value("keep-corners")) {
-    options.keep_corners_deg = read_decimal("keep-corners", *text, in.problems);
+    options.keep_corners_deg = read_decimal("keep-corners", *text, in);
   }
   read_integer_into(options.threads, "threads", in);
   options.allowed = in.given.values("allow");
   options.convert = in.given.flag("convert");
+  command.force = in.given.flag("force");
+  command.strict = in.given.flag("strict");
 }
 
 void check_outputs(const SmoothCommand& command, Arguments& in) {
-  Problems& problems = in.problems;
   const bool to_standard_output =
       command.output == "-" || (command.output.empty() && command.input == "-");
   if (command.in_place && !command.output.empty()) {
-    problems.emplace_back("--in-place: the input is replaced, so --out cannot be given");
+    in.complain("--in-place: the input is replaced, so --out cannot be given");
   }
   if (command.in_place && command.input == "-") {
-    problems.emplace_back("--in-place: standard input cannot be replaced");
+    in.complain("--in-place: standard input cannot be replaced");
   }
   for (const auto& [option, file] :
        {std::pair("json", &command.json_file), std::pair("report", &command.report_file)}) {
     if (to_standard_output && *file == "-" && !command.dry_run) {
-      problems.push_back(fmt::format("--{}: standard output already takes the program", option));
+      in.complain("--{}: standard output already takes the program", option);
     }
   }
-  const bool same_report = command.report_file == "-"
-                               ? command.json_file == "-"
-                               : !command.report_file.empty() && !command.json_file.empty() &&
-                                     same_file(command.report_file, command.json_file);
-  if (same_report) {
-    problems.push_back(
-        fmt::format("--report: {} takes the JSON report already",
-                    command.report_file == "-" ? "standard output" : command.report_file));
+  const bool both_to_standard_output = command.report_file == "-" && command.json_file == "-";
+  if (both_to_standard_output || is_one_file(command.report_file, command.json_file)) {
+    in.complain("--report: {} takes the JSON report already",
+                both_to_standard_output ? "standard output" : command.report_file);
   }
   const std::string output = command.output.empty() && command.input != "-"
                                  ? default_output_path(command.input).string()
                                  : command.output;
-  if (!command.output.empty() && command.output != "-" && command.input != "-" &&
-      !command.input.empty() && same_file(command.output, command.input)) {
-    problems.push_back(fmt::format("--out: {} is the input itself; --in-place replaces the input",
-                                   command.output));
+  if (is_one_file(command.output, command.input)) {
+    in.complain("--out: {} is the input itself; --in-place replaces the input", command.output);
   }
   check_report(command.json_file, {command.input, output}, in);
   check_report(command.report_file, {command.input, output}, in, "report");
 }
 
-Command smooth_or_config(Arguments& in) {
-  SmoothCommand command = smooth_command(in);
-  if (in.given.flag("print-config")) return PrintText{config_text(in.given)};
-  return command;
-}
-
 // --- verify, inspect -----------------------------------------------------------------------------
 
-void read_allowed_into(std::vector<std::string>& allowed, Arguments& in) {
-  allowed = in.given.values("allow");
+std::vector<std::string> allowed_given(Arguments& in) {
+  std::vector<std::string> allowed = in.given.values("allow");
   add_problems(problems_of_allowed(allowed), in);
+  return allowed;
 }
 
 VerifyCommand verify_command(Arguments& in) {
@@ -384,21 +349,19 @@ VerifyCommand verify_command(Arguments& in) {
   command.new_program = file_at(in, 1);
   read_common_into(command, in);
   GivenTarget target = target_given(in);
-  command.target = target.built_in;
+  // The one that is named goes before what the profile makes of it.
+  command.target = target.built_in != nullptr ? target.built_in : target.control();
   choose(command.tolerance_kind, "tolerance-kind", tolerance_kinds(), in);
-  const gcode::Control* control = target.built_in != nullptr ? target.built_in : target.control();
-  add_problems(problems_of_decimals(command.decimals, command.source, control), in);
+  add_problems(problems_of_decimals(command.decimals, command.source, command.target), in);
   command.profile = std::move(target.profile);
-  read_allowed_into(command.allowed, in);
+  command.allowed = allowed_given(in);
   choose(command.side, "side", sides(), in);
   add_problems(problems_of_side(command.side, command.tolerance_kind), in);
-  if (const auto tolerance = tolerance_given(in)) {
-    command.tolerance_mm = tolerance->mm;
-    if (!(command.tolerance_mm > 0)) {
-      in.problems.push_back(
-          fmt::format("--tolerance: '{}', expected a length above 0, such as 0.01",
-                      in.given.text("tolerance")));
-    }
+  std::optional<double> inch;
+  command.tolerance_mm = tolerance_given(in, inch).value_or(command.tolerance_mm);
+  if (!(command.tolerance_mm > 0)) {
+    in.complain("--tolerance: '{}', expected a length above 0, such as 0.01",
+                in.given.text("tolerance"));
   }
   check_files({"OLD", "NEW"}, in);
   check_report(command.json_file, in.files, in);
@@ -410,7 +373,7 @@ InspectCommand inspect_command(Arguments& in) {
   command.input = file_at(in, 0);
   read_common_into(command, in);
   add_problems(problems_of_decimals(command.decimals, command.source, nullptr), in);
-  read_allowed_into(command.allowed, in);
+  command.allowed = allowed_given(in);
   check_files({"IN"}, in);
   check_report(command.json_file, in.files, in);
   return command;
@@ -420,7 +383,7 @@ InspectCommand inspect_command(Arguments& in) {
 
 FreecadCommand freecad_command(Arguments& in) {
   if (in.files.size() != 1 || in.files.front() != "install") {
-    in.problems.emplace_back("freecad: expected one word, install");
+    in.complain("freecad: expected one word, install");
   }
   return {.freecad = in.given.text("freecad"),
           .folder = in.given.text("folder"),
@@ -429,18 +392,11 @@ FreecadCommand freecad_command(Arguments& in) {
 
 ListCommand list_command(BuiltIn what, Arguments& in) {
   check_files({}, in);
-  return {.what = what,
-          .show = built_in_target("show", in),
-          .json_file = in.given.text("json"),
-          .force = in.given.flag("force")};
-}
-
-MachinesCommand machines_command(Arguments& in) {
-  check_files({}, in);
-  MachinesCommand command = {
-      .shown = nullptr, .json_file = in.given.text("json"), .force = in.given.flag("force")};
-  if (in.given.has("show") || in.given.has("grbl-settings")) {
-    command.shown = machine_given("", in, "show");
+  ListCommand command = {
+      .what = what, .json_file = in.given.text("json"), .force = in.given.flag("force")};
+  if (what == BuiltIn::kTargets) command.target = built_in_target("show", in);
+  if (in.given.has("grbl-settings") || (what == BuiltIn::kMachines && in.given.has("show"))) {
+    command.machine = machine_given(nullptr, in, "show");
   }
   return command;
 }
@@ -469,13 +425,12 @@ void read_shard_into(Shard& shard, Arguments& in) {
   const auto text = in.given.value("shard");
   if (!text) return;
   const std::size_t slash = text->find('/');
-  const auto index = whole_number(std::string_view(*text).substr(0, slash));
+  const auto index = whole_text<int>(std::string_view(*text).substr(0, slash));
   const auto count = slash == std::string::npos
                          ? std::nullopt
-                         : whole_number(std::string_view(*text).substr(slash + 1));
+                         : whole_text<int>(std::string_view(*text).substr(slash + 1));
   if (!index || !count || *index < 1 || *index > *count) {
-    in.problems.push_back(
-        fmt::format("--shard: '{}', expected I/N with I from 1 to N, such as 2/8", *text));
+    in.complain("--shard: '{}', expected I/N with I from 1 to N, such as 2/8", *text);
     return;
   }
   shard = {*index, *count};
@@ -484,7 +439,7 @@ void read_shard_into(Shard& shard, Arguments& in) {
 void check_trees(Arguments& in) {
   constexpr std::array<std::string_view, 2> kTrees = {"IN_TREE", "OUT_TREE"};
   for (std::size_t i = in.files.size(); i < kTrees.size(); ++i) {
-    in.problems.push_back(fmt::format("{}: no folder given", kTrees[i]));
+    in.complain("{}: no folder given", kTrees[i]);
   }
   refuse_words_after(kTrees.size(), "folder", in);
   if (in.files.size() != kTrees.size()) return;
@@ -492,16 +447,10 @@ void check_trees(Arguments& in) {
 }
 
 BatchCommand batch_command(Arguments& in) {
-  SmoothCommand one;
-  read_smooth_options(one, in);
-  check_options(one.options, in);
   BatchCommand command;
-  command.options = one.options;
-  command.own_machine = one.own_machine;
-  command.profile = one.profile;
-  command.settings = settings_text(in.given, one.own_machine.get());
-  command.strict = in.given.flag("strict");
-  command.force = in.given.flag("force");
+  read_smooth_options(command, in);
+  check_options(command.options, in);
+  command.settings = settings_text(in.given, command.own_machine.get());
   command.fail_fast = in.given.flag("fail-fast");
   command.suffixes = in.given.values("suffix");
   if (command.suffixes.empty()) {
@@ -510,7 +459,7 @@ BatchCommand batch_command(Arguments& in) {
   }
   read_integer_into(command.jobs, "jobs", in);
   if (command.jobs < 0) {
-    in.problems.push_back(fmt::format("--jobs: '{}', expected 0 or more", in.given.text("jobs")));
+    in.complain("--jobs: '{}', expected 0 or more", in.given.text("jobs"));
   }
   read_shard_into(command.shard, in);
   // All but the lines for LinuxCNC, which stand last.
@@ -532,11 +481,10 @@ std::optional<geometry::Point3> start_given(Arguments& in) {
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t comma = axis < 2 ? text->find(',', begin) : text->size();
     if (comma == std::string::npos) {
-      in.problems.push_back(
-          fmt::format("--from: '{}', expected X,Y,Z in mm, such as 0,0,50", *text));
+      in.complain("--from: '{}', expected X,Y,Z in mm, such as 0,0,50", *text);
       return std::nullopt;
     }
-    const auto value = read_decimal("from", text->substr(begin, comma - begin), in.problems);
+    const auto value = read_decimal("from", text->substr(begin, comma - begin), in);
     if (!value) return std::nullopt;
     place[axis] = *value;
     begin = comma + 1;
@@ -547,13 +495,11 @@ std::optional<geometry::Point3> start_given(Arguments& in) {
 void check_time_outputs(const TimeCommand& command, Arguments& in) {
   check_report(command.json_file, {command.input}, in);
   if (command.profile_file == "-" && command.json_file == "-") {
-    in.problems.emplace_back("--profile: standard output already takes the JSON report");
+    in.complain("--profile: standard output already takes the JSON report");
   }
-  if (command.profile_file.empty() || command.profile_file == "-") return;
   for (const std::string& other : {command.input, command.json_file}) {
-    if (!other.empty() && other != "-" && same_file(command.profile_file, other)) {
-      in.problems.push_back(fmt::format("--profile: {} is another file of this command: {}",
-                                        command.profile_file, other));
+    if (is_one_file(command.profile_file, other)) {
+      in.complain("--profile: {} is another file of this command: {}", command.profile_file, other);
     }
   }
 }
@@ -566,9 +512,9 @@ TimeCommand time_command(Arguments& in) {
   command.target = built_in_target("target", in);
   add_problems(problems_of_decimals(command.decimals, command.source, command.target), in);
   const std::size_t problems_before = in.problems.size();
-  command.machine = machine_given(default_machine(command.target), in);
+  command.machine = machine_given(command.target, in);
   if (command.machine == nullptr && in.problems.size() == problems_before) {
-    in.problems.emplace_back(
+    in.complain(
         "--machine: no machine given; `batten machines` lists them, a file NAME.toml is your own");
   }
   command.start = start_given(in);
@@ -588,8 +534,6 @@ SmoothCommand smooth_command(Arguments& in) {
   const bool bar = command.progress == ProgressStyle::kAuto && !in.given.has("progress");
   if (bar && command.log_level < LogLevel::kInfo) command.progress = ProgressStyle::kOff;
   command.in_place = in.given.flag("in-place");
-  command.force = in.given.flag("force");
-  command.strict = in.given.flag("strict");
   command.dry_run = in.given.flag("dry-run");
   command.json_file = in.given.text("json");
   command.report_file = in.given.text("report");
@@ -604,25 +548,23 @@ SmoothCommand smooth_command(Arguments& in) {
 }
 
 Command command_of(std::string_view name, Arguments& in) {
-  if (name == "smooth") return smooth_or_config(in);
+  if (name == "smooth") {
+    SmoothCommand command = smooth_command(in);
+    if (in.given.flag("print-config")) return PrintText{config_text(in.given)};
+    return command;
+  }
   if (name == "verify") return verify_command(in);
   if (name == "inspect") return inspect_command(in);
   if (name == "time") return time_command(in);
   if (name == "batch") return batch_command(in);
   if (name == "freecad") return freecad_command(in);
-  if (name == "machines") return machines_command(in);
+  if (name == "machines") return list_command(BuiltIn::kMachines, in);
   return list_command(name == "targets" ? BuiltIn::kTargets : BuiltIn::kMethods, in);
-}
-
-std::string unknown_name(std::string_view option, std::string_view text,
-                         std::span<const std::string_view> names) {
-  return fmt::format("--{}: there is no '{}'{}; possible: {}", option, text,
-                     suggestion(text, names), fmt::join(names, ", "));
 }
 
 void refuse_words_after(std::size_t expected, std::string_view what, Arguments& in) {
   for (std::size_t i = expected; i < in.files.size(); ++i) {
-    in.problems.push_back(fmt::format("'{}': one {} too many", in.files[i], what));
+    in.complain("'{}': one {} too many", in.files[i], what);
   }
 }
 

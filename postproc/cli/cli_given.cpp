@@ -6,8 +6,7 @@
 #include <algorithm>
 
 #include "postproc/cli/cli_table.h"
-#include "postproc/text/nearest_name.h"
-#include "postproc/text/toml_text.h"
+#include "postproc/text/words.h"
 
 namespace batten::postproc {
 
@@ -16,13 +15,9 @@ void Given::add(std::string_view name, std::string value) {
 }
 
 void Given::add_list(std::string_view name, std::string_view values) {
-  constexpr std::string_view kBlanks = " \t";
   for (std::size_t begin = 0; begin <= values.size();) {
     const std::size_t end = std::min(values.find(',', begin), values.size());
-    std::string_view part = values.substr(begin, end - begin);
-    part.remove_prefix(std::min(part.find_first_not_of(kBlanks), part.size()));
-    part = part.substr(0, part.find_last_not_of(kBlanks) + 1);
-    add(name, std::string(part));
+    add(name, std::string(trimmed(values.substr(begin, end - begin), " \t")));
     begin = end + 1;
   }
 }

@@ -10,7 +10,6 @@
 
 namespace batten::postproc {
 
-// Messages for the user, one per problem.
 using Problems = std::vector<std::string>;
 
 // Option names to the values given for them; a flag that was given has the value "true".
@@ -18,8 +17,8 @@ class Given {
  public:
   void add(std::string_view name, std::string value);
 
-  // Of an option that takes a list: each part between commas, without the blanks around it. Empty
-  // parts are values, too, so that they can be told of.
+  // Of a list: each part between commas, without blanks around it. Empty parts are values, too, so
+  // that they can be reported.
   void add_list(std::string_view name, std::string_view values);
 
   [[nodiscard]] bool has(std::string_view name) const;
@@ -44,13 +43,12 @@ class Given {
 //   allow = ["exact-stop"]
 //   strict = true
 //
-// Numbers, strings and booleans count as the text that stands for them on the command line. A
-// file that cannot be read, a key that is no option, and a value of another kind are problems,
-// each with file and line.
+// Numbers, strings and booleans count as their text on the command line. A file that cannot be
+// read, a key that is no option, and a value of another kind are problems, each with file and line.
 [[nodiscard]] Given read_config(const std::string& file, Problems& problems);
 
-// All options that may stand in such a file: those given and those with a default as they are,
-// the others as comments. `read_config` reads it back to the same options.
+// All options of such a file: those given and those with a default as they are, the others as
+// comments. `read_config` reads it back to the same options.
 [[nodiscard]] std::string config_text(const Given& given);
 
 }  // namespace batten::postproc

@@ -1,9 +1,16 @@
 #include "postproc/cli/cli_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <string_view>
+#include <cctype>
+
+#include "gcode/controls/built_in.h"
+#include "gcode/state/reason.h"
+#include "postproc/cli/explain.h"
+#include "postproc/machine/machine.h"
+#include "postproc/text/words.h"
 
 namespace batten::postproc {
 namespace {
@@ -11,195 +18,147 @@ namespace {
 // --- options -------------------------------------------------------------------------------------
 
 using enum OptionKind;
-constexpr bool kInConfig = true;
+// Of the command line alone, and one that a configuration file may hold.
+constexpr OptionRow option(std::string_view name, OptionKind kind, std::string_view value,
+                           std::string_view help, std::string_view default_value = {}) {
+  return {name, kind, value, help, default_value, false};
+}
+constexpr OptionRow setting(std::string_view name, OptionKind kind, std::string_view value,
+                            std::string_view help, std::string_view default_value = {}) {
+  return {name, kind, value, help, default_value, true};
+}
 
-constexpr OptionRow kJson = {"json", kValue, "FILE",
-                             "write the report as JSON, - is standard output"};
-constexpr OptionRow kForce = {"force", kFlag, "", "replace files that exist already"};
-constexpr OptionRow kTolerance = {
-    "tolerance",
-    kValue,
-    "LENGTH",
+constexpr OptionRow kJson =
+    option("json", kValue, "FILE", "write the report as JSON, - is standard output");
+constexpr OptionRow kForce = option("force", kFlag, "", "replace files that exist already");
+constexpr OptionRow kTolerance = setting(
+    "tolerance", kValue, "LENGTH",
     "greatest distance between old and new path: 0.01, 0.01mm or 0.0005in (without a unit: mm)",
-    "0.01mm",
-    kInConfig};
-constexpr OptionRow kToleranceKind = {
-    "tolerance-kind",
-    kValue,
-    "path|band",
-    "what the tolerance means: both ways, or corners may be further from the new path",
-    "path",
-    kInConfig};
-constexpr OptionRow kSide = {"side",
-                             kValue,
-                             "both|left|right",
-                             "where the new path may be, seen along the way of travel from above",
-                             "both",
-                             kInConfig};
-constexpr OptionRow kUnits = {
-    "units", kValue, "mm|inch", "units of a program that has no G20 or G21", "", kInConfig};
-constexpr OptionRow kSource = {
-    "source",
-    kValue,
-    "auto|ngc|fanuc|haas|grbl|siemens|heidenhain",
-    "for which control the program was written; auto: what its marks and the target say",
-    "auto",
-    kInConfig};
-constexpr OptionRow kDecimals = {
-    "decimals",
-    kValue,
-    "auto|explicit|implied",
-    "what X5 means on controls like FANUC: explicit 5 mm, implied 0.005 mm or 0.0005 in "
-    "(implied:0.0001 for another increment in mm, a tenth of it in inches); auto: such "
-    "blocks are kept",
-    "auto",
-    kInConfig};
-constexpr OptionRow kAllow = {
-    "allow",     kList,
-    "REASON,..", "lift rules that keep runs, by their ids in the report; may be repeated",
-    "",          kInConfig};
-constexpr OptionRow kProfile = {
-    "profile",   kValue,
-    "FILE.toml", "the target as your machine has it (batten targets --show NAME prints one)",
-    "",          kInConfig};
+    "0.01mm");
+constexpr OptionRow kToleranceKind = setting(
+    "tolerance-kind", kValue, "path|band",
+    "what the tolerance means: both ways, or corners may be further from the new path", "path");
+constexpr OptionRow kSide =
+    setting("side", kValue, "both|left|right",
+            "where the new path may be, seen along the way of travel from above", "both");
+constexpr OptionRow kUnits =
+    setting("units", kValue, "mm|inch", "units of a program that has no G20 or G21");
+constexpr OptionRow kSource = setting(
+    "source", kValue, "auto|ngc|fanuc|haas|grbl|siemens|heidenhain",
+    "for which control the program was written; auto: what its marks and the target say", "auto");
+constexpr OptionRow kDecimals =
+    setting("decimals", kValue, "auto|explicit|implied",
+            "what X5 means on controls like FANUC: explicit 5 mm, implied 0.005 mm or 0.0005 in "
+            "(implied:0.0001 for another increment in mm, a tenth of it in inches); auto: such "
+            "blocks are kept",
+            "auto");
+constexpr OptionRow kAllow =
+    setting("allow", kList, "REASON,..",
+            "lift rules that keep runs, by their ids in the report; may be repeated");
+constexpr OptionRow kProfile =
+    setting("profile", kValue, "FILE.toml",
+            "the target as your machine has it (batten targets --show NAME prints one)");
 // Of every command that tells times.
-constexpr OptionRow kMachine = {
-    "machine",
-    kValue,
-    "NAME|FILE",
-    "the machine whose time counts: built in (batten machines), a NAME.toml, or the "
-    "NAME.ini of a LinuxCNC machine; default: the target's",
-    "",
-    kInConfig};
-constexpr OptionRow kGrblSettings = {
-    "grbl-settings", kValue, "FILE", "limits from what grbl answers to $$, saved as text", "",
-    kInConfig};
-constexpr OptionRow kQuiet = {"quiet", kFlag, "",
-                              "say nothing but what ends or stops the work, as --log-level error"};
-constexpr OptionRow kLogLevel = {"log-level", kValue, "error|warning|info",
-                                 "how much is said on standard error", "info"};
+constexpr OptionRow kMachine =
+    setting("machine", kValue, "NAME|FILE",
+            "the machine whose time counts: built in (batten machines), a NAME.toml, or the "
+            "NAME.ini of a LinuxCNC machine; default: the target's");
+constexpr OptionRow kGrblSettings =
+    setting("grbl-settings", kValue, "FILE", "limits from what grbl answers to $$, saved as text");
+constexpr OptionRow kQuiet =
+    option("quiet", kFlag, "", "say nothing but what ends or stops the work, as --log-level error");
+constexpr OptionRow kLogLevel =
+    option("log-level", kValue, "error|warning|info", "how much is said on standard error", "info");
 
 std::vector<OptionRow> smooth_rows() {
   return {
-      {"target", kValue, "NAME|FILE.toml",
-       "the control that will run the program (batten targets), or a profile of it", "", kInConfig},
+      setting("target", kValue, "NAME|FILE.toml",
+              "the control that will run the program (batten targets), or a profile of it"),
       kProfile,
       kTolerance,
       kToleranceKind,
       kSide,
       kMachine,
       kGrblSettings,
-      {"method", kValue, "best|fair|racing|naseath|guo|ozcan|none",
-       "how runs are smoothed (batten methods)", "best", kInConfig},
-      {"output", kValue, "auto|curves|arcs|lines", "what rewritten runs are made of", "auto",
-       kInConfig},
-      {"prefer", kValue, "time|accuracy|size", "what the tolerance is spent on", "time", kInConfig},
-      {"linearize", kValue, "minlink|chord|ilca|blca",
-       "how lines are laid along a curve; default: chord, minlink with --prefer size", "",
-       kInConfig},
-      {"keep-corners", kValue, "DEG", "turns of more degrees than this stay corners", "",
-       kInConfig},
+      setting("method", kValue, "best|fair|racing|naseath|guo|ozcan|none",
+              "how runs are smoothed (batten methods)", "best"),
+      setting("output", kValue, "auto|curves|arcs|lines", "what rewritten runs are made of",
+              "auto"),
+      setting("prefer", kValue, "time|accuracy|size", "what the tolerance is spent on", "time"),
+      setting("linearize", kValue, "minlink|chord|ilca|blca",
+              "how lines are laid along a curve; default: chord, minlink with --prefer size"),
+      setting("keep-corners", kValue, "DEG", "turns of more degrees than this stay corners"),
       kUnits,
       kSource,
       kDecimals,
       kAllow,
-      {"convert", kFlag, "",
-       "take a program for other controls if every block says the same on the target", "false",
-       kInConfig},
-      {"out", kValue, "FILE",
-       "the new program, - is standard output; default: IN with .smooth before the suffix"},
-      {"in-place", kFlag, "", "replace the input itself"},
+      setting("convert", kFlag, "",
+              "take a program for other controls if every block says the same on the target",
+              "false"),
+      option("out", kValue, "FILE",
+             "the new program, - is standard output; default: IN with .smooth before the suffix"),
+      option("in-place", kFlag, "", "replace the input itself"),
       kForce,
-      {"dry-run", kFlag, "", "do everything but write the new program"},
-      {"strict", kFlag, "", "write nothing and exit 3 when a run could not be proved", "false",
-       kInConfig},
+      option("dry-run", kFlag, "", "do everything but write the new program"),
+      setting("strict", kFlag, "", "write nothing and exit 3 when a run could not be proved",
+              "false"),
       kJson,
-      {"report", kValue, "FILE.html",
-       "write the report as a page for a browser: path, deviation, time by run"},
-      {"threads", kValue, "N", "0: all cores; the result is the same for any number", "0",
-       kInConfig},
-      {"progress", kValue, "auto|on|off|linuxcnc", "how far the work is, on standard error", "auto",
-       kInConfig},
+      option("report", kValue, "FILE.html",
+             "write the report as a page for a browser: path, deviation, time by run"),
+      setting("threads", kValue, "N", "0: all cores; the result is the same for any number", "0"),
+      setting("progress", kValue, "auto|on|off|linuxcnc", "how far the work is, on standard error",
+              "auto"),
       kQuiet,
       kLogLevel,
-      {"config", kValue, "FILE.toml", "read options from a file; the command line goes first"},
-      {"print-config", kFlag, "", "print the options as such a file and do nothing else"},
-  };
+      option("config", kValue, "FILE.toml",
+             "read options from a file; the command line goes first"),
+      option("print-config", kFlag, "", "print the options as such a file and do nothing else")};
 }
 
 std::vector<OptionRow> verify_rows() {
   return {
       kTolerance,
       kProfile,
-      {"target", kValue, "NAME|FILE.toml",
-       "the control whose own curves (G06.2, POLY, G5 ..) are to be read in both programs, or "
-       "a profile of it"},
+      option(
+          "target", kValue, "NAME|FILE.toml",
+          "the control whose own curves (G06.2, POLY, G5 ..) are to be read in both programs, or "
+          "a profile of it"),
       kToleranceKind,
       kSide,
       kUnits,
       kSource,
       kDecimals,
-      {"allow", kList, "REASON,..",
-       "what smooth was allowed; subprogram: calls leave all modes as they find them, in both "
-       "programs"},
+      option(
+          "allow", kList, "REASON,..",
+          "what smooth was allowed; subprogram: calls leave all modes as they find them, in both "
+          "programs"),
       kJson,
       kForce,
       kQuiet,
-      kLogLevel,
-  };
+      kLogLevel};
 }
 
 std::vector<OptionRow> time_rows() {
-  return {
-      kMachine,
-      kGrblSettings,
-      {"target", kValue, "NAME",
-       "the control the program is written for (batten targets): what G4 P means"},
-      kUnits,
-      kSource,
-      kDecimals,
-      {"from", kValue, "X,Y,Z", "the tool's position before the program, mm"},
-      kJson,
-      {"profile", kValue, "FILE.csv",
-       "write position, feed, acceleration and jerk each millisecond"},
-      kForce,
-      kQuiet,
-      kLogLevel,
-  };
-}
-
-std::vector<OptionRow> own_batch_rows() {
-  return {
-      {"jobs", kValue, "N",
-       "programs at a time, each in a process with one thread; 0: a processor each", "0"},
-      {"shard", kValue, "I/N", "only every N-th program from the I-th on, for several machines",
-       "1/1"},
-      {"suffix", kList, "SUFFIX",
-       "what is a program, in place of nc, ngc, tap, cnc, gcode, ncc, eia, iso; none: "
-       "names without a suffix, all: every file; a list with commas, or repeated"},
-      {"fail-fast", kFlag, "",
-       "stop at the first program that cannot be written; otherwise carry on"},
-      {"force", kFlag, "", "replace programs in OUT_TREE that no batch wrote"},
-      {"progress", kValue, "auto|on|off",
-       "a line with rate and time left on standard error; auto: on a terminal", "auto"},
-      {"config", kValue, "FILE.toml",
-       "read options of smooth from a file; the command line goes first"},
-  };
-}
-
-std::vector<OptionRow> freecad_rows() {
-  return {{"freecad", kValue, "PROGRAM",
-           "the FreeCAD without a window that is asked; default: the one in PATH"},
-          {"folder", kValue, "DIR", "write into this folder of macros and ask nobody"},
-          {"force", kFlag, "", "replace a batten_post.py that is not ours"}};
+  return {kMachine,
+          kGrblSettings,
+          option("target", kValue, "NAME",
+                 "the control the program is written for (batten targets): what G4 P means"),
+          kUnits,
+          kSource,
+          kDecimals,
+          option("from", kValue, "X,Y,Z", "the tool's position before the program, mm"),
+          kJson,
+          option("profile", kValue, "FILE.csv",
+                 "write position, feed, acceleration and jerk each millisecond"),
+          kForce,
+          kQuiet,
+          kLogLevel};
 }
 
 std::vector<OptionRow> machines_rows() {
-  return {{"show", kValue, "NAME|FILE",
-           "print this machine as a file for --machine, with everything in it"},
-          kGrblSettings,
-          kJson,
-          kForce};
+  return {option("show", kValue, "NAME|FILE",
+                 "print this machine as a file for --machine, with everything in it"),
+          kGrblSettings, kJson, kForce};
 }
 
 // Those of `smooth` that a configuration file may hold, and own ones. A worker has one thread, and
@@ -209,7 +168,22 @@ std::vector<OptionRow> batch_rows() {
   std::erase_if(rows, [](const OptionRow& row) {
     return !row.in_config || row.name == "threads" || row.name == "progress";
   });
-  for (const OptionRow& row : own_batch_rows()) rows.push_back(row);
+  rows.insert(
+      rows.end(),
+      {option("jobs", kValue, "N",
+              "programs at a time, each in a process with one thread; 0: a processor each", "0"),
+       option("shard", kValue, "I/N",
+              "only every N-th program from the I-th on, for several machines", "1/1"),
+       option("suffix", kList, "SUFFIX",
+              "what is a program, in place of nc, ngc, tap, cnc, gcode, ncc, eia, iso; none: "
+              "names without a suffix, all: every file; a list with commas, or repeated"),
+       option("fail-fast", kFlag, "",
+              "stop at the first program that cannot be written; otherwise carry on"),
+       option("force", kFlag, "", "replace programs in OUT_TREE that no batch wrote"),
+       option("progress", kValue, "auto|on|off",
+              "a line with rate and time left on standard error; auto: on a terminal", "auto"),
+       option("config", kValue, "FILE.toml",
+              "read options of smooth from a file; the command line goes first")});
   return rows;
 }
 
@@ -256,14 +230,18 @@ std::vector<CommandRow> make_command_rows() {
        "  batten batch programs smooth --target linuxcnc --tolerance 0.01"},
       {"freecad",
        "Put the post script for FreeCAD where FreeCAD looks for posts.",
-       freecad_rows(),
+       {option("freecad", kValue, "PROGRAM",
+               "the FreeCAD without a window that is asked; default: the one in PATH"),
+        option("folder", kValue, "DIR", "write into this folder of macros and ask nobody"),
+        option("force", kFlag, "", "replace a batten_post.py that is not ours")},
        {{"ACTION", "install"}},
        "Example:\n"
        "  batten freecad install\n"
        "asks the installed FreeCAD for the folder of your macros and writes batten_post.py there."},
       {"targets",
        "List the controls that programs can be written for, or show one as a profile.",
-       {{"show", kValue, "NAME", "print a profile of this target to start from"}, kJson, kForce},
+       {option("show", kValue, "NAME", "print a profile of this target to start from"), kJson,
+        kForce},
        {},
        "Example:\n"
        "  batten targets --show haas > mine.toml\n"
@@ -290,6 +268,195 @@ std::vector<CommandRow> make_command_rows() {
        "Example:\n  batten completion bash > ~/.local/share/bash-completion/completions/batten"},
       {"man", "Write the manual page.", {}, {}, "Example:\n  batten man | man -l -"},
   };
+}
+
+// --- completions of shells -----------------------------------------------------------------------
+
+// "path|band": lower-case words between bars. "NAME|FILE.toml" is no list of names.
+std::vector<std::string_view> names_in(std::string_view value) {
+  std::vector<std::string_view> names;
+  if (value.find('|') == std::string_view::npos) return names;
+  const bool plain = std::ranges::all_of(value, [](char c) {
+    return std::islower(static_cast<unsigned char>(c)) != 0 || c == '|' || c == '-';
+  });
+  if (!plain) return names;
+  while (!value.empty()) {
+    const std::size_t end = std::min(value.find('|'), value.size());
+    names.push_back(value.substr(0, end));
+    value.remove_prefix(std::min(end + 1, value.size()));
+  }
+  return names;
+}
+
+// What a word without dashes can be.
+std::vector<std::string_view> names_for_file(std::string_view file) {
+  if (file == "ID") return explained_ids();
+  if (file == "SHELL") return {"bash", "zsh"};
+  return {};
+}
+
+// The values that an option can have, where they are names: those of its help ("time|size"), the
+// targets, the machines, the reasons that can be lifted.
+std::vector<std::string_view> names_for(const OptionRow& row) {
+  std::vector<std::string_view> names = names_in(row.value);
+  if (row.name == "target") {
+    for (const gcode::Control& control : gcode::controls()) names.push_back(control.name);
+  } else if (row.name == "machine") {
+    for (const Machine& machine : built_in_machines()) names.emplace_back(machine.name);
+  } else if (row.name == "allow") {
+    for (const auto& each : gcode::reason::explanations()) {
+      if (each.can_be_allowed) names.push_back(each.id);
+    }
+  }
+  return names;
+}
+
+// Whether the option's value can be a file.
+bool takes_file(const OptionRow& row) {
+  return row.value.find("FILE") != std::string_view::npos ||
+         row.value.find("DIR") != std::string_view::npos ||
+         row.value.find("TREE") != std::string_view::npos;
+}
+
+// --- bash ---------------------------------------------------------------------------------------
+
+std::string bash_values(const CommandRow& command) {
+  std::string cases;
+  for (const OptionRow& row : command.rows) {
+    if (row.kind == OptionKind::kFlag) continue;
+    const std::string_view brief = short_form_of(row);
+    const std::string name = fmt::format("--{}{}{}", row.name, brief.empty() ? "" : "|", brief);
+    const auto names = names_for(row);
+    cases += fmt::format("        {}) _batten_reply {} \"{}\"; return ;;\n", name,
+                         takes_file(row) ? "files" : "names", fmt::join(names, " "));
+  }
+  return cases;
+}
+
+std::string bash_command(const CommandRow& command) {
+  std::vector<std::string> options;
+  for (const OptionRow& row : command.rows) options.push_back(fmt::format("--{}", row.name));
+  std::vector<std::string_view> words;
+  bool files = false;
+  for (const auto& [name, help] : command.files) {
+    const auto names = names_for_file(name);
+    words.insert(words.end(), names.begin(), names.end());
+    files = files || names.empty();
+  }
+  return fmt::format(
+      "    {})\n"
+      "      case $previous in\n{}      esac\n"
+      "      if [[ $word == -* ]]; then _batten_reply names \"{} --help\"\n"
+      "      else _batten_reply {} \"{}\"; fi ;;\n",
+      command.name, bash_values(command), fmt::join(options, " "), files ? "files" : "names",
+      fmt::join(words, " "));
+}
+
+// --- zsh ----------------------------------------------------------------------------------------
+
+// For the inside of '..[help]..' of _arguments.
+std::string zsh_text(std::string_view text) {
+  return escaped(text, {{'\'', "'\\''"}, {'[', "\\["}, {']', "\\]"}, {':', "\\:"}, {'\\', "\\\\"}});
+}
+
+std::string zsh_value(const OptionRow& row) {
+  const auto names = names_for(row);
+  const std::string title = zsh_text(row.value);
+  if (takes_file(row) && !names.empty()) {
+    // Names first, files too.
+    return fmt::format(":{}:{{compadd -- {}; _files}}", title, fmt::join(names, " "));
+  }
+  if (takes_file(row)) return fmt::format(":{}:_files", title);
+  return fmt::format(":{}:({})", title, fmt::join(names, " "));
+}
+
+std::string zsh_option(const OptionRow& row) {
+  const std::string help = zsh_text(row.help);
+  const std::string_view brief = short_form_of(row);
+  if (row.kind == OptionKind::kFlag) return fmt::format("'--{}[{}]'", row.name, help);
+  const std::string_view again = row.kind == OptionKind::kList ? "*" : "";
+  std::string text = fmt::format("'{}--{}=[{}]{}'", again, row.name, help, zsh_value(row));
+  if (!brief.empty()) text += fmt::format(" \\\n        '{}[{}]{}'", brief, help, zsh_value(row));
+  return text;
+}
+
+std::string zsh_command(const CommandRow& command) {
+  std::string text = fmt::format("    {})\n      _arguments", command.name);
+  for (const OptionRow& row : command.rows) text += " \\\n        " + zsh_option(row);
+  text += " \\\n        '--help[show the options]'";
+  std::size_t place = 0;
+  for (const auto& [name, help] : command.files) {
+    const auto names = names_for_file(name);
+    text += fmt::format(
+        " \\\n        '{}:{}:{}'", ++place, zsh_text(name),
+        names.empty() ? std::string("_files") : fmt::format("({})", fmt::join(names, " ")));
+  }
+  return text + " ;;\n";
+}
+
+std::string bash_completion() {
+  std::vector<std::string_view> commands;
+  std::string cases;
+  for (const CommandRow& command : command_rows()) {
+    commands.push_back(command.name);
+    cases += bash_command(command);
+  }
+  return fmt::format(
+      "# Completion of batten for bash, made by `batten completion bash`.\n"
+      "\n"
+      "_batten_reply() {{  # files|names WORDS\n"
+      "  COMPREPLY=($(compgen -W \"$2\" -- \"$word\"))\n"
+      "  [[ $1 == files ]] || return 0\n"
+      "  local file\n"
+      "  compopt -o filenames 2>/dev/null\n"
+      "  while IFS= read -r file; do COMPREPLY+=(\"$file\"); done < <(compgen -f -- \"$word\")\n"
+      "}}\n"
+      "\n"
+      "_batten() {{\n"
+      "  COMPREPLY=()\n"
+      "  local word=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}}\n"
+      "  if (( COMP_CWORD == 1 )); then\n"
+      "    _batten_reply names \"{} --help --version --explain\"\n"
+      "    return\n"
+      "  fi\n"
+      "  case ${{COMP_WORDS[1]}} in\n"
+      "{}"
+      "    --explain) _batten_reply names \"{}\" ;;\n"
+      "  esac\n"
+      "}}\n"
+      "\n"
+      "complete -F _batten batten\n",
+      fmt::join(commands, " "), cases, fmt::join(explained_ids(), " "));
+}
+
+std::string zsh_completion() {
+  std::string commands;
+  std::string cases;
+  for (const CommandRow& command : command_rows()) {
+    commands += fmt::format("    '{}:{}'\n", command.name, zsh_text(command.description));
+    cases += zsh_command(command);
+  }
+  return fmt::format(
+      "#compdef batten\n"
+      "# Completion of batten for zsh, made by `batten completion zsh`.\n"
+      "\n"
+      "_batten() {{\n"
+      "  local -a commands\n"
+      "  commands=(\n{}  )\n"
+      "  if (( CURRENT == 2 )); then\n"
+      "    _describe command commands\n"
+      "    return\n"
+      "  fi\n"
+      "  local command=$words[2]\n"
+      "  shift words\n"
+      "  (( CURRENT-- ))\n"
+      "  case $command in\n"
+      "{}"
+      "  esac\n"
+      "}}\n"
+      "\n"
+      "_batten \"$@\"\n",
+      commands, cases);
 }
 
 // --- the manual page -----------------------------------------------------------------------------
@@ -370,6 +537,12 @@ const std::vector<OptionRow>& option_rows(std::string_view command) {
 }
 
 std::string_view short_form_of(const OptionRow& row) { return row.name == "out" ? "-o" : ""; }
+
+std::optional<std::string> completion_for(std::string_view shell) {
+  if (shell == "bash") return bash_completion();
+  if (shell == "zsh") return zsh_completion();
+  return std::nullopt;
+}
 
 std::string man_page() {
   std::string text = fmt::format(

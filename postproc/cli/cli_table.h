@@ -2,6 +2,7 @@
 // completions of shells and configuration files are made from.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -41,6 +42,10 @@ struct CommandRow {
 
 // "-o" for --out: the one option with a short form.
 [[nodiscard]] std::string_view short_form_of(const OptionRow& row);
+
+// Completion of commands, options and their values, by the name of a shell: "bash" or "zsh";
+// nothing for others.
+[[nodiscard]] std::optional<std::string> completion_for(std::string_view shell);
 
 // The manual page batten(1) in the man macros of roff.
 [[nodiscard]] std::string man_page();

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
+#include <array>
 
-#include "gcode/reading/explained_diagnostics.h"
 #include "gcode/state/reason.h"
 
 namespace batten::postproc {
@@ -14,76 +13,76 @@ namespace {
 // Columns of the text, a little less than a terminal of 80.
 constexpr std::size_t kColumns = 78;
 
-constexpr ExplainedViolation kViolations[] = {
-    {"distance",
-     "A section of cutting moves leaves the tolerance, both ways and in order. The message gives a "
-     "distance that is certainly reached, the lines say where.",
+constexpr gcode::ExplainedDiagnostic kViolations[] = {
+    {"distance", "error",
+     "A section of cutting moves leaves the tolerance, both ways and in order. The message gives "
+     "a distance that is certainly reached, the lines say where.",
      "The new program cuts something else there: do not run it."},
-    {"wrong-side",
+    {"wrong-side", "error",
      "With --side: a section of the new path comes over to the side that is not allowed, or could "
      "not be proved to stay on the other.",
      "A larger tolerance or more decimals: a tenth of the tolerance is allowed for rounding."},
-    {"crosses-itself",
+    {"crosses-itself", "error",
      "A flat section meets itself where the old one does not: two parts of it are nearer to each "
      "other than twice the tolerance, and one came over to the other side.",
      "Take a smaller tolerance."},
-    {"arc-refused",
+    {"arc-refused", "error",
      "The target would refuse an arc of the new text, by its least radius or its check of the "
      "radii.",
      "While a program is smoothed: nothing, the run goes back to another form, in the end to its "
      "own blocks. From verify: do not run the new program."},
-    {"line-refused", "A line of the new text is longer than the target reads.",
+    {"line-refused", "error", "A line of the new text is longer than the target reads.",
      "Shorten it: comments and blanks count where the target counts them."},
-    {"not-proved",
+    {"not-proved", "error",
      "The distance of a section could be bounded from both sides, but the tolerance lies between "
      "the bounds: paths that run over themselves many times within the tolerance, or a distance "
      "that equals it.",
      "Ask with another tolerance."},
-    {"feed-changed",
+    {"feed-changed", "error",
      "Another feed, or one that is missing or new in the order of feeds of a section.",
      "F was lost, or is on another block."},
-    {"feed-moved",
-     "The path is right, but a feed begins or ends at another position on it, further off than the "
-     "tolerance.",
+    {"feed-moved", "error",
+     "The path is right, but a feed begins or ends at another position on it, further off than "
+     "the tolerance.",
      "F is on another block."},
-    {"rapid-changed",
+    {"rapid-changed", "error",
      "A rapid ends at another position on an axis that it names, or starts or ends further off "
-     "than "
-     "the tolerance on one that it does not name.",
+     "than the tolerance on one that it does not name.",
      "Look at the two lines: the rapid itself, or where the moves before it end."},
-    {"rapid-lost", "A rapid is in the old program only.", "Put it back."},
-    {"rapid-added", "A rapid is in the new program only.", "Take it out."},
-    {"event-lost",
+    {"rapid-lost", "error", "A rapid is in the old program only.", "Put it back."},
+    {"rapid-added", "error", "A rapid is in the new program only.", "Take it out."},
+    {"event-lost", "error",
      "A word that acts (M, S, T, H, D, a G word that sets a mode), a message, a dwell, or a block "
      "that has to be copied is in the old program only.",
      "Put it back."},
-    {"event-added", "Such a word or block is in the new program only.", "Take it out."},
-    {"event-changed",
+    {"event-added", "error", "Such a word or block is in the new program only.", "Take it out."},
+    {"event-changed", "error",
      "At the same position are different words; other blanks count too in a block that is not "
      "understood.",
      "Look at the two lines."},
-    {"event-moved", "An event is at another position on the path, or has moved past other events.",
+    {"event-moved", "error",
+     "An event is at another position on the path, or has moved past other events.",
      "Look at the two lines: coolant or spindle would change at another position of the cut."},
-    {"state-changed",
-     "Plane, units, a mode or the feed are different where a copied block depends on them, or only "
-     "assumed where a word had set them.",
+    {"state-changed", "error",
+     "Plane, units, a mode or the feed are different where a copied block depends on them, or "
+     "only assumed where a word had set them.",
      "Look for a plane that was selected for arcs and not restored."},
-    {"point-spelling",
-     "Nothing says for which control the programs are, and a number stands without a decimal point "
-     "(X5, F100) that the old program writes with one (X5., F100.), or the other way round: some "
-     "controls take X5 for 0.005 mm.",
+    {"point-spelling", "error",
+     "Nothing says for which control the programs are, and a number stands without a decimal "
+     "point (X5, F100) that the old program writes with one (X5., F100.), or the other way round: "
+     "some controls take X5 for 0.005 mm.",
      "Say --target or --source, or --decimals."},
-    {"profile-words-open",
+    {"profile-words-open", "error",
      "Words of a profile before a run without those after it, or its header without its footer.",
      "Something was taken out by hand: put it back."},
-    {"profile-words-around-event",
+    {"profile-words-around-event", "error",
      "Between the words before and after a run something acts that is no cutting move.",
      "The words were moved by hand: put them back."},
-    {"profile-words-in-program",
+    {"profile-words-in-program", "error",
      "The old program has words of the profile itself, so none in the new one are taken for the "
      "profile's.",
      "Verify without the profile, or take them out of it."},
-    {"too-many-differences", "More than 50 places differ: the rest was not compared.",
+    {"too-many-differences", "error", "More than 50 places differ: the rest was not compared.",
      "The files do not belong together."},
 };
 
@@ -111,8 +110,7 @@ constexpr gcode::ExplainedDiagnostic kNotes[] = {
     // --- the band around a run ---
     {"band-overlap", "note",
      "Two parts of a flat run are nearer to each other than twice the tolerance. The place is "
-     "where "
-     "they are nearest.",
+     "where they are nearest.",
      "Nothing, or a smaller tolerance where the wall between them matters."},
     {"band-cusp", "note",
      "A flat run bends with a radius below the tolerance. The place is the first such bend.",
@@ -120,8 +118,7 @@ constexpr gcode::ExplainedDiagnostic kNotes[] = {
     // --- what was written ---
     {"missing-provenance", "note",
      "The target has no comment that all its controls take, so nothing in the new program says "
-     "that "
-     "it was smoothed. Batten would smooth it again, and the tolerances would add up.",
+     "that it was smoothed. Batten would smooth it again, and the tolerances would add up.",
      "Keep the original, and smooth that. Where the control takes comments, a profile with its "
      "`comments` says so, and the program tells it."},
     {"curves-unverified", "warning",
@@ -130,8 +127,8 @@ constexpr gcode::ExplainedDiagnostic kNotes[] = {
      "Run the program without a part, or on the vendor's simulator, and compare it with another "
      "form."},
     {"chords-for-steps", "note",
-     "The equal steps of --linearize ilca are as short everywhere as the tightest place of the run "
-     "asks for, and were too many. Its lines are chords, as --linearize chord lays them.",
+     "The equal steps of --linearize ilca are as short everywhere as the tightest place of the "
+     "run asks for, and were too many. Its lines are chords, as --linearize chord lays them.",
      "Nothing, or a larger tolerance."},
 };
 
@@ -176,35 +173,35 @@ struct Explained {
 
 struct ExplainedGroup {
   std::string_view title;
-  std::vector<Explained> all;
+  std::vector<Explained> all = {};
 };
 
-std::vector<ExplainedGroup> explained_groups() {
-  ExplainedGroup reasons = {"Why blocks are kept as they are:", {}};
+std::array<ExplainedGroup, 3> explained_groups() {
+  std::array<ExplainedGroup, 3> groups = {ExplainedGroup{"Why blocks are kept as they are:"},
+                                          ExplainedGroup{"\nMessages about a program:"},
+                                          ExplainedGroup{"\nViolations found by batten verify:"}};
+  auto& [reasons, messages, violations] = groups;
   for (const auto& each : gcode::reason::explanations()) {
     reasons.all.push_back(
         {each.id, "why blocks are kept as they are", each.text, each.advice, each.can_be_allowed});
   }
-  ExplainedGroup messages = {"\nMessages about a program:", {}};
-  const auto add_messages = [&](std::span<const gcode::ExplainedDiagnostic> list) {
+  using List = std::span<const gcode::ExplainedDiagnostic>;
+  for (const List list : {gcode::explained_diagnostics(), List(kNotes)}) {
     for (const auto& each : list) {
       messages.all.push_back({each.id, fmt::format("a message about a program ({})", each.severity),
                               each.text, each.advice});
     }
-  };
-  add_messages(gcode::explained_diagnostics());
-  add_messages(kNotes);
-  ExplainedGroup violations = {"\nViolations found by batten verify:", {}};
+  }
   for (const auto& each : kViolations) {
     violations.all.push_back(
         {each.id, "a violation found by batten verify", each.text, each.advice});
   }
-  return {std::move(reasons), std::move(messages), std::move(violations)};
+  return groups;
 }
 
 }  // namespace
 
-std::span<const ExplainedViolation> explained_violations() { return kViolations; }
+std::span<const gcode::ExplainedDiagnostic> explained_violations() { return kViolations; }
 
 std::vector<std::string_view> explained_ids() {
   std::vector<std::string_view> ids;

@@ -6,17 +6,12 @@
 #include <string_view>
 #include <vector>
 
+#include "gcode/reading/explained_diagnostics.h"
+
 namespace batten::postproc {
 
-// A violation that `batten verify` can find (Violation::id).
-struct ExplainedViolation {
-  std::string_view id;
-  std::string_view text;
-  std::string_view advice;
-};
-
-// Every id, once.
-[[nodiscard]] std::span<const ExplainedViolation> explained_violations();
+// The violations that `batten verify` can find (Violation::id), each once.
+[[nodiscard]] std::span<const gcode::ExplainedDiagnostic> explained_violations();
 
 // All ids that can be asked for, sorted, each once: reasons why runs are kept, messages about a
 // program, violations. Some are both a reason and a violation.

@@ -8,7 +8,6 @@
 
 #include "postproc/batch/batch_run.h"
 #include "postproc/batch/batch_summary.h"
-#include "postproc/batch/content_hash.h"
 #include "postproc/batch/process_pool.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"

@@ -19,85 +19,76 @@ namespace batten::postproc {
 
 // File names as the user gave them; "-" is standard input or output, "" is not given.
 
-struct SmoothCommand {
+// How programs are smoothed, one or all of a tree.
+struct SmoothingCommand {
   SmoothOptions options;
   std::shared_ptr<const Machine> own_machine;    // keeps the machine of the options alive
   std::shared_ptr<const TargetProfile> profile;  // and a target
+  ProgressStyle progress = ProgressStyle::kAuto;
+  bool force = false;   // existing files may be replaced
+  bool strict = false;  // a run that could not be proved is an error, not a reason to keep it
+};
+
+struct SmoothCommand : SmoothingCommand {
   std::string input;
   std::string output;  // not given: default_output_path(input), or standard output for "-"
   std::string json_file;
   std::string report_file;   // the page for a browser
   std::string command_line;  // as it was called, for that page; may be empty
-  ProgressStyle progress = ProgressStyle::kAuto;
   LogLevel log_level = LogLevel::kInfo;
   bool in_place = false;
-  bool force = false;    // existing files may be replaced
-  bool strict = false;   // a run that could not be proved is an error, not a reason to keep it
   bool dry_run = false;  // everything but writing the program
 };
 [[nodiscard]] int run(const SmoothCommand& command);
 
-struct VerifyCommand {
-  std::string old_program;
-  std::string new_program;
-  double tolerance_mm = 0.01;
-  geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
-  geometry::Side side = geometry::Side::kBoth;
-  gcode::Units units = gcode::Units::kUnknown;
-  gcode::SourceKind source = gcode::SourceKind::kAuto;
-  std::optional<gcode::Decimals> decimals;       // as SmoothOptions::decimals
-  std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
-  const gcode::Control* target = nullptr;        // whose curves are read; nullptr: none are
-  std::vector<std::string> allowed;              // of these only `subprogram` changes what is read
-  std::string json_file;
-  LogLevel log_level = LogLevel::kInfo;
-  bool force = false;
-};
-[[nodiscard]] int run(const VerifyCommand& command);
-
-struct InspectCommand {
-  std::string input;
-  gcode::Units units = gcode::Units::kUnknown;
-  gcode::SourceKind source = gcode::SourceKind::kAuto;
-  std::optional<gcode::Decimals> decimals;  // as SmoothOptions::decimals
-  std::vector<std::string> allowed;
-  std::string json_file;
-  LogLevel log_level = LogLevel::kInfo;
-  bool force = false;
-};
-[[nodiscard]] int run(const InspectCommand& command);
-
-struct TimeCommand {
-  std::string input;
-  std::shared_ptr<const Machine> machine;  // required
-  const gcode::Control* target = nullptr;  // not given: the dwell units of the machine's control
-  gcode::Units units = gcode::Units::kUnknown;
-  gcode::SourceKind source = gcode::SourceKind::kAuto;
-  std::optional<gcode::Decimals> decimals;  // as SmoothOptions::decimals
-  std::optional<geometry::Point3> start;    // mm: where the tool stands before the program
-  std::string json_file;
-  std::string profile_file;
-  LogLevel log_level = LogLevel::kInfo;
-  bool force = false;
-};
-[[nodiscard]] int run(const TimeCommand& command);
 // All programs of a folder tree (postproc/batch/).
-struct BatchCommand {
-  SmoothOptions options;
-  std::shared_ptr<const Machine> own_machine;
-  std::shared_ptr<const TargetProfile> profile;
+struct BatchCommand : SmoothingCommand {
   std::string settings;  // everything that the bytes of a result depend on, as text
   std::string input_tree;
   std::string output_tree;
   std::vector<std::string> suffixes;
   int jobs = 0;  // 0: as many as there are processors
   Shard shard;
-  ProgressStyle progress = ProgressStyle::kAuto;
   bool fail_fast = false;
-  bool force = false;
-  bool strict = false;
 };
 [[nodiscard]] int run(const BatchCommand& command);
+
+// How programs are read where none is written.
+struct ReadingCommand {
+  gcode::Units units = gcode::Units::kUnknown;
+  gcode::SourceKind source = gcode::SourceKind::kAuto;
+  std::optional<gcode::Decimals> decimals;  // as SmoothOptions::decimals
+  const gcode::Control* target = nullptr;   // whose curves are read; nullptr: none are
+  std::string json_file;
+  LogLevel log_level = LogLevel::kInfo;
+  bool force = false;
+};
+
+struct VerifyCommand : ReadingCommand {
+  std::string old_program;
+  std::string new_program;
+  double tolerance_mm = 0.01;
+  geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
+  geometry::Side side = geometry::Side::kBoth;
+  std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
+  std::vector<std::string> allowed;              // of these only `subprogram` changes what is read
+};
+[[nodiscard]] int run(const VerifyCommand& command);
+
+struct InspectCommand : ReadingCommand {
+  std::string input;
+  std::vector<std::string> allowed;
+};
+[[nodiscard]] int run(const InspectCommand& command);
+
+// Without a target dwells are those of the machine's control.
+struct TimeCommand : ReadingCommand {
+  std::string input;
+  std::shared_ptr<const Machine> machine;  // required
+  std::optional<geometry::Point3> start;   // mm: where the tool is before the program
+  std::string profile_file;
+};
+[[nodiscard]] int run(const TimeCommand& command);
 
 // Puts the post script where FreeCAD looks for it (postproc/hosts/freecad_post.h).
 struct FreecadCommand {
@@ -107,22 +98,15 @@ struct FreecadCommand {
 };
 [[nodiscard]] int run(const FreecadCommand& command);
 
-// What is built in, as a table on standard output.
-enum class BuiltIn { kTargets, kMethods };
+// What is built in, as a table on standard output; or one of it as a file that says everything.
+enum class BuiltIn { kTargets, kMachines, kMethods };
 struct ListCommand {
   BuiltIn what = BuiltIn::kTargets;
-  const gcode::Control* show = nullptr;  // kTargets: this one's profile instead of the table
+  const gcode::Control* target = nullptr;  // its profile
+  std::shared_ptr<const Machine> machine = nullptr;
   std::string json_file;
   bool force = false;
 };
 [[nodiscard]] int run(const ListCommand& command);
-
-// The built-in machines as a table, or one machine as a file that says everything about it.
-struct MachinesCommand {
-  std::shared_ptr<const Machine> shown;  // null: the table
-  std::string json_file;
-  bool force = false;
-};
-[[nodiscard]] int run(const MachinesCommand& command);
 
 }  // namespace batten::postproc

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -12,7 +13,6 @@
 
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
-#include "postproc/system/output_file.h"
 #include "postproc/system/terminal_colour.h"
 
 namespace batten::postproc {
@@ -86,27 +86,23 @@ std::optional<gcode::SourceText> read_standard_input() {
   }
 }
 
-LogLevel level_of(gcode::Severity severity) {
-  switch (severity) {
-    case gcode::Severity::kNote:
-      return LogLevel::kInfo;
-    case gcode::Severity::kWarning:
-      return LogLevel::kWarning;
-    case gcode::Severity::kError:
-      break;
-  }
-  return LogLevel::kError;
-}
+// The severity, the least level that it is said at, its word, and the colour of that.
+struct Remark {
+  gcode::Severity severity;
+  LogLevel level;
+  std::string_view word;
+  Ink ink;
+};
+constexpr std::array kRemarks = {
+    Remark{gcode::Severity::kNote, LogLevel::kInfo, "note", Ink::kNote},
+    Remark{gcode::Severity::kWarning, LogLevel::kWarning, "warning", Ink::kWarning},
+    Remark{gcode::Severity::kError, LogLevel::kError, "error", Ink::kError}};
 
-// The severity in colour, behind the place: part.nc:2:6: warning: ..
-std::string with_colour(std::string text, gcode::Severity severity) {
-  const bool error = severity == gcode::Severity::kError;
-  const bool note = severity == gcode::Severity::kNote;
-  const std::string_view word = error ? "error" : note ? "note" : "warning";
-  const std::size_t at = text.find(": " + std::string(word) + ": ");
+// The severity in colour, after the place: part.nc:2:6: warning: ..
+std::string with_colour(std::string text, const Remark& remark) {
+  const std::size_t at = text.find(fmt::format(": {}: ", remark.word));
   if (at == std::string::npos) return text;
-  const Ink ink = error ? Ink::kError : note ? Ink::kNote : Ink::kWarning;
-  return text.replace(at + 2, word.size(), inked(word, ink, true));
+  return text.replace(at + 2, remark.word.size(), inked(remark.word, remark.ink, true));
 }
 
 }  // namespace
@@ -184,11 +180,11 @@ void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& sourc
   const bool colour = shows_colour();
   std::size_t remarks = 0;
   for (const gcode::Diagnostic& diagnostic : diagnostics) {
-    if (level_of(diagnostic.severity) > level) continue;
-    const bool remark = diagnostic.severity != gcode::Severity::kError;
-    if (remark && ++remarks > kMostRemarks) continue;
+    const Remark& remark = *std::ranges::find(kRemarks, diagnostic.severity, &Remark::severity);
+    if (remark.level > level) continue;
+    if (remark.level != LogLevel::kError && ++remarks > kMostRemarks) continue;
     std::string text = gcode::to_text(diagnostic, source);
-    if (colour) text = with_colour(std::move(text), diagnostic.severity);
+    if (colour) text = with_colour(std::move(text), remark);
     say_lines(text + "\n");
   }
   if (remarks > kMostRemarks) {

@@ -18,43 +18,46 @@ namespace batten::postproc {
 // Reads a file, or standard input to its end. On failure says why and returns nothing.
 [[nodiscard]] std::optional<gcode::SourceText> read_program(const std::string& name);
 
-// Was the file written into since it is watched? Then what was made of it is worth nothing, and
-// this says so. To be asked when all was read.
+// Asked when all was read: was the file written into since it is watched? Then what was made of it
+// is worth nothing, and this says so.
 [[nodiscard]] bool changed_while_read(const WatchedFile& file);
 
 // Says that a signal ended the work before anything was written, and returns its exit code.
-// Requires interrupted() (postproc/system/interrupt.h).
 [[nodiscard]] int end_interrupted();
 
-// 0 when written; else says why and returns the exit code.
+// The functions below return 0 when all is written; else they say why and return the exit code.
+
 [[nodiscard]] int write_result(const std::string& name, std::string_view bytes,
                                bool replace_existing);
 
-// The same for a program in the place of the one that it was made of: not where that one was
-// written into, put away or replaced meanwhile.
-[[nodiscard]] int write_in_place_of(const WatchedFile& input, std::string_view bytes);
+// Of a report: its text is made only where the name is not empty.
+template <typename Text>
+[[nodiscard]] int write_report(const std::string& name, bool replace_existing, const Text& text) {
+  return name.empty() ? 0 : write_result(name, text(), replace_existing);
+}
 
-// Why no program may be put in the place of this one, which it was made of; empty: it may.
+// Of a program in the place of the one that it was made of: not where that one was written into,
+// put away or replaced meanwhile.
+[[nodiscard]] int write_in_place_of(const WatchedFile& input, std::string_view bytes);
+// Why it may not be put there; empty: it may.
 [[nodiscard]] std::string objection_to_place_of(const WatchedFile& input);
 
-// The same of something that was written: 0, or the exit code, with the reason said.
 [[nodiscard]] int exit_code_of(const WriteResult& result);
 
-// The same for a file that is made part by part.
+// Of a file that is made part by part.
 [[nodiscard]] int write_parts(const std::string& name,
                               const std::function<void(const PartWriter&)>& parts,
                               bool replace_existing);
 
-// file:line:column lines on standard error: errors all, notes and warnings up to a readable
-// number and as far as `level` wants them. On a terminal with colours.
+// file:line:column lines on standard error: all errors, notes and warnings up to a readable number
+// and as far as `level` wants them. On a terminal with colours.
 void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source,
            LogLevel level = LogLevel::kInfo);
 
 // "batten: message" on standard error.
 void say(std::string_view message);
 
-// Whole lines on standard error, as they are but for bytes that are not UTF-8
-// (postproc/system/terminal_colour.h).
+// Whole lines on standard error, as they are but for bytes that are not UTF-8.
 void say_lines(std::string_view text);
 
 }  // namespace batten::postproc

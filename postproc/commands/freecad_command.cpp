@@ -49,12 +49,6 @@ std::optional<fs::path> folder_for(const FreecadCommand& command) {
   return answer->folder;
 }
 
-bool holds_something_else(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return false;
-  return !is_freecad_post(std::string(std::istreambuf_iterator<char>(stream), {}));
-}
-
 }  // namespace
 
 int run(const FreecadCommand& command) {
@@ -64,7 +58,9 @@ int run(const FreecadCommand& command) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   const fs::path target = *folder / kFreecadPostName;
-  const bool replace = command.force || !holds_something_else(target);
+  std::ifstream there(target, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(there), {});
+  const bool replace = command.force || !there.is_open() || is_freecad_post(text);
   const int code = write_result(target.string(), freecad_post_calling(program), replace);
   if (code != 0) return code;
   say_lines(fmt::format(

@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <utility>
 
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
@@ -18,6 +15,7 @@
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 #include "postproc/text/json_values.h"
+#include "postproc/text/words.h"
 
 namespace batten::postproc {
 
@@ -61,9 +59,7 @@ std::string runs_table(const std::vector<InspectedSection>& sections) {
   }
   if (runs == 0) return "no run that may be rewritten\n";
   if (runs > kMostRows) text += fmt::format("     {} more runs, see --json\n", runs - kMostRows);
-  return fmt::format("{} that may be rewritten:\n",
-                     runs == 1 ? "1 run" : fmt::format("{} runs", runs)) +
-         text;
+  return fmt::format("{} that may be rewritten:\n", plural(runs, "run")) + text;
 }
 
 std::map<std::string_view, KeptTotal> kept_totals(const std::vector<InspectedSection>& sections) {
@@ -112,24 +108,22 @@ Json json_of(const InspectedSection& section) {
 }
 
 std::string json_report(const InspectedProgram& inspected, const gcode::SourceText& source) {
-  Json list = Json::array();
-  for (const InspectedSection& section : inspected.sections) list.push_back(json_of(section));
-  Json kept = Json::array();
-  for (const auto& [reason, total] : kept_totals(inspected.sections)) {
-    kept.push_back({{"id", reason},
-                    {"sections", total.sections},
-                    {"blocks", total.blocks},
-                    {"cutting_moves", total.cutting_moves},
-                    {"text", text_of(reason)}});
-  }
-  const Json json = {
-      {"batten", BATTEN_VERSION},
-      {"input",
-       {{"file", source.name()}, {"bytes", source.text().size()}, {"blocks", inspected.blocks}}},
-      {"sections", std::move(list)},
-      {"kept", std::move(kept)},
-      {"diagnostics", diagnostics_json(inspected.found, source)}};
-  return json_text(json);
+  const auto section = [](const InspectedSection& each) { return json_of(each); };
+  const auto kept = [](const auto& each) -> Json {
+    const auto& [reason, total] = each;
+    return {{"id", reason},
+            {"sections", total.sections},
+            {"blocks", total.blocks},
+            {"cutting_moves", total.cutting_moves},
+            {"text", text_of(reason)}};
+  };
+  return json_text(
+      {{"batten", BATTEN_VERSION},
+       {"input",
+        {{"file", source.name()}, {"bytes", source.text().size()}, {"blocks", inspected.blocks}}},
+       {"sections", json_list(inspected.sections, section)},
+       {"kept", json_list(kept_totals(inspected.sections), kept)},
+       {"diagnostics", diagnostics_json(inspected.found, source)}});
 }
 
 }  // namespace
@@ -163,10 +157,9 @@ int run(const InspectCommand& command) {
                              runs_table(result.sections) + kept_table(result.sections);
     if (const int code = write_result("-", text, false); code != 0) return code;
   }
-  if (!command.json_file.empty()) {
-    const int code = write_result(command.json_file, json_report(result, *source), command.force);
-    if (code != 0) return code;
-  }
+  const int code =
+      write_report(command.json_file, command.force, [&] { return json_report(result, *source); });
+  if (code != 0) return code;
   if (!result.unit_word_seen) {
     say(source->name() +
         ": no G20 or G21 says whether its numbers are inches or millimetres; say --units mm or "

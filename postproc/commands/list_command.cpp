@@ -1,13 +1,18 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
+#include "postproc/machine/files/machine_file.h"
+#include "postproc/machine/machine_fields.h"
 #include "postproc/profile/target_profile.h"
-#include "postproc/system/exit_code.h"
 #include "postproc/text/json_values.h"
 
 namespace batten::postproc {
@@ -21,14 +26,11 @@ struct Listing {
 
 std::string planes_of(const gcode::Control& target) {
   std::string planes;
-  const auto add = [&](gcode::Plane plane, std::string_view name) {
-    if (!takes_arcs_in(target, plane)) return;
-    if (!planes.empty()) planes += " ";
-    planes += name;
-  };
-  add(gcode::Plane::kXY, "G17");
-  add(gcode::Plane::kZX, "G18");
-  add(gcode::Plane::kYZ, "G19");
+  for (const auto& [plane, name] : {std::pair{gcode::Plane::kXY, "G17"},
+                                    {gcode::Plane::kZX, "G18"},
+                                    {gcode::Plane::kYZ, "G19"}}) {
+    if (takes_arcs_in(target, plane)) planes += (planes.empty() ? "" : " ") + std::string(name);
+  }
   return planes.empty() ? "none" : planes;
 }
 
@@ -63,26 +65,102 @@ Listing list_methods() {
   return listing;
 }
 
-Listing list(BuiltIn what) {
-  switch (what) {
-    case BuiltIn::kTargets:
-      return list_targets();
-    case BuiltIn::kMethods:
-      break;
+// "-" without a limit.
+std::string short_number(double value) {
+  return std::isinf(value) ? "-" : fmt::format("{:.4g}", value);
+}
+
+// One number where X, Y and Z agree, else three.
+std::string xyz(const Machine& machine, double AxisLimits::*limit, double unit = 1) {
+  const auto of = [&](Axis axis) { return short_number(machine.axis(axis).*limit / unit); };
+  const std::string x = of(Axis::kX);
+  const std::string y = of(Axis::kY);
+  const std::string z = of(Axis::kZ);
+  return x == y && y == z ? x : fmt::format("{}/{}/{}", x, y, z);
+}
+
+// Columns of the table: name, control, limits, blocks per second and ahead, bytes, description.
+template <typename... Columns>
+std::string table_line(const Columns&... columns) {
+  return fmt::format("{:<12} {:<11} {:>7} {:>7} {:>7} {:>7} {:>9} {:>6} {:>8}  {}\n", columns...);
+}
+
+std::string table_of(std::span<const Machine> machines) {
+  constexpr double kMetre = 1000;  // mm
+  std::string text =
+      table_line("", "", "cutting", "rapid", "accel.", "jerk", "", "ahead", "stream", "") +
+      table_line("machine", "control", "mm/s", "mm/s", "mm/s2", "m/s3", "blocks/s", "blocks",
+                 "bytes/s", "");
+  for (const Machine& m : machines) {
+    text += table_line(m.name, name_of(m.model), xyz(m, &AxisLimits::velocity),
+                       xyz(m, &AxisLimits::rapid_velocity), xyz(m, &AxisLimits::acceleration),
+                       xyz(m, &AxisLimits::jerk, kMetre), fmt::format("{:.0f}", 1 / m.block_period),
+                       m.look_ahead, short_number(m.stream_rate), m.description);
   }
-  return list_methods();
+  return text;
+}
+
+// --- JSON --------------------------------------------------------------------------------------
+
+// By Quantity.
+constexpr std::array<std::string_view, 10> kSuffixes = {
+    "_mm",         "_mm_per_s",   "_mm_per_s2", "_mm_per_s3",    "_deg_per_s",
+    "_deg_per_s2", "_deg_per_s3", "_s",         "_blocks_per_s", "_bytes_per_s"};
+
+// "block-period" and seconds: "block_period_s".
+std::string json_key(std::string_view key, Quantity quantity) {
+  std::string name(key);
+  std::ranges::replace(name, '-', '_');
+  return name.append(kSuffixes.at(static_cast<std::size_t>(quantity)));
+}
+
+Json number_or_null(double value) { return std::isinf(value) ? Json(nullptr) : Json(value); }
+
+Json json_of(const Machine& machine) {
+  Json json = {{"name", machine.name},
+               {"description", machine.description},
+               {"model", name_of(machine.model)},
+               {"path_mode", name_of(machine.path_mode)},
+               {"max_velocity_mm_per_s", machine.max_velocity()},
+               {"max_acceleration_mm_per_s2", machine.max_acceleration()},
+               {"rapid_velocity_mm_per_s", machine.rapid_velocity()},
+               {"look_ahead_blocks", machine.look_ahead}};
+  for (const MachineField& field : machine_fields()) {
+    json[json_key(field.key, field.quantity)] = number_or_null(machine.*field.place);
+  }
+  Json axes;
+  for (std::size_t i = 0; i < kAxes; ++i) {
+    const auto axis = static_cast<Axis>(i);
+    Json limits;
+    for (const AxisField& field : axis_fields()) {
+      limits[json_key(field.key, i < kLinearAxes ? field.linear : field.rotary)] =
+          number_or_null(machine.axis(axis).*field.place);
+    }
+    axes[std::string(name_of(axis))] = std::move(limits);
+  }
+  json["axes"] = std::move(axes);
+  return json;
+}
+
+Listing listing_of(const ListCommand& command) {
+  if (command.machine != nullptr) {
+    return {machine_file_text(*command.machine), json_of(*command.machine)};
+  }
+  if (command.what == BuiltIn::kTargets) return list_targets();
+  if (command.what == BuiltIn::kMethods) return list_methods();
+  const auto item = [](const Machine& machine) { return json_of(machine); };
+  return {table_of(built_in_machines()), json_list(built_in_machines(), item)};
 }
 
 }  // namespace
 
 int run(const ListCommand& command) {
-  if (command.show != nullptr) return write_result("-", profile_text(*command.show), false);
-  const Listing listing = list(command.what);
+  if (command.target != nullptr) return write_result("-", profile_text(*command.target), false);
+  const Listing listing = listing_of(command);
   if (command.json_file != "-") {
     if (const int code = write_result("-", listing.text, false); code != 0) return code;
   }
-  if (command.json_file.empty()) return static_cast<int>(ExitCode::kDone);
-  return write_result(command.json_file, json_text(listing.json), command.force);
+  return write_report(command.json_file, command.force, [&] { return json_text(listing.json); });
 }
 
 }  // namespace batten::postproc

@@ -1,9 +1,5 @@
 #include <filesystem>
-#include <optional>
-#include <string>
 #include <system_error>
-#include <utility>
-#include <vector>
 
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
@@ -61,39 +57,51 @@ class SmoothWork {
                               !std::filesystem::is_regular_file(output_, error));
   }
 
-  void smooth(const ProgramSink& sink) {
+  // Into the sink; without one the text is in the result.
+  void smooth(const ProgramSink* sink = nullptr) {
     const Progress progress = show_progress(command_.progress, source_->text().size());
-    result_ = smooth_program(*source_, command_.options, sink, progress);
+    result_ = sink != nullptr ? smooth_program(*source_, command_.options, *sink, progress)
+                              : smooth_program(*source_, command_.options, progress);
     (void)progress(1);  // the progress line is gone
   }
 
+  // All that takes memory before anything is in its place: what ends here has written nothing.
   // False: nothing is to be written.
   bool tell_of_smoothing() {
-    code_ = cannot_be_told();
+    if (interrupted()) code_ = end_interrupted();
+    if (!code_ && changed_while_read(watched_)) code_ = static_cast<int>(ExitCode::kFileError);
     if (code_) return false;
-    tell_of_result();
+    told_ = true;
+    print(result_.diagnostics, *source_, command_.log_level);
+    verdict_ = judge(result_, source_->text(), command_.strict);
+    const bool writes = verdict_ == ExitCode::kDone && !command_.dry_run;
+    const SmoothReport report = {.source = *source_,
+                                 .options = command_.options,
+                                 .result = result_,
+                                 .output_file = writes ? output_ : "",
+                                 .strict = command_.strict};
+    const bool tells = result_.understood && command_.log_level >= LogLevel::kInfo;
+    if (tells) summary_ = summary_text(report);
+    if (!command_.json_file.empty()) json_ = json_report(report);
+    if (!command_.report_file.empty()) {
+      page_ = html_report(report, {.command = command_.command_line});
+    }
     return verdict_ == ExitCode::kDone;
   }
 
-  int look_only() {
-    if (command_.report_file.empty()) {
-      smooth({[](std::string_view) { return true; }, [] { return true; }});
-    } else {
-      smooth_in_memory();
-    }
-    if (!tell_of_smoothing() && code_) return *code_;
-    return finish(static_cast<int>(verdict_));
-  }
+  // Where nothing is written.
+  int end() const { return code_ ? *code_ : finish(static_cast<int>(verdict_)); }
 
-  void smooth_in_memory() {
-    const Progress progress = show_progress(command_.progress, source_->text().size());
-    result_ = smooth_program(*source_, command_.options, progress);
-    (void)progress(1);
+  int look_only() {
+    const ProgramSink nowhere = {[](std::string_view) { return true; }, [] { return true; }};
+    smooth(command_.report_file.empty() ? &nowhere : nullptr);
+    (void)tell_of_smoothing();
+    return end();
   }
 
   int write_from_memory() {
-    smooth_in_memory();
-    if (!tell_of_smoothing()) return code_ ? *code_ : finish(static_cast<int>(verdict_));
+    smooth();
+    if (!tell_of_smoothing()) return end();
     return finish(command_.in_place ? write_in_place_of(watched_, result_.text)
                                     : write_result(output_, result_.text, replaces()));
   }
@@ -106,7 +114,9 @@ class SmoothWork {
     bool may_be_told = false;
     request.parts = [&](const PartWriter& writer) {
       bool written = true;
-      smooth({[&](std::string_view part) { return written = writer(part); }, writer.restart});
+      const ProgramSink sink = {[&](std::string_view part) { return written = writer(part); },
+                                writer.restart};
+      smooth(&sink);
       may_be_told = written;
     };
     request.objection = [&]() -> std::string {
@@ -125,62 +135,30 @@ class SmoothWork {
     std::string error;
     auto spool = SpoolFile::make(error);
     if (!spool) return write_from_memory();  // needs no file
-    smooth({[&](std::string_view part) { return spool->append(part); },
-            [&] { return spool->restart(); }});
+    const ProgramSink sink = {[&](std::string_view part) { return spool->append(part); },
+                              [&] { return spool->restart(); }};
+    smooth(&sink);
     if (!spool->error().empty()) {
       say(spool->error());
       return static_cast<int>(ExitCode::kFileError);
     }
-    if (!tell_of_smoothing()) return code_ ? *code_ : finish(static_cast<int>(verdict_));
+    if (!tell_of_smoothing()) return end();
     const auto parts = [&](const PartWriter& writer) { spool->write_to(writer); };
     return finish(write_parts(output_, parts, replaces()));
-  }
-
-  // --- what is told -------------------------------------------------------------------------
-
-  // The exit code where the result is worth nothing.
-  [[nodiscard]] std::optional<int> cannot_be_told() const {
-    if (interrupted()) return end_interrupted();
-    if (changed_while_read(watched_)) return static_cast<int>(ExitCode::kFileError);
-    return std::nullopt;
-  }
-
-  // All that takes memory before anything is in its place: what ends here has written nothing.
-  void tell_of_result() {
-    told_ = true;
-    print(result_.diagnostics, *source_, command_.log_level);
-    verdict_ = judge(result_, source_->text(), command_.strict);
-    const SmoothReport report = {
-        .source = *source_,
-        .options = command_.options,
-        .result = result_,
-        .output_file = writes() ? output_ : "",
-        .strict = command_.strict,
-    };
-    const bool tells = result_.understood && command_.log_level >= LogLevel::kInfo;
-    if (tells) summary_ = summary_text(report);
-    if (!command_.json_file.empty()) json_ = json_report(report);
-    if (!command_.report_file.empty()) {
-      page_ = html_report(report, {.command = command_.command_line});
-    }
   }
 
   // `code`: of the program's own file.
   int finish(int code) const {
     say_lines(summary_);
     if (verdict_ != ExitCode::kDone) say(complaint(verdict_, command_.strict));
-    if (!command_.json_file.empty()) {
-      const int json_code = write_result(command_.json_file, json_, command_.force);
-      if (code == 0) code = json_code;
-    }
-    if (!command_.report_file.empty()) {
-      const int report_code = write_result(command_.report_file, page_, command_.force);
+    for (const auto& [file, text] :
+         {std::pair(&command_.json_file, &json_), std::pair(&command_.report_file, &page_)}) {
+      const int report_code = file->empty() ? 0 : write_result(*file, *text, command_.force);
       if (code == 0) code = report_code;
     }
     return code;
   }
 
-  [[nodiscard]] bool writes() const { return verdict_ == ExitCode::kDone && !command_.dry_run; }
   [[nodiscard]] bool replaces() const { return command_.force || command_.in_place; }
 
   static constexpr const char* kNotWanted = "not wanted";

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <iterator>
-#include <optional>
 
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
@@ -87,10 +86,9 @@ int run(const TimeCommand& command) {
   if (!standard_output_taken) {
     if (const int code = write_result("-", time_text(report), false); code != 0) return code;
   }
-  if (!command.json_file.empty()) {
-    const int code = write_result(command.json_file, time_json(report), command.force);
-    if (code != 0) return code;
-  }
+  const int code =
+      write_report(command.json_file, command.force, [&] { return time_json(report); });
+  if (code != 0) return code;
   if (!command.profile_file.empty()) return write_profile(command, program, steps);
   return static_cast<int>(ExitCode::kDone);
 }

@@ -2,11 +2,7 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <utility>
 
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
@@ -20,6 +16,7 @@
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 #include "postproc/text/json_values.h"
+#include "postproc/text/words.h"
 
 namespace batten::postproc {
 
@@ -28,24 +25,8 @@ namespace {
 // More violations than this tell nothing new on a screen; the JSON report has them all.
 constexpr std::size_t kMostViolations = 20;
 
-// The one that is named, or that the profile adapts.
-const gcode::Control* target_of(const VerifyCommand& command) {
-  if (command.target != nullptr) return command.target;
-  return command.profile != nullptr ? &command.profile->adapted : nullptr;
-}
-
-const gcode::CurveFormat* curves_of(const VerifyCommand& command) {
-  const gcode::Control* target = target_of(command);
-  return target != nullptr ? target->curves : nullptr;
-}
-
-Promise promise_of(const VerifyCommand& command) {
-  return {command.tolerance_mm, command.tolerance_kind, command.side, target_of(command)};
-}
-
 std::optional<gcode::Language> language_of_target(const VerifyCommand& command) {
-  const gcode::Control* target = target_of(command);
-  return target != nullptr ? std::optional(target->language) : std::nullopt;
+  return command.target != nullptr ? std::optional(command.target->language) : std::nullopt;
 }
 
 // The language of the old program, where it was converted: the target reads another one, and the
@@ -68,22 +49,16 @@ PartReading reading_of(const gcode::SourceText& source, const VerifyCommand& com
                        gcode::DwellForm dwells) {
   PartReading reading;
   reading.source = kind;
-  reading.text.language = gcode::source_language(source, kind, language, reading.of_language)
-                              .value_or(gcode::Language::kRs274);
+  const auto found = gcode::source_language(source, kind, language, reading.of_language);
+  reading.text.language = found.value_or(gcode::Language::kRs274);
   reading.text.decimals =
-      gcode::decimals_read(kind, target_of(command), reading.text.language, command.decimals);
+      gcode::decimals_read(kind, command.target, reading.text.language, command.decimals);
   reading.text.units = command.units;
   reading.text.dwells = dwells;
   reading.options = {.units = command.units,
-                     .curves = curves_of(command),
+                     .curves = command.target != nullptr ? command.target->curves : nullptr,
                      .calls_keep_modes = calls_keep_modes(command.allowed)};
   return reading;
-}
-
-// As the target reads, where the text has no certain marks.
-PartReading reading_of(const gcode::SourceText& source, const VerifyCommand& command) {
-  return reading_of(source, command, command.source, language_of_target(command),
-                    gcode::dwells_of(command.source));
 }
 
 // By ViolationKind.
@@ -104,9 +79,7 @@ std::string text_of(const Violation& violation, const VerifyCommand& command) {
 std::string summary_of(const Verification& verification, const VerifyCommand& command) {
   if (!verification.proved()) {
     return fmt::format("NOT PROVED: {} of the new program against the old one\n",
-                       verification.violations.size() == 1
-                           ? "1 violation"
-                           : fmt::format("{} violations", verification.violations.size()));
+                       plural(verification.violations.size(), "violation"));
   }
   const bool band = command.tolerance_kind == geometry::ToleranceKind::kBand;
   const std::string corners =
@@ -137,34 +110,31 @@ Json json_of(const Stretch& stretch) {
           {"certificate_size", comparison.certificate_size}};
 }
 
+Json json_of(const Violation& violation) {
+  return {{"kind", kKindNames.at(static_cast<std::size_t>(violation.kind))},
+          {"id", violation.id},
+          {"old_line", violation.old_line},
+          {"new_line", violation.new_line},
+          {"deviation_mm", violation.deviation_mm},
+          {"message", violation.message}};
+}
+
 std::string json_report(const Verification& verification, const VerifyCommand& command,
                         const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
-  Json violations = Json::array();
-  for (const Violation& violation : verification.violations) {
-    violations.push_back({{"kind", kKindNames.at(static_cast<std::size_t>(violation.kind))},
-                          {"id", violation.id},
-                          {"old_line", violation.old_line},
-                          {"new_line", violation.new_line},
-                          {"deviation_mm", violation.deviation_mm},
-                          {"message", violation.message}});
-  }
-  Json stretches = Json::array();
-  for (const Stretch& stretch : verification.stretches) {
-    stretches.push_back(json_of(stretch));
-  }
+  const auto item = [](const auto& each) { return json_of(each); };
   return json_text({{"batten", BATTEN_VERSION},
                     {"old", command.old_program},
                     {"new", command.new_program},
                     {"tolerance_mm", command.tolerance_mm},
-                    {"tolerance_kind", postproc::name_of(command.tolerance_kind)},
-                    {"side", postproc::name_of(command.side)},
+                    {"tolerance_kind", name_of(command.tolerance_kind)},
+                    {"side", name_of(command.side)},
                     {"proved", verification.proved()},
                     {"deviation_mm", verification.deviation_mm},
                     {"deviation_line", verification.deviation_line},
                     {"corner_mm", verification.corner_mm},
                     {"events_compared", verification.events_compared},
-                    {"violations", std::move(violations)},
-                    {"sections", std::move(stretches)},
+                    {"violations", json_list(verification.violations, item)},
+                    {"sections", json_list(verification.stretches, item)},
                     {"diagnostics", diagnostics_json(of_new, new_source)}});
 }
 
@@ -178,9 +148,8 @@ bool is_understood(const gcode::Diagnostics& found, const gcode::SourceText& sou
 // 0 when written or not asked for; else says why and returns the exit code.
 int write_json(const VerifyCommand& command, const Verification& verification,
                const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
-  if (command.json_file.empty()) return 0;
-  return write_result(command.json_file, json_report(verification, command, of_new, new_source),
-                      command.force);
+  return write_report(command.json_file, command.force,
+                      [&] { return json_report(verification, command, of_new, new_source); });
 }
 
 // Both are told.
@@ -197,7 +166,9 @@ int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& sou
                           command.old_program));
   }
   if (command.json_file.empty()) return 0;
-  const PartReading reading = reading_of(source, command);
+  const PartReading reading =
+      reading_of(source, command, command.source, language_of_target(command),
+                 gcode::dwells_of(command.source));
   gcode::Diagnostics found = reading.of_language;
   (void)read_whole(source, reading, found);
   return write_json(command, {}, found, source);
@@ -217,15 +188,12 @@ AddedLines without_added_lines(const VerifyCommand& command, const TextToVerify&
       filled_in(command.profile->words, command.tolerance_mm, units, command.profile->adapted));
 }
 
-// Nothing says for which control the programs are, nor how it counts numbers without a point.
-bool is_control_open(const VerifyCommand& command) {
-  return target_of(command) == nullptr && command.source == gcode::SourceKind::kAuto &&
-         !command.decimals;
-}
-
+// Where nothing says for which control the programs are, nor how it counts numbers without a point.
 void compare_points(const VerifyCommand& command, const gcode::SourceText& old_source,
                     const gcode::SourceText& new_source, Verification& verification) {
-  if (!is_control_open(command)) return;
+  if (command.target != nullptr || command.source != gcode::SourceKind::kAuto || command.decimals) {
+    return;
+  }
   if (auto violation = other_point_spelling(old_source, new_source)) {
     verification.violations.push_back(std::move(*violation));
   }
@@ -275,10 +243,9 @@ int run(const VerifyCommand& command) {
   }
 
   const auto foreign = language_before(*old_source, *new_source, command);
-  const TextToVerify before{*old_source, foreign
-                                             ? reading_of(*old_source, command, command.source,
-                                                          foreign, gcode::dwells_of(command.source))
-                                             : reading_of(*old_source, command)};
+  const TextToVerify before{*old_source, reading_of(*old_source, command, command.source,
+                                                    foreign ? foreign : language_of_target(command),
+                                                    gcode::dwells_of(command.source))};
   AddedLines added;
   gcode::SourceText compared = *new_source;
   if (command.profile != nullptr) {
@@ -288,11 +255,13 @@ int run(const VerifyCommand& command) {
   const TextToVerify after{
       compared,
       foreign ? reading_of(compared, command, gcode::SourceKind::kAuto, language_of_target(command),
-                           target_of(command)->dwell_form)
+                           command.target->dwell_form)
               : reading_of(compared, command, command.source, before.reading.text.language,
                            before.reading.text.dwells),
       std::move(added.brackets)};
-  auto verified = verify_texts(before, after, promise_of(command), interrupted);
+  auto verified = verify_texts(
+      before, after, {command.tolerance_mm, command.tolerance_kind, command.side, command.target},
+      interrupted);
   if (!verified || interrupted()) return end_interrupted();
   if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
   if (!is_understood(verified->of_old, *old_source, command.log_level)) {

@@ -3,26 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 #include "gcode/reading/source_kind.h"
 #include "gcode/rs274/plain_words.h"
 #include "gcode/state/code_table.h"
 #include "gcode/state/dwell.h"
 #include "gcode/state/source_marks.h"
-#include "postproc/convert/portable_words.h"
 
 namespace batten::postproc {
 namespace {
 
 constexpr std::string_view kCommonLetters = "NXYZIJKRFST";
+
+// Programs with more obstacles than this have the rest counted.
+constexpr std::size_t kMostTold = 50;
 
 class BlockCheck {
  public:
@@ -41,12 +36,14 @@ class BlockCheck {
                       fmt::format("is longer than {} characters", target_.max_line_length)};
     }
     const std::span<const gcode::Word> words = program_.words_of(block);
-    if (const gcode::Word* dwell = coded_word(words, 'G', word_code::kDwell)) {
-      const std::string why = why_not_dwell(words);
-      return why.empty() ? std::nullopt : std::optional(Obstacle{dwell->span, why});
+    if (const gcode::Word* dwell = find_word(words, 'G', word_code::kDwell)) {
+      const std::string_view why = why_not_dwell(words);
+      if (why.empty()) return std::nullopt;
+      return Obstacle{dwell->span, std::string(why)};
     }
     for (const gcode::Word& word : words) {
-      if (std::string why = why_not(word, words); !why.empty()) return Obstacle{word.span, why};
+      const std::string_view why = why_not(word, words);
+      if (!why.empty()) return Obstacle{word.span, std::string(why)};
     }
     if (target_.repeats_words && moves_without_saying_how(words)) {
       return Obstacle{block.span,
@@ -60,9 +57,9 @@ class BlockCheck {
 
  private:
   // A dwell that waits as long on the target.
-  std::string why_not_dwell(std::span<const gcode::Word> words) const {
+  std::string_view why_not_dwell(std::span<const gcode::Word> words) const {
     const auto ms = gcode::dwell_ms(words, program_.dwells);
-    if (!ms) return std::string(why_no_certain_dwell(words, program_.dwells));
+    if (!ms) return why_no_certain_dwell(words, program_.dwells);
     const auto there = target_.dwell_form == gcode::DwellForm::kUnknown
                            ? std::nullopt
                            : gcode::dwell_ms(words, target_.dwell_form);
@@ -70,37 +67,34 @@ class BlockCheck {
     return there == ms ? "" : "waits for another time there";
   }
 
-  std::string why_not(const gcode::Word& word, std::span<const gcode::Word> words) const {
+  std::string_view why_not(const gcode::Word& word, std::span<const gcode::Word> words) const {
     if (!word.is_number) return "has no plain number";
-    if (refuses_word(target_, word.letter, gcode::code_of(word))) return "is not taken there";
+    const int code = gcode::code_of(word);
+    if (refuses_word(target_, word.letter, code)) return "is not taken there";
+    bool common = false;
     switch (word.letter) {
       case 'G':
-        return why_not_g(gcode::code_of(word));
+        return why_not_g(code);
       case 'M':
-        return gcode::row_of_m(gcode::code_of(word)).is(gcode::trait::kCommon)
-                   ? ""
-                   : "may mean something else there";
+        common = gcode::row_of_m(code).is(gcode::trait::kCommon);
+        break;
       case 'H':
-        return coded_word(words, 'G', word_code::kToolLengthOn) != nullptr
-                   ? ""
-                   : "may mean something else there";
+        common = find_word(words, 'G', word_code::kToolLengthOn) != nullptr;
+        break;
       case 'I':
       case 'J':
       case 'K':
         return target_.arc_form == gcode::ArcForm::kCenters ? "" : "may be no offset there";
       default:
-        return kCommonLetters.find(word.letter) != std::string_view::npos
-                   ? ""
-                   : "may mean something else there";
+        common = kCommonLetters.find(word.letter) != std::string_view::npos;
     }
+    return common ? "" : kOtherThere;
   }
 
-  std::string why_not_g(int code) const {
-    if (const std::string_view meaning = other_meaning(target_, code); !meaning.empty()) {
-      return std::string(meaning);
-    }
+  std::string_view why_not_g(int code) const {
+    if (const auto meaning = other_meaning(target_, code); !meaning.empty()) return meaning;
     const gcode::CodeRow& row = gcode::row_of_g(code);
-    if (!row.is(gcode::trait::kCommon)) return "may mean something else there";
+    if (!row.is(gcode::trait::kCommon)) return kOtherThere;
     const bool wrong_plane = row.group == gcode::CodeGroup::kPlane &&
                              !takes_arcs_in(target_, row.value.as<gcode::Plane>());
     return wrong_plane ? "is no plane of arcs there" : "";
@@ -143,7 +137,7 @@ std::optional<OtherDwell> other_dwell(const gcode::Program& program, const gcode
   }
   for (const gcode::Block& block : program.blocks) {
     const auto words = program.words_of(block);
-    if (coded_word(words, 'G', word_code::kDwell) == nullptr) continue;
+    if (find_word(words, 'G', word_code::kDwell) == nullptr) continue;
     const auto ms = gcode::dwell_ms(words, program.dwells);
     const auto ms_there = gcode::dwell_ms(words, there);
     if (ms && ms_there && ms != ms_there) return OtherDwell{block.span, *ms, *ms_there};
@@ -151,24 +145,18 @@ std::optional<OtherDwell> other_dwell(const gcode::Program& program, const gcode
   return std::nullopt;
 }
 
-// Where the program says its language, if it does: the place to tell about.
-gcode::SourceSpan place_of(gcode::Language language, const gcode::SourceText& source) {
+// Where the program says its language, if it does, and what says so.
+std::pair<gcode::SourceSpan, std::string> evidence_of(gcode::Language language,
+                                                      const gcode::SourceText& source,
+                                                      const SmoothOptions& options) {
+  constexpr std::string_view kFound = "found {}, so this is";
   for (const gcode::LanguageMark& each : gcode::language_marks(source)) {
-    if (each.language == language) return each.where;
-  }
-  return gcode::plain_beginning(source).value_or(gcode::SourceSpan{});
-}
-
-std::string evidence_of(gcode::Language language, const gcode::SourceText& source,
-                        const SmoothOptions& options) {
-  for (const gcode::LanguageMark& each : gcode::language_marks(source)) {
-    if (each.language == language) return fmt::format("found {}, so this is", each.evidence);
+    if (each.language == language) return {each.where, fmt::format(kFound, each.evidence)};
   }
   const auto plain = gcode::plain_beginning(source);
-  if (options.source == gcode::SourceKind::kAuto && plain) {
-    return fmt::format("found {}, so this is", source.text(*plain));
-  }
-  return "--source says that this is";
+  const bool by_text = options.source == gcode::SourceKind::kAuto && plain;
+  return {plain.value_or(gcode::SourceSpan{}),
+          by_text ? fmt::format(kFound, source.text(*plain)) : "--source says that this is"};
 }
 
 }  // namespace
@@ -180,12 +168,13 @@ std::optional<gcode::Language> language_read(const gcode::SourceText& source,
   const auto language = gcode::source_language(source, options.source, of_target, found);
   const bool plain = language == gcode::Language::kRs274 && of_target == gcode::Language::kSiemens;
   if (!language || *language == of_target || plain) return language;
+  const auto [where, evidence] = evidence_of(*language, source, options);
   found.push_back(
-      {gcode::Severity::kError, "foreign-language", place_of(*language, source),
+      {gcode::Severity::kError, "foreign-language", where,
        fmt::format("{} a program in {}; target {} reads {}, and --convert says it there "
                    "where every block can be said",
-                   evidence_of(*language, source, options), gcode::describe(*language),
-                   options.target->name, gcode::describe(of_target))});
+                   evidence, gcode::describe(*language), options.target->name,
+                   gcode::describe(of_target))});
   return std::nullopt;
 }
 
@@ -243,32 +232,41 @@ void tell_what_cannot_be_said(const gcode::Program& program, const gcode::Contro
   tell_obstacles(obstacles, program, target, found);
 }
 
-namespace {
-
-constexpr std::size_t kMostTold = 50;
-
-std::string first_part(std::string_view text) {
-  constexpr std::size_t kMostShown = 40;
-  return text.size() <= kMostShown ? std::string(text)
-                                   : std::string(text.substr(0, kMostShown)) + "..";
-}
-
-}  // namespace
-
 void tell_obstacles(const std::vector<Obstacle>& obstacles, const gcode::Program& program,
                     const gcode::Control& target, gcode::Diagnostics& found) {
+  constexpr std::size_t kMostShown = 40;  // characters
   const std::size_t told = std::min(obstacles.size(), kMostTold);
   for (std::size_t i = 0; i < told; ++i) {
+    const std::string_view text = program.source.text(obstacles[i].where);
     found.push_back(
         {gcode::Severity::kError, "cannot-convert", obstacles[i].where,
-         fmt::format("{} {} (target {})", first_part(program.source.text(obstacles[i].where)),
-                     obstacles[i].why, target.name)});
+         fmt::format("{}{} {} (target {})", text.substr(0, kMostShown),
+                     text.size() > kMostShown ? ".." : "", obstacles[i].why, target.name)});
   }
   if (obstacles.size() > told) {
     found.push_back(
         {gcode::Severity::kError, "cannot-convert", obstacles[told].where,
          fmt::format("from here on {} more blocks of this kind", obstacles.size() - told)});
   }
+}
+
+const gcode::Word* find_word(std::span<const gcode::Word> words, char letter,
+                             std::optional<int> code) {
+  const auto found = std::ranges::find_if(words, [&](const gcode::Word& word) {
+    return word.letter == letter && (!code || gcode::code_of(word) == *code);
+  });
+  return found == words.end() ? nullptr : &*found;
+}
+
+std::string_view why_no_certain_dwell(std::span<const gcode::Word> words, gcode::DwellForm form) {
+  if (form == gcode::DwellForm::kSecondsF && find_word(words, 'S') != nullptr) {
+    return "waits for turns of the spindle, which is no time";
+  }
+  if (form == gcode::DwellForm::kUnknown && find_word(words, 'P') != nullptr) {
+    return "waits for seconds on some controls and for milliseconds on others; --source ngc, grbl, "
+           "fanuc or haas says which";
+  }
+  return "waits for a time that is not certain";
 }
 
 }  // namespace batten::postproc

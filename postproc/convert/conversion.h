@@ -6,7 +6,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gcode/control/control.h"
@@ -58,15 +60,34 @@ void tell_what_cannot_be_said(const gcode::Program& program, const gcode::Contro
                               gcode::Diagnostics& found);
 
 // What a program says that its target cannot be told.
-
 struct Obstacle {
   gcode::SourceSpan where;
-  std::string why;  // goes on after the text that stands there: "is not taken there"
+  std::string why;  // goes on after the text that is there: "is not taken there"
 };
 
 // Adds an error "cannot-convert" for each, in their order; after 50 one more says how many there
 // are.
 void tell_obstacles(const std::vector<Obstacle>& obstacles, const gcode::Program& program,
                     const gcode::Control& target, gcode::Diagnostics& found);
+
+// Why a word is an obstacle that other controls may read otherwise.
+inline constexpr std::string_view kOtherThere = "may mean something else there";
+
+// Codes in tenths.
+namespace word_code {
+inline constexpr int kToolLengthOn = 430;
+inline constexpr int kToolLengthOff = 490;
+inline constexpr int kBlending = 640;
+inline constexpr int kToolChange = 60;
+inline constexpr int kDwell = 40;
+}  // namespace word_code
+
+// The first word of this letter, and of this code where one is given; nullptr where there is none.
+[[nodiscard]] const gcode::Word* find_word(std::span<const gcode::Word> words, char letter,
+                                           std::optional<int> code = std::nullopt);
+
+// Why a block with G4 is no dwell of a certain time; gcode::dwell_ms says nothing of it.
+[[nodiscard]] std::string_view why_no_certain_dwell(std::span<const gcode::Word> words,
+                                                    gcode::DwellForm form);
 
 }  // namespace batten::postproc

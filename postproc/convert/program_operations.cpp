@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
-#include <string>
 #include <utility>
 
 #include "gcode/klartext/statement.h"
 #include "gcode/siemens/block.h"
 #include "gcode/state/block_words.h"
 #include "gcode/state/dwell.h"
-#include "postproc/convert/klartext_statements.h"
-#include "postproc/convert/portable_words.h"
+#include "gcode/text/characters.h"
+#include "gcode/text/number_format.h"
 
 namespace batten::postproc {
 namespace {
@@ -26,9 +24,145 @@ using gcode::Motion;
 using gcode::MotionKind;
 using gcode::Word;
 
-// Spindle and coolant while a program is read.
+constexpr std::string_view kOfNoTool = "names the length of a tool that no M6 has put in";
 
-// Nothing: the program has not said it.
+// --- words that mean the same on every control of their language --------------------------------
+
+// G54 to G59.
+bool names_work_offset(int code) {
+  const gcode::CodeRow& row = gcode::row_of_g(code);
+  return row.group == gcode::CodeGroup::kWorkOffset && row.is(gcode::trait::kCommon);
+}
+
+// M0 to M6, M8, M9, M30; in Klartext M13 and M14, each M3 or M4 with M8, too.
+bool is_certain_function(int code, Language language) {
+  return gcode::row_of_m(code).is(gcode::trait::kCommon) ||
+         (language == Language::kKlartext && (code == 130 || code == 140));
+}
+
+// Whether words of this letter can be certain at all.
+bool is_certain_letter(char letter, Language language) {
+  return std::string_view("NGMXYZIJKRFSTH").find(letter) != std::string_view::npos ||
+         (language == Language::kSiemens && letter == 'D');
+}
+
+bool is_arc_letter(char letter) {
+  return std::string_view("IJKR").find(letter) != std::string_view::npos;
+}
+
+bool is_place_letter(char letter) {
+  return is_arc_letter(letter) || (letter >= 'X' && letter <= 'Z');
+}
+
+// Why the block as a whole cannot be said; empty where its words are to be looked at. A Siemens
+// block of named words counts as plain here.
+std::string_view why_no_plain_block(const gcode::Block& block, const gcode::BlockMeaning& meaning) {
+  if (block.block_delete) return "is left out by some controls, run by others";
+  if (block.has_checksum) return "has a check sum";
+  const bool named = block.opacity == gcode::ParseStatus::kNamedWords;
+  if (block.opacity != gcode::ParseStatus::kNone && !named) return "is no block of plain words";
+  if (meaning.label_referenced || meaning.entered_from_elsewhere) return "is jumped to";
+  if (meaning.kind == gcode::BlockKind::kOpaque && !named) return "is not understood";
+  return {};
+}
+
+// The text of a comment without its brackets, or what it begins with.
+std::string_view text_of_comment(std::string_view comment) {
+  if (comment.starts_with('(')) {
+    comment.remove_prefix(1);
+    if (comment.ends_with(')')) comment.remove_suffix(1);
+  } else if (comment.starts_with(';') || comment.starts_with('*')) {
+    comment.remove_prefix(1);
+  }
+  while (comment.starts_with(' ')) comment.remove_prefix(1);
+  while (comment.ends_with(' ')) comment.remove_suffix(1);
+  return comment;
+}
+
+// --- statements of Klartext that are no words of a motion ---------------------------------------
+
+// A block's statement, without number and comment; empty where other lines continue it.
+std::string_view statement_of(const gcode::Program& program, const gcode::Block& block) {
+  const std::string_view text = program.source.text();
+  const gcode::KlartextParts parts = gcode::klartext_parts(text, block.span);
+  return parts.continues ? std::string_view() : program.source.text(parts.content);
+}
+
+std::optional<double> plain_value(std::string_view digits) {
+  const auto number = gcode::read_number(digits);
+  return number ? std::optional(number->value) : std::nullopt;
+}
+
+bool next_are(gcode::KlartextTokens& tokens, std::initializer_list<std::string_view> words) {
+  return std::ranges::all_of(
+      words, [&](std::string_view word) { return gcode::is_same_word(tokens.next(), word); });
+}
+
+// An empty word is the end of the statement.
+bool begins_with(std::string_view statement, std::initializer_list<std::string_view> words) {
+  gcode::KlartextTokens tokens(statement);
+  return next_are(tokens, words);
+}
+
+// `TOOL CALL 5 Z S3000`, `TOOL CALL Z S4000`.
+struct CalledTool {
+  std::optional<double> number;  // none: the tool stays
+  std::optional<double> speed;
+};
+
+// Nothing where the statement has more than number, Z, S and F, or where Z is missing: other tool
+// axes, names, oversizes. F is left out: motions at the feed that a tool brings are not known.
+std::optional<CalledTool> called_tool(std::string_view statement) {
+  if (gcode::klartext_kind(statement) != gcode::KlartextKind::kToolCall) return std::nullopt;
+  gcode::KlartextTokens tokens(statement);
+  (void)tokens.next();  // TOOL
+  (void)tokens.next();  // CALL
+  CalledTool called;
+  std::string_view token = tokens.next();
+  if (const auto number = plain_value(token)) {
+    called.number = number;
+    token = tokens.next();
+  }
+  if (!gcode::is_same_word(token, "Z")) return std::nullopt;
+  token = tokens.next();
+  if (token.starts_with('S') || token.starts_with('s')) {
+    called.speed = plain_value(token.substr(1));
+    if (!called.speed) return std::nullopt;
+    token = tokens.next();
+  }
+  const bool feed = token.starts_with('F') || token.starts_with('f');
+  if (feed && plain_value(token.substr(1))) token = tokens.next();
+  return token.empty() ? std::optional(called) : std::nullopt;
+}
+
+// Milliseconds, where the block is the first of two that say a dwell: `CYCL DEF 9.0 DWELL TIME` and
+// `CYCL DEF 9.1 DWELL 1.5`, in seconds, with these or the words of another dialog language.
+std::optional<std::int32_t> dwell_begun_in(const gcode::Program& program, std::uint32_t block) {
+  if (block + 1 >= program.blocks.size()) return std::nullopt;
+  const gcode::Block& first = program.blocks[block];
+  const gcode::Block& second = program.blocks[block + 1];
+  for (const gcode::Block* each : {&first, &second}) {
+    if (each->opacity != gcode::ParseStatus::kForeign || each->block_delete) return std::nullopt;
+  }
+  gcode::KlartextTokens begin(statement_of(program, first));
+  gcode::KlartextTokens words(statement_of(program, second));
+  if (!next_are(begin, {"CYCL", "DEF", "9.0"}) || !next_are(words, {"CYCL", "DEF", "9.1"})) {
+    return std::nullopt;
+  }
+  const std::string_view label = words.next();
+  const std::string_view seconds = words.next();
+  if (std::ranges::any_of(label, gcode::is_digit) || !words.next().empty()) return std::nullopt;
+  constexpr double kMsPerSecond = 1000;
+  constexpr double kRounding = 1e-6;
+  const double exact = plain_value(seconds).value_or(0) * kMsPerSecond;
+  const double ms = std::round(exact);
+  const bool fits = ms >= 1 && ms <= gcode::kLongestDwellMs && std::abs(exact - ms) <= kRounding;
+  return fits ? std::optional(static_cast<std::int32_t>(ms)) : std::nullopt;
+}
+
+// --- what a program has said so far -------------------------------------------------------------
+
+// Spindle and coolant. Nothing: the program has not said it.
 struct RunningFunctions {
   std::optional<bool> spindle;
   std::optional<bool> coolant;
@@ -45,7 +179,7 @@ struct RunningFunctions {
     if (!of_coolant) turned_at_change.reset();
   }
 
-  // `where`: what puts the tool in. Whether the spindle turns behind it is not known.
+  // `where`: what puts the tool in. Whether the spindle turns after it is not known.
   void change_tool(gcode::SourceSpan where) {
     turned_at_change = spindle == true ? std::optional(where) : std::nullopt;
     spindle.reset();
@@ -53,20 +187,13 @@ struct RunningFunctions {
   }
 };
 
-// The tool in the spindle while a program is read, and whether its length counts.
-
-constexpr std::string_view kOfNoTool = "names the length of a tool that no M6 has put in";
+// The tool in the spindle, and whether its length counts.
 
 enum class LengthSaid : std::uint8_t { kNot, kCounts, kCountsNot };
 
-struct FetchedTool {
-  double number = 0;
-  gcode::SourceSpan where;
-};
-
 struct ToolInSpindle {
   std::optional<double> number;
-  std::optional<FetchedTool> fetched;  // T without its M6 yet
+  std::optional<Word> fetched;  // T without its M6 yet
   LengthSaid length = LengthSaid::kNot;
   std::optional<gcode::SourceSpan> without_length;  // G49, D0, and nothing moved since
   bool moved_along = false;                         // along Z, since the tool was put in
@@ -99,8 +226,8 @@ struct ToolInSpindle {
   // block. A control counts the length from where the tool is put in: that is the same as long as
   // nothing has moved along Z meanwhile.
   [[nodiscard]] std::string_view why_not_length(std::span<const Word> words) const {
-    const Word* h = first_word(words, 'H');
-    const std::optional<double> tool = behind(words);
+    const Word* h = find_word(words, 'H');
+    const std::optional<double> tool = tool_after(words);
     if (!tool) return kOfNoTool;
     if (h != nullptr && h->value != *tool) return "names the length of another tool";
     return why_too_late(words);
@@ -108,31 +235,24 @@ struct ToolInSpindle {
   [[nodiscard]] std::string_view why_not_edge(const Word& d, std::span<const Word> words) const {
     if (d.value == 0) return {};
     if (d.value != 1) return "is another edge of the tool";
-    return behind(words) ? why_too_late(words) : kOfNoTool;
+    return tool_after(words) ? why_too_late(words) : kOfNoTool;
   }
 
  private:
   // The tool in the spindle once the block's M6 is done.
-  [[nodiscard]] std::optional<double> behind(std::span<const Word> words) const {
-    if (coded_word(words, 'M', word_code::kToolChange) == nullptr) return number;
-    if (const Word* t = first_word(words, 'T')) return t->value;
-    return fetched ? std::optional(fetched->number) : std::nullopt;
+  [[nodiscard]] std::optional<double> tool_after(std::span<const Word> words) const {
+    if (find_word(words, 'M', word_code::kToolChange) == nullptr) return number;
+    if (const Word* t = find_word(words, 'T')) return t->value;
+    return fetched ? std::optional(fetched->value) : std::nullopt;
   }
 
   [[nodiscard]] std::string_view why_too_late(std::span<const Word> words) const {
-    const bool changes = coded_word(words, 'M', word_code::kToolChange) != nullptr;
+    const bool changes = find_word(words, 'M', word_code::kToolChange) != nullptr;
     return moved_along && !changes ? "comes after a motion without the length of the tool" : "";
   }
 };
 
-// mm: an arc that rises by more is a helix.
-constexpr double kLevelArc = 1e-9;
-
-bool rises(const geometry::Arc& arc) {
-  return std::abs(arc.axis.dot(arc.end - arc.start)) > kLevelArc;
-}
-
-// Why the motion cannot be said in another language; empty where it can. `state`: behind its block.
+// Why the motion cannot be said in another language; empty where it can. `state`: after its block.
 std::string_view why_no_certain_motion(const Motion& motion, const gcode::ModalState& state,
                                        Language language) {
   if (state.distance == gcode::DistanceMode::kIncremental) return "is an increment";
@@ -143,10 +263,7 @@ std::string_view why_no_certain_motion(const Motion& motion, const gcode::ModalS
   }
   if (motion.kind == MotionKind::kCurve) return "is a curve";
   if (motion.kind != MotionKind::kRapid && !state.feed) return "moves at a feed that is not known";
-  if (arc && language == Language::kSiemens && rises(*motion.piece.arc())) {
-    return "is a helix";
-  }
-  return {};
+  return arc && language == Language::kSiemens && rises(*motion.piece.arc()) ? "is a helix" : "";
 }
 
 class OperationReader {
@@ -171,30 +288,30 @@ class OperationReader {
     if (in(Language::kKlartext) && read_statement(block)) return;
     const std::span<const Word> words = program_.words_of(block);
     if (const auto why = why_no_plain_block(block, meaning_.blocks[index]); !why.empty()) {
-      return refuse(block.span, std::string(why));
+      return refuse(block.span, why);
     }
     if (std::ranges::all_of(words, [](const Word& word) { return word.letter == 'N'; }) &&
         block.opacity == gcode::ParseStatus::kNone) {
       return;
     }
     if (ended_) return refuse(block.span, "is after the end of the program");
-    if (coded_word(words, 'G', word_code::kDwell) != nullptr) return read_dwell(block, words);
+    if (find_word(words, 'G', word_code::kDwell) != nullptr) return read_dwell(block, words);
     if (block.opacity == gcode::ParseStatus::kNamedWords) check_names(block);
     for (const Word& word : words) {
-      if (std::string why = why_not(word, words); !why.empty()) refuse(word.span, std::move(why));
+      if (const auto why = why_not(word, words); !why.empty()) refuse(word.span, why);
     }
     if (!told_) add_operations(words, meaning_.blocks[index]);
   }
 
-  void refuse(gcode::SourceSpan where, std::string why) {
-    if (!std::exchange(told_, true)) result_.obstacles.push_back({where, std::move(why)});
+  void refuse(gcode::SourceSpan where, std::string_view why) {
+    if (!std::exchange(told_, true)) result_.obstacles.push_back({where, std::string(why)});
   }
 
   void read_dwell(const Block& block, std::span<const Word> words) {
     const auto ms = gcode::dwell_ms(words, program_.dwells);
     const bool plain = block.opacity == gcode::ParseStatus::kNone;
-    if (plain && ms) return (void)add(OperationKind::kDwell, block.span, *ms);
-    refuse(block.span, std::string(why_no_certain_dwell(words, program_.dwells)));
+    plain&& ms ? (void)add(OperationKind::kDwell, block.span, *ms)
+               : refuse(block.span, why_no_certain_dwell(words, program_.dwells));
   }
 
   // --- Klartext -----------------------------------------------------------------------------
@@ -211,20 +328,22 @@ class OperationReader {
     if (running_.may_be_on()) {
       return refuse(block.span, "ends without M2 or M30, and spindle or coolant may be on");
     }
-    (void)add(OperationKind::kEnd, block.span);
+    add(OperationKind::kEnd, block.span);
   }
 
   // Whether the block is a statement that is no plain words, and was read.
   bool read_statement(const Block& block) {
     if (block.opacity != gcode::ParseStatus::kForeign || block.block_delete || ended_) return false;
     const std::string_view statement = statement_of(program_, block);
-    if (defines_stock(statement)) {
+    // The blank, which only the control's simulation shows.
+    if (begins_with(statement, {"BLK", "FORM"})) {
       add(OperationKind::kBlank, block.span).text = statement;
       return true;
     }
-    if (ends_tilting(statement)) return true;
+    // Nothing moves, and no plane is tilted after it.
+    if (begins_with(statement, {"PLANE", "RESET", "STAY", ""})) return true;
     if (const auto ms = dwell_begun_in(program_, block_)) {
-      (void)add(OperationKind::kDwell, block.span, *ms);
+      add(OperationKind::kDwell, block.span, *ms);
       return true;
     }
     if (block_ > 0 && dwell_begun_in(program_, block_ - 1)) return true;
@@ -244,14 +363,16 @@ class OperationReader {
     const bool no_length = text == kLengthRemark;
     if (no_length || text == kUnsaidLengthRemark) {
       tool_.length = LengthSaid::kCountsNot;
-      (void)add(no_length ? OperationKind::kNoLength : OperationKind::kLengthUnsaid, where);
+      add(no_length ? OperationKind::kNoLength : OperationKind::kLengthUnsaid, where);
       return true;
     }
-    const auto datum = datum_of_remark(text);
-    if (!datum) return false;
-    const std::string why = why_not_work_offset(*datum * 10);
-    why.empty() ? set_work_offset(*datum * 10, where) : refuse(where, why);
-    return true;
+    for (int offset = 54; offset <= 59; ++offset) {
+      if (text != datum_remark(offset)) continue;
+      const std::string_view why = why_not_work_offset(offset * 10);
+      why.empty() ? set_work_offset(offset * 10, where) : refuse(where, why);
+      return true;
+    }
+    return false;
   }
 
   // --- what can be said ---------------------------------------------------------------------
@@ -272,30 +393,29 @@ class OperationReader {
     }
   }
 
-  [[nodiscard]] std::string why_not(const Word& word, std::span<const Word> words) const {
+  [[nodiscard]] std::string_view why_not(const Word& word, std::span<const Word> words) const {
     if (!word.is_number) return "has no plain number";
+    const int code = gcode::code_of(word);
+    bool certain = is_certain_letter(word.letter, program_.language);
     switch (word.letter) {
       case 'G':
-        return why_not_g(gcode::code_of(word), words);
+        return why_not_g(code, words);
       case 'M':
-        return is_certain_function(gcode::code_of(word), program_.language)
-                   ? ""
-                   : "may mean something else there";
+        certain = is_certain_function(code, program_.language);
+        break;
       case 'H':
-        return coded_word(words, 'G', word_code::kToolLengthOn) != nullptr
-                   ? ""
-                   : "may mean something else there";
+        certain = find_word(words, 'G', word_code::kToolLengthOn) != nullptr;
+        break;
       case 'D':
-        if (in(Language::kSiemens)) return std::string(tool_.why_not_edge(word, words));
+        if (in(Language::kSiemens)) return tool_.why_not_edge(word, words);
         break;
       case 'T':
         return ToolInSpindle::is_number(word.value) ? "" : "is no tool there";
       default:
         break;
     }
-    if (!is_certain_letter(word.letter, program_.language)) return "may mean something else there";
-    if (is_place_letter(word.letter) && !moves_with(word)) return "says nothing that is certain";
-    return {};
+    if (!certain) return kOtherThere;
+    return is_place_letter(word.letter) && !moves_with(word) ? "says nothing that is certain" : "";
   }
 
   [[nodiscard]] bool moves_with(const Word& word) const {
@@ -304,25 +424,22 @@ class OperationReader {
     return !is_arc_letter(word.letter) || motion_at(motion).kind == MotionKind::kArc;
   }
 
-  [[nodiscard]] std::string why_not_g(int code, std::span<const Word> words) const {
+  [[nodiscard]] std::string_view why_not_g(int code, std::span<const Word> words) const {
     const gcode::CodeRow& row = gcode::row_of_g(code);
-    if (row.is(gcode::trait::kSilent)) return {};
+    if (row.is(gcode::trait::kSilent) || code == word_code::kToolLengthOff) return {};
     if (names_work_offset(code)) return why_not_work_offset(code);
-    if (code == word_code::kToolLengthOn) return std::string(tool_.why_not_length(words));
-    if (code == word_code::kToolLengthOff) return {};
+    if (code == word_code::kToolLengthOn) return tool_.why_not_length(words);
     // G41 and G42; G41.1 is a word of some controls alone.
     if (row.group == gcode::CodeGroup::kCutter && code % 10 == 0)
       return "moves beside the path by the radius of the tool";
-    if (code == word_code::kBlending) {
-      const bool plain = std::ranges::none_of(words, [](const Word& word) {
-        return std::string_view("PQRL").find(word.letter) != std::string_view::npos;
-      });
-      return plain ? "" : "says how far corners may be rounded, which is no word there";
-    }
-    return "may mean something else there";
+    if (code != word_code::kBlending) return kOtherThere;
+    const bool plain = std::ranges::none_of(words, [](const Word& word) {
+      return std::string_view("PQRL").find(word.letter) != std::string_view::npos;
+    });
+    return plain ? "" : "says how far corners may be rounded, which is no word there";
   }
 
-  [[nodiscard]] std::string why_not_work_offset(int code) const {
+  [[nodiscard]] std::string_view why_not_work_offset(int code) const {
     if (work_offset_ == code) return {};
     if (work_offset_) return "names another work offset";
     return moved_ ? "names a work offset after the first motion" : "";
@@ -347,11 +464,11 @@ class OperationReader {
     const bool moves = meaning.motion >= 0;
     // Klartext says of each function whether it acts before or after the motion of its block.
     const bool known_order = in(Language::kKlartext);
-    if (const Word* t = first_word(words, 'T')) tool_.fetched = {t->value, t->span};
-    if (const Word* change = coded_word(words, 'M', word_code::kToolChange)) change_tool(*change);
-    if (const Word* s = first_word(words, 'S')) add_speed(*s, meaning);
+    if (const Word* t = find_word(words, 'T')) tool_.fetched = *t;
+    if (const Word* change = find_word(words, 'M', word_code::kToolChange)) change_tool(*change);
+    if (const Word* s = find_word(words, 'S')) add_speed(*s, meaning);
     for (const int code : {30, 130, 40, 140, 80}) {
-      if (const Word* word = coded_word(words, 'M', code)) add_start(*word);
+      if (const Word* word = find_word(words, 'M', code)) add_start(*word);
     }
     if (!moves || !known_order) add_stops(words, moves);
     for (const Word& word : words) {
@@ -361,32 +478,26 @@ class OperationReader {
     if (moves) add_motion(meaning);
     if (moves && known_order) add_stops(words, false);
     for (const int code : {0, 10}) {
-      if (const Word* word = coded_word(words, 'M', code)) add_pause(*word, moves);
+      if (const Word* word = find_word(words, 'M', code)) add_pause(*word, moves);
     }
     for (const int code : {20, 300}) {
-      if (const Word* word = coded_word(words, 'M', code)) add_end(*word);
+      if (const Word* word = find_word(words, 'M', code)) add_end(*word);
     }
   }
 
   Operation& add(OperationKind kind, gcode::SourceSpan where, double number = 0) {
-    Operation operation;
-    operation.kind = kind;
-    operation.block = block_;
-    operation.where = where;
-    operation.number = number;
-    result_.operations.push_back(operation);
-    return result_.operations.back();
+    return result_.operations.emplace_back(Operation{kind, block_, where, number});
   }
 
   void change_tool(const Word& word) {
     if (!tool_.fetched) return refuse(word.span, "names no tool");
-    put_in(tool_.fetched->number, word.span);
+    put_in(tool_.fetched->value, word.span);
   }
 
   void put_in(double tool, gcode::SourceSpan where) {
     tool_.put_in(tool);
     running_.change_tool(where);
-    (void)add(OperationKind::kTool, where, tool);
+    add(OperationKind::kTool, where, tool);
   }
 
   void add_speed(const Word& word, const BlockMeaning& meaning) {
@@ -401,7 +512,7 @@ class OperationReader {
     if (running_.speed == speed) return;
     if (speed < 0) return refuse(where, "is no speed there");
     running_.speed = speed;
-    (void)add(OperationKind::kSpeed, where, speed);
+    add(OperationKind::kSpeed, where, speed);
   }
 
   // M3, M4, M8; M13 and M14 are two of them.
@@ -413,7 +524,7 @@ class OperationReader {
 
   void add_stops(std::span<const Word> words, bool beside_motion) {
     for (const int code : {50, 90}) {
-      const Word* word = coded_word(words, 'M', code);
+      const Word* word = find_word(words, 'M', code);
       if (word == nullptr) continue;
       beside_motion
           ? refuse(word->span, "acts before or after the motion of its block: controls differ")
@@ -423,7 +534,7 @@ class OperationReader {
 
   void add_function(int code, gcode::SourceSpan where) {
     running_.switch_by(code);
-    (void)add(OperationKind::kFunction, where, code);
+    add(OperationKind::kFunction, where, code);
   }
 
   void add_pause(const Word& word, bool moves) {
@@ -431,19 +542,19 @@ class OperationReader {
     if (running_.may_be_on()) {
       return refuse(word.span, "stops spindle and coolant on some controls, and they may be on");
     }
-    (void)add(OperationKind::kFunction, word.span, word.value);
+    add(OperationKind::kFunction, word.span, word.value);
   }
 
   void add_end(const Word& word) {
     ended_ = true;
-    (void)add(OperationKind::kEnd, word.span, word.value);
+    add(OperationKind::kEnd, word.span, word.value);
   }
 
   void add_g(const Word& word) {
     const int code = gcode::code_of(word);
     if (code == word_code::kToolLengthOff) tool_.leave_length(word.span);
     if (code == word_code::kToolLengthOn) count_length(word.span);
-    if (code == word_code::kBlending) (void)add(OperationKind::kBlending, word.span);
+    if (code == word_code::kBlending) add(OperationKind::kBlending, word.span);
     if (names_work_offset(code)) set_work_offset(code, word.span);
   }
 
@@ -452,14 +563,14 @@ class OperationReader {
   }
 
   void count_length(gcode::SourceSpan where) {
-    if (tool_.count_length()) (void)add(OperationKind::kLength, where, *tool_.number);
+    if (tool_.count_length()) add(OperationKind::kLength, where, *tool_.number);
   }
 
   void set_work_offset(int code, gcode::SourceSpan where) {
     if (work_offset_ == code) return;
     work_offset_ = code;
     const int number = code / 10;  // codes are tenths
-    (void)add(OperationKind::kWorkOffset, where, number);
+    add(OperationKind::kWorkOffset, where, number);
   }
 
   // --- motions ------------------------------------------------------------------------------
@@ -469,13 +580,13 @@ class OperationReader {
     const Motion& motion = motion_at(meaning.motion);
     const gcode::ModalState& state = meaning_.states[meaning.state_after];
     if (tool_.fetched) {
-      refuse(tool_.fetched->where,
+      refuse(tool_.fetched->span,
              "changes the tool on some controls, and on others only fetches it");
       return tool_.fetched.reset();
     }
     say_length_before(motion, here);
     if (const auto why = why_no_certain_motion(motion, state, program_.language); !why.empty()) {
-      return refuse(here, std::string(why));
+      return refuse(here, why);
     }
     if (motion.kind != MotionKind::kRapid && running_.turned_at_change) {
       refuse(*std::exchange(running_.turned_at_change, std::nullopt),
@@ -490,12 +601,12 @@ class OperationReader {
 
   // What holds for the tool's length, before the first motion that it makes a difference to.
   void say_length_before(const Motion& motion, gcode::SourceSpan here) {
-    if (tool_.without_length) (void)add(OperationKind::kNoLength, *tool_.without_length);
+    if (tool_.without_length) add(OperationKind::kNoLength, *tool_.without_length);
     tool_.without_length.reset();
     if (!tool_.number || tool_.length != LengthSaid::kNot || !motion.axes_named[2]) return;
     if (in(Language::kKlartext)) return count_length(here);
     tool_.length = LengthSaid::kCountsNot;
-    (void)add(OperationKind::kLengthUnsaid, here);
+    add(OperationKind::kLengthUnsaid, here);
   }
 
   [[nodiscard]] const Motion& motion_at(std::int32_t index) const {

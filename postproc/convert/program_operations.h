@@ -3,8 +3,10 @@
 // program's language does for certain is an act; all else is an obstacle.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,14 +33,33 @@ enum class OperationKind : std::uint8_t {
   kEnd,           // M `number`: 2 or 30; or 0: END PGM alone; nothing follows
 };
 
+// mm: an arc that rises by more is a helix.
+inline constexpr double kLevelArc = 1e-9;
+[[nodiscard]] inline bool rises(const geometry::Arc& arc) {
+  return std::abs(arc.axis.dot(arc.end - arc.start)) > kLevelArc;
+}
+
+// Remarks in Klartext for what it has no words for, so that the proof and the operator see it.
+
+inline constexpr std::string_view kLengthRemark = "G49: the length of the tool counts";
+// For motions along Z after a tool change without G43.
+inline constexpr std::string_view kUnsaidLengthRemark = "no G43: the length of the tool counts";
+// What other languages say before their M30, where Klartext ends by its END PGM alone.
+inline constexpr std::string_view kEndRemark = "END PGM";
+// "G54: its datum is active"
+[[nodiscard]] inline std::string datum_remark(int work_offset) {
+  return "G" + std::to_string(work_offset) + ": its datum is active";
+}
+
 struct Operation {
   OperationKind kind = OperationKind::kComment;
   std::uint32_t block = 0;
   gcode::SourceSpan where;  // the word, or the block
-  std::string_view text;
   double number = 0;
-  std::int32_t motion = -1;    // index into Interpretation::motions
-  std::optional<double> feed;  // mm/min; of lines and arcs
+  std::string_view text = {};
+  std::int32_t motion = -1;         // index into Interpretation::motions
+  std::optional<double> feed = {};  // mm/min; of lines and arcs
+  [[nodiscard]] int whole() const { return static_cast<int>(number); }
 };
 
 struct ProgramOperations {
@@ -47,17 +68,16 @@ struct ProgramOperations {
 };
 
 // In a block: dwell alone; or tool, speed, spindle, coolant, work offset, motion, stop, end. M3, M4
-// and M8 beside a motion come before it; M5 and M9 of Klartext behind it.
+// and M8 beside a motion come before it; M5 and M9 of Klartext after it.
 //
 // The length of the tool: G43 H, D1 (Siemens), or TOOL CALL (Klartext, where it always counts).
-// Remarks that a translation left in Klartext (postproc/convert/klartext_statements.h) are the acts
-// that they stand for.
+// Remarks that a translation left in Klartext are the acts that they stand for.
 //
 // Obstacles are, besides words and blocks that are not plain: increments; compensation and other
 // states in which the words are not the path; M5, M9 and stops beside a motion, where controls
 // differ in what comes first; M0 and M1 with spindle or coolant on, which some controls stop then;
 // T without M6, which changes the tool on some controls; G43, D but for the length of the tool that
-// was just put in; a tool put in with the spindle on, and a cut behind it without M3 or M4 between;
+// was just put in; a tool put in with the spindle on, and a cut after it without M3 or M4 between;
 // G64 with a tolerance; dwells whose number may be seconds or milliseconds (gcode/state/dwell.h).
 // Of Siemens programs, names but G71, G700, G710, and helices; of Klartext programs, whatever is
 // not L, CC, C, CR, TOOL CALL, cycle 9, M functions and BLK FORM, and inches: what F means then is

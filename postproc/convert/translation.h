@@ -25,7 +25,7 @@ struct TranslationSource {
   // --allow work-offset: where the language has no word for G54, the datum that is active on the
   // control stands for it.
   bool datum_is_work_offset = false;
-  // --allow tool-length: where lengths always count, they may count behind G49, too.
+  // --allow tool-length: where lengths always count, they may count after G49, too.
   bool length_counts_always = false;
   // --allow blank-form: BLK FORM may become a comment.
   bool blank_is_remark = false;
@@ -74,7 +74,6 @@ struct Translation {
 [[nodiscard]] std::string program_name(std::string_view file);
 
 // The lines of a translation as they come.
-
 class TranslationText {
  public:
   // `source_line`: from 1.

@@ -9,7 +9,6 @@
 #include <iterator>
 #include <numbers>
 
-#include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
 #include "geometry/fitting/fair/fair.h"
 
@@ -29,80 +28,72 @@ constexpr double kProofLooseness = 0.02;
 // Part of the tolerance without rounding that arcs or chords may use; see options.h.
 constexpr double kFormPart = 1.0 / 3;
 
-constexpr std::array kForms = {
-    Choice<Form>{Form::kAuto, "auto",
-                 "curves that the target surely reads, arcs or lines, as --prefer says"},
-    Choice<Form>{Form::kCurves, "curves",
-                 "the target's own curves; arcs or lines for runs that are none"},
-    Choice<Form>{Form::kArcs, "arcs", "G02/G03 where a run lies in a plane of the target"},
-    Choice<Form>{Form::kLines, "lines", "G01 along the smoothed curve"},
+constexpr Choice<Form> kForms[] = {
+    {Form::kAuto, "auto", "curves that the target surely reads, arcs or lines, as --prefer says"},
+    {Form::kCurves, "curves", "the target's own curves; arcs or lines for runs that are none"},
+    {Form::kArcs, "arcs", "G02/G03 where a run lies in a plane of the target"},
+    {Form::kLines, "lines", "G01 along the smoothed curve"},
 };
 
-constexpr std::array kMethods = {
-    Choice<Method>{Method::kBest, "best", "every method; the result that serves --prefer is taken"},
-    Choice<Method>{Method::kFair, "fair",
-                   "the path that was meant, as smooth as the machine needs it"},
-    Choice<Method>{Method::kTimeOptimal, "racing",
-                   "lines, and at each corner the fastest curve on the machine; slow to compute"},
-    Choice<Method>{Method::kNaseath, "naseath",
-                   "a spline's control points moved inside a tube (Naseath 2007), repaired"},
-    Choice<Method>{Method::kGuo, "guo",
-                   "lines with a five-point curve at each vertex (Guo 2023), legs shared fairly"},
-    Choice<Method>{Method::kOzcan, "ozcan",
-                   "lines with an eight-point curve at each vertex (Ozcan 2018); slow to compute"},
-    Choice<Method>{Method::kNaseathLiteral, "naseath-literal",
-                   "as the thesis has it, for comparison: may make a path worse"},
-    Choice<Method>{Method::kGuoLiteral, "guo-literal",
-                   "as the paper has it, for comparison: half the tolerance or less is used"},
-    Choice<Method>{Method::kNone, "none", "nothing is rewritten: checks and reports only"},
+constexpr Choice<Method> kMethods[] = {
+    {Method::kBest, "best", "every method; the result that serves --prefer is taken"},
+    {Method::kFair, "fair", "the path that was meant, as smooth as the machine needs it"},
+    {Method::kTimeOptimal, "racing",
+     "lines, and at each corner the fastest curve on the machine; slow to compute"},
+    {Method::kNaseath, "naseath",
+     "a spline's control points moved inside a tube (Naseath 2007), repaired"},
+    {Method::kGuo, "guo",
+     "lines with a five-point curve at each vertex (Guo 2023), legs shared fairly"},
+    {Method::kOzcan, "ozcan",
+     "lines with an eight-point curve at each vertex (Ozcan 2018); slow to compute"},
+    {Method::kNaseathLiteral, "naseath-literal",
+     "as the thesis has it, for comparison: may make a path worse"},
+    {Method::kGuoLiteral, "guo-literal",
+     "as the paper has it, for comparison: half the tolerance or less is used"},
+    {Method::kNone, "none", "nothing is rewritten: checks and reports only"},
 };
 
-constexpr std::array kPreferences = {
-    Choice<Prefer>{Prefer::kTime, "time", "the least cutting time on the machine"},
-    Choice<Prefer>{Prefer::kAccuracy, "accuracy", "nearest to the path that was meant"},
-    Choice<Prefer>{Prefer::kSize, "size", "the fewest bytes inside the tolerance"},
+constexpr Choice<Prefer> kPreferences[] = {
+    {Prefer::kTime, "time", "the least cutting time on the machine"},
+    {Prefer::kAccuracy, "accuracy", "nearest to the path that was meant"},
+    {Prefer::kSize, "size", "the fewest bytes inside the tolerance"},
 };
 
 using geometry::ToleranceKind;
-constexpr std::array kToleranceKinds = {
-    Choice<ToleranceKind>{ToleranceKind::kPath, "path", "both ways and in order, corners too"},
-    Choice<ToleranceKind>{ToleranceKind::kBand, "band",
-                          "new path to old one in order; corners may be further off"},
+constexpr Choice<ToleranceKind> kToleranceKinds[] = {
+    {ToleranceKind::kPath, "path", "both ways and in order, corners too"},
+    {ToleranceKind::kBand, "band", "new path to old one in order; corners may be further off"},
 };
 
 using geometry::Side;
-constexpr std::array kSides = {
-    Choice<Side>{Side::kBoth, "both", "the new path may be on either side of the old one"},
-    Choice<Side>{Side::kLeft, "left", "only on the left of the way of travel, seen from above"},
-    Choice<Side>{Side::kRight, "right", "only on the right of the way of travel, seen from above"},
+constexpr Choice<Side> kSides[] = {
+    {Side::kBoth, "both", "the new path may be on either side of the old one"},
+    {Side::kLeft, "left", "only on the left of the way of travel, seen from above"},
+    {Side::kRight, "right", "only on the right of the way of travel, seen from above"},
 };
 
 using gcode::SourceKind;
-constexpr std::array kSources = {
-    Choice<SourceKind>{SourceKind::kAuto, "auto",
-                       "what the program's marks say; without any, as the target reads"},
-    Choice<SourceKind>{SourceKind::kNgc, "ngc", "LinuxCNC and the RS274/NGC standard"},
-    Choice<SourceKind>{SourceKind::kFanuc, "fanuc", "FANUC and controls like it, with macro B"},
-    Choice<SourceKind>{SourceKind::kHaas, "haas", "Haas, with macro B"},
-    Choice<SourceKind>{SourceKind::kGrbl, "grbl", "grbl and its kin"},
-    Choice<SourceKind>{SourceKind::kSiemens, "siemens", "Siemens Sinumerik"},
-    Choice<SourceKind>{SourceKind::kHeidenhain, "heidenhain", "Heidenhain Klartext"},
+constexpr Choice<SourceKind> kSources[] = {
+    {SourceKind::kAuto, "auto", "what the program's marks say; without any, as the target reads"},
+    {SourceKind::kNgc, "ngc", "LinuxCNC and the RS274/NGC standard"},
+    {SourceKind::kFanuc, "fanuc", "FANUC and controls like it, with macro B"},
+    {SourceKind::kHaas, "haas", "Haas, with macro B"},
+    {SourceKind::kGrbl, "grbl", "grbl and its kin"},
+    {SourceKind::kSiemens, "siemens", "Siemens Sinumerik"},
+    {SourceKind::kHeidenhain, "heidenhain", "Heidenhain Klartext"},
 };
 
-constexpr std::array kLinearizations = {
-    Choice<Linearize>{Linearize::kMinLink, "minlink",
-                      "the fewest lines: ends anywhere inside the tolerance"},
-    Choice<Linearize>{Linearize::kChord, "chord", "few chords with ends on the curve"},
-    Choice<Linearize>{Linearize::kIlca, "ilca", "equal steps of the parameter (Hamdan 2005)"},
-    Choice<Linearize>{Linearize::kBlca, "blca", "steps until the tangent is left (Hamdan 2005)"},
+constexpr Choice<Linearize> kLinearizations[] = {
+    {Linearize::kMinLink, "minlink", "the fewest lines: ends anywhere inside the tolerance"},
+    {Linearize::kChord, "chord", "few chords with ends on the curve"},
+    {Linearize::kIlca, "ilca", "equal steps of the parameter (Hamdan 2005)"},
+    {Linearize::kBlca, "blca", "steps until the tangent is left (Hamdan 2005)"},
 };
 
-template <typename Value, std::size_t count>
-std::string_view name_in(const std::array<Choice<Value>, count>& choices, Value value) {
-  for (const auto& choice : choices) {
-    if (choice.value == value) return choice.name;
-  }
-  return "unknown";
+template <typename Value>
+std::string_view name_in(std::span<const Choice<Value>> choices, Value value) {
+  const auto found = std::ranges::find(choices, value, &Choice<Value>::value);
+  return found != choices.end() ? found->name : "unknown";
 }
 
 // See ToleranceShares, 2.
@@ -145,6 +136,18 @@ void check_tolerance(const SmoothOptions& options, std::vector<std::string>& pro
   }
 }
 
+constexpr Choice<LogLevel> kLevels[] = {
+    {LogLevel::kError, "error", "what ends or stops the work"},
+    {LogLevel::kWarning, "warning", "and what is doubtful in a program"},
+    {LogLevel::kInfo, "info", "and notes, the summary, progress"},
+};
+
+constexpr std::string_view kImplied = "implied";
+
+// By their decimals.
+constexpr std::array<std::string_view, gcode::kMostIncrementDecimals + 1> kSteps = {
+    "1", "0.1", "0.01", "0.001", "0.0001", "0.00001"};
+
 }  // namespace
 
 std::span<const Choice<Form>> forms() { return kForms; }
@@ -155,25 +158,18 @@ std::span<const Choice<ToleranceKind>> tolerance_kinds() { return kToleranceKind
 std::span<const Choice<Side>> sides() { return kSides; }
 std::span<const Choice<SourceKind>> sources() { return kSources; }
 
-std::string_view name_of(Form form) { return name_in(kForms, form); }
-std::string_view name_of(Method method) { return name_in(kMethods, method); }
-std::string_view name_of(Prefer prefer) { return name_in(kPreferences, prefer); }
-std::string_view name_of(Linearize linearize) { return name_in(kLinearizations, linearize); }
+std::string_view name_of(Form form) { return name_in(forms(), form); }
+std::string_view name_of(Method method) { return name_in(methods(), method); }
+std::string_view name_of(Prefer prefer) { return name_in(preferences(), prefer); }
+std::string_view name_of(Linearize linearize) { return name_in(linearizations(), linearize); }
 
-std::string_view name_of(ToleranceKind kind) { return name_in(kToleranceKinds, kind); }
-std::string_view name_of(Side side) { return name_in(kSides, side); }
-std::string_view name_of(SourceKind source) { return name_in(kSources, source); }
+std::string_view name_of(ToleranceKind kind) { return name_in(tolerance_kinds(), kind); }
+std::string_view name_of(Side side) { return name_in(sides(), side); }
+std::string_view name_of(SourceKind source) { return name_in(sources(), source); }
 
 std::string_view name_of(gcode::Units units) {
-  switch (units) {
-    case gcode::Units::kMillimetre:
-      return "mm";
-    case gcode::Units::kInch:
-      return "inch";
-    case gcode::Units::kUnknown:
-      break;
-  }
-  return "unknown";
+  if (units == gcode::Units::kUnknown) return "unknown";
+  return units == gcode::Units::kInch ? "inch" : "mm";
 }
 
 bool calls_keep_modes(std::span<const std::string> allowed) {
@@ -191,12 +187,11 @@ gcode::ReadOptions read_options_of(const SmoothOptions& options) {
 std::vector<std::string> problems_of_allowed(std::span<const std::string> ids) {
   std::vector<std::string> problems;
   const auto all = gcode::reason::explanations();
-  std::string possible;
-  for (const auto& explanation : all) {
-    if (!explanation.can_be_allowed) continue;
-    possible += (possible.empty() ? "" : ", ") + std::string(explanation.id);
+  std::vector<std::string_view> liftable;
+  for (const auto& each : all) {
+    if (each.can_be_allowed) liftable.push_back(each.id);
   }
-  if (possible.empty()) possible = "none";
+  const std::string possible = fmt::format("{}", fmt::join(liftable, ", "));
   for (const std::string& id : ids) {
     const auto found = std::ranges::find(all, id, &gcode::reason::Explanation::id);
     if (found == all.end()) {
@@ -284,27 +279,7 @@ ToleranceShares share_tolerance(const SmoothOptions& options, gcode::Units units
   return shares;
 }
 
-namespace {
-
-constexpr std::array kLevels = {
-    Choice<LogLevel>{LogLevel::kError, "error", "what ends or stops the work"},
-    Choice<LogLevel>{LogLevel::kWarning, "warning", "and what is doubtful in a program"},
-    Choice<LogLevel>{LogLevel::kInfo, "info", "and notes, the summary, progress"},
-};
-
-}  // namespace
-
 std::span<const Choice<LogLevel>> log_levels() { return kLevels; }
-
-namespace {
-
-constexpr std::string_view kImplied = "implied";
-
-// By their decimals.
-constexpr std::array<std::string_view, gcode::kMostIncrementDecimals + 1> kSteps = {
-    "1", "0.1", "0.01", "0.001", "0.0001", "0.00001"};
-
-}  // namespace
 
 std::optional<gcode::Decimals> read_decimals(std::string_view text,
                                              std::vector<std::string>& problems) {

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
+#include <iterator>
+#include <sstream>
 
 #include "gcode/reading/parser.h"
 #include "gcode/state/modal_state.h"
@@ -26,12 +27,10 @@ struct SettingWord {
   int g_code = 0;
   std::string_view letters;
 };
-constexpr std::array kSettingWords = {
-    SettingWord{50, "P"},    SettingWord{51, "QRXYZABC"}, SettingWord{53, "P"},
-    SettingWord{54, "Q"},    SettingWord{80, "P"},        SettingWord{611, ""},
-    SettingWord{640, "PQ"},  SettingWord{1300, ""},       SettingWord{1310, "FJEDILRK"},
-    SettingWord{1870, "PE"}, SettingWord{6410, ""},       SettingWord{6420, ""},
-    SettingWord{6430, ""},   SettingWord{6440, ""},       SettingWord{6450, ""},
+constexpr SettingWord kSettingWords[] = {
+    {50, "P"},  {51, "QRXYZABC"}, {53, "P"},  {54, "Q"},          {80, "P"},
+    {611, ""},  {640, "PQ"},      {1300, ""}, {1310, "FJEDILRK"}, {1870, "PE"},
+    {6410, ""}, {6420, ""},       {6430, ""}, {6440, ""},         {6450, ""},
 };
 
 constexpr std::array<std::string_view, 10> kPlainNames = {
@@ -45,38 +44,28 @@ constexpr std::string_view kAllowed =
     "P, G61.1, G64, G131, G187; Siemens: CYCLE832(..), COMPCAD ..; Klartext: CYCL DEF 32..; ISG: "
     "#HSC ..) or an M word from M100 on";
 
-const SettingWord* setting_word(const gcode::Word& word) {
-  const auto found = std::ranges::find(kSettingWords, gcode::code_of(word), &SettingWord::g_code);
-  return found == kSettingWords.end() ? nullptr : &*found;
-}
-
-// M words below 100 stop, turn spindles, change tools and coolant on every control; of those above,
-// the ones that are known to change where the tool is.
-bool is_free_m(const gcode::Word& word) {
-  const int code = gcode::code_of(word);
-  return code >= 1000 && code != 1280 && code != 1290 && code != 1980;
-}
-
-bool stands_for_an_axis(const gcode::Word& word) {
-  return word.letter >= 'A' && word.letter <= 'Z' &&
-         std::string_view("XYZABC").find(word.letter) != std::string_view::npos;
-}
-
-// A block of plain words: one setting word with its letters, or M words alone.
+// A block of plain words: one setting word with its letters, or M words alone. M words below 100
+// stop, turn spindles, change tools and coolant on every control; of those above, not the ones that
+// are known to change where the tool is.
 bool is_setting(std::span<const gcode::Word> words) {
   const SettingWord* setting = nullptr;
   for (const gcode::Word& word : words) {
     if (word.letter != 'G') continue;
-    if (setting != nullptr) return false;
-    setting = setting_word(word);
-    if (setting == nullptr) return false;
+    const auto found = std::ranges::find(kSettingWords, gcode::code_of(word), &SettingWord::g_code);
+    if (setting != nullptr || found == std::end(kSettingWords)) return false;
+    setting = &*found;
   }
   return std::ranges::all_of(words, [&](const gcode::Word& word) {
+    const int code = gcode::code_of(word);
     if (word.letter == 'G') return true;
-    if (word.letter == 'M') return setting == nullptr && is_free_m(word);
-    const bool belongs =
-        setting != nullptr && setting->letters.find(word.letter) != std::string_view::npos;
-    return belongs && word.is_number && (!stands_for_an_axis(word) || word.value == 0);
+    if (word.letter == 'M') {
+      return setting == nullptr && code >= 1000 && code != 1280 && code != 1290 && code != 1980;
+    }
+    const auto among = [&](std::string_view letters) {
+      return letters.find(word.letter) != std::string_view::npos;
+    };
+    return setting != nullptr && among(setting->letters) && word.is_number &&
+           (!among("XYZABC") || word.value == 0);
   });
 }
 
@@ -86,15 +75,11 @@ bool only(std::string_view text, std::string_view more) {
   });
 }
 
-bool is_number_text(std::string_view text) {
-  return !text.empty() && text.find_first_not_of("0123456789.") == std::string_view::npos;
-}
-
 // One word of a Siemens block.
 bool is_siemens_word(std::string_view word) {
   if (std::ranges::find(kPlainNames, word) != kPlainNames.end()) return true;
-  for (const std::string_view name : {"CTOL=", "OTOL="}) {
-    if (word.starts_with(name)) return is_number_text(word.substr(name.size()));
+  if (word.starts_with("CTOL=") || word.starts_with("OTOL=")) {
+    return word.size() > 5 && word.find_first_not_of("0123456789.", 5) == std::string_view::npos;
   }
   constexpr std::string_view kCycle = "CYCLE832(";
   return word.starts_with(kCycle) && word.ends_with(')') &&
@@ -102,12 +87,8 @@ bool is_siemens_word(std::string_view word) {
 }
 
 bool is_siemens(std::string_view line) {
-  while (!line.empty()) {
-    const std::size_t end = std::min(line.find(' '), line.size());
-    if (end > 0 && !is_siemens_word(line.substr(0, end))) return false;
-    line.remove_prefix(std::min(end + 1, line.size()));
-  }
-  return true;
+  std::istringstream words{std::string(line)};
+  return std::all_of(std::istream_iterator<std::string>(words), {}, is_siemens_word);
 }
 
 // A word that is none of plain words: of Klartext, of the ISG kernel or of Siemens controls. Those
@@ -126,29 +107,18 @@ bool is_own_word(std::string_view line, const gcode::Control& target) {
   return language == gcode::Language::kSiemens && is_siemens(line);
 }
 
-std::string with_tolerance(std::string line, std::string_view tolerance) {
-  for (std::size_t at = line.find(kTolerance); at != std::string::npos;
-       at = line.find(kTolerance, at + tolerance.size())) {
-    line.replace(at, kTolerance.size(), tolerance);
+std::vector<std::string> filled_in(std::vector<std::string> lines, std::string_view tolerance) {
+  for (std::string& line : lines) {
+    for (std::size_t at = line.find(kTolerance); at != std::string::npos;
+         at = line.find(kTolerance, at + tolerance.size())) {
+      line.replace(at, kTolerance.size(), tolerance);
+    }
   }
-  return line;
-}
-
-std::vector<std::string> filled_in(const std::vector<std::string>& lines,
-                                   std::string_view tolerance) {
-  std::vector<std::string> filled;
-  filled.reserve(lines.size());
-  for (const std::string& line : lines) filled.push_back(with_tolerance(line, tolerance));
-  return filled;
+  return lines;
 }
 
 bool any_acts(const std::vector<std::string>& lines) {
   return std::ranges::any_of(lines, [](const std::string& line) { return acts(line); });
-}
-
-// The name that a word of another language begins with: CYCLE832, CTOL, #HSC.
-std::string name_of_word(std::string_view word) {
-  return std::string(word.substr(0, word.find_first_of("(=")));
 }
 
 void append_keys(const std::string& line, std::vector<SettingKey>& keys) {
@@ -165,11 +135,10 @@ void append_keys(const std::string& line, std::vector<SettingKey>& keys) {
   } else if (line.starts_with("#HSC")) {
     keys.push_back({0, 0, "#HSC"});
   } else {
-    for (std::size_t at = 0; at < line.size();) {
-      const std::size_t end = std::min(line.find(' ', at), line.size());
-      if (end > at)
-        keys.push_back({0, 0, name_of_word(std::string_view(line).substr(at, end - at))});
-      at = end + 1;
+    // The names that words of another language begin with: CYCLE832, CTOL.
+    std::istringstream words(line);
+    for (std::string word; words >> word;) {
+      keys.push_back({0, 0, word.substr(0, word.find_first_of("(="))});
     }
   }
 }
@@ -190,7 +159,7 @@ std::string why_not_in_profile(const std::string& line, const gcode::Control& ta
     return "expected one line of printable ASCII characters";
   }
   if (line.front() == ' ' || line.back() == ' ') return "expected no blanks at its ends";
-  const std::string filled = with_tolerance(line, kSomeTolerance);
+  const std::string filled = filled_in({line}, kSomeTolerance).front();
   if (filled.find_first_of("{}") != std::string::npos) {
     return "expected no {..} but {tolerance}";
   }

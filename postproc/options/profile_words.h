@@ -17,23 +17,23 @@ struct ProfileWords {
   std::vector<std::string> header;      // before the program's first block that says anything
   std::vector<std::string> footer;      // before its end (M2, M30, the last %)
   std::vector<std::string> before_run;  // before each rewritten run, or chain of them
-  std::vector<std::string> after_run;   // behind it
+  std::vector<std::string> after_run;   // after it
   [[nodiscard]] bool empty() const;
   bool operator==(const ProfileWords&) const = default;
 };
 
 // Why a line may not stand in a profile, with what may; empty when it may:
 //   - comments as the target writes them;
-//   - G5.1 Q.., G5 P.., G5.3 P.., G5.4 Q.., G8 P.., G61.1, G64 (P Q), G130, G131, G187 (P E), G641
-//   to
-//     G645, and M words from M100 on, without M128, M129 and M198; axis words only as X0 Y0 Z0
-//     behind G5.1;
+//   - G5.1 Q.., G5 P.., G5.3 P.., G5.4 Q.., G8 P.., G61.1, G64 (P Q), G130, G131, G187 (P E),
+//     G641 to G645, and M words from M100 on, without M128, M129 and M198; axis words only as X0 Y0
+//     Z0 after G5.1;
 //   - CYCLE832(..), COMPON, COMPCAD, COMPCURV, COMPSURF, COMPOF, SOFT, BRISK, FFWON, FFWOF,
-//   CTOL=.., OTOL=..;
+//   CTOL=..,
+//     OTOL=..;
 //   - CYCL DEF 32..;  #HSC ON.., #HSC OFF.
 [[nodiscard]] std::string why_not_in_profile(const std::string& line, const gcode::Control& target);
 
-// All that is wrong with the words together: a line before runs without one behind them, and so on.
+// All that is wrong with the words together: a line before runs without one after them, and so on.
 [[nodiscard]] std::vector<std::string> problems_of(const ProfileWords& words);
 
 // Does the line act on the control? A comment does not.

@@ -6,19 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <sstream>
-#include <string>
-#include <string_view>
 #include <type_traits>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include "gcode/controls/built_in.h"
 #include "postproc/machine/machine.h"
-#include "postproc/options/profile_words.h"
-#include "postproc/text/toml_text.h"
+#include "postproc/text/words.h"
 
 namespace batten::postproc {
 
@@ -37,12 +31,12 @@ struct WordsKey {
   std::string_view remark;
   Lines ProfileWords::*place;
 };
-constexpr std::array kWordsKeys = {
-    WordsKey{"header", "lines before the first block of a program that is rewritten",
-             &ProfileWords::header},
-    WordsKey{"footer", "lines before its end", &ProfileWords::footer},
-    WordsKey{"before-run", "lines before each rewritten run", &ProfileWords::before_run},
-    WordsKey{"after-run", "lines after it", &ProfileWords::after_run},
+constexpr WordsKey kWordsKeys[] = {
+    {"header", "lines before the first block of a program that is rewritten",
+     &ProfileWords::header},
+    {"footer", "lines before its end", &ProfileWords::footer},
+    {"before-run", "lines before each rewritten run", &ProfileWords::before_run},
+    {"after-run", "lines after it", &ProfileWords::after_run},
 };
 
 constexpr std::array<std::string_view, 3> kPlaneNames = {"G17", "G18", "G19"};
@@ -75,71 +69,68 @@ constexpr double kShortestLine = 40;
 constexpr double kLongestLine = 100000;
 
 // In the order in which a profile shows them; keys of a section stand together.
-constexpr std::array kKeys = {
-    ProfileKey{"", "name", "what reports call it",
-               [](Control& c) -> std::string& { return c.name; }},
-    ProfileKey{"", "description", "one line",
-               [](Control& c) -> std::string& { return c.description; }},
-    ProfileKey{"", "machine", "a built-in machine whose time counts when none is given",
-               [](Control& c) -> std::string& { return c.machine; }},
+constexpr ProfileKey kKeys[] = {
+    {"", "name", "what reports call it", [](Control& c) -> std::string& { return c.name; }},
+    {"", "description", "one line", [](Control& c) -> std::string& { return c.description; }},
+    {"", "machine", "a built-in machine whose time counts when none is given",
+     [](Control& c) -> std::string& { return c.machine; }},
 
-    ProfileKey{"numbers", "places-mm", "decimals of X Y Z along lines, millimetre programs",
-               [](Control& c) -> int& { return c.places.mm; }, 0, kMostDecimals},
-    ProfileKey{"numbers", "places-inch", "the same, inch programs",
-               [](Control& c) -> int& { return c.places.inch; }, 0, kMostDecimals},
-    ProfileKey{"numbers", "arc-ends-mm", "decimals of X Y Z in runs with arcs",
-               [](Control& c) -> int& { return c.arc_ends.mm; }, 0, kMostDecimals},
-    ProfileKey{"numbers", "arc-ends-inch", "the same, inch programs",
-               [](Control& c) -> int& { return c.arc_ends.inch; }, 0, kMostDecimals},
-    ProfileKey{"numbers", "centres-mm", "decimals of I J K R",
-               [](Control& c) -> int& { return c.centers.mm; }, 0, kMostDecimals},
-    ProfileKey{"numbers", "centres-inch", "the same, inch programs",
-               [](Control& c) -> int& { return c.centers.inch; }, 0, kMostDecimals},
-    ProfileKey{"numbers", "feeds", "most decimals of F, which is copied",
-               [](Control& c) -> int& { return c.feed_decimals; }, 0, kMostDecimals},
-    ProfileKey{"numbers", "decimal-point", "X5. rather than X5",
-               [](Control& c) -> bool& { return c.decimal_point; }},
-    ProfileKey{"numbers", "trailing-zeros", "X1.500 rather than X1.5",
-               [](Control& c) -> bool& { return c.trailing_zeros; }},
+    {"numbers", "places-mm", "decimals of X Y Z along lines, millimetre programs",
+     [](Control& c) -> int& { return c.places.mm; }, 0, kMostDecimals},
+    {"numbers", "places-inch", "the same, inch programs",
+     [](Control& c) -> int& { return c.places.inch; }, 0, kMostDecimals},
+    {"numbers", "arc-ends-mm", "decimals of X Y Z in runs with arcs",
+     [](Control& c) -> int& { return c.arc_ends.mm; }, 0, kMostDecimals},
+    {"numbers", "arc-ends-inch", "the same, inch programs",
+     [](Control& c) -> int& { return c.arc_ends.inch; }, 0, kMostDecimals},
+    {"numbers", "centres-mm", "decimals of I J K R",
+     [](Control& c) -> int& { return c.centers.mm; }, 0, kMostDecimals},
+    {"numbers", "centres-inch", "the same, inch programs",
+     [](Control& c) -> int& { return c.centers.inch; }, 0, kMostDecimals},
+    {"numbers", "feeds", "most decimals of F, which is copied",
+     [](Control& c) -> int& { return c.feed_decimals; }, 0, kMostDecimals},
+    {"numbers", "decimal-point", "X5. rather than X5",
+     [](Control& c) -> bool& { return c.decimal_point; }},
+    {"numbers", "trailing-zeros", "X1.500 rather than X1.5",
+     [](Control& c) -> bool& { return c.trailing_zeros; }},
 
-    ProfileKey{"lines", "max-length", "characters; a run that needs more is kept",
-               [](Control& c) -> std::size_t& { return c.max_line_length; }, kShortestLine,
-               kLongestLine},
-    ProfileKey{"lines", "blanks", "between words", [](Control& c) -> bool& { return c.blanks; }},
-    ProfileKey{"lines", "comments", "none, parentheses or semicolon",
-               [](Control& c) -> CommentStyle& { return c.comments; }},
-    ProfileKey{"lines", "repeat-words", "G1 in every block, X and Y in every arc",
-               [](Control& c) -> bool& { return c.repeats_words; }},
+    {"lines", "max-length", "characters; a run that needs more is kept",
+     [](Control& c) -> std::size_t& { return c.max_line_length; }, kShortestLine, kLongestLine},
+    {"lines", "blanks", "between words", [](Control& c) -> bool& { return c.blanks; }},
+    {"lines", "comments", "none, parentheses or semicolon",
+     [](Control& c) -> CommentStyle& { return c.comments; }},
+    {"lines", "repeat-words", "G1 in every block, X and Y in every arc",
+     [](Control& c) -> bool& { return c.repeats_words; }},
 
-    ProfileKey{"arcs", "planes", "where arcs are taken; [] for none",
-               [](Control& c) -> std::array<bool, 3>& { return c.planes; }},
-    ProfileKey{"arcs", "helices", "arcs that rise", [](Control& c) -> bool& { return c.helices; }},
-    ProfileKey{"arcs", "words", "centres (I J K from the start) or radius (R)",
-               [](Control& c) -> ArcForm& { return c.arc_form; }},
-    ProfileKey{"arcs", "absolute-centres", "G90.1 and G91.1 are known",
-               [](Control& c) -> bool& { return c.arc_distance_mode; }},
-    ProfileKey{"arcs", "max-sweep", "degrees; longer arcs are written as several",
-               [](Control& c) -> double& { return c.max_sweep_deg; }, 1, 360},
-    ProfileKey{"arcs", "single-quadrants", "arcs end at the axes",
-               [](Control& c) -> bool& { return c.single_quadrants; }},
-    ProfileKey{"arcs", "min-radius", "mm; tighter arcs become lines",
-               [](Control& c) -> double& { return c.min_radius; }, 0.001, 1e6},
-    ProfileKey{"arcs", "max-radius", "mm; flatter arcs become lines",
-               [](Control& c) -> double& { return c.max_radius; }, 0.001, 1e6},
-    ProfileKey{"arcs", "chord-error", "mm by which the control's own chords leave an arc; 0: none",
-               [](Control& c) -> double& { return c.chords.error; }, 0, 10},
-    ProfileKey{"arcs", "chord-length", "mm, of the control's own chords; 0: not by length",
-               [](Control& c) -> double& { return c.chords.longest; }, 0, 100},
-    ProfileKey{"arcs", "least-chord-length", "mm, where there are so many chords in a circle:",
-               [](Control& c) -> double& { return c.chords.shortest; }, 0, 100},
-    ProfileKey{"arcs", "chords-per-circle", "0: chord-length alone counts",
-               [](Control& c) -> double& { return c.chords.per_circle; }, 0, 1e5},
+    {"arcs", "planes", "where arcs are taken; [] for none",
+     [](Control& c) -> std::array<bool, 3>& { return c.planes; }},
+    {"arcs", "helices", "arcs that rise", [](Control& c) -> bool& { return c.helices; }},
+    {"arcs", "words", "centres (I J K from the start) or radius (R)",
+     [](Control& c) -> ArcForm& { return c.arc_form; }},
+    {"arcs", "absolute-centres", "G90.1 and G91.1 are known",
+     [](Control& c) -> bool& { return c.arc_distance_mode; }},
+    {"arcs", "max-sweep", "degrees; longer arcs are written as several",
+     [](Control& c) -> double& { return c.max_sweep_deg; }, 1, 360},
+    {"arcs", "single-quadrants", "arcs end at the axes",
+     [](Control& c) -> bool& { return c.single_quadrants; }},
+    {"arcs", "min-radius", "mm; tighter arcs become lines",
+     [](Control& c) -> double& { return c.min_radius; }, 0.001, 1e6},
+    {"arcs", "max-radius", "mm; flatter arcs become lines",
+     [](Control& c) -> double& { return c.max_radius; }, 0.001, 1e6},
+    {"arcs", "chord-error", "mm by which the control's own chords leave an arc; 0: none",
+     [](Control& c) -> double& { return c.chords.error; }, 0, 10},
+    {"arcs", "chord-length", "mm, of the control's own chords; 0: not by length",
+     [](Control& c) -> double& { return c.chords.longest; }, 0, 100},
+    {"arcs", "least-chord-length", "mm, where there are so many chords in a circle:",
+     [](Control& c) -> double& { return c.chords.shortest; }, 0, 100},
+    {"arcs", "chords-per-circle", "0: chord-length alone counts",
+     [](Control& c) -> double& { return c.chords.per_circle; }, 0, 1e5},
 };
 
 const ProfileKey* find_key(std::string_view section, std::string_view name) {
   const auto found = std::ranges::find_if(
       kKeys, [&](const ProfileKey& key) { return key.section == section && key.name == name; });
-  return found == kKeys.end() ? nullptr : &*found;
+  return found == std::end(kKeys) ? nullptr : &*found;
 }
 
 std::string text_of(const toml::node& node) {
@@ -154,6 +145,8 @@ std::string text_of(const toml::node& node) {
   });
   return stream.str();
 }
+
+std::string listed(const Lines& names) { return fmt::format("{}", fmt::join(names, ", ")); }
 
 // A bound or a value as a person writes it.
 std::string plain(double value) { return fmt::format("{:.10g}", value); }
@@ -272,53 +265,53 @@ class ProfileReader {
     TargetProfile profile = {file_, *target_, {}};
     for (const auto& [key, node] : root) read_top(key.str(), node, profile.adapted);
     check_together(root, profile.adapted);
-    if (problems_.size() != problems_before) return nullptr;
-    read_words(root, profile);
+    if (problems_.size() == problems_before) read_words(root, profile);
     if (problems_.size() != problems_before) return nullptr;
     return std::make_shared<TargetProfile>(std::move(profile));
   }
 
  private:
   void complain(const toml::node& node, std::string_view key, const std::string& wanted) {
+    object(node, key, "expected " + wanted);
+  }
+
+  void object(const toml::node& node, std::string_view key, const std::string& why) {
     const toml::source_position place = node.source().begin;
-    problems_.push_back(fmt::format("{}:{}:{}: {}: {}, expected {}", file_, place.line,
-                                    place.column, key, text_of(node), wanted));
+    problems_.push_back(fmt::format("{}:{}:{}: {}: {}, {}", file_, place.line, place.column, key,
+                                    text_of(node), why));
   }
 
   void find_base(const toml::table& root) {
     const toml::node* node = root.get(kBasedOn);
-    const auto name = node != nullptr ? node->value_exact<std::string>() : std::nullopt;
+    if (node == nullptr && target_ != nullptr) return;
+    const std::string possible = "one of " + names_in(gcode::controls());
     if (node == nullptr) {
-      if (target_ != nullptr) return;
-      problems_.push_back(fmt::format("{}: {}: nothing given, expected one of {}", file_, kBasedOn,
-                                      target_names()));
+      problems_.push_back(
+          fmt::format("{}: {}: nothing given, expected {}", file_, kBasedOn, possible));
       return;
     }
+    const auto name = node->value_exact<std::string>();
     const gcode::Control* base = name ? gcode::find_control(*name) : nullptr;
     if (base == nullptr) {
-      complain(*node, kBasedOn, "one of " + target_names());
-      target_ = nullptr;
+      complain(*node, kBasedOn, possible);
     } else if (target_ != nullptr && target_ != base) {
-      complain(*node, kBasedOn,
-               fmt::format("\"{}\", which --target names", std::string(target_->name)));
-    } else {
-      target_ = base;
+      return complain(*node, kBasedOn, fmt::format("\"{}\", which --target names", target_->name));
     }
+    target_ = base;
   }
 
   template <typename Values>
   static std::string names_in(const Values& values) {
     Lines names;
     for (const auto& each : values) names.push_back(each.name);
-    return fmt::format("{}", fmt::join(names, ", "));
+    return listed(names);
   }
-  static std::string target_names() { return names_in(gcode::controls()); }
 
   void read_top(std::string_view name, const toml::node& node, Control& control) {
     if (name == kBasedOn || name == kWords) return;
     const toml::table* section = node.as_table();
     if (section == nullptr) return read_key("", name, node, control);
-    if (name.empty() || std::ranges::find(kKeys, name, &ProfileKey::section) == kKeys.end()) {
+    if (name.empty() || std::ranges::find(kKeys, name, &ProfileKey::section) == std::end(kKeys)) {
       return complain(node, name, "one of the sections " + sections());
     }
     for (const auto& [key, value] : *section) read_key(name, key.str(), value, control);
@@ -332,7 +325,7 @@ class ProfileReader {
       }
     }
     names.emplace_back(kWords);
-    return fmt::format("{}", fmt::join(names, ", "));
+    return listed(names);
   }
 
   static std::string keys_of(std::string_view section) {
@@ -341,7 +334,7 @@ class ProfileReader {
     for (const ProfileKey& key : kKeys) {
       if (key.section == section) names.emplace_back(key.name);
     }
-    return fmt::format("{}", fmt::join(names, ", "));
+    return listed(names);
   }
 
   static std::string full_name(std::string_view section, std::string_view name) {
@@ -372,18 +365,15 @@ class ProfileReader {
                                  const std::string& wanted) {
       complain_together(root, control, section, name, wanted);
     };
-    const auto numbers = root["numbers"];
-    if (!numbers["arc-ends-mm"]) {
-      control.arc_ends.mm = std::max(control.arc_ends.mm, control.places.mm);
-    }
-    if (!numbers["arc-ends-inch"]) {
-      control.arc_ends.inch = std::max(control.arc_ends.inch, control.places.inch);
-    }
-    if (control.arc_ends.mm < control.places.mm) {
-      complain_of("numbers", "arc-ends-mm", "at least as many as places-mm");
-    }
-    if (control.arc_ends.inch < control.places.inch) {
-      complain_of("numbers", "arc-ends-inch", "at least as many as places-inch");
+    for (const auto& [unit, decimals] :
+         {std::pair{"mm", &gcode::DecimalsByUnit::mm}, {"inch", &gcode::DecimalsByUnit::inch}}) {
+      int& ends = control.arc_ends.*decimals;
+      const int places = control.places.*decimals;
+      const std::string key = fmt::format("arc-ends-{}", unit);
+      if (!root["numbers"][key]) ends = std::max(ends, places);
+      if (ends < places) {
+        complain_of("numbers", key, fmt::format("at least as many as places-{}", unit));
+      }
     }
     if (!(control.min_radius < control.max_radius)) {
       complain_of("arcs", "min-radius", "less than max-radius");
@@ -415,7 +405,7 @@ class ProfileReader {
   void read_lines(std::string_view name, const toml::node& node, TargetProfile& profile) {
     const std::string key = full_name(kWords, name);
     const auto found = std::ranges::find(kWordsKeys, name, &WordsKey::name);
-    if (found == kWordsKeys.end()) {
+    if (found == std::end(kWordsKeys)) {
       return complain(node, key, "one of the keys header, footer, before-run, after-run");
     }
     const toml::array* list = node.as_array();
@@ -430,9 +420,7 @@ class ProfileReader {
       if (why.empty()) {
         (profile.words.*found->place).push_back(*line);
       } else {
-        const toml::source_position place = each.source().begin;
-        problems_.push_back(fmt::format("{}:{}:{}: {}: {}, {}", file_, place.line, place.column,
-                                        key, text_of(each), why));
+        object(each, key, why);
       }
     }
   }

@@ -2,22 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
 #include "postproc/convert/conversion.h"
 #include "postproc/proof/verification.h"
 #include "postproc/report/page_files.h"
-#include "postproc/report/page_path.h"
-#include "postproc/report/page_speed.h"
-#include "postproc/report/smooth_report.h"
+#include "postproc/text/words.h"
 
 namespace batten::postproc {
 namespace {
@@ -35,8 +27,6 @@ constexpr double kStepsPerDoubling = 16;
 // Speeds in this many steps of the greatest.
 constexpr double kSpeedSteps = 1000;
 
-using Column = std::vector<std::int64_t>;
-
 std::int64_t rounded(double value) { return std::llround(value); }
 
 std::int64_t curvature_step(double curvature) {
@@ -44,31 +34,17 @@ std::int64_t curvature_step(double curvature) {
   return rounded(kStepsPerDoubling * std::log2(curvature / kLeastCurvature));
 }
 
-template <typename Function>
-Column column_of(const PagePath& path, const Function& value) {
-  Column column;
-  column.reserve(path.vertices.size());
-  for (const PageVertex& v : path.vertices) column.push_back(value(v));
-  return column;
+bool has_offset(const PageVertex& v) {
+  return v.step == PageStep::kRewritten || !v.offset.isZero();
 }
 
-// Three numbers for each vertex that has an offset to tell of.
 Column offsets_of(const PagePath& path, int axis) {
   Column column;
   // Of the rounded places, so that place and offset together are the new place.
   for (const PageVertex& v : path.vertices) {
-    if (v.step != PageStep::kRewritten && v.offset.isZero()) continue;
-    column.push_back(rounded(v.offset[axis] / kUnit));
+    if (has_offset(v)) column.push_back(rounded(v.offset[axis] / kUnit));
   }
   return column;
-}
-
-double fastest_of(const PagePath& path) {
-  double fastest = 0;
-  for (const PageVertex& v : path.vertices) {
-    fastest = std::max({fastest, v.speed_before, v.speed_after});
-  }
-  return fastest;
 }
 
 // One list per field instead of a name per field and run.
@@ -80,44 +56,80 @@ Json columns_of(const Json& runs) {
   return columns;
 }
 
-SpeedAlong speed_along(const ReadProgram& read, const Machine& machine) {
-  const auto speeds = std::make_shared<ProgramSpeeds>(read, list_events(read), machine);
-  return [speeds](std::uint32_t motion, double share) { return speeds->at(motion, share); };
+// {"count": n, "unit_mm": 0.0001, .. and a text per column (postproc/report/page_path.h)}
+Json path_columns(const PagePath& path) {
+  using V = const PageVertex&;
+  const auto column = [&](const auto& value) {
+    Column numbers;
+    for (V v : path.vertices) numbers.push_back(static_cast<std::int64_t>(value(v)));
+    return numbers;
+  };
+  const auto place = [&](int axis) {
+    return packed(steps_of(column([axis](V v) { return rounded(v.place[axis] / kUnit); })));
+  };
+  const auto lines = [&](auto PageVertex::*line) {
+    return packed_runs(steps_of(column([line](V v) { return v.*line; })));
+  };
+  const auto curvature = [&](double PageVertex::*of) {
+    return packed(steps_of(column([of](V v) { return curvature_step(v.*of); })));
+  };
+  const double fastest = fastest_of(path.vertices);
+  const auto speed = [&](double PageVertex::*of) {
+    return packed(steps_of(
+        column([&](V v) { return fastest > 0 ? rounded(kSpeedSteps * v.*of / fastest) : 0; })));
+  };
+  return {{"count", path.vertices.size()},
+          {"unit_mm", kUnit},
+          {"drawn_within_mm", path.drawn_within},
+          {"stretches", path.stretches},
+          {"stretches_not_shown", path.stretches_not_shown},
+          {"pairs", path.pairs},
+          {"x", place(0)},
+          {"y", place(1)},
+          {"z", place(2)},
+          {"has_offset", packed_runs(column(&has_offset))},
+          {"dx", packed(offsets_of(path, 0))},
+          {"dy", packed(offsets_of(path, 1))},
+          {"dz", packed(offsets_of(path, 2))},
+          {"step", packed_runs(column([](V v) { return v.step; }))},
+          {"old_line", lines(&PageVertex::old_line)},
+          {"new_line", lines(&PageVertex::new_line)},
+          {"run", packed_runs(column([](V v) { return v.run; }))},
+          {"feed_unit", kFeedUnit},
+          {"feed", packed_runs(column([](V v) { return rounded(v.feed / kFeedUnit); }))},
+          {"curvature_least", kLeastCurvature},
+          {"curvature_steps", kStepsPerDoubling},
+          {"curvature_before", curvature(&PageVertex::curvature_before)},
+          {"curvature_after", curvature(&PageVertex::curvature_after)},
+          {"speed_unit", fastest / kSpeedSteps},
+          {"speed_before", speed(&PageVertex::speed_before)},
+          {"speed_after", speed(&PageVertex::speed_after)}};
 }
 
 Json path_of(const SmoothReport& report, std::size_t most_vertices) {
   const SmoothResult& result = report.result;
+  const SmoothOptions& options = report.options;
   if (!result.understood) return path_columns({});
   const gcode::SourceText written(report.source.name(), result.text);
-  const gcode::ReadOptions reading = read_options_of(report.options);
+  const gcode::ReadOptions reading = read_options_of(options);
   gcode::Diagnostics ignored;
-  const auto foreign = language_to_translate(report.source, report.options);
-  const bool translated = foreign.has_value();
-  const auto language =
-      translated ? foreign : language_read(report.source, report.options, ignored);
+  const auto foreign = language_to_translate(report.source, options);
+  const auto language = foreign ? foreign : language_read(report.source, options, ignored);
   if (!language) return path_columns({});
-  const gcode::Reading words = reading_of(report.options, *language);
+  const gcode::Reading words = reading_of(options, *language);
   const gcode::Program before = gcode::parse(report.source, words, ignored);
   const gcode::Interpretation old_meaning = gcode::interpret(before, reading, ignored);
-  gcode::Reading new_words = words;
-  if (translated) {
-    new_words = reading_of(report.options, report.options.target->language);
-    new_words.dwells = report.options.target->dwell_form;
-  }
+  gcode::Reading new_words = foreign ? reading_of(options, options.target->language) : words;
+  if (foreign) new_words.dwells = options.target->dwell_form;
   const gcode::Program after = gcode::parse(written, new_words, ignored);
   const gcode::Interpretation new_meaning = gcode::interpret(after, reading, ignored);
   const ReadProgram old_program{&before, &old_meaning};
   const ReadProgram new_program{&after, &new_meaning};
-  const SmoothOptions& options = report.options;
   const Verification verification =
       verify(old_program, new_program, {options.tolerance_mm, options.tolerance_kind});
-  PagePathOptions drawing = {options.tolerance_mm, options.tolerance_kind, most_vertices};
-  if (options.machine != nullptr) {
-    drawing.speed_before = speed_along(old_program, *options.machine);
-    drawing.speed_after = speed_along(new_program, *options.machine);
-  }
-  Json columns =
-      path_columns(page_path(old_program, new_program, verification, result.runs, drawing));
+  Json columns = path_columns(
+      page_path(old_program, new_program, verification, result.runs,
+                {options.tolerance_mm, options.tolerance_kind, most_vertices, options.machine}));
   columns["events"] = verification.events_compared;
   return columns;
 }
@@ -125,37 +137,10 @@ Json path_of(const SmoothReport& report, std::size_t most_vertices) {
 // --- the page ----------------------------------------------------------------------------------
 
 // Inside <script> only `<` could end the element or begin a comment; JSON may say it as \u003c.
-std::string script_safe(std::string_view json) {
-  std::string safe;
-  safe.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
+std::string script_safe(std::string_view json) { return escaped(json, {{'<', "\\u003c"}}); }
 
 std::string html_safe(std::string_view text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '&':
-        safe += "&amp;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
+  return escaped(text, {{'<', "&lt;"}, {'>', "&gt;"}, {'&', "&amp;"}});
 }
 
 // The template with each @NAME@ of `parts` replaced once, in the order in which they stand.
@@ -173,62 +158,6 @@ std::string filled(std::string_view page,
 }
 
 }  // namespace
-
-Json path_columns(const PagePath& path) {
-  const double fastest = fastest_of(path);
-  const auto speed = [&](double value) {
-    return fastest > 0 ? rounded(kSpeedSteps * value / fastest) : 0;
-  };
-  const auto place = [&](int axis) {
-    return packed_steps(
-        column_of(path, [axis](const PageVertex& v) { return rounded(v.place[axis] / kUnit); }));
-  };
-  return {
-      {"count", path.vertices.size()},
-      {"unit_mm", kUnit},
-      {"drawn_within_mm", path.drawn_within},
-      {"stretches", path.stretches},
-      {"stretches_not_shown", path.stretches_not_shown},
-      {"pairs", path.pairs},
-      {"x", place(0)},
-      {"y", place(1)},
-      {"z", place(2)},
-      {"has_offset",
-       packed_runs(column_of(path,
-                             [](const PageVertex& v) {
-                               return v.step == PageStep::kRewritten || !v.offset.isZero() ? 1 : 0;
-                             }))},
-      {"dx", packed(offsets_of(path, 0))},
-      {"dy", packed(offsets_of(path, 1))},
-      {"dz", packed(offsets_of(path, 2))},
-      {"step", packed_runs(column_of(
-                   path, [](const PageVertex& v) { return static_cast<std::int64_t>(v.step); }))},
-      {"old_line",
-       packed_step_runs(column_of(
-           path, [](const PageVertex& v) { return static_cast<std::int64_t>(v.old_line); }))},
-      {"new_line",
-       packed_step_runs(column_of(
-           path, [](const PageVertex& v) { return static_cast<std::int64_t>(v.new_line); }))},
-      {"run", packed_runs(column_of(
-                  path, [](const PageVertex& v) { return static_cast<std::int64_t>(v.run); }))},
-      {"feed_unit", kFeedUnit},
-      {"feed", packed_runs(column_of(
-                   path, [](const PageVertex& v) { return rounded(v.feed / kFeedUnit); }))},
-      {"curvature_least", kLeastCurvature},
-      {"curvature_steps", kStepsPerDoubling},
-      {"curvature_before",
-       packed_steps(column_of(
-           path, [](const PageVertex& v) { return curvature_step(v.curvature_before); }))},
-      {"curvature_after",
-       packed_steps(
-           column_of(path, [](const PageVertex& v) { return curvature_step(v.curvature_after); }))},
-      {"speed_unit", fastest / kSpeedSteps},
-      {"speed_before",
-       packed_steps(column_of(path, [&](const PageVertex& v) { return speed(v.speed_before); }))},
-      {"speed_after",
-       packed_steps(column_of(path, [&](const PageVertex& v) { return speed(v.speed_after); }))},
-  };
-}
 
 Json page_data(const SmoothReport& report, const HtmlReportOptions& options) {
   Json figures = smooth_json(report);

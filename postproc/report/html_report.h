@@ -1,8 +1,7 @@
 // The report of `batten smooth` for a browser: one page that needs nothing else, neither network
-// nor library. Its template lies in postproc/report/page/ and is part of the program.
-//
-// All figures are those of the JSON report; the path is drawn from the two texts
-// (postproc/report/page_path.h). The same input and options give the same bytes.
+// nor library. Its template, postproc/report/page/, is part of the program. All figures are those
+// of the JSON report; the path is drawn from the two texts (postproc/report/page_path.h). The same
+// input and options give the same bytes.
 #pragma once
 
 #include <cstddef>
@@ -21,13 +20,8 @@ struct HtmlReportOptions {
 
 [[nodiscard]] std::string html_report(const SmoothReport& report, const HtmlReportOptions& options);
 
-// --- what the page is told: the JSON report, and the path in columns ---------------------------
-
 // {"report": .., "command": "", "path": ..}, as postproc/report/page/data.js reads it. `report` is
 // that of json_report, its runs as one list per field.
 [[nodiscard]] Json page_data(const SmoothReport& report, const HtmlReportOptions& options);
-
-// {"count": n, "unit_mm": 0.0001, .. and a text per column (postproc/report/page_path.h)}
-[[nodiscard]] Json path_columns(const PagePath& path);
 
 }  // namespace batten::postproc

@@ -1,15 +1,17 @@
 #include "postproc/report/page_path.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstddef>
-#include <optional>
+#include <numeric>
 #include <utility>
 
 #include "geometry/basic/rounding.h"
 #include "geometry/distance/band_comparison.h"
 #include "geometry/distance/path_distance.h"
-#include "postproc/report/page_speed.h"
+#include "postproc/machine/models/cycle_time.h"
+#include "postproc/machine/models/jerk_motion.h"
+#include "postproc/machine/models/velocity_profile.h"
 
 namespace batten::postproc {
 namespace {
@@ -17,21 +19,11 @@ namespace {
 using geometry::PathPiece;
 using geometry::Point3;
 
-// What is left out is nearer than this part of the tolerance to what is drawn: magnified so that
-// the tolerance is 60 pixels wide, that is half a pixel.
-constexpr double kDrawnWithin = 0.01;
-constexpr double kSpeedWithin = 0.005;  // of the greatest speed
-// Each round of thinning a path that is still too long is that much coarser.
-constexpr double kCoarser = 4;
-// mm: speed changes within a long line, so longer steps are cut, and what is too much thinned
-// again.
-constexpr double kLongestStep = 0.5;
-constexpr std::size_t kMostCuts = 200;
-
 // One of the two programs, and what is known along its motions.
 struct PageSide {
-  PageSide(const ReadProgram& program, const SpeedAlong& predicted)
-      : read(program), events(list_events(program)), speed(predicted) {
+  PageSide(const ReadProgram& program, const Machine* machine)
+      : read(program), events(list_events(program)) {
+    if (machine != nullptr) speeds.emplace(read, events, *machine);
     feeds.resize(read.interpretation->motions.size());
     for (const Cut& cut : events.cuts) feeds[cut.motion] = cut.feed.value_or(0);
   }
@@ -40,7 +32,7 @@ struct PageSide {
     return read.interpretation->motions[i];
   }
   [[nodiscard]] double speed_at(std::uint32_t m, double share) const {
-    return speed ? speed(m, share) : 0;
+    return speeds ? speeds->at(m, share) : 0;
   }
   [[nodiscard]] bool is_cut(std::size_t i) const { return feeds[i].has_value(); }
   [[nodiscard]] std::uint32_t line(std::size_t i) const {
@@ -65,7 +57,7 @@ struct PageSide {
 
   ReadProgram read;
   ProgramEvents events;
-  SpeedAlong speed;
+  std::optional<ProgramSpeeds> speeds;       // nothing: not predicted
   std::vector<std::optional<double>> feeds;  // of the motions that are cuts
 };
 
@@ -88,8 +80,8 @@ class PagePathBuilder {
   PagePathBuilder(const ReadProgram& before, const ReadProgram& after,
                   const Verification& verification, std::span<const RunReport> runs,
                   const PagePathOptions& options)
-      : old_(before, options.speed_before),
-        new_(after, options.speed_after),
+      : old_(before, options.machine),
+        new_(after, options.machine),
         verification_(verification),
         runs_(runs),
         options_(options) {
@@ -170,8 +162,10 @@ class PagePathBuilder {
   // Chords of an arc that nobody can tell from it, and steps of lines that are not too long.
   [[nodiscard]] std::size_t parts_of(const PathPiece& piece) const {
     const double bend = geometry::second_derivative_bound(piece) / 8 / (options_.tolerance_mm / 2);
-    const double steps = std::max(std::sqrt(bend), geometry::length_of(piece) / kLongestStep);
-    return std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(steps)), 1, kMostCuts);
+    const double steps =
+        std::max(std::sqrt(bend), geometry::length_of(piece) / kPageTuning.longest_step);
+    return std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(steps)), 1,
+                                   kPageTuning.most_cuts);
   }
 
   // --- rewritten moves ------------------------------------------------------------------------
@@ -230,8 +224,8 @@ class PagePathBuilder {
         continue;
       }
       const auto parts = static_cast<std::size_t>(
-          std::clamp(std::ceil((pairs[k].a - pairs[k - 1].a).norm() / kLongestStep), 1.0,
-                     static_cast<double>(kMostCuts)));
+          std::clamp(std::ceil((pairs[k].a - pairs[k - 1].a).norm() / kPageTuning.longest_step),
+                     1.0, static_cast<double>(kPageTuning.most_cuts)));
       for (std::size_t part = 1; part < parts; ++part) {
         const double share = static_cast<double>(part) / static_cast<double>(parts);
         // The step into pair k runs on its pieces.
@@ -272,15 +266,12 @@ class PagePathBuilder {
   }
 
   void thin() {
-    double fastest = 0;
-    for (const PageVertex& v : result_.vertices) {
-      fastest = std::max({fastest, v.speed_before, v.speed_after});
-    }
-    Thinning thinning{kDrawnWithin * options_.tolerance_mm, kSpeedWithin * fastest};
+    Thinning thinning{kPageTuning.drawn_within * options_.tolerance_mm,
+                      kPageTuning.speed_within * fastest_of(result_.vertices)};
     result_.vertices = thinned(result_.vertices, thinning);
-    constexpr int kMostRounds = 12;
-    for (int i = 0; i < kMostRounds && result_.vertices.size() > options_.most_vertices; ++i) {
-      thinning.error *= kCoarser;
+    for (int i = 0; i < kPageTuning.most_rounds && result_.vertices.size() > options_.most_vertices;
+         ++i) {
+      thinning.error *= kPageTuning.coarser;
       thinning.speed_error *= 2;
       result_.vertices = thinned(result_.vertices, thinning);
     }
@@ -302,79 +293,36 @@ class PagePathBuilder {
 
 // --- fewer vertices that say the same --------------------------------------------------------
 
-// As many vertices are left out in a row at the most: each step asks all of them again.
-constexpr std::size_t kMostInARow = 64;
-
-// Whether the vertices between two places of the list are on the straight way between them.
-class StraightWay {
- public:
-  StraightWay(const std::vector<PageVertex>& vertices, const Thinning& thinning)
-      : vertices_(vertices), thinning_(thinning) {}
-
-  [[nodiscard]] bool holds(std::size_t from, std::size_t to) const {
-    const PageVertex& a = vertices_[from];
-    const PageVertex& b = vertices_[to];
-    const double whole = (b.place - a.place).norm();
-    for (std::size_t i = from + 1; i < to; ++i) {
-      const PageVertex& v = vertices_[i];
-      const double share = whole > geometry::kSamePlace
-                               ? (v.place - a.place).norm() / whole
-                               : static_cast<double>(i - from) / static_cast<double>(to - from);
-      if (share > 1 || !is_near(v, a, b, share)) return false;
-    }
-    return true;
-  }
-
- private:
-  [[nodiscard]] bool is_near(const PageVertex& v, const PageVertex& a, const PageVertex& b,
-                             double share) const {
+// Whether the vertices between two of the list are on the straight way from the one to the other.
+bool is_straight(const std::vector<PageVertex>& vertices, std::size_t from, std::size_t to,
+                 const Thinning& thinning) {
+  const PageVertex& a = vertices[from];
+  const PageVertex& b = vertices[to];
+  const double whole = (b.place - a.place).norm();
+  for (std::size_t i = from + 1; i < to; ++i) {
+    const PageVertex& v = vertices[i];
+    const double share = whole > geometry::kSamePlace
+                             ? (v.place - a.place).norm() / whole
+                             : static_cast<double>(i - from) / static_cast<double>(to - from);
     const double rest = 1 - share;
-    const auto near = [&](double value, double from, double to) {
-      return std::abs(value - (rest * from + share * to)) <= thinning_.speed_error;
+    const auto differs = [&](double PageVertex::*speed) {
+      return !(std::abs(v.*speed - (rest * a.*speed + share * b.*speed)) <= thinning.speed_error);
     };
-    return (v.place - (rest * a.place + share * b.place)).norm() <= thinning_.error &&
-           (v.offset - (rest * a.offset + share * b.offset)).norm() <= thinning_.error &&
-           near(v.speed_before, a.speed_before, b.speed_before) &&
-           near(v.speed_after, a.speed_after, b.speed_after);
+    const bool is_near = (v.place - (rest * a.place + share * b.place)).norm() <= thinning.error &&
+                         (v.offset - (rest * a.offset + share * b.offset)).norm() <= thinning.error;
+    if (share > 1 || !is_near || differs(&PageVertex::speed_before) ||
+        differs(&PageVertex::speed_after)) {
+      return false;
+    }
   }
+  return true;
+}
 
-  const std::vector<PageVertex>& vertices_;
-  const Thinning& thinning_;
-};
-
-// Whether the chain goes on behind the vertex as it came.
+// Whether the chain goes on after the vertex as it came.
 bool goes_on(const PageVertex& vertex, const PageVertex& next) {
   return vertex.step != PageStep::kNone && vertex.step == next.step && vertex.run == next.run &&
          vertex.feed == next.feed;
 }
-
-}  // namespace
-
-PagePath page_path(const ReadProgram& before, const ReadProgram& after,
-                   const Verification& verification, std::span<const RunReport> runs,
-                   const PagePathOptions& options) {
-  return PagePathBuilder(before, after, verification, runs, options).build();
-}
-
-std::vector<PageVertex> thinned(const std::vector<PageVertex>& vertices, const Thinning& thinning) {
-  const StraightWay straight(vertices, thinning);
-  std::vector<PageVertex> kept;
-  if (vertices.empty()) return kept;
-  kept.push_back(vertices.front());
-  std::size_t from = 0;
-  while (from + 1 < vertices.size()) {
-    std::size_t to = from + 1;
-    while (to + 1 < vertices.size() && to - from < kMostInARow &&
-           goes_on(vertices[to], vertices[to + 1]) && straight.holds(from, to + 1)) {
-      ++to;
-    }
-    kept.push_back(vertices[to]);
-    from = to;
-  }
-  return kept;
-}
-
-namespace {
 
 constexpr std::string_view kDigits =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -389,18 +337,134 @@ void append(std::int64_t number, std::string& bytes) {
   bytes.push_back(static_cast<char>(rest));
 }
 
-std::vector<std::int64_t> steps_of(const std::vector<std::int64_t>& numbers) {
-  std::vector<std::int64_t> steps;
-  steps.reserve(numbers.size());
-  std::int64_t before = 0;
-  for (const std::int64_t number : numbers) {
-    steps.push_back(number - before);
-    before = number;
+double between(double share, double from, double to) { return (1 - share) * from + share * to; }
+
+// A control that joins lines and rounds corners runs a shorter way than the programmed one. Both
+// are counted from the start of the chain, and meet at anchors.
+class Ways {
+ public:
+  // `ends`: mm, programmed way at the end of each piece.
+  Ways(const StretchChain& chain, const std::vector<double>& ends) {
+    double planned = 0;
+    for (std::size_t i = 0; i < chain.stretches.size(); ++i) {
+      const StretchPlace& place = chain.places[i];
+      const double length = chain.stretches[i].length;
+      const bool last = i + 1 == chain.stretches.size();
+      if (place.is_corner && place.last_piece > place.first_piece) {
+        anchors_.push_back({planned + length / 2, ends[place.first_piece]});
+      } else if (!last && chain.places[i + 1].first_piece > place.last_piece) {
+        anchors_.push_back({planned + length, ends[place.last_piece]});
+      }
+      planned += length;
+    }
+    anchors_.push_back({planned, ends.back()});
   }
-  return steps;
+
+  // For planned ways that do not fall from call to call.
+  [[nodiscard]] double programmed(double planned) {
+    while (next_ + 1 < anchors_.size() && anchors_[next_].planned < planned) ++next_;
+    const Anchor& a = anchors_[next_ - 1];
+    const Anchor& b = anchors_[next_];
+    const double whole = b.planned - a.planned;
+    const double share = whole > 0 ? std::clamp((planned - a.planned) / whole, 0.0, 1.0) : 1;
+    return between(share, a.programmed, b.programmed);
+  }
+
+ private:
+  struct Anchor {
+    double planned = 0;
+    double programmed = 0;
+  };
+
+  std::vector<Anchor> anchors_ = {{0, 0}};
+  std::size_t next_ = 1;
+};
+
+// Calls `use(way, speed)` in the order of the planned way: where speeds change their course.
+template <typename Use>
+void for_each_speed(const StretchChain& chain, const Use& use) {
+  const std::vector<double> joints = joint_velocities(chain.stretches, chain.rules);
+  std::optional<JerkMotion> with_jerk;
+  if (has_jerk_limit(chain.stretches)) with_jerk.emplace(chain.stretches, joints, chain.rules);
+  double way = 0;
+  for (std::size_t i = 0; i < chain.stretches.size(); ++i) {
+    const VelocityStretch& s = chain.stretches[i];
+    if (with_jerk) {
+      // S-curves bend within a stretch: parts of the same time lie closest where it is slowest.
+      constexpr int kParts = 32;
+      const double from = with_jerk->time_at(way);
+      const double to = with_jerk->time_at(way + s.length);
+      for (int k = 0; k <= kParts; ++k) {
+        const double time = between(double(k) / kParts, from, to);
+        use(with_jerk->way_at(time), with_jerk->velocity_at(time));
+      }
+    } else {
+      use(way, joints[i]);
+      if (!is_even_ramp(s, joints[i], joints[i + 1], chain.rules)) {
+        const double peak = peak_velocity(s, joints[i], joints[i + 1]);
+        const double up = std::min(speeding_up_way(s, joints[i], peak), s.length);
+        const double down = std::min(speeding_up_way(s, joints[i + 1], peak), s.length);
+        use(way + up, peak);
+        use(way + std::max(up, s.length - down), peak);
+      }
+      use(way + s.length, joints[i + 1]);
+    }
+    way += s.length;
+  }
+}
+
+using geometry::Line;
+using geometry::PathPiece;
+using geometry::Point3;
+
+// 1/mm, of the circle through three places; 0 where two of them are one.
+double circle_through(const Point3& a, const Point3& b, const Point3& c) {
+  const double sides = (b - a).norm() * (c - b).norm() * (c - a).norm();
+  if (sides <= geometry::kSamePlace * geometry::kSamePlace * geometry::kSamePlace) return 0;
+  return 2 * (b - a).cross(c - b).norm() / sides;
+}
+
+bool is_line(const PathPiece& piece) { return std::holds_alternative<Line>(piece); }
+
+double at_joint(const PathPiece& before, const PathPiece& after) {
+  if (is_line(before) && is_line(after)) {
+    return circle_through(geometry::start_point(before), geometry::end_point(before),
+                          geometry::end_point(after));
+  }
+  return std::max(geometry::curvature_at(before, 1), geometry::curvature_at(after, 0));
 }
 
 }  // namespace
+
+PagePath page_path(const ReadProgram& before, const ReadProgram& after,
+                   const Verification& verification, std::span<const RunReport> runs,
+                   const PagePathOptions& options) {
+  return PagePathBuilder(before, after, verification, runs, options).build();
+}
+
+double fastest_of(const std::vector<PageVertex>& vertices) {
+  double fastest = 0;
+  for (const PageVertex& v : vertices) fastest = std::max({fastest, v.speed_before, v.speed_after});
+  return fastest;
+}
+
+std::vector<PageVertex> thinned(const std::vector<PageVertex>& vertices, const Thinning& thinning) {
+  std::vector<PageVertex> kept;
+  if (vertices.empty()) return kept;
+  kept.push_back(vertices.front());
+  std::size_t from = 0;
+  while (from + 1 < vertices.size()) {
+    std::size_t to = from + 1;
+    while (to + 1 < vertices.size() && to - from < kPageTuning.most_in_a_row &&
+           goes_on(vertices[to], vertices[to + 1]) &&
+           is_straight(vertices, from, to + 1, thinning)) {
+      ++to;
+    }
+    kept.push_back(vertices[to]);
+    from = to;
+  }
+  return kept;
+}
 
 std::string base64(std::string_view bytes) {
   std::string text;
@@ -419,18 +483,20 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-std::string packed(const std::vector<std::int64_t>& numbers) {
+std::string packed(const Column& numbers) {
   std::string bytes;
   for (const std::int64_t number : numbers) append(number, bytes);
   return base64(bytes);
 }
 
-std::string packed_steps(const std::vector<std::int64_t>& numbers) {
-  return packed(steps_of(numbers));
+Column steps_of(const Column& numbers) {
+  Column steps(numbers.size());
+  std::adjacent_difference(numbers.begin(), numbers.end(), steps.begin());
+  return steps;
 }
 
-std::string packed_runs(const std::vector<std::int64_t>& numbers) {
-  std::vector<std::int64_t> runs;
+std::string packed_runs(const Column& numbers) {
+  Column runs;
   for (std::size_t i = 0; i < numbers.size();) {
     std::size_t end = i;
     while (end < numbers.size() && numbers[end] == numbers[i]) ++end;
@@ -441,8 +507,92 @@ std::string packed_runs(const std::vector<std::int64_t>& numbers) {
   return packed(runs);
 }
 
-std::string packed_step_runs(const std::vector<std::int64_t>& numbers) {
-  return packed_runs(steps_of(numbers));
+ProgramSpeeds::ProgramSpeeds(const ReadProgram& read, const ProgramEvents& events,
+                             const Machine& machine)
+    : places_(read.interpretation->motions.size()) {
+  for (std::size_t k = 0; k <= events.events.size(); ++k) {
+    const Cut* cuts = events.cuts.data();
+    add_chain(read, cuts + events.stretch_begin(k), cuts + events.cuts_before[k], machine);
+  }
+}
+
+void ProgramSpeeds::add_chain(const ReadProgram& read, const Cut* begin, const Cut* end,
+                              const Machine& machine) {
+  const gcode::Interpretation& meaning = *read.interpretation;
+  std::vector<TimedPiece> pieces;
+  std::vector<double> ends;
+  double way = 0;
+  for (const Cut* cut = begin; cut != end; ++cut) {
+    TimedPiece piece;
+    piece.piece = meaning.motions[cut->motion].piece;
+    piece.feed = cut->feed.value_or(0);
+    const double length = geometry::length_of(piece.piece);
+    if (length <= geometry::kSamePlace) continue;
+    places_[cut->motion] = {chains_.size(), way, length};
+    way += length;
+    pieces.push_back(piece);
+    ends.push_back(way);
+  }
+  if (pieces.empty()) return;
+  const std::uint32_t block = meaning.motions[begin->motion].block;
+  const gcode::PathMode path = meaning.states[meaning.blocks[block].state_after].path;
+  const StretchChain chain = stretches_of(with_length_and_feed(pieces, machine), machine, path,
+                                          ChainEnd::kStop, WithPositions::kYes);
+  Ways ways(chain, ends);
+  std::vector<Sample> samples;
+  for_each_speed(chain, [&](double planned, double speed) {
+    samples.push_back({ways.programmed(planned), speed});
+  });
+  chains_.push_back(std::move(samples));
+}
+
+double ProgramSpeeds::at(std::uint32_t motion, double share) const {
+  const Place& place = places_[motion];
+  if (!(place.length > 0)) return 0;
+  const std::vector<Sample>& samples = chains_[place.chain];
+  const double way = place.way + share * place.length;
+  const auto after = std::ranges::lower_bound(samples, way, {}, &Sample::way);
+  if (after == samples.begin()) return samples.front().speed * kMinute;
+  if (after == samples.end()) return samples.back().speed * kMinute;
+  const Sample& a = *(after - 1);
+  const double whole = after->way - a.way;
+  // Between two speeds at one acceleration the square of the speed changes evenly with the way.
+  const double part = whole > 0 ? (way - a.way) / whole : 1;
+  return std::sqrt(between(part, a.speed * a.speed, after->speed * after->speed)) * kMinute;
+}
+
+ChainCurvature::ChainCurvature(std::span<const PathPiece> chain)
+    : chain_(chain), at_joint_(chain.size() + 1, 0.0) {
+  for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+    at_joint_[i + 1] = at_joint(chain[i], chain[i + 1]);
+  }
+}
+
+double ChainCurvature::at(std::size_t piece, const Point3& place) const {
+  const double share = share_of_piece(chain_[piece], place);
+  if (!is_line(chain_[piece])) return geometry::curvature_at(chain_[piece], share);
+  return (1 - share) * at_joint_[piece] + share * at_joint_[piece + 1];
+}
+
+double share_of_piece(const PathPiece& piece, const Point3& place) {
+  const double from_start = (place - geometry::start_point(piece)).norm();
+  const double to_end = (geometry::end_point(piece) - place).norm();
+  if (const auto* arc = std::get_if<geometry::Arc>(&piece)) {
+    // By the angle: a full circle starts and ends in one place.
+    const geometry::Vector3 from = arc->start - arc->center;
+    const geometry::Vector3 to = place - arc->center;
+    double angle = std::atan2(arc->axis.dot(from.cross(to)),
+                              from.dot(to) - arc->axis.dot(from) * arc->axis.dot(to));
+    if (arc->sweep < 0) angle = -angle;
+    constexpr double kTurn = 2 * 3.14159265358979323846;
+    const double sweep = std::abs(arc->sweep);
+    // Places a little before the start or behind the end by rounding belong to that end.
+    if (angle < 0 && angle + kTurn > sweep) angle = -angle < angle + kTurn - sweep ? 0 : sweep;
+    if (angle < 0) angle += kTurn;
+    return std::clamp(angle / sweep, 0.0, 1.0);
+  }
+  const double whole = from_start + to_end;
+  return whole > 0 ? from_start / whole : 0;
 }
 
 }  // namespace batten::postproc

@@ -8,13 +8,14 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "geometry/basic/point.h"
+#include "geometry/path/path.h"
+#include "postproc/machine/machine.h"
 #include "postproc/proof/program_events.h"
 #include "postproc/proof/verification.h"
 #include "postproc/stream/smooth_result.h"
@@ -51,23 +52,32 @@ struct PagePath {
   std::size_t stretches_not_shown = 0;  // their matching could not be made again
 };
 
-// mm/min, predicted: of a motion of the program (an index into Interpretation::motions), at a share
-// of its length from 0 to 1.
-using SpeedAlong = std::function<double(std::uint32_t motion, double share)>;
+struct PageTuning {
+  double drawn_within = 0.01;   // of the tolerance; half a pixel where it is 60 pixels wide
+  double speed_within = 0.005;  // of the greatest speed
+  double coarser = 4;           // times, each round of thinning a path that is still too long
+  int most_rounds = 12;         // of thinning
+  double longest_step = 0.5;    // mm: longer ones are cut, since speed changes within a long line
+  std::size_t most_cuts = 200;  // of one move
+  std::size_t most_in_a_row = 64;  // vertices left out: each step asks all of them again
+};
+inline constexpr PageTuning kPageTuning;
 
 struct PagePathOptions {
   double tolerance_mm = 0.01;
   geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
   // More vertices than this are thinned further: a page must open fast.
   std::size_t most_vertices = 400000;
-  SpeedAlong speed_before = {};  // may be empty: nothing is predicted
-  SpeedAlong speed_after = {};
+  const Machine* machine = nullptr;  // whose speeds are predicted; nullptr: none are
 };
 
 // `verification` is that of the same two programs. Motions whose place is not known are left out.
 [[nodiscard]] PagePath page_path(const ReadProgram& before, const ReadProgram& after,
                                  const Verification& verification, std::span<const RunReport> runs,
                                  const PagePathOptions& options);
+
+// mm/min, before or after.
+[[nodiscard]] double fastest_of(const std::vector<PageVertex>& vertices);
 
 // --- fewer vertices that say the same --------------------------------------------------------
 
@@ -76,28 +86,72 @@ struct Thinning {
   double speed_error = 1.0;  // mm/min
 };
 
-// Leaves out vertices that lie between two that stay, on the straight way from the one to the
-// other, within these errors: place, offset and both speeds. Ends of chains, and vertices where the
-// kind of move, the run or the feed changes, stay. Linear cost.
+// Leaves out vertices on the straight way between two that stay, within these errors: place, offset
+// and both speeds. Ends of chains, and vertices where the kind of move, the run or the feed
+// changes, stay. Linear cost.
 [[nodiscard]] std::vector<PageVertex> thinned(const std::vector<PageVertex>& vertices,
                                               const Thinning& thinning);
 
-// Columns of whole numbers as short text, for a page that reads them with a few lines of script.
+// --- columns of whole numbers as short text, for a page that reads them with a few lines of script
+
+using Column = std::vector<std::int64_t>;
 
 // RFC 4648, with padding.
 [[nodiscard]] std::string base64(std::string_view bytes);
 
 // Each number as zigzag (0, -1, 1, -2 .. become 0, 1, 2, 3 ..) in groups of seven bits, the lowest
 // first; all but the last group of a number have the top bit set. Then base64.
-[[nodiscard]] std::string packed(const std::vector<std::int64_t>& numbers);
-
-// The differences between neighbours, the first one from 0; packed.
-[[nodiscard]] std::string packed_steps(const std::vector<std::int64_t>& numbers);
+[[nodiscard]] std::string packed(const Column& numbers);
 
 // Value, count, value, count ..; packed.
-[[nodiscard]] std::string packed_runs(const std::vector<std::int64_t>& numbers);
+[[nodiscard]] std::string packed_runs(const Column& numbers);
 
-// The same of the differences: for numbers that mostly go on by the same step.
-[[nodiscard]] std::string packed_step_runs(const std::vector<std::int64_t>& numbers);
+// The differences between neighbours, the first one from 0.
+[[nodiscard]] Column steps_of(const Column& numbers);
+
+// The predicted speed along the cutting moves of one program: every chain of them between two
+// events is run from rest to rest, as the model of the machine's control does it. Linear cost.
+class ProgramSpeeds {
+ public:
+  ProgramSpeeds(const ReadProgram& read, const ProgramEvents& events, const Machine& machine);
+
+  // mm/min; `share` of the motion's length, 0 to 1. 0 for motions that are in no chain.
+  [[nodiscard]] double at(std::uint32_t motion, double share) const;
+
+ private:
+  struct Sample {
+    double way = 0;    // mm from the start of the chain, along the programmed path
+    double speed = 0;  // mm/s
+  };
+  struct Place {
+    std::size_t chain = 0;
+    double way = 0;  // as of a sample
+    double length = 0;
+  };
+
+  void add_chain(const ReadProgram& read, const Cut* begin, const Cut* end, const Machine& machine);
+
+  std::vector<std::vector<Sample>> chains_;
+  std::vector<Place> places_;  // one per motion; no length: in no chain
+};
+
+// Curvature along a chain of moves, 1/mm. On an arc its own. At a joint of two lines that of the
+// circle through their three ends; between joints in proportion, since a line in itself does not
+// bend. Where a line meets an arc, the arc's. 0 at the ends of the chain on lines.
+class ChainCurvature {
+ public:
+  explicit ChainCurvature(std::span<const geometry::PathPiece> chain);
+
+  // `place` lies on the piece.
+  [[nodiscard]] double at(std::size_t piece, const geometry::Point3& place) const;
+
+ private:
+  std::span<const geometry::PathPiece> chain_;
+  std::vector<double> at_joint_;  // one more than pieces
+};
+
+// How far along a piece a place on it is, from 0 to 1, by its distances from the ends.
+[[nodiscard]] double share_of_piece(const geometry::PathPiece& piece,
+                                    const geometry::Point3& place);
 
 }  // namespace batten::postproc

@@ -4,31 +4,48 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <utility>
-#include <vector>
 
 #include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
-#include "postproc/options/options.h"
-#include "postproc/text/json_values.h"
+#include "postproc/text/words.h"
 
 namespace batten::postproc {
 
 namespace {
 
-std::string_view name_of_form(OutputForm form) {
-  switch (form) {
-    case OutputForm::kCurves:
-      return "curves";
-    case OutputForm::kArcs:
-      return "arcs";
-    case OutputForm::kLines:
-      break;
+// Why runs were kept, counted.
+struct ReasonCount {
+  gcode::reason::Explanation reason = {};
+  std::size_t runs = 0;
+  std::size_t blocks = 0;
+};
+
+// One entry per reason of the kept runs: the most blocks first, then by id.
+std::vector<ReasonCount> count_reasons(std::span<const RunReport> runs) {
+  std::map<std::string_view, ReasonCount> by_id;
+  for (const RunReport& run : runs) {
+    if (run.status != RunStatus::kKept) continue;
+    ReasonCount& count = by_id[run.reason];
+    ++count.runs;
+    count.blocks += run.blocks_in;
   }
-  return "lines";
+  std::vector<ReasonCount> counts;
+  for (auto& [id, count] : by_id) {
+    const auto explanations = gcode::reason::explanations();
+    const auto found = std::ranges::find(explanations, id, &gcode::reason::Explanation::id);
+    if (found != explanations.end()) count.reason = *found;
+    count.reason.id = id;
+    counts.push_back(count);
+  }
+  std::ranges::stable_sort(counts, std::ranges::greater{}, &ReasonCount::blocks);
+  return counts;
+}
+
+std::string_view name_of_form(OutputForm form) {
+  if (form == OutputForm::kCurves) return "curves";
+  return form == OutputForm::kArcs ? "arcs" : "lines";
 }
 
 Json json_of(const SmoothOptions& options, bool strict) {
@@ -53,17 +70,16 @@ Json json_of(const SmoothOptions& options, bool strict) {
 
 Json json_of(const RunReport& run) {
   const bool rewritten = run.status == RunStatus::kRewritten;
-  Json methods = Json::array();
-  for (const MethodTime& each : run.methods) {
-    methods.push_back({{"method", each.method}, {"time_s", each.time_s}});
-  }
+  const auto method = [](const MethodTime& each) -> Json {
+    return {{"method", each.method}, {"time_s", each.time_s}};
+  };
   return {{"first_line", run.first_line},
           {"last_line", run.last_line},
           {"points", run.points},
           {"status", rewritten ? "rewritten" : "kept"},
           {"reason", run.reason},
           {"method", run.method},
-          {"methods", std::move(methods)},
+          {"methods", json_list(run.methods, method)},
           {"form", rewritten ? name_of_form(run.form) : ""},
           {"blocks_in", run.blocks_in},
           {"blocks_out", run.blocks_out},
@@ -76,9 +92,10 @@ Json json_of(const RunReport& run) {
           {"time_after_s", run.time_after_s}};
 }
 
-Json json_of(const ReasonCount& reason) {
-  return {{"id", reason.id},         {"runs", reason.runs},
-          {"blocks", reason.blocks}, {"text", reason.text},
+Json json_of(const ReasonCount& count) {
+  const gcode::reason::Explanation& reason = count.reason;
+  return {{"id", reason.id},         {"runs", count.runs},
+          {"blocks", count.blocks},  {"text", reason.text},
           {"advice", reason.advice}, {"can_be_allowed", reason.can_be_allowed}};
 }
 
@@ -89,68 +106,8 @@ Json profile_json(const SmoothReport& report) {
           {"before_run", words.before_run}, {"after_run", words.after_run}};
 }
 
-}  // namespace
-
-Json smooth_json(const SmoothReport& report) {
-  const SmoothResult& result = report.result;
-  Json runs = Json::array();
-  for (const RunReport& run : result.runs) runs.push_back(json_of(run));
-  Json reasons = Json::array();
-  for (const ReasonCount& reason : count_reasons(result.runs)) reasons.push_back(json_of(reason));
-
-  Json json = {{"batten", BATTEN_VERSION},
-               {"options", json_of(report.options, report.strict)},
-               {"input",
-                {{"file", report.source.name()},
-                 {"bytes", report.source.text().size()},
-                 {"blocks", result.blocks_in},
-                 {"units", name_of(result.units)}}},
-               {"output",
-                {{"file", report.output_file},
-                 {"bytes", result.bytes_out()},
-                 {"blocks", result.blocks_out},
-                 {"target", report.options.target->name}}},
-               {"machine",
-                {{"name", report.options.machine->name},
-                 {"model", name_of(report.options.machine->model)},
-                 {"description", report.options.machine->description}}},
-               {"runs", std::move(runs)},
-               {"reasons", std::move(reasons)},
-               {"deviation_mm", result.deviation_mm},
-               {"deviation_line", result.deviation_line},
-               {"corner_mm", result.corner_mm},
-               {"time_before_s", result.time_before_s},
-               {"time_after_s", result.time_after_s},
-               {"proved", result.proved},
-               {"understood", result.understood},
-               {"diagnostics", diagnostics_json(result.diagnostics, report.source)}};
-  if (!report.options.profile.empty()) json["profile"] = profile_json(report);
-  return json;
-}
-
-std::string json_report(const SmoothReport& report) { return json_text(smooth_json(report)); }
-
-namespace {
-
 // Reasons beyond these are rare ones; the JSON report has them all.
 constexpr std::size_t kMostReasons = 8;
-
-class Lines {
- public:
-  void add(std::string_view title, const std::string& text) {
-    fmt::format_to(std::back_inserter(text_), "  {:<14}{}\n", title, text);
-  }
-  void add_more(const std::string& text) { add("", text); }
-  void add_head(const std::string& text) { text_ += text + "\n"; }
-  [[nodiscard]] std::string text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
-std::string plural(std::size_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
 
 std::string change(std::size_t before, std::size_t after) {
   if (before == after) return fmt::format("{}, unchanged", before);
@@ -185,38 +142,38 @@ std::string times(const SmoothResult& result, const Machine& machine) {
   return text + ")";
 }
 
-void add_runs(const SmoothResult& result, Lines& lines) {
+void add_runs(const SmoothResult& result, std::string& lines) {
   if (result.runs.empty()) {
     const bool of_a_lathe = std::ranges::any_of(
         result.diagnostics,
         [](const gcode::Diagnostic& each) { return each.id == gcode::reason::kLatheProgram; });
-    lines.add("runs", of_a_lathe
-                          ? "none: the program is one for a lathe (lathe-program)"
-                          : "none found: batten inspect says of each block why it is copied");
+    lines += titled("runs", of_a_lathe
+                                ? "none: the program is one for a lathe (lathe-program)"
+                                : "none found: batten inspect says of each block why it is copied");
     return;
   }
   const auto rewritten = static_cast<std::size_t>(
       std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status));
-  lines.add("runs",
-            fmt::format("{} rewritten, {} kept", rewritten, result.runs.size() - rewritten));
+  lines += titled("runs",
+                  fmt::format("{} rewritten, {} kept", rewritten, result.runs.size() - rewritten));
   const auto reasons = count_reasons(result.runs);
   for (std::size_t i = 0; i < std::min(reasons.size(), kMostReasons); ++i) {
-    const ReasonCount& reason = reasons[i];
-    lines.add_more(fmt::format("kept: {}, {} ({}){}{}", plural(reason.runs, "run"),
-                               plural(reason.blocks, "block"), reason.id,
-                               reason.text.empty() ? "" : ": ", reason.text));
+    const auto& [reason, runs, blocks] = reasons[i];
+    lines += titled(
+        "", fmt::format("kept: {}, {} ({}){}{}", plural(runs, "run"), plural(blocks, "block"),
+                        reason.id, reason.text.empty() ? "" : ": ", reason.text));
     if (reason.can_be_allowed) {
-      lines.add_more(fmt::format("      --allow {} lifts this rule", reason.id));
+      lines += titled("", fmt::format("      --allow {} lifts this rule", reason.id));
     }
   }
   if (reasons.size() > kMostReasons) {
-    lines.add_more(
-        fmt::format("kept: {} more, see --json", plural(reasons.size() - kMostReasons, "reason")));
+    lines += titled("", fmt::format("kept: {} more, see --json",
+                                    plural(reasons.size() - kMostReasons, "reason")));
   }
 }
 
 // Which methods won where several were tried, and by how much. Nothing where none were.
-void add_methods(const SmoothResult& result, Lines& lines) {
+void add_methods(const SmoothResult& result, std::string& lines) {
   std::vector<std::pair<std::string_view, std::size_t>> wins;
   double lead = 0;
   for (const RunReport& run : result.runs) {
@@ -234,93 +191,107 @@ void add_methods(const SmoothResult& result, Lines& lines) {
   for (const auto& [method, runs] : wins) {
     text += fmt::format("{}{} in {}", text.empty() ? "" : ", ", method, plural(runs, "run"));
   }
-  lines.add("methods", fmt::format("{}: {:.2f} s {} than by the next best ones", text,
-                                   std::abs(lead), lead < 0 ? "more" : "less"));
+  lines += titled("methods", fmt::format("{}: {:.2f} s {} than by the next best ones", text,
+                                         std::abs(lead), lead < 0 ? "more" : "less"));
 }
 
-void add_proof(const SmoothReport& report, bool rewritten, Lines& lines) {
+void add_proof(const SmoothReport& report, bool rewritten, std::string& lines) {
   const SmoothResult& result = report.result;
   if (!rewritten) {
-    lines.add("deviation", "none: every block is as it was");
+    lines += titled("deviation", "none: every block is as it was");
     return;
   }
   const std::string place =
       result.deviation_line > 0 ? fmt::format(", near line {}", result.deviation_line) : "";
-  lines.add("deviation",
-            fmt::format("at most {}{}; allowed {}", length(result.deviation_mm, result.units),
-                        place, length(report.options.tolerance_mm, result.units)));
+  lines += titled("deviation",
+                  fmt::format("at most {}{}; allowed {}", length(result.deviation_mm, result.units),
+                              place, length(report.options.tolerance_mm, result.units)));
   if (result.corner_mm > 0) {
-    lines.add("corners",
-              fmt::format("at most {} from the new path", length(result.corner_mm, result.units)));
+    lines += titled("corners", fmt::format("at most {} from the new path",
+                                           length(result.corner_mm, result.units)));
   }
   const bool band = report.options.tolerance_kind == geometry::ToleranceKind::kBand;
-  lines.add("proof", result.proved
-                         ? "the new text was read again: every rewritten run keeps the tolerance,"
-                         : "NOT PROVED: the new text could not be shown to keep the tolerance");
+  lines +=
+      titled("proof", result.proved
+                          ? "the new text was read again: every rewritten run keeps the tolerance,"
+                          : "NOT PROVED: the new text could not be shown to keep the tolerance");
   if (result.proved) {
-    lines.add_more(fmt::format("{}; everything else is the same, byte for byte",
+    lines +=
+        titled("", fmt::format("{}; everything else is the same, byte for byte",
                                band ? "in order, in the band reading" : "both ways and in order"));
   }
 }
 
-void add_profile(const SmoothReport& report, Lines& lines) {
+void add_profile(const SmoothReport& report, std::string& lines) {
   if (report.options.profile.empty()) return;
   const ProfileWords& words = report.options.words;
-  lines.add("profile", fmt::format("{}: {} added", report.options.profile,
-                                   plural(report.result.added_lines, "line")));
+  lines += titled("profile", fmt::format("{}: {} added", report.options.profile,
+                                         plural(report.result.added_lines, "line")));
   if (report.result.added_lines == 0) return;
   for (const auto& [place, added] :
        {std::pair("header", &words.header), std::pair("before runs", &words.before_run),
         std::pair("after runs", &words.after_run), std::pair("footer", &words.footer)}) {
-    for (const std::string& line : *added) lines.add_more(fmt::format("{}: {}", place, line));
+    for (const std::string& line : *added) lines += titled("", fmt::format("{}: {}", place, line));
   }
-  lines.add_more(
-      "what these words do on the control is not known here: where it smooths by itself,");
-  lines.add_more("its own tolerance adds to the deviation; verify needs --profile to accept them");
+  lines += titled(
+      "", "what these words do on the control is not known here: where it smooths by itself,");
+  lines +=
+      titled("", "its own tolerance adds to the deviation; verify needs --profile to accept them");
 }
 
 }  // namespace
 
+Json smooth_json(const SmoothReport& report) {
+  const SmoothResult& result = report.result;
+  const auto item = [](const auto& each) { return json_of(each); };
+  Json json = {{"batten", BATTEN_VERSION},
+               {"options", json_of(report.options, report.strict)},
+               {"input",
+                {{"file", report.source.name()},
+                 {"bytes", report.source.text().size()},
+                 {"blocks", result.blocks_in},
+                 {"units", name_of(result.units)}}},
+               {"output",
+                {{"file", report.output_file},
+                 {"bytes", result.bytes_out()},
+                 {"blocks", result.blocks_out},
+                 {"target", report.options.target->name}}},
+               {"machine",
+                {{"name", report.options.machine->name},
+                 {"model", name_of(report.options.machine->model)},
+                 {"description", report.options.machine->description}}},
+               {"runs", json_list(result.runs, item)},
+               {"reasons", json_list(count_reasons(result.runs), item)},
+               {"deviation_mm", result.deviation_mm},
+               {"deviation_line", result.deviation_line},
+               {"corner_mm", result.corner_mm},
+               {"time_before_s", result.time_before_s},
+               {"time_after_s", result.time_after_s},
+               {"proved", result.proved},
+               {"understood", result.understood},
+               {"diagnostics", diagnostics_json(result.diagnostics, report.source)}};
+  if (!report.options.profile.empty()) json["profile"] = profile_json(report);
+  return json;
+}
+
+std::string json_report(const SmoothReport& report) { return json_text(smooth_json(report)); }
+
 std::string summary_text(const SmoothReport& report) {
   const SmoothResult& result = report.result;
-  Lines lines;
-  lines.add_head(fmt::format("{} -> {}, for {}", report.source.name(),
-                             report.output_file.empty() ? "nothing written" : report.output_file,
-                             report.options.target->name));
-  lines.add("blocks", change(result.blocks_in, result.blocks_out));
-  lines.add("bytes", change(report.source.text().size(), result.bytes_out()));
+  std::string lines =
+      fmt::format("{} -> {}, for {}\n", report.source.name(),
+                  report.output_file.empty() ? "nothing written" : report.output_file,
+                  report.options.target->name);
+  lines += titled("blocks", change(result.blocks_in, result.blocks_out));
+  lines += titled("bytes", change(report.source.text().size(), result.bytes_out()));
   add_runs(result, lines);
-  lines.add("cutting time", times(result, *report.options.machine));
+  lines += titled("cutting time", times(result, *report.options.machine));
   add_methods(result, lines);
   const bool rewritten =
       std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status) > 0;
   add_proof(report, rewritten, lines);
   add_profile(report, lines);
-  return lines.text();
-}
-
-std::vector<ReasonCount> count_reasons(std::span<const RunReport> runs) {
-  std::map<std::string_view, ReasonCount> by_id;
-  for (const RunReport& run : runs) {
-    if (run.status != RunStatus::kKept) continue;
-    ReasonCount& count = by_id[run.reason];
-    count.id = run.reason;
-    ++count.runs;
-    count.blocks += run.blocks_in;
-  }
-  std::vector<ReasonCount> counts;
-  for (auto& [id, count] : by_id) {
-    const auto explanations = gcode::reason::explanations();
-    const auto found = std::ranges::find(explanations, id, &gcode::reason::Explanation::id);
-    if (found != explanations.end()) {
-      count.text = found->text;
-      count.advice = found->advice;
-      count.can_be_allowed = found->can_be_allowed;
-    }
-    counts.push_back(count);
-  }
-  std::ranges::stable_sort(counts, std::ranges::greater{}, &ReasonCount::blocks);
-  return counts;
+  return lines;
 }
 
 }  // namespace batten::postproc

@@ -22,8 +22,8 @@ struct SmoothReport {
   bool strict = false;
 };
 
-// The report of `batten smooth` for programs: one JSON object, its fields always in the same
-// order, the same bytes for the same input and options (threads do not show).
+// The report for programs: one JSON object, its fields always in the same order, the same bytes for
+// the same input and options (threads do not show).
 //
 //   batten, options, input, output, runs[], reasons[], deviation_mm, deviation_line,
 //   time_before_s, time_after_s, proved, understood, diagnostics[], and profile where one
@@ -31,13 +31,10 @@ struct SmoothReport {
 //
 // Bytes of names and messages that are not UTF-8 become U+FFFD; numbers that are not finite
 // become null.
-
-// The object itself.
 [[nodiscard]] Json smooth_json(const SmoothReport& report);
-
 [[nodiscard]] std::string json_report(const SmoothReport& report);
 
-// The report of `batten smooth` for people: some lines that a machinist understands.
+// The report for people: some lines that a machinist understands.
 //
 //   part.nc -> part.smooth.nc, for linuxcnc
 //     blocks        1785 -> 158    (-91 %)
@@ -47,21 +44,6 @@ struct SmoothReport {
 //     cutting time  3.56 s -> 2.09 s  (machine linuxcnc, 1.7 times as fast)
 //     deviation     at most 0.0098 mm, near line 120; allowed 0.0100 mm
 //     proof         the written text was read again: every rewritten run keeps the tolerance
-
 [[nodiscard]] std::string summary_text(const SmoothReport& report);
-
-// Why runs were kept, counted.
-
-struct ReasonCount {
-  std::string_view id;      // gcode::reason
-  std::string_view text;    // what it means, for the user
-  std::string_view advice;  // what the user can do; may be empty
-  bool can_be_allowed = false;
-  std::size_t runs = 0;
-  std::size_t blocks = 0;
-};
-
-// One entry per reason of the kept runs: the most blocks first, then by id.
-[[nodiscard]] std::vector<ReasonCount> count_reasons(std::span<const RunReport> runs);
 
 }  // namespace batten::postproc

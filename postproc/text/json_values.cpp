@@ -1,21 +1,18 @@
 #include "postproc/text/json_values.h"
 
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 namespace batten::postproc {
 
 Json diagnostics_json(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source) {
-  Json list = Json::array();
-  for (const gcode::Diagnostic& diagnostic : diagnostics) {
+  return json_list(diagnostics, [&](const gcode::Diagnostic& diagnostic) -> Json {
     const gcode::SourcePlace place = source.place_of(diagnostic.where.begin);
-    list.push_back({{"severity", name_of(diagnostic.severity)},
-                    {"id", diagnostic.id},
-                    {"line", place.line},
-                    {"column", place.column},
-                    {"message", diagnostic.message}});
-  }
-  return list;
+    return {{"severity", name_of(diagnostic.severity)},
+            {"id", diagnostic.id},
+            {"line", place.line},
+            {"column", place.column},
+            {"message", diagnostic.message}};
+  });
 }
 
 std::string json_text(const Json& json) {

@@ -13,6 +13,14 @@ namespace batten::postproc {
 // <nlohmann/json.hpp>.
 using Json = nlohmann::ordered_json;
 
+// A list of what `make` gives for each item. Who calls it includes <nlohmann/json.hpp>.
+template <typename Items, typename Make, typename List = Json>
+[[nodiscard]] List json_list(const Items& items, const Make& make) {
+  List list = List::array();
+  for (const auto& item : items) list.push_back(make(item));
+  return list;
+}
+
 // [{"severity": "warning", "id": "", "line": 1, "column": 1, "message": ""}]
 [[nodiscard]] Json diagnostics_json(const gcode::Diagnostics& diagnostics,
                                     const gcode::SourceText& source);

@@ -60,6 +60,23 @@ inline std::vector<std::string> told(const SmoothResult& result, const std::stri
   return all;
 }
 
+// What is written, and proved.
+inline std::string proved_text(const std::string& text, const SmoothOptions& options) {
+  const SmoothResult result = smoothed(text, options);
+  EXPECT_TRUE(result.proved) << testing::PrintToString(told(result, text));
+  return result.text;
+}
+inline std::string proved_text(const std::string& text, const char* target) {
+  return proved_text(text, ways_to(target));
+}
+
+// What a proof must find.
+struct Damage {
+  const char* name;
+  const char* from;
+  const char* to;
+};
+
 inline std::string as_klartext(const std::string& lines) {
   return tests::numbered_from_zero(lines_of("BEGIN PGM TEST MM\n" + lines + "END PGM TEST MM\n"));
 }

@@ -17,8 +17,7 @@
 #include "gcode/text/source_text.h"
 #include "postproc/machine/files/grbl_settings.h"
 #include "postproc/machine/machine_fields.h"
-#include "postproc/text/nearest_name.h"
-#include "postproc/text/toml_text.h"
+#include "postproc/text/words.h"
 
 namespace batten::postproc {
 

@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <set>
-#include <string>
 
-#include "gcode/reading/explained_diagnostics.h"
 #include "gcode/state/reason.h"
 #include "tests/support/places.h"
+#include "tests/support/scratch_folder.h"
 
 namespace batten::postproc {
 namespace {
@@ -19,16 +16,11 @@ namespace {
 namespace fs = std::filesystem;
 using Ids = std::set<std::string>;
 
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 fs::path source_folder() { return BATTEN_SOURCE_DIR; }
 
 // Every string of the file that looks like an id: small words with dashes between.
 void add_ids_in(const fs::path& file, Ids& ids) {
-  const std::string text = text_of(file);
+  const std::string text = text_of_file(file);
   const std::regex id("\"([a-z]+(-[a-z]+)+)\"");
   for (std::sregex_iterator found(text.begin(), text.end(), id), end; found != end; ++found) {
     ids.insert((*found)[1]);
@@ -70,7 +62,7 @@ TEST(Explain, KnowsEveryMessageOfTheReader) {
 
 TEST(Explain, KnowsEveryBreachOfTheVerifier) {
   Ids explained;
-  for (const ExplainedViolation& each : explained_violations()) {
+  for (const gcode::ExplainedDiagnostic& each : explained_violations()) {
     EXPECT_TRUE(explained.insert(std::string(each.id)).second) << each.id << " twice";
     EXPECT_FALSE(each.text.empty()) << each.id;
     EXPECT_FALSE(each.advice.empty()) << each.id;
@@ -81,7 +73,7 @@ TEST(Explain, KnowsEveryBreachOfTheVerifier) {
 // What the page of messages tells of and the program does not would be found by nobody who reads
 // the program's own messages.
 TEST(Explain, KnowsEveryMessageOfThePage) {
-  const std::string page = text_of(source_folder() / "docs/diagnostics.md");
+  const std::string page = text_of_file(source_folder() / "docs/diagnostics.md");
   const std::regex row("(^|\n)\\| `([a-z-]+)` \\|");
   std::size_t rows = 0;
   for (std::sregex_iterator found(page.begin(), page.end(), row), end; found != end; ++found) {
@@ -91,19 +83,18 @@ TEST(Explain, KnowsEveryMessageOfThePage) {
   EXPECT_GT(rows, 60U);
 }
 
-TEST(Explain, SaysForEveryIdWhatToDo) {
+// The page for people says of each message what the program says: its id is there.
+TEST(Explain, SaysForEveryIdWhatToDoInShortLines) {
   const auto ids = explained_ids();
   EXPECT_GT(ids.size(), 70U);
+  const std::string all = all_explanations();
+  const std::string page = text_of_file(source_folder() / "docs/diagnostics.md");
   for (const std::string_view id : ids) {
-    const std::string text = explanation_of(id);
+    std::string text = explanation_of(id);
     EXPECT_TRUE(text.starts_with(std::string(id) + ":")) << text;
     EXPECT_NE(text.find("What to do:"), std::string::npos) << text;
-  }
-}
-
-TEST(Explain, KeepsItsLinesShort) {
-  for (const std::string_view id : explained_ids()) {
-    std::string text = explanation_of(id);
+    EXPECT_NE(all.find("  " + std::string(id) + " "), std::string::npos) << id;
+    EXPECT_NE(page.find("`" + std::string(id) + "`"), std::string::npos) << id;
     for (std::size_t end; (end = text.find('\n')) != std::string::npos; text.erase(0, end + 1)) {
       EXPECT_LE(end, 80U) << text.substr(0, end);
     }
@@ -121,22 +112,7 @@ TEST(Explain, NamesTheOptionThatLiftsARule) {
   EXPECT_EQ(explanation_of("cutter-compensation").find("--allow"), std::string::npos);
 }
 
-TEST(Explain, ListsEveryIdWithItsFirstSentence) {
-  const std::string all = all_explanations();
-  for (const std::string_view id : explained_ids()) {
-    EXPECT_NE(all.find("  " + std::string(id) + " "), std::string::npos) << id;
-  }
-}
-
 TEST(Explain, HasNothingForUnknownIds) { EXPECT_EQ(explanation_of("no-such-id"), ""); }
-
-// The page for people says of each message what the program says: its id stands there.
-TEST(Explain, AgreesWithTheDocumentation) {
-  const std::string page = text_of(source_folder() / "docs/diagnostics.md");
-  for (const std::string_view id : explained_ids()) {
-    EXPECT_NE(page.find("`" + std::string(id) + "`"), std::string::npos) << id;
-  }
-}
 
 }  // namespace
 }  // namespace batten::postproc

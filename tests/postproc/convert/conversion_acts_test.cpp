@@ -2,10 +2,6 @@
 // directions, none proved as another.
 #include <gtest/gtest.h>
 
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "tests/support/conversion_programs.h"
 
 namespace batten::postproc {

@@ -2,10 +2,6 @@
 // every text is derived by hand from that: 1.5 s are P1.5, X1.5, P1500 or F1.5.
 #include <gtest/gtest.h>
 
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "gcode/controls/built_in.h"
 #include "gcode/reading/source_kind.h"
 #include "postproc/convert/conversion.h"

@@ -1,10 +1,6 @@
 // Converted programs there and back; that the proof finds every damage.
 #include <gtest/gtest.h>
 
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "gcode/controls/built_in.h"
 #include "postproc/proof/program_events.h"
 #include "tests/support/conversion_programs.h"
@@ -67,13 +63,7 @@ TEST(ConversionWays, ThereAndBackDoTheSame) {
 
 // --- the proof ----------------------------------------------------------------------------------
 
-struct WayDamage {
-  const char* name;
-  const char* from;
-  const char* to;
-};
-
-constexpr WayDamage kDamages[] = {
+constexpr Damage kDamages[] = {
     {"Sense", "G2 X20. I5.", "G3 X20. I5."},
     {"OtherSense", "G3 X25. Y3. J5.", "G2 X25. Y3. J5."},
     {"AbsoluteCentre", "G2 X20. I5.", "G2 X20. I15. J-2."},
@@ -108,12 +98,9 @@ constexpr WayDamage kDamages[] = {
 TEST(ConversionWays, ProveNoDamagedProgram) {
   const std::string text = smoothed(kKlartextPart, ways_to("fanuc")).text;
   ASSERT_TRUE(is_proved(kKlartextPart, Language::kKlartext, text, Language::kRs274));
-  for (const WayDamage& damage : kDamages) {
-    std::string damaged = text;
-    const std::size_t at = damaged.find(damage.from);
-    ASSERT_NE(at, std::string::npos) << damage.name << '\n' << text;
-    damaged.replace(at, std::string_view(damage.from).size(), damage.to);
-    EXPECT_FALSE(is_proved(kKlartextPart, Language::kKlartext, damaged, Language::kRs274))
+  for (const Damage& damage : kDamages) {
+    EXPECT_FALSE(is_proved(kKlartextPart, Language::kKlartext,
+                           replaced(text, damage.from, damage.to), Language::kRs274))
         << damage.name;
   }
 }
@@ -123,7 +110,7 @@ TEST(ConversionWays, ProveNoDamagedSiemensProgram) {
   const std::string text = siemens_part();
   const std::string written = smoothed(text, ways_to("haas")).text;
   ASSERT_TRUE(is_proved(text, Language::kSiemens, written, Language::kRs274));
-  const WayDamage kOfSiemens[] = {
+  const Damage kOfSiemens[] = {
       {"Units", "G71", "G70"},
       {"Inches", "G71", "G700"},
       {"EdgeLost", "D1 ", ""},
@@ -137,12 +124,10 @@ TEST(ConversionWays, ProveNoDamagedSiemensProgram) {
       {"Rounded", "F500", "F500 RND=2"},
       {"Plane", "G18 G3", "G17 G3"},
   };
-  for (const WayDamage& damage : kOfSiemens) {
-    std::string other = text;
-    const std::size_t at = other.find(damage.from);
-    ASSERT_NE(at, std::string::npos) << damage.name;
-    other.replace(at, std::string_view(damage.from).size(), damage.to);
-    EXPECT_FALSE(is_proved(other, Language::kSiemens, written, Language::kRs274)) << damage.name;
+  for (const Damage& damage : kOfSiemens) {
+    EXPECT_FALSE(is_proved(replaced(text, damage.from, damage.to), Language::kSiemens, written,
+                           Language::kRs274))
+        << damage.name;
   }
 }
 

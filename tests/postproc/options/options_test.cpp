@@ -47,34 +47,27 @@ struct BadOption {
   const char* message;
 };
 
-class BadOptions : public testing::TestWithParam<BadOption> {};
-
-TEST_P(BadOptions, AreNamedWithWhatWasFound) {
-  SmoothOptions options = good_options();
-  GetParam().spoil(options);
-  const auto problems = problems_of(options);
-  ASSERT_EQ(problems.size(), 1u);
-  EXPECT_TRUE(mentions(problems, GetParam().message)) << problems.front();
+TEST(Options, ThatAreWrongAreNamedWithWhatWasFound) {
+  const BadOption kBad[] = {
+      {"ToleranceZero", [](SmoothOptions& o) { o.tolerance_mm = 0; }, "0 mm"},
+      {"ToleranceNotANumber",
+       [](SmoothOptions& o) { o.tolerance_mm = std::numeric_limits<double>::quiet_NaN(); },
+       "--tolerance"},
+      {"ToleranceInMicrometres", [](SmoothOptions& o) { o.tolerance_mm = 25; }, "micrometres"},
+      {"ToleranceBelowThePrintedDecimals", [](SmoothOptions& o) { o.tolerance_mm = 1e-9; },
+       "decimals of target"},
+      {"NoCorner", [](SmoothOptions& o) { o.keep_corners_deg = 0; }, "--keep-corners"},
+      {"RuleThatIsNeverLifted", [](SmoothOptions& o) { o.allowed = {"cutter-compensation"}; },
+       "cannot be lifted"},
+      {"TooManyThreads", [](SmoothOptions& o) { o.threads = 100000; }, "--threads"}};
+  for (const BadOption& bad : kBad) {
+    SmoothOptions options = good_options();
+    bad.spoil(options);
+    const auto problems = problems_of(options);
+    EXPECT_EQ(problems.size(), 1u) << bad.name;
+    EXPECT_TRUE(mentions(problems, bad.message)) << bad.name;
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Options, BadOptions,
-    testing::Values(
-        BadOption{"ToleranceZero", [](SmoothOptions& o) { o.tolerance_mm = 0; }, "0 mm"},
-        BadOption{
-            "ToleranceNotANumber",
-            [](SmoothOptions& o) { o.tolerance_mm = std::numeric_limits<double>::quiet_NaN(); },
-            "--tolerance"},
-        BadOption{"ToleranceInMicrometres", [](SmoothOptions& o) { o.tolerance_mm = 25; },
-                  "micrometres"},
-        BadOption{"ToleranceBelowThePrintedDecimals",
-                  [](SmoothOptions& o) { o.tolerance_mm = 1e-9; }, "decimals of target"},
-        BadOption{"NoCorner", [](SmoothOptions& o) { o.keep_corners_deg = 0; }, "--keep-corners"},
-        BadOption{"RuleThatIsNeverLifted",
-                  [](SmoothOptions& o) { o.allowed = {"cutter-compensation"}; },
-                  "cannot be lifted"},
-        BadOption{"TooManyThreads", [](SmoothOptions& o) { o.threads = 100000; }, "--threads"}),
-    [](const auto& test) { return std::string(test.param.name); });
 
 TEST(Options, TakeEveryRuleThatCanBeLiftedAndNoOther) {
   int liftable = 0;

@@ -3,11 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "gcode/controls/built_in.h"
 #include "postproc/report/page_files.h"
@@ -15,15 +12,14 @@
 #include "postproc/report/smooth_report.h"
 #include "tests/support/places.h"
 #include "tests/support/report_words.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
 namespace {
 
 std::string text_of(const std::string& file) {
-  std::ifstream stream(std::string(BATTEN_SOURCE_DIR) + "/postproc/report/page/" + file,
-                       std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  return text_of_file(std::string(BATTEN_SOURCE_DIR) + "/postproc/report/page/" + file);
 }
 
 std::size_t count_of(const std::string& text, const std::string& part) {
@@ -135,16 +131,16 @@ TEST(PageFiles, HoldNoEndOfTheirElement) {
 
 // The vectors of RFC 4648, section 10.
 TEST(Base64, IsThatOfTheStandard) {
-  EXPECT_EQ(base64(""), "");
-  EXPECT_EQ(base64("f"), "Zg==");
-  EXPECT_EQ(base64("fo"), "Zm8=");
-  EXPECT_EQ(base64("foo"), "Zm9v");
-  EXPECT_EQ(base64("foob"), "Zm9vYg==");
-  EXPECT_EQ(base64("fooba"), "Zm9vYmE=");
-  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+  const std::pair<const char*, const char*> kVectors[] = {{"", ""},
+                                                          {"f", "Zg=="},
+                                                          {"fo", "Zm8="},
+                                                          {"foo", "Zm9v"},
+                                                          {"foob", "Zm9vYg=="},
+                                                          {"fooba", "Zm9vYmE="},
+                                                          {"foobar", "Zm9vYmFy"},
+                                                          {"\xff\xfe\xfd", "//79"}};
+  for (const auto& [bytes, text] : kVectors) EXPECT_EQ(base64(bytes), text);
 }
-
-TEST(Base64, TakesBytesAbove127) { EXPECT_EQ(base64("\xff\xfe\xfd"), "//79"); }
 
 // Zigzag 0, 1, 2, 126 are bytes 00, 01, 02, 7E; 64 is 128 and takes two: 80 01.
 TEST(PackedNumbers, AreZigzagInGroupsOfSevenBits) {
@@ -159,19 +155,14 @@ TEST(PackedNumbers, TakeTheGreatestAndTheLeast) {
   EXPECT_EQ(packed({least}), base64("\xff\xff\xff\xff\xff\xff\xff\xff\xff\x01"));
 }
 
-TEST(PackedNumbers, AsStepsAreTheDifferences) {
-  EXPECT_EQ(packed_steps({5, 7, 4}), packed({5, 2, -3}));
-}
-
-TEST(PackedNumbers, AsRunsAreValueAndCount) {
+TEST(PackedNumbers, AsStepsAndRunsAreDifferencesAndCounts) {
+  EXPECT_EQ(steps_of({5, 7, 4}), (Column{5, 2, -3}));
   EXPECT_EQ(packed_runs({4, 4, 4, 9}), packed({4, 3, 9, 1}));
   EXPECT_EQ(packed_runs({}), "");
-}
-
-TEST(PackedNumbers, AsRunsOfStepsSayALongCountInFourNumbers) {
-  std::vector<std::int64_t> lines;
+  // A long count in four numbers.
+  Column lines;
   for (std::int64_t line = 10; line < 1000; ++line) lines.push_back(line);
-  EXPECT_EQ(packed_step_runs(lines), packed({10, 1, 1, 989}));
+  EXPECT_EQ(packed_runs(steps_of(lines)), packed({10, 1, 1, 989}));
 }
 
 }  // namespace

@@ -6,14 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <string>
-#include <vector>
 
 #include "postproc/report/html_report.h"
-#include "postproc/report/page_speed.h"
 #include "tests/support/interpreted.h"
 #include "tests/support/machine_limits.h"
 #include "tests/support/paths.h"
@@ -94,22 +90,6 @@ TEST(PagePath, HasNoDeviationWhereMovesAreCopied) {
   }
 }
 
-// 30 mm of the new line; the old path is as long to within 10 um.
-TEST(PagePath, TellsTheSpeedsThatArePredicted) {
-  const tests::Interpreted old_text(kKinked);
-  const tests::Interpreted new_text(kStraight);
-  const Verification found = verify(read_of(old_text), read_of(new_text), Promise(0.02));
-  PagePathOptions options{0.02, geometry::ToleranceKind::kPath};
-  options.speed_before = [](std::uint32_t, double) { return 500.0; };
-  options.speed_after = [](std::uint32_t, double share) { return 1000 * share; };
-  const PagePath path = page_path(read_of(old_text), read_of(new_text), found, {}, options);
-  for (const PageVertex& v : path.vertices) {
-    if (v.step != PageStep::kRewritten) continue;
-    EXPECT_EQ(v.speed_before, 500);
-    EXPECT_NEAR(v.speed_after, 1000 * v.place.x() / 30, 1);
-  }
-}
-
 TEST(PagePath, KeepsTheLinesOfCopiedMovesBehindARun) {
   const std::string tail = "M8\nG1 X40 Y5\nX50 Y0\n";
   const PagePath path = path_of(kKinked + tail, kStraight + tail, 0.02);
@@ -175,22 +155,16 @@ PageVertex vertex(double x, double y, double speed = 0, double off = 0) {
   return v;
 }
 
-TEST(Thinning, LeavesTheEndsOfAStraightWay) {
-  const std::vector<PageVertex> line = {vertex(0, 0), vertex(1, 0), vertex(2, 0), vertex(3, 0)};
-  EXPECT_EQ(thinned(line, {0.001, 1}).size(), 2U);
-}
-
 TEST(Thinning, KeepsWhatIsFurtherOffThanTheErrors) {
-  const Thinning errors{0.001, 1};
-  EXPECT_EQ(thinned({vertex(0, 0), vertex(1, 0.002), vertex(2, 0)}, errors).size(), 3U);
-  EXPECT_EQ(thinned({vertex(0, 0), vertex(1, 0, 0, 0.002), vertex(2, 0)}, errors).size(), 3U);
-  EXPECT_EQ(thinned({vertex(0, 0), vertex(1, 0, 5), vertex(2, 0)}, errors).size(), 3U);
-  EXPECT_EQ(thinned({vertex(0, 0), vertex(1, 0.0005, 0.5, 0.0005), vertex(2, 0)}, errors).size(),
-            2U);
-}
-
-TEST(Thinning, KeepsAFoldOnTheWayItCame) {
-  EXPECT_EQ(thinned({vertex(0, 0), vertex(5, 0), vertex(2, 0)}, {0.001, 1}).size(), 3U);
+  const auto left = [](const std::vector<PageVertex>& line) {
+    return thinned(line, {0.001, 1}).size();
+  };
+  EXPECT_EQ(left({vertex(0, 0), vertex(1, 0), vertex(2, 0), vertex(3, 0)}), 2U) << "straight";
+  EXPECT_EQ(left({vertex(0, 0), vertex(1, 0.002), vertex(2, 0)}), 3U) << "place";
+  EXPECT_EQ(left({vertex(0, 0), vertex(1, 0, 0, 0.002), vertex(2, 0)}), 3U) << "offset";
+  EXPECT_EQ(left({vertex(0, 0), vertex(1, 0, 5), vertex(2, 0)}), 3U) << "speed";
+  EXPECT_EQ(left({vertex(0, 0), vertex(1, 0.0005, 0.5, 0.0005), vertex(2, 0)}), 2U) << "all near";
+  EXPECT_EQ(left({vertex(0, 0), vertex(5, 0), vertex(2, 0)}), 3U) << "a fold on the way it came";
 }
 
 TEST(Thinning, KeepsWhereTheKindOfMoveChanges) {
@@ -213,47 +187,45 @@ Machine steady_machine() {
   return m;
 }
 
-double speed_at(const std::string& program, std::size_t line, double share, const Machine& m) {
-  const tests::Interpreted text(program);
-  const ReadProgram read{&text.program, &text.read};
-  const ProgramSpeeds speeds(read, list_events(read), m);
-  return speeds.at(static_cast<std::uint32_t>(text.line(line).motion), share);
-}
-
-constexpr const char* kLine = "G21 G90\nG0 X0 Y0 Z0\nG1 X100 F6000\n";
-
-// From rest at 100 mm/s2: sqrt(2 a s) after s, 100 mm/s = 6000 mm/min in the middle.
-TEST(ProgramSpeeds, AreThoseOfATrapezoid) {
+// From rest at 100 mm/s2: sqrt(2 a s) after s, 100 mm/s = 6000 mm/min in the middle. At a sharp
+// corner of the generic control no axis changes its speed by more than a * period. With a limit on
+// jerk: after 0.2 s at 500 mm/s3 it has 100 mm/s2, 10 mm/s and 2/3 mm after it; the rest of the
+// first mm takes 0.0292 s at that acceleration.
+TEST(ProgramSpeeds, AreThoseOfTheModel) {
   const Machine m = steady_machine();
+  Machine with_jerk = m;
+  set_max_jerk(with_jerk, 500);
+  const std::string line = "G21 G90\nG0 X0 Y0 Z0\nG1 X100 F6000\n";
+  const std::string slow = "G21 G90\nG0 X0 Y0 Z0\nG1 X100 F3000\n";
   const double after_a_mm = 60 * std::sqrt(2 * kAcceleration);
-  EXPECT_NEAR(speed_at(kLine, 3, 0, m), 0, 1e-9);
-  EXPECT_NEAR(speed_at(kLine, 3, 0.01, m), after_a_mm, 1e-6);
-  EXPECT_NEAR(speed_at(kLine, 3, 0.5, m), 6000, 1e-6);
-  EXPECT_NEAR(speed_at(kLine, 3, 0.99, m), after_a_mm, 1e-6);
-  EXPECT_NEAR(speed_at(kLine, 3, 1, m), 0, 1e-9);
-}
-
-TEST(ProgramSpeeds, AreNothingOnRapids) {
-  EXPECT_EQ(speed_at("G21 G90\nG0 X0 Y0 Z0\nG0 X100\nG1 X0 F600\n", 3, 0.5, steady_machine()), 0);
-}
-
-// A sharp corner of the generic control: no axis changes its speed by more than a * period.
-TEST(ProgramSpeeds, FallAtCorners) {
-  const std::string corner = "G21 G90\nG0 X0 Y0 Z0\nG1 X100 F3000\nY100\n";
-  const Machine m = steady_machine();
-  EXPECT_NEAR(speed_at(corner, 3, 1, m), 60 * kAcceleration * m.servo_period, 1e-6);
-  EXPECT_NEAR(speed_at(corner, 4, 0, m), 60 * kAcceleration * m.servo_period, 1e-6);
-  EXPECT_NEAR(speed_at(corner, 4, 0.5, m), 3000, 1e-6);
-}
-
-// With a limit on jerk: after 0.2 s at 500 mm/s3 it has 100 mm/s2, 10 mm/s and 2/3 mm behind it;
-// the rest of the first mm takes 0.0292 s at that acceleration.
-TEST(ProgramSpeeds, KeepALimitOnJerk) {
-  Machine m = steady_machine();
-  set_max_jerk(m, 500);
-  const std::string line = "G21 G90\nG0 X0 Y0 Z0\nG1 X100 F3000\n";
-  EXPECT_NEAR(speed_at(line, 3, 0.01, m), 60 * (10 + 0.0292 * kAcceleration), 4);
-  EXPECT_NEAR(speed_at(line, 3, 0.5, m), 3000, 1e-3);
+  const double at_corner = 60 * kAcceleration * m.servo_period;
+  struct Row {
+    const char* name;
+    std::string program;
+    const Machine& machine;
+    std::size_t line;
+    double share;
+    double speed;
+    double within;
+  };
+  const Row rows[] = {
+      {"start", line, m, 3, 0, 0, 1e-9},
+      {"after a mm", line, m, 3, 0.01, after_a_mm, 1e-6},
+      {"middle", line, m, 3, 0.5, 6000, 1e-6},
+      {"a mm before the end", line, m, 3, 0.99, after_a_mm, 1e-6},
+      {"end", line, m, 3, 1, 0, 1e-9},
+      {"rapid", "G21 G90\nG0 X0 Y0 Z0\nG0 X100\nG1 X0 F600\n", m, 3, 0.5, 0, 0},
+      {"before a corner", slow + "Y100\n", m, 3, 1, at_corner, 1e-6},
+      {"after it", slow + "Y100\n", m, 4, 0, at_corner, 1e-6},
+      {"away from it", slow + "Y100\n", m, 4, 0.5, 3000, 1e-6},
+      {"jerk, after a mm", slow, with_jerk, 3, 0.01, 60 * (10 + 0.0292 * kAcceleration), 4},
+      {"jerk, middle", slow, with_jerk, 3, 0.5, 3000, 1e-3}};
+  for (const Row& row : rows) {
+    const tests::Interpreted text(row.program);
+    const ProgramSpeeds speeds(read_of(text), list_events(read_of(text)), row.machine);
+    const auto motion = static_cast<std::uint32_t>(text.line(row.line).motion);
+    EXPECT_NEAR(speeds.at(motion, row.share), row.speed, row.within) << row.name;
+  }
 }
 
 // --- columns, taken apart again ------------------------------------------------------------------

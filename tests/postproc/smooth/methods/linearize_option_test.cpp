@@ -8,7 +8,7 @@
 
 #include "gcode/controls/built_in.h"
 #include "geometry/distance/path_distance.h"
-#include "postproc/cli/cli_commands.h"
+#include "postproc/cli/cli.h"
 #include "postproc/smooth/forms/output_plan.h"
 #include "tests/support/curve_of.h"
 

@@ -1,9 +1,11 @@
-#include "postproc/text/nearest_name.h"
+#include "postproc/text/words.h"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <numeric>
+#include <sstream>
 #include <vector>
 
 namespace batten::postproc {
@@ -30,6 +32,39 @@ std::size_t wrong_letters(std::string_view from, std::string_view to) {
 }
 
 }  // namespace
+
+std::string escaped(std::string_view text,
+                    std::initializer_list<std::pair<char, std::string_view>> replacements) {
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) {
+    const auto found =
+        std::ranges::find(replacements, c, &std::pair<char, std::string_view>::first);
+    safe += found == replacements.end() ? std::string_view(&c, 1) : found->second;
+  }
+  return safe;
+}
+
+std::string_view trimmed(std::string_view text, std::string_view blanks) {
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  return text.substr(0, text.find_last_not_of(blanks) + 1);
+}
+
+std::string toml_quoted(std::string_view text) {
+  std::ostringstream stream;
+  const toml::value<std::string> value{std::string(text)};
+  stream << toml::toml_formatter(
+      value, toml::toml_formatter::default_flags & ~toml::format_flags::allow_literal_strings);
+  return stream.str();
+}
+
+std::string plural(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string titled(std::string_view title, std::string_view text) {
+  return fmt::format("  {:<14}{}\n", title, text);
+}
 
 std::string_view nearest_name(std::string_view text, std::span<const std::string_view> names) {
   std::string_view nearest;
