@@ -1,20 +1,16 @@
 // A shop's folder of programs: the same bytes however the work is cut up, killed and begun again.
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <spawn.h>
 #include <sys/file.h>
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 
 #include "batten_process.h"
-#include "tests/support/places.h"
 
 namespace batten {
 namespace {
@@ -25,11 +21,6 @@ using Files = std::map<std::string, std::string>;  // path in the tree, bytes
 
 constexpr const char* kOptions = " --target linuxcnc --tolerance 0.05 ";
 
-std::string bytes_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 // All but the locks, which are empty and tell who ran.
 Files files_below(const fs::path& root) {
   Files files;
@@ -37,7 +28,7 @@ Files files_below(const fs::path& root) {
   for (const auto& entry : fs::recursive_directory_iterator(root)) {
     if (!entry.is_regular_file()) continue;
     const std::string name = entry.path().lexically_relative(root).string();
-    if (!name.starts_with("batten-batch/lock")) files[name] = bytes_of(entry.path());
+    if (!name.starts_with("batten-batch/lock")) files[name] = text_of_file(entry.path());
   }
   return files;
 }
@@ -69,7 +60,7 @@ class Batch : public testing::Test {
     int number = 0;
     for (const char* name : {"noisy_line_arc", "inch_ellipse", "tool_changes", "kept_by_rule"}) {
       const std::string program =
-          bytes_of(fs::path(BATTEN_SOURCE_DIR) / "samples" / name / "program.ngc");
+          text_of_file(fs::path(BATTEN_SOURCE_DIR) / "samples" / name / "program.ngc");
       // A comment of its own makes each copy another file.
       for (const char* folder : {"in/", "in/mill/", "in/mill/old/"}) {
         put(folder + std::string(name) + ".ngc",
@@ -87,7 +78,7 @@ class Batch : public testing::Test {
   }
 
   [[nodiscard]] Json record_of(const std::string& out, const std::string& program) const {
-    return Json::parse(bytes_of(file(out) / "batten-batch/manifest" / (program + ".json")));
+    return Json::parse(text_of_file(file(out) / "batten-batch/manifest" / (program + ".json")));
   }
 
   BattenFolder folder_;
@@ -96,8 +87,7 @@ class Batch : public testing::Test {
 // --- the result ----------------------------------------------------------------------------------
 
 TEST_F(Batch, WritesWhatSmoothWritesWithReportsAndTables) {
-  const ProcessResult result = batch("out");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = expect_exit(batch("out"), 0);
   EXPECT_TRUE(contains(result.out, "12 programs: ")) << result.out;
   EXPECT_TRUE(contains(result.err, "other files left alone: 1")) << result.err;
   EXPECT_FALSE(contains(result.err, "[#")) << "no progress line where no terminal is";
@@ -107,9 +97,9 @@ TEST_F(Batch, WritesWhatSmoothWritesWithReportsAndTables) {
                         kOptions)
                 .exit_code,
             0);
-  EXPECT_EQ(bytes_of(file("out/mill/inch_ellipse.ngc")), bytes_of(file("one.ngc")));
-  Json report = Json::parse(bytes_of(file("out/batten-batch/reports/mill/inch_ellipse.ngc.json")));
-  Json alone = Json::parse(bytes_of(file("one.json")));
+  EXPECT_EQ(folder_.text_of("out/mill/inch_ellipse.ngc"), folder_.text_of("one.ngc"));
+  Json report = Json::parse(folder_.text_of("out/batten-batch/reports/mill/inch_ellipse.ngc.json"));
+  Json alone = Json::parse(folder_.text_of("one.json"));
   EXPECT_EQ(report["input"]["file"], "mill/inch_ellipse.ngc");
   EXPECT_EQ(report["output"]["file"], "mill/inch_ellipse.ngc");
   for (Json* each : {&report, &alone}) {
@@ -118,12 +108,12 @@ TEST_F(Batch, WritesWhatSmoothWritesWithReportsAndTables) {
   }
   EXPECT_EQ(report, alone);
 
-  const Json summary = Json::parse(bytes_of(file("out/batten-batch/summary.json")));
+  const Json summary = Json::parse(folder_.text_of("out/batten-batch/summary.json"));
   EXPECT_EQ(summary["totals"]["programs"], 12);
   EXPECT_GE(summary["totals"]["smoothed"], 9);
   EXPECT_EQ(summary["programs"][0]["program"], "inch_ellipse.ngc");
-  EXPECT_EQ(bytes_of(file("out/batten-batch/summary.txt")), result.out);
-  const std::string csv = bytes_of(file("out/batten-batch/summary.csv"));
+  EXPECT_EQ(folder_.text_of("out/batten-batch/summary.txt"), result.out);
+  const std::string csv = folder_.text_of("out/batten-batch/summary.csv");
   EXPECT_EQ(std::ranges::count(csv, '\n'), 13);
 }
 
@@ -134,27 +124,22 @@ TEST_F(Batch, IsTheSameForAnyNumberOfJobsAndDoesNothingTwice) {
   expect_same(files_below(file("three")), expected);
 
   const auto written = fs::last_write_time(file("one/inch_ellipse.ngc"));
-  const ProcessResult again = batch("one", "--jobs 2");
-  EXPECT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_TRUE(contains(again.err, "done already: 12 of 12 programs")) << again.err;
+  expect_exit(batch("one", "--jobs 2"), 0, {"done already: 12 of 12 programs"});
   expect_same(files_below(file("one")), expected);
   EXPECT_EQ(fs::last_write_time(file("one/inch_ellipse.ngc")), written);
 }
 
 TEST_F(Batch, DoesAgainWhatChanged) {
   ASSERT_EQ(batch("out").exit_code, 0);
-  std::string program = bytes_of(file("in/noisy_line_arc.ngc"));
+  std::string program = folder_.text_of("in/noisy_line_arc.ngc");
   put("in/noisy_line_arc.ngc", program + "(one comment more)\n");
   fs::remove(file("out/mill/tool_changes.ngc"));
   put("out/batten-batch/reports/mill/inch_ellipse.ngc.json", "{}");
-  const ProcessResult again = batch("out");
-  EXPECT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_TRUE(contains(again.err, "done already: 9 of 12 programs")) << again.err;
+  expect_exit(batch("out"), 0, {"done already: 9 of 12 programs"});
   ASSERT_EQ(batch("fresh").exit_code, 0);
   expect_same(files_below(file("out")), files_below(file("fresh")));
 
-  const ProcessResult other = batch("out", "--prefer size");
-  EXPECT_EQ(other.exit_code, 0) << other.err;
+  const ProcessResult other = expect_exit(batch("out", "--prefer size"), 0);
   EXPECT_FALSE(contains(other.err, "done already")) << other.err;
 }
 
@@ -170,8 +155,7 @@ TEST_F(Batch, DoesAgainWhatAMachineFileBehindItsOwnChanged) {
 
   const double slow = record_of("out", "inch_ellipse.ngc")["time_before_s"];
   put("shop.toml", "based-on = \"linuxcnc\"\nmax-acceleration = 5000\n");
-  const ProcessResult again = batch("out", with_machine);
-  EXPECT_EQ(again.exit_code, 0) << again.err;
+  const ProcessResult again = expect_exit(batch("out", with_machine), 0);
   EXPECT_FALSE(contains(again.err, "done already")) << again.err;
   EXPECT_LT(record_of("out", "inch_ellipse.ngc")["time_before_s"], slow);
   ASSERT_EQ(batch("fresh", with_machine).exit_code, 0);
@@ -182,32 +166,16 @@ TEST_F(Batch, DoesAgainWhatAMachineFileBehindItsOwnChanged) {
 
 // Kills it as soon as `files` files are in the new tree and some milliseconds went by, which is
 // while it works: false when it ended before.
-bool kill_at(const fs::path& folder, std::size_t files, std::chrono::milliseconds later) {
-  const std::string in = (folder / "in").string();
-  const std::string out = (folder / "out").string();
-  std::vector<std::string> words = {BATTEN_BINARY, "batch",       in,     out,      "--target",
-                                    "linuxcnc",    "--tolerance", "0.05", "--jobs", "2"};
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t process = 0;
-  const int error =
-      ::posix_spawn(&process, BATTEN_BINARY, &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::runtime_error("no process");
-
-  int status = 0;
-  const auto there = [&] { return without_summaries(files_below(out)).size(); };
-  while (there() < files && ::waitpid(process, &status, WNOHANG) == 0) {
+bool kill_at(const BattenFolder& folder, std::size_t files, std::chrono::milliseconds later) {
+  const Started started(
+      folder, {"batch", "in", "out", "--target", "linuxcnc", "--tolerance", "0.05", "--jobs", "2"});
+  const auto there = [&] { return without_summaries(files_below(folder.file("out"))).size(); };
+  while (there() < files && started.is_running()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   std::this_thread::sleep_for(later);
-  ::kill(process, SIGKILL);
-  ::waitpid(process, &status, 0);
+  started.send(SIGKILL);
+  const int status = started.wait();
   return WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
 }
 
@@ -223,7 +191,7 @@ TEST_F(Batch, KilledFiveTimesEndsWithTheBytesOfAnUndisturbedRun) {
   int killed = 0;
   for (int round = 0; killed < 5 && round < 100; ++round) {
     const auto later = std::chrono::milliseconds(static_cast<int>(part(random) * longest));
-    const bool in_time = kill_at(file("."), files, later);
+    const bool in_time = kill_at(folder_, files, later);
     // What has its name has all its bytes, whenever the process died.
     for (const auto& [name, bytes] : files_below(file("out"))) {
       if (name.ends_with(".batten-part")) continue;
@@ -240,9 +208,7 @@ TEST_F(Batch, KilledFiveTimesEndsWithTheBytesOfAnUndisturbedRun) {
     }
   }
   EXPECT_EQ(killed, 5);
-  const ProcessResult last = batch("out");
-  EXPECT_EQ(last.exit_code, 0) << last.err;
-  EXPECT_TRUE(contains(last.err, "done already")) << last.err;
+  expect_exit(batch("out"), 0, {"done already"});
   expect_same(files_below(file("out")), expected);
 }
 
@@ -256,13 +222,11 @@ TEST_F(Batch, RemovesWhatAKilledRunLeftHalfWrittenAndNothingElse) {
 }
 
 TEST_F(Batch, GoesOnAfterAnInterrupt) {
-  const ProcessResult result =
-      folder_.shell("( '" BATTEN_BINARY
-                    "' batch in out --target linuxcnc --tolerance 0.05 --jobs 1 & work=$!\n"
-                    "while [ ! -e out/batten-batch/manifest ]; do sleep 0.01; done\n"
-                    "kill -TERM $work; wait $work )");
-  EXPECT_EQ(result.exit_code, 143) << result.err;
-  EXPECT_TRUE(contains(result.err, "goes on where it stopped")) << result.err;
+  expect_exit(folder_.shell("( '" BATTEN_BINARY
+                            "' batch in out --target linuxcnc --tolerance 0.05 --jobs 1 & work=$!\n"
+                            "while [ ! -e out/batten-batch/manifest ]; do sleep 0.01; done\n"
+                            "kill -TERM $work; wait $work )"),
+              143, {"goes on where it stopped"});
   EXPECT_FALSE(fs::exists(file("out/batten-batch/summary.txt")));
   EXPECT_EQ(batch("out").exit_code, 0);
   EXPECT_TRUE(fs::exists(file("out/batten-batch/summary.txt")));
@@ -273,10 +237,11 @@ TEST_F(Batch, GoesOnAfterAnInterrupt) {
 TEST_F(Batch, ShardsTogetherAreOneRun) {
   ASSERT_EQ(batch("expected").exit_code, 0);
   const Files expected = files_below(file("expected"));
-  const ProcessResult shards = folder_.shell(
-      "for i in 1 2 3; do batten batch in out --target linuxcnc --tolerance 0.05 --jobs 1 "
-      "--shard $i/3 & done; wait");
-  EXPECT_EQ(shards.exit_code, 0) << shards.err;
+  expect_exit(
+      folder_.shell(
+          "for i in 1 2 3; do batten batch in out --target linuxcnc --tolerance 0.05 --jobs 1 "
+          "--shard $i/3 & done; wait"),
+      0);
   expect_same(without_summaries(files_below(file("out"))), without_summaries(expected));
   for (const char* name : {"summary-1-of-3.txt", "summary-2-of-3.csv", "summary-3-of-3.json"}) {
     EXPECT_TRUE(fs::exists(file("out/batten-batch") / name)) << name;
@@ -284,7 +249,7 @@ TEST_F(Batch, ShardsTogetherAreOneRun) {
   // The closing run finds everything done and writes the summary of the whole tree.
   const ProcessResult closing = batch("out");
   EXPECT_TRUE(contains(closing.err, "done already: 12 of 12 programs")) << closing.err;
-  EXPECT_EQ(bytes_of(file("out/batten-batch/summary.json")),
+  EXPECT_EQ(folder_.text_of("out/batten-batch/summary.json"),
             expected.at("batten-batch/summary.json"));
 }
 
@@ -297,7 +262,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 // The block of docs/batch.md with this word, for the trees of the test.
 std::string from_the_page(const std::string& word) {
-  const std::string page = bytes_of(fs::path(BATTEN_SOURCE_DIR) / "docs/batch.md");
+  const std::string page = text_of_file(fs::path(BATTEN_SOURCE_DIR) / "docs/batch.md");
   const std::string fence = "```\n";
   std::size_t begin = page.find(fence);
   while (begin != std::string::npos) {
@@ -334,12 +299,10 @@ TEST_F(BatchOnSeveralMachines, IsOneRunUnderGnuParallelAsThePageSays) {
   const std::string page = from_the_page("parallel");
   ASSERT_TRUE(contains(page, four_machines)) << page;
   const std::string commands = replaced(page, four_machines, "--jobs 4");
-  const ProcessResult result = run(commands);
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(contains(result.err, "done already: 12 of 12 programs")) << result.err;
+  expect_exit(run(commands), 0, {"done already: 12 of 12 programs"});
   const Files expected = files_below(file("expected"));
   expect_same(without_summaries(files_below(file("out"))), without_summaries(expected));
-  EXPECT_EQ(bytes_of(file("out/batten-batch/summary.json")),
+  EXPECT_EQ(folder_.text_of("out/batten-batch/summary.json"),
             expected.at("batten-batch/summary.json"));
 }
 
@@ -357,9 +320,7 @@ TEST_F(Batch, DoesNotRunTwiceAtATimeOnTheSamePrograms) {
   put("out/batten-batch/lock", "");
   const int lock = ::open(file("out/batten-batch/lock").c_str(), O_RDWR | O_CLOEXEC);
   ASSERT_EQ(::flock(lock, LOCK_EX), 0);
-  const ProcessResult refused = batch("out");
-  EXPECT_EQ(refused.exit_code, 4);
-  EXPECT_TRUE(contains(refused.err, "another run")) << refused.err;
+  expect_exit(batch("out"), 4, {"another run"});
   ASSERT_EQ(::flock(lock, LOCK_SH), 0);  // as another shard does
   EXPECT_EQ(batch("out", "--shard 1/12").exit_code, 0);
   ::close(lock);
@@ -370,8 +331,7 @@ TEST_F(Batch, DoesNotRunTwiceAtATimeOnTheSamePrograms) {
 TEST_F(Batch, CarriesOnAndEndsWithTheWorstExitCode) {
   put("in/a_klartext.ngc", "BEGIN PGM 1 MM\nL X+1 Y+2\nEND PGM 1 MM\n");
   put("in/without_units.ngc", "G0 X1\nG1 X2 F100\nM2\n");
-  const ProcessResult result = batch("out");
-  EXPECT_EQ(result.exit_code, 2);
+  const ProcessResult result = expect_exit(batch("out"), 2);
   EXPECT_TRUE(contains(result.out, "not understood  a_klartext.ngc:1:1: error: foreign-language"))
       << result.out;
   EXPECT_TRUE(contains(result.err, "without_units.ngc:1:")) << result.err;
@@ -385,8 +345,7 @@ TEST_F(Batch, CarriesOnAndEndsWithTheWorstExitCode) {
 TEST_F(Batch, StopsAtTheFirstFailureWhenAsked) {
   // The largest program comes first.
   put("in/large.ngc", "BEGIN PGM 1 MM\n" + std::string(200'000, ' ') + "\nEND PGM 1 MM\n");
-  const ProcessResult result = batch("out", "--fail-fast --jobs 1");
-  EXPECT_EQ(result.exit_code, 2);
+  const ProcessResult result = expect_exit(batch("out", "--fail-fast --jobs 1"), 2);
   EXPECT_TRUE(contains(result.out, "12 not done\n")) << result.out;
   EXPECT_FALSE(fs::exists(file("out/tool_changes.ngc")));
 }
@@ -394,12 +353,10 @@ TEST_F(Batch, StopsAtTheFirstFailureWhenAsked) {
 TEST_F(Batch, LeavesAProgramThatItDidNotWrite) {
   fs::create_directories(file("out"));
   put("out/tool_changes.ngc", "mine\n");
-  const ProcessResult refused = batch("out");
-  EXPECT_EQ(refused.exit_code, 4);
-  EXPECT_TRUE(contains(refused.err, "--force replaces it")) << refused.err;
-  EXPECT_EQ(bytes_of(file("out/tool_changes.ngc")), "mine\n");
+  expect_exit(batch("out"), 4, {"--force replaces it"});
+  EXPECT_EQ(folder_.text_of("out/tool_changes.ngc"), "mine\n");
   EXPECT_EQ(batch("out", "--force").exit_code, 0);
-  EXPECT_NE(bytes_of(file("out/tool_changes.ngc")), "mine\n");
+  EXPECT_NE(folder_.text_of("out/tool_changes.ngc"), "mine\n");
 }
 
 TEST_F(Batch, RemovesTheOldResultOfAProgramThatIsNoLongerUnderstood) {
@@ -421,17 +378,16 @@ TEST_F(Batch, NeverWritesIntoItsInput) {
     EXPECT_EQ(refused.exit_code, 1) << out;
     EXPECT_TRUE(contains(refused.err, "nothing was done")) << refused.err;
   }
-  const ProcessResult linked = batch("out", "--force");
-  EXPECT_EQ(linked.exit_code, 4);
-  EXPECT_TRUE(contains(linked.err, "leads into the input tree")) << linked.err;
+  expect_exit(batch("out", "--force"), 4, {"leads into the input tree"});
   EXPECT_TRUE(fs::exists(file("out/tool_changes.ngc")));
   expect_same(files_below(file("in")), before);
 }
 
 TEST_F(Batch, TellsEveryWrongOptionBeforeItStarts) {
-  const ProcessResult result = folder_.batten(
-      "batch in --target linuxcn --jobs=-3 --shard 4/3 --tolerence=1 --progress linuxcnc");
-  EXPECT_EQ(result.exit_code, 1);
+  const ProcessResult result = expect_exit(
+      folder_.batten(
+          "batch in --target linuxcn --jobs=-3 --shard 4/3 --tolerence=1 --progress linuxcnc"),
+      1);
   for (const char* part : {"OUT_TREE: no folder given", "did you mean 'linuxcnc'?", "--jobs: '-3'",
                            "--shard: '4/3'", "did you mean --tolerance?", "--progress: "}) {
     EXPECT_TRUE(contains(result.err, part)) << part << "\n" << result.err;
@@ -442,10 +398,9 @@ TEST_F(Batch, TellsEveryWrongOptionBeforeItStarts) {
 
 TEST_F(Batch, TakesItsOptionsFromAFileAsSmoothDoes) {
   put("options.toml", "target = \"linuxcnc\"\ntolerance = 0.05\nthreads = 3\n");
-  const ProcessResult result = folder_.batten("batch in out --config options.toml");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  expect_exit(folder_.batten("batch in out --config options.toml"), 0);
   ASSERT_EQ(batch("given").exit_code, 0);
-  EXPECT_EQ(bytes_of(file("out/inch_ellipse.ngc")), bytes_of(file("given/inch_ellipse.ngc")));
+  EXPECT_EQ(folder_.text_of("out/inch_ellipse.ngc"), folder_.text_of("given/inch_ellipse.ngc"));
 }
 
 }  // namespace

@@ -1,14 +1,17 @@
 // Runs the built program as a user's shell would, in a folder of its own.
 #pragma once
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
+#include <vector>
 
 #include "tests/support/places.h"
 #include "tests/support/scratch_folder.h"
@@ -25,6 +28,16 @@ struct ProcessResult {
   std::string err;
 };
 
+// What was run ended with this code and said these words on standard error.
+inline ProcessResult expect_exit(ProcessResult result, int code,
+                                 const std::vector<std::string>& said = {},
+                                 int line = __builtin_LINE()) {
+  const testing::ScopedTrace trace("called in", line, result.err);
+  EXPECT_EQ(result.exit_code, code);
+  for (const std::string& part : said) EXPECT_TRUE(contains(result.err, part)) << part;
+  return result;
+}
+
 // A temporary folder to run commands in, removed at the end.
 class BattenFolder {
  public:
@@ -35,8 +48,7 @@ class BattenFolder {
   void put(const std::string& name, const std::string& text) const { folder_.put(name, text); }
 
   [[nodiscard]] std::string text_of(const std::string& name) const {
-    std::ifstream stream(file(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
+    return text_of_file(file(name));
   }
 
   [[nodiscard]] bool has(const std::string& name) const {
@@ -65,6 +77,53 @@ class BattenFolder {
  private:
   ScratchFolder folder_;
 };
+
+// The program at work in a folder, its messages in the file `err` there.
+class Started {
+ public:
+  Started(const BattenFolder& folder, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), BATTEN_BINARY);
+    std::vector<char*> words;
+    for (std::string& argument : arguments) words.push_back(argument.data());
+    words.push_back(nullptr);
+    const std::string place = folder.file(".").string();
+    pid_ = ::fork();
+    if (pid_ != 0) return;
+    const int err = ::chdir(place.c_str()) == 0
+                        ? ::open("err", O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)
+                        : -1;
+    if (err >= 0 && ::dup2(err, STDERR_FILENO) >= 0) ::execv(BATTEN_BINARY, words.data());
+    ::_exit(127);
+  }
+
+  void send(int signal_number) const { ::kill(pid_, signal_number); }
+
+  // As waitpid has it.
+  [[nodiscard]] int wait() const {
+    int status = 0;
+    while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+    }
+    return status;
+  }
+
+  [[nodiscard]] bool is_running() const {
+    siginfo_t info{};
+    return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           info.si_pid == 0;
+  }
+
+ private:
+  pid_t pid_ = -1;
+};
+
+// Files that a finished program never leaves.
+inline std::vector<std::filesystem::path> half_written_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().filename().string().ends_with(".batten-part")) found.push_back(entry.path());
+  }
+  return found;
+}
 
 // A wave in 0.2 mm steps: one run that any target can make smoother.
 inline std::string wave_program() {

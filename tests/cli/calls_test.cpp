@@ -1,8 +1,6 @@
 // Programs that call others, as a user meets them.
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "batten_process.h"
 #include "tests/support/wavy_programs.h"
 
@@ -24,14 +22,11 @@ class Calls : public testing::Test {
 
 TEST_F(Calls, LeaveNothingKnownUnlessTheUserKnowsBetter) {
   const std::string smooth = "smooth part.nc --target haas --tolerance 0.01 -o ";
-  const ProcessResult kept = folder_.batten(smooth + "kept.nc");
-  EXPECT_EQ(kept.exit_code, 0) << kept.err;
-  EXPECT_TRUE(contains(kept.err, "none found: batten inspect says")) << kept.err;
+  const ProcessResult kept =
+      expect_exit(folder_.batten(smooth + "kept.nc"), 0, {"none found: batten inspect says"});
   EXPECT_EQ(folder_.text_of("kept.nc"), folder_.text_of("part.nc"));
 
-  const ProcessResult done = folder_.batten(smooth + "new.nc --allow subprogram");
-  EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_TRUE(contains(done.err, "1 rewritten")) << done.err;
+  expect_exit(folder_.batten(smooth + "new.nc --allow subprogram"), 0, {"1 rewritten"});
 }
 
 TEST_F(Calls, AreReadByVerifyAsTheUserSays) {
@@ -42,8 +37,7 @@ TEST_F(Calls, AreReadByVerifyAsTheUserSays) {
             0);
   const std::string verify = "verify part.nc new.nc --tolerance 0.01";
   EXPECT_EQ(folder_.batten(verify).exit_code, 3);
-  const ProcessResult proved = folder_.batten(verify + " --allow subprogram");
-  EXPECT_EQ(proved.exit_code, 0) << proved.err;
+  expect_exit(folder_.batten(verify + " --allow subprogram"), 0);
   std::string damaged = folder_.text_of("new.nc");
   damaged.replace(damaged.find("G1 Z-1."), 7, "G1 Z-2.");
   folder_.put("new.nc", damaged);

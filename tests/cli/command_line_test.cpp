@@ -11,9 +11,6 @@
 namespace batten {
 namespace {
 
-using testing::TestWithParam;
-using testing::Values;
-
 constexpr const char* kSmooth = "smooth part.nc --target linuxcnc --tolerance 0.01 ";
 
 class CommandLine : public testing::Test {
@@ -29,35 +26,22 @@ class CommandLine : public testing::Test {
 
 // --- help ------------------------------------------------------------------------------------
 
-class Help : public TestWithParam<const char*> {};
-
-TEST_P(Help, OfEachCommandHasAnExample) {
-  const BattenFolder folder;
-  const ProcessResult help = folder.batten(std::string(GetParam()) + " --help");
-  EXPECT_EQ(help.exit_code, 0);
-  EXPECT_TRUE(contains(help.out, "Example")) << help.out;
-  EXPECT_TRUE(contains(help.out, std::string("batten ") + GetParam())) << help.out;
-  EXPECT_EQ(help.err, "");
-}
-
-INSTANTIATE_TEST_SUITE_P(CommandLine, Help,
-                         Values("smooth", "verify", "inspect", "time", "batch", "freecad",
-                                "targets", "machines", "methods"),
-                         [](const auto& test) { return std::string(test.param); });
-
-TEST_F(CommandLine, HelpListsTheCommandsAndExitCodes) {
-  const ProcessResult help = batten("--help");
-  EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"smooth", "verify", "inspect", "time", "batch", "freecad", "targets",
-                              "machines", "methods"}) {
-    EXPECT_TRUE(contains(help.out, command)) << command;
+TEST_F(CommandLine, HelpOfEachCommandHasAnExampleAndAllAreListed) {
+  const ProcessResult all = batten("--help");
+  EXPECT_EQ(all.exit_code, 0);
+  EXPECT_TRUE(contains(all.out, "3 not proved")) << all.out;
+  for (const std::string command : {"smooth", "verify", "inspect", "time", "batch", "freecad",
+                                    "targets", "machines", "methods"}) {
+    EXPECT_TRUE(contains(all.out, command)) << command;
+    const ProcessResult help = expect_exit(batten(command + " --help"), 0);
+    EXPECT_TRUE(contains(help.out, "Example")) << help.out;
+    EXPECT_TRUE(contains(help.out, "batten " + command)) << help.out;
+    EXPECT_EQ(help.err, "");
   }
-  EXPECT_TRUE(contains(help.out, "3 not proved")) << help.out;
 }
 
 TEST_F(CommandLine, VersionIsOneLine) {
-  const ProcessResult version = batten("--version");
-  EXPECT_EQ(version.exit_code, 0);
+  const ProcessResult version = expect_exit(batten("--version"), 0);
   EXPECT_EQ(version.out, "batten " BATTEN_VERSION "\n");
 }
 
@@ -78,89 +62,67 @@ struct WrongUsage {
   const char* message;
 };
 
-class WrongUsages : public TestWithParam<WrongUsage> {};
+constexpr WrongUsage kWrongUsages[] = {
+    {"NoCommand", "", "no command given; possible: smooth, verify"},
+    {"UnknownCommand", "smoth part.nc", "did you mean 'smooth'?"},
+    {"NoFile", "smooth --target linuxcnc", "IN: no file given"},
+    {"TwoFiles", "smooth --target linuxcnc part.nc b.nc", "one file too many"},
+    {"NoTarget", "smooth part.nc", "--target: no target given; possible: linuxcnc"},
+    {"UnknownTarget", "smooth part.nc --target linuxcn", "did you mean 'linuxcnc'?"},
+    {"UnknownMachine", "smooth part.nc --target grbl --machine x", "--machine"},
+    {"MissingMachineFile", "smooth part.nc --target grbl --machine x.toml", "x.toml"},
+    {"MissingIni", "smooth part.nc --target grbl --machine x.ini", "x.ini"},
+    {"MissingGrblSettings", "smooth part.nc --target grbl --grbl-settings x.txt", "x.txt"},
+    {"ShowOfNoMachine", "machines --show mil", "did you mean 'mill'?"},
+    {"UnknownOption", "smooth part.nc --target grbl --tolerence 1", "did you mean --tolerance?"},
+    {"UnknownForm", "smooth part.nc --target grbl --output splines",
+     "possible: auto, curves, arcs, lines"},
+    {"UnknownMethod", "smooth part.nc --target grbl --method spline",
+     "possible: best, fair, racing, naseath, guo, ozcan"},
+    {"ToleranceWithoutAValue", "smooth part.nc --target grbl --tolerance", "--tolerance"},
+    {"ToleranceWithAComma", "smooth part.nc --target grbl --tolerance 0,01", "not a comma"},
+    {"ToleranceOfAnotherUnit", "smooth part.nc --target grbl --tolerance 0.01cm", "0.0005in"},
+    {"NegativeTolerance", "smooth part.nc --target grbl --tolerance=-0.01", "above 0"},
+    {"RuleThatCannotBeLifted", "smooth part.nc --target grbl --allow cutter-compensation",
+     "cannot be lifted"},
+    {"RuleInAListThatIsNone", "smooth part.nc --target grbl --allow exact-stop,nothing",
+     "there is no reason 'nothing'"},
+    {"ListWithAnEmptyPart", "smooth part.nc --target grbl --allow exact-stop,",
+     "there is no reason ''"},
+    {"UnknownDecimals", "smooth part.nc --target fanuc --decimals 0.001",
+     "expected auto, explicit, implied"},
+    {"IncrementsOfAControlWithoutThem", "smooth part.nc --target grbl --decimals implied",
+     "takes X5 for 5 mm"},
+    {"IncrementsOfNobody", "inspect part.nc --decimals implied", "--source fanuc or haas"},
+    {"OutputIsTheInput", "smooth part.nc --target grbl -o ./part.nc --force", "--in-place"},
+    {"ReportIsTheInput", "smooth part.nc --target grbl --json part.nc --force", "--json"},
+    {"ReportIsTheOutput", "smooth part.nc --target grbl -o x.nc --json x.nc", "--json"},
+    {"InPlaceWithOut", "smooth part.nc --target grbl --in-place -o x.nc", "--in-place"},
+    {"InPlaceOfStandardInput", "smooth - --target grbl --in-place", "--in-place"},
+    {"ProgramAndReportOnStandardOutput", "smooth part.nc --target grbl -o - --json -", "--json"},
+    {"MissingConfig", "smooth part.nc --target grbl --config no.toml", "no.toml"},
+    {"VerifyWithOneFile", "verify part.nc", "NEW: no file given"},
+    {"VerifyStandardInputTwice", "verify - -", "only once"}};
 
-TEST_P(WrongUsages, ExitWithOneAndTouchNothing) {
-  const BattenFolder folder;
-  folder.put("part.nc", wave_program());
-  const ProcessResult result = folder.batten(GetParam().arguments);
-  EXPECT_EQ(result.exit_code, 1) << result.err;
-  EXPECT_TRUE(contains(result.err, GetParam().message)) << result.err;
-  EXPECT_EQ(result.out, "");
-  EXPECT_EQ(folder.text_of("part.nc"), wave_program());
-  EXPECT_FALSE(folder.has("part.smooth.nc"));
+TEST_F(CommandLine, WrongUsagesExitWithOneAndTouchNothing) {
+  for (const WrongUsage& wrong : kWrongUsages) {
+    SCOPED_TRACE(wrong.name);
+    EXPECT_EQ(expect_exit(batten(wrong.arguments), 1, {wrong.message}).out, "");
+    EXPECT_EQ(folder_.text_of("part.nc"), wave_program());
+    EXPECT_FALSE(folder_.has("part.smooth.nc"));
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    CommandLine, WrongUsages,
-    Values(
-        WrongUsage{"NoCommand", "", "no command given; possible: smooth, verify"},
-        WrongUsage{"UnknownCommand", "smoth part.nc", "did you mean 'smooth'?"},
-        WrongUsage{"NoFile", "smooth --target linuxcnc", "IN: no file given"},
-        WrongUsage{"TwoFiles", "smooth --target linuxcnc part.nc b.nc", "one file too many"},
-        WrongUsage{"NoTarget", "smooth part.nc", "--target: no target given; possible: linuxcnc"},
-        WrongUsage{"UnknownTarget", "smooth part.nc --target linuxcn", "did you mean 'linuxcnc'?"},
-        WrongUsage{"UnknownMachine", "smooth part.nc --target grbl --machine x", "--machine"},
-        WrongUsage{"MissingMachineFile", "smooth part.nc --target grbl --machine x.toml", "x.toml"},
-        WrongUsage{"MissingIni", "smooth part.nc --target grbl --machine x.ini", "x.ini"},
-        WrongUsage{"MissingGrblSettings", "smooth part.nc --target grbl --grbl-settings x.txt",
-                   "x.txt"},
-        WrongUsage{"ShowOfNoMachine", "machines --show mil", "did you mean 'mill'?"},
-        WrongUsage{"UnknownOption", "smooth part.nc --target grbl --tolerence 1",
-                   "did you mean --tolerance?"},
-        WrongUsage{"UnknownForm", "smooth part.nc --target grbl --output splines",
-                   "possible: auto, curves, arcs, lines"},
-        WrongUsage{"UnknownMethod", "smooth part.nc --target grbl --method spline",
-                   "possible: best, fair, racing, naseath, guo, ozcan"},
-        WrongUsage{"ToleranceWithoutAValue", "smooth part.nc --target grbl --tolerance",
-                   "--tolerance"},
-        WrongUsage{"ToleranceWithAComma", "smooth part.nc --target grbl --tolerance 0,01",
-                   "not a comma"},
-        WrongUsage{"ToleranceOfAnotherUnit", "smooth part.nc --target grbl --tolerance 0.01cm",
-                   "0.0005in"},
-        WrongUsage{"NegativeTolerance", "smooth part.nc --target grbl --tolerance=-0.01",
-                   "above 0"},
-        WrongUsage{"RuleThatCannotBeLifted",
-                   "smooth part.nc --target grbl --allow cutter-compensation", "cannot be lifted"},
-        WrongUsage{"RuleInAListThatIsNone",
-                   "smooth part.nc --target grbl --allow exact-stop,nothing",
-                   "there is no reason 'nothing'"},
-        WrongUsage{"ListWithAnEmptyPart", "smooth part.nc --target grbl --allow exact-stop,",
-                   "there is no reason ''"},
-        WrongUsage{"UnknownDecimals", "smooth part.nc --target fanuc --decimals 0.001",
-                   "expected auto, explicit, implied"},
-        WrongUsage{"IncrementsOfAControlWithoutThem",
-                   "smooth part.nc --target grbl --decimals implied", "takes X5 for 5 mm"},
-        WrongUsage{"IncrementsOfNobody", "inspect part.nc --decimals implied",
-                   "--source fanuc or haas"},
-        WrongUsage{"OutputIsTheInput", "smooth part.nc --target grbl -o ./part.nc --force",
-                   "--in-place"},
-        WrongUsage{"ReportIsTheInput", "smooth part.nc --target grbl --json part.nc --force",
-                   "--json"},
-        WrongUsage{"ReportIsTheOutput", "smooth part.nc --target grbl -o x.nc --json x.nc",
-                   "--json"},
-        WrongUsage{"InPlaceWithOut", "smooth part.nc --target grbl --in-place -o x.nc",
-                   "--in-place"},
-        WrongUsage{"InPlaceOfStandardInput", "smooth - --target grbl --in-place", "--in-place"},
-        WrongUsage{"ProgramAndReportOnStandardOutput", "smooth part.nc --target grbl -o - --json -",
-                   "--json"},
-        WrongUsage{"MissingConfig", "smooth part.nc --target grbl --config no.toml", "no.toml"},
-        WrongUsage{"VerifyWithOneFile", "verify part.nc", "NEW: no file given"},
-        WrongUsage{"VerifyStandardInputTwice", "verify - -", "only once"}),
-    [](const auto& test) { return std::string(test.param.name); });
 
 // What the numbers mean is said once, to every command that reads them.
 TEST_F(CommandLine, ReadsImpliedDecimalsWhereTheUserSaysSo) {
   const BattenFolder folder;
   folder.put("old.nc",
              "G21 G90\nG0 X0 Y0 Z5000\nG1 Z-1000 F300\nX10000\nX20000 Y500\nX30000\nM30\n");
-  const ProcessResult kept = folder.batten("smooth old.nc --target fanuc");
-  EXPECT_EQ(kept.exit_code, 0) << kept.err;
-  EXPECT_TRUE(contains(kept.err, "old.nc:2:10: warning: implied-decimals: Z5000 has no decimal"))
-      << kept.err;
+  expect_exit(folder.batten("smooth old.nc --target fanuc"), 0,
+              {"old.nc:2:10: warning: implied-decimals: Z5000 has no decimal"});
   EXPECT_EQ(folder.text_of("old.smooth.nc"), folder.text_of("old.nc"));
-  const ProcessResult read = folder.batten("inspect old.nc --source fanuc --decimals implied");
-  EXPECT_EQ(read.exit_code, 0) << read.err;
+  const ProcessResult read =
+      expect_exit(folder.batten("inspect old.nc --source fanuc --decimals implied"), 0);
   EXPECT_FALSE(contains(read.err, "implied-decimals")) << read.err;
   folder.put("new.nc", "G21 G90\nG0 X0 Y0 Z5000\nG1 Z-1000 F300\nX10.\nX20. Y.5\nX30.\nM30\n");
   const std::string verify = "verify old.nc new.nc --target fanuc --decimals ";
@@ -170,9 +132,10 @@ TEST_F(CommandLine, ReadsImpliedDecimalsWhereTheUserSaysSo) {
 }
 
 TEST_F(CommandLine, TellsAllProblemsAtOnce) {
-  const ProcessResult result = batten(
-      "smooth part.nc --target no --tolerance x --method y --keep-corners 999 --threads -1 --nope");
-  EXPECT_EQ(result.exit_code, 1);
+  const ProcessResult result =
+      expect_exit(batten("smooth part.nc --target no --tolerance x --method y --keep-corners 999 "
+                         "--threads -1 --nope"),
+                  1);
   for (const char* option :
        {"--target", "--tolerance", "--method", "--keep-corners", "--threads", "--nope"}) {
     EXPECT_TRUE(contains(result.err, std::string("batten: ") + option)) << option << result.err;
@@ -182,8 +145,7 @@ TEST_F(CommandLine, TellsAllProblemsAtOnce) {
 // --- files ---------------------------------------------------------------------------------------
 
 TEST_F(CommandLine, WritesBesideTheInputByDefault) {
-  const ProcessResult result = batten(kSmooth);
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = expect_exit(batten(kSmooth), 0);
   EXPECT_TRUE(folder_.has("part.smooth.nc"));
   EXPECT_EQ(folder_.text_of("part.nc"), wave_program());
   EXPECT_EQ(result.out, "");
@@ -192,9 +154,7 @@ TEST_F(CommandLine, WritesBesideTheInputByDefault) {
 
 TEST_F(CommandLine, DoesNotReplaceAFileWithoutForce) {
   folder_.put("part.smooth.nc", "mine");
-  const ProcessResult refused = batten(kSmooth);
-  EXPECT_EQ(refused.exit_code, 4);
-  EXPECT_TRUE(contains(refused.err, "--force")) << refused.err;
+  expect_exit(batten(kSmooth), 4, {"--force"});
   EXPECT_EQ(folder_.text_of("part.smooth.nc"), "mine");
   EXPECT_EQ(batten(std::string(kSmooth) + "--force").exit_code, 0);
   EXPECT_NE(folder_.text_of("part.smooth.nc"), "mine");
@@ -214,8 +174,7 @@ TEST_F(CommandLine, ReplacesTheInputOnlyWhenAsked) {
 }
 
 TEST_F(CommandLine, DryRunWritesNoProgram) {
-  const ProcessResult result = batten(std::string(kSmooth) + "--dry-run --json -");
-  EXPECT_EQ(result.exit_code, 0);
+  const ProcessResult result = expect_exit(batten(std::string(kSmooth) + "--dry-run --json -"), 0);
   EXPECT_FALSE(folder_.has("part.smooth.nc"));
   EXPECT_EQ(nlohmann::json::parse(result.out)["input"]["file"], "part.nc");
 }
@@ -223,8 +182,7 @@ TEST_F(CommandLine, DryRunWritesNoProgram) {
 TEST_F(CommandLine, ReadsStandardInputAndWritesStandardOutput) {
   ASSERT_EQ(batten(kSmooth).exit_code, 0);
   const ProcessResult piped =
-      folder_.shell("batten smooth - --target linuxcnc --tolerance 0.01 <part.nc");
-  EXPECT_EQ(piped.exit_code, 0) << piped.err;
+      expect_exit(folder_.shell("batten smooth - --target linuxcnc --tolerance 0.01 <part.nc"), 0);
   EXPECT_EQ(piped.out, folder_.text_of("part.smooth.nc"));
   const ProcessResult filter = batten(std::string(kSmooth) + "-o -");
   EXPECT_EQ(filter.out, folder_.text_of("part.smooth.nc"));
@@ -235,19 +193,14 @@ TEST_F(CommandLine, TellsAFullOrClosedStandardOutput) {
 }
 
 TEST_F(CommandLine, TellsAMissingFile) {
-  const ProcessResult result = batten("smooth missing.nc --target grbl");
-  EXPECT_EQ(result.exit_code, 4);
-  EXPECT_TRUE(contains(result.err, "missing.nc")) << result.err;
+  expect_exit(batten("smooth missing.nc --target grbl"), 4, {"missing.nc"});
 }
 
 TEST_F(CommandLine, RefusesAProgramWithoutUnitsUntilTheyAreGiven) {
   std::string text = wave_program();
   text.replace(0, 4, "");  // without its G21
   folder_.put("part.nc", text);
-  const ProcessResult refused = batten(kSmooth);
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_TRUE(contains(refused.err, "part.nc:")) << refused.err;
-  EXPECT_TRUE(contains(refused.err, "--units")) << refused.err;
+  expect_exit(batten(kSmooth), 2, {"part.nc:", "--units"});
   EXPECT_FALSE(folder_.has("part.smooth.nc"));
   EXPECT_EQ(batten(std::string(kSmooth) + "--units mm").exit_code, 0);
   EXPECT_TRUE(folder_.has("part.smooth.nc"));
@@ -257,9 +210,8 @@ TEST_F(CommandLine, RefusesAProgramWithoutUnitsUntilTheyAreGiven) {
 
 TEST_F(CommandLine, VerifyAcceptsWhatSmoothWrote) {
   ASSERT_EQ(batten(kSmooth).exit_code, 0);
-  const ProcessResult result = batten("verify part.nc part.smooth.nc --tolerance 0.01 --json -");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(contains(result.err, "proved")) << result.err;
+  const ProcessResult result =
+      expect_exit(batten("verify part.nc part.smooth.nc --tolerance 0.01 --json -"), 0, {"proved"});
   const auto report = nlohmann::json::parse(result.out);
   EXPECT_EQ(report["proved"], true);
   EXPECT_LE(report["deviation_mm"].get<double>(), 0.01);
@@ -269,10 +221,7 @@ TEST_F(CommandLine, VerifyRejectsAChangedProgram) {
   std::string text = wave_program();
   text.insert(text.find("G0 Z5"), "M9\n");
   folder_.put("new.nc", text);
-  const ProcessResult result = batten("verify part.nc new.nc --tolerance 0.01");
-  EXPECT_EQ(result.exit_code, 3);
-  EXPECT_TRUE(contains(result.err, "new.nc:")) << result.err;
-  EXPECT_TRUE(contains(result.err, "NOT PROVED")) << result.err;
+  expect_exit(batten("verify part.nc new.nc --tolerance 0.01"), 3, {"new.nc:", "NOT PROVED"});
 }
 
 TEST_F(CommandLine, VerifyProvesTheSameBytesInAnyUnit) {
@@ -280,15 +229,12 @@ TEST_F(CommandLine, VerifyProvesTheSameBytesInAnyUnit) {
   text.replace(0, 4, "");  // without its G21
   folder_.put("part.nc", text);
   folder_.put("same.nc", text);
-  const ProcessResult same = batten("verify part.nc same.nc --json -");
-  EXPECT_EQ(same.exit_code, 0) << same.err;
-  EXPECT_TRUE(contains(same.err, "byte for byte")) << same.err;
+  const ProcessResult same =
+      expect_exit(batten("verify part.nc same.nc --json -"), 0, {"byte for byte"});
   EXPECT_EQ(nlohmann::json::parse(same.out)["proved"], true);
 
   folder_.put("other.nc", text + "(a comment does nothing, but these are other bytes)\n");
-  const ProcessResult other = batten("verify part.nc other.nc");
-  EXPECT_EQ(other.exit_code, 2) << other.err;
-  EXPECT_TRUE(contains(other.err, "units-missing")) << other.err;
+  const ProcessResult other = expect_exit(batten("verify part.nc other.nc"), 2, {"units-missing"});
   EXPECT_EQ(batten("verify part.nc other.nc --units inch").exit_code, 0);
 }
 
@@ -296,10 +242,8 @@ TEST_F(CommandLine, VerifyProvesTheSameBytesInAnyUnit) {
 TEST_F(CommandLine, VerifyAsksForTheControlWhereADecimalPointIsLost) {
   folder_.put("old.nc", "G21 G90\nG0 X0. Y0. Z5.\nG1 X10. F100.\nM30\n");
   folder_.put("new.nc", "G21 G90\nG0 X0. Y0. Z5.\nG1 X10 F100.\nM30\n");
-  const ProcessResult open = batten("verify old.nc new.nc");
-  EXPECT_EQ(open.exit_code, 3);
-  EXPECT_TRUE(contains(open.err, "new.nc:3: point-spelling: found X10 without")) << open.err;
-  EXPECT_TRUE(contains(open.err, "--target")) << open.err;
+  expect_exit(batten("verify old.nc new.nc"), 3,
+              {"new.nc:3: point-spelling: found X10 without", "--target"});
   EXPECT_EQ(batten("verify old.nc new.nc --target linuxcnc").exit_code, 0);
   EXPECT_EQ(batten("verify old.nc new.nc --source ngc").exit_code, 0);
   EXPECT_EQ(batten("verify old.nc new.nc --decimals explicit --source fanuc").exit_code, 0);
@@ -316,12 +260,10 @@ TEST_F(CommandLine, VerifyComparesProgramsWithoutMovesInAnyUnit) {
 }
 
 TEST_F(CommandLine, InspectShowsRunsAndReasons) {
-  const ProcessResult text = batten("inspect part.nc");
-  EXPECT_EQ(text.exit_code, 0) << text.err;
+  const ProcessResult text = expect_exit(batten("inspect part.nc"), 0);
   EXPECT_TRUE(contains(text.out, "1 run that may be rewritten:")) << text.out;
   EXPECT_TRUE(contains(text.out, "rapid: ")) << text.out;
-  const ProcessResult json = batten("inspect part.nc --json -");
-  EXPECT_EQ(json.exit_code, 0);
+  const ProcessResult json = expect_exit(batten("inspect part.nc --json -"), 0);
   std::size_t runs = 0;
   const auto report = nlohmann::json::parse(json.out);
   for (const auto& section : report["sections"]) {
@@ -351,8 +293,7 @@ TEST_F(CommandLine, ListsTakeCommasOrAreRepeated) {
        {"--allow exact-stop --allow work-offset", "--allow exact-stop,work-offset",
         "--allow 'exact-stop, work-offset'", "--config options.toml"}) {
     const ProcessResult printed =
-        batten(std::string("smooth --print-config --target grbl ") + options);
-    EXPECT_EQ(printed.exit_code, 0) << printed.err;
+        expect_exit(batten(std::string("smooth --print-config --target grbl ") + options), 0);
     EXPECT_TRUE(contains(printed.out, kBoth)) << options << printed.out;
   }
 }
@@ -361,11 +302,9 @@ TEST_F(CommandLine, PrintedConfigReadsBackTheSame) {
   const std::string options =
       "smooth --print-config --target grbl --tolerance 0.0005in --prefer size --keep-corners 12.5 "
       "--allow exact-stop --strict";
-  const ProcessResult printed = batten(options);
-  ASSERT_EQ(printed.exit_code, 0) << printed.err;
+  const ProcessResult printed = expect_exit(batten(options), 0);
   folder_.put("options.toml", printed.out);
-  const ProcessResult again = batten("smooth --print-config --config options.toml");
-  EXPECT_EQ(again.exit_code, 0) << again.err;
+  const ProcessResult again = expect_exit(batten("smooth --print-config --config options.toml"), 0);
   EXPECT_EQ(again.out, printed.out);
   EXPECT_TRUE(contains(printed.out, "keep-corners = \"12.5\"")) << printed.out;
   EXPECT_TRUE(contains(printed.out, "strict = true")) << printed.out;
@@ -379,28 +318,21 @@ TEST_F(CommandLine, TheCommandLineGoesBeforeTheConfig) {
 
 TEST_F(CommandLine, TellsEveryProblemOfAConfigWithItsLine) {
   folder_.put("options.toml", "target = [1]\ntolerence = 1\nforce = true\nstrict = 3\n");
-  const ProcessResult result = batten("smooth part.nc --config options.toml");
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(contains(result.err, "options.toml:1: 'target'")) << result.err;
-  EXPECT_TRUE(contains(result.err, "options.toml:2: there is no option 'tolerence'")) << result.err;
-  EXPECT_TRUE(contains(result.err, "options.toml:3: 'force' is for the command line"))
-      << result.err;
-  EXPECT_TRUE(contains(result.err, "options.toml:4: 'strict', expected true or false"))
-      << result.err;
+  expect_exit(batten("smooth part.nc --config options.toml"), 1,
+              {"options.toml:1: 'target'", "options.toml:2: there is no option 'tolerence'",
+               "options.toml:3: 'force' is for the command line",
+               "options.toml:4: 'strict', expected true or false"});
 }
 
 TEST_F(CommandLine, TakesAMachineFromAFile) {
   folder_.put("router.toml", "based-on = \"linuxcnc\"\nmax-acceleration = 500\n");
-  const ProcessResult result = batten(std::string(kSmooth) + "--machine router.toml");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(contains(result.err, "machine router")) << result.err;
+  expect_exit(batten(std::string(kSmooth) + "--machine router.toml"), 0, {"machine router"});
   folder_.put("bad.toml", "based-on = \"linuxcn\"\nmax-acceleration = -1\nmax-speed = 3\n");
-  const ProcessResult bad = batten(std::string(kSmooth) + "--machine bad.toml --force");
-  EXPECT_EQ(bad.exit_code, 1);
-  EXPECT_TRUE(contains(bad.err, "there is no machine 'linuxcn'")) << bad.err;
-  EXPECT_TRUE(contains(bad.err, "bad.toml:2:20: max-acceleration: -1, expected above 0 (mm/s2)"))
-      << bad.err;
-  EXPECT_TRUE(contains(bad.err, "bad.toml:3:1: max-speed: there is no such key")) << bad.err;
+  const ProcessResult bad =
+      expect_exit(batten(std::string(kSmooth) + "--machine bad.toml --force"), 1,
+                  {"there is no machine 'linuxcn'",
+                   "bad.toml:2:20: max-acceleration: -1, expected above 0 (mm/s2)",
+                   "bad.toml:3:1: max-speed: there is no such key"});
   EXPECT_FALSE(contains(bad.err, "no machine given")) << bad.err;
 }
 
@@ -409,9 +341,7 @@ TEST_F(CommandLine, TakesAMachineFromTheIniOfLinuxcnc) {
               "[TRAJ]\nCOORDINATES = X Y\nLINEAR_UNITS = inch\n"
               "[AXIS_X]\nMAX_VELOCITY = 2\nMAX_ACCELERATION = 20\n"
               "[AXIS_Y]\nMAX_VELOCITY = 2\nMAX_ACCELERATION = 20\n");
-  const ProcessResult result = batten(std::string(kSmooth) + "--machine mill.ini");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(contains(result.err, "machine mill")) << result.err;
+  expect_exit(batten(std::string(kSmooth) + "--machine mill.ini"), 0, {"machine mill"});
   const auto shown = nlohmann::json::parse(batten("machines --show mill.ini --json -").out);
   EXPECT_NEAR(shown["axes"]["x"]["velocity_mm_per_s"], 50.8, 1e-9);
   EXPECT_TRUE(shown["axes"]["x"]["jerk_mm_per_s3"].is_null()) << "no such limit";
@@ -422,26 +352,21 @@ constexpr const char* kGrblDump =
 
 TEST_F(CommandLine, TakesTheSettingsOfGrbl) {
   folder_.put("shapeoko.txt", kGrblDump);
-  const ProcessResult result = batten("smooth part.nc --target grbl --grbl-settings shapeoko.txt");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(contains(result.err, "machine shapeoko")) << result.err;
+  expect_exit(batten("smooth part.nc --target grbl --grbl-settings shapeoko.txt"), 0,
+              {"machine shapeoko"});
   folder_.put("bad.txt", "error:8\n");
-  const ProcessResult bad = batten("smooth part.nc --target grbl --grbl-settings bad.txt --force");
-  EXPECT_EQ(bad.exit_code, 1);
-  EXPECT_TRUE(contains(bad.err, "bad.txt:1:1: 'error:8'")) << bad.err;
-  const ProcessResult other =
-      batten(std::string(kSmooth) + "--machine mill --grbl-settings shapeoko.txt --force");
-  EXPECT_EQ(other.exit_code, 1);
-  EXPECT_TRUE(contains(other.err, "the control of machine mill is look-ahead")) << other.err;
+  expect_exit(batten("smooth part.nc --target grbl --grbl-settings bad.txt --force"), 1,
+              {"bad.txt:1:1: 'error:8'"});
+  expect_exit(batten(std::string(kSmooth) + "--machine mill --grbl-settings shapeoko.txt --force"),
+              1, {"the control of machine mill is look-ahead"});
 }
 
 TEST_F(CommandLine, PrintsAMachineAsAFileThatIsReadAgain) {
   folder_.put("shapeoko.txt", kGrblDump);
-  const ProcessResult first = batten("machines --show router --grbl-settings shapeoko.txt");
-  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const ProcessResult first =
+      expect_exit(batten("machines --show router --grbl-settings shapeoko.txt"), 0);
   folder_.put("mine.toml", first.out);
-  const ProcessResult second = batten("machines --show mine.toml");
-  EXPECT_EQ(second.exit_code, 0) << second.err;
+  const ProcessResult second = expect_exit(batten("machines --show mine.toml"), 0);
   EXPECT_EQ(second.out, first.out);
   EXPECT_TRUE(contains(first.out, "[axis.z]\nvelocity = 10  # mm/s")) << first.out;
 }
@@ -459,9 +384,8 @@ TEST_F(CommandLine, ListsTheMachinesInOneTable) {
 // --- progress and interrupts ---------------------------------------------------------------------
 
 TEST_F(CommandLine, ProgressForLinuxcncIsItsLinesAndNothingElse) {
-  const ProcessResult result = batten(std::string(kSmooth) + "--progress linuxcnc -o -");
-  EXPECT_EQ(result.exit_code, 0);
-  EXPECT_TRUE(contains(result.err, "FILTER_PROGRESS=100\n")) << result.err;
+  const ProcessResult result = expect_exit(
+      batten(std::string(kSmooth) + "--progress linuxcnc -o -"), 0, {"FILTER_PROGRESS=100\n"});
   EXPECT_FALSE(contains(result.out, "FILTER_PROGRESS"));
   const ProcessResult under_axis = folder_.shell(
       std::string("AXIS_PROGRESS_BAR=1; export AXIS_PROGRESS_BAR; batten ") + kSmooth + "-o -");
@@ -476,8 +400,7 @@ TEST_F(CommandLine, ASignalEndsTheProgramAndNothingIsWritten) {
       "'" BATTEN_BINARY
       "' smooth - --target linuxcnc -o new.nc <pipe & work=$!\n"
       "sleep 0.5; kill -TERM $work; wait $work; code=$?; kill $sleeper; exit $code";
-  const ProcessResult result = folder_.shell("( " + wait_and_kill + " )");
-  EXPECT_EQ(result.exit_code, 143) << result.err;
+  expect_exit(folder_.shell("( " + wait_and_kill + " )"), 143);
   EXPECT_FALSE(folder_.has("new.nc"));
 }
 

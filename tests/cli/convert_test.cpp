@@ -1,8 +1,6 @@
 // Programs of one language for controls of another, as a user meets them.
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "batten_process.h"
 
 namespace batten {
@@ -20,21 +18,17 @@ class Conversions : public testing::Test {
 };
 
 TEST_F(Conversions, AreRefusedUnlessTheyAreAskedFor) {
-  const ProcessResult refused = folder_.batten("smooth 1234.h --target fanuc -o new.nc");
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_TRUE(contains(refused.err, "1234.h:1:1: error: foreign-language")) << refused.err;
-  EXPECT_TRUE(contains(refused.err, "--convert says it there")) << refused.err;
+  expect_exit(folder_.batten("smooth 1234.h --target fanuc -o new.nc"), 2,
+              {"1234.h:1:1: error: foreign-language", "--convert says it there"});
   EXPECT_FALSE(folder_.has("new.nc"));
 }
 
 TEST_F(Conversions, FromKlartextAreWrittenAndProvedAgain) {
-  const ProcessResult done = folder_.batten("smooth 1234.h --target fanuc --convert -o new.nc");
-  ASSERT_EQ(done.exit_code, 0) << done.err;
+  expect_exit(folder_.batten("smooth 1234.h --target fanuc --convert -o new.nc"), 0);
   EXPECT_EQ(folder_.text_of("new.nc"),
             "%\nO1234\nG21 G17 G40 G90 G94\nT5 M6\nG43 H5\nS3000 M3\nG0 X0. Y0.\nZ5.\n"
             "G1 Z-1. F200.\nX10. F500.\nG2 X20. I5.\nG0 Z50.\nM5\nM30\n%\n");
-  const ProcessResult proved = folder_.batten("verify 1234.h new.nc --target fanuc");
-  EXPECT_EQ(proved.exit_code, 0) << proved.err;
+  expect_exit(folder_.batten("verify 1234.h new.nc --target fanuc"), 0);
   std::string damaged = folder_.text_of("new.nc");
   damaged.replace(damaged.find("G2"), 2, "G3");
   folder_.put("new.nc", damaged);
@@ -56,10 +50,8 @@ TEST_F(Conversions, ThroughAllThreeLanguagesAreProvedAtEachStep) {
 
 TEST_F(Conversions, OfPlainWordsForKlartextAreAskedFor) {
   folder_.put("plain.nc", "%\nO1\n(part)\nN10 G21 G90\nN20 G0 X0 Y0 Z5\nG1 X5 F100\nM30\n%\n");
-  const ProcessResult refused = folder_.batten("smooth plain.nc --target heidenhain -o new.h");
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_TRUE(contains(refused.err, "plain.nc:4:1: error: foreign-language: found N10 G21 G90"))
-      << refused.err;
+  expect_exit(folder_.batten("smooth plain.nc --target heidenhain -o new.h"), 2,
+              {"plain.nc:4:1: error: foreign-language: found N10 G21 G90"});
   EXPECT_FALSE(folder_.has("new.h"));
   EXPECT_EQ(folder_.batten("smooth plain.nc --target heidenhain --convert -o new.h").exit_code, 0);
   const ProcessResult told = folder_.batten("explain foreign-language");
@@ -69,12 +61,10 @@ TEST_F(Conversions, OfPlainWordsForKlartextAreAskedFor) {
 // What P means says --source alone, to smooth and to verify.
 TEST_F(Conversions, OfDwellsAskForTheirSource) {
   folder_.put("plain.nc", "G21 G90\nG0 X0 Y0 Z5\nG4 P0.5\nG1 X5 F100\nM30\n");
-  const ProcessResult refused = folder_.batten("smooth plain.nc --target siemens --convert");
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_TRUE(contains(refused.err, "--source ngc, grbl, fanuc or haas says which")) << refused.err;
-  const ProcessResult done =
-      folder_.batten("smooth plain.nc --target siemens --convert --source ngc -o new.mpf");
-  EXPECT_EQ(done.exit_code, 0) << done.err;
+  expect_exit(folder_.batten("smooth plain.nc --target siemens --convert"), 2,
+              {"--source ngc, grbl, fanuc or haas says which"});
+  expect_exit(folder_.batten("smooth plain.nc --target siemens --convert --source ngc -o new.mpf"),
+              0);
   EXPECT_TRUE(contains(folder_.text_of("new.mpf"), "\nG4 F0.5\n"));
   EXPECT_EQ(folder_.batten("verify plain.nc new.mpf --target siemens --source ngc").exit_code, 0);
   EXPECT_EQ(folder_.batten("verify plain.nc new.mpf --target siemens --source grbl").exit_code, 0);
@@ -86,10 +76,8 @@ TEST_F(Conversions, TellTheLineAndTheWordThatCannotBeSaid) {
   std::string text = kKlartextProgram;
   text.replace(text.find("4 L Z-1"), 7, "4 L Z-1 RL");
   folder_.put("part.h", text);
-  const ProcessResult told = folder_.batten("smooth part.h --target haas --convert -o new.nc");
-  EXPECT_EQ(told.exit_code, 2);
-  EXPECT_TRUE(contains(told.err, "part.h:5:9: error: cannot-convert: RL moves beside the path"))
-      << told.err;
+  expect_exit(folder_.batten("smooth part.h --target haas --convert -o new.nc"), 2,
+              {"part.h:5:9: error: cannot-convert: RL moves beside the path"});
   EXPECT_FALSE(folder_.has("new.nc"));
 }
 

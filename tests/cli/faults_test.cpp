@@ -9,8 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "batten_process.h"
 #include "tests/support/counts_memory.h"
@@ -24,16 +22,6 @@ namespace fs = std::filesystem;
 
 // A run that is rewritten.
 std::string part_program() { return postproc::wave_program(); }
-
-// Files below the folder that a finished program never leaves.
-std::vector<std::string> half_written(const fs::path& folder) {
-  std::vector<std::string> found;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.ends_with(".batten-part")) found.push_back(entry.path().string());
-  }
-  return found;
-}
 
 // $B is the program; `smooth_to FILE IN` smooths IN for LinuxCNC.
 std::string script(const std::string& lines) {
@@ -75,7 +63,7 @@ TEST_P(Faults, AreToldAndHarmNothing) {
   EXPECT_EQ(result.exit_code, fault.exit_code) << result.err;
   EXPECT_TRUE(contains(result.err, fault.message)) << result.err;
   EXPECT_EQ(folder.text_of("part.nc"), part_program());
-  EXPECT_EQ(half_written(folder.file(".")), std::vector<std::string>{});
+  EXPECT_TRUE(half_written_in(folder.file(".")).empty());
   EXPECT_EQ(folder.has("new.nc"), fault.writes);
   if (!fault.writes) return;
   ASSERT_EQ(folder.shell("( " + script("smooth_to whole.nc part.nc") + "\n)").exit_code, 0);
@@ -107,43 +95,39 @@ INSTANTIATE_TEST_SUITE_P(
               FULL_DISK
               "$B smooth part.nc --target linuxcnc -o new.nc --report full/p.html" KEEPS_OLD,
               4, "full/p.html: cannot be written: No space left", true, Needs::kMounts},
-        Fault{
-            "FileLargerThanAllowed",
-            "for i in 1 2 3 4 5 6 7 8 9; do for j in 1 2 3 4 5 6 7 8 9; do "
-            "echo '(a comment of sixty-four bytes, to make a program somewhat longer)'; done; done "
-            ">>long.nc; cat part.nc >>long.nc; ulimit -f 8; smooth_to new.nc long.nc",
-            4, "new.nc: cannot be written: File too large"},
+        Fault{"FileLargerThanAllowed",
+              "for i in 1 2 3 4 5 6 7 8 9; do for j in 1 2 3 4 5 6 7 8 9; do echo '(a comment "
+              "of sixty-four bytes, to make a program somewhat longer)'; done; done "
+              ">>long.nc; cat part.nc >>long.nc; ulimit -f 8; smooth_to new.nc long.nc",
+              4, "new.nc: cannot be written: File too large"},
         Fault{"FullStandardOutput", "smooth_to - part.nc >/dev/full", 4,
               "<stdout>: cannot be written: No space left on device"},
         Fault{"FullStandardOutputOfATable", "\"$B\" targets >/dev/full", 4,
               "<stdout>: cannot be written: No space left on device"},
         Fault{"ReaderWhoWentAway",
-              "{ until [ -e gone ]; do sleep 0.02; done; smooth_to - part.nc; echo $? >code; } | { "
-              "exec <&-; : >gone; }; exit $(cat code)",
+              "{ until [ -e gone ]; do sleep 0.02; done; smooth_to - part.nc; echo $? >code; "
+              "} | { exec <&-; : >gone; }; exit $(cat code)",
               4, "<stdout>: cannot be written: Broken pipe"},
         Fault{"ClosedStandardOutput", "smooth_to - part.nc >&-", 4, "<stdout>: cannot be written"},
         Fault{"ClosedStandardError", "smooth_to new.nc part.nc 2>&-", 0, "", true},
         Fault{"ClosedStandardInput", "smooth_to new.nc - <&-", 4, "<stdin>: cannot be read"},
-        Fault{
-            "ReadOnlyFileSystem",
-            "mkdir ro; unshare -m sh -c 'mount -t tmpfs none ro; cp part.nc ro/old.nc; mount -o "
-            "remount,ro ro; $B smooth ro/old.nc --target linuxcnc --in-place; code=$?; cmp part.nc "
-            "ro/old.nc || exit 90; exit $code'",
-            4, "ro/old.nc: a new file cannot be made in ro: Read-only file system", false,
-            Needs::kMounts},
+        Fault{"ReadOnlyFileSystem",
+              "mkdir ro; unshare -m sh -c 'mount -t tmpfs none ro; cp part.nc ro/old.nc; "
+              "mount -o remount,ro ro; $B smooth ro/old.nc --target linuxcnc --in-place; "
+              "code=$?; cmp part.nc ro/old.nc || exit 90; exit $code'",
+              4, "ro/old.nc: a new file cannot be made in ro: Read-only file system", false,
+              Needs::kMounts},
         Fault{"ReadOnlyFolder",
-              "ln \"$B\" program || cp \"$B\" program; chmod 755 . program; mkdir -m 755 ro; cp "
-              "part.nc ro/old.nc; "
-              "setpriv --reuid=65534 --regid=65534 --clear-groups ./program smooth ro/old.nc "
-              "--target "
-              "linuxcnc -o ro/new.nc; code=$?; [ $(ls -A ro | wc -l) = 1 ] || exit 91; exit $code",
+              "ln \"$B\" program || cp \"$B\" program; chmod 755 . program; mkdir -m 755 ro; "
+              "cp part.nc ro/old.nc; setpriv --reuid=65534 --regid=65534 --clear-groups "
+              "./program smooth ro/old.nc --target linuxcnc -o ro/new.nc; code=$?; [ $(ls -A "
+              "ro | wc -l) = 1 ] || exit 91; exit $code",
               4, "ro/new.nc: a new file cannot be made in ro: Permission denied", false,
               Needs::kOtherUser},
         Fault{"OtherFileSystem",
-              "mkdir far; unshare -m sh -c 'mount -t tmpfs none far; $B smooth part.nc --target "
-              "linuxcnc -o far/new.nc; code=$?; [ $(ls -A far | wc -l) = 1 ] || exit 91; cp "
-              "far/new.nc "
-              ".; exit $code'",
+              "mkdir far; unshare -m sh -c 'mount -t tmpfs none far; $B smooth part.nc "
+              "--target linuxcnc -o far/new.nc; code=$?; [ $(ls -A far | wc -l) = 1 ] || exit "
+              "91; cp far/new.nc .; exit $code'",
               0, "part.nc -> far/new.nc", true, Needs::kMounts},
         Fault{"NoSuchFolder", "smooth_to no/new.nc part.nc", 4,
               "no/new.nc: a new file cannot be made in no: No such file or directory"},
@@ -152,8 +136,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"OutputIsALinkToItself", "ln -s link link; smooth_to link part.nc", 4,
               "link: cannot be written: Too many levels of symbolic links"},
         Fault{"OutputIsAPipe",
-              "mkfifo pipe; cat pipe >new.nc & smooth_to pipe part.nc; code=$?; "
-              "wait; exit $code",
+              "mkfifo pipe; cat pipe >new.nc & smooth_to pipe part.nc; code=$?; wait; exit "
+              "$code",
               0, "", true},
         // --- what is read ---
         Fault{"InputIsAFolder", "mkdir in; smooth_to new.nc in", 4, "in: Is a directory"},
@@ -161,62 +145,56 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"InputIsALinkToNothing", "ln -s nothing link; smooth_to new.nc link", 4,
               "link: No such file or directory"},
         Fault{"InputIsAPipe",
-              "mkfifo pipe; cat part.nc >pipe & smooth_to new.nc pipe; code=$?; wait; "
-              "exit $code",
+              "mkfifo pipe; cat part.nc >pipe & smooth_to new.nc pipe; code=$?; wait; exit "
+              "$code",
               0, "", true},
-        Fault{
-            "InputThatMayNotBeRead",
-            "ln \"$B\" program || cp \"$B\" program; chmod 755 . program; cp part.nc mine.nc; "
-            "chmod 600 mine.nc; "
-            "setpriv "
-            "--reuid=65534 --regid=65534 --clear-groups ./program smooth mine.nc --target linuxcnc "
-            "-o new.nc",
-            4, "mine.nc: Permission denied", false, Needs::kOtherUser},
+        Fault{"InputThatMayNotBeRead",
+              "ln \"$B\" program || cp \"$B\" program; chmod 755 . program; cp part.nc "
+              "mine.nc; chmod 600 mine.nc; setpriv --reuid=65534 --regid=65534 --clear-groups "
+              "./program smooth mine.nc --target linuxcnc -o new.nc",
+              4, "mine.nc: Permission denied", false, Needs::kOtherUser},
         Fault{"InputOfMoreThanPlacesCanCount",
               "truncate -s 5G huge.nc; smooth_to new.nc huge.nc; code=$?; rm huge.nc; exit $code",
               4, "huge.nc: larger than 4 GiB"},
         // --- a file that changes while it is read ---
         // `verify` has opened the old program when the pipe of the new one is opened.
         Fault{"InputCutShortWhileRead",
-              "cp part.nc old.nc; mkfifo pipe; \"$B\" verify old.nc pipe & exec 3>pipe; : >old.nc; "
-              "cat part.nc >&3; exec 3>&-; wait $!",
+              "cp part.nc old.nc; mkfifo pipe; \"$B\" verify old.nc pipe & exec 3>pipe; : "
+              ">old.nc; cat part.nc >&3; exec 3>&-; wait $!",
               4, "became shorter"},
         Fault{"InputLongerWhileRead",
-              "cp part.nc old.nc; mkfifo pipe; \"$B\" verify old.nc pipe & exec 3>pipe; echo M2 "
-              ">>old.nc; cat part.nc >&3; exec 3>&-; wait $!",
+              "cp part.nc old.nc; mkfifo pipe; \"$B\" verify old.nc pipe & exec 3>pipe; echo "
+              "M2 >>old.nc; cat part.nc >&3; exec 3>&-; wait $!",
               4, "old.nc: was changed while it was read"},
-        Fault{
-            "InputOverwrittenWhileRead",
-            "cp part.nc old.nc; touch -d 2001-01-01 old.nc; mkfifo pipe; \"$B\" verify old.nc pipe "
-            "& "
-            "exec 3>pipe; printf '%s' '(' | dd of=old.nc conv=notrunc 2>.dd; cat part.nc >&3; exec "
-            "3>&-; wait $!",
-            4, "old.nc: was changed while it was read"},
-        Fault{"InputRemovedWhileRead",
-              "cp part.nc old.nc; mkfifo pipe; \"$B\" verify old.nc pipe & exec 3>pipe; rm old.nc; "
+        Fault{"InputOverwrittenWhileRead",
+              "cp part.nc old.nc; touch -d 2001-01-01 old.nc; mkfifo pipe; \"$B\" verify "
+              "old.nc pipe & exec 3>pipe; printf '%s' '(' | dd of=old.nc conv=notrunc 2>.dd; "
               "cat part.nc >&3; exec 3>&-; wait $!",
+              4, "old.nc: was changed while it was read"},
+        Fault{"InputRemovedWhileRead",
+              "cp part.nc old.nc; mkfifo pipe; \"$B\" verify old.nc pipe & exec 3>pipe; rm "
+              "old.nc; cat part.nc >&3; exec 3>&-; wait $!",
               0, "the same, byte for byte"},
         Fault{"InputReplacedWhileRead",
-              "cp part.nc old.nc; mkfifo pipe; \"$B\" verify old.nc pipe & exec 3>pipe; echo M2 "
-              ">x; mv "
-              "x old.nc; cat part.nc >&3; exec 3>&-; wait $!",
+              "cp part.nc old.nc; mkfifo pipe; \"$B\" verify old.nc pipe & exec 3>pipe; echo "
+              "M2 >x; mv x old.nc; cat part.nc >&3; exec 3>&-; wait $!",
               0, "the same, byte for byte"},
         // --- names ---
         Fault{"NamesWithBlanks", "cp part.nc ' a b '; smooth_to ' c d ' ' a b '; mv ' c d ' new.nc",
               0, " a b  ->  c d ", true},
         Fault{"NamesOfUtf8",
-              "cp part.nc 'Gehäuse 部品.nc'; smooth_to 'größer.nc' 'Gehäuse 部品.nc'; "
-              "mv größer.nc new.nc",
+              "cp part.nc 'Gehäuse 部品.nc'; smooth_to 'größer.nc' 'Gehäuse 部品.nc'; mv "
+              "größer.nc new.nc",
               0, "Gehäuse 部品.nc -> größer.nc", true},
         Fault{"NamesOfNoText",
-              "n=$(printf 'p\\377\\376.nc'); cp part.nc \"$n\"; smooth_to new.nc \"$n\" --json "
-              "r.json; "
-              "python3 -c 'import json; json.load(open(\"r.json\", encoding=\"utf-8\"))'",
+              "n=$(printf 'p\\377\\376.nc'); cp part.nc \"$n\"; smooth_to new.nc \"$n\" "
+              "--json r.json; python3 -c 'import json; json.load(open(\"r.json\", "
+              "encoding=\"utf-8\"))'",
               0, "", true},
         Fault{"NamesLikeOptions", "cp part.nc ./-x.nc; smooth_to new.nc ./-x.nc", 0, "", true},
         Fault{"NamesAsLongAsNamesMayBe",
-              "n=$(printf '%0251d' 7).nc; mkdir d; cp part.nc d/$n; \"$B\" smooth d/$n --target "
-              "linuxcnc --in-place && mv d/$n new.nc && rmdir d",
+              "n=$(printf '%0251d' 7).nc; mkdir d; cp part.nc d/$n; \"$B\" smooth d/$n "
+              "--target linuxcnc --in-place && mv d/$n new.nc && rmdir d",
               0, "", true},
         Fault{"NamesLongerThanNamesMayBe", "smooth_to $(printf '%0300d' 7) part.nc", 4,
               "File name too long"}),
@@ -227,8 +205,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(OddPrograms, OfNoBytesIsCopied) {
   const BattenFolder folder;
   folder.put("part.nc", "");
-  const ProcessResult result = folder.batten("smooth part.nc --target linuxcnc --units mm");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  expect_exit(folder.batten("smooth part.nc --target linuxcnc --units mm"), 0);
   EXPECT_TRUE(folder.has("part.smooth.nc"));
   EXPECT_EQ(folder.text_of("part.smooth.nc"), "");
 }
@@ -251,8 +228,7 @@ TEST_P(LongLines, AreCopiedAndTheRestIsSmoothed) {
       "\n" + (test.begin + std::string(size, test.character)) + test.end + "\n";
   const BattenFolder folder;
   folder.put("part.nc", part_program() + line + part_program());
-  const ProcessResult result = folder.batten("smooth part.nc --target linuxcnc -o new.nc");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  expect_exit(folder.batten("smooth part.nc --target linuxcnc -o new.nc"), 0);
   const std::string text = folder.text_of("new.nc");
   const std::size_t at = text.find(line);
   ASSERT_NE(at, std::string::npos);
@@ -291,7 +267,7 @@ TEST(Memory, ThatIsMissingIsToldAndNothingIsWritten) {
     const ProcessResult result = folder.shell(
         "( " + script(limit + "smooth_to new.nc part.nc --json r.json --report r.html") + "\n)");
     EXPECT_EQ(folder.text_of("part.nc"), text);
-    EXPECT_EQ(half_written(folder.file(".")), std::vector<std::string>{});
+    EXPECT_TRUE(half_written_in(folder.file(".")).empty());
     if (result.exit_code == 0) {
       ++done;
       EXPECT_EQ(folder.text_of("new.nc"), whole);

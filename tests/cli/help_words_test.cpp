@@ -11,8 +11,7 @@ namespace batten {
 namespace {
 
 TEST(ExplainCommand, SaysWhatAKeptRunMeansAndWhatToDo) {
-  const ProcessResult said = BattenFolder().batten("explain exact-stop");
-  EXPECT_EQ(said.exit_code, 0);
+  const ProcessResult said = expect_exit(BattenFolder().batten("explain exact-stop"), 0);
   EXPECT_TRUE(contains(said.out, "G61")) << said.out;
   EXPECT_TRUE(contains(said.out, "--allow exact-stop")) << said.out;
   EXPECT_EQ(said.err, "");
@@ -25,17 +24,15 @@ TEST(ExplainCommand, IsAnOptionToo) {
 }
 
 TEST(ExplainCommand, ListsAllWithoutAnId) {
-  const ProcessResult said = BattenFolder().batten("explain");
-  EXPECT_EQ(said.exit_code, 0);
+  const ProcessResult said = expect_exit(BattenFolder().batten("explain"), 0);
   for (const char* id : {"exact-stop", "units-missing", "feed-moved"}) {
     EXPECT_TRUE(contains(said.out, id)) << id;
   }
 }
 
 TEST(ExplainCommand, SuggestsWhatWasMeant) {
-  const ProcessResult said = BattenFolder().batten("explain exact-stpo");
-  EXPECT_EQ(said.exit_code, 1);
-  EXPECT_TRUE(contains(said.err, "did you mean 'exact-stop'?")) << said.err;
+  const ProcessResult said =
+      expect_exit(BattenFolder().batten("explain exact-stpo"), 1, {"did you mean 'exact-stop'?"});
   EXPECT_EQ(said.out, "");
 }
 
@@ -78,8 +75,7 @@ TEST(BashCompletion, OffersFilesAndTheIdsThatCanBeExplained) {
 TEST(Completion, OfEitherShellNamesEveryCommandAndOption) {
   const BattenFolder folder;
   for (const char* shell : {"bash", "zsh"}) {
-    const ProcessResult result = folder.batten(std::string("completion ") + shell);
-    EXPECT_EQ(result.exit_code, 0);
+    const ProcessResult result = expect_exit(folder.batten(std::string("completion ") + shell), 0);
     for (const postproc::CommandRow& command : postproc::command_rows()) {
       EXPECT_TRUE(contains(result.out, std::string(command.name))) << command.name;
       for (const postproc::OptionRow& row : command.rows) {
@@ -98,8 +94,7 @@ TEST(Completion, OfAnotherShellIsRefused) {
 TEST(ZshCompletion, IsReadByZsh) {
   const BattenFolder folder;
   if (folder.shell("command -v zsh").exit_code != 0) GTEST_SKIP() << "zsh is not installed";
-  const ProcessResult result = folder.shell("batten completion zsh > _batten && zsh -n _batten");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  expect_exit(folder.shell("batten completion zsh > _batten && zsh -n _batten"), 0);
 }
 
 // --- man
@@ -124,8 +119,8 @@ TEST(ManPage, TellsOfEveryCommandAndOption) {
 TEST(ManPage, IsSetWithoutAWarning) {
   const BattenFolder folder;
   if (folder.shell("command -v groff").exit_code != 0) GTEST_SKIP() << "groff is not installed";
-  const ProcessResult result = folder.shell("batten man | groff -man -Tascii -ww -P-cbou > page");
-  EXPECT_EQ(result.exit_code, 0);
+  const ProcessResult result =
+      expect_exit(folder.shell("batten man | groff -man -Tascii -ww -P-cbou > page"), 0);
   EXPECT_EQ(result.err, "");
   EXPECT_TRUE(contains(folder.text_of("page"), "EXIT STATUS"));
 }

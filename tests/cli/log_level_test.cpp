@@ -36,8 +36,7 @@ TEST_F(LogLevel, OfWarningLeavesTheSummaryOut) {
 }
 
 TEST_F(LogLevel, QuietSaysNothingWhenAllIsWell) {
-  const ProcessResult result = smooth("--quiet");
-  EXPECT_EQ(result.exit_code, 0);
+  const ProcessResult result = expect_exit(smooth("--quiet"), 0);
   EXPECT_EQ(result.err, "");
   EXPECT_EQ(smooth("--log-level error").err, "");
   EXPECT_TRUE(folder_.has("part.smooth.nc"));
@@ -45,17 +44,13 @@ TEST_F(LogLevel, QuietSaysNothingWhenAllIsWell) {
 
 TEST_F(LogLevel, QuietSaysWhatStopsTheWork) {
   folder_.put("unknown.nc", "G1 X1 F100\n");
-  const ProcessResult result = folder_.batten("smooth unknown.nc --target linuxcnc --quiet");
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_TRUE(contains(result.err, "units-missing")) << result.err;
+  expect_exit(folder_.batten("smooth unknown.nc --target linuxcnc --quiet"), 2, {"units-missing"});
 }
 
 TEST_F(LogLevel, QuietVerifySaysBreachesOnly) {
   folder_.put("other.nc", doubtful_program() + "M8\n");
   EXPECT_EQ(folder_.batten("verify part.nc part.nc --quiet").err, "");
-  const ProcessResult broken = folder_.batten("verify part.nc other.nc --quiet");
-  EXPECT_EQ(broken.exit_code, 3);
-  EXPECT_TRUE(contains(broken.err, "event-added")) << broken.err;
+  expect_exit(folder_.batten("verify part.nc other.nc --quiet"), 3, {"event-added"});
 }
 
 TEST_F(LogLevel, QuietAndMoreContradictEachOther) {

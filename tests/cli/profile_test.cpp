@@ -22,8 +22,7 @@ class Profiles : public testing::Test {
 };
 
 TEST_F(Profiles, AreShownAndReadBackTheSame) {
-  const ProcessResult shown = folder_.shell("batten targets --show haas > mine.toml");
-  ASSERT_EQ(shown.exit_code, 0) << shown.err;
+  expect_exit(folder_.shell("batten targets --show haas > mine.toml"), 0);
   EXPECT_TRUE(folder_.text_of("mine.toml").starts_with("# A profile for batten"));
   const std::string smooth = "smooth part.nc --tolerance 0.01 -o ";
   ASSERT_EQ(folder_.batten(smooth + "a.nc --target haas").exit_code, 0);
@@ -36,18 +35,15 @@ TEST_F(Profiles, AreShownAndReadBackTheSame) {
 }
 
 TEST_F(Profiles, OfUnknownTargetsAreNotShown) {
-  const ProcessResult shown = folder_.batten("targets --show hass");
-  EXPECT_EQ(shown.exit_code, 1);
-  EXPECT_TRUE(contains(shown.err, "did you mean 'haas'?")) << shown.err;
+  expect_exit(folder_.batten("targets --show hass"), 1, {"did you mean 'haas'?"});
 }
 
 TEST_F(Profiles, AddWordsThatVerifyWantsToBeTold) {
-  const ProcessResult done = folder_.batten(
-      "smooth part.nc --target vf2.toml --tolerance 0.01 --output arcs -o new.nc --json "
-      "report.json");
-  ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_TRUE(contains(done.err, "vf2.toml: 3 lines added")) << done.err;
-  EXPECT_TRUE(contains(done.err, "before runs: G187 P3 E{tolerance}")) << done.err;
+  expect_exit(
+      folder_.batten(
+          "smooth part.nc --target vf2.toml --tolerance 0.01 --output arcs -o new.nc --json "
+          "report.json"),
+      0, {"vf2.toml: 3 lines added", "before runs: G187 P3 E{tolerance}"});
   EXPECT_TRUE(contains(folder_.text_of("new.nc"), "\nG187 P3 E0.01\n"));
   EXPECT_TRUE(contains(folder_.text_of("new.nc"), "(vf2 0.01)\n"));
   const auto report = nlohmann::json::parse(folder_.text_of("report.json"));
@@ -57,9 +53,8 @@ TEST_F(Profiles, AddWordsThatVerifyWantsToBeTold) {
   const std::string verify = "verify part.nc new.nc --tolerance 0.01";
   EXPECT_EQ(folder_.batten(verify).exit_code, 3);
   for (const std::string option : {" --profile vf2.toml", " --target vf2.toml"}) {
-    const ProcessResult told = folder_.batten(verify + option);
-    EXPECT_EQ(told.exit_code, 0) << told.err;
-    EXPECT_TRUE(contains(told.err, "besides 3 lines that the profile vf2.toml adds")) << told.err;
+    expect_exit(folder_.batten(verify + option), 0,
+                {"besides 3 lines that the profile vf2.toml adds"});
   }
   EXPECT_EQ(folder_.batten(verify + " --target vf2.toml --profile vf2.toml").exit_code, 1);
 
@@ -73,31 +68,23 @@ TEST_F(Profiles, AddWordsThatVerifyWantsToBeTold) {
 
 TEST_F(Profiles, ThatAreWrongAreToldOfWithPlaceAndChoice) {
   folder_.put("bad.toml", "based-on = \"haas\"\n[lines]\ncomments = \"slashes\"\n");
-  const ProcessResult done = folder_.batten("smooth part.nc --target bad.toml -o new.nc");
-  EXPECT_EQ(done.exit_code, 1);
-  EXPECT_TRUE(contains(done.err,
-                       "bad.toml:3:12: lines.comments: \"slashes\", expected one of none, "
-                       "parentheses, semicolon"))
-      << done.err;
+  expect_exit(folder_.batten("smooth part.nc --target bad.toml -o new.nc"), 1,
+              {"bad.toml:3:12: lines.comments: \"slashes\", expected one of none, "
+               "parentheses, semicolon"});
   EXPECT_FALSE(folder_.has("new.nc"));
 }
 
 TEST_F(Profiles, OneTargetIsEnough) {
-  const ProcessResult done =
-      folder_.batten("smooth part.nc --target vf2.toml --profile vf2.toml -o new.nc");
-  EXPECT_EQ(done.exit_code, 1);
-  EXPECT_TRUE(contains(done.err, "--target names a profile already")) << done.err;
+  expect_exit(folder_.batten("smooth part.nc --target vf2.toml --profile vf2.toml -o new.nc"), 1,
+              {"--target names a profile already"});
 }
 
 TEST_F(Profiles, AProgramOfAnotherFamilyIsRefusedAndConvertTellsWhy) {
   folder_.put("lcnc.ngc", "G64 P0.01\n" + wave_program());
   const std::string smooth = "smooth lcnc.ngc --target haas --tolerance 0.01 -o new.nc";
-  const ProcessResult refused = folder_.batten(smooth);
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_TRUE(contains(refused.err, "lcnc.ngc:1:1: error: other-family")) << refused.err;
-  const ProcessResult told = folder_.batten(smooth + " --convert");
-  EXPECT_EQ(told.exit_code, 2);
-  EXPECT_TRUE(contains(told.err, "lcnc.ngc:1:1: error: cannot-convert: G64 may mean")) << told.err;
+  expect_exit(folder_.batten(smooth), 2, {"lcnc.ngc:1:1: error: other-family"});
+  expect_exit(folder_.batten(smooth + " --convert"), 2,
+              {"lcnc.ngc:1:1: error: cannot-convert: G64 may mean"});
   EXPECT_FALSE(folder_.has("new.nc"));
 }
 

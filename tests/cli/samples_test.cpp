@@ -34,11 +34,6 @@ std::vector<std::string> sample_names() {
   return names;
 }
 
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 void expect_in_range(const Json& value, const Json& range, const std::string& what) {
   EXPECT_GE(value.get<double>(), range[0].get<double>()) << what;
   EXPECT_LE(value.get<double>(), range[1].get<double>()) << what;
@@ -46,7 +41,7 @@ void expect_in_range(const Json& value, const Json& range, const std::string& wh
 
 // The one line of `command`, without its last line end.
 std::string command_of(const std::string& sample) {
-  std::string command = text_of(samples_folder() / sample / "command");
+  std::string command = text_of_file(samples_folder() / sample / "command");
   while (!command.empty() && command.back() == '\n') command.pop_back();
   return command;
 }
@@ -61,14 +56,13 @@ std::string tolerance_in(const std::string& command) {
 class Sample : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    folder_.put("program.ngc", text_of(samples_folder() / GetParam() / "program.ngc"));
+    folder_.put("program.ngc", text_of_file(samples_folder() / GetParam() / "program.ngc"));
     command_ = command_of(GetParam());
     ASSERT_TRUE(command_.starts_with("batten smooth program.ngc ")) << command_;
   }
 
   [[nodiscard]] Json smoothed() const {
-    const ProcessResult result = folder_.shell(command_ + " --json report.json");
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    expect_exit(folder_.shell(command_ + " --json report.json"), 0);
     return Json::parse(folder_.text_of("report.json"));
   }
 
@@ -77,7 +71,7 @@ class Sample : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(Sample, ComesOutAsExpected) {
-  const Json expected = Json::parse(text_of(samples_folder() / GetParam() / "expected.json"));
+  const Json expected = Json::parse(text_of_file(samples_folder() / GetParam() / "expected.json"));
   EXPECT_EQ(expected["exit_code"], 0);
   const Json report = smoothed();
   std::map<std::string, int> kept;
@@ -112,17 +106,16 @@ TEST_P(Sample, ComesOutAsExpected) {
 
 TEST_P(Sample, IsAcceptedByVerify) {
   (void)smoothed();
-  const ProcessResult result =
-      folder_.batten("verify program.ngc program.smooth.ngc --tolerance " + tolerance_in(command_));
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  expect_exit(
+      folder_.batten("verify program.ngc program.smooth.ngc --tolerance " + tolerance_in(command_)),
+      0);
 }
 
 TEST_P(Sample, IsNotChangedByASecondPass) {
   (void)smoothed();
   std::string again = command_;
   again.replace(again.find("program.ngc"), 11, "program.smooth.ngc");
-  const ProcessResult result = folder_.shell(again + " -o again.ngc");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = expect_exit(folder_.shell(again + " -o again.ngc"), 0);
   EXPECT_TRUE(folder_.text_of("again.ngc") == folder_.text_of("program.smooth.ngc")) << result.err;
 }
 
@@ -135,7 +128,7 @@ TEST_P(Sample, IsTheSameForOneAndTwoThreads) {
 }
 
 TEST_P(Sample, HasAReadme) {
-  EXPECT_GT(text_of(samples_folder() / GetParam() / "README.md").size(), 100u);
+  EXPECT_GT(text_of_file(samples_folder() / GetParam() / "README.md").size(), 100u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, Sample, testing::ValuesIn(sample_names()),
@@ -156,9 +149,9 @@ TEST(Samples, AreDrawnByThePlotCommand) {
     GTEST_SKIP() << "matplotlib is not installed";
   }
   const std::string program = (samples_folder() / "inch_ellipse" / "program.ngc").string();
-  const ProcessResult result = folder.shell("python3 '" BATTEN_SOURCE_DIR "/samples/plot.py' '" +
-                                            program + "' '" + program + "' plot.png");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  expect_exit(folder.shell("python3 '" BATTEN_SOURCE_DIR "/samples/plot.py' '" + program + "' '" +
+                           program + "' plot.png"),
+              0);
   EXPECT_TRUE(folder.text_of("plot.png").starts_with("\x89PNG"));
 }
 

@@ -3,25 +3,16 @@
 // docs/faults.md.
 //
 // BATTEN_SIGNALS=200 cli_tests --gtest_filter='Signals.*' sends more of them.
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <sys/types.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "batten_process.h"
-#include "tests/support/places.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten {
@@ -39,47 +30,6 @@ int signals_to_send() {
 
 // Some thousand lines that are rewritten: long enough to be caught at work.
 std::string program_of_lines(int lines) { return postproc::wave_program({.lines = lines}); }
-
-// The program at work in a folder, its messages in the file `err` there.
-class Started {
- public:
-  Started(const BattenFolder& folder, std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), BATTEN_BINARY);
-    std::vector<char*> words;
-    words.reserve(arguments.size() + 1);
-    for (std::string& argument : arguments) words.push_back(argument.data());
-    words.push_back(nullptr);
-    const std::string place = folder.file(".").string();
-    pid_ = ::fork();
-    if (pid_ != 0) return;
-    const int err = ::chdir(place.c_str()) == 0
-                        ? ::open("err", O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)
-                        : -1;
-    if (err >= 0 && ::dup2(err, STDERR_FILENO) >= 0) ::execv(BATTEN_BINARY, words.data());
-    ::_exit(127);
-  }
-
-  void send(int signal_number) const { ::kill(pid_, signal_number); }
-
-  // As waitpid has it.
-  [[nodiscard]] int wait() const {
-    int status = 0;
-    while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-    }
-    return status;
-  }
-
- private:
-  pid_t pid_ = -1;
-};
-
-std::vector<fs::path> half_written_in(const fs::path& folder) {
-  std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename().string().ends_with(".batten-part")) found.push_back(entry.path());
-  }
-  return found;
-}
 
 struct Counts {
   int done = 0;

@@ -27,15 +27,13 @@ class TimeCommandLine : public testing::Test {
 };
 
 TEST_F(TimeCommandLine, HelpHasExamplesAndTheColumnsOfTheProfile) {
-  const ProcessResult help = folder_.batten("time --help");
-  EXPECT_EQ(help.exit_code, 0);
+  const ProcessResult help = expect_exit(folder_.batten("time --help"), 0);
   EXPECT_TRUE(contains(help.out, "batten time part.nc --machine linuxcnc")) << help.out;
   EXPECT_TRUE(contains(help.out, "t_s, line, x_mm")) << help.out;
 }
 
 TEST_F(TimeCommandLine, SaysWhereTheTimeGoes) {
-  const ProcessResult result = time("--machine mill --from 0,0,0");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = expect_exit(time("--machine mill --from 0,0,0"), 0);
   for (const char* words :
        {"part.nc on mill:", "cutting", "rapids", "dwells", "below half of the programmed feed"}) {
     EXPECT_TRUE(contains(result.out, words)) << words << "\n" << result.out;
@@ -43,8 +41,7 @@ TEST_F(TimeCommandLine, SaysWhereTheTimeGoes) {
 }
 
 TEST_F(TimeCommandLine, WritesJsonWhosePartsSumToTheWhole) {
-  const ProcessResult result = time("--machine mill --from 0,0,0 --json -");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = expect_exit(time("--machine mill --from 0,0,0 --json -"), 0);
   const auto json = nlohmann::json::parse(result.out);
   double sum = 0;
   for (const char* part :
@@ -67,9 +64,7 @@ TEST_F(TimeCommandLine, SaysWhatItDoesNotKnow) {
 }
 
 TEST_F(TimeCommandLine, WritesAProfileOfOneRowPerMillisecond) {
-  const ProcessResult result =
-      time("--machine mill --from 0,0,0 --profile part.csv --json part.json");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  expect_exit(time("--machine mill --from 0,0,0 --profile part.csv --json part.json"), 0);
   std::istringstream csv(folder_.text_of("part.csv"));
   std::string line;
   std::getline(csv, line);
@@ -100,32 +95,24 @@ struct WrongTime {
   const char* message;
 };
 
-class WrongTimeUsage : public testing::TestWithParam<WrongTime> {};
-
-TEST_P(WrongTimeUsage, IsExplained) {
-  const BattenFolder folder;
-  folder.put("part.nc", kProgram);
-  const ProcessResult result = folder.batten(std::string("time ") + GetParam().arguments);
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(contains(result.err, GetParam().message)) << result.err;
-  EXPECT_EQ(folder.text_of("part.nc"), kProgram);
+TEST_F(TimeCommandLine, WrongUsageIsExplained) {
+  constexpr WrongTime kWrong[] = {
+      {"NoMachine", "part.nc", "--machine: no machine given"},
+      {"UnknownMachine", "part.nc --machine mil", "did you mean 'mill'?"},
+      {"UnknownTarget", "part.nc --machine mill --target linuxcn", "linuxcnc"},
+      {"NoFile", "--machine mill", "FILE: no file given"},
+      {"NoPlace", "part.nc --machine mill --from 1,2", "expected X,Y,Z in mm"},
+      {"TwoReportsOnOneStream", "part.nc --machine mill --json - --profile -",
+       "standard output already takes"},
+      {"TheProgramAsProfile", "part.nc --machine mill --profile part.nc --force",
+       "--profile: part.nc"},
+      {"TheProgramAsReport", "part.nc --machine mill --json part.nc --force", "--json: part.nc"}};
+  for (const WrongTime& wrong : kWrong) {
+    SCOPED_TRACE(wrong.name);
+    expect_exit(folder_.batten(std::string("time ") + wrong.arguments), 1, {wrong.message});
+    EXPECT_EQ(folder_.text_of("part.nc"), kProgram);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    TimeCommandLine, WrongTimeUsage,
-    testing::Values(
-        WrongTime{"NoMachine", "part.nc", "--machine: no machine given"},
-        WrongTime{"UnknownMachine", "part.nc --machine mil", "did you mean 'mill'?"},
-        WrongTime{"UnknownTarget", "part.nc --machine mill --target linuxcn", "linuxcnc"},
-        WrongTime{"NoFile", "--machine mill", "FILE: no file given"},
-        WrongTime{"NoPlace", "part.nc --machine mill --from 1,2", "expected X,Y,Z in mm"},
-        WrongTime{"TwoReportsOnOneStream", "part.nc --machine mill --json - --profile -",
-                  "standard output already takes"},
-        WrongTime{"TheProgramAsProfile", "part.nc --machine mill --profile part.nc --force",
-                  "--profile: part.nc"},
-        WrongTime{"TheProgramAsReport", "part.nc --machine mill --json part.nc --force",
-                  "--json: part.nc"}),
-    [](const auto& test) { return test.param.name; });
 
 TEST_F(TimeCommandLine, AsksForTheUnitsOfAProgramWithoutThem) {
   folder_.put("bare.nc", "G90\nG1 X1 F100\nM2\n");
