@@ -12,16 +12,12 @@
 namespace batten::geometry {
 namespace {
 
-// A strand is copied as a whole where it has to be.
+// A cluster is copied as a whole where it has to be.
 constexpr std::size_t kMostOfACluster = 64;
 
 // Crossings are excused by what the old path does within four tolerances of them, which are within
 // one of it: all that has to do with one is within ten.
 constexpr double kTolerancesOfReach = 10;
-
-Point2 beside_axis(const Point3& place, int axis) {
-  return {place[axis == 0 ? 1 : 0], place[axis == 2 ? 1 : 2]};
-}
 
 Vector2 turned(const Vector2& v, double sine, double cosine) {
   return {cosine * v.x() - sine * v.y(), sine * v.x() + cosine * v.y()};
@@ -44,15 +40,6 @@ Vector2 main_direction(const std::vector<SegmentCluster>& clusters) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-struct Plane {
-  FlatEdges edges;
-  std::vector<std::size_t> clusters;  // for each edge
-};
-
-bool is_in_two_parts(const SegmentCluster& cluster, std::span<const std::uint32_t> cuts) {
-  return part_of(cluster.first, cuts) != part_of(cluster.last, cuts);
-}
-
 }  // namespace
 
 double reach_between_parts(double width, double tolerance) {
@@ -71,12 +58,12 @@ void ClusterCover::clear() {
 
 void ClusterCover::add(const Point3& from, const Point3& to, std::uint32_t label) {
   if (std::abs(from[axis_] - to[axis_]) > kSamePlace) return;
-  const Point2 begin = beside_axis(from, axis_);
-  const Point2 end = beside_axis(to, axis_);
+  const Point2 begin = across(from, axis_);
+  const Point2 end = across(to, axis_);
   if ((begin - end).norm() <= kSamePlace) return;
   ++edges_;
   if (clusters_.size() > kMostClusters) return;
-  const double height = std::round(from[axis_] / kSamePlace) * kSamePlace;
+  const double height = plane_height(from[axis_]);
   if (goes_on(begin, end, height)) {
     clusters_.back().to = end;
     clusters_.back().last = label;
@@ -120,6 +107,10 @@ std::optional<std::vector<SegmentCluster>> ClusterCover::clusters() const {
 std::vector<SegmentCluster> clusters_near_other_parts(const std::vector<SegmentCluster>& clusters,
                                                       std::span<const std::uint32_t> cuts,
                                                       double reach) {
+  struct Plane {
+    FlatEdges edges;
+    std::vector<std::size_t> clusters;  // for each edge
+  };
   const Vector2 along = main_direction(clusters);
   std::map<double, Plane> planes;
   for (std::size_t i = 0; i < clusters.size(); ++i) {
@@ -129,9 +120,9 @@ std::vector<SegmentCluster> clusters_near_other_parts(const std::vector<SegmentC
     const Point2 to = turned(cluster.to, -along.y(), along.x());
     if (plane.edges.add(from, to)) plane.clusters.push_back(i);
   }
-  std::vector<bool> is_near(clusters.size(), false);
-  for (std::size_t i = 0; i < clusters.size(); ++i) {
-    is_near[i] = is_in_two_parts(clusters[i], cuts);
+  std::vector<bool> is_near;
+  for (const SegmentCluster& cluster : clusters) {
+    is_near.push_back(part_of(cluster.first, cuts) != part_of(cluster.last, cuts));
   }
   for (const auto& [height, plane] : planes) {
     const auto pairs = near_pairs(plane.edges, reach);
@@ -162,15 +153,16 @@ std::vector<PartEdge> edges_near(const std::vector<PartEdge>& edges,
     return from.x() <= high.x() && to.x() >= low.x() && from.y() <= high.y() && to.y() >= low.y();
   };
   std::vector<PartEdge> near;
-  std::size_t last = 0;  // both go along one path
+  auto last = clusters.begin();  // both go along one path: begun with the cluster found last
   for (const PartEdge& edge : edges) {
-    for (std::size_t i = 0; i < clusters.size(); ++i) {
-      const std::size_t cluster = (last + i) % clusters.size();
-      if (!overlap(clusters[cluster], edge)) continue;
-      last = cluster;
-      near.push_back(edge);
-      break;
+    const auto is_near = [&](const SegmentCluster& cluster) { return overlap(cluster, edge); };
+    auto found = std::find_if(last, clusters.end(), is_near);
+    if (found == clusters.end()) {
+      found = std::find_if(clusters.begin(), last, is_near);
+      if (found == last) continue;
     }
+    last = found;
+    near.push_back(edge);
   }
   return near;
 }

@@ -1,7 +1,7 @@
 // A long flat path in parts that are smoothed for themselves: where parts come so near to each
-// other that their new paths may cross, and whether they do where the old ones did not. What
-// new_crossing (geometry/band/tolerance_band.h) says of a path as a whole, said without holding the
-// whole. Method: docs/algorithms/tolerance_band.md.
+// other that their new paths may cross, and whether they do where the old ones did not: what
+// new_crossing (tolerance_band.h) says of a path as a whole, without holding the whole. Method:
+// docs/algorithms/tolerance_band.md.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@
 
 namespace batten::geometry {
 
-// Some edges of a path that lie in one plane across an axis and along their chord: each is within
-// the width of its cover of it. Places are those of the two other axes, in order.
+// Some edges of a path that lie in one plane across an axis and within the width of their cover of
+// a chord. Points are those of the two other axes, in order.
 struct SegmentCluster {
   Point2 from;
   Point2 to;
@@ -26,7 +26,7 @@ struct SegmentCluster {
   std::uint32_t last = 0;
 };
 
-// The flat edges of a path as strands, some twenty edges of a curve each. Edges between which the
+// The flat edges of a path as clusters, some twenty edges of a curve each. Edges between which the
 // path leaves the plane are not together in one.
 class ClusterCover {
  public:
@@ -51,23 +51,22 @@ class ClusterCover {
   double width_;
   std::size_t edges_ = 0;
   std::vector<SegmentCluster> clusters_;
-  std::size_t of_last_ = 0;  // edges of the last strand
+  std::size_t of_last_ = 0;  // edges of the last cluster
   // Directions from its begin that pass all of its vertices within the width; nothing: all.
   std::optional<Vector2> right_;
   std::optional<Vector2> left_;
 };
 
-// Those strands that are no further than `reach` (mm) from one of another part of the path, or are
-// in two parts themselves; in order. `cuts`: labels at which parts begin, but the first,
-// increasing. None where the path lies in a heap (kMostPairs).
+// Those that are no further than `reach` (mm) from one of another part of the path, or are in two
+// parts themselves; in order. `cuts`: labels at which parts begin, but the first, increasing. None
+// where the path lies in a heap (kMostPairs).
 [[nodiscard]] std::vector<SegmentCluster> clusters_near_other_parts(
     const std::vector<SegmentCluster>& clusters, std::span<const std::uint32_t> cuts, double reach);
 
 // The part that a label belongs to.
 [[nodiscard]] std::uint32_t part_of(std::uint32_t label, std::span<const std::uint32_t> cuts);
 
-// An edge of a part, in the plane of a strand.
-struct PartEdge {
+struct PartEdge {  // in the plane of a cluster
   Point2 from;
   Point2 to;
   double height = 0;
@@ -81,7 +80,7 @@ struct PartEdge {
                                                double tolerance, std::uint32_t label,
                                                std::uint32_t part);
 
-// Those edges that a path within `distance` (mm) of the edges of the strands may have there.
+// Those edges that a path within `distance` (mm) of the edges of the clusters may have there.
 [[nodiscard]] std::vector<PartEdge> edges_near(const std::vector<PartEdge>& edges,
                                                std::span<const SegmentCluster> clusters,
                                                double distance);
@@ -92,13 +91,13 @@ struct PartCrossing {
   Point2 place;
 };
 
-// As new_crossing, but all places where edges of different parts meet. `before` and `after`: the
-// edges, in order along the path, that are near to strands of other parts.
+// As new_crossing, but wherever edges of different parts meet. `before` and `after`: the edges, in
+// order along the path, that are near to clusters of other parts.
 [[nodiscard]] std::vector<PartCrossing> new_crossings_of_parts(std::span<const PartEdge> before,
                                                                std::span<const PartEdge> after,
                                                                double tolerance);
 
-// mm: how near strands of a cover of this width must be for what happens between their edges to
+// mm: how near clusters of a cover of this width must be for what happens between their edges to
 // matter: twice the width, and ten tolerances.
 [[nodiscard]] double reach_between_parts(double width, double tolerance);
 

@@ -8,11 +8,12 @@
 
 #include "geometry/band/tolerance_band_pairs.h"
 #include "geometry/basic/rounding.h"
+#include "geometry/path/plane_curve.h"
 
 namespace batten::geometry {
 namespace {
 
-// A path without its repeated places, and where its edges came from.
+// A path without its repeated points, and where its edges came from.
 struct Distinct {
   FlatEdges edges;
   std::vector<std::size_t> given;  // the edge of the given path, for each edge
@@ -28,8 +29,6 @@ Distinct distinct(std::span<const Point2> points) {
   }
   return result;
 }
-
-double cross(const Point2& a, const Point2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // tan of half the turn at the end of the edge; positive to the left. A turn right back counts as
 // very great.
@@ -54,40 +53,22 @@ std::vector<BandCusp> find_cusps(const Distinct& path, double tolerance) {
   return cusps;
 }
 
-// The overlap of one group of pairs.
-class OverlapOfGroup {
- public:
-  void add(const FlatEdges& edges, const EdgePair& pair) {
-    const double distance = edge_distance(edges, pair);
-    if (empty_) {
-      found_ = {pair.first, pair.first, pair.second, pair.second, distance, pair.first, false};
-      empty_ = false;
-    }
-    found_.first_from = std::min<std::size_t>(found_.first_from, pair.first);
-    found_.first_to = std::max<std::size_t>(found_.first_to, pair.first);
-    found_.second_from = std::min<std::size_t>(found_.second_from, pair.second);
-    found_.second_to = std::max<std::size_t>(found_.second_to, pair.second);
-    if (distance < found_.distance) {
-      found_.distance = distance;
-      found_.edge = pair.first;
-    }
-    found_.meets_itself = found_.meets_itself || edges_meet(edges, pair);
+// Takes a pair into the overlap of its group.
+void add_pair(std::optional<BandOverlap>& overlap, const FlatEdges& edges, const EdgePair& pair) {
+  const double distance = edge_distance(edges, pair);
+  const std::size_t first = pair.first;
+  const std::size_t second = pair.second;
+  if (!overlap) overlap = {first, first, second, second, distance, first, false};
+  overlap->first_from = std::min(overlap->first_from, first);
+  overlap->first_to = std::max(overlap->first_to, first);
+  overlap->second_from = std::min(overlap->second_from, second);
+  overlap->second_to = std::max(overlap->second_to, second);
+  if (distance < overlap->distance) {
+    overlap->distance = distance;
+    overlap->edge = first;
   }
-
-  // In edges of the given path.
-  [[nodiscard]] BandOverlap overlap(std::span<const std::size_t> given) const {
-    BandOverlap result = found_;
-    for (std::size_t* edge : {&result.first_from, &result.first_to, &result.second_from,
-                              &result.second_to, &result.edge}) {
-      *edge = given[*edge];
-    }
-    return result;
-  }
-
- private:
-  BandOverlap found_;
-  bool empty_ = true;
-};
+  overlap->meets_itself = overlap->meets_itself || edges_meet(edges, pair);
+}
 
 }  // namespace
 
@@ -101,14 +82,21 @@ std::optional<BandStructure> band_structure(std::span<const Point2> points, doub
   const auto pairs = near_pairs(path.edges, reach);
   if (!pairs) return {};
   const std::vector<std::size_t> groups = group_pairs(*pairs, path.edges, reach);
-  std::vector<OverlapOfGroup> found;
+  std::vector<std::optional<BandOverlap>> found;
   for (std::size_t i = 0; i < pairs->size(); ++i) {
     if (groups[i] == 0) continue;
     found.resize(std::max(found.size(), groups[i]));
-    found[groups[i] - 1].add(path.edges, (*pairs)[i]);
+    add_pair(found[groups[i] - 1], path.edges, (*pairs)[i]);
   }
   BandStructure structure;
-  for (const OverlapOfGroup& group : found) structure.overlaps.push_back(group.overlap(path.given));
+  for (const auto& group : found) {
+    BandOverlap overlap = group.value();
+    for (std::size_t* edge : {&overlap.first_from, &overlap.first_to, &overlap.second_from,
+                              &overlap.second_to, &overlap.edge}) {
+      *edge = path.given[*edge];
+    }
+    structure.overlaps.push_back(overlap);
+  }
   structure.cusps = find_cusps(path, tolerance);
   return structure;
 }

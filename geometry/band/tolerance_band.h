@@ -1,5 +1,5 @@
-// The band of a flat path (all places within a tolerance of it): where it lies over itself, where
-// its edge has cusps, and its outline for pictures. Method: docs/algorithms/tolerance_band.md.
+// The band of a flat path (all within a tolerance of it): where it lies over itself, and where its
+// edge has cusps. Method: docs/algorithms/tolerance_band.md.
 //
 // A path in the band of another one may cross itself where the other does not, but only where the
 // band lies over itself: there two parts of the path are nearer to each other than twice the
@@ -7,7 +7,6 @@
 // that.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -29,8 +28,8 @@ struct BandOverlap {
   bool meets_itself = false;  // the parts cross, touch or run over each other
 };
 
-// A side of an edge that the edge of the band does not have: the bends at the two ends of the edge
-// are so near to each other that the band's radius is greater than that of the path there.
+// A side of an edge that the edge of the band does not have: the bends at its ends are so near to
+// each other that the band's radius is greater than that of the path there.
 struct BandCusp {
   std::size_t edge = 0;
   bool left = false;  // on the left of the way of travel
@@ -51,29 +50,22 @@ struct BandStructure {
 [[nodiscard]] std::optional<BandStructure> band_structure(std::span<const Point2> points,
                                                           double tolerance);
 
-// Where two paths are compared: index of the pieces and a place.
 struct NewCrossing {
   std::size_t first_piece = 0;   // of the new path
-  std::size_t second_piece = 0;  // which meets the first one there
+  std::size_t second_piece = 0;  // which meets the first one
   Point3 place = Point3::Zero();
 };
 
-// A place where the new path crosses, touches or runs over itself, while the old one, which it
-// follows within `tolerance` both ways and in order, does not in the place that belongs to it.
-// Looked at are the pieces that lie in planes across an axis (the one across which most of them
-// lie), each plane for itself; arcs and Bezier pieces as chords nearer to them than a hundredth of
-// the tolerance. The first such place along the new path, in the plane whose pieces come first.
+// Where the new path crosses, touches or runs over itself, while the old one, which it follows
+// within `tolerance` both ways and in order, does not there. Looked at are the pieces that lie in
+// planes across an axis (the one across which most of them lie), each plane for itself; arcs and
+// Bezier pieces as chords nearer to them than a hundredth of the tolerance. The first such crossing
+// along the new path, in the plane whose pieces come first.
 //
 // Nothing where there is none, and in planes where a path lies in a heap (see above): this is a
 // safeguard beside the proof of the distance, and says nothing about what runs through space.
 [[nodiscard]] std::optional<NewCrossing> new_crossing(std::span<const PathPiece> before,
                                                       std::span<const PathPiece> after,
                                                       double tolerance);
-
-// The edge of the band as closed polygons: the outer ones counter-clockwise, holes clockwise. Round
-// ends and corners have corners of their own every 15 degrees, on the outside by less than a
-// hundredth of the tolerance. For pictures: cost about a millisecond for each edge.
-[[nodiscard]] std::vector<std::vector<Point2>> band_outline(std::span<const Point2> points,
-                                                            double tolerance);
 
 }  // namespace batten::geometry

@@ -27,41 +27,37 @@ constexpr double kChordPart = 0.01;
 // fits into a circle of twice the tolerance, and either of its sides moves by one.
 constexpr double kSameLoop = 4;
 
-// What of a path lies in one plane across an axis.
+// What lies in one plane across an axis.
 struct Layer {
   FlatEdges edges;
-  std::vector<std::size_t> pieces;  // of the path, for each edge
-  double height = 0;
+  std::vector<PartEdge> parts;  // for each edge
 };
 
-// Heights are printed, so those of one plane are the same to within the noise of doubles.
-using Layers = std::map<double, Layer>;
+using Layers = std::map<double, Layer>;  // by plane_height
 
-double rounded(double height) { return std::round(height / kSamePlace) * kSamePlace; }
-
-Point2 across(const Point3& place, int axis) {
-  return {place[axis == 0 ? 1 : 0], place[axis == 2 ? 1 : 2]};
+Layers layers_of(std::span<const PartEdge> edges) {
+  Layers layers;
+  for (const PartEdge& edge : edges) {
+    Layer& layer = layers[edge.height];
+    if (layer.edges.add(edge.from, edge.to)) layer.parts.push_back(edge);
+  }
+  return layers;
 }
 
 bool is_flat(const ChordPolyline& chords, std::size_t edge, int axis) {
   return std::abs(chords.points[edge][axis] - chords.points[edge + 1][axis]) <= kSamePlace;
 }
 
-Layers layers_of(const ChordPolyline& chords, int axis) {
-  Layers layers;
-  auto last = layers.end();  // of the edge before: heights change seldom
+// With pieces as labels.
+std::vector<PartEdge> flat_edges(const ChordPolyline& chords, int axis) {
+  std::vector<PartEdge> edges;
   for (std::size_t i = 0; i < chords.edge_count(); ++i) {
     if (!is_flat(chords, i, axis)) continue;
     const Point3& from = chords.points[i];
-    const double height = rounded(from[axis]);
-    if (last == layers.end() || last->first != height) last = layers.try_emplace(height).first;
-    Layer& layer = last->second;
-    layer.height = from[axis];
-    if (layer.edges.add(across(from, axis), across(chords.points[i + 1], axis))) {
-      layer.pieces.push_back(chords.pieces[i]);
-    }
+    edges.push_back({across(from, axis), across(chords.points[i + 1], axis),
+                     plane_height(from[axis]), static_cast<std::uint32_t>(chords.pieces[i]), 0});
   }
-  return layers;
+  return edges;
 }
 
 // What the old path does where bands overlap.
@@ -141,6 +137,7 @@ class OldLayer {
 struct Meeting {
   EdgePair edges;
   Point2 place;
+  std::vector<std::size_t> near = {};  // old edges that may be less than kSameLoop tolerances off
 };
 
 std::vector<Meeting> meetings_of(const FlatEdges& edges) {
@@ -153,63 +150,35 @@ std::vector<Meeting> meetings_of(const FlatEdges& edges) {
   return met;
 }
 
-// Calls `found` with each meeting of the new path that the old one does not excuse, and with the
-// edges of the old one that may be less than kSameLoop tolerances from it; until it returns false.
-template <typename Function>
-void each_new(const std::vector<Meeting>& met, const FlatEdges& before, double tolerance,
-              const Function& found) {
+// Those of the new path that the old one does not excuse.
+std::vector<Meeting> new_ones(std::vector<Meeting> met, const FlatEdges& before, double tolerance) {
   const auto old = OldLayer::made_of(before, tolerance);
-  if (!old) return;
+  if (!old) return {};
   std::vector<CrossingBox> places;
   for (std::size_t i = 0; i < met.size(); ++i) {
     const Point2& p = met[i].place;
     places.emplace_back(CGAL::Bbox_2(p.x(), p.y(), p.x(), p.y()), i);
   }
-  std::vector<std::vector<std::size_t>> near(met.size());
   std::vector<CrossingBox> edges = old->boxes();
   CGAL::box_intersection_d(places.begin(), places.end(), edges.begin(), edges.end(),
                            [&](const CrossingBox& place, const CrossingBox& edge) {
-                             near[place.info()].push_back(edge.info());
+                             met[place.info()].near.push_back(edge.info());
                            });
-  for (std::size_t i = 0; i < met.size(); ++i) {
-    std::sort(near[i].begin(), near[i].end());
-    if (!old->meets_itself_at(met[i].place, near[i]) && !found(met[i], near[i])) return;
-  }
-}
-
-std::optional<Meeting> first_new(const std::vector<Meeting>& met, const FlatEdges& before,
-                                 double tolerance) {
-  std::optional<Meeting> first;
-  each_new(met, before, tolerance, [&](const Meeting& meeting, std::span<const std::size_t>) {
-    first = meeting;
-    return false;
+  std::erase_if(met, [&](Meeting& meeting) {
+    std::ranges::sort(meeting.near);
+    return old->meets_itself_at(meeting.place, meeting.near);
   });
-  return first;
-}
-
-// Edges of parts in one plane.
-struct PartLayer {
-  FlatEdges edges;
-  std::vector<PartEdge> parts;  // for each edge
-};
-
-std::map<double, PartLayer> part_layers(std::span<const PartEdge> edges) {
-  std::map<double, PartLayer> layers;
-  for (const PartEdge& edge : edges) {
-    PartLayer& layer = layers[edge.height];
-    if (layer.edges.add(edge.from, edge.to)) layer.parts.push_back(edge);
-  }
-  return layers;
+  return met;
 }
 
 // Of the old edges about the meeting of two new ones, in their parts.
-PartCrossing crossing_of(const PartLayer& old, const PartEdge& first, const PartEdge& second,
-                         const Point2& place, std::span<const std::size_t> near, double tolerance) {
-  PartCrossing crossing{{}, place};
-  for (const std::size_t edge : near) {
+PartCrossing crossing_of(const Layer& old, const PartEdge& first, const PartEdge& second,
+                         const Meeting& meeting, double tolerance) {
+  PartCrossing crossing{{}, meeting.place};
+  for (const std::size_t edge : meeting.near) {
     const std::uint32_t part = old.parts[edge].part;
     if (part != first.part && part != second.part) continue;
-    if (edge_distance(old.edges, edge, place) > kSameLoop * tolerance) continue;
+    if (edge_distance(old.edges, edge, meeting.place) > kSameLoop * tolerance) continue;
     crossing.labels.push_back(old.parts[edge].label);
   }
   if (crossing.labels.empty()) crossing.labels = {first.label, second.label};
@@ -245,33 +214,33 @@ std::optional<NewCrossing> new_crossing(std::span<const PathPiece> before,
   // Of the old path only where the new one meets itself, which is seldom.
   std::optional<Layers> then;
   std::optional<NewCrossing> first;
-  for (const auto& [key, layer] : layers_of(chords, axis)) {
-    const std::vector<Meeting> met = meetings_of(layer.edges);
+  for (const auto& [height, layer] : layers_of(flat_edges(chords, axis))) {
+    std::vector<Meeting> met = meetings_of(layer.edges);
     if (met.empty()) continue;
-    if (!then) then = layers_of(cut_into_chords(before, kChordPart * tolerance), axis);
-    const auto old = then->find(key);
+    if (!then) {
+      then = layers_of(flat_edges(cut_into_chords(before, kChordPart * tolerance), axis));
+    }
+    const auto old = then->find(height);
     if (old == then->end()) continue;
-    const auto found = first_new(met, old->second.edges, tolerance);
-    if (!found) continue;
-    NewCrossing crossing{layer.pieces[found->edges.first], layer.pieces[found->edges.second], {}};
-    crossing.place[axis] = layer.height;
-    crossing.place[axis == 0 ? 1 : 0] = found->place.x();
-    crossing.place[axis == 2 ? 1 : 2] = found->place.y();
-    if (!first || crossing.first_piece < first->first_piece) first = crossing;
+    met = new_ones(std::move(met), old->second.edges, tolerance);
+    if (met.empty()) continue;
+    const auto [a, b] = met.front().edges;
+    if (first && first->first_piece <= layer.parts[a].label) continue;
+    first = NewCrossing{layer.parts[a].label, layer.parts[b].label};
+    first->place[axis] = height;
+    first->place[axis == 0 ? 1 : 0] = met.front().place.x();
+    first->place[axis == 2 ? 1 : 2] = met.front().place.y();
   }
   return first;
 }
 
 std::vector<PartEdge> flat_edges(std::span<const PathPiece> path, int axis, double tolerance,
                                  std::uint32_t label, std::uint32_t part) {
-  std::vector<PartEdge> edges;
-  if (path.empty()) return edges;
-  const ChordPolyline chords = cut_into_chords(path, kChordPart * tolerance);
-  for (std::size_t i = 0; i < chords.edge_count(); ++i) {
-    if (!is_flat(chords, i, axis)) continue;
-    const Point3& from = chords.points[i];
-    edges.push_back(
-        {across(from, axis), across(chords.points[i + 1], axis), rounded(from[axis]), label, part});
+  if (path.empty()) return {};
+  std::vector<PartEdge> edges = flat_edges(cut_into_chords(path, kChordPart * tolerance), axis);
+  for (PartEdge& edge : edges) {
+    edge.label = label;
+    edge.part = part;
   }
   return edges;
 }
@@ -280,8 +249,8 @@ std::vector<PartCrossing> new_crossings_of_parts(std::span<const PartEdge> befor
                                                  std::span<const PartEdge> after,
                                                  double tolerance) {
   std::vector<PartCrossing> crossings;
-  const auto then = part_layers(before);
-  for (const auto& [height, layer] : part_layers(after)) {
+  const Layers then = layers_of(before);
+  for (const auto& [height, layer] : layers_of(after)) {
     std::vector<Meeting> met = meetings_of(layer.edges);
     const auto& parts = layer.parts;
     std::erase_if(met, [&](const Meeting& meeting) {
@@ -289,13 +258,10 @@ std::vector<PartCrossing> new_crossings_of_parts(std::span<const PartEdge> befor
     });
     const auto old = then.find(height);
     if (met.empty() || old == then.end()) continue;
-    each_new(met, old->second.edges, tolerance,
-             [&](const Meeting& meeting, std::span<const std::size_t> near) {
-               crossings.push_back(crossing_of(old->second, parts[meeting.edges.first],
-                                               parts[meeting.edges.second], meeting.place, near,
-                                               tolerance));
-               return true;
-             });
+    for (const Meeting& meeting : new_ones(std::move(met), old->second.edges, tolerance)) {
+      const auto& [a, b] = meeting.edges;
+      crossings.push_back(crossing_of(old->second, parts[a], parts[b], meeting, tolerance));
+    }
   }
   return crossings;
 }

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "geometry/basic/rounding.h"
-#include "geometry/path/box_grid.h"
 #include "geometry/path/plane_curve.h"
 
 namespace batten::geometry {
@@ -22,27 +21,6 @@ PairKernel::Point_2 to_cgal(const Point2& p) { return {p.x(), p.y()}; }
 
 Segment segment_of(const FlatEdges& edges, std::size_t edge) {
   return {to_cgal(edges.from(edge)), to_cgal(edges.to(edge))};
-}
-
-FlatBox box_around(const FlatEdges& edges, std::size_t edge, double margin) {
-  const Point2 low = edges.from(edge).cwiseMin(edges.to(edge));
-  const Point2 high = edges.from(edge).cwiseMax(edges.to(edge));
-  return {low - Point2(margin, margin), high + Point2(margin, margin)};
-}
-
-// As BoxGrid::each_pair, for boxes of any sizes.
-template <typename Function>
-void each_pair_of_any(std::span<const FlatBox> around, const Function& found) {
-  std::vector<PairBox> boxes;
-  boxes.reserve(around.size());
-  for (std::uint32_t i = 0; i < around.size(); ++i) {
-    const auto& [low, high] = around[i];
-    boxes.emplace_back(CGAL::Bbox_2(low.x(), low.y(), high.x(), high.y()), i);
-  }
-  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(),
-                                [&](const PairBox& a, const PairBox& b) {
-                                  found(std::min(a.info(), b.info()), std::max(a.info(), b.info()));
-                                });
 }
 
 bool share_a_vertex(const FlatEdges& edges, std::size_t a, std::size_t b) {
@@ -61,8 +39,8 @@ bool lie_beside(const FlatEdges& edges, std::size_t edge, const Point2& a, const
   return (first > limit && second > limit) || (first < -limit && second < -limit);
 }
 
-// Whether two edges are no further apart than `reach`: nearly all that are asked for are neighbours
-// or lie beside each other, which needs no exact distance.
+// Whether two edges are no further apart than `reach`: nearly all are neighbours or lie beside each
+// other, which needs no exact distance.
 bool are_near(const FlatEdges& edges, const EdgePair& pair, double reach) {
   const auto [a, b] = pair;
   if (share_a_vertex(edges, a, b)) return true;
@@ -73,7 +51,6 @@ bool are_near(const FlatEdges& edges, const EdgePair& pair, double reach) {
   return edge_distance(edges, pair) <= reach;
 }
 
-// Whether a place is no further from an edge than `reach`.
 bool is_near(const FlatEdges& edges, std::size_t edge, const Point2& place, double reach) {
   const Point2& from = edges.from(edge);
   const Vector2 along = edges.to(edge) - from;
@@ -83,50 +60,25 @@ bool is_near(const FlatEdges& edges, std::size_t edge, const Point2& place, doub
   return edge_distance(edges, edge, place) <= reach;
 }
 
-// Ends a search that finds too much.
-struct TooMany {};
-
-// Sets of pairs that belong together.
-class Groups {
- public:
-  explicit Groups(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-
-  std::size_t root(std::size_t i) {
-    while (parent_[i] != i) {
-      parent_[i] = parent_[parent_[i]];
-      i = parent_[i];
-    }
-    return i;
-  }
-
-  // The root with the lower number stays, so that it is the first of its group.
-  void join(std::size_t a, std::size_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
 // Puts pairs together whose edges are neighbours.
 class Grouping {
  public:
   Grouping(std::span<const EdgePair> pairs, const FlatEdges& edges, double reach)
-      : pairs_(pairs), edges_(edges), reach_(reach), groups_(pairs.size()) {}
+      : pairs_(pairs), edges_(edges), reach_(reach), parent_(pairs.size()) {
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  }
 
-  // The places of two edges that are near to each other are a convex part of the square of their
-  // parameters. So the parts of two pairs join where a vertex between them is near to the other
-  // edge.
+  // What of two edges is near to each other is a convex part of the square of their parameters. So
+  // the parts of two pairs join where a vertex between them is near to the other edge.
   std::vector<std::size_t> run() {
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       const auto [first, second] = pairs_[i];
       const auto after_first = edges_.after(first);
       const auto after_second = edges_.after(second);
-      if (after_first == second || after_second == first) join_beside(i);
+      if (after_first == second || after_second == first) {
+        if (beside_) join(*beside_, i);
+        beside_ = i;
+      }
       if (after_first && is_near(edges_, second, edges_.to(first), reach_)) {
         join(i, *after_first, second);
       }
@@ -144,21 +96,28 @@ class Grouping {
                           static_cast<std::uint32_t>(std::max(a, b))};
     const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), wanted);
     if (found == pairs_.end() || *found != wanted) return;
-    groups_.join(pair, static_cast<std::size_t>(found - pairs_.begin()));
+    join(pair, static_cast<std::size_t>(found - pairs_.begin()));
   }
 
-  void join_beside(std::size_t pair) {
-    if (beside_) groups_.join(*beside_, pair);
-    beside_ = pair;
+  // The root with the lower number stays, so that it is the first of its group.
+  void join(std::size_t a, std::size_t b) {
+    a = root(a);
+    b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+  std::size_t root(std::size_t i) {
+    for (; parent_[i] != i; i = parent_[i]) parent_[i] = parent_[parent_[i]];
+    return i;
   }
 
   std::vector<std::size_t> numbers() {
     std::vector<std::size_t> result(pairs_.size(), 0);
     std::size_t next = 1;
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
-      const std::size_t root = groups_.root(i);
-      if (beside_ && root == groups_.root(*beside_)) continue;
-      result[i] = root == i ? next++ : result[root];
+      const std::size_t of = root(i);
+      if (beside_ && of == root(*beside_)) continue;
+      result[i] = of == i ? next++ : result[of];
     }
     return result;
   }
@@ -166,7 +125,7 @@ class Grouping {
   std::span<const EdgePair> pairs_;
   const FlatEdges& edges_;
   double reach_;
-  Groups groups_;
+  std::vector<std::size_t> parent_;    // of pairs that belong together
   std::optional<std::size_t> beside_;  // a pair of neighbours
 };
 
@@ -208,23 +167,23 @@ std::optional<std::size_t> FlatEdges::after(std::size_t edge) const {
 std::optional<std::vector<EdgePair>> near_pairs(const FlatEdges& edges, double reach) {
   std::vector<EdgePair> pairs;
   if (edges.size() == 0) return pairs;
-  std::vector<FlatBox> boxes;
+  std::vector<PairBox> boxes;
   boxes.reserve(edges.size());
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    boxes.push_back(box_around(edges, i, 0.5 * reach));
+  const Vector2 margin(reach / 2, reach / 2);
+  for (std::uint32_t i = 0; i < edges.size(); ++i) {
+    const Point2 low = edges.from(i).cwiseMin(edges.to(i)) - margin;
+    const Point2 high = edges.from(i).cwiseMax(edges.to(i)) + margin;
+    boxes.emplace_back(CGAL::Bbox_2(low.x(), low.y(), high.x(), high.y()), i);
   }
-  const auto found = [&](std::uint32_t first, std::uint32_t second) {
-    const EdgePair pair{first, second};
-    if (!are_near(edges, pair, reach)) return;
-    pairs.push_back(pair);
-    if (pairs.size() > kMostPairs * edges.size()) throw TooMany{};
-  };
+  struct TooMany {};  // ends a search that finds too much
   try {
-    if (const auto grid = BoxGrid::made_of(boxes)) {
-      grid->each_pair(found);
-    } else {
-      each_pair_of_any(boxes, found);
-    }
+    CGAL::box_self_intersection_d(
+        boxes.begin(), boxes.end(), [&](const PairBox& a, const PairBox& b) {
+          const EdgePair pair{std::min(a.info(), b.info()), std::max(a.info(), b.info())};
+          if (!are_near(edges, pair, reach)) return;
+          pairs.push_back(pair);
+          if (pairs.size() > kMostPairs * edges.size()) throw TooMany{};
+        });
   } catch (const TooMany&) {
     return {};
   }

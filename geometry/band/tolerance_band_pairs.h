@@ -1,7 +1,9 @@
-// Which edges of a flat path are near to each other, and which of these pairs belong together.
-// Used by geometry/band/*.cpp only.
+// Which edges of a flat path are near to each other, and which of these pairs belong together: for
+// geometry/band/*.cpp only.
 #pragma once
 
+#include <cmath>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -9,14 +11,25 @@
 #include <vector>
 
 #include "geometry/basic/point.h"
+#include "geometry/basic/rounding.h"
 
 namespace batten::geometry {
+
+// The two other coordinates.
+[[nodiscard]] inline Point2 across(const Point3& place, int axis) {
+  return {place[axis == 0 ? 1 : 0], place[axis == 2 ? 1 : 2]};
+}
+
+// Heights are printed, so those of one plane are the same to within the noise of doubles.
+[[nodiscard]] inline double plane_height(double height) {
+  return std::round(height / kSamePlace) * kSamePlace;
+}
 
 // Edges of a flat path in order. It may be in several chains: where it left the plane between.
 class FlatEdges {
  public:
   // Goes on with the last chain where that ends at `from`, else starts another one. Returns whether
-  // there is an edge: not where the two are one place.
+  // there is an edge: not where the two are one point.
   bool add(const Point2& from, const Point2& to);
 
   [[nodiscard]] std::size_t size() const { return edges_.size(); }
@@ -41,12 +54,7 @@ class FlatEdges {
 struct EdgePair {
   std::uint32_t first = 0;
   std::uint32_t second = 0;  // above `first`
-  friend bool operator==(const EdgePair& a, const EdgePair& b) {
-    return a.first == b.first && a.second == b.second;
-  }
-  friend bool operator<(const EdgePair& a, const EdgePair& b) {
-    return a.first != b.first ? a.first < b.first : a.second < b.second;
-  }
+  friend auto operator<=>(const EdgePair& a, const EdgePair& b) = default;
 };
 
 inline constexpr std::size_t kMostPairs = 200;  // for each edge; more are a heap
@@ -55,10 +63,10 @@ inline constexpr std::size_t kMostPairs = 200;  // for each edge; more are a hea
 // there are more than kMostPairs for each edge.
 [[nodiscard]] std::optional<std::vector<EdgePair>> near_pairs(const FlatEdges& edges, double reach);
 
-// The number of the group of each pair, from 0 in order of the first pairs. `pairs` and `reach` are
-// those of near_pairs. Two pairs are in one group when one can walk from one to the other along
-// both edges without ever being further apart than `reach`. Group 0 holds all pairs of neighbours
-// and what is reached from them: the path beside itself.
+// The number of the group of each pair of near_pairs with that reach, from 0 in order of the first
+// pairs. Two are in one group when one can walk from one to the other along both edges without ever
+// being further apart than `reach`. Group 0 holds all pairs of neighbours and what is reached from
+// them: the path beside itself.
 [[nodiscard]] std::vector<std::size_t> group_pairs(std::span<const EdgePair> pairs,
                                                    const FlatEdges& edges, double reach);
 
@@ -66,13 +74,11 @@ inline constexpr std::size_t kMostPairs = 200;  // for each edge; more are a hea
 // cross, touch, or run over each other. Exact.
 [[nodiscard]] bool edges_meet(const FlatEdges& edges, const EdgePair& pair);
 
-// mm, of the two edges.
+// mm, of the two edges, and of a point and an edge.
 [[nodiscard]] double edge_distance(const FlatEdges& edges, const EdgePair& pair);
-
-// mm, of a place and an edge.
 [[nodiscard]] double edge_distance(const FlatEdges& edges, std::size_t edge, const Point2& place);
 
-// A place that both edges have; the middle where they run over each other. Requires edges_meet.
+// A point that both edges have; the middle where they run over each other. Requires edges_meet.
 [[nodiscard]] Point2 meeting_place(const FlatEdges& edges, const EdgePair& pair);
 
 }  // namespace batten::geometry

@@ -1,12 +1,11 @@
 #include "geometry/distance/band_comparison.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <optional>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -26,15 +25,13 @@ constexpr double kLeastTurn = 1e-6;
 // the tolerance.
 constexpr double kChordShare = 0.25;
 
-// A place on a path.
-struct Place {
+struct Place {  // on a path
   std::size_t piece = 0;
   double t = 0;
 };
 
-// The joint of old pieces i and i + 1.
 struct OldCorner {
-  std::size_t piece;
+  std::size_t piece;  // and the next one meet in it
   Point3 vertex;
   double sin_half;  // of the angle between the lines
 };
@@ -47,23 +44,18 @@ struct Cut {
   double distance;  // mm, n to the vertex
 };
 
-std::optional<OldCorner> corner_between(std::span<const PathPiece> path, std::size_t i) {
-  const auto* before = std::get_if<Line>(&path[i]);
-  const auto* after = std::get_if<Line>(&path[i + 1]);
-  if (before == nullptr || after == nullptr || before->end != after->start) return {};
-  const Vector3 in = before->end - before->start;
-  const Vector3 out = after->end - after->start;
-  if (in.norm() <= kSamePlace || out.norm() <= kSamePlace) return {};
-  const double turn = std::atan2(in.cross(out).norm(), in.dot(out));
-  const double sin_half = std::cos(turn / 2);
-  if (turn < kLeastTurn || turn > std::numbers::pi - kSharpestCut) return {};
-  return OldCorner{i, before->end, sin_half};
-}
-
 std::vector<OldCorner> corners_of(std::span<const PathPiece> path) {
   std::vector<OldCorner> corners;
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    if (auto corner = corner_between(path, i)) corners.push_back(*corner);
+    const auto* before = std::get_if<Line>(&path[i]);
+    const auto* after = std::get_if<Line>(&path[i + 1]);
+    if (before == nullptr || after == nullptr || before->end != after->start) continue;
+    const Vector3 in = before->end - before->start;
+    const Vector3 out = after->end - after->start;
+    if (in.norm() <= kSamePlace || out.norm() <= kSamePlace) continue;
+    const double turn = std::atan2(in.cross(out).norm(), in.dot(out));
+    if (turn < kLeastTurn || turn > kPi - kSharpestCut) continue;
+    corners.push_back({i, before->end, std::cos(turn / 2)});
   }
   return corners;
 }
@@ -74,7 +66,7 @@ Place nearest_on_line(const Line& line, std::size_t piece, const Point3& to, dou
   return {piece, std::clamp(t, from, 1.0)};
 }
 
-// By samples and golden sections; any place of the piece is sound, the nearest one serves best.
+// By samples and golden sections; any point of the piece is sound, the nearest one serves best.
 Place nearest_on(const PathPiece& piece, std::size_t index, const Point3& to, double from) {
   if (const auto* line = std::get_if<Line>(&piece)) {
     if (line->start == line->end) return {index, from};
@@ -101,7 +93,7 @@ Place nearest_on(const PathPiece& piece, std::size_t index, const Point3& to, do
   return {index, distance(middle) < distance(best) ? middle : best};
 }
 
-// The part of a path between two places; a path that waits where they are one.
+// A path that waits where the two are one.
 Path part_between(std::span<const PathPiece> path, const Place& from, const Place& to) {
   Path part;
   for (std::size_t i = from.piece; i <= to.piece; ++i) {
@@ -125,7 +117,11 @@ class BandComparer {
         new_(new_path),
         tolerance_(tolerance),
         corners_(corners_of(old_path)),
-        pairs_(pairs) {}
+        pairs_(pairs) {
+    if (tolerance > 2 * kSamePlace && std::isfinite(tolerance)) return;
+    throw std::invalid_argument(fmt::format(
+        "compare_in_band: tolerance {:f} mm, expected a finite number above 2e-9", tolerance));
+  }
 
   BandComparison run() {
     find_cuts();
@@ -141,37 +137,6 @@ class BandComparer {
  private:
   // --- where the new path passes the corners: nothing of this has to be trusted ---------------
 
-  // The old path with every line beside a corner in halves, and for each corner the pieces of that
-  // path that end in the middle of its legs.
-  struct Halved {
-    Path path;
-    std::vector<std::size_t> half_before;  // per corner: ends in the middle of the leg before
-    std::vector<std::size_t> half_after;
-  };
-
-  [[nodiscard]] Halved halved() const {
-    std::vector<bool> is_leg(old_.size(), false);
-    for (const OldCorner& corner : corners_) {
-      is_leg[corner.piece] = is_leg[corner.piece + 1] = true;
-    }
-    Halved result;
-    std::vector<std::size_t> first_half(old_.size(), 0);
-    for (std::size_t i = 0; i < old_.size(); ++i) {
-      first_half[i] = result.path.size();
-      if (is_leg[i]) {
-        result.path.push_back(sub_piece(old_[i], 0, 0.5));
-        result.path.push_back(sub_piece(old_[i], 0.5, 1));
-      } else {
-        result.path.push_back(old_[i]);
-      }
-    }
-    for (const OldCorner& corner : corners_) {
-      result.half_before.push_back(first_half[corner.piece]);
-      result.half_after.push_back(first_half[corner.piece + 1]);
-    }
-    return result;
-  }
-
   // The piece of the new path that goes with the end of each piece of `path`, in order.
   [[nodiscard]] std::vector<std::size_t> new_pieces_at_ends(const Path& path) const {
     const double error = kChordShare * tolerance_;
@@ -185,12 +150,24 @@ class BandComparer {
     return at;
   }
 
+  // Between the middles of the corner's legs.
   void find_cuts() {
     if (corners_.empty() || new_.empty()) return;
-    const Halved halves = halved();
-    const std::vector<std::size_t> new_piece = new_pieces_at_ends(halves.path);
-    for (std::size_t k = 0; k < corners_.size(); ++k) {
-      try_to_cut(corners_[k], new_piece[halves.half_before[k]], new_piece[halves.half_after[k]]);
+    std::vector<bool> is_leg(old_.size(), false);
+    for (const OldCorner& corner : corners_) {
+      is_leg[corner.piece] = is_leg[corner.piece + 1] = true;
+    }
+    Path halved;                                          // the old path with each leg in halves
+    std::vector<std::size_t> first_half(old_.size(), 0);  // of each old piece, in it
+    for (std::size_t i = 0; i < old_.size(); ++i) {
+      first_half[i] = halved.size();
+      halved.push_back(is_leg[i] ? sub_piece(old_[i], 0, 0.5) : old_[i]);
+      if (is_leg[i]) halved.push_back(sub_piece(old_[i], 0.5, 1));
+    }
+    const std::vector<std::size_t> new_piece = new_pieces_at_ends(halved);
+    for (const OldCorner& corner : corners_) {
+      try_to_cut(corner, new_piece[first_half[corner.piece]],
+                 new_piece[first_half[corner.piece + 1]]);
     }
   }
 
@@ -237,7 +214,10 @@ class BandComparer {
                         tolerance_ - kSamePlace, old_from, new_from),
                old_from, new_from, all);
       if (last) break;
-      go_round(cuts_[k]);
+      if (pairs_ != nullptr) {  // round the corner
+        pairs_->push_back({old_to.piece, new_to.piece, end_point(old_[old_to.piece]),
+                           point_at(new_[new_to.piece], new_to.t)});
+      }
       old_from = cuts_[k].returns;
       new_from = cuts_[k].passes;
       result_.corner_at_most = std::max(result_.corner_at_most, cuts_[k].distance + kSamePlace);
@@ -257,12 +237,6 @@ class BandComparer {
       pairs_->push_back(pair);
     }
     return part.comparison;
-  }
-
-  void go_round(const Cut& cut) {
-    if (pairs_ == nullptr) return;
-    pairs_->push_back({cut.leaves.piece, cut.passes.piece, end_point(old_[cut.leaves.piece]),
-                       point_at(new_[cut.passes.piece], cut.passes.t)});
   }
 
   static void add_part(const PathComparison& part, const Place& old_from, const Place& new_from,
@@ -286,11 +260,10 @@ class BandComparer {
       loosest = std::max(loosest, tolerance_ / corner.sin_half);
     }
     const PathComparison strict = compare_paths(old_, new_, loosest);
-    result_.paths.verdict =
-        strict.verdict == Verdict::kBroken ? Verdict::kBroken : Verdict::kNotProved;
     if (strict.verdict == Verdict::kBroken) {
       result_.paths = strict;
     } else {
+      result_.paths.verdict = Verdict::kNotProved;
       result_.paths.bounds.at_least = 0;
     }
   }
@@ -304,23 +277,15 @@ class BandComparer {
   BandComparison result_;
 };
 
-void check_tolerance(double tolerance) {
-  if (tolerance > 2 * kSamePlace && std::isfinite(tolerance)) return;
-  throw std::invalid_argument("compare_in_band: tolerance " + std::to_string(tolerance) +
-                              " mm, expected a finite number above 2e-9");
-}
-
 }  // namespace
 
 BandComparison compare_in_band(std::span<const PathPiece> old_path,
                                std::span<const PathPiece> new_path, double tolerance) {
-  check_tolerance(tolerance);
   return BandComparer(old_path, new_path, tolerance).run();
 }
 
 PathMatching match_in_band(std::span<const PathPiece> old_path, std::span<const PathPiece> new_path,
                            double tolerance) {
-  check_tolerance(tolerance);
   PathMatching matching;
   matching.comparison = BandComparer(old_path, new_path, tolerance, &matching.pairs).run().paths;
   return matching;

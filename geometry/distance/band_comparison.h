@@ -1,17 +1,16 @@
 // Proved bounds on the distance of two paths in the band reading of a tolerance.
 // Method: docs/algorithms/path_distance.md, section The band reading.
 //
-// What is promised. kProved: the paths have a matching in order, in which neither steps back, and
-// all matched places are within the tolerance, except that at some places n of the new path the
-// matching waits while the old path goes round a corner V of two lines, from a place A on the
-// one to a place B on the other. A and B are within the tolerance of n, and V is within the
-// tolerance divided by the sine of half the angle between the lines. So every place of the
-// new path is within the tolerance of the old one, in order, and no corner is cut by more than
-// where the borders of the two lines' bands meet.
+// What is promised. kProved: the paths have a matching in order, in which neither steps back and
+// all matched pairs are within the tolerance, except that at some points n of the new path the
+// matching waits while the old path goes round a corner V of two lines, from A on the one to B on
+// the other. A and B are within the tolerance of n, and V is within the tolerance divided by the
+// sine of half the angle between the lines. So all of the new path is within the tolerance of the
+// old one, in order, and no corner is cut by more than where the borders of the lines' bands meet.
 //
-// kBroken: there is no such matching. kNotProved: neither could be shown; a corner that is cut
-// within its bound but whose place is not found is among that. Corners at which an arc takes part,
-// and those sharper than kSharpestCut, are not cut: the strict reading holds there.
+// kBroken: there is no such matching. kNotProved: neither could be shown, as where a corner is cut
+// within its bound but n is not found. Corners at which an arc takes part, and those sharper than
+// kSharpestCut, are not cut: the strict reading holds there.
 #pragma once
 
 #include <cstddef>
@@ -24,13 +23,13 @@ namespace batten::geometry {
 
 struct BandComparison {
   PathComparison paths;       // bounds are those of the matching without the corners
-  double corner_at_most = 0;  // mm, greatest distance of a cut corner from its place n
+  double corner_at_most = 0;  // mm, greatest distance of a cut corner from its n
   std::size_t cut_corners = 0;
 };
 
 // As compare_paths, which decides alone where no corner of the old path is further than the
-// tolerance from the new one. Where corners are cut, the parts between them are compared
-// with the tolerance less kSamePlace, which covers the rounding of the places A, B and n.
+// tolerance from the new one. Where corners are cut, the parts between them are compared with the
+// tolerance less kSamePlace, which covers the rounding of A, B and n.
 [[nodiscard]] BandComparison compare_in_band(std::span<const PathPiece> old_path,
                                              std::span<const PathPiece> new_path, double tolerance);
 

@@ -7,9 +7,9 @@
 namespace batten::geometry {
 namespace {
 
-// Rounding of a place computed on an arc or Bezier piece, relative to the sizes that enter
-// it: some dozen operations of half a rounding step each, and the angle of the arc, which
-// carries a few steps times the radius. 64 steps are several times that sum.
+// Rounding of a position computed on an arc or Bezier piece, relative to the sizes that enter it:
+// some dozen operations of half a rounding step each, and the arc's angle, a few steps times the
+// radius. 64 steps are several times that sum.
 constexpr double kEvaluationNoise = 64 * std::numeric_limits<double>::epsilon();
 
 // 2^20 chords (28 MB) for one path at the most on top of one per piece. A full circle of
@@ -33,73 +33,50 @@ double chords_for(double bend, double max_error) {
   return std::max(1.0, std::ceil(std::sqrt(bend / (8 * max_error))));
 }
 
-class ChordCutter {
- public:
-  ChordCutter(std::span<const PathPiece> path, double max_error) {
-    const double wanted = chords_wanted(path, max_error);
-    // Halving the number of chords makes their error four times as large.
-    const double coarser = std::max(1.0, wanted / kMostChords);
-    max_error_ = max_error * coarser * coarser;
-    result_.points.reserve(path.size() + 1);
-    result_.errors.reserve(path.size());
-    result_.pieces.reserve(path.size());
-    result_.points.push_back(start_point(path.front()));
-    for (std::size_t i = 0; i < path.size(); ++i) add_piece(path[i], i);
-    if (result_.errors.empty()) add_edge(result_.points.front(), 0, 0);
+}  // namespace
+
+ChordPolyline cut_into_chords(std::span<const PathPiece> path, double max_error) {
+  double wanted = 0;
+  for (const PathPiece& piece : path) {
+    if (std::holds_alternative<Line>(piece)) continue;
+    wanted += chords_for(second_derivative_bound(piece), max_error);
   }
+  // Halving the number of chords makes their error four times as large.
+  const double coarser = std::max(1.0, wanted / kMostChords);
+  max_error = max_error * coarser * coarser;
 
-  ChordPolyline take() { return std::move(result_); }
-
- private:
-  static double chords_wanted(std::span<const PathPiece> path, double max_error) {
-    double sum = 0;
-    for (const PathPiece& piece : path) {
-      if (!std::holds_alternative<Line>(piece)) {
-        sum += chords_for(second_derivative_bound(piece), max_error);
-      }
-    }
-    return sum;
-  }
-
-  void add_piece(const PathPiece& piece, std::size_t index) {
-    add_line(start_point(piece), index);
+  ChordPolyline result;
+  result.points.reserve(path.size() + 1);
+  result.errors.reserve(path.size());
+  result.pieces.reserve(path.size());
+  const auto add = [&result](const Point3& end, double error, std::size_t piece) {
+    result.points.push_back(end);
+    result.errors.push_back(error);
+    result.pieces.push_back(piece);
+  };
+  const auto add_line = [&](const Point3& end, std::size_t piece) {
+    if (end != result.points.back()) add(end, 0, piece);
+  };
+  result.points.push_back(start_point(path.front()));
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const PathPiece& piece = path[i];
+    add_line(start_point(piece), i);
     if (std::holds_alternative<Line>(piece)) {
-      add_line(end_point(piece), index);
-    } else {
-      add_bent(piece, index);
+      add_line(end_point(piece), i);
+      continue;
     }
-  }
-
-  void add_line(const Point3& end, std::size_t index) {
-    if (end != result_.points.back()) add_edge(end, 0, index);
-  }
-
-  void add_bent(const PathPiece& piece, std::size_t index) {
     const double bend = second_derivative_bound(piece);
-    const auto count = static_cast<std::size_t>(chords_for(bend, max_error_));
+    const auto count = static_cast<std::size_t>(chords_for(bend, max_error));
     const double step = 1.0 / static_cast<double>(count);
     // The steps of t are equal to within a rounding step of t; that is far inside the noise.
     const double error = bend * step * step / 8 + kEvaluationNoise * size_of_evaluation(piece);
     for (std::size_t k = 1; k < count; ++k) {
-      add_edge(geometry::point_at(piece, static_cast<double>(k) * step), error, index);
+      add(geometry::point_at(piece, static_cast<double>(k) * step), error, i);
     }
-    add_edge(end_point(piece), error, index);
+    add(end_point(piece), error, i);
   }
-
-  void add_edge(const Point3& end, double error, std::size_t index) {
-    result_.points.push_back(end);
-    result_.errors.push_back(error);
-    result_.pieces.push_back(index);
-  }
-
-  double max_error_;
-  ChordPolyline result_;
-};
-
-}  // namespace
-
-ChordPolyline cut_into_chords(std::span<const PathPiece> path, double max_error) {
-  return ChordCutter(path, max_error).take();
+  if (result.errors.empty()) add(Point3(result.points.front()), 0, 0);
+  return result;
 }
 
 double greatest_coordinate(const ChordPolyline& polyline) {
@@ -121,7 +98,7 @@ double nearest_parameter(const ChordPolyline& polyline, std::size_t edge, const 
                          double from, double to) {
   const Vector3 along = polyline.points[edge + 1] - polyline.points[edge];
   const double length2 = along.squaredNorm();
-  // On an edge of no length every place is the nearest; going on to its end loses nothing.
+  // On an edge of no length every position is the nearest; going on to its end loses nothing.
   if (length2 == 0) return to;
   return std::clamp((point - polyline.points[edge]).dot(along) / length2, from, to);
 }

@@ -1,5 +1,5 @@
-// A path as a chain of chords, each with a bound on how far the path is from it. Lines are
-// their own chords. Used by path_distance; see docs/algorithms/path_distance.md.
+// A path as a chain of chords, each with a bound on how far the path is from it. Lines are their
+// own chords. docs/algorithms/path_distance.md
 #pragma once
 
 #include <cstddef>
@@ -13,28 +13,26 @@
 namespace batten::geometry {
 
 struct ChordPolyline {
-  std::vector<Point3> points;  // every point is a place of the path; one more than edges
-  // mm: run along the chord linearly while the path runs in its own parameter, and they are
-  // never further from each other than this. 0 for lines.
+  std::vector<Point3> points;  // all on the path; one more than edges
+  // mm: how far the chord, run along linearly, and the path in its own parameter are from each
+  // other at most. 0 for lines.
   std::vector<double> errors;
   std::vector<std::size_t> pieces;  // which piece of the path the chord belongs to
 
   [[nodiscard]] std::size_t edge_count() const { return errors.size(); }
 };
 
-// Cuts arcs and Bezier pieces so finely that each chord's error is at most `max_error` (mm,
-// > 0), unless that takes more chords than a path may have: the error is then larger, and
-// `errors` says so. Lines of no length are left out, and a gap between pieces becomes a line.
-// There is always one edge at least; it has no length when the path has none.
-//
-// Requires: `path` is not empty.
+// Cuts arcs and Bezier pieces so finely that each chord's error is at most `max_error` (mm, > 0);
+// larger where that takes more chords than a path may have, as `errors` says. Lines of no length
+// are left out, and a gap between pieces becomes a line. There is always one edge at least, of no
+// length when the path has none. Requires: `path` is not empty.
 [[nodiscard]] ChordPolyline cut_into_chords(std::span<const PathPiece> path, double max_error);
 
 // The greatest of |x|, |y|, |z| (mm): what the rounding of differences is relative to.
 [[nodiscard]] double greatest_coordinate(const ChordPolyline& polyline);
 
-// A place on a chord polyline: points[edge] + t * (points[edge + 1] - points[edge]), where t
-// in [0, 1] is taken as exactly the number that the double is.
+// points[edge] + t * (points[edge + 1] - points[edge]), where t in [0, 1] is exactly the number
+// that the double is.
 struct PlaceOnChord {
   std::size_t edge = 0;
   double t = 0;
@@ -42,7 +40,7 @@ struct PlaceOnChord {
 
 [[nodiscard]] Point3 point_at(const ChordPolyline& polyline, const PlaceOnChord& place);
 
-// The t in [from, to] whose place on the edge is nearest to `point`.
+// The t in [from, to] on the edge that is nearest to `point`.
 [[nodiscard]] double nearest_parameter(const ChordPolyline& polyline, std::size_t edge,
                                        const Point3& point, double from, double to);
 

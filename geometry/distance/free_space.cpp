@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,7 +17,7 @@ bool forward(const PlaceOnChord& from, const PlaceOnChord& to) {
   return from.edge + 1 == to.edge && from.t == 1;
 }
 
-// Where on its edge a path stands that may have just come to the edge's end.
+// The begin of the next edge where an edge has come to its end.
 PlaceOnChord leave_end(const PlaceOnChord& place, const ChordPolyline& polyline) {
   if (place.t < 1 || place.edge + 1 == polyline.edge_count()) return place;
   return {place.edge + 1, 0};
@@ -65,9 +66,11 @@ bool goes_forward(const Matching& matching, const ChordPolyline& a, const ChordP
 
 double pair_error(const Matching& matching, std::size_t k, const ChordPolyline& a,
                   const ChordPolyline& b) {
-  const double into = step_error(matching, k, a, b);
-  if (k + 1 == matching.size()) return into;
-  return std::max(into, step_error(matching, k + 1, a, b));
+  const auto into = [&](const MatchedPair& pair) {
+    return a.errors[pair.a.edge] + b.errors[pair.b.edge];
+  };
+  const bool last = k + 1 == matching.size();
+  return last ? into(matching[k]) : std::max(into(matching[k]), into(matching[k + 1]));
 }
 
 MeasuredMatching measure(const Matching& matching, const ChordPolyline& a, const ChordPolyline& b,
@@ -75,7 +78,7 @@ MeasuredMatching measure(const Matching& matching, const ChordPolyline& a, const
   MeasuredMatching found;
   for (std::size_t k = 0; k < matching.size(); ++k) {
     const double apart = (point_at(a, matching[k].a) - point_at(b, matching[k].b)).norm();
-    // Equal coordinates are one place, without noise.
+    // Equal coordinates are one position, without noise.
     const double bound = (apart > 0 ? apart + noise : 0) + pair_error(matching, k, a, b);
     if (bound > found.at_most) found = {bound, k};
   }
@@ -91,18 +94,17 @@ struct Interval {
   [[nodiscard]] bool empty() const { return from > to; }
 };
 
-// "No place of this side of the cell can be reached."
-constexpr double kUnreached = 2;
+constexpr double kUnreached = 2;  // nothing of this side of the cell can be reached
 
-// Cell (i, j) is edge i of `a` against edge j of `b`. Its four sides are a vertex of one
-// against the edge of the other. In the figure of the paper: a to the top, b to the right.
+// Cell (i, j) is edge i of `a` against edge j of `b`. Its four sides are a vertex of one against
+// the edge of the other. In the figure of the paper: a to the top, b to the right.
 //
 //   vertex i + 1 of a ---- top ----
 //                      left     right
 //   vertex i of a     --- bottom --
 //                 vertex j      j + 1 of b
 //
-// Of each reachable part of a side only its begin is kept: it goes as far as the side is free.
+// Of the reachable part of a side only its begin is kept: it goes as far as the side is free.
 struct Cell {
   std::uint32_t column = 0;
   double top = kUnreached;    // t on edge j of b
@@ -117,32 +119,32 @@ class FreeSpace {
   [[nodiscard]] std::size_t rows() const { return a_.edge_count(); }
   [[nodiscard]] std::size_t columns() const { return b_.edge_count(); }
 
-  // The free part of edge `column` of b against vertex `vertex` of a: the top of row
-  // vertex - 1 and the bottom of row vertex.
+  // The free part of edge `column` of b against `vertex` of a: the top of row vertex - 1 and the
+  // bottom of row vertex.
   [[nodiscard]] Interval across_row(std::size_t vertex, std::size_t column) const {
     const double radius = distance_ + sign_ * b_.errors[column] + shared_error(a_, vertex);
     return free_part(a_.points[vertex], b_.points[column], b_.points[column + 1], radius);
   }
 
-  // The free part of edge `row` of a against vertex `vertex` of b: the right side of column
-  // vertex - 1 and the left side of column vertex.
+  // The same of edge `row` of a against `vertex` of b: the right side of column vertex - 1 and the
+  // left side of column vertex.
   [[nodiscard]] Interval across_column(std::size_t vertex, std::size_t row) const {
     const double radius = distance_ + sign_ * a_.errors[row] + shared_error(b_, vertex);
     return free_part(b_.points[vertex], a_.points[row], a_.points[row + 1], radius);
   }
 
  private:
-  // A side belongs to two cells and must be free in both: the smaller of the two distances.
-  // For refuting, that is still no smaller than the truth: the vertex is a place of the path.
+  // A side belongs to two cells and must be free in both: the smaller of the two distances. For
+  // refuting, that is still no smaller than the truth: the vertex is on the path.
   [[nodiscard]] double shared_error(const ChordPolyline& polyline, std::size_t vertex) const {
     const double before = sign_ * polyline.errors[vertex > 0 ? vertex - 1 : 0];
     const double after = sign_ * polyline.errors[std::min(vertex, polyline.edge_count() - 1)];
     return std::min(before, after);
   }
 
-  // The ends are asked by themselves, so that all four sides that meet in a corner of the
-  // free space agree about it. The foot is taken first and the half chord measured from it:
-  // b^2 - a c would lose all digits on long edges.
+  // The ends are asked by themselves, so that all four sides that meet in a corner of the free
+  // space agree about it. The half chord is measured from the foot: b^2 - a c would lose all digits
+  // on long edges.
   static Interval free_part(const Point3& point, const Point3& from, const Point3& to,
                             double radius) {
     if (radius < 0) return {};
@@ -169,8 +171,8 @@ class FreeSpace {
   double sign_;
 };
 
-// Where a reachable part of a side begins, when the whole side is free from `side` on and
-// the cell is entered at `entered` on the opposite side.
+// Where the reachable part of a side begins when the cell is entered at `entered` on the opposite
+// side.
 double reach_from_opposite(const Interval& side, double entered) {
   const double from = std::max(side.from, entered);
   return from <= side.to ? from : kUnreached;
@@ -314,83 +316,57 @@ class FreeSpaceSweep {
   MatchedPair furthest_;  // where the cell visited last is left, or where it is entered
 };
 
-// Goes back from the end of both to their start, each time to the side of the cell by which
-// it can have been entered, and there to the place nearest to the vertex.
-class WayBack {
- public:
-  WayBack(const FreeSpace& space, const FreeSpaceSweep& sweep, const ChordPolyline& a,
-          const ChordPolyline& b)
-      : space_(space), sweep_(sweep), a_(a), b_(b) {}
+bool at_start(const PlaceOnChord& place) { return place.edge == 0 && place.t == 0; }
 
-  Matching run() {
-    MatchedPair here{{a_.edge_count() - 1, 1}, {b_.edge_count() - 1, 1}};
-    Matching way{here};
-    while (!at_start(here.a) || !at_start(here.b)) {
-      const std::optional<MatchedPair> entry = entry_of(here);
-      // Corners that two cells with different errors see differently can end the way back;
-      // the pairs then do not go forward from the start, and nobody takes them for a proof.
-      if (!entry) break;
-      here = *entry;
-      way.push_back(here);
-    }
-    std::reverse(way.begin(), way.end());
-    return way;
+// As the end of the edge before: in the cell before.
+PlaceOnChord begin_of(std::size_t edge) {
+  return edge > 0 ? PlaceOnChord{edge - 1, 1} : PlaceOnChord{0, 0};
+}
+
+// What of a side between two parameters of its edge is nearest to its vertex.
+struct OnSide {
+  std::optional<PlaceOnChord> place;
+  double apart2 = std::numeric_limits<double>::infinity();
+
+  OnSide(const ChordPolyline& polyline, std::size_t edge, const Point3& vertex, double from,
+         double to) {
+    if (from > to) return;
+    place = PlaceOnChord{edge, nearest_parameter(polyline, edge, vertex, from, to)};
+    apart2 = (point_at(polyline, *place) - vertex).squaredNorm();
   }
-
- private:
-  struct Choice {
-    MatchedPair pair;
-    double apart2;
-  };
-
-  static bool at_start(const PlaceOnChord& place) { return place.edge == 0 && place.t == 0; }
-
-  // The begin of an edge as the end of the edge before: the place in the cell before.
-  static PlaceOnChord begin_of(std::size_t edge) {
-    return edge > 0 ? PlaceOnChord{edge - 1, 1} : PlaceOnChord{0, 0};
-  }
-
-  // Pair on the left or bottom side of the cell of `exit`, the nearer of the two. On the
-  // borders of the free space one path waits at its start.
-  [[nodiscard]] std::optional<MatchedPair> entry_of(const MatchedPair& exit) const {
-    if (at_start(exit.b)) return MatchedPair{begin_of(exit.a.edge), exit.b};
-    if (at_start(exit.a)) return MatchedPair{exit.a, begin_of(exit.b.edge)};
-    const std::optional<Choice> left = on_left(exit);
-    const std::optional<Choice> bottom = on_bottom(exit);
-    if (left && (!bottom || left->apart2 <= bottom->apart2)) return left->pair;
-    if (bottom) return bottom->pair;
-    return {};
-  }
-
-  [[nodiscard]] std::optional<Choice> on_left(const MatchedPair& exit) const {
-    const std::size_t row = exit.a.edge;
-    const std::size_t column = exit.b.edge;
-    const double from = sweep_.reached_right(row, static_cast<std::ptrdiff_t>(column) - 1);
-    if (from == kUnreached) return {};
-    const double to = std::min(space_.across_column(column, row).to, exit.a.t);
-    if (from > to) return {};
-    const Point3& vertex = b_.points[column];
-    const PlaceOnChord place{row, nearest_parameter(a_, row, vertex, from, to)};
-    return Choice{{place, begin_of(column)}, (point_at(a_, place) - vertex).squaredNorm()};
-  }
-
-  [[nodiscard]] std::optional<Choice> on_bottom(const MatchedPair& exit) const {
-    const std::size_t row = exit.a.edge;
-    const std::size_t column = exit.b.edge;
-    const double from = sweep_.reached_top(static_cast<std::ptrdiff_t>(row) - 1, column);
-    if (from == kUnreached) return {};
-    const double to = std::min(space_.across_row(row, column).to, exit.b.t);
-    if (from > to) return {};
-    const Point3& vertex = a_.points[row];
-    const PlaceOnChord place{column, nearest_parameter(b_, column, vertex, from, to)};
-    return Choice{{begin_of(row), place}, (point_at(b_, place) - vertex).squaredNorm()};
-  }
-
-  const FreeSpace& space_;
-  const FreeSpaceSweep& sweep_;
-  const ChordPolyline& a_;
-  const ChordPolyline& b_;
 };
+
+// From the end of both back to their start, each time to the side of the cell by which it can have
+// been entered, left or bottom, and there to what is nearest to the vertex.
+Matching way_back(const FreeSpace& space, const FreeSpaceSweep& sweep, const ChordPolyline& a,
+                  const ChordPolyline& b) {
+  MatchedPair here{{a.edge_count() - 1, 1}, {b.edge_count() - 1, 1}};
+  Matching way{here};
+  while (!at_start(here.a) || !at_start(here.b)) {
+    const std::size_t row = here.a.edge;
+    const std::size_t column = here.b.edge;
+    if (at_start(here.b)) {  // on a border of the free space one path waits at its start
+      here.a = begin_of(row);
+    } else if (at_start(here.a)) {
+      here.b = begin_of(column);
+    } else {
+      const OnSide left(a, row, b.points[column],
+                        sweep.reached_right(row, static_cast<std::ptrdiff_t>(column) - 1),
+                        std::min(space.across_column(column, row).to, here.a.t));
+      const OnSide bottom(b, column, a.points[row],
+                          sweep.reached_top(static_cast<std::ptrdiff_t>(row) - 1, column),
+                          std::min(space.across_row(row, column).to, here.b.t));
+      // Corners that two cells with different errors see differently can end the way back; the
+      // pairs then are no matching, and nobody takes them for a proof.
+      if (!left.place && !bottom.place) break;
+      here = left.apart2 <= bottom.apart2 ? MatchedPair{*left.place, begin_of(column)}
+                                          : MatchedPair{begin_of(row), *bottom.place};
+    }
+    way.push_back(here);
+  }
+  std::reverse(way.begin(), way.end());
+  return way;
+}
 
 }  // namespace
 
@@ -400,7 +376,7 @@ FreeSpaceAnswer find_passage(const ChordPolyline& a, const ChordPolyline& b, dou
   FreeSpaceSweep sweep(space, most_cells);
   FreeSpaceAnswer answer;
   answer.passage = sweep.run();
-  if (answer.passage == Passage::kFound) answer.way = WayBack(space, sweep, a, b).run();
+  if (answer.passage == Passage::kFound) answer.way = way_back(space, sweep, a, b);
   if (answer.passage == Passage::kNone) answer.furthest = sweep.furthest();
   return answer;
 }

@@ -1,23 +1,18 @@
-// Proved bounds on the distance of two paths, taken in order and both ways (the Fréchet
-// distance). Method: docs/algorithms/path_distance.md.
+// Proved bounds on the distance of two paths, taken in order and both ways (the Fréchet distance).
+// Method: docs/algorithms/path_distance.md.
 //
-// What is promised. `compare_paths` searches for a monotone matching of the two paths: a
-// chain of pairs of places that goes forward on both, between which both paths are
-// straight, or an arc or Bezier piece that has been cut so finely that its distance from
-// its chord is a known, small part of the tolerance. The distance of two linear motions is
-// greatest at an end, so the chain is a certificate: the Fréchet distance is at most the
-// greatest pair distance plus the chord errors. Pairs of printed decimals are compared with
-// the tolerance by CGAL's exact arithmetic: a copy shifted by exactly the tolerance is never
-// broken and nearly always proved, one shifted by a last digit more is broken.
+// What is promised. `compare_paths` searches for a monotone matching of the two paths: a chain of
+// pairs that goes forward on both, between which both paths are straight, or an arc or Bezier piece
+// cut so finely that its distance from its chord is a known, small part of the tolerance. The
+// distance of two linear motions is greatest at an end, so the chain is a certificate: the Fréchet
+// distance is at most the greatest pair distance plus the chord errors. Pairs of printed decimals
+// are compared with the tolerance by CGAL's exact arithmetic: a copy shifted by exactly the
+// tolerance is never broken and nearly always proved, one shifted by a last digit more is broken.
 //
-// What is left open (kNotProved): a distance that is the tolerance to within rounding but
-// met at places that are no decimals, as where a fold is waited for; and paths that
-// lie in a heap within the tolerance of themselves, where the search would cost too much.
-//
-// What is not checked. Piece ends must chain; a gap counts as a straight piece.
-//
-// `match_paths` gives the certificate too, for those who want to show where along the paths the
-// distance is how great.
+// What is left open (kNotProved): a distance that is the tolerance to within rounding but met where
+// there are no decimals, as where a fold is waited for; and paths that lie in a heap within the
+// tolerance of themselves, where the search would cost too much. Piece ends must chain; a gap
+// counts as a straight piece.
 #pragma once
 
 #include <cstddef>
@@ -52,18 +47,16 @@ struct PathComparison {
   std::size_t certificate_size = 0;  // pairs that prove the bound
 };
 
-// Compares path `a` with path `b` under `tolerance` (mm, > 0; throws std::invalid_argument
-// otherwise). Two empty paths are proved at distance 0; an empty path stands for one that
-// waits where the other one starts. `at_most` is tight to within about 2 % of the tolerance
-// where the paths are proved, and never above the tolerance then; it is finite always.
-//
-// Cost: about linear in the number of pieces where the paths stay within a few pieces of
-// each other.
+// `tolerance`: mm, > 0; throws std::invalid_argument otherwise. Two empty paths are proved at
+// distance 0; an empty path is one that waits where the other one starts. `at_most` is tight to
+// within about 2 % of the tolerance where the paths are proved, and never above the tolerance then;
+// it is finite always. Cost: about linear in the number of pieces where the paths stay within a few
+// pieces of each other.
 [[nodiscard]] PathComparison compare_paths(std::span<const PathPiece> a,
                                            std::span<const PathPiece> b, double tolerance);
 
-// Places that are passed together. They lie on the chords that stand for the pieces: on lines
-// exactly, on arcs to within 0.5 % of the tolerance.
+// Passed together. They are on the chords of the pieces: on lines exactly, on arcs to within 0.5 %
+// of the tolerance.
 struct PlacePair {
   std::size_t piece_a = 0;
   std::size_t piece_b = 0;
@@ -78,10 +71,9 @@ struct PathMatching {
   std::vector<PlacePair> pairs;
 };
 
-// `comparison` is that of compare_paths. Where it is proved, the pairs are its certificate: no
-// distance of a pair is above `bounds.at_most`, and the greatest is below it by the chord errors
-// only, which are 1 % of the tolerance together at the most. Elsewhere they are the best matching
-// that was found.
+// As compare_paths, with its certificate where it is proved: no distance of a pair is above
+// `bounds.at_most`, and the greatest is below it by the chord errors only, 1 % of the tolerance
+// together at most. Elsewhere the pairs are the best matching that was found.
 [[nodiscard]] PathMatching match_paths(std::span<const PathPiece> a, std::span<const PathPiece> b,
                                        double tolerance);
 

@@ -1,5 +1,7 @@
 #include "geometry/path/bspline_curve.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,37 +16,32 @@ namespace batten::geometry {
 
 BsplineBasis::BsplineBasis(int degree, std::vector<double> knots)
     : degree_(degree), knots_(std::move(knots)) {
+  const auto refuse = [](const std::string& why) {
+    throw std::invalid_argument("BsplineBasis: " + why);
+  };
   if (degree < 1 || degree > kMaxDegree) {
-    throw std::invalid_argument("BsplineBasis: degree " + std::to_string(degree) +
-                                ", expected 1 to " + std::to_string(kMaxDegree));
+    refuse(fmt::format("degree {}, expected 1 to {}", degree, kMaxDegree));
   }
   const std::size_t fewest = 2 * (static_cast<std::size_t>(degree) + 1);
   if (knots_.size() < fewest) {
-    throw std::invalid_argument("BsplineBasis: " + std::to_string(knots_.size()) +
-                                " knots, expected " + std::to_string(fewest) +
-                                " or more (2 * (degree + 1))");
+    refuse(fmt::format("{} knots, expected {} or more (2 * (degree + 1))", knots_.size(), fewest));
   }
   const auto drop = std::is_sorted_until(knots_.begin(), knots_.end());
   if (drop != knots_.end()) {
-    throw std::invalid_argument("BsplineBasis: knot " +
-                                std::to_string(std::distance(knots_.begin(), drop)) +
-                                " is below the one before it");
+    refuse(fmt::format("knot {} is below the one before it", drop - knots_.begin()));
   }
   if (!(first() < last())) {
-    throw std::invalid_argument("BsplineBasis: the interval from " + std::to_string(first()) +
-                                " to " + std::to_string(last()) + " is empty");
+    refuse(fmt::format("the interval from {:f} to {:f} is empty", first(), last()));
   }
 }
 
 BsplineBasis BsplineBasis::clamped(int degree, const std::vector<double>& breakpoints) {
   if (breakpoints.size() < 2) {
-    throw std::invalid_argument("BsplineBasis::clamped: " + std::to_string(breakpoints.size()) +
-                                " breakpoints, expected 2 or more");
+    throw std::invalid_argument(fmt::format(
+        "BsplineBasis::clamped: {} breakpoints, expected 2 or more", breakpoints.size()));
   }
   const auto p = static_cast<std::size_t>(degree);
-  std::vector<double> knots;
-  knots.reserve(breakpoints.size() + 2 * p);
-  knots.insert(knots.end(), p, breakpoints.front());
+  std::vector<double> knots(p, breakpoints.front());
   knots.insert(knots.end(), breakpoints.begin(), breakpoints.end());
   knots.insert(knots.end(), p, breakpoints.back());
   return BsplineBasis(degree, std::move(knots));
@@ -80,9 +77,9 @@ void BsplineBasis::evaluate(std::size_t span, double u, double* values) const {
 
 void BsplineBasis::evaluate_derivatives(std::size_t span, double u, int derivatives,
                                         double* values) const {
-  // The functions of every degree q <= p at u; the derivatives of degree p are differences
-  // of those (Piegl and Tiller, (2.9)): N'_{i,q} = q (N_{i,q-1}/(t_{i+q} - t_i) -
-  // N_{i+1,q-1}/(t_{i+q+1} - t_{i+1})). rows[q][j] is function span - q + j of degree q.
+  // rows[q][j] is function span - q + j of degree q <= p. Derivatives are differences of those
+  // (Piegl and Tiller, (2.9)): N'_{i,q} = q (N_{i,q-1}/(t_{i+q} - t_i) -
+  // N_{i+1,q-1}/(t_{i+q+1} - t_{i+1})).
   const int p = degree_;
   const auto& t = knots_;
   std::array<std::array<double, kMaxDegree + 1>, kMaxDegree + 1> rows{};
@@ -128,8 +125,6 @@ double BsplineBasis::greville(std::size_t i) const {
 
 namespace {
 
-constexpr int kMaxValues = (kMaxDegree + 1) * (kMaxDegree + 1);
-
 // A derivative shorter than this part of the curve's speed (control polygon by parameter)
 // is zero: cancellation leaves some 1e-15 of it.
 constexpr double kNoSpeed = 1e-12;
@@ -153,44 +148,14 @@ Point3 blossom(const BsplineBasis& basis, const std::vector<Point3>& points, std
   return d[p];
 }
 
-Point3 between(const Point3& a, const Point3& b, double part) { return (1 - part) * a + part * b; }
-
-// The last three Bezier points of a cubic span that is not empty: blossoms of its two knots, where
-// all but four of the steps of de Boor's algorithm have weights of 0 and 1. `t` points to the
-// span's first knot, `p` to the last of its four control points.
-std::array<Point3, 3> cubic_span(const double* t, const Point3* p) {
-  const Point3 third = between(p[-2], p[-1], (t[1] - t[-1]) / (t[2] - t[-1]));
-  const Point3 beyond = between(p[-1], p[0], (t[1] - t[0]) / (t[3] - t[0]));
-  return {between(p[-2], third, (t[0] - t[-1]) / (t[1] - t[-1])), third,
-          between(third, beyond, (t[1] - t[0]) / (t[2] - t[0]))};
-}
-
-std::vector<CubicBezier> cubic_pieces(const BsplineBasis& basis,
-                                      const std::vector<Point3>& points) {
-  constexpr std::size_t kCubic = 3;
-  const std::vector<double>& t = basis.knots();
-  std::vector<CubicBezier> pieces;
-  pieces.reserve(basis.size() - kCubic);
-  for (std::size_t span = kCubic; span < basis.size(); ++span) {
-    if (!(t[span] < t[span + 1])) continue;
-    const std::array<Point3, 3> q = cubic_span(&t[span], &points[span]);
-    // Neighbours share their joint to the last bit.
-    const std::array<double, 3> start{t[span], t[span], t[span]};
-    const Point3 first =
-        pieces.empty() ? blossom(basis, points, span, start.data()) : pieces.back().control[3];
-    pieces.push_back({{first, q[0], q[1], q[2]}});
-  }
-  return pieces;
-}
-
 }  // namespace
 
 BsplineCurve::BsplineCurve(BsplineBasis basis, std::vector<Point3> control_points)
     : basis_(std::move(basis)), control_points_(std::move(control_points)) {
   if (control_points_.size() != basis_.size()) {
-    throw std::invalid_argument("BsplineCurve: " + std::to_string(control_points_.size()) +
-                                " control points, expected " + std::to_string(basis_.size()) +
-                                " (knots - degree - 1)");
+    throw std::invalid_argument(
+        fmt::format("BsplineCurve: {} control points, expected {} (knots - degree - 1)",
+                    control_points_.size(), basis_.size()));
   }
 }
 
@@ -208,7 +173,7 @@ Point3 BsplineCurve::point_at(double u) const {
 
 Vector3 BsplineCurve::derivative_at(double u, int order) const {
   const std::size_t span = basis_.find_span(u);
-  std::array<double, kMaxValues> n{};
+  std::array<double, (kMaxDegree + 1) * (kMaxDegree + 1)> n{};
   if (order > degree()) return Vector3::Zero();
   basis_.evaluate_derivatives(span, std::clamp(u, first(), last()), order, n.data());
   Vector3 sum = Vector3::Zero();
@@ -248,9 +213,9 @@ double BsplineCurve::curvature_at(double u) const {
 
 BsplineCurve BsplineCurve::part(double from, double to) const {
   if (!(first() <= from && from < to && to <= last())) {
-    throw std::invalid_argument("BsplineCurve::part: from " + std::to_string(from) + " to " +
-                                std::to_string(to) + ", expected an interval inside " +
-                                std::to_string(first()) + " to " + std::to_string(last()));
+    throw std::invalid_argument(fmt::format(
+        "BsplineCurve::part: from {:f} to {:f}, expected an interval inside {:f} to {:f}", from, to,
+        first(), last()));
   }
   const auto p = static_cast<std::size_t>(degree());
   const auto& t = basis_.knots();
@@ -285,10 +250,9 @@ std::vector<double> BsplineCurve::breakpoints() const {
 std::vector<CubicBezier> BsplineCurve::bezier_pieces() const {
   const int p = degree();
   if (p > 3) {
-    throw std::invalid_argument("BsplineCurve::bezier_pieces: degree " + std::to_string(p) +
-                                ", expected 3 or less");
+    throw std::invalid_argument(
+        fmt::format("BsplineCurve::bezier_pieces: degree {}, expected 3 or less", p));
   }
-  if (p == 3) return cubic_pieces(basis_, control_points_);
   const auto& t = basis_.knots();
   std::vector<CubicBezier> pieces;
   pieces.reserve(basis_.size() - p);
@@ -319,17 +283,12 @@ namespace {
 // A half is nearer to its polygon by a quarter, so twenty halvings take a millimetre to 1e-12 mm.
 constexpr int kMostHalvings = 20;
 
-double farthest_control(const CubicBezier& piece) {
-  double most = 0;
-  for (const Point3& p : piece.control) most = std::max(most, p.norm());
-  return most;
-}
-
-// `reached` is the greatest |displacement| met so far in the span. The span's maximum is above
-// it or on it, so a piece whose bound is less than `slack` above it need not be looked at.
+// `reached` is the greatest |displacement| met so far in the span, so its maximum is no less: a
+// part whose bound is less than `slack` above that need not be looked at.
 double bound_of(const CubicBezier& piece, double slack, int halvings, double& reached) {
   reached = std::max({reached, piece.control[0].norm(), piece.control[3].norm()});
-  const double bound = farthest_control(piece);
+  double bound = 0;
+  for (const Point3& p : piece.control) bound = std::max(bound, p.norm());
   if (bound <= reached + slack || halvings == 0) return bound;
   const auto [left, right] = halves(piece);
   return std::max(bound_of(left, slack, halvings - 1, reached),

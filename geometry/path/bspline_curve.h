@@ -13,12 +13,11 @@ inline constexpr int kMaxDegree = 5;
 
 class BsplineBasis {
  public:
-  // Throws std::invalid_argument when the degree is not in 1..kMaxDegree, when there are
-  // fewer than 2 * (degree + 1) knots, when knots decrease, or when [t_p, t_m] is empty.
+  // Throws std::invalid_argument when the degree is not in 1..kMaxDegree, there are fewer than
+  // 2 * (degree + 1) knots, knots decrease, or [t_p, t_m] is empty.
   BsplineBasis(int degree, std::vector<double> knots);
 
-  // Clamped knots: every end breakpoint degree + 1 times, the inner ones once.
-  // Breakpoints must increase strictly.
+  // Every end breakpoint degree + 1 times, the inner ones once. They must increase strictly.
   [[nodiscard]] static BsplineBasis clamped(int degree, const std::vector<double>& breakpoints);
 
   [[nodiscard]] int degree() const { return degree_; }
@@ -27,20 +26,18 @@ class BsplineBasis {
   [[nodiscard]] double first() const { return knots_[degree_]; }
   [[nodiscard]] double last() const { return knots_[size()]; }
 
-  // The k with t_k <= u < t_{k+1}, p <= k < m; the last non-empty span for u = last().
-  // Parameters outside [first, last] count as the nearer end.
+  // The k with t_k <= u < t_{k+1}, p <= k < m; the last non-empty span for u = last(). Parameters
+  // outside [first, last] count as the nearer end.
   [[nodiscard]] std::size_t find_span(double u) const;
 
-  // The degree + 1 functions that are not zero on span k, at u: values[0] belongs to
-  // function k - degree.
+  // The degree + 1 functions that are not zero on span k, at u: values[0] is function k - degree.
   void evaluate(std::size_t span, double u, double* values) const;
 
-  // The same with derivatives: values[d * (degree + 1) + j] is the d-th derivative of
-  // function k - degree + j, d = 0..derivatives. Derivatives above the degree are 0.
+  // The same with derivatives: values[d * (degree + 1) + j] is the d-th derivative of function
+  // k - degree + j, d = 0..derivatives. Derivatives above the degree are 0.
   void evaluate_derivatives(std::size_t span, double u, int derivatives, double* values) const;
 
-  // The parameter at which the control polygon of a straight line has point i:
-  // (t_{i+1} + ... + t_{i+p}) / p.
+  // Where the control polygon of a straight line has point i: (t_{i+1} + ... + t_{i+p}) / p.
   [[nodiscard]] double greville(std::size_t i) const;
 
  private:
@@ -64,8 +61,8 @@ class BsplineCurve {
   // The order-th derivative by u, from the right (from the left at last()).
   [[nodiscard]] Vector3 derivative_at(double u, int order) const;
 
-  // Unit tangent; where the first derivative vanishes, the direction in which the curve
-  // leaves that place (arrives, at the end of the curve).
+  // Unit tangent; where the first derivative vanishes, the direction in which the curve leaves
+  // (arrives, at its end).
   [[nodiscard]] Vector3 direction_at(double u) const;
 
   // 1/mm; 0 where the first derivative vanishes.
@@ -78,8 +75,7 @@ class BsplineCurve {
   // Distinct knots of [first, last], increasing.
   [[nodiscard]] std::vector<double> breakpoints() const;
 
-  // One cubic Bezier piece per span of breakpoints(); piece i runs over
-  // [breakpoints[i], breakpoints[i + 1]]. Requires degree 3 or less. Linear cost.
+  // One for each span of breakpoints(), in order. Requires degree 3 or less. Linear cost.
   [[nodiscard]] std::vector<CubicBezier> bezier_pieces() const;
 
  private:
@@ -87,14 +83,10 @@ class BsplineCurve {
   std::vector<Point3> control_points_;
 };
 
-// How far a curve was moved, when another curve with the same knots was made of it. The
-// displacement D(u) = C(u) - C0(u) is a spline itself, its control points the moves of the control
-// points. Bounds on |D(u)| that hold for every u, not only at samples; no place of either curve is
-// further from the other curve than the greatest |D|.
-
-// For each span of displacement.breakpoints() a number (mm) that |displacement| does not exceed
-// there, and exceeds the greatest |displacement| of the span by no more than `slack` (mm, > 0).
-// Bezier pieces are halved until their control points say so. Requires degree 3 or less.
+// How far a curve was moved when another one with the same knots was made of it: D(u) = C(u) -
+// C0(u) is a spline whose control points are the moves of the control points. For each span of
+// displacement.breakpoints() a bound (mm) on |D| that holds for every u, above the greatest |D| of
+// the span by `slack` (mm, > 0) at most. Requires degree 3 or less.
 [[nodiscard]] std::vector<double> displacement_bounds(const BsplineCurve& displacement,
                                                       double slack);
 

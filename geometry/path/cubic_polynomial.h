@@ -11,8 +11,8 @@
 
 namespace batten::geometry {
 
-// c0 + c1 t + c2 t^2 + c3 t^3 for t in [0, 1], from a fixed place. Near that place it is right
-// to rounding, also where the coordinates are great.
+// c0 + c1 t + c2 t^2 + c3 t^3 for t in [0, 1], from a fixed position, near which it is right to
+// rounding where the coordinates are great, too.
 class CubicPolynomial {
  public:
   explicit CubicPolynomial(const CubicBezier& b, const Point3& origin = Point3::Zero())
@@ -26,7 +26,7 @@ class CubicPolynomial {
   [[nodiscard]] Vector3 second(double t) const { return 2 * c2_ + 6 * t * c3_; }
   [[nodiscard]] Vector3 third() const { return 6 * c3_; }
 
-  // Appends offset + t for the places t in [0, 1] where the value has no part along `direction`.
+  // Appends offset + t for each t in [0, 1] where the value has no part along `direction`.
   void append_crossings(const Vector3& direction, double offset,
                         std::vector<double>& places) const {
     append_cubic_roots(c0_.dot(direction), c1_.dot(direction), c2_.dot(direction),
@@ -46,10 +46,8 @@ class CubicPolynomial {
   Vector3 c3_;
 };
 
-// A cubic Bezier piece cut in two, in the plane or in space.
-
-// The two parts before and behind t in ]0, 1[, each for t in [0, 1] again. `Cubic` holds four
-// points `control` and nothing else. De Casteljau's algorithm.
+// The two parts before and after t in ]0, 1[, each for t in [0, 1] again. `Cubic` holds four
+// points `control`, in the plane or in space, and nothing else. De Casteljau's algorithm.
 template <typename Cubic>
 [[nodiscard]] std::pair<Cubic, Cubic> parts_at(const Cubic& piece, double t) {
   const auto& p = piece.control;
@@ -64,18 +62,9 @@ template <typename Cubic>
   return {Cubic{{p[0], first, left, middle}}, Cubic{{middle, right, third, p[3]}}};
 }
 
-// Cut in the middle of its parameter.
 template <typename Cubic>
 [[nodiscard]] std::pair<Cubic, Cubic> halves(const Cubic& piece) {
-  const auto& p = piece.control;
-  using Point = std::remove_cvref_t<decltype(p[0])>;
-  const Point first = (p[0] + p[1]) / 2;
-  const Point second = (p[1] + p[2]) / 2;
-  const Point third = (p[2] + p[3]) / 2;
-  const Point left = (first + second) / 2;
-  const Point right = (second + third) / 2;
-  const Point middle = (left + right) / 2;
-  return {Cubic{{p[0], first, left, middle}}, Cubic{{middle, right, third, p[3]}}};
+  return parts_at(piece, 0.5);
 }
 
 }  // namespace batten::geometry

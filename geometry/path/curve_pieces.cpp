@@ -1,10 +1,10 @@
 #include "geometry/path/curve_pieces.h"
 
-#include <Eigen/Geometry>
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 
 namespace batten::geometry {
 namespace {
@@ -37,15 +37,14 @@ bool is_straight(const CubicBezier& piece) {
 
 CurvePieces::CurvePieces(const BsplineCurve& curve, double from, double to) {
   if (!(curve.first() <= from && from < to && to <= curve.last())) {
-    throw std::invalid_argument("CurvePieces: from " + std::to_string(from) + " to " +
-                                std::to_string(to) + ", expected an interval inside " +
-                                std::to_string(curve.first()) + " to " +
-                                std::to_string(curve.last()));
+    throw std::invalid_argument(
+        fmt::format("CurvePieces: from {:f} to {:f}, expected an interval inside {:f} to {:f}",
+                    from, to, curve.first(), curve.last()));
   }
   const bool whole = from == curve.first() && to == curve.last();
-  const BsplineCurve stretch = whole ? curve : curve.part(from, to);
-  breaks_ = stretch.breakpoints();
-  pieces_ = stretch.bezier_pieces();
+  const BsplineCurve section = whole ? curve : curve.part(from, to);
+  breaks_ = section.breakpoints();
+  pieces_ = section.bezier_pieces();
 }
 
 std::size_t PieceRow::index_of(double u) const {
@@ -58,8 +57,6 @@ std::size_t PieceRow::index_of(double u) const {
 double PieceRow::local(std::size_t i, double u) const {
   return std::clamp((u - breaks_[i]) / (breaks_[i + 1] - breaks_[i]), 0.0, 1.0);
 }
-
-Point3 PieceRow::point_at(double u) const { return point_in(index_of(u), u); }
 
 Point3 PieceRow::point_in(std::size_t i, double u) const {
   return geometry::point_at(pieces_[i], local(i, u));
@@ -95,19 +92,16 @@ std::vector<double> CurvePieces::corners() const {
 
 std::vector<StraightRun> CurvePieces::straight_runs() const {
   std::vector<StraightRun> runs;
-  std::size_t i = 0;
-  while (i < pieces_.size()) {
-    if (!is_straight(pieces_[i])) {
-      ++i;
-      continue;
-    }
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < pieces_.size(); i = end) {
+    end = i + 1;
+    if (!is_straight(pieces_[i])) continue;
     // Extend along the line through the run's first piece, re-aimed at the farthest end so
     // far: a long first line decides, and no later piece leaves it by more than the noise.
     const Point3 start = pieces_[i].control[0];
     Vector3 along = (pieces_[i].control[3] - start).normalized();
     double reach = (pieces_[i].control[3] - start).norm();
-    std::size_t end = i + 1;
-    while (end < pieces_.size() && is_straight(pieces_[end])) {
+    for (; end < pieces_.size() && is_straight(pieces_[end]); ++end) {
       const Point3& next = pieces_[end].control[3];
       const double onward = along.dot(next - start);
       const double allowed = kOnLine * std::max(1.0, (onward - reach) / reach);
@@ -116,7 +110,6 @@ std::vector<StraightRun> CurvePieces::straight_runs() const {
       if (distance_to_line(pieces_[end].control[0], start, aimed) > kOnLine) break;
       along = aimed;
       reach = onward;
-      ++end;
     }
     // Many tiny pieces of a bend can each pass; together they are no line.
     const auto on_line = [&](const CubicBezier& piece) {
@@ -125,7 +118,6 @@ std::vector<StraightRun> CurvePieces::straight_runs() const {
     const auto first = pieces_.begin() + static_cast<std::ptrdiff_t>(i);
     const auto last = pieces_.begin() + static_cast<std::ptrdiff_t>(end);
     if (std::all_of(first, last, on_line)) runs.push_back({breaks_[i], breaks_[end]});
-    i = end;
   }
   return runs;
 }

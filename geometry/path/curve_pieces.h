@@ -1,5 +1,5 @@
-// A stretch of a cubic B-spline curve, cut once into its Bezier pieces, with the places
-// that an approximation by lines or arcs must respect: corners and straight runs.
+// A section of a cubic B-spline curve, cut once into its Bezier pieces, with what an approximation
+// by lines or arcs must respect: corners and straight runs.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,7 @@ inline constexpr double kCornerAngle = 2e-3;
 // noise of solved control points, below the last decimal that a program carries.
 inline constexpr double kOnLine = 1e-7;
 
-// Parameters of a stretch that is one straight line to within kOnLine.
-struct StraightRun {
+struct StraightRun {  // parameters of a section that is one straight line to within kOnLine
   double from;
   double to;
 };
@@ -34,14 +33,12 @@ class PieceRow {
   // The piece that holds u; the later one at a break (the last one at the end).
   [[nodiscard]] std::size_t index_of(double u) const;
 
-  [[nodiscard]] Point3 point_at(double u) const;
-  // The same for who knows the piece that holds u.
+  [[nodiscard]] Point3 point_at(double u) const { return point_in(index_of(u), u); }
+
+  // In piece i, of which parameters of the curve are clamped to the piece: the position at u, the
+  // piece's own parameter there (0..1), and the part between two of them.
   [[nodiscard]] Point3 point_in(std::size_t i, double u) const;
-
-  // The piece's own parameter at u, 0..1 (clamped to the piece).
   [[nodiscard]] double local(std::size_t i, double u) const;
-
-  // The part of piece i between two parameters of the curve (clamped to the piece).
   [[nodiscard]] CubicBezier part(std::size_t i, double from, double to) const;
 
  protected:
@@ -61,22 +58,23 @@ class CurvePieces : public PieceRow {
   [[nodiscard]] Vector3 arriving(double u) const;
   [[nodiscard]] Vector3 leaving(double u) const;
 
-  // Places inside where the tangent turns by more than kCornerAngle, increasing.
+  // Parameters inside where the tangent turns by more than kCornerAngle, increasing.
   [[nodiscard]] std::vector<double> corners() const;
 
-  // Longest stretches of whole pieces that are straight, increasing, not overlapping.
+  // The longest of whole pieces, increasing, not overlapping.
   [[nodiscard]] std::vector<StraightRun> straight_runs() const;
 };
 
-// A stretch of curve for those who cut it more than once.
+// CurvePieces with their corners and straight runs, for those who cut them more than once.
 struct MarkedPieces {
-  // As CurvePieces.
+  explicit MarkedPieces(const BsplineCurve& curve)
+      : MarkedPieces(curve, curve.first(), curve.last()) {}
   MarkedPieces(const BsplineCurve& curve, double from, double to)
       : pieces(curve, from, to), corners(pieces.corners()), straight_runs(pieces.straight_runs()) {}
 
   CurvePieces pieces;
-  std::vector<double> corners;             // as CurvePieces gives them
-  std::vector<StraightRun> straight_runs;  // the same
+  std::vector<double> corners;
+  std::vector<StraightRun> straight_runs;
 };
 
 }  // namespace batten::geometry

@@ -1,7 +1,8 @@
 #include "geometry/path/joined_curve.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -25,27 +26,25 @@ CubicBezier as_bezier(const PathPiece& piece) {
 }
 
 // Knots and control points of the whole, part after part.
-class Joiner {
- public:
+struct Joiner {
   void add(double from, std::span<const double> inner_knots, double to,
-           std::span<const Point3> points) {
-    if (knots_.empty()) {
-      knots_.assign(kJoinedDegree + 1, from);
-      points_.assign(points.begin(), points.begin() + 1);
+           std::span<const Point3> added) {
+    if (knots.empty()) {
+      knots.assign(kJoinedDegree + 1, from);
+      points.push_back(added.front());
     }
-    knots_.insert(knots_.end(), inner_knots.begin(), inner_knots.end());
-    knots_.insert(knots_.end(), kJoinedDegree, to);
-    points_.insert(points_.end(), points.begin() + 1, points.end());
+    knots.insert(knots.end(), inner_knots.begin(), inner_knots.end());
+    knots.insert(knots.end(), kJoinedDegree, to);
+    points.insert(points.end(), added.begin() + 1, added.end());
   }
 
   [[nodiscard]] BsplineCurve curve() && {
-    knots_.push_back(knots_.back());
-    return {BsplineBasis(kJoinedDegree, std::move(knots_)), std::move(points_)};
+    knots.push_back(knots.back());
+    return {BsplineBasis(kJoinedDegree, std::move(knots)), std::move(points)};
   }
 
- private:
-  std::vector<double> knots_;
-  std::vector<Point3> points_;
+  std::vector<double> knots;
+  std::vector<Point3> points;
 };
 
 }  // namespace
@@ -55,13 +54,11 @@ BsplineCurve joined(std::span<const BsplineCurve> parts) {
   Joiner joiner;
   double end = parts.front().first();
   for (const BsplineCurve& part : parts) {
-    if (!is_clamped_cubic(part)) {
-      throw std::invalid_argument("joined: a part of degree " + std::to_string(part.degree()) +
-                                  ", expected clamped cubics");
-    }
-    if (part.first() != end) {
-      throw std::invalid_argument("joined: a part starts at " + std::to_string(part.first()) +
-                                  ", expected " + std::to_string(end));
+    if (!is_clamped_cubic(part) || part.first() != end) {
+      throw std::invalid_argument(
+          fmt::format("joined: a part of degree {} that starts at {:f}, expected a clamped cubic "
+                      "that starts at {:f}",
+                      part.degree(), part.first(), end));
     }
     end = part.last();
     const std::span<const double> knots = part.basis().knots();
@@ -74,15 +71,16 @@ BsplineCurve joined(std::span<const BsplineCurve> parts) {
 
 BsplineCurve curve_of_pieces(std::span<const PathPiece> pieces, std::span<const double> stations) {
   if (pieces.empty() || stations.size() != pieces.size() + 1) {
-    throw std::invalid_argument("curve_of_pieces: " + std::to_string(stations.size()) +
-                                " stations for " + std::to_string(pieces.size()) +
-                                " pieces, expected one more than pieces, and a piece at least");
+    throw std::invalid_argument(
+        fmt::format("curve_of_pieces: {} stations for {} pieces, expected one more than pieces, "
+                    "and a piece at least",
+                    stations.size(), pieces.size()));
   }
   Joiner joiner;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     if (!(stations[i] < stations[i + 1])) {
-      throw std::invalid_argument("curve_of_pieces: station " + std::to_string(stations[i + 1]) +
-                                  " after " + std::to_string(stations[i]) + ", expected more");
+      throw std::invalid_argument(
+          fmt::format("curve_of_pieces: station {:f} after {:f}", stations[i + 1], stations[i]));
     }
     const CubicBezier bezier = as_bezier(pieces[i]);
     joiner.add(stations[i], {}, stations[i + 1], bezier.control);

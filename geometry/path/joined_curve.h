@@ -1,4 +1,4 @@
-// Curves, lines and Bezier pieces as one B-spline curve.
+// Curves, lines and Bezier pieces as one B-spline curve. Linear cost.
 #pragma once
 
 #include <span>
@@ -8,12 +8,12 @@
 
 namespace batten::geometry {
 
-// Clamped cubics, one or more, each starting at the parameter and the place where the one before
-// it ends. The joints are triple knots: the curve is the parts, to the last digit, and may have
-// corners there. Linear cost.
+// Clamped cubics, one or more, each starting at the parameter and the position where the one
+// before it ends (positions that differ by rounding: the earlier part's). The joints are triple
+// knots: the curve is the parts, to the last digit, and may have corners there.
 //
 // Throws std::invalid_argument when there is no part, or one is no clamped cubic, or the
-// parameters do not join. Places that differ by rounding are taken from the earlier part.
+// parameters do not join.
 [[nodiscard]] BsplineCurve joined(std::span<const BsplineCurve> parts);
 
 // Lines and cubic Bezier pieces, one or more. Piece i runs over [stations[i], stations[i + 1]];

@@ -27,9 +27,9 @@ struct LengthDerivatives {
 // From those by another parameter, the first not zero: the chain rule.
 [[nodiscard]] LengthDerivatives by_length(const Vector3& d1, const Vector3& d2, const Vector3& d3);
 
-// mm/s: the least over curve and axes of V / |x_s|, sqrt(A / |x_ss|) and cbrt(J / |x_sss|), no
-// more than `feed`; x_s .. are derivatives by length, the third from both sides at the knots.
-// Requires degree 3 or less. By samples that are refined around the least ones.
+// mm/s: the least over curve and axes of V / |x_s|, sqrt(A / |x_ss|) and cbrt(J / |x_sss|), at
+// most `feed`; x_s .. are derivatives by length, the third from both sides at the knots. By samples
+// that are refined around the least ones. Requires degree 3 or less.
 [[nodiscard]] double feed_estimate(const BsplineCurve& curve, const KinematicLimits& limits);
 
 }  // namespace batten::geometry

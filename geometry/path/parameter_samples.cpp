@@ -1,11 +1,11 @@
 #include "geometry/path/parameter_samples.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
-#include <string>
 
 namespace batten::geometry {
-
 namespace {
 
 // One span of a cubic: its first two derivatives by the curve's parameter, as Bezier polynomials.
@@ -36,8 +36,8 @@ class SpanDerivatives {
 
 std::vector<ParameterSample> parameter_samples(const BsplineCurve& curve, int steps) {
   if (steps < 1) {
-    throw std::invalid_argument("parameter_samples: " + std::to_string(steps) +
-                                " steps, expected 1 or more");
+    throw std::invalid_argument(
+        fmt::format("parameter_samples: {} steps, expected 1 or more", steps));
   }
   const std::vector<double> knots = curve.breakpoints();
   const std::vector<CubicBezier> pieces = curve.bezier_pieces();

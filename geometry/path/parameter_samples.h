@@ -20,8 +20,7 @@ struct ParameterSample {
 };
 
 // Every breakpoint once (seen from the span before it) and `steps` equal steps in every span;
-// distances by the trapezoidal rule. Requires degree 3 or less; throws std::invalid_argument
-// where steps < 1.
+// distances by the trapezoidal rule. Requires degree 3 or less; throws where steps < 1.
 [[nodiscard]] std::vector<ParameterSample> parameter_samples(const BsplineCurve& curve, int steps);
 
 // 0 without samples, as the next one.

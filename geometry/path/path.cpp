@@ -1,9 +1,7 @@
 #include "geometry/path/path.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 #include <variant>
 
 #include "geometry/basic/rounding.h"
@@ -137,35 +135,18 @@ double integrate_speed(const Speed& speed) {
   return integrate(speed, 0.0, 1.0, whole, kRelativeError * whole, kDepth);
 }
 
-template <typename T>
-inline constexpr bool is_line = std::is_same_v<std::decay_t<T>, Line>;
-template <typename T>
-inline constexpr bool is_arc = std::is_same_v<std::decay_t<T>, Arc>;
-
 }  // namespace
 
 Point3 start_point(const PathPiece& piece) {
-  return std::visit(
-      [](const auto& p) -> Point3 {
-        if constexpr (std::is_same_v<std::decay_t<decltype(p)>, CubicBezier>) {
-          return p.control[0];
-        } else {
-          return p.start;
-        }
-      },
-      piece);
+  if (const auto* bezier = std::get_if<CubicBezier>(&piece)) return bezier->control[0];
+  const auto* line = std::get_if<Line>(&piece);
+  return line != nullptr ? line->start : std::get<Arc>(piece).start;
 }
 
 Point3 end_point(const PathPiece& piece) {
-  return std::visit(
-      [](const auto& p) -> Point3 {
-        if constexpr (std::is_same_v<std::decay_t<decltype(p)>, CubicBezier>) {
-          return p.control[3];
-        } else {
-          return p.end;
-        }
-      },
-      piece);
+  if (const auto* bezier = std::get_if<CubicBezier>(&piece)) return bezier->control[3];
+  const auto* line = std::get_if<Line>(&piece);
+  return line != nullptr ? line->end : std::get<Arc>(piece).end;
 }
 
 Point3 point_at(const CubicBezier& piece, double t) {
@@ -179,48 +160,36 @@ Point3 point_at(const CubicBezier& piece, double t) {
 Point3 point_at(const PathPiece& piece, double t) {
   if (t <= 0) return start_point(piece);
   if (t >= 1) return end_point(piece);
-  return std::visit(
-      [t](const auto& p) -> Point3 {
-        if constexpr (is_line<decltype(p)>) {
-          return p.start + t * (p.end - p.start);
-        } else if constexpr (is_arc<decltype(p)>) {
-          return ArcFrame(p).point(t);
-        } else {
-          return point_at(p, t);
-        }
-      },
-      piece);
+  if (const auto* line = std::get_if<Line>(&piece)) {
+    return line->start + t * (line->end - line->start);
+  }
+  if (const auto* arc = std::get_if<Arc>(&piece)) return ArcFrame(*arc).point(t);
+  return point_at(std::get<CubicBezier>(piece), t);
 }
 
 Vector3 direction_at(const PathPiece& piece, double t) {
-  return std::visit(
-      [t](const auto& p) -> Vector3 {
-        if constexpr (is_line<decltype(p)>) {
-          return unit_or_zero(p.end - p.start);
-        } else if constexpr (is_arc<decltype(p)>) {
-          const ArcFrame frame(p);
-          return unit_or_zero(frame.in_space(t, frame.velocity(t)));
-        } else {
-          return bezier_direction(p, t);
-        }
-      },
-      piece);
+  if (const auto* line = std::get_if<Line>(&piece)) return unit_or_zero(line->end - line->start);
+  if (const auto* arc = std::get_if<Arc>(&piece)) {
+    const ArcFrame frame(*arc);
+    return unit_or_zero(frame.in_space(t, frame.velocity(t)));
+  }
+  return bezier_direction(std::get<CubicBezier>(piece), t);
+}
+
+double radius_of(const Arc& arc) {
+  const Vector3 out = arc.start - arc.center;
+  return (out - out.dot(arc.axis) * arc.axis).norm();
 }
 
 double length_of(const PathPiece& piece) {
-  return std::visit(
-      [](const auto& p) -> double {
-        if constexpr (is_line<decltype(p)>) {
-          return (p.end - p.start).norm();
-        } else if constexpr (is_arc<decltype(p)>) {
-          const ArcFrame frame(p);
-          if (frame.growth() == 0) return frame.velocity(0).norm();
-          return integrate_speed([&frame](double t) { return frame.velocity(t).norm(); });
-        } else {
-          return integrate_speed([&p](double t) { return bezier_first(p, t).norm(); });
-        }
-      },
-      piece);
+  if (const auto* line = std::get_if<Line>(&piece)) return (line->end - line->start).norm();
+  if (const auto* arc = std::get_if<Arc>(&piece)) {
+    const ArcFrame frame(*arc);
+    if (frame.growth() == 0) return frame.velocity(0).norm();
+    return integrate_speed([&frame](double t) { return frame.velocity(t).norm(); });
+  }
+  const auto& bezier = std::get<CubicBezier>(piece);
+  return integrate_speed([&bezier](double t) { return bezier_first(bezier, t).norm(); });
 }
 
 double length_of(std::span<const PathPiece> path) {
@@ -230,34 +199,24 @@ double length_of(std::span<const PathPiece> path) {
 }
 
 double curvature_at(const PathPiece& piece, double t) {
-  return std::visit(
-      [t](const auto& p) -> double {
-        if constexpr (is_line<decltype(p)>) {
-          return 0;
-        } else if constexpr (is_arc<decltype(p)>) {
-          const ArcFrame frame(p);
-          return curvature_of(frame.velocity(t), frame.acceleration(t));
-        } else {
-          return curvature_of(bezier_first(p, t), bezier_second(p, t));
-        }
-      },
-      piece);
+  if (std::holds_alternative<Line>(piece)) return 0;
+  if (const auto* arc = std::get_if<Arc>(&piece)) {
+    const ArcFrame frame(*arc);
+    return curvature_of(frame.velocity(t), frame.acceleration(t));
+  }
+  const auto& bezier = std::get<CubicBezier>(piece);
+  return curvature_of(bezier_first(bezier, t), bezier_second(bezier, t));
 }
 
 double second_derivative_bound(const PathPiece& piece) {
-  return std::visit(
-      [](const auto& p) -> double {
-        if constexpr (is_line<decltype(p)>) {
-          return 0;
-        } else if constexpr (is_arc<decltype(p)>) {
-          const ArcFrame frame(p);
-          const double inward = frame.greatest_radius() * frame.sweep() * frame.sweep();
-          return std::hypot(inward, 2 * frame.growth() * frame.sweep());
-        } else {  // linear in t, so greatest at an end
-          return std::max(bezier_second(p, 0).norm(), bezier_second(p, 1).norm());
-        }
-      },
-      piece);
+  if (std::holds_alternative<Line>(piece)) return 0;
+  if (const auto* arc = std::get_if<Arc>(&piece)) {
+    const ArcFrame frame(*arc);
+    const double inward = frame.greatest_radius() * frame.sweep() * frame.sweep();
+    return std::hypot(inward, 2 * frame.growth() * frame.sweep());
+  }
+  const auto& bezier = std::get<CubicBezier>(piece);  // linear in t, so greatest at an end
+  return std::max(bezier_second(bezier, 0).norm(), bezier_second(bezier, 1).norm());
 }
 
 CubicBezier sub_piece(const CubicBezier& piece, double t0, double t1) {
@@ -278,40 +237,23 @@ CubicBezier sub_piece(const CubicBezier& piece, double t0, double t1) {
 }
 
 PathPiece sub_piece(const PathPiece& piece, double t0, double t1) {
-  return std::visit(
-      [&piece, t0, t1](const auto& p) -> PathPiece {
-        if constexpr (is_line<decltype(p)>) {
-          return Line{point_at(piece, t0), point_at(piece, t1)};
-        } else if constexpr (is_arc<decltype(p)>) {
-          return Arc{point_at(piece, t0), point_at(piece, t1), p.center, p.axis,
-                     p.sweep * (t1 - t0)};
-        } else {
-          return sub_piece(p, t0, t1);
-        }
-      },
-      piece);
+  if (const auto* bezier = std::get_if<CubicBezier>(&piece)) return sub_piece(*bezier, t0, t1);
+  const Point3 start = point_at(piece, t0);
+  const Point3 end = point_at(piece, t1);
+  const auto* arc = std::get_if<Arc>(&piece);
+  if (arc == nullptr) return Line{start, end};
+  return Arc{start, end, arc->center, arc->axis, arc->sweep * (t1 - t0)};
 }
 
 namespace {
 
 bool turns_about_z(const Arc& arc) { return std::abs(arc.axis.z()) > 1 - kSameDirection; }
 
-// How far the path is moved at the start and the end of a piece.
-struct Shift {
-  Vector3 start;
-  Vector3 end;
-};
-
-PathPiece moved_line(const Line& line, const Shift& shift) {
-  return Line{line.start + shift.start, line.end + shift.end};
-}
-
-// About the same centre. An arc that is left on its inside by more than its radius goes on behind
-// the centre; on the centre itself it is a place.
-PathPiece moved_arc(const Arc& arc, const Shift& shift) {
-  Arc moved = arc;
-  moved.start += shift.start;
-  moved.end += shift.end;
+// About the same centre. An arc that is left on its inside by more than its radius goes on beyond
+// the centre; on the centre itself it is a point.
+PathPiece moved_arc(Arc moved, const Vector3& at_start, const Vector3& at_end) {
+  moved.start += at_start;
+  moved.end += at_end;
   const Vector3 out = moved.start - moved.center;
   if (std::hypot(out.x(), out.y()) <= kSamePlace) return Line{moved.start, moved.end};
   return moved;
@@ -329,9 +271,9 @@ class Parallel {
       last_ = start;
       const Vector3 end = shift_at(piece, 1);
       if (const auto* line = std::get_if<Line>(&piece)) {
-        made_.push_back(moved_line(*line, {start, end}));
+        made_.push_back(Line{line->start + start, line->end + end});
       } else if (const auto* arc = std::get_if<Arc>(&piece); arc && turns_about_z(*arc)) {
-        made_.push_back(moved_arc(*arc, {start, end}));
+        made_.push_back(moved_arc(*arc, start, end));
       } else {
         return std::nullopt;
       }

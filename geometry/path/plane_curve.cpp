@@ -1,6 +1,5 @@
 #include "geometry/path/plane_curve.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +17,7 @@ double turn(const Vector2& from, const Vector2& to) {
   return std::atan2(cross(from, to), from.dot(to));
 }
 
-// Direction in the plane where `t` stands; the zero vector where there is none.
+// The zero vector where there is none.
 Vector2 plane_direction(const CubicBezier& piece, double t) {
   return direction_at(piece, t).head<2>();
 }
@@ -49,19 +48,6 @@ Turning turning_of(const CubicBezier& piece) {
   return turning;
 }
 
-struct Derivatives {
-  Vector3 first;
-  Vector3 second;
-};
-
-Derivatives derivatives(const CubicBezier& b, double t) {
-  const Vector3 d0 = b.control[1] - b.control[0];
-  const Vector3 d1 = b.control[2] - b.control[1];
-  const Vector3 d2 = b.control[3] - b.control[2];
-  const double s = 1 - t;
-  return {3 * (s * s * d0 + 2 * s * t * d1 + t * t * d2), 6 * (s * (d1 - d0) + t * (d2 - d1))};
-}
-
 }  // namespace
 
 Vector2 unit_vector(double angle) { return {std::cos(angle), std::sin(angle)}; }
@@ -69,8 +55,8 @@ Vector2 unit_vector(double angle) { return {std::cos(angle), std::sin(angle)}; }
 PlaneFrame PlaneFrame::across(const Vector3& axis) {
   int main = 0;
   axis.cwiseAbs().maxCoeff(&main);
-  // The coordinate axis after the main one spans the plane, turned across the axis: for +X
-  // this gives (Y, Z, X), for +Z (X, Y, Z), for -Z (X, -Y, -Z).
+  // The coordinate axis after the main one, turned across the axis, is the first: for +X this
+  // gives (Y, Z, X), for +Z (X, Y, Z), for -Z (X, -Y, -Z).
   const Vector3 next = Vector3::Unit((main + 1) % 3);
   const Vector3 first = (next - next.dot(axis) * axis).normalized();
   PlaneFrame frame;
@@ -130,10 +116,17 @@ double PlaneCurve::angle_before(double u) const {
 
 double PlaneCurve::curvature_at(double u) const {
   const std::size_t i = index_of(u);
-  const Derivatives d = derivatives(pieces_[i], local(i, u));
-  const double speed = d.first.head<2>().norm();
-  if (speed <= kSameDirection * d.first.norm() || speed == 0) return 0;
-  return cross(d.first.head<2>(), d.second.head<2>()) / (speed * speed * speed);
+  const double t = local(i, u);
+  const double s = 1 - t;
+  const auto& p = pieces_[i].control;
+  const Vector3 d0 = p[1] - p[0];
+  const Vector3 d1 = p[2] - p[1];
+  const Vector3 d2 = p[3] - p[2];
+  const Vector3 first = 3 * (s * s * d0 + 2 * s * t * d1 + t * t * d2);
+  const Vector3 second = 6 * (s * (d1 - d0) + t * (d2 - d1));
+  const double speed = first.head<2>().norm();
+  if (speed <= kSameDirection * first.norm() || speed == 0) return 0;
+  return cross(first.head<2>(), second.head<2>()) / (speed * speed * speed);
 }
 
 double PlaneCurve::slope_at(double u) const {

@@ -18,9 +18,8 @@ namespace batten::geometry {
 
 [[nodiscard]] Vector2 unit_vector(double angle);
 
-// Right-handed axes: the first two span the plane, the third is the arcs' axis. For X, Y
-// and Z (and their opposites) these are coordinate axes, so rounding a local coordinate
-// rounds a coordinate.
+// Right-handed axes: the first two span the plane, the third is the arcs' axis. For X, Y and Z (and
+// their opposites) these are coordinate axes: rounding a local coordinate rounds a coordinate.
 struct PlaneFrame {
   Eigen::Matrix3d to_local;
 
@@ -34,8 +33,8 @@ class PlaneCurve : public PieceRow {
   // Pieces that turn by more than a radian are halved.
   PlaneCurve(const CurvePieces& pieces, const PlaneFrame& frame);
 
-  // Angle of the tangent in the plane, radians, continuous but for corners, where it is the
-  // angle of leaving (`angle_before`: of arriving).
+  // Of the tangent in the plane, radians, continuous but for corners, where it is the angle of
+  // leaving (`angle_before`: of arriving).
   [[nodiscard]] double angle_at(double u) const;
   [[nodiscard]] double angle_before(double u) const;
 

@@ -18,4 +18,12 @@ inline std::vector<Point2> lollipop(double gap) {
   return points;
 }
 
+// The same 0.015 above, each pass to the other side of its neighbour and back.
+inline std::vector<Point2> crossing_lollipop() {
+  std::vector<Point2> points = lollipop(0.015);
+  points[10].y() = 0.009;
+  points[34].y() = 0.006;
+  return points;
+}
+
 }  // namespace batten::geometry

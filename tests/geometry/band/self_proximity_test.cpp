@@ -136,9 +136,7 @@ std::vector<PartEdge> edges_of(const std::vector<Point2>& points, std::uint32_t 
 
 TEST(NewCrossingsOfParts, AreThoseOfTheWholePathWhereTwoPartsMeet) {
   const std::vector<Point2> old = lollipop(0.015);
-  std::vector<Point2> over = old;
-  over[10].y() = 0.009;
-  over[34].y() = 0.006;
+  const std::vector<Point2> over = crossing_lollipop();
   const auto found = new_crossings_of_parts(edges_of(old, 22), edges_of(over, 22), kTolerance);
   ASSERT_EQ(found.size(), 2U) << "it comes over and goes back";
   for (const PartCrossing& crossing : found) {
@@ -159,9 +157,7 @@ TEST(NewCrossingsOfParts, MayBeWhereTheOldPartsMet) {
 
 TEST(NewCrossingsOfParts, AreNotMadeByPlanesAboveEachOther) {
   const std::vector<Point2> old = lollipop(0.015);
-  std::vector<Point2> over = old;
-  over[10].y() = 0.009;
-  over[34].y() = 0.006;
+  const std::vector<Point2> over = crossing_lollipop();
   std::vector<PartEdge> before = edges_of(old, 22);
   std::vector<PartEdge> after = edges_of(over, 22);
   for (std::vector<PartEdge>* edges : {&before, &after}) {

@@ -26,13 +26,13 @@ void expect_line(const PathPiece& piece, const Point3& start, const Point3& end)
 
 TEST(ParallelPath, OfALineIsTheLineBesideIt) {
   const Path line = {Line{{0, 0, 1}, {10, 0, 3}}};
-  const auto left = parallel_path(line, Side::kLeft, 0.5);
-  ASSERT_TRUE(left);
-  ASSERT_EQ(left->size(), 1u);
-  expect_line(left->front(), {0, 0.5, 1}, {10, 0.5, 3});
-  const auto right = parallel_path(line, Side::kRight, 0.5);
-  ASSERT_TRUE(right);
-  expect_line(right->front(), {0, -0.5, 1}, {10, -0.5, 3});
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    const auto made = parallel_path(line, side, 0.5);
+    ASSERT_TRUE(made);
+    ASSERT_EQ(made->size(), 1u);
+    const double y = side == Side::kLeft ? 0.5 : -0.5;
+    expect_line(made->front(), {0, y, 1}, {10, y, 3});
+  }
 }
 
 TEST(ParallelPath, GoesRoundACornerOnAnArcAboutIt) {
@@ -53,19 +53,18 @@ TEST(ParallelPath, GoesRoundACornerOnAnArcAboutIt) {
 }
 
 TEST(ParallelPath, OfAnArcHasTheSameCentre) {
-  const auto inside = parallel_path(Path{quarter(3)}, Side::kLeft, 0.5);
-  ASSERT_TRUE(inside);
-  EXPECT_NEAR((point_at(inside->front(), 0.4)).norm(), 2.5, 1e-12);
-  const auto outside = parallel_path(Path{quarter(3)}, Side::kRight, 0.5);
-  ASSERT_TRUE(outside);
-  EXPECT_NEAR((point_at(outside->front(), 0.4)).norm(), 3.5, 1e-12);
-  const auto behind = parallel_path(Path{quarter(0.2)}, Side::kLeft, 0.5);
-  ASSERT_TRUE(behind);
-  const Point3 middle = point_at(behind->front(), 0.5);
-  EXPECT_LT((middle - Point3(-0.3 * std::sqrt(0.5), -0.3 * std::sqrt(0.5), 0)).norm(), 1e-12);
-  const auto nowhere = parallel_path(Path{quarter(0.5)}, Side::kLeft, 0.5);
-  ASSERT_TRUE(nowhere);
-  EXPECT_LT((point_at(nowhere->front(), 0.5)).norm(), 1e-12);
+  struct Row {
+    double radius;
+    Side side;
+    double moved;  // mm from the centre; negative: beyond it
+  };
+  for (const Row& row : {Row{3, Side::kLeft, 2.5}, Row{3, Side::kRight, 3.5},
+                         Row{0.2, Side::kLeft, -0.3}, Row{0.5, Side::kLeft, 0}}) {
+    const auto made = parallel_path(Path{quarter(row.radius)}, row.side, 0.5);
+    ASSERT_TRUE(made);
+    const Point3 expected = row.moved * Point3(std::sqrt(0.5), std::sqrt(0.5), 0);
+    EXPECT_LT((point_at(made->front(), 0.5) - expected).norm(), 1e-12) << row.moved;
+  }
 }
 
 // Every place of the moved path belongs to one of the path: it is as far from it as it was moved.
