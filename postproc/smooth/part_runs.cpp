@@ -18,6 +18,7 @@
 #include "postproc/runs/run_grouping.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/run_smoother.h"
+#include "postproc/smooth/selection/run_times.h"
 #include "postproc/smooth/selection/selection.h"
 #include "postproc/system/parallel_for.h"
 
@@ -25,14 +26,9 @@ namespace batten::postproc {
 
 namespace {
 
-// Neighbours of a piece that are timed with it: the machine looks ahead over as many blocks to
-// stop, at most.
+// Neighbours of a piece that are timed with it: the machine looks ahead over so many blocks at
+// most.
 constexpr std::size_t kNeighbours = 100;
-
-std::string_view bytes_of(const gcode::Program& program, const Section& section) {
-  const std::uint32_t begin = program.blocks[section.first_block].span.begin;
-  return program.source.text({begin, program.blocks[section.last_block].end});
-}
 
 RunContext context_of(const gcode::Program& program, const gcode::Interpretation& meaning,
                       const Section& section) {
@@ -45,12 +41,12 @@ RunContext context_of(const gcode::Program& program, const gcode::Interpretation
           state_after(section.last_block),
           gcode::written_line_end(program.source.text({first.span.end, first.end})),
           section.last_block - section.first_block + 1,
-          bytes_of(program, section).size(),
+          program.blocks[section.last_block].end - first.span.begin,
           number_room(program, section.first_block, section.last_block)};
 }
 
-// Long runs that long_run_cuts leaves, for there are arcs in them: they are cut as wholes, and
-// their times are taken from rest to rest, which is a stop too much for many points.
+// Long runs with arcs, which long_run_cuts leaves: cut as wholes, and timed from rest to rest,
+// which is a stop too much for many points.
 std::vector<Section> with_long_runs_cut(std::vector<Section> sections,
                                         const gcode::Interpretation& meaning,
                                         const LongRunLimits& limits) {
@@ -73,9 +69,9 @@ std::vector<Section> with_long_runs_cut(std::vector<Section> sections,
 // Runs that were cut from one are not run from rest to rest. Each is timed with some moves of its
 // neighbours, and the time of the moves about a cut, which are in two of these times, is shared
 // between them: so the times of all are that of the whole.
-class Joints {
+class BoundaryTiming {
  public:
-  Joints(const ProgramPart& part, const SmoothOptions& options, PartRuns& runs)
+  BoundaryTiming(const ProgramPart& part, const SmoothOptions& options, PartRuns& runs)
       : part_(part), options_(options), runs_(runs) {}
 
   void run() {
@@ -91,10 +87,10 @@ class Joints {
         shared += times_about(section.first_block, work.context.after.path);
       }
       if (ends) {
-        work.context.tail = behind(end);
+        work.context.tail = after(end);
         shared += times_about(end, work.context.after.path);
       }
-      work.context.of_neighbours = half_of(shared);
+      work.context.of_neighbours = Times().add(shared, 0.5);
     }
   }
 
@@ -129,20 +125,16 @@ class Joints {
     return moves_before(part_.program, part_.meaning, block, window_begin(block));
   }
 
-  [[nodiscard]] std::vector<TimedPiece> behind(std::uint32_t block) const {
+  [[nodiscard]] std::vector<TimedPiece> after(std::uint32_t block) const {
     if (block == part_.program.blocks.size()) return part_.window->moves_behind;
     return moves_from(part_.program, part_.meaning, block, window_end(block));
   }
 
   [[nodiscard]] Times times_about(std::uint32_t block, gcode::PathMode path) const {
     std::vector<TimedPiece> moves = before(block);
-    const std::vector<TimedPiece> rest = behind(block);
+    const std::vector<TimedPiece> rest = after(block);
     moves.insert(moves.end(), rest.begin(), rest.end());
     return times_of(moves, *options_.machine, path);
-  }
-
-  static Times half_of(const Times& times) {
-    return {times.as_set / 2, times.without_merging / 2, times.flat_out / 2, times.exact_path / 2};
   }
 
   const ProgramPart& part_;
@@ -150,7 +142,7 @@ class Joints {
   PartRuns& runs_;
 };
 
-// Blocks at which stretches that are copied begin or end, but where runs are cut anyway.
+// Blocks at which sections that are copied begin or end, but where runs are cut anyway.
 std::vector<std::uint32_t> cuts_about(std::span<const LineRange> copied,
                                       const gcode::Program& program,
                                       const std::vector<std::uint32_t>& cuts) {
@@ -170,9 +162,9 @@ std::vector<std::uint32_t> cuts_about(std::span<const LineRange> copied,
 
 class PartSmoother {
  public:
-  PartSmoother(const ProgramPart& part, const SmoothOptions& options, const ProgressCallback& tell,
-               PartRuns& runs)
-      : part_(part), options_(options), tell_(tell), runs_(runs) {}
+  PartSmoother(const ProgramPart& part, const SmoothOptions& options,
+               const ProgressCallback& progress, PartRuns& runs)
+      : part_(part), options_(options), progress_(progress), runs_(runs) {}
 
   // False: the work was stopped.
   bool run() {
@@ -180,7 +172,7 @@ class PartSmoother {
     for (std::size_t i = 0; i < runs_.works.size(); ++i) {
       if (runs_.works[i].selection.reason.empty()) whole.push_back(i);
     }
-    if (!nothing_asked()) note_bands();  // they warn of what new paths may do
+    if (options_.method != Method::kNone) note_bands();  // they warn of what new paths may do
     for (const RunState& work : runs_.works) points_ += run_of(work).points.size();
     if (!smooth_works(whole)) return false;
     const std::vector<std::size_t> pieces = cut_runs();
@@ -190,8 +182,6 @@ class PartSmoother {
   }
 
  private:
-  [[nodiscard]] bool nothing_asked() const { return options_.method == Method::kNone; }
-
   [[nodiscard]] const Run& run_of(const RunState& work) const {
     return std::get<Run>(runs_.sections[work.section].content);
   }
@@ -207,40 +197,39 @@ class PartSmoother {
 
   bool smooth_works(const std::vector<std::size_t>& works) {
     std::atomic<bool> stopped = false;
-    std::mutex telling;
+    std::mutex reporting;
     const auto one = [&](std::size_t i) {
       if (stopped) return;
       RunState& work = runs_.works[works[i]];
       work.smoothed = smooth_run(run_of(work), work.context, options_);
       work.selection = choose(work.smoothed, work.context, options_);
       work.drop_what_is_not_written();
-      const std::scoped_lock lock(telling);
+      const std::scoped_lock lock(reporting);
       smoothed_points_ += run_of(work).points.size();
       const double part =
           std::min(1.0, static_cast<double>(smoothed_points_) / static_cast<double>(2 * points_));
-      if (!tell_(part)) stopped = true;
+      if (!progress_(part)) stopped = true;
     };
     parallel_for(options_.threads, works.size(), one);
     return !stopped;
   }
 
-  // Puts pieces in the place of runs that would be kept as a whole: their parts differ. Returns the
-  // works that are new.
+  // Replaces runs that would be kept as a whole by pieces: their parts differ. Returns the works
+  // that are new.
   std::vector<std::size_t> cut_runs() {
     std::vector<std::size_t> fresh;
     std::vector<Section> sections;
     std::vector<RunState> works;
     std::size_t next = 0;
     for (std::size_t i = 0; i < runs_.sections.size(); ++i) {
-      const bool is_run = next < runs_.works.size() && runs_.works[next].section == i;
-      if (!is_run || !add_pieces(runs_.works[next], sections, works, fresh)) {
-        if (is_run) {
-          runs_.works[next].section = sections.size();
-          works.push_back(std::move(runs_.works[next]));
-        }
-        sections.push_back(std::move(runs_.sections[i]));
+      RunState* work = nullptr;
+      if (next < runs_.works.size() && runs_.works[next].section == i) work = &runs_.works[next++];
+      if (work != nullptr && add_pieces(*work, sections, works, fresh)) continue;
+      if (work != nullptr) {
+        work->section = sections.size();
+        works.push_back(std::move(*work));
       }
-      if (is_run) ++next;
+      sections.push_back(std::move(runs_.sections[i]));
     }
     runs_.sections = std::move(sections);
     runs_.works = std::move(works);
@@ -268,11 +257,10 @@ class PartSmoother {
       part.cut_run = runs_.cut_runs.size();
       part.first = piece.first;
       part.last = piece.last;
-      const std::size_t end = cut.run.points.size() - 1;
-      part.context.lead = timed_pieces(
-          cut.run, piece.first < kNeighbours ? 0 : piece.first - kNeighbours, piece.first);
-      part.context.tail =
-          timed_pieces(cut.run, piece.last, std::min(piece.last + kNeighbours, end));
+      const std::size_t from = piece.first - std::min(piece.first, kNeighbours);
+      const std::size_t to = std::min(piece.last + kNeighbours, cut.run.points.size() - 1);
+      part.context.lead = timed_pieces(cut.run, from, piece.first);
+      part.context.tail = timed_pieces(cut.run, piece.last, to);
       works.push_back(std::move(part));
       sections.push_back(std::move(piece.section));
     }
@@ -282,7 +270,7 @@ class PartSmoother {
 
   const ProgramPart& part_;
   const SmoothOptions& options_;
-  const ProgressCallback& tell_;
+  const ProgressCallback& progress_;
   PartRuns& runs_;
   std::size_t points_ = 0;           // of all runs
   std::size_t smoothed_points_ = 0;  // pieces count again
@@ -326,7 +314,7 @@ PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options,
       runs.works.back().selection.reason = gcode::reason::kCrossesItself;
     }
   }
-  Joints(part, options, runs).run();
+  BoundaryTiming(part, options, runs).run();
   return runs;
 }
 
@@ -335,8 +323,8 @@ void keep_as_smoothed(PartRuns& runs) {
 }
 
 bool smooth_runs(const ProgramPart& part, const SmoothOptions& options,
-                 const ProgressCallback& tell, PartRuns& runs) {
-  return PartSmoother(part, options, tell, runs).run();
+                 const ProgressCallback& progress, PartRuns& runs) {
+  return PartSmoother(part, options, progress, runs).run();
 }
 
 }  // namespace batten::postproc

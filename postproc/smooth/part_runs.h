@@ -15,19 +15,20 @@
 
 namespace batten::postproc {
 
+// Of the long runs of a program; or none.
+using NearParts = std::shared_ptr<const std::vector<SelfProximity>>;
+
 // What is known of the parts of a program's long runs before they are smoothed.
 struct LongRunFacts {
-  // Of a window: those of the whole program. The whole finds its own.
-  std::shared_ptr<const std::vector<SelfProximity>> near = {};
-  // Stretches that are copied, for the new paths of parts crossed there. As `joined` gives them.
+  NearParts near = {};  // of a window: those of the whole program; the whole finds its own
+  // Sections that are copied, for the new paths of parts crossed there. As `joined` gives them.
   std::vector<LineRange> copied = {};
 };
 
 struct PartRuns {
   std::vector<std::uint32_t> cuts;         // blocks at which long runs are cut
-  std::vector<std::uint32_t> copied_cuts;  // others, where a stretch that is copied begins or ends
-  std::shared_ptr<const std::vector<SelfProximity>>
-      near;  // of the long runs of the program; or none
+  std::vector<std::uint32_t> copied_cuts;  // others, where a section that is copied begins or ends
+  NearParts near;
   std::vector<Section> sections;
   std::vector<RunState> works;  // of the sections that are runs, in order
   std::vector<CutRun> cut_runs;
@@ -39,8 +40,8 @@ struct PartRuns {
 
 [[nodiscard]] GroupingOptions grouping_of(const SmoothOptions& options);
 
-// `part` must outlive the runs: they refer to it. A window ends where a long run is to be cut, the
-// whole is cut here; but not where no method is asked for.
+// `part` must outlive the runs. A window ends where a long run is to be cut, the whole is cut here;
+// but not where no method is asked for.
 [[nodiscard]] PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options,
                                  const LongRunLimits& limits = {}, const LongRunFacts& facts = {});
 
@@ -53,6 +54,6 @@ using ProgressCallback = std::function<bool(double)>;
 // Makes candidates for all runs and chooses among them. The same for any number of threads. False:
 // the work was stopped.
 [[nodiscard]] bool smooth_runs(const ProgramPart& part, const SmoothOptions& options,
-                               const ProgressCallback& tell, PartRuns& runs);
+                               const ProgressCallback& progress, PartRuns& runs);
 
 }  // namespace batten::postproc

@@ -2,80 +2,57 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "gcode/state/reason.h"
-#include "gcode/text/large_pages.h"
-#include "postproc/machine/models/cycle_time.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/curve_forms.h"
-#include "postproc/smooth/methods/run_curve.h"
-#include "postproc/smooth/selection/candidate.h"
-#include "postproc/smooth/selection/candidate_bounds.h"
-#include "postproc/smooth/selection/run_times.h"
-#include "postproc/smooth/selection/selection.h"
 
 namespace batten::postproc {
 
 namespace {
 
-constexpr double kMmPerInch = 25.4;
-
-// Where few blocks are wanted, vertices may scatter by this part of the tolerance: fewer arcs
-// and chords do for the simpler curve.
-constexpr double kSpent = 0.25;
-
-// Arcs that are pieces of a curve scatter about it, but the curve that is looked for stays within
-// this part of the tolerance of most of them.
-constexpr double kArcsSpend = 0.5;
-
-// Of the share of the form, the curve may use this part too: what it leaves of it, and of its
-// own share, the form gets back. The fair curve comes near to all that it may use, and where many
-// arcs or chords follow it closely they need more.
-constexpr double kLent = 0.6;
-constexpr double kLentToFair = 0.5;
-
-// Of the form's share, what a written line may take on the side where the run must not be cut.
-constexpr double kSideMargin = 0.25;
-
-// Radians: vertices that turn more are bends so tight, where they are none of the path that was
-// meant, that curves may rather end there.
-constexpr double kSharpCorner = 45 * std::numbers::pi / 180;
-
-double step_of(int decimals, gcode::Units units) {
-  const double step = std::pow(10.0, -decimals);
-  return units == gcode::Units::kInch ? kMmPerInch * step : step;
-}
-
-double greatest_feed(const Run& run) {
-  double feed = 0;
-  for (const FeedFrom& from : run.feeds) feed = std::max(feed, from.feed);
-  return feed;
-}
+struct RunTuning {
+  // Of the tolerance, by which vertices may scatter: where few blocks are wanted, since fewer arcs
+  // and chords do for the simpler curve, and where arcs that scatter are parts of a curve.
+  double spent = 0.25;
+  double arcs_spend = 0.5;
+  // Of the share of the form, which the curve may use, too: what it leaves, the form gets back. The
+  // fair curve comes near to all that it may use, and many arcs or chords that follow it closely
+  // need more.
+  double lent = 0.6;
+  double lent_to_fair = 0.5;
+  double side_margin = 0.25;  // of the form's share, on the side where the run must not be cut
+  // Radians: vertices that turn more are bends so tight, where they are none of the path that was
+  // meant, that curves may rather end there.
+  double sharp_corner = 45 * geometry::kPi / 180;
+  // So many of the pieces are reverted at once that a long run is timed a few times only.
+  std::size_t reverted_share = 4;
+};
+constexpr RunTuning kRun;
 
 bool has_sharp_corner(const std::vector<geometry::Point3>& points) {
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     const geometry::Vector3 in = points[i] - points[i - 1];
     const geometry::Vector3 out = points[i + 1] - points[i];
-    if (std::atan2(in.cross(out).norm(), in.dot(out)) > kSharpCorner) return true;
+    if (std::atan2(in.cross(out).norm(), in.dot(out)) > kRun.sharp_corner) return true;
   }
   return false;
 }
 
-// The curves that may stand in a run's place, one after the other, as long as one of them could be
-// better than what is there.
+// The curves that may replace a run, one after the other, as long as one of them could be better.
 class RunSmoother {
  public:
-  // All must live as long. `result` has the facts of the run as it stands.
+  // All must live as long. `result` has the facts of the run.
   RunSmoother(const RunTask& task, const RunTimes& times, const ToleranceShares& shares,
               SmoothedRun& result)
       : task_(task),
         shares_(shares),
-        rounding_(0.5 * step_of(task.run.decimals, task.context.before.units)),
-        maker_(task, times),
+        rounding_(0.5 * std::pow(10.0, -task.run.decimals) *
+                  gcode::millimetres_per(task.context.before.units)),
+        times_(times),
         bounds_(task, times, result),
         result_(result) {}
 
@@ -99,17 +76,17 @@ class RunSmoother {
   [[nodiscard]] CurveRequest curve_request(Method method) const {
     const bool few = wants_few_moves(options());
     CurveRequest request;
-    const double lent = method == Method::kFair && !few ? kLentToFair : kLent;
+    const double lent = method == Method::kFair && !few ? kRun.lent_to_fair : kRun.lent;
     request.tolerance = shares_.smoothing + lent * shares_.form;
     request.kind = options().tolerance_kind;
     request.side = options().side;
-    request.side_margin = kSideMargin * shares_.form + shares_.rounding;
+    request.side_margin = kRun.side_margin * shares_.form + shares_.rounding;
     request.rounding = rounding_;
     request.keep_corner_angle = keep_corner_angle_of(options());
     request.limits = limits_of(*options().machine, greatest_feed(run()));
     request.jerk = options().machine->max_jerk();
-    if (few) request.scatter = kSpent * request.tolerance;
-    const double of_arcs = std::min(arc_scatter(run()), kArcsSpend * request.tolerance);
+    if (few) request.scatter = kRun.spent * request.tolerance;
+    const double of_arcs = std::min(arc_scatter(run()), kRun.arcs_spend * request.tolerance);
     request.scatter = std::max(request.scatter, of_arcs);
     request.accurate = options().prefer == Prefer::kAccuracy;
     // Who asks for curves by name asks for few control points.
@@ -141,7 +118,7 @@ class RunSmoother {
     const double left = shares_.smoothing + shares_.form - curve.path.deviation;
     if (!(left > 0)) return;
     fits_ = true;
-    CurveForms(task_, maker_, bounds_, curve, bends, shares_.form, left).add_to(result_);
+    add_forms(task_, times_, bounds_, {curve, bends, shares_.form, left}, result_);
   }
 
   // Where the near curve is worth nothing, one that leaves of the vertices what their decimals do
@@ -153,14 +130,13 @@ class RunSmoother {
     try_curve(Method::kFair, request);
   }
 
-  // A bend of the tolerance's size in the place of a corner takes a curve some thirty control
-  // points. Its end in the corner and the start of the next one are fewer blocks, and often as
-  // quick.
+  // A bend of the tolerance's size instead of a corner takes a curve some thirty control points.
+  // Its end in the corner and the start of the next one are fewer blocks, and often as quick.
   void try_kept_corners() {
     if (options().output != Form::kCurves || options().keep_corners_deg) return;
     if (!has_sharp_corner(run().points)) return;
     CurveRequest request = curve_request(Method::kFair);
-    request.keep_corner_angle = kSharpCorner;
+    request.keep_corner_angle = kRun.sharp_corner;
     try_curve(Method::kFair, request);
   }
 
@@ -186,30 +162,11 @@ class RunSmoother {
   const RunTask& task_;
   const ToleranceShares& shares_;
   double rounding_;  // mm, greatest error of one printed coordinate of the run
-  CandidateMaker maker_;
+  const RunTimes& times_;
   CandidateBounds bounds_;
   bool fits_ = false;  // a method found a curve inside the tolerance
   SmoothedRun& result_;
 };
-
-// What is known of a run that is to be smoothed.
-RunFacts facts_of(const Run& run, const RunTimes& times, const std::vector<TimedPiece>& motions) {
-  RunFacts facts;
-  facts.max_curvature = greatest_curvature(run.points);
-  facts.times = times.of_run(motions);
-  if (!run.arcs.empty()) facts.kink = greatest_kink(motions);
-  return facts;
-}
-
-// Nothing is compared: what is told of the run is the time that it takes.
-SmoothedRun kept_unasked(const Run& run, const RunTimes& times,
-                         const std::vector<TimedPiece>& motions) {
-  SmoothedRun result;
-  result.facts.max_curvature = greatest_curvature(run.points);
-  result.facts.times.as_set = times.as_set_of_run(motions);
-  result.reason = gcode::reason::kMethodNone;
-  return result;
-}
 
 }  // namespace
 
@@ -217,10 +174,15 @@ SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOp
                        CandidateScope scope) {
   const RunTimes times(context, *options.machine);
   const std::vector<TimedPiece> motions = timed_pieces(run, 0, run.points.size() - 1);
-  if (options.method == Method::kNone) return kept_unasked(run, times, motions);
-
   SmoothedRun result;
-  result.facts = facts_of(run, times, motions);
+  result.facts.max_curvature = greatest_curvature(run.points);
+  if (options.method == Method::kNone) {  // nothing is compared: only its time is reported
+    result.facts.times.as_set = times.as_set_of_run(motions);
+    result.reason = gcode::reason::kMethodNone;
+    return result;
+  }
+  result.facts.times = times.of_run(motions);
+  if (!run.arcs.empty()) result.facts.kink = greatest_kink(motions);
   ToleranceShares shares = share_tolerance(options, context.before.units, run.decimals);
   shares.smoothing -= run.chord_error;  // the points are not quite where the arcs are
   if (!(shares.smoothing > 0)) {
@@ -237,48 +199,36 @@ SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOp
 
 namespace {
 
-std::span<RunState> pieces_of(const CutRun& cut, std::vector<RunState>& works) {
-  return std::span(works).subspan(cut.first_work, cut.pieces);
-}
-
 std::vector<TimedPiece> chain_with(const CutRun& cut, std::span<const RunState> pieces) {
   std::vector<TimedPiece> chain;
   chain.reserve(cut.run.points.size());
   for (const RunState& piece : pieces) {
     const Candidate* chosen = piece.chosen();
-    if (chosen != nullptr) {
-      chain.insert(chain.end(), chosen->moves.begin(), chosen->moves.end());
-    } else {
-      const std::vector<TimedPiece> moves = timed_pieces(cut.run, piece.first, piece.last);
-      chain.insert(chain.end(), moves.begin(), moves.end());
-    }
+    const std::vector<TimedPiece> moves =
+        chosen != nullptr ? chosen->moves : timed_pieces(cut.run, piece.first, piece.last);
+    chain.insert(chain.end(), moves.begin(), moves.end());
   }
   return chain;
 }
 
-// The times of the whole with its pieces as they stand, as far as they must be known: once it is
-// slower in one way, the other ways are those of `cut.before`.
+// The times of the whole with its pieces as they are, as far as they must be known: once it is
+// slower under one setting, the others are those of `cut.before`.
 Times times_with(const CutRun& cut, std::span<const RunState> pieces, const Machine& machine,
                  bool wanted) {
-  const std::vector<TimedPiece> moves = chain_with(cut, pieces);
-  TimedChain chain(moves, machine);
-  Machine unmerged = machine;
-  unmerged.naive_cam_tolerance = 0;
+  SettingTimes known(chain_with(cut, pieces), machine, cut.path);
   Times times = cut.before;
-  times.as_set = chain.time(machine, cut.path);
+  times.as_set = known.as_set();
   if (wanted || slower(times, cut.before, false, wanted)) return times;
-  times.without_merging =
-      machine.naive_cam_tolerance > 0 ? chain.time(unmerged, cut.path) : times.as_set;
+  times.without_merging = known.without_merging();
   if (slower(times, cut.before, false, wanted)) return times;
-  chain.lift_feeds(machine);
-  times.flat_out = chain.time(machine, cut.path);
+  times.flat_out = known.flat_out();
   return times;
 }
 
 // Seconds that a rewritten piece costs, summed over the settings of the control.
 double cost_of(const RunState& piece) {
   Times cost = piece.chosen()->times;
-  cost -= piece.smoothed.facts.times;
+  cost.add(piece.smoothed.facts.times, -1);
   return cost.as_set + cost.without_merging + cost.flat_out;
 }
 
@@ -311,9 +261,7 @@ void RunState::drop_what_is_not_written() {
 }
 
 void revert_costly_pieces(CutRun& cut, std::vector<RunState>& works, const SmoothOptions& options) {
-  // So many pieces give way at once that a long run is timed a few times only.
-  constexpr std::size_t kShare = 4;
-  const std::span<RunState> pieces = pieces_of(cut, works);
+  const std::span<RunState> pieces = std::span(works).subspan(cut.first_work, cut.pieces);
   const bool wanted = options.output != Form::kAuto;
   std::vector<RunState*> rewritten;
   for (RunState& piece : pieces) {
@@ -333,7 +281,7 @@ void revert_costly_pieces(CutRun& cut, std::vector<RunState>& works, const Smoot
   while (!rewritten.empty()) {
     cut.after = times_with(cut, pieces, *options.machine, wanted);
     if (!slower(cut.after, cut.before, false, wanted)) return;
-    const std::size_t giving = std::max<std::size_t>(1, rewritten.size() / kShare);
+    const std::size_t giving = std::max<std::size_t>(1, rewritten.size() / kRun.reverted_share);
     for (std::size_t i = 0; i < giving; ++i) {
       RunState& piece = *rewritten.back();
       rewritten.pop_back();

@@ -17,9 +17,6 @@ namespace batten::postproc {
                                      const SmoothOptions& options,
                                      CandidateScope scope = CandidateScope::kToChoose);
 
-// The runs of a program on their way through the pipeline: what became of each of them, and of
-// those that were cut into pieces.
-
 // A section that may be rewritten, and what became of it.
 struct RunState {
   std::size_t section = 0;
@@ -34,15 +31,14 @@ struct RunState {
 
   [[nodiscard]] const Candidate* chosen() const;
   void reject(std::string_view why);  // to its next candidate
-  // Makes all candidates anew, those too that were left out: where none is left of the others.
+  // Makes all candidates anew, also those that were left out: where none is left of the others.
   void start_again(const Run& run, const SmoothOptions& options);
   // Texts and moves of candidates that were not chosen take room for nothing.
   void drop_what_is_not_written();
 };
 
-// A run that was cut into pieces, which follow each other in the list of works.
-struct CutRun {
-  Run run;  // the whole
+struct CutRun {  // into pieces, which follow each other in the list of works
+  Run run;       // the whole
   gcode::PathMode path = gcode::PathMode::kUnknown;
   std::optional<RunFacts> facts = {};  // where the whole was smoothed first
   std::string_view reason = {};        // why the whole was kept then

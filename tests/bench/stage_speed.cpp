@@ -110,13 +110,16 @@ void measure_plan(benchmark::State& state, const Plan& plan) {
 
 void plan_lines(benchmark::State& state) {
   measure_plan(state, [](const auto& run, const auto& fair, const auto& options) {
-    return postproc::plan_lines(run, fair, options).moves.size();
+    return postproc::plan_lines(run, fair, geometry::MarkedPieces(fair.curve), options)
+        .moves.size();
   });
 }
 
 void plan_arcs(benchmark::State& state) {
   measure_plan(state, [](const auto& run, const auto& fair, const auto& options) {
-    return postproc::plan_arcs(run, fair, options).has_value();
+    return postproc::plan_arcs(run, fair, geometry::MarkedPieces(fair.curve),
+                               postproc::CurvatureProfile(fair.curve), options)
+        .has_value();
   });
 }
 

@@ -1,68 +1,80 @@
 #include "postproc/smooth/forms/output_plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
-#include <string>
 
 #include "geometry/basic/rounding.h"
 
 namespace batten::postproc {
 namespace {
 
-// Parameters this close are one place of the curve.
+// Parameters this close are one.
 double same_parameter(const geometry::BsplineCurve& curve) {
   return geometry::kSameKnot * (curve.last() - curve.first());
 }
 
-void check(const Run& run, const geometry::SmoothCurve& fair) {
-  if (fair.vertex_parameters.size() != run.points.size()) {
-    throw std::invalid_argument("feed_stretches: " + std::to_string(fair.vertex_parameters.size()) +
-                                " vertex parameters, expected " +
-                                std::to_string(run.points.size()) + " (one per point of the run)");
-  }
-  if (run.feeds.empty()) {
-    throw std::invalid_argument("feed_stretches: run without a feed, expected one at least");
-  }
-}
-
 }  // namespace
 
-std::vector<FeedStretch> feed_stretches(const Run& run, const geometry::SmoothCurve& fair) {
-  check(run, fair);
+std::vector<FeedSection> feed_sections(const Run& run, const geometry::SmoothCurve& fair) {
+  if (fair.vertex_parameters.size() != run.points.size() || run.feeds.empty()) {
+    throw std::invalid_argument(
+        fmt::format("feed_sections: {} vertex parameters for {} points and {} feeds, expected one "
+                    "per point and "
+                    "a feed at least",
+                    fair.vertex_parameters.size(), run.points.size(), run.feeds.size()));
+  }
   const double noise = same_parameter(fair.curve);
   const double last = fair.curve.last();
-  std::vector<FeedStretch> stretches = {{fair.curve.first(), last, run.feeds.front().feed}};
+  std::vector<FeedSection> sections = {{fair.curve.first(), last, run.feeds.front().feed}};
   for (const FeedFrom& change : run.feeds) {
     const double at = fair.vertex_parameters.at(change.vertex);
     if (last - at <= noise) break;  // a feed that nothing is run at
-    FeedStretch& before = stretches.back();
+    FeedSection& before = sections.back();
     if (at - before.from <= noise) {  // the feed before it was replaced at once
       before.feed = change.feed;
     } else if (change.feed != before.feed) {
       before.to = at;
-      stretches.push_back({at, last, change.feed});
+      sections.push_back({at, last, change.feed});
     }
-    // A replaced feed may leave two stretches of one feed.
-    if (stretches.size() >= 2 && stretches.back().feed == stretches[stretches.size() - 2].feed) {
-      stretches.pop_back();
-      stretches.back().to = last;
+    // A replaced feed may leave two sections of one feed.
+    if (sections.size() >= 2 && sections.back().feed == sections[sections.size() - 2].feed) {
+      sections.pop_back();
+      sections.back().to = last;
     }
   }
-  return stretches;
+  return sections;
 }
 
-void place_comments(const Run& run, const geometry::SmoothCurve& fair,
-                    std::span<const double> starts, OutputPlan& plan) {
+void place_comments(const Run& run, const geometry::SmoothCurve& fair, OutputPlan& plan) {
   const double noise = same_parameter(fair.curve);
   for (std::size_t i = 0; i < run.comments.size(); ++i) {
     const double at = fair.vertex_parameters.at(run.comments[i].vertex);
-    const auto next = std::ranges::lower_bound(starts, at - noise);
-    if (next == starts.end()) {
-      plan.comments_after.push_back(i);
-    } else {
-      plan.moves[static_cast<std::size_t>(next - starts.begin())].comments_before.push_back(i);
-    }
+    const auto next = std::ranges::lower_bound(plan.moves, at - noise, {}, &PlannedMove::start);
+    (next == plan.moves.end() ? plan.comments_after : next->comments_before).push_back(i);
   }
+}
+
+bool lies_across(const Run& run, int axis) {
+  const double height = run.points.front()[axis];
+  return std::ranges::all_of(run.points, [&](const geometry::Point3& p) {
+    return std::abs(p[axis] - height) <= geometry::kSamePlace;
+  });
+}
+
+geometry::Path chords_for(const geometry::Arc& arc, double deviation) {
+  const double half_angle = std::acos(std::max(1 - deviation / geometry::radius_of(arc), 0.0));
+  const auto count = std::max(1, static_cast<int>(std::ceil(std::abs(arc.sweep) / 2 / half_angle)));
+  geometry::Path chords;
+  geometry::Point3 from = arc.start;
+  for (int i = 1; i <= count; ++i) {
+    const geometry::Point3 to = geometry::point_at(arc, static_cast<double>(i) / count);
+    chords.push_back(geometry::Line{from, to});
+    from = to;
+  }
+  return chords;
 }
 
 }  // namespace batten::postproc

@@ -1,9 +1,8 @@
 // How a smoothed run is said in the target's words: lines, arcs or curves along its curve, cut
-// where the feed changes, with the run's comments at their places.
+// where the feed changes, with the run's comments.
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +24,7 @@ struct PlannedMove {
   geometry::PathPiece piece;                 // a CubicBezier only as part of a PlannedCurve
   double feed = 0;                           // mm/min
   std::vector<std::size_t> comments_before;  // indices into Run::comments
+  double start = 0;                          // parameter of the curve, not decreasing
 };
 
 // Moves that are written together as one curve of the target: the curve's Bezier pieces.
@@ -39,7 +39,7 @@ struct OutputPlan {
   OutputForm form = OutputForm::kLines;
   std::vector<PlannedMove> moves;
   std::vector<PlannedCurve> curves;         // in order
-  std::vector<std::size_t> comments_after;  // those that stood on the run's last blocks
+  std::vector<std::size_t> comments_after;  // of the run's last blocks
   double error = 0;  // mm, moves to curve, as the height of equal chords with their ends on the
                      // curve; 0: not known, max_deviation at most
   bool chords_for_steps = false;  // see plan_lines
@@ -58,12 +58,38 @@ struct PlanOptions {
   geometry::ArcEffort arc_effort = geometry::ArcEffort::kQuick;  // of plan_arcs
 };
 
-// All plans cut the curve where the feed changes, and put each comment before the move that
-// starts at or first after the comment's vertex. All throw std::invalid_argument when `fair`
-// does not have one parameter per point of the run.
+// Parts are of max_deviation unless said otherwise.
+struct PlanTuning {
+  // Lines.
+  double precision_of_wishes = 2e-3;  // so much shorter chords may be that are only wished so fine
+  double coarser = 4;                 // the next fineness that is tried: chords twice as long
+  double balanced = 1.5;        // so much higher balanced chords may be: two thirds of it are left
+  double coarser_again = 1.05;  // at least, where chords are still too many
+  double periods_for_time = 2;  // block periods: room for the control to look ahead
+  double periods_for_accuracy = 1.1;  // with which the control just holds the feed
+  // Arcs. There are few that the target refuses: too tight, too short.
+  double arc_chords = 0.1;      // kept for chords in their place
+  double spline_chords = 0.03;  // the same where they are refused after rounding only
+  // An arc's deviation falls with the third power of its length, so with Prefer::kAccuracy this
+  // part costs little more than twice the arcs.
+  double accurate_arcs = 0.1;
+  double reversal = 170 * geometry::kPi / 180;  // greater turns stay: see geometry::find_features
+  double no_corner = 1e-3;  // radians between the two ends of a closed run that make no corner
+  // Curves.
+  double long_line = 5;       // mm: a shorter straight part is not worth an end and a new start
+  double curve_chords = 0.1;  // kept for chords in place of pieces that the target does not take
+  double for_control = 0.5;   // for the control's own chords: with less the pieces get short
+  double no_kink = 0.1 * geometry::kPi / 180;  // a smaller turn: SPL blocks may turn so in joints
+  int halvings = 4;  // of a piece that is not taken: all but a sixteenth can still be curves
+};
+inline constexpr PlanTuning kPlans;
+
+// All plans cut the curve where the feed changes, and put each comment before the move that starts
+// at or first after the comment's vertex. All throw std::invalid_argument when `fair` does not have
+// one parameter per point of the run. `pieces` is all of fair.curve.
 
 // Lines along the curve, as `linearize` says; chords where the equal steps of ilca would be too
-// many (geometry/chords/ilca.h), which the plan tells. minlink, ilca and blca take all of
+// many (geometry/chords/ilca.h), which the plan says. minlink, ilca and blca take all of
 // max_deviation; the vertices of minlink alone leave the curve. How fine chords are depends on the
 // preference:
 //   time      half of max_deviation, but all of it where chords would be shorter than twice the
@@ -73,20 +99,23 @@ struct PlanOptions {
 //             control; balanced (geometry/chords/linearize.h);
 //   size      all of max_deviation.
 [[nodiscard]] OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair,
+                                    const geometry::MarkedPieces& pieces,
                                     const PlanOptions& options);
 
-// Arcs in a plane that the target takes arcs in and that the run lies in, the active plane
-// first. A run in space: helices and lines in the plane that needs the fewest, where the target
-// takes helices and they are fewer than the run's motions. Nothing when no plane serves. Arcs that
-// the target would refuse are chords already. Comments are placed by the length along the moves,
-// which may be one short move off.
+// Arcs in a plane that the target takes arcs in and that the run lies in, the active plane first. A
+// run in space: helices and lines in the plane that needs the fewest, where the target takes
+// helices and they are fewer than the run's motions. Nothing when no plane serves. Arcs that the
+// target would refuse are chords already. Comments are placed by the length along the moves, which
+// may be one short move off. `bends`: of the curve.
 [[nodiscard]] std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve& fair,
+                                                  const geometry::MarkedPieces& pieces,
+                                                  const CurvatureProfile& bends,
                                                   const PlanOptions& options);
 
-// Few arcs in the band around the run's vertices themselves, where max_deviation is measured
-// from; of the fair curve only the direction is taken where the path is cut. Every joint is
-// tangent but for corners in which no arc of the target's least radius fits. The run lies in a
-// plane that the target takes arcs in; nothing otherwise, or when no chain was found.
+// Few arcs in the band around the run's vertices themselves, where max_deviation is measured from;
+// of the fair curve only the direction is taken where the path is cut. Every joint is tangent but
+// for corners in which no arc of the target's least radius fits. The run lies in a plane that the
+// target takes arcs in; nothing otherwise, or when no chain was found.
 [[nodiscard]] std::optional<OutputPlan> plan_arc_spline(const Run& run,
                                                         const geometry::SmoothCurve& fair,
                                                         const PlanOptions& options);
@@ -98,52 +127,26 @@ struct PlanOptions {
                                                     const geometry::SmoothCurve& fair,
                                                     const PlanOptions& options);
 
-// The same for who makes more than one plan of a curve, and so has it in its pieces: `pieces` is
-// all of fair.curve.
-
-[[nodiscard]] OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair,
-                                    const geometry::MarkedPieces& pieces,
-                                    const PlanOptions& options);
-
-[[nodiscard]] std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve& fair,
-                                                  const geometry::MarkedPieces& pieces,
-                                                  const CurvatureProfile& bends,
-                                                  const PlanOptions& options);
-
-// The parts of a smoothed run between changes of feed, and where its comments go.
-
 // A part of the curve that is run at one feed.
-struct FeedStretch {
+struct FeedSection {
   double from = 0;  // parameters of the curve
   double to = 0;
   double feed = 0;  // mm/min
 };
 
 // In order, each starting where the one before it ends, from the curve's first parameter to its
-// last. None is empty; neighbours have different feeds.
-//
-// Throws std::invalid_argument when `fair` does not have one parameter per point of the run, or
-// when the run has no feed.
-[[nodiscard]] std::vector<FeedStretch> feed_stretches(const Run& run,
-                                                      const geometry::SmoothCurve& fair);
+// last. None is empty; neighbours have different feeds. Throws std::invalid_argument also when the
+// run has no feed.
+[[nodiscard]] std::vector<FeedSection> feed_sections(const Run& run,
+                                                     const geometry::SmoothCurve& fair);
 
-// Puts the run's comments into the plan. `starts`: the curve's parameter at the start of each
-// move, not decreasing.
-void place_comments(const Run& run, const geometry::SmoothCurve& fair,
-                    std::span<const double> starts, OutputPlan& plan);
+// Puts the run's comments into the plan.
+void place_comments(const Run& run, const geometry::SmoothCurve& fair, OutputPlan& plan);
 
-// What the plans of arcs and of curves have in common.
+// Whether all points of the run are at one height along the axis.
+[[nodiscard]] bool lies_across(const Run& run, int axis);
 
-// Planes that the target takes arcs in, the active one first.
-[[nodiscard]] std::vector<gcode::PlaneAxes> arc_planes(const PlanOptions& options);
-
-// mm: the printed step of the ends of arcs.
-[[nodiscard]] double arc_grid(const PlanOptions& options);
-
-// Appends the piece; an arc in as many parts as the target needs, and chords within `deviation` of
-// those parts that it refuses or that its own chords would leave further than
-// options.max_deviation.
-void append_taken(const geometry::PathPiece& piece, double deviation, const PlanOptions& options,
-                  geometry::Path& path);
+// Chords for an arc, each within `deviation` (mm) of it.
+[[nodiscard]] geometry::Path chords_for(const geometry::Arc& arc, double deviation);
 
 }  // namespace batten::postproc

@@ -1,8 +1,5 @@
-#include "postproc/smooth/forms/output_plan.h"
-
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "gcode/controls/arc_rules.h"
@@ -13,38 +10,25 @@
 #include "geometry/basic/rounding.h"
 #include "geometry/path/plane_curve.h"
 #include "postproc/runs/run_path.h"
+#include "postproc/smooth/forms/output_plan.h"
 
 namespace batten::postproc {
 namespace {
 
+using gcode::PlaneAxes;
+using geometry::BsplineCurve;
 using geometry::Path;
-
-double radius_of(const geometry::Arc& arc) {
-  const geometry::Vector3 out = arc.start - arc.center;
-  return (out - out.dot(arc.axis) * arc.axis).norm();
-}
-
-// Chords for an arc, each within `deviation` of it.
-Path chords_for(const geometry::Arc& arc, double deviation) {
-  const double radius = radius_of(arc);
-  const double half_angle = std::acos(std::max(1 - deviation / radius, 0.0));
-  const auto count = std::max(1, static_cast<int>(std::ceil(std::abs(arc.sweep) / 2 / half_angle)));
-  Path chords;
-  geometry::Point3 place = arc.start;
-  for (int i = 1; i <= count; ++i) {
-    const geometry::Point3 next = geometry::point_at(arc, static_cast<double>(i) / count);
-    chords.push_back(geometry::Line{place, next});
-    place = next;
-  }
-  return chords;
-}
+using geometry::PathPiece;
+using geometry::Point2;
+using geometry::Point3;
+using geometry::Vector3;
 
 geometry::ArcPartsOptions parts_for(const geometry::Arc& arc, const gcode::Control& target) {
   geometry::ArcPartsOptions parts;
   parts.max_sweep = max_arc_sweep(target);
-  const gcode::PlaneAxes* plane = gcode::plane_across(arc.axis);
+  const PlaneAxes* plane = gcode::plane_across(arc.axis);
   if (target.single_quadrants && plane != nullptr) {
-    parts.quadrant_from = geometry::Vector3::Unit(plane->first);
+    parts.quadrant_from = Vector3::Unit(plane->first);
   }
   return parts;
 }
@@ -53,27 +37,29 @@ geometry::ArcPartsOptions parts_for(const geometry::Arc& arc, const gcode::Contr
 bool is_taken(const geometry::Arc& arc, const PlanOptions& options) {
   const gcode::Control& target = *options.target;
   return gcode::arc_refusal(target, arc, options.units).empty() &&
-         gcode::chord_error(target.chords, radius_of(arc)) <= options.max_deviation;
+         gcode::chord_error(target.chords, geometry::radius_of(arc)) <= options.max_deviation;
 }
 
-}  // namespace
-
-std::vector<gcode::PlaneAxes> arc_planes(const PlanOptions& options) {
-  std::vector<gcode::PlaneAxes> planes;
-  for (const gcode::PlaneAxes& each : gcode::kPlaneAxes) {
+// Planes that the target takes arcs in, the active one first.
+std::vector<PlaneAxes> arc_planes(const PlanOptions& options) {
+  std::vector<PlaneAxes> planes;
+  for (const PlaneAxes& each : gcode::kPlaneAxes) {
     if (takes_arcs_in(*options.target, each.plane)) planes.push_back(each);
   }
-  std::stable_partition(planes.begin(), planes.end(), [&](const gcode::PlaneAxes& each) {
-    return each.plane == options.active_plane;
-  });
+  std::ranges::stable_partition(
+      planes, [&](const PlaneAxes& each) { return each.plane == options.active_plane; });
   return planes;
 }
 
+// mm: the printed step of the ends of arcs.
 double arc_grid(const PlanOptions& options) {
   return gcode::printed_step(arc_end_format(*options.target, options.units), options.units);
 }
 
-void append_taken(const geometry::PathPiece& piece, double deviation, const PlanOptions& options,
+// Appends the piece; an arc in as many parts as the target needs, and chords within `deviation` of
+// those parts that it refuses or that its own chords would leave further than
+// options.max_deviation.
+void append_taken(const PathPiece& piece, double deviation, const PlanOptions& options,
                   Path& path) {
   const auto* arc = std::get_if<geometry::Arc>(&piece);
   if (arc == nullptr) {
@@ -90,29 +76,14 @@ void append_taken(const geometry::PathPiece& piece, double deviation, const Plan
   }
 }
 
-namespace {
-
-using gcode::PlaneAxes;
-using geometry::BsplineCurve;
-using geometry::Path;
-using geometry::PathPiece;
-
-// The part of the deviation that is kept for chords in place of arcs that the target refuses:
-// too tight, too short. There are few of them.
-constexpr double kPartForArcChords = 0.1;
-
-// With Prefer::kAccuracy arcs are this much nearer to the curve. An arc's deviation falls with
-// the third power of its length, so it costs little more than twice the arcs.
-constexpr double kAccuratePart = 0.1;
-
 // The curve laid flat into the plane, when it lies in it to within half a printed step and its
 // ends do so exactly.
 std::optional<BsplineCurve> laid_flat(const Run& run, const BsplineCurve& curve, int normal,
                                       double step) {
   const double height = run.points.front()[normal];
   if (std::abs(run.points.back()[normal] - height) > geometry::kSamePlace) return std::nullopt;
-  std::vector<geometry::Point3> points = curve.control_points();
-  for (geometry::Point3& point : points) {
+  std::vector<Point3> points = curve.control_points();
+  for (Point3& point : points) {
     if (std::abs(point[normal] - height) > step / 2) return std::nullopt;
     point[normal] = height;
   }
@@ -121,16 +92,17 @@ std::optional<BsplineCurve> laid_flat(const Run& run, const BsplineCurve& curve,
 
 double fit_deviation(const PlanOptions& options) {
   const double limit = options.max_deviation;
-  if (options.prefer != Prefer::kAccuracy) return limit * (1 - kPartForArcChords);
+  if (options.prefer != Prefer::kAccuracy) return limit * (1 - kPlans.arc_chords);
   const double worth_it = arc_grid(options);  // finer than that is lost in print
-  return std::min(std::max(kAccuratePart * limit, worth_it), limit * (1 - kPartForArcChords));
+  return std::min(std::max(kPlans.accurate_arcs * limit, worth_it),
+                  limit * (1 - kPlans.arc_chords));
 }
 
 geometry::ArcFitOptions fit_options(const PlanOptions& options, const PlaneAxes& plane,
                                     bool helical) {
   geometry::ArcFitOptions fit;
   fit.max_deviation = fit_deviation(options);
-  fit.axis = geometry::Vector3::Unit(plane.normal);
+  fit.axis = Vector3::Unit(plane.normal);
   fit.helical = helical;
   fit.min_radius = options.target->min_radius;
   fit.max_radius = options.target->max_radius;
@@ -139,69 +111,50 @@ geometry::ArcFitOptions fit_options(const PlanOptions& options, const PlaneAxes&
   return fit;
 }
 
-// Adds the pieces of one stretch to the plan, and the parameters at which they start to `starts`:
-// the curve's parameter goes about with the length along it.
-void append_stretch(const Path& path, const FeedStretch& stretch, OutputPlan& plan,
-                    std::vector<double>& starts) {
-  const double length = geometry::length_of(path);
-  double done = 0;
-  for (const PathPiece& piece : path) {
-    const double part = length > 0 ? done / length : 0;
-    starts.push_back(stretch.from + (stretch.to - stretch.from) * part);
-    plan.moves.push_back({piece, stretch.feed, {}});
-    done += geometry::length_of(piece);
-  }
-}
-
-// The run's curve in its pieces, and about how many chords it takes.
-struct WholeCurve {
-  const geometry::MarkedPieces& pieces;
-  double chords;
-};
-
-// `whole`: of that curve, or none.
+// `whole`: all of the curve in its pieces, where these are known, and about how many chords it
+// takes.
 std::optional<OutputPlan> plan_in(const Run& run, const geometry::SmoothCurve& fair,
-                                  const BsplineCurve& curve, const WholeCurve* whole,
-                                  const geometry::ArcFitOptions& fit, const PlanOptions& options) {
+                                  const BsplineCurve& curve, const geometry::MarkedPieces* whole,
+                                  double chords, const geometry::ArcFitOptions& fit,
+                                  const PlanOptions& options) {
   OutputPlan plan;
   plan.form = OutputForm::kArcs;
-  std::vector<double> starts;
-  for (const FeedStretch& stretch : feed_stretches(run, fair)) {
-    const bool all = stretch.from == curve.first() && stretch.to == curve.last();
+  for (const FeedSection& section : feed_sections(run, fair)) {
+    const bool all = section.from == curve.first() && section.to == curve.last();
     const std::optional<Path> arcs = all && whole != nullptr
-                                         ? geometry::fit_arcs(whole->pieces, whole->chords, fit)
-                                         : geometry::fit_arcs(curve, stretch.from, stretch.to, fit);
+                                         ? geometry::fit_arcs(*whole, chords, fit)
+                                         : geometry::fit_arcs(curve, section.from, section.to, fit);
     if (!arcs) return std::nullopt;
     Path taken;
     for (const PathPiece& piece : *arcs) {
-      append_taken(piece, kPartForArcChords * options.max_deviation, options, taken);
+      append_taken(piece, kPlans.arc_chords * options.max_deviation, options, taken);
     }
-    append_stretch(taken, stretch, plan, starts);
+    // The curve's parameter goes about with the length along the pieces.
+    const double length = geometry::length_of(taken);
+    double done = 0;
+    for (const PathPiece& piece : taken) {
+      const double part = length > 0 ? done / length : 0;
+      const double start = section.from + (section.to - section.from) * part;
+      plan.moves.push_back({piece, section.feed, {}, start});
+      done += geometry::length_of(piece);
+    }
   }
-  place_comments(run, fair, starts, plan);
+  place_comments(run, fair, plan);
   return plan;
 }
 
 // By how far the run reaches across the plane.
 std::vector<PlaneAxes> flattest_first(const Run& run, std::vector<PlaneAxes> planes) {
-  geometry::Point3 low = run.points.front();
-  geometry::Point3 high = low;
-  for (const geometry::Point3& point : run.points) {
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
-  }
-  std::ranges::stable_sort(
-      planes, {}, [&](const PlaneAxes& plane) { return high[plane.normal] - low[plane.normal]; });
+  const auto reach = [&](const PlaneAxes& plane) {
+    const auto [low, high] = std::ranges::minmax(
+        run.points, {}, [&](const Point3& point) { return point[plane.normal]; });
+    return high[plane.normal] - low[plane.normal];
+  };
+  std::ranges::stable_sort(planes, {}, reach);
   return planes;
 }
 
 }  // namespace
-
-std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve& fair,
-                                    const PlanOptions& options) {
-  return plan_arcs(run, fair, {fair.curve, fair.curve.first(), fair.curve.last()},
-                   CurvatureProfile(fair.curve), options);
-}
 
 std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve& fair,
                                     const geometry::MarkedPieces& pieces,
@@ -212,7 +165,7 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
     const auto flat = laid_flat(run, fair.curve, plane.normal, arc_grid(options));
     if (!flat) continue;
     flat_somewhere = true;
-    auto plan = plan_in(run, fair, *flat, nullptr, fit_options(options, plane, false), options);
+    auto plan = plan_in(run, fair, *flat, nullptr, 0, fit_options(options, plane, false), options);
     if (plan) return plan;
   }
   if (flat_somewhere || !options.target->helices) return std::nullopt;
@@ -220,13 +173,13 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
   // are lines and steep little helices. The fewest moves win; the plane in which the run is
   // flattest comes first, so that the others are soon given up. More moves than the run has motions
   // are chords in all but name, and plan_lines does those better.
-  const WholeCurve whole{pieces, bends.chords(fit_deviation(options), 0)};
+  const double chords = bends.chords(fit_deviation(options), 0);
   std::optional<OutputPlan> best;
   std::size_t most = motion_count(run);
   for (const PlaneAxes& plane : flattest_first(run, planes)) {
     geometry::ArcFitOptions fit = fit_options(options, plane, true);
     fit.at_most = most;
-    auto plan = plan_in(run, fair, fair.curve, &whole, fit, options);
+    auto plan = plan_in(run, fair, fair.curve, &pieces, chords, fit, options);
     if (!plan || plan->moves.size() >= most) continue;
     most = plan->moves.size();
     best = std::move(plan);
@@ -236,22 +189,8 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
 
 namespace {
 
-using geometry::Point2;
-using geometry::Point3;
-using geometry::Vector3;
-
-// The part of the deviation that is kept for chords in place of arcs that the target refuses
-// after rounding. There are few of them.
-constexpr double kPartForArcSplineChords = 0.03;
-
-// Turns beyond this stay as they are: see geometry::find_features.
-constexpr double kReversal = 170 * std::numbers::pi / 180;
-
-// Tangents at the two ends of a closed run that differ less make no corner there.
-constexpr double kNoCorner = 1e-3;
-
 // A part of the run that is one chain of arcs: between changes of feed and kept corners.
-struct ArcStretch {
+struct ArcSection {
   std::size_t first;  // vertices of the run
   std::size_t last;
   double feed;
@@ -259,16 +198,10 @@ struct ArcStretch {
   bool tangent_end;
 };
 
-double turn_at(const Run& run, std::size_t i) {
-  const Vector3 a = run.points[i] - run.points[i - 1];
-  const Vector3 b = run.points[i + 1] - run.points[i];
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 class ArcSplinePlanner {
  public:
   ArcSplinePlanner(const Run& run, const geometry::SmoothCurve& fair, const PlanOptions& options,
-                   const gcode::PlaneAxes& plane)
+                   const PlaneAxes& plane)
       : run_(run),
         fair_(fair),
         options_(options),
@@ -278,16 +211,19 @@ class ArcSplinePlanner {
 
   std::optional<OutputPlan> plan() {
     plan_.form = OutputForm::kArcs;
-    for (const ArcStretch& stretch : stretches()) {
-      if (!add(stretch)) return std::nullopt;
+    for (const ArcSection& section : sections()) {
+      if (!add(section)) return std::nullopt;
     }
-    place_comments(run_, fair_, starts_, plan_);
+    place_comments(run_, fair_, plan_);
     return std::move(plan_);
   }
 
  private:
   [[nodiscard]] bool kept_corner(std::size_t i) const {
-    return turn_at(run_, i) > std::min(options_.keep_corner_angle, kReversal);
+    const Vector3 in = run_.points[i] - run_.points[i - 1];
+    const Vector3 out = run_.points[i + 1] - run_.points[i];
+    const double turn = std::atan2(in.cross(out).norm(), in.dot(out));
+    return turn > std::min(options_.keep_corner_angle, kPlans.reversal);
   }
 
   [[nodiscard]] double angle_of(double parameter) const {
@@ -299,13 +235,13 @@ class ArcSplinePlanner {
   [[nodiscard]] bool goes_round() const {
     if (!run_.closed) return false;
     const double off = angle_of(fair_.curve.last()) - angle_of(fair_.curve.first());
-    return std::abs(std::remainder(off, 2 * std::numbers::pi)) < kNoCorner;
+    return std::abs(std::remainder(off, 2 * geometry::kPi)) < kPlans.no_corner;
   }
 
-  [[nodiscard]] std::vector<ArcStretch> stretches() const {
+  [[nodiscard]] std::vector<ArcSection> sections() const {
     const std::size_t end = run_.points.size() - 1;
     const bool round = goes_round();
-    std::vector<ArcStretch> all = {{0, end, run_.feeds.front().feed, round, round}};
+    std::vector<ArcSection> all = {{0, end, run_.feeds.front().feed, round, round}};
     std::size_t next = 0;
     for (std::size_t i = 0; i < end; ++i) {
       double feed = all.back().feed;
@@ -322,34 +258,34 @@ class ArcSplinePlanner {
     return all;
   }
 
-  bool add(const ArcStretch& stretch) {
+  bool add(const ArcSection& section) {
     std::vector<Point2> points;
     std::vector<std::size_t> vertices;
-    for (std::size_t i = stretch.first; i <= stretch.last; ++i) {
+    for (std::size_t i = section.first; i <= section.last; ++i) {
       const Point2 p = frame_.local(run_.points[i]).head<2>();
       if (!points.empty() && (p - points.back()).norm() <= geometry::kSamePlace) continue;
       points.push_back(p);
       vertices.push_back(i);
     }
-    if (points.size() < 2) return stretch.first == stretch.last || stretch.last == 0;
-    const auto spline = geometry::fit_arc_spline(points, fit_options(stretch, points));
+    if (points.size() < 2) return section.first == section.last || section.last == 0;
+    const auto spline = geometry::fit_arc_spline(points, fit_options(section, points));
     if (!spline) return false;
-    append(*spline, stretch, points, vertices);
+    append(*spline, section, points, vertices);
     return true;
   }
 
-  [[nodiscard]] geometry::ArcSplineOptions fit_options(const ArcStretch& stretch,
+  [[nodiscard]] geometry::ArcSplineOptions fit_options(const ArcSection& section,
                                                        const std::vector<Point2>& points) const {
     geometry::ArcSplineOptions fit;
-    fit.tolerance = (1 - kPartForArcSplineChords) * options_.max_deviation;
+    fit.tolerance = (1 - kPlans.spline_chords) * options_.max_deviation;
     fit.min_radius = options_.target->min_radius;
     fit.max_radius = options_.target->max_radius;
     fit.grid = arc_grid(options_);
     fit.effort = geometry::ArcEffort::kThorough;
     const geometry::Vector2 first = points[1] - points[0];
     fit.direction = std::atan2(first.y(), first.x());
-    if (stretch.tangent_start) fit.start_angle = angle_of(fair_.vertex_parameters[stretch.first]);
-    if (stretch.tangent_end) fit.end_angle = angle_of(fair_.vertex_parameters[stretch.last]);
+    if (section.tangent_start) fit.start_angle = angle_of(fair_.vertex_parameters[section.first]);
+    if (section.tangent_end) fit.end_angle = angle_of(fair_.vertex_parameters[section.last]);
     return fit;
   }
 
@@ -357,20 +293,18 @@ class ArcSplinePlanner {
     return frame_.global({p.x(), p.y(), height_});
   }
 
-  void append(const geometry::ArcSpline& spline, const ArcStretch& stretch,
+  void append(const geometry::ArcSpline& spline, const ArcSection& section,
               const std::vector<Point2>& points, const std::vector<std::size_t>& vertices) {
+    const auto edge = [&](std::size_t i) { return (points[i + 1] - points[i]).norm(); };
     std::size_t at = 0;  // the vertex before the start of the piece
     double passed = 0;   // station of that vertex
     double station = 0;
     for (const geometry::ArcSplinePiece& piece : spline.pieces) {
-      while (at + 2 < points.size() && passed + (points[at + 1] - points[at]).norm() <= station) {
-        passed += (points[at + 1] - points[at]).norm();
-        ++at;
-      }
-      const double part = (station - passed) / (points[at + 1] - points[at]).norm();
+      while (at + 2 < points.size() && passed + edge(at) <= station) passed += edge(at++);
+      const double part = (station - passed) / edge(at);
       const double u0 = fair_.vertex_parameters[vertices[at]];
       const double u1 = fair_.vertex_parameters[vertices[at + 1]];
-      add_piece(piece.arc, u0 + part * (u1 - u0), stretch.feed);
+      add_piece(piece.arc, u0 + part * (u1 - u0), section.feed);
       station = piece.station;
     }
   }
@@ -378,13 +312,12 @@ class ArcSplinePlanner {
   void add_piece(const geometry::PlaneArc& arc, double start, double feed) {
     const Point3 from = placed(arc.start);
     const Point3 to = placed(arc.end);
-    geometry::PathPiece piece = geometry::Line{from, to};
+    PathPiece piece = geometry::Line{from, to};
     if (!arc.is_line()) piece = geometry::Arc{from, to, placed(arc.center), axis_, arc.sweep};
-    geometry::Path taken;
-    append_taken(piece, kPartForArcSplineChords * options_.max_deviation, options_, taken);
-    for (const geometry::PathPiece& each : taken) {
-      plan_.moves.push_back({each, feed, {}});
-      starts_.push_back(start);
+    Path taken;
+    append_taken(piece, kPlans.spline_chords * options_.max_deviation, options_, taken);
+    for (const PathPiece& each : taken) {
+      plan_.moves.push_back({each, feed, {}, start});
     }
   }
 
@@ -395,22 +328,14 @@ class ArcSplinePlanner {
   Vector3 axis_;
   double height_;  // of the run along the axis
   OutputPlan plan_;
-  std::vector<double> starts_;  // parameter of the fair curve at the start of each move
 };
-
-bool lies_flat(const Run& run, int normal) {
-  const double height = run.points.front()[normal];
-  return std::ranges::all_of(run.points, [&](const Point3& p) {
-    return std::abs(p[normal] - height) <= geometry::kSamePlace;
-  });
-}
 
 }  // namespace
 
 std::optional<OutputPlan> plan_arc_spline(const Run& run, const geometry::SmoothCurve& fair,
                                           const PlanOptions& options) {
-  for (const gcode::PlaneAxes& plane : arc_planes(options)) {
-    if (!lies_flat(run, plane.normal)) continue;
+  for (const PlaneAxes& plane : arc_planes(options)) {
+    if (!lies_across(run, plane.normal)) continue;
     if (auto plan = ArcSplinePlanner(run, fair, options, plane).plan()) return plan;
   }
   return std::nullopt;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "gcode/curves/curve_format.h"
@@ -19,27 +18,7 @@ using geometry::CurvePieces;
 using geometry::Point3;
 using geometry::Vector3;
 
-// A straight part of this length (mm) is a line of the new program too. Where a curve is many
-// blocks, a shorter one is not worth an end and a new start of it.
-constexpr double kLongLine = 5;
-
-// The part of the deviation that is kept for chords in place of pieces that the target does not
-// take. There are few of them.
-constexpr double kPartForCurveChords = 0.1;
-
-// The part that is kept for the control's own chords, where it runs curves so: half of it, since
-// with less the pieces get short, and with more the curve hardly bends.
-constexpr double kPartForControl = 0.5;
-
-// Radians: a smaller turn is none. The control makes nothing of it: SPL blocks may turn by 0.1
-// degrees where they join.
-constexpr double kNoKink = 0.1 * std::numbers::pi / 180;
-
-// A piece that the target does not take is halved so often before it is chords: where it bends the
-// one way first and then the other, all of it but a sixteenth can still be curves.
-constexpr int kHalvings = 4;
-
-// A stretch of the curve that is one thing in the program.
+// What is one thing in the program.
 struct CurvePart {
   double from = 0;
   double to = 0;
@@ -53,12 +32,8 @@ struct CurvePart {
 BsplineCurve laid_level(const Run& run, const BsplineCurve& curve) {
   std::vector<Point3> points = curve.control_points();
   for (int axis = 0; axis < 3; ++axis) {
-    const double height = run.points.front()[axis];
-    const bool level = std::ranges::all_of(run.points, [&](const Point3& p) {
-      return std::abs(p[axis] - height) <= geometry::kSamePlace;
-    });
-    if (!level) continue;
-    for (Point3& point : points) point[axis] = height;
+    if (!lies_across(run, axis)) continue;
+    for (Point3& point : points) point[axis] = run.points.front()[axis];
   }
   return {curve.basis(), std::move(points)};
 }
@@ -72,21 +47,21 @@ class CurvePlanner {
   std::optional<OutputPlan> plan() {
     plan_.form = OutputForm::kCurves;
     place_ = run_.points.front();
-    for (const FeedStretch& stretch : feed_stretches(run_, fair_)) {
-      feed_ = stretch.feed;
-      for (const CurvePart& part : parts_of(stretch)) add(part);
+    for (const FeedSection& section : feed_sections(run_, fair_)) {
+      feed_ = section.feed;
+      for (const CurvePart& part : parts_of(section)) add(part);
     }
     if (plan_.curves.empty()) return std::nullopt;
-    place_comments(run_, fair_, starts_, plan_);
+    place_comments(run_, fair_, plan_);
     return std::move(plan_);
   }
 
  private:
   [[nodiscard]] BsplineCurve curve_for(const Run& run, const geometry::SmoothCurve& fair) const {
     geometry::FewerKnotsOptions fewer;
-    const double for_control = format_.is_run_as_chords ? kPartForControl : 0;
-    fewer.max_deviation = (1 - kPartForCurveChords - for_control) * options_.max_deviation;
-    fewer.long_line = kLongLine;
+    const double for_control = format_.is_run_as_chords ? kPlans.for_control : 0;
+    fewer.max_deviation = (1 - kPlans.curve_chords - for_control) * options_.max_deviation;
+    fewer.long_line = kPlans.long_line;
     for (const FeedFrom& change : run.feeds) {
       fewer.places.push_back(fair.vertex_parameters.at(change.vertex));
     }
@@ -97,7 +72,7 @@ class CurvePlanner {
   [[nodiscard]] bool is_line(const geometry::StraightRun& straight) const {
     if (format_.is_block_per_piece) return true;
     const Point3 way = curve_.point_at(straight.to) - curve_.point_at(straight.from);
-    return way.norm() >= kLongLine;
+    return way.norm() >= kPlans.long_line;
   }
 
   [[nodiscard]] double knot_noise() const {
@@ -105,10 +80,10 @@ class CurvePlanner {
   }
 
   // Cut at corners and at lines.
-  [[nodiscard]] std::vector<CurvePart> parts_of(const FeedStretch& stretch) const {
-    const CurvePieces pieces(curve_, stretch.from, stretch.to);
+  [[nodiscard]] std::vector<CurvePart> parts_of(const FeedSection& section) const {
+    const CurvePieces pieces(curve_, section.from, section.to);
     std::vector<CurvePart> parts;
-    double done = stretch.from;
+    double done = section.from;
     const double noise = knot_noise();
     const auto bend_to = [&](double end) {
       if (end > done + noise) parts.push_back({.from = done, .to = end});
@@ -124,7 +99,7 @@ class CurvePlanner {
       done = straight.to;
     }
     for (; corner != corners.end(); ++corner) bend_to(*corner);
-    bend_to(stretch.to);
+    bend_to(section.to);
     for (CurvePart& part : parts) {
       part.starts_free = is_free(part.from, corners);
       part.ends_free = is_free(part.to, corners);
@@ -167,7 +142,7 @@ class CurvePlanner {
       done = forward;
     }
     const auto bends = [&](const Point3& from, const Point3& to) {
-      return (to - from).cross(along).norm() > kNoKink * (to - from).norm();
+      return (to - from).cross(along).norm() > kPlans.no_kink * (to - from).norm();
     };
     return (part.starts_free || !bends(points[0], points[1])) &&
            (part.ends_free || !bends(points[points.size() - 2], points.back()));
@@ -176,13 +151,13 @@ class CurvePlanner {
   // The control takes it, and runs it near enough.
   [[nodiscard]] bool is_taken(const CubicBezier& piece) const {
     return format_.takes(piece) &&
-           format_.chords_error(piece) <= kPartForControl * options_.max_deviation;
+           format_.chords_error(piece) <= kPlans.for_control * options_.max_deviation;
   }
 
   void add_piece_by_piece(const BsplineCurve& curve) {
     const std::vector<double> breaks = curve.breakpoints();
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
-      add_taken(curve, breaks[i], breaks[i + 1], kHalvings);
+      add_taken(curve, breaks[i], breaks[i + 1], kPlans.halvings);
     }
   }
 
@@ -204,15 +179,14 @@ class CurvePlanner {
     const std::vector<double> breaks = part.breakpoints();
     const std::size_t first = plan_.moves.size();
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      plan_.moves.push_back({pieces[i], feed_, {}});
-      starts_.push_back(breaks[i]);
+      plan_.moves.push_back({pieces[i], feed_, {}, breaks[i]});
     }
     place_ = pieces.back().control[3];
     plan_.curves.push_back({first, pieces.size(), std::move(part)});
   }
 
   void add_chords(const BsplineCurve& curve, double from, double to) {
-    const double deviation = kPartForCurveChords * options_.max_deviation;
+    const double deviation = kPlans.curve_chords * options_.max_deviation;
     const std::vector<double> vertices =
         geometry::chord_vertices(curve, from, to, {.max_deviation = deviation});
     for (std::size_t i = 0; i + 1 < vertices.size(); ++i) add_line(vertices[i], vertices[i + 1]);
@@ -221,8 +195,7 @@ class CurvePlanner {
   void add_line(double from, double to) {
     const bool last = to >= curve_.last();
     const Point3 end = last ? run_.points.back() : curve_.point_at(to);
-    plan_.moves.push_back({geometry::Line{place_, end}, feed_, {}});
-    starts_.push_back(from);
+    plan_.moves.push_back({geometry::Line{place_, end}, feed_, {}, from});
     place_ = end;
   }
 
@@ -234,7 +207,6 @@ class CurvePlanner {
   double feed_ = 0;
   Point3 place_ = Point3::Zero();
   OutputPlan plan_;
-  std::vector<double> starts_;  // parameter at the start of each move
 };
 
 }  // namespace

@@ -21,24 +21,7 @@ struct Fineness {
   double precision = 5e-4;  // of the chords' ends
 };
 
-// Chords that are only wished to be so fine may be a tenth of a percent shorter on the average.
-constexpr double kPrecisionOfWishes = 2e-3;
-
-// From one fineness to the next coarser one that is tried: chords twice as long.
-constexpr double kCoarser = 4;
-
-// Balanced chords may be so much higher: two thirds of their height are left.
-constexpr double kBalanced = 1.5;
-
-// Chords that are still too many become so much coarser at least.
-constexpr double kCoarserAgain = 1.05;
-
-// Chords of so many block periods leave the control room to look ahead; with one and a little
-// the control just holds the feed.
-constexpr double kPeriodsForTime = 2;
-constexpr double kPeriodsForAccuracy = 1.1;
-
-// The way of one block period at this feed, mm.
+// mm, of one block period at this feed.
 double length_per_block(double feed, const Machine& machine) {
   return std::min(feed / 60, machine.max_velocity()) * machine.block_period;
 }
@@ -49,9 +32,9 @@ Fineness fineness_for(double feed, const PlanOptions& options, double finest) {
   const double per_block = length_per_block(feed, *options.machine);
   switch (options.prefer) {
     case Prefer::kTime:
-      return {limit / 2, limit, kPeriodsForTime * per_block, kPrecisionOfWishes};
+      return {limit / 2, limit, kPlans.periods_for_time * per_block, kPlans.precision_of_wishes};
     case Prefer::kAccuracy:
-      return {finest, kBalanced * limit, kPeriodsForAccuracy * per_block};
+      return {finest, kPlans.balanced * limit, kPlans.periods_for_accuracy * per_block};
     case Prefer::kSize:
       break;
   }
@@ -60,7 +43,6 @@ Fineness fineness_for(double feed, const PlanOptions& options, double finest) {
 
 Vertices on_the_curve(const BsplineCurve& curve, const std::vector<double>& parameters) {
   Vertices vertices;
-  vertices.reserve(parameters.size());
   for (const double u : parameters) vertices.push_back({curve.point_at(u), u});
   return vertices;
 }
@@ -77,15 +59,15 @@ Vertices on_the_curve(const geometry::CurvePieces& curve, const std::vector<doub
   return vertices;
 }
 
-// Parameters of the vertices between two places, both included: as fine as wished for, and
-// coarser on each stretch whose chords come out too short.
+// Parameters of the vertices from the one to the other: as fine as wished for, and coarser on each
+// section whose chords come out too short.
 std::vector<double> chords(const MarkedPieces& curve, double from, double to,
                            const Fineness& fineness) {
   std::vector<double> wished = geometry::chord_vertices(
       curve, from, to, {.max_deviation = fineness.finest, .precision = fineness.precision});
   if (fineness.finest >= fineness.coarsest) return wished;
   Fineness coarser = fineness;
-  coarser.finest = std::min(fineness.finest * kCoarser, fineness.coarsest);
+  coarser.finest = std::min(fineness.finest * kPlans.coarser, fineness.coarsest);
 
   const Vertices places = on_the_curve(curve.pieces, wished);
   const auto is_short = [&](std::size_t i) {
@@ -93,44 +75,45 @@ std::vector<double> chords(const MarkedPieces& curve, double from, double to,
            (places[i + 1].place - places[i].place).norm() < fineness.min_length;
   };
   std::vector<double> vertices = {from};
-  for (std::size_t i = 0; i + 1 < wished.size();) {
-    std::size_t end = i;
+  std::size_t end = 0;
+  for (std::size_t i = 0; i + 1 < wished.size(); i = end) {
+    end = i;
     while (is_short(end)) ++end;
     if (end <= i + 1) {
-      vertices.push_back(wished[++i]);
+      end = i + 1;
+      vertices.push_back(wished[end]);
       continue;
     }
     const std::vector<double> longer = chords(curve, wished[i], wished[end], coarser);
     vertices.insert(vertices.end(), longer.begin() + 1, longer.end());
-    i = end;
   }
   return vertices;
 }
 
 // `used_chords` is set where equal steps would have been too many.
 Vertices vertices_on(const BsplineCurve& curve, const MarkedPieces& pieces,
-                     const FeedStretch& stretch, const PlanOptions& options, double finest,
+                     const FeedSection& section, const PlanOptions& options, double finest,
                      bool& used_chords) {
   const double deviation = options.max_deviation;
   switch (options.linearize) {
     case Linearize::kMinLink:
-      return geometry::min_link_vertices(curve, stretch.from, stretch.to, {.tolerance = deviation});
+      return geometry::min_link_vertices(curve, section.from, section.to, {.tolerance = deviation});
     case Linearize::kIlca:
       if (const auto row =
-              geometry::ilca(curve, stretch.from, stretch.to, {.max_deviation = deviation})) {
+              geometry::ilca(curve, section.from, section.to, {.max_deviation = deviation})) {
         return on_the_curve(curve, row->parameters);
       }
       used_chords = true;
-      return on_the_curve(pieces.pieces, chords(pieces, stretch.from, stretch.to,
+      return on_the_curve(pieces.pieces, chords(pieces, section.from, section.to,
                                                 {.finest = deviation, .coarsest = deviation}));
     case Linearize::kBlca:
       return on_the_curve(curve,
-                          geometry::blca(curve, stretch.from, stretch.to, deviation).parameters);
+                          geometry::blca(curve, section.from, section.to, deviation).parameters);
     case Linearize::kChord:
       break;
   }
   const std::vector<double> parameters =
-      chords(pieces, stretch.from, stretch.to, fineness_for(stretch.feed, options, finest));
+      chords(pieces, section.from, section.to, fineness_for(section.feed, options, finest));
   return options.prefer == Prefer::kAccuracy ? geometry::balanced_chords(curve, parameters)
                                              : on_the_curve(pieces.pieces, parameters);
 }
@@ -139,29 +122,22 @@ OutputPlan lines_of(const Run& run, const geometry::SmoothCurve& fair, const Mar
                     const PlanOptions& options, double finest) {
   OutputPlan plan;
   plan.form = OutputForm::kLines;
-  std::vector<double> starts;
   geometry::Point3 place = run.points.front();
-  for (const FeedStretch& stretch : feed_stretches(run, fair)) {
+  for (const FeedSection& section : feed_sections(run, fair)) {
     const Vertices vertices =
-        vertices_on(fair.curve, pieces, stretch, options, finest, plan.chords_for_steps);
+        vertices_on(fair.curve, pieces, section, options, finest, plan.chords_for_steps);
     for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
-      const bool last = i + 2 == vertices.size() && stretch.to >= fair.curve.last();
+      const bool last = i + 2 == vertices.size() && section.to >= fair.curve.last();
       const geometry::Point3 next = last ? run.points.back() : vertices[i + 1].place;
-      plan.moves.push_back({geometry::Line{place, next}, stretch.feed, {}});
-      starts.push_back(vertices[i].parameter);
+      plan.moves.push_back({geometry::Line{place, next}, section.feed, {}, vertices[i].parameter});
       place = next;
     }
   }
-  place_comments(run, fair, starts, plan);
+  place_comments(run, fair, plan);
   return plan;
 }
 
 }  // namespace
-
-OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair,
-                      const PlanOptions& options) {
-  return plan_lines(run, fair, {fair.curve, fair.curve.first(), fair.curve.last()}, options);
-}
 
 OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair, const MarkedPieces& pieces,
                       const PlanOptions& options) {
@@ -171,15 +147,15 @@ OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair, const M
   const double step =
       gcode::printed_step(place_format(*options.target, options.units), options.units);
   const double tenth_of_rounding = step / 2 / 10;
-  double finest = std::min(tenth_of_rounding, kBalanced * options.max_deviation);
+  double finest = std::min(tenth_of_rounding, kPlans.balanced * options.max_deviation);
   OutputPlan plan = lines_of(run, fair, pieces, options, finest);
   // The number of chords goes with the root of their height.
   while (options.most_moves > 0 && plan.moves.size() > options.most_moves &&
-         finest < kBalanced * options.max_deviation) {
+         finest < kPlans.balanced * options.max_deviation) {
     const double over =
         static_cast<double>(plan.moves.size()) / static_cast<double>(options.most_moves);
-    finest =
-        std::min(kBalanced * options.max_deviation, std::max(over * over, kCoarserAgain) * finest);
+    finest = std::min(kPlans.balanced * options.max_deviation,
+                      std::max(over * over, kPlans.coarser_again) * finest);
     plan = lines_of(run, fair, pieces, options, finest);
   }
   plan.error = geometry::kBalancedError / geometry::kChordError * finest;

@@ -19,8 +19,6 @@ using gcode::Writer;
 // The most digits after the point that can be printed.
 constexpr int kMostDecimals = 9;
 
-bool is_end_of_line(char c) { return c == '\n' || c == '\r'; }
-
 // Writes the moves of one run and counts what it writes.
 class RunWriter {
  public:
@@ -52,8 +50,12 @@ class RunWriter {
     return true;
   }
 
-  void restore(const gcode::ModalState& after) {
+  // G2 and G3 cannot be said again by themselves, and no block after a run needs them (section.h).
+  void restore(gcode::ModalState after) {
     const std::size_t begin = writer_.text().size();
+    const bool arc = after.motion == gcode::MotionMode::kClockwise ||
+                     after.motion == gcode::MotionMode::kCounterclockwise;
+    if (arc) after.motion = gcode::MotionMode::kUnknown;
     writer_.restore(after);
     count_from(begin);
   }
@@ -66,24 +68,19 @@ class RunWriter {
   }
 
  private:
-  // Chords that differ from the arc by half a printed step at the most.
+  // Chords that differ from the arc by half a printed step at most.
   void write_chords(const geometry::Arc& arc, double feed) {
     const gcode::Units units = writer_.state().modal.units;
     const double deviation = gcode::printed_step(place_format(target_, units), units) / 2;
-    const geometry::Vector3 out = arc.start - arc.center;
-    const double radius = (out - out.dot(arc.axis) * arc.axis).norm();
-    const double half_angle = std::acos(std::max(1 - deviation / radius, 0.0));
-    const double count = std::max(1.0, std::ceil(std::abs(arc.sweep) / 2 / half_angle));
-    for (double i = 1; i <= count; ++i) {
-      writer_.line_to(geometry::point_at(arc, i / count), feed);
+    for (const geometry::PathPiece& chord : chords_for(arc, deviation)) {
+      writer_.line_to(geometry::end_point(chord), feed);
     }
   }
 
   void count_from(std::size_t begin) {
     std::string_view written = std::string_view(writer_.text()).substr(begin);
     while (!written.empty()) {
-      const std::size_t end = static_cast<std::size_t>(
-          std::find_if(written.begin(), written.end(), is_end_of_line) - written.begin());
+      const std::size_t end = std::min(written.find_first_of("\r\n"), written.size());
       const std::string_view line = written.substr(0, end);
       every_line_fits_ = every_line_fits_ && line_length(target_, line) <= target_.max_line_length;
       // SPL has lines that go on with the block.
@@ -99,31 +96,21 @@ class RunWriter {
   bool every_line_fits_ = true;
 };
 
-// G2 and G3 cannot be said again by themselves, and no block behind a run needs them (section.h).
-gcode::ModalState without_arc_word(gcode::ModalState state) {
-  const bool arc = state.motion == gcode::MotionMode::kClockwise ||
-                   state.motion == gcode::MotionMode::kCounterclockwise;
-  if (arc) state.motion = gcode::MotionMode::kUnknown;
-  return state;
-}
-
 bool has_arcs(const OutputPlan& plan) {
   return std::ranges::any_of(plan.moves, [](const PlannedMove& move) {
     return std::holds_alternative<geometry::Arc>(move.piece);
   });
 }
 
-// A part of the numbers that a program may hold: what is made of these places for a curve
-// (differences of third order, sums of lengths) is one of them, too.
+// A part of the numbers that a program may hold: what is made of them for a curve (differences of
+// third order, sums of lengths) is one of them, too.
 constexpr double kGreatestPlace = gcode::kNumberLimit / 16;
 
-bool is_number(const geometry::Point3& place, double unit) {
-  return place.cwiseAbs().maxCoeff() / unit < kGreatestPlace;
-}
-
-// Whether every place that the plan names is a number that a program may hold.
+// Whether every position that the plan names is numbers that a program may hold.
 bool names_numbers(const OutputPlan& plan, double unit) {
-  const auto holds = [unit](const geometry::Point3& place) { return is_number(place, unit); };
+  const auto holds = [unit](const geometry::Point3& position) {
+    return position.cwiseAbs().maxCoeff() / unit < kGreatestPlace;
+  };
   return std::ranges::all_of(plan.moves,
                              [&](const PlannedMove& move) {
                                const auto* arc = std::get_if<geometry::Arc>(&move.piece);
@@ -178,7 +165,7 @@ std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
     out.write(move);
   }
   copy_comments(plan.comments_after);
-  out.restore(without_arc_word(after));
+  out.restore(after);
 
   const geometry::Point3& reached = out.writer().state().position.mm;
   if ((reached - run.points.back()).norm() > geometry::kSamePlace) return std::nullopt;

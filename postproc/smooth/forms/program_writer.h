@@ -19,15 +19,13 @@ struct RunText {
   std::size_t arcs = 0;
 };
 
-// The run's blocks. `before` is the state after the last block before the run (the place is the
+// The run's blocks. `before` is the state after the last block before the run (the position is the
 // run's first point), `after` the state in which the copied block after it must find the control:
 // where plane, motion word or feed differ at the end of the run, one block restores them; what
-// `after` does not know is left as it is.
+// `after` does not know is left unchanged.
 //
-// The run's first and last point are met exactly: the last move is printed with as many decimals
-// as the run was. Comments are copied, each on a line of its own.
-//
-// The comments of moves inside a curve stand behind it.
+// The run's first and last point are met exactly: the last move is printed with as many decimals as
+// the run was. Comments are copied, each on a line of its own, those inside a curve after it.
 //
 // Nothing when a curve is planned that the target cannot say, when arcs are planned and it is not
 // known how their centres are to be given, when a line would be too long, or when the last point

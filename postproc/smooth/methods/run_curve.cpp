@@ -27,15 +27,15 @@ using geometry::Point3;
 using geometry::SmoothCurve;
 using geometry::Vector3;
 
-namespace {
-
-constexpr double kSecondsPerMinute = 60;
-
-}  // namespace
+double greatest_feed(const Run& run) {
+  double feed = 0;
+  for (const FeedFrom& from : run.feeds) feed = std::max(feed, from.feed);
+  return feed;
+}
 
 geometry::KinematicLimits limits_of(const Machine& machine, double feed) {
   geometry::KinematicLimits limits;
-  limits.feed = std::min(feed / kSecondsPerMinute, machine.max_velocity());
+  limits.feed = std::min(feed / 60, machine.max_velocity());
   limits.speed.setConstant(machine.max_velocity());
   limits.acceleration.setConstant(machine.max_acceleration());
   limits.jerk.setConstant(std::numeric_limits<double>::infinity());
@@ -47,7 +47,7 @@ std::optional<SmoothCurve> fair_curve(std::span<const Point3> run, const CurveRe
   options.tolerance = request.tolerance;
   options.rounding = request.rounding;
   options.keep_corner_angle = request.keep_corner_angle;
-  options.feed = std::max(1.0, kSecondsPerMinute * request.limits.feed);
+  options.feed = std::max(1.0, 60 * request.limits.feed);
   options.acceleration = request.limits.acceleration.minCoeff();
   options.jerk = request.jerk;
   options.scatter = request.scatter;
@@ -59,9 +59,11 @@ std::optional<SmoothCurve> fair_curve(std::span<const Point3> run, const CurveRe
 
 namespace {
 
-// Methods that leave the lines and put a curve in the place of each vertex: guo, ozcan, racing.
-
+using geometry::BsplineCurve;
 using geometry::NoBlend;
+
+// --- methods that leave the lines and put a curve about each vertex: guo, ozcan, racing
+// -----------
 
 // Length along the polyline at each point of the run, as the stations of a blended path count it.
 std::vector<double> stations_of(std::span<const Point3> run) {
@@ -101,11 +103,8 @@ std::optional<SmoothCurve> as_one_curve(std::span<const Point3> run, const Path&
 
 // What time_optimal_corner needs to know.
 bool can_race(const geometry::KinematicLimits& limits) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!std::isfinite(limits.acceleration[axis]) && !std::isfinite(limits.jerk[axis]))
-      return false;
-  }
-  return std::isfinite(limits.feed) && limits.feed > 0;
+  const auto given = limits.acceleration.array().isFinite() || limits.jerk.array().isFinite();
+  return given.all() && std::isfinite(limits.feed) && limits.feed > 0;
 }
 
 template <typename Options>
@@ -140,23 +139,22 @@ std::optional<SmoothCurve> time_optimal_curve(std::span<const Point3> run,
       run, geometry::time_optimal_path(run, options), request.kind);
 }
 
-// Naseath's tube about a spline, for a run of lines.
+// --- Naseath's tube about a spline, for a run of lines
+// --------------------------------------------
 
-using geometry::BsplineCurve;
-
-// The fit may use this part of the tolerance: enough to follow the vertices' rounding and to
-// round corners a little, since the method itself refuses corners; the tube gets the rest.
-constexpr double kFitPart = 0.25;
-
-// Passes over a part. Repaired, the method ends by itself after 10 to 120; literally it need not.
-constexpr int kPasses = 300;
-
-// Control points that stay at both ends of a part: 1 its ends, 3 tangents and curvatures too.
-constexpr int kHoldPlace = 1;
-constexpr int kHoldCurvature = 3;
+struct TubeTuning {
+  // Of the tolerance, for the fit: enough to follow the vertices' rounding and to round corners a
+  // little, since the method itself refuses corners; the tube gets the rest.
+  double fit_part = 0.25;
+  int passes = 300;  // repaired, the method ends by itself after 10 to 120; literally it need not
+  // Control points that stay at both ends of a part: its ends, or tangents and curvatures, too.
+  int hold_position = 1;
+  int hold_curvature = 3;
+};
+constexpr TubeTuning kTube;
 
 // A part of the fit between two cuts.
-struct NaseathStretch {
+struct NaseathSection {
   double from;
   double to;
   bool straight;        // a line of the program: it stays
@@ -168,15 +166,13 @@ std::vector<double> corners_of(const BsplineCurve& curve) {
   std::vector<double> corners;
   const auto& t = curve.basis().knots();
   for (std::size_t i = 4; i + 5 < t.size(); ++i) {
-    const bool known = !corners.empty() && corners.back() == t[i];
-    if (t[i] == t[i + 1] && !known && t[i] > curve.first() && t[i] < curve.last()) {
-      corners.push_back(t[i]);
-    }
+    if (t[i] == t[i + 1] && t[i] > curve.first() && t[i] < curve.last()) corners.push_back(t[i]);
   }
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   return corners;
 }
 
-std::vector<NaseathStretch> stretches_of(const BsplineCurve& curve, bool closed) {
+std::vector<NaseathSection> sections_of(const BsplineCurve& curve, bool closed) {
   const auto lines = geometry::CurvePieces(curve, curve.first(), curve.last()).straight_runs();
   const std::vector<double> corners = corners_of(curve);
   std::vector<double> cuts = {curve.first(), curve.last()};
@@ -191,24 +187,24 @@ std::vector<NaseathStretch> stretches_of(const BsplineCurve& curve, bool closed)
     if (u == curve.first() || u == curve.last()) return closed;
     return !std::binary_search(corners.begin(), corners.end(), u);
   };
-  std::vector<NaseathStretch> stretches;
+  std::vector<NaseathSection> sections;
   std::size_t line = 0;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     while (line < lines.size() && lines[line].to <= cuts[i]) ++line;
     const bool straight = line < lines.size() && lines[line].from <= cuts[i];
-    stretches.push_back(
+    sections.push_back(
         {cuts[i], cuts[i + 1], straight, is_smooth(cuts[i]) || is_smooth(cuts[i + 1])});
   }
-  return stretches;
+  return sections;
 }
 
-// A B-spline is fitted to the run first, within a quarter of the tolerance; what its measured
-// deviation leaves is the radius of the tube. Lines and kept corners of the fit stay; the parts
-// between them are smoothed, each with the tangent and curvature that it has where it meets a line.
+// What the measured deviation of a spline fitted to the run leaves is the radius of the tube. Lines
+// and kept corners of the fit stay; the parts between them are smoothed, each with the tangent and
+// curvature that it has where it meets a line.
 std::optional<SmoothCurve> naseath_curve(std::span<const Point3> run, const CurveRequest& request,
                                          bool literal) {
   CurveRequest fit = request;
-  fit.tolerance = kFitPart * request.tolerance;
+  fit.tolerance = kTube.fit_part * request.tolerance;
   fit.scatter = 0;
   fit.accurate = true;
   std::optional<SmoothCurve> path = fair_curve(run, fit);
@@ -216,15 +212,15 @@ std::optional<SmoothCurve> naseath_curve(std::span<const Point3> run, const Curv
 
   geometry::NaseathOptions options;
   options.radius = request.tolerance - path->deviation;
-  options.max_passes = kPasses;
+  options.max_passes = kTube.passes;
   if (literal) options.repairs = geometry::NaseathRepairs::none();
   const bool closed = (run.front() - run.back()).norm() <= geometry::kSamePlace;
   double moved = 0;
   std::vector<BsplineCurve> parts;
-  for (const NaseathStretch& stretch : stretches_of(path->curve, closed)) {
-    BsplineCurve part = path->curve.part(stretch.from, stretch.to);
-    if (!stretch.straight) {
-      options.held_points = stretch.meets_smoothly ? kHoldCurvature : kHoldPlace;
+  for (const NaseathSection& section : sections_of(path->curve, closed)) {
+    BsplineCurve part = path->curve.part(section.from, section.to);
+    if (!section.straight) {
+      options.held_points = section.meets_smoothly ? kTube.hold_curvature : kTube.hold_position;
       geometry::NaseathResult smoothed = geometry::smooth_naseath(part, options);
       moved = std::max(moved, smoothed.displacement);
       part = std::move(smoothed.curve);

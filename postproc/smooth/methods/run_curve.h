@@ -17,11 +17,9 @@
 
 namespace batten::postproc {
 
-// The value that every method gives: see geometry::SmoothCurve. `noise` and `rounds` are known to
-// `fair` alone, 0 with the others.
 struct RunCurve {
   Method method = Method::kFair;
-  geometry::SmoothCurve path;
+  geometry::SmoothCurve path;  // `noise` and `rounds` are known to `fair` alone, 0 with the others
 };
 
 struct CurveRequest {
@@ -38,18 +36,18 @@ struct CurveRequest {
   bool near = true;                                       // the same
 };
 
+[[nodiscard]] double greatest_feed(const Run& run);  // mm/min
+
 // `feed`: mm/min, programmed. Where the machine has no jerk limit, it is infinite.
 [[nodiscard]] geometry::KinematicLimits limits_of(const Machine& machine, double feed);
 
 // The ends of the run are met exactly. A closed run starts and ends in its seam vertex, where the
-// tool is put down and taken up; only `fair` has no corner there where the path has none.
+// tool is put down and taken up; only `fair` has no corner there where the path has none. With the
+// methods of corners every vertex that is not kept gets a blend; the lines between stay.
 //
-// Every vertex that is not kept gets a blend with the methods of corners; the lines between stay.
-//
-// Returns nothing when the method finds no curve (`racing` where the machine limits neither
-// acceleration nor jerk of an axis), and with a side for all methods but `fair`;
-// throws std::invalid_argument for Method::kBest and Method::kNone, which are no methods of their
-// own.
+// Nothing when the method finds no curve (`racing` where the machine limits neither acceleration
+// nor jerk of an axis), and with a side for all methods but `fair`; throws std::invalid_argument
+// for Method::kBest and Method::kNone, which are no methods of their own.
 [[nodiscard]] std::optional<RunCurve> curve_of(Method method, std::span<const geometry::Point3> run,
                                                const CurveRequest& request);
 
@@ -64,9 +62,7 @@ struct CurveRequest {
 [[nodiscard]] double chord_error(const Run& run, const geometry::SmoothCurve& meant,
                                  double rounding);
 
-// How much a curve bends, and about how many chords that makes.
-
-// How a curve bends, looked at in some places of each span.
+// How a curve bends, looked at in some points of each span.
 class CurvatureProfile {
  public:
   explicit CurvatureProfile(const geometry::BsplineCurve& curve);

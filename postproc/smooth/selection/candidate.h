@@ -1,9 +1,8 @@
-// What stands where a run is smoothed: the run in its program, and what could be written instead of
-// it with what each candidate costs. Values that the methods, the forms and the selection hand on.
+// A run that is smoothed, in its program, and what could be written instead of it with what each
+// candidate costs. Values that the methods, the forms and the selection hand on.
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -26,33 +25,10 @@ struct Times {
   double flat_out = 0;         // whatever the F words say, as with the feed override turned up
   double exact_path = 0;       // G61: kinks cost stops
 
-  Times& operator+=(const Times& other);
-  Times& operator-=(const Times& other);
+  Times& operator+=(const Times& other) { return add(other, 1); }
+  Times& add(const Times& other, double multiple);
 };
 
-// Of a chain that starts and ends at rest, each when it is asked for.
-class SettingTimes {
- public:
-  // `path`: as the program says. The machine must live as long. Throws as cutting_time does.
-  SettingTimes(std::span<const TimedPiece> chain, const Machine& machine, gcode::PathMode path);
-
-  [[nodiscard]] double as_set();
-  [[nodiscard]] double without_merging();
-  [[nodiscard]] double exact_path() const;
-  [[nodiscard]] double flat_out();  // the last of them: the feeds are gone then
-
- private:
-  const Machine& machine_;
-  gcode::PathMode path_;
-  TimedChain chain_;
-  std::optional<double> as_set_;
-};
-
-// All of them.
-[[nodiscard]] Times times_of(std::span<const TimedPiece> chain, const Machine& machine,
-                             gcode::PathMode path);
-
-// Where a run stands.
 struct RunContext {
   const gcode::Program& program;
   const gcode::ModalState& before;  // state after the block before the run
@@ -60,9 +36,8 @@ struct RunContext {
   std::string_view line_end;
   std::size_t blocks = 0;  // of the run, as they were
   std::size_t bytes = 0;
-  LineNumberRange numbers = {};  // for the blocks that take their place
-  // What is cut right before and after it, where it is a piece of a longer run: a piece is not
-  // run from rest to rest.
+  LineNumberRange numbers = {};  // for the blocks that replace them
+  // What is cut right before and after a piece of a longer run, which is not run from rest to rest.
   std::vector<TimedPiece> lead = {};
   std::vector<TimedPiece> tail = {};
   // Of a run for itself that was cut from a longer one: what of the time with lead and tail belongs
@@ -84,8 +59,7 @@ struct Candidate {
   std::vector<TimedPiece> moves;  // of a piece of a run; empty otherwise
 };
 
-// What is known of a run, whether it is rewritten or not.
-struct RunFacts {
+struct RunFacts {             // whether it is rewritten or not
   Times times;                // but exact_path, which nobody compares with: 0
   double max_curvature = 0;   // 1/mm, circle through three neighbouring vertices
   double noise = 0;           // mm, rms distance of the vertices from the fair curve
@@ -102,12 +76,10 @@ struct SmoothedRun {
   bool passed_over = false;  // one that could not gain was not made
 };
 
-// Which candidates are made. Those that would not be chosen are of use where the proof of the
-// chosen one fails.
+// Which candidates are made. Others are of use where the proof of the chosen one fails.
 enum class CandidateScope { kToChoose, kAll };
 
-// A run that is to be smoothed, and what every step of that knows of it. All must live as long.
-struct RunTask {
+struct RunTask {  // all must live as long
   const Run& run;
   const RunContext& context;
   const SmoothOptions& options;

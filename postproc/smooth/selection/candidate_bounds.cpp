@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "postproc/machine/models/junction_speed.h"
@@ -14,22 +13,9 @@ namespace batten::postproc {
 
 namespace {
 
-// Of a run with so many coarse vertices there is nothing left to fit but corners.
-constexpr double kCoarse = 0.5;
-
-// The fair curve of scattered vertices is no better known than this part of their scatter: a form
-// that is nearer to it than that is not nearer to the path that was meant.
-constexpr double kKnown = 0.5;
-
 // mm/s: the machine's speed at a feed in mm/min.
 double speed_at(double feed, const Machine& machine) {
   return std::min(feed / 60, machine.max_velocity());
-}
-
-double least_feed(const Run& run) {
-  double feed = std::numeric_limits<double>::infinity();
-  for (const FeedFrom& from : run.feeds) feed = std::min(feed, from.feed);
-  return feed;
 }
 
 // Times of a piece leave out what its neighbours need to stop and start; what it could gain is
@@ -38,10 +24,7 @@ Times judged_times(const RunTask& task, const Times& in_place) {
   if (!task.context.is_piece()) return in_place;
   const std::vector<TimedPiece> alone = timed_pieces(task.run, 0, task.run.points.size() - 1);
   SettingTimes times(alone, *task.options.machine, task.context.after.path);
-  Times judged = in_place;
-  judged.as_set = times.as_set();
-  judged.without_merging = times.without_merging();
-  return judged;
+  return {times.as_set(), times.without_merging(), in_place.flat_out, in_place.exact_path};
 }
 
 }  // namespace
@@ -63,33 +46,33 @@ RunFacts CandidateBounds::facts_before() const {
 
 bool CandidateBounds::is_hopeless() const {
   const auto& [run, context, options, scope] = task_;
-  if (coarse_part(run, options.tolerance_mm) < kCoarse) return false;
+  if (coarse_part(run, options.tolerance_mm) < kBounds.coarse) return false;
   const RunFacts before = facts_before();
-  const Prospect corners{least_time_, 2.0 * static_cast<double>(context.blocks), before.error};
+  const Bound corners{least_time_, before.error, 2.0 * static_cast<double>(context.blocks), 0};
   return !may_gain(corners, before, context.blocks, options.prefer);
 }
 
 bool CandidateBounds::are_hopeless(const LinesAhead& lines) const {
   const Prefer prefer = task_.options.prefer;
-  const Prospect chords{least_time_, blocks_of(lines), known(lines.deviation)};
+  const Bound chords{least_time_, known(lines.deviation), blocks_of(lines), 0};
   return prefer == Prefer::kTime && !may_gain(chords, facts_before(), task_.context.blocks, prefer);
 }
 
 bool CandidateBounds::arcs_are_hopeless(const geometry::MarkedPieces& curve) const {
   const SmoothOptions& options = task_.options;
+  // Each straight part is a line, and what joins two of them gently takes two arcs or more.
   return options.prefer == Prefer::kTime && options.output == Form::kAuto &&
-         arcs_for(curve) > static_cast<double>(task_.context.blocks);
+         3 * curve.straight_runs.size() > task_.context.blocks;
 }
 
 double CandidateBounds::known(double error) const {
-  return std::max(error, kKnown * so_far_.facts.noise);
+  return std::max(error, kBounds.known * so_far_.facts.noise);
 }
 
 // About how many of them there will be, as plan_lines lays them.
 double CandidateBounds::blocks_of(const LinesAhead& lines) const {
   const Machine& machine = *task_.options.machine;
-  double feed = 0;
-  for (const FeedFrom& from : task_.run.feeds) feed = std::max(feed, from.feed);
+  const double feed = greatest_feed(task_.run);
   return lines.bends.chords(0.5 * lines.deviation,
                             2 * speed_at(feed, machine) * machine.block_period);
 }
@@ -97,7 +80,8 @@ double CandidateBounds::blocks_of(const LinesAhead& lines) const {
 // What no form of the run takes less than, s: `least_time_`, and to start and to stop.
 double CandidateBounds::least_time_at_rest() const {
   const Machine& machine = *task_.options.machine;
-  const double lost = speed_at(least_feed(task_.run), machine) / axis_accelerations(machine).norm();
+  const double least_feed = std::ranges::min(task_.run.feeds, {}, &FeedFrom::feed).feed;
+  const double lost = speed_at(least_feed, machine) / axis_accelerations(machine).norm();
   return least_time_ > lost ? least_time_ + lost : least_time_;
 }
 
@@ -118,14 +102,13 @@ bool CandidateBounds::beats_lines(const Candidate& candidate, const LinesAhead& 
 // The kinks of chords go with the root of their deviation.
 bool CandidateBounds::beats_finer(const Candidate& lines, double deviation,
                                   const LinesAhead& finer) const {
-  constexpr double kEvenLess = 1.1;  // than that: chords differ
   const auto beats_it = [&](const Bound& bound) {
     return beats(lines, bound, so_far_, task_.context, task_.options);
   };
   const double time = 0.5 * (lines.times.as_set + lines.times.without_merging);
   Bound bound{time, known(finer.deviation), blocks_of(finer), lines.times.exact_path};
   if (!beats_it(bound)) return false;
-  const double less_kinks = kEvenLess * std::sqrt(deviation / finer.deviation);
+  const double less_kinks = kBounds.even_less * std::sqrt(deviation / finer.deviation);
   bound.exact_path = times_.exact_path_with_less_kinks(lines.moves, less_kinks);
   if (!beats_it(bound)) return false;
   // Without merging they gain as little as these do.
@@ -135,7 +118,6 @@ bool CandidateBounds::beats_finer(const Candidate& lines, double deviation,
   return beats_it(bound);
 }
 
-using geometry::Point3;
 using geometry::Vector3;
 
 namespace {
@@ -191,20 +173,10 @@ double coarse_part(const Run& run, double tolerance) {
   return p.size() > 2 ? static_cast<double>(coarse) / static_cast<double>(p.size() - 2) : 0;
 }
 
-double arcs_for(const geometry::MarkedPieces& curve) {
-  return 3.0 * static_cast<double>(curve.straight_runs.size());
-}
-
 std::vector<Method> methods_worth_trying(double corners, std::size_t points, double least_time,
                                          double time) {
-  // A run of corners: most of its vertices are coarser than any curve through them.
-  constexpr double kCorners = 0.5;
-  // The least that there must be left to win.
-  constexpr double kWorthTrying = 0.02;
-  if (corners < kCorners || least_time > (1 - kWorthTrying) * time) return {};
-  // A racing line and the eight points are searches of their own for each corner.
-  constexpr std::size_t kMostSearched = 50;
-  if (points > kMostSearched) return {Method::kGuo};
+  if (corners < kBounds.corners || least_time > (1 - kBounds.worth_trying) * time) return {};
+  if (points > kBounds.most_searched) return {Method::kGuo};
   return {Method::kGuo, Method::kOzcan, Method::kTimeOptimal};
 }
 

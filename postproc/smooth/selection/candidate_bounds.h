@@ -1,5 +1,6 @@
 // What is known of a run's forms before they are made: whether one could gain anything, and whether
-// what has been made would be chosen whatever it takes.
+// what has been made would be chosen whatever it takes. What is said to be hopeless would have been
+// kept after all, as `choose` decides; what is not may still be kept.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +16,22 @@
 
 namespace batten::postproc {
 
-// Lines along a curve, no further from it than this.
+struct BoundTuning {
+  double coarse =
+      0.5;  // part of the vertices: of a run with so many coarse ones only corners are left
+  // Of their scatter: the fair curve of scattered vertices is no better known, so that a form that
+  // is nearer to it is not nearer to the path that was meant.
+  double known = 0.5;
+  double even_less = 1.1;          // times fewer kinks than finer chords should have: chords differ
+  double corners = 0.5;            // part of the vertices that makes a run one of corners
+  double worth_trying = 0.02;      // part of the time: the least that there must be left to win
+  std::size_t most_searched = 50;  // points: time-optimal and eight-point corners are searches each
+};
+inline constexpr BoundTuning kBounds;
+
 struct LinesAhead {
   const CurvatureProfile& bends;  // of the curve
-  double deviation = 0;           // mm
+  double deviation = 0;           // mm: no further from it
 };
 
 class CandidateBounds {
@@ -29,7 +42,7 @@ class CandidateBounds {
 
   [[nodiscard]] const RunFacts& facts() const { return so_far_.facts; }
 
-  // s: see postproc/smooth/selection/candidate_bounds.h.
+  // s, as the function of that name below.
   [[nodiscard]] double least_time() const { return least_time_; }
 
   // s: what the run takes, by which gains are measured. Of a piece: from rest to rest.
@@ -44,8 +57,7 @@ class CandidateBounds {
   // Corners between lines, each of which would be more arcs than it has blocks: chords do as well.
   [[nodiscard]] bool arcs_are_hopeless(const geometry::MarkedPieces& curve) const;
 
-  // mm: how near a form can be said to be to the path that was meant that is so near to the fair
-  // curve.
+  // mm: how near to the path that was meant a form so near to the fair curve can be said to be.
   [[nodiscard]] double known(double error) const;
 
   // Whether a kink that costs time is none of those in a form that takes this.
@@ -72,21 +84,14 @@ class CandidateBounds {
   Times before_;
 };
 
-// Whether rewriting a run can gain anything, told before the work is done. What is said to be
-// hopeless would have been kept after all, as `choose` decides; what is not may still be kept.
-
 // Seconds below which no form of the run comes that stays within `tolerance`: its length at its
 // feeds, less what can be saved at its vertices, when there were no accelerations to mind.
 [[nodiscard]] double least_time(const Run& run, double tolerance, const Machine& machine,
                                 geometry::ToleranceKind kind = geometry::ToleranceKind::kPath);
 
 // The part of the run's vertices whose chords would leave a curve through them by more than
-// `tolerance`: a run of a coarser tolerance, of which only the corners could be rounded.
+// `tolerance`: a run of a coarser one, of which only the corners could be rounded.
 [[nodiscard]] double coarse_part(const Run& run, double tolerance);
-
-// The least number of arcs and lines that the fair curve takes, by its straight parts: each is a
-// line, and what joins two of them gently takes two arcs or more.
-[[nodiscard]] double arcs_for(const geometry::MarkedPieces& curve);
 
 // The methods beside `fair` that may win on a run, for Method::kBest. `corners` is coarse_part of
 // it, `points` how many it has, `time` (s) what its fastest form so far takes on the machine.

@@ -3,11 +3,50 @@
 #include <algorithm>
 
 #include "gcode/text/large_pages.h"
-#include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/models/junction_speed.h"
 #include "postproc/smooth/selection/selection.h"
 
 namespace batten::postproc {
+
+Times& Times::add(const Times& other, double multiple) {
+  as_set += multiple * other.as_set;
+  without_merging += multiple * other.without_merging;
+  flat_out += multiple * other.flat_out;
+  exact_path += multiple * other.exact_path;
+  return *this;
+}
+
+SettingTimes::SettingTimes(std::span<const TimedPiece> chain, const Machine& machine,
+                           gcode::PathMode path)
+    : machine_(machine), path_(path), chain_(chain, machine) {}
+
+double SettingTimes::as_set() {
+  if (!as_set_) as_set_ = chain_.time(machine_, path_);
+  return *as_set_;
+}
+
+double SettingTimes::without_merging() {
+  if (!(machine_.naive_cam_tolerance > 0)) return as_set();
+  Machine unmerged = machine_;
+  unmerged.naive_cam_tolerance = 0;
+  return chain_.time(unmerged, path_);
+}
+
+double SettingTimes::exact_path() const {
+  return chain_.time(machine_, gcode::PathMode::kExactPath);
+}
+
+double SettingTimes::flat_out() {
+  chain_.lift_feeds(machine_);
+  return chain_.time(machine_, path_);
+}
+
+Times times_of(std::span<const TimedPiece> chain, const Machine& machine, gcode::PathMode path) {
+  SettingTimes times(chain, machine, path);
+  Times all{times.as_set(), times.without_merging(), 0, times.exact_path()};
+  all.flat_out = times.flat_out();
+  return all;
+}
 
 namespace {
 
@@ -24,9 +63,7 @@ RunTimes::RunTimes(const RunContext& context, const Machine& machine)
 
 Times RunTimes::of_run(const std::vector<TimedPiece>& motions) const {
   SettingTimes place = in_place(motions, machine_);
-  Times times;
-  times.as_set = place.as_set() - around_.as_set;
-  times.without_merging = place.without_merging() - around_.without_merging;
+  Times times{place.as_set() - around_.as_set, place.without_merging() - around_.without_merging};
   times.flat_out = place.flat_out() - around_.flat_out;
   return times;
 }
@@ -55,7 +92,7 @@ Times RunTimes::of_candidate(const std::vector<TimedPiece>& moves, std::size_t b
 
 // Axes that can do more pass the same kinks as these axes smaller ones, and do everything else
 // quicker. On LinuxCNC a kink that is not blended is passed or stopped at by what it asks of the
-// axes, see multiple_for_kinks; a blended one is passed at a speed whose square goes with what the
+// axes (multiple_for_kinks); a blended one is passed at a speed whose square goes with what the
 // axes can do, and inversely with the square of the kink.
 double RunTimes::as_set_with_less_kinks(const std::vector<TimedPiece>& moves,
                                         double times_less) const {
@@ -102,16 +139,12 @@ SettingTimes RunTimes::in_place(const std::vector<TimedPiece>& moves,
                                 const Machine& machine) const {
   const gcode::PathMode path = context_.after.path;
   if (context_.lead.empty() && context_.tail.empty()) return {moves, machine, path};
-  return {with_neighbours(moves), machine, path};
-}
-
-std::vector<TimedPiece> RunTimes::with_neighbours(const std::vector<TimedPiece>& moves) const {
   std::vector<TimedPiece> chain;
   gcode::reserve_in_large_pages(chain, context_.lead.size() + moves.size() + context_.tail.size());
-  chain.insert(chain.end(), context_.lead.begin(), context_.lead.end());
-  chain.insert(chain.end(), moves.begin(), moves.end());
-  chain.insert(chain.end(), context_.tail.begin(), context_.tail.end());
-  return chain;
+  for (const auto* part : {&context_.lead, &moves, &context_.tail}) {
+    chain.insert(chain.end(), part->begin(), part->end());
+  }
+  return {chain, machine, path};
 }
 
 }  // namespace batten::postproc

@@ -1,4 +1,4 @@
-// Which candidate replaces a run, if any: never one that is worse than what stood there.
+// Which candidate replaces a run, if any: never one that is worse than the run.
 #pragma once
 
 #include <string_view>
@@ -8,6 +8,31 @@
 #include "postproc/smooth/selection/candidate.h"
 
 namespace batten::postproc {
+
+// Times are estimates, good to about a percent. Multiples and parts, but where units are given.
+struct SelectionTuning {
+  double same_time = 0.01;  // a difference below this is none ..
+  double slower = 0.005;    // .. and half of it speaks against replacing the run
+  double same_time_where_far_smaller =
+      0.025;                   // just about measurable: worth a quarter of the blocks
+  double wanted_costs = 0.15;  // more time, for a form that the user asked for by name
+  // Of two equals, one that takes less than this under exact path has fewer kinks, on any control.
+  double fewer_kinks = 0.7;
+  // A gain is so much less time, so many fewer blocks or bytes, an error so much smaller.
+  double less_time = 0.01;
+  double less_time_for_more = 0.05;  // where it takes more blocks than before
+  double fewer_blocks = 0.9;
+  double fewer_bytes = 0.9;
+  double nearer = 0.6;
+  // Arcs of which no two meet in more than this part of the greatest kink before are a gain, and
+  // may be so many more, or one, where that saves time with the feed turned up.
+  double smoother = 0.1;
+  double more_for_smoother = 0.1;
+  double more_blocks = 1.5;  // for who prefers accuracy
+  double same_error = 2.5;   // errors within this factor are equal: then the smaller text is better
+  double estimate = 1.25;    // so much too high an estimate of blocks may be
+};
+inline constexpr SelectionTuning kChoice;
 
 struct Selection {
   std::vector<std::size_t> order;  // indices of the candidates worth writing, the best first
@@ -28,25 +53,17 @@ struct Selection {
 // Whether nothing that takes `least_time` (s) or more could be better for having fewer kinks.
 [[nodiscard]] bool keeps_speed(const Times& times, double least_time);
 
-// What is known of a candidate before it is made. `blocks` may be too many by a fifth, `least_time`
-// is a bound for every way in which the control may be set.
-struct Prospect {
-  double least_time = 0;  // s
-  double blocks = 0;
-  double error = 0;  // mm
-};
-
-// Whether such a candidate could be worth writing. `before` as for `choose`.
-[[nodiscard]] bool may_gain(const Prospect& prospect, const RunFacts& before, std::size_t blocks,
-                            Prefer prefer);
-
-// What is known of another candidate that is not made.
+// What is known of a candidate that is not made.
 struct Bound {
-  double least_time = 0;  // s: no way in which the control may be set takes it less
+  double least_time = 0;  // s: under no setting of the control it takes less
   double error = 0;       // mm, about
   double blocks = 0;      // may be too many by a fifth
   double exact_path = 0;  // s: under exact path no less than this, about
 };
+
+// Whether such a candidate could be worth writing. `before` as for `choose`.
+[[nodiscard]] bool may_gain(const Bound& bound, const RunFacts& before, std::size_t blocks,
+                            Prefer prefer);
 
 // Whether `choose` prefers the candidate to such another one, whatever its time is.
 [[nodiscard]] bool beats(const Candidate& candidate, const Bound& bound, const SmoothedRun& run,
@@ -61,32 +78,27 @@ struct Bound {
 [[nodiscard]] Selection choose(const SmoothedRun& run, const RunContext& context,
                                const SmoothOptions& options);
 
-// Which methods were tried on a run, and how fast what they made would be cut.
-
 struct MethodTime {
   std::string_view method;
   double time_s = 0;  // of its fastest candidate, as the control is set
 };
 
-// In the order in which they were tried.
+// Of the methods in the order in which they were tried.
 [[nodiscard]] std::vector<MethodTime> method_times(const SmoothedRun& run);
 
-// Seconds by which the fastest other method is slower than this time; negative where it is
-// faster (what was chosen had other merits). 0 where there is no other.
+// Seconds by which the fastest other method is slower than this time; negative where it is faster
+// (what was chosen had other merits). 0 where there is no other.
 [[nodiscard]] double lead_of(std::string_view method, double time_s,
                              const std::vector<MethodTime>& times);
 
-// What was tried on two neighbouring stretches of a run, when a report tells of them as one.
-
-// What was tried on a stretch of a run.
-struct TriedStretch {
+// What was tried on a section of a run.
+struct TriedSection {
   std::vector<MethodTime> methods;
   double time_s = 0;  // as it was
 };
 
-// Of two neighbouring stretches as one. A method that was tried on one of them only leaves the
-// other as it was.
-[[nodiscard]] std::vector<MethodTime> joined_times(const TriedStretch& first,
-                                                   const TriedStretch& second);
+// Of two neighbours as one. A method that was tried on one of them only leaves the other as it was.
+[[nodiscard]] std::vector<MethodTime> joined_times(const TriedSection& first,
+                                                   const TriedSection& second);
 
 }  // namespace batten::postproc

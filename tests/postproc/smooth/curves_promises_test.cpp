@@ -74,17 +74,22 @@ std::string head_at(const Point3& place) {
                      place.z());
 }
 
-// The cutting moves behind the first one of a program.
+// A program as a control with these curves reads it.
+struct ReadCurves : ReadText {
+  ReadCurves(const std::string& text, const gcode::CurveFormat& format) : ReadText(text) {
+    meaning = gcode::interpret(program, {.curves = &format}, found);
+  }
+};
+
+// The cutting moves after the first one of a program.
 Path cuts_of(const std::string& text, const gcode::CurveFormat& format) {
-  gcode::Diagnostics found;
-  const gcode::Program program = gcode::parse(gcode::SourceText("test.nc", text), found);
-  const gcode::Interpretation read = gcode::interpret(program, {.curves = &format}, found);
+  const gcode::Interpretation read = ReadCurves(text, format).meaning;
   Path path;
   for (std::size_t i = 2; i < read.motions.size(); ++i) path.push_back(read.motions[i].piece);
-  for (const gcode::BlockMeaning& block : read.blocks) {
-    if (block.kind == gcode::BlockKind::kOpaque) return {};
-  }
-  return path;
+  const bool all_read = std::ranges::none_of(read.blocks, [](const gcode::BlockMeaning& block) {
+    return block.kind == gcode::BlockKind::kOpaque;
+  });
+  return all_read ? path : Path{};
 }
 
 // The parts of a curve that can be said: the whole, or single pieces where each is a block.
@@ -160,13 +165,12 @@ gcode::NurbsRules rules_of(const std::string& target) {
 // What the control would say to the whole program; its text for people, empty where there is
 // nothing.
 std::string alarms_of(const std::string& text, const std::string& target) {
-  gcode::Diagnostics found;
-  const gcode::Program program = gcode::parse(gcode::SourceText("test.nc", text), found);
+  const ReadText read(text);
   gcode::CurveAlarms alarms;
   if (target == "siemens") {
-    alarms = gcode::poly_alarms(program);
+    alarms = gcode::poly_alarms(read.program);
   } else if (gcode::find_control(target)->curves->name == "G06.2") {
-    alarms = gcode::nurbs_alarms(program, rules_of(target));
+    alarms = gcode::nurbs_alarms(read.program, rules_of(target));
   }
   std::string all;
   for (const gcode::CurveAlarm& alarm : alarms) all += fmt::format("{}\n", alarm.id);
@@ -193,12 +197,9 @@ TEST_P(Curves, ProgramsOfRandomOnesAreProvedAndASecondPassChangesNothing) {
 
 // Whether the program has a curve that its control reads.
 std::size_t curve_blocks(const std::string& text, const gcode::CurveFormat& format) {
-  gcode::Diagnostics found;
-  const gcode::Program program = gcode::parse(gcode::SourceText("test.nc", text), found);
-  const gcode::Interpretation read = gcode::interpret(program, {.curves = &format}, found);
-  std::size_t count = 0;
-  for (const gcode::BlockMeaning& block : read.blocks) count += block.of_curve ? 1 : 0;
-  return count;
+  const gcode::Interpretation read = ReadCurves(text, format).meaning;
+  return static_cast<std::size_t>(
+      std::ranges::count_if(read.blocks, &gcode::BlockMeaning::of_curve));
 }
 
 TEST_P(Curves, AreWrittenWhereTheyAreAskedFor) {
@@ -289,13 +290,10 @@ TEST_P(Curves, OfAnotherPathAreABreach) {
   const std::string before = bend_program();
   const std::string after = smoothed(before, options()).text;
   const auto verdict_on = [&](const std::string& text) {
-    gcode::Diagnostics found;
-    const gcode::Program old_program = gcode::parse(gcode::SourceText("old.nc", before), found);
-    const gcode::Program new_program = gcode::parse(gcode::SourceText("new.nc", text), found);
-    const gcode::ReadOptions read{.curves = &format()};
-    const gcode::Interpretation old_meaning = gcode::interpret(old_program, read, found);
-    const gcode::Interpretation new_meaning = gcode::interpret(new_program, read, found);
-    return verify({&old_program, &old_meaning}, {&new_program, &new_meaning}, 0.01);
+    const ReadCurves old_text(before, format());
+    const ReadCurves new_text(text, format());
+    return verify({&old_text.program, &old_text.meaning}, {&new_text.program, &new_text.meaning},
+                  0.01);
   };
   EXPECT_TRUE(verdict_on(after).proved());
   // The fifth line with an X word is one of the curve: its X is moved.
@@ -303,9 +301,7 @@ TEST_P(Curves, OfAnotherPathAreABreach) {
   std::size_t seen = 0;
   for (std::string& line : lines) {
     const std::size_t x = line.find('X');
-    if (x == std::string::npos || ++seen != 5) continue;
-    line.insert(x + 1, line[x + 1] == '-' ? "" : "1");
-    if (line[x + 1] == '-') line.insert(x + 2, "1");
+    if (x != std::string::npos && ++seen == 5) line.insert(line[x + 1] == '-' ? x + 2 : x + 1, "1");
   }
   EXPECT_FALSE(verdict_on(joined(lines, "\n")).proved());
 }

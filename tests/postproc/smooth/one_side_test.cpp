@@ -32,14 +32,9 @@ SmoothOptions one_sided(Side side, double tolerance = kTolerance) {
 
 Verification verdict_of(const std::string& before, const std::string& after, Side side,
                         double tolerance = kTolerance) {
-  const gcode::SourceText old_source("old.nc", before);
-  const gcode::SourceText new_source("new.nc", after);
-  gcode::Diagnostics ignored;
-  const gcode::Program old_program = gcode::parse(old_source, ignored);
-  const gcode::Program new_program = gcode::parse(new_source, ignored);
-  const auto old_meaning = gcode::interpret(old_program, {}, ignored);
-  const auto new_meaning = gcode::interpret(new_program, {}, ignored);
-  return verify({&old_program, &old_meaning}, {&new_program, &new_meaning},
+  const ReadText old_text(before);
+  const ReadText new_text(after);
+  return verify({&old_text.program, &old_text.meaning}, {&new_text.program, &new_text.meaning},
                 {tolerance, geometry::ToleranceKind::kPath, side});
 }
 
@@ -49,11 +44,9 @@ std::string noisy_wave(double height = 2) {
 
 // The cutting moves of a program in the plane, as places a hundredth of a millimetre apart.
 std::vector<Point3> places_of(const std::string& text, double step) {
-  const gcode::SourceText source("places.nc", text);
-  gcode::Diagnostics ignored;
-  const gcode::Program program = gcode::parse(source, ignored);
   std::vector<Point3> places;
-  for (const gcode::Motion& motion : gcode::interpret(program, {}, ignored).motions) {
+  const ReadText read(text);
+  for (const gcode::Motion& motion : read.meaning.motions) {
     if (motion.kind == gcode::MotionKind::kRapid || !motion.start_known) continue;
     const int parts = static_cast<int>(geometry::length_of(motion.piece) / step) + 1;
     for (int k = 0; k <= parts; ++k) {
@@ -194,9 +187,7 @@ TEST(SideProof, AllowsATenthOfTheToleranceForRounding) {
   const std::string before = cornered(0);
   EXPECT_TRUE(verdict_of(before, cornered(0.9 * kOverSide * kTolerance), Side::kRight).proved());
   EXPECT_FALSE(verdict_of(before, cornered(1.2 * kOverSide * kTolerance), Side::kRight).proved());
-}
-
-TEST(SideProof, TheToleranceIsTheSameOnTheAllowedSide) {
+  // The tolerance is the same on the allowed side.
   EXPECT_FALSE(verdict_of(cornered(0), cornered(1.1 * kTolerance), Side::kLeft).proved());
 }
 

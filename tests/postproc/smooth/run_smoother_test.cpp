@@ -10,6 +10,7 @@
 
 #include "gcode/state/reason.h"
 #include "postproc/runs/run_path.h"
+#include "postproc/smooth/selection/run_times.h"
 #include "postproc/smooth/selection/selection.h"
 #include "tests/support/one_run.h"
 #include "tests/support/wavy_programs.h"
@@ -19,19 +20,15 @@ namespace {
 
 // --- what is known of a run -------------------------------------------------------------------
 
-// The circle through any three vertices has radius 10.
-TEST(SmoothRun, KnowsTheCurvatureOfACircle) {
-  const RunFacts facts = OneRun(circle_program(100)).smooth(options_for("linuxcnc")).facts;
-  EXPECT_NEAR(facts.max_curvature, 0.1, 0.001);
-  EXPECT_NEAR(facts.fair_curvature, 0.1, 0.005);
-}
-
-// Chords are off by R (1 - cos(angle / 2)): 80 of them by 1.93 um.
-TEST(SmoothRun, KnowsHowFarChordsAreFromTheirCircle) {
+// Chords are off by R (1 - cos(angle / 2)): 80 of them by 1.93 um. The circle through any three
+// vertices has radius 10.
+TEST(SmoothRun, KnowsTheCurvatureOfACircleAndHowFarChordsAreFromIt) {
   const RunFacts facts = OneRun(circle_program(80)).smooth(options_for("linuxcnc")).facts;
   const double height = 10 * (1 - std::cos(3.141592653589793 / 160));
   EXPECT_NEAR(facts.error, height, 0.05 * height);
   EXPECT_LT(facts.noise, 0.0001);
+  EXPECT_NEAR(facts.max_curvature, 0.1, 0.001);
+  EXPECT_NEAR(facts.fair_curvature, 0.1, 0.005);
 }
 
 // Uniform scatter within 3 um has an rms of 3 / sqrt(3) um = 1.73 um, nearly all of it in Y.

@@ -44,8 +44,7 @@ struct NearKnot {
 
 class CurvesOfTargets : public testing::TestWithParam<const char*> {};
 
-// Without the guard in CurvePlanner::add_taken the piece between the two is halved until nothing is
-// left of it, and BsplineCurve::part throws.
+// Else the piece between the two is halved until nothing is left of it.
 TEST_P(CurvesOfTargets, TakePartedKnotsForOne) {
   for (const int steps : {-3, -1, 0, 1, 3}) {
     SCOPED_TRACE(testing::Message() << steps << " steps of the last bit");

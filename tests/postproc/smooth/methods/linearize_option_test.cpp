@@ -76,17 +76,15 @@ struct Wave {
   }
 
   [[nodiscard]] OutputPlan planned(Linearize linearize) const {
-    PlanOptions options;
-    options.target = gcode::find_control("linuxcnc");
-    options.machine = find_machine("linuxcnc");
+    PlanOptions options{gcode::find_control("linuxcnc"), find_machine("linuxcnc")};
     options.prefer = Prefer::kSize;
     options.max_deviation = 0.005;
     options.linearize = linearize;
-    return plan_lines(run, fair, options);
+    return plan_lines(run, fair, geometry::MarkedPieces(fair.curve), options);
   }
 };
 
-TEST(PlanLines, StayNearTheCurveHoweverTheyAreLaid) {
+TEST(PlanLines, StayNearTheCurveAndChangeTheFeedOnItHoweverTheyAreLaid) {
   const Wave wave;
   geometry::Path curve;
   for (const auto& piece : wave.fair.curve.bezier_pieces()) curve.push_back(piece);
@@ -100,14 +98,6 @@ TEST(PlanLines, StayNearTheCurveHoweverTheyAreLaid) {
     // The proof of path_distance may be 2 % of the tolerance too great.
     EXPECT_EQ(geometry::compare_paths(curve, lines, 1.021 * 0.005).verdict,
               geometry::Verdict::kProved);
-  }
-}
-
-TEST(PlanLines, ChangeTheFeedOnTheCurveHoweverTheyAreLaid) {
-  const Wave wave;
-  for (const auto& choice : linearizations()) {
-    SCOPED_TRACE(choice.name);
-    const OutputPlan plan = wave.planned(choice.value);
     int changes = 0;
     for (std::size_t i = 1; i < plan.moves.size(); ++i) {
       if (plan.moves[i].feed == plan.moves[i - 1].feed) continue;

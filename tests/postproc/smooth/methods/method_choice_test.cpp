@@ -144,10 +144,10 @@ TEST(MethodTimes, AreThoseOfTheFastestCandidateOfEachMethod) {
   EXPECT_EQ(times[1].time_s, 2.5);
 }
 
-// 3 + 1 s, tried as 2.5 + 0.75 s with fair; guo was tried on the second stretch only.
-TEST(MethodTimes, OfTwoStretchesAreSumsAndLeaveWhatWasNotTriedAsItWas) {
-  const TriedStretch first = {{{"fair", 2.5}, {"racing", 2.75}}, 3};
-  const TriedStretch second = {{{"fair", 0.75}, {"guo", 0.5}}, 1};
+// 3 + 1 s, tried as 2.5 + 0.75 s with fair; guo was tried on the second section only.
+TEST(MethodTimes, OfTwoSectionsAreSumsAndLeaveWhatWasNotTriedAsItWas) {
+  const TriedSection first = {{{"fair", 2.5}, {"racing", 2.75}}, 3};
+  const TriedSection second = {{{"fair", 0.75}, {"guo", 0.5}}, 1};
   const std::vector<MethodTime> times = joined_times(first, second);
   ASSERT_EQ(times.size(), 3u);
   EXPECT_EQ(times[0].method, "fair");

@@ -45,8 +45,9 @@ class Lines {
   [[nodiscard]] Candidate made(double deviation) const {
     PlanOptions plan{options_.target, options_.machine};
     plan.max_deviation = deviation;
-    const OutputPlan lines = plan_lines(run_.run(), *curve_, plan);
-    Candidate c = CandidateMaker(task_, times_).make(lines, so_far_.facts.times).value();
+    const geometry::MarkedPieces pieces(curve_->curve);
+    const OutputPlan lines = plan_lines(run_.run(), *curve_, pieces, plan);
+    Candidate c = make_candidate(task_, times_, lines, so_far_.facts.times).value();
     c.error = bounds().known(lines.error);
     return c;
   }

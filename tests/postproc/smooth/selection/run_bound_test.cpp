@@ -84,23 +84,23 @@ TEST(MethodsWorthTrying, SearchNoCornersOfARunThatHasMany) {
 
 class MayGain : public testing::Test {
  protected:
-  [[nodiscard]] bool may_gain(const Prospect& prospect) const {
+  [[nodiscard]] bool may_gain(const Bound& bound) const {
     RunFacts before;
     before.times = {10, 10, 10, 10};
     before.error = 0.004;
-    return postproc::may_gain(prospect, before, 100, Prefer::kTime);
+    return postproc::may_gain(bound, before, 100, Prefer::kTime);
   }
 };
 
 TEST_F(MayGain, WhatMayBecomeFasterSmallerOrNearer) {
-  EXPECT_TRUE(may_gain({.least_time = 5, .blocks = 900, .error = 0.01})) << "faster";
-  EXPECT_TRUE(may_gain({.least_time = 10, .blocks = 50, .error = 0.01})) << "smaller";
-  EXPECT_TRUE(may_gain({.least_time = 10, .blocks = 120, .error = 0.001})) << "nearer";
+  EXPECT_TRUE(may_gain({.least_time = 5, .error = 0.01, .blocks = 900})) << "faster";
+  EXPECT_TRUE(may_gain({.least_time = 10, .error = 0.01, .blocks = 50})) << "smaller";
+  EXPECT_TRUE(may_gain({.least_time = 10, .error = 0.001, .blocks = 120})) << "nearer";
 }
 
 TEST_F(MayGain, NothingWithTheFeedHeldAndManyMoreBlocks) {
-  EXPECT_FALSE(may_gain({.least_time = 10, .blocks = 300, .error = 0.001}));
-  EXPECT_FALSE(may_gain({.least_time = 10, .blocks = 130, .error = 0.01}));
+  EXPECT_FALSE(may_gain({.least_time = 10, .error = 0.001, .blocks = 300}));
+  EXPECT_FALSE(may_gain({.least_time = 10, .error = 0.01, .blocks = 130}));
 }
 
 }  // namespace

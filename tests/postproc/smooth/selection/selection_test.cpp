@@ -94,18 +94,37 @@ TEST_F(Choose, PassesOnWhyThereIsNoCandidate) {
   EXPECT_EQ(selection.reason, gcode::reason::kNoFit);
 }
 
-TEST_F(Choose, TakesWhatGainsTimeBlocksOrAccuracy) {
-  EXPECT_EQ(choose({candidate(8, 100, 0.004)}).order, Order{0}) << "faster";
-  EXPECT_EQ(choose({candidate(10, 50, 0.004)}).order, Order{0}) << "smaller";
-  EXPECT_EQ(choose({candidate(10, 100, 0.001)}).order, Order{0}) << "nearer";
-}
+struct OneCandidate {
+  const char* why;
+  Candidate candidate;
+  Prefer prefer;
+  Form output;
+  std::string_view reason;  // empty: it is taken
+};
 
-TEST_F(Choose, LeavesWhatGainsNothing) {
-  for (const Candidate& c : {candidate(10, 100, 0.004), candidate(9.99, 99, 0.0039),
-                             candidate(10, 300, 0.001)}) {  // nearer, with far more blocks
-    const Selection selection = choose({c});
-    EXPECT_TRUE(selection.order.empty());
-    EXPECT_EQ(selection.reason, gcode::reason::kNoGain);
+TEST_F(Choose, TakesWhatGainsAndSaysWhyItLeavesTheRest) {
+  constexpr std::string_view kTaken = "";
+  constexpr auto kTime = Prefer::kTime;
+  constexpr auto kAuto = Form::kAuto;
+  using namespace gcode::reason;
+  for (const auto& [why, one, prefer, output, reason] : {
+           OneCandidate{"faster", candidate(8, 100, 0.004), kTime, kAuto, kTaken},
+           OneCandidate{"smaller", candidate(10, 50, 0.004), kTime, kAuto, kTaken},
+           OneCandidate{"nearer", candidate(10, 100, 0.001), kTime, kAuto, kTaken},
+           OneCandidate{"the same", candidate(10, 100, 0.004), kTime, kAuto, kNoGain},
+           OneCandidate{"hardly better", candidate(9.99, 99, 0.0039), kTime, kAuto, kNoGain},
+           OneCandidate{"far more blocks", candidate(10, 300, 0.001), kTime, kAuto, kNoGain},
+           OneCandidate{"not fewer bytes", candidate(5, 100, 0), Prefer::kSize, kAuto, kNoGain},
+           OneCandidate{"not asked for", candidate(11, 20, 0.004), kTime, kAuto, kSlower},
+           OneCandidate{"asked for", candidate(11, 20, 0.004), kTime, Form::kArcs, kTaken},
+           OneCandidate{"too slow", candidate(13, 20, 0.004), kTime, Form::kArcs, kSlower},
+       }) {
+    SCOPED_TRACE(why);
+    options_.prefer = prefer;
+    options_.output = output;
+    const Selection selection = choose({one});
+    EXPECT_EQ(selection.order, reason.empty() ? Order{0} : Order{});
+    EXPECT_EQ(selection.reason, reason);
   }
 }
 
@@ -128,19 +147,6 @@ TEST_F(Choose, SaysNoGainWhereOneWasNotSlower) {
             gcode::reason::kNoGain);
 }
 
-TEST_F(Choose, TakesAFormThatWasAskedForEvenIfSomewhatSlower) {
-  const Candidate slower = candidate(11, 20, 0.004);
-  EXPECT_TRUE(choose({slower}).order.empty());
-  options_.output = Form::kArcs;
-  EXPECT_EQ(choose({slower}).order, Order{0});
-  EXPECT_TRUE(choose({candidate(13, 20, 0.004)}).order.empty()) << "not much slower";
-}
-
-struct PreferCase {
-  Prefer prefer;
-  std::size_t best;
-};
-
 TEST_F(Choose, PutsTheBestFirst) {
   const std::vector<Candidate> candidates = {
       candidate(9, 60, 0.002),    // 0
@@ -149,7 +155,7 @@ TEST_F(Choose, PutsTheBestFirst) {
       candidate(9.5, 20, 0.003),  // 3: fewest bytes
   };
   for (const auto& [prefer, best] :
-       std::vector<PreferCase>{{Prefer::kTime, 1}, {Prefer::kAccuracy, 2}, {Prefer::kSize, 3}}) {
+       {std::pair{Prefer::kTime, 1u}, {Prefer::kAccuracy, 2u}, {Prefer::kSize, 3u}}) {
     options_.prefer = prefer;
     const Selection selection = choose(candidates);
     ASSERT_EQ(selection.order.size(), 4u) << name_of(prefer);
@@ -158,23 +164,13 @@ TEST_F(Choose, PutsTheBestFirst) {
   }
 }
 
-TEST_F(Choose, PutsTheNearerFirstAmongEqualTimesThenTheSmaller) {
+TEST_F(Choose, PutsTheNearerFirstAmongEqualTimesThenTheSmallerThenThatOfFewerKinks) {
   EXPECT_EQ(choose({candidate(8, 50, 0.002), candidate(8, 60, 0.0001)}).order, (Order{1, 0}));
   EXPECT_EQ(choose({candidate(8, 60, 0.002), candidate(8, 50, 0.002)}).order, (Order{1, 0}));
-}
-
-// Kinks cost stops under exact path, on any control.
-TEST_F(Choose, PutsFewerKinksFirstAmongEqualTimes) {
+  // Kinks cost stops under exact path, on any control.
   std::vector<Candidate> candidates(2, candidate(8, 50, 0.002));
   candidates[1].times.exact_path = 3;
   EXPECT_EQ(choose(candidates).order, (Order{1, 0}));
-}
-
-TEST_F(Choose, AsksForFewerBytesWhereSizeIsPreferred) {
-  options_.prefer = Prefer::kSize;
-  const Selection selection = choose({candidate(5, 100, 0.0001)});
-  EXPECT_TRUE(selection.order.empty());
-  EXPECT_EQ(selection.reason, gcode::reason::kNoGain);
 }
 
 TEST_F(Choose, NamesEachCandidateOnce) {
