@@ -17,6 +17,7 @@ LIBRARIES = ("geometry", "gcode", "postproc")
 SKIPPED = 77
 # Sources by the beginning of their names.
 LATER = (
+    "geometry/band/tolerance_band_outline",  # the outline of a band as polygons
     "geometry/fitting/tube/tube_smoothing",  # curves of least time
     "postproc/machine/planner/",  # feeds under jerk limits, and the time of such a plan without it
 )

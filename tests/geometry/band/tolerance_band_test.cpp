@@ -54,6 +54,16 @@ BandStructure structure_of(const std::vector<Point2>& points, double tolerance) 
   return found.value_or(BandStructure{});
 }
 
+double area_of(const std::vector<Point2>& polygon) {
+  double twice = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point2& a = polygon[i];
+    const Point2& b = polygon[(i + 1) % polygon.size()];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return twice / 2;
+}
+
 // --- overlaps ----------------------------------------------------------------------------------
 
 TEST(BandStructure, PathsBesideThemselvesDoNotOverlap) {
@@ -113,6 +123,7 @@ TEST(BandStructure, RefusesATolerancethatIsNone) {
   const std::vector<Point2> points{{0, 0}, {1, 0}};
   for (const double wrong : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THROW((void)band_structure(points, wrong), std::invalid_argument);
+    EXPECT_THROW((void)band_outline(points, wrong), std::invalid_argument);
   }
 }
 
@@ -222,6 +233,28 @@ TEST(NewCrossing, PathsInSpaceAreNotLookedAt) {
   }
   EXPECT_FALSE(new_crossing(path_at(old, 0), path_through(rising), 0.01).has_value());
   EXPECT_FALSE(new_crossing({}, path_at(over, 0), 0.01).has_value());
+}
+
+// --- outline -----------------------------------------------------------------------------------
+
+TEST(BandOutline, LiesAroundTheBandByLessThanAHundredthOfTheTolerance) {
+  const auto outline = band_outline(std::vector<Point2>{{0, 0}, {3, 4}}, 0.1);
+  ASSERT_EQ(outline.size(), 1u);
+  const double exact = 2 * 0.1 * 5 + pi * 0.01;
+  EXPECT_GE(area_of(outline[0]), exact);
+  EXPECT_LE(area_of(outline[0]), exact * 1.01);
+}
+
+TEST(BandOutline, ARingHasAHole) {
+  const auto outline = band_outline(arc_points({0, 0}, 1, 0, 2 * pi, 60), 0.1);
+  ASSERT_EQ(outline.size(), 2u);
+  EXPECT_NEAR(area_of(outline[0]), pi * 1.1 * 1.1, 0.03);
+  EXPECT_NEAR(area_of(outline[1]), -pi * 0.9 * 0.9, 0.03);
+}
+
+TEST(BandOutline, OfNothingIsNothing) {
+  EXPECT_TRUE(band_outline({}, 0.1).empty());
+  EXPECT_TRUE(band_outline(std::vector<Point2>{{1, 1}, {1, 1}}, 0.1).empty());
 }
 
 }  // namespace
