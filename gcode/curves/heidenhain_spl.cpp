@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <string>
+#include <cstdint>
+#include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "gcode/curves/curve_print.h"
@@ -20,108 +21,14 @@ using geometry::CubicBezier;
 using geometry::Point3;
 using geometry::Vector3;
 
-// --- words --------------------------------------------------------------------------------------
+// What the numbers of an SPL block may be (iTNC 530 manual, 60642x-04, p. 541).
+constexpr double kGreatestMantissa = 9.99999999;  // of a coefficient
+constexpr int kMantissaDecimals = 8;
+constexpr double kGreatestEnd = 99999.9999;  // of an end point, mm
 
-class KlartextReader {
- public:
-  explicit KlartextReader(std::string_view text) : text_(text) {}
-
-  std::optional<KlartextLine> read() {
-    KlartextLine line;
-    if (is_digit(skip_blanks())) {
-      line.number = digits();
-      if (!line.number) return std::nullopt;
-    }
-    while (skip_blanks() != '\0' && peek() != ';') {
-      if (peek() == '~') {
-        ++at_;
-        line.continues = true;
-        if (skip_blanks() != '\0') return std::nullopt;
-        break;
-      }
-      KlartextWord word;
-      if (!read_word(word)) return std::nullopt;
-      line.words.push_back(std::move(word));
-    }
-    return line;
-  }
-
- private:
-  char peek(std::size_t ahead = 0) const {
-    return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0';
-  }
-
-  char skip_blanks() {
-    while (is_blank(peek())) ++at_;
-    return peek();
-  }
-
-  std::optional<int> digits() {
-    int value = 0;
-    const char* begin = text_.data() + at_;
-    const auto read = std::from_chars(begin, text_.data() + text_.size(), value);
-    if (read.ec != std::errc{}) return std::nullopt;
-    at_ += static_cast<std::size_t>(read.ptr - begin);
-    return value;
-  }
-
-  bool is_spline_word() const {
-    return upper(peek()) == 'K' && peek(1) >= '1' && peek(1) <= '3' && is_letter(peek(2));
-  }
-
-  bool read_word(KlartextWord& word) {
-    if (is_spline_word()) {
-      word.name = {'K', peek(1), upper(peek(2))};
-      at_ += 3;
-      return read_value(word) && read_exponent(word);
-    }
-    while (is_letter(peek())) word.name.push_back(upper(text_[at_++]));
-    if (word.name.empty()) return false;
-    // The sense of an arc; with digits behind it, a difference of the tool's radius.
-    if (word.is("DR") && (peek() == '+' || peek() == '-') && !is_digit(peek(1)) && peek(1) != '.') {
-      word.name.push_back(text_[at_++]);
-      return true;
-    }
-    const char next = peek();
-    const bool has_value = is_digit(next) || next == '+' || next == '-' || next == '.';
-    return !has_value || read_value(word);
-  }
-
-  bool read_value(KlartextWord& word) {
-    std::string digits;
-    while (is_digit(peek()) || peek() == '.' || peek() == ',' ||
-           (digits.empty() && (peek() == '+' || peek() == '-'))) {
-      digits.push_back(peek() == ',' ? '.' : peek());
-      ++at_;
-    }
-    const auto number = read_number(digits);
-    if (!number || std::abs(number->value) >= kNumberLimit) return false;
-    word.mantissa = number->value;
-    word.value = number->value;
-    word.decimals = number->decimals;
-    return true;
-  }
-
-  // E-002, also behind a blank.
-  bool read_exponent(KlartextWord& word) {
-    std::size_t ahead = 0;
-    while (is_blank(peek(ahead))) ++ahead;
-    if (upper(peek(ahead)) != 'E') return true;
-    at_ += ahead + 1;
-    const bool negative = peek() == '-';
-    if (negative || peek() == '+') ++at_;
-    const auto exponent = digits();
-    if (!exponent || *exponent > 308) return false;
-    word.exponent = negative ? -*exponent : *exponent;
-    // Dividing by a power of ten that is exact rounds once.
-    const double power = std::pow(10.0, *exponent);
-    word.value = negative ? word.mantissa / power : word.mantissa * power;
-    return true;
-  }
-
-  std::string_view text_;
-  std::size_t at_ = 0;
-};
+// The control stops, or slows down, where one spline meets the next under this angle or more
+// (radians).
+constexpr double kSplKink = 0.1 * std::numbers::pi / 180;
 
 // --- writing ------------------------------------------------------------------------------------
 
@@ -252,69 +159,159 @@ CurveWriting write_spl(const geometry::BsplineCurve& curve, const CurveSetting& 
 
 // --- reading ------------------------------------------------------------------------------------
 
+// One block, whose lines are joined, in the program's units.
+struct SplBlock {
+  std::uint32_t lines = 0;
+  std::string ends;          // "XY"
+  std::string coefficients;  // "3X2X1X3Y2Y1Y"
+  std::array<double, 3> end{};
+  std::array<Vector3, 3> k = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};  // K1, K2, K3
+  std::optional<double> feed;
+};
+
+SourceSpan content_of(const Program& program, std::uint32_t block) {
+  return klartext_parts(program.source.text(), program.blocks[block].span).content;
+}
+
 bool starts_spline(const Program& program, std::uint32_t block) {
-  const SourceSpan content =
-      klartext_parts(program.source.text(), program.blocks[block].span).content;
-  return klartext_kind(program.source.text(content)) == KlartextKind::kSpline;
+  return klartext_kind(program.source.text(content_of(program, block))) == KlartextKind::kSpline;
+}
+
+// The axis of this name: 0 to 2; nothing for rotary axes and others.
+std::optional<std::size_t> main_axis(const std::string& name) {
+  if (name.size() != 1 || name[0] < 'X' || name[0] > 'Z') return std::nullopt;
+  return static_cast<std::size_t>(name[0] - 'X');
+}
+
+// -4.688E-002, also with a blank before the E.
+std::optional<double> read_coefficient(KlartextScanner& words) {
+  const auto mantissa = words.number();
+  if (!mantissa) return std::nullopt;
+  KlartextScanner ahead = words;
+  if (ahead.at_end() || upper(ahead.peek()) != 'E') return mantissa->value;
+  ahead.skip();
+  words = ahead;
+  const bool negative = words.peek() == '-';
+  const auto exponent = words.number();
+  if (!exponent || exponent->decimals > 0 || std::abs(exponent->value) > 308) return std::nullopt;
+  // Dividing by a power of ten that is exact rounds once.
+  const double power = std::pow(10.0, std::abs(exponent->value));
+  return negative ? mantissa->value / power : mantissa->value * power;
+}
+
+// K3X-4.688E-002, behind its K.
+bool read_k_word(KlartextScanner& words, SplBlock& block) {
+  const char k = words.peek();
+  if (k < '1' || k > '3') return false;
+  words.skip();
+  const auto axis = main_axis(words.letters());
+  const auto value = axis ? read_coefficient(words) : std::nullopt;
+  if (!value) return false;
+  block.k[static_cast<std::size_t>(k - '1')][static_cast<int>(*axis)] = *value;
+  block.coefficients += {k, kAxisNames[*axis]};
+  return true;
+}
+
+// The words of one line. False where it has any that no spline of ours has.
+bool read_words(KlartextScanner words, bool is_first, SplBlock& block) {
+  if (is_first) (void)words.letters();  // SPL
+  while (!words.at_end()) {
+    const std::string name = words.letters();
+    if (name == "K") {
+      if (!read_k_word(words, block)) return false;
+      continue;
+    }
+    const auto axis = main_axis(name);
+    const bool is_end = axis && block.coefficients.empty();
+    const auto value = is_end || name == "F" ? words.number() : std::nullopt;
+    if (!value) return false;
+    if (is_end) {
+      block.ends += name;
+      block.end[*axis] = value->value;
+    } else {
+      block.feed = value->value;
+    }
+  }
+  return true;
+}
+
+// Two axes or more, each with K3, K2 and K1 in this order.
+bool has_its_words(const SplBlock& block) {
+  std::string left = block.ends;
+  if (left.size() < 2 || block.coefficients.size() != 6 * left.size()) return false;
+  for (std::size_t at = 0; at < block.coefficients.size(); at += 6) {
+    const char axis = block.coefficients[at + 1];
+    const std::string three = {'3', axis, '2', axis, '1', axis};
+    if (block.coefficients.substr(at, 6) != three || std::erase(left, axis) == 0) return false;
+  }
+  return true;
+}
+
+// The block that begins in line `first`; nothing where it is no spline as ours are.
+std::optional<SplBlock> spl_block_at(const Program& program, std::uint32_t first) {
+  SplBlock block;
+  const std::string_view text = program.source.text();
+  bool continues = true;
+  for (std::uint32_t at = first; at < program.blocks.size(); ++at) {
+    const KlartextParts parts = klartext_parts(text, program.blocks[at].span);
+    const bool numbered = at > first && parts.number.size() > 0;
+    const bool goes_on = !numbered && is_coefficient_line(program.source.text(parts.content));
+    if (!continues && !goes_on) break;
+    if (parts.skipped || numbered) return std::nullopt;
+    if (!read_words({text, parts.content}, at == first, block)) return std::nullopt;
+    ++block.lines;
+    continues = parts.continues;
+  }
+  return has_its_words(block) ? std::optional(block) : std::nullopt;
+}
+
+// What the block says where the tool is at `position`.
+CubicBezier piece_of(const SplBlock& block, const Point3& position, double unit) {
+  Point3 end = position;
+  for (const char axis : block.ends) {
+    end[axis - 'X'] = block.end[static_cast<std::size_t>(axis - 'X')] * unit;
+  }
+  const Vector3 k1 = block.k[0] * unit;
+  const Vector3 k2 = block.k[1] * unit;
+  const Point3 begin = end + (k1 + (k2 + block.k[2] * unit));
+  return {{begin, end + (2 * k1 + k2) / 3, end + k1 / 3, end}};
 }
 
 // Decimals of the same number, as doubles, differ by less (mm).
 constexpr double kDecimalNoise = 1e-9;
-
-// The words that a spline of ours has: no rotary axes, no M.
-bool only_main_axes(const SplWords& block) {
-  return std::all_of(block.words.begin() + 1, block.words.end(), [](const KlartextWord& word) {
-    const char axis = word.name.back();
-    const bool main = axis >= 'X' && axis <= 'Z';
-    return word.is("F") ? word.value.has_value()
-                        : main && (is_spl_end(word) || is_spl_coefficient(word));
-  });
-}
 
 // They start where their K words say, so they chain to within 1 um, and to the rounding of doubles
 // where Batten wrote them.
 CurveResult read_spl(const Program& program, std::uint32_t first, const CurveStart& start) {
   const bool may_be = program.blocks[first].opacity == ParseStatus::kForeign;
   if (!may_be || !starts_spline(program, first)) return CurveRefusal{"no SPL"};
-  const double unit = millimetres_per(start.units);
   CurveReading reading;
-  Point3 place = start.position.mm;
-  for (std::uint32_t at = first; at < program.blocks.size();) {
-    const SplWords joined = joined_at(program, at);
-    if (!joined.is("SPL")) break;
-    if (!joined.understood || !spl_word_trouble(joined).empty() || !only_main_axes(joined)) {
-      if (reading.motions.empty()) return CurveRefusal{"an SPL block that is not understood"};
-      break;
+  Point3 position = start.position.mm;
+  for (std::uint32_t at = first; at < program.blocks.size() && starts_spline(program, at);) {
+    const auto block = spl_block_at(program, at);
+    if (!block && at == first) return CurveRefusal{"an SPL block that is not understood"};
+    if (!block || (block->feed && at != first)) break;
+    for (const char name : block->ends) {
+      const auto axis = static_cast<std::size_t>(name - 'X');
+      if (!start.position.known[axis]) return CurveRefusal{"the tool's position is not known"};
+      reading.axes[axis] = true;
     }
-    const SplBlock block = spl_block_of(joined, place, unit);
-    if (block.feed && !reading.motions.empty()) break;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (block.axes[axis] && !start.position.known[axis]) {
-        return CurveRefusal{"the tool's position is not known"};
-      }
-      reading.axes[axis] = reading.axes[axis] || block.axes[axis];
-    }
-    CubicBezier piece = block.piece;
-    const double off = (piece.control[0] - place).cwiseAbs().maxCoeff();
+    CubicBezier piece = piece_of(*block, position, millimetres_per(start.units));
+    const double off = (piece.control[0] - position).cwiseAbs().maxCoeff();
     if (off >= kSplClosure) {
       return CurveRefusal{"a spline that starts 1 um or more from the tool's position"};
     }
-    if (off <= kDecimalNoise) piece.control[0] = place;
-    if (reading.motions.empty()) reading.feed = block.feed;
+    if (off <= kDecimalNoise) piece.control[0] = position;
+    if (at == first) reading.feed = block->feed;
     reading.motions.push_back({at, piece});
-    reading.blocks += joined.lines;
-    at += joined.lines;
-    place = piece.control[3];
+    at += block->lines;
+    position = piece.control[3];
+    reading.blocks = at - first;
   }
-  if (reading.motions.empty()) return CurveRefusal{"no SPL"};
   return reading;
 }
 
 }  // namespace
-
-std::optional<KlartextLine> read_klartext_line(std::string_view line) {
-  return KlartextReader(line).read();
-}
 
 std::optional<PrintedCoefficient> print_spl_coefficient(double value, int decimals) {
   const double plain = rounded(value, decimals);
@@ -337,85 +334,6 @@ std::optional<PrintedCoefficient> print_spl_coefficient(double value, int decima
   const std::string size = std::to_string(exponent);
   digits += "E+" + std::string(3 - size.size(), '0') + size;
   return PrintedCoefficient{std::move(digits), mantissa * power};
-}
-
-bool is_spl_coefficient(const KlartextWord& word) {
-  return word.name.size() == 3 && word.name[0] == 'K';
-}
-
-bool is_spl_end(const KlartextWord& word) {
-  return word.name.size() == 1 && kSplAxes.find(word.name[0]) != std::string_view::npos &&
-         word.value.has_value();
-}
-
-SplWords joined_at(const Program& program, std::uint32_t first) {
-  SplWords joined;
-  bool continues = true;
-  for (std::uint32_t at = first; at < program.blocks.size(); ++at) {
-    const auto line = read_klartext_line(program.source.text(program.blocks[at].span));
-    const bool more = at > first && line && !line->number && !line->words.empty() &&
-                      is_spl_coefficient(line->words.front());
-    if (!continues && !more) break;
-    ++joined.lines;
-    if (!line || (at > first && line->number)) {
-      joined.understood = false;
-      break;
-    }
-    for (const KlartextWord& word : line->words) joined.words.push_back(word);
-    // Only splines are joined where nothing says so.
-    continues = line->continues;
-    if (!joined.is("SPL") && !continues) break;
-  }
-  return joined;
-}
-
-std::string_view spl_word_trouble(const SplWords& block) {
-  std::string ends;
-  std::string coefficients;
-  std::string last_axis;
-  for (std::size_t i = 1; i < block.words.size(); ++i) {
-    const KlartextWord& word = block.words[i];
-    if (is_spl_coefficient(word)) {
-      coefficients += word.name;
-    } else if (is_spl_end(word) && coefficients.empty()) {
-      ends += word.name;
-    } else if (word.name != "F" && word.name != "FMAX" && word.name != "M") {
-      return "spl-words";
-    }
-  }
-  for (std::size_t at = 0; at < coefficients.size(); at += 9) {
-    const char axis = coefficients[at + 2];
-    const std::string three = {'K', '3', axis, 'K', '2', axis, 'K', '1', axis};
-    if (coefficients.substr(at, 9) != three) return "spl-order";
-    if (ends.find(axis) == std::string::npos) return "spl-order";
-    if (last_axis.find(axis) != std::string::npos) return "spl-order";
-    last_axis.push_back(axis);
-  }
-  if (last_axis.size() != ends.size()) return "spl-order";
-  if (ends.size() < 2 || ends.size() > 5) return "spl-axes";
-  return {};
-}
-
-SplBlock spl_block_of(const SplWords& joined, const Point3& place, double unit) {
-  SplBlock block;
-  Point3 end = place;
-  std::array<Vector3, 3> k = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};  // K1, K2, K3; mm
-  for (const KlartextWord& word : joined.words) {
-    if (word.is("F")) block.feed = word.value;
-    if (!is_spl_end(word) && !is_spl_coefficient(word)) continue;
-    const char axis = word.name.back();
-    if (axis < 'X' || axis > 'Z') continue;
-    const int i = axis - 'X';
-    if (is_spl_coefficient(word)) {
-      k[static_cast<std::size_t>(word.name[1] - '1')][i] = *word.value * unit;
-    } else {
-      block.axes[static_cast<std::size_t>(i)] = true;
-      end[i] = *word.value * unit;
-    }
-  }
-  const Point3 begin = end + (k[0] + (k[1] + k[2]));
-  block.piece = {{begin, end + (2 * k[0] + k[1]) / 3, end + k[0] / 3, end}};
-  return block;
 }
 
 const CurveFormat& heidenhain_spl() {

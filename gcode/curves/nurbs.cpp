@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "gcode/curves/curve_print.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::gcode {
@@ -15,8 +16,28 @@ using geometry::BsplineBasis;
 using geometry::BsplineCurve;
 using geometry::Point3;
 
-constexpr std::string_view kFrameBegin = "G05 P10000";
-constexpr std::string_view kFrameEnd = "G05 P0";
+struct NurbsRules {
+  KnotDigits mm;  // of K; the decimals hold for R too
+  KnotDigits inch;
+  bool three_axes = false;  // X, Y and Z are all named, always
+  // R1 in every block that has a place, rather than leaving the weight to be 1.
+  bool weights = false;
+  bool framed = false;  // G05 P10000 right before the curve, and G05 P0 right after it
+};
+
+// FANUC 15i/16i/18i/30i/31i, least increment 0.001 mm or 0.0001 inch. Nine digits in the least
+// increment of the reference axis: +-999999.999 in millimetres at IS-B, +-99999.9999 in inches.
+constexpr NurbsRules kFanuc = {.mm = {.digits = 9, .decimals = 3},
+                               .inch = {.digits = 9, .decimals = 4}};
+
+// As FANUC, in the frame that its sample has, with weights.
+constexpr NurbsRules kSyntec = {
+    .mm = kFanuc.mm, .inch = kFanuc.inch, .weights = true, .framed = true};
+
+// M700V. The manual limits the decimals only. Eight digits in all are what its axis words have.
+constexpr KnotDigits kMitsubishiDigits = {.digits = 8, .decimals = 4};
+constexpr NurbsRules kMitsubishi = {
+    .mm = kMitsubishiDigits, .inch = kMitsubishiDigits, .three_axes = true, .framed = true};
 
 constexpr int kLeastOrder = 2;
 constexpr int kGreatestOrder = 4;
@@ -40,22 +61,12 @@ struct NurbsBlock {
 };
 
 std::optional<double>* slot_of(char letter, NurbsBlock& block) {
-  switch (letter) {
-    case 'P':
-      return &block.order;
-    case 'K':
-      return &block.knot;
-    case 'R':
-      return &block.weight;
-    case 'F':
-      return &block.feed;
-    case 'X':
-    case 'Y':
-    case 'Z':
-      return &block.place[static_cast<std::size_t>(letter - 'X')];
-    default:
-      return nullptr;
-  }
+  if (letter >= 'X' && letter <= 'Z') return &block.place[static_cast<std::size_t>(letter - 'X')];
+  return letter == 'P'   ? &block.order
+         : letter == 'K' ? &block.knot
+         : letter == 'R' ? &block.weight
+         : letter == 'F' ? &block.feed
+                         : nullptr;
 }
 
 NurbsBlock words_of_block(const Program& program, const Block& block) {
@@ -268,7 +279,7 @@ CurveLines lines_of(const std::vector<PrintedPlace>& places, const PrintedKnots&
   NumberFormat format = setting.other;
   format.decimals = knots.decimals;
   CurveLines lines;
-  if (rules.framed) lines.emplace_back(kFrameBegin);
+  if (rules.framed) lines.emplace_back("G05 P10000");
   for (std::size_t i = 0; i < places.size(); ++i) {
     std::string line = i == 0 ? "G06.2" : "";
     if (i == 0) add_word(line, "P4", setting);
@@ -279,7 +290,7 @@ CurveLines lines_of(const std::vector<PrintedPlace>& places, const PrintedKnots&
     lines.push_back(std::move(line));
   }
   lines.insert(lines.end(), kGreatestOrder, "K" + to_text(knots.knots.back(), format));
-  if (rules.framed) lines.emplace_back(kFrameEnd);
+  if (rules.framed) lines.emplace_back("G05 P0");
   return lines;
 }
 
@@ -300,7 +311,7 @@ CurveWriting write_nurbs(const BsplineCurve& curve, const CurveSetting& setting,
       return CurveRefusal{"a position beyond 999999.999"};
     }
   }
-  KnotDigits digits = rules.knots;
+  KnotDigits digits = setting.units == Units::kInch ? rules.inch : rules.mm;
   if (setting.other.decimals < digits.decimals) {
     digits.digits -= digits.decimals - setting.other.decimals;
     digits.decimals = setting.other.decimals;
@@ -311,54 +322,36 @@ CurveWriting write_nurbs(const BsplineCurve& curve, const CurveSetting& setting,
   return lines_of(places, *knots, setting, rules);
 }
 
-}  // namespace
-
-NurbsRules fanuc_nurbs(Units units) {
-  // Nine digits in the least increment of the reference axis: +-999999.999 in millimetres at IS-B,
-  // +-99999.9999 in inches.
-  return {.knots = {.digits = 9, .decimals = units == Units::kInch ? 4 : 3}};
-}
-
-NurbsRules syntec_nurbs(Units units) {
-  NurbsRules rules = fanuc_nurbs(units);
-  rules.weights = true;
-  rules.framed = true;
-  return rules;
-}
-
-NurbsRules mitsubishi_nurbs(Units) {
-  // The manual limits the decimals only. Eight digits in all are what its axis words have.
-  return {.knots = {.digits = 8, .decimals = 4}, .three_axes = true, .framed = true};
-}
-
-CurveFormat nurbs_format(const std::function<NurbsRules(Units)>& rules) {
+CurveFormat nurbs_format(const NurbsRules& rules) {
   CurveFormat format;
   format.name = "G06.2";
   format.is_block_per_piece = false;
-  format.names_all_axes = rules(Units::kMillimetre).three_axes;
-  format.other_mm = {.decimals = rules(Units::kMillimetre).knots.decimals, .always_point = true};
-  format.other_inch = {.decimals = rules(Units::kInch).knots.decimals, .always_point = true};
+  format.names_all_axes = rules.three_axes;
+  format.other_mm = {.decimals = rules.mm.decimals, .always_point = true};
+  format.other_inch = {.decimals = rules.inch.decimals, .always_point = true};
   format.write = [rules](const BsplineCurve& curve, const CurveSetting& setting) {
-    return write_nurbs(curve, setting, rules(setting.units));
+    return write_nurbs(curve, setting, rules);
   };
   format.read = [rules](const Program& program, std::uint32_t first, const CurveStart& start) {
-    return NurbsReader(program, start, rules(start.units)).read(first);
+    return NurbsReader(program, start, rules).read(first);
   };
   return format;
 }
 
+}  // namespace
+
 const CurveFormat& fanuc_curves() {
-  static const CurveFormat kFormat = nurbs_format(fanuc_nurbs);
+  static const CurveFormat kFormat = nurbs_format(kFanuc);
   return kFormat;
 }
 
 const CurveFormat& syntec_curves() {
-  static const CurveFormat kFormat = nurbs_format(syntec_nurbs);
+  static const CurveFormat kFormat = nurbs_format(kSyntec);
   return kFormat;
 }
 
 const CurveFormat& mitsubishi_curves() {
-  static const CurveFormat kFormat = nurbs_format(mitsubishi_nurbs);
+  static const CurveFormat kFormat = nurbs_format(kMitsubishi);
   return kFormat;
 }
 

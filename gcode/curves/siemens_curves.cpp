@@ -20,16 +20,27 @@ using geometry::CubicBezier;
 using geometry::Point3;
 using geometry::Vector3;
 
-// What has to be told to the user before BSPLINE is written.
-constexpr std::string_view kBsplineUnverified =
-    "BSPLINE is not verified: how PL maps to the knots, what the first and the last blocks mean "
-    "and "
-    "where the curve starts were found in no manual; run the program on the control or on "
-    "SinuTrain "
-    "and compare it with POLY before cutting";
+// Characters of one block.
+constexpr std::size_t kSiemensLine = 512;
+
+// PL is in this range.
+constexpr double kShortestPoly = 0.0001;
+constexpr double kLongestPoly = 99999.9999;
 
 // --- words --------------------------------------------------------------------------------------
 
+// A word as far as polynomials and splines need it: `X10`, `X=10`, `PL=0.5`, `PO[X]=(18,-18,6)`,
+// `POLY`, `G1`.
+struct SiemensWord {
+  std::string name;            // upper case, without blanks: "X", "PO[X]", "PO[]", "POLY"
+  std::vector<double> values;  // one, those in parentheses, or none
+
+  [[nodiscard]] bool is(std::string_view other) const { return name == other; }
+  [[nodiscard]] double value() const { return values.front(); }  // requires one
+};
+
+// Comments (; to the end) are left out. Nothing where the block has anything else than such words:
+// expressions, strings, AC(..), exponents, labels.
 class SiemensReader {
  public:
   explicit SiemensReader(std::string_view text) : text_(text) {}
@@ -99,13 +110,67 @@ class SiemensReader {
     }
     at_ = end;
     word.values.push_back(number->value);
-    word.decimals = std::max(word.decimals, number->decimals);
     return true;
   }
 
   std::string_view text_;
   std::size_t at_ = 0;
 };
+
+constexpr std::size_t kMostCoefficients = 5;  // the end and a2 .. a5
+
+// One block's words, sorted.
+struct CurveBlock {
+  bool begins = false;  // POLY, BSPLINE
+  std::array<std::optional<SiemensWord>, 3> polynomial;
+  std::array<std::optional<SiemensWord>, 3> straight;
+  std::optional<SiemensWord> denominator;
+  std::optional<double> length;  // PL
+  std::optional<double> feed;
+
+  [[nodiscard]] bool is_polynomial() const {
+    return polynomial[0] || polynomial[1] || polynomial[2] || denominator;
+  }
+  [[nodiscard]] bool moves() const {
+    return is_polynomial() || straight[0] || straight[1] || straight[2];
+  }
+};
+
+bool take_word(const SiemensWord& word, std::string_view keyword, CurveBlock& block) {
+  const bool poly = keyword == "POLY";
+  const bool beside = poly ? word.is("G") && word.value() == 90
+                           : word.is("SD") && word.values == std::vector<double>{3};
+  if (word.is("N") || beside) return true;
+  if (word.is(keyword)) return block.begins = true;
+  if ((word.is("PL") || word.is("F")) && word.values.size() == 1) {
+    (word.is("F") ? block.feed : block.length) = word.value();
+    return true;
+  }
+  std::optional<SiemensWord>* slot = nullptr;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string name(1, kAxisNames[axis]);
+    if (word.is(name)) {
+      block.straight[axis] = word;
+      return true;
+    }
+    if (word.is("PO[" + name + "]")) slot = &block.polynomial[axis];
+  }
+  if (word.is("PO[]")) slot = &block.denominator;
+  if (!poly || slot == nullptr) return false;
+  *slot = word;
+  return !word.values.empty() && word.values.size() <= kMostCoefficients;
+}
+
+// Nothing where another word is in the block than those of curves that begin with the keyword.
+std::optional<CurveBlock> curve_block(const Program& program, std::uint32_t at,
+                                      std::string_view keyword) {
+  const auto words = SiemensReader(program.source.text(program.blocks[at].span)).read();
+  if (!words) return std::nullopt;
+  CurveBlock block;
+  const bool understood = std::ranges::all_of(
+      *words, [&](const SiemensWord& word) { return take_word(word, keyword, block); });
+  return understood ? std::optional(std::move(block)) : std::nullopt;
+}
 
 // --- POLY: writing ------------------------------------------------------------------------------
 
@@ -164,22 +229,6 @@ CurveWriting write_poly(const BsplineCurve& curve, const CurveSetting& setting) 
 
 // --- POLY: reading ------------------------------------------------------------------------------
 
-constexpr std::size_t kMostCoefficients = 5;  // the end and a2 .. a5
-
-bool take_axis_word(const SiemensWord& word, PolyWords& sorted) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (word.name == std::string(1, kAxisNames[axis])) {
-      sorted.straight[axis] = &word;
-      return true;
-    }
-    if (word.name == std::string("PO[") + kAxisNames[axis] + "]") {
-      sorted.polynomial[axis] = &word;
-      return !word.values.empty() && word.values.size() <= kMostCoefficients;
-    }
-  }
-  return false;
-}
-
 // The motion of one axis: a line or a polynomial in p from 0 to `length`, whose end and a2, a3 ..
 // are given; in p / length. Nothing above the third degree.
 std::optional<std::array<double, 4>> coefficients_of(double start, const SiemensWord& word,
@@ -204,32 +253,30 @@ class PolyReader {
 
   CurveResult read(std::uint32_t first) {
     for (std::uint32_t at = first; at < program_.blocks.size(); ++at) {
-      const auto words = read_siemens_words(program_.source.text(program_.blocks[at].span));
-      const PolyWords block = poly_words_of(words);
+      const auto block = curve_block(program_, at, "POLY");
       const bool is_first = at == first;
-      if (!block.understood || block.poly != is_first) break;
-      if (!is_first && (!block.moves() || block.feed)) break;
-      if (is_first) reading_.feed = block.feed;
+      if (!block || block->begins != is_first) break;
+      if (!is_first && (!block->moves() || block->feed)) break;
+      if (is_first) reading_.feed = block->feed;
       ++reading_.blocks;
-      if (!block.moves()) continue;
-      if (const auto trouble = add(at, block); !trouble.empty()) return CurveRefusal{trouble};
+      if (!block->moves()) continue;
+      if (const auto trouble = add(at, *block); !trouble.empty()) return CurveRefusal{trouble};
     }
     if (reading_.blocks == 0) return CurveRefusal{"no POLY"};
     return std::move(reading_);
   }
 
  private:
-  std::string add(std::uint32_t at, const PolyWords& words) {
+  std::string add(std::uint32_t at, const CurveBlock& words) {
     constexpr const char* kNoCubic = "a polynomial that is rational or above the third degree";
     const double length = words.length.value_or(1);
     if (length < kShortestPoly || length > kLongestPoly) return "PL out of range";
-    if (words.denominator != nullptr && !is_one(words.denominator->values)) return kNoCubic;
+    if (words.denominator && !is_one(words.denominator->values)) return kNoCubic;
     Coefficients a = {place_.mm, Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
     Point3 end = place_.mm;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const SiemensWord* word =
-          words.polynomial[axis] != nullptr ? words.polynomial[axis] : words.straight[axis];
-      if (word == nullptr) continue;  // stays where it is
+      const auto& word = words.polynomial[axis] ? words.polynomial[axis] : words.straight[axis];
+      if (!word) continue;  // stays where it is
       if (!place_.known[axis]) return "the tool's position is not known";
       reading_.axes[axis] = true;
       const auto i = static_cast<int>(axis);
@@ -262,10 +309,6 @@ class PolyReader {
   CurveReading reading_;
 };
 
-CurveResult read_poly(const Program& program, std::uint32_t first, const CurveStart& start) {
-  return PolyReader(program, start).read(first);
-}
-
 // --- BSPLINE ------------------------------------------------------------------------------------
 //
 // The place where the tool stands is the first control point P0, and one block for each further
@@ -277,35 +320,6 @@ constexpr std::size_t kDegree = 3;
 
 // PL is a length like X; nine digits in all, as for other lengths of the control.
 constexpr int kDigits = 9;
-
-// One block: places and PL.
-struct BsplineBlock {
-  bool begins = false;
-  bool understood = true;
-  std::array<std::optional<double>, 3> place;
-  std::optional<double> length;
-  std::optional<double> feed;
-};
-
-BsplineBlock sorted(const std::vector<SiemensWord>& words) {
-  BsplineBlock block;
-  for (const SiemensWord& word : words) {
-    const bool axis = word.name.size() == 1 && word.name[0] >= 'X' && word.name[0] <= 'Z';
-    if (word.is("N") || (word.is("SD") && word.values == std::vector<double>{3})) continue;
-    if (word.is("BSPLINE")) {
-      block.begins = true;
-    } else if (axis) {
-      block.place[static_cast<std::size_t>(word.name[0] - 'X')] = word.value();
-    } else if (word.is("PL") && word.values.size() == 1) {
-      block.length = word.value();
-    } else if (word.is("F") && word.values.size() == 1) {
-      block.feed = word.value();
-    } else {
-      block.understood = false;
-    }
-  }
-  return block;
-}
 
 // The knots whose intervals the blocks give; empty where they are no clamped cubic.
 std::vector<double> knots_of(const std::vector<double>& lengths) {
@@ -354,21 +368,19 @@ CurveResult read_bspline(const Program& program, std::uint32_t first, const Curv
   std::vector<Point3> points = {start.position.mm};
   std::vector<double> lengths;
   for (std::uint32_t at = first; at < program.blocks.size(); ++at) {
-    const auto words = read_siemens_words(program.source.text(program.blocks[at].span));
-    if (!words) break;
-    const BsplineBlock block = sorted(*words);
-    if (!block.understood || !block.length || block.begins != (at == first)) break;
-    if (at == first) reading.feed = block.feed;
-    if (at != first && block.feed) break;
+    const auto block = curve_block(program, at, "BSPLINE");
+    if (!block || !block->length || block->begins != (at == first)) break;
+    if (at == first) reading.feed = block->feed;
+    if (at != first && block->feed) break;
     Point3 place = points.back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!block.place[axis]) continue;
+      if (!block->straight[axis]) continue;
       if (!start.position.known[axis]) return CurveRefusal{"the tool's position is not known"};
       reading.axes[axis] = true;
-      place[static_cast<int>(axis)] = *block.place[axis] * unit;
+      place[static_cast<int>(axis)] = block->straight[axis]->value() * unit;
     }
     points.push_back(place);
-    lengths.push_back(*block.length);
+    lengths.push_back(*block->length);
   }
   if (lengths.empty()) return CurveRefusal{"no BSPLINE"};
   const std::vector<double> knots = knots_of(lengths);
@@ -386,32 +398,6 @@ CurveResult read_bspline(const Program& program, std::uint32_t first, const Curv
 
 }  // namespace
 
-std::optional<std::vector<SiemensWord>> read_siemens_words(std::string_view block) {
-  return SiemensReader(block).read();
-}
-
-PolyWords poly_words_of(const std::optional<std::vector<SiemensWord>>& words) {
-  PolyWords result;
-  result.understood = words.has_value();
-  if (!words) return result;
-  for (const SiemensWord& word : *words) {
-    if (word.is("N")) continue;
-    if (word.is("POLY")) {
-      result.poly = true;
-    } else if (word.is("PO[]")) {
-      result.denominator = &word;
-      if (word.values.empty() || word.values.size() > kMostCoefficients) result.understood = false;
-    } else if (word.is("PL") && word.values.size() == 1) {
-      result.length = word.value();
-    } else if (word.is("F") && word.values.size() == 1) {
-      result.feed = word.value();
-    } else if (!(word.is("G") && word.value() == 90) && !take_axis_word(word, result)) {
-      result.understood = false;
-    }
-  }
-  return result;
-}
-
 const CurveFormat& siemens_poly() {
   static const CurveFormat kFormat = [] {
     CurveFormat format;
@@ -420,7 +406,9 @@ const CurveFormat& siemens_poly() {
     // Of the size of the piece: half a step moves the piece by less than the rounding of its ends.
     format.other_mm = format.other_inch = {.decimals = 6};
     format.write = write_poly;
-    format.read = read_poly;
+    format.read = [](const Program& program, std::uint32_t first, const CurveStart& start) {
+      return PolyReader(program, start).read(first);
+    };
     return format;
   }();
   return kFormat;
@@ -430,7 +418,10 @@ const CurveFormat& siemens_bspline() {
   static const CurveFormat kFormat = [] {
     CurveFormat format;
     format.name = "BSPLINE";
-    format.caution = kBsplineUnverified;
+    format.caution =
+        "BSPLINE is not verified: how PL maps to the knots, what the first and the last blocks "
+        "mean and where the curve starts were found in no manual; run the program on the control "
+        "or on SinuTrain and compare it with POLY before cutting";
     format.is_block_per_piece = false;
     // PL, in the units of the curve's parameter: scaled as the knots of G06.2 are.
     format.other_mm = format.other_inch = {.decimals = 4};

@@ -1,7 +1,6 @@
 #include "gcode/klartext/parser.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -22,11 +21,6 @@ constexpr std::string_view kUnreadableBlock = "unreadable-block";
 
 // What old files are filled with; controls skip both.
 bool is_filler(char c) { return c == '\0' || c == '\x1A'; }
-
-bool is_coefficient_line(std::string_view content) {
-  return content.size() > 2 && upper(content[0]) == 'K' && content[1] >= '1' && content[1] <= '3' &&
-         is_letter(content[2]);
-}
 
 // --- the words of L, C, CC and M statements ----------------------------------------------------
 
@@ -50,74 +44,42 @@ bool is_parameter(std::string_view letters) {
   return letters == "Q" || letters == "QL" || letters == "QR" || letters == "QS";
 }
 
-class MoveWordReader {
+// The words of moves: a value may be a parameter.
+class MoveWordReader : public KlartextScanner {
  public:
-  MoveWordReader(std::string_view text, SourceSpan content)
-      : text_(text), at_(content.begin), end_(content.end) {}
-
-  [[nodiscard]] bool at_end() {
-    while (at_ < end_ && is_blank(text_[at_])) ++at_;
-    return at_ == end_;
-  }
-
-  // Capital letters from here on.
-  std::string letters() {
-    std::string read;
-    while (at_ < end_ && is_letter(text_[at_])) read.push_back(upper(text_[at_++]));
-    return read;
-  }
-
-  [[nodiscard]] std::uint32_t place() const { return at_; }
-  [[nodiscard]] char peek() const { return at_ < end_ ? text_[at_] : '\0'; }
-  void skip() { ++at_; }
+  using KlartextScanner::KlartextScanner;
 
   // Whether the value of a word begins behind the blanks here; goes there.
   bool finds_value() {
-    std::uint32_t next = at_;
-    while (next < end_ && is_blank(text_[next])) ++next;
-    const char c = next < end_ ? text_[next] : '\0';
+    KlartextScanner ahead = *this;
+    if (ahead.at_end()) return false;
+    const char c = ahead.peek();
     const bool value = is_digit(c) || c == '+' || c == '-' || c == '.' || c == ',';
-    if (value) at_ = next;
+    if (value) KlartextScanner::operator=(ahead);
     return value;
   }
 
   // +1,5 -2. Q5 -QL3; `word` begins before the value. False for anything else.
   bool read_value(Word& word) {
-    if (!finds_value()) return read_parameter(word);
-    std::string digits;
-    while (at_ < end_ && (is_digit(peek()) || peek() == '.' || peek() == ',' ||
-                          (digits.empty() && (peek() == '+' || peek() == '-')))) {
-      digits.push_back(peek() == ',' ? '.' : peek());
-      ++at_;
+    const auto read = finds_value() ? number() : std::nullopt;
+    if (!read) {
+      if (peek() == '+' || peek() == '-') skip();
+      return !at_end() && is_parameter(letters()) && read_parameter_number(word);
     }
-    if (digits.size() == 1 && !is_digit(digits[0])) return read_parameter(word);
-    const auto number = read_number(digits);
-    if (!number || std::abs(number->value) >= kNumberLimit) return false;
-    word.value = number->value;
-    word.decimals = static_cast<std::uint8_t>(std::min(number->decimals, kGreatestDecimals));
-    word.has_point = number->has_point;
-    word.span.end = at_;
+    word.value = read->value;
+    word.decimals = static_cast<std::uint8_t>(std::min(read->decimals, kGreatestDecimals));
+    word.has_point = read->has_point;
+    word.span.end = position();
     return true;
   }
 
   // The digits of a parameter whose letters were read.
   bool read_parameter_number(Word& word) {
-    const std::uint32_t begin = at_;
-    while (is_digit(peek())) ++at_;
+    const bool any = skip_digits() > 0;
     word.is_number = false;
-    word.span.end = at_;
-    return at_ > begin;
+    word.span.end = position();
+    return any;
   }
-
- private:
-  bool read_parameter(Word& word) {
-    while (is_blank(peek())) ++at_;
-    return is_parameter(letters()) && read_parameter_number(word);
-  }
-
-  std::string_view text_;
-  std::uint32_t at_;
-  std::uint32_t end_;
 };
 
 class MoveReading {
@@ -127,10 +89,10 @@ class MoveReading {
       : kind_(kind), reader_(text, content), words_(words) {}
 
   bool read() {
-    const std::uint32_t begin = reader_.place();
+    const std::uint32_t begin = reader_.position();
     if (kind_ != KlartextKind::kFunctions) {
       (void)reader_.letters();
-      motion_ = add('G', 1, {begin, reader_.place()});
+      motion_ = add('G', 1, {begin, reader_.position()});
     }
     while (!reader_.at_end()) {
       if (!read_word()) return false;
@@ -141,7 +103,7 @@ class MoveReading {
 
  private:
   bool read_word() {
-    const std::uint32_t begin = reader_.place();
+    const std::uint32_t begin = reader_.position();
     const std::string name = reader_.letters();
     if (name.empty()) return false;
     if (name == "M") return read_function(begin);
@@ -149,7 +111,7 @@ class MoveReading {
     if (name == "FMAX") return be_rapid(begin);
     if (name == "FAUTO") return add_parameter_feed(begin);
     if (name == "RL" || name == "RR") {
-      (void)add('G', name == "RL" ? 41 : 42, {begin, reader_.place()});
+      (void)add('G', name == "RL" ? 41 : 42, {begin, reader_.position()});
       return true;
     }
     if (name == "DR") return read_sense();
@@ -202,14 +164,14 @@ class MoveReading {
     if (kind_ != KlartextKind::kLine || std::exchange(rapid_, true)) return false;
     Word& word = words_[motion_];
     word.value = 0;
-    word.span = {begin, reader_.place()};
+    word.span = {begin, reader_.position()};
     return true;
   }
 
   bool add_parameter_feed(std::uint32_t begin) {
     Word word = word_from('F', begin);
     word.is_number = false;
-    word.span.end = reader_.place();
+    word.span.end = reader_.position();
     words_.push_back(word);
     return true;
   }
@@ -220,8 +182,8 @@ class MoveReading {
     reader_.skip();
     sense_ = sign == '+' ? 1 : -1;
     words_[motion_].value = sense_ > 0 ? 3 : 2;
-    words_[motion_].span.begin = reader_.place() - 3;  // DR+
-    words_[motion_].span.end = reader_.place();
+    words_[motion_].span.begin = reader_.position() - 3;  // DR+
+    words_[motion_].span.end = reader_.position();
     return true;
   }
 
@@ -235,10 +197,10 @@ class MoveReading {
       return true;
     }
     if (reader_.at_end() || is_letter(reader_.peek())) return true;  // a bare R
-    if (reader_.peek() != '0' || begin + 1 != reader_.place()) return false;
+    if (reader_.peek() != '0' || begin + 1 != reader_.position()) return false;
     Word zero;
     if (!reader_.read_value(zero) || zero.value != 0) return false;
-    (void)add('G', 40, {begin, reader_.place()});
+    (void)add('G', 40, {begin, reader_.position()});
     return true;
   }
 
@@ -295,7 +257,7 @@ bool read_centre_words(std::string_view text, SourceSpan content, std::vector<Wo
   (void)reader.letters();  // CC
   while (!reader.at_end()) {
     Word word;
-    word.span.begin = reader.place();
+    word.span.begin = reader.position();
     const std::string name = reader.letters();
     if (name != "X" && name != "Y") return false;
     word.letter = name == "X" ? 'I' : 'J';

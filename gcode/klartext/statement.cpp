@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
-#include <optional>
-#include <string>
 #include <utility>
-
-#include "gcode/text/characters.h"
 
 namespace batten::gcode {
 namespace {
@@ -170,6 +167,42 @@ std::string_view KlartextTokens::next() {
 std::string_view KlartextTokens::peek() const {
   KlartextTokens ahead = *this;
   return ahead.next();
+}
+
+bool is_coefficient_line(std::string_view content) {
+  return upper(char_at(content, 0)) == 'K' && char_at(content, 1) >= '1' &&
+         char_at(content, 1) <= '3' && is_letter(char_at(content, 2));
+}
+
+bool KlartextScanner::at_end() {
+  at_ = static_cast<std::uint32_t>(after_blanks(text_, at_));
+  return at_ >= text_.size();
+}
+
+std::string KlartextScanner::letters() {
+  std::string read;
+  for (; is_letter(peek()); ++at_) read.push_back(upper(peek()));
+  return read;
+}
+
+std::uint32_t KlartextScanner::skip_digits() {
+  const std::uint32_t begin = at_;
+  while (is_digit(peek())) ++at_;
+  return at_ - begin;
+}
+
+std::optional<ReadNumber> KlartextScanner::number() {
+  std::string digits;
+  std::uint32_t end = at_;
+  for (char c = peek();
+       is_digit(c) || c == '.' || c == ',' || (digits.empty() && (c == '+' || c == '-'));
+       c = char_at(text_, ++end)) {
+    digits.push_back(c == ',' ? '.' : c);
+  }
+  const auto number = read_number(digits);
+  if (!number || std::abs(number->value) >= kNumberLimit) return std::nullopt;
+  at_ = end;
+  return number;
 }
 
 }  // namespace batten::gcode

@@ -3,8 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <string_view>
 
+#include "gcode/text/characters.h"
+#include "gcode/text/number_format.h"
 #include "gcode/text/source_text.h"
 
 namespace batten::gcode {
@@ -53,6 +57,9 @@ enum class KlartextKind : std::uint8_t {
 // Of KlartextParts::content; either case.
 [[nodiscard]] KlartextKind klartext_kind(std::string_view content);
 
+// K3X-4.7 ..: a line that goes on with a spline, with or without ~ before it.
+[[nodiscard]] bool is_coefficient_line(std::string_view content);
+
 // Reads the words of a statement one after the other: letters, or anything else between blanks.
 class KlartextTokens {
  public:
@@ -66,6 +73,30 @@ class KlartextTokens {
 
  private:
   std::string_view rest_;
+};
+
+// Reads a statement by letters and numbers, whatever the blanks between its words.
+class KlartextScanner {
+ public:
+  KlartextScanner(std::string_view text, SourceSpan content)
+      : text_(text.substr(0, content.end)), at_(content.begin) {}
+
+  // Goes behind blanks.
+  [[nodiscard]] bool at_end();
+  [[nodiscard]] std::uint32_t position() const { return at_; }
+  [[nodiscard]] char peek() const { return char_at(text_, at_); }
+  void skip() { ++at_; }
+
+  // Capital letters from here on.
+  std::string letters();
+  // The digits from here on: how many.
+  std::uint32_t skip_digits();
+  // +1,5 -2. and so on, below kNumberLimit. Stays where nothing is read.
+  std::optional<ReadNumber> number();
+
+ private:
+  std::string_view text_;
+  std::uint32_t at_;
 };
 
 }  // namespace batten::gcode

@@ -13,10 +13,6 @@
 #include "gcode/curves/siemens_curves.h"
 #include "gcode/reading/parser.h"
 #include "geometry/path/path.h"
-#include "tests/support/klartext_arc_alarms.h"
-#include "tests/support/nurbs_alarms.h"
-#include "tests/support/poly_alarms.h"
-#include "tests/support/spl_alarms.h"
 
 namespace batten::gcode::promises {
 
@@ -37,18 +33,6 @@ inline std::string broken_reading(const CurveResult& result, std::uint32_t first
     for (const double t : {0.0, 0.37, 1.0}) {
       if (!geometry::point_at(motion.piece, t).allFinite()) return "a piece to no place";
     }
-  }
-  return "";
-}
-
-inline std::string broken_alarms(const CurveAlarms& alarms, const Program& program) {
-  std::uint32_t line = 0;
-  for (const CurveAlarm& alarm : alarms) {
-    if (alarm.line < std::max(1U, line) || alarm.line > program.blocks.size()) {
-      return "an alarm of a line that is not there, or out of order";
-    }
-    if (alarm.id.empty()) return "an alarm without a name";
-    line = alarm.line;
   }
   return "";
 }
@@ -75,14 +59,6 @@ inline std::string broken_curves(std::string_view text, Language language) {
   for (std::uint32_t first = 0; first < blocks; ++first) {
     start.units = first % 5 == 4 ? Units::kInch : Units::kMillimetre;
     std::string broken = broken_readers_at(program, first, start);
-    if (!broken.empty()) return broken;
-  }
-  for (const CurveAlarms& alarms : {nurbs_alarms(program, fanuc_nurbs(Units::kMillimetre)),
-                                    nurbs_alarms(program, syntec_nurbs(Units::kInch)),
-                                    nurbs_alarms(program, mitsubishi_nurbs(Units::kInch)),
-                                    poly_alarms(program), spl_alarms(program, Units::kMillimetre),
-                                    klartext_arc_alarms(program, Units::kMillimetre)}) {
-    std::string broken = broken_alarms(alarms, program);
     if (!broken.empty()) return broken;
   }
   return "";

@@ -11,12 +11,9 @@
 #include "gcode/controls/built_in.h"
 #include "gcode/writer/block_numbers.h"
 #include "postproc/proof/verification.h"
-#include "tests/support/klartext_arc_alarms.h"
 #include "tests/support/klartext_programs.h"
 #include "tests/support/places.h"
 #include "tests/support/random_curves.h"
-#include "tests/support/scratch_folder.h"
-#include "tests/support/spl_alarms.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
@@ -66,9 +63,6 @@ void expect_promises(const std::string& before, const SmoothOptions& options,
   EXPECT_LE(result.deviation_mm, options.tolerance_mm);
   EXPECT_TRUE(proof_of(before, result.text, options).proved());
   expect_rising(result.text);
-  const KlartextProgram after(result.text);
-  EXPECT_TRUE(gcode::spl_alarms(after.program, gcode::Units::kMillimetre).empty());
-  EXPECT_TRUE(gcode::klartext_arc_alarms(after.program, gcode::Units::kMillimetre).empty());
   EXPECT_EQ(smoothed(result.text, options).text, result.text);
 }
 
@@ -139,9 +133,6 @@ TEST(Klartext, WrittenCasesAreProved) {
     const std::string after = case_text(name);
     EXPECT_TRUE(proof_of(before, after, klartext_options("itnc530")).proved()) << name;
     expect_rising(after);
-    const KlartextProgram read(after);
-    EXPECT_TRUE(gcode::spl_alarms(read.program, gcode::Units::kMillimetre).empty());
-    EXPECT_TRUE(gcode::klartext_arc_alarms(read.program, gcode::Units::kMillimetre).empty());
   }
 }
 
