@@ -25,20 +25,15 @@ class KlartextFlow {
   }
 
  private:
-  struct Label {
-    std::string name;
-    std::size_t block = 0;
-  };
-
   void read_statement(std::size_t i) {
     const std::string_view text = program_.source.text();
     const std::string_view content =
         program_.source.text(klartext_parts(text, program_.blocks[i].span).content);
     switch (klartext_kind(content)) {
       case KlartextKind::kLabel:
-        return add_label(name_behind(content, 1), i);
+        return add_label(word_of(content, 1), i);
       case KlartextKind::kCallLabel:
-        return add_reference(name_behind(content, 2), i);
+        return add_reference(word_of(content, 2), i);
       case KlartextKind::kJump:
         return add_jumps(content, i);
       default:
@@ -50,7 +45,7 @@ class KlartextFlow {
     if (name == "0") {
       ends_.push_back(i);
     } else {
-      labels_.push_back({std::move(name), i});
+      labels_.emplace_back(i, std::move(name));
     }
   }
 
@@ -69,30 +64,28 @@ class KlartextFlow {
     last = std::max(last, i);
   }
 
-  static std::string name_behind(std::string_view content, int words) {
+  static std::string word_of(std::string_view content, int number) {
     KlartextTokens tokens(content);
-    for (int k = 0; k < words; ++k) (void)tokens.next();
+    for (int k = 0; k < number; ++k) (void)tokens.next();
     return as_name(tokens.next());
   }
 
   // Names may be quoted; 01 is 1.
   static std::string as_name(std::string_view token) {
-    std::string name;
-    for (const char c : token) {
-      if (c != '"') name.push_back(upper(c));
-    }
-    const std::size_t digit = name.find_first_not_of('0');
-    const bool number = !name.empty() && std::ranges::all_of(name, is_digit);
-    if (!number) return name;
-    return digit == std::string::npos ? "0" : name.substr(digit);
+    std::string name = in_capitals(token);
+    std::erase(name, '"');
+    if (!std::ranges::all_of(name, is_digit)) return name;
+    while (name.size() > 1 && name[0] == '0') name.erase(0, 1);
+    return name;
   }
 
   void mark_bodies() {
     std::size_t reach = 0;  // behind the last block of the bodies that have begun
     auto label = labels_.begin();
     for (std::size_t i = 0; i < flow_.size(); ++i) {
-      if (label != labels_.end() && label->block == i) {
-        reach = std::max(reach, body_end(*label++));
+      if (label != labels_.end() && label->first == i) {
+        reach = std::max(reach, body_end(label->first, label->second));
+        ++label;
         flow_[i].jump_target = reach > i;
       }
       flow_[i].in_body = i < reach;
@@ -100,18 +93,18 @@ class KlartextFlow {
   }
 
   // Behind the last block of its body; 0 for a label that nothing names.
-  [[nodiscard]] std::size_t body_end(const Label& label) const {
-    const auto named = references_.find(label.name);
+  [[nodiscard]] std::size_t body_end(std::size_t label, const std::string& name) const {
+    const auto named = references_.find(name);
     if (named == references_.end() && any_reference_ == 0) return 0;
-    std::size_t end = std::max(label.block + 1, any_reference_);
+    std::size_t end = std::max(label + 1, any_reference_);
     if (named != references_.end()) end = std::max(end, named->second + 1);
-    const auto closed = std::ranges::lower_bound(ends_, label.block);
+    const auto closed = std::ranges::lower_bound(ends_, label);
     return closed == ends_.end() ? end : std::max(end, *closed + 1);
   }
 
   const Program& program_;
   std::vector<BlockFlow> flow_;
-  std::vector<Label> labels_;
+  std::vector<std::pair<std::size_t, std::string>> labels_;  // with their blocks
   std::vector<std::size_t> ends_;                            // LBL 0
   std::unordered_map<std::string, std::size_t> references_;  // the last block that names it
   std::size_t any_reference_ = 0;  // behind the last block that names a computed label

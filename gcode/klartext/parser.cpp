@@ -36,9 +36,9 @@ bool is_plain_function(double code) {
 
 constexpr int kGreatestDecimals = 255;
 
-constexpr std::string_view kKlartextAxes = "XYZABCUVW";
-
-bool is_axis(char letter) { return kKlartextAxes.find(letter) != std::string_view::npos; }
+bool is_axis(char letter) {
+  return std::string_view("XYZABCUVW").find(letter) != std::string_view::npos;
+}
 
 bool is_parameter(std::string_view letters) {
   return letters == "Q" || letters == "QL" || letters == "QR" || letters == "QS";
@@ -82,6 +82,11 @@ class MoveWordReader : public KlartextScanner {
   }
 };
 
+// Adds the words of RS-274 that say the same: G0 where FMAX is, otherwise G1, G2 or G3, then axes,
+// G40 to G42, F and M. Q parameters and F AUTO are words without a number. A bare R, F or M, as old
+// controls print them, says nothing. False where anything else is there (incremental words, feeds
+// per tooth, M functions that change how motions are read ..), or where an arc has no DR, no end in
+// X and Y, or a Z, or where a CR has no radius.
 class MoveReading {
  public:
   MoveReading(KlartextKind kind, std::string_view text, SourceSpan content,
@@ -120,15 +125,10 @@ class MoveReading {
     const char letter = name[0];
     if (!is_axis(letter) && letter != 'F') return false;
     Word word = word_from(letter, begin);
-    if (name.size() > 1) {
-      if (!is_parameter(std::string_view(name).substr(1)) || !reader_.read_parameter_number(word)) {
-        return false;
-      }
-    } else if (!reader_.read_value(word)) {
-      return false;
-    }
-    words_.push_back(word);
-    return true;
+    const bool read = name.size() == 1 ? reader_.read_value(word)
+                                       : is_parameter(std::string_view(name).substr(1)) &&
+                                             reader_.read_parameter_number(word);
+    return add_if(read, word);
   }
 
   bool read_function(std::uint32_t begin) {
@@ -142,9 +142,7 @@ class MoveReading {
   bool read_feed(std::uint32_t begin) {
     Word word = word_from('F', begin);
     if (reader_.finds_value()) {
-      if (!reader_.read_value(word)) return false;
-      words_.push_back(word);
-      return true;
+      return add_if(reader_.read_value(word), word);
     }
     if (reader_.at_end()) return true;
     MoveWordReader ahead = reader_;
@@ -154,9 +152,12 @@ class MoveReading {
     reader_ = ahead;
     if (next == "MAX") return be_rapid(begin);
     if (next == "AUTO") return add_parameter_feed(begin);
-    if (!reader_.read_parameter_number(word)) return false;
-    words_.push_back(word);
-    return true;
+    return add_if(reader_.read_parameter_number(word), word);
+  }
+
+  bool add_if(bool read, const Word& word) {
+    if (read) words_.push_back(word);
+    return read;
   }
 
   // The word that says it is part of the text that is compared.
@@ -192,9 +193,7 @@ class MoveReading {
     const bool signed_value = reader_.peek() == '+' || reader_.peek() == '-';
     if (kind_ == KlartextKind::kRadiusArc && (signed_value || reader_.peek() != '0')) {
       Word word = word_from('R', begin);
-      if (!reader_.read_value(word)) return false;
-      words_.push_back(word);
-      return true;
+      return add_if(reader_.read_value(word), word);
     }
     if (reader_.at_end() || is_letter(reader_.peek())) return true;  // a bare R
     if (reader_.peek() != '0' || begin + 1 != reader_.position()) return false;
@@ -240,16 +239,6 @@ class MoveReading {
   bool rapid_ = false;
   int sense_ = 0;
 };
-
-// Adds the words of RS-274 that say the same: G0 where FMAX stands, otherwise G1, G2 or G3, then
-// axes, G40 to G42, F and M. Q parameters and F AUTO are words without a number. A bare R, F or M,
-// as old controls print them, says nothing. False where anything else stands there (incremental
-// words, feeds per tooth, M functions that change how motions are read ..), or where an arc has no
-// DR, no end in X and Y, or a Z, or where a CR has no radius.
-bool read_move_words(KlartextKind kind, std::string_view text, SourceSpan content,
-                     std::vector<Word>& words) {
-  return MoveReading(kind, text, content, words).read();
-}
 
 // Adds I and J for `CC X+10 Y+0`. False where the centre is not two plain numbers.
 bool read_centre_words(std::string_view text, SourceSpan content, std::vector<Word>& words) {
@@ -326,16 +315,10 @@ class KlartextParser {
     if (inner.begin == 0 && text_.starts_with(kByteOrderMark)) {
       inner.begin = std::min(inner.end, static_cast<std::uint32_t>(kByteOrderMark.size()));
     }
-    bool filled = false;
-    while (inner.begin < inner.end && is_filler(text_[inner.end - 1])) {
-      --inner.end;
-      filled = true;
-    }
-    while (inner.begin < inner.end && is_filler(text_[inner.begin])) {
-      ++inner.begin;
-      filled = true;
-    }
-    if (filled && inner.begin == inner.end) block.opacity = ParseStatus::kProgramMark;
+    const bool filled = inner.size() > 0;
+    while (inner.size() > 0 && is_filler(text_[inner.end - 1])) --inner.end;
+    while (inner.size() > 0 && is_filler(text_[inner.begin])) ++inner.begin;
+    if (filled && inner.size() == 0) block.opacity = ParseStatus::kProgramMark;
     return inner;
   }
 
@@ -347,13 +330,12 @@ class KlartextParser {
       program_.comments.push_back({CommentKind::kSemicolon, parts.comment});
     }
     const std::string_view content = program_.source.text(parts.content);
-    const bool of_spline = after_spline_ && is_coefficient_line(content);
-    if (continued_ || of_spline) {
+    const bool goes_on = continued_ || (after_spline_ && is_coefficient_line(content));
+    continued_ = parts.continues;
+    if (goes_on) {
       block.opacity = ParseStatus::kContinued;
-      continued_ = parts.continues;
       return;
     }
-    continued_ = parts.continues;
     const KlartextKind kind = klartext_kind(content);
     after_spline_ = kind == KlartextKind::kSpline;
     if (kind != KlartextKind::kNothing) read_statement(kind, parts, block);
@@ -420,7 +402,7 @@ class KlartextParser {
   void read_move(KlartextKind kind, const KlartextParts& parts, Block& block) {
     const std::size_t first = program_.words.size();
     const bool plain =
-        !parts.continues && read_move_words(kind, text_, parts.content, program_.words);
+        !parts.continues && MoveReading(kind, text_, parts.content, program_.words).read();
     if (!plain) {
       program_.words.resize(first);
       block.opacity = ParseStatus::kForeign;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
-#include <string_view>
 
 #include "gcode/klartext/statement.h"
 #include "gcode/state/reason.h"
@@ -28,75 +27,45 @@ std::optional<double> number_in(std::string_view token, std::size_t prefix) {
   return number->value;
 }
 
-// What the words of a copied statement set beside its path.
-class StatementWords {
- public:
-  explicit StatementWords(ControlState& state) : state_(state) {}
-
-  void apply(std::string_view content) {
-    KlartextTokens tokens(content);
-    for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
-      const std::string_view next = tokens.peek();
-      apply_compensation(token);
-      if (upper(token[0]) == 'F') apply_feed(token, next);
-      if (upper(token[0]) == 'M' && token.size() > 1 && is_digit(token[1])) {
-        if (const auto code = number_in(token, 1)) apply_function(*code);
-      }
-    }
+// FMAX counts in its block only; a plain number is modal; others are not followed.
+void apply_feed(std::string_view token, std::string_view next, ModalState& modal) {
+  if (is_same_word(token, "FMAX") || (token.size() == 1 && is_same_word(next, "MAX"))) return;
+  const auto number = token.size() == 1 ? number_in(next, 0) : number_in(token, 1);
+  modal.feed.reset();
+  const bool plain = number && *number > 0 && modal.feed_mode == FeedMode::kPerMinute;
+  if (plain && modal.units != Units::kUnknown) {
+    modal.feed = *number * millimetres_per(modal.units);
   }
+}
 
- private:
-  ModalState& modal() { return state_.modal; }
+void apply_function(double code, ControlState& state) {
+  ModalState& modal = state.modal;
+  if (code == 128 || code == 114 || code == 144) modal.tool_center_point = TriState::kOn;
+  if (code == 129 || code == 115 || code == 145) modal.tool_center_point = TriState::kOff;
+  if (code == 136 || code == 137) {
+    modal.feed_mode = code == 136 ? FeedMode::kPerRevolution : FeedMode::kPerMinute;
+    modal.feed.reset();
+  }
+  if (code == 112 || code == 124) modal.control_smoothing = TriState::kOn;
+  if (code == 113) modal.control_smoothing = TriState::kOff;
+  if (code == 89) modal.modal_macro = TriState::kOn;  // a cycle at each place from now on
+  if (code == 99) modal.modal_macro = TriState::kOff;
+  if (code == 2 || code == 30) forget_klartext(state);
+}
 
-  void apply_compensation(std::string_view token) {
-    if (is_same_word(token, "R0")) modal().cutter_compensation = TriState::kOff;
+// What the words of a copied statement set beside its path.
+void apply_words(std::string_view content, ControlState& state) {
+  KlartextTokens tokens(content);
+  for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
+    if (is_same_word(token, "R0")) state.modal.cutter_compensation = TriState::kOff;
     const bool on =
         is_same_word(token, "RL") || is_same_word(token, "RR") || token == "R+" || token == "R-";
-    if (on) modal().cutter_compensation = TriState::kOn;
-  }
-
-  // FMAX counts in its block only; a plain number is modal; others are not followed.
-  void apply_feed(std::string_view token, std::string_view next) {
-    if (is_same_word(token, "FMAX") || (token.size() == 1 && is_same_word(next, "MAX"))) return;
-    const auto number = token.size() == 1 ? number_in(next, 0) : number_in(token, 1);
-    modal().feed.reset();
-    const bool plain = number && *number > 0 && modal().feed_mode == FeedMode::kPerMinute;
-    if (plain && modal().units != Units::kUnknown) {
-      modal().feed = *number * (modal().units == Units::kInch ? kMillimetresPerInch : 1);
+    if (on) state.modal.cutter_compensation = TriState::kOn;
+    if (upper(token[0]) == 'F') apply_feed(token, tokens.peek(), state.modal);
+    if (upper(token[0]) == 'M' && token.size() > 1 && is_digit(token[1])) {
+      if (const auto code = number_in(token, 1)) apply_function(*code, state);
     }
   }
-
-  void apply_function(double code) {
-    if (code == 128 || code == 114 || code == 144) modal().tool_center_point = TriState::kOn;
-    if (code == 129 || code == 115 || code == 145) modal().tool_center_point = TriState::kOff;
-    if (code == 136 || code == 137) {
-      modal().feed_mode = code == 136 ? FeedMode::kPerRevolution : FeedMode::kPerMinute;
-      modal().feed.reset();
-    }
-    if (code == 112 || code == 124) modal().control_smoothing = TriState::kOn;
-    if (code == 113) modal().control_smoothing = TriState::kOff;
-    if (code == 89) modal().modal_macro = TriState::kOn;  // a cycle at each place from now on
-    if (code == 99) modal().modal_macro = TriState::kOff;
-    if (code == 2 || code == 30) forget_klartext(state_);
-  }
-
-  ControlState& state_;
-};
-
-// 19.1 of `CYCL DEF 19.1 A+0`: 19 and 1.
-struct CycleNumber {
-  int major = -1;
-  int minor = -1;
-};
-
-CycleNumber cycle_number(std::string_view token) {
-  CycleNumber number;
-  const char* end = token.data() + token.size();
-  const auto major = std::from_chars(token.data(), end, number.major);
-  if (major.ec == std::errc{} && major.ptr != end && *major.ptr == '.') {
-    std::from_chars(major.ptr + 1, end, number.minor);
-  }
-  return number;
 }
 
 class CycleEffect {
@@ -106,9 +75,9 @@ class CycleEffect {
   std::string_view apply() {
     (void)tokens_.next();  // CYCL
     (void)tokens_.next();  // DEF
-    number_ = cycle_number(tokens_.next());
+    read_number(tokens_.next());
     value_ = tokens_.next();
-    switch (number_.major) {
+    switch (major_) {
       case 7:    // datum shift
       case 247:  // preset
         forget_position(state_);
@@ -138,11 +107,20 @@ class CycleEffect {
   }
 
  private:
+  // 19.1: 19 and 1.
+  void read_number(std::string_view token) {
+    const char* end = token.data() + token.size();
+    const auto major = std::from_chars(token.data(), end, major_);
+    if (major.ec == std::errc{} && major.ptr != end && *major.ptr == '.') {
+      std::from_chars(major.ptr + 1, end, minor_);
+    }
+  }
+
   // The first line (8.0, 10.0) only says the name; the values follow in the next.
   std::string_view set_frame(TriState& item, TriState value, std::string_view why) {
     forget_position(state_);
-    if (number_.minor == 1) item = value;
-    if (number_.minor > 1 || number_.minor < 0) item = TriState::kUnknown;
+    if (minor_ == 1) item = value;
+    if (minor_ > 1 || minor_ < 0) item = TriState::kUnknown;
     return why;
   }
 
@@ -164,52 +142,45 @@ class CycleEffect {
   // Cycles that wait for their call change nothing until then. Patterns run at once, probing sets
   // coordinates, others are not known.
   std::string_view apply_other() {
-    const int n = number_.major;
+    const int n = major_;
     const bool waits = (n >= 1 && n <= 6) || n == 17 || n == 18 || (n >= 200 && n <= 215) ||
                        (n >= 225 && n <= 241) || (n >= 251 && n <= 277);
-    if (waits) return reason::kCannedCycle;
     if (n == 220 || n == 221) {
       forget_position(state_);
       state_.modal.feed.reset();
-      return reason::kCannedCycle;
+    } else if (!waits) {
+      forget_klartext(state_);
     }
-    forget_klartext(state_);
     return reason::kCannedCycle;
   }
 
   KlartextTokens tokens_;
   ControlState& state_;
-  CycleNumber number_;
+  int major_ = -1;
+  int minor_ = -1;
   std::string_view value_;
 };
 
-// The tool axis, S and F, and nothing else: the tool stays, and so does its length.
-bool keeps_tool(std::string_view content) {
+// TOOL CALL 5 Z S5000: the tool axis is across the plane of arcs. TOOL CALL S3000 keeps it. With
+// the axis Z, S and F and nothing else the tool stays, and so does its length.
+void apply_tool_call(std::string_view content, ControlState& state) {
+  state.modal.spindle_speed.reset();
+  state.modal.feed.reset();
+  bool keeps_tool = true;
   KlartextTokens tokens(content);
   (void)tokens.next();  // TOOL
   (void)tokens.next();  // CALL
   for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
-    const bool axis = is_same_word(token, "Z");
-    const bool value = (upper(token[0]) == 'S' || upper(token[0]) == 'F') && number_in(token, 1);
-    if (!axis && !value) return false;
+    const char letter = upper(token[0]);
+    const bool axis = token.size() == 1;
+    if (axis && letter == 'Z') state.modal.plane = Plane::kXY;
+    if (axis && letter == 'Y') state.modal.plane = Plane::kZX;
+    if (axis && letter == 'X') state.modal.plane = Plane::kYZ;
+    if (axis && letter >= 'U' && letter <= 'W') state.modal.plane = Plane::kUnknown;
+    const bool value = (letter == 'S' || letter == 'F') && number_in(token, 1);
+    keeps_tool = keeps_tool && (value || (axis && letter == 'Z'));
   }
-  return true;
-}
-
-// TOOL CALL 5 Z S5000: the tool axis is across the plane of arcs. TOOL CALL S3000 keeps it.
-void apply_tool_call(std::string_view content, ControlState& state) {
-  if (!keeps_tool(content)) forget_position(state);
-  state.modal.spindle_speed.reset();
-  state.modal.feed.reset();
-  KlartextTokens tokens(content);
-  for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
-    if (is_same_word(token, "Z")) state.modal.plane = Plane::kXY;
-    if (is_same_word(token, "Y")) state.modal.plane = Plane::kZX;
-    if (is_same_word(token, "X")) state.modal.plane = Plane::kYZ;
-    if (is_same_word(token, "U") || is_same_word(token, "V") || is_same_word(token, "W")) {
-      state.modal.plane = Plane::kUnknown;
-    }
-  }
+  if (!keeps_tool) forget_position(state);
 }
 
 // BEGIN PGM name MM
@@ -261,7 +232,7 @@ std::string_view apply_path(KlartextKind kind, std::string_view content, std::st
   LineCursor lines(statement);
   while (const auto line = lines.next()) {
     const SourceSpan span = klartext_parts(statement, {line->begin, line->text_end}).content;
-    StatementWords(state).apply(statement.substr(span.begin, span.size()));
+    apply_words(statement.substr(span.begin, span.size()), state);
   }
   return kind == KlartextKind::kSpline ? reason::kSpline : reason::kForeignWords;
 }
@@ -286,8 +257,7 @@ std::string_view klartext_statement_text(const Program& program, std::uint32_t f
          program.blocks[last + 1].opacity == ParseStatus::kContinued) {
     ++last;
   }
-  const SourceSpan whole{program.blocks[first].span.begin, program.blocks[last].span.end};
-  return program.source.text(whole);
+  return program.source.text({program.blocks[first].span.begin, program.blocks[last].span.end});
 }
 
 std::string_view apply_klartext(std::string_view statement, ControlState& state) {
@@ -319,7 +289,7 @@ std::string_view apply_klartext(std::string_view statement, ControlState& state)
     case KlartextKind::kCycleCall:
       forget_position(state);
       state.modal.feed.reset();
-      StatementWords(state).apply(content);
+      apply_words(content, state);
       return reason::kCannedCycle;
     case KlartextKind::kProbe:
       forget_klartext(state);
@@ -340,7 +310,7 @@ std::string_view apply_klartext(std::string_view statement, ControlState& state)
       return reason::kArc;
     case KlartextKind::kFunctions:
       forget_position(state);
-      StatementWords(state).apply(content);
+      apply_words(content, state);
       return reason::kMiscFunction;
     default:
       return apply_path(kind, content, statement, state);

@@ -1,7 +1,6 @@
 #include "gcode/klartext/statement.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -12,64 +11,47 @@ namespace {
 
 // Where the comment starts: a ; outside of quoted names.
 std::size_t comment_in_line(std::string_view line) {
-  char quote = '\0';
+  bool quoted = false;
   for (std::size_t at = 0; at < line.size(); ++at) {
-    const char c = line[at];
-    if (quote != '\0') {
-      quote = c == quote ? '\0' : quote;
-    } else if (c == '"') {
-      quote = c;
-    } else if (c == ';') {
-      return at;
-    }
+    if (line[at] == ';' && !quoted) return at;
+    quoted ^= line[at] == '"';
   }
   return line.size();
 }
 
-struct Keywords {
-  KlartextKind kind;
-  std::string_view words;  // with a blank on each side
+// Of statements that one word tells, or two.
+constexpr std::pair<KlartextKind, std::string_view> kKeywords[] = {
+    {KlartextKind::kLine, "|L|"},
+    {KlartextKind::kCentre, "|CC|"},
+    {KlartextKind::kArc, "|C|"},
+    {KlartextKind::kFunctions, "|M|"},
+    {KlartextKind::kSpline, "|SPL|"},
+    {KlartextKind::kTangential, "|RND|CHF|CT|CTP|DEP|FL|FLT|FC|FCT|FPOL|FSELECT|"},
+    {KlartextKind::kPolar, "|LP|CP|"},
+    {KlartextKind::kRadiusArc, "|CR|"},
+    {KlartextKind::kOtherPath, "|LN|APPR|X|Y|Z|IX|IY|IZ|"},
+    {KlartextKind::kPlane, "|PLANE|"},
+    {KlartextKind::kStop, "|STOP|"},
+    {KlartextKind::kLabel, "|LBL|"},
+    {KlartextKind::kDefinition, "|SEL|TOOL DEF|BLK FORM|PATTERN DEF|"},
+    {KlartextKind::kAssignment, "|Q|QL|QR|QS|"},
+    {KlartextKind::kBegin, "|BEGIN PGM|"},
+    {KlartextKind::kEnd, "|END PGM|"},
+    {KlartextKind::kToolCall, "|TOOL CALL|"},
+    {KlartextKind::kCycleDef, "|CYCL DEF|"},
+    {KlartextKind::kCycleCall, "|CYCL CALL|"},
+    {KlartextKind::kCallLabel, "|CALL LBL|"},
+    {KlartextKind::kCallProgram, "|CALL PGM|"},
+    {KlartextKind::kProbe, "|TCH PROBE|"},
+    {KlartextKind::kFunctionTcpm, "|FUNCTION TCPM|FUNCTION RESET|"},
 };
 
-// Of statements that one word tells.
-constexpr std::array kKeywords = {
-    Keywords{KlartextKind::kLine, " L "},
-    Keywords{KlartextKind::kCentre, " CC "},
-    Keywords{KlartextKind::kArc, " C "},
-    Keywords{KlartextKind::kFunctions, " M "},
-    Keywords{KlartextKind::kSpline, " SPL "},
-    Keywords{KlartextKind::kTangential, " RND CHF CT CTP DEP FL FLT FC FCT FPOL FSELECT "},
-    Keywords{KlartextKind::kPolar, " LP CP "},
-    Keywords{KlartextKind::kRadiusArc, " CR "},
-    Keywords{KlartextKind::kOtherPath, " LN APPR X Y Z IX IY IZ "},
-    Keywords{KlartextKind::kPlane, " PLANE "},
-    Keywords{KlartextKind::kStop, " STOP "},
-    Keywords{KlartextKind::kLabel, " LBL "},
-    Keywords{KlartextKind::kDefinition, " SEL "},
-    Keywords{KlartextKind::kAssignment, " Q QL QR QS "},
-};
-
-struct KeywordPair {
-  std::string_view first;
-  std::string_view second;
-  KlartextKind kind;
-};
-
-constexpr std::array kPairs = {
-    KeywordPair{"BEGIN", "PGM", KlartextKind::kBegin},
-    KeywordPair{"END", "PGM", KlartextKind::kEnd},
-    KeywordPair{"TOOL", "CALL", KlartextKind::kToolCall},
-    KeywordPair{"TOOL", "DEF", KlartextKind::kDefinition},
-    KeywordPair{"BLK", "FORM", KlartextKind::kDefinition},
-    KeywordPair{"PATTERN", "DEF", KlartextKind::kDefinition},
-    KeywordPair{"CYCL", "DEF", KlartextKind::kCycleDef},
-    KeywordPair{"CYCL", "CALL", KlartextKind::kCycleCall},
-    KeywordPair{"CALL", "LBL", KlartextKind::kCallLabel},
-    KeywordPair{"CALL", "PGM", KlartextKind::kCallProgram},
-    KeywordPair{"TCH", "PROBE", KlartextKind::kProbe},
-    KeywordPair{"FUNCTION", "TCPM", KlartextKind::kFunctionTcpm},
-    KeywordPair{"FUNCTION", "RESET", KlartextKind::kFunctionTcpm},
-};
+KlartextKind kind_of(const std::string& words) {
+  const auto* row = std::ranges::find_if(kKeywords, [&](const auto& each) {
+    return each.second.find(words) != std::string_view::npos;
+  });
+  return row == std::end(kKeywords) ? KlartextKind::kUnknown : row->first;
+}
 
 std::string_view leading_letters(std::string_view text) {
   const auto end = std::find_if_not(text.begin(), text.end(), is_letter);
@@ -111,29 +93,28 @@ KlartextParts klartext_parts(std::string_view text, SourceSpan line) {
   skip_blanks();
   skip_slash();
 
-  while (end > at && is_blank(text[end - 1])) --end;
+  // Blanks at the end, and one ~ with those before it.
+  const auto trim = [&](std::uint32_t& stop) {
+    while (stop > at && is_blank(text[stop - 1])) --stop;
+  };
+  const auto cut_end = [&](std::uint32_t& stop) {
+    trim(stop);
+    if (stop == at || text[stop - 1] != '~') return;
+    parts.continues = true;
+    --stop;
+    trim(stop);
+  };
+  trim(end);
   const std::uint32_t comment =
       at < end && text[at] == '*'
           ? at
           : at + static_cast<std::uint32_t>(comment_in_line(text.substr(at, end - at)));
   // The ~ of a line with a comment stands behind the comment or before it. A comment alone goes on
   // nowhere.
-  if (comment > at && end > at && text[end - 1] == '~') {
-    parts.continues = true;
-    --end;
-    while (end > at && is_blank(text[end - 1])) --end;
-  }
+  if (comment > at) cut_end(end);
   std::uint32_t content_end = std::min(comment, end);
   parts.comment = {content_end, std::max(end, content_end)};
-  const auto trim = [&] {
-    while (content_end > at && is_blank(text[content_end - 1])) --content_end;
-  };
-  trim();
-  if (content_end > at && text[content_end - 1] == '~') {
-    parts.continues = true;
-    --content_end;
-    trim();
-  }
+  cut_end(content_end);
   parts.content = {at, content_end};
   return parts;
 }
@@ -142,17 +123,11 @@ KlartextKind klartext_kind(std::string_view content) {
   if (content.empty()) return KlartextKind::kNothing;
   const std::string_view first = leading_letters(content);
   if (is_same_word(first, "FN")) return kind_of_function(content);
-  const std::string word_alone = " " + in_capitals(first) + " ";
-  for (const Keywords& each : kKeywords) {
-    if (each.words.find(word_alone) != std::string_view::npos) return each.kind;
-  }
+  const KlartextKind alone = kind_of("|" + in_capitals(first) + "|");
+  if (alone != KlartextKind::kUnknown) return alone;
   KlartextTokens tokens(content);
-  const std::string_view word = tokens.next();
-  const std::string_view second = leading_letters(tokens.next());
-  for (const KeywordPair& pair : kPairs) {
-    if (is_same_word(word, pair.first) && is_same_word(second, pair.second)) return pair.kind;
-  }
-  return KlartextKind::kUnknown;
+  const std::string word = in_capitals(tokens.next());
+  return kind_of("|" + word + " " + in_capitals(leading_letters(tokens.next())) + "|");
 }
 
 std::string_view KlartextTokens::next() {
