@@ -4,9 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
 
-#include "gcode/siemens/lexer.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/number_format.h"
 
@@ -17,18 +15,16 @@ namespace {
 constexpr std::array kCommonG = {0,  1,  2,  3,  4,  9,  17, 18, 19, 20, 21, 33, 40, 41, 42,
                                  53, 54, 55, 56, 57, 60, 64, 90, 91, 93, 94, 95, 96, 97};
 
+// Whether a G word means what it means on controls of the RS-274 family, as far as the interpreter
+// follows it.
+bool is_common_siemens_g(double value) { return std::ranges::count(kCommonG, value) > 0; }
+
 constexpr std::array<std::string_view, 20> kFlowNames = {
     "IF",    "ELSE",    "ENDIF", "WHILE", "ENDWHILE", "FOR",     "ENDFOR",
     "LOOP",  "ENDLOOP", "UNTIL", "CASE",  "REPEAT",   "REPEATB", "GOTO",
     "GOTOF", "GOTOB",   "GOTOC", "GOTOS", "REPEATP",  "DEFAULT"};
 
 constexpr std::string_view kLetters = "NGXYZIJKFSTDMHABCUVW";
-
-// R5, not RND.
-bool is_r_parameter(std::string_view name) {
-  return name.size() > 1 && name[0] == 'R' &&
-         std::ranges::all_of(name.substr(1), [](char c) { return is_digit(c); });
-}
 
 class BlockReader {
  public:
@@ -55,14 +51,17 @@ class BlockReader {
         case SiemensTokenKind::kValueWord:
           take_word(token);
           break;
-        case SiemensTokenKind::kName:
-          if (is_flow(token)) {
+        case SiemensTokenKind::kName: {
+          const std::string name = in_capitals(source_.substr(token.name.begin, token.name.size()));
+          if (std::ranges::find(kFlowNames, name) != kFlowNames.end()) {
             block_.opacity = ParseStatus::kFlow;
             return block_;
           }
-          take_name(token);
-          if (is_declaration(token)) return finished();
+          take_name(token, name);
+          // What follows is a list of names, which no word of a block looks like.
+          if (name == "DEF" || name == "EXTERN") return finished();
           break;
+        }
         case SiemensTokenKind::kUnreadable:
           return unreadable(token, token.trouble);
       }
@@ -75,20 +74,6 @@ class BlockReader {
     block_.trouble = trouble;
     block_.trouble_at = token.span;
     return block_;
-  }
-
-  [[nodiscard]] std::string name_of(const SiemensToken& token) const {
-    return in_capitals(source_.substr(token.name.begin, token.name.size()));
-  }
-
-  [[nodiscard]] bool is_flow(const SiemensToken& token) const {
-    return std::ranges::find(kFlowNames, name_of(token)) != kFlowNames.end();
-  }
-
-  // What follows is a list of names, which no word of a block looks like.
-  [[nodiscard]] bool is_declaration(const SiemensToken& token) const {
-    const std::string name = name_of(token);
-    return name == "DEF" || name == "EXTERN";
   }
 
   void add_word(const SiemensToken& token, char letter) {
@@ -123,17 +108,14 @@ class BlockReader {
     add_word(token, token.letter);
   }
 
-  void take_name(const SiemensToken& token) {
+  void take_name(const SiemensToken& token, const std::string& name) {
     anything_ = true;
-    const std::string name = name_of(token);
-    if (is_r_parameter(name) && token.assigned) {
+    if (name[0] == 'R' && is_numbered(name) && token.assigned) {
       assigns_ = true;
       return;
     }
     words_beside_ = true;
-    if (name == "CR" && token.assigned) {
-      return take_radius(token);
-    }
+    if (name == "CR" && token.assigned) return take_radius(token);
     named_ = true;
   }
 
@@ -143,9 +125,7 @@ class BlockReader {
     const auto number = read_number(source_.substr(equals + 1, token.span.end - equals - 1));
     const bool plain = number && number->value < kNumberLimit && number->value > -kNumberLimit;
     token.kind = plain ? SiemensTokenKind::kWord : SiemensTokenKind::kValueWord;
-    if (plain) {
-      token.number = *number;
-    }
+    if (plain) token.number = *number;
     expression_ = expression_ || !plain;
     add_word(token, 'R');
   }
@@ -177,10 +157,6 @@ class BlockReader {
 };
 
 }  // namespace
-
-bool is_common_siemens_g(double value) {
-  return std::ranges::any_of(kCommonG, [value](int code) { return value == code; });
-}
 
 SiemensBlock read_siemens_block(std::string_view source, SourceSpan line,
                                 std::vector<Word>& words) {

@@ -26,15 +26,10 @@ struct SiemensBlock {
 [[nodiscard]] SiemensBlock read_siemens_block(std::string_view source, SourceSpan line,
                                               std::vector<Word>& words);
 
-// Whether a G word means what it means on controls of the RS-274 family, as far as the interpreter
-// follows it; `value` as written.
-[[nodiscard]] bool is_common_siemens_g(double value);
-
-// The names of a Siemens block: what stands in it beside the words of one letter that it lists.
-
-// In upper case, without index, value and arguments: SOFT, CYCLE832, G71, D; "G?" for a G word that
-// is no whole number. Empty for a token that the block lists as a word (G1, X=5, CR=5), and for one
-// that is neither a word nor a name. `source`: the text whose tokens the lexer gives.
+// A name of a Siemens block: what is in it beside the words of one letter that it lists. In upper
+// case, without index, value and arguments: SOFT, CYCLE832, G71, D; "G?" for a G word that is no
+// whole number. Empty for a token that the block lists as a word (G1, X=5, CR=5), and for one that
+// is neither a word nor a name. `source`: the text whose tokens the lexer gives.
 [[nodiscard]] std::string siemens_name(std::string_view source, const SiemensToken& token);
 
 struct SiemensName {

@@ -31,8 +31,7 @@ std::string plain_text(std::string_view text) {
 bool is_name_start(char c) { return is_letter(c) || c == '_' || c == '$'; }
 
 LabelName without_zeros(LabelName name) {
-  const bool numbered = name.size() > 1 && (name[0] == 'N' || name[0] == ':') &&
-                        name.find_first_not_of("0123456789", 1) == std::string::npos;
+  const bool numbered = is_numbered(name) && (name[0] == 'N' || name[0] == ':');
   while (numbered && name.size() > 2 && name[1] == '0') name.erase(1, 1);
   return name;
 }
@@ -66,8 +65,7 @@ std::vector<Name> names_in(std::string_view text) {
 }
 
 bool is_jump(std::string_view name) {
-  constexpr std::array<std::string_view, 4> kJumps = {"GOTO", "GOTOF", "GOTOB", "GOTOC"};
-  return std::ranges::find(kJumps, name) != kJumps.end();
+  return name == "GOTO" || name == "GOTOF" || name == "GOTOB" || name == "GOTOC";
 }
 
 bool contains_jump(std::string_view plain) {
@@ -82,8 +80,7 @@ std::string_view statement_in(std::string_view plain) {
     if (at >= plain.size()) return {};
     const std::size_t end = after_siemens_name(plain, at);
     const std::string_view name = plain.substr(at, end - at);
-    const bool number = name.size() > 1 && name[0] == 'N' &&
-                        name.find_first_not_of("0123456789", 1) == std::string_view::npos;
+    const bool number = is_numbered(name) && name[0] == 'N';
     const std::size_t behind = after_blanks(plain, end);
     const bool label = !name.empty() && char_at(plain, behind) == ':';
     if (!number && !label) return plain.substr(at);
@@ -97,12 +94,11 @@ std::string_view first_name(std::string_view statement) {
 
 // +1 where a body begins, -1 where it ends. IF with a jump has none, nor has REPEAT with a label.
 int siemens_body_step(std::string_view statement) {
-  constexpr std::array<std::string_view, 3> kBegins = {"WHILE", "FOR", "LOOP"};
-  constexpr std::array<std::string_view, 5> kEnds = {"ENDIF", "ENDWHILE", "ENDFOR", "ENDLOOP",
-                                                     "UNTIL"};
   const std::string_view name = first_name(statement);
-  if (std::ranges::find(kEnds, name) != kEnds.end()) return -1;
-  if (std::ranges::find(kBegins, name) != kBegins.end()) return 1;
+  const bool begins = name == "WHILE" || name == "FOR" || name == "LOOP";
+  const bool ends = name == "ENDIF" || name == "ENDWHILE" || name == "ENDFOR" || name == "ENDLOOP";
+  if (ends || name == "UNTIL") return -1;
+  if (begins) return 1;
   if (name == "IF") return contains_jump(statement) ? 0 : 1;
   const bool alone = after_blanks(statement, name.size()) >= statement.size();
   return name == "REPEAT" && alone ? 1 : 0;
@@ -114,9 +110,7 @@ bool calls_program(std::string_view statement) {
       statement.substr(std::min(after_blanks(statement, name.size()), statement.size()));
   if (name == "MCALL") return calls_program(behind);
   if (name == "CALL" && first_name(behind) == "BLOCK") return false;  // a part of this one
-  const bool numbered =
-      name.size() > 1 && name.find_first_not_of("0123456789", 1) == std::string_view::npos;
-  if (numbered) return name[0] == 'L';
+  if (is_numbered(name)) return name[0] == 'L';
   const bool is_set = behind.starts_with('=') || behind.starts_with('[');
   return name.size() > 1 && name[0] != '$' && !is_set && !is_known_siemens_name(name);
 }
@@ -146,29 +140,21 @@ class FlowReader {
   void read_block(std::size_t i) {
     const Block& block = program_.blocks[i];
     note_labels(i);
-    if (block.opacity == ParseStatus::kFlow || block.opacity == ParseStatus::kUnreadable) {
-      const std::string plain = plain_text(text_of(block));
-      note_jumps(plain);
-      const int step =
-          block.opacity == ParseStatus::kFlow ? siemens_body_step(statement_in(plain)) : 0;
-      flow_[i].in_body |= step != 0;
-      depth_ = std::max(0, depth_ + step);
+    const bool flow = block.opacity == ParseStatus::kFlow;
+    const bool unreadable = block.opacity == ParseStatus::kUnreadable;
+    const bool named =
+        block.opacity == ParseStatus::kForeign || block.opacity == ParseStatus::kNamedWords;
+    const std::string plain =
+        flow || unreadable || named ? plain_text(text_of(block)) : std::string();
+    const int step = flow ? siemens_body_step(statement_in(plain)) : 0;
+    depth_ = std::max(0, depth_ + step);
+    flow_[i].in_body |= step != 0 || depth_ > 0;
+    if (flow || unreadable) note_jumps(plain);
+    if (named) is_subprogram_ |= ends_subprogram(plain);
+    if (named || unreadable) {
+      note_repeated_part(plain);
+      any_label_ |= returns_ == Returns::kToAnyLabel && calls_program(statement_in(plain));
     }
-    if (block.opacity == ParseStatus::kForeign || block.opacity == ParseStatus::kNamedWords) {
-      is_subprogram_ |= ends_subprogram(block);
-    }
-    if (may_call(block.opacity)) note_call(plain_text(text_of(block)));
-    flow_[i].in_body |= depth_ > 0;
-  }
-
-  static bool may_call(ParseStatus opacity) {
-    return opacity == ParseStatus::kForeign || opacity == ParseStatus::kNamedWords ||
-           opacity == ParseStatus::kUnreadable;
-  }
-
-  void note_call(std::string_view plain) {
-    note_repeated_part(plain);
-    any_label_ |= returns_ == Returns::kToAnyLabel && calls_program(statement_in(plain));
   }
 
   // A block may have a number and a name.
@@ -205,8 +191,7 @@ class FlowReader {
       } else if (names[k].text == "REPEAT" || names[k].text == "REPEATB") {
         // All names behind it but P=3: the first and the last label of what is done again.
         for (std::size_t other = k + 1; other < names.size(); ++other) {
-          if (names[other].text != "P")
-            note_target(LabelName(without_zeros(LabelName(names[other].text))));
+          if (names[other].text != "P") note_target(without_zeros(LabelName(names[other].text)));
         }
         if (names.size() > k + 1) return;
       }
@@ -227,15 +212,11 @@ class FlowReader {
   }
 
   void note_target(const std::optional<LabelName>& label) {
-    if (label) {
-      targets_.insert(*label);
-    } else {
-      any_label_ = true;
-    }
+    if (label) targets_.insert(*label);
+    any_label_ |= !label;
   }
 
-  [[nodiscard]] bool ends_subprogram(const Block& block) const {
-    const std::string plain = plain_text(text_of(block));
+  static bool ends_subprogram(std::string_view plain) {
     return std::ranges::any_of(names_in(plain), [](const Name& name) {
       return name.text == "M17" || name.text == "RET" || name.text == "PROC";
     });
@@ -247,11 +228,10 @@ class FlowReader {
     any_label_ |= std::ranges::any_of(
         targets_, [&all](const LabelName& target) { return !all.contains(target); });
     for (std::size_t i = 0; i < labels_.size(); ++i) {
-      const bool named = std::ranges::any_of(
-          labels_[i], [this](const LabelName& label) { return targets_.contains(label); });
-      const bool target = named || (any_label_ && !labels_[i].empty());
-      flow_[i].label_referenced = target;
-      flow_[i].jump_target = target;
+      const bool target = std::ranges::any_of(labels_[i], [this](const LabelName& label) {
+        return any_label_ || targets_.contains(label);
+      });
+      flow_[i].label_referenced = flow_[i].jump_target = target;
     }
     if (starts_again_ && !flow_.empty()) flow_.front().jump_target = true;
   }

@@ -3,17 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <string>
 
 #include "gcode/text/characters.h"
-#include "gcode/text/number_format.h"
 
 namespace batten::gcode {
 namespace {
 
 SourceSpan bytes(std::size_t begin, std::size_t end) {
   return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+}
+
+std::size_t after_digits(std::string_view text, std::size_t at) {
+  while (is_digit(char_at(text, at))) ++at;
+  return at;
 }
 
 bool starts_number(char c) { return is_digit(c) || c == '.' || c == '+' || c == '-'; }
@@ -31,6 +34,13 @@ SiemensToken SiemensLexer::token(SiemensTokenKind kind, std::size_t end) {
   token.span = bytes(at_, end);
   at_ = end;
   return token;
+}
+
+SiemensToken SiemensLexer::with_name(SiemensTokenKind kind, std::size_t name_end, std::size_t end) {
+  const SourceSpan name = bytes(at_, name_end);
+  SiemensToken named = token(kind, end);
+  named.name = name;
+  return named;
 }
 
 SiemensToken SiemensLexer::unreadable(std::string_view trouble) {
@@ -56,25 +66,15 @@ SiemensToken SiemensLexer::next() {
   if (is_letter(c) || c == '_' || c == '$') {
     return address();
   }
+  // :10 is a number of a main block, to which a jump may go as to a label.
   if (c == ':' && !anything_ && is_digit(char_at(text_, at_ + 1))) {
-    return main_block();
+    const std::size_t end = after_digits(text_, at_ + 1);
+    return with_name(SiemensTokenKind::kLabel, end, end);
   }
   if (c == '(') {
     return unreadable("a parenthesis without a name before it: comments start with ';' here");
   }
   return unreadable("a character that no word starts with");
-}
-
-// :10 is a number of a main block, to which a jump may go as to a label.
-SiemensToken SiemensLexer::main_block() {
-  std::size_t end = at_ + 1;
-  while (is_digit(char_at(text_, end))) {
-    ++end;
-  }
-  const SourceSpan name = bytes(at_, end);
-  SiemensToken label = token(SiemensTokenKind::kLabel, end);
-  label.name = name;
-  return label;
 }
 
 SiemensToken SiemensLexer::address() {
@@ -89,10 +89,7 @@ SiemensToken SiemensLexer::address() {
     return assigned_letter(after_blanks(text_, value + 1));
   }
   // X1=10, M2=3: the digits are part of the address.
-  std::size_t digits = at_ + 1;
-  while (is_digit(char_at(text_, digits))) {
-    ++digits;
-  }
+  const std::size_t digits = after_digits(text_, at_ + 1);
   const std::size_t behind = after_blanks(text_, digits);
   if (digits > at_ + 1 &&
       (sets(text_, behind) || char_at(text_, digits) == '_' || char_at(text_, digits) == '[')) {
@@ -109,15 +106,18 @@ SiemensToken SiemensLexer::address() {
   if (!end) {
     return unreadable("a letter without a number that can be read");
   }
-  const auto number = read_number(text_.substr(value, *end - value));
-  if (!number || std::abs(number->value) >= kNumberLimit) {
-    return unreadable("a number of a thousand million or more");
-  }
+  const auto number = number_in(value, *end);
+  if (!number) return unreadable("a number of a thousand million or more");
   SiemensToken word = token(SiemensTokenKind::kWord, *end);
   word.letter = upper(c);
   word.number = *number;
   anything_ = anything_ || word.letter != 'N';
   return word;
+}
+
+std::optional<ReadNumber> SiemensLexer::number_in(std::size_t begin, std::size_t end) const {
+  const auto number = read_number(text_.substr(begin, end - begin));
+  return number && std::abs(number->value) < kNumberLimit ? number : std::nullopt;
 }
 
 SiemensToken SiemensLexer::assigned_letter(std::size_t value_at) {
@@ -128,30 +128,22 @@ SiemensToken SiemensLexer::assigned_letter(std::size_t value_at) {
   }
   anything_ = true;
   const bool plain = after_siemens_number(text_, value_at) == end;
-  const auto number =
-      plain ? read_number(text_.substr(value_at, *end - value_at)) : std::optional<ReadNumber>();
-  const bool readable = number && std::abs(number->value) < kNumberLimit;
-  SiemensToken word =
-      token(readable ? SiemensTokenKind::kWord : SiemensTokenKind::kValueWord, *end);
+  const auto number = plain ? number_in(value_at, *end) : std::nullopt;
+  SiemensToken word = token(number ? SiemensTokenKind::kWord : SiemensTokenKind::kValueWord, *end);
   word.letter = letter;
   word.assigned = true;
-  if (readable) {
-    word.number = *number;
-  }
+  if (number) word.number = *number;
   return word;
 }
 
 SiemensToken SiemensLexer::named(std::size_t name_end) {
-  const SourceSpan name = bytes(at_, name_end);
   std::size_t end = name_end;
   if (const std::size_t colon = after_blanks(text_, end);
       char_at(text_, colon) == ':' && char_at(text_, colon + 1) != '=') {
     if (anything_) {
       return unreadable("a label after other words");
     }
-    SiemensToken label = token(SiemensTokenKind::kLabel, colon + 1);
-    label.name = name;
-    return label;
+    return with_name(SiemensTokenKind::kLabel, name_end, colon + 1);
   }
   if (const std::size_t index = after_blanks(text_, end); char_at(text_, index) == '[') {
     const auto closed = after_siemens_brackets(text_, index);
@@ -178,8 +170,7 @@ SiemensToken SiemensLexer::named(std::size_t name_end) {
     end = *closed;
   }
   anything_ = true;
-  SiemensToken found = token(SiemensTokenKind::kName, end);
-  found.name = name;
+  SiemensToken found = with_name(SiemensTokenKind::kName, name_end, end);
   found.assigned = assigned;
   found.arguments = arguments;
   return found;
@@ -204,8 +195,7 @@ std::optional<std::size_t> after_siemens_operator(std::string_view text, std::si
   if (is_letter(c)) {
     const std::size_t end = after_siemens_name(text, at);
     const std::string word = in_capitals(text.substr(at, end - at));
-    const bool known =
-        std::ranges::find(kSiemensWordOperators, word) != kSiemensWordOperators.end();
+    const bool known = std::ranges::count(kSiemensWordOperators, word) > 0;
     return known ? std::optional(end) : std::nullopt;
   }
   if (c == '+' || c == '-' || c == '*' || c == '/') {
@@ -257,20 +247,13 @@ std::optional<std::size_t> after_siemens_operand(std::string_view text, std::siz
 }  // namespace
 
 std::optional<std::size_t> after_siemens_number(std::string_view text, std::size_t at) {
-  if (char_at(text, at) == '+' || char_at(text, at) == '-') {
-    ++at;
-  }
-  std::size_t digits = 0;
-  bool point = false;
-  for (; is_digit(char_at(text, at)) || (!point && char_at(text, at) == '.'); ++at) {
-    point = point || text[at] == '.';
-    digits += text[at] == '.' ? 0U : 1U;
-  }
-  const char next = char_at(text, at);
-  if (digits == 0 || next == '.' || upper(next) == 'E') {
-    return std::nullopt;
-  }
-  return at;
+  if (char_at(text, at) == '+' || char_at(text, at) == '-') ++at;
+  const std::string_view rest = text.substr(std::min(at, text.size()));
+  const std::size_t end = std::min(rest.find_first_not_of("0123456789."), rest.size());
+  const auto points = std::ranges::count(rest.substr(0, end), '.');
+  const bool any_digit = end > static_cast<std::size_t>(points);
+  if (!any_digit || points > 1 || upper(char_at(rest, end)) == 'E') return std::nullopt;
+  return at + end;
 }
 
 std::optional<std::size_t> after_siemens_brackets(std::string_view text, std::size_t at) {
@@ -311,12 +294,10 @@ std::optional<std::size_t> after_siemens_expression(std::string_view text, std::
   auto end = after_siemens_operand(text, at);
   while (end) {
     const auto next = after_siemens_operator(text, after_blanks(text, *end));
-    if (!next) {
-      return end;
-    }
+    if (!next) break;
     end = after_siemens_operand(text, *next);
   }
-  return std::nullopt;
+  return end;
 }
 
 }  // namespace batten::gcode

@@ -44,24 +44,24 @@ class SiemensLexer {
   [[nodiscard]] SiemensToken next();
 
  private:
-  [[nodiscard]] SiemensToken main_block();
   [[nodiscard]] SiemensToken address();
   [[nodiscard]] SiemensToken named(std::size_t name_end);
   [[nodiscard]] SiemensToken assigned_letter(std::size_t value_at);
 
   SiemensToken token(SiemensTokenKind kind, std::size_t end);
+  SiemensToken with_name(SiemensTokenKind kind, std::size_t name_end, std::size_t end);
   SiemensToken unreadable(std::string_view trouble);
-
+  // Nothing where it is kNumberLimit or more.
+  [[nodiscard]] std::optional<ReadNumber> number_in(std::size_t begin, std::size_t end) const;
 
   std::string_view text_;
   std::size_t at_;
   bool anything_ = false;  // a token that is no block number, skip sign or label
 };
 
-// Where values of a Siemens program end: numbers, and expressions that are not computed here.
-
-// All take the place where something starts and give the place after it, or nothing when it does
-// not stand there in full.
+// Where values of a Siemens program end: numbers, and expressions that are not computed here. All
+// take the position where something starts and give the one after it, or nothing when it is not
+// there in full.
 
 // [+-]digits[.digits], without blanks and without an exponent.
 [[nodiscard]] std::optional<std::size_t> after_siemens_number(std::string_view text,
@@ -70,6 +70,11 @@ class SiemensLexer {
 // ( .. ) or [ .. ], with strings and brackets inside.
 [[nodiscard]] std::optional<std::size_t> after_siemens_brackets(std::string_view text,
                                                                 std::size_t at);
+
+// R5, M17, :10: one character with digits behind it, and nothing else.
+[[nodiscard]] constexpr bool is_numbered(std::string_view name) {
+  return name.size() > 1 && name.find_first_not_of("0123456789", 1) == std::string_view::npos;
+}
 
 // Letters, digits, _ and $.
 [[nodiscard]] std::size_t after_siemens_name(std::string_view text, std::size_t at);

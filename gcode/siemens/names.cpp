@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
-#include <string>
 
 #include "gcode/siemens/block.h"
 #include "gcode/siemens/lexer.h"
@@ -132,18 +131,6 @@ const NameRow* row_with(std::string_view name) {
   return row == std::end(kNames) ? nullptr : row;
 }
 
-// R5, S2, M1, as addresses with digits.
-bool is_address(std::string_view name, char letter) {
-  return name.size() > 1 && name[0] == letter &&
-         std::ranges::all_of(name.substr(1), [](char c) { return is_digit(c); });
-}
-
-// X1=10: an axis of the machine, or one of several.
-bool is_numbered_axis(std::string_view name) {
-  constexpr std::string_view kNamedAxes = "XYZABCUVWQ";
-  return kNamedAxes.find(name.front()) != std::string_view::npos && is_address(name, name.front());
-}
-
 // `assigned`: an = stands behind it. nullptr for names that are not known: they could do anything.
 const NameRow* row_of(std::string_view name, bool assigned) {
   if (const NameRow* row = row_with(name)) return row;
@@ -153,10 +140,15 @@ const NameRow* row_of(std::string_view name, bool assigned) {
     return row_with("G500");
   }
   if (!assigned) return nullptr;
-  if (name == "R" || is_address(name, 'R')) return &kVariable;  // R[5]=, R5=
-  if (is_address(name, 'S') || is_address(name, 'M')) return row_with("SPOS");
-  if (is_address(name, 'T')) return row_with("D");
-  return is_numbered_axis(name) ? row_with("A2") : nullptr;
+  const char letter = name.front();
+  if (name == "R") return &kVariable;  // R[5]=
+  if (!is_numbered(name)) return nullptr;
+  if (letter == 'R') return &kVariable;
+  if (letter == 'S' || letter == 'M') return row_with("SPOS");
+  if (letter == 'T') return row_with("D");
+  // X1=10: an axis of the machine, or one of several.
+  const bool axis = std::string_view("XYZABCUVWQ").find(letter) != std::string_view::npos;
+  return axis ? row_with("A2") : nullptr;
 }
 
 class NameApplier {

@@ -11,10 +11,9 @@
 
 namespace batten::gcode {
 
-// Variables that a Siemens program declares for itself: DEF REAL A, B = 5, C[3]. To set one changes
-// nothing but what words in which it stands will say.
-
-using SiemensVariables = std::unordered_set<std::string>;  // in upper case
+// Variables that a Siemens program declares for itself, in upper case: DEF REAL A, B = 5, C[3]. To
+// set one changes nothing but what words in which it is will say.
+using SiemensVariables = std::unordered_set<std::string>;
 
 // `declaration` is what stands behind DEF: the type, then the names with their first values.
 void add_declared_names(std::string_view declaration, SiemensVariables& variables);
