@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "gcode/text/characters.h"
-#include "gcode/text/number_format.h"
 
 namespace batten::gcode {
 namespace {
@@ -23,6 +24,117 @@ constexpr std::string_view kForeignCharacters = "\"'$!{}@^<>=~&|?\\`_";
 
 SourceSpan span_of(std::size_t begin, std::size_t end) {
   return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+}
+
+// Where parameters and expressions end, which are not computed. All functions take the position
+// where something starts and give the one after it, or nothing when it is not there in full. Blanks
+// are skipped.
+
+using End = std::optional<std::size_t>;
+
+constexpr std::array<std::string_view, 22> kFunctions = {
+    "ABS", "ACOS", "ASIN",  "ATAN", "BCD", "BIN",  "COS", "EXISTS", "EXP",   "FIX", "FUP",
+    "LN",  "POW",  "ROUND", "SIN",  "SQR", "SQRT", "TAN", "TRUNC",  "ATAN2", "MOD", "ADP"};
+
+constexpr std::array<std::string_view, 10> kWordOperators = {"AND", "OR", "XOR", "MOD", "EQ",
+                                                             "NE",  "GT", "GE",  "LT",  "LE"};
+
+End after_number(std::string_view text, std::size_t at) {
+  const auto number = scan_number(text.substr(at));
+  return number ? End(at + number->length) : std::nullopt;
+}
+
+// [1+[2*3]], without comments or strings inside.
+End after_brackets(std::string_view text, std::size_t at) {
+  int depth = 0;
+  for (at = after_blanks(text, at); at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '(' || c == ';' || c == '"' || c == '\'' || (depth == 0 && c != '[')) break;
+    depth += c == '[' ? 1 : c == ']' ? -1 : 0;
+    if (depth == 0) return at + 1;
+  }
+  return std::nullopt;
+}
+
+// #5  ##5  #<name>  #[1+2]
+End after_parameter(std::string_view text, std::size_t at) {
+  at = after_blanks(text, at);
+  if (char_at(text, at) != '#') return std::nullopt;
+  while (char_at(text, at) == '#') at = after_blanks(text, at + 1);
+  if (is_digit(char_at(text, at))) return after_number(text, at);
+  if (char_at(text, at) != '<') return after_brackets(text, at);
+  const std::size_t close = text.find_first_of(">(;", at);
+  return char_at(text, close) == '>' ? End(close + 1) : std::nullopt;
+}
+
+// SIN[30], FIX[#1]: a function's name and its brackets. ATAN[1]/[2] is two operands.
+End after_function(std::string_view text, std::size_t at) {
+  at = after_blanks(text, at);
+  std::size_t end = at;
+  while (is_letter(char_at(text, end)) || (end > at && is_digit(char_at(text, end)))) {
+    ++end;
+  }
+  const bool known = std::ranges::any_of(kFunctions, [&](std::string_view name) {
+    return is_same_word(text.substr(at, end - at), name);
+  });
+  return known ? after_brackets(text, end) : std::nullopt;
+}
+
+// A value that a letter may take in place of a number: an optional sign, then a parameter,
+// brackets or a function.
+End after_computed_value(std::string_view text, std::size_t at) {
+  at = after_blanks(text, at);
+  if (char_at(text, at) == '-' || char_at(text, at) == '+') at = after_blanks(text, at + 1);
+  const char c = char_at(text, at);
+  return c == '#'   ? after_parameter(text, at)
+         : c == '[' ? after_brackets(text, at)
+                    : after_function(text, at);
+}
+
+// R5, R[1], as Siemens names its parameters.
+End after_r_parameter(std::string_view text, std::size_t at) {
+  if (upper(char_at(text, at)) != 'R') {
+    return std::nullopt;
+  }
+  const std::size_t value = after_blanks(text, at + 1);
+  return is_digit(char_at(text, value)) ? after_number(text, value) : after_brackets(text, value);
+}
+
+End after_operand(std::string_view text, std::size_t at) {
+  at = after_blanks(text, at);
+  End end = after_number(text, at);
+  if (!end) end = after_computed_value(text, at);
+  const char c = char_at(text, at);
+  const std::size_t parameter = c == '-' || c == '+' ? after_blanks(text, at + 1) : at;
+  return end ? end : after_r_parameter(text, parameter);
+}
+
+End after_operator(std::string_view text, std::size_t at) {
+  at = after_blanks(text, at);
+  const char c = char_at(text, at);
+  if (c == '*' && char_at(text, at + 1) == '*') {
+    return at + 2;
+  }
+  if (c == '+' || c == '-' || c == '*' || c == '/') {
+    return at + 1;
+  }
+  for (const std::string_view name : kWordOperators) {
+    if (at < text.size() && is_same_word(text.substr(at, name.size()), name)) {
+      return at + name.size();
+    }
+  }
+  return std::nullopt;
+}
+
+// The right side of an assignment: values, numbers and R parameters, joined by operators.
+End after_sum(std::string_view text, std::size_t at) {
+  End end = after_operand(text, at);
+  while (end) {
+    const End operation = after_operator(text, *end);
+    if (!operation) break;
+    end = after_operand(text, *operation);
+  }
+  return end;
 }
 
 }  // namespace
@@ -70,7 +182,7 @@ const Token& LineLexer::sign_token(char c) {
     case '(':
       return comment();
     case ';':
-      return line_comment();
+      return take(TokenKind::kLineComment, text_.size());
     case '/':
       return block_delete();
     case '*':
@@ -114,10 +226,7 @@ const Token& LineLexer::letter_token() {
     return scan_number(text_.substr(value)) ? number_word(letter, value)
                                             : value_word(letter, value);
   }
-  if (c == '#' || c == '[') {
-    return value_word(letter, value);
-  }
-  if (is_letter(c) && after_function(text_, value)) {
+  if (c == '#' || c == '[' || (is_letter(c) && after_function(text_, value))) {
     return value_word(letter, value);
   }
   if (value == at_ + 1 && is_name_character(c)) {
@@ -147,16 +256,10 @@ const Token& LineLexer::number_word(char letter, std::size_t value_at) {
     return unreadable(end, "an E right after a number, which may be an exponent or a word");
   }
   const std::size_t following = after_blanks(text_, end);
-  switch (char_at(text_, following)) {
-    case '=':
-      return letter == 'R' ? assigned(following) : rest(TokenKind::kForeign, at_);
-    case ':':
-      return rest(TokenKind::kFlow, at_);
-    case '_':
-      return rest(TokenKind::kForeign, at_);
-    default:
-      break;
-  }
+  const char next = char_at(text_, following);
+  if (next == '=' && letter == 'R') return assigned(following);
+  if (next == '=' || next == '_') return rest(TokenKind::kForeign, at_);
+  if (next == ':') return rest(TokenKind::kFlow, at_);
   take(TokenKind::kWord, end);
   token_.letter = letter;
   take_number(scanned->number);
@@ -213,35 +316,24 @@ const Token& LineLexer::keyword() {
 // Ends with its own closing bracket. Nested comments are an error for most controls and one
 // comment for some (ISG): read as one when the brackets balance, which nobody reads as words.
 const Token& LineLexer::comment() {
-  std::size_t first_close = 0;
+  const std::size_t first_close = text_.find(')', at_);
+  const bool nested = text_.substr(at_ + 1, first_close - at_ - 1).find('(') != text_.npos;
+  std::size_t end = at_;
   int depth = 0;
-  bool nested = false;
-  std::size_t at = at_;
-  for (; at < text_.size(); ++at) {
-    if (text_[at] == '(') {
-      nested = nested || depth > 0;
-      ++depth;
-    } else if (text_[at] == ')') {
-      first_close = first_close == 0 ? at : first_close;
-      if (--depth == 0) {
-        break;
-      }
-    }
-  }
-  if (depth == 0) {
-    const bool more = nested && after_blanks(text_, at + 1) < text_.size();
-    return more ? unreadable(at_, "a comment in a comment, and words after it")
-                : take(TokenKind::kComment, at + 1);
-  }
-  if (first_close != 0 && after_blanks(text_, first_close + 1) < text_.size()) {
+  do {
+    depth += text_[end] == '(' ? 1 : text_[end] == ')' ? -1 : 0;
+    ++end;
+  } while (depth > 0 && end < text_.size());
+  // Where nothing closes it, words behind the first closing bracket would be read by some controls.
+  const std::size_t said = depth == 0 ? end : first_close + 1;
+  const bool closed = first_close != text_.npos;
+  if (closed && (nested || depth > 0) && after_blanks(text_, said) < text_.size()) {
     return unreadable(at_, "a comment in a comment, and words after it");
   }
-  take(TokenKind::kComment, text_.size());
-  token_.unclosed = first_close == 0;
+  take(TokenKind::kComment, end);
+  token_.unclosed = !closed;
   return token_;
 }
-
-const Token& LineLexer::line_comment() { return take(TokenKind::kLineComment, text_.size()); }
 
 const Token& LineLexer::block_delete() {
   const std::size_t end = is_digit(char_at(text_, at_ + 1)) ? at_ + 2 : at_ + 1;
@@ -297,8 +389,7 @@ const Token& LineLexer::corner_word() {
   }
   const auto scanned =
       value < text_.size() ? scan_number(text_.substr(value)) : std::optional<ScannedNumber>();
-  const auto computed = scanned ? std::optional<std::size_t>(value + scanned->length)
-                                : after_computed_value(text_, value);
+  const End computed = scanned ? End(value + scanned->length) : after_computed_value(text_, value);
   if (!computed) {
     return unreadable(at_, "a corner word without a value that can be read");
   }
@@ -310,163 +401,20 @@ const Token& LineLexer::corner_word() {
   return token_;
 }
 
-namespace {
-
-using Place = std::optional<std::size_t>;
-
-constexpr std::array<std::string_view, 22> kFunctions = {
-    "ABS", "ACOS", "ASIN",  "ATAN", "BCD", "BIN",  "COS", "EXISTS", "EXP",   "FIX", "FUP",
-    "LN",  "POW",  "ROUND", "SIN",  "SQR", "SQRT", "TAN", "TRUNC",  "ATAN2", "MOD", "ADP"};
-
-constexpr std::array<std::string_view, 10> kWordOperators = {"AND", "OR", "XOR", "MOD", "EQ",
-                                                             "NE",  "GT", "GE",  "LT",  "LE"};
-
-Place after_number(std::string_view text, std::size_t at) {
-  const auto number = scan_number(text.substr(at));
-  return number ? Place(at + number->length) : std::nullopt;
-}
-
-// R5, R[1], as Siemens names its parameters.
-Place after_r_parameter(std::string_view text, std::size_t at) {
-  if (upper(char_at(text, at)) != 'R') {
-    return std::nullopt;
-  }
-  const std::size_t value = after_blanks(text, at + 1);
-  return is_digit(char_at(text, value)) ? after_number(text, value) : after_brackets(text, value);
-}
-
-Place after_operand(std::string_view text, std::size_t at) {
-  at = after_blanks(text, at);
-  if (const Place number = after_number(text, at)) {
-    return number;
-  }
-  if (const Place value = after_computed_value(text, at)) {
-    return value;
-  }
-  const char c = char_at(text, at);
-  return after_r_parameter(text, c == '-' || c == '+' ? after_blanks(text, at + 1) : at);
-}
-
-Place after_operator(std::string_view text, std::size_t at) {
-  at = after_blanks(text, at);
-  const char c = char_at(text, at);
-  if (c == '*' && char_at(text, at + 1) == '*') {
-    return at + 2;
-  }
-  if (c == '+' || c == '-' || c == '*' || c == '/') {
-    return at + 1;
-  }
-  for (const std::string_view name : kWordOperators) {
-    if (at < text.size() && is_same_word(text.substr(at, name.size()), name)) {
-      return at + name.size();
-    }
-  }
-  return std::nullopt;
-}
-
-}  // namespace
-
-std::optional<std::size_t> after_brackets(std::string_view text, std::size_t at) {
-  at = after_blanks(text, at);
-  if (char_at(text, at) != '[') {
-    return std::nullopt;
-  }
-  int depth = 0;
-  for (; at < text.size(); ++at) {
-    const char c = text[at];
-    if (c == '(' || c == ';' || c == '"' || c == '\'') {
-      return std::nullopt;
-    }
-    depth += c == '[' ? 1 : c == ']' ? -1 : 0;
-    if (depth == 0) {
-      return at + 1;
-    }
-  }
-  return std::nullopt;
-}
-
-std::optional<std::size_t> after_parameter(std::string_view text, std::size_t at) {
-  at = after_blanks(text, at);
-  if (char_at(text, at) != '#') {
-    return std::nullopt;
-  }
-  while (char_at(text, at) == '#') {
-    at = after_blanks(text, at + 1);
-  }
-  if (char_at(text, at) == '<') {
-    const std::size_t close = text.find_first_of(">(;", at);
-    const bool closed = close != std::string_view::npos && text[close] == '>';
-    return closed ? Place(close + 1) : std::nullopt;
-  }
-  if (char_at(text, at) == '[') {
-    return after_brackets(text, at);
-  }
-  return is_digit(char_at(text, at)) ? after_number(text, at) : std::nullopt;
-}
-
-std::optional<std::size_t> after_function(std::string_view text, std::size_t at) {
-  at = after_blanks(text, at);
-  std::size_t end = at;
-  while (is_letter(char_at(text, end)) || (end > at && is_digit(char_at(text, end)))) {
-    ++end;
-  }
-  const bool known = std::ranges::any_of(kFunctions, [&](std::string_view name) {
-    return is_same_word(text.substr(at, end - at), name);
-  });
-  return known ? after_brackets(text, end) : std::nullopt;
-}
-
-std::optional<std::size_t> after_computed_value(std::string_view text, std::size_t at) {
-  at = after_blanks(text, at);
-  if (char_at(text, at) == '-' || char_at(text, at) == '+') {
-    at = after_blanks(text, at + 1);
-  }
-  switch (char_at(text, at)) {
-    case '#':
-      return after_parameter(text, at);
-    case '[':
-      return after_brackets(text, at);
-    default:
-      return after_function(text, at);
-  }
-}
-
-std::optional<std::size_t> after_sum(std::string_view text, std::size_t at) {
-  Place end = after_operand(text, at);
-  while (end) {
-    const Place operation = after_operator(text, *end);
-    if (!operation) {
-      return end;
-    }
-    end = after_operand(text, *operation);
-  }
-  return std::nullopt;
-}
-
-namespace {
-
-// What the text of an active comment starts with, blanks left out. A comma is part of it
-// where controls ask for one: (print this first) is only text.
-constexpr std::array<std::string_view, 17> kBeginnings = {
-    "MSG,",     "DEBUG,",    "PRINT,",  "LOG,",     "LOGOPEN", "LOGAPPEND",
-    "LOGCLOSE", "PROBEOPEN", "PROBECL", "PY,",      "PYRUN,",  "PYRELOAD",
-    "ABORT,",   "SYSTEM,",   "AXIS,",   "WARNING,", "ERROR,"};
-
-constexpr std::size_t kLongest = 9;
-
-}  // namespace
-
 bool is_active_comment(std::string_view comment) {
-  std::array<char, kLongest> beginning{};
-  std::size_t length = 0;
-  for (std::size_t at = 1; at < comment.size() && length < kLongest; ++at) {
-    if (!is_blank(comment[at])) {
-      beginning[length++] = upper(comment[at]);
-    }
+  // What the text starts with, blanks left out. A comma is part of it where controls ask for one:
+  // (print this first) is only text.
+  constexpr std::array<std::string_view, 17> kBeginnings = {
+      "MSG,",     "DEBUG,",    "PRINT,",  "LOG,",     "LOGOPEN", "LOGAPPEND",
+      "LOGCLOSE", "PROBEOPEN", "PROBECL", "PY,",      "PYRUN,",  "PYRELOAD",
+      "ABORT,",   "SYSTEM,",   "AXIS,",   "WARNING,", "ERROR,"};
+  constexpr std::size_t kLongest = 9;
+  std::string beginning;
+  for (std::size_t at = 1; at < comment.size() && beginning.size() < kLongest; ++at) {
+    if (!is_blank(comment[at])) beginning.push_back(upper(comment[at]));
   }
-  const std::string_view text(beginning.data(), length);
-  return std::any_of(kBeginnings.begin(), kBeginnings.end(),
-                     [&](std::string_view name) { return text.starts_with(name); });
+  return std::ranges::any_of(kBeginnings,
+                             [&](std::string_view name) { return beginning.starts_with(name); });
 }
 
 }  // namespace batten::gcode

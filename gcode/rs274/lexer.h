@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string_view>
 
 #include "gcode/text/number_format.h"
@@ -56,20 +55,17 @@ class LineLexer {
   [[nodiscard]] const Token& keyword();
   [[nodiscard]] const Token& sign_token(char c);
   [[nodiscard]] const Token& comment();
-  [[nodiscard]] const Token& line_comment();
   [[nodiscard]] const Token& block_delete();
   [[nodiscard]] const Token& checksum();
   [[nodiscard]] const Token& parameter_assignment();
   [[nodiscard]] const Token& assigned(std::size_t equals_at);
   [[nodiscard]] const Token& corner_word();
 
-  // A token from the present place to `end`; the next one starts there.
+  // A token from the present position to `end`; the next one starts there.
   const Token& take(TokenKind kind, std::size_t end);
   // A token that ends the line: its span runs from `where` to the end.
   const Token& rest(TokenKind kind, std::size_t where);
   const Token& unreadable(std::size_t where, std::string_view trouble);
-
-  // The character there, NUL behind the end of the line.
 
   void take_number(const ReadNumber& number);
 
@@ -78,28 +74,6 @@ class LineLexer {
   std::size_t begin_;
   std::size_t at_;
 };
-
-// Finds where parameters and expressions end; does not compute them.
-
-// All functions take the place where something starts and give the place after it, or
-// nothing when it does not stand there in full. Blanks are skipped.
-
-// #5  ##5  #<name>  #[1+2]
-[[nodiscard]] std::optional<std::size_t> after_parameter(std::string_view text, std::size_t at);
-
-// [1+[2*3]], without comments or strings inside.
-[[nodiscard]] std::optional<std::size_t> after_brackets(std::string_view text, std::size_t at);
-
-// SIN[30], FIX[#1]: a function's name and its brackets. ATAN[1]/[2] is two operands.
-[[nodiscard]] std::optional<std::size_t> after_function(std::string_view text, std::size_t at);
-
-// A value that a letter may take in place of a number: an optional sign, then a parameter,
-// brackets or a function.
-[[nodiscard]] std::optional<std::size_t> after_computed_value(std::string_view text,
-                                                              std::size_t at);
-
-// The right side of an assignment: values, numbers and R parameters, joined by operators.
-[[nodiscard]] std::optional<std::size_t> after_sum(std::string_view text, std::size_t at);
 
 // (MSG,..) (DEBUG,..) (PRINT,..) (LOG,..) (LOGOPEN,..) (LOGAPPEND,..) (LOGCLOSE)
 // (PROBEOPEN ..) (PROBECLOSE) (PY,..) (ABORT,..), in either case and with blanks anywhere;

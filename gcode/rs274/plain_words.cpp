@@ -1,10 +1,8 @@
 #include "gcode/rs274/plain_words.h"
 
 #include <cstdint>
-#include <string_view>
 
 #include "gcode/text/characters.h"
-#include "gcode/text/line_cursor.h"
 #include "gcode/text/number_format.h"
 
 namespace batten::gcode {

@@ -2,44 +2,20 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
 namespace batten::gcode {
 namespace {
 
-// A token for people: its kind's sign and its bytes.
+// A token for people: its kind and its bytes.
 std::string said(const Token& token, const std::string& line) {
-  const std::string bytes = line.substr(token.span.begin, token.span.size());
-  switch (token.kind) {
-    case TokenKind::kWord:
-      return bytes;
-    case TokenKind::kValueWord:
-      return "value " + bytes;
-    case TokenKind::kCornerWord:
-      return "corner " + bytes;
-    case TokenKind::kComment:
-      return (token.unclosed ? "open comment " : "comment ") + bytes;
-    case TokenKind::kLineComment:
-      return "line comment " + bytes;
-    case TokenKind::kBlockDelete:
-      return "delete " + bytes;
-    case TokenKind::kChecksum:
-      return "sum " + bytes;
-    case TokenKind::kAssignment:
-      return "set " + bytes;
-    case TokenKind::kProgramNumber:
-      return "program " + bytes;
-    case TokenKind::kFlow:
-      return "flow " + bytes;
-    case TokenKind::kForeign:
-      return "foreign " + bytes;
-    case TokenKind::kUnreadable:
-      return "unreadable " + bytes;
-    case TokenKind::kEnd:
-      return "end";
-  }
-  return "";
+  const std::string kind = token.unclosed ? "open " : "";
+  return kind + std::array{"",         "value ",      "corner ", "comment ", "line comment ",
+                           "delete ",  "sum ",        "set ",    "program ", "flow ",
+                           "foreign ", "unreadable ", "end"}[static_cast<std::size_t>(token.kind)] +
+         line.substr(token.span.begin, token.span.size());
 }
 
 using Said = std::vector<std::string>;
@@ -127,6 +103,8 @@ const SplitCase kSplitWordsRows[] = {
     {"X#<a Y1", {"unreadable X#<a Y1"}},
     {"X#Y", {"unreadable X#Y"}},
     {"X[1(c)]", {"unreadable X[1(c)]"}},
+    {"X#-1", {"unreadable X#-1"}},
+    {"XFIXED[#1]", {"foreign XFIXED[#1]"}},
     {"#1=5", {"set #1=5"}},
     {"#<a> = #1", {"set #<a> = #1"}},
     {"#1=#2 #3=[#4+1](c)", {"set #1=#2", "set #3=[#4+1]", "comment (c)"}},
@@ -194,18 +172,6 @@ TEST(ActiveComment, IsKnownByItsFirstWord) {
                            "(", ";", "; msg", "(a MSG, b)", "(probe)", "(debug)"}) {
     EXPECT_FALSE(is_active_comment(text)) << text;
   }
-}
-
-TEST(Expression, EndsWhereItsBracketsClose) {
-  EXPECT_EQ(after_brackets("[1+[2]]3", 0), 7u);
-  EXPECT_EQ(after_brackets(" [1]", 0), 4u);
-  EXPECT_EQ(after_brackets("[1", 0), std::nullopt);
-  EXPECT_EQ(after_brackets("1]", 0), std::nullopt);
-  EXPECT_EQ(after_parameter("#<a>b", 0), 4u);
-  EXPECT_EQ(after_parameter("#-1", 0), std::nullopt);
-  EXPECT_EQ(after_function("FIX[#1]", 0), 7u);
-  EXPECT_EQ(after_function("FIXED[#1]", 0), std::nullopt);
-  EXPECT_EQ(after_computed_value("5", 0), std::nullopt);
 }
 
 }  // namespace
