@@ -1,14 +1,7 @@
 #include "gcode/control/block_spelling.h"
 
-#include <algorithm>
-
 namespace batten::gcode {
 namespace {
-
-constexpr std::array<char, 3> kPlaceLetters = {'X', 'Y', 'Z'};
-constexpr std::array<char, 3> kOffsetLetters = {'I', 'J', 'K'};
-
-bool is_empty_text(const std::string& text) { return text.empty(); }
 
 // Words one behind the other, at the end of a text.
 class WordLine {
@@ -23,6 +16,14 @@ class WordLine {
   }
   void add(char letter, std::string_view digits) { add(std::string_view(&letter, 1), digits); }
 
+  // Those of three axes, from this letter on, that are said.
+  void add_axes(char first, const std::array<std::string, 3>& digits) {
+    for (const std::string& each : digits) {
+      if (!each.empty()) add(first, each);
+      ++first;
+    }
+  }
+
   void add_signed(char letter, const std::string& digits) {
     add(letter, digits.starts_with('-') ? digits : "+" + digits);
   }
@@ -33,35 +34,20 @@ class WordLine {
   std::string& text_;
 };
 
-std::string_view number_of(MotionMode motion) {
-  constexpr std::array<std::string_view, 4> kNumbers = {"0", "1", "2", "3"};
-  return kNumbers[static_cast<std::size_t>(motion) - static_cast<std::size_t>(MotionMode::kRapid)];
-}
-
 // G1 X1 Y2 F500
 void add_rs274(const SpokenBlock& block, bool blanks, std::string& text) {
   WordLine line(blanks, text);
   if (block.plane) {
     line.add('G', *block.plane == Plane::kXY ? "17" : *block.plane == Plane::kZX ? "18" : "19");
   }
-  if (block.motion) line.add('G', number_of(*block.motion));
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!block.places[axis].empty()) line.add(kPlaceLetters[axis], block.places[axis]);
+  if (block.motion) {
+    const int code = static_cast<int>(*block.motion) - static_cast<int>(MotionMode::kRapid);
+    line.add('G', std::to_string(code));
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!block.centers[axis].empty()) line.add(kOffsetLetters[axis], block.centers[axis]);
-  }
+  line.add_axes('X', block.places);
+  line.add_axes('I', block.centers);
   if (!block.radius.empty()) line.add('R', block.radius);
   if (!block.feed.empty()) line.add('F', block.feed);
-}
-
-// In the plane of X and Y.
-void add_klartext_center(const SpokenBlock& block, std::string& text) {
-  WordLine line(true, text);
-  line.add("CC", {});
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    line.add_signed(kPlaceLetters[axis], block.centers[axis]);
-  }
 }
 
 // L X+1 Y+2 F500; CC X+0 Y+0 and C X+1 Y+2 DR+ for arcs. Block numbers are added where the place in
@@ -71,13 +57,17 @@ void add_klartext(const SpokenBlock& block, std::string_view line_end, std::stri
   const bool arc = clockwise || block.motion == MotionMode::kCounterclockwise;
   const bool by_radius = arc && !block.radius.empty();
   if (arc && !by_radius) {
-    add_klartext_center(block, text);
+    WordLine center(true, text);
+    center.add("CC", {});
+    center.add_signed('X', block.centers[0]);
+    center.add_signed('Y', block.centers[1]);
     text += line_end;
   }
   WordLine line(true, text);
   line.add(by_radius ? "CR" : arc ? "C" : "L", {});
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!block.places[axis].empty()) line.add_signed(kPlaceLetters[axis], block.places[axis]);
+    const auto letter = static_cast<char>('X' + axis);
+    if (!block.places[axis].empty()) line.add_signed(letter, block.places[axis]);
   }
   if (by_radius) line.add_signed('R', block.radius);
   if (arc) line.add(clockwise ? "DR-" : "DR+", {});
@@ -85,26 +75,6 @@ void add_klartext(const SpokenBlock& block, std::string_view line_end, std::stri
 }
 
 }  // namespace
-
-void SpokenBlock::clear() {
-  plane.reset();
-  motion.reset();
-  for (std::string& place : places) place.clear();
-  for (std::string& center : centers) center.clear();
-  radius.clear();
-  feed.clear();
-}
-
-bool SpokenBlock::is_empty() const { return !plane && !motion && feed.empty() && has_no_numbers(); }
-
-bool SpokenBlock::says_only_feed() const {
-  return !plane && !motion && !feed.empty() && has_no_numbers();
-}
-
-bool SpokenBlock::has_no_numbers() const {
-  return radius.empty() && std::ranges::all_of(places, is_empty_text) &&
-         std::ranges::all_of(centers, is_empty_text);
-}
 
 void add_lines(const SpokenBlock& block, Language language, bool blanks, std::string_view line_end,
                std::string& text) {

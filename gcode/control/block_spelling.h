@@ -19,15 +19,7 @@ struct SpokenBlock {
   std::array<std::string, 3> centers;  // I J K
   std::string radius;                  // R
   std::string feed;
-
-  void clear();  // says nothing any more; its texts keep their room
-
-  [[nodiscard]] bool is_empty() const;
-  // F stands alone.
-  [[nodiscard]] bool says_only_feed() const;
-
- private:
-  [[nodiscard]] bool has_no_numbers() const;
+  bool operator==(const SpokenBlock&) const = default;
 };
 
 // Whether a motion word stays in force: blocks behind it may leave it out, and need not find

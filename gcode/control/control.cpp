@@ -66,17 +66,7 @@ std::size_t line_length(const Control& control, std::string_view line) {
 }
 
 bool takes_arcs_in(const Control& control, Plane plane) {
-  switch (plane) {
-    case Plane::kXY:
-      return control.planes[0];
-    case Plane::kZX:
-      return control.planes[1];
-    case Plane::kYZ:
-      return control.planes[2];
-    case Plane::kUnknown:
-      break;
-  }
-  return false;
+  return plane != Plane::kUnknown && control.planes[static_cast<std::size_t>(plane) - 1];
 }
 
 double max_arc_sweep(const Control& control) {

@@ -12,58 +12,6 @@
 namespace batten::gcode {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kMmPerInch = 25.4;
-
-// A radius that was read is itself to within this part: what is computed from it is noise.
-constexpr double kSameRadius = 1e-9;
-
-// grbl refuses an arc (error 33) whose radii differ by more than kMismatch and by more than
-// either of the other two.
-constexpr float kMismatch = 0.005F;          // mm
-constexpr float kGreatestMismatch = 0.5F;    // mm
-constexpr float kRelativeMismatch = 0.001F;  // of the radius at the start
-
-// Below half a degree the angle that grbl computes in single precision is mostly noise, and a
-// noisy angle of the wrong sign is a full turn. Near a full turn the same noise makes it none. On
-// FANUC and Siemens such an arc is a matter of the last digit, too.
-constexpr double kLeastSweep = 0.5 * kDegree;
-constexpr double kGreatestSweep = 350 * kDegree;
-
-// LinuxCNC refuses an arc whose radii differ by more than this (mm, measured) and by more than this
-// part of the radius; never more than the last number (mm).
-constexpr double kRadiusMismatch = 0.0283;
-constexpr double kRelativeCenterError = 1e-3;
-constexpr double kGreatestCenterError = 2.83;
-
-// It takes an arc of a smaller radius (mm, measured) for one of none.
-constexpr double kLeastRadius = 0.00127;
-
-// It reads sweeps below 1e-6 rad as a full turn. Ten times that keeps clear of rounding.
-constexpr double kLeastLinuxcncSweep = 1e-5;
-
-// TinyG: one of two thresholds around which its sources and their comments disagree; refusing by
-// the relative part alone is right in both readings.
-constexpr double kTinygRelative = 0.001;
-
-// mm: firmware that cuts arcs into chords runs nothing at all below a tenth of this.
-constexpr double kLeastLength = 0.01;
-
-// A sweep below this (0.1 degrees) depends on the last printed digits where nothing is known of
-// how the control computes.
-constexpr double kLeastKnownSweep = 0.1 * kDegree;
-
-// The centre is printed next to the bisector of the printed ends: the radii at the ends then differ
-// by 1.5 steps of its last decimal at the most (gcode/text/arc_center.h).
-constexpr double kStepsOfMismatch = 1.5;
-
-// Digits that grbl reads of a number; what follows them is not read, and behind the point it counts
-// for nothing.
-constexpr int kGrblDigits = 8;
-
-// More than any number of ours has.
-constexpr int kAllDecimals = 9;
-
 // The number that grbl reads from these digits: whole digits in 32 bits, times a hundredth and a
 // tenth as often as there were decimals, each time in 32 bits.
 float read_by_grbl(std::string_view text) {
@@ -77,7 +25,7 @@ float read_by_grbl(std::string_view text) {
       behind_point = true;
       continue;
     }
-    if (++count <= kGrblDigits) {
+    if (++count <= kArcRules.grbl_digits) {
       digits = digits * 10 + static_cast<std::uint32_t>(c - '0');
       exponent -= behind_point ? 1 : 0;
     } else {
@@ -96,10 +44,9 @@ float read_by_grbl(std::string_view text) {
 // A coordinate as grbl holds it: read in the program's units, inches then multiplied by 25.4 in 32
 // bits.
 float held(double mm, Units units) {
-  const double unit = units == Units::kInch ? kMmPerInch : 1;
-  // Noise of the last bits of a double is no digit of the text.
-  const float read = read_by_grbl(to_text(mm / unit, {.decimals = kAllDecimals}));
-  return units == Units::kInch ? read * static_cast<float>(kMmPerInch) : read;
+  constexpr int kMostDecimals = 9;  // more than any number of ours: further ones are noise
+  const double unit = millimetres_per(units);
+  return read_by_grbl(to_text(mm / unit, {.decimals = kMostDecimals})) * static_cast<float>(unit);
 }
 
 // The check of grbl's g-code parser, number by number, in 32 bits as on its processor.
@@ -115,8 +62,9 @@ bool radii_differ_in_32_bits(const geometry::Arc& arc, Units units) {
   const float start_radius = std::sqrt(offset_a * offset_a + offset_b * offset_b);
   const float end_radius = std::sqrt(end_a * end_a + end_b * end_b);
   const float mismatch = std::abs(end_radius - start_radius);
-  return mismatch > kMismatch &&
-         (mismatch > kGreatestMismatch || mismatch > kRelativeMismatch * start_radius);
+  return mismatch > kArcRules.grbl_mismatch &&
+         (mismatch > kArcRules.grbl_greatest_mismatch ||
+          mismatch > kArcRules.grbl_relative_mismatch * start_radius);
 }
 
 // Whether ends and centre, and each offset between them, are numbers that may be written.
@@ -127,13 +75,12 @@ bool is_written(const geometry::Arc& arc, double unit) {
   return true;
 }
 
-struct EndRadii {  // mm
+struct EndRadii {  // mm, in double precision
   double start = 0;
   double end = 0;
   [[nodiscard]] double mismatch() const { return std::abs(end - start); }
 };
 
-// In double precision.
 EndRadii end_radii(const geometry::Arc& arc) {
   const auto across = [&arc](const geometry::Point3& place) {
     const geometry::Vector3 from_center = place - arc.center;
@@ -144,8 +91,8 @@ EndRadii end_radii(const geometry::Arc& arc) {
 
 std::string_view sweep_complaint(const geometry::Arc& printed) {
   const double sweep = std::abs(printed.sweep);
-  if (sweep < kLeastSweep) return "arc of less than 0.5 degrees";
-  if (sweep > kGreatestSweep) return "arc of more than 350 degrees";
+  if (sweep < kArcRules.least_sweep) return "arc of less than 0.5 degrees";
+  if (sweep > kArcRules.greatest_sweep) return "arc of more than 350 degrees";
   return {};
 }
 
@@ -153,10 +100,10 @@ std::string_view sweep_complaint(const geometry::Arc& printed) {
 // ask for more, and the sweep is no matter of rounding.
 std::string_view strictest(const geometry::Arc& printed, Units units, const Control& control) {
   const double step = printed_step(center_format(control, units), units);
-  if (end_radii(printed).mismatch() > kStepsOfMismatch * step) {
+  if (end_radii(printed).mismatch() > kArcRules.steps_of_mismatch * step) {
     return "radii at the ends of the arc differ by more than the printed digits";
   }
-  if (std::abs(printed.sweep) < kLeastKnownSweep) return "arc of less than 0.1 degrees";
+  if (std::abs(printed.sweep) < kArcRules.least_known_sweep) return "arc of less than 0.1 degrees";
   return {};
 }
 
@@ -164,28 +111,21 @@ std::string_view strictest(const geometry::Arc& printed, Units units, const Cont
 // take the last chord to the end itself. The centre must not print as the start, and the arc must
 // be long enough to be run at all.
 std::string_view unchecked(const geometry::Arc& printed, Units units, const Control& control) {
-  if (end_radii(printed).start * std::abs(printed.sweep) < kLeastLength) {
+  if (end_radii(printed).start * std::abs(printed.sweep) < kArcRules.least_length) {
     return "arc so short that it is not run";
   }
   return strictest(printed, units, control);
 }
 
-std::string_view tinyg(const geometry::Arc& printed) {
-  const EndRadii radii = end_radii(printed);
-  if (radii.mismatch() > kTinygRelative * radii.start) {
-    return "radii at the ends of the arc differ by more than 0.1 %";
-  }
-  return sweep_complaint(printed);
-}
-
 std::string_view linuxcnc(const geometry::Arc& printed) {
   const EndRadii radii = end_radii(printed);
   const double shorter = std::min(radii.start, radii.end);
-  const double allowed =
-      std::min(std::max(kRadiusMismatch, kRelativeCenterError * shorter), kGreatestCenterError);
-  if (!(shorter > kLeastRadius)) return "arc with a radius of zero";
+  const double allowed = std::min(
+      std::max(kArcRules.linuxcnc_mismatch, kArcRules.linuxcnc_relative_mismatch * shorter),
+      kArcRules.linuxcnc_greatest_mismatch);
+  if (!(shorter > kArcRules.linuxcnc_least_radius)) return "arc with a radius of zero";
   if (radii.mismatch() > allowed) return "radius at the start differs from radius at the end";
-  if (std::abs(printed.sweep) < kLeastLinuxcncSweep) {
+  if (std::abs(printed.sweep) < kArcRules.linuxcnc_least_sweep) {
     return "arc so short that it is read as a full turn";
   }
   return {};
@@ -218,7 +158,9 @@ std::string_view complaint(const geometry::Arc& printed, Units units, const Cont
                  ? "error 33: radii at the ends of the arc differ"
                  : sweep_complaint(printed);
     case ArcRule::kTinyg:
-      return tinyg(printed);
+      return end_radii(printed).mismatch() > kArcRules.tinyg_mismatch * end_radii(printed).start
+                 ? "radii at the ends of the arc differ by more than 0.1 %"
+                 : sweep_complaint(printed);
     case ArcRule::kLinuxcnc:
       return linuxcnc(printed);
     case ArcRule::kFanuc:
@@ -238,7 +180,7 @@ std::string_view complaint(const geometry::Arc& printed, Units units, const Cont
 std::string_view arc_refusal(const Control& control, const geometry::Arc& printed, Units units) {
   if (!is_written(printed, millimetres_per(units))) return "numbers greater than any control takes";
   const EndRadii radii = end_radii(printed);
-  if (!(std::min(radii.start, radii.end) >= control.min_radius * (1 - kSameRadius))) {
+  if (!(std::min(radii.start, radii.end) >= control.min_radius * (1 - kArcRules.same_radius))) {
     return "arc radius below the least";
   }
   return complaint(printed, units, control);

@@ -13,7 +13,8 @@ constexpr std::string_view kLengthByD = "G43 G49 H";
 
 // Least increments of 0.001 mm and 0.0001 in: more digits are cut off or an alarm. The point is
 // always written, since X5 may be 5 increments. Half turns at the most, as posts write them.
-Control machining_center(std::string_view name, std::string_view description, SourceMarks marks) {
+Control machining_center(std::string_view name, std::string_view description, SourceMarks marks,
+                         std::vector<std::string_view> smoothing_words = {}) {
   Control control;
   control.name = name;
   control.description = description;
@@ -21,98 +22,74 @@ Control machining_center(std::string_view name, std::string_view description, So
   control.has_increments = true;
   control.max_line_length = 80;  // unknown for all of them; no line of ours needs more
   control.known_marks = marks;
+  control.smoothing_words = std::move(smoothing_words);
   return control;
 }
 
+// I J K are no offsets there, or not certainly: R says the same.
 void write_arcs_by_radius(Control& control) {
   control.arc_form = ArcForm::kRadius;
   control.max_sweep_deg = 90;
 }
 
-Control haas() {
-  Control control =
-      machining_center("haas", "Haas: arcs and helices in G17, G18, G19; decimal point always",
-                       kMacro | mark(SourceMark::kHaasSmoothness));
-  control.dwell_form = DwellForm::kSecondsByPoint;
-  control.smoothing_words = {
-      "before-run = [\"G187 P3 E{tolerance}\"]  # P1 to P3: which is rough and which fine is told "
-      "in",
-      "after-run = [\"G187\"]                    # both orders; E: corner rounding. Ask your "
-      "manual",
-      "(bare G187: back to setting 191 and 85)"};
-  return control;
-}
-
-Control mazak() {
-  Control control = machining_center(
-      "mazak", "Mazak EIA: arcs and helices in G17, G18, G19; decimal point always", kFanucLike);
-  control.smoothing_words = {
-      "before-run = [\"G61.1\"]  # geometry compensation; from memory, ask your manual",
-      "after-run = [\"G64\"]"};
-  return control;
-}
-
-Control okuma() {
-  Control control = machining_center(
-      "okuma", "Okuma OSP: arcs and helices in G17, G18, G19; decimal point always",
-      mark(SourceMark::kSuperNurbs));
-  control.smoothing_words = {
-      "before-run = [\"G131 F5000 J1 E{tolerance}\"]  # its numbers are the machine builder's",
-      "after-run = [\"G130\"]"};
-  // G54 to G59 are tool lengths there, work offsets are G15 H.
-  control.refused = "G43 G49 G54 G55 G56 G57 G58 G59 H";
-  return control;
-}
-
-Control brother() {
-  Control control = machining_center(
-      "brother", "Brother Speedio: arcs and helices in G17, G18, G19; decimal point always",
-      kFanucLike);
-  control.smoothing_words = {
-      "before-run = [\"M262\"]  # M260 series, high accuracy; from memory, ask your manual",
-      "after-run = [\"M269\"]"};
-  return control;
-}
-
-// ISNC takes I J K as offsets, BNC as places: R is the same in both.
-Control hurco() {
-  Control control = machining_center(
-      "hurco", "Hurco: arcs by R and helices in G17, G18, G19; decimal point always", kMacro);
-  write_arcs_by_radius(control);
-  control.smoothing_words = {
-      "before-run = [\"G5.3 P10\"]  # quality, P10 fine to P35; seen in posts alone",
-      "after-run = [\"G5.3 P35\"]"};
-  return control;
-}
-
-Control fagor() {
-  Control control = machining_center(
-      "fagor", "Fagor 8055 to 8070: arcs and helices in G17, G18, G19; G70 and G71",
-      mark(SourceMark::kHashCommand));
-  control.decimal_point = false;
-  control.refused = kLengthByD;
-  control.other_meanings = {{200, "no inch word on Fagor, whose units are G70 and G71"},
-                            {210, "no millimetre word on Fagor, whose units are G70 and G71"}};
-  return control;
-}
-
-// I J K are places under G90 there, offsets to the reader: R says the same to both.
-Control num() {
-  Control control =
-      machining_center("num", "NUM: arcs by R and helices in G17, G18, G19; G70 and G71", 0);
-  control.decimal_point = false;
-  write_arcs_by_radius(control);
-  control.refused = kLengthByD;
-  control.other_meanings = {
-      {200, "no inch word on NUM (polar programming), whose units are G70 and G71"},
-      {210, "no millimetre word on NUM (axes of programming), whose units are G70 and G71"}};
-  return control;
-}
-
 }  // namespace
 
 std::vector<Control> machining_center_family() {
-  return {haas(), mazak(), okuma(), brother(), hurco(), fagor(), num()};
+  Control haas = machining_center(
+      "haas", "Haas: arcs and helices in G17, G18, G19; decimal point always",
+      kMacro | mark(SourceMark::kHaasSmoothness),
+      {"before-run = [\"G187 P3 E{tolerance}\"]  # P1 to P3: which is rough and which fine is told "
+       "in",
+       "after-run = [\"G187\"]                    # both orders; E: corner rounding. Ask your "
+       "manual",
+       "(bare G187: back to setting 191 and 85)"});
+  haas.dwell_form = DwellForm::kSecondsByPoint;
+
+  const Control mazak = machining_center(
+      "mazak", "Mazak EIA: arcs and helices in G17, G18, G19; decimal point always", kFanucLike,
+      {"before-run = [\"G61.1\"]  # geometry compensation; from memory, ask your manual",
+       "after-run = [\"G64\"]"});
+
+  Control okuma = machining_center(
+      "okuma", "Okuma OSP: arcs and helices in G17, G18, G19; decimal point always",
+      mark(SourceMark::kSuperNurbs),
+      {"before-run = [\"G131 F5000 J1 E{tolerance}\"]  # its numbers are the machine builder's",
+       "after-run = [\"G130\"]"});
+  // G54 to G59 are tool lengths there, work offsets are G15 H.
+  okuma.refused = "G43 G49 G54 G55 G56 G57 G58 G59 H";
+
+  const Control brother = machining_center(
+      "brother", "Brother Speedio: arcs and helices in G17, G18, G19; decimal point always",
+      kFanucLike,
+      {"before-run = [\"M262\"]  # M260 series, high accuracy; from memory, ask your manual",
+       "after-run = [\"M269\"]"});
+
+  // ISNC takes I J K as offsets, BNC as places.
+  Control hurco = machining_center(
+      "hurco", "Hurco: arcs by R and helices in G17, G18, G19; decimal point always", kMacro,
+      {"before-run = [\"G5.3 P10\"]  # quality, P10 fine to P35; seen in posts alone",
+       "after-run = [\"G5.3 P35\"]"});
+  write_arcs_by_radius(hurco);
+
+  Control fagor = machining_center(
+      "fagor", "Fagor 8055 to 8070: arcs and helices in G17, G18, G19; G70 and G71",
+      mark(SourceMark::kHashCommand));
+  fagor.decimal_point = false;
+  fagor.refused = kLengthByD;
+  fagor.other_meanings = {{200, "no inch word on Fagor, whose units are G70 and G71"},
+                          {210, "no millimetre word on Fagor, whose units are G70 and G71"}};
+
+  // I J K are places under G90 there, offsets to the reader.
+  Control num =
+      machining_center("num", "NUM: arcs by R and helices in G17, G18, G19; G70 and G71", 0);
+  num.decimal_point = false;
+  write_arcs_by_radius(num);
+  num.refused = kLengthByD;
+  num.other_meanings = {
+      {200, "no inch word on NUM (polar programming), whose units are G70 and G71"},
+      {210, "no millimetre word on NUM (axes of programming), whose units are G70 and G71"}};
+
+  return {haas, mazak, okuma, brother, hurco, fagor, num};
 }
 
 }  // namespace batten::gcode

@@ -63,8 +63,7 @@ std::string with_numbers(std::string_view text, std::uint32_t first) {
   while (const auto line = lines.next()) {
     std::string_view whole = text.substr(line->begin, line->end - line->begin);
     if (takes_number(text.substr(line->begin, line->text_end - line->begin))) {
-      numbered += std::to_string(first++);
-      numbered += ' ';
+      numbered += std::to_string(first++) + ' ';
       whole = without_number(whole);
     }
     numbered += whole;

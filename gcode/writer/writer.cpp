@@ -1,6 +1,5 @@
 #include "gcode/writer/writer.h"
 
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -10,7 +9,6 @@
 #include "gcode/controls/arc_rules.h"
 #include "gcode/curves/curve_format.h"
 #include "gcode/reading/parser.h"
-#include "gcode/state/modal_state.h"
 #include "gcode/text/arc_center.h"
 #include "gcode/text/number_format.h"
 #include "geometry/basic/rounding.h"
@@ -19,9 +17,6 @@ namespace batten::gcode {
 namespace {
 
 using geometry::Point3;
-
-// Enough for any number of a source.
-constexpr int kAllDecimals = 9;
 
 const PlaneAxes& arc_plane(const geometry::Vector3& axis) {
   const PlaneAxes* plane = plane_across(axis);
@@ -47,15 +42,9 @@ double sweep_between(const PlanePoint& start, const PlanePoint& end, const Plane
 }
 
 void check(const ModalState& modal) {
-  if (modal.units == Units::kUnknown) {
-    throw std::invalid_argument("Writer: units unknown, expected millimetre or inch");
-  }
-  if (modal.distance != DistanceMode::kAbsolute) {
-    throw std::invalid_argument("Writer: distances not absolute, expected G90");
-  }
-  if (modal.feed_mode != FeedMode::kPerMinute) {
-    throw std::invalid_argument("Writer: feeds not per minute, expected G94");
-  }
+  const bool known = modal.units != Units::kUnknown && modal.distance == DistanceMode::kAbsolute &&
+                     modal.feed_mode == FeedMode::kPerMinute;
+  if (!known) throw std::invalid_argument("Writer: expected known units, G90 and G94");
 }
 
 }  // namespace
@@ -66,6 +55,15 @@ struct Writer::PrintedArc {
   Coordinates end;
   std::array<std::string, 2> center;  // of the plane's first and second axis; empty: left out
   std::string radius;                 // empty where the centre is given
+
+  // All in the plane, in units of the program; `sweep` as wished.
+  void turn_about(const PlanePoint& about, const PlanePoint& from, const PlanePoint& to,
+                  double sweep, double unit) {
+    arc.sweep = sweep_between(from, to, about, sweep);
+    arc.center = arc.start;
+    arc.center[plane.first] = about.x() * unit;
+    arc.center[plane.second] = about.y() * unit;
+  }
 };
 
 Writer::Writer(const Control& control, WriterState state, std::string_view line_end)
@@ -107,23 +105,22 @@ void Writer::copy_line(std::string_view text) {
 void Writer::restore(const ModalState& expected) {
   if (expected.motion == MotionMode::kUnknown) end_curve();
   if (expected.plane != Plane::kUnknown) add_plane(expected.plane);
+  const bool rapid = expected.motion == MotionMode::kRapid;
   const bool wants_motion = expected.motion != MotionMode::kUnknown &&
                             expected.motion != state_.modal.motion &&
                             motion_stays(control_.language);
-  if (wants_motion) {
-    if (expected.motion != MotionMode::kLine && expected.motion != MotionMode::kRapid) {
-      throw std::invalid_argument(
-          "Writer::restore: a motion word that cannot stand alone, "
-          "expected G0 or G1");
-    }
-    add_motion(expected.motion);
+  if (wants_motion && !rapid && expected.motion != MotionMode::kLine) {
+    throw std::invalid_argument(
+        "Writer::restore: expected G0 or G1, which can be alone in a block");
   }
+  if (wants_motion) add_motion(expected.motion);
   if (expected.feed) add_feed(*expected.feed);
-  if (block_.says_only_feed() && control_.repeats_words) {
-    const bool rapid = expected.motion == MotionMode::kRapid;
+  SpokenBlock feed_alone;
+  feed_alone.feed = block_.feed;
+  if (!block_.feed.empty() && block_ == feed_alone && control_.repeats_words) {
     add_motion(rapid ? MotionMode::kRapid : MotionMode::kLine);
   }
-  if (!block_.is_empty()) end_block();
+  if (block_ != SpokenBlock()) end_block();
 }
 
 Writer::Coordinate Writer::print(int axis, double mm) const {
@@ -196,7 +193,7 @@ Writer::Coordinates Writer::print_arc_end(const Point3& end, const PlaneAxes& pl
 void Writer::name_again(Coordinate& coordinate) const {
   if (coordinate.changes) return;
   NumberFormat exact = coordinates_;
-  exact.decimals = kAllDecimals;
+  exact.decimals = 9;  // enough for any number of a source
   exact.trailing_zeros = false;
   coordinate.changes = true;
   coordinate.digits = to_text(coordinate.mm / unit_, exact);
@@ -220,10 +217,7 @@ void Writer::print_center(const Point3& wanted, double sweep, PrintedArc& printe
     const bool says_nothing = !absolute_centers() && steps[i] == 0 && steps[1 - i] != 0;
     if (!says_nothing) printed.center[static_cast<std::size_t>(i)] = std::move(digits);
   }
-  printed.arc.sweep = sweep_between(start, end, center, sweep);
-  printed.arc.center = printed.arc.start;
-  printed.arc.center[plane.first] = center.x() * unit_;
-  printed.arc.center[plane.second] = center.y() * unit_;
+  printed.turn_about(center, start, end, sweep, unit_);
 }
 
 // The radius in the program's units; then the centre that it says, and the sweep. False where R
@@ -246,10 +240,7 @@ bool Writer::print_radius(const Point3& wanted, double sweep, PrintedArc& printe
   // The centre of a short counter-clockwise arc lies to the left of its chord.
   const double side = sweep > 0 ? 1 : -1;
   const PlanePoint center = middle + side * std::sqrt(radius * radius - half.squaredNorm()) * along;
-  printed.arc.sweep = sweep_between(start, end, center, sweep);
-  printed.arc.center = printed.arc.start;
-  printed.arc.center[plane.first] = center.x() * unit_;
-  printed.arc.center[plane.second] = center.y() * unit_;
+  printed.turn_about(center, start, end, sweep, unit_);
   return true;
 }
 
@@ -290,12 +281,10 @@ void Writer::add_feed(double feed) {
 
 void Writer::end_block() {
   add_lines(block_, control_.language, control_.blanks, line_end_, text_);
-  block_.clear();
+  block_ = {};
 }
 
 namespace {
-
-using geometry::Point3;
 
 // The axes that the curve moves by more than rounding noise.
 std::array<bool, 3> moved_axes(const geometry::BsplineCurve& curve, const Point3& start) {
@@ -307,13 +296,6 @@ std::array<bool, 3> moved_axes(const geometry::BsplineCurve& curve, const Point3
     }
   }
   return moved;
-}
-
-bool all_known(const std::array<bool, 3>& axes, const Position& position) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (axes[axis] && !position.known[axis]) return false;
-  }
-  return true;
 }
 
 // Where the curve ends that the control reads in these lines, and its feed.
@@ -354,7 +336,9 @@ bool Writer::curve_to(const geometry::BsplineCurve& curve, double feed, int last
   setting.start = state_.position.mm;
   setting.axes = moved_axes(curve, setting.start);
   if (format->names_all_axes) setting.axes = {true, true, true};
-  if (!all_known(setting.axes, state_.position)) return false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (setting.axes[axis] && !state_.position.known[axis]) return false;
+  }
   if (!feed_is_said(feed)) setting.feed = feed;
   setting.blanks = control_.blanks;
 

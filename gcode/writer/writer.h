@@ -1,5 +1,5 @@
-// Writes blocks for one control: words that change nothing are left out, numbers are
-// rounded to the control's decimals, and the rounded place is the writer's place.
+// Writes blocks for one control: words that change nothing are left out, numbers are rounded to the
+// control's decimals, and the rounded position is the writer's position.
 #pragma once
 
 #include <array>
@@ -32,46 +32,41 @@ class Writer {
   // From here on feeds are whole numbers without a decimal point.
   void use_feeds_without_point() { feeds_ = {.decimals = 0}; }
 
-  // A straight move at feed rate. Words of axes whose printed value does not change are left
-  // out; a move that moves nothing writes nothing. `feed` in mm/min; written when it changes.
-  // An axis that is already at its end to within kSamePlace stays there, even where its
-  // number has more decimals than are printed.
+  // A straight move at feed rate (mm/min; written when it changes). Words of axes whose printed
+  // value does not change are left out; a move that moves nothing writes nothing. An axis that is
+  // already at its end to within kSamePlace stays there, even where its number has more decimals.
   void line_to(const geometry::Point3& end, double feed);
 
-  // An arc in the plane across `arc.axis` (which must be an axis of the coordinate system;
-  // throws std::invalid_argument otherwise). Starts at the writer's place; arc.start is not
-  // looked at. Selects the plane when it is not active. The printed centre offsets, or the radius
-  // where the control gives that, are computed from the printed start and end, so that both radii
-  // agree to within rounding. Returns false
-  // and writes nothing when the control's rules refuse the printed arc, when rounding would make
-  // it a full turn or none, or when it is not known how centres are to be given (G90.1, G91.1).
+  // An arc in the plane across `arc.axis` (throws std::invalid_argument unless that is an axis of
+  // the coordinate system) from the writer's position, whatever arc.start is. Selects the plane
+  // when it is not active. The printed centre offsets, or the radius where the control gives that,
+  // are computed from the printed ends, so that both radii agree to within rounding. Returns false
+  // and writes nothing when the control's rules refuse the printed arc, when rounding would make it
+  // a full turn or none, or when it is not known how centres are to be given (G90.1, G91.1).
   [[nodiscard]] bool arc_to(const geometry::Arc& arc, double feed);
 
-  // A clamped cubic curve in the control's own words (Control::curves), from the writer's place,
+  // A clamped cubic curve in the control's own words (Control::curves), from the writer's position,
   // which is the curve's first point but for rounding. Axes that it does not move are not named,
-  // unless the control wants them. `last_decimals`: the last place may have so many, where they are
-  // more than coordinates have. What is written is read again: the writer's place is where the
-  // printed curve ends. Returns false and writes nothing where the control has no curves, refuses
-  // this one or the state, or does not read what it wrote.
-  //
-  // Afterwards the motion mode is MotionMode::kOther: what follows says its motion word.
+  // unless the control wants them. `last_decimals`: of the last place, where they are more than
+  // coordinates have. What is written is read again, for the writer's position. Returns false and
+  // writes nothing where the control has no curves, refuses this one or the state, or does not read
+  // what it wrote. Afterwards the motion mode is MotionMode::kOther: what follows says its own.
   [[nodiscard]] bool curve_to(const geometry::BsplineCurve& curve, double feed, int last_decimals);
 
-  // Ends a curve that the control takes as going on: the motion word of lines, on a line of its
-  // own. Writes nothing when no curve was written last.
+  // Ends a curve that the control takes as going on, if one was written last: the motion word of
+  // lines, on a line of its own.
   void end_curve();
 
   // A line of its own, copied as it is (a comment of the source).
   void copy_line(std::string_view text);
 
-  // Restores plane, motion word and feed, so that the next copied block finds what it
-  // expects. Writes at most one block, and none when nothing differs. What `expected` does not
-  // know is left as it is. Throws std::invalid_argument when it expects a motion word that
-  // cannot stand alone (only G0 and G1 can) and that is not active.
+  // Restores plane, motion word and feed for the next copied block, by one block at the most. What
+  // `expected` does not know stays. Throws std::invalid_argument when it expects a motion word
+  // other than G0 and G1 that is not active.
   void restore(const ModalState& expected);
 
-  // Whether it is known how arc centres are to be given, or they are not given at all; arc_to
-  // refuses every arc where not.
+  // Whether it is known how arc centres are to be given, if at all; arc_to refuses every arc if
+  // not.
   [[nodiscard]] bool centers_understood() const;
 
   [[nodiscard]] const std::string& text() const { return text_; }

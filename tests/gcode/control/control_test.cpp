@@ -78,48 +78,44 @@ struct ArcCase {
   bool taken;
 };
 
-class ArcRule : public testing::TestWithParam<ArcCase> {};
+const ArcCase kArcRows[] = {
+    // grbl: refused above 0.005 mm, if also above 0.1 % of the radius or above 0.5 mm
+    {"GrblExact", "grbl", 10, 90, 0, true},
+    {"GrblJustBelow5Micrometres", "grbl", 1, 90, 0.0049, true},
+    {"GrblAbove5MicrometresAndAbove0_1Percent", "grbl", 1, 90, 0.0055, false},
+    {"GrblAbove5MicrometresBelow0_1Percent", "grbl", 10, 90, 0.0090, true},
+    {"GrblAbove0_1Percent", "grbl", 10, 90, 0.0110, false},
+    {"GrblInwards", "grbl", 10, 90, -0.0110, false},
+    {"GrblAboveHalfAMillimetre", "grbl", 900, 90, 0.51, false},
+    {"GrblBelowHalfAMillimetre", "grbl", 900, 90, 0.49, true},
+    {"GrblTooTight", "grbl", 0.09, 90, 0, false},
+    {"GrblTightest", "grbl", 0.11, 90, 0, true},
+    {"GrblTooShort", "grbl", 10, 0.45, 0, false},
+    {"GrblShortest", "grbl", 10, 0.55, 0, true},
+    {"GrblNearlyAFullTurn", "grbl", 10, 355, 0, false},
+    {"GrblLongest", "grbl", 10, 345, 0, true},
+    {"GrblClockwise", "grbl", 10, -90, 0, true},
+    // LinuxCNC: 0.0283 mm, or 0.1 % of the radius up to 2.83 mm
+    // and a least radius of 0.05 mm, ours
+    {"LinuxcncTooTight", "linuxcnc", 0.0499, 90, 0, false},
+    {"LinuxcncOfMicrometres", "linuxcnc", 0.00015, 90, 0, false},
+    {"LinuxcncTightest", "linuxcnc", 0.05, 90, 0, true},
+    {"LinuxcncExact", "linuxcnc", 10, 90, 0, true},
+    {"LinuxcncBelow28Micrometres", "linuxcnc", 1, 90, 0.0280, true},
+    {"LinuxcncAbove28Micrometres", "linuxcnc", 1, 90, 0.0290, false},
+    {"LinuxcncBelow0_1Percent", "linuxcnc", 100, 90, 0.0990, true},
+    {"LinuxcncAbove0_1Percent", "linuxcnc", 100, 90, 0.1010, false},
+    {"LinuxcncAboveItsLimit", "linuxcnc", 5000, 90, 2.9, false},
+    {"LinuxcncFullTurn", "linuxcnc", 10, 360, 0, true},
+    {"LinuxcncReadAsAFullTurn", "linuxcnc", 10, 1e-5, 0, false}};
 
-TEST_P(ArcRule, TakesOrRefuses) {
-  const ArcCase& test = GetParam();
-  const Arc arc = arc_with(test.radius, test.sweep_deg * std::numbers::pi / 180, test.mismatch);
-  const auto complaint = arc_refusal(named_control(test.control), arc, Units::kMillimetre);
-  EXPECT_EQ(complaint.empty(), test.taken) << complaint;
+TEST(ArcRule, TakesOrRefuses) {
+  for (const ArcCase& test : kArcRows) {
+    const Arc arc = arc_with(test.radius, test.sweep_deg * std::numbers::pi / 180, test.mismatch);
+    const auto complaint = arc_refusal(named_control(test.control), arc, Units::kMillimetre);
+    EXPECT_EQ(complaint.empty(), test.taken) << test.name << ": " << complaint;
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Controls, ArcRule,
-    testing::Values(
-        // grbl: refused above 0.005 mm, if also above 0.1 % of the radius or above 0.5 mm
-        ArcCase{"GrblExact", "grbl", 10, 90, 0, true},
-        ArcCase{"GrblJustBelow5Micrometres", "grbl", 1, 90, 0.0049, true},
-        ArcCase{"GrblAbove5MicrometresAndAbove0_1Percent", "grbl", 1, 90, 0.0055, false},
-        ArcCase{"GrblAbove5MicrometresBelow0_1Percent", "grbl", 10, 90, 0.0090, true},
-        ArcCase{"GrblAbove0_1Percent", "grbl", 10, 90, 0.0110, false},
-        ArcCase{"GrblInwards", "grbl", 10, 90, -0.0110, false},
-        ArcCase{"GrblAboveHalfAMillimetre", "grbl", 900, 90, 0.51, false},
-        ArcCase{"GrblBelowHalfAMillimetre", "grbl", 900, 90, 0.49, true},
-        ArcCase{"GrblTooTight", "grbl", 0.09, 90, 0, false},
-        ArcCase{"GrblTightest", "grbl", 0.11, 90, 0, true},
-        ArcCase{"GrblTooShort", "grbl", 10, 0.45, 0, false},
-        ArcCase{"GrblShortest", "grbl", 10, 0.55, 0, true},
-        ArcCase{"GrblNearlyAFullTurn", "grbl", 10, 355, 0, false},
-        ArcCase{"GrblLongest", "grbl", 10, 345, 0, true},
-        ArcCase{"GrblClockwise", "grbl", 10, -90, 0, true},
-        // LinuxCNC: 0.0283 mm, or 0.1 % of the radius up to 2.83 mm
-        // and a least radius of 0.05 mm, ours
-        ArcCase{"LinuxcncTooTight", "linuxcnc", 0.0499, 90, 0, false},
-        ArcCase{"LinuxcncOfMicrometres", "linuxcnc", 0.00015, 90, 0, false},
-        ArcCase{"LinuxcncTightest", "linuxcnc", 0.05, 90, 0, true},
-        ArcCase{"LinuxcncExact", "linuxcnc", 10, 90, 0, true},
-        ArcCase{"LinuxcncBelow28Micrometres", "linuxcnc", 1, 90, 0.0280, true},
-        ArcCase{"LinuxcncAbove28Micrometres", "linuxcnc", 1, 90, 0.0290, false},
-        ArcCase{"LinuxcncBelow0_1Percent", "linuxcnc", 100, 90, 0.0990, true},
-        ArcCase{"LinuxcncAbove0_1Percent", "linuxcnc", 100, 90, 0.1010, false},
-        ArcCase{"LinuxcncAboveItsLimit", "linuxcnc", 5000, 90, 2.9, false},
-        ArcCase{"LinuxcncFullTurn", "linuxcnc", 10, 360, 0, true},
-        ArcCase{"LinuxcncReadAsAFullTurn", "linuxcnc", 10, 1e-5, 0, false}),
-    [](const auto& test) { return test.param.name; });
 
 TEST(Grbl, JudgesArcsInEveryPlaneAlike) {
   const Arc flat = arc_with(10, 1, 0.02);

@@ -119,7 +119,6 @@ TEST(Writer, RefusesStatesInWhichItsNumbersWouldMeanSomethingElse) {
 // --- arcs ---------------------------------------------------------------------------------------
 
 struct PlaneCase {
-  std::string name;
   Point3 start;
   Point3 center;
   Vector3 axis;
@@ -128,50 +127,29 @@ struct PlaneCase {
   std::string expected;
 };
 
-class ArcPlanes : public testing::TestWithParam<PlaneCase> {};
-
 // Expected by hand: a quarter turn of radius 10. In G18 the first axis is Z and the second X, so
 // that counter-clockwise seen from +Y goes from Z to X.
-TEST_P(ArcPlanes, AreWrittenSo) {
-  const PlaneCase& test = GetParam();
-  Writer out = writer_at("linuxcnc", cutting_in(Units::kMillimetre), test.start);
-  ASSERT_TRUE(
-      out.arc_to(arc_round(test.start, test.center, test.axis, test.sweep, test.rise), 1000));
-  EXPECT_EQ(out.text(), test.expected);
+TEST(Writer, WritesArcsInTheirPlanes) {
+  const Vector3 x = Vector3::UnitX();
+  const Vector3 y = Vector3::UnitY();
+  const Vector3 z = Vector3::UnitZ();
+  const PlaneCase rows[] = {{{10, 0, 0}, {0, 0, 0}, z, kPi / 2, 0, "G3 X0 Y10 I-10\n"},
+                            {{10, 0, 0}, {0, 0, 0}, z, -kPi / 2, 0, "G2 X0 Y-10 I-10\n"},
+                            {{10, 0, 0}, {0, 0, 0}, -z, kPi / 2, 0, "G2 X0 Y-10 I-10\n"},
+                            {{0, 5, 10}, {0, 5, 0}, y, kPi / 2, 0, "G18 G3 X10 Z0 K-10\n"},
+                            {{10, 5, 0}, {0, 5, 0}, y, -kPi / 2, 0, "G18 G2 X0 Z10 I-10\n"},
+                            {{5, 10, 0}, {5, 0, 0}, x, kPi / 2, 0, "G19 G3 Y0 Z10 J-10\n"},
+                            {{10, 0, 0}, {0, 0, 0}, z, kPi / 2, -1.5, "G3 X0 Y10 Z-1.5 I-10\n"},
+                            {{0, 5, 10}, {0, 5, 0}, y, kPi / 2, 2, "G18 G3 X10 Y7 Z0 K-10\n"},
+                            {{10, 0, 0}, {0, 0, 0}, z, kPi, 0, "G3 X-10 I-10\n"},
+                            {{10, 1, 0}, {0, 1, 0}, z, 2 * kPi, 0, "G3 X10 I-10\n"}};
+  for (const PlaneCase& test : rows) {
+    Writer out = writer_at("linuxcnc", cutting_in(Units::kMillimetre), test.start);
+    EXPECT_TRUE(
+        out.arc_to(arc_round(test.start, test.center, test.axis, test.sweep, test.rise), 1000));
+    EXPECT_EQ(out.text(), test.expected);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Writer, ArcPlanes,
-    testing::Values(
-        PlaneCase{
-            "XyCounterclockwise", {10, 0, 0}, {0, 0, 0}, {0, 0, 1}, kPi / 2, 0, "G3 X0 Y10 I-10\n"},
-        PlaneCase{
-            "XyClockwise", {10, 0, 0}, {0, 0, 0}, {0, 0, 1}, -kPi / 2, 0, "G2 X0 Y-10 I-10\n"},
-        PlaneCase{
-            "XySeenFromBelow", {10, 0, 0}, {0, 0, 0}, {0, 0, -1}, kPi / 2, 0, "G2 X0 Y-10 I-10\n"},
-        PlaneCase{"ZxCounterclockwise",
-                  {0, 5, 10},
-                  {0, 5, 0},
-                  {0, 1, 0},
-                  kPi / 2,
-                  0,
-                  "G18 G3 X10 Z0 K-10\n"},
-        PlaneCase{
-            "ZxClockwise", {10, 5, 0}, {0, 5, 0}, {0, 1, 0}, -kPi / 2, 0, "G18 G2 X0 Z10 I-10\n"},
-        PlaneCase{"YzCounterclockwise",
-                  {5, 10, 0},
-                  {5, 0, 0},
-                  {1, 0, 0},
-                  kPi / 2,
-                  0,
-                  "G19 G3 Y0 Z10 J-10\n"},
-        PlaneCase{
-            "HelixInXy", {10, 0, 0}, {0, 0, 0}, {0, 0, 1}, kPi / 2, -1.5, "G3 X0 Y10 Z-1.5 I-10\n"},
-        PlaneCase{
-            "HelixInZx", {0, 5, 10}, {0, 5, 0}, {0, 1, 0}, kPi / 2, 2, "G18 G3 X10 Y7 Z0 K-10\n"},
-        PlaneCase{"HalfTurn", {10, 0, 0}, {0, 0, 0}, {0, 0, 1}, kPi, 0, "G3 X-10 I-10\n"},
-        PlaneCase{"FullTurn", {10, 1, 0}, {0, 1, 0}, {0, 0, 1}, 2 * kPi, 0, "G3 X10 I-10\n"}),
-    [](const auto& test) { return test.param.name; });
 
 TEST(Writer, WritesAbsoluteCentersWhereTheProgramSaysSo) {
   ModalState modal = cutting_in(Units::kMillimetre);
