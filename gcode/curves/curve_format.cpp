@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <variant>
 
 namespace batten::gcode {
 namespace {
@@ -50,8 +49,7 @@ Motion motion_of(const CurveMotion& piece, const CurveReading& curve) {
   Motion motion;
   motion.block = piece.block;
   motion.kind = MotionKind::kCurve;
-  motion.start_known = true;
-  motion.end_known = true;
+  motion.start_known = motion.end_known = true;
   motion.axes_named = curve.axes;
   motion.piece = piece.piece;
   return motion;

@@ -1,5 +1,4 @@
-// The curve words of one control (Control::curves), and curves in the midst of a program. The text
-// itself is made and read by the functions beside this file.
+// The curve words of one control (Control::curves), and curves in the midst of a program.
 #pragma once
 
 #include <array>
@@ -23,8 +22,7 @@
 
 namespace batten::gcode {
 
-// How a curve is printed. What a format prints beside places (knots, weights, coefficients) has
-// decimals of its own, in `other`.
+// How a curve is printed.
 struct CurveSetting {
   Units units = Units::kMillimetre;
   NumberFormat places;  // control points and ends of pieces
@@ -34,8 +32,8 @@ struct CurveSetting {
   // The axes that are named, all of them in each block that names any. The curve does not move
   // the others.
   std::array<bool, 3> axes = {true, true, true};
-  // Where the tool stands (mm), as the control knows it. The curve's first point is this place but
-  // for what rounding moved; what is written starts here exactly.
+  // The tool's position (mm) as the control knows it: the curve's first point but for what rounding
+  // moved. What is written starts here exactly.
   geometry::Point3 start = geometry::Point3::Zero();
   std::optional<double> feed;  // mm/min, said in the first block; nothing: it is set already
   bool blanks = true;          // between words
@@ -46,7 +44,7 @@ struct CurveRefusal {
   std::string why;
 };
 
-// Whole blocks without line ends, in order. Nothing stands between them in the program.
+// Whole blocks without line ends, in order, with nothing between them.
 using CurveLines = std::vector<std::string>;
 using CurveWriting = std::variant<CurveLines, CurveRefusal>;
 
@@ -70,31 +68,23 @@ struct CurveReading {
 };
 
 // A refusal where the blocks are no curve, or one that is not read exactly: a weight that is not 1,
-// other words between, a start that is not where the tool stands, the program ends inside it.
+// other words between, a start that is not the tool's position, the program ends inside it.
 using CurveResult = std::variant<CurveReading, CurveRefusal>;
 
 // A format as a value: what differs between the curves of controls, and the functions that write
 // and read them.
 struct CurveFormat {
   std::string_view name;  // "G06.2"
-
   // Whether curves are tried under --output auto: the control reads them without an option that
   // the user has to own, and runs them as they are meant.
   bool is_default = false;
-
-  // What a user has to be told when such curves were written, since it is not verified; empty where
-  // there is nothing.
-  std::string_view caution;
-
+  std::string_view caution;  // for who gets such curves: what is not verified; empty: nothing
   // Whether every piece is a block for itself. Otherwise a curve has blocks beside those of its
   // pieces, and short curves are not worth them.
   bool is_block_per_piece = true;
-
   bool names_all_axes = false;  // X, Y and Z in every curve, moved or not
   bool only_in_xy = false;      // under G17
-
-  // How knots, coefficients or offsets are printed.
-  NumberFormat other_mm;
+  NumberFormat other_mm;        // of knots, coefficients or offsets
   NumberFormat other_inch;
 
   std::function<CurveWriting(const geometry::BsplineCurve&, const CurveSetting&)> write;
@@ -111,8 +101,8 @@ struct CurveFormat {
   std::function<double(const geometry::CubicBezier&)> chords_error = [](const auto&) { return 0; };
 };
 
-// Whether a curve may start in this state, as far as the words of a motion are its path there: no
-// compensation, no frames, absolute distances, feed per minute. What is not known is not so.
+// Whether a curve may start in this state: no compensation, no frames, absolute distances, feed per
+// minute. What is not known is not so.
 [[nodiscard]] bool may_start(const CurveFormat& format, const ModalState& state);
 
 // The curve that starts in block `first`. Nothing where `format` is nullptr or reads none there, in

@@ -1,9 +1,9 @@
 #include "gcode/curves/curve_print.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <stdexcept>
 #include <utility>
 
 #include "gcode/state/modal_state.h"
@@ -70,10 +70,7 @@ bool is_clamped_cubic(const geometry::BsplineCurve& curve) {
 }
 
 double greatest_move(std::span<const CubicBezier> a, std::span<const CubicBezier> b) {
-  if (a.size() != b.size()) {
-    throw std::invalid_argument("greatest_move: " + std::to_string(b.size()) +
-                                " pieces, expected " + std::to_string(a.size()));
-  }
+  assert(a.size() == b.size());
   double greatest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     for (int j = 0; j < 4; ++j) {
@@ -96,9 +93,6 @@ double kink_between(const CubicBezier& before, const CubicBezier& after) {
 }
 
 namespace {
-
-// With fewer steps hardly any curve keeps its shape, and no byte is saved.
-constexpr int kFewestPlaces = 2;
 
 // Knots that differ by rounding noise are one knot.
 std::vector<double> without_noise(std::vector<double> knots) {
@@ -136,8 +130,9 @@ std::optional<PrintedKnots> print_knots(const geometry::BsplineCurve& curve,
   const std::vector<CubicBezier> wanted = pieces_with(curve, exact);
   std::optional<PrintedKnots> finest;
   const int before_point = digits.digits - digits.decimals;
-  // The last knot is 10^places, a number of places + 1 digits.
-  for (int places = std::min(kFewestPlaces, digits.digits - 1); places < digits.digits; ++places) {
+  // The last knot is 10^places, a number of places + 1 digits. With fewer than 100 steps hardly any
+  // curve keeps its shape, and no byte is saved.
+  for (int places = std::min(2, digits.digits - 1); places < digits.digits; ++places) {
     const std::vector<std::int64_t> rounded = in_steps(exact, std::pow(10.0, places));
     if (rounded.empty()) continue;
     PrintedKnots printed;

@@ -1,5 +1,4 @@
-// The numbers of curve blocks: printed, and at once as the control will read them; how far the
-// printed curve is from the given one.
+// The numbers of curve blocks, printed and as the control will read them.
 #pragma once
 
 #include <array>
@@ -30,11 +29,10 @@ class PlacePrinter {
   // Rounded to the decimals of places; the last place of a curve may have more.
   [[nodiscard]] PrintedPlace place(const geometry::Point3& mm, bool is_last) const;
 
-  // Where the curve starts, exactly; nothing when that needs more decimals than the last place
-  // may have.
+  // The start, exactly; nothing when that needs more decimals than the last place may have.
   [[nodiscard]] std::optional<PrintedPlace> start() const;
 
-  // Whether the curve's first point is where the tool stands, to within a printed step.
+  // Whether the curve's first point is the tool's position, to within a printed step.
   [[nodiscard]] bool starts_at(const geometry::Point3& first) const;
 
   // Millimetres to one unit of the program.
@@ -56,16 +54,13 @@ void add_word(std::string& line, std::string_view word, const CurveSetting& sett
 // The words of the axes that are named.
 void add_place(std::string& line, const PrintedPlace& place, const CurveSetting& setting);
 
-// Whether the curve is a cubic that starts and ends in its outer control points: what the curve
-// blocks of most controls can hold.
+// Whether the curve is a cubic that starts and ends in its outer control points.
 [[nodiscard]] bool is_clamped_cubic(const geometry::BsplineCurve& curve);
-
-// --- chains of cubic Bezier pieces, as curve words say them one by one --------------------------
 
 // How far two chains are apart at most (mm), pieces taken in pairs at equal parameters: the
 // greatest distance of two control points. It bounds the distance of the curves in order, both
-// ways, and counts places that slid along the curve as well as those that left it. Throws
-// std::invalid_argument unless both have the same number of pieces.
+// ways, and counts places that slid along the curve as well as those that left it. Requires the
+// same number of pieces.
 [[nodiscard]] double greatest_move(std::span<const geometry::CubicBezier> a,
                                    std::span<const geometry::CubicBezier> b);
 
@@ -80,11 +75,8 @@ void add_place(std::string& line, const PrintedPlace& place, const CurveSetting&
 [[nodiscard]] double kink_between(const geometry::CubicBezier& before,
                                   const geometry::CubicBezier& after);
 
-// --- knots --------------------------------------------------------------------------------------
-
 // Knots with few digits. A knot vector may be moved and stretched without changing its curve, so
 // knots are scaled to a range that its printed digits resolve before they are rounded.
-
 struct KnotDigits {
   int digits = 9;    // all together
   int decimals = 3;  // of them behind the point

@@ -26,14 +26,11 @@ constexpr Code kG5 = 50;
 constexpr double kLeastTurn = 1e-4;
 constexpr int kParts = 16;
 
-bool is_flat(const CubicBezier& piece, double height, double noise) {
-  for (const Point3& point : piece.control) {
-    if (!(std::abs(point.z() - height) <= noise)) return false;
-  }
-  return true;
+bool is_flat(const CubicBezier& piece, double height) {
+  return std::ranges::all_of(piece.control, [height](const Point3& point) {
+    return std::abs(point.z() - height) <= geometry::kSamePlace;
+  });
 }
-
-CurveRefusal refusal(std::string_view why) { return {std::string(why)}; }
 
 CurveWriting write_g5(const geometry::BsplineCurve& curve, const CurveSetting& setting) {
   const double unit = millimetres_per(setting.units);
@@ -48,9 +45,7 @@ CurveWriting write_g5(const geometry::BsplineCurve& curve, const CurveSetting& s
   CurveLines lines;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const CubicBezier& piece = pieces[i];
-    if (!is_flat(piece, setting.start.z(), geometry::kSamePlace)) {
-      return refusal("the piece leaves XY");
-    }
+    if (!is_flat(piece, setting.start.z())) return CurveRefusal{"the piece leaves XY"};
     NumberFormat places = setting.places;
     if (i + 1 == pieces.size()) places.decimals = std::max(places.decimals, setting.last_decimals);
     line = "G5";
@@ -64,7 +59,7 @@ CurveWriting write_g5(const geometry::BsplineCurve& curve, const CurveSetting& s
     const double back_x = add_length('P', from_end.x(), setting.other);
     const double back_y = add_length('Q', from_end.y(), setting.other);
     if ((out_x == 0 && out_y == 0) || (back_x == 0 && back_y == 0)) {
-      return refusal("an offset of a Bezier point is zero once it is printed");
+      return CurveRefusal{"an offset of a Bezier point is zero once it is printed"};
     }
     if (i == 0) add_word(line, feed_word(setting), setting);
     lines.push_back(line);
@@ -74,22 +69,22 @@ CurveWriting write_g5(const geometry::BsplineCurve& curve, const CurveSetting& s
 
 CurveResult read_g5(const Program& program, std::uint32_t first, const CurveStart& start) {
   const Block& block = program.blocks[first];
-  if (block.opacity != ParseStatus::kNone) return refusal("not words alone");
+  if (block.opacity != ParseStatus::kNone) return CurveRefusal{"not words alone"};
   const BlockWords words(program.words_of(block));
-  if (!words.has_g(kG5)) return refusal("no G5");
+  if (!words.has_g(kG5)) return CurveRefusal{"no G5"};
   if (words.problem() != BlockWords::Problem::kNone || !words.all_numbers()) {
-    return refusal("words that cannot be taken together");
+    return CurveRefusal{"words that cannot be taken together"};
   }
   if (words.g_codes().size() != 1 || !words.m_codes().empty() ||
       words.has_any("ABCDEHKLORSTUVWZ")) {
-    return refusal("other words in the block");
+    return CurveRefusal{"other words in the block"};
   }
   for (const char letter : std::string_view("XYIJPQ")) {
-    if (!words.has(letter)) return refusal("one of X Y I J P Q is missing");
+    if (!words.has(letter)) return CurveRefusal{"one of X Y I J P Q is missing"};
   }
-  if (!start.position.known[0] || !start.position.known[1])
-    return refusal("the position is not known");
-
+  if (!start.position.known[0] || !start.position.known[1]) {
+    return CurveRefusal{"the position is not known"};
+  }
   const double unit = millimetres_per(start.units);
   const auto value = [&](char letter) { return words.find(letter)->value * unit; };
   const Point3 from = start.position.mm;
@@ -98,7 +93,7 @@ CurveResult read_g5(const Program& program, std::uint32_t first, const CurveStar
   reading.blocks = 1;
   reading.axes = {true, true, false};
   if (const Word* feed = words.find('F')) {
-    if (!(feed->value > 0)) return refusal("a feed of zero");
+    if (!(feed->value > 0)) return CurveRefusal{"a feed of zero"};
     reading.feed = feed->value;
   }
   reading.motions.push_back({first, CubicBezier{{from, from + Vector3(value('I'), value('J'), 0),
@@ -111,7 +106,7 @@ CurveResult read_g5(const Program& program, std::uint32_t first, const CurveStar
 // wild ones. So each must turn, all to one side, by kLeastTurn at least, and together by less than
 // half a turn.
 bool bends_one_way(const CubicBezier& piece) {
-  if (!is_flat(piece, piece.control[0].z(), geometry::kSamePlace)) return false;
+  if (!is_flat(piece, piece.control[0].z())) return false;
   const geometry::PathPiece path = piece;
   Vector3 before = geometry::direction_at(path, 0);
   double sum = 0;
@@ -135,83 +130,41 @@ double sum_of_axes(const Point3& a, const Point3& b) {
   return std::abs(a.x() - b.x()) + std::abs(a.y() - b.y());
 }
 
-// The chord from t to the place that is found, step by step as they do.
-class Chopper {
- public:
-  explicit Chopper(const CubicBezier& piece) : piece_(piece) {}
-
-  std::vector<double> chop() {
-    std::vector<double> ends;
-    while (t_ < 1) {
-      const double end = end_after(std::min(t_ + step_, 1.0));
-      step_ = end - t_;
-      t_ = end;
-      ends.push_back(t_);
-    }
-    return ends;
+// Where the chord from t on ends: at `end`, halved while the chord is off; doubled only where it
+// was not.
+double chord_end(const CubicBezier& piece, double t, double end) {
+  const auto is_near = [&](double middle, double to) {
+    const Point3 of_chord = 0.5 * (geometry::point_at(piece, t) + geometry::point_at(piece, to));
+    return sum_of_axes(geometry::point_at(piece, middle), of_chord) <= kNear;
+  };
+  bool halved = false;
+  while (end - t >= kLeastStep) {
+    const double middle = 0.5 * (t + end);
+    if (is_near(middle, end)) break;
+    end = middle;
+    halved = true;
   }
-
- private:
-  // Halved while the chord is off; doubled only where it was not.
-  [[nodiscard]] double end_after(double end) const {
-    bool halved = false;
-    while (end - t_ >= kLeastStep) {
-      const double middle = 0.5 * (t_ + end);
-      if (is_near(middle, end)) break;
-      end = middle;
-      halved = true;
-    }
-    while (!halved && end - t_ <= kGreatestStep) {
-      const double twice = t_ + 2 * (end - t_);
-      if (twice >= 1 || !is_near(end, twice)) break;
-      end = twice;
-    }
-    return end;
+  while (!halved && end - t <= kGreatestStep) {
+    const double twice = t + 2 * (end - t);
+    if (twice >= 1 || !is_near(end, twice)) break;
+    end = twice;
   }
-
-  [[nodiscard]] bool is_near(double middle, double end) const {
-    const Point3 of_chord =
-        0.5 * (geometry::point_at(piece_, t_) + geometry::point_at(piece_, end));
-    return sum_of_axes(geometry::point_at(piece_, middle), of_chord) <= kNear;
-  }
-
-  const CubicBezier& piece_;
-  double t_ = 0;
-  double step_ = kGreatestStep;
-};
+  return end;
+}
 
 // The distance from a chord is convex, 0 at its ends, and the inner control points have weights
 // whose sum is 3 t (1 - t): the curve is off by 3/4 of the greater of theirs at the most.
 double flatness(const CubicBezier& part) {
   const auto& p = part.control;
-  const geometry::Vector3 way = p[3] - p[0];
-  const double square = way.squaredNorm();
+  const Vector3 chord = p[3] - p[0];
+  const double square = chord.squaredNorm();
   const auto off = [&](const Point3& point) {
-    const geometry::Vector3 to = point - p[0];
-    const double along = square > 0 ? std::clamp(to.dot(way) / square, 0.0, 1.0) : 0;
-    return (to - along * way).norm();
+    const Vector3 to = point - p[0];
+    const double along = square > 0 ? std::clamp(to.dot(chord) / square, 0.0, 1.0) : 0;
+    return (to - along * chord).norm();
   };
   return 0.75 * std::max(off(p[1]), off(p[2]));
 }
-
-}  // namespace
-
-std::vector<double> chopped_at(const CubicBezier& piece) { return Chopper(piece).chop(); }
-
-double chopping_error(const CubicBezier& piece) {
-  double most = 0;
-  double from = 0;
-  CubicBezier rest = piece;
-  for (const double end : chopped_at(piece)) {
-    CubicBezier part = rest;
-    if (end < 1) std::tie(part, rest) = geometry::parts_at(rest, (end - from) / (1 - from));
-    most = std::max(most, flatness(part));
-    from = end;
-  }
-  return most;
-}
-
-namespace {
 
 // What all controls with G5 have in common.
 CurveFormat g5_format() {
@@ -225,6 +178,35 @@ CurveFormat g5_format() {
   format.write = write_g5;
   format.read = read_g5;
   return format;
+}
+
+}  // namespace
+
+std::vector<double> chopped_at(const CubicBezier& piece) {
+  std::vector<double> ends;
+  double step = kGreatestStep;
+  for (double t = 0; t < 1; t = ends.back()) {
+    ends.push_back(chord_end(piece, t, std::min(t + step, 1.0)));
+    step = ends.back() - t;
+  }
+  return ends;
+}
+
+namespace {
+
+// mm: no point of the piece is further from its chord. An upper bound, by the hull of the control
+// points of each part; right to some percent where all chords bend one way.
+double chopping_error(const CubicBezier& piece) {
+  double most = 0;
+  double from = 0;
+  CubicBezier rest = piece;
+  for (const double end : chopped_at(piece)) {
+    CubicBezier part = rest;
+    if (end < 1) std::tie(part, rest) = geometry::parts_at(rest, (end - from) / (1 - from));
+    most = std::max(most, flatness(part));
+    from = end;
+  }
+  return most;
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 // LinuxCNC runs a piece as 32 arcs, grblHAL and Marlin as chords. Facts: docs/controllers/.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "gcode/curves/curve_format.h"
@@ -19,10 +18,6 @@ namespace batten::gcode {
 
 // The parameters at which their chords end, increasing, the last one 1.
 [[nodiscard]] std::vector<double> chopped_at(const geometry::CubicBezier& piece);
-
-// mm: no place of the piece is further from its chord. An upper bound, by the hull of the control
-// points of each part; right to some percent where all chords bend one way.
-[[nodiscard]] double chopping_error(const geometry::CubicBezier& piece);
 
 // What is written: refused where a piece leaves the plane of the start, or where a printed offset
 // is zero: the piece has no direction there then. What is read: a block with G5, X, Y, I, J, P, Q,

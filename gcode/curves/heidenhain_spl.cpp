@@ -1,5 +1,7 @@
 #include "gcode/curves/heidenhain_spl.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,108 +38,68 @@ std::string with_sign(const std::string& digits) {
   return digits.starts_with('-') ? digits : "+" + digits;
 }
 
-// A block as printed: per axis K3, K2, K1.
-struct PrintedBlock {
-  PrintedPlace end;
-  std::array<std::array<std::string, 3>, 3> k;  // [axis][K3, K2, K1]
-  CubicBezier piece;                            // as read
-};
+// K1 to K3 of one axis, in units of the program: K3 and K2 as given, and K1 so that they add up to
+// `way`, from the printed end to the start.
+using AxisCoefficients = std::array<PrintedCoefficient, 3>;
 
-class SplWriter {
- public:
-  SplWriter(std::span<const CubicBezier> pieces, const CurveSetting& setting, int decimals)
-      : pieces_(pieces), setting_(setting), printer_(setting), decimals_(decimals) {}
+std::optional<AxisCoefficients> print_axis(double third, double second, double way, int decimals) {
+  const auto k3 = print_spl_coefficient(third, decimals);
+  const auto k2 = print_spl_coefficient(second, decimals);
+  if (!k3 || !k2) return std::nullopt;
+  const auto k1 = print_spl_coefficient(way - k3->value - k2->value, decimals);
+  return k1 ? std::optional(AxisCoefficients{*k1, *k2, *k3}) : std::nullopt;
+}
 
-  // Empty where every block is as it should be.
-  std::string print() {
-    Point3 place = setting_.start;
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      const Point3& wanted = pieces_[i].control[3];
-      PrintedBlock block;
-      block.end = printer_.place(wanted, i + 1 == pieces_.size());
-      if (block.end.mm.cwiseAbs().maxCoeff() > kGreatestEnd * printer_.unit()) {
-        return "a position beyond 99999.9999";
-      }
-      if (!print_coefficients(between(pieces_[i], place, block.end.mm), place, block)) {
-        return "a coefficient beyond the control's range";
-      }
-      if ((block.piece.control[0] - place).cwiseAbs().maxCoeff() >= kSplClosure) {
-        return "a block that does not close to within 1 um";
-      }
-      place = block.end.mm;
-      blocks_.push_back(std::move(block));
+CurveWriting print_spl(const std::vector<CubicBezier>& pieces, const CurveSetting& setting,
+                       int decimals) {
+  const PlacePrinter printer(setting);
+  const double unit = printer.unit();
+  CurveLines lines;
+  CubicBezier before;  // as read
+  Point3 start = setting.start;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const PrintedPlace end = printer.place(pieces[i].control[3], i + 1 == pieces.size());
+    if (end.mm.cwiseAbs().maxCoeff() > kGreatestEnd * unit) {
+      return CurveRefusal{"a position beyond 99999.9999"};
     }
-    return {};
-  }
-
-  [[nodiscard]] bool adds_kinks() const {
-    for (std::size_t i = 1; i < blocks_.size(); ++i) {
-      if (kink_between(blocks_[i - 1].piece, blocks_[i].piece) >= kSplKink &&
-          kink_between(pieces_[i - 1], pieces_[i]) < kSplKink) {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  [[nodiscard]] CurveLines lines() const {
-    CurveLines lines;
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      std::string line = "SPL";
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!setting_.axes[axis]) continue;
-        line += std::string(" ") + kAxisNames[axis] + with_sign(blocks_[i].end.digits[axis]);
-      }
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!setting_.axes[axis]) continue;
-        lines.push_back(line + " ~");
-        line = coefficient_line(axis, blocks_[i]);
-      }
-      if (i == 0 && setting_.feed) line += " " + feed_word(setting_);
-      lines.push_back(std::move(line));
-    }
-    return lines;
-  }
-
- private:
-  bool print_coefficients(const CubicBezier& piece, const Point3& place, PrintedBlock& block) {
-    const Point3* b = piece.control;
+    const CubicBezier wanted = between(pieces[i], start, end.mm);
+    const Point3* b = wanted.control;
     const Vector3 third = b[0] - 3 * b[1] + 3 * b[2] - b[3];
     const Vector3 second = 3 * (b[1] - 2 * b[2] + b[3]);
-    block.piece = {{b[3], b[3], b[3], b[3]}};
+    const Vector3 way = start - end.mm;
+    CubicBezier piece = {{end.mm, end.mm, end.mm, end.mm}};
+    std::string line = "SPL";
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!setting.axes[axis]) continue;
+      line += std::string(" ") + kAxisNames[axis] + with_sign(end.digits[axis]);
+    }
     for (int axis = 0; axis < 3; ++axis) {
-      const auto i = static_cast<std::size_t>(axis);
-      if (!setting_.axes[i]) continue;
-      const double unit = printer_.unit();
-      const auto k3 = print_spl_coefficient(third[axis] / unit, decimals_);
-      const auto k2 = print_spl_coefficient(second[axis] / unit, decimals_);
-      if (!k3 || !k2) return false;
-      const double rest = (place[axis] - block.end.mm[axis]) / unit - k3->value - k2->value;
-      const auto k1 = print_spl_coefficient(rest, decimals_);
-      if (!k1) return false;
-      block.k[i] = {k3->digits, k2->digits, k1->digits};
-      const double end = block.end.mm[axis];
-      block.piece.control[2][axis] = end + unit * k1->value / 3;
-      block.piece.control[1][axis] = end + unit * (2 * k1->value + k2->value) / 3;
-      block.piece.control[0][axis] = end + unit * (k1->value + k2->value + k3->value);
+      const auto name = kAxisNames[static_cast<std::size_t>(axis)];
+      if (!setting.axes[static_cast<std::size_t>(axis)]) continue;
+      const auto k =
+          print_axis(third[axis] / unit, second[axis] / unit, way[axis] / unit, decimals);
+      if (!k) return CurveRefusal{"a coefficient beyond the control's range"};
+      const auto& [k1, k2, k3] = *k;
+      lines.push_back(line + " ~");
+      line = fmt::format("  K3{0}{1} K2{0}{2} K1{0}{3}", name, k3.digits, k2.digits, k1.digits);
+      piece.control[2][axis] += unit * k1.value / 3;
+      piece.control[1][axis] += unit * (2 * k1.value + k2.value) / 3;
+      piece.control[0][axis] += unit * (k1.value + k2.value + k3.value);
     }
-    return true;
-  }
-
-  std::string coefficient_line(std::size_t axis, const PrintedBlock& block) const {
-    std::string line = " ";
-    for (std::size_t k = 0; k < 3; ++k) {
-      line += std::string(" K") + static_cast<char>('3' - k) + kAxisNames[axis] + block.k[axis][k];
+    if (i == 0 && setting.feed) line += " " + feed_word(setting);
+    lines.push_back(std::move(line));
+    if ((piece.control[0] - start).cwiseAbs().maxCoeff() >= kSplClosure) {
+      return CurveRefusal{"a block that does not close to within 1 um"};
     }
-    return line;
+    if (i > 0 && kink_between(before, piece) >= kSplKink &&
+        kink_between(pieces[i - 1], pieces[i]) < kSplKink) {
+      return CurveRefusal{"rounding bends a joint by 0.1 degrees or more"};
+    }
+    before = piece;
+    start = end.mm;
   }
-
-  std::span<const CubicBezier> pieces_;
-  const CurveSetting& setting_;
-  PlacePrinter printer_;
-  int decimals_;
-  std::vector<PrintedBlock> blocks_;
-};
+  return lines;
+}
 
 CurveWriting write_spl(const geometry::BsplineCurve& curve, const CurveSetting& setting) {
   const std::vector<CubicBezier> pieces = curve.bezier_pieces();
@@ -148,12 +110,9 @@ CurveWriting write_spl(const geometry::BsplineCurve& curve, const CurveSetting& 
     return CurveRefusal{"the curve does not start at the tool's position"};
   }
   for (int decimals = std::min(setting.other.decimals, kMantissaDecimals);; ++decimals) {
-    SplWriter writer(pieces, setting, decimals);
-    const std::string trouble = writer.print();
-    if (trouble.empty() && !writer.adds_kinks()) return writer.lines();
-    if (decimals < kMantissaDecimals) continue;
-    return CurveRefusal{trouble.empty() ? "rounding bends a joint by 0.1 degrees or more"
-                                        : trouble};
+    CurveWriting written = print_spl(pieces, setting, decimals);
+    const bool refused = std::holds_alternative<CurveRefusal>(written);
+    if (!refused || decimals == kMantissaDecimals) return written;
   }
 }
 

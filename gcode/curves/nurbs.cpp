@@ -114,9 +114,7 @@ class NurbsReader {
 
   CurveResult read(std::uint32_t first) {
     if (!read_blocks(first) || !knots_fit()) return CurveRefusal{trouble_};
-    if (std::ranges::count(weights_, weights_.front()) != std::ssize(weights_)) {
-      return CurveRefusal{"weights that differ"};
-    }
+    if (weights_differ_) return CurveRefusal{"weights that differ"};
     const BsplineCurve curve(BsplineBasis(order_ - 1, knots_), points_);
     // Piece i belongs to the block of control point i + order - 1.
     auto span = static_cast<std::size_t>(order_ - 1);
@@ -203,11 +201,11 @@ class NurbsReader {
       place_[static_cast<int>(axis)] = *block.place[axis] * unit_;
     }
     points_.push_back(place_);
-    weights_.push_back(block.weight.value_or(1));
     knots_.push_back(*block.knot);
     point_blocks_.push_back(at);
-    if (!(weights_.back() > 0)) return fail("a weight that is not positive");
-    return true;
+    const double weight = block.weight.value_or(1);
+    weights_differ_ |= weight != std::exchange(weight_, weight) && points_.size() > 1;
+    return weight > 0 || fail("a weight that is not positive");
   }
 
   bool knots_fit() {
@@ -241,7 +239,8 @@ class NurbsReader {
   CurveReading reading_;
   int order_ = kGreatestOrder;
   std::vector<double> knots_;
-  std::vector<double> weights_;
+  double weight_ = 1;  // of the last point
+  bool weights_differ_ = false;
   std::vector<Point3> points_;  // mm; axes that are not named stay where they were
   std::vector<std::uint32_t> point_blocks_;
   int ending_knots_ = 0;

@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <map>
 #include <string>
 #include <utility>
 
 #include "gcode/curves/curve_print.h"
+#include "gcode/siemens/lexer.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/number_format.h"
 
@@ -29,147 +32,94 @@ constexpr double kLongestPoly = 99999.9999;
 
 // --- words --------------------------------------------------------------------------------------
 
-// A word as far as polynomials and splines need it: `X10`, `X=10`, `PL=0.5`, `PO[X]=(18,-18,6)`,
-// `POLY`, `G1`.
-struct SiemensWord {
-  std::string name;            // upper case, without blanks: "X", "PO[X]", "PO[]", "POLY"
-  std::vector<double> values;  // one, those in parentheses, or none
+// The words of a block by their names (upper case, without blanks: "X", "PO[X]", "PO[]", "POLY"),
+// each with its values: one, those in parentheses, or none.
+using SiemensWords = std::map<std::string, std::vector<double>, std::less<>>;
 
-  [[nodiscard]] bool is(std::string_view other) const { return name == other; }
-  [[nodiscard]] double value() const { return values.front(); }  // requires one
-};
+std::string_view trimmed(std::string_view text) {
+  text = without_blanks_before(text);
+  return text.substr(0, text.find_last_not_of(" \t") + 1);
+}
 
-// Comments (; to the end) are left out. Nothing where the block has anything else than such words:
-// expressions, strings, AC(..), exponents, labels.
-class SiemensReader {
- public:
-  explicit SiemensReader(std::string_view text) : text_(text) {}
+// 0.5, or (18,-18, 6).
+bool read_values(std::string_view text, std::vector<double>& values) {
+  text = trimmed(text);
+  if (text.starts_with('(')) text = text.substr(1, text.size() - 2);
+  for (bool more = true; more;) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    const std::string_view digits = trimmed(text.substr(0, comma));
+    const auto number = read_number(digits);
+    if (!number || after_siemens_number(digits, 0) != digits.size()) return false;
+    if (std::abs(number->value) >= kNumberLimit) return false;
+    values.push_back(number->value);
+    more = comma < text.size();
+    text = text.substr(more ? comma + 1 : comma);
+  }
+  return true;
+}
 
-  std::optional<std::vector<SiemensWord>> read() {
-    std::vector<SiemensWord> words;
-    while (skip_blanks() != '\0' && peek() != ';') {
-      SiemensWord word;
-      if (!read_word(word)) return std::nullopt;
-      words.push_back(std::move(word));
+// `X10`, `PL=0.5`, `PO[X]=(18,-18,6)`, `POLY`. Nothing where the block has anything else: values
+// that are computed, strings, labels, a word twice.
+std::optional<SiemensWords> read_siemens_words(std::string_view text) {
+  SiemensWords words;
+  SiemensLexer lexer(text, {0, static_cast<std::uint32_t>(text.size())});
+  for (;;) {
+    const SiemensToken token = lexer.next();
+    if (token.kind == SiemensTokenKind::kEnd || token.kind == SiemensTokenKind::kComment) break;
+    std::string name(1, token.letter);
+    std::vector<double> values = {token.number.value};
+    if (token.kind == SiemensTokenKind::kName) {
+      const std::string_view whole = text.substr(token.span.begin, token.span.size());
+      const std::size_t equals = std::min(whole.find('='), whole.size());
+      name = without_blanks(in_capitals(whole.substr(0, equals)));
+      values.clear();
+      if (token.assigned && !read_values(whole.substr(equals + 1), values)) return std::nullopt;
+    } else if (token.kind != SiemensTokenKind::kWord) {
+      return std::nullopt;
     }
-    return words;
+    if (!words.try_emplace(std::move(name), std::move(values)).second) return std::nullopt;
   }
+  return words;
+}
 
- private:
-  char peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
+const std::vector<double>* find(const SiemensWords& words, const std::string& name) {
+  const auto found = words.find(name);
+  return found == words.end() ? nullptr : &found->second;
+}
 
-  char skip_blanks() {
-    while (is_blank(peek())) ++at_;
-    return peek();
-  }
+// Of a word with one value.
+std::optional<double> value_of(const SiemensWords& words, const std::string& name) {
+  const auto* values = find(words, name);
+  return values != nullptr ? std::optional(values->front()) : std::nullopt;
+}
 
-  bool take(char wanted) {
-    if (skip_blanks() != wanted) return false;
-    ++at_;
-    return true;
-  }
+bool names_axis(std::string_view name) { return name == "X" || name == "Y" || name == "Z"; }
 
-  bool read_word(SiemensWord& word) {
-    while (is_letter(peek()) || peek() == '_') word.name.push_back(upper(text_[at_++]));
-    if (word.name.empty()) return false;
-    if (skip_blanks() == '[' && !read_index(word)) return false;
-    if (take('=')) return take('(') ? read_list(word) : read_number_into(word);
-    if (word.name.size() > 1) return true;  // a keyword
-    return read_number_into(word);
-  }
+bool is_motion(const SiemensWords::value_type& word) {
+  return names_axis(word.first) || word.first.starts_with("PO[");
+}
 
-  // [X] or [].
-  bool read_index(SiemensWord& word) {
-    ++at_;
-    word.name.push_back('[');
-    while (is_letter(skip_blanks())) word.name.push_back(upper(text_[at_++]));
-    word.name.push_back(']');
-    return take(']') && skip_blanks() == '=';
-  }
-
-  bool read_list(SiemensWord& word) {
-    do {
-      if (!read_number_into(word)) return false;
-    } while (take(','));
-    return take(')');
-  }
-
-  bool read_number_into(SiemensWord& word) {
-    skip_blanks();
-    // Blanks end a number here.
-    std::size_t end = at_;
-    while (end < text_.size() && (is_digit(text_[end]) || text_[end] == '.' ||
-                                  (end == at_ && (text_[end] == '-' || text_[end] == '+')))) {
-      ++end;
-    }
-    const auto number = read_number(text_.substr(at_, end - at_));
-    if (!number || std::abs(number->value) >= kNumberLimit) return false;
-    // 1EX3 and G1X5: the first is an exponent, the second are two words.
-    if (end + 1 < text_.size() && upper(text_[end]) == 'E' && upper(text_[end + 1]) == 'X') {
-      return false;
-    }
-    at_ = end;
-    word.values.push_back(number->value);
-    return true;
-  }
-
-  std::string_view text_;
-  std::size_t at_ = 0;
-};
-
-constexpr std::size_t kMostCoefficients = 5;  // the end and a2 .. a5
-
-// One block's words, sorted.
-struct CurveBlock {
-  bool begins = false;  // POLY, BSPLINE
-  std::array<std::optional<SiemensWord>, 3> polynomial;
-  std::array<std::optional<SiemensWord>, 3> straight;
-  std::optional<SiemensWord> denominator;
-  std::optional<double> length;  // PL
-  std::optional<double> feed;
-
-  [[nodiscard]] bool is_polynomial() const {
-    return polynomial[0] || polynomial[1] || polynomial[2] || denominator;
-  }
-  [[nodiscard]] bool moves() const {
-    return is_polynomial() || straight[0] || straight[1] || straight[2];
-  }
-};
-
-bool take_word(const SiemensWord& word, std::string_view keyword, CurveBlock& block) {
+// Whether the word belongs to curves that begin with the keyword, or may be beside it.
+bool is_curve_word(const SiemensWords::value_type& word, std::string_view keyword) {
+  const auto& [name, values] = word;
   const bool poly = keyword == "POLY";
-  const bool beside = poly ? word.is("G") && word.value() == 90
-                           : word.is("SD") && word.values == std::vector<double>{3};
-  if (word.is("N") || beside) return true;
-  if (word.is(keyword)) return block.begins = true;
-  if ((word.is("PL") || word.is("F")) && word.values.size() == 1) {
-    (word.is("F") ? block.feed : block.length) = word.value();
-    return true;
-  }
-  std::optional<SiemensWord>* slot = nullptr;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::string name(1, kAxisNames[axis]);
-    if (word.is(name)) {
-      block.straight[axis] = word;
-      return true;
-    }
-    if (word.is("PO[" + name + "]")) slot = &block.polynomial[axis];
-  }
-  if (word.is("PO[]")) slot = &block.denominator;
-  if (!poly || slot == nullptr) return false;
-  *slot = word;
-  return !word.values.empty() && word.values.size() <= kMostCoefficients;
+  if (name == "N" || name == keyword || names_axis(name)) return true;
+  if (name == "PL" || name == "F") return values.size() == 1;
+  if (!poly) return name == "SD" && values == std::vector<double>{3};
+  if (name == "G") return values.front() == 90;
+  constexpr std::size_t kMostCoefficients = 5;  // the end and a2 .. a5
+  const bool polynomial = name == "PO[X]" || name == "PO[Y]" || name == "PO[Z]" || name == "PO[]";
+  return polynomial && !values.empty() && values.size() <= kMostCoefficients;
 }
 
 // Nothing where another word is in the block than those of curves that begin with the keyword.
-std::optional<CurveBlock> curve_block(const Program& program, std::uint32_t at,
-                                      std::string_view keyword) {
-  const auto words = SiemensReader(program.source.text(program.blocks[at].span)).read();
-  if (!words) return std::nullopt;
-  CurveBlock block;
-  const bool understood = std::ranges::all_of(
-      *words, [&](const SiemensWord& word) { return take_word(word, keyword, block); });
-  return understood ? std::optional(std::move(block)) : std::nullopt;
+std::optional<SiemensWords> curve_words(const Program& program, std::uint32_t at,
+                                        std::string_view keyword) {
+  auto words = read_siemens_words(program.source.text(program.blocks[at].span));
+  const bool understood = words && std::ranges::all_of(*words, [keyword](const auto& word) {
+                            return is_curve_word(word, keyword);
+                          });
+  return understood ? std::move(words) : std::nullopt;
 }
 
 // --- POLY: writing ------------------------------------------------------------------------------
@@ -231,12 +181,13 @@ CurveWriting write_poly(const BsplineCurve& curve, const CurveSetting& setting) 
 
 // The motion of one axis: a line or a polynomial in p from 0 to `length`, whose end and a2, a3 ..
 // are given; in p / length. Nothing above the third degree.
-std::optional<std::array<double, 4>> coefficients_of(double start, const SiemensWord& word,
-                                                     double unit, double length) {
+std::optional<std::array<double, 4>> coefficients_of(double start,
+                                                     const std::vector<double>& values, double unit,
+                                                     double length) {
   std::array<double, 4> a = {start, 0, 0, 0};
-  double rest = word.value() * unit - start;
-  for (std::size_t k = 2; k <= word.values.size(); ++k) {
-    const double given = word.values[k - 1] * unit;
+  double rest = values.front() * unit - start;
+  for (std::size_t k = 2; k <= values.size(); ++k) {
+    const double given = values[k - 1] * unit;
     if (k > 3 && given != 0) return std::nullopt;
     if (k > 3) continue;
     a[k] = given * std::pow(length, static_cast<double>(k));
@@ -246,68 +197,61 @@ std::optional<std::array<double, 4>> coefficients_of(double start, const Siemens
   return a;
 }
 
-class PolyReader {
- public:
-  PolyReader(const Program& program, const CurveStart& start)
-      : program_(program), unit_(millimetres_per(start.units)), place_(start.position) {}
+// A denominator that says nothing.
+bool is_one(const std::vector<double>& values) {
+  return values.front() == 1 &&
+         std::all_of(values.begin() + 1, values.end(), [](double value) { return value == 0; });
+}
 
-  CurveResult read(std::uint32_t first) {
-    for (std::uint32_t at = first; at < program_.blocks.size(); ++at) {
-      const auto block = curve_block(program_, at, "POLY");
-      const bool is_first = at == first;
-      if (!block || block->begins != is_first) break;
-      if (!is_first && (!block->moves() || block->feed)) break;
-      if (is_first) reading_.feed = block->feed;
-      ++reading_.blocks;
-      if (!block->moves()) continue;
-      if (const auto trouble = add(at, *block); !trouble.empty()) return CurveRefusal{trouble};
-    }
-    if (reading_.blocks == 0) return CurveRefusal{"no POLY"};
-    return std::move(reading_);
+// Adds the motion of one block, which moves `position` (mm); why it cannot, or nothing.
+std::string add_poly(std::uint32_t at, const SiemensWords& words, double unit, Position& position,
+                     CurveReading& reading) {
+  constexpr const char* kNoCubic = "a polynomial that is rational or above the third degree";
+  const double length = value_of(words, "PL").value_or(1);
+  if (length < kShortestPoly || length > kLongestPoly) return "PL out of range";
+  const auto* denominator = find(words, "PO[]");
+  if (denominator != nullptr && !is_one(*denominator)) return kNoCubic;
+  const Point3 start = position.mm;
+  Coefficients a = {start, Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string name(1, kAxisNames[axis]);
+    const auto* polynomial = find(words, "PO[" + name + "]");
+    const auto* values = polynomial != nullptr ? polynomial : find(words, name);
+    if (values == nullptr) continue;  // stays where it is
+    if (!position.known[axis]) return "the tool's position is not known";
+    reading.axes[axis] = true;
+    const auto i = static_cast<int>(axis);
+    position.mm[i] = values->front() * unit;
+    const auto of_axis = coefficients_of(start[i], *values, unit, length);
+    if (!of_axis) return kNoCubic;
+    for (std::size_t k = 1; k < a.size(); ++k) a[k][i] = (*of_axis)[k];
   }
+  CubicBezier piece = bezier_of(a);
+  piece.control[3] = position.mm;  // the sum of the coefficients, without their rounding
+  const bool straight = a[2].isZero(0) && a[3].isZero(0);
+  const geometry::PathPiece line = geometry::Line{start, position.mm};
+  reading.motions.push_back({at, straight ? line : geometry::PathPiece(piece)});
+  return {};
+}
 
- private:
-  std::string add(std::uint32_t at, const CurveBlock& words) {
-    constexpr const char* kNoCubic = "a polynomial that is rational or above the third degree";
-    const double length = words.length.value_or(1);
-    if (length < kShortestPoly || length > kLongestPoly) return "PL out of range";
-    if (words.denominator && !is_one(words.denominator->values)) return kNoCubic;
-    Coefficients a = {place_.mm, Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
-    Point3 end = place_.mm;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto& word = words.polynomial[axis] ? words.polynomial[axis] : words.straight[axis];
-      if (!word) continue;  // stays where it is
-      if (!place_.known[axis]) return "the tool's position is not known";
-      reading_.axes[axis] = true;
-      const auto i = static_cast<int>(axis);
-      end[i] = word->value() * unit_;
-      const auto of_axis = coefficients_of(place_.mm[i], *word, unit_, length);
-      if (!of_axis) return kNoCubic;
-      for (std::size_t k = 1; k < a.size(); ++k) a[k][i] = (*of_axis)[k];
-    }
-    reading_.motions.push_back({at, piece_to(end, a)});
-    place_.mm = end;
-    return {};
+CurveResult read_poly(const Program& program, std::uint32_t first, const CurveStart& start) {
+  CurveReading reading;
+  Position position = start.position;
+  for (std::uint32_t at = first; at < program.blocks.size(); ++at) {
+    const auto words = curve_words(program, at, "POLY");
+    const bool is_first = at == first;
+    if (!words || words->contains("POLY") != is_first) break;
+    const bool moves = std::ranges::any_of(*words, is_motion);
+    if (!is_first && (!moves || words->contains("F"))) break;
+    if (is_first) reading.feed = value_of(*words, "F");
+    ++reading.blocks;
+    if (!moves) continue;
+    auto trouble = add_poly(at, *words, millimetres_per(start.units), position, reading);
+    if (!trouble.empty()) return CurveRefusal{std::move(trouble)};
   }
-
-  // A denominator that says nothing.
-  static bool is_one(const std::vector<double>& values) {
-    return values.front() == 1 &&
-           std::all_of(values.begin() + 1, values.end(), [](double value) { return value == 0; });
-  }
-
-  [[nodiscard]] geometry::PathPiece piece_to(const Point3& end, const Coefficients& a) const {
-    if (a[2].isZero(0) && a[3].isZero(0)) return geometry::Line{place_.mm, end};
-    CubicBezier piece = bezier_of(a);
-    piece.control[3] = end;  // the sum of the coefficients, without their rounding
-    return piece;
-  }
-
-  const Program& program_;
-  double unit_;
-  Position place_;
-  CurveReading reading_;
-};
+  if (reading.blocks == 0) return CurveRefusal{"no POLY"};
+  return reading;
+}
 
 // --- BSPLINE ------------------------------------------------------------------------------------
 //
@@ -368,19 +312,20 @@ CurveResult read_bspline(const Program& program, std::uint32_t first, const Curv
   std::vector<Point3> points = {start.position.mm};
   std::vector<double> lengths;
   for (std::uint32_t at = first; at < program.blocks.size(); ++at) {
-    const auto block = curve_block(program, at, "BSPLINE");
-    if (!block || !block->length || block->begins != (at == first)) break;
-    if (at == first) reading.feed = block->feed;
-    if (at != first && block->feed) break;
+    const auto words = curve_words(program, at, "BSPLINE");
+    if (!words || !words->contains("PL") || words->contains("BSPLINE") != (at == first)) break;
+    if (at == first) reading.feed = value_of(*words, "F");
+    if (at != first && words->contains("F")) break;
     Point3 place = points.back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!block->straight[axis]) continue;
+      const auto value = value_of(*words, std::string(1, kAxisNames[axis]));
+      if (!value) continue;
       if (!start.position.known[axis]) return CurveRefusal{"the tool's position is not known"};
       reading.axes[axis] = true;
-      place[static_cast<int>(axis)] = block->straight[axis]->value() * unit;
+      place[static_cast<int>(axis)] = *value * unit;
     }
     points.push_back(place);
-    lengths.push_back(*block->length);
+    lengths.push_back(*value_of(*words, "PL"));
   }
   if (lengths.empty()) return CurveRefusal{"no BSPLINE"};
   const std::vector<double> knots = knots_of(lengths);
@@ -406,9 +351,7 @@ const CurveFormat& siemens_poly() {
     // Of the size of the piece: half a step moves the piece by less than the rounding of its ends.
     format.other_mm = format.other_inch = {.decimals = 6};
     format.write = write_poly;
-    format.read = [](const Program& program, std::uint32_t first, const CurveStart& start) {
-      return PolyReader(program, start).read(first);
-    };
+    format.read = read_poly;
     return format;
   }();
   return kFormat;

@@ -64,33 +64,19 @@ TEST(Curves, OfAnotherControlAreNotFollowed) {
   EXPECT_FALSE(p.read.motions.back().start_known);
 }
 
-struct Unsafe {
-  std::string name;
-  std::string text;
-};
-class CurvesAreNotFollowed : public testing::TestWithParam<Unsafe> {};
-
-TEST_P(CurvesAreNotFollowed, InThisState) {
-  const CurveProgram p(GetParam().text);
-  const BlockMeaning& last = p.read.blocks.back();
-  EXPECT_FALSE(last.of_curve);
-  EXPECT_EQ(last.motion, -1);
+TEST(Curves, AreNotFollowedInAnUnsafeState) {
+  const std::string bare = "G5 X18 Y6.4 I10 J0 P-4 Q-2.4";
+  for (const std::string& text :
+       {kHead + "G41 D1\nG1 X1 Y1\n" + bare, kHead + "G93\nG1 X1 Y1 F2\n" + bare,
+        kHead + "G95\nG1 X1 Y1 F2\n" + bare, kHead + "G91\n" + bare, kHead + "G18\n" + bare,
+        kHead + "G12.1\nG1 X1 Y1\n" + bare, "G90\nG1 X0 Y0 F500\n" + bare,
+        "G21 G90 G17 F500\n" + bare, kHead + "/" + bare, kHead + "WHILE [#1 LT 5] DO1\n" + bare}) {
+    const CurveProgram p(text);
+    const BlockMeaning& last = p.read.blocks.back();
+    EXPECT_FALSE(last.of_curve) << text;
+    EXPECT_EQ(last.motion, -1) << text;
+  }
 }
-
-const std::string kBare = "G5 X18 Y6.4 I10 J0 P-4 Q-2.4";
-INSTANTIATE_TEST_SUITE_P(
-    States, CurvesAreNotFollowed,
-    testing::Values(Unsafe{"CutterCompensation", kHead + "G41 D1\nG1 X1 Y1\n" + kBare},
-                    Unsafe{"InverseTime", kHead + "G93\nG1 X1 Y1 F2\n" + kBare},
-                    Unsafe{"FeedPerRevolution", kHead + "G95\nG1 X1 Y1 F2\n" + kBare},
-                    Unsafe{"Incremental", kHead + "G91\n" + kBare},
-                    Unsafe{"AnotherPlane", kHead + "G18\n" + kBare},
-                    Unsafe{"Polar", kHead + "G12.1\nG1 X1 Y1\n" + kBare},
-                    Unsafe{"NoUnits", "G90\nG1 X0 Y0 F500\n" + kBare},
-                    Unsafe{"NoPlace", "G21 G90 G17 F500\n" + kBare},
-                    Unsafe{"BlockDelete", kHead + "/" + kBare},
-                    Unsafe{"Loop", kHead + "WHILE [#1 LT 5] DO1\n" + kBare}),
-    [](const auto& test) { return test.param.name; });
 
 }  // namespace
 }  // namespace batten::gcode
