@@ -2,20 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <string_view>
-
-#include "gcode/state/modal_state.h"
 
 namespace batten::gcode {
 namespace {
-
-constexpr std::array<double, kMostIncrementDecimals + 2> kSteps = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6};
-
-int increment_decimals(const Decimals& rule, Units units) {
-  return rule.increment_decimals + (units == Units::kInch ? 1 : 0);
-}
 
 // Dwell, macro calls, high speed modes.
 bool has_no_lengths(const BlockWords& words) {
@@ -35,7 +25,8 @@ bool DecimalPoints::read(std::span<Word> words) {
     if (word.letter == 'F') word.without_point = true;
     if (no_lengths || !is_length(word.letter)) continue;
     word.without_point = true;
-    if (!has_no_value()) {
+    // Controls differ in whether a knot or a weight without a point is counted in increments.
+    if (rule_.pointless != PointlessNumbers::kUndeclared && mode_ != Mode::kCurve) {
       scale(word);
       continue;
     }
@@ -63,19 +54,13 @@ void DecimalPoints::follow(const BlockWords& words) {
 
 bool DecimalPoints::is_length(char letter) const {
   if (letter == 'K') return mode_ != Mode::kCycle;
-  constexpr std::string_view kLengths = "XYZUVWIJRQ";
-  return kLengths.find(letter) != std::string_view::npos;
-}
-
-// Controls differ in whether a knot or a weight without a point is counted in increments.
-bool DecimalPoints::has_no_value() const {
-  return rule_.pointless == PointlessNumbers::kUndeclared || mode_ == Mode::kCurve;
+  return std::string_view("XYZUVWIJRQ").find(letter) != std::string_view::npos;
 }
 
 // Numbers without a point are whole, so the quotient is the double of the decimal that is meant.
 void DecimalPoints::scale(Word& word) const {
-  const int decimals = increment_decimals(rule_, units_);
-  word.value /= kSteps.at(static_cast<std::size_t>(decimals));
+  const int decimals = rule_.increment_decimals + (units_ == Units::kInch ? 1 : 0);
+  word.value /= kPowersOfTen.at(static_cast<std::size_t>(decimals));
   word.decimals = static_cast<std::uint8_t>(decimals);
 }
 

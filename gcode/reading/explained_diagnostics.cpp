@@ -24,20 +24,17 @@ constexpr ExplainedDiagnostic kExplained[] = {
     {"unreadable-block", "warning",
      "A block follows no grammar that is known. It is copied; the run ends here, and what it could "
      "have changed is unknown after it. The message names the first place that was not understood.",
-     "Write numbers without exponents, one number to each letter, and comments without comments "
-     "in them."},
+     "Write numbers without exponents, one number to each letter, and comments without comments in "
+     "them."},
     {"unclosed-comment", "warning",
      "A ( without ). The rest of the line is read as a comment, as grbl does; LinuxCNC refuses "
-     "such "
-     "a line.",
+     "such a line.",
      "Close the bracket."},
     {"implied-decimals", "warning",
      "A length has no decimal point (X1000), in a program for a control of the FANUC kind: there "
-     "it "
-     "is 1000 mm or 1000 least increments, 1.000 mm, as a parameter of the control says. Such "
+     "it is 1000 mm or 1000 least increments, 1.000 mm, as a parameter of the control says. Such "
      "blocks are copied, and the position is unknown after them. Reported once, at the first; 0 is "
-     "0 in "
-     "either reading.",
+     "0 in either reading.",
      "Say --decimals explicit where X5 is 5 mm, or --decimals implied where it is 0.005 mm "
      "(implied:0.0001 for another increment); look the parameter up in the control's manual."},
     {"text-outside-marks", "warning or note",
@@ -79,8 +76,7 @@ constexpr ExplainedDiagnostic kExplained[] = {
     {"arc-radius-too-small", "warning",
      "The ends are further apart than twice R, the ends of an arc with R are one point, the centre "
      "is one of the ends, or the arc turns by so little that controls disagree whether it is a "
-     "full "
-     "turn.",
+     "full turn.",
      "Correct the arc, or write it with I, J, K."},
 };
 

@@ -1,5 +1,7 @@
 #include "gcode/reading/parser.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <span>
 #include <string>
@@ -27,15 +29,9 @@ constexpr char kEndOfFile = '\x1A';
 constexpr std::string_view kUnreadableBlock = "unreadable-block";
 constexpr std::string_view kUnclosedComment = "unclosed-comment";
 
-constexpr std::uint8_t kMostCounted = 255;
-
 // No control takes lines of more than some thousand bytes. What is longer than this is no line of
 // a program, and its words would take many times its size of memory.
 constexpr std::uint32_t kLongestLine = 1U << 20;
-
-bool is_sixteen_bit_text(std::string_view text) {
-  return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
-}
 
 // One pass over the source, line by line.
 class Parser {
@@ -56,7 +52,7 @@ class Parser {
       const std::size_t last = text_.find_last_not_of(std::string_view("\0\x1A\r\n \t", 6));
       carry_.content_end = last == std::string_view::npos ? 0 : last + 1;
     }
-    if (carry_.begin == 0 && is_sixteen_bit_text(text_)) {
+    if (carry_.begin == 0 && (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF"))) {
       tell(Severity::kError, "sixteen-bit-text", SourceSpan{0, 2},
            "the file is text of 16 bits per character (UTF-16); expected bytes of ASCII. Save it "
            "as plain text or UTF-8");
@@ -128,7 +124,8 @@ class Parser {
       make_unreadable(block, content, kJoinedLine);
       carry_.words_seen = true;
     } else if (content.size() > 0 && text_[content.begin] == '%') {
-      read_mark(block, content);
+      block.opacity = ParseStatus::kProgramMark;
+      note_foreign_language(content);
     } else if (content.size() > kLongestLine) {
       make_unreadable(block, content, "a line of more than 1 MiB");
       carry_.words_seen = true;
@@ -194,28 +191,17 @@ class Parser {
     return sign;
   }
 
-  void read_mark(Block& block, SourceSpan content) {
-    block.opacity = ParseStatus::kProgramMark;
-    note_foreign_language(content);
-  }
-
   void read_tokens(Block& block, SourceSpan content) {
     LineLexer lexer(text_, content);
     bool only_n = true;  // no word but N so far
-    for (;;) {
+    for (bool more = true; more;) {
       const Token& token = lexer.next();
-      if (token.kind == TokenKind::kEnd) {
-        break;
-      }
       switch (token.kind) {
         case TokenKind::kWord:
-          add_word(token, token.letter);
-          only_n = only_n && token.letter == 'N';
-          break;
         case TokenKind::kValueWord:
           add_word(token, token.letter);
           only_n = only_n && token.letter == 'N';
-          raise(block, ParseStatus::kExpression);
+          if (token.kind == TokenKind::kValueWord) raise(block, ParseStatus::kExpression);
           break;
         case TokenKind::kCornerWord:
           add_word(token, ',');
@@ -250,6 +236,7 @@ class Parser {
           make_unreadable(block, token.span, token.trouble);
           break;
         case TokenKind::kEnd:
+          more = false;
           break;
       }
     }
@@ -279,16 +266,10 @@ class Parser {
   // G291: words of the ISO mode up to G290, which are not read.
   void follow_iso_mode(Block& block) {
     if (block.opacity == ParseStatus::kNamedWords) {
-      const std::string_view text = text_.substr(block.span.begin, block.span.size());
-      if (has_g_word(text, "290")) {
-        iso_mode_ = false;
-      } else if (has_g_word(text, "291")) {
-        iso_mode_ = true;
-      }
+      const std::string_view text = program_.source.text(block.span);
+      iso_mode_ = !has_g_word(text, "290") && (iso_mode_ || has_g_word(text, "291"));
     }
-    if (iso_mode_ && has_words(block)) {
-      block.opacity = ParseStatus::kForeign;
-    }
+    if (iso_mode_ && has_words(block)) block.opacity = ParseStatus::kForeign;
   }
 
   static bool has_g_word(std::string_view text, std::string_view code) {
@@ -310,7 +291,7 @@ class Parser {
     word.span = token.span;
     word.is_number = token.has_value;
     if (token.has_value) {
-      word.decimals = static_cast<std::uint8_t>(std::min<int>(token.number.decimals, kMostCounted));
+      word.decimals = static_cast<std::uint8_t>(std::min(token.number.decimals, 255));
       word.has_point = token.number.has_point;
       word.value = token.number.value;
     }
@@ -438,19 +419,6 @@ class Parser {
   bool iso_mode_ = false;
 };
 
-void tell_flood(std::string_view id, const ToldCount& flood, Diagnostics& found) {
-  if (flood.untold > 0) {
-    found.push_back({Severity::kWarning, id, flood.first_untold,
-                     "from here on " + std::to_string(flood.untold) + " more blocks of this kind"});
-  }
-}
-
-void put_in_order(Diagnostics& found, std::size_t first) {
-  std::stable_sort(
-      found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
-      [](const Diagnostic& a, const Diagnostic& b) { return a.where.begin < b.where.begin; });
-}
-
 // The marks are closed when all blocks are read; their lines may have been told of already.
 void close_marks(Program& program, Diagnostics& found) {
   Diagnostics at_marks;
@@ -466,9 +434,18 @@ void close_marks(Program& program, Diagnostics& found) {
   }
 }
 
-void tell_floods(const TextCarry& carry, Diagnostics& found) {
-  tell_flood(kUnreadableBlock, carry.unreadable, found);
-  tell_flood(kUnclosedComment, carry.unclosed, found);
+// What is said of the whole text; puts all diagnostics from `first` on in order.
+void finish(const TextCarry& carry, Diagnostics& found, std::size_t first) {
+  for (const auto& [id, flood] : {std::pair(kUnreadableBlock, &carry.unreadable),
+                                  std::pair(kUnclosedComment, &carry.unclosed)}) {
+    if (flood->untold == 0) continue;
+    found.push_back({Severity::kWarning, id, flood->first_untold,
+                     fmt::format("from here on {} more blocks of this kind", flood->untold)});
+  }
+  carry.decimals.tell(found);
+  std::stable_sort(
+      found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
+      [](const Diagnostic& a, const Diagnostic& b) { return a.where.begin < b.where.begin; });
 }
 
 }  // namespace
@@ -484,10 +461,8 @@ Program parse(const SourceText& source, const Reading& reading, Diagnostics& fou
   Program program = Parser(source, reading.language, {}, carry, found).run();
   const bool siemens = reading.language == Language::kSiemens;
   program.dwells = siemens ? DwellForm::kSecondsF : reading.dwells;
-  tell_floods(carry, found);
-  carry.decimals.tell(found);
   close_marks(program, found);
-  put_in_order(found, before);
+  finish(carry, found, before);
   return program;
 }
 
@@ -506,10 +481,6 @@ Program parse_part(const SourceText& source, const PartEnd& end, TextCarry& carr
   return part;
 }
 
-void finish_text(const TextCarry& carry, Diagnostics& found) {
-  tell_floods(carry, found);
-  carry.decimals.tell(found);
-  put_in_order(found, 0);
-}
+void finish_text(const TextCarry& carry, Diagnostics& found) { finish(carry, found, 0); }
 
 }  // namespace batten::gcode

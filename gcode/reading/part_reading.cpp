@@ -1,7 +1,6 @@
 #include "gcode/reading/part_reading.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -34,87 +33,77 @@ void move_behind(std::vector<Item>& items, std::vector<Item>& more) {
                std::make_move_iterator(more.end()));
 }
 
-void take_rest_of_text(Program& program, std::uint32_t first, Program& rest) {
-  const bool any = first < program.blocks.size();
-  const std::size_t word = any ? program.blocks[first].first_word : program.words.size();
-  const std::size_t comment = any ? program.blocks[first].first_comment : program.comments.size();
-  move_rest(program.blocks, first, rest.blocks);
-  move_rest(program.words, word, rest.words);
-  move_rest(program.comments, comment, rest.comments);
-  for (Block& block : rest.blocks) {
-    block.first_word -= static_cast<std::uint32_t>(word);
-    block.first_comment -= static_cast<std::uint32_t>(comment);
-  }
-}
+// Where the words, comments, states, motions and blocks of a part begin that is put behind another
+// one; subtracted, they become its own.
+struct Offsets {
+  std::uint32_t words = 0;
+  std::uint32_t comments = 0;
+  std::uint32_t states = 0;
+  std::uint32_t motions = 0;
+  std::uint32_t blocks = 0;
+};
 
-void take_rest_of_meaning(Interpretation& meaning, std::uint32_t first, Interpretation& rest) {
-  const std::uint32_t state = first > 0 ? meaning.blocks[first - 1].state_after : 0;
-  const auto motion = static_cast<std::size_t>(
-      std::ranges::lower_bound(meaning.motions, first, {}, &Motion::block) -
-      meaning.motions.begin());
-  move_rest(meaning.blocks, first, rest.blocks);
-  move_rest(meaning.motions, motion, rest.motions);
-  rest.states.assign(meaning.states.begin() + state, meaning.states.end());
-  meaning.states.resize(state + 1);
-  rest.unit_word_seen = meaning.unit_word_seen;
-  for (BlockMeaning& block : rest.blocks) {
-    block.state_after -= state;
-    if (block.motion >= 0) block.motion -= static_cast<std::int32_t>(motion);
+// `sign`: 1 or -1; unsigned numbers wrap.
+void move_by(const Offsets& by, std::uint32_t sign, ReadPart& part) {
+  for (Block& block : part.program.blocks) {
+    block.first_word += sign * by.words;
+    block.first_comment += sign * by.comments;
   }
-  for (Motion& each : rest.motions) each.block -= first;
-}
-
-void append_text(Program& program, Program& more) {
-  const auto words = static_cast<std::uint32_t>(program.words.size());
-  const auto comments = static_cast<std::uint32_t>(program.comments.size());
-  for (Block& block : more.blocks) {
-    block.first_word += words;
-    block.first_comment += comments;
+  for (BlockMeaning& block : part.meaning.blocks) {
+    block.state_after += sign * by.states;
+    if (block.motion >= 0) block.motion += static_cast<std::int32_t>(sign * by.motions);
   }
-  move_behind(program.blocks, more.blocks);
-  move_behind(program.words, more.words);
-  move_behind(program.comments, more.comments);
-}
-
-// The first state of `more` is the last one of the part.
-void append_meaning(Interpretation& meaning, Interpretation& more) {
-  const auto blocks = static_cast<std::uint32_t>(meaning.blocks.size());
-  const auto motions = static_cast<std::int32_t>(meaning.motions.size());
-  const auto states = static_cast<std::uint32_t>(meaning.states.size() - 1);
-  for (BlockMeaning& block : more.blocks) {
-    block.state_after += states;
-    if (block.motion >= 0) block.motion += motions;
-  }
-  for (Motion& each : more.motions) each.block += blocks;
-  move_behind(meaning.blocks, more.blocks);
-  move_behind(meaning.motions, more.motions);
-  meaning.states.insert(meaning.states.end(), more.states.begin() + 1, more.states.end());
-  meaning.unit_word_seen = more.unit_word_seen;
+  for (Motion& each : part.meaning.motions) each.block += sign * by.blocks;
 }
 
 }  // namespace
 
 ReadPart take_rest(ReadPart& part, std::uint32_t first) {
-  ReadPart rest{{part.program.source,
-                 {},
-                 {},
-                 {},
-                 part.program.language,
-                 part.program.decimals,
-                 part.program.dwells},
+  auto& [program, meaning] = part;
+  const bool any = first < program.blocks.size();
+  Offsets at;
+  at.words =
+      any ? program.blocks[first].first_word : static_cast<std::uint32_t>(program.words.size());
+  at.comments = any ? program.blocks[first].first_comment
+                    : static_cast<std::uint32_t>(program.comments.size());
+  at.states = first > 0 ? meaning.blocks[first - 1].state_after : 0;
+  at.motions = static_cast<std::uint32_t>(
+      std::ranges::lower_bound(meaning.motions, first, {}, &Motion::block) -
+      meaning.motions.begin());
+  at.blocks = first;
+  ReadPart rest{{program.source, {}, {}, {}, program.language, program.decimals, program.dwells},
                 {}};
-  take_rest_of_text(part.program, first, rest.program);
-  take_rest_of_meaning(part.meaning, first, rest.meaning);
+  move_rest(program.blocks, first, rest.program.blocks);
+  move_rest(program.words, at.words, rest.program.words);
+  move_rest(program.comments, at.comments, rest.program.comments);
+  move_rest(meaning.blocks, first, rest.meaning.blocks);
+  move_rest(meaning.motions, at.motions, rest.meaning.motions);
+  rest.meaning.states.assign(meaning.states.begin() + at.states, meaning.states.end());
+  meaning.states.resize(at.states + 1);
+  rest.meaning.unit_word_seen = meaning.unit_word_seen;
+  move_by(at, -1U, rest);
   return rest;
 }
 
 void append(ReadPart& part, ReadPart more) {
-  if (part.program.blocks.empty()) {
+  auto& [program, meaning] = part;
+  if (program.blocks.empty()) {
     part = std::move(more);
     return;
   }
-  append_text(part.program, more.program);
-  append_meaning(part.meaning, more.meaning);
+  const auto size = [](const auto& items) { return static_cast<std::uint32_t>(items.size()); };
+  // The first state of `more` is the last one of the part.
+  move_by({size(program.words), size(program.comments), size(meaning.states) - 1,
+           size(meaning.motions), size(meaning.blocks)},
+          1, more);
+  move_behind(program.blocks, more.program.blocks);
+  move_behind(program.words, more.program.words);
+  move_behind(program.comments, more.program.comments);
+  move_behind(meaning.blocks, more.meaning.blocks);
+  move_behind(meaning.motions, more.meaning.motions);
+  meaning.states.insert(meaning.states.end(), more.meaning.states.begin() + 1,
+                        more.meaning.states.end());
+  meaning.unit_word_seen = more.meaning.unit_word_seen;
 }
 
 }  // namespace batten::gcode

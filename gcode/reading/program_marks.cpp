@@ -1,17 +1,13 @@
 #include "gcode/reading/program_marks.h"
 
 #include <algorithm>
-#include <cstddef>
-#include <string>
 #include <string_view>
 
 namespace batten::gcode {
 namespace {
 
 bool is_mark(const Program& program, const Block& block) {
-  if (block.opacity != ParseStatus::kProgramMark) {
-    return false;
-  }
+  if (block.opacity != ParseStatus::kProgramMark) return false;
   const std::string_view text = program.source.text(block.span);
   const std::size_t first = text.find_first_not_of(std::string_view("\0 \t\xEF\xBB\xBF", 6));
   return first != std::string_view::npos && text[first] == '%';
@@ -21,35 +17,6 @@ bool is_mark(const Program& program, const Block& block) {
 bool has_words(const Block& block) {
   return block.opacity == ParseStatus::kNone ? block.word_count > 0
                                              : block.opacity != ParseStatus::kProgramMark;
-}
-
-using BlockIterator = std::vector<Block>::iterator;
-
-// From inside, the text before the first mark may or may not have been run: unlike the text
-// after the last one it can change the state that the program starts in.
-void close_before(BlockIterator begin, BlockIterator mark, Diagnostics& found) {
-  bool any = false;
-  for (auto block = begin; block != mark; ++block) {
-    if (has_words(*block)) {
-      block->opacity = ParseStatus::kUnreadable;
-      any = true;
-    }
-  }
-  if (any) {
-    found.push_back({Severity::kWarning, "text-outside-marks", mark->span,
-                     "words stand before this first % line: some controls run them, others do "
-                     "not; they are copied as they are"});
-  }
-}
-
-void close_after(BlockIterator mark, BlockIterator end, Diagnostics& found) {
-  const bool any = std::any_of(mark, end, has_words);
-  std::for_each(mark + 1, end, close_behind_marks);
-  if (any) {
-    found.push_back({Severity::kNote, "text-outside-marks", mark->span,
-                     "words stand after this second % line, which ends the program; they are "
-                     "copied as they are"});
-  }
 }
 
 }  // namespace
@@ -67,11 +34,24 @@ void close_program_marks(Program& program, Diagnostics& found) {
   if (first == end || std::none_of(first, end, has_words)) {
     return;
   }
-  close_before(begin, first, found);
-  const auto second = std::find_if(first + 1, end, mark);
-  if (second != end) {
-    close_after(second, end, found);
+  // From inside, the text before the first mark may or may not have been run: unlike the text after
+  // the last one it can change the state that the program starts in.
+  if (std::any_of(begin, first, has_words)) {
+    found.push_back({Severity::kWarning, "text-outside-marks", first->span,
+                     "words stand before this first % line: some controls run them, others do "
+                     "not; they are copied as they are"});
   }
+  for (auto block = begin; block != first; ++block) {
+    if (has_words(*block)) block->opacity = ParseStatus::kUnreadable;
+  }
+  const auto second = std::find_if(first + 1, end, mark);
+  if (second == end) return;
+  if (std::any_of(second, end, has_words)) {
+    found.push_back({Severity::kNote, "text-outside-marks", second->span,
+                     "words stand after this second % line, which ends the program; they are "
+                     "copied as they are"});
+  }
+  std::for_each(second + 1, end, close_behind_marks);
 }
 
 // Only marks with words behind them are the first: others end what began without one.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <vector>
 
 #include "gcode/control/control.h"
 #include "gcode/rs274/plain_words.h"
@@ -137,11 +136,6 @@ bool is_number(std::string_view word) {
   return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-bool is_type(std::string_view word) {
-  return std::ranges::any_of(kSiemensTypes,
-                             [word](std::string_view type) { return is_same_word(word, type); });
-}
-
 // A line that may be one has one of these letters: 1 for them, 0 for others. Asked without a
 // branch, so that the compiler asks many at once.
 constexpr unsigned char is_letter_of_mark(char c) {
@@ -169,15 +163,9 @@ std::size_t find_letter_of_mark(std::string_view text, std::size_t at) {
 
 // Most of the others are seen to be none at their first letter.
 bool may_be_mark(std::string_view line) {
-  std::size_t at = 0;
-  if (!line.empty() && upper(line.front()) == 'N') {
-    ++at;
-  }
-  while (at < line.size() && (is_digit(line[at]) || is_blank(line[at]))) {
-    ++at;
-  }
-  return at < line.size() &&
-         (line[at] == '%' || line[at] == ';' || upper(line[at]) == 'B' || upper(line[at]) == 'D');
+  std::size_t at = upper(char_at(line, 0)) == 'N' ? 1 : 0;
+  while (is_digit(char_at(line, at)) || is_blank(char_at(line, at))) ++at;
+  return is_letter_of_mark(char_at(line, at)) != 0;
 }
 
 // Bytes that are looked at before they are given back: a long program is not held for its marks.
@@ -212,23 +200,16 @@ void add_marks_of(const SourceText& source, SourceSpan part, std::vector<Languag
       continue;
     }
     const auto found = language_of_line(text);
-    const bool known = !found || std::ranges::any_of(marks, [&](const LanguageMark& each) {
-      return each.language == found->language;
-    });
-    if (!known) {
-      marks.push_back({found->language, found->evidence, span});
-    }
+    if (!found || std::ranges::count(marks, found->language, &LanguageMark::language) > 0) continue;
+    marks.push_back({found->language, found->evidence, span});
   }
 }
 
 }  // namespace
 
 std::optional<LanguageEvidence> language_of_line(std::string_view line) {
-  if (line.starts_with("%_N_")) {
-    return LanguageEvidence{Language::kSiemens, "%_N_"};
-  }
-  if (line.starts_with(";$PATH")) {
-    return LanguageEvidence{Language::kSiemens, ";$PATH"};
+  for (const std::string_view mark : {"%_N_", ";$PATH"}) {
+    if (line.starts_with(mark)) return LanguageEvidence{Language::kSiemens, mark};
   }
   std::string_view first = next_word(line);
   if (is_number(first) ||
@@ -239,7 +220,7 @@ std::optional<LanguageEvidence> language_of_line(std::string_view line) {
   if (is_same_word(first, "BEGIN") && is_same_word(second, "PGM")) {
     return LanguageEvidence{Language::kKlartext, "BEGIN PGM"};
   }
-  if (is_same_word(first, "DEF") && is_type(second)) {
+  if (is_same_word(first, "DEF") && std::ranges::count(kSiemensTypes, in_capitals(second)) > 0) {
     return LanguageEvidence{Language::kSiemens, "DEF with a type"};
   }
   return std::nullopt;
