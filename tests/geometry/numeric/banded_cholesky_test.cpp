@@ -88,8 +88,8 @@ TEST(BandedMatrix, RefusesWhatIsNotPositiveDefinite) {
   for (const double last : {1.0, 2.0, 0.0}) {  // 1 last / last 1: singular, indefinite, and nothing
     BandedMatrix matrix(2);
     matrix.at(0, 0) = last > 0 ? 1 : 0;
-    matrix.at(1, 1) = matrix.at(0, 0);
-    matrix.at(1, 0) = last;
+    matrix.at(1, 0) = matrix.at(0, 0);
+    matrix.at(1, 1) = last;
     std::vector<Point3> right(2, Point3::Ones());
     EXPECT_FALSE(matrix.solve(right)) << last;
   }
