@@ -165,6 +165,13 @@ constexpr double kTwist = 1e-4;
 // Halves of a piece twist a quarter as much.
 constexpr int kTwistHalvings = 6;
 
+ControlCoordinates seen_from(const Point3& origin, const CubicBezier& piece) {
+  const Point3* p = piece.control;
+  return {Array4d(p[0].x(), p[1].x(), p[2].x(), p[3].x()) - origin.x(),
+          Array4d(p[0].y(), p[1].y(), p[2].y(), p[3].y()) - origin.y(),
+          Array4d(p[0].z(), p[1].z(), p[2].z(), p[3].z()) - origin.z()};
+}
+
 // The piece up to this part of its parameter. De Casteljau's algorithm.
 ControlCoordinates restricted(const ControlCoordinates& piece, double part) {
   const auto one = [part](const Array4d& p) {
@@ -242,10 +249,11 @@ double greatest_square(const ControlCoordinates& piece, double known, int halvin
   } else if (halvings == 0) {
     return hull;
   }
-  const ControlCoordinates back{piece.x.reverse(), piece.y.reverse(), piece.z.reverse()};
-  const double first = greatest_square(restricted(piece, 0.5), known, halvings - 1);
-  return std::max(first,
-                  greatest_square(restricted(back, 0.5), std::max(first, known), halvings - 1));
+  const auto [left, right] = halves(CubicBezier{
+      {point_of(piece, 0), point_of(piece, 1), point_of(piece, 2), point_of(piece, 3)}});
+  const double first = greatest_square(seen_from(Point3::Zero(), left), known, halvings - 1);
+  return std::max(first, greatest_square(seen_from(Point3::Zero(), right), std::max(first, known),
+                                         halvings - 1));
 }
 
 }  // namespace
@@ -257,19 +265,12 @@ ChordsFrom::ChordsFrom(const CurvePieces& pieces, double from)
   const CubicBezier rest = at > 0 ? parts_at(piece, at).second : piece;
   start_ = rest.control[0];
   left_ = 1 - at;
-  rest_ = seen_from_start(rest);
-}
-
-ControlCoordinates ChordsFrom::seen_from_start(const CubicBezier& piece) const {
-  const Point3* p = piece.control;
-  return {Array4d(p[0].x(), p[1].x(), p[2].x(), p[3].x()) - start_.x(),
-          Array4d(p[0].y(), p[1].y(), p[2].y(), p[3].y()) - start_.y(),
-          Array4d(p[0].z(), p[1].z(), p[2].z(), p[3].z()) - start_.z()};
+  rest_ = seen_from(start_, rest);
 }
 
 // Of piece i, what lies between the start and `end`, seen from the start.
 ControlCoordinates ChordsFrom::part_before(std::size_t i, double end) const {
-  ControlCoordinates whole = i == first_ ? rest_ : seen_from_start(pieces_.piece(i));
+  ControlCoordinates whole = i == first_ ? rest_ : seen_from(start_, pieces_.piece(i));
   if (pieces_.breaks()[i + 1] <= end) return whole;
   double part = pieces_.local(i, end);
   if (i == first_) part = left_ > 0 ? std::max(1 - (1 - part) / left_, 0.0) : 0;

@@ -105,7 +105,6 @@ class ChordsFrom {
   [[nodiscard]] std::size_t first_piece() const { return first_; }
 
  private:
-  [[nodiscard]] ControlCoordinates seen_from_start(const CubicBezier& piece) const;
   [[nodiscard]] ControlCoordinates part_before(std::size_t i, double end) const;
 
   const CurvePieces& pieces_;

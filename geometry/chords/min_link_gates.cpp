@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/chords/chord_proof.h"
 #include "geometry/path/cubic_polynomial.h"
 
 namespace batten::geometry {
@@ -17,22 +18,13 @@ struct PieceSteps {
   double to;
   double length;     // mm, of its chord
   double steps = 1;  // equal ones of the parameter
-
-  [[nodiscard]] double step() const { return length / steps; }
 };
 
 // A cubic is at most three quarters as far from its chord as its control points are.
 double sagitta_bound(const CubicBezier& piece) {
-  const Point3& start = piece.control[0];
-  const Vector3 chord = piece.control[3] - start;
-  const double length = chord.norm();
-  const Vector3 along = length > 0 ? Vector3(chord / length) : Vector3(Vector3::Zero());
-  double farthest = 0;
-  for (const Point3& p : {piece.control[1], piece.control[2]}) {
-    const double at = std::clamp(along.dot(p - start), 0.0, length);
-    farthest = std::max(farthest, (p - start - at * along).norm());
-  }
-  return 0.75 * farthest;
+  const StraightLine chord(piece.control[0], piece.control[3]);
+  return 0.75 * std::sqrt(std::max(chord.squared_distance(piece.control[1]),
+                                   chord.squared_distance(piece.control[2])));
 }
 
 // Halves the piece until each part keeps the gap.
@@ -49,16 +41,14 @@ void append_parts(const CubicBezier& piece, double from, double to, double gap, 
 }
 
 void cut_long_pieces(std::vector<PieceSteps>& cuts) {
-  std::vector<double> wanted(cuts.size(), 1);
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     double beside = std::numeric_limits<double>::infinity();
-    if (i > 0) beside = std::min(beside, cuts[i - 1].step());
-    if (i + 1 < cuts.size()) beside = std::min(beside, cuts[i + 1].step());
-    if (beside > 0)
-      wanted[i] =
-          std::min(std::ceil(cuts[i].length / (kGates.growth * beside)), kGates.most_in_line);
+    if (i > 0) beside = std::min(beside, cuts[i - 1].length);
+    if (i + 1 < cuts.size()) beside = std::min(beside, cuts[i + 1].length);
+    if (!(beside > 0)) continue;
+    const double wanted = std::ceil(cuts[i].length / (kGates.growth * beside));
+    cuts[i].steps = std::clamp(wanted, 1.0, kGates.most_in_line);
   }
-  for (std::size_t i = 0; i < cuts.size(); ++i) cuts[i].steps = std::max(cuts[i].steps, wanted[i]);
 }
 
 // Up to which width on the side of `bend` the ends of two gates go forward.
