@@ -77,7 +77,7 @@ class CurveForms {
     if (arcs_wanted) near_arcs_ = near_arcs();
     if (arcs_wanted && may_leave_out()) look_ahead();
     if (arcs_wanted && !leaves_out_arcs_) {
-      push(made_arcs(plan_with(one_sided_ ? kForms.fine_arcs : kForms.arcs)));
+      push(made_arcs(plan_with(one_sided_ ? kFormTuning.fine_arcs : kFormTuning.arcs)));
     }
     push(std::move(near_arcs_));
     const bool few = few_wanted_ || !task_.run.arcs.empty();
@@ -130,7 +130,7 @@ class CurveForms {
 
   // With all that the curve leaves of the tolerance, and nearer to the path that was meant.
   void add_curves() {
-    for (const double multiple : {kForms.arcs, kForms.fine_arcs}) {
+    for (const double multiple : {kFormTuning.arcs, kFormTuning.fine_arcs}) {
       const PlanOptions options = plan_with(multiple);
       push(made(plan_curves(task_.run, curve_.path, options), options.max_deviation));
     }
@@ -154,7 +154,7 @@ class CurveForms {
     const bool is_flat =
         lies_across(task_.run, 0) || lies_across(task_.run, 1) || lies_across(task_.run, 2);
     if (enough || one_sided_ || !is_flat) return std::nullopt;
-    PlanOptions fine = plan_with(kForms.fine_arcs);
+    PlanOptions fine = plan_with(kFormTuning.fine_arcs);
     // They are there to be near, not few.
     if (!few_wanted_) fine.arc_effort = geometry::ArcEffort::kBrief;
     return made_arcs(fine);
@@ -164,8 +164,8 @@ class CurveForms {
   // the search finds one fewer here and there in a band that is a little less wide.
   void add_arc_splines() {
     const double whole = left_ + curve_.path.deviation;
-    for (const double part : kForms.bands) {
-      PlanOptions band = plan_with(kForms.arcs);
+    for (const double part : kFormTuning.bands) {
+      PlanOptions band = plan_with(kFormTuning.arcs);
       band.max_deviation = part * whole;
       push(made(plan_arc_spline(task_.run, curve_.path, band), band.max_deviation));
       const bool enough = !result_.candidates.empty() &&
@@ -177,9 +177,9 @@ class CurveForms {
   // Those that are worth looking at, the longest first.
   void find_line_forms() {
     double before = std::numeric_limits<double>::infinity();
-    for (const double multiple : kForms.chords) {
-      const PlanOptions lines = plan_with(one_sided_ ? kForms.chords[2] : multiple);
-      if (lines.max_deviation > kForms.another * before || is_hopeless(lines)) continue;
+    for (const double multiple : kFormTuning.chords) {
+      const PlanOptions lines = plan_with(one_sided_ ? kFormTuning.chords[2] : multiple);
+      if (lines.max_deviation > kFormTuning.another * before || is_hopeless(lines)) continue;
       before = lines.max_deviation;
       lines_.push_back({lines, {}});
     }
@@ -234,17 +234,17 @@ class CurveForms {
   // The dearest forms are the ones that are seldom chosen: few arcs further away from the curve,
   // where near ones or near lines are as quick, and lines where a few near arcs are.
   void look_ahead() {
-    const double far = plan_with(kForms.arcs).max_deviation;
+    const double far = plan_with(kFormTuning.arcs).max_deviation;
     leaves_out_arcs_ = near_arcs_ && bounds_.beats_form(*near_arcs_, far, 0);
     result_.left_out = result_.left_out || leaves_out_arcs_;
     if (leaves_out_arcs_) {
-      leaves_out_lines_ = std::ranges::all_of(kForms.chords, [&](double multiple) {
+      leaves_out_lines_ = std::ranges::all_of(kFormTuning.chords, [&](double multiple) {
         return bounds_.beats_lines(*near_arcs_, lines_ahead(plan_with(multiple).max_deviation));
       });
       return;
     }
-    const PlanOptions fine = plan_with(kForms.chords[2]);
-    if (is_hopeless(fine) || fine.max_deviation >= plan_with(kForms.chords[1]).max_deviation) {
+    const PlanOptions fine = plan_with(kFormTuning.chords[2]);
+    if (is_hopeless(fine) || fine.max_deviation >= plan_with(kFormTuning.chords[1]).max_deviation) {
       return;
     }
     find_line_forms();

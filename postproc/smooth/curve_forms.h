@@ -22,7 +22,7 @@ struct FormTuning {
   double another = 0.9;               // of the chords before, at most, or chords are those again
   double bands[3] = {1, 0.97, 0.94};  // parts of the band around arcs in which few are looked for
 };
-inline constexpr FormTuning kForms;
+inline constexpr FormTuning kFormTuning;
 
 // `old`: what the run takes. The candidate's method, error and curvature are left to who knows
 // them. Nothing where the target cannot say the plan, or there are not enough block numbers.
