@@ -10,7 +10,7 @@
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
 #include "postproc/proof/verification.h"
-#include "postproc/stream/added_lines.h"
+#include "postproc/stream/assembly.h"
 #include "postproc/stream/part_reader.h"
 #include "postproc/stream/part_verification.h"
 #include "postproc/system/exit_code.h"

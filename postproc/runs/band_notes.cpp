@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -21,8 +19,6 @@ namespace batten::postproc {
 
 namespace {
 
-using geometry::BandCusp;
-using geometry::BandOverlap;
 using geometry::Point2;
 using geometry::Point3;
 
@@ -45,67 +41,7 @@ std::vector<Point2> seen_along(int axis, std::span<const Point3> points) {
   return flat;
 }
 
-// For every edge of the run the block whose motion it belongs to.
-std::vector<std::uint32_t> blocks_of_edges(const gcode::Program& program,
-                                           const gcode::Interpretation& meaning,
-                                           const Section& section, const Run& run) {
-  const RunBlocks blocks(program, meaning);
-  std::vector<std::uint32_t> of_edges;
-  of_edges.reserve(run.points.size());
-  auto arc = run.arcs.begin();
-  for (std::uint32_t block = section.first_block; block <= section.last_block; ++block) {
-    if (meaning.blocks[block].motion < 0 || !blocks.moves(block)) continue;
-    const bool is_arc = arc != run.arcs.end() && arc->first == of_edges.size();
-    of_edges.insert(of_edges.end(), is_arc ? arc->last - arc->first : 1, block);
-    if (is_arc) ++arc;
-  }
-  return of_edges;
-}
-
 std::string_view places(std::size_t count) { return count == 1 ? "place" : "places"; }
-
-class Notes {
- public:
-  Notes(const gcode::Program& program, std::vector<std::uint32_t> of_edges, double tolerance)
-      : program_(program), of_edges_(std::move(of_edges)), tolerance_(tolerance) {}
-
-  void tell_overlaps(const std::vector<BandOverlap>& overlaps) {
-    if (overlaps.empty()) return;
-    const auto nearest = std::ranges::min_element(overlaps, {}, &BandOverlap::distance);
-    const std::string_view how = nearest->meets_itself ? "which meet" : "which do not meet";
-    found_.push_back(
-        {gcode::Severity::kNote, "band-overlap", program_.blocks[of_edges_[nearest->edge]].span,
-         fmt::format("lines {}-{} and {}-{} are {:.4f} mm apart, {}, less than twice the tolerance "
-                     "of {:g} mm: {} {} like that in this run; the new path may not cross itself "
-                     "there",
-                     line(nearest->first_from), line(nearest->first_to), line(nearest->second_from),
-                     line(nearest->second_to), nearest->distance, how, tolerance_, overlaps.size(),
-                     places(overlaps.size()))});
-  }
-
-  void tell_cusps(const std::vector<BandCusp>& cusps) {
-    if (cusps.empty()) return;
-    const BandCusp& first = cusps.front();
-    found_.push_back(
-        {gcode::Severity::kNote, "band-cusp", program_.blocks[of_edges_[first.edge]].span,
-         fmt::format("the path bends to the {} with a radius below the tolerance of {:g} mm: {} {} "
-                     "like that in this run",
-                     first.left ? "left" : "right", tolerance_, cusps.size(),
-                     places(cusps.size()))});
-  }
-
-  gcode::Diagnostics take() && { return std::move(found_); }
-
- private:
-  [[nodiscard]] std::uint32_t line(std::size_t edge) const {
-    return program_.blocks[of_edges_[edge]].line;
-  }
-
-  const gcode::Program& program_;
-  std::vector<std::uint32_t> of_edges_;
-  double tolerance_;
-  gcode::Diagnostics found_;
-};
 
 }  // namespace
 
@@ -117,10 +53,34 @@ gcode::Diagnostics band_notes(const gcode::Program& program, const gcode::Interp
   if (!axis) return {};
   const auto structure = geometry::band_structure(seen_along(*axis, run->points), tolerance_mm);
   if (!structure) return {};
-  Notes notes(program, blocks_of_edges(program, meaning, section, *run), tolerance_mm);
-  notes.tell_overlaps(structure->overlaps);
-  notes.tell_cusps(structure->cusps);
-  return std::move(notes).take();
+  const std::vector<std::uint32_t> of_edges = blocks_of_edges(section, meaning);
+  const auto block = [&](std::size_t edge) -> const gcode::Block& {
+    return program.blocks[of_edges[edge]];
+  };
+  gcode::Diagnostics found;
+  const auto& overlaps = structure->overlaps;
+  if (!overlaps.empty()) {
+    const auto nearest = std::ranges::min_element(overlaps, {}, &geometry::BandOverlap::distance);
+    found.push_back(
+        {gcode::Severity::kNote, "band-overlap", block(nearest->edge).span,
+         fmt::format("lines {}-{} and {}-{} are {:.4f} mm apart, {}, less than twice the tolerance "
+                     "of {:g} mm: {} {} like that in this run; the new path may not cross itself "
+                     "there",
+                     block(nearest->first_from).line, block(nearest->first_to).line,
+                     block(nearest->second_from).line, block(nearest->second_to).line,
+                     nearest->distance, nearest->meets_itself ? "which meet" : "which do not meet",
+                     tolerance_mm, overlaps.size(), places(overlaps.size()))});
+  }
+  const auto& cusps = structure->cusps;
+  if (!cusps.empty()) {
+    found.push_back(
+        {gcode::Severity::kNote, "band-cusp", block(cusps.front().edge).span,
+         fmt::format("the path bends to the {} with a radius below the tolerance of {:g} mm: {} {} "
+                     "like that in this run",
+                     cusps.front().left ? "left" : "right", tolerance_mm, cusps.size(),
+                     places(cusps.size()))});
+  }
+  return found;
 }
 
 void BandNoteTally::add(std::span<const gcode::Diagnostics> of_runs, gcode::Diagnostics& found) {
@@ -140,12 +100,6 @@ void BandNoteTally::tell_rest(gcode::Diagnostics& found) const {
   if (left_out_ == 0) return;
   found.push_back({gcode::Severity::kNote, "band-overlap", first_untold_,
                    fmt::format("{} more notes on bands that overlap or have cusps", left_out_)});
-}
-
-void append_band_notes(std::span<const gcode::Diagnostics> of_runs, gcode::Diagnostics& found) {
-  BandNoteTally tally;
-  tally.add(of_runs, found);
-  tally.tell_rest(found);
 }
 
 }  // namespace batten::postproc

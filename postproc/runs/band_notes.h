@@ -13,12 +13,12 @@
 
 namespace batten::postproc {
 
-// Notes on a run, at most one of each id: `band-overlap` at the block where two parts of the run
-// are nearest to each other, `band-cusp` at the first block whose side the edge of the band does
-// not have. Each says how many such places there are.
+// Notes on a run, at most one of each id, each with how many such positions there are:
+// `band-overlap` at the block where two parts of the run are nearest to each other, `band-cusp` at
+// the first block whose side the edge of the band does not have.
 //
-// None where the section is no run, where the run is not flat across an axis, and where it lies in
-// a heap (geometry::band_structure). Arcs are seen as the chords of the run.
+// None where the section is no run, where the run is not flat across an axis, and where too many
+// of its parts are close by (geometry::band_structure). Arcs are seen as the chords of the run.
 [[nodiscard]] gcode::Diagnostics band_notes(const gcode::Program& program,
                                             const gcode::Interpretation& meaning,
                                             const Section& section, double tolerance_mm);
@@ -26,8 +26,7 @@ namespace batten::postproc {
 // As many as the messages of one id about the text.
 inline constexpr std::size_t kMostBandNotes = 50;
 
-// The notes of all runs in order, but no more than kMostBandNotes of them; then one that says how
-// many more there are.
+// The notes of all runs in order, at most kMostBandNotes of them, then how many more there are.
 class BandNoteTally {
  public:
   void add(std::span<const gcode::Diagnostics> of_runs, gcode::Diagnostics& found);
@@ -39,8 +38,5 @@ class BandNoteTally {
   std::size_t left_out_ = 0;
   gcode::SourceSpan first_untold_;
 };
-
-// Of a whole program.
-void append_band_notes(std::span<const gcode::Diagnostics> of_runs, gcode::Diagnostics& found);
 
 }  // namespace batten::postproc

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "geometry/basic/rounding.h"
+#include "postproc/runs/run_path.h"
 
 namespace batten::postproc {
 namespace {
@@ -16,17 +17,17 @@ using geometry::Vector3;
 // Pieces of one curve do not meet at a greater angle, however short they are.
 constexpr double kCorner = 30 * std::numbers::pi / 180;
 
-// What a piece of length l is off its curve when it alone makes a kink a: a line a l / 8, an arc
-// through the ends and the middle of its stretch a l / 20 (docs/algorithms/arcs_in_runs.md).
+// What a segment of length l is off its curve when it alone makes a kink a: a line a l / 8, an arc
+// through the ends and the middle of its section a l / 20 (docs/algorithms/arcs_in_runs.md).
 constexpr double kLineOff = 1.0 / 8;
 constexpr double kArcOff = 1.0 / 20;
 
-// A curve in pieces that is less true than this many tolerances was made for another job: its
+// A curve in segments that is less true than this many tolerances was made for another job: its
 // kinks cannot be hidden, and count as corners.
 constexpr double kCoarse = 2;
 
-// Where this part of the joints of arcs that follow each other are kinks, those that are not are
-// tangent by chance: arcs of even length along an evenly bending curve meet so.
+// Where this part of the joints of consecutive arcs are kinks, the others are tangent by chance:
+// arcs of even length along an evenly bending curve meet so.
 constexpr double kKinksOfCurve = 1.0 / 3;
 
 // A sweep this close to a full turn (radians) is one.
@@ -46,8 +47,7 @@ bool is_level(const PrintedMotion& motion, const Vector3& axis) {
   return std::abs(rise_of(motion.piece, axis)) <= geometry::kSamePlace;
 }
 
-// The tool ramps down on one piece and cuts a floor with the next: that was meant, however little
-// it turns there.
+// The tool ramps down on one segment and cuts a floor with the next: intended at any turn.
 bool changes_level(const PrintedMotion& before, const PrintedMotion& after) {
   for (const PrintedMotion* motion : {&before, &after}) {
     const Arc* arc = arc_of(*motion);
@@ -61,18 +61,15 @@ double radius_at(const Arc& arc, bool at_end) {
   return std::max((out - out.dot(arc.axis) * arc.axis).norm(), geometry::kSamePlace);
 }
 
-double chord_of(const PathPiece& piece) {
-  return (geometry::end_point(piece) - geometry::start_point(piece)).norm();
-}
-
 // By how much the direction that a motion has at one end may be wrong (radians), with errors e of
 // its ends and f of its centre in two axes, sqrt(2) of the printed errors.
 double direction_error(const PrintedMotion& motion, bool at_end, const PrintedErrors& errors) {
   const double e = std::numbers::sqrt2 * errors.place;
   const double f = std::numbers::sqrt2 * errors.center;
-  const double chord = std::max(chord_of(motion.piece), geometry::kSamePlace);
+  const Vector3 across = geometry::end_point(motion.piece) - geometry::start_point(motion.piece);
+  const double chord = std::max(across.norm(), geometry::kSamePlace);
   const Arc* arc = arc_of(motion);
-  // Its ends turn the chord, and the whole of the piece with it.
+  // Its ends turn the chord, and the whole of the segment with it.
   const double turned = 2 * e / chord;
   if (arc == nullptr) return turned;
   const double radius = radius_at(*arc, at_end);
@@ -81,20 +78,17 @@ double direction_error(const PrintedMotion& motion, bool at_end, const PrintedEr
     const double half = std::min(0.5 * std::abs(arc->sweep), std::numbers::pi);
     return turned + std::abs(std::tan(half)) * (errors.center / radius + turned);
   }
-  // The centre is seen beside its place: from the start by its own error, from the end by those of
-  // both ends as well. And the radii at the two ends differ, by 2 e + 2 f at the most, so that the
-  // piece is a spiral.
+  // The centre is seen beside its position: from the start by its own error, from the end by those
+  // of both ends as well. And the radii at the two ends differ, by at most 2 e + 2 f: a spiral.
   const double shifted = (at_end ? 2 * e + f : f) / radius;
   return shifted + (2 * e + 2 * f) / chord;
 }
 
-// The least that two pieces must be off one curve to meet at this angle.
+// The least that two segments must be off one curve to meet at this angle.
 double off_by(const PrintedMotion& motion, double turn) {
   return turn * geometry::length_of(motion.piece) *
          (arc_of(motion) != nullptr ? kArcOff : kLineOff);
 }
-
-bool is_full_turn(const Arc& arc) { return std::abs(arc.sweep) >= kFullTurn; }
 
 class Judge {
  public:
@@ -107,11 +101,9 @@ class Judge {
 
   ChainJudgement judge() {
     ChainJudgement judged;
-    judged.kept.assign(chain_.size(), false);
-    judged.starts_part.assign(chain_.size(), false);
     for (std::size_t i = 0; i < chain_.size(); ++i) {
-      judged.starts_part[i] = joints_[i] == ArcJoint::kCorner;
-      judged.kept[i] = arc_of(chain_[i]) != nullptr && !is_kinked(i);
+      judged.starts_part.push_back(joints_[i] == ArcJoint::kCorner);
+      judged.kept.push_back(arc_of(chain_[i]) != nullptr && !is_kinked(i));
     }
     for (std::size_t i = 0; i < chain_.size();) {
       const std::size_t end = end_of_group(i);
@@ -126,14 +118,14 @@ class Judge {
  private:
   [[nodiscard]] bool may_be_piece(std::size_t i) const {
     const Arc* arc = arc_of(chain_[i]);
-    return arc != nullptr && !is_full_turn(*arc);
+    return arc != nullptr && std::abs(arc->sweep) < kFullTurn;
   }
 
   [[nodiscard]] bool is_kinked(std::size_t i) const {
     return may_be_piece(i) && (joints_[i] == ArcJoint::kKink || joints_[i + 1] == ArcJoint::kKink);
   }
 
-  // Arcs that follow each other without a corner: behind the last of those that start at `begin`.
+  // After the last of the arcs from `begin` on that follow each other without a corner.
   [[nodiscard]] std::size_t end_of_group(std::size_t begin) const {
     std::size_t end = begin;
     while (end < chain_.size() && may_be_piece(end) &&
@@ -169,9 +161,7 @@ ArcJoint joint_between(const PrintedMotion& before, const PrintedMotion& after,
                        const PrintedErrors& errors, double tolerance) {
   if (arc_of(before) == nullptr && arc_of(after) == nullptr) return ArcJoint::kNone;
   if (changes_level(before, after)) return ArcJoint::kCorner;
-  const Vector3 a = geometry::direction_at(before.piece, 1);
-  const Vector3 b = geometry::direction_at(after.piece, 0);
-  const double turn = std::atan2(a.cross(b).norm(), a.dot(b));
+  const double turn = turn_between(before.piece, after.piece);
   if (turn <= direction_error(before, true, errors) + direction_error(after, false, errors)) {
     return ArcJoint::kTangent;
   }

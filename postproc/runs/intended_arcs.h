@@ -1,5 +1,5 @@
-// Which arcs of a program were meant as arcs, and which are pieces of a curve that a CAM system
-// could not write otherwise. Method: docs/algorithms/arcs_in_runs.md.
+// Which arcs of a program are intended, and which are segments of a curve that a CAM system could
+// not write otherwise. Method: docs/algorithms/arcs_in_runs.md.
 #pragma once
 
 #include <span>
@@ -24,19 +24,19 @@ struct PrintedErrors {
 enum class ArcJoint {
   kNone,     // between two lines: says nothing of arcs
   kTangent,  // as tangent as the printed numbers can tell
-  kKink,     // turns by more than that, and by as little as two pieces of one curve may
-  kCorner,   // turns as it was meant to, or changes from a level cut to a rising one
+  kKink,     // turns by more than that, and by as little as two segments of one curve may
+  kCorner,   // an intended turn, or a change from a level cut to a rising one
 };
 
-// `tolerance` (mm) is what a curve in pieces is thought to be true to, twice of it at the most.
+// `tolerance` (mm): a curve in segments is assumed to be true to it, or twice of it at the most.
 [[nodiscard]] ArcJoint joint_between(const PrintedMotion& before, const PrintedMotion& after,
                                      const PrintedErrors& errors, double tolerance);
 
 struct ChainJudgement {
-  // By motion. An arc is kept that was meant: a full circle, and one that neither of its neighbours
-  // meets in a kink, unless it is one of many arcs in a row that mostly meet in kinks.
+  // By motion: an intended arc, that is a full circle, or one that meets neither neighbour in a
+  // kink, unless it is one of many arcs in a row that mostly meet in kinks.
   std::vector<bool> kept;
-  // By motion: a corner at an arc stands before it, where the chain is to be cut.
+  // By motion: before it is a corner at an arc, where the chain is to be cut.
   std::vector<bool> starts_part;
 };
 

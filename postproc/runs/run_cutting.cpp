@@ -3,19 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <span>
 #include <utility>
 
 #include "geometry/basic/rounding.h"
+#include "postproc/runs/run_grouping.h"
 
 namespace batten::postproc {
 
 namespace {
 
 using geometry::Point3;
-
-// Inside an arc, or before one that takes its G2 or G3 from the block before it.
-constexpr Fitness kNoPlace{-1, 0};
 
 // The part of a run between two ends of its motions.
 Run part_of(const Run& run, std::size_t first, std::size_t last) {
@@ -43,30 +40,6 @@ Run part_of(const Run& run, std::size_t first, std::size_t last) {
   return part;
 }
 
-bool moves(const gcode::Interpretation& read, std::uint32_t block) {
-  const std::int32_t motion = read.blocks[block].motion;
-  if (motion < 0) return false;
-  const gcode::MotionPath& path = read.motions[static_cast<std::size_t>(motion)].piece;
-  return path.arc() != nullptr || (path.end() - path.start()).norm() > geometry::kSamePlace;
-}
-
-// The block that leads to each vertex of the run that ends a motion; that of vertex 0 is none of
-// its blocks, and those within arcs have that of the arc.
-std::vector<std::uint32_t> blocks_of_vertices(const Section& section, const Run& run,
-                                              const gcode::Interpretation& read) {
-  std::vector<std::uint32_t> blocks = {section.first_block};
-  auto arc = run.arcs.begin();
-  for (std::uint32_t b = section.first_block; b <= section.last_block; ++b) {
-    if (!moves(read, b)) continue;
-    const std::size_t start = blocks.size() - 1;
-    const bool bends = arc != run.arcs.end() && arc->first == start;
-    const std::size_t vertices = bends ? arc->last - arc->first : 1;
-    blocks.insert(blocks.end(), vertices, b);
-    if (bends) ++arc;
-  }
-  return blocks;
-}
-
 // By vertex: whether the run can be cut there.
 std::vector<bool> cuttable(const Run& run) {
   std::vector<bool> can(run.points.size(), true);
@@ -79,30 +52,34 @@ std::vector<bool> cuttable(const Run& run) {
 
 }  // namespace
 
+const CutCandidate* best_cut(std::span<const CutCandidate> candidates, std::size_t furthest,
+                             std::size_t end) {
+  const CutCandidate* best = nullptr;
+  for (const CutCandidate& candidate : candidates) {
+    if (candidate.vertex > end || (best != nullptr && candidate.vertex > furthest)) break;
+    if (best == nullptr || candidate.split_score >= best->split_score) best = &candidate;
+  }
+  return best;
+}
+
 std::vector<std::size_t> cut_places(const Run& run, const CuttingOptions& options) {
-  const std::span<const Point3> points = run.points;
+  const std::vector<Point3>& points = run.points;
   const std::vector<bool> can = cuttable(run);
-  const auto split_score_of = [&](std::size_t i) {
-    return can[i] ? split_score_at(points[i - 1], points[i], points[i + 1]) : kNoPlace;
-  };
+  std::vector<CutCandidate> candidates;
+  for (std::size_t i = options.shortest; i + options.shortest < points.size(); ++i) {
+    if (can[i]) candidates.push_back({i, split_score_at(points[i - 1], points[i], points[i + 1])});
+  }
   std::vector<std::size_t> places;
   std::size_t from = 0;
   // The rest is not cut when its pieces would be too short.
   while (points.size() - 1 - from > options.longest) {
-    const std::size_t end = points.size() - 1 - options.shortest;
-    std::size_t best = from + options.shortest;
-    Fitness best_split_score = split_score_of(best);
-    for (std::size_t i = best + 1; i <= end; ++i) {
-      // Further than that only where nothing else can be cut.
-      if (i > from + options.longest && can[best]) break;
-      const Fitness split_score = split_score_of(i);
-      if (split_score < best_split_score) continue;  // of equals the last: fewer pieces
-      best_split_score = split_score;
-      best = i;
-    }
-    if (!can[best]) break;
-    places.push_back(best);
-    from = best;
+    const auto first =
+        std::ranges::lower_bound(candidates, from + options.shortest, {}, &CutCandidate::vertex);
+    const CutCandidate* best = best_cut({first, candidates.end()}, from + options.longest,
+                                        points.size() - 1 - options.shortest);
+    if (best == nullptr) break;
+    from = best->vertex;
+    places.push_back(from);
   }
   return places;
 }
@@ -110,7 +87,7 @@ std::vector<std::size_t> cut_places(const Run& run, const CuttingOptions& option
 std::vector<RunPiece> cut_run(const Section& section, const gcode::Interpretation& interpretation,
                               const CuttingOptions& options) {
   const Run& run = std::get<Run>(section.content);
-  const std::vector<std::uint32_t> blocks = blocks_of_vertices(section, run, interpretation);
+  const std::vector<std::uint32_t> blocks = blocks_of_edges(section, interpretation);
   std::vector<RunPiece> pieces;
   std::size_t first = 0;
   std::uint32_t first_block = section.first_block;
@@ -122,7 +99,7 @@ std::vector<RunPiece> cut_run(const Section& section, const gcode::Interpretatio
     first_block = last_block + 1;
   };
   for (const std::size_t place : cut_places(run, options)) {
-    if (blocks[place + 1] == blocks[place] + 1) add(place, blocks[place]);
+    if (blocks[place] == blocks[place - 1] + 1) add(place, blocks[place - 1]);
   }
   add(run.points.size() - 1, section.last_block);
   return pieces;
@@ -150,6 +127,190 @@ Fitness split_score_at(const geometry::Point3& before, const geometry::Point3& a
   if (turn > kSharp) return {2, turn};
   if (turn <= kNoTurn) return {1, 0};
   return {0, -turn};
+}
+
+std::vector<LineRange> joined(std::vector<LineRange> ranges, std::span<const LineRange> others) {
+  ranges.insert(ranges.end(), others.begin(), others.end());
+  std::ranges::sort(ranges, {}, &LineRange::first);
+  std::vector<LineRange> all;
+  for (const LineRange& range : ranges) {
+    if (all.empty() || range.first > all.back().last) {
+      all.push_back(range);
+    } else {
+      all.back().last = std::max(all.back().last, range.last);
+    }
+  }
+  return all;
+}
+
+std::size_t lines_in(std::span<const LineRange> ranges) {
+  std::size_t lines = 0;
+  for (const LineRange& range : ranges) lines += range.last - range.first + 1;
+  return lines;
+}
+
+bool holds(std::span<const LineRange> ranges, std::uint32_t line) {
+  const auto found = std::ranges::lower_bound(ranges, line, {}, &LineRange::last);
+  return found != ranges.end() && found->first <= line;
+}
+
+void LongRunCuts::begin_part(const gcode::Program& program, const gcode::Interpretation& meaning) {
+  program_ = &program;
+  meaning_ = &meaning;
+  states_.begin(meaning);
+}
+
+void LongRunCuts::take(std::uint32_t block) {
+  const gcode::BlockMeaning& meaning = meaning_->blocks[block];
+  if (!meaning.barrier.empty()) return end_run();
+  if (meaning.motion < 0) {
+    adjacent_ = false;
+    return;
+  }
+  const gcode::Motion& motion = meaning_->motions[static_cast<std::size_t>(meaning.motion)];
+  if (motion.kind != gcode::MotionKind::kLine || !motion.start_known ||
+      !states_.reason(meaning.state_after).empty()) {
+    return end_run();
+  }
+  take_move(block, motion);
+}
+
+void LongRunCuts::take_move(std::uint32_t block, const gcode::Motion& motion) {
+  const RunBlocks blocks(*program_, *meaning_);
+  if (!blocks.moves(block)) {
+    adjacent_ = false;
+    return;
+  }
+  const RunBlocks::Heading heading = blocks.heading(block);
+  if (heading == RunBlocks::Heading::kAlongZ) {
+    if (moves_ > 0) ++plunging_;  // else it is a plunge at the begin
+    adjacent_ = false;
+    return;
+  }
+  const bool flat = heading == RunBlocks::Heading::kInPlane;
+  if (plunging_ > 0 && flat_ && flat) end_run();
+  moves_ += std::exchange(plunging_, 0);
+  add_move(block, motion.piece.start(), motion.piece.end());
+  flat_ = flat;
+}
+
+void LongRunCuts::add_move(std::uint32_t block, const geometry::Point3& start,
+                           const geometry::Point3& end) {
+  if (adjacent_ && moves_ >= from_ + limits_.shortest) {
+    const gcode::Block& of_text = program_->blocks[block];
+    candidates_.push_back(
+        {moves_, split_score_at(before_, start, end), {of_text.line, of_text.span.begin}});
+  }
+  last_line_ = program_->blocks[block].line;
+  if (moves_ == 0) first_line_ = last_line_;
+  if (limits_.rewritten) {
+    for (geometry::ClusterCover& cover : covers_) cover.add(start, end, last_line_);
+  }
+  ++moves_;
+  before_ = start;
+  adjacent_ = true;
+  cut(false);
+}
+
+// A cut is certain where the run goes on after all positions that could be better.
+void LongRunCuts::cut(bool run_ends) {
+  const std::size_t room = limits_.longest + (run_ends ? 0 : limits_.shortest);
+  while (moves_ - from_ > room && !candidates_.empty()) {
+    const CutCandidate* best =
+        best_cut(candidates_, from_ + limits_.longest, moves_ - limits_.shortest);
+    if (best == nullptr) return;
+    pending_.push_back(best->block);
+    cut_lines_.push_back(best->block.line);
+    from_ = best->vertex;
+    std::erase_if(candidates_, [&](const CutCandidate& candidate) {
+      return candidate.vertex < from_ + limits_.shortest;
+    });
+  }
+  if (moves_ + 1 <= limits_.whole_at_most) return;
+  found_.insert(found_.end(), pending_.begin(), pending_.end());
+  pending_.clear();
+}
+
+void LongRunCuts::end_run() {
+  if (moves_ > 0) cut(true);
+  if (moves_ + 1 > limits_.whole_at_most && !cut_lines_.empty() && limits_.rewritten) {
+    note_self_proximity();
+  }
+  for (geometry::ClusterCover& cover : covers_) cover.clear();
+  cut_lines_.clear();
+  moves_ = plunging_ = from_ = 0;
+  flat_ = adjacent_ = false;
+  candidates_.clear();
+  pending_.clear();
+}
+
+void LongRunCuts::note_self_proximity() {
+  std::size_t axis = 2;
+  for (const std::size_t other : {std::size_t{1}, std::size_t{0}}) {
+    if (covers_[other].edges() > covers_[axis].edges()) axis = other;
+  }
+  const auto clusters = covers_[axis].clusters();
+  if (!clusters) return;
+  const double reach = geometry::reach_between_parts(tolerance_, tolerance_);
+  auto near = geometry::clusters_near_other_parts(*clusters, cut_lines_, reach);
+  if (near.empty()) return;
+  near_.push_back({first_line_, last_line_, cut_lines_, static_cast<int>(axis), std::move(near)});
+}
+
+LongRuns find_long_runs(const gcode::Program& program, const gcode::Interpretation& meaning,
+                        const LongRunLimits& limits, const GroupingOptions& grouping) {
+  if (program.blocks.size() < limits.whole_at_most) return {};
+  LongRunCuts cuts(limits, grouping);
+  cuts.begin_part(program, meaning);
+  for (std::uint32_t i = 0; i < program.blocks.size(); ++i) cuts.take(i);
+  cuts.end_run();
+  LongRuns long_runs;
+  for (const LongRunCut& cut : cuts.found()) {
+    long_runs.cuts.push_back(cut.line - program.blocks.front().line);
+  }
+  long_runs.near = cuts.self_proximity();
+  return long_runs;
+}
+
+namespace {
+
+bool ends_chain(const gcode::Interpretation& meaning, std::uint32_t block) {
+  const gcode::BlockMeaning& of_block = meaning.blocks[block];
+  return !of_block.barrier.empty() ||
+         (of_block.motion >= 0 && !meaning.states[of_block.state_after].feed);
+}
+
+void add_move_of(std::uint32_t block, const gcode::Program& program,
+                 const gcode::Interpretation& meaning, std::vector<TimedPiece>& moves) {
+  const gcode::BlockMeaning& of_block = meaning.blocks[block];
+  const RunBlocks blocks(program, meaning);
+  if (of_block.motion < 0 || !blocks.moves(block)) return;
+  moves.push_back({blocks.motion(block).piece, *meaning.states[of_block.state_after].feed});
+}
+
+}  // namespace
+
+std::vector<TimedPiece> moves_before(const gcode::Program& program,
+                                     const gcode::Interpretation& meaning, std::uint32_t block,
+                                     std::uint32_t from) {
+  std::uint32_t first = block;
+  while (first > from && block - first < kNeighbourBlocks && !ends_chain(meaning, first - 1))
+    --first;
+  std::vector<TimedPiece> moves;
+  for (std::uint32_t i = first; i < block; ++i) add_move_of(i, program, meaning, moves);
+  return moves;
+}
+
+std::vector<TimedPiece> moves_from(const gcode::Program& program,
+                                   const gcode::Interpretation& meaning, std::uint32_t block,
+                                   std::uint32_t end) {
+  const auto all = static_cast<std::uint32_t>(program.blocks.size());
+  const std::uint32_t last = std::min({all, end, block + kNeighbourBlocks});
+  std::vector<TimedPiece> moves;
+  for (std::uint32_t i = block; i < last && !ends_chain(meaning, i); ++i) {
+    add_move_of(i, program, meaning, moves);
+  }
+  return moves;
 }
 
 }  // namespace batten::postproc

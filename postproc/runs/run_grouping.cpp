@@ -2,15 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <span>
-#include <utility>
 
 #include "gcode/state/block_words.h"
 #include "gcode/state/reason.h"
 #include "gcode/text/large_pages.h"
 #include "geometry/basic/rounding.h"
-#include "postproc/runs/intended_arcs.h"
 #include "postproc/runs/run_path.h"
 
 namespace batten::postproc {
@@ -19,12 +15,27 @@ namespace {
 using gcode::BlockMeaning;
 using gcode::ModalState;
 using gcode::Motion;
+using gcode::MotionMode;
 using gcode::TriState;
+using geometry::Point3;
 namespace reason = gcode::reason;
 
-// The part of the tolerance by which a run's points may miss its arcs between them. It is taken off
-// what the smoothing may use.
+constexpr double kMmPerInch = 25.4;
+
+// The part of the tolerance by which a run's points may miss its arcs, taken off the smoothing's.
 constexpr double kArcShare = 0.03;
+
+// No coordinate is more than the distance: nearly always the first one that differs decides.
+bool is_one_place(const Point3& a, const Point3& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(a[axis] - b[axis]) > geometry::kSamePlace) return false;
+  }
+  return (a - b).norm() <= geometry::kSamePlace;
+}
+
+bool has_length(const gcode::MotionPath& path) {
+  return path.arc() != nullptr || !is_one_place(path.start(), path.end());
+}
 
 // The states of which each forbids to rewrite.
 struct UnsafeSwitch {
@@ -46,7 +57,6 @@ constexpr UnsafeSwitch kUnsafeSwitches[] = {
     {&ModalState::lathe_diameter, reason::kLatheDiameter},
 };
 
-// States that stand for themselves, before anything is said about what is unknown.
 std::string_view unsafe_mode(const ModalState& state, const GroupingOptions& options) {
   const auto is_allowed = [&options](std::string_view id) {
     return std::ranges::find(options.allowed, id) != options.allowed.end();
@@ -54,19 +64,11 @@ std::string_view unsafe_mode(const ModalState& state, const GroupingOptions& opt
   for (const UnsafeSwitch& unsafe : kUnsafeSwitches) {
     const bool lifted =
         unsafe.item == &ModalState::control_smoothing && is_allowed(reason::kControlSmoothing);
-    if (state.*unsafe.item == TriState::kOn && !lifted) {
-      return unsafe.reason;
-    }
+    if (state.*unsafe.item == TriState::kOn && !lifted) return unsafe.reason;
   }
-  if (state.distance == gcode::DistanceMode::kIncremental) {
-    return reason::kIncremental;
-  }
-  if (state.feed_mode == gcode::FeedMode::kInverseTime) {
-    return reason::kInverseTime;
-  }
-  if (state.feed_mode == gcode::FeedMode::kPerRevolution) {
-    return reason::kFeedPerRevolution;
-  }
+  if (state.distance == gcode::DistanceMode::kIncremental) return reason::kIncremental;
+  if (state.feed_mode == gcode::FeedMode::kInverseTime) return reason::kInverseTime;
+  if (state.feed_mode == gcode::FeedMode::kPerRevolution) return reason::kFeedPerRevolution;
   if (state.path == gcode::PathMode::kExactStop ||
       (state.path == gcode::PathMode::kExactPath && !is_allowed(reason::kExactStop))) {
     return reason::kExactStop;
@@ -74,20 +76,19 @@ std::string_view unsafe_mode(const ModalState& state, const GroupingOptions& opt
   return {};
 }
 
-std::string_view unknown_state(const ModalState& state) {
-  if (!is_known(state)) {
-    ModalState with_units = state;
-    with_units.units = gcode::Units::kMillimetre;
-    return is_known(with_units) ? reason::kUnitsUnknown : reason::kStateUnknown;
-  }
-  return state.feed ? std::string_view{} : reason::kFeedUnknown;
+std::string_view unknown_state(ModalState state) {
+  if (is_known(state)) return state.feed ? std::string_view{} : reason::kFeedUnknown;
+  state.units = gcode::Units::kMillimetre;
+  return is_known(state) ? reason::kUnitsUnknown : reason::kStateUnknown;
 }
 
 class RunGrouper {
  public:
   RunGrouper(const gcode::Program& program, const gcode::Interpretation& read,
              const GroupingOptions& options, std::span<const std::uint32_t> cuts)
-      : read_(read), blocks_(program, read), options_(options), cuts_(cuts) {}
+      : read_(read), blocks_(program, read), options_(options), states_(options), cuts_(cuts) {
+    states_.begin(read);
+  }
 
   std::vector<Section> group() {
     for (std::uint32_t i = 0; i < read_.blocks.size(); ++i) {
@@ -95,7 +96,7 @@ class RunGrouper {
       const BlockMeaning& block = read_.blocks[i];
       if (!block.barrier.empty() && !is_plain_arc(block)) {
         close_chain();
-        keep(i, block.barrier);
+        keep_up_to(i, block.barrier);
       } else if (block.motion >= 0) {
         take_motion(i, blocks_.motion(i));
       } else if (chain_.empty()) {
@@ -122,39 +123,18 @@ class RunGrouper {
   }
 
   void take_motion(std::uint32_t i, const Motion& motion) {
-    std::string_view why = reason_in_state(read_.blocks[i].state_after);
-    if (why.empty() && !motion.start_known) {
-      why = reason::kPositionUnknown;
-    }
-    if (!why.empty()) {
-      close_chain();
-      keep(i, why);
-      return;
-    }
-    chain_.push_back(i);
+    std::string_view why = states_.reason(read_.blocks[i].state_after);
+    if (why.empty() && !motion.start_known) why = reason::kPositionUnknown;
+    if (why.empty()) return chain_.push_back(i);
+    close_chain();
+    keep_up_to(i, why);
   }
 
-  // States are shared by many blocks: ask once for each.
-  std::string_view reason_in_state(std::uint32_t state) {
-    if (asked_state_ != state) {
-      asked_state_ = state;
-      answer_ = unsafe_state(read_.states[state], options_);
-    }
-    return answer_;
-  }
-
-  // --- arcs ---------------------------------------------------------------------------------
-
-  // Arcs that were meant are copied, and the chain is cut there and at corners beside arcs.
+  // Intended arcs are copied, and the chain is cut there and at corners beside arcs.
   void close_chain() {
+    const auto is_arc = [this](std::uint32_t block) { return blocks_.arc(block) != nullptr; };
+    if (std::ranges::none_of(chain_, is_arc)) return close_section();
     const std::vector<std::uint32_t> whole = std::exchange(chain_, {});
-    const bool has_arcs =
-        std::ranges::any_of(whole, [this](std::uint32_t b) { return blocks_.arc(b) != nullptr; });
-    if (!has_arcs) {
-      chain_ = whole;
-      close_stretch();
-      return;
-    }
     std::vector<PrintedMotion> moving;
     for (const std::uint32_t block : whole) {
       if (blocks_.moves(block)) moving.push_back(blocks_.printed(block));
@@ -168,15 +148,15 @@ class RunGrouper {
         continue;
       }
       const std::size_t i = next++;
-      if (judged.starts_part[i] && can_start(block)) close_stretch();
+      if (judged.starts_part[i] && can_start(block)) close_section();
       if (judged.kept[i]) {
-        close_stretch();
-        keep(block, reason::kIntendedArc);
+        close_section();
+        keep_up_to(block, reason::kIntendedArc);
       } else {
         chain_.push_back(block);
       }
     }
-    close_stretch();
+    close_section();
   }
 
   // An arc that takes its G2 or G3 from the block before it stays with it.
@@ -184,29 +164,25 @@ class RunGrouper {
     return blocks_.arc(block) == nullptr || blocks_.names_motion(block);
   }
 
-  // --- plunges ------------------------------------------------------------------------------
-
-  // The tool goes down into a cut and comes up out of it: where such a move meets the cut is a
-  // corner that was meant, and rounding it would tilt the cut out of its plane. So plunges are
-  // copied, and the chain is cut there. Straight down in the midst of a surface is no plunge;
-  // at its begin or end it is.
-  void close_stretch() {
-    std::vector<std::uint32_t> whole = std::exchange(chain_, {});
-    std::size_t i = 0;
-    while (i < whole.size()) {
+  // Plunge or retract: the corner where it meets the cut is intentional, and rounding it would tilt
+  // the cut out of its plane. So plunges are copied, and the chain is cut there. Straight down in
+  // the midst of a surface is no plunge; at its begin or end it is.
+  void close_section() {
+    const std::vector<std::uint32_t> whole = std::exchange(chain_, {});
+    for (std::size_t i = 0; i < whole.size();) {
       const std::size_t end = end_of_plunge(whole, i);
       if (end == i) {
         chain_.push_back(whole[i++]);
         continue;
       }
       close_part();
-      keep(whole[end - 1], reason::kPlunge);
+      keep_up_to(whole[end - 1], reason::kPlunge);
       i = end;
     }
     close_part();
   }
 
-  // Behind the moves along Z that start at `begin`, when they are a plunge; `begin` otherwise.
+  // After the moves along Z that start at `begin`, when they are a plunge; `begin` otherwise.
   std::size_t end_of_plunge(const std::vector<std::uint32_t>& chain, std::size_t begin) const {
     using Heading = RunBlocks::Heading;
     const auto flat = [&](std::size_t k) { return blocks_.heading(chain[k]) == Heading::kInPlane; };
@@ -214,16 +190,10 @@ class RunGrouper {
       return !blocks_.moves(chain[k]) || blocks_.heading(chain[k]) == Heading::kAlongZ;
     };
     std::size_t end = begin;
-    while (end < chain.size() && along_z(end)) {
-      ++end;
-    }
-    if (end == begin || !blocks_.moves(chain[begin])) {
-      return begin;
-    }
+    while (end < chain.size() && along_z(end)) ++end;
+    if (end == begin || !blocks_.moves(chain[begin])) return begin;
     std::size_t before = begin;
-    while (before > 0 && !blocks_.moves(chain[before - 1])) {
-      --before;
-    }
+    while (before > 0 && !blocks_.moves(chain[before - 1])) --before;
     const bool outermost = before == 0 || end == chain.size();
     return outermost || (flat(before - 1) && flat(end)) ? end : begin;
   }
@@ -231,22 +201,18 @@ class RunGrouper {
   // Motions of no length at the ends of a chain say nothing about its path: they are copied. So are
   // arcs at its end whose G2 or G3 is needed after it.
   void close_part() {
+    if (chain_.empty()) return;
     const auto moving = [this](std::uint32_t block) { return blocks_.moves(block); };
-    const auto first = std::find_if(chain_.begin(), chain_.end(), moving);
     const auto may_end = [this](std::uint32_t block) {
       return blocks_.moves(block) && !blocks_.lends_arc_word(block);
     };
+    const auto first = std::find_if(chain_.begin(), chain_.end(), moving);
     const auto last = std::find_if(chain_.rbegin(), chain_.rend(), may_end).base();
     const auto count = first < last ? std::count_if(first, last, moving) : 0;
-    if (chain_.empty()) {
-      return;
-    }
     if (count == 0 || static_cast<std::size_t>(count) < options_.min_motions) {
       keep_up_to(chain_.back(), reason::kTooShort);
     } else {
-      if (first != chain_.begin()) {
-        keep_up_to(*first - 1, reason::kTooShort);
-      }
+      if (first != chain_.begin()) keep_up_to(*first - 1, reason::kTooShort);
       add_run({first, last});
       if (last != chain_.end()) {
         keep_up_to(chain_.back(), blocks_.moves(*last) ? reason::kArc : reason::kTooShort);
@@ -256,72 +222,54 @@ class RunGrouper {
   }
 
   void add_run(std::span<const std::uint32_t> blocks) {
-    close_idle_before(blocks.front());
-    sections_.push_back(
-        {blocks.front(), blocks.back(), blocks_.run_of(blocks, kArcShare * options_.tolerance_mm)});
-    done_ = blocks.back() + 1;
+    if (done_ < blocks.front()) keep_up_to(blocks.front() - 1, reason::kComment);
+    add({blocks.front(), blocks.back(), blocks_.run_of(blocks, kArcShare * options_.tolerance_mm)});
   }
 
-  // --- what is kept -------------------------------------------------------------------------
-
-  // Whether the last section may take in what follows.
-  [[nodiscard]] bool goes_on() const { return sections_.size() > anew_; }
-
-  // Blocks [done_, ..] have no section yet. Those that say nothing wait for the next section.
-  void keep_idle(std::uint32_t i) {
-    if (goes_on() && sections_.back().last_block + 1 == i) {
-      if (std::holds_alternative<Verbatim>(sections_.back().content)) {
-        sections_.back().last_block = i;
-        done_ = i + 1;
-      }
-    }
+  void add(Section section) {
+    done_ = section.last_block + 1;
+    sections_.push_back(std::move(section));
   }
 
-  void keep(std::uint32_t last, std::string_view why) { keep_up_to(last, why); }
+  // The last section, where it is copied and may take in what follows.
+  [[nodiscard]] const Verbatim* copied_before() const {
+    if (sections_.size() <= anew_) return nullptr;
+    return std::get_if<Verbatim>(&sections_.back().content);
+  }
 
-  // Everything up to `last` that has no section yet, for this reason.
-  void keep_up_to(std::uint32_t last, std::string_view why) {
-    if (goes_on()) {
-      auto* before = std::get_if<Verbatim>(&sections_.back().content);
-      if (before != nullptr && before->reason == why) {
-        sections_.back().last_block = last;
-        done_ = last + 1;
-        return;
-      }
-    }
-    sections_.push_back({done_, last, Verbatim{why}});
+  void extend_to(std::uint32_t last) {
+    sections_.back().last_block = last;
     done_ = last + 1;
   }
 
-  void close_idle_before(std::uint32_t block) {
-    if (done_ < block) {
-      keep_up_to(block - 1, reason::kComment);
-    }
+  // Blocks that say nothing wait for the next section after a run.
+  void keep_idle(std::uint32_t i) {
+    if (copied_before() != nullptr && sections_.back().last_block + 1 == i) extend_to(i);
+  }
+
+  // Everything up to `last` that has no section yet, for this reason.
+  void keep_up_to(std::uint32_t last, std::string_view why) {
+    const Verbatim* before = copied_before();
+    if (before != nullptr && before->reason == why) return extend_to(last);
+    add({done_, last, Verbatim{why}});
   }
 
   // What is left of the blocks before `end`.
   void keep_rest(std::uint32_t end) {
-    if (done_ == end) {
-      return;
-    }
-    if (goes_on() && std::holds_alternative<Verbatim>(sections_.back().content)) {
-      sections_.back().last_block = end - 1;
-    } else {
-      sections_.push_back({done_, end - 1, Verbatim{reason::kComment}});
-    }
-    done_ = end;
+    if (done_ == end) return;
+    if (copied_before() != nullptr) return extend_to(end - 1);
+    add({done_, end - 1, Verbatim{reason::kComment}});
   }
 
   const gcode::Interpretation& read_;
   RunBlocks blocks_;
   const GroupingOptions& options_;
+  UnsafeStates states_;
   std::span<const std::uint32_t> cuts_;  // that are still ahead
   std::vector<Section> sections_;
   std::size_t anew_ = 0;              // sections before the last cut
   std::vector<std::uint32_t> chain_;  // motion blocks that may become a run
   std::uint32_t done_ = 0;            // blocks before this one are in sections
-  std::optional<std::uint32_t> asked_state_;
-  std::string_view answer_;
 };
 
 }  // namespace
@@ -338,30 +286,38 @@ std::string_view unsafe_state(const ModalState& state, const GroupingOptions& op
   return mode.empty() ? unknown_state(state) : mode;
 }
 
-namespace {
-
-using gcode::BlockMeaning;
-using gcode::MotionMode;
-using geometry::Point3;
-
-constexpr double kMmPerInch = 25.4;
-
-// No coordinate is more than the distance: nearly always the first one that differs decides.
-bool is_one_place(const Point3& a, const Point3& b) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(a[axis] - b[axis]) > geometry::kSamePlace) return false;
-  }
-  return (a - b).norm() <= geometry::kSamePlace;
+void UnsafeStates::begin(const gcode::Interpretation& read) {
+  read_ = &read;
+  asked_.reset();
 }
 
-}  // namespace
+std::string_view UnsafeStates::reason(std::uint32_t state) {
+  if (asked_ != state) {
+    asked_ = state;
+    answer_ = unsafe_state(read_->states[state], options_);
+  }
+  return answer_;
+}
+
+std::vector<std::uint32_t> blocks_of_edges(const Section& section,
+                                           const gcode::Interpretation& read) {
+  const Run& run = std::get<Run>(section.content);
+  std::vector<std::uint32_t> of_edges;
+  of_edges.reserve(run.points.size());
+  auto arc = run.arcs.begin();
+  for (std::uint32_t block = section.first_block; block <= section.last_block; ++block) {
+    const std::int32_t motion = read.blocks[block].motion;
+    if (motion < 0 || !has_length(read.motions[static_cast<std::size_t>(motion)].piece)) continue;
+    const bool is_arc = arc != run.arcs.end() && arc->first == of_edges.size();
+    of_edges.insert(of_edges.end(), is_arc ? arc->last - arc->first : 1, block);
+    if (is_arc) ++arc;
+  }
+  return of_edges;
+}
 
 const geometry::Arc* RunBlocks::arc(std::uint32_t block) const { return motion(block).piece.arc(); }
 
-bool RunBlocks::moves(std::uint32_t block) const {
-  const gcode::MotionPath& path = motion(block).piece;
-  return path.arc() != nullptr || !is_one_place(path.start(), path.end());
-}
+bool RunBlocks::moves(std::uint32_t block) const { return has_length(motion(block).piece); }
 
 RunBlocks::Heading RunBlocks::heading(std::uint32_t block) const {
   const gcode::MotionPath& path = motion(block).piece;
@@ -371,8 +327,7 @@ RunBlocks::Heading RunBlocks::heading(std::uint32_t block) const {
     const bool about_z = std::abs(bend->axis.z()) > 1 - geometry::kSameDirection;
     return about_z && !along ? Heading::kInPlane : Heading::kOther;
   }
-  const bool across =
-      std::abs(way.x()) > geometry::kSamePlace || std::abs(way.y()) > geometry::kSamePlace;
+  const bool across = way.head<2>().cwiseAbs().maxCoeff() > geometry::kSamePlace;
   if (along && !across) return Heading::kAlongZ;
   return across && !along ? Heading::kInPlane : Heading::kOther;
 }
@@ -429,9 +384,8 @@ PrintedErrors RunBlocks::errors_of(std::span<const std::uint32_t> blocks) const 
 int RunBlocks::decimals(std::uint32_t block, std::string_view letters) const {
   int most = 0;
   for (const gcode::Word& word : program_.words_of(program_.blocks[block])) {
-    for (const char letter : letters) {
-      if (word.letter == letter) most = std::max(most, static_cast<int>(word.decimals));
-    }
+    if (letters.find(word.letter) == std::string_view::npos) continue;
+    most = std::max(most, static_cast<int>(word.decimals));
   }
   return most;
 }
@@ -443,9 +397,11 @@ Run RunBlocks::run_of(std::span<const std::uint32_t> blocks, double max_chord_er
   gcode::reserve_in_large_pages(run.points, blocks.size() + 1);
   run.points.push_back(motion(blocks.front()).piece.start());
   std::size_t next = 0;
-  std::size_t placed = 0;  // comments whose vertex is known
+  std::size_t placed = 0;  // comments whose vertex is known: that of the next block that moves
   for (std::uint32_t i = blocks.front(); i <= blocks.back(); ++i) {
-    add_comments(i, run);
+    for (const gcode::Comment& comment : program_.comments_of(program_.blocks[i])) {
+      run.comments.push_back({0, comment.span});
+    }
     if (blocks[next] != i) continue;
     ++next;
     if (!moves(i)) continue;  // its feed is still there at the next motion that moves
@@ -467,15 +423,7 @@ void RunBlocks::add_motion(std::uint32_t block, double max_chord_error, Run& run
   if (const geometry::Arc* bend = arc(block)) {
     append_arc(*bend, names_motion(block), max_chord_error, run);
   } else {
-    append_line(motion(block).piece.end(), run);
-  }
-}
-
-// They belong to the vertex that the block leads to, or where it moves nothing the next one that
-// does; the run ends with one.
-void RunBlocks::add_comments(std::uint32_t block, Run& run) const {
-  for (const gcode::Comment& comment : program_.comments_of(program_.blocks[block])) {
-    run.comments.push_back({0, comment.span});
+    run.points.push_back(motion(block).piece.end());
   }
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "gcode/text/large_pages.h"
@@ -19,18 +18,12 @@ using geometry::Vector3;
 
 constexpr std::size_t kLeastChords = 4;
 
-// An arc through the ends and the middle of a stretch of a curve whose curvature changes by k' per
+// An arc through the ends and the middle of a section of a curve whose curvature changes by k' per
 // mm leaves it by k' (s^3 - s l^2 / 4) / 6, s from -l/2 to l/2: k' l^3 / 174 rms.
 constexpr double kFromCurvature = 1.0 / 174;
 
-// At its ends it is k' l^2 / 12 off in direction. Two arcs share the kink between them: of a kink a
-// is a l 6 / 174.
+// At its ends it is k' l^2 / 12 off in direction. Two arcs share the kink a between them: a l / 29.
 constexpr double kFromKink = 6.0 / 174;
-
-// The first arc that does not end before the vertex.
-std::vector<RunArc>::const_iterator arc_not_before(const Run& run, std::size_t vertex) {
-  return std::ranges::lower_bound(run.arcs, vertex, {}, &RunArc::last);
-}
 
 PathPiece part_of(const RunArc& arc, std::size_t first, std::size_t last) {
   if (first == arc.first && last == arc.last) return arc.arc;
@@ -50,10 +43,21 @@ Vector3 curvature_vector(const PathPiece& piece, double t) {
                     : Vector3(Vector3::Zero());
 }
 
-double turn_between(const PathPiece& before, const PathPiece& after) {
-  const Vector3 a = geometry::direction_at(before, 1);
-  const Vector3 b = geometry::direction_at(after, 0);
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+// Calls `take(piece, first vertex)` for each motion in order.
+template <class Take>
+void for_each_motion(const Run& run, std::size_t at, std::size_t last, const Take& take) {
+  auto arc = std::ranges::lower_bound(run.arcs, at, {}, &RunArc::last);
+  while (at < last) {
+    const std::size_t first = at;
+    while (arc != run.arcs.end() && arc->last <= first) ++arc;
+    if (arc == run.arcs.end() || first < arc->first) {
+      ++at;
+      take(Line{run.points[first], run.points[at]}, first);
+    } else {
+      at = std::min(arc->last, last);
+      take(part_of(*arc, first, at), first);
+    }
+  }
 }
 
 // What two neighbouring motions say about the curve that they stand for.
@@ -63,8 +67,8 @@ struct JointSteps {
 };
 
 JointSteps steps_between(const PathPiece& before, const PathPiece& after) {
-  const double way = 0.5 * (geometry::length_of(before) + geometry::length_of(after));
-  return {(curvature_vector(after, 0) - curvature_vector(before, 1)).norm() / way,
+  const double length = 0.5 * (geometry::length_of(before) + geometry::length_of(after));
+  return {(curvature_vector(after, 0) - curvature_vector(before, 1)).norm() / length,
           turn_between(before, after)};
 }
 
@@ -80,8 +84,6 @@ double scatter_of(double l, const std::optional<JointSteps>& before,
 }
 
 }  // namespace
-
-void append_line(const Point3& end, Run& run) { run.points.push_back(end); }
 
 void append_arc(const Arc& arc, bool names_motion, double max_chord_error, Run& run) {
   // Linear interpolation over 1/n of the arc is off by at most this over n^2.
@@ -105,27 +107,19 @@ std::size_t motion_count(const Run& run) {
   return count;
 }
 
-MotionWalk::MotionWalk(const Run& run, std::size_t first, std::size_t last)
-    : run_(run), arc_(arc_not_before(run, first)), at_(first), last_(last) {}
-
-std::optional<RunMotion> MotionWalk::next() {
-  if (at_ >= last_) return std::nullopt;
-  const std::size_t first = at_;
-  while (arc_ != run_.arcs.end() && arc_->last <= first) ++arc_;
-  if (arc_ == run_.arcs.end() || first < arc_->first) {
-    ++at_;
-    return RunMotion{Line{run_.points[first], run_.points[at_]}, first};
-  }
-  at_ = std::min(arc_->last, last_);
-  return RunMotion{part_of(*arc_, first, at_), first};
-}
-
 std::vector<RunMotion> motions_between(const Run& run, std::size_t first, std::size_t last) {
   std::vector<RunMotion> motions;
   motions.reserve(last - first);
-  MotionWalk walk(run, first, last);
-  while (auto motion = walk.next()) motions.push_back(std::move(*motion));
+  for_each_motion(run, first, last, [&](const PathPiece& piece, std::size_t at) {
+    motions.push_back({piece, at});
+  });
   return motions;
+}
+
+double turn_between(const PathPiece& before, const PathPiece& after) {
+  const Vector3 a = geometry::direction_at(before, 1);
+  const Vector3 b = geometry::direction_at(after, 0);
+  return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 double arc_scatter(const Run& run) {
@@ -164,13 +158,10 @@ std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::siz
   std::size_t next = 0;
   double feed = 0;
   gcode::reserve_in_large_pages(pieces, last - first);
-  MotionWalk walk(run, first, last);
-  while (auto motion = walk.next()) {
-    while (next < run.feeds.size() && run.feeds[next].vertex <= motion->first) {
-      feed = run.feeds[next++].feed;
-    }
-    pieces.push_back({std::move(motion->piece), feed});
-  }
+  for_each_motion(run, first, last, [&](const PathPiece& piece, std::size_t at) {
+    while (next < run.feeds.size() && run.feeds[next].vertex <= at) feed = run.feeds[next++].feed;
+    pieces.push_back({piece, feed});
+  });
   return pieces;
 }
 

@@ -19,14 +19,14 @@
 
 namespace batten::postproc {
 
-// From this vertex of the run on, the feed is this one. The first entry is vertex 0.
+// The feed from this vertex of the run on. The first entry is vertex 0.
 struct FeedFrom {
   std::size_t vertex = 0;
   double feed = 0;  // mm/min
 };
 
-// A comment that stood on the block that leads to this vertex (1 .., an end of a motion), or on a
-// line of its own before that block.
+// A comment of the block that leads to this vertex (1 .., an end of a motion), or of a line of its
+// own before that block.
 struct CommentAt {
   std::size_t vertex = 0;
   gcode::SourceSpan text;
@@ -42,23 +42,18 @@ struct RunArc {
 };
 
 // A chain of cutting moves, lines and arcs, with unchanged state that may be rewritten together.
-// Its first and last block are motions of some length; between them may stand motions of no
-// length, lines that change only the feed or nothing, comments and empty lines. No block behind
-// it takes G2 or G3 from it.
-//
-// Axes whose place is not known stand at 0 in all points: no block of the run names them.
+// Its first and last block are motions of some length; between them may be motions of no length,
+// lines that change only the feed or nothing, comments and empty lines. No block after it takes G2
+// or G3 from it. Axes whose position is not known are 0 in all points: no block of it names them.
 struct Run {
-  std::vector<geometry::Point3> points;  // start and end of every motion, and places on arcs, mm
+  std::vector<geometry::Point3> points;  // mm: start and end of every motion, and some of arcs
   std::vector<RunArc> arcs;              // in order
   double chord_error = 0;                // mm: no arc leaves the chords of its points by more
-  std::vector<FeedFrom> feeds;           // each different from the one before it, at an end of a
-                                         // motion
+  std::vector<FeedFrom> feeds;           // each differs from the one before it; at ends of motions
   std::vector<CommentAt> comments;
-  // Most digits after the point among the X, Y, Z words of its motions, as they were written:
-  // X.1234 in inches counts 4.
-  int decimals = 3;
+  int decimals = 3;  // most digits after the point of its X, Y, Z words: 4 of X.1234 in inches
   std::uint32_t state = 0;  // Interpretation::states before its first block
-  bool closed = false;      // first and last point are one place
+  bool closed = false;      // first and last point are one position
 };
 
 // Copied byte for byte.
@@ -72,8 +67,6 @@ struct Section {
   std::variant<Run, Verbatim> content;
 };
 
-// What of a program is smoothed and proved at once: the whole, or a window of a long one.
-
 // What a window takes over from the windows before it in one of the two texts.
 struct TextBefore {
   gcode::ControlCarry control{gcode::Units::kUnknown};
@@ -85,13 +78,14 @@ struct WindowStart {
   TextBefore new_text;
   bool words_seen = false;  // gcode::TextCarry
   gcode::DecimalPoints decimals;
-  bool same_as_old = false;  // all that is known of the new text is what is known of the old one
-  // Where it begins, or ends, within a long run that is cut there: what is cut before and behind it
-  // (postproc/runs/long_run_cuts.h). Empty elsewhere.
+  bool same_as_old = false;  // the same is known of both texts
+  // Where it begins, or ends, at a cut of a long run: the moves before and after it
+  // (postproc/runs/run_cutting.h). Empty elsewhere.
   std::vector<TimedPiece> moves_before = {};
   std::vector<TimedPiece> moves_behind = {};
 };
 
+// What of a program is smoothed and proved at once: the whole, or a window of a long one.
 struct ProgramPart {
   gcode::Program program;
   gcode::Interpretation meaning;

@@ -13,7 +13,6 @@
 #include "gcode/text/line_cursor.h"
 #include "gcode/writer/block_numbers.h"
 #include "postproc/runs/band_notes.h"
-#include "postproc/runs/long_run_cuts.h"
 #include "postproc/runs/run_cutting.h"
 #include "postproc/runs/run_grouping.h"
 #include "postproc/runs/run_path.h"
@@ -289,15 +288,19 @@ GroupingOptions grouping_of(const SmoothOptions& options) {
   return grouping;
 }
 
+LongRunLimits asked_of(LongRunLimits limits, const SmoothOptions& options) {
+  limits.rewritten = options.method != Method::kNone;
+  return limits;
+}
+
 PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options,
                    const LongRunLimits& limits, const LongRunFacts& facts) {
   const GroupingOptions grouping = grouping_of(options);
   PartRuns runs;
   runs.near = facts.near;
   if (!part.window) {
-    LongRunLimits asked = limits;
-    asked.rewritten = options.method != Method::kNone;
-    LongRuns found = find_long_runs(part.program, part.meaning, asked, grouping);
+    LongRuns found =
+        find_long_runs(part.program, part.meaning, asked_of(limits, options), grouping);
     runs.cuts = std::move(found.cuts);
     runs.near = std::make_shared<const std::vector<SelfProximity>>(std::move(found.near));
   }

@@ -9,7 +9,7 @@
 
 #include "gcode/text/diagnostic.h"
 #include "postproc/options/options.h"
-#include "postproc/runs/long_run_cuts.h"
+#include "postproc/runs/run_cutting.h"
 #include "postproc/runs/section.h"
 #include "postproc/smooth/run_smoother.h"
 
@@ -39,6 +39,7 @@ struct PartRuns {
 [[nodiscard]] bool is_allowed(std::string_view reason, const SmoothOptions& options);
 
 [[nodiscard]] GroupingOptions grouping_of(const SmoothOptions& options);
+[[nodiscard]] LongRunLimits asked_of(LongRunLimits limits, const SmoothOptions& options);
 
 // `part` must outlive the runs. A window ends where a long run is to be cut, the whole is cut here;
 // but not where no method is asked for.

@@ -2,20 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include "gcode/state/reason.h"
 #include "gcode/text/large_pages.h"
 #include "geometry/basic/rounding.h"
 #include "geometry/path/path.h"
 #include "postproc/proof/program_events.h"
-#include "postproc/runs/run_grouping.h"
 
 namespace batten::postproc {
 
@@ -25,47 +21,44 @@ using geometry::Vector3;
 
 // In between, the mean of the two middle ones.
 double median_of(std::vector<double> values) {
-  const std::size_t middle = values.size() / 2;
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(middle));
-  const double upper = values[middle];
-  if (values.size() % 2 == 1) return upper;
-  return (upper +
-          *std::max_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(middle))) /
-         2;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  if (values.size() % 2 == 1) return *middle;
+  return (*middle + *std::max_element(values.begin(), middle)) / 2;
 }
 
-// The segments of a run, counted one after the other: of all of it, or of its pieces in order.
+// The segments of a run, counted one after the other: of all of it, or of its parts in order.
 // Holds a length for each segment, for their median, and nothing else of them.
 class SegmentTally {
  public:
-  // The piece starts where the one before it has ended.
-  void add(const Run& piece) {
-    if (lengths_.empty()) gcode::reserve_in_large_pages(lengths_, piece.points.size());
-    auto arc = piece.arcs.begin();
-    for (std::size_t i = 0; i + 1 < piece.points.size();) {
-      if (arc != piece.arcs.end() && arc->first == i) {
+  // The run of a section, which starts where the part before it has ended.
+  void add(const gcode::ReadPart& read, const Section& section) {
+    const Run& run = std::get<Run>(section.content);
+    const std::vector<std::uint32_t> blocks = blocks_of_edges(section, read.meaning);
+    if (lengths_.empty()) gcode::reserve_in_large_pages(lengths_, run.points.size());
+    auto arc = run.arcs.begin();
+    for (std::size_t i = 0; i + 1 < run.points.size();) {
+      const std::uint32_t line = read.program.blocks[blocks[i]].line;
+      if (arc != run.arcs.end() && arc->first == i) {
         add_segment(geometry::length_of(arc->arc), geometry::direction_at(arc->arc, 0),
-                    geometry::direction_at(arc->arc, 1));
+                    geometry::direction_at(arc->arc, 1), line);
         i = arc++->last;
       } else {
-        const Vector3 way = piece.points[i + 1] - piece.points[i];
-        const double length = way.norm();
-        const Vector3 direction = length > 0 ? Vector3(way / length) : Vector3(Vector3::Zero());
-        add_segment(length, direction, direction);
+        const Vector3 along = run.points[i + 1] - run.points[i];
+        const double length = along.norm();
+        const Vector3 direction = length > 0 ? Vector3(along / length) : Vector3(Vector3::Zero());
+        add_segment(length, direction, direction, line);
         ++i;
       }
     }
   }
 
-  [[nodiscard]] std::size_t count() const { return lengths_.size(); }
-  // Of all pieces so far, from 1, the motion that ends at the greatest turn; 0: no turn.
-  [[nodiscard]] std::size_t turn_motion() const { return turn_.motion; }
-
-  // `turn_line` is 0. Begins anew.
+  // Begins anew.
   [[nodiscard]] SegmentStatistics take() {
     SegmentTally all = std::exchange(*this, {});
     all.found_.count = all.lengths_.size();
     all.found_.greatest_turn_deg = all.turn_.radians * 180 / std::numbers::pi;
+    all.found_.turn_line = all.turn_.line;
     if (all.found_.count > 0) all.found_.median = median_of(std::move(all.lengths_));
     return all.found_;
   }
@@ -73,18 +66,19 @@ class SegmentTally {
  private:
   struct Turn {
     double radians = 0;
-    std::size_t motion = 0;
+    std::uint32_t line = 0;
     double certainly_less = 0;  // squared sine of turns that are less than the greatest so far
   };
 
   // Directions are unit vectors, or zero where there is none.
-  void add_segment(double length, const Vector3& start, const Vector3& end) {
+  void add_segment(double length, const Vector3& start, const Vector3& end, std::uint32_t line) {
     look_at_turn(start);
     found_.shortest = lengths_.empty() ? length : std::min(found_.shortest, length);
     found_.longest = std::max(found_.longest, length);
     found_.length += length;
     lengths_.push_back(length);
     before_ = end;
+    line_before_ = line;
   }
 
   void look_at_turn(const Vector3& to) {
@@ -98,26 +92,15 @@ class SegmentTally {
     // Sines rise up to a right angle. Far above the rounding of unit vectors and of a sine.
     constexpr double kRounding = 1e-9;
     const double sine = std::sin(std::min(turn, std::numbers::pi / 2)) * (1 - kRounding);
-    turn_ = {turn, lengths_.size(), sine * sine};
+    turn_ = {turn, line_before_, sine * sine};
   }
 
   std::vector<double> lengths_;
   SegmentStatistics found_;
   Turn turn_;
   Vector3 before_ = Vector3::Zero();  // the direction of the last one
+  std::uint32_t line_before_ = 0;     // of its block
 };
-
-// The line of the section's block that moves, counted from 1 among those that do; 0 for none.
-std::uint32_t line_of_motion(std::size_t number, const gcode::ReadPart& part,
-                             const Section& section) {
-  const RunBlocks blocks(part.program, part.meaning);
-  std::size_t left = number;
-  for (std::uint32_t b = section.first_block; left > 0 && b <= section.last_block; ++b) {
-    const bool moves = part.meaning.blocks[b].motion >= 0 && blocks.moves(b);
-    if (moves && --left == 0) return part.program.blocks[b].line;
-  }
-  return 0;
-}
 
 InspectedSection described(const gcode::ReadPart& part, const Section& section) {
   InspectedSection description;
@@ -162,9 +145,8 @@ class Inspection {
     }
   }
 
-  // As many as were added, each as it would be if the program ended here.
   [[nodiscard]] std::size_t size() const { return sections_.size(); }
-  // Takes the sections behind the first `size` away again. None of those that stay goes on.
+  // Takes the sections after the first `size` away again. None of those that stay goes on.
   void go_back_to(std::size_t size) {
     in_run_ = false;
     tally_ = {};
@@ -180,20 +162,9 @@ class Inspection {
   void add_run(const gcode::ReadPart& part, const Section& section, bool begins) {
     const Run& run = std::get<Run>(section.content);
     InspectedSection& description = sections_.back();
-    if (begins) {
-      in_run_ = true;
-      start_ = run.points.front();
-      turn_line_ = 0;
-    }
-    const std::size_t motions_before = tally_.count();
-    const std::size_t turn_before = tally_.turn_motion();
-    tally_.add(run);
-    const std::size_t turn = tally_.turn_motion();
-    if (turn != turn_before) {
-      // A piece ends with a block that moves.
-      turn_line_ = turn == motions_before ? description.last_line
-                                          : line_of_motion(turn - motions_before, part, section);
-    }
+    if (begins) start_ = run.points.front();
+    in_run_ = true;
+    tally_.add(part, section);
     add_feeds(run, begins, description);
     description.last_line = part.program.blocks[section.last_block].line;
     description.decimals = std::max(description.decimals, run.decimals);
@@ -201,10 +172,7 @@ class Inspection {
   }
 
   void end_run() {
-    if (!in_run_) return;
-    in_run_ = false;
-    sections_.back().segments = tally_.take();
-    sections_.back().segments.turn_line = turn_line_;
+    if (std::exchange(in_run_, false)) sections_.back().segments = tally_.take();
   }
 
   std::vector<InspectedSection> sections_;
@@ -212,30 +180,30 @@ class Inspection {
   bool in_run_ = false;
   SegmentTally tally_;
   geometry::Point3 start_ = geometry::Point3::Zero();
-  std::uint32_t turn_line_ = 0;
 };
 
-// The blocks that are held, as chains of motions: of lines, and of arcs that may be pieces of a
-// curve.
+// The blocks that are held, as chains of lines, and of arcs that may be segments of a curve.
 class Chains {
  public:
   Chains(const gcode::ReadPart& part, const GroupingOptions& grouping)
-      : part_(part), blocks_(part.program, part.meaning), grouping_(grouping) {}
+      : part_(part), blocks_(part.program, part.meaning), states_(grouping) {
+    states_.begin(part.meaning);
+  }
 
   // Whether a chain may be cut beside it: a line that goes neither straight along Z nor nowhere.
-  [[nodiscard]] bool is_line(std::uint32_t i) const {
+  [[nodiscard]] bool is_line(std::uint32_t i) {
     return part_.meaning.blocks[i].motion >= 0 && !ends_chain(i) && !is_arc(i) &&
            blocks_.moves(i) && blocks_.heading(i) != RunBlocks::Heading::kAlongZ;
   }
 
-  // Whether the chain that goes on from block to block has an arc on the way back from `from`.
-  [[nodiscard]] bool has_arc_before(std::uint32_t from) const {
+  // Whether the chain that goes on from block to block has an arc before `from`.
+  [[nodiscard]] bool has_arc_before(std::uint32_t from) {
     for (std::uint32_t i = from; i > 0 && !ends_chain(i - 1); --i) {
       if (is_arc(i - 1)) return true;
     }
     return false;
   }
-  [[nodiscard]] bool has_arc_from(std::uint32_t from) const {
+  [[nodiscard]] bool has_arc_from(std::uint32_t from) {
     for (std::uint32_t i = from; i < part_.program.blocks.size() && !ends_chain(i); ++i) {
       if (is_arc(i)) return true;
     }
@@ -243,11 +211,12 @@ class Chains {
   }
 
  private:
-  [[nodiscard]] bool ends_chain(std::uint32_t i) const {
+  [[nodiscard]] bool ends_chain(std::uint32_t i) {
     const gcode::BlockMeaning& block = part_.meaning.blocks[i];
     if (block.motion < 0) return !block.barrier.empty();
     if (block.barrier == gcode::reason::kArc) return block.kind != gcode::BlockKind::kMotion;
-    return !block.barrier.empty() || !blocks_.motion(i).start_known || is_unsafe(block.state_after);
+    return !block.barrier.empty() || !blocks_.motion(i).start_known ||
+           !states_.reason(block.state_after).empty();
   }
 
   // Of a block that does not end a chain.
@@ -256,20 +225,9 @@ class Chains {
            blocks_.motion(i).kind != gcode::MotionKind::kLine;
   }
 
-  // States are shared by many blocks: asked once for each.
-  [[nodiscard]] bool is_unsafe(std::uint32_t state) const {
-    if (asked_state_ != state) {
-      asked_state_ = state;
-      unsafe_ = !unsafe_state(part_.meaning.states[state], grouping_).empty();
-    }
-    return unsafe_;
-  }
-
   const gcode::ReadPart& part_;
   RunBlocks blocks_;
-  const GroupingOptions& grouping_;
-  mutable std::optional<std::uint32_t> asked_state_;
-  mutable bool unsafe_ = false;
+  UnsafeStates states_;
 };
 
 class PartInspector {
@@ -282,15 +240,14 @@ class PartInspector {
         cut_from_(limits.longest) {}
 
   std::optional<InspectedProgram> run() {
-    auto next = PartReader::Next::kRead;
-    while (next == PartReader::Next::kRead) {
-      next = reader_.read_on();
+    for (bool at_end = false; !at_end;) {
+      const auto next = reader_.read_on();
       if (next == PartReader::Next::kNeedsWhole) return std::nullopt;
       if (next == PartReader::Next::kAtEnd) {
-        if (!take(reader_.blocks_held(), false)) next = PartReader::Next::kRead;
-      } else if (const std::uint32_t end = end_behind_rapids()) {
+        at_end = take(reader_.blocks_held(), false);
+      } else if (const std::uint32_t end = end_after_rapids()) {
         take(end, false);
-      } else if (const std::uint32_t cut = place_in_chain()) {
+      } else if (const std::uint32_t cut = cut_in_chain()) {
         take(cut, true);
       }
     }
@@ -301,9 +258,9 @@ class PartInspector {
   }
 
  private:
-  // The last block behind plain rapids, and what says nothing behind them, that is none of them;
+  // The last block after plain rapids, and what says nothing after them, that is none of them;
   // 0: none, but where that was looked for before.
-  [[nodiscard]] std::uint32_t end_behind_rapids() {
+  [[nodiscard]] std::uint32_t end_after_rapids() {
     const gcode::ReadPart& held = reader_.held();
     const auto& blocks = held.meaning.blocks;
     const auto says_nothing = [&](std::uint32_t i) {
@@ -322,52 +279,46 @@ class PartInspector {
   }
 
   // Where a chain of lines may be cut, near the end of what is held; 0: nowhere.
-  [[nodiscard]] std::uint32_t place_in_chain() {
+  [[nodiscard]] std::uint32_t cut_in_chain() {
     const std::uint32_t count = reader_.blocks_held();
     if (count < cut_from_) return 0;
-    const Chains chains(reader_.held(), grouping_);
+    Chains chains(reader_.held(), grouping_);
     const auto beside = static_cast<std::uint32_t>(std::max<std::size_t>(grouping_.min_motions, 1));
     std::uint32_t lines = 0;  // that follow each other, from `i` on
     constexpr std::uint32_t kFurthest = 4096;
     for (std::uint32_t i = count; i > 0 && count - i < kFurthest; --i) {
       lines = chains.is_line(i - 1) ? lines + 1 : 0;
       if (lines < 2 * beside) continue;
-      const std::uint32_t place = i - 1 + beside;
-      if (!chains.has_arc_from(place) && !chains.has_arc_before(place)) return place;
+      const std::uint32_t cut = i - 1 + beside;
+      if (!chains.has_arc_from(cut) && !chains.has_arc_before(cut)) return cut;
       break;
     }
-    cut_from_ = std::size_t{2} * count;  // what was looked at is not looked at again part for part
+    cut_from_ = std::size_t{2} * count;  // not to search the same blocks for each part
     return 0;
   }
 
-  // Inspects the first blocks that are held. False: the chain of the pieces so far has an arc, and
+  // Inspects the first blocks that are held. False: the chain of the parts so far has an arc, and
   // is read again from its begin, to be held as one.
   bool take(std::uint32_t count, bool in_chain) {
     if (!in_chain_ && in_chain) begin_.emplace(Begin{reader_, inspection_.size()});
     const gcode::ReadPart part = reader_.take(count);
-    if (in_chain_ && Chains(part, grouping_).has_arc_from(0)) {
-      go_back();
-      return false;
+    const bool goes_back = in_chain_ && Chains(part, grouping_).has_arc_from(0);
+    if (goes_back) {
+      reader_ = std::move(begin_->reader);
+      inspection_.go_back_to(begin_->sections);
+      in_chain_ = false;
+    } else {
+      const std::vector<Section> sections = group_runs(part.program, part.meaning, grouping_);
+      const bool is_run = !sections.empty() && sections.front().first_block == 0 &&
+                          std::holds_alternative<Run>(sections.front().content);
+      if (in_chain_ && !is_run) certain_ = false;
+      inspection_.add(part, sections, in_chain_);
+      in_chain_ = in_chain;
     }
-    const std::vector<Section> sections = group_runs(part.program, part.meaning, grouping_);
-    const bool is_run = !sections.empty() && sections.front().first_block == 0 &&
-                        std::holds_alternative<Run>(sections.front().content);
-    if (in_chain_ && !is_run) certain_ = false;
-    inspection_.add(part, sections, in_chain_);
-    in_chain_ = in_chain;
-    if (!in_chain) begin_.reset();
+    if (!in_chain_) begin_.reset();
     looked_at_ = 0;
-    cut_from_ = longest_;
-    return true;
-  }
-
-  void go_back() {
-    reader_ = std::move(begin_->reader);
-    inspection_.go_back_to(begin_->sections);
-    begin_.reset();
-    in_chain_ = false;
-    looked_at_ = 0;
-    cut_from_ = static_cast<std::size_t>(-1);
+    cut_from_ = goes_back ? static_cast<std::size_t>(-1) : longest_;
+    return !goes_back;
   }
 
   // Before the part that ends at the first cut of a chain.
@@ -381,10 +332,10 @@ class PartInspector {
   std::size_t longest_;
   Inspection inspection_;
   bool in_chain_ = false;        // what is held goes on a chain that was cut
-  std::uint32_t looked_at_ = 0;  // blocks that are held behind which no part ends
+  std::uint32_t looked_at_ = 0;  // blocks that are held after which no part ends
   std::size_t cut_from_;         // so many blocks are held before a chain is cut
   std::optional<Begin> begin_;
-  bool certain_ = true;  // that pieces of a chain are runs: the whole is asked where one is not
+  bool certain_ = true;  // that parts of a chain are runs: the whole is read where one is not
 };
 
 }  // namespace

@@ -59,11 +59,11 @@ struct InspectLimits {
 // Reads a long program part by part and holds its sections, some parts, and the lengths of the
 // segments of the run that goes on.
 //
-// Parts end behind plain rapids (postproc/proof/program_events.h), where something other than a
+// Parts end after plain rapids (postproc/proof/program_events.h), where something other than a
 // rapid follows: there no chain and no section goes on. A long chain of lines is cut between two
-// motions, with some more on both sides that go neither straight along Z nor nowhere: both pieces
-// end there as runs, and are counted as one. A chain with arcs is held as one: which of them were
-// meant is known at its end. A program that is short or needs the whole (PartReader) is one part.
+// motions, with some more on both sides that go neither straight along Z nor nowhere: both parts
+// end there as runs, and count as one. A chain with arcs is held as one: which of them are intended
+// is known at its end. A program that is short or needs the whole (PartReader) is one part.
 [[nodiscard]] InspectedProgram inspect(const gcode::SourceText& source, const PartReading& reading,
                                        const GroupingOptions& grouping,
                                        const InspectLimits& limits = {});

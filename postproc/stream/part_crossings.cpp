@@ -17,7 +17,11 @@ using geometry::SegmentCluster;
 // A new path is within the tolerance of the old one, and its chords within a hundredth of that.
 constexpr double kTolerancesAway = 1.1;
 
-// The edges of one long run in the sections of a part.
+void append(const std::vector<PartEdge>& more, std::vector<PartEdge>& edges) {
+  edges.insert(edges.end(), more.begin(), more.end());
+}
+
+// The edges of one long run in the sections of a window.
 class NearEdgeFinder {
  public:
   NearEdgeFinder(const ReadProgram& old, std::span<const Section> sections,
@@ -31,7 +35,11 @@ class NearEdgeFinder {
       const std::uint32_t last = line_of(sections_[i].last_block);
       if (last < near_.first_line || first > near_.last_line) continue;
       const auto clusters = clusters_in(first, last);
-      if (!clusters.empty()) add(i, clusters, found);
+      if (clusters.empty()) continue;
+      const std::vector<PartEdge> before = old_edges(sections_[i], clusters);
+      const bool rewritten = written_ && std::holds_alternative<Run>(sections_[i].content);
+      append(before, found.before);
+      append(rewritten ? new_edges(i, clusters) : before, found.after);
     }
   }
 
@@ -48,24 +56,14 @@ class NearEdgeFinder {
     return {begin, end};
   }
 
-  void add(std::size_t index, std::span<const SegmentCluster> clusters, NearEdges& found) const {
-    const std::vector<PartEdge> before = old_edges(sections_[index], clusters);
-    found.before.insert(found.before.end(), before.begin(), before.end());
-    const std::vector<PartEdge> after =
-        written_ && std::holds_alternative<Run>(sections_[index].content)
-            ? new_edges(index, clusters)
-            : before;
-    found.after.insert(found.after.end(), after.begin(), after.end());
-  }
-
   [[nodiscard]] std::vector<PartEdge> old_edges(const Section& section,
                                                 std::span<const SegmentCluster> clusters) const {
     std::vector<PartEdge> edges;
+    const std::uint32_t offset = old_.program->blocks.front().line;
     for (const SegmentCluster& cluster : clusters) {
-      const std::uint32_t offset = old_.program->blocks.front().line;
-      const std::uint32_t begin = std::max(section.first_block, block_at(cluster.first, offset));
-      const std::uint32_t end = std::min(section.last_block, block_at(cluster.last, offset));
-      for (std::uint32_t block = begin; block <= end; ++block) {
+      const std::uint32_t begin = std::max(section.first_block + offset, cluster.first) - offset;
+      const std::uint32_t end = std::min(section.last_block + offset, cluster.last);
+      for (std::uint32_t block = begin; block + offset <= end; ++block) {
         const std::int32_t motion = old_.interpretation->blocks[block].motion;
         if (motion < 0) continue;
         const gcode::Motion& move = old_.interpretation->motions[static_cast<std::size_t>(motion)];
@@ -77,30 +75,18 @@ class NearEdgeFinder {
     return edges;
   }
 
-  static std::uint32_t block_at(std::uint32_t line, std::uint32_t first_line) {
-    return line < first_line ? 0 : line - first_line;
-  }
-
   [[nodiscard]] std::vector<PartEdge> new_edges(std::size_t index,
                                                 std::span<const SegmentCluster> clusters) const {
-    const auto& blocks = written_->read.program->blocks;
     const auto& motions = written_->read.interpretation->motions;
-    const auto block_from = [&](std::size_t byte) {
-      return static_cast<std::uint32_t>(
-          std::ranges::lower_bound(blocks, byte, {},
-                                   [](const gcode::Block& b) { return b.span.begin; }) -
-          blocks.begin());
-    };
-    const std::uint32_t begin = block_from(written_->begins[index]);
-    const std::uint32_t end = index + 1 < written_->begins.size()
-                                  ? block_from(written_->begins[index + 1])
-                                  : static_cast<std::uint32_t>(blocks.size());
+    const bool is_last = index + 1 == written_->begins.size();
     geometry::Path path;
-    const auto first = std::ranges::lower_bound(motions, begin, {}, &gcode::Motion::block);
-    for (auto move = first; move != motions.end() && move->block < end; ++move) {
+    auto move =
+        std::ranges::lower_bound(motions, written_->begins[index], {}, &gcode::Motion::block);
+    for (; move != motions.end(); ++move) {
+      if (!is_last && move->block >= written_->begins[index + 1]) break;
       if (move->kind != gcode::MotionKind::kRapid) path.push_back(move->piece);
     }
-    const double distance = cluster_width(tolerance_) + kTolerancesAway * tolerance_;
+    const double distance = tolerance_ + kTolerancesAway * tolerance_;
     return geometry::edges_near(flat(path, line_of(sections_[index].first_block)), clusters,
                                 distance);
   }
@@ -109,10 +95,6 @@ class NearEdgeFinder {
                                            std::uint32_t line) const {
     return geometry::flat_edges(path, near_.axis, tolerance_, line,
                                 geometry::part_of(line, near_.cuts));
-  }
-
-  static void append(std::vector<PartEdge> more, std::vector<PartEdge>& edges) {
-    edges.insert(edges.end(), more.begin(), more.end());
   }
 
   const ReadProgram& old_;
@@ -128,8 +110,8 @@ bool follow_each_other(const SegmentCluster& a, const SegmentCluster& b,
          geometry::part_of(a.last, cuts) == geometry::part_of(b.first, cuts);
 }
 
-// The strands about a line that follow each other, as far as its part goes.
-LineRange stretch_about(std::uint32_t line, const SelfProximity& near) {
+// The clusters about a line that follow each other, as far as its part goes.
+LineRange section_about(std::uint32_t line, const SelfProximity& near) {
   const auto& clusters = near.clusters;
   const std::uint32_t part = geometry::part_of(line, near.cuts);
   LineRange range{line, line};
@@ -161,8 +143,7 @@ std::vector<NearEdges> near_edges_of(const ReadProgram& old, std::span<const Sec
   const std::uint32_t last = old.program->blocks.back().line;
   for (std::size_t i = 0; i < near.size(); ++i) {
     if (near[i].last_line < first || near[i].first_line > last) continue;
-    NearEdges edges;
-    edges.run = i;
+    NearEdges edges{i, {}, {}};
     NearEdgeFinder(old, sections, written, near[i], tolerance_mm).run(edges);
     if (!edges.before.empty()) all.push_back(std::move(edges));
   }
@@ -171,42 +152,30 @@ std::vector<NearEdges> near_edges_of(const ReadProgram& old, std::span<const Sec
 
 void PartCrossings::take(std::vector<NearEdges> edges) {
   for (NearEdges& some : edges) {
-    if (held_.empty() || held_.back().run != some.run) {
-      held_.push_back({some.run, {some.run, {}, {}}, false});
-    }
+    if (held_.empty() || held_.back().edges.run != some.run) held_.push_back({{some.run, {}, {}}});
     Held& held = held_.back();
     const std::size_t most = std::max(held.edges.before.size() + some.before.size(),
                                       held.edges.after.size() + some.after.size());
     if (held.too_many || most > kMostEdges) {
-      held.too_many = true;
-      held.edges = {some.run, {}, {}};
-      continue;
+      held = {{some.run, {}, {}}, true};
+    } else {
+      append(some.before, held.edges.before);
+      append(some.after, held.edges.after);
     }
-    const auto append = [](std::vector<PartEdge>& all, const std::vector<PartEdge>& more) {
-      all.insert(all.end(), more.begin(), more.end());
-    };
-    append(held.edges.before, some.before);
-    append(held.edges.after, some.after);
   }
 }
 
 void PartCrossings::look_up_to(std::uint32_t line) {
   std::erase_if(held_, [&](const Held& held) {
-    if (near_[held.run].last_line > line) return false;
-    look_at(held.edges);
+    const SelfProximity& near = near_[held.edges.run];
+    if (near.last_line > line) return false;
+    for (const geometry::PartCrossing& crossing :
+         geometry::new_crossings_of_parts(held.edges.before, held.edges.after, tolerance_)) {
+      for (const std::uint32_t at : crossing.labels) found_.push_back(section_about(at, near));
+    }
     return true;
   });
 }
-
-void PartCrossings::look_at(const NearEdges& edges) {
-  const SelfProximity& near = near_[edges.run];
-  for (const geometry::PartCrossing& crossing :
-       geometry::new_crossings_of_parts(edges.before, edges.after, tolerance_)) {
-    for (const std::uint32_t line : crossing.labels) found_.push_back(stretch_about(line, near));
-  }
-}
-
-std::vector<LineRange> PartCrossings::found() const { return joined(found_, {}); }
 
 std::vector<LineRange> more_to_copy(const std::vector<LineRange>& copied,
                                     const std::vector<LineRange>& found,

@@ -1,7 +1,6 @@
 // Do the parts of a long run cross each other where they did not before? Each is proved for itself;
-// here what was written of those stretches that are near to other parts
-// (postproc/runs/long_run_cuts.h) is looked at together. Holds these stretches, and nothing of
-// the rest.
+// here the new text of those sections that are near to other parts (postproc/runs/run_cutting.h)
+// is looked at together. Holds these sections, and nothing of the rest.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +14,12 @@
 #include "gcode/text/program.h"
 #include "geometry/band/self_proximity.h"
 #include "postproc/proof/program_events.h"
-#include "postproc/runs/long_run_cuts.h"
+#include "postproc/runs/run_cutting.h"
 #include "postproc/runs/section.h"
 
 namespace batten::postproc {
 
-// Of one long run, of the stretches that are near to other parts of it.
+// Of one long run, of the sections that are near to other parts of it.
 struct NearEdges {
   std::size_t run = 0;  // index of its SelfProximity
   std::vector<geometry::PartEdge> before;
@@ -30,7 +29,7 @@ struct NearEdges {
 // New text that was proved, and where the sections begin in it.
 struct WrittenSections {
   ReadProgram read;
-  std::span<const std::size_t> begins;  // bytes
+  std::span<const std::uint32_t> begins;  // blocks
 };
 
 // What the sections hold of each long run, in order. `written`: nothing where no byte differs.
@@ -47,23 +46,21 @@ class PartCrossings {
       : near_(near), tolerance_(tolerance_mm) {}
 
   void take(std::vector<NearEdges> edges);
-  // All runs that end up to this line are known: those that cross are found, and their edges are
+  // All of the runs that end up to this line was taken: their crossings are found, and their edges
   // not held any longer.
   void look_up_to(std::uint32_t line);
-  // The stretches about crossings, of both strands: where these are copied nothing crosses that did
+  // The sections about crossings, of both paths: where these are copied nothing crosses that did
   // not. As `joined` gives them; none where nothing crosses.
-  [[nodiscard]] std::vector<LineRange> found() const;
+  [[nodiscard]] std::vector<LineRange> found() const { return joined(found_, {}); }
 
   // Above this nothing is said of a run: most of it is near to itself.
   static constexpr std::size_t kMostEdges = std::size_t{1} << 20;
 
  private:
   struct Held {
-    std::size_t run = 0;
     NearEdges edges;
     bool too_many = false;
   };
-  void look_at(const NearEdges& edges);
 
   std::span<const SelfProximity> near_;
   double tolerance_;
@@ -71,8 +68,8 @@ class PartCrossings {
   std::vector<LineRange> found_;
 };
 
-// What is to be copied beside what is copied already: all of it as `joined` gives it. Where that is
-// all copied, the whole of the long runs.
+// `copied` and `found` as `joined` gives them; where all that is found is copied already, the whole
+// of its long runs, too.
 [[nodiscard]] std::vector<LineRange> more_to_copy(const std::vector<LineRange>& copied,
                                                   const std::vector<LineRange>& found,
                                                   std::span<const SelfProximity> near);

@@ -25,7 +25,7 @@ std::shared_ptr<PartOfText> PartTexts::next() {
   if (needs_whole_ || now_.begin >= source_->text().size()) return nullptr;
   auto part = std::make_shared<PartOfText>(PartOfText{{}, 0, {{*source_, {}, {}, {}}, {}}});
   // Without a bound of its bytes, a search for a kind of line end that the text does not have would
-  // go through all of it, part for part.
+  // go through all of it for each part.
   const auto end = gcode::end_of_lines(*source_, now_.begin, limits_.bytes, limits_.longest_line);
   if (end) {
     part->begin.text = now_;
@@ -83,32 +83,27 @@ PartReader::PartReader(const gcode::SourceText& source, const PartReading& readi
 }
 
 PartReader::Next PartReader::read_on() {
-  if (is_whole_) return read_all();
+  if (is_whole_) {
+    add(read_whole(*source_, reading_, of_whole_));
+    return Next::kAtEnd;
+  }
   const auto part = texts_.next();
   if (!part) return Next::kAtEnd;
   if (part->needs_whole) return Next::kNeedsWhole;
-  close_behind_marks(part->read.program);
+  const std::uint32_t last_mark = texts_.marks().last_mark();
+  for (gcode::Block& block : part->read.program.blocks) {
+    if (last_mark > 0 && block.line > last_mark) gcode::close_behind_marks(block);
+  }
   meanings_.add_to(*part);
   if (part->needs_whole) return Next::kNeedsWhole;
-  blocks_read_ += part->read.program.blocks.size();
-  unit_word_seen_ = part->read.meaning.unit_word_seen;
-  gcode::append(held_, std::move(part->read));
+  add(std::move(part->read));
   return Next::kRead;
 }
 
-PartReader::Next PartReader::read_all() {
-  held_ = read_whole(*source_, reading_, of_whole_);
-  blocks_read_ = held_.program.blocks.size();
-  unit_word_seen_ = held_.meaning.unit_word_seen;
-  return Next::kAtEnd;
-}
-
-void PartReader::close_behind_marks(gcode::Program& part) const {
-  const std::uint32_t last = texts_.marks().last_mark();
-  if (last == 0) return;
-  for (gcode::Block& block : part.blocks) {
-    if (block.line > last) gcode::close_behind_marks(block);
-  }
+void PartReader::add(gcode::ReadPart part) {
+  blocks_read_ += part.program.blocks.size();
+  unit_word_seen_ = part.meaning.unit_word_seen;
+  gcode::append(held_, std::move(part));
 }
 
 gcode::ReadPart PartReader::take(std::uint32_t count) {
@@ -124,14 +119,10 @@ gcode::ReadPart PartReader::take(std::uint32_t count) {
 
 std::optional<gcode::Diagnostics> PartReader::finish() {
   gcode::Diagnostics found = std::move(reading_.of_language);
-  const auto append = [&](const gcode::Diagnostics& more) {
+  for (const gcode::Diagnostics& more : {of_whole_, texts_.finish(), meanings_.finish()}) {
     found.insert(found.end(), more.begin(), more.end());
-  };
-  append(of_whole_);
-  if (is_whole_) return found;
-  append(texts_.finish());
-  append(meanings_.finish());
-  if (gcode::has_error(found)) return std::nullopt;
+  }
+  if (!is_whole_ && gcode::has_error(found)) return std::nullopt;
   return found;
 }
 

@@ -1,4 +1,4 @@
-// Programs read part by part, of which only those blocks are held that are still asked for. A
+// Programs read part by part, of which only those blocks are held that are still needed. A
 // program that needs the whole is one part.
 #pragma once
 
@@ -22,7 +22,7 @@ struct PartReading {
   gcode::SourceKind source = gcode::SourceKind::kAuto;
   gcode::Reading text = {};
   gcode::ReadOptions options = {};
-  gcode::Diagnostics of_language = {};  // what was told when its language was found out
+  gcode::Diagnostics of_language = {};  // reported when its language was found out
 };
 
 struct PartLimits {
@@ -32,17 +32,16 @@ struct PartLimits {
   std::size_t least_text = std::size_t{1} << 21;    // bytes: shorter programs are one part
 };
 
-// All of it at once. What is told of it is added to `found`.
+// All of it at once.
 [[nodiscard]] gcode::ReadPart read_whole(const gcode::SourceText& source,
                                          const PartReading& reading, gcode::Diagnostics& found);
 
-// A place of the text where reading may begin, and all that is known there.
+// Where reading may begin, and all that is known there.
 struct ReadingPlace {
   gcode::TextCarry text;
   TextBefore before;
 };
 
-// A part as it is read.
 struct PartOfText {
   ReadingPlace begin;
   std::uint32_t end = 0;  // byte
@@ -50,24 +49,21 @@ struct PartOfText {
   bool needs_whole = false;  // the rest says nothing then
 };
 
-// Text and meaning of the parts are two steps, which two threads may take: the meaning of one part
-// while the text of the next one is read.
-
-// Cuts the text of a program of the RS-274 family into parts of whole lines.
+// Cuts the text of a program of the RS-274 family, which must outlive it, into parts of whole
+// lines. Text and meaning are two steps: a thread may read the next part while another one
+// interprets this one.
 class PartTexts {
  public:
-  // `source` must outlive it.
   PartTexts(const gcode::SourceText& source, const PartReading& reading, const PartLimits& limits);
 
-  // The text of the next part and what it begins with: `begin.before` and its meaning are not
-  // known yet. Null behind the last one, and behind one that needs the whole.
+  // The text of the next part; `begin.before` and its meaning are not known yet. Null after the
+  // last one, and after one that needs the whole.
   [[nodiscard]] std::shared_ptr<PartOfText> next();
+  [[nodiscard]] const gcode::PercentMarkScanner& marks() const { return now_.marks; }
 
-  // Behind the last part: where the text ends, and what is told of all of it.
+  // After the last part: where the text ends, and the diagnostics of all of it.
   [[nodiscard]] std::uint32_t end() const { return now_.begin; }
   [[nodiscard]] gcode::Diagnostics finish();
-
-  [[nodiscard]] const gcode::PercentMarkScanner& marks() const { return now_.marks; }
 
  private:
   [[nodiscard]] bool needs_whole(const gcode::Program& part) const;
@@ -87,11 +83,8 @@ class PartMeanings {
   explicit PartMeanings(const gcode::ReadOptions& options)
       : options_(options), now_(options.units) {}
 
-  // `begin.before` gets the control, but no events.
-  void add_to(PartOfText& part);
-
-  // Behind the last part.
-  [[nodiscard]] gcode::Diagnostics finish();
+  void add_to(PartOfText& part);              // also the control of `begin.before`, but no events
+  [[nodiscard]] gcode::Diagnostics finish();  // after the last part
 
  private:
   [[nodiscard]] bool needs_whole(const gcode::Interpretation& meaning) const;
@@ -101,20 +94,19 @@ class PartMeanings {
   gcode::Diagnostics found_;
 };
 
-// The blocks, motions and states, part behind part, are those of the whole, and so are the
-// diagnostics at the end. Where they would not be it says that the program needs the whole: with
-// errors of any kind, jumps, loops or subprograms, words outside the % marks, curves that are
-// followed, marks of another source, lines that are too long or end without a line feed.
-//
-// A copy goes on from the same place.
+// The blocks, motions and states, part after part, are those of the whole, and so are the
+// diagnostics at the end. Where they would not be, the program needs the whole: with errors of any
+// kind, jumps, loops or subprograms, words outside the % marks, curves that are followed, marks of
+// another source, lines that are too long or end without a line feed. A copy goes on from the same
+// position.
 class PartReader {
  public:
-  // `source` must outlive the reader. In parts are read programs of the RS-274 family only.
+  // `source` must outlive the reader. `as_whole`, else in parts: of the RS-274 family only.
   PartReader(const gcode::SourceText& source, const PartReading& reading, const PartLimits& limits,
              bool as_whole);
 
   enum class Next { kRead, kAtEnd, kNeedsWhole };
-  // One part more behind the blocks that are held; the whole, which then is at its end.
+  // One part more after the blocks that are held; the whole, which then is at its end.
   [[nodiscard]] Next read_on();
 
   [[nodiscard]] const gcode::ReadPart& held() const { return held_; }
@@ -123,7 +115,7 @@ class PartReader {
   }
 
   // The first `count` blocks that are held, of a whole all of them, which then are held no longer.
-  // The bytes of those that were taken before are given back (gcode::SourceText::release_pages).
+  // Gives back the bytes of those that were taken before (gcode::SourceText::release_pages).
   [[nodiscard]] gcode::ReadPart take(std::uint32_t count);
 
   // Of the whole program, at its end; nothing: it needs the whole.
@@ -134,8 +126,7 @@ class PartReader {
   [[nodiscard]] bool is_whole() const { return is_whole_; }
 
  private:
-  Next read_all();
-  void close_behind_marks(gcode::Program& part) const;
+  void add(gcode::ReadPart part);
 
   const gcode::SourceText* source_;
   PartReading reading_;

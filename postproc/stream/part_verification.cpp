@@ -1,14 +1,11 @@
 #include "postproc/stream/part_verification.h"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <iterator>
-#include <optional>
 #include <span>
-#include <unordered_map>
 #include <utility>
 
 #include "gcode/state/reason.h"
@@ -32,7 +29,7 @@ struct FollowedPart {
 };
 
 // mm
-double way_of(const gcode::Motion& motion) {
+double length_of(const gcode::Motion& motion) {
   const gcode::MotionPath& path = motion.piece;
   return path.is_line() ? (path.end() - path.start()).norm() : geometry::length_of(path);
 }
@@ -55,10 +52,10 @@ class ProgramStream {
 
   [[nodiscard]] const gcode::ReadPart& held() const { return reader_.held(); }
   [[nodiscard]] std::uint32_t blocks_held() const { return reader_.blocks_held(); }
-  // Blocks behind plain rapids, of those that are held; of a whole none.
+  // Blocks after plain rapids, of those that are held; of a whole none.
   [[nodiscard]] const std::vector<std::uint32_t>& ends() const { return ends_; }
-  // mm, of the motions behind the last of these, or since the begin of what is held.
-  [[nodiscard]] double way() const { return way_; }
+  // mm, of the motions after the last of these, or since the begin of what is held.
+  [[nodiscard]] double length() const { return length_; }
 
   // The first blocks that are held.
   [[nodiscard]] FollowedPart take(std::uint32_t count) {
@@ -68,7 +65,7 @@ class ProgramStream {
     if (!taken.part.program.blocks.empty()) line_before_ = taken.part.program.blocks.back().line;
     ends_.clear();
     looked_at_ = 0;
-    way_ = 0;
+    length_ = 0;
     look_at_new_blocks();
     return taken;
   }
@@ -83,9 +80,9 @@ class ProgramStream {
       if (block.barrier == gcode::reason::kRapid &&
           is_plain_rapid({&part.program, &part.meaning}, looked_at_)) {
         ends_.push_back(looked_at_ + 1);
-        way_ = 0;
+        length_ = 0;
       } else {
-        way_ += way_of(part.meaning.motions[static_cast<std::size_t>(block.motion)]);
+        length_ += length_of(part.meaning.motions[static_cast<std::size_t>(block.motion)]);
       }
     }
   }
@@ -95,39 +92,28 @@ class ProgramStream {
   std::uint32_t line_before_ = 0;
   std::vector<std::uint32_t> ends_;
   std::uint32_t looked_at_ = 0;  // blocks that are held
-  double way_ = 0;
+  double length_ = 0;
   bool at_end_ = false;
 };
 
-// The cutting moves of a part at its two ends.
-class MovesOfPart {
- public:
-  explicit MovesOfPart(const FollowedPart& part) : part_(part), list_(list_events(part.read())) {}
-
-  [[nodiscard]] bool has_events() const { return !list_.events.empty(); }
-  [[nodiscard]] std::span<const Cut> before_events() const {
-    return std::span<const Cut>(list_.cuts).first(list_.cuts_before.front());
-  }
-  [[nodiscard]] std::span<const Cut> behind_events() const {
-    const std::size_t events = list_.events.size();
-    return std::span<const Cut>(list_.cuts).subspan(events > 0 ? list_.cuts_before[events - 1] : 0);
-  }
-  [[nodiscard]] geometry::Path path_of(std::span<const Cut> cuts) const {
-    geometry::Path path;
-    path.reserve(cuts.size());
-    for (const Cut& cut : cuts) path.push_back(part_.part.meaning.motions[cut.motion].piece);
-    return path;
+// The cutting moves of a part, and those of them before its first and after its last event.
+struct MovesOfPart {
+  explicit MovesOfPart(const FollowedPart& part) : list(list_events(part.read())) {
+    const std::size_t events = list.events.size();
+    before_events = std::span<const Cut>(list.cuts).first(list.cuts_before.front());
+    after_events =
+        std::span<const Cut>(list.cuts).subspan(events > 0 ? list.cuts_before[events - 1] : 0);
   }
 
- private:
-  const FollowedPart& part_;
-  ProgramEvents list_;
+  ProgramEvents list;
+  std::span<const Cut> before_events;
+  std::span<const Cut> after_events;
 };
 
-// What the whole asks, beside the distance, of runs that are compared in pieces.
-class RunsInPieces {
+// What the whole asks, beside the distance, of runs that are compared in parts.
+class RunsInParts {
  public:
-  explicit RunsInPieces(double tolerance_mm) : tolerance_(tolerance_mm), new_path_(tolerance_mm) {}
+  explicit RunsInParts(double tolerance_mm) : tolerance_(tolerance_mm), new_path_(tolerance_mm) {}
 
   // The next pair of parts, which have the same events. `ends_in_run`: they end where a run is cut.
   // False: only the whole can say.
@@ -136,15 +122,21 @@ class RunsInPieces {
     if (!begins_in_run && !ends_in_run) return true;
     const MovesOfPart old_moves(before);
     const MovesOfPart new_moves(after);
-    const bool all_in_run = begins_in_run && ends_in_run && !new_moves.has_events();
+    const bool all_in_run = begins_in_run && ends_in_run && new_moves.list.events.empty();
     if (begins_in_run) {
-      if (!goes_on(old_moves.before_events(), new_moves.before_events())) return false;
-      new_path_.add(new_moves.path_of(new_moves.before_events()));
-      if (!all_in_run && !end_run()) return false;
+      if (!goes_on(old_moves.before_events, new_moves.before_events)) return false;
+      add(after, new_moves.before_events);
+      const auto meets = [&] {
+        return std::exchange(new_path_, SelfMeeting(tolerance_)).may_meet();
+      };
+      if (!all_in_run && meets()) return false;
     }
     if (!ends_in_run) return true;
-    if (!all_in_run) new_path_.add(new_moves.path_of(new_moves.behind_events()));
-    return leave_open(old_moves.behind_events(), new_moves.behind_events());
+    if (!all_in_run) add(after, new_moves.after_events);
+    if (old_moves.after_events.empty() || new_moves.after_events.empty()) return false;
+    old_last_ = old_moves.after_events.back();
+    new_last_ = new_moves.after_events.back();
+    return true;
   }
 
  private:
@@ -154,15 +146,11 @@ class RunsInPieces {
     return is_one_feed(old_last_, old_cuts.front()) == is_one_feed(new_last_, new_cuts.front());
   }
 
-  [[nodiscard]] bool end_run() {
-    return !std::exchange(new_path_, SelfMeeting(tolerance_)).may_meet();
-  }
-
-  [[nodiscard]] bool leave_open(std::span<const Cut> old_cuts, std::span<const Cut> new_cuts) {
-    if (old_cuts.empty() || new_cuts.empty()) return false;
-    old_last_ = old_cuts.back();
-    new_last_ = new_cuts.back();
-    return true;
+  void add(const FollowedPart& part, std::span<const Cut> cuts) {
+    geometry::Path path;
+    path.reserve(cuts.size());
+    for (const Cut& cut : cuts) path.push_back(part.part.meaning.motions[cut.motion].piece);
+    new_path_.add(path);
   }
 
   double tolerance_;
@@ -172,74 +160,45 @@ class RunsInPieces {
   Cut new_last_;
 };
 
-// Two ways to one place may differ by so much: noise that one of them leaves out.
-constexpr double kWaysApart = 0.1;
+// Two paths to one position may differ by so much: noise that one of them leaves out.
+constexpr double kPathsApart = 0.1;
 
 // Where a motion at feed rate ends.
-struct PlaceOnWay {
-  std::uint64_t key = 0;  // of the place
-  double way = 0;         // mm, up to there
-  std::uint32_t motion = 0;
+struct MotionEnd {
+  std::array<double, 3> at = {};
+  double length = 0;  // mm, of the path up to there
+  std::uint32_t block = 0;
 };
 
-// Places that are the same have the same key; 0 and -0 are.
-std::uint64_t key_of(const geometry::Point3& place) {
-  std::uint64_t key = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    key = (key ^ std::bit_cast<std::uint64_t>(place[axis] + 0.0)) * 0x9E3779B97F4A7C15U;
-    key ^= key >> 29U;
-  }
-  return key;
-}
-
-std::vector<PlaceOnWay> places_of(const gcode::Interpretation& read) {
-  std::vector<PlaceOnWay> places;
-  places.reserve(read.motions.size());
-  double way = 0;
-  for (std::size_t i = 0; i < read.motions.size(); ++i) {
-    const gcode::Motion& motion = read.motions[i];
-    way += way_of(motion);
+std::vector<MotionEnd> motion_ends(const gcode::Interpretation& read) {
+  std::vector<MotionEnd> ends;
+  ends.reserve(read.motions.size());
+  double length = 0;
+  for (const gcode::Motion& motion : read.motions) {
+    length += length_of(motion);
     if (motion.kind == gcode::MotionKind::kRapid || !motion.end_known) continue;
-    places.push_back({key_of(motion.piece.end()), way, static_cast<std::uint32_t>(i)});
+    const geometry::Point3 at = motion.piece.end();
+    ends.push_back({{at.x(), at.y(), at.z()}, length, motion.block});
   }
-  return places;
+  return ends;
 }
 
-bool as_far(const PlaceOnWay& a, const PlaceOnWay& b) {
-  return std::abs(a.way - b.way) <= kWaysApart * std::max(a.way, b.way);
-}
-
-// Where two long runs that go beside each other may be cut: the last place at which a motion of
-// each ends, the same to the last digit, as far along both to within a tenth. Blocks behind these
-// motions.
-struct CommonPlace {
-  std::uint32_t old_end = 0;
-  std::uint32_t new_end = 0;
-};
-
-std::optional<CommonPlace> last_common_place(const gcode::Interpretation& before,
-                                             const gcode::Interpretation& after) {
-  const std::vector<PlaceOnWay> old_places = places_of(before);
-  const std::vector<PlaceOnWay> new_places = places_of(after);
-  std::unordered_multimap<std::uint64_t, const PlaceOnWay*> by_key;
-  by_key.reserve(new_places.size());
-  for (const PlaceOnWay& place : new_places) by_key.emplace(place.key, &place);
-  for (std::size_t i = old_places.size(); i-- > 0;) {
-    const PlaceOnWay& old = old_places[i];
-    const PlaceOnWay* nearest = nullptr;
-    const auto [first, last] = by_key.equal_range(old.key);
-    for (auto each = first; each != last; ++each) {
-      const PlaceOnWay& place = *each->second;
-      const auto off = [&](const PlaceOnWay& p) {
-        return std::pair(std::abs(p.way - old.way), p.motion);
-      };
-      if (nearest == nullptr || off(place) < off(*nearest)) nearest = &place;
-    }
-    if (nearest == nullptr) continue;
-    const gcode::Motion& old_motion = before.motions[old.motion];
-    const gcode::Motion& new_motion = after.motions[nearest->motion];
-    if (!as_far(old, *nearest) || old_motion.piece.end() != new_motion.piece.end()) continue;
-    return CommonPlace{old_motion.block + 1, new_motion.block + 1};
+// Where two long runs that go beside each other may be cut: the old and the new block after the
+// last position, the same to the last digit, at which a motion of each ends about as far along.
+std::optional<std::pair<std::uint32_t, std::uint32_t>> last_common_position(
+    const gcode::Interpretation& before, const gcode::Interpretation& after) {
+  const std::vector<MotionEnd> old_ends = motion_ends(before);
+  std::vector<MotionEnd> new_ends = motion_ends(after);
+  std::ranges::sort(new_ends, {}, &MotionEnd::at);
+  for (auto old = old_ends.rbegin(); old != old_ends.rend(); ++old) {
+    const auto first = std::ranges::lower_bound(new_ends, old->at, {}, &MotionEnd::at);
+    const auto last = std::ranges::upper_bound(new_ends, old->at, {}, &MotionEnd::at);
+    if (first == last) continue;
+    const auto apart = [&](const MotionEnd& end) { return std::abs(end.length - old->length); };
+    const auto nearest = std::ranges::min_element(
+        first, last, {}, [&](const MotionEnd& end) { return std::pair(apart(end), end.block); });
+    if (apart(*nearest) > kPathsApart * std::max(old->length, nearest->length)) continue;
+    return std::pair(old->block + 1, nearest->block + 1);
   }
   return std::nullopt;
 }
@@ -286,17 +245,17 @@ class TextVerifier {
 
   [[nodiscard]] bool is_new_behind() const {
     if (old_.at_end() || new_.ends().size() < old_.ends().size()) return true;
-    return new_.ends().size() == old_.ends().size() && new_.way() < old_.way();
+    return new_.ends().size() == old_.ends().size() && new_.length() < old_.length();
   }
 
   [[nodiscard]] bool compare_what_ends() {
-    const std::size_t ends = std::min(old_.ends().size(), new_.ends().size());
-    if (ends > 0) return compare(old_.ends()[ends - 1], new_.ends()[ends - 1], false);
+    const std::size_t rapids = std::min(old_.ends().size(), new_.ends().size());
+    if (rapids > 0) return compare(old_.ends()[rapids - 1], new_.ends()[rapids - 1], false);
     if (as_whole_ || old_.blocks_held() < cut_from_ || promise_.side != geometry::Side::kBoth)
       return true;
-    const auto place = last_common_place(old_.held().meaning, new_.held().meaning);
-    if (place) return compare(place->old_end, place->new_end, true);
-    cut_from_ = old_.blocks_held() + longest_ / 2;  // what was looked at is not asked part for part
+    const auto ends = last_common_position(old_.held().meaning, new_.held().meaning);
+    if (ends) return compare(ends->first, ends->second, true);
+    cut_from_ = old_.blocks_held() + longest_ / 2;  // not to search the same blocks for each part
     return true;
   }
 
@@ -331,7 +290,7 @@ class TextVerifier {
   bool as_whole_;
   std::size_t longest_;
   std::size_t cut_from_;  // so many old blocks are held before a run is cut
-  RunsInPieces runs_;
+  RunsInParts runs_;
   VerifiedTexts result_;
 };
 

@@ -16,8 +16,7 @@
 #include "postproc/convert/conversion.h"
 #include "postproc/profile/target_profile.h"
 #include "postproc/proof/program_events.h"
-#include "postproc/runs/long_run_cuts.h"
-#include "postproc/stream/provenance.h"
+#include "postproc/stream/smooth_result.h"
 #include "postproc/system/parallel_for.h"
 
 namespace batten::postproc {
@@ -27,11 +26,6 @@ namespace {
 // Blocks that are held at once: much more than what a part costs by itself, and much less than a
 // window, which is read again from the begin of a part on.
 constexpr std::size_t kBlocksAtOnce = 4096;
-
-LongRunLimits limits_of(LongRunLimits limits, const SmoothOptions& options) {
-  limits.rewritten = options.method != Method::kNone;
-  return limits;
-}
 
 class PrescanWork {
  public:
@@ -43,7 +37,7 @@ class PrescanWork {
                {.blocks = kBlocksAtOnce}),
         meanings_(read_options_of(options)),
         least_blocks_(limits.least_blocks),
-        cuts_(limits_of(limits.long_runs, options), grouping_of(options)),
+        cuts_(asked_of(limits.long_runs, options), grouping_of(options)),
         tell_(tell),
         threads_(threads_at_once(options.threads)) {}
 
@@ -69,7 +63,10 @@ class PrescanWork {
       return part;
     };
     const auto interpret = [this](const Part& part) {
-      if (!part->needs_whole && !ended_early_) add_meaning(*part);
+      if (part->needs_whole || ended_early_) return part;
+      meanings_.add_to(*part);
+      part->begin.before.events = events_;
+      events_ = events_before_next({&part->read.program, &part->read.meaning, events_});
       return part;
     };
     const auto look = [this](const Part& part) {
@@ -86,12 +83,6 @@ class PrescanWork {
     gcode::Diagnostics others;
     tell_of_other_meanings(part, target_, others);
     return !others.empty() || is_of_another_family(part, target_);
-  }
-
-  void add_meaning(PartOfText& part) {
-    meanings_.add_to(part);
-    part.begin.before.events = events_;
-    events_ = events_before_next({&part.read.program, &part.read.meaning, events_});
   }
 
   // False: the report says why it ends here.
@@ -120,51 +111,43 @@ class PrescanWork {
     const gcode::BlockMeaning& block = read.interpretation->blocks[i];
     const gcode::Block& line = read.program->blocks[i];
     const bool says_nothing = block.barrier.empty() && block.motion < 0;
-    if (says_nothing) {
-      if (end_) end_ = {line.line + 1, line.end};
-    } else if (block.barrier != gcode::reason::kRapid) {
-      if (end_ && line.line >= first_line_ + least_blocks_) end_window(*end_, line.line, false);
-      end_.reset();
-    } else if (is_plain_rapid(read, i)) {
+    const bool is_rapid = block.barrier == gcode::reason::kRapid;
+    if (says_nothing ? end_.has_value() : is_rapid && is_plain_rapid(read, i)) {
       end_ = {line.line + 1, line.end};
-    } else {
-      end_.reset();
+      return;
     }
+    if (end_ && !says_nothing && !is_rapid && line.line >= first_line_ + least_blocks_) {
+      end_window(*end_, line.line, false);
+    }
+    end_.reset();
   }
 
   void take_cuts() {
     for (const LongRunCut& cut : cuts_.found()) end_window(cut, cut.line, true);
   }
 
-  // `next`: the first block behind it. The next window has its blocks counted from `from_line` on.
+  // `next`: the first block after it. The next window has its blocks counted from `from_line` on.
   void end_window(const LongRunCut& next, std::uint32_t from_line, bool in_run) {
     add_window(next.begin, in_run);
-    // What is cut before a window is read with it, and so is what stands before that in its part.
+    // What is cut before a window is read with it, and so is what is before that in its part.
     const std::uint32_t needed = in_run ? kNeighbourBlocks : 0;
     while (starts_.size() > 1 && starts_[1].text.blocks + needed < next.line) starts_.pop_front();
     first_line_ = from_line;
   }
 
   void add_window(std::uint32_t end, bool in_run) {
-    WindowPlace window;
-    window.from = starts_.front();
-    window.begin = report_.windows.empty() ? 0 : report_.windows.back().end;
-    window.begins_in_run = !report_.windows.empty() && report_.windows.back().ends_in_run;
-    window.end = end;
-    window.ends_in_run = in_run;
-    report_.windows.push_back(std::move(window));
+    const WindowPlace before = report_.windows.empty() ? WindowPlace{} : report_.windows.back();
+    report_.windows.push_back({starts_.front(), before.end, end, before.ends_in_run, in_run});
   }
 
   void take_facts(const gcode::Program& part, const gcode::Interpretation& meaning) {
     report_.blocks += part.blocks.size();
-    for (const gcode::ModalState& state : meaning.states) {
-      if (report_.units == gcode::Units::kUnknown) report_.units = state.units;
-    }
+    if (report_.units == gcode::Units::kUnknown) report_.units = first_units(meaning);
     report_.was_smoothed = report_.was_smoothed || was_smoothed(part);
   }
 
   void finish() {
-    cuts_.end();
+    cuts_.end_run();
     take_cuts();
     report_.near = cuts_.self_proximity();
     report_.found = texts_.finish();

@@ -1,15 +1,15 @@
 #include "postproc/stream/smooth_result.h"
 
 #include <algorithm>
-#include <cstddef>
-#include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 
+#include "gcode/curves/curve_format.h"
 #include "gcode/state/reason.h"
+#include "gcode/text/characters.h"
+#include "gcode/text/number_format.h"
 #include "postproc/runs/run_path.h"
-#include "postproc/smooth/run_smoother.h"
-#include "postproc/smooth/selection/selection.h"
 
 namespace batten::postproc {
 
@@ -17,18 +17,17 @@ namespace {
 
 class Reporter {
  public:
-  explicit Reporter(const RunsDone& done) : done_(done) {}
+  Reporter(const ProgramPart& part, const PartRuns& runs, std::span<const Stretch> stretches,
+           bool proved)
+      : part_(part), of_part_(runs), stretches_(stretches), proved_(proved) {}
 
   std::vector<RunReport> run() {
     std::size_t next = 0;
-    for (std::size_t i = 0; i < done_.sections.size(); ++i) {
-      if (next >= done_.works.size() || done_.works[next].section != i) {
-        report_kept_motions(done_.sections[i]);
-        continue;
-      }
-      const RunState& work = done_.works[next++];
-      if (work.cut_run) {
-        report_piece(work);
+    for (std::size_t i = 0; i < of_part_.sections.size(); ++i) {
+      if (next >= of_part_.works.size() || of_part_.works[next].section != i) {
+        report_kept_motions(of_part_.sections[i]);
+      } else if (const RunState& work = of_part_.works[next++]; work.cut_run) {
+        report_part(work);
       } else {
         runs_.push_back(report_of(work));
       }
@@ -37,26 +36,22 @@ class Reporter {
   }
 
  private:
-  [[nodiscard]] const Run& run_of(const RunState& work) const {
-    return std::get<Run>(done_.sections[work.section].content);
-  }
-
-  // Neighbouring pieces that are kept for one reason are one run of the report. Where the whole
-  // run was tried and no piece of it is left, it is as if it had not been cut.
-  void report_piece(const RunState& work) {
-    const CutRun& cut = done_.cut_runs[*work.cut_run];
-    const auto first = done_.works.begin() + static_cast<std::ptrdiff_t>(cut.first_work);
+  // Neighbouring parts of a run that are kept for one reason are one run of the report. Where the
+  // whole run was tried and no part of it is rewritten, it is as if it had not been cut.
+  void report_part(const RunState& work) {
+    const CutRun& cut = of_part_.cut_runs[*work.cut_run];
+    const auto first = of_part_.works.begin() + static_cast<std::ptrdiff_t>(cut.first_work);
     const auto last = first + static_cast<std::ptrdiff_t>(cut.pieces);
-    const bool all_kept =
-        std::all_of(first, last, [](const RunState& w) { return w.chosen() == nullptr; });
+    bool all_kept = true;
     RunReport r = report_of(work);
-    // The times of the pieces are those between their neighbours; they are shares of the run's.
+    // The times of the parts are those between their neighbours; they are shares of the run's.
     Times before;
     Times after;
-    for (auto piece = first; piece != last; ++piece) {
-      const Candidate* chosen = piece->chosen();
-      before += piece->smoothed.facts.times;
-      after += chosen != nullptr ? chosen->times : piece->smoothed.facts.times;
+    for (auto part = first; part != last; ++part) {
+      const Candidate* chosen = part->chosen();
+      all_kept = all_kept && chosen == nullptr;
+      before += part->smoothed.facts.times;
+      after += chosen != nullptr ? chosen->times : part->smoothed.facts.times;
     }
     const double share_before = before.as_set > 0 ? cut.before.as_set / before.as_set : 1;
     const double share_after = after.as_set > 0 ? cut.after.as_set / after.as_set : 1;
@@ -93,11 +88,11 @@ class Reporter {
   }
 
   [[nodiscard]] RunReport report_of(const RunState& work) {
-    const Section& section = done_.sections[work.section];
+    const Section& section = of_part_.sections[work.section];
     const Candidate* chosen = work.chosen();
     const RunFacts& facts = work.smoothed.facts;
     RunReport r = report_of_blocks(section);
-    r.points = motion_count(run_of(work)) + 1;
+    r.points = motion_count(std::get<Run>(section.content)) + 1;
     r.blocks_in = work.context.blocks;
     r.blocks_out = chosen != nullptr ? chosen->text.blocks : work.context.blocks;
     r.noise_mm = facts.noise;
@@ -114,7 +109,7 @@ class Reporter {
     r.method = chosen->method;
     r.form = chosen->form;
     r.chords_for_steps = chosen->chords_for_steps;
-    r.proved = done_.proved;
+    r.proved = proved_;
     r.deviation_mm = deviation_within(section);
     return r;
   }
@@ -124,10 +119,10 @@ class Reporter {
     const auto ends_before = [&](const Stretch& stretch) {
       return stretch.old_last_block < section.first_block;
     };
-    while (next_ < done_.stretches.size() && ends_before(done_.stretches[next_])) ++next_;
+    while (next_ < stretches_.size() && ends_before(stretches_[next_])) ++next_;
     double deviation = 0;
-    for (std::size_t i = next_; i < done_.stretches.size(); ++i) {
-      const Stretch& stretch = done_.stretches[i];
+    for (std::size_t i = next_; i < stretches_.size(); ++i) {
+      const Stretch& stretch = stretches_[i];
       if (ends_before(stretch)) continue;
       if (stretch.old_first_block > section.last_block) break;
       deviation = std::max(deviation, stretch.comparison.bounds.at_most);
@@ -137,8 +132,8 @@ class Reporter {
 
   [[nodiscard]] RunReport report_of_blocks(const Section& section) const {
     RunReport r;
-    r.first_line = done_.program.blocks[section.first_block].line;
-    r.last_line = done_.program.blocks[section.last_block].line;
+    r.first_line = part_.program.blocks[section.first_block].line;
+    r.last_line = part_.program.blocks[section.last_block].line;
     r.proved = true;  // copied bytes are proved by being the same
     return r;
   }
@@ -148,8 +143,8 @@ class Reporter {
   void report_kept_motions(const Section& section) {
     std::size_t lines = 0;
     for (std::uint32_t b = section.first_block; b <= section.last_block; ++b) {
-      const std::int32_t motion = done_.meaning.blocks[b].motion;
-      if (motion >= 0 && done_.meaning.motions[motion].kind == gcode::MotionKind::kLine) ++lines;
+      const std::int32_t motion = part_.meaning.blocks[b].motion;
+      if (motion >= 0 && part_.meaning.motions[motion].kind == gcode::MotionKind::kLine) ++lines;
     }
     if (lines == 0) return;
     RunReport r = report_of_blocks(section);
@@ -160,32 +155,37 @@ class Reporter {
     runs_.push_back(r);
   }
 
-  const RunsDone& done_;
+  const ProgramPart& part_;
+  const PartRuns& of_part_;
+  std::span<const Stretch> stretches_;
+  bool proved_;
   std::vector<RunReport> runs_;
   std::size_t next_ = 0;  // stretches before it end before the section that was asked for last
 };
 
 }  // namespace
 
-std::vector<RunReport> report_runs(const RunsDone& done) { return Reporter(done).run(); }
-
-namespace {
-
-bool has_unproved_run(const SmoothResult& result) {
-  return std::ranges::any_of(result.runs, [](const RunReport& run) {
-    return run.status == RunStatus::kKept && run.reason == gcode::reason::kNotProved;
-  });
+std::vector<RunReport> report_runs(const ProgramPart& part, const PartRuns& runs,
+                                   std::span<const Stretch> stretches, bool proved) {
+  return Reporter(part, runs, stretches, proved).run();
 }
 
-}  // namespace
+gcode::Units first_units(const gcode::Interpretation& meaning) {
+  const auto known = [](const gcode::ModalState& state) {
+    return state.units != gcode::Units::kUnknown;
+  };
+  const auto first = std::ranges::find_if(meaning.states, known);
+  return first == meaning.states.end() ? gcode::Units::kUnknown : first->units;
+}
 
 ExitCode judge(const SmoothResult& result, std::string_view source, bool strict) {
   if (!result.understood) return ExitCode::kNotUnderstood;
-  // The same bytes need no proof: programs with words that cannot be followed come out as they
-  // were.
+  // The same bytes need no proof: programs with words that cannot be followed are unchanged.
   const bool proved = result.proved || result.text == source;
-  if (!proved || (strict && has_unproved_run(result))) return ExitCode::kNotProved;
-  return ExitCode::kDone;
+  const bool any_unproved = std::ranges::any_of(result.runs, [](const RunReport& run) {
+    return run.status == RunStatus::kKept && run.reason == gcode::reason::kNotProved;
+  });
+  return proved && !(strict && any_unproved) ? ExitCode::kDone : ExitCode::kNotProved;
 }
 
 std::string_view complaint(ExitCode verdict, bool strict) {
@@ -194,6 +194,62 @@ std::string_view complaint(ExitCode verdict, bool strict) {
   }
   return strict ? "--strict: not every run could be proved; nothing was written"
                 : "the new program could not be proved; nothing was written";
+}
+
+namespace {
+
+constexpr std::string_view kSmoothed = "Batten: smoothed within ";
+
+// Digits of the tolerance in the comment: a ten-thousandth of the usual 0.01 mm.
+constexpr gcode::NumberFormat kTolerance = {6, false, false};
+
+}  // namespace
+
+std::string provenance_comment(const gcode::Control& target, double tolerance_mm) {
+  return comment_line(target,
+                      std::string(kSmoothed) + gcode::to_text(tolerance_mm, kTolerance) + " mm");
+}
+
+// Some controls have no small letters.
+bool was_smoothed(const gcode::Program& program) {
+  const auto same = [](char a, char b) { return gcode::upper(a) == gcode::upper(b); };
+  return std::ranges::any_of(program.comments, [&](const gcode::Comment& comment) {
+    const std::string_view text = program.source.text(comment.span);
+    return std::search(text.begin(), text.end(), kSmoothed.begin(), kSmoothed.end(), same) !=
+           text.end();
+  });
+}
+
+gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs, const gcode::Program& program,
+                                 const gcode::Control& target) {
+  gcode::Diagnostics notes;
+  const auto tell_first = [&](gcode::Severity severity, const char* id, std::string message,
+                              const auto& holds) {
+    const auto first = std::ranges::find_if(runs, [&](const RunReport& run) {
+      return run.status == RunStatus::kRewritten && holds(run);
+    });
+    if (first == runs.end()) return;
+    notes.push_back({severity, id,
+                     program.blocks[first->first_line - program.blocks.front().line].span,
+                     std::move(message)});
+  };
+  if (provenance_comment(target, 1).empty()) {
+    tell_first(gcode::Severity::kNote, "missing-provenance",
+               "target " + std::string(target.name) +
+                   " has no certain comment, so nothing in the program says that it was smoothed: "
+                   "smoothing it once more would add its tolerance again",
+               [](const RunReport&) { return true; });
+  }
+  if (target.curves != nullptr && !target.curves->caution.empty()) {
+    tell_first(gcode::Severity::kWarning, "curves-unverified", std::string(target.curves->caution),
+               [](const RunReport& run) { return run.form == OutputForm::kCurves; });
+  }
+  tell_first(
+      gcode::Severity::kNote, "chords-for-steps",
+      "the equal steps of --linearize ilca are too many for this run; found chords, expected "
+      "equal steps",
+      [](const RunReport& run) { return run.chords_for_steps; });
+  return notes;
 }
 
 }  // namespace batten::postproc

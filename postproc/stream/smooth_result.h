@@ -1,4 +1,4 @@
-// What smoothing a program gives, and how it tells what is done so far.
+// What smoothing a program gives, what it says of it, and whether it may be written.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gcode/control/control.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/motion.h"
 #include "gcode/text/diagnostic.h"
@@ -17,7 +18,7 @@
 #include "postproc/proof/verification.h"
 #include "postproc/runs/section.h"
 #include "postproc/smooth/forms/output_plan.h"
-#include "postproc/smooth/run_smoother.h"
+#include "postproc/smooth/part_runs.h"
 #include "postproc/smooth/selection/selection.h"
 #include "postproc/system/exit_code.h"
 
@@ -47,19 +48,9 @@ struct RunReport {
   double time_after_s = 0;
 };
 
-// What became of the sections of a program; `works` in their order, `stretches` of the proof.
-struct RunsDone {
-  const gcode::Program& program;
-  const gcode::Interpretation& meaning;
-  std::span<const Section> sections;
-  std::span<const RunState> works;
-  std::span<const CutRun> cut_runs;
-  std::span<const Stretch> stretches;
-  bool proved = false;
-};
-
-// In the order of the program. Linear in sections and stretches.
-[[nodiscard]] std::vector<RunReport> report_runs(const RunsDone& done);
+// What became of the runs, in the order of the program; `stretches` and `proved` of the proof.
+[[nodiscard]] std::vector<RunReport> report_runs(const ProgramPart& part, const PartRuns& runs,
+                                                 std::span<const Stretch> stretches, bool proved);
 
 struct SmoothResult {
   std::string text;  // the new program; the input's bytes where nothing was rewritten
@@ -81,11 +72,12 @@ struct SmoothResult {
   [[nodiscard]] std::size_t bytes_out() const { return text.size() + bytes_handed_on; }
 };
 
+// The first that are known.
+[[nodiscard]] gcode::Units first_units(const gcode::Interpretation& meaning);
+
 // Called now and then with the part that is done, 0..1. Returning false stops the work: the
 // result then is not understood and carries no text.
 using Progress = std::function<bool(double)>;
-
-// Whether what `smooth_program` made may be written.
 
 // kDone, kNotUnderstood or kNotProved; only what is kDone may be written. `strict`: a run that was
 // kept because it could not be proved counts as not proved.
@@ -93,5 +85,23 @@ using Progress = std::function<bool(double)>;
 
 // Why nothing was written, for the user. Requires a verdict other than kDone.
 [[nodiscard]] std::string_view complaint(ExitCode verdict, bool strict);
+
+// The comment that a program was smoothed, and within what, as the target writes it, without a line
+// end; empty when the target has no words for it. Tolerances add up: a program with this comment is
+// not smoothed again unless the user allows it.
+[[nodiscard]] std::string provenance_comment(const gcode::Control& target, double tolerance_mm);
+
+// Whether a comment of the program says so.
+[[nodiscard]] bool was_smoothed(const gcode::Program& program);
+
+// What a user must know of the runs that were written, at the first run that it is true of:
+// - the note `missing-provenance` where the target has no certain comment: nothing in the text says
+//   then that it was smoothed;
+// - the warning `curves-unverified` for curves, in the words of the target's CurveFormat::caution;
+// - the note `chords-for-steps` for chords in the place of the equal steps that were asked for.
+// `program` may be the part of it with these runs.
+[[nodiscard]] gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs,
+                                               const gcode::Program& program,
+                                               const gcode::Control& target);
 
 }  // namespace batten::postproc

@@ -1,22 +1,20 @@
 #include "postproc/stream/window.h"
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <iterator>
+#include <map>
+#include <set>
 #include <string_view>
 #include <utility>
 #include <variant>
-#include <vector>
 
-#include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
 #include "gcode/reading/part_reading.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
-#include "postproc/runs/long_run_cuts.h"
-#include "postproc/stream/added_lines.h"
-#include "postproc/stream/provenance.h"
+#include "postproc/runs/run_cutting.h"
+#include "postproc/stream/assembly.h"
+#include "postproc/stream/smooth_result.h"
 
 namespace batten::postproc {
 
@@ -29,102 +27,71 @@ bool knows_the_same(const TextBefore& a, const TextBefore& b) {
   return a.control.state == b.control.state && a.events == b.events;
 }
 
-// What the proof and the reports of the runs say of a part.
-void take(const WindowSetting& setting, const ProgramPart& part, PartRuns runs, ProvedText proved,
-          WindowDone& done) {
-  const Verification& verification = proved.verification;
-  done.unchanged = proved.unchanged;
-  done.proved = proved.proved;
-  done.text = std::move(proved.text);
-  done.blocks = proved.blocks;
-  done.added_lines = proved.added_lines;
-  done.corner_mm = verification.corner_mm;
-  done.deviation_mm = verification.deviation_mm;
-  done.deviation_line = verification.deviation_line;
-  done.read_again = proved.behind.has_value();
-  if (proved.behind) done.behind.known = std::move(*proved.behind);
-  done.runs = report_runs({part.program, part.meaning, runs.sections, runs.works, runs.cut_runs,
-                           verification.stretches, proved.proved});
-  done.notes_on_runs = notes_on_runs(done.runs, part.program, *setting.options.target);
-  done.notes = std::move(runs.notes);
-  done.near = std::move(runs.near);
-  done.near_edges = std::move(proved.near_edges);
-  if (!part.program.blocks.empty()) done.last_line = part.program.blocks.back().line;
-}
-
 class WindowWork {
  public:
-  WindowWork(const WindowSetting& setting, const WindowPlace& place, const Guess& before,
-             const ProgressCallback& tell)
-      : setting_(setting), place_(place), before_(before), tell_(tell), at_(place.from) {}
+  WindowWork(const WindowSetting& setting, const WindowPlace& place)
+      : setting_(setting), place_(place), at_(place.from) {}
 
-  WindowDone run() {
-    const ProgramPart part = read();
+  WindowDone run(const Guess& guess, const ProgressCallback& tell) {
+    const ProgramPart part = read(guess);
     PartRuns runs = find_runs(part, setting_.options, setting_.long_runs, setting_.facts);
     Additions additions;
-    if (!before_new_.says_smoothed) {
+    if (!before_.says_smoothed) {
       additions.comment =
           provenance_comment(*setting_.options.target, setting_.options.tolerance_mm);
     }
-    WindowDone done = smooth_part(setting_, part, std::move(runs), additions, tell_);
-    done.old_behind = at_behind_;
-    done.before = before_new_;
-    if (done.outcome == WindowOutcome::kDone && !done.proved) {
+    WindowDone done = smooth_part(setting_, part, std::move(runs), additions, tell);
+    done.before = before_;
+    done.old_after = old_after_;
+    if (done.outcome == WindowOutcome::kDone && !done.proof.proved) {
       done.outcome = WindowOutcome::kNeedsWhole;
     }
     if (done.outcome != WindowOutcome::kDone) return done;
-    if (done.unchanged && !done.read_again) done.behind.known = done.old_behind;
-    done.behind.says_smoothed = before_new_.says_smoothed || !done.unchanged;
+    done.after = {done.proof.after.value_or(old_after_),
+                  before_.says_smoothed || !done.proof.unchanged};
     setting_.source.release_pages({place_.from.text.begin, place_.end});
     return done;
   }
 
  private:
-  struct ReadPart {
-    gcode::Program program;
-    gcode::Interpretation meaning;
-  };
-
-  ReadPart read_on(const gcode::PartEnd& end) {
-    gcode::Diagnostics told_before;
-    gcode::Program program = gcode::parse_part(setting_.source, end, at_.text, told_before);
+  gcode::ReadPart read_on(const gcode::PartEnd& end) {
+    gcode::Diagnostics ignored;
+    gcode::Program program = gcode::parse_part(setting_.source, end, at_.text, ignored);
     gcode::Interpretation meaning =
-        gcode::interpret_part(program, setting_.read_options, at_.before.control, told_before);
+        gcode::interpret_part(program, setting_.read_options, at_.before.control, ignored);
     at_.before.events = events_before_next({&program, &meaning, at_.before.events});
     return {std::move(program), std::move(meaning)};
   }
 
-  ProgramPart read() {
+  ProgramPart read(const Guess& guess) {
     WindowStart start;
     if (at_.text.begin < place_.begin) {
-      const ReadPart before = read_on({.byte = place_.begin});
+      const gcode::ReadPart before = read_on({.byte = place_.begin});
       if (place_.begins_in_run) {
         const auto blocks = static_cast<std::uint32_t>(before.program.blocks.size());
         start.moves_before = moves_before(before.program, before.meaning, blocks);
       }
     }
-    before_new_ = before_(at_.before);
+    before_ = guess(at_.before);
     start.old_events = at_.before.events;
-    start.new_text = before_new_.known;
+    start.new_text = before_.known;
     start.words_seen = at_.text.words_seen;
     start.decimals = at_.text.decimals;
     start.same_as_old = knows_the_same(start.new_text, at_.before);
-    ReadPart window = read_on({.byte = place_.end});
-    at_behind_ = at_.before;
+    gcode::ReadPart window = read_on({.byte = place_.end});
+    old_after_ = at_.before;
     if (place_.ends_in_run) {
-      const ReadPart behind = read_on({.blocks = kNeighbourBlocks});
-      start.moves_behind = moves_from(behind.program, behind.meaning, 0);
+      const gcode::ReadPart after = read_on({.blocks = kNeighbourBlocks});
+      start.moves_behind = moves_from(after.program, after.meaning, 0);
     }
     return {std::move(window.program), std::move(window.meaning), std::move(start)};
   }
 
   const WindowSetting& setting_;
   const WindowPlace& place_;
-  const Guess& before_;
-  const ProgressCallback& tell_;
   ReadingPlace at_;  // what is read up to here
-  NewTextBefore before_new_;
-  TextBefore at_behind_;  // behind the window, in the old text
+  NewTextBefore before_;
+  TextBefore old_after_;
 };
 
 }  // namespace
@@ -132,7 +99,6 @@ class WindowWork {
 WindowDone smooth_part(const WindowSetting& setting, const ProgramPart& part, PartRuns runs,
                        const Additions& additions, const ProgressCallback& tell) {
   WindowDone done;
-  done.outcome = WindowOutcome::kStopped;
   const ProgressCallback tell_runs = [&](double share) { return tell(share * kAfterRuns); };
   const ProgressCallback tell_round = [&](double) { return tell(kAfterRuns); };
   if (setting.was_smoothed) {
@@ -140,69 +106,56 @@ WindowDone smooth_part(const WindowSetting& setting, const ProgramPart& part, Pa
   } else if (!smooth_runs(part, setting.options, tell_runs, runs)) {
     return done;
   }
-  auto proved =
-      prove_text(part, setting.options, setting.read_options, additions, tell_round, runs);
-  if (!proved) return done;
-  done.outcome = proved->stands_alone ? WindowOutcome::kDone : WindowOutcome::kNeedsWhole;
-  if (done.outcome != WindowOutcome::kDone) return done;
-  take(setting, part, std::move(runs), std::move(*proved), done);
-  if (!tell(1)) done.outcome = WindowOutcome::kStopped;
+  auto proof = prove_text(part, setting.options, setting.read_options, additions, tell_round, runs);
+  if (!proof) return done;
+  done.proof = std::move(*proof);
+  if (!done.proof.stands_alone) {
+    done.outcome = WindowOutcome::kNeedsWhole;
+    return done;
+  }
+  const std::vector<Stretch> stretches = std::exchange(done.proof.verification.stretches, {});
+  done.runs = report_runs(part, runs, stretches, done.proof.proved);
+  done.notes_on_runs = notes_on_runs(done.runs, part.program, *setting.options.target);
+  done.notes = std::move(runs.notes);
+  done.near = std::move(runs.near);
+  if (!part.program.blocks.empty()) done.last_line = part.program.blocks.back().line;
+  if (tell(1)) done.outcome = WindowOutcome::kDone;
   return done;
 }
 
 WindowDone smooth_window(const WindowSetting& setting, const WindowPlace& place,
                          const Guess& before, const ProgressCallback& tell) {
-  return WindowWork(setting, place, before, tell).run();
+  return WindowWork(setting, place).run(before, tell);
 }
 
 bool same_before(const NewTextBefore& a, const NewTextBefore& b) {
   return a.says_smoothed == b.says_smoothed && knows_the_same(a.known, b.known);
 }
 
-void CollectedResult::take(WindowDone window) {
-  notes_.add(window.notes, result.diagnostics);
-  result.blocks_out += window.blocks;
-  result.added_lines += window.added_lines;
-  result.corner_mm = std::max(result.corner_mm, window.corner_mm);
-  if (window.deviation_mm > result.deviation_mm) {
-    result.deviation_mm = window.deviation_mm;
-    result.deviation_line = window.deviation_line;
-  }
-  for (gcode::Diagnostic& note : window.notes_on_runs) {  // one of each is enough
-    if (std::ranges::find(notes_on_runs_, note.id, &gcode::Diagnostic::id) ==
-        notes_on_runs_.end()) {
-      notes_on_runs_.push_back(std::move(note));
-    }
-  }
-  for (RunReport& run : window.runs) {
-    result.time_before_s += run.time_before_s;
-    result.time_after_s += run.time_after_s;
-    result.runs.push_back(std::move(run));
-  }
-}
-
-void CollectedResult::finish() {
-  notes_.tell_rest(result.diagnostics);
-  std::ranges::move(notes_on_runs_, std::back_inserter(result.diagnostics));
-  result.understood = true;
-}
-
 namespace {
 
-void add_violations(const AddedLines& added, const ReadProgram& read, Verification& verification) {
-  const auto add = [&](const std::vector<Violation>& violations) {
-    verification.violations.insert(verification.violations.end(), violations.begin(),
-                                   violations.end());
-  };
-  add(added.violations);
-  add(events_in_brackets(read, added.brackets));
+// Kinds of violations whose runs are rejected before others, one kind after the other.
+struct Rule {
+  ViolationKind kind;
+  std::string_view reason;
+};
+constexpr Rule kRejectedFirst[] = {{ViolationKind::kCrossing, gcode::reason::kCrossesItself},
+                                   {ViolationKind::kSide, gcode::reason::kWrongSide},
+                                   {ViolationKind::kTarget, gcode::reason::kTargetCannot}};
+
+bool is_rejected_first(ViolationKind kind) {
+  return std::ranges::find(kRejectedFirst, kind, &Rule::kind) != std::end(kRejectedFirst);
 }
 
-// Violations of one stretch, which no other stretch has a part in.
-bool is_of_one_stretch(const Violation& violation) {
-  return violation.kind == ViolationKind::kDistance ||
-         violation.kind == ViolationKind::kNotProved || violation.kind == ViolationKind::kSide ||
-         violation.kind == ViolationKind::kCrossing || violation.kind == ViolationKind::kTarget;
+std::vector<std::uint32_t> blocks_at(const std::vector<std::size_t>& bytes,
+                                     const gcode::Program& program) {
+  std::vector<std::uint32_t> blocks;
+  for (const std::size_t byte : bytes) {
+    const auto block = std::ranges::lower_bound(
+        program.blocks, byte, {}, [](const gcode::Block& each) { return each.span.begin; });
+    blocks.push_back(static_cast<std::uint32_t>(block - program.blocks.begin()));
+  }
+  return blocks;
 }
 
 class Prover {
@@ -221,8 +174,7 @@ class Prover {
     while (true) {
       ProvedText round = anything_rewritten() ? verified_text() : part_itself();
       if (!tell_(0)) return std::nullopt;
-      if (!round.proved && take_back(round.verification)) continue;
-      round.stands_alone = stands_alone_;
+      if (!round.proved && take_back(round)) continue;
       if (round.unchanged) round.near_edges = near_edges(std::nullopt);
       return round;
     }
@@ -234,20 +186,17 @@ class Prover {
                                [](const RunState& work) { return work.chosen() != nullptr; });
   }
 
-  // Both readers know the same, and read the same bytes.
-  [[nodiscard]] bool needs_no_proof() const { return !part_.window || part_.window->same_as_old; }
-
+  // No proof is needed where both readers know the same, and read the same bytes.
   ProvedText part_itself() {
-    if (!needs_no_proof()) {
-      ProvedText same = verified_text();
-      same.unchanged = true;
-      same.text.clear();
-      return same;
-    }
     ProvedText same;
+    if (part_.window && !part_.window->same_as_old) {
+      same = verified_text();
+      same.text.clear();
+    } else {
+      same.proved = true;
+      same.blocks = part_.program.blocks.size();
+    }
     same.unchanged = true;
-    same.proved = true;
-    same.blocks = part_.program.blocks.size();
     return same;
   }
 
@@ -271,10 +220,15 @@ class Prover {
         gcode::interpret_part(program, read_options_, control, ignored);
     ReadProgram before{&part_.program, &part_.meaning};
     ReadProgram after{&program, &meaning};
+    const std::vector<std::uint32_t> begins = blocks_at(assembled.begins, program);
     std::vector<std::uint32_t> new_cuts;
     // Between lines that a profile adds nothing is cut: these lines are gone where it is compared.
+    // The proof does not rely on the cuts: its parts together are the whole, wherever they end.
     if (!runs_.cuts.empty() && additions_.words.empty()) {
-      new_cuts = cuts_in(program, assembled.begins);
+      for (std::size_t i = 0; i < begins.size(); ++i) {
+        const bool is_cut = std::ranges::binary_search(runs_.cuts, runs_.sections[i].first_block);
+        if (is_cut) new_cuts.push_back(begins[i]);
+      }
       before.cuts = runs_.cuts;
       after.cuts = new_cuts;
     }
@@ -285,48 +239,34 @@ class Prover {
     const Promise promise(options_.tolerance_mm, options_.tolerance_kind, options_.side,
                           options_.target);
     round.verification = verify(before, after, promise, options_.threads);
-    add_violations(added, after, round.verification);
-    blame_refused(program, assembled.begins, round.verification);
+    for (const auto& more : {added.violations, events_in_brackets(after, added.brackets)}) {
+      round.verification.violations.insert(round.verification.violations.end(), more.begin(),
+                                           more.end());
+    }
+    blame_refused(program, begins, round.verification);
     round.added_lines = added.lines;
     round.blocks = program.blocks.size();
     round.proved = round.verification.proved();
     // Lines of a profile stand between the sections; such a program is proved in one.
     if (round.proved && additions_.words.empty()) {
-      round.near_edges = near_edges(WrittenSections{after, assembled.begins});
+      round.near_edges = near_edges(WrittenSections{after, begins});
     }
-    if (part_.window) {
-      round.behind = {std::move(control), events_before_next(after)};
-    }
+    if (part_.window) round.after = {std::move(control), events_before_next(after)};
     return round;
   }
 
-  // What the target refuses is new text: it belongs to the run that it was written for. Lines of a
-  // profile stand between the sections: nearly is near enough to find the run.
-  void blame_refused(const gcode::Program& written, const std::vector<std::size_t>& begins,
+  // What the target refuses is new text: it belongs to the run that it was written for.
+  void blame_refused(const gcode::Program& written, const std::vector<std::uint32_t>& begins,
                      Verification& verification) const {
     if (!additions_.words.empty()) return;
     for (Violation& violation : verification.violations) {
       if (violation.kind != ViolationKind::kTarget) continue;
       const auto block =
           std::ranges::lower_bound(written.blocks, violation.new_line, {}, &gcode::Block::line);
-      const auto next = std::ranges::upper_bound(begins, std::size_t{block->span.begin});
+      const auto next = std::ranges::upper_bound(begins, block - written.blocks.begin());
       const auto section = static_cast<std::size_t>(next - begins.begin()) - 1;
       violation.old_line = part_.program.blocks[runs_.sections[section].first_block].line;
     }
-  }
-
-  // Where the sections that begin at cuts begin in the new text. The proof does not rest on it: its
-  // pieces together are the whole, wherever they end.
-  [[nodiscard]] std::vector<std::uint32_t> cuts_in(const gcode::Program& program,
-                                                   const std::vector<std::size_t>& begins) const {
-    std::vector<std::uint32_t> cuts;
-    for (std::size_t i = 0; i < runs_.sections.size(); ++i) {
-      if (!std::ranges::binary_search(runs_.cuts, runs_.sections[i].first_block)) continue;
-      const auto block = std::ranges::lower_bound(
-          program.blocks, begins[i], {}, [](const gcode::Block& b) { return b.span.begin; });
-      cuts.push_back(static_cast<std::uint32_t>(block - program.blocks.begin()));
-    }
-    return cuts;
   }
 
   [[nodiscard]] gcode::Program read_text(const gcode::SourceText& written,
@@ -342,8 +282,7 @@ class Prover {
     return gcode::parse_part(written, {}, carry, ignored);
   }
 
-  // The rewritten run that holds a line of the input; the nearest rewritten one before it where
-  // the line stands behind a run, for a violation may be noticed late.
+  // The last rewritten run that begins up to a line of the input: a violation may be noticed late.
   RunState* rewritten_run_at(std::uint32_t line) {
     RunState* found = nullptr;
     for (RunState& work : runs_.works) {
@@ -353,48 +292,34 @@ class Prover {
     return found;
   }
 
-  // Returns whether any run gave way.
-  bool take_back(const Verification& verification) {
-    std::vector<RunState*> blamed;
-    std::vector<RunState*> crossing;
-    std::vector<RunState*> over;
-    std::vector<RunState*> refused;
-    for (const Violation& violation : verification.violations) {
+  // Returns whether any run was rejected.
+  bool take_back(ProvedText& round) {
+    std::map<ViolationKind, std::set<RunState*>> blamed;  // kNotProved: all other kinds, too
+    for (const Violation& violation : round.verification.violations) {
       RunState* work = rewritten_run_at(violation.old_line);
-      if (part_.window && (work == nullptr || !is_of_one_stretch(violation))) {
-        stands_alone_ = false;
+      const bool first = is_rejected_first(violation.kind);
+      const bool of_one_section = first || violation.kind == ViolationKind::kDistance ||
+                                  violation.kind == ViolationKind::kNotProved;
+      if (part_.window && (work == nullptr || !of_one_section)) {
+        round.stands_alone = false;
         return false;
       }
-      if (work == nullptr) continue;
-      switch (violation.kind) {
-        case ViolationKind::kCrossing:
-          crossing.push_back(work);
-          break;
-        case ViolationKind::kSide:
-          over.push_back(work);
-          break;
-        case ViolationKind::kTarget:
-          refused.push_back(work);
-          break;
-        default:
-          blamed.push_back(work);
-      }
+      if (work != nullptr) blamed[first ? violation.kind : ViolationKind::kNotProved].insert(work);
     }
-    if (reject(std::move(crossing), gcode::reason::kCrossesItself)) return true;
-    if (reject(std::move(over), gcode::reason::kWrongSide)) return true;
-    if (reject(std::move(refused), gcode::reason::kTargetCannot)) return true;
-    if (blamed.empty()) {
+    for (const Rule& rule : kRejectedFirst) {
+      if (reject(blamed[rule.kind], rule.reason)) return true;
+    }
+    std::set<RunState*>& rest = blamed[ViolationKind::kNotProved];
+    if (rest.empty()) {
       // A violation that belongs to no run: believe none of them.
       for (RunState& work : runs_.works) {
-        if (work.chosen() != nullptr) blamed.push_back(&work);
+        if (work.chosen() != nullptr) rest.insert(&work);
       }
     }
-    return reject(std::move(blamed), gcode::reason::kNotProved);
+    return reject(rest, gcode::reason::kNotProved);
   }
 
-  bool reject(std::vector<RunState*> works, std::string_view why) {
-    std::sort(works.begin(), works.end());
-    works.erase(std::unique(works.begin(), works.end()), works.end());
+  bool reject(const std::set<RunState*>& works, std::string_view why) {
     for (RunState* work : works) {
       work->reject(why);
       if (work->chosen() == nullptr && work->smoothed.left_out) {
@@ -412,7 +337,6 @@ class Prover {
   const Additions& additions_;
   const ProgressCallback& tell_;
   PartRuns& runs_;
-  bool stands_alone_ = true;  // no violation has to do with other windows
 };
 
 }  // namespace

@@ -1,5 +1,22 @@
 // One window of a program, smoothed, written and proved for itself: the whole of a short program,
 // or a part of a long one.
+//
+// Why windows that are proved one by one are proved together: the verifier compares two programs
+// section by section between events, and the state of the control at each event and at the end
+// (postproc/proof/verification.h). Two sections that both break the tolerance may be joined over
+// the event between them, but never over a rapid. So where both texts are cut after the same plain
+// rapid (is_plain_rapid), each reader goes on with what it knew there (WindowStart), and each
+// window is proved, every section and event was compared as in the whole, with the same bounds.
+//
+// Windows that end in a long run cut a section in two. Two paths that are matched in order within
+// the tolerance, and two more that begin where these end, are matched as wholes one after the
+// other. The whole is cut at the same positions (ReadProgram::cuts), so its bounds are the same.
+// Whether the parts cross each other is checked when all of them are proved
+// (postproc/stream/part_crossings.h): where they do, the sections about it are copied, and the
+// program is smoothed anew.
+//
+// What a window takes over from the new text before it may be a guess when it is made; it counts
+// only if the window before it is proved and has left exactly that.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +32,6 @@
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"
 #include "postproc/proof/verification.h"
-#include "postproc/runs/band_notes.h"
 #include "postproc/runs/section.h"
 #include "postproc/smooth/part_runs.h"
 #include "postproc/stream/assembly.h"
@@ -38,48 +54,47 @@ struct WindowSetting {
 // What a window takes over from the new text before it.
 struct NewTextBefore {
   TextBefore known;
-  bool says_smoothed = false;  // that it was smoothed stands there already
+  bool says_smoothed = false;  // that text says that the program was smoothed
 };
 
-enum class WindowOutcome {
-  kDone,
-  kStopped,
-  kNeedsWhole,  // something differs that none of its runs is to blame for
+// The written text of a window.
+struct ProvedText {
+  std::string text;        // empty where `unchanged`
+  bool unchanged = false;  // no run is rewritten: the bytes of the window, which need no proof
+  bool proved = false;
+  std::size_t blocks = 0;
+  std::size_t added_lines = 0;
+  Verification verification;          // of the text as it is
+  std::optional<TextBefore> after;    // where a window's new text was read: for the next one
+  std::vector<NearEdges> near_edges;  // of long runs, to be checked with those of other windows
+  bool stands_alone = true;           // false: something differs that none of its runs caused
 };
+
+enum class WindowOutcome { kDone, kStopped, kNeedsWhole };
 
 struct WindowDone {
-  WindowOutcome outcome = WindowOutcome::kDone;
+  WindowOutcome outcome = WindowOutcome::kStopped;
+  ProvedText proof;
   NewTextBefore before;  // that it was made for
-  NewTextBefore behind;
-  bool read_again = false;  // `behind.known` is set: the new text was read for the proof
-  bool unchanged = false;   // the text is the bytes of the window
-  bool proved = false;
-  std::string text;
-  std::size_t blocks = 0;  // of the text
-  std::size_t added_lines = 0;
-  double corner_mm = 0;
-  double deviation_mm = 0;
-  std::uint32_t deviation_line = 0;
+  NewTextBefore after;
+  TextBefore old_after;
   std::vector<RunReport> runs;
   std::vector<gcode::Diagnostics> notes;
-  gcode::Diagnostics notes_on_runs;  // postproc/stream/provenance.h
-  TextBefore old_behind;
+  gcode::Diagnostics notes_on_runs;                        // postproc/stream/smooth_result.h
   std::shared_ptr<const std::vector<SelfProximity>> near;  // of its long runs; or none
-  std::vector<NearEdges> near_edges;
   std::uint32_t last_line = 0;
 };
 
-// What the new text before a window may have told the control, by what the old text told it there.
+// What the new text before a window may have set in the control, by what the old text set there.
 using Guess = std::function<NewTextBefore(const TextBefore& old_before)>;
 
-// Smooths the runs of a part and proves its text; `additions.comment` is said before the first run
-// that is rewritten. `tell` is told the share of the work that is done. Neither `before` nor
-// `behind` is set.
+// Smooths the runs of a window and proves its text. `tell` gets the share of the work that is done.
+// Sets neither `before` nor what is known after it.
 [[nodiscard]] WindowDone smooth_part(const WindowSetting& setting, const ProgramPart& part,
                                      PartRuns runs, const Additions& additions,
                                      const ProgressCallback& tell);
 
-// A part of a long program, read from its place and smoothed. One that is not proved needs the
+// A window of a long program, read from its position and smoothed. One that is not proved needs the
 // whole.
 [[nodiscard]] WindowDone smooth_window(const WindowSetting& setting, const WindowPlace& place,
                                        const Guess& before, const ProgressCallback& tell);
@@ -87,68 +102,10 @@ using Guess = std::function<NewTextBefore(const TextBefore& old_before)>;
 // Whether what is made for one of them is what is made for the other.
 [[nodiscard]] bool same_before(const NewTextBefore& a, const NewTextBefore& b);
 
-// The result of a program, collected window by window.
-
-class CollectedResult {
- public:
-  // What is known before the first window: of the text, and what reading it tells.
-  SmoothResult result;
-
-  // The figures, runs and notes of the next window; its text is the caller's.
-  void take(WindowDone window);
-
-  // Behind the last window.
-  void finish();
-
- private:
-  BandNoteTally notes_;
-  gcode::Diagnostics notes_on_runs_;
-};
-
-// The written text of a part of a program, proved.
-//
-// Windows. The verifier compares two programs stretch by stretch between events, and the state of
-// the control at each event (postproc/proof/verification.h). Beside them it looks at two things
-// only: two stretches that both break the tolerance may be joined over the event between them,
-// though never over a rapid, and the state at the end. So where old and new text are both cut
-// behind the same rapid, each reader goes on with what it knew there (WindowStart), and each window
-// is proved, every stretch and every event of the whole was compared as it would be in the whole:
-// the windows together are proved, with the same bounds. A window ends behind a plain rapid
-// (is_plain_rapid), and its end is compared as the end of a program is.
-//
-// Windows that end in a long run cut a stretch in two. Each half is held against its half of the
-// old path, from where the reader of each text knows the tool to stand: two paths that are matched
-// in order within the tolerance, and two more that begin where these end, are matched as wholes by
-// the two matchings one after the other. Where the whole is proved at once it is cut at the same
-// places (ReadProgram::cuts), so its bounds are those of the windows.
-//
-// Only that the pieces do not cross each other is not said by the proof of each. It is asked when
-// all of them are proved (postproc/stream/part_crossings.h): where they do, the stretches about it
-// are copied, and the program is smoothed anew.
-//
-// What a window takes over from the new text before it may be a guess, when it is made; it is
-// believed once the window before it is proved and has left exactly that behind.
-
-struct ProvedText {
-  std::string text;        // empty where `unchanged`
-  bool unchanged = false;  // no run is rewritten: the bytes of the part, which need no proof
-  bool proved = false;
-  std::size_t blocks = 0;
-  std::size_t added_lines = 0;
-  Verification verification;  // of the text as it is
-  // Of a window whose new text was read: what the next one takes over from it.
-  std::optional<TextBefore> behind = {};
-  // Of long runs, what parts that are proved one by one must be asked for together.
-  std::vector<NearEdges> near_edges = {};
-  // False: a window that is not proved cannot be judged by itself, for something differs that none
-  // of its runs is to blame for.
-  bool stands_alone = true;
-};
-
 // Assembles the text, reads it back as a control would, and verifies it. A run that does not hold
 // its tolerance tries its next candidate and in the end goes back to its original blocks, so each
-// round leaves fewer candidates and the loop ends. Nothing where `tell` stops the work: it is
-// called before each round.
+// round leaves fewer candidates and the loop ends. Nothing where `tell`, called in each round,
+// stops the work.
 [[nodiscard]] std::optional<ProvedText> prove_text(const ProgramPart& part,
                                                    const SmoothOptions& options,
                                                    const gcode::ReadOptions& read_options,

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "gcode/controls/built_in.h"
-#include "postproc/stream/provenance.h"
+#include "postproc/stream/smooth_result.h"
 #include "tests/support/conversion_programs.h"
 
 namespace batten::postproc {

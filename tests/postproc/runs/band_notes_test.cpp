@@ -55,15 +55,10 @@ TEST(BandNotes, TellWhereTwoPartsOfARunAreNearerThanTwiceTheTolerance) {
   EXPECT_LE(noted.line(0), 10u);
 }
 
-TEST(BandNotes, SayNothingOfPartsThatAreFurtherApart) {
+TEST(BandNotes, SayNothingOfPartsThatAreFurtherApartOrNotFlat) {
   EXPECT_TRUE(Noted(hairpin(0.021)).notes.empty());
   EXPECT_FALSE(Noted(hairpin(0.021), 0.0106).notes.empty());
-}
-
-TEST(BandNotes, SayNothingOfWhatIsNotFlat) {
-  std::string text = hairpin(0.015);
-  text.replace(text.find("X20\n"), 4, "X20 Z-1.5\n");
-  EXPECT_TRUE(Noted(text).notes.empty());
+  EXPECT_TRUE(Noted(replaced(hairpin(0.015), "X20\n", "X20 Z-1.5\n")).notes.empty());
 }
 
 // Half a circle in chords, tighter than the tolerance, between two lines.
@@ -94,14 +89,15 @@ TEST(BandNotes, ArePartOfWhatSmoothSays) {
 
 TEST(BandNotes, OfManyRunsAreCountedBeyondFifty) {
   const gcode::Diagnostic note{gcode::Severity::kNote, "band-overlap", {}, "near"};
-  std::vector<gcode::Diagnostics> runs(60, {note});
+  BandNoteTally tally;
   gcode::Diagnostics found;
-  append_band_notes(runs, found);
+  tally.add(std::vector<gcode::Diagnostics>(kMostBandNotes, {note}), found);
+  tally.tell_rest(found);
+  EXPECT_EQ(found.size(), kMostBandNotes);
+  tally.add(std::vector<gcode::Diagnostics>(10, {note}), found);
+  tally.tell_rest(found);
   ASSERT_EQ(found.size(), kMostBandNotes + 1);
   EXPECT_NE(found.back().message.find("10 more"), std::string::npos) << found.back().message;
-  found.clear();
-  append_band_notes(std::vector<gcode::Diagnostics>(50, {note}), found);
-  EXPECT_EQ(found.size(), kMostBandNotes);
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 // Where long runs are cut is found while a program is read, and is the same for the whole and for
 // its parts.
-#include "postproc/runs/long_run_cuts.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -109,7 +107,7 @@ std::vector<std::uint32_t> lines_found_in_parts(const std::string& text, std::si
       lines.push_back(cut.line);
     }
   }
-  cuts.end();
+  cuts.end_run();
   for (const LongRunCut& cut : cuts.found()) lines.push_back(cut.line);
   return lines;
 }

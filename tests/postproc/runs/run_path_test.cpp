@@ -45,7 +45,7 @@ Run random_run(unsigned seed) {
   const int motions = 3 + static_cast<int>(10 * unit(random));
   for (int i = 0; i < motions; ++i) {
     if (unit(random) < 0.4) {
-      append_line(run.points.back() + Point3(unit(random), 1, -unit(random)), run);
+      run.points.push_back(run.points.back() + Point3(unit(random), 1, -unit(random)));
     } else {
       append_arc(random_arc(run.points.back(), random), true, 4e-4, run);
     }
@@ -76,7 +76,13 @@ TEST(AppendArc, PutsVerticesOnTheArcSoThatChordsMissItByLittle) {
   }
 }
 
-TEST(MotionsBetween, AreTheMotionsThemselves) {
+// Wherever the run is cut, the parts are as long together as the whole, and they chain.
+TEST(MotionsBetween, AreTheMotionsThemselvesOrPartsOfArcsThatAreCut) {
+  const auto length_of = [](const std::vector<RunMotion>& motions) {
+    double length = 0;
+    for (const RunMotion& motion : motions) length += geometry::length_of(motion.piece);
+    return length;
+  };
   for (unsigned seed = 0; seed < kRuns; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const postproc::Run run = random_run(seed);
@@ -93,25 +99,12 @@ TEST(MotionsBetween, AreTheMotionsThemselves) {
     }
     EXPECT_EQ(arcs, run.arcs.size());
     EXPECT_EQ(geometry::end_point(motions.back().piece), run.points.back());
-  }
-}
-
-// Wherever the run is cut, the parts are as long together as the whole, and they chain.
-TEST(MotionsBetween, CutArcsWhereTheyAreAskedTo) {
-  for (unsigned seed = 0; seed < kRuns; ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const postproc::Run run = random_run(seed);
     const std::size_t end = run.points.size() - 1;
     std::mt19937 random(seed);
     const std::size_t place = 1 + random() % (end - 1);
-    const auto length_of = [](const std::vector<RunMotion>& motions) {
-      double length = 0;
-      for (const RunMotion& motion : motions) length += geometry::length_of(motion.piece);
-      return length;
-    };
     const auto before = motions_between(run, 0, place);
     const auto after = motions_between(run, place, end);
-    const double whole = length_of(motions_between(run, 0, end));
+    const double whole = length_of(motions);
     EXPECT_NEAR(length_of(before) + length_of(after), whole, 1e-9 * whole);
     EXPECT_LT((geometry::end_point(before.back().piece) - run.points[place]).norm(), 1e-6);
     EXPECT_LT((geometry::start_point(after.front().piece) - run.points[place]).norm(), 1e-6);

@@ -1,6 +1,4 @@
 // The words of a profile in a written program: exactly these are taken, and nothing else.
-#include "postproc/stream/added_lines.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
@@ -47,15 +45,7 @@ std::vector<std::string> violations(const std::string& text, const std::string& 
   return ids;
 }
 
-std::string without(std::string text, const std::string& part) {
-  const std::size_t at = text.find(part);
-  return at == std::string::npos ? text : text.erase(at, part.size());
-}
-
-std::string with(std::string text, const std::string& part, const std::string& other) {
-  const std::size_t at = text.find(part);
-  return at == std::string::npos ? text : text.replace(at, part.size(), other);
-}
+constexpr auto with = replaced;
 
 TEST(AddedLines, AreTakenAndLeaveTheLineNumbers) {
   const AddedLines added = taken(kNew);
@@ -65,58 +55,33 @@ TEST(AddedLines, AreTakenAndLeaveTheLineNumbers) {
   ASSERT_EQ(added.brackets.size(), 2U);
   EXPECT_EQ(added.brackets[0].before, 5U);
   EXPECT_EQ(added.brackets[0].after, 7U);
+  EXPECT_EQ(taken(joined(lines_of(kNew), "\r\n")).lines, 7U) << "of other line ends, too";
+  EXPECT_EQ(violations(kNew), std::vector<std::string>{});
+  EXPECT_FALSE(verdict(kOld, kNew, 0.01).proved()) << "without a profile";
 }
 
-TEST(AddedLines, AreProvedWithTheRest) { EXPECT_EQ(violations(kNew), std::vector<std::string>{}); }
-
-TEST(AddedLines, OfOtherLineEndsAreTakenToo) {
-  std::string text;
-  for (const char c : std::string(kNew))
-    text += c == '\n' ? std::string("\r\n") : std::string(1, c);
-  EXPECT_EQ(taken(text).lines, 7U);
+TEST(AddedLines, ThatAreWrongAreViolations) {
+  const std::pair<const char*, std::string> rows[] = {
+      {"AnotherNumber", with(kNew, "G187 P3 E0.01", "G187 P3 E0.02")},
+      {"AnotherBlank", with(kNew, "G187 P3 E0.01", "G187 P3  E0.01")},
+      {"OnceMore", with(kNew, "M8\n", "M8\nG187\n")},
+      {"NoEnd", with(kNew, "G187\n", "")},
+      {"NoEndAtAll", with(with(kNew, "G187\n", ""), "G187\n", "")},
+      {"NoBeginning", with(kNew, "G187 P3 E0.01\n", "")},
+      {"HalfAHeader", with(kNew, "(by profile)\n", "")},
+      {"NoHeader", with(kNew, "(by profile)\nG5.1 Q1\n", "")},
+      {"NoFooter", with(kNew, "G5.1 Q0\n", "")},
+      {"TwoFooters", with(kNew, "M30", "G5.1 Q0\nM30")},
+      {"TwoHeaders", with(kNew, "G21", "(by profile)\nG5.1 Q1\nG21")},
+      {"FooterInsideARun", with(with(kNew, "G5.1 Q0\n", ""), "G1 X4\n", "G5.1 Q0\nG1 X4\n")},
+      {"AroundAnEvent", with(kNew, "G187\nM8\nG187 P3 E0.01\n", "M8\n")},
+      {"AroundARapid", with(kNew, "G0 X0 Y0\nG187 P3 E0.01\n", "G187 P3 E0.01\nG0 X0 Y0\n")},
+      {"OtherWordsBeside", with(kNew, "G187 P3 E0.01\n", "G187 P3 E0.01\nM7\n")},
+      {"AnotherMoveBeside", with(kNew, "G1 X4\n", "G1 Y1\nG1 X4\n")}};
+  for (const auto& [name, text] : rows) {
+    EXPECT_NE(violations(text), std::vector<std::string>{}) << name;
+  }
 }
-
-TEST(AddedLines, WithoutAProfileAreBreaches) {
-  const ReadText before(kOld);
-  const ReadText after(kNew);
-  EXPECT_FALSE(
-      verify({&before.program, &before.meaning}, {&after.program, &after.meaning}, 0.01).proved());
-}
-
-struct WrongWords {
-  std::string name;
-  std::string text;
-};
-
-class AddedLinesThatAreWrong : public testing::TestWithParam<WrongWords> {};
-
-TEST_P(AddedLinesThatAreWrong, AreBreaches) {
-  EXPECT_NE(violations(GetParam().text), std::vector<std::string>{});
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    AddedLines, AddedLinesThatAreWrong,
-    testing::Values(WrongWords{"AnotherNumber", with(kNew, "G187 P3 E0.01", "G187 P3 E0.02")},
-                    WrongWords{"AnotherBlank", with(kNew, "G187 P3 E0.01", "G187 P3  E0.01")},
-                    WrongWords{"OnceMore", with(kNew, "M8\n", "M8\nG187\n")},
-                    WrongWords{"NoEnd", without(kNew, "G187\n")},
-                    WrongWords{"NoEndAtAll", without(without(kNew, "G187\n"), "G187\n")},
-                    WrongWords{"NoBeginning", without(kNew, "G187 P3 E0.01\n")},
-                    WrongWords{"HalfAHeader", without(kNew, "(by profile)\n")},
-                    WrongWords{"NoHeader", without(without(kNew, "(by profile)\n"), "G5.1 Q1\n")},
-                    WrongWords{"NoFooter", without(kNew, "G5.1 Q0\n")},
-                    WrongWords{"TwoFooters", with(kNew, "M30", "G5.1 Q0\nM30")},
-                    WrongWords{"TwoHeaders", with(kNew, "G21", "(by profile)\nG5.1 Q1\nG21")},
-                    WrongWords{"FooterInsideARun",
-                               with(without(kNew, "G5.1 Q0\n"), "G1 X4\n", "G5.1 Q0\nG1 X4\n")},
-                    WrongWords{"AroundAnEvent",
-                               with(with(kNew, "G187\nM8\nG187 P3 E0.01\n", "M8\n"), "x", "x")},
-                    WrongWords{"AroundARapid", with(kNew, "G0 X0 Y0\nG187 P3 E0.01\n",
-                                                    "G187 P3 E0.01\nG0 X0 Y0\n")},
-                    WrongWords{"OtherWordsBeside",
-                               with(kNew, "G187 P3 E0.01\n", "G187 P3 E0.01\nM7\n")},
-                    WrongWords{"AnotherMoveBeside", with(kNew, "G1 X4\n", "G1 Y1\nG1 X4\n")}),
-    [](const auto& test) { return test.param.name; });
 
 // The program's own G187 P1 would be undone by the profile's G187.
 TEST(AddedLines, AreNotTakenWhereTheOldProgramHasSuchWordsItself) {
@@ -140,8 +105,6 @@ TEST(LineWithWordsOf, LooksAtCodesAndNamesWhateverTheirArguments) {
   EXPECT_EQ(line("G71\nN10 cycle832(0.02,2)\n", siemens), 2U);
   EXPECT_EQ(line("G71\n;CYCLE832\nG1 X1\n", siemens), 0U);
 }
-
-// --- the whole way ------------------------------------------------------------------------------
 
 SmoothOptions with_words(std::string_view target, ProfileWords words) {
   SmoothOptions options = options_for(target);
@@ -174,20 +137,16 @@ TEST(ProfileWordsInPrograms, StandAroundRewrittenRunsAndAreProved) {
   EXPECT_EQ(*(footer + 1), "M2");
 }
 
-TEST(ProfileWordsInPrograms, AreNotAddedWhereNothingIsRewritten) {
+TEST(ProfileWordsInPrograms, AreNotAddedWhereNothingIsRewrittenNorASecondTime) {
   SmoothOptions options = with_words("haas", smoothness());
-  options.method = Method::kNone;
-  const SmoothResult result = smoothed(wave_program(), options);
-  EXPECT_EQ(result.text, wave_program());
-  EXPECT_EQ(result.added_lines, 0U);
-}
-
-TEST(ProfileWordsInPrograms, AreNotAddedASecondTime) {
-  const SmoothOptions options = with_words("haas", smoothness());
   const SmoothResult once = smoothed(wave_program(), options);
   const SmoothResult twice = smoothed(once.text, options);
   EXPECT_TRUE(twice.understood);
   EXPECT_EQ(twice.text, once.text);
+  options.method = Method::kNone;
+  const SmoothResult result = smoothed(wave_program(), options);
+  EXPECT_EQ(result.text, wave_program());
+  EXPECT_EQ(result.added_lines, 0U);
 }
 
 TEST(ProfileWordsInPrograms, MakeAProgramThatHasThemItselfRefused) {

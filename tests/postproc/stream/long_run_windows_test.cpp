@@ -72,13 +72,13 @@ class LongPasses {
 
 Verification verdict_under(const SmoothOptions& options, const std::string& before,
                            const std::string& after) {
-  gcode::ReadOptions reading;
-  reading.curves = options.target->curves;
-  ReadText old_text(before);
-  ReadText new_text(after);
-  for (ReadText* text : {&old_text, &new_text}) {
-    text->meaning = gcode::interpret(text->program, reading, text->found);
-  }
+  const auto read = [&](const std::string& text) {
+    gcode::Diagnostics ignored;
+    return read_whole(gcode::SourceText("test.nc", text),
+                      {.options = {.curves = options.target->curves}}, ignored);
+  };
+  const gcode::ReadPart old_text = read(before);
+  const gcode::ReadPart new_text = read(after);
   return verify({&old_text.program, &old_text.meaning}, {&new_text.program, &new_text.meaning},
                 Promise(options.tolerance_mm, options.tolerance_kind, options.side));
 }
@@ -171,7 +171,7 @@ TEST(LongRunWindows, AreNotProvedWhereTheNewTextBeforeThemEndsElsewhere) {
   const std::string text = one_run(600);
   const WindowDone right = second_window(text, nullptr);
   ASSERT_EQ(right.outcome, WindowOutcome::kDone);
-  EXPECT_FALSE(right.unchanged);
+  EXPECT_FALSE(right.proof.unchanged);
   TextBefore elsewhere = right.before.known;
   elsewhere.control.state.position.mm.x() += 0.05;
   elsewhere.events.place->x() += 0.05;

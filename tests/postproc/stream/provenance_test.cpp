@@ -1,7 +1,5 @@
 // The comment that a program was smoothed: written once, found again, whatever stands around it; or
 // its user is told that there is none.
-#include "postproc/stream/provenance.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
+#include "postproc/stream/smooth_result.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
@@ -36,31 +35,16 @@ TEST(Provenance, TellsTheTolerance) {
   EXPECT_EQ(provenance_comment(target, 1), "(Batten: smoothed within 1 mm)");
 }
 
-struct CommentCase {
-  std::string name;
-  std::string text;
-  bool smoothed;
-};
-
-void PrintTo(const CommentCase& test, std::ostream* out) { *out << test.name; }
-
-class IsSmoothed : public testing::TestWithParam<CommentCase> {};
-
-TEST_P(IsSmoothed, WhenACommentSaysSo) { EXPECT_EQ(says_so(GetParam().text), GetParam().smoothed); }
-
-INSTANTIATE_TEST_SUITE_P(
-    Provenance, IsSmoothed,
-    testing::Values(CommentCase{"NoComment", "G21\nG1 X1\n", false},
-                    CommentCase{"OtherComment", "(made by Batten)\nG21\n", false},
-                    CommentCase{"LastLine", "G21\nM2\n(Batten: smoothed within 0.01 mm)", true},
-                    CommentCase{"BesideABlock", "G21 (Batten: smoothed within 0.01 mm)\n", true},
-                    CommentCase{"AfterASemicolon", "; Batten: smoothed within 0.05 mm\nG21\n",
-                                true},
-                    CommentCase{"InsideALongerComment",
-                                "(part 7, Batten: smoothed within 0.01 mm, checked)\nG21\n", true}),
-    [](const auto& test) { return test.param.name; });
-
-// --- where no comment says it --------------------------------------------------------------------
+TEST(Provenance, IsFoundInAnyComment) {
+  const std::pair<const char*, bool> rows[] = {
+      {"G21\nG1 X1\n", false},
+      {"(made by Batten)\nG21\n", false},
+      {"G21\nM2\n(Batten: smoothed within 0.01 mm)", true},
+      {"G21 (Batten: smoothed within 0.01 mm)\n", true},
+      {"; Batten: smoothed within 0.05 mm\nG21\n", true},
+      {"(part 7, Batten: smoothed within 0.01 mm, checked)\nG21\n", true}};
+  for (const auto& [text, smoothed] : rows) EXPECT_EQ(says_so(text), smoothed) << text;
+}
 
 bool is_told(const SmoothResult& result) {
   return std::ranges::any_of(result.diagnostics, [](const gcode::Diagnostic& each) {
