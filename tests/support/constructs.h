@@ -6,23 +6,26 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "postproc/convert/conversion.h"
-#include "postproc/runs/run_grouping.h"
+#include "postproc/smooth/part_runs.h"
 #include "postproc/stream/inspect.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
 
 struct Construct {
-  const char* name;
-  const char* target;
+  std::string name;
+  std::string target;
   std::string text;         // lines
   std::string reason = {};  // of its first line; empty: it stands inside a run and goes with it
   bool goes_on = true;      // the wave behind it is smoothed
@@ -36,8 +39,27 @@ inline void PrintTo(const Construct& construct, std::ostream* out) {
   *out << construct.target << ": " << construct.text;
 }
 
+// One on each line of `table`, its fields between |; "\\n" ends a line of the program.
+inline std::vector<Construct> constructs_in(std::string_view table) {
+  std::vector<Construct> constructs;
+  std::istringstream lines{std::string(table)};
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty()) continue;
+    for (std::size_t at = 0; (at = line.find("\\n", at)) != std::string::npos;) {
+      line.replace(at, 2, "\n");
+    }
+    std::array<std::string, 7> field;
+    std::istringstream row(line);
+    for (std::string& each : field) std::getline(row, each, '|');
+    if (field[4] == "=") field[4] = field[3];
+    constructs.push_back(
+        {field[0], field[1], field[2], field[3], field[4].empty(), field[4], field[5], field[6]});
+  }
+  return constructs;
+}
+
 inline std::string construct_name(const testing::TestParamInfo<Construct>& info) {
-  std::string name = std::string(info.param.target) + "_" + info.param.name;
+  std::string name = info.param.target + "_" + info.param.name;
   std::ranges::replace(name, '-', '_');
   return name;
 }
@@ -95,12 +117,9 @@ inline std::vector<InspectedSection> inspected(const std::string& text,
   const gcode::SourceText source("test.nc", text);
   const auto language = language_read(source, options, found);
   if (!language) return {};
-  gcode::ReadPart read{gcode::parse(source, reading_of(options, *language), found), {}};
-  read.meaning = gcode::interpret(read.program, read_options_of(options), found);
-  GroupingOptions grouping;
-  grouping.tolerance_mm = options.tolerance_mm;
-  grouping.allowed.assign(options.allowed.begin(), options.allowed.end());
-  return inspect(read, grouping);
+  const PartReading reading{options.source, reading_of(options, *language),
+                            read_options_of(options)};
+  return inspect(read_whole(source, reading, found), grouping_of(options));
 }
 
 inline std::string reason_at(const std::vector<InspectedSection>& sections, std::uint32_t line) {

@@ -5,15 +5,20 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <filesystem>
+#include <fstream>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/source_text.h"
 #include "postproc/stream/pipeline.h"
+#include "tests/support/places.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
@@ -90,6 +95,21 @@ inline void expect_same(const InWindows& windows, const SmoothResult& whole) {
                       r.time_after_s, r.proved);
   };
   EXPECT_EQ(figures(parts), figures(whole));
+}
+
+// The programs of samples/ in the order of their names, by which a failure names them.
+inline std::vector<std::pair<std::string, std::string>> sample_programs() {
+  std::vector<std::pair<std::string, std::string>> programs;
+  const std::filesystem::path root = std::filesystem::path(BATTEN_SOURCE_DIR) / "samples";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
+    const std::string suffix = entry.path().extension().string();
+    if (suffix != ".nc" && suffix != ".ngc" && suffix != ".gcode") continue;
+    std::ostringstream text;
+    text << std::ifstream(entry.path(), std::ios::binary).rdbuf();
+    programs.emplace_back(entry.path().string(), text.str());
+  }
+  std::ranges::sort(programs);
+  return programs;
 }
 
 // Controls, methods, tolerances and threads in turn.

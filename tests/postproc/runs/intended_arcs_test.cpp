@@ -68,58 +68,32 @@ class Pen {
   std::vector<PrintedMotion> motions_;
 };
 
-TEST(JudgeArcs, KeepsAFilletThatIsTangent) {
-  EXPECT_EQ(Pen().line(10).arc(2, kPi / 2).line(10).arc(3, -1).line(5).judged(), "pKpKp");
-}
-
-TEST(JudgeArcs, KeepsAFullCircle) {
-  EXPECT_EQ(Pen().line(10).turn(1).arc(5, 2 * kPi).turn(1).line(10).judged(), "pKp");
-}
-
-TEST(JudgeArcs, KeepsAnArcBetweenCorners) {
-  EXPECT_EQ(Pen().line(10).turn(-45).arc(5, kPi).turn(-45).line(10).judged(), "p|K|p");
-  EXPECT_EQ(Pen().line(10).turn(90).arc(5, -kPi / 2).turn(20).line(10).judged(), "p|K|p");
-}
-
-// Two arcs of 20 mm that meet at 15 degrees are no curve of any tolerance near 0.01.
-TEST(JudgeArcs, KeepsALens) {
-  EXPECT_EQ(Pen().arc(40, 0.5).turn(15).arc(40, 0.5).turn(15).arc(30, 0.6).judged(), "K|K|K");
-}
-
-TEST(JudgeArcs, KeepsAChainOfTangentArcs) {
-  EXPECT_EQ(Pen().arc(10, 0.4).arc(14, 0.3).arc(20, 0.2).arc(17, -0.3).arc(9, -0.5).judged(),
-            "KKKKK");
-}
-
-TEST(JudgeArcs, TakesArcsThatMeetInSmallKinksForPieces) {
-  EXPECT_EQ(Pen().arc(10, 0.4).turn(1).arc(14, 0.3).turn(-2).arc(20, 0.2).judged(), "ppp");
-  EXPECT_EQ(Pen().line(2).turn(1).arc(14, 0.3).turn(-2).line(2).judged(), "ppp");
-}
-
-TEST(JudgeArcs, CutsAtCornersBesideArcs) {
-  EXPECT_EQ(
-      Pen().arc(10, 0.4).turn(1).arc(14, 0.3).turn(140).arc(20, 0.2).turn(1).arc(9, 0.3).judged(),
-      "pp|pp");
-}
-
-// An arc may be tangent to both of its neighbours by chance.
-TEST(JudgeArcs, TakesATangentArcAmongKinkedOnesForAPiece) {
-  EXPECT_EQ(Pen()
-                .arc(10, 0.4)
-                .turn(1)
-                .arc(14, 0.3)
-                .arc(20, 0.2)
-                .arc(15, 0.2)
-                .turn(1)
-                .arc(9, 0.3)
-                .judged(),
-            "ppppp");
-  // The fillet at the end of a straight line is none.
-  EXPECT_EQ(Pen().line(9).arc(2, 1).arc(14, 0.3).turn(1).arc(20, 0.2).judged(), "pKpp");
-}
-
-TEST(JudgeArcs, CutsWhereARampMeetsItsFloor) {
-  EXPECT_EQ(Pen().arc(5, kPi, -0.2).arc(5, kPi, -0.2).arc(5, kPi).arc(5, kPi).judged(), "KK|KK");
+TEST(JudgeArcs, KeepsWhatIsIntendedAndCutsAtCornersBesideArcs) {
+  const struct {
+    const char* name;
+    Pen path;
+    const char* judged;
+  } rows[] = {
+      {"tangent fillets", Pen().line(10).arc(2, kPi / 2).line(10).arc(3, -1).line(5), "pKpKp"},
+      {"full circle", Pen().line(10).turn(1).arc(5, 2 * kPi).turn(1).line(10), "pKp"},
+      {"corners", Pen().line(10).turn(-45).arc(5, kPi).turn(-45).line(10), "p|K|p"},
+      {"other corners", Pen().line(10).turn(90).arc(5, -kPi / 2).turn(20).line(10), "p|K|p"},
+      // Two arcs of 20 mm that meet at 15 degrees are no curve of any tolerance near 0.01.
+      {"lens", Pen().arc(40, 0.5).turn(15).arc(40, 0.5).turn(15).arc(30, 0.6), "K|K|K"},
+      {"tangent chain", Pen().arc(10, 0.4).arc(14, 0.3).arc(20, 0.2).arc(17, -0.3).arc(9, -0.5),
+       "KKKKK"},
+      {"small kinks", Pen().arc(10, 0.4).turn(1).arc(14, 0.3).turn(-2).arc(20, 0.2), "ppp"},
+      {"kinked fillet", Pen().line(2).turn(1).arc(14, 0.3).turn(-2).line(2), "ppp"},
+      {"corner among pieces",
+       Pen().arc(10, 0.4).turn(1).arc(14, 0.3).turn(140).arc(20, 0.2).turn(1).arc(9, 0.3), "pp|pp"},
+      {"tangent to both by chance",
+       Pen().arc(10, 0.4).turn(1).arc(14, 0.3).arc(20, 0.2).arc(15, 0.2).turn(1).arc(9, 0.3),
+       "ppppp"},
+      {"fillet before kinks", Pen().line(9).arc(2, 1).arc(14, 0.3).turn(1).arc(20, 0.2), "pKpp"},
+      {"ramp and floor", Pen().arc(5, kPi, -0.2).arc(5, kPi, -0.2).arc(5, kPi).arc(5, kPi),
+       "KK|KK"},
+  };
+  for (const auto& row : rows) EXPECT_EQ(row.path.judged(), row.judged) << row.name;
 }
 
 // --- what rounding can do ---------------------------------------------------------------------

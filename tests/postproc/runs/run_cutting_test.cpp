@@ -73,61 +73,6 @@ TEST(CutPlaces, PrefersAReversalToACorner) {
             std::vector<std::size_t>{200});
 }
 
-// --- pieces ----------------------------------------------------------------------------------
-
-class CutRunTest : public testing::Test {
- protected:
-  // A wave whose feed changes, with comments, behind some lines that say nothing.
-  CutRunTest() : text_(program()), read_(text_) {
-    for (const Section& section : group_runs(read_.program, read_.meaning, {})) {
-      if (std::holds_alternative<postproc::Run>(section.content)) section_ = section;
-    }
-    pieces_ = cut_run(section_, read_.meaning, {.shortest = 20, .longest = 60});
-  }
-
-  static std::string program() {
-    std::vector<std::string> lines = wave_lines({.lines = 300});
-    for (std::size_t i = 0; i < lines.size(); i += 7) lines[i] += " (here)";
-    for (std::size_t i = 25; i < lines.size(); i += 40) lines[i] += fmt::format(" F{}", 500 + i);
-    return head("G21") + joined(lines, "\n") + tail();
-  }
-
-  [[nodiscard]] const postproc::Run& run() const {
-    return std::get<postproc::Run>(section_.content);
-  }
-  [[nodiscard]] static const postproc::Run& run(const RunPiece& piece) {
-    return std::get<postproc::Run>(piece.section.content);
-  }
-
-  std::string text_;
-  ReadText read_;
-  Section section_;
-  std::vector<RunPiece> pieces_;
-};
-
-TEST_F(CutRunTest, PiecesCoverTheBlocksOnce) {
-  ASSERT_GT(pieces_.size(), 4U);
-  std::uint32_t next = section_.first_block;
-  for (const RunPiece& piece : pieces_) {
-    EXPECT_EQ(piece.section.first_block, next);
-    next = piece.section.last_block + 1;
-  }
-  EXPECT_EQ(next, section_.last_block + 1);
-}
-
-TEST_F(CutRunTest, PiecesStartAndEndOnTheVerticesOfTheRun) {
-  std::size_t next = 0;
-  for (const RunPiece& piece : pieces_) {
-    EXPECT_EQ(piece.first, next);
-    ASSERT_EQ(run(piece).points.size(), piece.last - piece.first + 1);
-    for (std::size_t i = 0; i < run(piece).points.size(); ++i) {
-      EXPECT_EQ(run(piece).points[i], run().points[piece.first + i]);
-    }
-    next = piece.last;
-  }
-  EXPECT_EQ(next, run().points.size() - 1);
-}
-
 double feed_at(const postproc::Run& run, std::size_t motion) {
   double feed = 0;
   for (const FeedFrom& from : run.feeds) {
@@ -136,33 +81,50 @@ double feed_at(const postproc::Run& run, std::size_t motion) {
   return feed;
 }
 
-TEST_F(CutRunTest, EveryMotionKeepsItsFeed) {
-  for (const RunPiece& piece : pieces_) {
-    ASSERT_FALSE(run(piece).feeds.empty());
-    EXPECT_EQ(run(piece).feeds.front().vertex, 0U);
-    for (std::size_t i = piece.first; i < piece.last; ++i) {
-      EXPECT_EQ(feed_at(run(piece), i - piece.first), feed_at(run(), i)) << "motion " << i;
-    }
-  }
+const postproc::Run& run_in(const Section& section) {
+  return std::get<postproc::Run>(section.content);
 }
 
-TEST_F(CutRunTest, EveryCommentKeepsItsPlace) {
-  std::size_t next = 0;
-  for (const RunPiece& piece : pieces_) {
-    for (const CommentAt& comment : run(piece).comments) {
-      ASSERT_LT(next, run().comments.size());
-      EXPECT_EQ(piece.first + comment.vertex, run().comments[next].vertex);
-      EXPECT_EQ(comment.text.begin, run().comments[next].text.begin);
-      ++next;
+// A wave whose feed changes, with comments, after some lines that say nothing: blocks, vertices,
+// feeds, comments and states of the pieces are those of the run.
+TEST(CutRun, GivesPiecesThatAreTheRun) {
+  std::vector<std::string> lines = wave_lines({.lines = 300});
+  for (std::size_t i = 0; i < lines.size(); i += 7) lines[i] += " (here)";
+  for (std::size_t i = 25; i < lines.size(); i += 40) lines[i] += fmt::format(" F{}", 500 + i);
+  const ReadText read(head("G21") + joined(lines, "\n") + tail());
+  Section whole;
+  for (const Section& section : group_runs(read.program, read.meaning, {})) {
+    if (std::holds_alternative<postproc::Run>(section.content)) whole = section;
+  }
+  const auto pieces = cut_run(whole, read.meaning, {.shortest = 20, .longest = 60});
+  ASSERT_GT(pieces.size(), 4U);
+  std::uint32_t block = whole.first_block;
+  std::size_t vertex = 0;
+  std::size_t comment = 0;
+  for (const RunPiece& piece : pieces) {
+    const postproc::Run& run = run_in(piece.section);
+    EXPECT_EQ(piece.section.first_block, block);
+    EXPECT_EQ(run.state, read.meaning.blocks[block - 1].state_after);
+    EXPECT_EQ(piece.first, vertex);
+    ASSERT_EQ(run.points.size(), piece.last - piece.first + 1);
+    ASSERT_FALSE(run.feeds.empty());
+    EXPECT_EQ(run.feeds.front().vertex, 0U);
+    for (std::size_t i = 0; i < run.points.size(); ++i) {
+      EXPECT_EQ(run.points[i], run_in(whole).points[vertex + i]);
+      if (i + 1 == run.points.size()) continue;
+      EXPECT_EQ(feed_at(run, i), feed_at(run_in(whole), vertex + i)) << "motion " << vertex + i;
     }
+    for (const CommentAt& each : run.comments) {
+      ASSERT_LT(comment, run_in(whole).comments.size());
+      EXPECT_EQ(vertex + each.vertex, run_in(whole).comments[comment].vertex);
+      EXPECT_EQ(each.text.begin, run_in(whole).comments[comment++].text.begin);
+    }
+    block = piece.section.last_block + 1;
+    vertex = piece.last;
   }
-  EXPECT_EQ(next, run().comments.size());
-}
-
-TEST_F(CutRunTest, KnowsTheStateBeforeEachPiece) {
-  for (const RunPiece& piece : pieces_) {
-    EXPECT_EQ(run(piece).state, read_.meaning.blocks[piece.section.first_block - 1].state_after);
-  }
+  EXPECT_EQ(block, whole.last_block + 1);
+  EXPECT_EQ(vertex, run_in(whole).points.size() - 1);
+  EXPECT_EQ(comment, run_in(whole).comments.size());
 }
 
 // What stands between two motions would have no place in either piece.

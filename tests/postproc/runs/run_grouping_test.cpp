@@ -52,11 +52,19 @@ struct Grouped {
   std::vector<Section> sections;
 };
 
+// The first arcs of a curve, the first `rising` of which go down.
+std::string arcs_program(std::size_t arcs, std::size_t rising = 0) {
+  const std::vector<std::string> blocks = tests::arc_blocks(tests::three_leaves, {});
+  std::string text = "G21 G90 G94 G17\nG0 X36.0 Y0 Z0\n";
+  for (std::size_t i = 0; i < arcs; ++i) {
+    text += blocks[i] + (i < rising ? " Z-0." + std::to_string(i + 1) : "") + "\n";
+  }
+  return text;
+}
+
 constexpr const char* kStart = "G21 G90 G94 G17 F100 S500\nG0 X0 Y0 Z0\n";  // 2 lines
 constexpr const char* kThree = "G1 X1\nX2 Y1\nX3\n";
 constexpr const char* kThreeMore = "G1 X4\nX5 Y2\nX6\n";
-
-// --- what is inside a run -----------------------------------------------------------------------
 
 struct BetweenCase {
   const char* name;
@@ -94,35 +102,55 @@ INSTANTIATE_TEST_SUITE_P(
         BetweenCase{"Jump", "IF [#1 GT 2] GOTO 99", "program-flow"}),
     [](const auto& test) { return test.param.name; });
 
-// What it runs may move the axes: both have to be named again.
-TEST(RunGrouping, StartsAnewBehindAFunctionOfTheUser) {
-  EXPECT_EQ(Grouped(std::string(kStart) + kThree + "M101\n" + kThreeMore).outline(),
-            "1-1 state-change; 2-2 rapid; 3-5 run; 6-6 misc-function; 7-8 position-unknown; "
-            "9-9 too-short");
+struct OutlineCase {
+  const char* name;
+  std::string text;
+  const char* outline;
+};
+void PrintTo(const OutlineCase& test, std::ostream* out) { *out << test.text; }
+
+class Outline : public testing::TestWithParam<OutlineCase> {};
+
+TEST_P(Outline, CoversTheProgram) {
+  EXPECT_EQ(Grouped(GetParam().text).outline(), GetParam().outline);
 }
 
-TEST(RunGrouping, StartsAfterTheMotionThatMakesThePlaceKnown) {
-  EXPECT_EQ(Grouped("G21 F9\nG1 X0 Y0\nX1\nX2\nX3\n").outline(),
-            "1-1 state-change; 2-2 position-unknown; 3-5 run");
-  // Z is named for the first time in the middle.
-  EXPECT_EQ(Grouped("G21 F9\nG0 X0 Y0\nG1 X1\nX2\nX3\nZ1\nX4\nX5\nX6\n").outline(),
-            "1-1 state-change; 2-2 rapid; 3-5 run; 6-6 position-unknown; 7-9 run");
-}
-
-TEST(RunGrouping, KeepsWhatStandsAroundARun) {
-  EXPECT_EQ(Grouped("(head)\n\nG21 F9\nG0 X0 Y0\n(before)\nG1 X1\nX2\nX3\n(after)\n\nM30\n(end)\n")
-                .outline(),
-            "1-3 state-change; 4-5 rapid; 6-8 run; 9-12 program-end");
-  EXPECT_EQ(Grouped("G21 F9\nG0 X0 Y0\nG1 X1\nX2\nX3\nF20\n(end)\n").outline(),
-            "1-1 state-change; 2-2 rapid; 3-5 run; 6-7 comment");
-  EXPECT_EQ(Grouped("(only)\n\n").outline(), "1-2 comment");
-  EXPECT_TRUE(Grouped("").sections.empty());
-}
-
-TEST(RunGrouping, CopiesMotionsWithoutLengthAtItsEnds) {
-  EXPECT_EQ(Grouped(std::string(kStart) + "G1 X0 F50\n" + kThree + "X3 F70\nM9\n").outline(),
-            "1-1 state-change; 2-2 rapid; 3-3 too-short; 4-6 run; 7-7 too-short; 8-8 coolant");
-}
+INSTANTIATE_TEST_SUITE_P(
+    RunGrouping, Outline,
+    testing::Values(
+        // What it runs may move the axes: both have to be named again.
+        OutlineCase{"StartsAnewAfterAFunctionOfTheUser",
+                    std::string(kStart) + kThree + "M101\n" + kThreeMore,
+                    "1-1 state-change; 2-2 rapid; 3-5 run; 6-6 misc-function; "
+                    "7-8 position-unknown; 9-9 too-short"},
+        OutlineCase{"StartsAfterTheMotionThatMakesThePositionKnown",
+                    "G21 F9\nG1 X0 Y0\nX1\nX2\nX3\n",
+                    "1-1 state-change; 2-2 position-unknown; 3-5 run"},
+        OutlineCase{"ZIsNamedForTheFirstTimeInTheMiddle",
+                    "G21 F9\nG0 X0 Y0\nG1 X1\nX2\nX3\nZ1\nX4\nX5\nX6\n",
+                    "1-1 state-change; 2-2 rapid; 3-5 run; 6-6 position-unknown; 7-9 run"},
+        OutlineCase{"KeepsWhatIsAroundARun",
+                    "(head)\n\nG21 F9\nG0 X0 Y0\n(before)\nG1 X1\nX2\nX3\n(after)\n\nM30\n(end)\n",
+                    "1-3 state-change; 4-5 rapid; 6-8 run; 9-12 program-end"},
+        OutlineCase{"KeepsAFeedAfterARun", "G21 F9\nG0 X0 Y0\nG1 X1\nX2\nX3\nF20\n(end)\n",
+                    "1-1 state-change; 2-2 rapid; 3-5 run; 6-7 comment"},
+        OutlineCase{"KeepsComments", "(only)\n\n", "1-2 comment"}, OutlineCase{"Nothing", "", ""},
+        OutlineCase{"CopiesMotionsWithoutLengthAtItsEnds",
+                    std::string(kStart) + "G1 X0 F50\n" + kThree + "X3 F70\nM9\n",
+                    "1-1 state-change; 2-2 rapid; 3-3 too-short; 4-6 run; 7-7 too-short; "
+                    "8-8 coolant"},
+        OutlineCase{"JoinsNeighboursThatAreKeptForOneReason", "G21\nG0 X0\nY0\n\nZ0\nM3\n",
+                    "1-1 state-change; 2-5 rapid; 6-6 spindle"},
+        OutlineCase{"NoFeed", "G21\nG0 X0 Y0 Z0\nG1 X1\nX2\nX3\n",
+                    "1-1 state-change; 2-2 rapid; 3-5 feed-unknown"},
+        OutlineCase{"CutsWhereARampMeetsItsFloor", arcs_program(8, 4),
+                    "1-1 state-change; 2-2 rapid; 3-6 run; 7-10 run"},
+        // A bare G2 is no block: an arc word that is needed after a run cannot be given back.
+        OutlineCase{"TakesTheLastArc", arcs_program(8) + "M9\nG0 Z5\n",
+                    "1-1 state-change; 2-2 rapid; 3-10 run; 11-11 coolant; 12-12 rapid"},
+        OutlineCase{"EndsBeforeAnArcWhoseWordIsNeeded", arcs_program(8) + "M98 P5\n",
+                    "1-1 state-change; 2-2 rapid; 3-9 run; 10-10 arc; 11-11 subprogram"}),
+    [](const auto& test) { return test.param.name; });
 
 TEST(RunGrouping, CopiesChainsThatAreTooShort) {
   EXPECT_EQ(Grouped(std::string(kStart) + "G1 X1\nX1\nX2\n").outline(),
@@ -132,13 +160,6 @@ TEST(RunGrouping, CopiesChainsThatAreTooShort) {
   EXPECT_EQ(Grouped(std::string(kStart) + "G1 X1\nX1\nX2\n", options).outline(),
             "1-1 state-change; 2-2 rapid; 3-5 run");
 }
-
-TEST(RunGrouping, JoinsNeighboursThatAreKeptForOneReason) {
-  EXPECT_EQ(Grouped("G21\nG0 X0\nY0\n\nZ0\nM3\n").outline(),
-            "1-1 state-change; 2-5 rapid; 6-6 spindle");
-}
-
-// --- what a run says ----------------------------------------------------------------------------
 
 TEST(Run, HasThePlacesInMillimetres) {
   const Grouped grouped("G20 F10\nG0 X0 Y0 Z0\nG1 X1 Z-.125\nY2\nX0 Y0 Z0\n");
@@ -186,8 +207,6 @@ TEST(Run, StandsAtZeroOnAxesThatItDoesNotName) {
   }
 }
 
-// --- arcs ---------------------------------------------------------------------------------------
-
 TEST(ArcsInRuns, PiecesOfACurveAreARun) {
   const Grouped grouped(tests::kinked_arc_program(tests::three_leaves));
   ASSERT_EQ(grouped.runs().size(), 1U);
@@ -200,9 +219,7 @@ TEST(ArcsInRuns, PiecesOfACurveAreARun) {
 
 TEST(ArcsInRuns, FeedsAndCommentsStayAtTheEndsOfMotions) {
   const std::vector<std::string> blocks = tests::arc_blocks(tests::three_leaves, {});
-  std::string text = "G21 G90 G94 G17\nG0 X36.0 Y0 Z0\n";
-  for (std::size_t i = 0; i < 6; ++i) text += blocks[i] + "\n";
-  text += "(note)\n" + blocks[6] + " (here)\n";
+  std::string text = arcs_program(6) + "(note)\n" + blocks[6] + " (here)\n";
   for (std::size_t i = 7; i < 12; ++i) {
     text += blocks[i].substr(0, blocks[i].find(" F")) + (i == 9 ? " F300\n" : "\n");
   }
@@ -216,90 +233,46 @@ TEST(ArcsInRuns, FeedsAndCommentsStayAtTheEndsOfMotions) {
   EXPECT_EQ(run.comments[1].vertex, run.arcs[6].last);
 }
 
-struct ArcCase {
-  const char* name;
-  const char* blocks;  // behind kStart
-  const char* outline;
-};
-void PrintTo(const ArcCase& test, std::ostream* out) { *out << test.blocks; }
-
-class Arcs : public testing::TestWithParam<ArcCase> {};
-
-TEST_P(Arcs, EndARunWhereTheyWereMeant) {
-  const Grouped grouped(std::string(kStart) + GetParam().blocks);
-  EXPECT_EQ(grouped.outline(), std::string("1-1 state-change; 2-2 rapid; ") + GetParam().outline);
-}
-
 constexpr const char* kFillet = "G1 X1\nX2\nX3\nG3 X4 Y1 J1\nG1 Y2\nY3\nY4\n";
 constexpr const char* kFilletAway =  // 3 degrees from the line before it
     "G1 X1\nX2\nX3\nG3 X3.946 Y1.051 I-.0523 J.9986\nG1 Y2\nY3\nY4\n";
 
-INSTANTIATE_TEST_SUITE_P(
-    ArcsInRuns, Arcs,
-    testing::Values(ArcCase{"Fillet", kFillet, "3-5 run; 6-6 intended-arc; 7-9 run"},
-                    ArcCase{"KinkedFillet", kFilletAway, "3-9 run"},
-                    ArcCase{"FullCircle", "G1 X1\nX2\nX3\nG3 X3 Y0 I.02 J5\nG1 X4\nX5\nX6\n",
-                            "3-5 run; 6-6 intended-arc; 7-9 run"},
-                    ArcCase{"Slot", "G1 X9\nG3 X9 Y4 J2\nG1 X0\nG3 X0 Y0 J-2\n",
-                            "3-3 too-short; 4-4 intended-arc; 5-5 too-short; 6-6 intended-arc"},
-                    ArcCase{"TwoPieces", "G2 X2 Y0 I1 J-5\nG2 X4 Y-.837 I-1.279 J-5.862\nG0 Z5\n",
-                            "3-4 too-short; 5-5 rapid"}),
-    [](const auto& test) { return test.param.name; });
-
-TEST(ArcsInRuns, AreCutWhereARampMeetsItsFloor) {
-  const std::vector<std::string> blocks = tests::arc_blocks(tests::three_leaves, {});
-  std::string text = "G21 G90 G94 G17\nG0 X36.0 Y0 Z0\n";
-  for (std::size_t i = 0; i < 8; ++i) {
-    text += blocks[i] + (i < 4 ? " Z-0." + std::to_string(i + 1) : "") + "\n";
+TEST(ArcsInRuns, EndARunWhereTheyAreIntended) {
+  const std::pair<const char*, const char*> rows[] = {
+      {kFillet, "3-5 run; 6-6 intended-arc; 7-9 run"},
+      {kFilletAway, "3-9 run"},
+      {"G1 X1\nX2\nX3\nG3 X3 Y0 I.02 J5\nG1 X4\nX5\nX6\n", "3-5 run; 6-6 intended-arc; 7-9 run"},
+      {"G1 X9\nG3 X9 Y4 J2\nG1 X0\nG3 X0 Y0 J-2\n",
+       "3-3 too-short; 4-4 intended-arc; 5-5 too-short; 6-6 intended-arc"},
+      {"G2 X2 Y0 I1 J-5\nG2 X4 Y-.837 I-1.279 J-5.862\nG0 Z5\n", "3-4 too-short; 5-5 rapid"}};
+  for (const auto& [blocks, outline] : rows) {
+    EXPECT_EQ(Grouped(std::string(kStart) + blocks).outline(),
+              std::string("1-1 state-change; 2-2 rapid; ") + outline);
   }
-  EXPECT_EQ(Grouped(text).outline(), "1-1 state-change; 2-2 rapid; 3-6 run; 7-10 run");
 }
-
-// A bare G2 is no block: an arc word that is needed behind a run cannot be given back.
-TEST(ArcsInRuns, EndBeforeAnArcWhoseWordIsNeeded) {
-  std::vector<std::string> blocks = tests::arc_blocks(tests::three_leaves, {});
-  blocks.resize(8);
-  std::string text = "G21 G90 G94 G17\nG0 X36.0 Y0 Z0\n";
-  for (const std::string& block : blocks) text += block + "\n";
-  EXPECT_EQ(Grouped(text + "M9\nG0 Z5\n").outline(),
-            "1-1 state-change; 2-2 rapid; 3-10 run; 11-11 coolant; 12-12 rapid");
-  EXPECT_EQ(Grouped(text + "M98 P5\n").outline(),
-            "1-1 state-change; 2-2 rapid; 3-9 run; 10-10 arc; 11-11 subprogram");
-}
-
-// --- states -------------------------------------------------------------------------------------
 
 // All others, and what ends them: tests/postproc/stream/unsafe_states_test.cpp.
-struct StateCase {
-  const char* name;
-  const char* words;        // blocks between kStart and the motions
-  const char* reason = "";  // why these are kept; empty: they are a run
-};
-void PrintTo(const StateCase& test, std::ostream* out) { *out << test.words; }
-
-class States : public testing::TestWithParam<StateCase> {};
-
-TEST_P(States, KeepTheirMotionsOrLetThemBeRewritten) {
-  const Grouped grouped(std::string(kStart) + GetParam().words +
-                        "\nF100\nG0 X0 Y0 Z0\nG1 X1 Y1 Z1\n" + kThree);
-  const auto* kept = std::get_if<Verbatim>(&grouped.sections.back().content);
-  EXPECT_EQ(kept != nullptr ? kept->reason : "", GetParam().reason);
-  EXPECT_EQ(grouped.runs().size(), kept != nullptr ? 0U : 1U);
+TEST(UnsafeStates, KeepTheirMotionsOrLetThemBeRewritten) {
+  const std::pair<const char*, const char*> rows[] = {// words, and why the motions are kept
+                                                      {"M128", "tool-center-point"},
+                                                      {"M128\nM129", ""},
+                                                      {"G60", "exact-stop"},
+                                                      {"G63", "state-unknown"},
+                                                      {"G99", "state-unknown"},
+                                                      {"M98 P1", "state-unknown"},
+                                                      {"/G20", "units-unknown"},
+                                                      {"/G91", "state-unknown"},
+                                                      {"G5.1 Q1", ""},
+                                                      {"G18", ""},
+                                                      {"G81 X0 Y0 Z-1 R1\nG80 G99\nG94", ""}};
+  for (const auto& [words, why] : rows) {
+    const Grouped grouped(std::string(kStart) + words + "\nF100\nG0 X0 Y0 Z0\nG1 X1 Y1 Z1\n" +
+                          kThree);
+    const auto* kept = std::get_if<Verbatim>(&grouped.sections.back().content);
+    EXPECT_EQ(kept != nullptr ? kept->reason : "", why) << words;
+    EXPECT_EQ(grouped.runs().size(), kept != nullptr ? 0U : 1U) << words;
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    RunGrouping, States,
-    testing::Values(StateCase{"Tcpm", "M128", "tool-center-point"},
-                    StateCase{"TcpmEnd", "M128\nM129"},
-                    StateCase{"OneSidedStop", "G60", "exact-stop"},
-                    StateCase{"TappingMode", "G63", "state-unknown"},
-                    StateCase{"LatheFeed", "G99", "state-unknown"},
-                    StateCase{"Call", "M98 P1", "state-unknown"},
-                    StateCase{"DeletableUnits", "/G20", "units-unknown"},
-                    StateCase{"DeletableDistance", "/G91", "state-unknown"},
-                    StateCase{"LookAhead", "G5.1 Q1"}, StateCase{"Plane", "G18"},
-                    StateCase{"CycleReturn", "G81 X0 Y0 Z-1 R1\nG80 G99\nG94"}),
-    [](const auto& test) { return test.param.name; });
 
 TEST(UnsafeStates, AModalMacroIsOne) {
   gcode::ModalState state;
@@ -318,13 +291,6 @@ TEST(UnsafeStates, AllowLiftsTheExactPathOnly) {
   EXPECT_EQ(Grouped(kStart + ("G61.1\n" + motions), options).runs().size(), 0U);
   EXPECT_EQ(Grouped(kStart + ("G91\n" + motions), options).runs().size(), 0U);
 }
-
-TEST(UnsafeStates, NoFeedIsOne) {
-  EXPECT_EQ(Grouped("G21\nG0 X0 Y0 Z0\nG1 X1\nX2\nX3\n").outline(),
-            "1-1 state-change; 2-2 rapid; 3-5 feed-unknown");
-}
-
-// --- every program ------------------------------------------------------------------------------
 
 TEST(RunGrouping, CoversEveryBlockOnceAndRunsMeetTheirMotions) {
   static constexpr const char* kBlocks[] = {

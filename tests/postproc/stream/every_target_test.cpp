@@ -30,51 +30,62 @@ std::string word_of_units(const gcode::Control& target, gcode::Units units) {
   return inch ? "G70" : "G71";
 }
 
+// A wave with one command in every block: some controls need it, the others take it.
+std::string program(const Wave& wave, const std::string& units) {
+  std::string full;
+  for (const std::string& line : lines_of(wave_program(wave, units))) {
+    full += (line.starts_with('X') ? "G1 " : "") + line + wave.line_end;
+  }
+  return full;
+}
+
+// The written lines that are not the program's own.
+std::vector<std::string> new_lines(const std::string& before, const SmoothResult& result) {
+  const auto old_lines = lines_of(before);
+  std::vector<std::string> lines = lines_of(result.text);
+  std::erase_if(lines, [&](const std::string& line) {
+    return std::ranges::find(old_lines, line) != old_lines.end();
+  });
+  return lines;
+}
+
 class EveryTargetSmooths : public testing::TestWithParam<std::string> {
  protected:
   const gcode::Control& target_ = *gcode::find_control(GetParam());
 
-  static std::string program(const Wave& wave, const std::string& units) {
-    std::string text = wave_program(wave, units);
-    // One command in every block: some controls need it, the others take it.
-    std::string full;
-    for (const std::string& line : lines_of(text)) {
-      full += (line.starts_with('X') ? "G1 " : "") + line + wave.line_end;
+  // Returns the new text.
+  SmoothResult expect_smoothed(const std::string& text, SmoothOptions options) const {
+    options.tolerance_mm = 0.02;
+    SmoothResult result = smoothed(text, options);
+    EXPECT_TRUE(result.understood);
+    EXPECT_TRUE(result.proved);
+    EXPECT_LE(result.deviation_mm, 0.02);
+    if (options.output != Form::kArcs) {
+      EXPECT_EQ(rewritten_runs(result), 1U) << result.runs.back().reason;
     }
-    return full;
-  }
-
-  void expect_fits(const std::string& before, const SmoothResult& result) const {
-    const auto old_lines = lines_of(before);
+    EXPECT_TRUE(verdict(text, result.text, 0.02).proved());
+    expect_rest_copied(text, result);
     for (const std::string& line : lines_of(result.text)) {
       EXPECT_LE(line_length(target_, line), target_.max_line_length) << line;
-      if (std::ranges::find(old_lines, line) != old_lines.end()) continue;
-      if (target_.repeats_words && !line.starts_with(';') && !line.starts_with('(')) {
-        EXPECT_TRUE(line.starts_with('G')) << line;
-      }
     }
+    for (const std::string& line : new_lines(text, result)) {
+      if (!target_.repeats_words || line.starts_with(';') || line.starts_with('(')) continue;
+      EXPECT_TRUE(line.starts_with('G')) << line;
+    }
+    return result;
   }
 };
 
 TEST_P(EveryTargetSmooths, AWaveInMillimetresProvedAndOnce) {
+  const std::string text =
+      program({.noise = 0.003}, word_of_units(target_, gcode::Units::kMillimetre));
   for (const Form form : {Form::kAuto, Form::kLines, Form::kArcs}) {
     SmoothOptions options = options_for(GetParam());
     options.output = form;
-    options.tolerance_mm = 0.02;
-    const std::string text =
-        program({.noise = 0.003}, word_of_units(target_, gcode::Units::kMillimetre));
-    const SmoothResult result = smoothed(text, options);
-    ASSERT_TRUE(result.understood);
-    EXPECT_TRUE(result.proved);
-    EXPECT_LE(result.deviation_mm, 0.02);
-    if (form != Form::kArcs) {
-      EXPECT_EQ(rewritten_runs(result), 1U) << result.runs.back().reason;
-    }
-    EXPECT_TRUE(verdict(text, result.text, 0.02).proved());
-    expect_fits(text, result);
-    expect_rest_copied(text, result);
+    const SmoothResult result = expect_smoothed(text, options);
     if (form != Form::kAuto || comment_line(target_, "x").empty())
       continue;  // nothing says it there
+    options.tolerance_mm = 0.02;
     EXPECT_EQ(smoothed(result.text, options).text, result.text) << "a second pass";
   }
 }
@@ -82,36 +93,16 @@ TEST_P(EveryTargetSmooths, AWaveInMillimetresProvedAndOnce) {
 TEST_P(EveryTargetSmooths, AWaveInInchesProved) {
   const std::string units = word_of_units(target_, gcode::Units::kInch);
   if (units.empty()) return;  // tested: Conversion refuses G20 there
-  SmoothOptions options = options_for(GetParam());
-  options.tolerance_mm = 0.02;
-  const std::string text = program(
-      {.step = 0.008, .height = 0.08, .length = 0.7, .noise = 0.0001, .decimals = 4, .feed = 80},
-      units);
-  const SmoothResult result = smoothed(text, options);
-  ASSERT_TRUE(result.understood);
-  EXPECT_TRUE(result.proved);
-  EXPECT_EQ(rewritten_runs(result), 1U) << result.runs.back().reason;
-  EXPECT_TRUE(verdict(text, result.text, 0.02).proved());
-  expect_fits(text, result);
+  const Wave wave{
+      .step = 0.008, .height = 0.08, .length = 0.7, .noise = 0.0001, .decimals = 4, .feed = 80};
+  (void)expect_smoothed(program(wave, units), options_for(GetParam()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Targets, EveryTargetSmooths, testing::ValuesIn(target_names()),
                          [](const auto& test) { return test.param; });
 
-// --- what a profile changes is in the text ------------------------------------------------------
-
-// The written lines that are not the program's own.
-std::vector<std::string> new_lines(const std::string& before, const SmoothResult& result) {
-  const auto old_lines = lines_of(before);
-  std::vector<std::string> lines;
-  for (const std::string& line : lines_of(result.text)) {
-    if (std::ranges::find(old_lines, line) == old_lines.end()) lines.push_back(line);
-  }
-  return lines;
-}
-
 SmoothResult smoothed_for(const gcode::Control& target, const std::string& text) {
-  SmoothOptions options = options_for("haas");
+  SmoothOptions options = options_for(target.name);
   options.target = &target;
   options.output = Form::kArcs;
   options.tolerance_mm = 0.02;
@@ -174,31 +165,19 @@ TEST(AProfile, SplitsArcsAtTheAxesOfThePlane) {
 }
 
 TEST(AProfile, OfAControlThatCutsArcsCoarselyGetsLines) {
-  const std::string text = [] {
-    std::string full;
-    for (const std::string& line : lines_of(wave_program({.noise = 0.003}))) {
-      full += (line.starts_with('X') ? "G1 " : "") + line + "\n";
-    }
-    return full;
-  }();
+  const std::string text = program({.noise = 0.003}, "G21");
   const gcode::Control& klipper = *gcode::find_control("klipper");
   const auto arcs_in = [&text](const gcode::Control& target) {
-    SmoothOptions options = options_for("klipper");
-    options.target = &target;
-    options.output = Form::kArcs;
-    options.tolerance_mm = 0.02;
-    const SmoothResult result = smoothed(text, options);
-    std::size_t arcs = 0;
-    for (const std::string& line : lines_of(result.text)) {
-      arcs += line.starts_with("G2 ") || line.starts_with("G3 ") ? 1 : 0;
-    }
-    return arcs;
+    const std::vector<std::string> lines = lines_of(smoothed_for(target, text).text);
+    return std::ranges::count_if(lines, [](const std::string& line) {
+      return line.starts_with("G2 ") || line.starts_with("G3 ");
+    });
   };
   gcode::Control fine = klipper;
   fine.chords = {.longest = 0.1};  // resolution: 0.1
   // The wave's tightest bends have a radius of 4.1 mm: chords of 1 mm leave them by 0.03 mm, chords
   // of 0.1 mm by 0.0003 mm.
-  EXPECT_GT(arcs_in(fine), 3U);
+  EXPECT_GT(arcs_in(fine), 3);
   EXPECT_LT(arcs_in(klipper), arcs_in(fine));
 }
 

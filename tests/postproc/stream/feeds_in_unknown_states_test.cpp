@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <random>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,93 +25,80 @@ bool is_proved(const std::string& before, const std::string& after, Language lan
       .proved();
 }
 
-// --- one by one ---------------------------------------------------------------------------------
-
 constexpr std::string_view kRs274Begin = "G21 G90 G17 G94\nG0 X0 Y0 Z0\n";
 constexpr std::string_view kSiemensBegin = "G71 G90 G17 G94\nG0 X0 Y0 Z0\n";
 constexpr std::string_view kKlartextBegin =
     "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nL X+0 Y+0 Z+0 R0 FMAX\n";
 
-struct FeedCase {
-  std::string name;
-  Language language;
-  std::string blocks;  // with F750
-};
-
-void PrintTo(const FeedCase& test, std::ostream* out) { *out << test.name; }
-
-class FeedInAnUnknownState : public testing::TestWithParam<FeedCase> {};
-
-TEST_P(FeedInAnUnknownState, IsCompared) {
-  const Language language = GetParam().language;
-  const std::string_view begin = language == Language::kRs274     ? kRs274Begin
-                                 : language == Language::kSiemens ? kSiemensBegin
-                                                                  : kKlartextBegin;
-  const std::string text = std::string(begin) + GetParam().blocks;
-  EXPECT_TRUE(is_proved(text, text + "\n", language)) << "an empty line more";
-  EXPECT_FALSE(is_proved(text, replaced(text, "F750", "F75"), language));
-  EXPECT_FALSE(is_proved(text, replaced(text, "F750", ""), language));
-  EXPECT_FALSE(is_proved(replaced(text, "F750", ""), text, language));
+// On each line of `table` a name and, after |, blocks with F750; "\\n" ends one.
+void expect_feeds_compared(Language language, std::string_view begin, std::string_view table) {
+  std::istringstream rows{std::string(table)};
+  for (std::string row; std::getline(rows, row);) {
+    if (row.empty()) continue;
+    SCOPED_TRACE(row);
+    std::string text(begin);
+    for (std::size_t at = row.find('|') + 1; at < row.size();) {
+      const std::size_t end = row.find("\\n", at);
+      text += row.substr(at, end - at) + "\n";
+      at = end + 2;
+    }
+    EXPECT_TRUE(is_proved(text, text + "\n", language)) << "an empty line more";
+    EXPECT_FALSE(is_proved(text, replaced(text, "F750", "F75"), language));
+    EXPECT_FALSE(is_proved(text, replaced(text, "F750", ""), language));
+    EXPECT_FALSE(is_proved(replaced(text, "F750", ""), text, language));
+  }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Rs274, FeedInAnUnknownState,
-    testing::Values(
-        FeedCase{"AloneBehindACall", Language::kRs274, "M98 P1\nF750\nG1 X5\nM30\n"},
-        FeedCase{"BesideCoolantBehindACall", Language::kRs274, "M98 P1\nM8 F750\nG1 X5\nM30\n"},
-        FeedCase{"BesideG1BehindACall", Language::kRs274, "M98 P1\nG1 F750\nX5\nM30\n"},
-        FeedCase{"AmongWordsBehindACall", Language::kRs274,
-                 "M98 P1\nG55 S375 F750 M3 M8\nG1 X5\nM30\n"},
-        FeedCase{"BehindAMacro", Language::kRs274, "G65 P9010\nF750\nG1 X5\nM30\n"},
-        FeedCase{"BehindAnOWord", Language::kRs274, "o100 call\nF750\nG1 X5\nM30\n"},
-        FeedCase{"BehindALabel", Language::kRs274, "N10 X1\nF750\nG1 X5\nGOTO 10\nM30\n"},
-        FeedCase{"BehindAnUnknownWord", Language::kRs274, "G123\nF750\nG1 X5\nM30\n"},
-        FeedCase{"BehindTheEnd", Language::kRs274, "M30\nF750\nG1 X5\n"},
-        FeedCase{"InALoop", Language::kRs274, "WHILE[#1LT5]DO1\nF750\nG1 X5\nEND1\nM30\n"},
-        FeedCase{"BeforeACall", Language::kRs274, "F750\nM98 P1\nG1 X5 F9\nM30\n"},
-        FeedCase{"BeforeAUserFunction", Language::kRs274, "F750\nM101\nG1 X5 F9\nM30\n"},
-        FeedCase{"BeforeATappingMove", Language::kRs274, "F750\nG63 Z-5\nG1 X5 F9\nM30\n"},
-        FeedCase{"BeforeAToolChange", Language::kRs274, "F750\nM6\nG1 X5 F9\nM30\n"},
-        FeedCase{"BeforeOtherUnits", Language::kRs274, "F750\nG20\nG1 X5\nM30\n"},
-        FeedCase{"BeforeUnitsBehindACall", Language::kRs274, "M98 P1\nF750\nG20\nG1 X5\nM30\n"},
-        FeedCase{"BeforeInverseTime", Language::kRs274, "F750\nG93\nG1 X5\nM30\n"},
-        FeedCase{"OfARapid", Language::kRs274, "G1 X5 F9\nG0 X6 F750\nG1 X5 F9\nM30\n"},
-        FeedCase{"BeforeTheEndOfASubprogram", Language::kRs274, "G1 X5 F9\nF750\nM99\n"},
-        FeedCase{"BeforeTheEnd", Language::kRs274, "G1 X5 F9\nF750\nM30\n"},
-        FeedCase{"AtTheEndOfTheText", Language::kRs274, "G1 X5 F9\nF750\n"}),
-    [](const auto& test) { return test.param.name; });
+TEST(FeedsInUnknownStates, AreComparedInRs274) {
+  expect_feeds_compared(Language::kRs274, kRs274Begin, R"(
+AloneBehindACall|M98 P1\nF750\nG1 X5\nM30\n
+BesideCoolantBehindACall|M98 P1\nM8 F750\nG1 X5\nM30\n
+BesideG1BehindACall|M98 P1\nG1 F750\nX5\nM30\n
+AmongWordsBehindACall|M98 P1\nG55 S375 F750 M3 M8\nG1 X5\nM30\n
+BehindAMacro|G65 P9010\nF750\nG1 X5\nM30\n
+BehindAnOWord|o100 call\nF750\nG1 X5\nM30\n
+BehindALabel|N10 X1\nF750\nG1 X5\nGOTO 10\nM30\n
+BehindAnUnknownWord|G123\nF750\nG1 X5\nM30\n
+BehindTheEnd|M30\nF750\nG1 X5\n
+InALoop|WHILE[#1LT5]DO1\nF750\nG1 X5\nEND1\nM30\n
+BeforeACall|F750\nM98 P1\nG1 X5 F9\nM30\n
+BeforeAUserFunction|F750\nM101\nG1 X5 F9\nM30\n
+BeforeATappingMove|F750\nG63 Z-5\nG1 X5 F9\nM30\n
+BeforeAToolChange|F750\nM6\nG1 X5 F9\nM30\n
+BeforeOtherUnits|F750\nG20\nG1 X5\nM30\n
+BeforeUnitsBehindACall|M98 P1\nF750\nG20\nG1 X5\nM30\n
+BeforeInverseTime|F750\nG93\nG1 X5\nM30\n
+OfARapid|G1 X5 F9\nG0 X6 F750\nG1 X5 F9\nM30\n
+BeforeTheEndOfASubprogram|G1 X5 F9\nF750\nM99\n
+BeforeTheEnd|G1 X5 F9\nF750\nM30\n
+AtTheEndOfTheText|G1 X5 F9\nF750\n
+)");
+}
 
-INSTANTIATE_TEST_SUITE_P(
-    Siemens, FeedInAnUnknownState,
-    testing::Values(
-        FeedCase{"BehindASubprogram", Language::kSiemens, "L100 P1\nF750\nG1 X5\nM30\n"},
-        FeedCase{"BehindAnUnknownName", Language::kSiemens, "FOO(1)\nM8 F750\nG1 X5\nM30\n"},
-        FeedCase{"BehindALabel", Language::kSiemens, "L1: X1\nG1 F750\nX5\nGOTOB L1\nM30\n"},
-        FeedCase{"BeforeAModalCall", Language::kSiemens,
-                 "F750\nMCALL CYCLE81(1,2,3)\nG0 X5\nMCALL\nG1 X7 F9\nM30\n"},
-        FeedCase{"BeforeAModalCallInAnUnknownState", Language::kSiemens,
-                 "FOO(1)\nF750\nMCALL CYCLE81(1,2,3)\nG0 X5\nMCALL\nG1 X7 F9\nM30\n"},
-        FeedCase{"BeforeATappingMove", Language::kSiemens, "F750\nG63 Z-5\nG1 X5 F9\nM30\n"},
-        FeedCase{"BeforeG973", Language::kSiemens, "F750\nG973\nG1 X5\nM30\n"},
-        FeedCase{"InALoop", Language::kSiemens, "LOOP\nF750\nG1 X5\nENDLOOP\nM30\n"}),
-    [](const auto& test) { return test.param.name; });
+TEST(FeedsInUnknownStates, AreComparedInSiemensPrograms) {
+  expect_feeds_compared(Language::kSiemens, kSiemensBegin, R"(
+BehindASubprogram|L100 P1\nF750\nG1 X5\nM30\n
+BehindAnUnknownName|FOO(1)\nM8 F750\nG1 X5\nM30\n
+BehindALabel|L1: X1\nG1 F750\nX5\nGOTOB L1\nM30\n
+BeforeAModalCall|F750\nMCALL CYCLE81(1,2,3)\nG0 X5\nMCALL\nG1 X7 F9\nM30\n
+BeforeAModalCallInAnUnknownState|FOO(1)\nF750\nMCALL CYCLE81(1,2,3)\nG0 X5\nMCALL\nG1 X7 F9\nM30\n
+BeforeATappingMove|F750\nG63 Z-5\nG1 X5 F9\nM30\n
+BeforeG973|F750\nG973\nG1 X5\nM30\n
+InALoop|LOOP\nF750\nG1 X5\nENDLOOP\nM30\n
+)");
+}
 
-INSTANTIATE_TEST_SUITE_P(
-    Klartext, FeedInAnUnknownState,
-    testing::Values(
-        FeedCase{"BehindACall", Language::kKlartext, "CALL LBL 1\nL F750\nL X+5\nEND PGM A MM\n"},
-        FeedCase{"BesideCoolantBehindACall", Language::kKlartext,
-                 "CALL LBL 1\nL F750 M8\nL X+5\nEND PGM A MM\n"},
-        FeedCase{"BehindAProgram", Language::kKlartext,
-                 "CALL PGM B\nL F750\nL X+5\nEND PGM A MM\n"},
-        FeedCase{"BehindALabel", Language::kKlartext,
-                 "LBL 1\nL F750\nL X+5\nCALL LBL 1 REP 2\nEND PGM A MM\n"},
-        FeedCase{"BehindAnUnknownWord", Language::kKlartext,
-                 "FOO 1\nL F750\nL X+5\nEND PGM A MM\n"},
-        FeedCase{"BesideFmax", Language::kKlartext, "L X+5 FMAX F750\nL X+7 F9\nEND PGM A MM\n"},
-        FeedCase{"BeforeACycle", Language::kKlartext,
-                 "L X+5 F9\nL F750\nCYCL CALL\nL X+7 F9\nEND PGM A MM\n"}),
-    [](const auto& test) { return test.param.name; });
+TEST(FeedsInUnknownStates, AreComparedInKlartext) {
+  expect_feeds_compared(Language::kKlartext, kKlartextBegin, R"(
+BehindACall|CALL LBL 1\nL F750\nL X+5\nEND PGM A MM\n
+BesideCoolantBehindACall|CALL LBL 1\nL F750 M8\nL X+5\nEND PGM A MM\n
+BehindAProgram|CALL PGM B\nL F750\nL X+5\nEND PGM A MM\n
+BehindALabel|LBL 1\nL F750\nL X+5\nCALL LBL 1 REP 2\nEND PGM A MM\n
+BehindAnUnknownWord|FOO 1\nL F750\nL X+5\nEND PGM A MM\n
+BesideFmax|L X+5 FMAX F750\nL X+7 F9\nEND PGM A MM\n
+BeforeACycle|L X+5 F9\nL F750\nCYCL CALL\nL X+7 F9\nEND PGM A MM\n
+)");
+}
 
 // --- random programs ----------------------------------------------------------------------------
 
@@ -153,75 +141,60 @@ std::vector<Blocks> blocks_of_languages() {
   };
 }
 
-class RandomFeeds {
- public:
-  RandomFeeds(const Blocks& blocks, std::uint32_t seed) : blocks_(blocks), random_(seed) {}
-
-  struct Damaged {
-    std::string before;
-    std::string after;
-  };
-
-  // Each feed is one of its own, and used before the next one.
-  Damaged program() {
-    std::string text(blocks_.begin);
-    const std::size_t steps = 1 + below(6);
-    const std::size_t wrong = below(steps);
-    const std::size_t damage = below(3);
-    Damaged both{text, text};
-    for (std::size_t step = 0; step < steps; ++step) {
-      add(both, block_of(blocks_.unknown));
-      const std::string feed = block_of(blocks_.feeds);
-      const std::string number = std::to_string(100 + 7 * step);
-      if (step != wrong) {
-        add(both, replaced(feed, "@", number));
-      } else if (damage == 0) {
-        both.before += replaced(feed, "@", number) + "\n";
-        both.after += replaced(feed, "@", number + "0") + "\n";
-      } else {
-        std::string& with = damage == 1 ? both.before : both.after;
-        std::string& without = damage == 1 ? both.after : both.before;
-        with += replaced(feed, "@", number) + "\n";
-        without += without_feed(feed) + "\n";
-      }
-      add(both, block_of(blocks_.uses));
-    }
-    add(both, std::string(blocks_.end));
-    return both;
-  }
-
- private:
-  std::size_t below(std::size_t n) { return random_() % n; }
-
-  static void add(Damaged& both, const std::string& block) {
-    both.before += block + "\n";
-    both.after += block + "\n";
-  }
-
-  std::string block_of(const std::vector<std::string_view>& blocks) {
-    std::string block(blocks[below(blocks.size())]);
-    if (block.find('$') != std::string::npos && block.find("$P") == std::string::npos) {
-      block = replaced(block, "$", std::to_string(++place_));
-    }
-    return block;
-  }
-
-  static std::string without_feed(std::string block) {
-    const std::size_t at = block.find('@');
-    const std::size_t begin = block[at - 1] == '=' ? at - 2 : at - 1;
-    return block.erase(begin, at + 1 - begin);
-  }
-
-  const Blocks& blocks_;
-  std::mt19937 random_;
-  int place_ = 0;
+struct Damaged {
+  std::string before;
+  std::string after;
 };
+
+std::string without_feed(std::string block) {
+  const std::size_t at = block.find('@');
+  const std::size_t begin = block[at - 1] == '=' ? at - 2 : at - 1;
+  return block.erase(begin, at + 1 - begin);
+}
+
+// Each feed is one of its own, and used before the next one; one is changed, lost or added.
+Damaged random_feeds(const Blocks& blocks, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  const auto below = [&](std::size_t n) { return random() % n; };
+  int place = 0;
+  const auto block_of = [&](const std::vector<std::string_view>& from) {
+    const std::string block(from[below(from.size())]);
+    const bool has_place = block.find('$') < block.find("$P");
+    return (has_place ? replaced(block, "$", std::to_string(++place)) : block) + "\n";
+  };
+  Damaged both{std::string(blocks.begin), std::string(blocks.begin)};
+  const auto add = [&](const std::string& before, const std::string& after) {
+    both.before += before;
+    both.after += after;
+  };
+  const std::size_t steps = 1 + below(6);
+  const std::size_t wrong = below(steps);
+  const std::size_t damage = below(3);
+  for (std::size_t step = 0; step < steps; ++step) {
+    const std::string unknown = block_of(blocks.unknown);
+    add(unknown, unknown);
+    const std::string feed = block_of(blocks.feeds);
+    const std::string said = replaced(feed, "@", std::to_string(100 + 7 * step));
+    const std::string none = without_feed(feed);
+    if (step != wrong) {
+      add(said, said);
+    } else if (damage == 0) {
+      add(said, replaced(feed, "@", std::to_string(100 + 7 * step) + "0"));
+    } else {
+      add(damage == 1 ? said : none, damage == 1 ? none : said);
+    }
+    const std::string use = block_of(blocks.uses);
+    add(use, use);
+  }
+  add(std::string(blocks.end), std::string(blocks.end));
+  return both;
+}
 
 TEST(RandomFeeds, ThatAreChangedLostOrAddedAreNeverProved) {
   constexpr std::uint32_t kPrograms = 2000;
   for (const Blocks& blocks : blocks_of_languages()) {
     for (std::uint32_t seed = 0; seed < kPrograms; ++seed) {
-      const auto both = RandomFeeds(blocks, seed).program();
+      const Damaged both = random_feeds(blocks, seed);
       ASSERT_FALSE(is_proved(both.before, both.after, blocks.language)) << "seed " << seed << "\n"
                                                                         << both.before << "---\n"
                                                                         << both.after;

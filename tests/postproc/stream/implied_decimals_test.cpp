@@ -10,8 +10,9 @@
 #include "gcode/state/reason.h"
 #include "gcode/text/language.h"
 #include "postproc/options/options.h"
-#include "postproc/stream/pipeline.h"
+#include "postproc/stream/part_reader.h"
 #include "tests/support/constructs.h"
+#include "tests/support/in_windows.h"
 
 namespace batten::postproc {
 namespace {
@@ -63,20 +64,17 @@ SmoothOptions with(const char* target, const Decimals& decimals) {
 }
 
 // The verdict of a reader that takes numbers without a point so.
-Verification verdict_with(const std::string& before, const std::string& after, double tolerance_mm,
-                          const Decimals& decimals) {
+bool is_proved(const std::string& before, const std::string& after, const Decimals& decimals) {
   const auto read = [&](const std::string& text) {
     gcode::Diagnostics ignored;
-    gcode::Program program =
-        gcode::parse(gcode::SourceText("test.nc", text),
-                     {gcode::Language::kRs274, decimals, gcode::Units::kUnknown}, ignored);
-    gcode::Interpretation meaning = gcode::interpret(program, {}, ignored);
-    return std::pair(std::move(program), std::move(meaning));
+    return read_whole(gcode::SourceText("test.nc", text),
+                      {.text = {gcode::Language::kRs274, decimals}}, ignored);
   };
-  const auto old_text = read(before);
-  const auto new_text = read(after);
-  return verify({&old_text.first, &old_text.second}, {&new_text.first, &new_text.second},
-                tolerance_mm);
+  const gcode::ReadPart old_text = read(before);
+  const gcode::ReadPart new_text = read(after);
+  return verify({&old_text.program, &old_text.meaning}, {&new_text.program, &new_text.meaning},
+                0.01)
+      .proved();
 }
 
 TEST(ImpliedDecimals, UndeclaredProgramsStayAsTheyAreWithTheReason) {
@@ -144,8 +142,8 @@ TEST(ImpliedDecimals, EveryWrittenLengthHasAPoint) {
         EXPECT_NE(line.substr(i, end - i).find('.'), std::string::npos) << line;
       }
     }
-    EXPECT_TRUE(verdict_with(before, result.text, 0.01, kIncrements).proved());
-    EXPECT_FALSE(verdict_with(before, result.text, 0.01, kExplicit).proved());
+    EXPECT_TRUE(is_proved(before, result.text, kIncrements));
+    EXPECT_FALSE(is_proved(before, result.text, kExplicit));
   }
 }
 
@@ -155,7 +153,7 @@ TEST(ImpliedDecimals, ExplicitOnesAreUnitsOnThoseControlsToo) {
   EXPECT_EQ(kept.text, before);
   const SmoothResult result = smoothed(before, with("fanuc", kExplicit));
   EXPECT_TRUE(result.diagnostics.empty());
-  EXPECT_TRUE(verdict_with(before, result.text, 0.01, kExplicit).proved());
+  EXPECT_TRUE(is_proved(before, result.text, kExplicit));
 }
 
 // Nobody said what these mean, so nothing may depend on it.
@@ -172,8 +170,8 @@ TEST(ImpliedDecimals, WhatIsWrittenUndeclaredHoldsInEitherReading) {
     const SmoothResult result = smoothed(before, undeclared("fanuc"));
     EXPECT_TRUE(result.proved);
     EXPECT_EQ(rewritten_runs(result) > 0, every > 3);
-    EXPECT_TRUE(verdict_with(before, result.text, 0.01, kExplicit).proved());
-    EXPECT_TRUE(verdict_with(before, result.text, 0.01, kIncrements).proved());
+    EXPECT_TRUE(is_proved(before, result.text, kExplicit));
+    EXPECT_TRUE(is_proved(before, result.text, kIncrements));
     expect_rest_copied(before, result);
   }
 }
@@ -198,45 +196,28 @@ TEST(ImpliedDecimals, TheProofTellsFeedsWithAndWithoutAPointApart) {
   std::string after = before;
   after.replace(after.find("F100"), 4, "F100.");
   const Decimals undeclared{.pointless = PointlessNumbers::kUndeclared};
-  EXPECT_TRUE(verdict_with(before, before, 0.01, undeclared).proved());
-  EXPECT_FALSE(verdict_with(before, after, 0.01, undeclared).proved());
-  EXPECT_FALSE(verdict_with(before, after, 0.01, kIncrements).proved());
-  EXPECT_TRUE(verdict_with(before, after, 0.01, kExplicit).proved());
+  EXPECT_TRUE(is_proved(before, before, undeclared));
+  EXPECT_FALSE(is_proved(before, after, undeclared));
+  EXPECT_FALSE(is_proved(before, after, kIncrements));
+  EXPECT_TRUE(is_proved(before, after, kExplicit));
 }
 
 TEST(ImpliedDecimals, LongProgramsAreReadSoWindowByWindow) {
-  std::string before = "G21 G90 G17\n";
-  for (int part = 0; part < 4; ++part) {
-    before += "G0 Z5000\nG0 X0 Y0\nG1 Z-1000 F300\n";
-    for (int i = 1; i <= 200; ++i) {
-      before += fmt::format("X{} Y{:.0f}{}\n", 200 * i, 2000 * std::sin(2 * 3.14159265 * i / 90),
-                            i == 1 ? " F2000" : "");
-    }
-  }
-  before += "G0 Z5000\nM30\n";
-  const gcode::SourceText source("test.nc", before);
+  const std::string wave = wave_in_increments();
+  const std::string pass = wave.substr(wave.find("G0 X0"), wave.find("M30") - wave.find("G0 X0"));
+  const std::string before = "G21 G90 G17\n" + pass + pass + pass + pass + "M30\n";
   for (const bool declared : {true, false}) {
     SmoothOptions options = undeclared("fanuc");
     if (declared) options.decimals = kIncrements;
-    std::string text;
-    const auto windows = smooth_in_windows(source, options,
-                                           [&text](std::string_view bytes) {
-                                             text += bytes;
-                                             return true;
-                                           },
-                                           {}, {.least_blocks = 100});
+    const InWindows windows = in_windows(before, options, 100);
     const SmoothResult whole = smoothed(before, options);
     EXPECT_EQ(rewritten_runs(whole), declared ? 4U : 0U);
-    EXPECT_TRUE(windows.has_value() || !declared);
-    if (!windows) continue;
-    EXPECT_EQ(text, whole.text);
+    EXPECT_TRUE(windows.result.has_value() || !declared);
+    EXPECT_TRUE(!windows.result || windows.text == whole.text);
   }
 }
 
-// --- the option
-// -------------------------------------------------------------------------------------
-
-TEST(DecimalsOption, ReadsWhatItWrites) {
+TEST(DecimalsOption, ReadsWhatItWritesAndRefusesIncrementsThatNoControlHas) {
   for (const char* text : {"auto", "explicit", "implied", "implied:0.0001", "implied:1"}) {
     std::vector<std::string> problems;
     EXPECT_EQ(text_of(read_decimals(text, problems)), text);
@@ -245,11 +226,8 @@ TEST(DecimalsOption, ReadsWhatItWrites) {
   std::vector<std::string> problems;
   EXPECT_EQ(text_of(read_decimals("implied:0.001", problems)), "implied");
   EXPECT_TRUE(problems.empty());
-}
-
-TEST(DecimalsOption, RefusesIncrementsThatNoControlHas) {
   for (const char* text : {"", "yes", "implied:", "implied:0.002", "implied:0.01mm", "Implied"}) {
-    std::vector<std::string> problems;
+    problems.clear();
     EXPECT_EQ(read_decimals(text, problems), std::nullopt);
     EXPECT_EQ(problems.size(), 1U) << text;
   }

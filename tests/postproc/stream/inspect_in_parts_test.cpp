@@ -5,12 +5,8 @@
 
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
-#include <fstream>
-#include <initializer_list>
 #include <optional>
 #include <random>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,7 +14,6 @@
 
 #include "postproc/stream/inspect.h"
 #include "tests/support/in_windows.h"
-#include "tests/support/places.h"
 #include "tests/support/random_passes.h"
 #include "tests/support/wavy_programs.h"
 
@@ -70,8 +65,6 @@ bool compare_both_ways(const std::string& text) {
   }
   return true;
 }
-
-// --- random programs ----------------------------------------------------------------------------
 
 constexpr unsigned kInspectedSeeds = 40;
 
@@ -142,18 +135,11 @@ TEST(InspectInParts, SaysOfOneChainWhatTheWholeSays) {
   }
 }
 
-// --- the samples and tables ---------------------------------------------------------------------
-
 TEST(InspectInParts, SaysOfEverySampleWhatTheWholeSays) {
   std::size_t in_parts = 0;
-  const std::filesystem::path root = std::filesystem::path(BATTEN_SOURCE_DIR) / "samples";
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
-    const std::string suffix = entry.path().extension().string();
-    if (suffix != ".nc" && suffix != ".ngc" && suffix != ".gcode") continue;
-    SCOPED_TRACE(entry.path().string());
-    std::ostringstream text;
-    text << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-    in_parts += compare_both_ways(text.str()) ? 1 : 0;
+  for (const auto& [file, text] : sample_programs()) {
+    SCOPED_TRACE(file);
+    in_parts += compare_both_ways(text) ? 1 : 0;
     if (HasFailure()) return;
   }
   EXPECT_GE(in_parts, 8U);
@@ -198,18 +184,6 @@ TEST(InspectInParts, JudgesArcsByAllOfTheirChain) {
   EXPECT_TRUE(compare_both_ways(text));
 }
 
-TEST(InspectInParts, FindsThatALongRunIsClosed) {
-  std::string text = "G21 G90\nG0 X10 Y0 Z0\nG1 F100\n";
-  for (int i = 1; i <= 60; ++i) {
-    const double angle = 2 * 3.141592653589793 * i / 60;
-    text += fmt::format("X{:.3f} Y{:.3f}\n", 10 * std::cos(angle), 10 * std::sin(angle) + 0.0);
-  }
-  const auto parts = in_parts(text, 7, 1);
-  ASSERT_TRUE(parts);
-  EXPECT_TRUE(parts->sections.back().closed);
-  EXPECT_EQ(parts->sections.back().segments.count, 60U);
-}
-
 TEST(InspectInParts, ReadsNothingBehindTheMarkThatEndsTheProgram) {
   for (const char* behind : {"(MSG,look)\n", "(the end)\n\n", "\n\n", "%\n(MSG,look)\n"}) {
     for (const char* before : {"%\n", "", "(MSG,look)\n%\n"}) {
@@ -219,8 +193,6 @@ TEST(InspectInParts, ReadsNothingBehindTheMarkThatEndsTheProgram) {
     }
   }
 }
-
-// --- what needs the whole -----------------------------------------------------------------------
 
 TEST(InspectInParts, LeavesToTheWholeWhatNeedsIt) {
   const std::string lines = joined(wave_lines({.lines = 30}), "\n");

@@ -10,7 +10,7 @@
 
 #include "postproc/machine/program_time/program_time_steps.h"
 #include "postproc/report/smooth_report.h"
-#include "postproc/stream/inspect.h"
+#include "tests/support/constructs.h"
 #include "tests/support/in_windows.h"
 #include "tests/support/wavy_programs.h"
 
@@ -30,14 +30,16 @@ SmoothOptions options_of(std::string_view target) {
   return options;
 }
 
+std::string in_x_and_z(const Wave& wave) {
+  std::string text = joined(wave_lines(wave), "\n");
+  std::ranges::replace(text, 'Y', 'Z');
+  return text;
+}
+
 // A contour in X and Z that any mill would cut, and that has no mark of a lathe.
 std::string contour(const std::string& head, const std::string& tail = "") {
   std::string text = head + "G0 X40. Z5.\nG1 Z0. F200.\n";
-  for (const std::string& line : wave_lines({.decimals = 4})) {
-    std::string moved = line;
-    std::ranges::replace(moved, 'Y', 'Z');
-    text += moved + "\n";
-  }
+  text += in_x_and_z({.decimals = 4});
   return text + tail + "G0 X100.\nM30\n";
 }
 
@@ -53,9 +55,8 @@ void expect_copied(const std::string& text, std::string_view target, std::string
   EXPECT_TRUE(warning->message.starts_with(evidence)) << warning->message;
 }
 
-// --- the passes of one cycle -----------------------------------------------------------------
-
-TEST(LatheProgram, KeepsEachPassOfATurningCycle) {
+TEST(LatheProgram, KeepsEachPassOfATurningCycleAndNeedsNoUnits) {
+  expect_copied("T0101\nG50 S2000\nG0 X40. Z2.\nG90 X38. Z-20. F0.2\nX36.\nM30\n", "fanuc", "");
   // Read as a mill's program these are moves along X in one line, one of which would be enough.
   const std::string lathe_passes =
       "G0 X62. Z2.\nG1 X60. F0.3\nG90 X58. Z-40. F0.25\nX54.\nX50.\nX46.\nX42.\nX38.\n"
@@ -66,147 +67,128 @@ TEST(LatheProgram, KeepsEachPassOfATurningCycle) {
                 "a feed that only one per revolution can be");
 }
 
-// --- the marks ---------------------------------------------------------------------------------
-
 struct MarkCase {
-  const char* name;
-  const char* target;
-  std::string marks;  // lines in front of the contour
+  std::string name;
+  std::string target;
+  std::string lines;
   std::string evidence;
   bool certain = true;  // also where Y is named
 };
 void PrintTo(const MarkCase& c, std::ostream* out) { *out << c.name; }
 
+std::vector<MarkCase> marks_in(const char* table, bool certain) {
+  std::vector<MarkCase> cases;
+  for (const Construct& row : constructs_in(table)) {
+    cases.push_back({row.name, row.target, row.text, row.reason, certain});
+  }
+  return cases;
+}
+
+std::string name_of_mark(const testing::TestParamInfo<MarkCase>& test) {
+  return test.param.target + test.param.name;
+}
+
 class Mark : public testing::TestWithParam<MarkCase> {};
 
-TEST_P(Mark, CopiesTheProgram) {
+TEST_P(Mark, CopiesTheProgramHoweverLateAndWhereYIsNamedOnlyIfItIsCertain) {
   const MarkCase& c = GetParam();
-  expect_copied(contour("G21 G40\n" + c.marks + "\n"), c.target, c.evidence);
-}
-
-TEST_P(Mark, CopiesTheProgramHoweverLateItStands) {
-  const MarkCase& c = GetParam();
-  expect_copied(contour("G21 G40\n", c.marks + "\n"), c.target, c.evidence);
-}
-
-TEST_P(Mark, IsOneWhereYIsNamedOnlyIfItIsCertain) {
-  const MarkCase& c = GetParam();
+  expect_copied(contour("G21 G40\n" + c.lines + "\n"), c.target, c.evidence);
+  expect_copied(contour("G21 G40\n", c.lines + "\n"), c.target, c.evidence);
   const SmoothResult result =
-      smoothed(contour("G21 G40\n" + c.marks + "\nG0 Y5.\n"), options_of(c.target));
+      smoothed(contour("G21 G40\n" + c.lines + "\nG0 Y5.\n"), options_of(c.target));
   EXPECT_EQ(lathe_warning(result) != nullptr, c.certain);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Certain, Mark,
-    testing::Values(
-        MarkCase{"SpindleLimit", "fanuc", "G50 S2000", "G50 S"},
-        MarkCase{"SpindleLimitWithTool", "haas", "N1 G50 S2000 T0101", "G50 S"},
-        MarkCase{"SpindleLimitAndOrigin", "fanuc", "G50 X200. Z150. S2000", "G50 S"},
-        MarkCase{"SpindleLimitInItsPlane", "fanuc", "G18 G50 S4500 R1", "G50 S"},
-        MarkCase{"Finishing", "fanuc", "G70 P10 Q20", "a turning cycle over"},
-        MarkCase{"Roughing", "fanuc", "G71 P10 Q20 U0.4 W0.1 F0.25", "a turning cycle over"},
-        MarkCase{"RoughingOnOneLine", "haas", "G71 P10 Q20 D0.1 U0.01 W0.005 F0.012",
-                 "a turning cycle over"},
-        MarkCase{"Facing", "fanuc", "G72 P10 Q20 U0.4 W0.1 F0.25", "a turning cycle over"},
-        MarkCase{"Repeating", "fanuc", "G73 P10 Q20 U0.4 W0.1 F0.25", "a turning cycle over"},
-        MarkCase{"DepthOfCut", "fanuc", "G71 U2. R1.", "a turning cycle's depth"},
-        MarkCase{"DepthOfFacing", "fanuc", "G72 W2. R1.", "a turning cycle's depth"},
-        MarkCase{"DepthOfRepeating", "fanuc", "G73 U10. W10. R5", "a turning cycle's depth"},
-        MarkCase{"RoughingOfLinuxcnc", "linuxcnc", "G71 Q100 X15 Z3 D1 I1 R0.3",
-                 "a turning cycle over a contour, G70 to G72 Q"},
-        MarkCase{"RoughingOfLinuxcncInOneSense", "linuxcnc", "G72.1 Q100 X15 Z3 D1 I1 R0.3",
-                 "a turning cycle over a contour, G70 to G72 Q"},
-        MarkCase{"Thread", "fanuc", "G32 Z-20. F1.5", "a thread"},
-        MarkCase{"ThreadingOfLinuxcnc", "linuxcnc", "G76 P1.5 Z-20 I-2 J0.2 K1 R1.5",
-                 "a threading cycle"},
-        MarkCase{"SpindleLimit", "siemens", "G96 S200 LIMS=3000", "LIMS"},
-        MarkCase{"SpindleLimitOfSpindle", "siemens", "LIMS[1]=3000", "LIMS"},
-        MarkCase{"Stock", "siemens", "CYCLE95(\"CONTOUR\",2,0.2,0.3,0.4,0.3,0.2,0.1,9,0,0,1)",
-                 "a turning cycle, CYCLE93"},
-        MarkCase{"LapCycle", "fanuc", "G85 NLAP1 D4 U0.4 W0.2 F0.3", "NLAP"}),
-    [](const auto& test) { return std::string(test.param.target) + test.param.name; });
+// Name | control | lines before the contour | how the warning begins. Certain ones are marks also
+// where Y is named.
+constexpr const char* kCertain = R"(
+SpindleLimit|fanuc|G50 S2000|G50 S
+SpindleLimitWithTool|haas|N1 G50 S2000 T0101|G50 S
+SpindleLimitAndOrigin|fanuc|G50 X200. Z150. S2000|G50 S
+SpindleLimitInItsPlane|fanuc|G18 G50 S4500 R1|G50 S
+Finishing|fanuc|G70 P10 Q20|a turning cycle over
+Roughing|fanuc|G71 P10 Q20 U0.4 W0.1 F0.25|a turning cycle over
+RoughingOnOneLine|haas|G71 P10 Q20 D0.1 U0.01 W0.005 F0.012|a turning cycle over
+Facing|fanuc|G72 P10 Q20 U0.4 W0.1 F0.25|a turning cycle over
+Repeating|fanuc|G73 P10 Q20 U0.4 W0.1 F0.25|a turning cycle over
+DepthOfCut|fanuc|G71 U2. R1.|a turning cycle's depth
+DepthOfFacing|fanuc|G72 W2. R1.|a turning cycle's depth
+DepthOfRepeating|fanuc|G73 U10. W10. R5|a turning cycle's depth
+RoughingOfLinuxcnc|linuxcnc|G71 Q100 X15 Z3 D1 I1 R0.3|a turning cycle over a contour, G70 to G72 Q
+RoughingOfLinuxcncInOneSense|linuxcnc|G72.1 Q100 X15 Z3 D1 I1 R0.3|a turning cycle over a contour, G70 to G72 Q
+Thread|fanuc|G32 Z-20. F1.5|a thread
+ThreadingOfLinuxcnc|linuxcnc|G76 P1.5 Z-20 I-2 J0.2 K1 R1.5|a threading cycle
+SpindleLimit|siemens|G96 S200 LIMS=3000|LIMS
+SpindleLimitOfSpindle|siemens|LIMS[1]=3000|LIMS
+Stock|siemens|CYCLE95("CONTOUR",2,0.2,0.3,0.4,0.3,0.2,0.1,9,0,0,1)|a turning cycle, CYCLE93
+LapCycle|fanuc|G85 NLAP1 D4 U0.4 W0.2 F0.3|NLAP
+)";
 
-INSTANTIATE_TEST_SUITE_P(
-    TwoKinds, Mark,
-    testing::Values(
-        MarkCase{"ToolAndSurfaceSpeed", "fanuc", "T0101\nG96 S180 M3\nG97 S800", "T with", false},
-        MarkCase{"ToolAndFeed", "fanuc", "T0303\nG99\nG94", "T with", false},
-        MarkCase{"ToolOfSixDigits", "fanuc", "T010101\nG99\nG94", "T with", false},
-        MarkCase{"ToolAndSmallFeed", "haas", "T0202\nG1 Z4. F0.2", "T with", false},
-        MarkCase{"LimitOfOtherSystems", "fanuc", "G92 S2500\nT0101", "G92 with S", false},
-        MarkCase{"LimitBesideOthers", "fanuc", "G0 G40 G50 S2000 M3\nT0101", "G50 S", false},
-        MarkCase{"CycleAndSmallFeed", "fanuc", "G94 X20. Z-2. F0.2", "G90, G92, G94", false},
-        MarkCase{"CycleOfSystemB", "fanuc", "T0101\nG77 X20. Z-2. F100.", "T with", false},
-        MarkCase{"ThreadAndTool", "fanuc", "T0404\nG92 X19. Z-20. F1.5", "T with", false},
-        MarkCase{"IncrementsAndTool", "fanuc", "T0404\nG0 X42. W-2.", "T with", false},
-        MarkCase{"HomeAndTool", "fanuc", "G28 U0. W0.\nT0404", "increments", false},
-        MarkCase{"Grooving", "fanuc", "T0404\nG75 R1.\nG75 X10. Z-5. P500 Q500 F80.", "T with",
-                 false},
-        MarkCase{"SurfaceSpeedPerRevolution", "siemens", "G95\nG96 S200 M3\nG97 S800\nG94",
-                 "feed per revolution", false}),
-    [](const auto& test) { return std::string(test.param.target) + test.param.name; });
+constexpr const char* kTwoKinds = R"(
+ToolAndSurfaceSpeed|fanuc|T0101\nG96 S180 M3\nG97 S800|T with
+ToolAndFeed|fanuc|T0303\nG99\nG94|T with
+ToolOfSixDigits|fanuc|T010101\nG99\nG94|T with
+ToolAndSmallFeed|haas|T0202\nG1 Z4. F0.2|T with
+LimitOfOtherSystems|fanuc|G92 S2500\nT0101|G92 with S
+LimitBesideOthers|fanuc|G0 G40 G50 S2000 M3\nT0101|G50 S
+CycleAndSmallFeed|fanuc|G94 X20. Z-2. F0.2|G90, G92, G94
+CycleOfSystemB|fanuc|T0101\nG77 X20. Z-2. F100.|T with
+ThreadAndTool|fanuc|T0404\nG92 X19. Z-20. F1.5|T with
+IncrementsAndTool|fanuc|T0404\nG0 X42. W-2.|T with
+HomeAndTool|fanuc|G28 U0. W0.\nT0404|increments
+Grooving|fanuc|T0404\nG75 R1.\nG75 X10. Z-5. P500 Q500 F80.|T with
+SurfaceSpeedPerRevolution|siemens|G95\nG96 S200 M3\nG97 S800\nG94|feed per revolution
+)";
+
+INSTANTIATE_TEST_SUITE_P(Certain, Mark, testing::ValuesIn(marks_in(kCertain, true)), &name_of_mark);
+INSTANTIATE_TEST_SUITE_P(TwoKinds, Mark, testing::ValuesIn(marks_in(kTwoKinds, false)),
+                         &name_of_mark);
 
 TEST(LatheProgram, OfHeidenhainIsCopied) {
-  std::string text = "0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S2000\n2 L X+40 Y+0 Z+5 R0 FMAX M3\n";
-  const std::string tail = "900 L Z+50 R0 FMAX\n901 END PGM A MM\n";
-  int number = 10;
-  std::string cuts;
-  for (const std::string& line : wave_lines({})) {
-    const std::size_t y = line.find(" Y");
-    const std::size_t x = line.find('X');
-    const auto plus = [](std::string value) { return value[0] == '-' ? value : "+" + value; };
-    cuts += fmt::format("{} L X{} Y{} R0 F2000\n", number++, plus(line.substr(x + 1, y - x - 1)),
-                        plus(line.substr(y + 2, line.find(' ', y + 2) - y - 2)));
-  }
+  constexpr gcode::Language kKlartext = gcode::Language::kKlartext;
   const SmoothOptions options = options_for("heidenhain");
-  EXPECT_EQ(rewritten_runs(smoothed(text + cuts + tail, options)), 1U);
-  const std::string comment = "9 ; FUNCTION MODE TURN\n";
-  EXPECT_EQ(rewritten_runs(smoothed(text + comment + cuts + tail, options)), 1U);
-  for (const char* mark :
-       {"9 FUNCTION MODE TURN\n", "9 FUNCTION TURNDATA SPIN VCONST:ON VC:200\n"}) {
-    expect_copied(text + cuts + mark + tail, "heidenhain", "turning, FUNCTION MODE TURN");
+  const std::string cuts = wave_part(kKlartext, 0);
+  for (const char* comment : {"", "; FUNCTION MODE TURN\n"}) {
+    const std::string text = head_of(kKlartext) + comment + cuts + tail_of(kKlartext);
+    EXPECT_EQ(rewritten_runs(smoothed(text, options)), 1U) << comment;
+  }
+  for (const char* mark : {"FUNCTION MODE TURN\n", "FUNCTION TURNDATA SPIN VCONST:ON VC:200\n"}) {
+    expect_copied(head_of(kKlartext) + cuts + mark + tail_of(kKlartext), "heidenhain",
+                  "turning, FUNCTION MODE TURN");
   }
 }
 
-// --- mills ---------------------------------------------------------------------------------------
-
-struct MillCase {
-  const char* name;
-  const char* target;
-  std::string words;  // lines of a mill in front of its cuts
-};
-void PrintTo(const MillCase& c, std::ostream* out) { *out << c.name; }
-
-class Mill : public testing::TestWithParam<MillCase> {};
+class Mill : public testing::TestWithParam<MarkCase> {};
 
 TEST_P(Mill, IsSmoothed) {
-  const MillCase& c = GetParam();
-  const SmoothResult result = smoothed(c.words + "\n" + wave_program(), options_of(c.target));
+  const MarkCase& c = GetParam();
+  const SmoothResult result = smoothed(c.lines + "\n" + wave_program(), options_of(c.target));
   EXPECT_EQ(lathe_warning(result), nullptr) << lathe_warning(result)->message;
   EXPECT_GE(rewritten_runs(result), 1U);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    LooksLikeALathe, Mill,
-    testing::Values(
-        MillCase{"ToolNumber", "fanuc", "T0101 M6\nT0202\nM6"},
-        MillCase{"ToolAndSurfaceSpeed", "fanuc", "T0101\nG96 S200 M3\nG97 S8000"},
-        MillCase{"SafetyLine", "fanuc", "G0 G17 G40 G49 G50 G80 G90 S5000 M3"},
-        MillCase{"EndOfScaling", "haas", "G50"},
-        MillCase{"OriginByG92", "linuxcnc", "G92 X0 Y0 Z0"},
-        MillCase{"ReturnOfCycle", "fanuc", "G21 G99 G81 X5. Y5. Z-3. R2. F100.\nG80"},
-        MillCase{"ChipBreaking", "fanuc", "G21 G98 G73 X5. Y5. Z-3. R2. Q1. F100.\nG80"},
-        MillCase{"LeftTapping", "fanuc", "G21 G98 G74 X5. Y5. Z-3. R2. P500 Q1. F100.\nG80"},
-        MillCase{"FineBoring", "fanuc",
-                 "G21 G98 G76 X5. Y5. Z-3. R2. Q0.1 P500 I1. J1. F100.\nG80"},
-        MillCase{"UnitsOfOldControls", "siemens", "G71 G90 G17"},
-        MillCase{"ParallelAxes", "fanuc", "G21\nG0 U5. W10.\nG0 X1. W20.\nT0101"},
-        MillCase{"InverseTime", "linuxcnc", "G21 G93\nG1 X1 F0.5\nG94\nT0101"},
-        MillCase{"TappingPerRevolution", "siemens", "G95\nG94"},
-        MillCase{"FixedPoint", "siemens", "G75 X0 Z0\nG74 X0 Z0"},
-        MillCase{"NamesInTexts", "siemens", "MSG(\"LIMS=3000 CYCLE95(\")\n; LIMS=3000"},
-        MillCase{"MillingCycle", "siemens", "CYCLE832(0.01,3)"}),
-    [](const auto& test) { return std::string(test.param.target) + test.param.name; });
+// Name | control | lines of a mill before its cuts.
+constexpr const char* kMills = R"(
+ToolNumber|fanuc|T0101 M6\nT0202\nM6
+ToolAndSurfaceSpeed|fanuc|T0101\nG96 S200 M3\nG97 S8000
+SafetyLine|fanuc|G0 G17 G40 G49 G50 G80 G90 S5000 M3
+EndOfScaling|haas|G50
+OriginByG92|linuxcnc|G92 X0 Y0 Z0
+ReturnOfCycle|fanuc|G21 G99 G81 X5. Y5. Z-3. R2. F100.\nG80
+ChipBreaking|fanuc|G21 G98 G73 X5. Y5. Z-3. R2. Q1. F100.\nG80
+LeftTapping|fanuc|G21 G98 G74 X5. Y5. Z-3. R2. P500 Q1. F100.\nG80
+FineBoring|fanuc|G21 G98 G76 X5. Y5. Z-3. R2. Q0.1 P500 I1. J1. F100.\nG80
+UnitsOfOldControls|siemens|G71 G90 G17
+ParallelAxes|fanuc|G21\nG0 U5. W10.\nG0 X1. W20.\nT0101
+InverseTime|linuxcnc|G21 G93\nG1 X1 F0.5\nG94\nT0101
+TappingPerRevolution|siemens|G95\nG94
+FixedPoint|siemens|G75 X0 Z0\nG74 X0 Z0
+NamesInTexts|siemens|MSG("LIMS=3000 CYCLE95(")\n; LIMS=3000
+MillingCycle|siemens|CYCLE832(0.01,3)
+)";
+
+INSTANTIATE_TEST_SUITE_P(LooksLikeALathe, Mill, testing::ValuesIn(marks_in(kMills, false)),
+                         &name_of_mark);
 
 TEST(LatheProgram, IsNotEveryProgramInXAndZ) {
   for (const char* head : {"G21\n", "G21 G18\nT1 M6\n", "G21\nG90 X30. Z5. F300.\n"}) {
@@ -215,9 +197,6 @@ TEST(LatheProgram, IsNotEveryProgramInXAndZ) {
     EXPECT_EQ(rewritten_runs(result), 1U) << head;
   }
 }
-
-// --- what else is asked of it
-// -----------------------------------------------------------------------
 
 TEST(LatheProgram, IsProvedOnlyWhereNothingThatActsDiffers) {
   const std::string text = contour("G21\nG50 S2000\n");
@@ -238,13 +217,6 @@ TEST(LatheProgram, IsProvedOnlyWhereNothingThatActsDiffers) {
   }
 }
 
-TEST(LatheProgram, NeedsNoUnits) {
-  const std::string text = "T0101\nG50 S2000\nG0 X40. Z2.\nG90 X38. Z-20. F0.2\nX36.\nM30\n";
-  const SmoothResult result = smoothed(text, options_for("fanuc"));
-  EXPECT_TRUE(result.understood);
-  EXPECT_EQ(result.text, text);
-}
-
 TEST(LatheProgram, SaysSoInTheSummaryEvenWhereNothingMoves) {
   const SmoothOptions options = options_for("fanuc");
   for (const std::string& text :
@@ -257,16 +229,14 @@ TEST(LatheProgram, SaysSoInTheSummaryEvenWhereNothingMoves) {
   }
 }
 
-TEST(LatheProgram, IsNotTranslated) {
+TEST(LatheProgram, IsNeitherTranslatedNorAllowed) {
+  const std::string text = contour("G21\nG50 S2000\n");
   SmoothOptions options = options_for("heidenhain");
   options.convert = true;
-  EXPECT_FALSE(smoothed(contour("G21\nG50 S2000\n"), options).understood);
-}
-
-TEST(LatheProgram, CannotBeAllowed) {
-  SmoothOptions options = options_for("fanuc");
+  EXPECT_FALSE(smoothed(text, options).understood);
+  options = options_for("fanuc");
   options.allowed = {"lathe-program"};
-  EXPECT_EQ(rewritten_runs(smoothed(contour("G21\nG50 S2000\n"), options)), 0U);
+  EXPECT_EQ(rewritten_runs(smoothed(text, options)), 0U);
 }
 
 TEST(LatheProgram, IsNotTimed) {
@@ -277,19 +247,11 @@ TEST(LatheProgram, IsNotTimed) {
   }));
 }
 
-// --- long programs
-// ----------------------------------------------------------------------------------
-
 std::string lathe_passes(int count) {
   std::string text = "G21 G90 G17\n";
   for (int i = 0; i < count; ++i) {
     text += "G0 X0 Z5\n";
-    for (const std::string& line : wave_lines({.lines = 60})) {
-      std::string moved = line;
-      std::ranges::replace(moved, 'Y', 'Z');
-      text += moved + "\n";
-    }
-    text += "G0 Z5\n";
+    text += in_x_and_z({.lines = 60}) + "G0 Z5\n";
   }
   return text;
 }

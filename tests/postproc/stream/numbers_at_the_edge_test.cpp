@@ -29,59 +29,39 @@ namespace exact = geometry::exact;
 // Whole numbers of this are exact: what is printed has nine decimals at the most.
 constexpr double kStepsPerMm = 1e9;
 
-// --- shapes --------------------------------------------------------------------------------------
-
-// In units of the program's size: about 60 places each.
-using Shape = std::vector<std::array<double, 3>> (*)();
-
-std::vector<std::array<double, 3>> wave() {
-  std::vector<std::array<double, 3>> places;
-  for (int i = 0; i <= 60; ++i) places.push_back({0.5 * i, 3 * std::sin(0.2 * i), 0});
-  return places;
-}
-
-// Along one line, to and fro, further each time.
-std::vector<std::array<double, 3>> reversals() {
-  std::vector<std::array<double, 3>> places;
-  for (int i = 0; i <= 60; ++i) places.push_back({i % 2 == 0 ? 0.5 * i : 0.2 * i, 0, 0});
-  return places;
-}
+// Of a shape, in units of the program's size: place `i` of 61.
+using Place = std::array<double, 3>;
 
 // Out along a wave and home over the same places.
-std::vector<std::array<double, 3>> retrace() {
-  std::vector<std::array<double, 3>> places = wave();
-  places.resize(30);
-  for (std::size_t i = 29; i-- > 0;) places.push_back(places[i]);
-  return places;
-}
-
-// One place, and a move and the same back now and then.
-std::vector<std::array<double, 3>> standing() {
-  std::vector<std::array<double, 3>> places;
-  for (int i = 0; i <= 60; ++i) places.push_back({i % 20 == 10 ? 1.0 : 0.0, 0, 0});
-  return places;
-}
-
-// Short moves, and three that are a thousand times as long.
-std::vector<std::array<double, 3>> long_and_short() {
-  std::vector<std::array<double, 3>> places;
-  double x = 0;
-  for (int i = 0; i <= 60; ++i) {
-    x += i % 20 == 10 ? 1000 : 1;
-    places.push_back({x, i % 2 == 0 ? 0.0 : 1.0, 0.25 * (i % 3)});
-  }
-  return places;
+Place retrace(int i) {
+  const int at = std::min(i, 60 - i);
+  return {0.5 * at, 3 * std::sin(0.2 * at), 0};
 }
 
 struct EdgeShape {
   const char* name;
-  Shape places;
+  Place (*place)(int);
 };
-constexpr EdgeShape kShapes[] = {{"Wave", wave},
-                                 {"Reversals", reversals},
-                                 {"Retrace", retrace},
-                                 {"Standing", standing},
-                                 {"LongAndShort", long_and_short}};
+constexpr EdgeShape kShapes[] = {
+    {"Wave",
+     [](int i) {
+       return Place{0.5 * i, 3 * std::sin(0.2 * i), 0};
+     }},
+    // Along one line, to and fro, further each time.
+    {"Reversals",
+     [](int i) {
+       return Place{i % 2 == 0 ? 0.5 * i : 0.2 * i, 0, 0};
+     }},
+    {"Retrace", retrace},
+    // One place, and a move and the same back now and then.
+    {"Standing",
+     [](int i) {
+       return Place{i % 20 == 10 ? 1.0 : 0.0, 0, 0};
+     }},
+    // Short moves, and three that are a thousand times as long.
+    {"LongAndShort", [](int i) {
+       return Place{i + 1 + 999.0 * ((i + 10) / 20), i % 2 == 0 ? 0.0 : 1.0, 0.25 * (i % 3)};
+     }}};
 
 struct EdgeCase {
   const EdgeShape* shape;
@@ -110,7 +90,8 @@ std::string program_of(const EdgeCase& test) {
   // As fine as the moves need, and as a double holds far away.
   const int decimals = test.size >= 0.01 ? 4 : test.away > 0 ? 6 : 9;
   std::string text = "G21 G90 G17\nG0 X0 Y0 Z0\nG1 F1000\n";
-  for (const auto& p : test.shape->places()) {
+  for (int i = 0; i <= 60; ++i) {
+    const Place p = test.shape->place(i);
     text += fmt::format("X{:.{}f} Y{:.{}f} Z{:.{}f}\n", test.away + test.size * p[0], decimals,
                         test.size * p[1], decimals, test.size * p[2], decimals);
   }
@@ -135,17 +116,24 @@ std::optional<exact::Chain> cutting_chain(const std::string& text) {
   return chain;
 }
 
+void PrintTo(const EdgeCase& test, std::ostream* out) {
+  *out << test.shape->name << " of " << test.size << " mm, " << test.away << " mm away, within "
+       << test.tolerance << " mm";
+}
+
+SmoothOptions options_of(const EdgeCase& test) {
+  SmoothOptions options = options_for("linuxcnc");
+  options.tolerance_mm = test.tolerance;
+  options.output = Form::kLines;
+  return options;
+}
+
 class EdgeNumbers : public testing::TestWithParam<EdgeCase> {};
 
 TEST_P(EdgeNumbers, AreProvedTrulyOrKept) {
   const EdgeCase& test = GetParam();
   const std::string text = program_of(test);
-  SCOPED_TRACE(testing::Message() << test.shape->name << " of " << test.size << " mm, " << test.away
-                                  << " mm away, within " << test.tolerance << " mm");
-  SmoothOptions options = options_for("linuxcnc");
-  options.tolerance_mm = test.tolerance;
-  options.output = Form::kLines;
-  const SmoothResult result = smoothed(text, options);
+  const SmoothResult result = smoothed(text, options_of(test));
   EXPECT_TRUE(result.proved);
   EXPECT_LE(result.deviation_mm, test.tolerance);
   EXPECT_TRUE(verdict(text, result.text, test.tolerance).proved());
@@ -161,17 +149,14 @@ TEST_P(EdgeNumbers, AreProvedTrulyOrKept) {
 // plane.
 TEST_P(EdgeNumbers, AreNotProvedWhereThePathIsBeyondTheTolerance) {
   const EdgeCase& test = GetParam();
-  SCOPED_TRACE(testing::Message() << test.shape->name << " of " << test.size << " mm, " << test.away
-                                  << " mm away, within " << test.tolerance << " mm");
   const std::string text = program_of(test);
   std::string moved;
   for (const std::string& line : lines_of(text)) {
-    moved += line;
-    if (line.find(" Z") != std::string::npos && line.find("G0") == std::string::npos) {
-      const double z = std::stod(line.substr(line.find('Z') + 1));
-      moved.erase(moved.rfind('Z'));
-      moved += fmt::format("Z{:.9f}", z + 1.01 * test.tolerance);
-    }
+    const bool cuts = line.find(" Z") != std::string::npos && !line.starts_with("G0");
+    const std::size_t z = cuts ? line.find('Z') : line.size();
+    moved += line.substr(0, z);
+    if (cuts)
+      moved += fmt::format("Z{:.9f}", std::stod(line.substr(z + 1)) + 1.01 * test.tolerance);
     moved += '\n';
   }
   EXPECT_FALSE(verdict(text, moved, test.tolerance).proved());
@@ -183,40 +168,20 @@ INSTANTIATE_TEST_SUITE_P(Pipeline, EdgeNumbers, testing::ValuesIn(edge_cases()))
 TEST(EdgeNumbersOf, ManyShapesAreRewritten) {
   int rewritten = 0;
   for (const EdgeCase& test : edge_cases()) {
-    SmoothOptions options = options_for("linuxcnc");
-    options.tolerance_mm = test.tolerance;
-    options.output = Form::kLines;
-    rewritten += rewritten_runs(smoothed(program_of(test), options)) > 0 ? 1 : 0;
+    rewritten += rewritten_runs(smoothed(program_of(test), options_of(test))) > 0 ? 1 : 0;
   }
   EXPECT_GE(rewritten, 10);
 }
 
-// --- thousands of equal places -----------------------------------------------------------------
-
-// --- ways no longer than the deviation -----------------------------------------------------------
-
 // Between places that are noise alone, pairs of lines to a joint far away and back look right
 // beside the curve, whose part is shorter than the deviation.
 constexpr const char* kNoiseAlone[] = {
-    "G21\n"
-    "G17 G90 G94 G40\n"
-    "G0 X7.1642 Y24.9162 Z5.0000\n"
-    "G1 Z0.0000 F1000.0000\n"
-    "G1 X7.1702 Y24.9165\n"
-    "G1 X7.1667 Y24.9176\n"
-    "G1 X7.1698 Y24.9073\n"
-    "G1 X7.1710 Y24.9098\n"
-    "G1 X7.1765 Y24.8935\n"
-    "G1 X7.1917 Y24.8873\n",
-    "G21\n"
-    "G17 G90 G94 G40\n"
-    "G0 X2.65519 Y-32.37284 Z5.00000\n"
-    "G1 Z0.00000 F1000.00000\n"
-    "G1 X2.65635 Y-32.36985\n"
-    "G1 X2.65495 Y-32.37309\n"
-    "G1 X2.65693 Y-32.37180\n"
-    "G1 X2.65877 Y-32.37610\n"
-    "G1 X2.70280 Y-32.39463\n",
+    "G21\nG17 G90 G94 G40\nG0 X7.1642 Y24.9162 Z5.0000\nG1 Z0.0000 F1000.0000\n"
+    "G1 X7.1702 Y24.9165\nG1 X7.1667 Y24.9176\nG1 X7.1698 Y24.9073\nG1 X7.1710 Y24.9098\n"
+    "G1 X7.1765 Y24.8935\nG1 X7.1917 Y24.8873\n",
+    "G21\nG17 G90 G94 G40\nG0 X2.65519 Y-32.37284 Z5.00000\nG1 Z0.00000 F1000.00000\n"
+    "G1 X2.65635 Y-32.36985\nG1 X2.65495 Y-32.37309\nG1 X2.65693 Y-32.37180\n"
+    "G1 X2.65877 Y-32.37610\nG1 X2.70280 Y-32.39463\n",
 };
 
 TEST(NoiseAlone, BecomesNothingThatGoesFarAwayAndBack) {
@@ -238,14 +203,10 @@ TEST(NoiseAlone, BecomesNothingThatGoesFarAwayAndBack) {
 
 TEST(RepeatedPlaces, ByTheThousandNeitherCountNorCost) {
   const std::string wave_text = wave_program();
-  std::string text;
-  int line = 0;
-  for (const std::string& each : lines_of(wave_text)) {
-    text += each + "\n";
-    if (++line == 50) {
-      for (int i = 0; i < 5000; ++i) text += each + "\n";
-    }
-  }
+  std::vector<std::string> lines = lines_of(wave_text);
+  const std::string repeated = lines[49];
+  lines.insert(lines.begin() + 49, 5000, repeated);
+  const std::string text = joined(lines, "\n");
   const SmoothOptions options = options_for("linuxcnc");
   const SmoothResult result = smoothed(text, options);
   EXPECT_TRUE(result.proved);
@@ -253,9 +214,6 @@ TEST(RepeatedPlaces, ByTheThousandNeitherCountNorCost) {
   EXPECT_TRUE(verdict(wave_text, text, 1e-5).proved()) << "the same path";
   expect_rest_copied(text, result);
 }
-
-// --- text that looks like numbers
-// -----------------------------------------------------------------
 
 class NoNumber : public testing::TestWithParam<std::string_view> {};
 

@@ -108,49 +108,28 @@ std::size_t kept_for_crossing(const SmoothResult& result) {
   }));
 }
 
-TEST(PartCrossings, StrandsInDifferentPartsDoNotCross) {
+TEST(PartCrossings, AreFoundByTheWholeAndByWindows) {
   std::size_t gave_back = 0;
-  for (const Teeth& teeth : all_teeth()) {
-    SCOPED_TRACE(testing::Message() << teeth.turn << " " << teeth.gap << " " << teeth.more);
-    const std::string text = two_clusters(teeth);
-    ASSERT_FALSE(crosses_anew(text, text));
-    const SmoothResult parts = as_a_whole(text, asked(), kCrossingRuns);
-    ASSERT_TRUE(parts.proved);
-    EXPECT_FALSE(crosses_anew(text, parts.text));
-    EXPECT_GE(rewritten_runs(parts), 1U) << "what is not near to anything is smoothed";
-    gave_back += kept_for_crossing(parts) > 0 ? 1 : 0;
-    // As one it gives way, too.
-    EXPECT_FALSE(crosses_anew(text, as_a_whole(text, asked(), kAsOne).text));
-  }
-  EXPECT_GE(gave_back, 3U) << "else nothing was asked";
-}
-
-TEST(PartCrossings, WindowsGiveWhatTheWholeGives) {
-  std::size_t gave_back = 0;
+  std::size_t crossing = 0;
+  const WindowLimits limits{.least_blocks = 100, .long_runs = kCrossingRuns};
   for (const Teeth& teeth : all_teeth()) {
     SCOPED_TRACE(testing::Message() << teeth.turn << " " << teeth.gap << " " << teeth.more);
     const std::string text = two_clusters(teeth);
     SmoothOptions options = asked();
+    ASSERT_FALSE(crosses_anew(text, text));
     const SmoothResult whole = as_a_whole(text, options, kCrossingRuns);
+    ASSERT_TRUE(whole.proved);
+    EXPECT_FALSE(crosses_anew(text, whole.text));
+    EXPECT_GE(rewritten_runs(whole), 1U) << "what is not near to anything is smoothed";
+    gave_back += kept_for_crossing(whole) > 0 ? 1 : 0;
+    EXPECT_FALSE(crosses_anew(text, as_a_whole(text, options, kAsOne).text));
     for (const int threads : {1, 3}) {
       options.threads = threads;
-      const InWindows windows =
-          in_windows(text, options, WindowLimits{.least_blocks = 100, .long_runs = kCrossingRuns});
+      const InWindows windows = in_windows(text, options, limits);
       ASSERT_TRUE(windows.result);
       expect_same(windows, whole);
     }
-    gave_back += kept_for_crossing(whole) > 0 ? 1 : 0;
-  }
-  EXPECT_GE(gave_back, 3U);
-}
-
-// Windows that are asked for once say that they cross, by nothing: who cannot ask again is sent to
-// the whole.
-TEST(PartCrossings, AreToldByWindowsThatAreMadeOnce) {
-  std::size_t crossing = 0;
-  const WindowLimits limits{.least_blocks = 100, .long_runs = kCrossingRuns};
-  for (const Teeth& teeth : all_teeth()) {
-    const std::string text = two_clusters(teeth);
+    // Windows that are made once say that they cross by nothing: the whole is needed.
     const gcode::SourceText source("part.nc", text);
     const TextSink sink = [](std::string_view) { return true; };
     std::vector<LineRange> copied;
@@ -159,6 +138,7 @@ TEST(PartCrossings, AreToldByWindowsThatAreMadeOnce) {
     EXPECT_EQ(first.has_value(), smooth_in_windows(source, asked(), sink, {}, limits).has_value());
     crossing += first ? 0 : 1;
   }
+  EXPECT_GE(gave_back, 3U) << "else nothing was asked";
   EXPECT_GE(crossing, 3U);
 }
 

@@ -20,81 +20,55 @@ bool has_diagnostic(const SmoothResult& result, std::string_view id) {
                              [id](const gcode::Diagnostic& d) { return d.id == id; });
 }
 
-// --- nothing to rewrite -----------------------------------------------------------------------
-
-struct KeptCase {
-  std::string name;
-  std::string text;
-};
-
-void PrintTo(const KeptCase& test, std::ostream* out) { *out << test.name; }
-
-class Keeps : public testing::TestWithParam<KeptCase> {};
-
-TEST_P(Keeps, EveryByte) {
-  const KeptCase& test = GetParam();
-  const SmoothResult result = smoothed(test.text, options_for("linuxcnc"));
-  EXPECT_TRUE(result.understood);
-  EXPECT_TRUE(result.text == test.text) << result.text;
-  EXPECT_TRUE(result.proved);
-  EXPECT_EQ(rewritten_runs(result), 0u);
-  EXPECT_EQ(result.blocks_out, result.blocks_in);
-  EXPECT_EQ(result.deviation_mm, 0);
-}
-
-std::vector<KeptCase> kept_cases() {
-  return {
-      {"Nothing", ""},
-      {"NoMotion", "G21 G90\nM2\n"},
-      {"NoLineEndAtTheEnd", "G21 G90\nG0 X1\nG1 X2 F100\nM2"},
-      {"MixedLineEndsAndBlanks", "  G21\tG90 \r\n\n\r\nG0 X1  \nG1X2F100\r\nM2\r\n"},
-      {"BytesThatAreNotAscii", "(Fr\xE4ser \xC3\xA4)\nG21 G90\nG0 X1\nM2\n"},
-      {"StraightLines", head("G21") + "G1 X10 F500\nX20 Y10\nX50 Y30\nX20 Y70\n" + tail()},
-      {"Arcs", head("G21") + "G2 X10 Y0 I5 J0 F500\nG3 X20 I5\nG2 X30 I5\n" + tail()},
-  };
-}
-
-INSTANTIATE_TEST_SUITE_P(Pipeline, Keeps, testing::ValuesIn(kept_cases()),
-                         [](const auto& test) { return test.param.name; });
-
-TEST(Pipeline, KeepsEveryByteWithMethodNone) {
-  SmoothOptions options = options_for("linuxcnc");
-  options.method = Method::kNone;
-  const SmoothResult result = smoothed(wave_program(), options);
-  EXPECT_EQ(result.text, wave_program());
-  EXPECT_EQ(result.runs.back().reason, gcode::reason::kMethodNone);
+TEST(Pipeline, KeepsEveryByteWhereNothingIsToBeRewritten) {
+  const std::pair<const char*, std::string> rows[] = {
+      {"nothing", ""},
+      {"no motion", "G21 G90\nM2\n"},
+      {"no line end at the end", "G21 G90\nG0 X1\nG1 X2 F100\nM2"},
+      {"mixed line ends and blanks", "  G21\tG90 \r\n\n\r\nG0 X1  \nG1X2F100\r\nM2\r\n"},
+      {"bytes that are not ASCII", "(Fr\xE4ser \xC3\xA4)\nG21 G90\nG0 X1\nM2\n"},
+      {"straight lines", head("G21") + "G1 X10 F500\nX20 Y10\nX50 Y30\nX20 Y70\n" + tail()},
+      {"arcs", head("G21") + "G2 X10 Y0 I5 J0 F500\nG3 X20 I5\nG2 X30 I5\n" + tail()}};
+  for (const auto& [name, text] : rows) {
+    SCOPED_TRACE(name);
+    const SmoothResult result = smoothed(text, options_for("linuxcnc"));
+    EXPECT_TRUE(result.understood);
+    EXPECT_TRUE(result.text == text) << result.text;
+    EXPECT_TRUE(result.proved);
+    EXPECT_EQ(rewritten_runs(result), 0u);
+    EXPECT_EQ(result.blocks_out, result.blocks_in);
+    EXPECT_EQ(result.deviation_mm, 0);
+  }
 }
 
 // Four decimals move a place by up to 0.000087 mm in space, so 0.00005 mm cannot be kept.
-TEST(Pipeline, KeepsEveryByteWhereRoundingAloneUsesUpTheTolerance) {
-  SmoothOptions options = options_for("linuxcnc");
-  options.tolerance_mm = 0.00005;
-  const SmoothResult result = smoothed(wave_program(), options);
-  EXPECT_EQ(result.text, wave_program());
-  EXPECT_TRUE(result.proved);
-  EXPECT_EQ(result.runs.back().reason, gcode::reason::kNoFit);
+TEST(Pipeline, KeepsEveryByteWithMethodNoneAndWhereRoundingAloneUsesUpTheTolerance) {
+  SmoothOptions none = options_for("linuxcnc");
+  none.method = Method::kNone;
+  SmoothOptions narrow = options_for("linuxcnc");
+  narrow.tolerance_mm = 0.00005;
+  for (const auto& [options, reason] :
+       {std::pair(none, gcode::reason::kMethodNone), std::pair(narrow, gcode::reason::kNoFit)}) {
+    const SmoothResult result = smoothed(wave_program(), options);
+    EXPECT_EQ(result.text, wave_program());
+    EXPECT_TRUE(result.proved);
+    EXPECT_EQ(result.runs.back().reason, reason);
+  }
 }
 
-// --- programs that are refused ----------------------------------------------------------------
-
-TEST(Pipeline, UnderstandsNothingWithoutUnits) {
+TEST(Pipeline, UnderstandsNothingWithoutUnitsOrOfAnotherLanguage) {
   const std::string text = wave_program({}, "G94");
-  const SmoothResult result = smoothed(text, options_for("linuxcnc"));
-  EXPECT_FALSE(result.understood);
-  EXPECT_TRUE(has_diagnostic(result, "units-missing"));
-  EXPECT_TRUE(gcode::has_error(result.diagnostics));
-  EXPECT_EQ(result.text, "");
+  for (const std::string& each :
+       {text, std::string("0 BEGIN PGM X MM\n1 L X+10 Y+5 F500\n2 END PGM X MM\n")}) {
+    const SmoothResult result = smoothed(each, options_for("linuxcnc"));
+    EXPECT_FALSE(result.understood);
+    EXPECT_EQ(has_diagnostic(result, "units-missing"), each == text);
+    EXPECT_TRUE(gcode::has_error(result.diagnostics));
+    EXPECT_EQ(result.text, "");
+  }
   SmoothOptions told = options_for("linuxcnc");
   told.units = gcode::Units::kMillimetre;
   EXPECT_TRUE(smoothed(text, told).understood);
-}
-
-TEST(Pipeline, UnderstandsNothingOfAnotherLanguage) {
-  const SmoothResult result =
-      smoothed("0 BEGIN PGM X MM\n1 L X+10 Y+5 F500\n2 END PGM X MM\n", options_for("linuxcnc"));
-  EXPECT_FALSE(result.understood);
-  EXPECT_TRUE(gcode::has_error(result.diagnostics));
-  EXPECT_EQ(result.text, "");
 }
 
 TEST(Pipeline, StopsWhenTheProgressSaysSo) {
@@ -122,8 +96,6 @@ TEST(Pipeline, TellsProgressThatNeverGoesBack) {
   EXPECT_GE(parts.front(), 0);
   EXPECT_LE(parts.back(), 1);
 }
-
-// --- what is kept of a rewritten program ------------------------------------------------------
 
 TEST(Pipeline, RewritesAWave) {
   const SmoothResult result = smoothed(wave_program(), options_for("linuxcnc"));
@@ -285,8 +257,6 @@ TEST(Pipeline, WritesShortLinesForGrbl) {
     }
   }
 }
-
-// --- a second pass ----------------------------------------------------------------------------
 
 TEST(Pipeline, SmoothsNoProgramTwiceUnlessAllowed) {
   const std::string text = "(Batten: smoothed within 0.01 mm)\n" + wave_program();

@@ -28,7 +28,6 @@ struct SiemensCase {
   Prefer prefer = Prefer::kTime;
   std::string allowed = {};
 };
-void PrintTo(const SiemensCase& test, std::ostream* out) { *out << test.name; }
 
 SmoothOptions options_of(const SiemensCase& test) {
   SmoothOptions options = options_for("siemens");
@@ -38,26 +37,24 @@ SmoothOptions options_of(const SiemensCase& test) {
   return options;
 }
 
-class SiemensCases : public testing::TestWithParam<SiemensCase> {};
-
-TEST_P(SiemensCases, ComeOutByteForByte) {
-  const std::string before = case_file(GetParam().name + ".mpf");
-  const SmoothResult result = smoothed(before, options_of(GetParam()));
-  EXPECT_TRUE(result.understood);
-  EXPECT_TRUE(result.proved);
-  EXPECT_TRUE(result.diagnostics.empty());
-  EXPECT_EQ(rewritten_runs(result), GetParam().runs);
-  EXPECT_LE(result.deviation_mm, 0.01);
-  EXPECT_EQ(result.text, case_file(GetParam().name + ".smoothed.mpf"));
-  expect_rest_copied(before, result);
-  EXPECT_EQ(smoothed(result.text, options_of(GetParam())).text, result.text);
+TEST(SiemensCases, ComeOutByteForByte) {
+  const SiemensCase cases[] = {{"surface", 3},
+                               {"plate", 2},
+                               {"compressor", 1, Form::kLines, Prefer::kSize, "control-smoothing"}};
+  for (const SiemensCase& test : cases) {
+    SCOPED_TRACE(test.name);
+    const std::string before = case_file(test.name + ".mpf");
+    const SmoothResult result = smoothed(before, options_of(test));
+    EXPECT_TRUE(result.understood);
+    EXPECT_TRUE(result.proved);
+    EXPECT_TRUE(result.diagnostics.empty());
+    EXPECT_EQ(rewritten_runs(result), test.runs);
+    EXPECT_LE(result.deviation_mm, 0.01);
+    EXPECT_EQ(result.text, case_file(test.name + ".smoothed.mpf"));
+    expect_rest_copied(before, result);
+    EXPECT_EQ(smoothed(result.text, options_of(test)).text, result.text);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(Programs, SiemensCases,
-                         testing::Values(SiemensCase{"surface", 3}, SiemensCase{"plate", 2},
-                                         SiemensCase{"compressor", 1, Form::kLines, Prefer::kSize,
-                                                     "control-smoothing"}),
-                         [](const auto& test) { return test.param.name; });
 
 TEST(SiemensCasesUnallowed, CompressedPointsStayAsTheyAre) {
   const std::string before = case_file("compressor.mpf");
@@ -85,23 +82,25 @@ std::string program_with(const std::string& before_contour) {
          "N9000 G0 Z50\nN9010 CYCLE832()\nN9020 M30\n";
 }
 
-class SiemensPrograms : public testing::TestWithParam<Form> {};
-
-TEST_P(SiemensPrograms, AreSmoothedProvedAndTheirOwnWordsCopied) {
-  SmoothOptions wanted = options_for("siemens");
-  wanted.output = GetParam();
+TEST(SiemensPrograms, AreSmoothedProvedAndTheirOwnWordsCopied) {
   const std::string before = program_with("");
-  const SmoothResult result = smoothed(before, wanted);
-  EXPECT_TRUE(result.proved);
-  EXPECT_EQ(rewritten_runs(result), 1U);
-  EXPECT_LT(result.blocks_out, result.blocks_in * 9 / 10);
-  EXPECT_TRUE(result.text.starts_with(before.substr(0, before.find("N80 "))));
-  EXPECT_TRUE(result.text.ends_with("N9000 G0 Z50\nN9010 CYCLE832()\nN9020 M30\n"));
-  EXPECT_EQ(smoothed(result.text, wanted).text, result.text);
+  for (const Form form : {Form::kAuto, Form::kCurves, Form::kArcs, Form::kLines}) {
+    SCOPED_TRACE(name_of(form));
+    SmoothOptions wanted = options_for("siemens");
+    wanted.output = form;
+    const SmoothResult result = smoothed(before, wanted);
+    EXPECT_TRUE(result.proved);
+    EXPECT_EQ(rewritten_runs(result), 1U);
+    EXPECT_LT(result.blocks_out, result.blocks_in * 9 / 10);
+    EXPECT_TRUE(result.text.starts_with(before.substr(0, before.find("N80 "))));
+    EXPECT_TRUE(result.text.ends_with("N9000 G0 Z50\nN9010 CYCLE832()\nN9020 M30\n"));
+    EXPECT_EQ(smoothed(result.text, wanted).text, result.text);
+  }
+  const SmoothResult other = smoothed(before, options_for("linuxcnc"));
+  EXPECT_FALSE(other.understood);
+  ASSERT_FALSE(other.diagnostics.empty());
+  EXPECT_EQ(other.diagnostics.front().id, "foreign-language");
 }
-
-INSTANTIATE_TEST_SUITE_P(Forms, SiemensPrograms,
-                         testing::Values(Form::kAuto, Form::kCurves, Form::kArcs, Form::kLines));
 
 // What the words in front say of the path is not what the blocks say.
 TEST(SiemensProgramsUnder, FramesTransformationsAndCompressorsStayAsTheyAre) {
@@ -113,13 +112,6 @@ TEST(SiemensProgramsUnder, FramesTransformationsAndCompressorsStayAsTheyAre) {
     EXPECT_EQ(result.text, before);
     EXPECT_EQ(rewritten_runs(result), 0U);
   }
-}
-
-TEST(SiemensProgramsUnder, AnotherTargetAreRefused) {
-  const SmoothResult result = smoothed(program_with(""), options_for("linuxcnc"));
-  EXPECT_FALSE(result.understood);
-  ASSERT_FALSE(result.diagnostics.empty());
-  EXPECT_EQ(result.diagnostics.front().id, "foreign-language");
 }
 
 }  // namespace
