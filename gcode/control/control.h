@@ -1,6 +1,5 @@
-// What one control reads, writes and refuses, as a plain value. The built-in ones stand in
-// gcode/controls/, and nothing else in the program asks for a control's name; a user's profile is a
-// copy of one with other values.
+// What one control reads, writes and refuses, as a plain value. The built-in ones are in
+// gcode/controls/; a user's profile is a copy of one with other values.
 #pragma once
 
 #include <array>

@@ -42,7 +42,6 @@ class DecimalPoints {
 
   void follow(const BlockWords& words);
   [[nodiscard]] bool is_length(char letter) const;
-  [[nodiscard]] bool has_no_value() const;
   void scale(Word& word) const;
 
   Decimals rule_;

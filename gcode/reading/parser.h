@@ -1,6 +1,5 @@
-// Text to blocks and words: the grammars of the RS-274 family and of other languages as CAM systems
-// and shops write them. What is not fully understood becomes an opaque block, never an error of
-// the reader.
+// Text to blocks and words, as CAM systems and shops write them. What is not fully understood
+// becomes an opaque block, never an error of the reader.
 #pragma once
 
 #include "gcode/state/modal_state.h"

@@ -42,7 +42,7 @@ struct PartEnd {
                                                         std::uint32_t begin, std::size_t bytes,
                                                         std::size_t longest_rest);
 
-// Where the next part begins, and what the text before it said. As it stands: the whole begins.
+// Where the next part begins, and what the text before it said. As given: the whole begins.
 struct TextCarry {
   std::uint32_t begin = 0;                 // bytes
   std::uint32_t blocks = 0;                // lines before it
@@ -64,9 +64,7 @@ struct TextCarry {
 // others; they are put in order.
 void finish_text(const TextCarry& carry, Diagnostics& found);
 
-// Consecutive blocks of a program and what they do, taken apart and put together again: what of a
-// program that is read part by part (gcode/reading/part_reading.h) is held at a time.
-
+// Consecutive blocks of a program and what they do: what is held at a time.
 struct ReadPart {
   Program program;
   Interpretation meaning;

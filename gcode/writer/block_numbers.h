@@ -1,5 +1,5 @@
-// Block numbers of Klartext programs: every block has one, and they rise by one. Blocks that are
-// copied keep theirs, so new ones take the numbers of those whose place they take.
+// Block numbers of Klartext programs, which rise by one. Copied blocks keep theirs, so new ones
+// take the numbers of those that they replace.
 #pragma once
 
 #include <cstddef>
