@@ -14,6 +14,7 @@
 #include "tests/support/klartext_programs.h"
 #include "tests/support/places.h"
 #include "tests/support/random_curves.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {

@@ -57,7 +57,7 @@ SmoothOptions undeclared(const char* target) {
   return options;
 }
 
-SmoothOptions with(const char* target, const Decimals& decimals) {
+SmoothOptions with_decimals(const char* target, const Decimals& decimals) {
   SmoothOptions options = options_for(target);
   options.decimals = decimals;
   return options;
@@ -112,8 +112,9 @@ TEST(ImpliedDecimals, DeclaredOnesAreTheProgramWithItsPointsWritten) {
   for (const char* target : {"fanuc", "haas"}) {
     SCOPED_TRACE(target);
     const std::string before = wave_in_increments();
-    const SmoothResult implied = smoothed(before, with(target, kIncrements));
-    const SmoothResult written = smoothed(with_points(before, 3), with(target, kIncrements));
+    const SmoothResult implied = smoothed(before, with_decimals(target, kIncrements));
+    const SmoothResult written =
+        smoothed(with_points(before, 3), with_decimals(target, kIncrements));
     ASSERT_EQ(rewritten_runs(implied), 1U);
     ASSERT_EQ(implied.runs.size(), written.runs.size());
     for (std::size_t i = 0; i < implied.runs.size(); ++i) {
@@ -131,7 +132,7 @@ TEST(ImpliedDecimals, EveryWrittenLengthHasAPoint) {
   for (const char* units : {"G21", "G20"}) {
     SCOPED_TRACE(units);
     const std::string before = wave_in_increments(units);
-    const SmoothResult result = smoothed(before, with("fanuc", kIncrements));
+    const SmoothResult result = smoothed(before, with_decimals("fanuc", kIncrements));
     ASSERT_EQ(rewritten_runs(result), 1U);
     const std::vector<std::string> old_lines = lines_of(before);
     for (const std::string& line : lines_of(result.text)) {
@@ -151,7 +152,7 @@ TEST(ImpliedDecimals, ExplicitOnesAreUnitsOnThoseControlsToo) {
   const std::string before = wave_program({.step = 2, .height = 40, .length = 120, .decimals = 0});
   const SmoothResult kept = smoothed(before, undeclared("fanuc"));
   EXPECT_EQ(kept.text, before);
-  const SmoothResult result = smoothed(before, with("fanuc", kExplicit));
+  const SmoothResult result = smoothed(before, with_decimals("fanuc", kExplicit));
   EXPECT_TRUE(result.diagnostics.empty());
   EXPECT_TRUE(is_proved(before, result.text, kExplicit));
 }
@@ -234,12 +235,12 @@ TEST(DecimalsOption, ReadsWhatItWritesAndRefusesIncrementsThatNoControlHas) {
 }
 
 TEST(DecimalsOption, IncrementsNeedAControlThatHasThem) {
-  EXPECT_TRUE(problems_of(with("fanuc", kIncrements)).empty());
-  EXPECT_TRUE(problems_of(with("linuxcnc", kExplicit)).empty());
-  EXPECT_EQ(problems_of(with("linuxcnc", kIncrements)),
+  EXPECT_TRUE(problems_of(with_decimals("fanuc", kIncrements)).empty());
+  EXPECT_TRUE(problems_of(with_decimals("linuxcnc", kExplicit)).empty());
+  EXPECT_EQ(problems_of(with_decimals("linuxcnc", kIncrements)),
             std::vector<std::string>{"--decimals: implied: this target takes X5 for 5 mm, and "
                                      "blocks are copied to it"});
-  SmoothOptions options = with("fanuc", kIncrements);
+  SmoothOptions options = with_decimals("fanuc", kIncrements);
   options.source = gcode::SourceKind::kNgc;
   EXPECT_EQ(problems_of(options),
             std::vector<std::string>{
