@@ -37,7 +37,7 @@ constexpr double kStartPart = 0.8;
 // The middles of the intervals come first, then the nodes between them.
 class EstimateProblem {
  public:
-  EstimateProblem(std::span<const geometry::PathPiece> path, const FeedSection& section,
+  EstimateProblem(std::span<const geometry::PathPiece> path, const PlannedSection& section,
                   const KinematicPathLimits& limits)
       : limits_(limits), intervals_(intervals_of(section, path, limits, kEstimateGrid)) {
     RestMotion start;
@@ -140,7 +140,7 @@ class EstimateProblem {
 double estimated_time(std::span<const geometry::PathPiece> path, const KinematicPathLimits& limits,
                       const PlanEnds& ends) {
   double time = 0;
-  for_each_section(path, limits, ends, kSlowEstimateJoint, [&](const FeedSection& section) {
+  for_each_section(path, limits, ends, kSlowEstimateJoint, [&](const PlannedSection& section) {
     time += section.is_straight() ? straight_run(section, path, limits).time
                                   : EstimateProblem(path, section, limits).seconds();
   });

@@ -134,7 +134,7 @@ double change_along(const LengthDerivatives& x, const PlanState& from, const Pla
 // nodes. Limits are asked for at both ends and in the middle of each interval.
 class BentSection {
  public:
-  BentSection(std::span<const PathPiece> path, const FeedSection& section,
+  BentSection(std::span<const PathPiece> path, const PlannedSection& section,
               const KinematicPathLimits& limits, double density)
       : path_(path), section_(section), limits_(limits) {
     GridRule rule = kPlanGrid;
@@ -171,7 +171,7 @@ class BentSection {
   std::size_t refine(const RefineRule& rule);
 
   std::span<const PathPiece> path_;
-  const FeedSection& section_;
+  const PlannedSection& section_;
   const KinematicPathLimits& limits_;
 };
 
@@ -339,7 +339,7 @@ class Planner {
 
   FeedPlan run(const PlanEnds& ends) {
     const PassedJoints joints =
-        for_each_section(path_, limits_, ends, kSlowJoint, [this](const FeedSection& section) {
+        for_each_section(path_, limits_, ends, kSlowJoint, [this](const PlannedSection& section) {
           section.is_straight() ? plan_straight(section) : plan_bent(section);
         });
     plan_.stops = joints.stops;
@@ -348,7 +348,7 @@ class Planner {
   }
 
  private:
-  void plan_straight(const FeedSection& section) {
+  void plan_straight(const PlannedSection& section) {
     const StraightRun run = straight_run(section, path_, limits_);
     // From rest the acceleration is there at once where the jerk has no limit.
     start_nodes(section, run.from, run.from > 0 ? 0 : run.state_at(0).acceleration);
@@ -374,7 +374,7 @@ class Planner {
     }
   }
 
-  void plan_bent(const FeedSection& section) {
+  void plan_bent(const PlannedSection& section) {
     BentSection bent(path_, section, limits_, density_);
     bent.solve();
     const std::vector<double>& x = bent.x;
@@ -404,7 +404,7 @@ class Planner {
     }
   }
 
-  void start_nodes(const FeedSection& section, double speed, double acceleration) {
+  void start_nodes(const PlannedSection& section, double speed, double acceleration) {
     if (plan_.nodes.empty()) plan_.nodes.emplace_back();
     FeedPlanNode& node = plan_.nodes.back();
     node.speed = speed;

@@ -126,7 +126,7 @@ class PartChain {
 
   // Calls `use` for each section, and forgets the parts.
   void finish(const SectionEnd& start, const SectionEnd& end, double slow_times,
-              const std::function<void(const FeedSection&)>& use) {
+              const std::function<void(const PlannedSection&)>& use) {
     find_envelope(start.speed, end.speed);
     std::size_t first = 0;
     SectionEnd from = start;
@@ -219,7 +219,7 @@ class PartChain {
 
 }  // namespace
 
-bool FeedSection::is_straight() const {
+bool PlannedSection::is_straight() const {
   if (start.is_free || end.is_free) return false;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (!parts[i].straight) return false;
@@ -228,7 +228,7 @@ bool FeedSection::is_straight() const {
   return true;
 }
 
-StraightRun straight_run(const FeedSection& section, std::span<const PathPiece> path,
+StraightRun straight_run(const PlannedSection& section, std::span<const PathPiece> path,
                          const KinematicPathLimits& limits) {
   double length = 0;
   for (const FeedPart& part : section.parts) length += part.length;
@@ -239,7 +239,7 @@ StraightRun straight_run(const FeedSection& section, std::span<const PathPiece> 
 
 PassedJoints for_each_section(std::span<const PathPiece> path, const KinematicPathLimits& limits,
                               const PlanEnds& ends, double slow_times,
-                              const std::function<void(const FeedSection&)>& use) {
+                              const std::function<void(const PlannedSection&)>& use) {
   require_sound(limits);
   if (!(ends.start_speed >= 0 && ends.end_speed >= 0)) {
     throw std::invalid_argument("end speeds " + std::to_string(ends.start_speed) + " and " +
@@ -341,7 +341,7 @@ class Rise {
 
 class GridMaker {
  public:
-  GridMaker(const FeedSection& section, std::span<const PathPiece> path,
+  GridMaker(const PlannedSection& section, std::span<const PathPiece> path,
             const KinematicPathLimits& limits, const GridRule& rule)
       : section_(section), path_(path), potential_(limits), rule_(rule) {}
 
@@ -465,7 +465,7 @@ class GridMaker {
     intervals_.push_back(std::exchange(open_, {}));
   }
 
-  const FeedSection& section_;
+  const PlannedSection& section_;
   std::span<const PathPiece> path_;
   Potential potential_;
   const GridRule& rule_;
@@ -479,7 +479,8 @@ class GridMaker {
 
 }  // namespace
 
-std::vector<FeedInterval> intervals_of(const FeedSection& section, std::span<const PathPiece> path,
+std::vector<FeedInterval> intervals_of(const PlannedSection& section,
+                                       std::span<const PathPiece> path,
                                        const KinematicPathLimits& limits, const GridRule& rule) {
   return GridMaker(section, path, limits, rule).run();
 }

@@ -42,7 +42,7 @@ struct SectionEnd {
   [[nodiscard]] bool is_rest() const { return speed == 0; }
 };
 
-struct FeedSection {
+struct PlannedSection {
   std::span<const FeedPart> parts;
   std::span<const double> w;  // the envelope at the ends of the parts, one more than parts
   SectionEnd start;
@@ -53,7 +53,7 @@ struct FeedSection {
 };
 
 // Of a straight section.
-[[nodiscard]] StraightRun straight_run(const FeedSection& section,
+[[nodiscard]] StraightRun straight_run(const PlannedSection& section,
                                        std::span<const geometry::PathPiece> path,
                                        const KinematicPathLimits& limits);
 
@@ -73,7 +73,7 @@ struct PassedJoints {
 PassedJoints for_each_section(std::span<const geometry::PathPiece> path,
                               const KinematicPathLimits& limits, const PlanEnds& ends,
                               double slow_times,
-                              const std::function<void(const FeedSection&)>& use);
+                              const std::function<void(const PlannedSection&)>& use);
 
 struct FeedInterval {
   std::size_t piece = 0;  // where it is; of several parts, the part that allows least
@@ -95,7 +95,7 @@ struct GridRule {
 
 // Where a section ends at rest, its outer interval is the motion from rest: constant jerk, or
 // constant acceleration where the jerk has no limit.
-[[nodiscard]] std::vector<FeedInterval> intervals_of(const FeedSection& section,
+[[nodiscard]] std::vector<FeedInterval> intervals_of(const PlannedSection& section,
                                                      std::span<const geometry::PathPiece> path,
                                                      const KinematicPathLimits& limits,
                                                      const GridRule& rule);
