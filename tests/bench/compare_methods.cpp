@@ -1,6 +1,5 @@
 // Prints the tables of docs/algorithms/methods.md: what each method makes of each case, and how
 // long a machine takes for it.
-//   compare_methods      from the project's folder
 //
 // First table: polylines. Planned time from rest to rest by the jerk-limited planner, machine of
 // Ozcan 2018; greatest curvature; deviation as the comparison of paths proves it; pieces.
@@ -8,23 +7,20 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <fstream>
-#include <functional>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "geometry/distance/band_comparison.h"
 #include "geometry/distance/path_distance.h"
-#include "geometry/fitting/naseath/naseath.h"
 #include "geometry/fitting/tube/tube_smoothing.h"
 #include "geometry/path/parameter_samples.h"
 #include "postproc/machine/planner/feed_plan.h"
 #include "postproc/smooth/methods/run_curve.h"
 #include "tests/support/method_cases.h"
+#include "tests/support/naseath_cases.h"
 #include "tests/support/paths.h"
+#include "tests/support/planned_paths.h"
 #include "tests/support/s_curve.h"
 #include "tests/support/sample_means.h"
 
@@ -33,7 +29,6 @@ namespace {
 using namespace batten;
 using geometry::BsplineCurve;
 using geometry::Path;
-using geometry::Point3;
 using geometry::ToleranceKind;
 using postproc::Method;
 
@@ -41,7 +36,7 @@ using postproc::Method;
 
 struct Case {
   std::string_view name;
-  std::vector<Point3> points;
+  std::vector<geometry::Point3> points;
   double tolerance;  // mm
 };
 
@@ -57,25 +52,11 @@ std::vector<Case> polylines() {
   };
 }
 
-// Ozcan 2018, Table 1.
-postproc::KinematicPathLimits machine_limits() {
-  postproc::KinematicPathLimits limits{geometry::KinematicLimits{}};
-  limits.tangential_acceleration = 1e4;
-  limits.tangential_jerk = 1e5;
-  return limits;
-}
-
 postproc::CurveRequest request_for(const Case& given, ToleranceKind kind) {
   postproc::CurveRequest request;
   request.tolerance = given.tolerance;
   request.kind = kind;
   return request;
-}
-
-Path pieces_of(const BsplineCurve& curve) {
-  Path path;
-  for (const geometry::CubicBezier& piece : curve.bezier_pieces()) path.emplace_back(piece);
-  return path;
 }
 
 // Proved, to within some percent. A little more than the tolerance is asked for, since that is
@@ -99,7 +80,7 @@ void compare_polyline(const Case& given) {
   fmt::print("\n{:<26} {:>9} {:>11} {:>11} {:>7}\n", given.name, "time, s", "curv., 1/mm",
              "deviation", "pieces");
   const Path input = geometry::path_through(given.points);
-  print_row("as it is", postproc::planned_time(input, machine_limits()), std::nan(""), 0,
+  print_row("as it is", postproc::planned_time(input, postproc::corner_limits()), std::nan(""), 0,
             input.size());
   for (const ToleranceKind kind : {ToleranceKind::kPath, ToleranceKind::kBand}) {
     const bool band = kind == ToleranceKind::kBand;
@@ -116,8 +97,8 @@ void compare_polyline(const Case& given) {
         fmt::print("  {:<24} no curve\n", name);
         continue;
       }
-      const Path path = pieces_of(made->path.curve);
-      print_row(name, postproc::planned_time(path, machine_limits()),
+      const Path path = geometry::beziers_of(made->path.curve);
+      print_row(name, postproc::planned_time(path, postproc::corner_limits()),
                 postproc::CurvatureProfile(made->path.curve).greatest(),
                 proved_deviation(input, path, kind, given.tolerance), path.size());
     }
@@ -146,20 +127,6 @@ void print_measured(std::string_view method, const Measured& now, const Measured
              less(now.time, before.time));
 }
 
-BsplineCurve naseath_curve(const BsplineCurve& curve, double radius, bool literal) {
-  geometry::NaseathOptions options;
-  options.radius = radius;
-  if (literal) options.repairs = geometry::NaseathRepairs::none();
-  return geometry::smooth_naseath(curve, options).curve;
-}
-
-BsplineCurve curve_in(const nlohmann::json& given) {
-  std::vector<Point3> points;
-  for (const auto& pair : given.at("control_points")) points.emplace_back(pair[0], pair[1], 0);
-  const auto knots = given.at("distinct_knots").get<std::vector<double>>();
-  return {geometry::BsplineBasis::clamped(3, knots), std::move(points)};
-}
-
 void compare_curve(const std::string& name, const BsplineCurve& curve) {
   fmt::print("\n{:<26} {:>8} {:>8} {:>9} {:>8} {:>8} {:>8} {:>8}\n", name, "curv.", "less",
              "length", "less", "mm/s", "time, s", "less");
@@ -169,8 +136,8 @@ void compare_curve(const std::string& name, const BsplineCurve& curve) {
     const auto row = [&](std::string_view method, const BsplineCurve& made) {
       print_measured(fmt::format("{}, R {}", method, radius), measured(made), before);
     };
-    row("naseath-literal", naseath_curve(curve, radius, true));
-    row("naseath", naseath_curve(curve, radius, false));
+    row("naseath-literal", geometry::smooth_naseath(curve, geometry::literal(radius)).curve);
+    row("naseath", geometry::smooth_naseath(curve, geometry::repaired(radius)).curve);
     geometry::TubeOptions options;
     options.radius = radius;
     const auto timer = [](const BsplineCurve& c) { return measured(c).time; };
@@ -181,16 +148,9 @@ void compare_curve(const std::string& name, const BsplineCurve& curve) {
 }  // namespace
 
 int main() {
-  constexpr const char* kFile = "tests/cases/naseath.json";
-  std::ifstream stream(kFile);
-  if (!stream) {
-    fmt::print(stderr, "{}: cannot be read\n", kFile);
-    return 1;
-  }
-  const nlohmann::json cases = nlohmann::json::parse(stream);
   for (const Case& each : polylines()) compare_polyline(each);
   for (const std::string name : {"tc1", "tc2", "tc3", "tc5a", "tc5b", "tc6"}) {
-    compare_curve(name, curve_in(cases.at(name)));
+    compare_curve(name, geometry::curve_of_case(name));
   }
   return 0;
 }

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
-#include <functional>
-#include <numbers>
 #include <string_view>
 #include <vector>
 
@@ -15,49 +13,28 @@
 #include "geometry/path/path.h"
 #include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/planner/feed_plan.h"
-#include "tests/support/paths.h"
+#include "tests/support/estimated_paths.h"
 
 namespace {
 
 using namespace batten;
-using geometry::BsplineBasis;
 using geometry::BsplineCurve;
 using geometry::Path;
 using geometry::Point3;
 using geometry::Vector3;
 
-Point3 row_point(double x) {
-  return {x, 3 * std::sin(0.25 * x) + 0.6 * std::sin(1.1 * x), 1.5 * std::sin(0.4 * x)};
-}
-
-// A finishing row as a CAM system writes it: chords of 0.2 mm, three decimals.
-Path chords(int pieces) {
-  std::vector<Point3> points;
-  for (int i = 0; i <= pieces; ++i) {
-    points.emplace_back((row_point(0.2 * i) * 1e3).array().round() / 1e3);
-  }
-  return geometry::path_through(points);
-}
-
-// A smooth curve through points `piece` mm apart along x.
-Path curve(int pieces, double piece, const std::function<Point3(double)>& point) {
-  std::vector<Point3> control;
-  std::vector<double> knots;
-  for (int i = 0; i < pieces + 3; ++i) {
-    control.push_back(point(piece * (i - 1)));
-    if (i + 2 < pieces + 3) knots.push_back(i);
-  }
-  return postproc::path_of(BsplineCurve(BsplineBasis::clamped(3, knots), control));
-}
-
-Path row(int pieces) { return curve(pieces, 0.5, row_point); }
+Path chords(int pieces) { return postproc::row_of_chords(0.2 * pieces, 0.2); }
+Path row(int pieces) { return postproc::path_of(postproc::row_as_curve(0.5 * pieces, 0.5)); }
 
 // Bends of all sizes, each piece as long as a bend: the most expensive kind.
 Path wave(int pieces) {
-  return curve(pieces, 2, [](double x) {
-    const double i = x / 2;
-    return Point3(x, 4 * std::sin(0.7 * i) + std::sin(2.3 * i), std::sin(1.1 * i));
-  });
+  std::vector<Point3> control;
+  std::vector<double> knots;
+  for (int i = -1; i < pieces + 2; ++i) {
+    control.emplace_back(2 * i, 4 * std::sin(0.7 * i) + std::sin(2.3 * i), std::sin(1.1 * i));
+    if (i >= 0 && i <= pieces) knots.push_back(i);
+  }
+  return postproc::path_of({geometry::BsplineBasis::clamped(3, knots), control});
 }
 
 // Left and right in turn, tangent, radii from 1 to 4 mm.
@@ -124,10 +101,7 @@ void print_controls(int most) {
 int main(int argc, char** argv) {
   const int most = argc > 1 ? std::atoi(argv[1]) : 1000000;
   print_controls(most);
-  postproc::KinematicPathLimits limits;
-  limits.feed = 100;
-  limits.acceleration = Vector3::Constant(3000);
-  limits.jerk = Vector3::Constant(50000);
+  const auto limits = postproc::even_limits(100, 3000, 50000);
   fmt::print("{:28} {:>8} {:>10} {:>10} {:>10} {:>10} {:>11} {:>9}\n", "path", "pieces", "estimate",
              "pieces/s", "plan", "pieces/s", "nodes/piece", "est/plan");
   for (const Kind& kind : kKinds) {

@@ -2,46 +2,31 @@
 //   linearize_table [FILE ..]
 // First two parabolas at four tolerances: ilca, blca, chord, minlink (docs/algorithms/hamdan.md).
 // Then for each program, smoothed within 0.01 mm for linuxcnc with --method fair --output lines
-// --prefer size: lines in the
-// runs that both ways rewrite, laid as chords and as minlink, what is saved, and whether both texts
-// are proved.
+// --prefer size: lines in the runs that both ways rewrite, laid as chords and as minlink, what is
+// saved, and whether both texts are proved.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <string>
-#include <string_view>
 
-#include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "gcode/text/source_text.h"
 #include "geometry/chords/ilca.h"
 #include "geometry/chords/linearize.h"
 #include "geometry/chords/min_link.h"
 #include "postproc/stream/pipeline.h"
+#include "tests/support/parabolas.h"
 
 namespace {
 
 using namespace batten;
-using geometry::BsplineCurve;
 using postproc::Linearize;
 
 // 89 links need all but 2e-4 of the tolerance in one case: with fewer gates they are 90.
 constexpr int kFineGates = 96;
 
-// y = c1 x^2 + c2 x + c3, x being the parameter.
-BsplineCurve parabola(double c1, double c2, double c3, double from, double to) {
-  const auto y = [&](double x) { return (c1 * x + c2) * x + c3; };
-  const auto slope = [&](double x) { return 2 * c1 * x + c2; };
-  const double third = (to - from) / 3;
-  return {geometry::BsplineBasis::clamped(3, {from, to}),
-          {{from, y(from), 0},
-           {from + third, y(from) + third * slope(from), 0},
-           {to - third, y(to) - third * slope(to), 0},
-           {to, y(to), 0}}};
-}
-
-void print_counts(const char* name, const BsplineCurve& curve, double first_step,
+void print_counts(const char* name, const geometry::BsplineCurve& curve, double first_step,
                   double tolerance) {
   const double from = curve.first();
   const double to = curve.last();
@@ -59,8 +44,8 @@ void print_parabolas() {
   fmt::print("{:<6} {:>9} {:>6} {:>6} {:>6} {:>8}\n", "curve", "T mm", "ilca", "blca", "chord",
              "minlink");
   for (const double tolerance : {0.05, 0.005, 0.0005, 0.00005}) {
-    print_counts("Ex I", parabola(-0.043, 1, 0.01, 2, 11), 3, tolerance);
-    print_counts("Ex II", parabola(2, -1, 1, 1, 10), 2, 0.9 * tolerance);
+    print_counts("Ex I", geometry::kFlatParabola.curve(), 3, tolerance);
+    print_counts("Ex II", geometry::kSteepParabola.curve(), 2, 0.9 * tolerance);
   }
 }
 

@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "gcode/controls/built_in.h"
 #include "gcode/interpreter/interpreter.h"
@@ -20,7 +19,6 @@
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/forms/output_plan.h"
 #include "postproc/smooth/methods/run_curve.h"
-#include "postproc/smooth/run_smoother.h"
 #include "postproc/stream/pipeline.h"
 
 namespace {
