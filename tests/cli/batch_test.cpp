@@ -113,8 +113,7 @@ TEST_F(Batch, WritesWhatSmoothWritesWithReportsAndTables) {
   EXPECT_GE(summary["totals"]["smoothed"], 9);
   EXPECT_EQ(summary["programs"][0]["program"], "inch_ellipse.ngc");
   EXPECT_EQ(folder_.text_of("out/batten-batch/summary.txt"), result.out);
-  const std::string csv = folder_.text_of("out/batten-batch/summary.csv");
-  EXPECT_EQ(std::ranges::count(csv, '\n'), 13);
+  EXPECT_EQ(std::ranges::count(folder_.text_of("out/batten-batch/summary.csv"), '\n'), 13);
 }
 
 TEST_F(Batch, IsTheSameForAnyNumberOfJobsAndDoesNothingTwice) {

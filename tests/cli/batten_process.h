@@ -38,6 +38,13 @@ inline ProcessResult expect_exit(ProcessResult result, int code,
   return result;
 }
 
+// Arguments that end a command with 1 and these words.
+struct WrongUsage {
+  const char* name;
+  const char* arguments;
+  const char* message;
+};
+
 // A temporary folder to run commands in, removed at the end.
 class BattenFolder {
  public:

@@ -7,15 +7,12 @@
 namespace batten {
 namespace {
 
-using postproc::joined;
-using postproc::wave_lines;
-
 // A wave behind a call.
 class Calls : public testing::Test {
  protected:
   void SetUp() override {
     folder_.put("part.nc", "G21 G90 G17\nS12000 M3\nM98 P1000\nG0 X0. Y0. Z5.\nG1 Z-1. F300.\n" +
-                               joined(wave_lines({}), "\n") + "G0 Z5.\nM30\n");
+                               postproc::joined(postproc::wave_lines({}), "\n") + "G0 Z5.\nM30\n");
   }
   BattenFolder folder_;
 };

@@ -41,8 +41,7 @@ TEST_F(CommandLine, HelpOfEachCommandHasAnExampleAndAllAreListed) {
 }
 
 TEST_F(CommandLine, VersionIsOneLine) {
-  const ProcessResult version = expect_exit(batten("--version"), 0);
-  EXPECT_EQ(version.out, "batten " BATTEN_VERSION "\n");
+  EXPECT_EQ(expect_exit(batten("--version"), 0).out, "batten " BATTEN_VERSION "\n");
 }
 
 TEST_F(CommandLine, ListsWhatIsBuiltIn) {
@@ -55,12 +54,6 @@ TEST_F(CommandLine, ListsWhatIsBuiltIn) {
 }
 
 // --- wrong usage -------------------------------------------------------------------------------
-
-struct WrongUsage {
-  const char* name;
-  const char* arguments;
-  const char* message;
-};
 
 constexpr WrongUsage kWrongUsages[] = {
     {"NoCommand", "", "no command given; possible: smooth, verify"},
@@ -184,12 +177,7 @@ TEST_F(CommandLine, ReadsStandardInputAndWritesStandardOutput) {
   const ProcessResult piped =
       expect_exit(folder_.shell("batten smooth - --target linuxcnc --tolerance 0.01 <part.nc"), 0);
   EXPECT_EQ(piped.out, folder_.text_of("part.smooth.nc"));
-  const ProcessResult filter = batten(std::string(kSmooth) + "-o -");
-  EXPECT_EQ(filter.out, folder_.text_of("part.smooth.nc"));
-}
-
-TEST_F(CommandLine, TellsAFullOrClosedStandardOutput) {
-  EXPECT_EQ(folder_.shell(std::string("batten ") + kSmooth + "-o - >/dev/full").exit_code, 4);
+  EXPECT_EQ(batten(std::string(kSmooth) + "-o -").out, folder_.text_of("part.smooth.nc"));
 }
 
 TEST_F(CommandLine, TellsAMissingFile) {
@@ -366,8 +354,7 @@ TEST_F(CommandLine, PrintsAMachineAsAFileThatIsReadAgain) {
   const ProcessResult first =
       expect_exit(batten("machines --show router --grbl-settings shapeoko.txt"), 0);
   folder_.put("mine.toml", first.out);
-  const ProcessResult second = expect_exit(batten("machines --show mine.toml"), 0);
-  EXPECT_EQ(second.out, first.out);
+  EXPECT_EQ(expect_exit(batten("machines --show mine.toml"), 0).out, first.out);
   EXPECT_TRUE(contains(first.out, "[axis.z]\nvelocity = 10  # mm/s")) << first.out;
 }
 

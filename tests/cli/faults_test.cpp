@@ -246,8 +246,7 @@ INSTANTIATE_TEST_SUITE_P(Cli, LongLines,
                                          LongLine{"OfBlanks", "X1", ' ', 8, "Y1"}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-// --- memory
-// ----------------------------------------------------------------------------------------
+// --- memory -------------------------------------------------------------------------------------
 
 // With less and less room for addresses: whole, or a message and nothing.
 TEST(Memory, ThatIsMissingIsToldAndNothingIsWritten) {

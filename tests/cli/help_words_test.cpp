@@ -50,14 +50,10 @@ std::string offered(const std::string& words) {
   return " " + result.out;
 }
 
-TEST(BashCompletion, OffersTheCommands) {
-  const std::string words = offered("batten s");
-  EXPECT_EQ(words, " smooth ");
-}
+TEST(BashCompletion, OffersTheCommands) { EXPECT_EQ(offered("batten s"), " smooth "); }
 
 TEST(BashCompletion, OffersTheOptionsOfTheCommand) {
-  const std::string words = offered("batten smooth --to");
-  EXPECT_EQ(words, " --tolerance --tolerance-kind ");
+  EXPECT_EQ(offered("batten smooth --to"), " --tolerance --tolerance-kind ");
   EXPECT_EQ(offered("batten verify --th"), "  ");
 }
 
@@ -97,8 +93,7 @@ TEST(ZshCompletion, IsReadByZsh) {
   expect_exit(folder.shell("batten completion zsh > _batten && zsh -n _batten"), 0);
 }
 
-// --- man
-// ------------------------------------------------------------------------------------------
+// --- man ----------------------------------------------------------------------------------------
 
 TEST(ManPage, TellsOfEveryCommandAndOption) {
   const std::string page = BattenFolder().batten("man").out;

@@ -36,8 +36,7 @@ TEST_F(LogLevel, OfWarningLeavesTheSummaryOut) {
 }
 
 TEST_F(LogLevel, QuietSaysNothingWhenAllIsWell) {
-  const ProcessResult result = expect_exit(smooth("--quiet"), 0);
-  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(expect_exit(smooth("--quiet"), 0).err, "");
   EXPECT_EQ(smooth("--log-level error").err, "");
   EXPECT_TRUE(folder_.has("part.smooth.nc"));
 }
@@ -58,8 +57,7 @@ TEST_F(LogLevel, QuietAndMoreContradictEachOther) {
   EXPECT_EQ(smooth("--log-level loud").exit_code, 1);
 }
 
-// --- colour
-// ---------------------------------------------------------------------------------------
+// --- colour -------------------------------------------------------------------------------------
 
 // What a terminal gets.
 std::string on_a_terminal(const BattenFolder& folder, const std::string& environment) {

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include "batten_process.h"
 #include "tests/support/counts_memory.h"
@@ -135,8 +134,7 @@ std::size_t memory_of(const BattenFolder& folder, const std::string& command) {
       "code = subprocess.call(sys.argv[1:], stdout=subprocess.DEVNULL)\n"
       "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024)\n"
       "sys.exit(code)' '" BATTEN_BINARY "' ";
-  const ProcessResult done = expect_exit(folder.shell(kMeasured + command), 0);
-  return std::stoul(done.out);
+  return std::stoul(expect_exit(folder.shell(kMeasured + command), 0).out);
 }
 
 // Rows of two hundred blocks, and twice as many: no more memory than some bytes of each block, for
@@ -194,8 +192,7 @@ TEST(VerifyOfLongPrograms, TellsWhatDiffersAtEitherEnd) {
   folder.put("old.nc", before);
   const auto told_of = [&](const std::string& after) {
     folder.put("new.nc", after);
-    const ProcessResult done = expect_exit(folder.batten("verify old.nc new.nc"), 3);
-    return done.err;
+    return expect_exit(folder.batten("verify old.nc new.nc"), 3).err;
   };
   std::string moved = before;
   moved.replace(moved.rfind("X100.125"), 8, "X100.925");

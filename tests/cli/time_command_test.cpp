@@ -89,14 +89,8 @@ TEST_F(TimeCommandLine, OverwritesNothingWithoutForce) {
   EXPECT_TRUE(folder_.text_of("part.csv").starts_with("t_s,"));
 }
 
-struct WrongTime {
-  const char* name;
-  const char* arguments;
-  const char* message;
-};
-
 TEST_F(TimeCommandLine, WrongUsageIsExplained) {
-  constexpr WrongTime kWrong[] = {
+  constexpr WrongUsage kWrong[] = {
       {"NoMachine", "part.nc", "--machine: no machine given"},
       {"UnknownMachine", "part.nc --machine mil", "did you mean 'mill'?"},
       {"UnknownTarget", "part.nc --machine mill --target linuxcn", "linuxcnc"},
@@ -107,7 +101,7 @@ TEST_F(TimeCommandLine, WrongUsageIsExplained) {
       {"TheProgramAsProfile", "part.nc --machine mill --profile part.nc --force",
        "--profile: part.nc"},
       {"TheProgramAsReport", "part.nc --machine mill --json part.nc --force", "--json: part.nc"}};
-  for (const WrongTime& wrong : kWrong) {
+  for (const WrongUsage& wrong : kWrong) {
     SCOPED_TRACE(wrong.name);
     expect_exit(folder_.batten(std::string("time ") + wrong.arguments), 1, {wrong.message});
     EXPECT_EQ(folder_.text_of("part.nc"), kProgram);

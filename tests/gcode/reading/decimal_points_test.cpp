@@ -111,8 +111,7 @@ TEST(DecimalPoints, ExplicitIsWhatItSays) {
   EXPECT_FALSE(it.word('F').without_point);
 }
 
-// --- nobody said
-// ----------------------------------------------------------------------------------
+// --- nobody said --------------------------------------------------------------------------------
 
 TEST(UndeclaredDecimals, LengthsHaveNoValueAndEndRunsWithTheirReason) {
   const ReadWith it("G21 G90 F100.\nG0 X0 Y0 Z0\nG1 X1.\nX1000\nY5.\nX2.\nX3.\n",
@@ -179,8 +178,7 @@ TEST(DecimalPoints, KnotsAndWeightsNeedTheirPoint) {
   EXPECT_EQ(it.word('X').value, 5);
 }
 
-// --- who has such numbers
-// -------------------------------------------------------------------------
+// --- who has such numbers -----------------------------------------------------------------------
 
 struct WhoCase {
   SourceKind source;

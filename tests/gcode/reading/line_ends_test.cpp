@@ -13,7 +13,6 @@
 namespace batten::gcode {
 namespace {
 
-using tests::Interpreted;
 using Ends = std::vector<std::pair<double, double>>;  // X and Y of each motion
 
 enum class Read { kAll, kUpToThere };  // all motions; those before the line that is not read
@@ -66,7 +65,7 @@ const LineEndCase kLineEndsRows[] = {
 TEST(LineEnds, AreReadAsByLinuxCncOrNotAtAll) {
   for (const LineEndCase& test : kLineEndsRows) {
     SCOPED_TRACE(test.text);
-    const Interpreted it(test.text);
+    const tests::Interpreted it(test.text);
     Ends ends;
     for (const Motion& motion : it.read.motions) {
       if (motion.start_known || ends.empty()) {

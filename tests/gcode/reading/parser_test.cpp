@@ -286,70 +286,12 @@ TEST(ParserDiagnostics, StaySilentAboutGoodPrograms) {
 const std::vector<std::string>& pieces() {
   static const std::vector<std::string> kPieces = [] {
     std::vector<std::string> all = {std::string(1, '\0')};
-    for (const char* piece : {"G1",
-                              "X1.5",
-                              "Y-.25",
-                              "Z 0. 1",
-                              "F100",
-                              "N10",
-                              "M3",
-                              "e5",
-                              "(c)",
-                              "(msg,a)",
-                              "; d",
-                              "/",
-                              "/2",
-                              "%",
-                              "%p",
-                              "O100",
-                              "o<a>",
-                              "#1=",
-                              "#<b>",
-                              "[#1+2]",
-                              "X[1]",
-                              "SIN[3",
-                              "IF[1]",
-                              "GOTO5",
-                              "*71",
-                              ",R2",
-                              ",C",
-                              "\"s",
-                              "'",
-                              "$1=2",
-                              "{",
-                              "!a",
-                              "@1",
-                              "^2",
-                              "<",
-                              "12 ",
-                              "L X+1 ",
-                              "=10",
-                              "R1=",
-                              "DEF REAL ",
-                              "CALL ",
-                              ":",
-                              "_",
-                              "+",
-                              "-",
-                              ".",
-                              "1e3",
-                              "\n",
-                              "\r\n",
-                              "\r",
-                              " ",
-                              "\t",
-                              "(",
-                              ")",
-                              "\x1A",
-                              "\xEF\xBB\xBF",
-                              "\xC3\xA9",
-                              "\xFF",
-                              "9999999999999999999999",
-                              "BEGIN PGM ",
-                              "%_N_A_MPF",
-                              ";$PATH"}) {
-      all.emplace_back(piece);
-    }
+    std::istringstream table(
+        "G1|X1.5|Y-.25|Z 0. 1|F100|N10|M3|e5|(c)|(msg,a)|; d|/|/2|%|%p|O100|o<a>|#1=|#<b>|"
+        "[#1+2]|X[1]|SIN[3|IF[1]|GOTO5|*71|,R2|,C|\"s|'|$1=2|{|!a|@1|^2|<|12 |L X+1 |=10|R1=|"
+        "DEF REAL |CALL |:|_|+|-|.|1e3|\n|\r\n|\r| |\t|(|)|\x1A|\xEF\xBB\xBF|\xC3\xA9|\xFF|"
+        "9999999999999999999999|BEGIN PGM |%_N_A_MPF|;$PATH");
+    for (std::string piece; std::getline(table, piece, '|');) all.push_back(piece);
     return all;
   }();
   return kPieces;

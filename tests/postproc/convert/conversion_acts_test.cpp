@@ -9,8 +9,6 @@ namespace {
 
 using gcode::Language;
 
-// --- one act in three languages -----------------------------------------------------------------
-
 struct ActCase {
   const char* name;
   const char* plain;

@@ -219,8 +219,7 @@ TEST(ConversionDwells, MakeAProgramOneForOtherControls) {
   EXPECT_EQ(first_told("G4 P2.5"), "taken");
   EXPECT_EQ(first_told("G4 P2"),
             "1:1: G4 P2 waits for 2 s on the control that --source names, and for 0.002 s on "
-            "target haas; "
-            "--convert lists which blocks could not be said there");
+            "target haas; --convert lists which blocks could not be said there");
   options.convert = true;
   EXPECT_EQ(first_told("G4 P2"), "1:1: G4 waits for another time there (target haas)");
 }

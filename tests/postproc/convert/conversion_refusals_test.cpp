@@ -6,10 +6,6 @@
 namespace batten::postproc {
 namespace {
 
-using gcode::Language;
-
-// --- what is refused ----------------------------------------------------------------------------
-
 struct WayRefused {
   const char* name;
   const char* blocks;

@@ -131,8 +131,7 @@ TEST(Conversion, DoesNotBuryItsReader) {
   EXPECT_EQ(told.back(), "from here on 70 more blocks of this kind");
 }
 
-// --- words that the reader and the target understand differently
-// -----------------------------------
+// --- words that the reader and the target understand differently --------------------------------
 
 TEST(OtherMeanings, AreAnErrorWhoeverConverts) {
   for (const bool convert : {false, true}) {

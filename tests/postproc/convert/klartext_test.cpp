@@ -8,7 +8,6 @@
 #include <random>
 #include <tuple>
 
-#include "gcode/controls/built_in.h"
 #include "gcode/writer/block_numbers.h"
 #include "postproc/proof/verification.h"
 #include "tests/support/klartext_programs.h"
@@ -90,8 +89,7 @@ TEST(Klartext, ProgramsOfRandomCurvesAreProved) {
 // Splines need an option of the control.
 TEST(Klartext, SplinesAreOnRequestOnly) {
   const std::string before = numbered_from_zero(klartext_program_of(tests::random_curve(3, false)));
-  const SmoothResult result = smoothed(before, klartext_options("itnc530"));
-  EXPECT_EQ(result.text.find("SPL"), std::string::npos);
+  EXPECT_EQ(smoothed(before, klartext_options("itnc530")).text.find("SPL"), std::string::npos);
 }
 
 // Signs of the text are changed, lost and doubled: what is still read is proved, and nothing else

@@ -3,8 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <random>
+#include <sstream>
 
 #include "gcode/controls/built_in.h"
 #include "postproc/stream/smooth_result.h"
@@ -273,35 +272,13 @@ TEST(Translation, ThatIsDamagedIsNotProved) {
         << damage.name;
   }
   // What the new text does not say at all.
-  for (const char* block : {"G92 X0",
-                            "G1 A5",
-                            "G1 X20 A5",
-                            "G10 L2 P1 X5",
-                            "G4 P1",
-                            "M7",
-                            "G61",
-                            "G68 X0 Y0 R10",
-                            "T9",
-                            "G55",
-                            "G52 X5",
-                            "(MSG, wait)",
-                            "/M9",
-                            "G28 Z0",
-                            "G53 Z0",
-                            "M98 P100",
-                            "G81 X20 Y0 Z-2 R1",
-                            "E5",
-                            "G41 D1",
-                            "M0",
-                            "#1=2",
-                            "G51 P2",
-                            "G96 S100",
-                            "U5",
-                            "G43 H6",
-                            "G49",
-                            "M6 T7"}) {
+  std::istringstream blocks(
+      "G92 X0|G1 A5|G1 X20 A5|G10 L2 P1 X5|G4 P1|M7|G61|G68 X0 Y0 R10|T9|G55|G52 X5|"
+      "(MSG, wait)|/M9|G28 Z0|G53 Z0|M98 P100|G81 X20 Y0 Z-2 R1|E5|G41 D1|M0|#1=2|G51 P2|"
+      "G96 S100|U5|G43 H6|G49|M6 T7");
+  for (std::string block; std::getline(blocks, block, '|');) {
     std::string more = kPart;
-    more.insert(more.find("N130"), std::string(block) + "\n");
+    more.insert(more.find("N130"), block + "\n");
     EXPECT_FALSE(verdict_for("heidenhain", more, text).proved()) << block;
   }
 }
