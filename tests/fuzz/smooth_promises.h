@@ -1,7 +1,6 @@
 // What the pipeline promises for any program whatever. Used by the fuzzer and by the unit tests.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>

@@ -24,7 +24,6 @@ inline geometry::BsplineCurve golden_curve() {
 // per leg at the most. In the plane: at a height of -1.
 inline geometry::BsplineCurve random_curve(unsigned seed, bool in_space) {
   using geometry::Point3;
-  using geometry::Vector3;
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> part(0, 1);
   const auto between = [&](double least, double most) {
@@ -47,7 +46,7 @@ inline geometry::BsplineCurve random_curve(unsigned seed, bool in_space) {
     heading += between(-0.9, 0.9);
     if (in_space) slope = between(-0.6, 0.6);
     const double step = basis.greville(i) - basis.greville(i - 1);
-    place += step * Vector3(std::cos(heading), std::sin(heading), slope);
+    place += step * geometry::Vector3(std::cos(heading), std::sin(heading), slope);
     points.push_back(place);
   }
   return {basis, std::move(points)};

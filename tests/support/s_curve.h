@@ -28,8 +28,6 @@ struct SCurveNode {
 
 namespace s_curve {
 
-using geometry::ParameterSample;
-
 inline double allowed_velocity(double curvature, const SCurveLimits& limits) {
   if (curvature <= 0) return limits.velocity;
   return std::min(limits.velocity, std::sqrt(limits.acceleration / curvature));
@@ -44,7 +42,7 @@ struct Level {
   [[nodiscard]] std::size_t middle() const { return (first + last) / 2; }
 };
 
-inline std::vector<Level> levels_of(std::span<const ParameterSample> samples,
+inline std::vector<Level> levels_of(std::span<const geometry::ParameterSample> samples,
                                     const SCurveLimits& limits) {
   std::vector<Level> levels;
   for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -29,7 +29,6 @@ using curve_tests::reading_of;
 using curve_tests::refusal_of;
 using curve_tests::starting_at;
 using curve_tests::text_of;
-using geometry::BsplineBasis;
 using geometry::BsplineCurve;
 using geometry::CubicBezier;
 using geometry::Point3;
@@ -385,11 +384,11 @@ TEST(CurveWriting, RefusesWhatItCannotSay) {
   EXPECT_EQ(written(mitsubishi_curves(), golden_curve()), "this control's G06.2 names X, Y and Z");
   EXPECT_EQ(written(fanuc_curves(), golden_with(2, {1e6, 10, 0})), "a position beyond 999999.999");
   const std::vector<Point3> points = golden_curve().control_points();
-  const BsplineCurve loose(BsplineBasis(3, {0, 1, 2, 3, 4, 5, 6, 7, 8}), points);
+  const BsplineCurve loose(geometry::BsplineBasis(3, {0, 1, 2, 3, 4, 5, 6, 7, 8}), points);
   EXPECT_EQ(written(fanuc_curves(), loose), "G06.2 is written for clamped cubic curves only");
   EXPECT_EQ(written(siemens_bspline(), loose), "BSPLINE is written for clamped cubics only");
   for (const CurveFormat* format : {&fanuc_curves(), &siemens_bspline()}) {
-    const BsplineCurve close(BsplineBasis::clamped(3, {0, 1e-10, 1}), points);
+    const BsplineCurve close(geometry::BsplineBasis::clamped(3, {0, 1e-10, 1}), points);
     EXPECT_EQ(written(*format, close), "distinct knots meet when they are rounded");
   }
 }

@@ -13,7 +13,6 @@
 namespace batten::gcode {
 namespace {
 
-using geometry::Arc;
 using geometry::Point3;
 using geometry::Vector3;
 using tests::Interpreted;
@@ -69,7 +68,7 @@ TEST(LastArc, IsThisOne) {
     const Interpreted it(test.text);
     ASSERT_FALSE(it.read.motions.empty());
     ASSERT_EQ(it.read.motions.back().kind, MotionKind::kArc);
-    const Arc arc = *it.read.motions.back().piece.arc();
+    const geometry::Arc arc = *it.read.motions.back().piece.arc();
     EXPECT_LT((arc.end - test.end).norm(), 1e-9);
     EXPECT_LT((arc.axis - test.axis).norm(), 1e-15);
     const Vector3 off = arc.center - test.center;

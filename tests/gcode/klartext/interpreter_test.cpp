@@ -11,7 +11,6 @@
 namespace batten::gcode {
 namespace {
 
-using geometry::Arc;
 using geometry::Point3;
 using tests::KlartextProgram;
 

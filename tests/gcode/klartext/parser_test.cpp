@@ -5,7 +5,6 @@
 
 #include <random>
 #include <string>
-#include <vector>
 
 #include "gcode/klartext/statement.h"
 #include "gcode/text/number_format.h"

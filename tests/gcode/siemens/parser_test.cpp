@@ -4,7 +4,6 @@
 
 #include <random>
 #include <string>
-#include <vector>
 
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/siemens/lexer.h"

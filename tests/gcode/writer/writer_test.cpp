@@ -2,13 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <map>
 #include <numbers>
 #include <random>
 #include <sstream>
 #include <string>
-#include <vector>
 
 #include "gcode/controls/built_in.h"
 #include "gcode/state/modal_state.h"
@@ -17,7 +15,6 @@
 namespace batten::gcode {
 namespace {
 
-using geometry::Arc;
 using geometry::Point3;
 using geometry::Vector3;
 
@@ -166,7 +163,7 @@ TEST(Writer, WritesNoArcWhereItIsNotKnownHowCentersAreGiven) {
   ModalState absolute = cutting_in(Units::kMillimetre);
   absolute.arc_distance = DistanceMode::kAbsolute;
   Writer grbl = writer_at("grbl", absolute, Point3(10, 0, 0));  // has no G90.1
-  const Arc arc = arc_round({10, 0, 0}, {0, 0, 0}, Vector3::UnitZ(), 1);
+  const geometry::Arc arc = arc_round({10, 0, 0}, {0, 0, 0}, Vector3::UnitZ(), 1);
   EXPECT_FALSE(linuxcnc.arc_to(arc, 1000));
   EXPECT_FALSE(grbl.arc_to(arc, 1000));
   EXPECT_EQ(linuxcnc.text() + grbl.text(), "");

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <random>
 
-#include "geometry/path/cubic_polynomial.h"
 #include "geometry/path/path.h"
 #include "tests/support/random_curves.h"
 

@@ -9,7 +9,6 @@
 
 #include "geometry/chords/min_link_gates.h"
 #include "geometry/chords/min_link_plane.h"
-#include "geometry/path/plane_curve.h"
 #include "tests/support/curve_of.h"
 #include "tests/support/parabolas.h"
 

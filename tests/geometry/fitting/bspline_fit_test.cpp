@@ -7,7 +7,6 @@
 #include <functional>
 #include <random>
 #include <stdexcept>
-#include <vector>
 
 namespace batten::geometry {
 namespace {

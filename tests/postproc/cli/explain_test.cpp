@@ -6,7 +6,6 @@
 #include <regex>
 #include <set>
 
-#include "gcode/state/reason.h"
 #include "tests/support/places.h"
 #include "tests/support/scratch_folder.h"
 

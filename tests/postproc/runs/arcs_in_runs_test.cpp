@@ -13,16 +13,11 @@
 #include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/planner/feed_plan.h"
 #include "postproc/runs/run_path.h"
-#include "postproc/stream/pipeline.h"
 #include "tests/support/kinked_arcs.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
 namespace {
-
-using geometry::PathPiece;
-using geometry::Vector2;
-using geometry::Vector3;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -56,8 +51,8 @@ double exact_time_of(const std::string& text) {
 double planned_time_of(const std::string& text) {
   KinematicPathLimits limits;
   limits.feed = 100;
-  limits.acceleration = Vector3::Constant(3000);
-  limits.jerk = Vector3::Constant(50000);
+  limits.acceleration = geometry::Vector3::Constant(3000);
+  limits.jerk = geometry::Vector3::Constant(50000);
   geometry::Path path;
   for (const TimedPiece& cut : cuts_of(text)) path.push_back(cut.piece);
   return planned_time(path, limits);
@@ -99,7 +94,7 @@ tests::PlaneCurve random_outline(unsigned seed) {
   return [=](double t) {
     const double a = 2 * std::numbers::pi * t;
     const double r = size * (1 + third * std::cos(3 * a) + fifth * std::sin(5 * a));
-    return Vector2(r * std::cos(a), r * std::sin(a));
+    return geometry::Vector2(r * std::cos(a), r * std::sin(a));
   };
 }
 

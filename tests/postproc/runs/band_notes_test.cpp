@@ -9,7 +9,6 @@
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
 #include "postproc/runs/run_grouping.h"
-#include "postproc/stream/pipeline.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {

@@ -15,7 +15,6 @@ namespace batten::postproc {
 namespace {
 
 using geometry::Arc;
-using geometry::Line;
 using geometry::Point3;
 using geometry::Vector3;
 
@@ -31,7 +30,7 @@ class Pen {
   Pen& line(double length) {
     const Point3 from = at_;
     at_ += length * forward();
-    motions_.push_back({Line{from, at_}, false});
+    motions_.push_back({geometry::Line{from, at_}, false});
     return *this;
   }
   // Positive sweeps turn left.
@@ -142,7 +141,7 @@ TEST_P(PrintedJoints, AreTangentStill) {
       const Point3 end(rounded(exact_end.x(), decimals), rounded(exact_end.y(), decimals), 0);
       at = exact_end;
       if (!bends) {
-        motions.push_back({Line{start, end}, false});
+        motions.push_back({geometry::Line{start, end}, false});
         continue;
       }
       gcode::ArcWords words;

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <random>
 #include <string>
 #include <vector>
@@ -17,7 +16,6 @@ namespace batten::postproc {
 namespace {
 
 using geometry::Point3;
-using tests::Interpreted;
 namespace reason = gcode::reason;
 
 struct Grouped {
@@ -48,7 +46,7 @@ struct Grouped {
     return text;
   }
 
-  Interpreted it;
+  tests::Interpreted it;
   std::vector<Section> sections;
 };
 

@@ -13,13 +13,11 @@
 namespace batten::postproc {
 namespace {
 
-using geometry::Arc;
-using geometry::Line;
 using geometry::Point3;
 using geometry::Vector3;
 
 // From the place where the run stands, about an axis of the coordinate system.
-Arc random_arc(const Point3& start, std::mt19937& random) {
+geometry::Arc random_arc(const Point3& start, std::mt19937& random) {
   std::uniform_real_distribution<double> unit(0, 1);
   const int normal = static_cast<int>(3 * unit(random));
   const Vector3 axis = Vector3::Unit(normal);
@@ -91,7 +89,7 @@ TEST(MotionsBetween, AreTheMotionsThemselvesOrPartsOfArcsThatAreCut) {
     std::size_t arcs = 0;
     for (const RunMotion& motion : motions) {
       EXPECT_EQ(geometry::start_point(motion.piece), run.points[motion.first]);
-      if (const auto* arc = std::get_if<Arc>(&motion.piece)) {
+      if (const auto* arc = std::get_if<geometry::Arc>(&motion.piece)) {
         EXPECT_EQ(arc->sweep, run.arcs[arcs].arc.sweep);
         EXPECT_EQ(motion.first, run.arcs[arcs].first);
         ++arcs;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -13,12 +12,12 @@
 #include "gcode/controls/built_in.h"
 #include "gcode/curves/curve_format.h"
 #include "gcode/interpreter/interpreter.h"
-#include "gcode/reading/parser.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
 #include "gcode/writer/writer.h"
 #include "geometry/distance/path_distance.h"
 #include "postproc/smooth/forms/output_plan.h"
+#include "tests/support/paths.h"
 #include "tests/support/random_curves.h"
 #include "tests/support/wavy_programs.h"
 
@@ -58,12 +57,6 @@ INSTANTIATE_TEST_SUITE_P(Targets, Curves, testing::ValuesIn(targets_with_curves(
                            std::erase(name, '-');
                            return name;
                          });
-
-Path path_of(const BsplineCurve& curve) {
-  Path path;
-  for (const CubicBezier& piece : curve.bezier_pieces()) path.push_back(piece);
-  return path;
-}
 
 // A program that stands in the curve's first place, and then what is written.
 std::string head_at(const Point3& place) {
@@ -117,7 +110,7 @@ void expect_read_back(const BsplineCurve& curve, const gcode::Control& target) {
   writer.end_curve();
   const Path read = cuts_of(head_at(start) + writer.text(), *target.curves);
   ASSERT_FALSE(read.empty()) << writer.text();
-  const auto found = geometry::compare_paths(path_of(curve), read, 2 * step);
+  const auto found = geometry::compare_paths(geometry::beziers_of(curve), read, 2 * step);
   EXPECT_EQ(found.verdict, geometry::Verdict::kProved) << found.bounds.at_least << "\n"
                                                        << writer.text();
   EXPECT_LT((writer.state().position.mm - geometry::end_point(read.back())).norm(), 1e-8);

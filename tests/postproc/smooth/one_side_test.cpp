@@ -19,7 +19,6 @@ namespace {
 
 using geometry::Point3;
 using geometry::Side;
-using geometry::Vector3;
 
 constexpr double kTolerance = 0.05;
 
@@ -61,10 +60,10 @@ double left_of_polyline(const Point3& place, const std::vector<Point3>& line) {
   double nearest = std::numeric_limits<double>::infinity();
   double left = 0;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    const Vector3 along = line[i + 1] - line[i];
+    const geometry::Vector3 along = line[i + 1] - line[i];
     if (along.norm() < 1e-9) continue;
     const double t = std::clamp((place - line[i]).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    const Vector3 off = place - line[i] - t * along;
+    const geometry::Vector3 off = place - line[i] - t * along;
     if (off.norm() < nearest) {
       nearest = off.norm();
       left = (along.x() * off.y() - along.y() * off.x()) / along.norm();

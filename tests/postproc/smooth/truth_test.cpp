@@ -19,12 +19,10 @@ namespace {
 
 using geometry::FinishSurface;
 using geometry::kPlacesPerEdge;
-using geometry::kSurfaceRows;
 using geometry::Point3;
 using geometry::rms_of_rows;
 using geometry::surface_program;
 using geometry::surface_rows;
-using geometry::SurfaceDistances;
 
 geometry::SmoothCurve fair_row(const std::vector<Point3>& row, double tolerance, bool accurate) {
   geometry::FairOptions options;
@@ -61,7 +59,7 @@ struct CurveTruth {
 
 CurveTruth curve_truth(const std::vector<std::vector<Point3>>& rows, double tolerance,
                        bool accurate) {
-  SurfaceDistances fair;
+  geometry::SurfaceDistances fair;
   std::vector<double> differences;
   std::vector<double> last;
   for (const auto& row : rows) {
@@ -159,7 +157,7 @@ double rms_of(const std::string& text, std::string_view target = "linuxcnc") {
   const gcode::SourceText source("rows.nc", text);
   gcode::Diagnostics ignored;
   const gcode::Program program = gcode::parse(source, ignored);
-  SurfaceDistances distances;
+  geometry::SurfaceDistances distances;
   gcode::ReadOptions reading;
   reading.curves = gcode::find_control(target)->curves;
   for (const gcode::Motion& motion : gcode::interpret(program, reading, ignored).motions) {
@@ -220,7 +218,7 @@ void expect_faster_and_nearer(double cam, double feed, double part) {
     options.tolerance_mm = 2 * cam;
     const SmoothResult result = smoothed(before, options);
     EXPECT_TRUE(result.proved);
-    EXPECT_EQ(rewritten_runs(result), static_cast<std::size_t>(kSurfaceRows));
+    EXPECT_EQ(rewritten_runs(result), static_cast<std::size_t>(geometry::kSurfaceRows));
     fmt::print(
         "CAM tolerance {}, noise 0.02, F{}, seed {}: rms {:.6f} -> {:.6f} mm, time {:.3f} -> "
         "{:.3f} s\n",
@@ -250,7 +248,7 @@ TEST(NoisyTruth, IsCutFasterAndNearer) {
     options.tolerance_mm = 0.03;
     const SmoothResult result = smoothed(before, options);
     EXPECT_TRUE(result.proved);
-    EXPECT_EQ(rewritten_runs(result), static_cast<std::size_t>(kSurfaceRows));
+    EXPECT_EQ(rewritten_runs(result), static_cast<std::size_t>(geometry::kSurfaceRows));
     fmt::print("noise 0.02, seed {}: rms {:.6f} -> {:.6f} mm, time {:.3f} -> {:.3f} s\n", seed,
                rms_of(before), rms_of(result.text), result.time_before_s, result.time_after_s);
     EXPECT_LT(result.time_after_s, 0.95 * result.time_before_s);

@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "gcode/interpreter/interpreter.h"
 #include "postproc/stream/assembly.h"
 #include "tests/support/wavy_programs.h"
 

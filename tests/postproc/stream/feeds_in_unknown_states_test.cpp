@@ -3,7 +3,6 @@
 // The verifier must compare each of them, in every language.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <random>
 #include <sstream>
 #include <string>

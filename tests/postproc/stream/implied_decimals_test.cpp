@@ -18,10 +18,9 @@ namespace batten::postproc {
 namespace {
 
 using gcode::Decimals;
-using gcode::PointlessNumbers;
 
 constexpr Decimals kExplicit{};
-constexpr Decimals kIncrements{.pointless = PointlessNumbers::kIncrements};
+constexpr Decimals kIncrements{.pointless = gcode::PointlessNumbers::kIncrements};
 
 // A wave whose numbers are least increments: of 0.001 mm, or of 0.0001 inch.
 std::string wave_in_increments(const std::string& units = "G21") {
@@ -196,7 +195,7 @@ TEST(ImpliedDecimals, TheProofTellsFeedsWithAndWithoutAPointApart) {
   const std::string before = "G21 G90\nG0 X0 Y0 Z0\nG1 X1. F100\nX2. Y1.\nX3.\nG0 Z5.\n";
   std::string after = before;
   after.replace(after.find("F100"), 4, "F100.");
-  const Decimals undeclared{.pointless = PointlessNumbers::kUndeclared};
+  const Decimals undeclared{.pointless = gcode::PointlessNumbers::kUndeclared};
   EXPECT_TRUE(is_proved(before, before, undeclared));
   EXPECT_FALSE(is_proved(before, after, undeclared));
   EXPECT_FALSE(is_proved(before, after, kIncrements));

@@ -17,7 +17,6 @@
 #include "gcode/state/reason.h"
 #include "gcode/text/source_text.h"
 #include "geometry/band/tolerance_band.h"
-#include "geometry/path/plane_curve.h"
 #include "postproc/smooth/part_runs.h"
 #include "tests/support/in_windows.h"
 #include "tests/support/wavy_programs.h"

@@ -7,16 +7,13 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <random>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "postproc/proof/verification.h"
-#include "postproc/stream/pipeline.h"
 #include "tests/support/in_windows.h"
 #include "tests/support/random_passes.h"
 #include "tests/support/wavy_programs.h"

@@ -12,7 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include "postproc/stream/pipeline.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {

@@ -9,7 +9,6 @@
 #include <random>
 #include <span>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <variant>
 #include <vector>

@@ -5,11 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <stdexcept>
 #include <variant>
-#include <vector>
 
 #include "geometry/distance/path_distance.h"
 #include "geometry/fitting/corners/guo_corner.h"

@@ -1,7 +1,6 @@
 // Naseath's method as his thesis has it, against the figures of an independent program.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>

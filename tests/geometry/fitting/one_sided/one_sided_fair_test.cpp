@@ -3,13 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
 
 #include "geometry/distance/path_distance.h"
-#include "geometry/path/curve_pieces.h"
 #include "geometry/path/path.h"
 #include "tests/support/paths.h"
 

@@ -12,7 +12,6 @@
 #include "tests/support/corners.h"
 #include "tests/support/knot_insertion.h"
 #include "tests/support/naseath_cases.h"
-#include "tests/support/noisy_curves.h"
 
 namespace batten::geometry {
 namespace {

@@ -15,7 +15,6 @@ namespace {
 
 using gcode::PathMode;
 using geometry::Arc;
-using geometry::Line;
 using geometry::Point3;
 using geometry::Vector3;
 using std::numbers::pi;
@@ -39,7 +38,7 @@ class Program {
 
   Program& line(double x, double y, double z = 0) {
     const Point3 to(x, y, z);
-    chain_.push_back({Line{at_, to}, feed_});
+    chain_.push_back({geometry::Line{at_, to}, feed_});
     at_ = to;
     return *this;
   }
@@ -258,7 +257,7 @@ TEST(NaiveCam, TakesFlatArcsOfThePlaneXyForLines) {
   Program p(1000);
   p.arc(2, 0, 1, std::sqrt(50.0 * 50 - 1), angle);
   EXPECT_TRUE(std::holds_alternative<Arc>(joined(p.chain(), 0.0099)[0]));
-  EXPECT_TRUE(std::holds_alternative<Line>(joined(p.chain(), 0.0101)[0]));
+  EXPECT_TRUE(std::holds_alternative<geometry::Line>(joined(p.chain(), 0.0101)[0]));
 
   Arc upright = std::get<Arc>(p.chain()[0].piece);  // turned into the plane of X and Z
   for (Point3* q : {&upright.start, &upright.end, &upright.center}) *q = {q->x(), 0, q->y()};

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,7 +16,6 @@ namespace {
 
 using geometry::Line;
 using geometry::Path;
-using geometry::Point3;
 
 TEST(FeedEstimate, IsExactOnLines) {
   EXPECT_NEAR(estimated_time(Path{Line{{0, 0, 0}, {26, 26, 0}}}, corner_limits()), 1.589703, 5e-7);

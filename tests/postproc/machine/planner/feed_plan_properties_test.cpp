@@ -17,7 +17,6 @@ namespace batten::postproc {
 namespace {
 
 using geometry::Arc;
-using geometry::CubicBezier;
 using geometry::Line;
 using geometry::Path;
 using geometry::Point3;
@@ -122,7 +121,7 @@ KinematicPathLimits divided(KinematicPathLimits limits, double speed, double acc
 template <typename Change>
 void change_points(Path& path, const Change& change) {
   for (auto& piece : path) {
-    if (auto* bezier = std::get_if<CubicBezier>(&piece)) {
+    if (auto* bezier = std::get_if<geometry::CubicBezier>(&piece)) {
       for (Point3& p : bezier->control) change(p);
     } else if (auto* arc = std::get_if<Arc>(&piece)) {
       for (Point3* p : {&arc->start, &arc->end, &arc->center}) change(*p);
@@ -207,7 +206,7 @@ TEST(FeedPlanProperties, TheReversedPathTakesTheSameTime) {
     const Case test = random_case(seed);
     Path reversed;
     for (auto piece : test.path) {
-      if (auto* bezier = std::get_if<CubicBezier>(&piece)) {
+      if (auto* bezier = std::get_if<geometry::CubicBezier>(&piece)) {
         std::ranges::reverse(bezier->control);
       } else if (auto* arc = std::get_if<Arc>(&piece)) {
         std::swap(arc->start, arc->end);

@@ -6,9 +6,6 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <string>
-#include <tuple>
-#include <vector>
 
 #include "tests/support/naseath_cases.h"
 #include "tests/support/planned_paths.h"
@@ -18,13 +15,9 @@ namespace batten::postproc {
 namespace {
 
 using geometry::Arc;
-using geometry::BsplineCurve;
-using geometry::CubicBezier;
 using geometry::GuoApex;
 using geometry::Line;
 using geometry::Path;
-using geometry::Point3;
-using geometry::Vector3;
 
 constexpr double kNone = KinematicPathLimits::kNone;
 
@@ -40,7 +33,7 @@ TEST(PlanFeed, OfALineIsItsClosedForm) {
 
 // The same line as a curve is planned by the search.
 TEST(PlanFeed, FindsTheClosedFormOfALine) {
-  const Path line = {CubicBezier{{{0, 0, 0}, {9, 9, 0}, {17, 17, 0}, {26, 26, 0}}}};
+  const Path line = {geometry::CubicBezier{{{0, 0, 0}, {9, 9, 0}, {17, 17, 0}, {26, 26, 0}}}};
   EXPECT_NEAR(planned_time(line, corner_limits()) / 1.589703, 1, 1e-4);
   EXPECT_NEAR(planned_time(line, corner_limits(), {}, 48) / 1.589703, 1, 1e-5);
 }
@@ -71,7 +64,7 @@ TEST(PlanFeed, StopsAtAKink) {
 // The direction changes by (0, -sqrt 2): 5 mm/s of y let 3.536 mm/s pass.
 TEST(PlanFeed, PassesAKinkWithinTheAllowedStepOfSpeed) {
   KinematicPathLimits limits = corner_limits();
-  limits.speed_step = Vector3::Constant(5);
+  limits.speed_step = geometry::Vector3::Constant(5);
   const FeedPlan plan = plan_feed(kSharpCorner, limits);
   EXPECT_EQ(plan.stops, 0);
   EXPECT_EQ(plan.passed_jumps, 1);
@@ -194,7 +187,7 @@ TEST(ThesisPath, TakesTheTimeOfTheReference) {
         ThesisCase{"tc6", 1.472, .97, 1}, ThesisCase{"tc3", 3.679, 1, 1.01},
         ThesisCase{"tc2", 1.283, 1, 1.08}, ThesisCase{"tc1", 3.668, .97, 1.001}}) {
     SCOPED_TRACE(test.name);
-    const BsplineCurve curve = geometry::curve_of_case(test.name);
+    const geometry::BsplineCurve curve = geometry::curve_of_case(test.name);
     const auto samples = geometry::parameter_samples(curve, geometry::kNaseathSteps);
     const auto s_curve = s_curve_nodes(samples, {});
     KinematicPathLimits limits;

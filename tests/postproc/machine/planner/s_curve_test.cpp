@@ -24,7 +24,6 @@ namespace {
 using geometry::BsplineCurve;
 using geometry::curve_of_case;
 using geometry::kNaseathSteps;
-using geometry::naseath_case;
 using geometry::NaseathOptions;
 using geometry::NaseathRepairs;
 using geometry::parameter_samples;
@@ -40,7 +39,7 @@ double percent_less(double was, double is) { return 100 * (1 - is / was); }
 class SCurveOriginal : public testing::TestWithParam<std::string> {};
 
 TEST_P(SCurveOriginal, TakesTheTimeOfTheTable) {
-  const double expected = naseath_case(GetParam())["t_scurve"];
+  const double expected = geometry::naseath_case(GetParam())["t_scurve"];
   EXPECT_NEAR(time_of(curve_of_case(GetParam())), expected, 1e-9 * expected);
 }
 

@@ -13,23 +13,21 @@
 #include "geometry/distance/path_distance.h"
 #include "tests/support/curve_of.h"
 #include "tests/support/machine_limits.h"
+#include "tests/support/paths.h"
 
 namespace batten::postproc {
 namespace {
 
 using geometry::Arc;
-using geometry::BsplineCurve;
-using geometry::Line;
 using geometry::Point3;
-using geometry::SmoothCurve;
 
 struct Smoothed {
   Run run;
-  SmoothCurve fair;
+  geometry::SmoothCurve fair;
 };
 
 // A run whose vertices lie on the curve, at `count` even parameters.
-Smoothed smoothed(const BsplineCurve& curve, std::size_t count, double feed) {
+Smoothed smoothed(const geometry::BsplineCurve& curve, std::size_t count, double feed) {
   Smoothed result{{}, {curve, {}, 0, 0, 0, 0}};
   for (std::size_t i = 0; i < count; ++i) {
     const double part = static_cast<double>(i) / static_cast<double>(count - 1);
@@ -91,12 +89,10 @@ void expect_chain(const OutputPlan& plan, const Run& run) {
 
 // That of the moves and the curve, in order and both ways, proved to be within `limit`; at most
 // 2 % of that too great.
-double deviation_within(double limit, const OutputPlan& plan, const BsplineCurve& curve) {
+double deviation_within(double limit, const OutputPlan& plan, const geometry::BsplineCurve& curve) {
   geometry::Path moves;
-  geometry::Path pieces;
   for (const PlannedMove& move : plan.moves) moves.push_back(move.piece);
-  for (const auto& piece : curve.bezier_pieces()) pieces.emplace_back(piece);
-  const auto found = geometry::compare_paths(pieces, moves, limit);
+  const auto found = geometry::compare_paths(geometry::beziers_of(curve), moves, limit);
   EXPECT_EQ(found.verdict, geometry::Verdict::kProved) << limit;
   return found.bounds.at_most;
 }

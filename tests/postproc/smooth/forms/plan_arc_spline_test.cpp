@@ -16,8 +16,6 @@
 namespace batten::postproc {
 namespace {
 
-using geometry::Arc;
-using geometry::Path;
 using geometry::Point3;
 
 constexpr double kPi = std::numbers::pi;
@@ -72,11 +70,11 @@ PlannedArcs planned(Run run, double keep_corner_angle = 3.2) {
 }
 
 void expect_proved(const PlannedArcs& planned) {
-  Path path;
+  geometry::Path path;
   for (const PlannedMove& move : planned.plan->moves) path.push_back(move.piece);
   EXPECT_EQ(geometry::start_point(path.front()), planned.run.points.front());
   EXPECT_EQ(geometry::end_point(path.back()), planned.run.points.back());
-  const Path old_path = geometry::path_through(planned.run.points);
+  const geometry::Path old_path = geometry::path_through(planned.run.points);
   EXPECT_EQ(geometry::compare_paths(old_path, path, kTolerance).verdict,
             geometry::Verdict::kProved);
 }
@@ -88,7 +86,7 @@ TEST(PlanArcSpline, ACircleInEveryPlaneIsAFewArcs) {
     expect_proved(circle);
     EXPECT_LE(circle.plan->moves.size(), 5U);
     for (const PlannedMove& move : circle.plan->moves) {
-      const auto* arc = std::get_if<Arc>(&move.piece);
+      const auto* arc = std::get_if<geometry::Arc>(&move.piece);
       ASSERT_NE(arc, nullptr);
       EXPECT_NEAR(std::abs(arc->axis[normal]), 1, 1e-12);
       EXPECT_NEAR(arc->center[normal], 3, 1e-12);

@@ -14,7 +14,6 @@
 namespace batten::postproc {
 namespace {
 
-using geometry::BsplineCurve;
 using geometry::Point3;
 
 // --- knots that rounding has parted -------------------------------------------------------------
@@ -26,7 +25,7 @@ struct NearKnot {
   geometry::SmoothCurve fair;
 
   explicit NearKnot(int steps) : fair{bend(), {}, 0, 0, 0, 0} {
-    const BsplineCurve& curve = fair.curve;
+    const geometry::BsplineCurve& curve = fair.curve;
     double change = curve.breakpoints()[3];
     const double towards = steps > 0 ? curve.last() : curve.first();
     for (int i = 0; i < std::abs(steps); ++i) change = std::nextafter(change, towards);
@@ -36,7 +35,7 @@ struct NearKnot {
   }
 
   // y = 5 sin(x / 5) over two crests in spans of 5 mm.
-  static BsplineCurve bend() {
+  static geometry::BsplineCurve bend() {
     const auto f = [](double u) { return Point3(u, 5 * std::sin(u / 5), -1); };
     return geometry::curve_of(f, 0, 30, 6);
   }

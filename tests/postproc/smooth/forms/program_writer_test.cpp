@@ -17,8 +17,6 @@ namespace {
 
 using gcode::ModalState;
 using gcode::Units;
-using geometry::Arc;
-using geometry::Line;
 using geometry::Point3;
 using geometry::Vector3;
 
@@ -42,12 +40,12 @@ struct Planned {
   explicit Planned(const Point3& start) { run.points = {start}; }
 
   void line(const Point3& end, double feed = 1000) {
-    plan.moves.push_back({Line{run.points.back(), end}, feed, {}});
+    plan.moves.push_back({geometry::Line{run.points.back(), end}, feed, {}});
     run.points.push_back(end);
   }
   void arc(const Point3& end, const Point3& center, const Vector3& axis, double sweep) {
     plan.form = OutputForm::kArcs;
-    plan.moves.push_back({Arc{run.points.back(), end, center, axis, sweep}, 1000, {}});
+    plan.moves.push_back({geometry::Arc{run.points.back(), end, center, axis, sweep}, 1000, {}});
     run.points.push_back(end);
   }
 };
@@ -187,8 +185,7 @@ TEST(WriteRun, WritesNothingWhereALineWouldBeTooLong) {
   EXPECT_TRUE(write());
 }
 
-// --- promises over random runs
-// --------------------------------------------------------------------
+// --- promises over random runs ------------------------------------------------------------------
 
 Planned random_run(std::mt19937& random, bool arcs) {
   std::uniform_real_distribution<double> place(-100, 100);
@@ -258,7 +255,7 @@ TEST(WriteRun, LeavesTheStateThatWasAskedFor) {
       planned.run.points.pop_back();
       planned.run.decimals = 9;
       for (double& x : planned.run.points.back()) x = gcode::rounded(x, 9);
-      std::get<Arc>(planned.plan.moves.back().piece).end = planned.run.points.back();
+      std::get<geometry::Arc>(planned.plan.moves.back().piece).end = planned.run.points.back();
     }
     ModalState after = cutting();
     after.plane = i % 3 == 0 ? gcode::Plane::kZX : gcode::Plane::kXY;

@@ -13,26 +13,22 @@
 namespace batten::postproc {
 namespace {
 
-using geometry::best_in_tube;
 using geometry::BsplineCurve;
 using geometry::curve_of_case;
-using geometry::greatest_curvature;
-using geometry::kNaseathSteps;
 using geometry::TubeChoice;
-using geometry::TubeOptions;
 
 double time_of(const BsplineCurve& curve) {
-  return s_curve_time(geometry::parameter_samples(curve, kNaseathSteps), {});
+  return s_curve_time(geometry::parameter_samples(curve, geometry::kNaseathSteps), {});
 }
 
-TubeOptions tube(double radius) {
-  TubeOptions options;
+geometry::TubeOptions tube(double radius) {
+  geometry::TubeOptions options;
   options.radius = radius;
   return options;
 }
 
 TubeChoice best_of(const BsplineCurve& curve, double radius) {
-  return best_in_tube(curve, tube(radius), time_of);
+  return geometry::best_in_tube(curve, tube(radius), time_of);
 }
 
 void print(const std::string& name, double radius, const TubeChoice& choice) {

@@ -4,22 +4,17 @@
 
 #include <algorithm>
 #include <string>
-#include <string_view>
 #include <variant>
 
 #include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
 #include "gcode/curves/curve_format.h"
-#include "gcode/curves/heidenhain_spl.h"
-#include "gcode/state/reason.h"
 #include "tests/support/klartext_programs.h"
 #include "tests/support/random_curves.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
 namespace {
-
-using gcode::CurveFormat;
 
 // Behind each K, the digits behind its point: K3X-6.25E+001 becomes K3X-6E+001.
 void cut_digits(std::string& line) {
@@ -36,7 +31,7 @@ TEST(CoarseSplines, AreNotProvedAndGoBack) {
   const gcode::Control& fine = *gcode::find_control("itnc530");
   // As SPL, with no digit behind the point of its coefficients.
   int written = 0;
-  CurveFormat coarse = *fine.curves;
+  gcode::CurveFormat coarse = *fine.curves;
   coarse.write = [&](const geometry::BsplineCurve& curve, const gcode::CurveSetting& setting) {
     gcode::CurveWriting text = fine.curves->write(curve, setting);
     auto* lines = std::get_if<gcode::CurveLines>(&text);

@@ -13,15 +13,13 @@
 namespace batten::postproc {
 namespace {
 
-using geometry::Point3;
-
 // Along x from 0 to 10 at y = x^2 / 8: its curvature is 1/4 at the vertex, and less everywhere
 // else.
 geometry::BsplineCurve parabola() {
   const std::vector<double> knots = {0, 0, 0, 0, 10, 10, 10, 10};
   const auto x = [](int i) { return 10.0 * i / 3; };
   // The polar form of x^2 / 8: products of two of its three arguments, in the mean.
-  const std::vector<Point3> control = {
+  const std::vector<geometry::Point3> control = {
       {x(0), 0, 0}, {x(1), 0, 0}, {x(2), 100.0 / 24, 0}, {x(3), 100.0 / 8, 0}};
   return {geometry::BsplineBasis(3, knots), control};
 }

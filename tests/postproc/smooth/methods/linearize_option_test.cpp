@@ -17,11 +17,8 @@ namespace {
 
 using geometry::BsplineCurve;
 using geometry::Point3;
-using geometry::SmoothCurve;
 
-using Words = std::vector<std::pair<std::string, std::string>>;
-
-SmoothOptions options_given(const Words& words) {
+SmoothOptions options_given(const std::vector<std::pair<std::string, std::string>>& words) {
   Arguments in = {{}, {"part.nc"}};
   in.given.add("target", "linuxcnc");
   for (const auto& [name, value] : words) in.given.add(name, value);
@@ -59,7 +56,7 @@ TEST(LinearizeOption, RefusesUnknownNames) {
 // y = 5 sin(x / 5), with the feed halved half way and a comment.
 struct Wave {
   Run run;
-  SmoothCurve fair;
+  geometry::SmoothCurve fair;
 
   Wave() : fair{curve(), {}, 0, 0, 0, 0} {
     for (int i = 0; i <= 100; ++i) {

@@ -13,10 +13,8 @@
 namespace batten::postproc {
 namespace {
 
-using geometry::Point3;
-
 // Down into the cut, through the points, up again. The first point is X.. Y.. of the plunge.
-std::string program_through(const std::vector<Point3>& points, double feed) {
+std::string program_through(const std::vector<geometry::Point3>& points, double feed) {
   std::string text = "G21 G90 G17\n";
   text += fmt::format("G0 X{:.4f} Y{:.4f} Z5\nG1 Z0 F300\n", points[0].x(), points[0].y());
   for (std::size_t i = 1; i < points.size(); ++i) {

@@ -19,19 +19,12 @@ namespace batten::postproc {
 namespace {
 
 using geometry::Point3;
-using geometry::Vector3;
 
 CurveRequest request_with(double tolerance) {
   CurveRequest request;
   request.tolerance = tolerance;
   request.limits = limits_of(*find_machine("linuxcnc"), 3000);
   return request;
-}
-
-geometry::Path pieces_of(const geometry::BsplineCurve& curve) {
-  geometry::Path path;
-  for (const geometry::CubicBezier& piece : curve.bezier_pieces()) path.emplace_back(piece);
-  return path;
 }
 
 struct NamedMethod {
@@ -77,8 +70,8 @@ TEST_P(EveryMethod, StaysWithinTheToleranceOfTheRunInOrder) {
       const auto made = curve(points, request_with(tolerance));
       ASSERT_TRUE(made);
       EXPECT_LE(made->path.deviation, tolerance * (1 + 1e-6));
-      const auto proof = geometry::compare_paths(geometry::path_through(points),
-                                                 pieces_of(made->path.curve), 1.03 * tolerance);
+      const auto proof = geometry::compare_paths(
+          geometry::path_through(points), geometry::beziers_of(made->path.curve), 1.03 * tolerance);
       EXPECT_EQ(proof.verdict, geometry::Verdict::kProved)
           << points.size() << " points, at most " << proof.bounds.at_most;
       EXPECT_LE(proof.bounds.at_least, made->path.deviation * 1.03 + 1e-9);

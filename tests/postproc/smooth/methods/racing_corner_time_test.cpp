@@ -15,11 +15,10 @@ namespace {
 
 using geometry::time_optimal_corner;
 using geometry::TimeOptimalBlend;
-using geometry::TimeOptimalOptions;
 using geometry::ToleranceKind;
 
-TimeOptimalOptions options_for(double tolerance, ToleranceKind kind) {
-  TimeOptimalOptions options;
+geometry::TimeOptimalOptions options_for(double tolerance, ToleranceKind kind) {
+  geometry::TimeOptimalOptions options;
   options.tolerance = tolerance;
   options.kind = kind;
   options.share_before = options.share_after = 13;
