@@ -165,7 +165,8 @@ constexpr double kTwist = 1e-4;
 // Halves of a piece twist a quarter as much.
 constexpr int kTwistHalvings = 6;
 
-ControlCoordinates seen_from(const Point3& origin, const CubicBezier& piece) {
+[[gnu::always_inline]] inline ControlCoordinates seen_from(const Point3& origin,
+                                                           const CubicBezier& piece) {
   const Point3* p = piece.control;
   return {Array4d(p[0].x(), p[1].x(), p[2].x(), p[3].x()) - origin.x(),
           Array4d(p[0].y(), p[1].y(), p[2].y(), p[3].y()) - origin.y(),
@@ -173,7 +174,8 @@ ControlCoordinates seen_from(const Point3& origin, const CubicBezier& piece) {
 }
 
 // The piece up to this part of its parameter. De Casteljau's algorithm.
-ControlCoordinates restricted(const ControlCoordinates& piece, double part) {
+[[gnu::always_inline]] inline ControlCoordinates restricted(const ControlCoordinates& piece,
+                                                            double part) {
   const auto one = [part](const Array4d& p) {
     const double a = p[0] + part * (p[1] - p[0]);
     const double b = p[1] + part * (p[2] - p[1]);
@@ -211,16 +213,20 @@ double greatest_of(const Array4d& h) {
   return greatest;
 }
 
-Array4d squares_of(const ControlCoordinates& p) { return p.x * p.x + p.y * p.y + p.z * p.z; }
+[[gnu::always_inline]] inline Array4d squares_of(const ControlCoordinates& p) {
+  return p.x * p.x + p.y * p.y + p.z * p.z;
+}
 
 Point3 point_of(const ControlCoordinates& p, Eigen::Index i) { return {p.x[i], p.y[i], p.z[i]}; }
 
-Array4d part_along(const ControlCoordinates& p, const Vector3& direction) {
+[[gnu::always_inline]] inline Array4d part_along(const ControlCoordinates& p,
+                                                 const Vector3& direction) {
   return p.x * direction.x() + p.y * direction.y() + p.z * direction.z();
 }
 
-ControlCoordinates without_part(const ControlCoordinates& p, const Array4d& part,
-                                const Vector3& direction) {
+[[gnu::always_inline]] inline ControlCoordinates without_part(const ControlCoordinates& p,
+                                                              const Array4d& part,
+                                                              const Vector3& direction) {
   return {p.x - part * direction.x(), p.y - part * direction.y(), p.z - part * direction.z()};
 }
 
@@ -268,6 +274,13 @@ ChordsFrom::ChordsFrom(const CurvePieces& pieces, double from)
   rest_ = seen_from(start_, rest);
 }
 
+// The piece that holds `u`, at or after the first.
+std::size_t ChordsFrom::piece_at(double u) const {
+  std::size_t piece = first_;
+  while (piece + 1 < pieces_.size() && pieces_.breaks()[piece + 1] <= u) ++piece;
+  return piece;
+}
+
 // Of piece i, what lies between the start and `end`, seen from the start.
 ControlCoordinates ChordsFrom::part_before(std::size_t i, double end) const {
   ControlCoordinates whole = i == first_ ? rest_ : seen_from(start_, pieces_.piece(i));
@@ -278,7 +291,7 @@ ControlCoordinates ChordsFrom::part_before(std::size_t i, double end) const {
 }
 
 ChordHeight ChordsFrom::to(double end) const {
-  std::size_t last = pieces_.index_of(end);
+  std::size_t last = piece_at(end);
   if (last > first_ && pieces_.breaks()[last] >= end) --last;
   const ControlCoordinates ending = part_before(last, end);
   const Vector3 chord = point_of(ending, 3);
@@ -299,7 +312,7 @@ ChordHeight ChordsFrom::to(double end) const {
 }
 
 bool ChordsFrom::leaves(double end, double distance) const {
-  const std::size_t last = pieces_.index_of(end);
+  const std::size_t last = piece_at(end);
   const Vector3 chord = pieces_.point_in(last, end) - start_;
   const double squared = chord.squaredNorm();
   const auto is_off = [&](const Point3& place) {

@@ -105,6 +105,7 @@ class ChordsFrom {
   [[nodiscard]] std::size_t first_piece() const { return first_; }
 
  private:
+  [[nodiscard]] std::size_t piece_at(double u) const;
   [[nodiscard]] ControlCoordinates part_before(std::size_t i, double end) const;
 
   const CurvePieces& pieces_;

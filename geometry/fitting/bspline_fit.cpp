@@ -6,6 +6,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -310,7 +311,18 @@ class AdaptiveFit {
     states_ = std::move(states);
     zones_ = problem.zones;
     pins_ = problem.pins;
-    set_breaks(breaks_of(problem, spline_.breaks, rebuilt, closest));
+    const bool may_differ = !rebuilt.empty() || has_new_breaks_ || closest != closest_;
+    has_new_breaks_ = false;
+    closest_ = closest;
+    std::vector<double> breaks;
+    if (may_differ) breaks = breaks_of(problem, spline_.breaks, rebuilt, closest);
+    if (!may_differ || (rebuilt.empty() && breaks == spline_.breaks)) {
+      std::vector<std::size_t> as_before(spline_.size());
+      std::iota(as_before.begin(), as_before.end(), std::size_t{0});
+      set_samples(as_before);
+    } else {
+      set_breaks(std::move(breaks));
+    }
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       if (changes.altered[i]) wake(states_[i].row.first);
     }
@@ -362,6 +374,11 @@ class AdaptiveFit {
     }
     spline_ = std::move(next);
     points_ = std::move(points);
+    set_samples(now_at);
+  }
+
+  // What is known of the samples on a spline whose control points were elsewhere before.
+  void set_samples(const std::vector<std::size_t>& now_at) {
     set_rows(now_at);
     set_stiffness();
     // Nothing is solved for between zones that leave no control point free: what is off there is
@@ -452,7 +469,8 @@ class AdaptiveFit {
   // Solves until every span is known to need a knot or not to.
   void decide_spans() {
     for (int pass = 0; pass < kFitTuning.passes; ++pass) {
-      const auto awake = ranges([](const PointState& point) { return point.undecided; });
+      const IndexRange all{0, points_.size()};
+      const auto awake = ranges([](const PointState& point) { return point.undecided; }, {&all, 1});
       for (PointState& point : points_) point.undecided = false;
       for (const IndexRange& range : awake) {
         solve(range, Phase::kDecide);
@@ -484,8 +502,9 @@ class AdaptiveFit {
       if (state.tight) state.push = kFitTuning.weight_floor * state.stiffness;
       state.tight = false;
     }
+    std::vector<IndexRange> awake{{0, points_.size()}};
     for (int pass = 0; pass < kFitTuning.solutions + kFitTuning.last_passes; ++pass) {
-      const auto awake = ranges([](const PointState& point) { return point.left > 0; });
+      awake = ranges([](const PointState& point) { return point.left > 0; }, awake);
       if (awake.empty()) break;
       for (const IndexRange& range : awake) {
         solve(range, pass < kFitTuning.solutions ? Phase::kRelax : Phase::kClose);
@@ -520,6 +539,7 @@ class AdaptiveFit {
     std::ranges::set_union(spline_.breaks, middles, std::back_inserter(breaks));
     if (breaks.size() == spline_.breaks.size()) return false;
     set_breaks(std::move(breaks));
+    has_new_breaks_ = true;
     return true;
   }
 
@@ -598,33 +618,44 @@ class AdaptiveFit {
     return {first_sample_[first], first_sample_[free.end]};
   }
 
-  // Ranges of control points around those that are awake, with those that are solved for as well; a
-  // wall parts them.
+  // Ranges of control points around those that are awake; a wall parts them. A solution of the
+  // ranges `where` wakes none that is not in one of them or in the span beside it.
   template <typename IsAwake>
-  [[nodiscard]] std::vector<IndexRange> ranges(const IsAwake& is_awake) const {
+  [[nodiscard]] std::vector<IndexRange> ranges(const IsAwake& is_awake,
+                                               std::span<const IndexRange> where) const {
     const std::size_t size = spline_.size();
     const auto awake = [&](std::size_t i) { return spline_.fixed[i] == 0 && is_awake(points_[i]); };
     std::vector<IndexRange> found;
-    for (std::size_t i = 0; i < size; ++i) {
-      if (!awake(i)) continue;
-      std::size_t begin = i;
-      while (i < size && awake(i)) ++i;
-      std::size_t end = i;
-      std::size_t wall = 0;
-      for (std::size_t k = 0; k < kFitTuning.reach && begin > 0 && wall < kFitTuning.wall; ++k) {
-        wall = spline_.fixed[--begin] != 0 ? wall + 1 : 0;
-      }
-      wall = 0;
-      for (std::size_t k = 0; k < kFitTuning.reach && end < size && wall < kFitTuning.wall; ++k) {
-        wall = spline_.fixed[end++] != 0 ? wall + 1 : 0;
-      }
-      if (!found.empty() && begin <= found.back().end) {
-        found.back().end = end;
-      } else {
-        found.push_back({begin, end});
+    std::size_t i = 0;
+    for (const IndexRange& part : where) {
+      i = std::max(i, std::max(part.begin, kSplineDegree) - kSplineDegree);
+      for (const std::size_t last = std::min(part.end + kSplineDegree, size); i < last; ++i) {
+        if (!awake(i)) continue;
+        const std::size_t first = i;
+        while (i < size && awake(i)) ++i;
+        add_range({first, i}, found);
       }
     }
     return found;
+  }
+
+  // With the control points around that are solved for as well.
+  void add_range(IndexRange awake, std::vector<IndexRange>& found) const {
+    auto [begin, end] = awake;
+    std::size_t wall = 0;
+    for (std::size_t k = 0; k < kFitTuning.reach && begin > 0 && wall < kFitTuning.wall; ++k) {
+      wall = spline_.fixed[--begin] != 0 ? wall + 1 : 0;
+    }
+    wall = 0;
+    for (std::size_t k = 0; k < kFitTuning.reach && end < spline_.size() && wall < kFitTuning.wall;
+         ++k) {
+      wall = spline_.fixed[end++] != 0 ? wall + 1 : 0;
+    }
+    if (!found.empty() && begin <= found.back().end) {
+      found.back().end = end;
+    } else {
+      found.push_back({begin, end});
+    }
   }
 
   int max_refinements_;
@@ -636,6 +667,8 @@ class AdaptiveFit {
   std::vector<PointState> points_;         // per control point
   std::vector<std::size_t> first_sample_;  // per control point, and one more: the first whose row
                                            // starts there or after it
+  bool has_new_breaks_ = true;             // that may be too near to pins and zones
+  double closest_ = 0;                     // mm, how near that is
   bool out_of_rounds_ = false;             // the last fit ended before all spans were known to do
   FitSystem system_;
 };

@@ -192,6 +192,7 @@ class FitSystem {
   [[nodiscard]] double leverage(const FitRow& row) const;
 
  private:
+  void add_sample(const SampleState& state);
   void add_samples(std::span<const SampleState> states);
   [[nodiscard]] bool is_held(const FitSpline& spline, std::size_t point) const {
     return point < free_.begin || point >= free_.end || spline.fixed[point] != 0;

@@ -47,15 +47,22 @@ double worst_of_piece(SplineWalk& curve, std::span<const Point3> points, std::si
 }  // namespace
 
 SplineWalk::SplineWalk(std::span<const double> knots, std::span<const Point3> control_points)
-    : t_(knots), p_(control_points) {
+    : t_(knots), p_(control_points), span_(kFairDegree) {
   find_span(knots[kFairDegree]);
 }
 
 void SplineWalk::find_span(double u) {
-  const auto begin = t_.begin() + kFairDegree;
-  const auto end = t_.begin() + static_cast<std::ptrdiff_t>(p_.size());
-  const auto above = std::upper_bound(begin, end, u);
-  span_ = std::max(static_cast<std::size_t>(above - t_.begin()), kFairDegree + 1) - 1;
+  constexpr std::size_t kNear = 8;  // spans that are tried one by one
+  if (u >= t_[span_] && (span_ + kNear >= p_.size() || u < t_[span_ + kNear])) {
+    while (span_ + 1 < p_.size() && t_[span_ + 1] <= u) ++span_;
+  } else if (u < t_[span_] && span_ >= kFairDegree + kNear && u >= t_[span_ - kNear]) {
+    while (u < t_[span_]) --span_;
+  } else {
+    const auto begin = t_.begin() + kFairDegree;
+    const auto end = t_.begin() + static_cast<std::ptrdiff_t>(p_.size());
+    const auto above = std::upper_bound(begin, end, u);
+    span_ = std::max(static_cast<std::size_t>(above - t_.begin()), kFairDegree + 1) - 1;
+  }
   take_span();
 }
 
@@ -83,7 +90,7 @@ void SplineWalk::take_span() {
   power[3] = (s1 - s0) / (6 * (t[1] - t[0]));
 }
 
-SplineWalk::Derivatives SplineWalk::derivatives_at(double u) {
+[[gnu::always_inline]] inline SplineWalk::Derivatives SplineWalk::derivatives_at(double u) {
   go_to(u);
   const std::array<Vector3, 4>& power = power_[span_ % kKept];
   const double x = u - t_[span_];

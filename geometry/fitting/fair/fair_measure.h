@@ -54,7 +54,7 @@ class SplineWalk {
 
   std::span<const double> t_;
   std::span<const Point3> p_;
-  std::size_t span_ = 0;
+  std::size_t span_;
   // Coefficients by the parameter since the start of a span, and which spans these are.
   std::array<std::array<Vector3, 4>, kKept> power_;
   std::array<std::size_t, kKept> kept_{};
