@@ -288,8 +288,10 @@ class ProblemMaker {
   void sort_knots() {
     const double closest = kFairTuning.closest_knots * limit_;
     std::vector<double>& wished = problem_.breakpoints;
-    wished.insert(wished.end(), corner_knots_.begin(), corner_knots_.end());
-    std::ranges::sort(wished);
+    if (!std::ranges::is_sorted(wished)) std::ranges::sort(wished);
+    std::ranges::sort(corner_knots_);
+    const auto added = wished.insert(wished.end(), corner_knots_.begin(), corner_knots_.end());
+    std::inplace_merge(wished.begin(), added, wished.end());
     const std::vector<double> needed = required_breaks(problem_);
     std::vector<double> kept;
     kept.reserve(wished.size());
