@@ -20,7 +20,8 @@ Point2 in_plane(const Point3& p) { return p.head<2>(); }
 // Looks for the farthest u in ]from, limit] where `holds`, beginning with a step of `guess`, down
 // to `shortest`. Whoever asks remembers the farthest for which it said so.
 template <typename Holds>
-void search_farthest(double from, double limit, double guess, double shortest, const Holds& holds) {
+void search_farthest(double from, double limit, double guess, double shortest, double precision,
+                     const Holds& holds) {
   double step = std::min(guess, limit - from);
   double good = from;
   double bad = from + step;
@@ -39,7 +40,7 @@ void search_farthest(double from, double limit, double guess, double shortest, c
     } while (!holds(from + step));
     good = from + step;
   }
-  while (bad - good > kChain.precision * (bad - from)) {
+  while (bad - good > precision * (bad - from)) {
     const double middle = (good + bad) / 2;
     (holds(middle) ? good : bad) = middle;
   }
@@ -60,9 +61,9 @@ class ArcChain {
   ArcChain(const PlaneCurve& curve, const ArcChainLimits& limits)
       : curve_(curve), limits_(limits) {}
 
-  // The chain of the farthest steps.
+  // The chain of the farthest steps. `whole`: as arc_chain.
   std::optional<std::vector<ChainPiece>> greedy(const ChainNode& start, const ChainNode& end,
-                                                std::size_t at_most) const {
+                                                std::size_t at_most, double whole) const {
     struct OpenPair {  // whose joint is still to be chosen
       std::size_t first;
       ChainNode start;
@@ -80,18 +81,21 @@ class ArcChain {
         const double half = (end.u - at.u) / 2;
         if (auto shorter = next_step(at, end, at.u + half, half)) step = std::move(shorter);
       }
+      const bool is_far_from_end = at.u < (start.u + end.u) / 2;
+      if (!step && end.u < whole && !is_far_from_end) return pieces;
       if (!step || pieces.size() + step->pieces.size() > at_most) return std::nullopt;
       if (step->pair) open.push_back({pieces.size(), at, *step->pair});
       pieces.insert(pieces.end(), step->pieces.begin(), step->pieces.end());
       guess = step->end.u - at.u;
       at = step->end;
-      const double done = (at.u - start.u) / (end.u - start.u);
+      const double done = (at.u - start.u) / (whole - start.u);
       const bool is_behind = static_cast<double>(pieces.size()) >
                              kChain.hopeless_pace * done * static_cast<double>(at_most);
       if ((done > kChain.pace_known && is_behind) || falls_behind(done, pieces.size(), at_most)) {
         return std::nullopt;
       }
     }
+    if (end.u < whole) return pieces;
     // The chain goes the same way whichever joints its pairs have, and most chains are given up.
     for (const OpenPair& each : open) {
       std::ranges::copy(pieces_of(best_pair(each.start, each.found)),
@@ -303,7 +307,7 @@ class ArcChain {
       return true;
     };
     const double all = end.u - start.u;
-    search_farthest(start.u, end.u, all, 1e-9 * all, line_holds);
+    search_farthest(start.u, end.u, all, 1e-9 * all, limits_.precision, line_holds);
     return best;
   }
 
@@ -323,7 +327,8 @@ class ArcChain {
       if (!best || pair->end.u > best->end.u) best = std::move(pair);
       return true;
     };
-    search_farthest(start.u, limit, guess, shortest_step(start, end), pair_holds);
+    search_farthest(start.u, limit, guess, shortest_step(start, end), limits_.precision,
+                    pair_holds);
     return best;
   }
 
@@ -355,7 +360,8 @@ class ArcChain {
     };
     if (least > start.u && !single_holds(least)) return std::nullopt;
     if (least < limit) {
-      search_farthest(start.u, limit, guess, shortest_step(start, end), single_holds);
+      search_farthest(start.u, limit, guess, shortest_step(start, end), limits_.precision,
+                      single_holds);
     }
     return best;
   }
@@ -407,9 +413,9 @@ bool pair_of_arcs_holds(const PlaneCurve& curve, const ArcChainLimits& limits, d
 std::optional<std::vector<ChainPiece>> arc_chain(const PlaneCurve& curve,
                                                  const ArcChainLimits& limits,
                                                  const ChainNode& start, const ChainNode& end,
-                                                 std::size_t at_most) {
-  auto best = ArcChain(curve, limits).greedy(start, end, at_most);
-  if (!best || best->size() > kChain.balanced_pieces) return best;
+                                                 std::size_t at_most, double whole) {
+  auto best = ArcChain(curve, limits).greedy(start, end, at_most, whole);
+  if (!best || end.u < whole || best->size() > kChain.balanced_pieces) return best;
   // With as many pieces, how much smaller can the deviation be?
   double good = 1;
   double small = 0;
@@ -418,7 +424,7 @@ std::optional<std::vector<ChainPiece>> arc_chain(const PlaneCurve& curve,
     ArcChainLimits narrower = limits;
     narrower.deviation *= part;
     narrower.max_sweep *= std::cbrt(part);  // deviations grow with the cube of the length
-    auto chain = ArcChain(curve, narrower).greedy(start, end, best->size());
+    auto chain = ArcChain(curve, narrower).greedy(start, end, best->size(), whole);
     if (chain) {
       best = std::move(chain);
       good = part;

@@ -16,10 +16,10 @@ struct ArcChainLimits : ArcRange {
   double deviation = 0;         // mm in the plane
   double height_deviation = 0;  // mm along the axis, at equal angles
   bool flat = true;             // heights play no part
+  double precision = 3e-3;  // of a step: its end is searched to this; 100 steps lose a third of one
 };
 
 struct ArcChainTuning {
-  double precision = 3e-3;  // of a step: its end is searched to this; 100 steps lose a third of one
   // A single arc is taken instead of a pair when it reaches this part of the pair's length:
   // one arc then covers more than each of the pair does.
   double single_reach = 0.6;
@@ -75,12 +75,14 @@ struct ChainPiece {
 [[nodiscard]] bool falls_behind(double done, std::size_t used, std::size_t most);
 
 // Pieces from one node to the other, the fewest first, then the least deviation. Nothing
-// when neither arcs nor short lines hold, or when more than `at_most` would be needed.
+// when neither arcs nor short lines hold, or when more than `at_most` would be needed. Where the
+// section goes on behind `end`, to `whole`: what is found before `end`, or nothing when the chain
+// falls behind its pace for the whole or sticks long before `end`.
 [[nodiscard]] std::optional<std::vector<ChainPiece>> arc_chain(const PlaneCurve& curve,
                                                                const ArcChainLimits& limits,
                                                                const ChainNode& start,
                                                                const ChainNode& end,
-                                                               std::size_t at_most);
+                                                               std::size_t at_most, double whole);
 
 // Whether a pair of arcs leads from the curve at one parameter to the curve at another one.
 [[nodiscard]] bool pair_of_arcs_holds(const PlaneCurve& curve, const ArcChainLimits& limits,

@@ -33,6 +33,10 @@ struct ArcFitTuning {
   // the deviation: below what the band takes for one edge without samples between.
   double chord_part = 0.018;
   int chords_read = 3;  // of a piece, for chords_along
+  // Most chains off the plane are given up: where the first pieces, chained to
+  // `precision_of_tries`, already fall too far behind, the rest is not looked at.
+  std::size_t first_pieces = 1500;
+  double precision_of_tries = 0.03;
 };
 inline constexpr ArcFitTuning kArcFitTuning;
 
