@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "geometry/basic/rounding.h"
 #include "geometry/path/plane_curve.h"
@@ -18,6 +19,84 @@ using Segment = PairKernel::Segment_2;
 using PairBox = CGAL::Box_intersection_d::Box_with_info_d<double, 2, std::uint32_t>;
 
 PairKernel::Point_2 to_cgal(const Point2& p) { return {p.x(), p.y()}; }
+
+// A cell is so many boxes wide: most boxes are in one or two cells then. Cells for each box at
+// most, for paths that fill little of the area around them.
+constexpr double kBoxesPerCell = 2;
+constexpr double kCellsPerBox = 2;
+
+// Beyond these a grid is no help: cells that one box is in, and pairs that one box is asked for.
+constexpr std::size_t kMostCellsPerBox = 8;
+constexpr std::size_t kMostAskedPerBox = 64;
+
+// Calls `found` once for each two boxes that overlap, in linear time where they are of about one
+// size. False, without a call, where there are so many sizes or heaps that a grid would be slow.
+template <typename Function>
+bool each_pair_in_grid(std::span<const PairBox> boxes, const Function& found) {
+  Point2 corner(boxes[0].min_coord(0), boxes[0].min_coord(1));
+  Point2 end = corner;
+  double sizes = 0;
+  for (const PairBox& box : boxes) {
+    const Point2 low(box.min_coord(0), box.min_coord(1));
+    const Point2 high(box.max_coord(0), box.max_coord(1));
+    corner = corner.cwiseMin(low);
+    end = end.cwiseMax(high);
+    sizes += (high - low).maxCoeff();
+  }
+  const Vector2 all = end - corner;
+  const auto count = static_cast<double>(boxes.size());
+  const double most_cells = kCellsPerBox * count;
+  // In one direction alone and in both: no more cells than that.
+  double size = std::max({kBoxesPerCell * sizes / count, std::sqrt(all.x() * all.y() / most_cells),
+                          all.maxCoeff() / most_cells});
+  if (!(size > 0)) size = 1;  // all are one point
+  const auto index = [&](double at, int k) {
+    return static_cast<std::size_t>((at - corner[k]) / size);
+  };
+  const std::size_t columns = index(end.x(), 0) + 1;
+  const auto each_cell = [&](const PairBox& box, const auto& visit) {
+    const std::size_t last_column = index(box.max_coord(0), 0);
+    const std::size_t last_row = index(box.max_coord(1), 1);
+    for (std::size_t row = index(box.min_coord(1), 1); row <= last_row; ++row) {
+      for (std::size_t c = index(box.min_coord(0), 0); c <= last_column; ++c) {
+        visit(row * columns + c);
+      }
+    }
+  };
+  std::vector<std::size_t> ends(columns * (index(end.y(), 1) + 1), 0);  // of the cells in `inside`
+  std::size_t entries = 0;
+  for (const PairBox& box : boxes) {
+    each_cell(box, [&](std::size_t cell) { ++ends[cell], ++entries; });
+    if (entries > kMostCellsPerBox * boxes.size()) return false;
+  }
+  std::size_t before = 0;
+  std::size_t asked = 0;
+  for (std::size_t& cell : ends) {  // for now where it begins
+    asked += cell * cell / 2;
+    before += std::exchange(cell, before);
+  }
+  if (asked > kMostAskedPerBox * boxes.size()) return false;
+  std::vector<const PairBox*> inside(entries);
+  for (const PairBox& box : boxes) {
+    each_cell(box, [&](std::size_t cell) { inside[ends[cell]++] = &box; });
+  }
+  for (std::size_t cell = 0, i = 0; cell < ends.size(); ++cell) {
+    for (; i < ends[cell]; ++i) {
+      for (std::size_t k = i + 1; k < ends[cell]; ++k) {
+        const PairBox& a = *inside[i];
+        const PairBox& b = *inside[k];
+        const double x = std::max(a.min_coord(0), b.min_coord(0));
+        const double y = std::max(a.min_coord(1), b.min_coord(1));
+        if (x > std::min(a.max_coord(0), b.max_coord(0))) continue;
+        if (y > std::min(a.max_coord(1), b.max_coord(1))) continue;
+        // They may be together in other cells too: this one has the lower corner of what they
+        // share.
+        if (index(y, 1) * columns + index(x, 0) == cell) found(a, b);
+      }
+    }
+  }
+  return true;
+}
 
 Segment segment_of(const FlatEdges& edges, std::size_t edge) {
   return {to_cgal(edges.from(edge)), to_cgal(edges.to(edge))};
@@ -176,14 +255,16 @@ std::optional<std::vector<EdgePair>> near_pairs(const FlatEdges& edges, double r
     boxes.emplace_back(CGAL::Bbox_2(low.x(), low.y(), high.x(), high.y()), i);
   }
   struct TooMany {};  // ends a search that finds too much
+  const auto found = [&](const PairBox& a, const PairBox& b) {
+    const EdgePair pair{std::min(a.info(), b.info()), std::max(a.info(), b.info())};
+    if (!are_near(edges, pair, reach)) return;
+    pairs.push_back(pair);
+    if (pairs.size() > kMostPairs * edges.size()) throw TooMany{};
+  };
   try {
-    CGAL::box_self_intersection_d(
-        boxes.begin(), boxes.end(), [&](const PairBox& a, const PairBox& b) {
-          const EdgePair pair{std::min(a.info(), b.info()), std::max(a.info(), b.info())};
-          if (!are_near(edges, pair, reach)) return;
-          pairs.push_back(pair);
-          if (pairs.size() > kMostPairs * edges.size()) throw TooMany{};
-        });
+    if (!each_pair_in_grid(boxes, found)) {
+      CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), found);
+    }
   } catch (const TooMany&) {
     return {};
   }
