@@ -148,6 +148,36 @@ Point3 blossom(const BsplineBasis& basis, const std::vector<Point3>& points, std
   return d[p];
 }
 
+Point3 between(const Point3& a, const Point3& b, double part) { return (1 - part) * a + part * b; }
+
+// The last three Bezier points of a cubic span that is not empty: blossoms of its two knots, where
+// all but four of the steps of de Boor's algorithm have weights of 0 and 1. `t` points to the
+// span's first knot, `p` to the last of its four control points.
+std::array<Point3, 3> cubic_span(const double* t, const Point3* p) {
+  const Point3 third = between(p[-2], p[-1], (t[1] - t[-1]) / (t[2] - t[-1]));
+  const Point3 beyond = between(p[-1], p[0], (t[1] - t[0]) / (t[3] - t[0]));
+  return {between(p[-2], third, (t[0] - t[-1]) / (t[1] - t[-1])), third,
+          between(third, beyond, (t[1] - t[0]) / (t[2] - t[0]))};
+}
+
+std::vector<CubicBezier> cubic_pieces(const BsplineBasis& basis,
+                                      const std::vector<Point3>& points) {
+  constexpr std::size_t kCubic = 3;
+  const std::vector<double>& t = basis.knots();
+  std::vector<CubicBezier> pieces;
+  pieces.reserve(basis.size() - kCubic);
+  for (std::size_t span = kCubic; span < basis.size(); ++span) {
+    if (!(t[span] < t[span + 1])) continue;
+    const std::array<Point3, 3> q = cubic_span(&t[span], &points[span]);
+    // Neighbours share their joint to the last bit.
+    const std::array<double, 3> start{t[span], t[span], t[span]};
+    const Point3 first =
+        pieces.empty() ? blossom(basis, points, span, start.data()) : pieces.back().control[3];
+    pieces.push_back({{first, q[0], q[1], q[2]}});
+  }
+  return pieces;
+}
+
 }  // namespace
 
 BsplineCurve::BsplineCurve(BsplineBasis basis, std::vector<Point3> control_points)
@@ -253,6 +283,7 @@ std::vector<CubicBezier> BsplineCurve::bezier_pieces() const {
     throw std::invalid_argument(
         fmt::format("BsplineCurve::bezier_pieces: degree {}, expected 3 or less", p));
   }
+  if (p == 3) return cubic_pieces(basis_, control_points_);
   const auto& t = basis_.knots();
   std::vector<CubicBezier> pieces;
   pieces.reserve(basis_.size() - p);

@@ -98,17 +98,6 @@ double polygon_length(const CubicBezier& b) {
          (b.control[3] - b.control[2]).norm();
 }
 
-// Where the first derivative vanishes, Taylor's next term gives the direction: leaving the
-// place for t < 1, arriving at it for t = 1.
-Vector3 bezier_direction(const CubicBezier& b, double t) {
-  const double nothing = kNoDerivative * polygon_length(b);
-  const Vector3 first = bezier_first(b, t);
-  if (first.norm() > nothing) return first.normalized();
-  const Vector3 second = bezier_second(b, t);
-  if (second.norm() > nothing) return (t < 1 ? 1.0 : -1.0) * second.normalized();
-  return unit_or_zero(bezier_third(b));
-}
-
 double curvature_of(const Vector3& first, const Vector3& second) {
   const double speed = first.norm();
   return speed > 0 ? first.cross(second).norm() / (speed * speed * speed) : 0.0;
@@ -167,13 +156,24 @@ Point3 point_at(const PathPiece& piece, double t) {
   return point_at(std::get<CubicBezier>(piece), t);
 }
 
+// Where the first derivative vanishes, Taylor's next term gives the direction: leaving the
+// place for t < 1, arriving at it for t = 1.
+Vector3 direction_at(const CubicBezier& b, double t) {
+  const double nothing = kNoDerivative * polygon_length(b);
+  const Vector3 first = bezier_first(b, t);
+  if (first.norm() > nothing) return first.normalized();
+  const Vector3 second = bezier_second(b, t);
+  if (second.norm() > nothing) return (t < 1 ? 1.0 : -1.0) * second.normalized();
+  return unit_or_zero(bezier_third(b));
+}
+
 Vector3 direction_at(const PathPiece& piece, double t) {
   if (const auto* line = std::get_if<Line>(&piece)) return unit_or_zero(line->end - line->start);
   if (const auto* arc = std::get_if<Arc>(&piece)) {
     const ArcFrame frame(*arc);
     return unit_or_zero(frame.in_space(t, frame.velocity(t)));
   }
-  return bezier_direction(std::get<CubicBezier>(piece), t);
+  return direction_at(std::get<CubicBezier>(piece), t);
 }
 
 double radius_of(const Arc& arc) {
