@@ -43,11 +43,6 @@ std::vector<ReasonCount> count_reasons(std::span<const RunReport> runs) {
   return counts;
 }
 
-std::string_view name_of_form(OutputForm form) {
-  if (form == OutputForm::kCurves) return "curves";
-  return form == OutputForm::kArcs ? "arcs" : "lines";
-}
-
 Json json_of(const SmoothOptions& options, bool strict) {
   Json json = {{"target", options.target->name},
                {"machine", options.machine->name},
@@ -80,7 +75,7 @@ Json json_of(const RunReport& run) {
           {"reason", run.reason},
           {"method", run.method},
           {"methods", json_list(run.methods, method)},
-          {"form", rewritten ? name_of_form(run.form) : ""},
+          {"form", rewritten ? name_of(run.form) : ""},
           {"blocks_in", run.blocks_in},
           {"blocks_out", run.blocks_out},
           {"deviation_mm", run.deviation_mm},

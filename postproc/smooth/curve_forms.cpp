@@ -139,7 +139,7 @@ class CurveForms {
   // Whether there are some that cost no more time than who asks for them by name accepts.
   [[nodiscard]] bool has_quick_curves() const {
     return std::ranges::any_of(result_.candidates, [&](const Candidate& c) {
-      return c.form == OutputForm::kCurves && !slower(c.times, result_.facts.times, true, true);
+      return c.form == Form::kCurves && !slower(c.times, result_.facts.times, true, true);
     });
   }
 

@@ -156,7 +156,7 @@ class RunSmoother {
 
   [[nodiscard]] bool has_curves() const {
     return std::ranges::any_of(result_.candidates,
-                               [](const Candidate& c) { return c.form == OutputForm::kCurves; });
+                               [](const Candidate& c) { return c.form == Form::kCurves; });
   }
 
   const RunTask& task_;

@@ -242,7 +242,7 @@ gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs, const gcode::P
   }
   if (target.curves != nullptr && !target.curves->caution.empty()) {
     tell_first(gcode::Severity::kWarning, "curves-unverified", std::string(target.curves->caution),
-               [](const RunReport& run) { return run.form == OutputForm::kCurves; });
+               [](const RunReport& run) { return run.form == Form::kCurves; });
   }
   tell_first(
       gcode::Severity::kNote, "chords-for-steps",

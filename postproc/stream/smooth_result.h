@@ -35,7 +35,7 @@ struct RunReport {
   std::string_view reason;          // why it was kept; empty when rewritten
   std::string_view method;          // that made what stands there now; empty where it was kept
   std::vector<MethodTime> methods;  // all that were tried, whether it was rewritten or not
-  OutputForm form = OutputForm::kLines;
+  Form form = Form::kLines;
   std::size_t blocks_in = 0;
   std::size_t blocks_out = 0;
   double deviation_mm = 0;  // proved bound

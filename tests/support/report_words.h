@@ -36,7 +36,7 @@ inline SmoothResult five_runs() {
   RunReport arcs = lines;
   arcs.first_line = 120;
   arcs.last_line = 180;
-  arcs.form = OutputForm::kArcs;
+  arcs.form = Form::kArcs;
   RunReport short_run;
   short_run.first_line = 182;
   short_run.last_line = 183;

@@ -18,8 +18,6 @@
 
 namespace batten::postproc {
 
-enum class OutputForm { kArcs, kLines, kCurves };
-
 struct PlannedMove {
   geometry::PathPiece piece;                 // a CubicBezier only as part of a PlannedCurve
   double feed = 0;                           // mm/min
@@ -36,7 +34,7 @@ struct PlannedCurve {
 
 // The moves chain to within kSamePlace, from the run's first point to its last.
 struct OutputPlan {
-  OutputForm form = OutputForm::kLines;
+  Form form = Form::kLines;
   std::vector<PlannedMove> moves;
   std::vector<PlannedCurve> curves;         // in order
   std::vector<std::size_t> comments_after;  // of the run's last blocks

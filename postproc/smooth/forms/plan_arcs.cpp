@@ -118,7 +118,7 @@ std::optional<OutputPlan> plan_in(const Run& run, const geometry::SmoothCurve& f
                                   double chords, const geometry::ArcFitOptions& fit,
                                   const PlanOptions& options) {
   OutputPlan plan;
-  plan.form = OutputForm::kArcs;
+  plan.form = Form::kArcs;
   for (const FeedSection& section : feed_sections(run, fair)) {
     const bool all = section.from == curve.first() && section.to == curve.last();
     const std::optional<Path> arcs = all && whole != nullptr
@@ -210,7 +210,7 @@ class ArcSplinePlanner {
         height_(run.points.front()[plane.normal]) {}
 
   std::optional<OutputPlan> plan() {
-    plan_.form = OutputForm::kArcs;
+    plan_.form = Form::kArcs;
     for (const ArcSection& section : sections()) {
       if (!add(section)) return std::nullopt;
     }

@@ -45,7 +45,7 @@ class CurvePlanner {
       : run_(run), fair_(fair), options_(options), format_(format), curve_(curve_for(run, fair)) {}
 
   std::optional<OutputPlan> plan() {
-    plan_.form = OutputForm::kCurves;
+    plan_.form = Form::kCurves;
     place_ = run_.points.front();
     for (const FeedSection& section : feed_sections(run_, fair_)) {
       feed_ = section.feed;

@@ -121,7 +121,7 @@ Vertices vertices_on(const BsplineCurve& curve, const MarkedPieces& pieces,
 OutputPlan lines_of(const Run& run, const geometry::SmoothCurve& fair, const MarkedPieces& pieces,
                     const PlanOptions& options, double finest) {
   OutputPlan plan;
-  plan.form = OutputForm::kLines;
+  plan.form = Form::kLines;
   geometry::Point3 place = run.points.front();
   for (const FeedSection& section : feed_sections(run, fair)) {
     const Vertices vertices =

@@ -49,7 +49,7 @@ struct RunContext {
 
 struct Candidate {
   std::string_view method;  // name_of(Method): "fair", "guo" ..
-  OutputForm form = OutputForm::kLines;
+  Form form = Form::kLines;
   RunText text;
   double error = 0;  // mm, the written form from the path that was meant, as far as it is known
   double max_curvature = 0;       // 1/mm, greatest of the curve that it was made of

@@ -48,8 +48,8 @@ bool is_much_better(const Candidate& c, const RunFacts& old, const RunContext& c
 // Who asks for arcs or curves by name asks for few of them.
 bool better(const Candidate& a, const Candidate& b, const SmoothOptions& options) {
   const Prefer prefer = options.prefer;
-  const bool a_is_curves = a.form == OutputForm::kCurves;
-  if (options.output == Form::kCurves && a_is_curves != (b.form == OutputForm::kCurves)) {
+  const bool a_is_curves = a.form == Form::kCurves;
+  if (options.output == Form::kCurves && a_is_curves != (b.form == Form::kCurves)) {
     return a_is_curves;
   }
   if (prefer == Prefer::kSize) return a.text.text.size() < b.text.text.size();

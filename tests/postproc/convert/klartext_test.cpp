@@ -137,9 +137,8 @@ TEST(Klartext, WrittenCasesAreProved) {
 
 TEST(Klartext, BothRunsOfAPocketAreRewritten) {
   const std::string before = case_text("pocket.h");
-  for (const auto& [target, form, wanted] :
-       {std::tuple("heidenhain", Form::kArcs, OutputForm::kArcs),
-        std::tuple("itnc530", Form::kCurves, OutputForm::kCurves)}) {
+  for (const auto& [target, form, wanted] : {std::tuple("heidenhain", Form::kArcs, Form::kArcs),
+                                             std::tuple("itnc530", Form::kCurves, Form::kCurves)}) {
     const SmoothOptions options = klartext_options(target, form);
     const SmoothResult result = smoothed(before, options);
     expect_promises(before, options, result);

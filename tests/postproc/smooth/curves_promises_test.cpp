@@ -155,7 +155,7 @@ TEST_P(Curves, ProgramsOfRandomOnesAreProvedAndASecondPassChangesNothing) {
     EXPECT_TRUE(result.proved);
     EXPECT_LE(result.deviation_mm, options().tolerance_mm);
     for (const RunReport& run : result.runs) {
-      if (run.status == RunStatus::kRewritten && run.form == OutputForm::kCurves) ++with_curves;
+      if (run.status == RunStatus::kRewritten && run.form == Form::kCurves) ++with_curves;
       EXPECT_NE(run.reason, gcode::reason::kNotProved);
     }
     EXPECT_EQ(smoothed(result.text, options()).text, result.text);
@@ -192,7 +192,7 @@ TEST(CurvesOfLinuxcnc, GiveWayWhereTheyWouldBeSlow) {
   const SmoothResult result = smoothed(text, wanted);
   EXPECT_TRUE(result.proved);
   ASSERT_EQ(rewritten_runs(result), 1U);
-  EXPECT_NE(result.runs.back().form, OutputForm::kCurves);
+  EXPECT_NE(result.runs.back().form, Form::kCurves);
   EXPECT_LT(result.blocks_out, result.blocks_in / 4);
 }
 

@@ -119,13 +119,13 @@ TEST(SmoothRun, WritesTheFormThatWasAskedFor) {
   const OneRun run(circle_program(100));
   SmoothOptions options = options_for("linuxcnc");
   for (const auto& [asked, written] :
-       {std::pair{Form::kArcs, OutputForm::kArcs}, std::pair{Form::kLines, OutputForm::kLines}}) {
+       {std::pair{Form::kArcs, Form::kArcs}, std::pair{Form::kLines, Form::kLines}}) {
     options.output = asked;
     const std::vector<Candidate> candidates = run.smooth(options).candidates;
     EXPECT_FALSE(candidates.empty());
     for (const Candidate& candidate : candidates) {
       EXPECT_EQ(candidate.form, written);
-      EXPECT_EQ(candidate.text.arcs > 0, written == OutputForm::kArcs);
+      EXPECT_EQ(candidate.text.arcs > 0, written == Form::kArcs);
     }
   }
 }
@@ -139,7 +139,7 @@ TEST(SmoothRun, SaysACircleInFewArcs) {
   ASSERT_FALSE(candidates.empty());
   std::size_t fewest = 200;
   for (const Candidate& candidate : candidates) {
-    EXPECT_EQ(candidate.form, OutputForm::kArcs);
+    EXPECT_EQ(candidate.form, Form::kArcs);
     EXPECT_LE(candidate.text.arcs, 10u);
     fewest = std::min(fewest, candidate.text.arcs);
   }

@@ -105,7 +105,7 @@ TEST(PlanLines, ChainFromTheFirstPointToTheLastAndKeepTheDeviation) {
     wavy.run.points.back() += Point3(1e-10, 0, 0);  // the run's own digits, not the curve's
     for (const Prefer prefer : kAll) {
       const OutputPlan plan = Planning{.prefer = prefer}.lines(wavy);
-      EXPECT_EQ(plan.form, OutputForm::kLines);
+      EXPECT_EQ(plan.form, Form::kLines);
       expect_chain(plan, wavy.run);
       deviation_within(0.00505, plan, wavy.fair.curve);
     }
@@ -284,7 +284,7 @@ TEST(PlanArcs, TakesThePlaneThatTheRunLiesIn) {
     const auto plan = Planning().arcs(wavy);
     ASSERT_TRUE(plan);
     expect_chain(*plan, wavy.run);
-    EXPECT_EQ(plan->form, OutputForm::kArcs);
+    EXPECT_EQ(plan->form, Form::kArcs);
     EXPECT_GE(arcs_in(*plan), 10U);
     EXPECT_LE(plan->moves.size(), 60U);
     deviation_within(0.00505, *plan, wavy.fair.curve);

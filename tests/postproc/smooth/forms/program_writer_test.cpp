@@ -44,7 +44,7 @@ struct Planned {
     run.points.push_back(end);
   }
   void arc(const Point3& end, const Point3& center, const Vector3& axis, double sweep) {
-    plan.form = OutputForm::kArcs;
+    plan.form = Form::kArcs;
     plan.moves.push_back({geometry::Arc{run.points.back(), end, center, axis, sweep}, 1000, {}});
     run.points.push_back(end);
   }
