@@ -40,6 +40,13 @@ bool can_be_said_in_words(std::string_view barrier) {
   return std::ranges::find(kOurs, barrier) != kOurs.end();
 }
 
+// Capital letters, as bits: a search in text would be a call for each word.
+consteval std::uint32_t set_of(std::string_view letters) {
+  std::uint32_t bits = 0;
+  for (const char c : letters) bits |= 1U << static_cast<unsigned>(c - 'A');
+  return bits;
+}
+
 class ProgramLister : EventLister {
  public:
   explicit ProgramLister(const ReadProgram& read) : EventLister(read), read_(read) {
@@ -72,7 +79,7 @@ class ProgramLister : EventLister {
     if (meaning.barrier != reason::kRapid || meaning.motion < 0 || meaning.of_curve) return false;
     if (block.opacity != gcode::ParseStatus::kNone || block.block_delete) return false;
     const auto is_plain = [](const Word& word) {
-      return is_one_of("NGXYZF", word) && (word.letter != 'G' || word.value == 0);
+      return is_one_of(set_of("NGXYZF"), word) && (word.letter != 'G' || word.value == 0);
     };
     return std::ranges::all_of(program_.words_of(block), is_plain) &&
            !must_be_kept_as_text(block, meaning);
@@ -105,8 +112,9 @@ class ProgramLister : EventLister {
 
   // --- words --------------------------------------------------------------------------------
 
-  static bool is_one_of(std::string_view letters, const Word& word) {
-    return letters.find(word.letter) != std::string_view::npos;
+  static bool is_one_of(std::uint32_t letters, const Word& word) {
+    const auto letter = static_cast<unsigned>(word.letter - 'A');  // above 25: it is none
+    return letter <= 'Z' - 'A' && (letters >> letter & 1U) != 0;
   }
 
   [[nodiscard]] bool names_feed(const Block& block) const {
@@ -164,12 +172,12 @@ class ProgramLister : EventLister {
   static bool can_stand_alone(const Word& word, bool moves) {
     constexpr double kFirstOfTheUser = 100;  // what they run is not known
     if (!word.is_number) return false;
-    if (is_one_of("XYZIJKR", word)) return moves;
+    if (is_one_of(set_of("XYZIJKR"), word)) return moves;
     if (word.letter == 'G') {
       return gcode::row_of_g(gcode::code_of(word)).is(gcode::trait::kStandsAlone);
     }
     if (word.letter == 'M') return word.value < kFirstOfTheUser;
-    return is_one_of("NFSTDH", word);
+    return is_one_of(set_of("NFSTDH"), word);
   }
 
   void list_word(const Block& block, const Word& word, bool moves) {
@@ -180,7 +188,7 @@ class ProgramLister : EventLister {
                       : word.letter == 'F' ? !state_after().feed
                       // Controls refuse what is no number of a block, or run it.
                       : word.letter == 'N' ? !is_block_number(block, word)
-                                           : is_one_of("MTDH", word);
+                                           : is_one_of(set_of("MTDH"), word);
     if (acts) add_word(word, moves);
   }
 
