@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -184,19 +186,49 @@ std::vector<MotionEnd> motion_ends(const gcode::Interpretation& read) {
 }
 
 // Where two long runs that go beside each other may be cut: the old and the new block after the
+// The ends of motions by position: those that may be at one are a chain.
+class EndsByPosition {
+ public:
+  explicit EndsByPosition(const std::vector<MotionEnd>& ends)
+      : first_(std::bit_ceil(2 * ends.size() + 1), kNone), next_(ends.size(), kNone) {
+    for (std::uint32_t i = 0; i < ends.size(); ++i) {
+      next_[i] = std::exchange(first_[chain_of(ends[i])], i);
+    }
+  }
+
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  [[nodiscard]] std::uint32_t first(const MotionEnd& end) const { return first_[chain_of(end)]; }
+  [[nodiscard]] std::uint32_t next(std::uint32_t i) const { return next_[i]; }
+
+ private:
+  [[nodiscard]] std::size_t chain_of(const MotionEnd& end) const {
+    std::uint64_t key = 0;
+    for (const double x : end.at) {
+      key = (key ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9E3779B97F4A7C15U;  // -0 is 0
+      key ^= key >> 29U;
+    }
+    return key & (first_.size() - 1);
+  }
+
+  std::vector<std::uint32_t> first_;
+  std::vector<std::uint32_t> next_;
+};
+
 // last position, the same to the last digit, at which a motion of each ends about as far along.
 std::optional<std::pair<std::uint32_t, std::uint32_t>> last_common_position(
     const gcode::Interpretation& before, const gcode::Interpretation& after) {
   const std::vector<MotionEnd> old_ends = motion_ends(before);
-  std::vector<MotionEnd> new_ends = motion_ends(after);
-  std::ranges::sort(new_ends, {}, &MotionEnd::at);
+  const std::vector<MotionEnd> new_ends = motion_ends(after);
+  const EndsByPosition by_position(new_ends);
   for (auto old = old_ends.rbegin(); old != old_ends.rend(); ++old) {
-    const auto first = std::ranges::lower_bound(new_ends, old->at, {}, &MotionEnd::at);
-    const auto last = std::ranges::upper_bound(new_ends, old->at, {}, &MotionEnd::at);
-    if (first == last) continue;
     const auto apart = [&](const MotionEnd& end) { return std::abs(end.length - old->length); };
-    const auto nearest = std::ranges::min_element(
-        first, last, {}, [&](const MotionEnd& end) { return std::pair(apart(end), end.block); });
+    const MotionEnd* nearest = nullptr;  // the first of those as near
+    for (auto i = by_position.first(*old); i != EndsByPosition::kNone; i = by_position.next(i)) {
+      const MotionEnd& end = new_ends[i];
+      if (end.at != old->at) continue;
+      if (nearest == nullptr || apart(end) <= apart(*nearest)) nearest = &end;
+    }
+    if (nearest == nullptr) continue;
     if (apart(*nearest) > kPathsApart * std::max(old->length, nearest->length)) continue;
     return std::pair(old->block + 1, nearest->block + 1);
   }
