@@ -38,6 +38,8 @@ struct EventsBefore {
   }
 };
 
+struct ProgramEvents;
+
 struct ReadProgram {
   const gcode::Program* program = nullptr;
   const gcode::Interpretation* interpretation = nullptr;
@@ -47,6 +49,7 @@ struct ReadProgram {
   // it as a whole.
   std::span<const std::uint32_t> cuts = {};
   std::uint32_t line_before = 0;  // of a part: of the last block before it; 0: there is none
+  const ProgramEvents* events = nullptr;  // what list_events gives, where that is at hand
 };
 
 enum class EventKind : std::uint8_t {

@@ -80,8 +80,8 @@ class Verifier {
         promise_(promise),
         two_languages_(before.program->language != after.program->language),
         threads_(threads),
-        old_list_(events_of(before)),
-        new_list_(events_of(after)) {}
+        old_list_(events_of(before, old_made_)),
+        new_list_(events_of(after, new_made_)) {}
 
   Verification run() {
     const EventPair end{old_list_.events.size(), new_list_.events.size()};
@@ -112,8 +112,9 @@ class Verifier {
  private:
   // --- events -------------------------------------------------------------------------------
 
-  [[nodiscard]] ProgramEvents events_of(const ReadProgram& read) const {
-    return two_languages_ ? list_common_events(read) : list_events(read);
+  [[nodiscard]] const ProgramEvents& events_of(const ReadProgram& read, ProgramEvents& made) const {
+    if (read.events != nullptr && !two_languages_) return *read.events;
+    return made = two_languages_ ? list_common_events(read) : list_events(read);
   }
 
   [[nodiscard]] EventSpan old_span(std::size_t begin, std::size_t end) const {
@@ -260,8 +261,10 @@ class Verifier {
   Promise promise_;
   bool two_languages_ = false;
   int threads_;
-  ProgramEvents old_list_;
-  ProgramEvents new_list_;
+  ProgramEvents old_made_;
+  ProgramEvents new_made_;
+  const ProgramEvents& old_list_;
+  const ProgramEvents& new_list_;
   Verification result_;
   std::vector<Moves> moves_;
   Moves* last_ = nullptr;  // compared, and not in the result yet

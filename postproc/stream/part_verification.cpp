@@ -24,9 +24,10 @@ struct FollowedPart {
   gcode::ReadPart part;
   EventsBefore before;
   std::uint32_t line_before = 0;
+  std::optional<ProgramEvents> list = {};  // not of a whole
 
   [[nodiscard]] ReadProgram read() const {
-    return {&part.program, &part.meaning, before, {}, line_before};
+    return {&part.program, &part.meaning, before, {}, line_before, list ? &*list : nullptr};
   }
 };
 
@@ -63,7 +64,7 @@ class ProgramStream {
   [[nodiscard]] FollowedPart take(std::uint32_t count) {
     FollowedPart taken{reader_.take(count), before_, line_before_};
     if (reader_.is_whole()) return taken;
-    before_ = events_before_next(taken.read());
+    before_ = taken.list.emplace(list_events(taken.read())).at_end;
     if (!taken.part.program.blocks.empty()) line_before_ = taken.part.program.blocks.back().line;
     ends_.clear();
     looked_at_ = 0;
@@ -100,14 +101,14 @@ class ProgramStream {
 
 // The cutting moves of a part, and those of them before its first and after its last event.
 struct MovesOfPart {
-  explicit MovesOfPart(const FollowedPart& part) : list(list_events(part.read())) {
+  explicit MovesOfPart(const FollowedPart& part) : list(*part.list) {
     const std::size_t events = list.events.size();
     before_events = std::span<const Cut>(list.cuts).first(list.cuts_before.front());
     after_events =
         std::span<const Cut>(list.cuts).subspan(events > 0 ? list.cuts_before[events - 1] : 0);
   }
 
-  ProgramEvents list;
+  const ProgramEvents& list;
   std::span<const Cut> before_events;
   std::span<const Cut> after_events;
 };
@@ -185,7 +186,6 @@ std::vector<MotionEnd> motion_ends(const gcode::Interpretation& read) {
   return ends;
 }
 
-// Where two long runs that go beside each other may be cut: the old and the new block after the
 // The ends of motions by position: those that may be at one are a chain.
 class EndsByPosition {
  public:
@@ -214,6 +214,7 @@ class EndsByPosition {
   std::vector<std::uint32_t> next_;
 };
 
+// Where two long runs that go beside each other may be cut: the old and the new block after the
 // last position, the same to the last digit, at which a motion of each ends about as far along.
 std::optional<std::pair<std::uint32_t, std::uint32_t>> last_common_position(
     const gcode::Interpretation& before, const gcode::Interpretation& after) {
