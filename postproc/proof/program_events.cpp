@@ -72,6 +72,17 @@ class ProgramLister : EventLister {
     return std::move(list_);
   }
 
+  // As run(), without a list of events.
+  EventsBefore at_end() {
+    for (block_index_ = 0; block_index_ < program_.blocks.size(); ++block_index_) {
+      const Block& block = program_.blocks[block_index_];
+      if (interpretation_.blocks[block_index_].of_curve) continue;
+      if (block.opacity == gcode::ParseStatus::kNone && !block.block_delete) remember_words(block);
+      forget_words(block);
+    }
+    return {set_by_word_, last_end(), feed_is_new_at_end()};
+  }
+
   [[nodiscard]] bool is_plain_rapid(std::uint32_t index) {
     block_index_ = index;
     const Block& block = program_.blocks[index];
@@ -94,14 +105,37 @@ class ProgramLister : EventLister {
     }
     if (block.opacity != gcode::ParseStatus::kNone || block.block_delete) {
       add_text(text_of_block(block));
-      // Its names may have changed any group.
-      if (block.opacity == gcode::ParseStatus::kNamedWords) set_by_word_.fill(kNotSet);
     } else {
       list_words(block, meaning);
       list_active_comments(block);
     }
-    // Where nothing is known any more, no word is a repetition.
-    if (state_after().distance == gcode::DistanceMode::kUnknown) set_by_word_.fill(kNotSet);
+    forget_words(block);
+  }
+
+  void forget_words(const Block& block) {
+    // Its names may have changed any group. Where nothing is known any more, no word is a
+    // repetition.
+    if (block.opacity == gcode::ParseStatus::kNamedWords ||
+        state_after().distance == gcode::DistanceMode::kUnknown) {
+      set_by_word_.fill(kNotSet);
+    }
+  }
+
+  [[nodiscard]] bool feed_is_new_at_end() {
+    for (block_index_ = static_cast<std::uint32_t>(program_.blocks.size()); block_index_-- > 0;) {
+      const Block& block = program_.blocks[block_index_];
+      if (is_cut(block, interpretation_.blocks[block_index_])) return false;
+      if (names_feed(block)) return true;
+    }
+    return feed_is_new_;
+  }
+
+  // Does list_block add a cut?
+  [[nodiscard]] bool is_cut(const Block& block, const BlockMeaning& meaning) const {
+    if (meaning.motion < 0 || meaning.of_curve) return meaning.motion >= 0;
+    return block.opacity == gcode::ParseStatus::kNone && !block.block_delete &&
+           motion_of(meaning).kind != MotionKind::kRapid && goes_on(motion_of(meaning)) &&
+           !must_be_kept_as_text(block, meaning);
   }
 
   [[nodiscard]] std::optional<geometry::Point3> last_end() const {
@@ -311,7 +345,7 @@ bool EventLister::add_motion(const BlockMeaning& meaning, bool feed_without_poin
     add_event(EventKind::kRapid).motion = meaning.motion;
     return true;
   }
-  if (motion.piece.is_line() && motion.piece.start() == motion.piece.end()) return false;
+  if (!goes_on(motion)) return false;
   add_cut(meaning, feed_without_point);
   return true;
 }
@@ -332,7 +366,7 @@ bool is_one_feed(const Cut& a, const Cut& b) {
 
 ProgramEvents list_events(const ReadProgram& read) { return ProgramLister(read).run(); }
 
-EventsBefore events_before_next(const ReadProgram& read) { return list_events(read).at_end; }
+EventsBefore events_before_next(const ReadProgram& read) { return ProgramLister(read).at_end(); }
 
 bool is_plain_rapid(const ReadProgram& read, std::uint32_t block) {
   return ProgramLister(read).is_plain_rapid(block);

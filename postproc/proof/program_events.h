@@ -175,6 +175,9 @@ class EventLister {
   void add_word(std::string text) { add_event(EventKind::kWord).text = std::move(text); }
   void add_text(std::string text) { add_event(EventKind::kText).text = std::move(text); }
   void add_cut(const gcode::BlockMeaning& meaning, bool feed_without_point);
+  static bool goes_on(const gcode::Motion& motion) {
+    return !motion.piece.is_line() || motion.piece.start() != motion.piece.end();
+  }
   // A rapid or a cut between known positions. False: it goes nowhere, and nothing is added.
   bool add_motion(const gcode::BlockMeaning& meaning, bool feed_without_point);
 
