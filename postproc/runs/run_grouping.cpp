@@ -384,8 +384,10 @@ PrintedErrors RunBlocks::errors_of(std::span<const std::uint32_t> blocks) const 
 int RunBlocks::decimals(std::uint32_t block, std::string_view letters) const {
   int most = 0;
   for (const gcode::Word& word : program_.words_of(program_.blocks[block])) {
-    if (letters.find(word.letter) == std::string_view::npos) continue;
-    most = std::max(most, static_cast<int>(word.decimals));
+    // In this order: the search is a call.
+    if (word.decimals > most && letters.find(word.letter) != std::string_view::npos) {
+      most = word.decimals;
+    }
   }
   return most;
 }
