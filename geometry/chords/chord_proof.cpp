@@ -264,11 +264,11 @@ double greatest_square(const ControlCoordinates& piece, double known, int halvin
 
 }  // namespace
 
-ChordsFrom::ChordsFrom(const CurvePieces& pieces, double from)
-    : pieces_(pieces), from_(from), first_(pieces.index_of(from)) {
+ChordsFrom::ChordsFrom(const CurvePieces& pieces, std::size_t piece, double from)
+    : pieces_(pieces), from_(from), first_(piece) {
   const double at = pieces.local(first_, from);
-  const CubicBezier& piece = pieces.piece(first_);
-  const CubicBezier rest = at > 0 ? parts_at(piece, at).second : piece;
+  const CubicBezier& whole = pieces.piece(first_);
+  const CubicBezier rest = at > 0 ? parts_at(whole, at).second : whole;
   start_ = rest.control[0];
   left_ = 1 - at;
   rest_ = seen_from(start_, rest);

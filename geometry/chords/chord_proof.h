@@ -90,7 +90,10 @@ struct ControlCoordinates {
 // Chords that start at one point of the curve. The pieces must live as long.
 class ChordsFrom {
  public:
-  ChordsFrom(const CurvePieces& pieces, double from);
+  ChordsFrom(const CurvePieces& pieces, double from)
+      : ChordsFrom(pieces, pieces.index_of(from), from) {}
+  // `piece`: that holds `from`.
+  ChordsFrom(const CurvePieces& pieces, std::size_t piece, double from);
 
   // The chord to `end` > from. Its height is greater than the greatest distance of the curve by
   // less than 1e-4 of it; by less than 1e-3 where the curve twists wildly between two knots.

@@ -23,8 +23,10 @@ ChordOptions for_shorter(const ChordOptions& options, double length) {
 // The longest chord from one point of the curve.
 class LongestChord {
  public:
-  LongestChord(const CurvePieces& pieces, double from, const ChordOptions& options)
-      : pieces_(pieces), chords_(pieces, from), options_(options) {}
+  // `piece`: that holds `from`.
+  LongestChord(const CurvePieces& pieces, std::size_t piece, double from,
+               const ChordOptions& options)
+      : pieces_(pieces), chords_(pieces, piece, from), options_(options) {}
 
   // Where it ends, at most `limit`; `guess` is some end after the start.
   double end(double guess, double limit) {
@@ -130,13 +132,14 @@ std::vector<double> greedy_ends(const CurvePieces& pieces, double from, double t
                                 const ChordOptions& options,
                                 std::size_t at_most = std::numeric_limits<std::size_t>::max()) {
   std::vector<double> ends;
-  const std::size_t piece = pieces.index_of(from);
+  std::size_t piece = pieces.index_of(from);
   // A chord is about as long as the one before, and as much longer than that as that was.
   double last_step = pieces.breaks()[piece + 1] - pieces.breaks()[piece];
   double growth = 1;
   for (double at = from; at < to && ends.size() < at_most;) {
     const double guess = at + std::clamp(growth, 1 / kChords.growth, kChords.growth) * last_step;
-    const double end = LongestChord(pieces, at, options).end(guess, to);
+    while (piece + 1 < pieces.size() && pieces.breaks()[piece + 1] <= at) ++piece;
+    const double end = LongestChord(pieces, piece, at, options).end(guess, to);
     growth = ends.empty() ? 1 : (end - at) / last_step;
     last_step = end - at;
     at = end;
