@@ -46,8 +46,8 @@ std::vector<PlaneAxes> arc_planes(const PlanOptions& options) {
   for (const PlaneAxes& each : gcode::kPlaneAxes) {
     if (takes_arcs_in(*options.target, each.plane)) planes.push_back(each);
   }
-  std::ranges::stable_partition(
-      planes, [&](const PlaneAxes& each) { return each.plane == options.active_plane; });
+  std::stable_partition(planes.begin(), planes.end(),
+                        [&](const PlaneAxes& each) { return each.plane == options.active_plane; });
   return planes;
 }
 
