@@ -242,12 +242,14 @@ class ProgramLister : EventLister {
     add_word(word, moves);
   }
 
-  // A block that is kept as text sets modes too.
+  // A block that is kept as text sets modes too. Motions are compared as such.
   void remember_words(const Block& block) {
     for (const Word& word : program_.words_of(block)) {
       if (word.letter != 'G') continue;
       const gcode::CodeRow& row = gcode::row_of_g(gcode::code_of(word));
-      set_by_word_[static_cast<std::size_t>(row.group)] = row.code;
+      if (row.group != CodeGroup::kMotion) {
+        set_by_word_[static_cast<std::size_t>(row.group)] = row.code;
+      }
     }
   }
 
