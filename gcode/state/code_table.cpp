@@ -1,8 +1,10 @@
 #include "gcode/state/code_table.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "gcode/state/reason.h"
 
@@ -195,6 +197,13 @@ struct Rows {
     for (const CodeRow& row : kAll) numbers[static_cast<std::size_t>(row.code)] = ++number;
     return numbers;
   }();
+  static_assert(kCount <= std::numeric_limits<std::uint8_t>::max());
+  static_assert(kNumbers.size() - std::ranges::count(kNumbers, 0) == kCount, "a code has two rows");
+  static_assert(std::ranges::all_of(kAll,
+                                    [](const CodeRow& row) {
+                                      return static_cast<std::size_t>(row.group) < kCodeGroups;
+                                    }),
+                "kCodeGroups counts up to the last group");
 
   static const CodeRow& of(Code code, const CodeRow& other) {
     const auto at = static_cast<std::size_t>(code);  // of a negative one: too large

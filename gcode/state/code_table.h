@@ -2,6 +2,7 @@
 // why it ends a run, and what it means for the proof, for the time of a program and for --convert.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -71,6 +72,7 @@ enum class CodeGroup : std::uint8_t {
   kStop,         // M0 M1 M2 M30 M60
   kTurning,      // M3 M4 M5
 };
+inline constexpr std::size_t kCodeGroups = static_cast<std::size_t>(CodeGroup::kTurning) + 1;
 
 // What a code does, where its group does not say it.
 enum class CodeAct : std::uint8_t {

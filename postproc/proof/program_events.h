@@ -18,21 +18,17 @@
 
 namespace batten::postproc {
 
-// The modal groups of the words that the reader knows.
-inline constexpr std::size_t kCodeGroups =
-    static_cast<std::size_t>(gcode::CodeGroup::kModalMacro) + 1;
-
 // What a part of a program takes over from the parts before it, beside the state of the control.
 struct EventsBefore {
   // The last word of each modal group, in tenths; -1: none has set it.
-  std::array<gcode::Code, kCodeGroups> set_by_word = nothing_set();
+  std::array<gcode::Code, gcode::kCodeGroups> set_by_word = nothing_set();
   std::optional<geometry::Point3> place;  // mm: where the last motion ends, if that is known
   bool feed_is_new = false;               // the last F is after the last cut
 
   bool operator==(const EventsBefore&) const = default;
 
-  static constexpr std::array<gcode::Code, kCodeGroups> nothing_set() {
-    std::array<gcode::Code, kCodeGroups> none{};
+  static constexpr std::array<gcode::Code, gcode::kCodeGroups> nothing_set() {
+    std::array<gcode::Code, gcode::kCodeGroups> none{};
     none.fill(-1);
     return none;
   }
@@ -195,7 +191,7 @@ class EventLister {
   const gcode::Interpretation& interpretation_;
   ProgramEvents list_;
   std::uint32_t block_index_ = 0;
-  std::array<gcode::Code, kCodeGroups> set_by_word_ = EventsBefore::nothing_set();
+  std::array<gcode::Code, gcode::kCodeGroups> set_by_word_ = EventsBefore::nothing_set();
   bool feed_is_new_ = false;  // before the block that is listed
 };
 
