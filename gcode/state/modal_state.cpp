@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <type_traits>
 
 namespace batten::gcode {
 namespace {
@@ -21,6 +22,21 @@ void for_each_mode(ModalState& a, const ModalState& b, Visit visit) {
     visit(a.*each.item, b.*each.item, TriState::kUnknown);
   }
 }
+
+// An item that is added to the state does not compile here: it is to be visited above, by a row of
+// kModalSwitches where it is a switch, or stands beside feeds and speeds in `either`.
+constexpr std::size_t switches_of(const ModalState& state) {
+  const auto& [motion, units, plane, distance, arc_distance, feed_mode, path, cutter, tool_center,
+               tilted, scaling, rotation, mirror, polar, cylindrical, smoothing, macro, surface,
+               diameter, laser, feed, without_point, spindle] = state;
+  const auto count = [](const auto&... items) {
+    return (0 + ... + (std::is_same_v<decltype(items), const TriState&> ? 1 : 0));
+  };
+  return count(motion, units, plane, distance, arc_distance, feed_mode, path, cutter, tool_center,
+               tilted, scaling, rotation, mirror, polar, cylindrical, smoothing, macro, surface,
+               diameter, laser, feed, without_point, spindle);
+}
+static_assert(switches_of({}) == kModalSwitches.size());
 
 ModalState either(const ModalState& a, const ModalState& b) {
   ModalState both = a;

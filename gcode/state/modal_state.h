@@ -52,6 +52,7 @@ struct ModalSwitch {
   TriState ModalState::*item;
   std::string_view name;
   bool bends_path = true;  // where it is on, the path in X, Y, Z is not all that counts
+  bool moves_path = true;  // where it is on, the tool does not follow the programmed path
 };
 inline constexpr std::array kModalSwitches = {
     ModalSwitch{&ModalState::cutter_compensation, "cutter compensation"},
@@ -64,10 +65,10 @@ inline constexpr std::array kModalSwitches = {
     ModalSwitch{&ModalState::cylindrical, "cylindrical coordinates"},
     // What a control fits through the points by itself is its own deviation, in both programs.
     ModalSwitch{&ModalState::control_smoothing, "smoothing by the control", false},
-    ModalSwitch{&ModalState::modal_macro, "modal macro"},
-    ModalSwitch{&ModalState::constant_surface_speed, "constant surface speed"},
+    ModalSwitch{&ModalState::modal_macro, "modal macro", true, false},
+    ModalSwitch{&ModalState::constant_surface_speed, "constant surface speed", true, false},
     ModalSwitch{&ModalState::lathe_diameter, "diameter mode"},
-    ModalSwitch{&ModalState::laser_power_mode, "laser power mode", false},
+    ModalSwitch{&ModalState::laser_power_mode, "laser power mode", false, false},
 };
 
 // Nothing is known: after a call, or a block that could have changed anything.
@@ -98,6 +99,7 @@ struct ControlState {
   // Groups (bit = CodeGroup) that a word has set. A word that repeats what is only assumed of
   // the control at power-on is no repetition: it must stay.
   std::uint32_t set_by_word = 0;
+  static_assert(kCodeGroups <= 32);
   bool calls_keep_modes = false;  // ReadOptions
 
   [[nodiscard]] bool is_set(CodeGroup group) const { return (set_by_word & bit(group)) != 0; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "gcode/state/block_words.h"
 #include "gcode/state/reason.h"
@@ -56,6 +57,8 @@ constexpr UnsafeSwitch kUnsafeSwitches[] = {
     {&ModalState::constant_surface_speed, reason::kConstantSurfaceSpeed},
     {&ModalState::lathe_diameter, reason::kLatheDiameter},
 };
+// All but the laser's, which is never known to be on.
+static_assert(std::size(kUnsafeSwitches) + 1 == gcode::kModalSwitches.size());
 
 std::string_view unsafe_mode(const ModalState& state, const GroupingOptions& options) {
   const auto is_allowed = [&options](std::string_view id) {

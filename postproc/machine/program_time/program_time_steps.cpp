@@ -92,17 +92,9 @@ namespace reason = gcode::reason;
 
 // The control bends or shifts the programmed path.
 bool is_path_changed(const ModalState& s) {
-  const std::array changes = {s.cutter_compensation,
-                              s.tool_center_point,
-                              s.tilted_plane,
-                              s.scaling,
-                              s.rotation,
-                              s.mirror,
-                              s.polar,
-                              s.cylindrical,
-                              s.control_smoothing,
-                              s.lathe_diameter};
-  return std::ranges::any_of(changes, [](TriState t) { return t == TriState::kOn; });
+  return std::ranges::any_of(gcode::kModalSwitches, [&s](const gcode::ModalSwitch& each) {
+    return each.moves_path && s.*each.item == TriState::kOn;
+  });
 }
 
 class StepReader {
