@@ -10,6 +10,7 @@
 #include "gcode/state/reason.h"
 #include "postproc/cli/explain.h"
 #include "postproc/machine/machine.h"
+#include "postproc/options/options.h"
 #include "postproc/text/words.h"
 
 namespace batten::postproc {
@@ -70,6 +71,19 @@ constexpr OptionRow kQuiet =
 constexpr OptionRow kLogLevel =
     option("log-level", kValue, "error|warning|info", "how much is said on standard error", "info");
 
+// "time|accuracy|size": how help calls a value that is one of these.
+template <const auto& kChoices>
+std::string_view one_of() {
+  static const std::string names = [] {
+    std::vector<std::string_view> each;
+    for (const auto& choice : kChoices()) {
+      if (choice.in_help) each.push_back(choice.name);
+    }
+    return fmt::format("{}", fmt::join(each, "|"));
+  }();
+  return names;
+}
+
 std::vector<OptionRow> smooth_rows() {
   return {
       setting("target", kValue, "NAME|FILE.toml",
@@ -80,12 +94,11 @@ std::vector<OptionRow> smooth_rows() {
       kSide,
       kMachine,
       kGrblSettings,
-      setting("method", kValue, "best|fair|racing|naseath|guo|ozcan|none",
-              "how runs are smoothed (batten methods)", "best"),
-      setting("output", kValue, "auto|curves|arcs|lines", "what rewritten runs are made of",
-              "auto"),
-      setting("prefer", kValue, "time|accuracy|size", "what the tolerance is spent on", "time"),
-      setting("linearize", kValue, "minlink|chord|ilca|blca",
+      setting("method", kValue, one_of<methods>(), "how runs are smoothed (batten methods)",
+              "best"),
+      setting("output", kValue, one_of<forms>(), "what rewritten runs are made of", "auto"),
+      setting("prefer", kValue, one_of<preferences>(), "what the tolerance is spent on", "time"),
+      setting("linearize", kValue, one_of<linearizations>(),
               "how lines are laid along a curve; default: chord, minlink with --prefer size"),
       setting("keep-corners", kValue, "DEG", "turns of more degrees than this stay corners"),
       kUnits,

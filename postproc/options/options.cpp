@@ -47,9 +47,9 @@ constexpr Choice<Method> kMethods[] = {
     {Method::kOzcan, "ozcan",
      "lines with an eight-point curve at each vertex (Ozcan 2018); slow to compute"},
     {Method::kNaseathLiteral, "naseath-literal",
-     "as the thesis has it, for comparison: may make a path worse"},
+     "as the thesis has it, for comparison: may make a path worse", false},
     {Method::kGuoLiteral, "guo-literal",
-     "as the paper has it, for comparison: half the tolerance or less is used"},
+     "as the paper has it, for comparison: half the tolerance or less is used", false},
     {Method::kNone, "none", "nothing is rewritten: checks and reports only"},
 };
 
@@ -101,7 +101,7 @@ double rounding_of(const SmoothOptions& options, gcode::Units units, int run_dec
   gcode::NumberFormat places = place_format(*options.target, units);
   places.decimals = std::max(places.decimals, run_decimals);
   const double place = std::numbers::sqrt3 / 2 * gcode::printed_step(places, units);
-  if (options.output == Form::kLines) return place;
+  if (!may_have_arcs(options.output)) return place;
   const double offset = gcode::printed_step(center_format(*options.target, units), units);
   return place + std::numbers::sqrt2 / 2 * offset;
 }
@@ -109,6 +109,32 @@ double rounding_of(const SmoothOptions& options, gcode::Units units, int run_dec
 bool takes_any_arcs(const gcode::Control& target) {
   return takes_arcs_in(target, gcode::Plane::kXY) || takes_arcs_in(target, gcode::Plane::kZX) ||
          takes_arcs_in(target, gcode::Plane::kYZ);
+}
+
+// Why the target cannot have this form; empty where it can.
+std::string_view why_not(Form form, const gcode::Control& target) {
+  switch (form) {
+    case Form::kArcs:
+      return takes_any_arcs(target) ? "" : "takes no arcs";
+    case Form::kCurves:
+      return target.curves != nullptr ? "" : "reads no curves";
+    case Form::kAuto:
+    case Form::kLines:
+      break;
+  }
+  return {};
+}
+
+void check_form(const SmoothOptions& options, std::vector<std::string>& problems) {
+  if (options.target == nullptr) return;
+  const std::string_view why = why_not(options.output, *options.target);
+  if (why.empty()) return;
+  std::vector<std::string_view> possible;
+  for (const auto& form : kForms) {
+    if (why_not(form.value, *options.target).empty()) possible.push_back(form.name);
+  }
+  problems.push_back(fmt::format("--output: target {} {}; possible: {}", options.target->name, why,
+                                 fmt::join(possible, ", ")));
 }
 
 void check_tolerance(const SmoothOptions& options, std::vector<std::string>& problems) {
@@ -157,6 +183,18 @@ std::span<const Choice<Linearize>> linearizations() { return kLinearizations; }
 std::span<const Choice<ToleranceKind>> tolerance_kinds() { return kToleranceKinds; }
 std::span<const Choice<Side>> sides() { return kSides; }
 std::span<const Choice<SourceKind>> sources() { return kSources; }
+
+bool may_have_arcs(Form form) {
+  switch (form) {
+    case Form::kAuto:
+    case Form::kArcs:
+    case Form::kCurves:
+      return true;
+    case Form::kLines:
+      break;
+  }
+  return false;
+}
 
 std::string_view name_of(Form form) { return name_in(forms(), form); }
 std::string_view name_of(Method method) { return name_in(methods(), method); }
@@ -236,17 +274,7 @@ std::vector<std::string> problems_of(const SmoothOptions& options) {
     problems.emplace_back("--machine: no machine given; `batten machines` lists them");
   }
   check_tolerance(options, problems);
-  if (options.target != nullptr && options.output == Form::kArcs &&
-      !takes_any_arcs(*options.target)) {
-    problems.push_back(fmt::format("--output: target {} takes no arcs; possible: auto, lines",
-                                   options.target->name));
-  }
-  if (options.target != nullptr && options.output == Form::kCurves &&
-      options.target->curves == nullptr) {
-    problems.push_back(fmt::format("--output: target {} reads no curves; possible: auto, {}lines",
-                                   options.target->name,
-                                   takes_any_arcs(*options.target) ? "arcs, " : ""));
-  }
+  check_form(options, problems);
   if (options.keep_corners_deg &&
       !(*options.keep_corners_deg > 0 && *options.keep_corners_deg <= 180)) {
     problems.push_back(

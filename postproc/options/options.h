@@ -39,6 +39,7 @@ struct Choice {
   Value value;
   std::string_view name;
   std::string_view text;  // one line for the user
+  bool in_help = true;    // false: taken, but only `batten methods` and messages name it
 };
 
 [[nodiscard]] std::span<const Choice<Form>> forms();
@@ -57,6 +58,9 @@ struct Choice {
 [[nodiscard]] std::string_view name_of(geometry::Side side);
 [[nodiscard]] std::string_view name_of(gcode::SourceKind source);
 [[nodiscard]] std::string_view name_of(gcode::Units units);  // "mm", "inch", "unknown"
+
+// Whether there may be arcs in runs of this form: the ends of arcs have decimals of their own.
+[[nodiscard]] bool may_have_arcs(Form form);
 
 // Decisions of `smooth`, without files and messages.
 struct SmoothOptions {
@@ -78,7 +82,7 @@ struct SmoothOptions {
   bool convert = false;  // a program of another family is taken where every block can be said
   ProfileWords words;    // that a profile adds; its target is `target`
   std::string profile;   // the profile's file, for reports; empty: none
-  int threads = 0;  // 0: all cores
+  int threads = 0;       // 0: all cores
 };
 
 // How lines are laid along a curve: as the user said, otherwise minlink for the fewest bytes and

@@ -139,8 +139,8 @@ std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
       out.writer().copy_line(program.source.text(run.comments[i].text));
     }
   };
-  NumberFormat format = plan.form == Form::kLines ? place_format(target, before.units)
-                                                  : arc_end_format(target, before.units);
+  NumberFormat format = may_have_arcs(plan.form) ? arc_end_format(target, before.units)
+                                                 : place_format(target, before.units);
   out.writer().use_coordinates(format);
   auto curve = plan.curves.begin();
   for (std::size_t i = 0; i < plan.moves.size();) {
