@@ -22,17 +22,22 @@ void Given::add_list(std::string_view name, std::string_view values) {
   }
 }
 
-bool Given::has(std::string_view name) const { return values_.contains(name); }
+bool Given::has(std::string_view name) const {
+  read_.emplace(name);
+  return values_.contains(name);
+}
 
 bool Given::flag(std::string_view name) const { return value(name) == "true"; }
 
 std::optional<std::string> Given::value(std::string_view name) const {
+  read_.emplace(name);
   const auto found = values_.find(name);
   if (found == values_.end() || found->second.empty()) return std::nullopt;
   return found->second.front();
 }
 
 std::vector<std::string> Given::values(std::string_view name) const {
+  read_.emplace(name);
   const auto found = values_.find(name);
   return found == values_.end() ? std::vector<std::string>{} : found->second;
 }

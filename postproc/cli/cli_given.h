@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,7 +33,12 @@ class Given {
   // Takes from `other` what is not given here.
   void complete_from(const Given& other);
 
+  // Whether anybody has asked for it, given or not: an option without a reader would be taken and
+  // do nothing.
+  [[nodiscard]] bool was_read(std::string_view name) const { return read_.contains(name); }
+
  private:
+  mutable std::set<std::string, std::less<>> read_;
   std::map<std::string, std::vector<std::string>, std::less<>> values_;
 };
 

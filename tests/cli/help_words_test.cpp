@@ -5,7 +5,9 @@
 #include <sstream>
 
 #include "batten_process.h"
+#include "postproc/cli/cli.h"
 #include "postproc/cli/cli_table.h"
+#include "postproc/options/options.h"
 
 namespace batten {
 namespace {
@@ -34,6 +36,36 @@ TEST(ExplainCommand, SuggestsWhatWasMeant) {
   const ProcessResult said =
       expect_exit(BattenFolder().batten("explain exact-stpo"), 1, {"did you mean 'exact-stop'?"});
   EXPECT_EQ(said.out, "");
+}
+
+// --- options ------------------------------------------------------------------------------------
+
+TEST(CommandTable, HasAReaderForEveryOption) {
+  for (const postproc::CommandRow& command : postproc::command_rows()) {
+    if (command.rows.empty()) continue;  // explain, completion, man
+    postproc::Arguments in;
+    (void)postproc::command_of(command.name, in);
+    for (const postproc::OptionRow& row : command.rows) {
+      EXPECT_TRUE(in.given.was_read(row.name)) << command.name << " --" << row.name;
+    }
+  }
+}
+
+// Help has these by hand; those of methods, forms and the like it takes from their tables.
+TEST(CommandTable, NamesEveryChoice) {
+  for (const postproc::OptionRow& row : postproc::option_rows("smooth")) {
+    const auto expect_names = [&row](std::string_view option, const auto& choices) {
+      if (row.name != option) return;
+      std::string names;
+      for (const auto& choice : choices) names += "|" + std::string(choice.name);
+      EXPECT_EQ("|" + std::string(row.value), names);
+    };
+    expect_names("tolerance-kind", postproc::tolerance_kinds());
+    expect_names("side", postproc::sides());
+    expect_names("source", postproc::sources());
+    expect_names("progress", postproc::progress_styles());
+    expect_names("log-level", postproc::log_levels());
+  }
 }
 
 // --- completion ---------------------------------------------------------------------------------
