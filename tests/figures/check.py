@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+"""check.py BATTEN [--write]: are the figures of smoothed paths those of figures.json?
+
+Those are of the thresholds that were chosen (the structs `*Tuning`), and what a change of one moves is
+seen here. The paths have what programs have: bends, corners, long lines, noise, steps, in the plane and
+rising. For each method and form there are four figures of each rewritten run: blocks, time, deviation
+and greatest curvature.
+
+Ends with 1 at the first figure that differs by more than a ten-thousandth. --write writes them anew."""
+import json
+import math
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+
+KNOWN = pathlib.Path(__file__).with_name("figures.json")
+SETTINGS = {  # program and options
+    "chords": ("walks", "--target grbl --output lines --method fair"),
+    "near chords": ("walks", "--target grbl --output lines --prefer accuracy"),
+    "links": ("walks", "--target grbl --output lines --linearize minlink --method fair"),
+    "few links": ("walks", "--target grbl --output lines --prefer size --tolerance 0.03"),
+    "arcs": ("walks", "--target linuxcnc --output arcs --method fair"),
+    "near arcs": ("walks", "--target grbl --output arcs --prefer accuracy --tolerance 0.02"),
+    "few arcs": ("walks", "--target grbl --output arcs --prefer size"),
+    "curves": ("walks", "--target linuxcnc --output curves --method fair"),
+    "kept corners": ("walks", "--target linuxcnc --output curves --method fair --keep-corners 30"),
+    "left": ("walks", "--target grbl --side left --tolerance 0.05"),
+    "right": ("walks", "--target grbl --side right --tolerance 0.03"),
+    "racing": ("corners", "--target grbl --output lines --method racing"),
+    "ozcan": ("corners", "--target grbl --output lines --method ozcan"),
+    "naseath": ("corners", "--target grbl --output lines --method naseath"),
+    "tight racing": ("corners", "--target grbl --output lines --method racing --tolerance 0.05"),
+}
+FIGURES = ("blocks_out", "time_after_s", "deviation_mm", "max_curvature_after")
+
+
+def walk(seed, rise, noise, step=0.2, count=250):
+    """A walk of bends with corners and long lines; its vertices are up to `noise` off."""
+    rng = random.Random(seed)
+    place, heading, bend = (0.0, 0.0, 0.0), 0.0, 0.0
+    points = [place]
+    for i in range(1, count):
+        bend = 0.9 * bend + 0.03 * rng.uniform(-1, 1)
+        heading += bend + (rng.uniform(-1.2, 1.2) if i % 40 == 20 else 0)
+        length = 6 if i % 90 == 60 else step * rng.uniform(0.7, 1.3)
+        way = (math.cos(heading), math.sin(heading), rise)
+        place = tuple(p + length * w for p, w in zip(place, way))
+        points.append(tuple(p + noise * rng.uniform(-1, 1) * (w != 0) for p, w in zip(place, way)))
+    return points
+
+
+def ring(chords, noise):
+    """Closed: waves about a circle."""
+    rng = random.Random(chords)
+    angles = [2 * math.pi * i / chords for i in range(chords)]
+    radii = [8 + math.cos(3 * a) + noise * rng.uniform(-1, 1) for a in angles]
+    points = [(r * math.cos(a), r * math.sin(a), 0) for r, a in zip(radii, angles)]
+    return points + points[:1]
+
+
+def stairs(corners, step):
+    return [(step * ((i + 1) // 2), step * (i // 2), 0) for i in range(corners + 2)]
+
+
+PROGRAMS = {
+    "walks": [walk(1, 0, 0), walk(2, 0, 0.003), walk(3, 0.1, 0.01), walk(4, 0.2, 0.001), walk(5, 0, 0.012),
+              walk(6, 0.1, 0, 0.05), ring(120, 0), ring(400, 0.004), ring(1500, 0), stairs(30, 0.3)],
+    "corners": [walk(1, 0, 0, 0.5, 30), walk(7, 0.1, 0.003, 0.5, 45), stairs(4, 3), stairs(6, 0.2)],
+}
+
+
+def text_of(paths):
+    lines = ["G21 G90 G17 G94", "F2000"]
+    for path in paths:
+        lines += ["G0 Z90", "G0 X%.3f Y%.3f" % path[0][:2], "G1 Z%.3f" % path[0][2]]
+        lines += ["G1 X%.3f Y%.3f Z%.3f" % point for point in path[1:]]
+    return "\n".join(lines + ["G0 Z90", "M2", ""])
+
+
+def figures_of(batten, folder, program, options):
+    """Of each run: its figures where it is rewritten, else the reason why it is kept."""
+    (folder / "part.nc").write_text(text_of(PROGRAMS[program]))
+    words = [batten, "smooth", "part.nc", "--out", "new.nc", "--force", "--json", "report.json", "--threads", "1"]
+    subprocess.run(words + options.split(), cwd=folder, check=True, capture_output=True)
+    runs = json.loads((folder / "report.json").read_text())["runs"]
+    return [[run[key] for key in FIGURES] if run["status"] == "rewritten" else run["reason"]
+            for run in runs if run["points"] > 2]
+
+
+def same(found, known):
+    if isinstance(found, str) or isinstance(known, str):
+        return found == known
+    return all(math.isclose(a, b, rel_tol=1e-4, abs_tol=1e-7) for a, b in zip(found, known))
+
+
+def main():
+    batten, known = pathlib.Path(sys.argv[1]).resolve(), {}
+    if sys.argv[2:] != ["--write"]:
+        known = json.loads(KNOWN.read_text())
+    with tempfile.TemporaryDirectory() as folder:
+        for name, (program, options) in SETTINGS.items():
+            found = figures_of(batten, pathlib.Path(folder), program, options)
+            expected = known.setdefault(name, found)
+            for i, (a, b) in enumerate(zip(found, expected)):
+                if not same(a, b):
+                    sys.exit(f"Figures: {name}, run {i + 1}: {a}, expected {b}")
+            if len(found) != len(expected):
+                sys.exit(f"Figures: {name}: {len(found)} runs, expected {len(expected)}")
+    if sys.argv[2:] == ["--write"]:
+        rows = ",\n".join(f"{json.dumps(name)}: {json.dumps(rows)}" for name, rows in known.items())
+        KNOWN.write_text("{\n" + rows.replace("], ", "],\n ") + "\n}\n")
+
+
+if __name__ == "__main__":
+    main()
