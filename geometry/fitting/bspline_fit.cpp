@@ -566,9 +566,7 @@ class AdaptiveFit {
     }
     for (std::size_t i = samples.begin; i < samples.end; ++i) {
       measure(samples_[i], spline_.points, states_[i]);
-      if (!solved || states_[i].distance <= kFitTuning.inside_when_adapted * samples_[i].limit) {
-        continue;
-      }
+      if (!solved || states_[i].distance <= samples_[i].limit) continue;
       for (std::size_t j = 0; j < 4; ++j) {
         int& left = points_[states_[i].row.first + j].left;
         left = std::max(left, 1);
@@ -618,8 +616,9 @@ class AdaptiveFit {
     return {first_sample_[first], first_sample_[free.end]};
   }
 
-  // Ranges of control points around those that are awake; a wall parts them. A solution of the
-  // ranges `where` wakes none that is not in one of them or in the span beside it.
+  // Ranges of control points around those that are awake; a wall of known ones, as many in a row
+  // as the degree, parts them. A solution of the ranges `where` wakes none that is not in one of
+  // them or in the span beside it.
   template <typename IsAwake>
   [[nodiscard]] std::vector<IndexRange> ranges(const IsAwake& is_awake,
                                                std::span<const IndexRange> where) const {
@@ -643,11 +642,11 @@ class AdaptiveFit {
   void add_range(IndexRange awake, std::vector<IndexRange>& found) const {
     auto [begin, end] = awake;
     std::size_t wall = 0;
-    for (std::size_t k = 0; k < kFitTuning.reach && begin > 0 && wall < kFitTuning.wall; ++k) {
+    for (std::size_t k = 0; k < kFitTuning.reach && begin > 0 && wall < kSplineDegree; ++k) {
       wall = spline_.fixed[--begin] != 0 ? wall + 1 : 0;
     }
     wall = 0;
-    for (std::size_t k = 0; k < kFitTuning.reach && end < spline_.size() && wall < kFitTuning.wall;
+    for (std::size_t k = 0; k < kFitTuning.reach && end < spline_.size() && wall < kSplineDegree;
          ++k) {
       wall = spline_.fixed[end++] != 0 ? wall + 1 : 0;
     }

@@ -104,10 +104,7 @@ struct FitTuning {
   double too_far = 1.05;
   double too_scattered = 1.5;
   double hopeless = 2.5;  // heavier weights would leave distances smaller by this at most
-  // Rounding is no excess; what is left of one this small after the last solution is no reason for
-  // another knot.
-  double inside_when_adapted = 1 + 1e-9;
-  double nearly_inside = 1.05;
+  double nearly_inside = 1.05;  // what is left after the last solution is no reason for a knot
 
   // A control point that wakes is solved for so many times, whatever comes of it: a number that is
   // the same for all does not depend on rounding, and weights have settled by then.
@@ -122,7 +119,6 @@ struct FitTuning {
   // Control points on either side that are solved for with those that are awake: the influence of a
   // sample dies out over some of them. Where more of them move, these wake in turn.
   std::size_t reach = 8;
-  std::size_t wall = 3;  // control points known beforehand in a row part the spline in two
 };
 inline constexpr FitTuning kFitTuning;
 

@@ -182,7 +182,8 @@ class Tests:
 def mutants(number, factor):
     value = number.value
     if number.whole:
-        return [min(int(value / factor), int(value) - 1), max(int(value * factor), int(value) + 1)]
+        low, high = sorted((int(value / factor), int(value * factor)))
+        return [min(low, int(value) - 1), max(high, int(value) + 1)]
     is_share = 0.5 < value <= 1.2 and value != 1
     size = abs(value - 1) if is_share else abs(value)
     by = 1000 if size <= 1e-5 or size > 1e5 else factor

@@ -28,6 +28,10 @@ SETTINGS = {  # program and options
     "kept corners": ("walks", "--target linuxcnc --output curves --method fair --keep-corners 30"),
     "left": ("walks", "--target grbl --side left --tolerance 0.05"),
     "right": ("walks", "--target grbl --side right --tolerance 0.03"),
+    "fine": ("walks", "--target grbl --output lines --method fair --tolerance 0.003"),
+    "noise": ("noise", "--target grbl --output lines --method fair --tolerance 0.02"),
+    "near noise": ("noise", "--target grbl --output lines --prefer accuracy --tolerance 0.005"),
+    "arcs and noise": ("noise", "--target linuxcnc --output arcs --prefer accuracy"),
     "racing": ("corners", "--target grbl --output lines --method racing"),
     "ozcan": ("corners", "--target grbl --output lines --method ozcan"),
     "naseath": ("corners", "--target grbl --output lines --method naseath"),
@@ -60,6 +64,17 @@ def ring(chords, noise):
     return points + points[:1]
 
 
+def polygon(sides, degrees, noise):
+    """Sides of 4 mm in steps of 0.2 mm."""
+    rng = random.Random(sides)
+    points, x, y = [(0, 0, 0)], 0, 0
+    for i in range(20 * sides):
+        heading = math.radians(degrees) * (i // 20)
+        x, y = x + 0.2 * math.cos(heading), y + 0.2 * math.sin(heading)
+        points.append((x + noise * rng.uniform(-1, 1), y + noise * rng.uniform(-1, 1), 0))
+    return points
+
+
 def stairs(corners, step):
     return [(step * ((i + 1) // 2), step * (i // 2), 0) for i in range(corners + 2)]
 
@@ -67,6 +82,8 @@ def stairs(corners, step):
 PROGRAMS = {
     "walks": [walk(1, 0, 0), walk(2, 0, 0.003), walk(3, 0.1, 0.01), walk(4, 0.2, 0.001), walk(5, 0, 0.012),
               walk(6, 0.1, 0, 0.05), ring(120, 0), ring(400, 0.004), ring(1500, 0), stairs(30, 0.3)],
+    "noise": [walk(8, 0.05, 0.03, 0.4), walk(9, 0, 0.006, 0.5), walk(10, 0.3, 0.02, 0.1), polygon(20, 1.5, 0),
+              polygon(20, 3, 0), polygon(12, 30, 0.02), polygon(9, 40, 0.008)],
     "corners": [walk(1, 0, 0, 0.5, 30), walk(7, 0.1, 0.003, 0.5, 45), stairs(4, 3), stairs(6, 0.2)],
 }
 
