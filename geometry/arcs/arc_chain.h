@@ -20,6 +20,7 @@ struct ArcChainLimits : ArcRange {
 };
 
 struct ArcChainTuning {
+  // [..]: what fails at half and double (docs/ARCHITECTURE.md).
   // A single arc is taken instead of a pair when it reaches this part of the pair's length:
   // one arc then covers more than each of the pair does.
   double single_reach = 0.6;
@@ -30,8 +31,8 @@ struct ArcChainTuning {
   // way.
   double pace_known = 0.2;
   double hopeless_pace = 1.5;
-  double pieces_ahead = 64;
-  double kink_noise = 1e-5;  // radians, of a single arc at a fixed tangent of a fitted curve
+  double pieces_ahead = 64;  // [-]
+  double kink_noise = 1e-5;  // radians, of a single arc at a fixed tangent of a fitted curve [>]
   // How much of the best crossing angle is used. With all of it only chains of just the best length
   // hold, shorter ones swing too far, and the search would fall between; half of it already gives
   // 16 % longer arcs than tangents of the curve, and holds at every length.
@@ -41,18 +42,18 @@ struct ArcChainTuning {
   // jump where heights are within their tolerance.
   double slope_error = 5e-3;
   double sampled_part = 0.9;  // of height_deviation; the rest is for what lies between samples
-  double most_turned = 1;     // radians that arcs and curve may turn apart: no loop more or less
+  double most_turned = 1;  // radians that arcs and curve may turn apart: no loop more or less [-]
   // The deviation is narrowed by halving the doubt so often; only for chains so short that
   // the last step can be a remainder that is worth spreading.
   int balancing_rounds = 5;
   std::size_t balanced_pieces = 60;
   double shortest_in_grids = 10;  // a shorter step's tangent is turned 0.1 radians by rounding
-  double shortest = 1e-5;         // mm, without a grid
-  double part_of_section = 0.01;  // is short in any case: a closed section has no span
+  double shortest = 1e-5;         // mm, without a grid [>]
+  double part_of_section = 0.01;  // is short in any case: a closed section has no span [<]
   // A joint is about as far from the curve as the arcs that meet there. One that is farther away by
   // this many times the deviation, and a step of the grid, is none, whatever noise there is.
-  double joint_off = 10;
-  int joint_halvings = 24;    // 1e-7 of a piece
+  double joint_off = 10;      // [-]
+  int joint_halvings = 24;    // 1e-7 of a piece [<]
   int joint_places = 40;      // to each side, that are tried for a joint near the grid
   double widest_joint = 1.3;  // balance: beyond, one arc is much shorter than the other
 };

@@ -14,13 +14,14 @@
 namespace batten::geometry {
 
 struct PlaneBandTuning {
+  // [..]: what fails at half and double (docs/ARCHITECTURE.md).
   double between = 0.02;     // of the tolerance, at most: what a curve does between two samples
   double most_parts = 8;     // of an edge, for that
   double long_edge = 200;    // tolerances: a longer edge could hide an arc's bulge,
   double parts_of_long = 4;  // and has so many parts at least
   double tight_turn = 0.1;   // radians: about vertices that turn more samples are at distances that
   double nearest = 0.5;      // double from so many tolerances: arcs that round them are that small
-  double room_for_tight = 10;  // tolerances: a shorter edge is no leg of a corner
+  double room_for_tight = 10;  // tolerances: a shorter edge is no leg of a corner [>]
   // A fan is made for this part of the tolerance; the rest is for what arcs do between samples
   // and for the rounding of their ends.
   double fan_part = 0.97;

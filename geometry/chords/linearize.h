@@ -18,6 +18,7 @@ struct ChordOptions {
 };
 
 struct ChordTuning {
+  // [..]: what fails at half and double (docs/ARCHITECTURE.md).
   int secants = 12;     // that look for one end before its interval is halved
   double widest = 4;    // by this factor the length changes from one to the next at most
   double growth = 1.5;  // of the first guess over the chord before, at most

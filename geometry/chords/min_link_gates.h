@@ -11,13 +11,14 @@
 namespace batten::geometry {
 
 struct GateTuning {
+  // [..]: what fails at half and double (docs/ARCHITECTURE.md).
   // A piece that is this many times longer than the steps beside it is cut into parts about as long
   // as they, so many at most: points to turn are wanted near its ends.
-  double growth = 4;
-  double most_in_line = 16;
-  int most_halvings = 20;  // of one Bezier piece: a million gates on it are enough for any
-  double room = 0.9;       // of the width up to which inner ends do not cross: gates keep that
-  double no_bend = 1e-12;  // radians between tangents: less is rounding
+  double growth = 4;         // [<]
+  double most_in_line = 16;  // [-]
+  int most_halvings = 20;  // of one Bezier piece, a million gates [< MinLinkCount.IsThatOfTheTable]
+  double room = 0.9;       // of the width up to which inner ends do not cross: gates keep that [-]
+  double no_bend = 1e-12;  // radians between tangents: less is rounding [-]
 };
 inline constexpr GateTuning kGateTuning;
 

@@ -63,6 +63,7 @@ struct IndexRange {
 };
 
 struct FitTuning {
+  // [..]: what fails at half and double (docs/ARCHITECTURE.md).
   int max_refinements = 10;  // rounds of splitting the spans that cannot hold their samples
   int passes = 8;            // solutions per round that tell which spans those are
   int last_passes = 16;      // solutions, when weights have settled, to bring all inside
@@ -103,7 +104,7 @@ struct FitTuning {
   // this much more than expected (a tight fit leaves about half of the scatter).
   double too_far = 1.05;
   double too_scattered = 1.5;
-  double hopeless = 2.5;  // heavier weights would leave distances smaller by this at most
+  double hopeless = 2.5;        // heavier weights would leave distances smaller by this at most
   double nearly_inside = 1.05;  // what is left after the last solution is no reason for a knot
 
   // A control point that wakes is solved for so many times, whatever comes of it: a number that is

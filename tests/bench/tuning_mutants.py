@@ -11,8 +11,9 @@ its distance to 1 instead, what counts as rounding a thousandth and a thousandfo
 by one at least. Numbers that the compiler has to know are only listed.
 
 The tests are those of the folders from which the struct's own folder is reached, the nearest first, but
-for those that take more than --slow seconds; in the end the figures (tests/figures). A mutant that takes more than --seconds of processor time
-fails. Results are added to results.jsonl in the scratch folder, and what is there is not run again.
+for those that take more than --slow seconds, and in the end the figures (tests/figures). A mutant that
+takes more than --seconds of processor time fails. Results are added to results.jsonl in the scratch
+folder, and what is there is not run again.
 
 At the end comes a table: number, value, mutant, test that fails. With --table that is all.
 """

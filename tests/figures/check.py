@@ -32,6 +32,7 @@ SETTINGS = {  # program and options
     "noise": ("noise", "--target grbl --output lines --method fair --tolerance 0.02"),
     "near noise": ("noise", "--target grbl --output lines --prefer accuracy --tolerance 0.005"),
     "arcs and noise": ("noise", "--target linuxcnc --output arcs --prefer accuracy"),
+    "shapes": ("shapes", "--target linuxcnc --output arcs --prefer size"),
     "racing": ("corners", "--target grbl --output lines --method racing"),
     "ozcan": ("corners", "--target grbl --output lines --method ozcan"),
     "naseath": ("corners", "--target grbl --output lines --method naseath"),
@@ -75,6 +76,16 @@ def polygon(sides, degrees, noise):
     return points
 
 
+def slot(radius, length, chords):
+    """Closed: two half circles and two lines, or a circle."""
+    points = [(0, -radius, 0)]
+    for side in (1, -1):
+        for i in range(chords + 1):
+            a = math.pi * (i / chords - 0.5)
+            points.append((side * (length / 2 + radius * math.cos(a)), side * radius * math.sin(a), 0))
+    return points + points[:1]
+
+
 def stairs(corners, step):
     return [(step * ((i + 1) // 2), step * (i // 2), 0) for i in range(corners + 2)]
 
@@ -84,6 +95,7 @@ PROGRAMS = {
               walk(6, 0.1, 0, 0.05), ring(120, 0), ring(400, 0.004), ring(1500, 0), stairs(30, 0.3)],
     "noise": [walk(8, 0.05, 0.03, 0.4), walk(9, 0, 0.006, 0.5), walk(10, 0.3, 0.02, 0.1), polygon(20, 1.5, 0),
               polygon(20, 3, 0), polygon(12, 30, 0.02), polygon(9, 40, 0.008)],
+    "shapes": [slot(5, 0, 50), slot(4, 10, 30), slot(0.3, 0, 12), polygon(6, 60, 0), walk(11, 0, 0.008, 0.3, 60)],
     "corners": [walk(1, 0, 0, 0.5, 30), walk(7, 0.1, 0.003, 0.5, 45), stairs(4, 3), stairs(6, 0.2)],
 }
 

@@ -121,8 +121,9 @@ struct SharedCorner {
 [[nodiscard]] bool turns_more(const Corner& corner, double angle);
 
 struct CornerTuning {
-  double alike = 1e-6;            // leg directions, and mm, that agree in these steps are alike
-  double measuring_noise = 1e-9;  // relative, of the deviations of one blend at two corners
+  // [..]: what fails at half and double (docs/ARCHITECTURE.md).
+  double alike = 1e-6;            // leg directions, and mm, that agree in these steps are alike [-]
+  double measuring_noise = 1e-9;  // relative, of the deviations of one blend at two corners [-]
 };
 inline constexpr CornerTuning kCornerTuning;
 

@@ -61,13 +61,14 @@ struct OzcanProblem {
 [[nodiscard]] std::variant<OzcanBlend, NoBlend> ozcan_optimum(const OzcanProblem& problem);
 
 struct OzcanTuning {
+  // [..]: what fails at half and double (docs/ARCHITECTURE.md).
   // Of the tolerance, that the sharpest curve uses: with more the corner is cramped; with less the
   // curve has less length to turn on. docs/algorithms/ozcan.md has the table.
   double sharpest = 0.35;
   int halvings = 48;  // of the usual corner's places: the deviation is right to 1e-14 of the blend
-  int evaluations = 600;  // of one search
+  int evaluations = 600;  // of one search [<]
   double finest = 1e-4;   // of the first step, about a tolerance: changes no feed by a thousandth
-  double broken = 1e6;    // s/mm^2: no feed is as slow as 1e-6 mm/s over 1 mm
+  double broken = 1e6;    // s/mm^2: no feed is as slow as 1e-6 mm/s over 1 mm [-]
 };
 inline constexpr OzcanTuning kOzcanTuning;
 

@@ -12,22 +12,24 @@
 namespace batten::geometry {
 
 struct DenoiseTuning {
-  std::size_t fewest = 8;  // vertices of a section; fewer tell nothing of their noise
+  // [..]: what fails at half and double (docs/ARCHITECTURE.md).
+  std::size_t fewest = 8;  // vertices of a section [MeantPath.OfFewVerticesIsTheVertices]
   // A vertex that turns by so many times what its noise turns it (standard deviations) was meant
   // to.
-  double surely_meant = 4;
+  double surely_meant = 4;  // [>]
   // The weight is looked for on so many vertices at the most, from the middle of a section: enough
   // to know it to some percent, and few enough for the search to cost little.
-  std::size_t judged = 1000;
+  std::size_t judged = 1000;  // [<]
   // Decades of the weight over the stiffness of the spline that are looked at. At the lower end a
   // wave of a hundred vertices is smoothed away, at the upper one nothing is.
-  int lowest_decade = -12;
+  int lowest_decade = -12;  // [<]
   int highest_decade = 1;
   int closings = 6;  // of the interval around the best decade, by the golden section
   // Where this part of the vertices is further from the denoised path than the limit, noise fills
   // the band: the curve that the others would allow has no room between these.
-  double fills_band = 0.125;
-  std::size_t around = 40;  // vertices on either side, among which that part is counted
+  double fills_band = 0.125;  // [MeantPath.IsTheVerticesWhereRoundingLeavesRoom]
+  // Among so many vertices on either side is that part counted.
+  std::size_t around = 40;  // [MeantPath.IsTheVerticesWhereRoundingLeavesRoom]
   // Vertices that scatter by more than this part of the limit, and by more than so many of the
   // greatest rounding errors, are drawn to their denoised positions. A curve that is only expected
   // to leave their scatter leaves some of the path, too, where they are coarse, and would find room
@@ -35,7 +37,7 @@ struct DenoiseTuning {
   double much = 0.2;
   double rounding_noise = 2;
   // Of normal noise an eighth is beyond 1.5 standard deviations, and noise is known to a third.
-  double may_fill = 0.4;
+  double may_fill = 0.4;  // [> MeantPath.IsTheVerticesWhereRoundingLeavesRoom]
 };
 inline constexpr DenoiseTuning kDenoiseTuning;
 

@@ -33,6 +33,7 @@ struct FairOptions {
 };
 
 struct FairTuning {
+  // [..]: what fails at half and double (docs/ARCHITECTURE.md).
   // --- the band, in parts of the tolerance
   // The fit aims inside the band by this share, since between its samples the curve leaves the band
   // by a percent or two. What it aims at is the limit below.
@@ -47,12 +48,12 @@ struct FairTuning {
   // band, a curve that leaves an edge has come from the next one: its samples bring it back,
   // however far it was.
   int watched = 1;
-  int watched_among_noise = 2;
+  int watched_among_noise = 2;  // [<]
   // Elsewhere, where it left an edge by more than this, no closer watch is tried: there is a
   // corner, and a curve that is forced round it inside the band would be sharper than the corner is
   // worth.
   double slightly = 1.2;
-  int attempts = 9;   // fits until nothing is tried any more but the polyline itself
+  int attempts = 9;   // fits until nothing is tried any more but the polyline itself [<]
   double met = 0.01;  // vertices that are met are met to this
 
   // --- room for the feed
@@ -95,7 +96,7 @@ struct FairTuning {
   double watched_sagitta = 0.25;
   // Samples of an edge that the curve left, for each time and at the most.
   int samples_per_violation = 4;
-  int most_violation_samples = 8;
+  int most_violation_samples = 8;  // [<]
 
   // --- scatter
   // Taken this much greater than the estimated noise: a curve that follows a part of the noise is

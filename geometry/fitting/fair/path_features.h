@@ -12,15 +12,16 @@
 namespace batten::geometry {
 
 struct FeatureTuning {
+  // [..]: what fails at half and double (docs/ARCHITECTURE.md).
   // Turns beyond this are reversals: rounding one inside the band would need a radius of a
   // hundredth of the tolerance, and the machine stops there anyway.
-  double reversal = 170 * kPi / 180;
+  double reversal = 170 * kPi / 180;  // [SmoothCurve.KeepsAReversal]
   // A corner turns this many times more than the vertices around it. Samples of a smooth curve have
   // turns that change slowly from one to the next.
   double sticks_out = 4;
   // But vertices of a bend turn gradually, by no more than this many times what their neighbours
   // do, however tight the bend is for the chords along it.
-  double gradual = 6;
+  double gradual = 6;  // [PathFeatures.AHairpinInFewChordsIsNoCorner]
   // A turn below this is no corner, whatever its neighbours: where a line meets an arc of chords
   // the turn is that of half a chord.
   double least_corner = 2 * kPi / 180;
@@ -42,11 +43,11 @@ struct FeatureTuning {
   double sure_kink = 5;
   // Vertices that a kink is judged by: on either side at the most, and on both together at least.
   std::size_t most_beside_kink = 6;
-  std::size_t fewest_around_kink = 5;
-  double no_turn = 1e-6;  // a line that was cut into blocks does not turn, but for rounding
+  std::size_t fewest_around_kink = 5;  // [Kink.IsTheAngleOfTwoLinesWhereverTheirEndsAre]
+  double no_turn = 1e-6;  // a line cut into blocks [> SmoothCurve.AddsNothingToALineWithoutNoise]
   // A line is this many times longer than the edges beside it. Chords of a curve whose curvature
   // changes smoothly differ less from their neighbours.
-  double line_is_longer = 6;
+  double line_is_longer = 6;  // [>]
   // A vertex turns more than by noise when it turns by so many noises over its edge: four standard
   // deviations of a second difference, sqrt(6) noises.
   double sure_turn = 4 * 2.45;

@@ -12,11 +12,12 @@
 namespace batten::geometry {
 
 struct OneSidedTuning {
+  // [..]: what fails at half and double (docs/ARCHITECTURE.md).
   double curve_part = 0.5;  // of the tolerance, for the curve about the moved vertices
   double ramp = 16;         // tolerances along the path, over which a move comes and goes
   // Rounds of moving on where the last curve still came over. Each moves a little further than that
   // curve needed, since the next one is another curve.
-  int rounds = 6;
+  int rounds = 6;  // [<]
   double further = 1.1;
   // A curve that comes over by this part of the tolerance is let through: the proof allows twice
   // that.
@@ -26,7 +27,7 @@ struct OneSidedTuning {
   double least_room = 0.8 * let_through;
   // Vertices whose neighbours leave less than this of the way round (1 + cosine of the turn) move
   // no further than others with it: the corner of the moved path would be far off.
-  double sharpest = 0.5;
+  double sharpest = 0.5;  // [-]
   // Where the path turns to the other side, the path beside it turns round the vertex on an arc.
   // Its corner is held back by this many moves, for beyond 75 degrees the corner of the moved edges
   // would leave too little room.

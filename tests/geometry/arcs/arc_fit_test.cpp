@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "geometry/chords/linearize.h"
 #include "tests/support/arc_path_measure.h"
 #include "tests/support/curve_of.h"
 
@@ -102,6 +103,14 @@ TEST(FitArcs, AnSIsTwoArcsThatMeetInTheInflection) {
   const Path path = fitted(s, ArcFitOptions{});
   EXPECT_LE(path.size(), 4u);
   EXPECT_LE(measure(s, path, 0.02).away, 0.005 * kSampling);
+}
+
+// One piece, straight in its middle.
+TEST(FitArcs, ChordsAlongAnSAreThoseOfBothItsBends) {
+  const BsplineCurve s(BsplineBasis::clamped(3, {0, 1}),
+                       {{0, 0, 0}, {4, 6, 0}, {6, -6, 0}, {10, 0, 0}});
+  const double chords = chord_vertices(s, 0, 1, {.max_deviation = 1e-4}).size() - 1.0;
+  EXPECT_NEAR(chords_along(CurvePieces(s, 0, 1), 1e-4), chords, 0.12 * chords);
 }
 
 TEST(FitArcs, AHelixIsHelicalArcs) {

@@ -181,6 +181,19 @@ double least_arcs(const Shape& shape, double from, double to, double tolerance) 
   return sum;
 }
 
+TEST(ArcSpline, OfAButterflyInBriefTakesFewArcsAndOneKink) {
+  std::vector<Point2> points;
+  for (const Point3& p : butterfly_path(4, 0.005, 3)) points.emplace_back(p.head<2>());
+  ArcSplineOptions options = options_for(points);
+  options.min_radius = 0.1;
+  options.grid = 0.001;
+  options.effort = ArcEffort::kBrief;
+  const auto spline = fit_arc_spline(points, options);
+  ASSERT_TRUE(spline);
+  EXPECT_EQ(spline->kinks, 1);
+  EXPECT_LE(spline->pieces.size(), 62U);
+}
+
 TEST(ArcSpline, NeedsFewMoreArcsThanTheLeast) {
   struct Row {
     const char* name;
