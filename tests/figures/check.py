@@ -37,6 +37,8 @@ SETTINGS = {  # program and options
     "ozcan": ("corners", "--target grbl --output lines --method ozcan"),
     "naseath": ("corners", "--target grbl --output lines --method naseath"),
     "tight racing": ("corners", "--target grbl --output lines --method racing --tolerance 0.05"),
+    "wide racing": ("corners", "--target linuxcnc --output curves --method racing --tolerance 0.1"),
+    "wide naseath": ("corners", "--target linuxcnc --output curves --method naseath --tolerance 0.05"),
 }
 FIGURES = ("blocks_out", "time_after_s", "deviation_mm", "max_curvature_after")
 

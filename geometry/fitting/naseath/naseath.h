@@ -57,7 +57,7 @@ struct NaseathTuning {
   double apex_share = 9;            // a side point goes with its apex, to one of its own bisector
   // A bound on the displacement may exceed it by so much of what `accuracy` resolves: while
   // passes are made, and in the end.
-  double slack = 0.1;        // [<]
+  double slack = 0.1;
   double last_slack = 1e-7;  // [-]
   // The part of the room that moves take. All of it is at the tube to within rounding; this much
   // less and the last bound, too, is inside it.
