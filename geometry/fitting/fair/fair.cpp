@@ -27,8 +27,8 @@ class BandFit {
       : points_(std::move(points)),
         options_(options),
         met_(std::move(met)),
-        features_(find_features(points_,
-                                {options.tolerance, options.keep_corner_angle, options.rounding})),
+        features_(find_features(points_, {options.tolerance, options.keep_corner_angle,
+                                          options.rounding, options.keep_found_corner})),
         rooms_(std::move(rooms)),
         at_(features_.parameters),
         off_(points_.size() - 1),
@@ -490,6 +490,11 @@ SmoothCurve fair_open(const Vertices& vertices, const FairOptions& options) {
   SmoothCurve path = result_of({fit.curve(), fit.parameters()}, vertices, fit.features(), 0);
   path.deviation = *std::ranges::max_element(fit.deviations());
   path.rounds = rounds;
+  for (std::size_t i = 0; i + 1 < vertices.of_input.size(); ++i) {
+    const std::size_t edge = vertices.of_input[i];
+    const bool apart = edge != vertices.of_input[i + 1];
+    path.edge_deviations.push_back(apart ? fit.deviations()[edge] : 0);
+  }
   return path;
 }
 

@@ -26,6 +26,8 @@ struct SmoothCurve {
   double noise = 0;  // mm, estimated scatter of the vertices about the curve (rms)
   int kept_corners = 0;
   int rounds = 0;  // how often the band was widened for the machine's need
+  // The same of each edge, from each input point to the next; or none where it is not known.
+  std::vector<double> edge_deviations = {};
 };
 
 // `points`: the vertices of the run, two or more, neighbours may coincide. When the first and

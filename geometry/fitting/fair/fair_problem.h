@@ -18,6 +18,7 @@ struct FairOptions {
   double tolerance = 0.01;         // mm, curve to polyline and back, in order; > 0
   double rounding = 0.0005;        // mm, greatest error of one printed coordinate of the input
   double keep_corner_angle = 3.2;  // radians: vertices that turn more stay as they are (> pi: none)
+  double keep_found_corner = 3.2;  // radians: the same of corners alone, not of noise
   double feed = 1000;              // mm/min that the machine should hold (the greatest of the run)
   double acceleration = 1000;      // mm/s^2 across the path that the machine can give
   double jerk = std::numeric_limits<double>::infinity();  // mm/s^3, the same

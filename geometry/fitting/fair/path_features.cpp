@@ -199,6 +199,10 @@ PathFeatures find_features(std::span<const Point3> points, const FeatureOptions&
     f.kinds[i] = kind_of(points, f, i, scatter[i], options);
   }
   drop_corners_of_noise(points, scatter, options.tolerance, f);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const bool stays = f.kinds[i] == VertexKind::kCorner && f.turns[i] > options.keep_found_corner;
+    if (stays) f.kinds[i] = VertexKind::kKeptCorner;
+  }
   f.lines = lines_of(f);
   return f;
 }

@@ -68,6 +68,7 @@ struct FeatureOptions {
   double tolerance = 0.01;         // mm
   double keep_corner_angle = 3.2;  // radians: greater turns are kept corners
   double rounding = 0;             // mm, greatest error of one printed coordinate
+  double keep_found_corner = 3.2;  // radians: corners, which noise does not explain, that turn more
 };
 
 struct PathFeatures {
