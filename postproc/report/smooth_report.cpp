@@ -66,6 +66,12 @@ Json json_of(const SmoothOptions& options, bool strict) {
   return json;
 }
 
+Json json_of(const PathFigures& path) {
+  return {{"length_mm", path.length_mm},
+          {"distance_mm", path.distance_mm},
+          {"roughness", path.roughness}};
+}
+
 Json json_of(const RunReport& run) {
   const bool rewritten = run.status == RunStatus::kRewritten;
   const auto method = [](const MethodTime& each) -> Json {
@@ -86,6 +92,10 @@ Json json_of(const RunReport& run) {
           {"noise_mm", run.noise_mm},
           {"max_curvature_before", run.max_curvature_before},
           {"max_curvature_after", run.max_curvature_after},
+          {"bytes_in", run.bytes_in},
+          {"bytes_out", run.bytes_out},
+          {"path_before", json_of(run.path_before)},
+          {"path_after", json_of(run.path_after)},
           {"time_before_s", run.time_before_s},
           {"time_after_s", run.time_after_s}};
 }
@@ -265,6 +275,8 @@ Json smooth_json(const SmoothReport& report) {
                {"corner_mm", result.corner_mm},
                {"time_before_s", result.time_before_s},
                {"time_after_s", result.time_after_s},
+               {"path_before", json_of(result.path_before)},
+               {"path_after", json_of(result.path_after)},
                {"proved", result.proved},
                {"understood", result.understood},
                {"diagnostics", diagnostics_json(result.diagnostics, report.source)}};

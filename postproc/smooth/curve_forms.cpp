@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,7 +14,7 @@
 namespace batten::postproc {
 
 std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& times,
-                                        const OutputPlan& plan, const Times& old) {
+                                        const OutputPlan& plan, const RunFacts& facts) {
   const auto& [run, context, options, scope] = task;
   gcode::ModalState before = context.before;
   if (!options.words.before_run.empty()) {  // after words of a profile it says motion and feed
@@ -32,9 +33,11 @@ std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& tim
   candidate.form = plan.form;
   candidate.chords_for_steps = plan.chords_for_steps;
   for (const PlannedMove& move : plan.moves) candidate.moves.push_back({move.piece, move.feed});
-  if (!run.arcs.empty()) candidate.kink = greatest_kink(candidate.moves);
-  candidate.times = times.of_candidate(candidate.moves, text->blocks, old, compares_kinks(options),
-                                       options.output != Form::kAuto);
+  Figures& figures = candidate.figures;
+  figures.times = times.of_candidate(candidate.moves, facts.scale.original.times);
+  figures.blocks = static_cast<double>(text->blocks);
+  figures.bytes = static_cast<double>(text->text.size());
+  figures.roughness = roughness_of(candidate.moves);
   candidate.text = std::move(*text);
   return candidate;
 }
@@ -48,241 +51,278 @@ bool curves_wanted(const RunTask& task) {
   return options.output == Form::kCurves || (options.output == Form::kAuto && format->is_default);
 }
 
+// The run between two vertices, at the feed that it has at the first.
+Run section_of(const Run& run, std::size_t first, std::size_t last) {
+  Run section;
+  const auto begin = run.points.begin();
+  section.points.assign(begin + static_cast<std::ptrdiff_t>(first),
+                        begin + static_cast<std::ptrdiff_t>(last + 1));
+  const auto after = std::ranges::upper_bound(run.feeds, first, {}, &FeedFrom::vertex);
+  section.feeds = {{0, std::prev(after)->feed}};
+  section.decimals = run.decimals;
+  return section;
+}
+
+geometry::SmoothCurve part_of(const geometry::SmoothCurve& path, std::size_t first,
+                              std::size_t last) {
+  const auto begin = path.vertex_parameters.begin();
+  geometry::SmoothCurve part{
+      path.curve.part(path.vertex_parameters[first], path.vertex_parameters[last]), {}};
+  part.vertex_parameters.assign(begin + static_cast<std::ptrdiff_t>(first),
+                                begin + static_cast<std::ptrdiff_t>(last + 1));
+  part.deviation = path.deviation;
+  return part;
+}
+
+// A form that could be made, and what it has at least.
+struct Offer {
+  Form form = Form::kLines;
+  double blocks = 0;    // about
+  double distance = 0;  // mm, rms from the path that was meant
+  std::function<std::optional<OutputPlan>()> plan;
+};
+
 class CurveForms {
  public:
-  CurveForms(const RunTask& task, const RunTimes& times, const CandidateBounds& bounds,
-             const CurveOfRun& given, SmoothedRun& result)
-      : task_(task),
-        times_(times),
-        bounds_(bounds),
+  CurveForms(const FormSetting& setting, const CurveOfRun& given, SmoothedRun& result)
+      : setting_(setting),
+        task_(setting.task),
         curve_(given.curve),
         bends_(given.bends),
         share_(given.share),
         left_(given.left),
-        few_wanted_(wants_few_moves(task.options)),
-        one_sided_(task.options.side != geometry::Side::kBoth),
+        one_sided_(setting.task.options.side != geometry::Side::kBoth),
         pieces_(curve_.path.curve),
         result_(result) {}
 
   void add() {
-    const SmoothOptions& options = task_.options;
+    const Form wanted = task_.options.output;
     const bool is_fair = curve_.method == Method::kFair;
-    if (curves_wanted(task_) && (is_fair || options.method != Method::kBest)) add_curves();
-    if (options.output == Form::kCurves && has_quick_curves()) return;
-    bool arcs_wanted = options.output != Form::kLines;
-    if (arcs_wanted && bounds_.arcs_are_hopeless(pieces_)) {
-      result_.passed_over = true;
-      arcs_wanted = false;
+    const bool curves = curves_wanted(task_) && (is_fair || task_.options.method != Method::kBest);
+    if (curves) offer_curves();
+    if (wanted == Form::kCurves) {
+      make_best();
+      if (has_form(Form::kCurves)) return;
     }
-    if (arcs_wanted) near_arcs_ = near_arcs();
-    if (arcs_wanted && may_leave_out()) look_ahead();
-    if (arcs_wanted && !leaves_out_arcs_) {
-      push(made_arcs(plan_with(one_sided_ ? kFormTuning.fine_arcs : kFormTuning.arcs)));
-    }
-    push(std::move(near_arcs_));
-    const bool few = few_wanted_ || !task_.run.arcs.empty();
-    if (arcs_wanted && few && !one_sided_ && is_fair) add_arc_splines();
-    if (options.output == Form::kArcs || leaves_out_lines_) return;
-    if (lines_.empty()) find_line_forms();
-    add_lines();
+    if (wanted != Form::kLines) offer_arcs();
+    if (wanted != Form::kLines && is_fair) offer_arc_splines();
+    if (wanted != Form::kArcs) offer_lines();
+    make_best();
   }
 
  private:
-  // Lines that are no further from the curve than the plan says.
-  struct LineForm {
-    PlanOptions plan;
-    std::optional<Candidate> made;
-  };
-
-  void push(std::optional<Candidate> candidate) {
-    if (candidate) result_.candidates.push_back(std::move(*candidate));
+  [[nodiscard]] const RunFacts& facts() const { return result_.facts; }
+  [[nodiscard]] double distance_before() const {
+    return std::max(facts().scale.original.distance, facts().scale.near);
   }
 
-  [[nodiscard]] LinesAhead lines_ahead(double deviation) const { return {bends_, deviation}; }
-
-  [[nodiscard]] PlanOptions plan_with(double multiple) const {
-    const auto& [run, context, options, scope] = task_;
-    return {options.target,
-            options.machine,
-            context.before.units,
-            context.before.plane,
-            options.prefer,
-            std::min(left_, multiple * share_),
-            keep_corner_angle_of(options),
-            linearize_of(options),
-            most_moves_for_accuracy(context.blocks)};
+  [[nodiscard]] bool has_form(Form form) const {
+    return std::ranges::any_of(result_.candidates,
+                               [&](const Candidate& c) { return c.form == form; });
   }
 
-  // `error`: mm, moves to curve. The fair curve is the path that was meant; how far the others are
-  // from it is not known but for their deviation.
-  [[nodiscard]] std::optional<Candidate> made(const std::optional<OutputPlan>& plan,
-                                              double error) const {
+  // The most promising ones first, until no other one could be better.
+  void make_best() {
+    const bool all = task_.scope == CandidateScope::kAll || task_.context.is_piece();
+    for (const Offer& offer : offers_) {
+      if (!all && setting_.bounds.is_beaten(offer.form, offer.blocks, offer.distance)) {
+        result_.left_out = true;
+        continue;
+      }
+      auto candidate = made(offer);
+      if (candidate) result_.candidates.push_back(std::move(*candidate));
+    }
+    offers_.clear();
+  }
+
+  [[nodiscard]] std::optional<Candidate> made(const Offer& offer) const {
+    const std::optional<OutputPlan> plan = offer.plan();
     if (!plan) return std::nullopt;
-    auto candidate = make_candidate(task_, times_, *plan, bounds_.facts().times);
+    auto candidate = make_candidate(task_, setting_.times, *plan, facts());
     if (!candidate) return std::nullopt;
-    if (plan->error > 0) error = plan->error;
-    if (curve_.method != Method::kFair) error += curve_.path.deviation;
     candidate->method = name_of(curve_.method);
-    candidate->error = bounds_.known(error);
     candidate->max_curvature = bends_.greatest();
+    candidate->figures.distance =
+        std::hypot(setting_.meant.distance_of(plan->moves, curve_.path), facts().scale.printed);
     return candidate;
   }
 
-  // With all that the curve leaves of the tolerance, and nearer to the path that was meant.
-  void add_curves() {
-    for (const double multiple : {kFormTuning.arcs, kFormTuning.fine_arcs}) {
-      const PlanOptions options = plan_with(multiple);
-      push(made(plan_curves(task_.run, curve_.path, options), options.max_deviation));
+  [[nodiscard]] PlanOptions plan_within(double deviation) const {
+    const auto& [run, context, options, scope] = task_;
+    PlanOptions plan;
+    plan.target = options.target;
+    plan.machine = options.machine;
+    plan.units = context.before.units;
+    plan.active_plane = context.before.plane;
+    plan.max_deviation = std::min(left_, deviation);
+    plan.chord_height = kPlans.balanced * plan.max_deviation;
+    plan.keep_corner_angle = keep_corner_angle_of(options);
+    plan.linearize = linearize_of(options);
+    return plan;
+  }
+
+  [[nodiscard]] double far() const { return std::min(left_, kFormTuning.far * share_); }
+
+  void offer(Form form, double blocks, double distance,
+             std::function<std::optional<OutputPlan>()> plan) {
+    offers_.push_back({form, blocks, distance, std::move(plan)});
+  }
+
+  // mm, ascending: near to the curve, where that is much nearer than the tolerance allows, and far.
+  // The nearest are dear, and for who asks for them alone.
+  [[nodiscard]] std::vector<double> deviations() const {
+    std::vector<double> all;
+    const double furthest = one_sided_ ? kFormTuning.one_sided * far() : far();
+    const bool accurate = task_.options.prefer == Prefer::kAccuracy;
+    for (const double multiple : std::span(kFormTuning.near_arcs).subspan(accurate ? 0 : 1)) {
+      const double near = std::max(multiple * distance_before(), 2 * facts().scale.printed);
+      if (near < kFormTuning.another * furthest) all.push_back(near);
+    }
+    all.push_back(furthest);
+    return all;
+  }
+
+  void offer_curves() {
+    for (const double deviation : deviations()) {
+      offer(Form::kCurves, 0, 0,
+            [=, this] { return plan_curves(task_.run, curve_.path, plan_within(deviation)); });
     }
   }
 
-  // Whether there are some that cost no more time than who asks for them by name accepts.
-  [[nodiscard]] bool has_quick_curves() const {
-    return std::ranges::any_of(result_.candidates, [&](const Candidate& c) {
-      return c.form == Form::kCurves && !slower(c.times, result_.facts.times, true, true);
-    });
-  }
-
-  [[nodiscard]] std::optional<Candidate> made_arcs(const PlanOptions& options) const {
-    return made(plan_arcs(task_.run, curve_.path, pieces_, bends_, options), options.max_deviation);
-  }
-
-  [[nodiscard]] std::optional<Candidate> near_arcs() const {
-    // Who asks for few arcs has no use for those that follow the fair curve closely. Helices are
-    // dear to find, and a finer chain of them seldom pays.
-    const bool enough = few_wanted_ && curve_.method == Method::kFair;
-    const bool is_flat =
+  void offer_arcs() {
+    // Each straight part is a line, and what joins two of them gently takes two arcs or more.
+    const auto blocks = 3.0 * static_cast<double>(pieces_.straight_runs.size());
+    const auto plan = [this](double deviation) {
+      return plan_arcs(task_.run, curve_.path, pieces_, bends_, plan_within(deviation));
+    };
+    std::vector<double> all = deviations();
+    const bool flat =
         lies_across(task_.run, 0) || lies_across(task_.run, 1) || lies_across(task_.run, 2);
-    if (enough || one_sided_ || !is_flat) return std::nullopt;
-    PlanOptions fine = plan_with(kFormTuning.fine_arcs);
-    // They are there to be near, not few.
-    if (!few_wanted_) fine.arc_effort = geometry::ArcEffort::kBrief;
-    return made_arcs(fine);
+    if (!flat) {
+      if (!arcs_may_serve()) {
+        result_.left_out = true;
+        return;
+      }
+      for (const double deviation : all) {
+        offer(Form::kArcs, blocks, 0, [=] { return plan(deviation); });
+      }
+      return;
+    }
+    double nearer = 0;
+    for (const double deviation : all) {
+      // Were those of the next smaller deviation as near as can be, these would be the same.
+      const double distance = nearer > 0 ? kFormTuning.of_arcs * deviation : 0;
+      nearer = deviation;
+      offer(Form::kArcs, blocks, distance, [=] { return plan(deviation); });
+    }
+  }
+
+  // In space the search for arcs is dear: of a long run two sections are tried first, whether they
+  // come out as fewer moves that take no longer.
+  [[nodiscard]] bool arcs_may_serve() const {
+    const std::size_t vertices = task_.run.points.size();
+    const bool choosing = task_.scope == CandidateScope::kToChoose &&
+                          task_.options.output == Form::kAuto && task_.run.arcs.empty();
+    if (!choosing || vertices < kFormTuning.tried_from) return true;
+    for (const double part : kFormTuning.tried_at) {
+      const auto first = static_cast<std::size_t>(part * static_cast<double>(vertices));
+      if (arcs_serve(first, first + kFormTuning.tried)) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool arcs_serve(std::size_t first, std::size_t last) const {
+    const Run section = section_of(task_.run, first, last);
+    const geometry::SmoothCurve fair = part_of(curve_.path, first, last);
+    const auto arcs = plan_arcs(section, fair, geometry::MarkedPieces(fair.curve),
+                                CurvatureProfile(fair.curve), plan_within(deviations().back()));
+    if (!arcs || arcs->moves.size() > last - first) return false;
+    std::vector<TimedPiece> moves;
+    for (const PlannedMove& move : arcs->moves) moves.push_back({move.piece, move.feed});
+    const auto time = [&](const std::vector<TimedPiece>& chain) {
+      return cutting_time(chain, *task_.options.machine, task_.context.after.path);
+    };
+    const std::vector<TimedPiece> before = timed_pieces(task_.run, first, last);
+    return time(moves) <= (1 + kFormTuning.tried_slower) * time(before);
   }
 
   // Arcs in the band around the vertices themselves. Of arcs no more should come than there were:
   // the search finds one fewer here and there in a band that is a little less wide.
-  void add_arc_splines() {
+  void offer_arc_splines() {
+    if (one_sided_ || !(wants_few_moves(task_.options) || !task_.run.arcs.empty())) return;
     const double whole = left_ + curve_.path.deviation;
     for (const double part : kFormTuning.bands) {
-      PlanOptions band = plan_with(kFormTuning.arcs);
-      band.max_deviation = part * whole;
-      push(made(plan_arc_spline(task_.run, curve_.path, band), band.max_deviation));
-      const bool enough = !result_.candidates.empty() &&
-                          result_.candidates.back().text.blocks <= task_.context.blocks;
-      if (task_.run.arcs.empty() || enough) return;
-    }
-  }
-
-  // Those that are worth looking at, the longest first.
-  void find_line_forms() {
-    double before = std::numeric_limits<double>::infinity();
-    for (const double multiple : kFormTuning.chords) {
-      const PlanOptions lines = plan_with(one_sided_ ? kFormTuning.chords[2] : multiple);
-      if (lines.max_deviation > kFormTuning.another * before || is_hopeless(lines)) continue;
-      before = lines.max_deviation;
-      lines_.push_back({lines, {}});
-    }
-  }
-
-  [[nodiscard]] bool is_hopeless(const PlanOptions& lines) {
-    const bool hopeless = bounds_.are_hopeless(lines_ahead(lines.max_deviation));
-    result_.passed_over = result_.passed_over || hopeless;
-    return hopeless;
-  }
-
-  void make(LineForm& form) const {
-    if (form.made) return;
-    form.made =
-        made(plan_lines(task_.run, curve_.path, pieces_, form.plan), form.plan.max_deviation);
-  }
-
-  // But for finer ones that could not be preferred to the best of those before them.
-  void add_lines() {
-    std::optional<std::size_t> last;  // of the candidates
-    double deviation = 0;
-    for (LineForm& form : lines_) {
-      if (!form.made && last && are_beaten(form, *last, deviation)) {
-        result_.left_out = true;
-        continue;
-      }
-      make(form);
-      if (!form.made) continue;
-      last = result_.candidates.size();
-      deviation = form.plan.max_deviation;
-      push(std::move(form.made));
-    }
-  }
-
-  [[nodiscard]] bool are_beaten(const LineForm& finer, std::size_t last, double deviation) const {
-    if (!may_leave_out()) return false;
-    const Selection selection = choose(result_, task_.context, task_.options);
-    return !selection.order.empty() && selection.order.front() == last &&
-           bounds_.beats_finer(result_.candidates[last], deviation,
-                               lines_ahead(finer.plan.max_deviation));
-  }
-
-  // Only of what is wanted for its time and alone: of a piece nobody knows what its neighbours will
-  // be.
-  [[nodiscard]] bool may_leave_out() const {
-    const SmoothOptions& options = task_.options;
-    return task_.scope == CandidateScope::kToChoose && options.prefer == Prefer::kTime &&
-           options.output == Form::kAuto && !one_sided_ && task_.run.arcs.empty() &&
-           !task_.context.is_piece() && curve_.method == Method::kFair && !curves_wanted(task_);
-  }
-
-  // The dearest forms are the ones that are seldom chosen: few arcs further away from the curve,
-  // where near ones or near lines are as quick, and lines where a few near arcs are.
-  void look_ahead() {
-    const double far = plan_with(kFormTuning.arcs).max_deviation;
-    leaves_out_arcs_ = near_arcs_ && bounds_.beats_form(*near_arcs_, far, 0);
-    result_.left_out = result_.left_out || leaves_out_arcs_;
-    if (leaves_out_arcs_) {
-      leaves_out_lines_ = std::ranges::all_of(kFormTuning.chords, [&](double multiple) {
-        return bounds_.beats_lines(*near_arcs_, lines_ahead(plan_with(multiple).max_deviation));
+      offer(Form::kArcs, 0, 0, [=, this]() -> std::optional<OutputPlan> {
+        PlanOptions band = plan_within(left_);
+        band.max_deviation = part * whole;
+        return plan_arc_spline(task_.run, curve_.path, band);
       });
-      return;
+      if (task_.run.arcs.empty()) return;
     }
-    const PlanOptions fine = plan_with(kFormTuning.chords[2]);
-    if (is_hopeless(fine) || fine.max_deviation >= plan_with(kFormTuning.chords[1]).max_deviation) {
-      return;
-    }
-    find_line_forms();
-    make(lines_.front());
-    // Where long ones have many kinks, so have fine ones.
-    const auto& longest = lines_.front().made;
-    if (longest && !bounds_.keeps_speed(longest->times)) return;
-    LineForm& finest = lines_.back();
-    make(finest);
-    leaves_out_arcs_ = finest.made && bounds_.beats_form(*finest.made, far, 0);
-    result_.left_out = result_.left_out || leaves_out_arcs_;
   }
 
+  void offer_lines() {
+    const auto named = task_.options.linearize;
+    if (named && *named != Linearize::kChord) return offer_named_lines();
+    // Where it is known how far the curve is from each edge, chords may take the rest there.
+    const bool known = !one_sided_ && !curve_.path.edge_deviations.empty();
+    double most = known ? kFormTuning.far * share_ : far();
+    if (one_sided_) most = kFormTuning.one_sided * far();
+    const double highest = kPlans.balanced * most;
+    for (std::size_t i = 0; i < std::size(kFormTuning.near_chords); ++i) {
+      const double height = std::max(kFormTuning.near_chords[i] * distance_before(),
+                                     facts().scale.printed / kFormTuning.of_height);
+      if (height > kFormTuning.another * highest) continue;
+      offer_chords(height, kFormTuning.most_blocks[i], highest);
+    }
+    offer_chords(highest, 0, highest);
+    if (linearize_of(task_.options) == Linearize::kMinLink) offer_named_lines();
+  }
+
+  // `most`: in parts of the blocks that there were; 0: any number. They may become higher for it.
+  void offer_chords(double height, double most, double highest) {
+    PlanOptions plan = plan_within(one_sided_ ? kFormTuning.one_sided * far() : far());
+    plan.linearize = Linearize::kChord;
+    if (!one_sided_) plan.tolerance = left_ + curve_.path.deviation;
+    plan.chord_height = height;
+    plan.most_moves = static_cast<std::size_t>(most * facts().scale.original.blocks);
+    double blocks = bends_.chords(height, 0);
+    if (plan.most_moves > 0) {
+      blocks = std::min(blocks,
+                        std::max(static_cast<double>(plan.most_moves), bends_.chords(highest, 0)));
+    }
+    offer(Form::kLines, blocks, kFormTuning.of_height * height,
+          [=, this] { return plan_lines(task_.run, curve_.path, pieces_, plan); });
+  }
+
+  void offer_named_lines() {
+    double before = 0;
+    for (const double multiple : kFormTuning.named_chords) {
+      const PlanOptions plan = plan_within(multiple * share_);
+      if (before > 0 && plan.max_deviation > kFormTuning.another * before) continue;
+      before = plan.max_deviation;
+      offer(Form::kLines, 0.5 * bends_.chords(plan.max_deviation, 0), 0,
+            [=, this] { return plan_lines(task_.run, curve_.path, pieces_, plan); });
+    }
+  }
+
+  const FormSetting& setting_;
   const RunTask& task_;
-  const RunTimes& times_;
-  const CandidateBounds& bounds_;
   const RunCurve& curve_;
   const CurvatureProfile& bends_;
   double share_;
   double left_;
-  bool few_wanted_;
   bool
       one_sided_;  // the run must not be cut on one side: what is written follows the curve closely
   geometry::MarkedPieces pieces_;
   SmoothedRun& result_;
-  // Made before others, to know whether these could be chosen: arcs near to the curve, and some of
-  // the lines.
-  std::optional<Candidate> near_arcs_;
-  std::vector<LineForm> lines_;
-  bool leaves_out_arcs_ = false;   // those further away
-  bool leaves_out_lines_ = false;  // all of them
+  std::vector<Offer> offers_;
 };
 
 }  // namespace
 
-void add_forms(const RunTask& task, const RunTimes& times, const CandidateBounds& bounds,
-               const CurveOfRun& curve, SmoothedRun& result) {
-  CurveForms(task, times, bounds, curve, result).add();
+void add_forms(const FormSetting& setting, const CurveOfRun& curve, SmoothedRun& result) {
+  CurveForms(setting, curve, result).add();
 }
 
 }  // namespace batten::postproc

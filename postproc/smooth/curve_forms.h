@@ -1,5 +1,6 @@
-// The forms in which one curve could replace its run: curves of the target, few arcs and near ones,
-// coarse lines and fine ones. Made are those that may be chosen.
+// The forms in which one curve could replace its run: curves of the target, arcs and lines, near to
+// the path that was meant and as far from it as the tolerance lets them. Made are those that may
+// be the best.
 #pragma once
 
 #include <optional>
@@ -8,26 +9,40 @@
 #include "postproc/smooth/methods/run_curve.h"
 #include "postproc/smooth/selection/candidate.h"
 #include "postproc/smooth/selection/candidate_bounds.h"
+#include "postproc/smooth/selection/meant_path.h"
 #include "postproc/smooth/selection/run_times.h"
 
 namespace batten::postproc {
 
-// Multiples of the form's share of the tolerance that a form may be from the curve, however little
-// the curve used. Long chords are few, fine ones are near to the curve and keep the speed on a
-// control that rounds each of their corners.
+// How far forms may be from the curve: multiples of what the run itself is from the path that was
+// meant (rms), and of the form's share of the tolerance.
 struct FormTuning {
-  double arcs = 1.5;        // and curves
-  double fine_arcs = 0.25;  // the same
-  double chords[3] = {1.5, 0.6, 0.25};
-  double another = 0.9;               // of the chords before, at most, or chords are those again
+  double near_arcs[3] = {0.2, 0.5, 1.6};      // greatest distance of arcs and curves
+  double near_chords[3] = {0.6, 1.35, 3.0};   // heights: in more blocks, as many, and fewer
+  double most_blocks[3] = {1.5, 1, 1};        // of them, in parts of those before
+  double far = 1.5;                           // of the share
+  double one_sided = 0.25;                    // of that, where the run must not be cut on one side
+  double named_chords[3] = {1.5, 0.6, 0.25};  // of the share, for lines laid by a named method
+  double another = 0.9;               // of what is farther, at most, or it is the same again
   double bands[3] = {1, 0.97, 0.94};  // parts of the band around arcs in which few are looked for
+  double of_height = 0.25;            // the rms of balanced chords by their height, at least
+  double of_arcs = 0.25;              // that of arcs by their greatest deviation
+  // Sections of long runs in space that are tried as arcs: from so many vertices on, so many at
+  // these parts of the run; and so much slower they may be, which starting and stopping explain.
+  std::size_t tried_from = 1500;
+  std::size_t tried = 250;
+  double tried_at[2] = {0.2, 0.6};
+  double tried_slower = 0.003;
 };
 inline constexpr FormTuning kFormTuning;
 
-// `old`: what the run takes. The candidate's method, error and curvature are left to who knows
-// them. Nothing where the target cannot say the plan, or there are not enough block numbers.
-[[nodiscard]] std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& times,
-                                                      const OutputPlan& plan, const Times& old);
+// Of one run and one method; all must live as long.
+struct FormSetting {
+  const RunTask& task;
+  const RunTimes& times;
+  const CandidateBounds& bounds;
+  const MeantPath& meant;
+};
 
 struct CurveOfRun {
   const RunCurve& curve;
@@ -36,8 +51,13 @@ struct CurveOfRun {
   double left = 0;   // mm, what the curve leaves of the tolerance
 };
 
+// The candidate's method and curvature are left to who knows them. Nothing where the target cannot
+// say the plan, or there are not enough block numbers.
+[[nodiscard]] std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& times,
+                                                      const OutputPlan& plan,
+                                                      const RunFacts& facts);
+
 // Adds candidates to `result`, and what it says of those that were not made.
-void add_forms(const RunTask& task, const RunTimes& times, const CandidateBounds& bounds,
-               const CurveOfRun& curve, SmoothedRun& result);
+void add_forms(const FormSetting& setting, const CurveOfRun& curve, SmoothedRun& result);
 
 }  // namespace batten::postproc

@@ -201,7 +201,7 @@ class PartSmoother {
       if (stopped) return;
       RunState& work = runs_.works[works[i]];
       work.smoothed = smooth_run(run_of(work), work.context, options_);
-      work.selection = choose(work.smoothed, work.context, options_);
+      work.selection = choose(work.smoothed, options_);
       work.drop_what_is_not_written();
       const std::scoped_lock lock(reporting);
       smoothed_points_ += run_of(work).points.size();
@@ -239,6 +239,7 @@ class PartSmoother {
                   std::vector<std::size_t>& fresh) {
     const std::string_view kept = work.selection.reason;
     const bool disappoints = kept == gcode::reason::kNoGain || kept == gcode::reason::kSlower ||
+                             kept == gcode::reason::kLarger || kept == gcode::reason::kFarther ||
                              kept == gcode::reason::kNoFit;
     if (!disappoints) return false;
     std::vector<RunPiece> pieces = cut_run(runs_.sections[work.section], part_.meaning, {});

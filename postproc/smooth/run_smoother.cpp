@@ -24,10 +24,10 @@ struct RunTuning {
   // need more.
   double lent = 0.6;
   double lent_to_fair = 0.5;
+  // Chords that are farther from the path than by so many times their rounding are there for it.
+  double of_rounding = 3;
   double side_margin = 0.25;  // of the form's share, on the side where the run must not be cut
-  // Radians: vertices that turn more are bends so tight, where they are none of the path that was
-  // meant, that curves may rather end there.
-  double sharp_corner = 45 * geometry::kPi / 180;
+  double sharp_corner = 30 * geometry::kPi / 180;  // radians: corners that turn more may stay
   // So many of the pieces are reverted at once that a long run is timed a few times only.
   std::size_t reverted_share = 4;
 };
@@ -53,19 +53,37 @@ class RunSmoother {
         rounding_(0.5 * std::pow(10.0, -task.run.decimals) *
                   gcode::millimetres_per(task.context.before.units)),
         times_(times),
-        bounds_(task, times, result),
+        bounds_(task, result),
         result_(result) {}
 
   // Why the run is kept, or nothing.
   [[nodiscard]] std::string_view smooth() {
     if (bounds_.is_hopeless()) return gcode::reason::kNoGain;
-    const bool best = options().method == Method::kBest;
-    const bool curve = try_first(best ? Method::kFair : options().method);
-    if (curve && has_curves()) try_kept_corners();
-    if (best && options().side == geometry::Side::kBoth) try_others();
+    // The path that was meant has the corners of the program; they may be rounded where that wins
+    // time.
+    const Method method = options().method;
+    CurveRequest meant = curve_request(Method::kFair);
+    meant.accurate = true;
+    const bool sharp = !options().keep_corners_deg && has_sharp_corner(run().points);
+    if (sharp) meant.keep_found_corner = kRun.sharp_corner;
+    const auto fair = curve_of(Method::kFair, run().points, meant);
+    if (method == Method::kBest || method == Method::kFair) {
+      if (fair) {
+        find_meant(fair->path);
+        add_candidates_of(*fair);
+        try_simpler(meant);
+        if (options().prefer != Prefer::kAccuracy && may_win_time()) {
+          try_curve(Method::kFair, curve_request(Method::kFair));
+        }
+        if (method == Method::kBest) try_others();
+      }
+    } else if (const auto curve = curve_of(method, run().points, curve_request(method))) {
+      find_meant((fair ? *fair : *curve).path);
+      add_candidates_of(*curve);
+    }
     if (!fits_) return gcode::reason::kNoFit;
     if (!result_.candidates.empty()) return {};
-    return result_.passed_over ? gcode::reason::kNoGain : gcode::reason::kTargetCannot;
+    return result_.left_out ? gcode::reason::kNoGain : gcode::reason::kTargetCannot;
   }
 
  private:
@@ -74,9 +92,8 @@ class RunSmoother {
   [[nodiscard]] const SmoothOptions& options() const { return task_.options; }
 
   [[nodiscard]] CurveRequest curve_request(Method method) const {
-    const bool few = wants_few_moves(options());
     CurveRequest request;
-    const double lent = method == Method::kFair && !few ? kRun.lent_to_fair : kRun.lent;
+    const double lent = method == Method::kFair ? kRun.lent_to_fair : kRun.lent;
     request.tolerance = shares_.smoothing + lent * shares_.form;
     request.kind = options().tolerance_kind;
     request.side = options().side;
@@ -85,78 +102,73 @@ class RunSmoother {
     request.keep_corner_angle = keep_corner_angle_of(options());
     request.limits = limits_of(*options().machine, greatest_feed(run()));
     request.jerk = options().machine->max_jerk();
-    if (few) request.scatter = kRun.spent * request.tolerance;
-    const double of_arcs = std::min(arc_scatter(run()), kRun.arcs_spend * request.tolerance);
-    request.scatter = std::max(request.scatter, of_arcs);
-    request.accurate = options().prefer == Prefer::kAccuracy;
-    // Who asks for curves by name asks for few control points.
-    request.near = options().output != Form::kCurves;
+    request.scatter = std::min(arc_scatter(run()), kRun.arcs_spend * request.tolerance);
     return request;
   }
 
-  // False where there is no such curve. The fair curve is the path that was meant.
-  bool try_first(Method method) {
-    const CurveRequest request = curve_request(method);
-    const auto curve = curve_of(method, run().points, request);
-    if (!curve) return false;
-    const CurvatureProfile bends(curve->path.curve);
-    result_.facts.noise = curve->path.noise;
-    result_.facts.error = chord_error(run(), curve->path, rounding_);
-    result_.facts.fair_curvature = bends.greatest();
-    add_candidates_of(*curve, bends);
-    if (method == Method::kFair && request.near) try_simpler(request);
-    return true;
+  // The fair curve is the path that was meant.
+  void find_meant(const geometry::SmoothCurve& fair) {
+    fair_ = fair;
+    meant_.emplace(*fair_);
+    RunFacts& facts = result_.facts;
+    facts.noise = fair.noise;
+    facts.fair_curvature = CurvatureProfile(fair.curve).greatest();
+    facts.scale.original.distance = meant_->distance_of(run());
+    facts.scale.known = kBounds.known * fair.noise;
   }
 
   void try_curve(Method method, const CurveRequest& request) {
     const auto curve = curve_of(method, run().points, request);
-    if (curve) add_candidates_of(*curve, CurvatureProfile(curve->path.curve));
+    if (curve) add_candidates_of(*curve);
   }
 
   // Where it leaves some of the tolerance.
-  void add_candidates_of(const RunCurve& curve, const CurvatureProfile& bends) {
+  void add_candidates_of(const RunCurve& curve) {
     const double left = shares_.smoothing + shares_.form - curve.path.deviation;
     if (!(left > 0)) return;
     fits_ = true;
-    add_forms(task_, times_, bounds_, {curve, bends, shares_.form, left}, result_);
+    const CurvatureProfile bends(curve.path.curve);
+    add_forms({task_, times_, bounds_, *meant_}, {curve, bends, shares_.form, left}, result_);
   }
 
-  // Where the near curve is worth nothing, one that leaves of the vertices what their decimals do
-  // may be. Pieces of a run are fitted alike.
+  // A curve that leaves of the vertices what their decimals do may be, and where few blocks are
+  // wanted, more than that, takes fewer of them. Parts of a run are fitted alike.
   void try_simpler(CurveRequest request) {
-    if (request.accurate || request.scatter > 0 || context().is_piece()) return;
-    if (!choose(result_, context(), options()).order.empty()) return;
+    const bool few = wants_few_moves(options()) || options().output == Form::kCurves;
+    const bool none = choose(result_, options()).order.empty() && !context().is_piece();
+    if (options().prefer == Prefer::kAccuracy || !(few || none)) return;
+    const bool fine = result_.facts.scale.original.distance < kRun.of_rounding * rounding_;
+    if (!few && (request.scatter > 0 || !fine)) return;
     request.near = false;
-    try_curve(Method::kFair, request);
-  }
-
-  // A bend of the tolerance's size instead of a corner takes a curve some thirty control points.
-  // Its end in the corner and the start of the next one are fewer blocks, and often as quick.
-  void try_kept_corners() {
-    if (options().output != Form::kCurves || options().keep_corners_deg) return;
-    if (!has_sharp_corner(run().points)) return;
-    CurveRequest request = curve_request(Method::kFair);
-    request.keep_corner_angle = kRun.sharp_corner;
+    if (wants_few_moves(options())) {
+      request.tolerance = shares_.smoothing + kRun.lent * shares_.form;
+      request.scatter = std::max(request.scatter, kRun.spent * request.tolerance);
+    }
     try_curve(Method::kFair, request);
   }
 
   // The other methods, where there is time left to win and they may win it.
   void try_others() {
-    const auto mean = [](const Times& t) { return 0.5 * (t.as_set + t.without_merging); };
-    double time = mean(bounds_.times_before());
-    if (!context().is_piece()) {  // else times are not those of the run alone
-      for (const Candidate& c : result_.candidates) time = std::min(time, mean(c.times));
-    }
+    if (options().side != geometry::Side::kBoth) return;
     const double corners = coarse_part(run(), options().tolerance_mm);
     for (const Method method :
-         methods_worth_trying(corners, run().points.size(), bounds_.least_time(), time)) {
+         methods_worth_trying(corners, run().points.size(), bounds_.least_time(), best_time())) {
       try_curve(method, curve_request(method));
     }
   }
 
-  [[nodiscard]] bool has_curves() const {
-    return std::ranges::any_of(result_.candidates,
-                               [](const Candidate& c) { return c.form == Form::kCurves; });
+  // s, from rest to rest; of a part of a run the times are those between its neighbours.
+  [[nodiscard]] double best_time() const {
+    double time = result_.facts.scale.alone;
+    if (context().is_piece()) return time;
+    for (const Candidate& c : result_.candidates) {
+      time = std::min(time, c.figures.times.programmed);
+    }
+    return time;
+  }
+
+  [[nodiscard]] bool may_win_time() const {
+    return bounds_.least_time() <= kCost.clearly_faster * best_time();
   }
 
   const RunTask& task_;
@@ -164,25 +176,53 @@ class RunSmoother {
   double rounding_;  // mm, greatest error of one printed coordinate of the run
   const RunTimes& times_;
   CandidateBounds bounds_;
+  std::optional<geometry::SmoothCurve> fair_;
+  std::optional<MeantPath> meant_;
   bool fits_ = false;  // a method found a curve inside the tolerance
   SmoothedRun& result_;
 };
+
+// mm, rms across the path: each printed coordinate is off by up to half a step, evenly.
+double printed_rms(const SmoothOptions& options, gcode::Units units) {
+  const double step = gcode::printed_step(place_format(*options.target, units), units);
+  return step / std::sqrt(12);
+}
+
+RunFacts facts_of(const Run& run, const RunContext& context, const SmoothOptions& options,
+                  const RunTimes& times) {
+  const std::vector<TimedPiece> motions = timed_pieces(run, 0, run.points.size() - 1);
+  RunFacts facts;
+  for (const TimedPiece& motion : motions) facts.length += geometry::length_of(motion.piece);
+  facts.max_curvature = greatest_curvature(run.points);
+  facts.form = run.arcs.empty() ? Form::kLines : Form::kArcs;
+  CostScale& scale = facts.scale;
+  scale.original.blocks = static_cast<double>(context.blocks);
+  scale.original.bytes = static_cast<double>(context.bytes);
+  scale.original.roughness = roughness_of(motions);
+  scale.printed = printed_rms(options, context.before.units);
+  scale.near = kCost.near * options.tolerance_mm;
+  scale.period = control_period(*options.machine);
+  if (options.method == Method::kNone) {  // nothing is compared: only its time is reported
+    scale.original.times.programmed = times.programmed(motions);
+    return facts;
+  }
+  scale.original.times = times.of_run(motions);
+  scale.alone = context.is_piece() ? cutting_time(motions, *options.machine, context.after.path)
+                                   : scale.original.times.programmed;
+  return facts;
+}
 
 }  // namespace
 
 SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOptions& options,
                        CandidateScope scope) {
   const RunTimes times(context, *options.machine);
-  const std::vector<TimedPiece> motions = timed_pieces(run, 0, run.points.size() - 1);
   SmoothedRun result;
-  result.facts.max_curvature = greatest_curvature(run.points);
-  if (options.method == Method::kNone) {  // nothing is compared: only its time is reported
-    result.facts.times.as_set = times.as_set_of_run(motions);
+  result.facts = facts_of(run, context, options, times);
+  if (options.method == Method::kNone) {
     result.reason = gcode::reason::kMethodNone;
     return result;
   }
-  result.facts.times = times.of_run(motions);
-  if (!run.arcs.empty()) result.facts.kink = greatest_kink(motions);
   ToleranceShares shares = share_tolerance(options, context.before.units, run.decimals);
   shares.smoothing -= run.chord_error;  // the points are not quite where the arcs are
   if (!(shares.smoothing > 0)) {
@@ -211,25 +251,48 @@ std::vector<TimedPiece> chain_with(const CutRun& cut, std::span<const RunState> 
   return chain;
 }
 
-// The times of the whole with its pieces as they are, as far as they must be known: once it is
-// slower under one setting, the others are those of `cut.before`.
-Times times_with(const CutRun& cut, std::span<const RunState> pieces, const Machine& machine,
-                 bool wanted) {
-  SettingTimes known(chain_with(cut, pieces), machine, cut.path);
-  Times times = cut.before;
-  times.as_set = known.as_set();
-  if (wanted || slower(times, cut.before, false, wanted)) return times;
-  times.without_merging = known.without_merging();
-  if (slower(times, cut.before, false, wanted)) return times;
-  times.flat_out = known.flat_out();
-  return times;
+// Seconds that a rewritten piece costs, summed over the settings of the override.
+double cost_of(const RunState& piece) {
+  Times cost = piece.chosen()->figures.times;
+  cost.add(piece.smoothed.facts.scale.original.times, -1);
+  return cost.programmed + cost.at_half + cost.at_one_and_half;
 }
 
-// Seconds that a rewritten piece costs, summed over the settings of the control.
-double cost_of(const RunState& piece) {
-  Times cost = piece.chosen()->times;
-  cost.add(piece.smoothed.facts.times, -1);
-  return cost.as_set + cost.without_merging + cost.flat_out;
+}  // namespace
+
+namespace {
+
+// Pieces may be more blocks where they are faster or nearer; of the whole that has to be true, too.
+void revert_growth(const CutRun& cut, std::span<RunState> pieces, const SmoothOptions& options) {
+  CostScale scale;
+  scale.original.times = cut.before;
+  scale.alone = cut.before.programmed;
+  scale.near = kCost.near * options.tolerance_mm;
+  Figures after;
+  after.times = times_of(chain_with(cut, pieces), *options.machine, cut.path);
+  double length = 0;
+  for (const RunState& piece : pieces) {
+    const RunFacts& facts = piece.smoothed.facts;
+    const Figures& old = facts.scale.original;
+    const Figures& now = piece.chosen() != nullptr ? piece.chosen()->figures : old;
+    length += facts.length;
+    const auto add = [&](const Figures& figures, Figures& sum) {
+      sum.blocks += figures.blocks;
+      sum.bytes += figures.bytes;
+      sum.distance = std::hypot(sum.distance, figures.distance * std::sqrt(facts.length));
+    };
+    add(old, scale.original);
+    add(now, after);
+  }
+  scale.original.distance /= std::sqrt(length);
+  after.distance /= std::sqrt(length);
+  if (objection_to(after, scale, options.prefer) != Objection::kLarger) return;
+  for (RunState& piece : pieces) {
+    while (piece.chosen() != nullptr && (piece.chosen()->text.blocks > piece.context.blocks ||
+                                         piece.chosen()->text.text.size() > piece.context.bytes)) {
+      piece.reject(gcode::reason::kLarger);
+    }
+  }
 }
 
 }  // namespace
@@ -246,7 +309,7 @@ void RunState::reject(std::string_view why) {
 
 void RunState::start_again(const Run& run, const SmoothOptions& options) {
   smoothed = smooth_run(run, context, options, CandidateScope::kAll);
-  selection = choose(smoothed, context, options);
+  selection = choose(smoothed, options);
   drop_what_is_not_written();
   tried = 0;
   reject_reason = {};
@@ -262,12 +325,11 @@ void RunState::drop_what_is_not_written() {
 
 void revert_costly_pieces(CutRun& cut, std::vector<RunState>& works, const SmoothOptions& options) {
   const std::span<RunState> pieces = std::span(works).subspan(cut.first_work, cut.pieces);
-  const bool wanted = options.output != Form::kAuto;
   std::vector<RunState*> rewritten;
   for (RunState& piece : pieces) {
     if (piece.chosen() != nullptr) rewritten.push_back(&piece);
   }
-  if (cut.before.as_set == 0) {
+  if (cut.before.programmed == 0) {
     cut.before =
         times_of(timed_pieces(cut.run, 0, cut.run.points.size() - 1), *options.machine, cut.path);
   }
@@ -278,9 +340,12 @@ void revert_costly_pieces(CutRun& cut, std::vector<RunState>& works, const Smoot
     return cost_a != cost_b ? cost_a < cost_b : a->section < b->section;
   };
   std::sort(rewritten.begin(), rewritten.end(), by_cost);
+  revert_growth(cut, pieces, options);
+  std::erase_if(rewritten, [](const RunState* piece) { return piece->chosen() == nullptr; });
   while (!rewritten.empty()) {
-    cut.after = times_with(cut, pieces, *options.machine, wanted);
-    if (!slower(cut.after, cut.before, false, wanted)) return;
+    cut.after = times_of(chain_with(cut, pieces), *options.machine, cut.path);
+    const double period = control_period(*options.machine);
+    if (!is_slower(cut.after, cut.before, period)) return;
     const std::size_t giving = std::max<std::size_t>(1, rewritten.size() / kRun.reverted_share);
     for (std::size_t i = 0; i < giving; ++i) {
       RunState& piece = *rewritten.back();

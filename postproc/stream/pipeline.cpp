@@ -62,6 +62,8 @@ class CollectedResult {
     for (RunReport& run : window.runs) {
       result.time_before_s += run.time_before_s;
       result.time_after_s += run.time_after_s;
+      result.path_before += run.path_before;
+      result.path_after += run.path_after;
       result.runs.push_back(std::move(run));
     }
   }
@@ -495,10 +497,13 @@ class TranslatedSmoothing {
       run.method = {};
       run.blocks_out = run.blocks_in;
       run.time_after_s = run.time_before_s;
+      run.bytes_out = run.bytes_in;
+      run.path_after = run.path_before;
       run.max_curvature_after = run.max_curvature_before;
       run.deviation_mm = 0;
     }
     result.time_after_s = result.time_before_s;
+    result.path_after = result.path_before;
   }
 
   // The text with its block numbers, as it will be written.

@@ -1,6 +1,7 @@
 #include "postproc/stream/smooth_result.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -14,6 +15,11 @@
 namespace batten::postproc {
 
 namespace {
+
+// rms of two sections by their lengths.
+double together(double a, double length_a, double b, double length_b) {
+  return std::sqrt((a * a * length_a + b * b * length_b) / (length_a + length_b));
+}
 
 class Reporter {
  public:
@@ -50,11 +56,11 @@ class Reporter {
     for (auto part = first; part != last; ++part) {
       const Candidate* chosen = part->chosen();
       all_kept = all_kept && chosen == nullptr;
-      before += part->smoothed.facts.times;
-      after += chosen != nullptr ? chosen->times : part->smoothed.facts.times;
+      before += part->smoothed.facts.scale.original.times;
+      after += (chosen != nullptr ? chosen->figures : part->smoothed.facts.scale.original).times;
     }
-    const double share_before = before.as_set > 0 ? cut.before.as_set / before.as_set : 1;
-    const double share_after = after.as_set > 0 ? cut.after.as_set / after.as_set : 1;
+    const double share_before = before.programmed > 0 ? cut.before.programmed / before.programmed : 1;
+    const double share_after = after.programmed > 0 ? cut.after.programmed / after.programmed : 1;
     r.time_before_s *= share_before;
     r.time_after_s *= share_after;
     for (MethodTime& each : r.methods) {
@@ -83,6 +89,10 @@ class Reporter {
     before_it.max_curvature_before =
         std::max(before_it.max_curvature_before, r.max_curvature_before);
     before_it.max_curvature_after = std::max(before_it.max_curvature_after, r.max_curvature_after);
+    before_it.bytes_in += r.bytes_in;
+    before_it.bytes_out += r.bytes_out;
+    before_it.path_before += r.path_before;
+    before_it.path_after += r.path_after;
     before_it.time_before_s += r.time_before_s;
     before_it.time_after_s += r.time_after_s;
   }
@@ -95,12 +105,18 @@ class Reporter {
     r.points = motion_count(std::get<Run>(section.content)) + 1;
     r.blocks_in = work.context.blocks;
     r.blocks_out = chosen != nullptr ? chosen->text.blocks : work.context.blocks;
+    const Figures& before = facts.scale.original;
+    const Figures& after = chosen != nullptr ? chosen->figures : before;
+    r.bytes_in = work.context.bytes;
+    r.bytes_out = chosen != nullptr ? chosen->text.text.size() : work.context.bytes;
+    r.path_before = {facts.length, before.distance, before.roughness};
+    r.path_after = {facts.length, after.distance, after.roughness};
     r.noise_mm = facts.noise;
     r.max_curvature_before = facts.max_curvature;
     r.max_curvature_after = chosen != nullptr ? chosen->max_curvature : facts.max_curvature;
     r.methods = method_times(work.smoothed);
-    r.time_before_s = facts.times.as_set;
-    r.time_after_s = chosen != nullptr ? chosen->times.as_set : facts.times.as_set;
+    r.time_before_s = before.times.programmed;
+    r.time_after_s = after.times.programmed;
     if (chosen == nullptr) {
       r.reason = work.reject_reason.empty() ? work.selection.reason : work.reject_reason;
       return r;
@@ -164,6 +180,14 @@ class Reporter {
 };
 
 }  // namespace
+
+PathFigures& PathFigures::operator+=(const PathFigures& other) {
+  if (!(other.length_mm > 0)) return *this;
+  distance_mm = together(distance_mm, length_mm, other.distance_mm, other.length_mm);
+  roughness = together(roughness, length_mm, other.roughness, other.length_mm);
+  length_mm += other.length_mm;
+  return *this;
+}
 
 std::vector<RunReport> report_runs(const ProgramPart& part, const PartRuns& runs,
                                    std::span<const Stretch> stretches, bool proved) {

@@ -26,6 +26,16 @@ namespace batten::postproc {
 
 enum class RunStatus { kRewritten, kKept };
 
+// How far a path is from the one that was meant, and how rough. docs/algorithms/choice.md.
+struct PathFigures {
+  double length_mm = 0;    // that the figures are known of
+  double distance_mm = 0;  // rms
+  double roughness = 0;    // rad/sqrt(mm)
+
+  // Of both together.
+  PathFigures& operator+=(const PathFigures& other);
+};
+
 // One run of the report. Also verbatim chains of cutting moves appear, kept, with their reason.
 struct RunReport {
   std::uint32_t first_line = 0;
@@ -46,6 +56,10 @@ struct RunReport {
   double max_curvature_after = 0;
   double time_before_s = 0;
   double time_after_s = 0;
+  std::size_t bytes_in = 0;
+  std::size_t bytes_out = 0;
+  PathFigures path_before;  // of runs that were tried
+  PathFigures path_after;
 };
 
 // What became of the runs, in the order of the program; `stretches` and `proved` of the proof.
@@ -66,6 +80,8 @@ struct SmoothResult {
   double corner_mm = 0;      // band reading: greatest distance of a corner that was cut
   double time_before_s = 0;  // cutting runs only
   double time_after_s = 0;
+  PathFigures path_before;
+  PathFigures path_after;
   bool proved = false;  // of the whole text
   // Of a text that was handed on window by window (postproc/stream/pipeline.h), in place of `text`.
   std::size_t bytes_handed_on = 0;

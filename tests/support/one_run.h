@@ -47,7 +47,7 @@ class OneRun {
   // What is written in its place.
   [[nodiscard]] std::string chosen(const SmoothOptions& options, CandidateScope scope) const {
     const SmoothedRun smoothed = smooth(options, scope);
-    const Selection selection = choose(smoothed, context(), options);
+    const Selection selection = choose(smoothed, options);
     if (selection.order.empty()) return std::string(selection.reason);
     return smoothed.candidates[selection.order.front()].text.text;
   }

@@ -22,8 +22,8 @@ void require_usable(const Machine& machine) {
 }
 
 // Above any diagonal of the axes (sqrt(3)), so that it limits nothing; mm/min.
-double feed_of(const TimedPiece& p, const Machine& machine) {
-  if (!p.rapid && p.feed > 0) return p.feed;
+double feed_of(const TimedPiece& p, const Machine& machine, double feed_override) {
+  if (!p.rapid && p.feed > 0) return feed_override * p.feed;
   return axis_velocities(machine, p.rapid).maxCoeff() * 60 * 2;
 }
 
@@ -61,14 +61,14 @@ void limit_by_stream(std::span<TimedPiece> pieces, const Machine& machine) {
 }  // namespace
 
 std::vector<TimedPiece> with_length_and_feed(std::span<const TimedPiece> pieces,
-                                             const Machine& machine) {
+                                             const Machine& machine, double feed_override) {
   std::vector<TimedPiece> moving;
   moving.reserve(pieces.size());
   for (const TimedPiece& p : pieces) {
     require_feed(p);
     if (!has_length(p)) continue;
     moving.push_back(p);
-    moving.back().feed = feed_of(p, machine);
+    moving.back().feed = feed_of(p, machine, feed_override);
   }
   limit_by_stream(moving, machine);
   return moving;
@@ -88,22 +88,15 @@ StretchChain stretches_of(std::span<const TimedPiece> pieces, const Machine& mac
   return look_ahead_stretches(pieces, machine, path, places);
 }
 
-TimedChain::TimedChain(std::span<const TimedPiece> pieces, const Machine& machine) {
+TimedChain::TimedChain(std::span<const TimedPiece> pieces, const Machine& machine,
+                       double feed_override) {
   require_usable(machine);
-  moving_ = with_length_and_feed(pieces, machine);
+  moving_ = with_length_and_feed(pieces, machine, feed_override);
 }
 
 double TimedChain::time(const Machine& machine, gcode::PathMode path, ChainEnd end) const {
   const StretchChain chain = stretches_of(moving_, machine, path, end, WithPositions::kNo);
   return profile_time(chain.stretches, chain.rules);
-}
-
-void TimedChain::lift_feeds(const Machine& machine) {
-  for (TimedPiece& p : moving_) {
-    p.feed = 0;
-    p.feed = feed_of(p, machine);
-  }
-  limit_by_stream(moving_, machine);
 }
 
 double cutting_time(std::span<const TimedPiece> pieces, const Machine& machine,

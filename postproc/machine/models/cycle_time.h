@@ -67,16 +67,13 @@ enum class WithPositions { kNo, kYes };
 // is done once.
 class TimedChain {
  public:
-  // Throws as cutting_time does.
-  TimedChain(std::span<const TimedPiece> pieces, const Machine& machine);
+  // With every feed so many times the programmed one. Throws as cutting_time does.
+  TimedChain(std::span<const TimedPiece> pieces, const Machine& machine, double feed_override = 1);
 
   // As cutting_time. `machine` may differ from that of the chain in what it makes of corners and
   // of lines that it joins, not in its limits.
   [[nodiscard]] double time(const Machine& machine, gcode::PathMode path,
                             ChainEnd end = ChainEnd::kStop) const;
-
-  // From now on no piece has a feed.
-  void lift_feeds(const Machine& machine);
 
  private:
   std::vector<TimedPiece> moving_;
@@ -84,7 +81,8 @@ class TimedChain {
 
 // The pieces that have a length, each with a feed above 0. Throws as cutting_time does.
 [[nodiscard]] std::vector<TimedPiece> with_length_and_feed(std::span<const TimedPiece> pieces,
-                                                           const Machine& machine);
+                                                           const Machine& machine,
+                                                           double feed_override = 1);
 
 // The chain as the machine's model has it. Throws as cutting_time does.
 [[nodiscard]] StretchChain stretches_of(std::span<const TimedPiece> pieces, const Machine& machine,

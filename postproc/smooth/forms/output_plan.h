@@ -38,8 +38,6 @@ struct OutputPlan {
   std::vector<PlannedMove> moves;
   std::vector<PlannedCurve> curves;         // in order
   std::vector<std::size_t> comments_after;  // of the run's last blocks
-  double error = 0;  // mm, moves to curve, as the height of equal chords with their ends on the
-                     // curve; 0: not known, max_deviation at most
   bool chords_for_steps = false;  // see plan_lines
 };
 
@@ -48,29 +46,30 @@ struct PlanOptions {
   const Machine* machine = nullptr;
   gcode::Units units = gcode::Units::kMillimetre;
   gcode::Plane active_plane = gcode::Plane::kXY;
-  Prefer prefer = Prefer::kTime;
   double max_deviation = 0.005;    // mm, moves to curve: the share of the form
   double keep_corner_angle = 3.2;  // radians: see geometry::FairOptions
   Linearize linearize = Linearize::kChord;
-  std::size_t most_moves = 0;  // lines that prefer accuracy become coarser for it; 0: any number
   geometry::ArcEffort arc_effort = geometry::ArcEffort::kQuick;  // of plan_arcs
+  // Of chords by Linearize::kChord: how high they may be where there is room for as long ones (mm),
+  // and how many of them there may be; 0: any number.
+  double chord_height = 0.005;
+  std::size_t most_moves = 0;
+  double tolerance = 0;  // mm, moves to run, where max_deviation is not to be the same everywhere
 };
 
 // Parts are of max_deviation unless said otherwise.
 struct PlanTuning {
   // Lines.
-  double precision_of_wishes = 2e-3;  // so much shorter chords may be that are only wished so fine
   double coarser = 4;                 // the next fineness that is tried: chords twice as long
-  double balanced = 1.5;        // so much higher balanced chords may be: two thirds of it are left
+  double balanced = 1.45;       // so much higher balanced chords may be: two thirds of it are left
+  double least_room = 0.3;      // where the curve comes near to the limit: the proof decides
+  double height_step = 0.8;     // from one height to the next lower one
   double coarser_again = 1.05;  // at least, where chords are still too many
-  double periods_for_time = 2;  // block periods: room for the control to look ahead
-  double periods_for_accuracy = 1.1;  // with which the control just holds the feed
+  double periods = 1.1;         // block periods, with which the control just holds the feed
   // Arcs. There are few that the target refuses: too tight, too short.
   double arc_chords = 0.1;      // kept for chords in their place
   double spline_chords = 0.03;  // the same where they are refused after rounding only
-  // An arc's deviation falls with the third power of its length, so with Prefer::kAccuracy this
-  // part costs little more than twice the arcs.
-  double accurate_arcs = 0.1;
+  int newton_steps = 3;       // to the parameter of an end, from about the right one
   double reversal = 170 * geometry::kPi / 180;  // greater turns stay: see geometry::find_features
   double no_corner = 1e-3;  // radians between the two ends of a closed run that make no corner
   // Curves.
@@ -88,14 +87,11 @@ inline constexpr PlanTuning kPlans;
 
 // Lines along the curve, as `linearize` says; chords where the equal steps of ilca would be too
 // many (geometry/chords/ilca.h), which the plan says. minlink, ilca and blca take all of
-// max_deviation; the vertices of minlink alone leave the curve. How fine chords are depends on the
-// preference:
-//   time      half of max_deviation, but all of it where chords would be shorter than twice the
-//             way of one block period at the feed: the control would slow down for them;
-//   accuracy  as fine as the block period and most_moves allow, down to a tenth of the rounding of
-//             the printed numbers, and all of max_deviation where even that is too much for the
-//             control; balanced (geometry/chords/linearize.h);
-//   size      all of max_deviation.
+// max_deviation; the vertices of minlink alone leave the curve. Chords are balanced
+// (geometry/chords/linearize.h) and chord_height high, but coarser where the control would slow down
+// for so short ones, or where they would be more than most_moves, and finer where the curve leaves
+// too little of the tolerance: no further from the curve than max_deviation, or where `tolerance` is
+// given, than the curve leaves of it there.
 [[nodiscard]] OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair,
                                     const geometry::MarkedPieces& pieces,
                                     const PlanOptions& options);

@@ -8,6 +8,7 @@
 #include "geometry/arcs/arc_spline.h"
 #include "geometry/arcs/biarc.h"
 #include "geometry/basic/rounding.h"
+#include "geometry/fitting/fair/fair_measure.h"
 #include "geometry/path/plane_curve.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/forms/output_plan.h"
@@ -91,11 +92,7 @@ std::optional<BsplineCurve> laid_flat(const Run& run, const BsplineCurve& curve,
 }
 
 double fit_deviation(const PlanOptions& options) {
-  const double limit = options.max_deviation;
-  if (options.prefer != Prefer::kAccuracy) return limit * (1 - kPlans.arc_chords);
-  const double worth_it = arc_grid(options);  // finer than that is lost in print
-  return std::min(std::max(kPlans.accurate_arcs * limit, worth_it),
-                  limit * (1 - kPlans.arc_chords));
+  return options.max_deviation * (1 - kPlans.arc_chords);
 }
 
 geometry::ArcFitOptions fit_options(const PlanOptions& options, const PlaneAxes& plane,
@@ -129,14 +126,15 @@ std::optional<OutputPlan> plan_in(const Run& run, const geometry::SmoothCurve& f
     for (const PathPiece& piece : *arcs) {
       append_taken(piece, kPlans.arc_chords * options.max_deviation, options, taken);
     }
-    // The curve's parameter goes about with the length along the pieces.
-    const double length = geometry::length_of(taken);
-    double done = 0;
+    // The parameter goes about with the length: each end is found from the one before it.
+    geometry::SplineWalk walk(curve.basis().knots(), curve.control_points());
+    double start = section.from;
     for (const PathPiece& piece : taken) {
-      const double part = length > 0 ? done / length : 0;
-      const double start = section.from + (section.to - section.from) * part;
       plan.moves.push_back({piece, section.feed, {}, start});
-      done += geometry::length_of(piece);
+      const Point3 end = geometry::end_point(piece);
+      double next = start + geometry::length_of(piece);
+      for (int i = 0; i < kPlans.newton_steps; ++i) next = walk.nearer(next, end);
+      start = std::clamp(next, start, section.to);
     }
   }
   place_comments(run, fair, plan);

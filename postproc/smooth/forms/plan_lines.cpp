@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "gcode/state/modal_state.h"
 #include "geometry/chords/ilca.h"
@@ -15,10 +16,9 @@ using Vertices = std::vector<geometry::LinkVertex>;
 
 // How far chords may go in either direction.
 struct Fineness {
-  double finest = 0;        // mm, chord to curve, wished for
-  double coarsest = 0;      // mm, the limit
-  double min_length = 0;    // mm; where chords would be shorter, they become coarser
-  double precision = 5e-4;  // of the chords' ends
+  double finest = 0;      // mm, chord to curve, wished for
+  double coarsest = 0;    // mm, the limit
+  double min_length = 0;  // mm; where chords would be shorter, they become coarser
 };
 
 // mm, of one block period at this feed.
@@ -26,19 +26,11 @@ double length_per_block(double feed, const Machine& machine) {
   return std::min(feed / 60, machine.max_velocity()) * machine.block_period;
 }
 
-// `finest`: mm, of accurate chords.
-Fineness fineness_for(double feed, const PlanOptions& options, double finest) {
-  const double limit = options.max_deviation;
+// `height`: mm, of the chords.
+Fineness fineness_for(double feed, const PlanOptions& options, double height) {
   const double per_block = length_per_block(feed, *options.machine);
-  switch (options.prefer) {
-    case Prefer::kTime:
-      return {limit / 2, limit, kPlans.periods_for_time * per_block, kPlans.precision_of_wishes};
-    case Prefer::kAccuracy:
-      return {finest, kPlans.balanced * limit, kPlans.periods_for_accuracy * per_block};
-    case Prefer::kSize:
-      break;
-  }
-  return {limit, limit, 0};
+  const double highest = std::max(height, kPlans.balanced * options.max_deviation);
+  return {height, highest, kPlans.periods * per_block};
 }
 
 Vertices on_the_curve(const BsplineCurve& curve, const std::vector<double>& parameters) {
@@ -63,8 +55,8 @@ Vertices on_the_curve(const geometry::CurvePieces& curve, const std::vector<doub
 // section whose chords come out too short.
 std::vector<double> chords(const MarkedPieces& curve, double from, double to,
                            const Fineness& fineness) {
-  std::vector<double> wished = geometry::chord_vertices(
-      curve, from, to, {.max_deviation = fineness.finest, .precision = fineness.precision});
+  std::vector<double> wished =
+      geometry::chord_vertices(curve, from, to, {.max_deviation = fineness.finest});
   if (fineness.finest >= fineness.coarsest) return wished;
   Fineness coarser = fineness;
   coarser.finest = std::min(fineness.finest * kPlans.coarser, fineness.coarsest);
@@ -90,10 +82,51 @@ std::vector<double> chords(const MarkedPieces& curve, double from, double to,
   return vertices;
 }
 
+// A part of the curve with chords of one height.
+struct ChordSection {
+  double from = 0;
+  double to = 0;
+  double height = 0;
+};
+
+// Chords may be as high as asked for, but where the curve itself is so far from the edges of the
+// run that they would leave the tolerance. Heights go by steps, and an edge's is that of its
+// neighbours, too: a chord lies beside several.
+std::vector<ChordSection> chord_sections(const geometry::SmoothCurve& fair,
+                                         const FeedSection& section, const PlanOptions& options,
+                                         double height) {
+  const std::vector<double>& off = fair.edge_deviations;
+  if (!(options.tolerance > 0) || off.empty()) return {{section.from, section.to, height}};
+  const double least = kPlans.least_room * options.max_deviation;
+  const auto steps_for = [&](std::size_t edge) {
+    const double room = std::max(kPlans.balanced * (options.tolerance - off[edge]), least);
+    return room >= height ? 0
+                          : static_cast<int>(
+                                std::ceil(std::log(room / height) / std::log(kPlans.height_step)));
+  };
+  std::vector<ChordSection> sections;
+  int last = -1;
+  for (std::size_t edge = 0; edge < off.size(); ++edge) {
+    const double from = std::max(section.from, fair.vertex_parameters[edge]);
+    const double to = std::min(section.to, fair.vertex_parameters[edge + 1]);
+    if (!(from < to)) continue;
+    int steps = steps_for(edge);
+    if (edge > 0) steps = std::max(steps, steps_for(edge - 1));
+    if (edge + 1 < off.size()) steps = std::max(steps, steps_for(edge + 1));
+    if (sections.empty() || steps != last) {
+      sections.push_back({from, to, height * std::pow(kPlans.height_step, steps)});
+    }
+    sections.back().to = to;
+    last = steps;
+  }
+  return sections;
+}
+
 // `used_chords` is set where equal steps would have been too many.
-Vertices vertices_on(const BsplineCurve& curve, const MarkedPieces& pieces,
-                     const FeedSection& section, const PlanOptions& options, double finest,
+Vertices vertices_on(const geometry::SmoothCurve& fair, const MarkedPieces& pieces,
+                     const FeedSection& section, const PlanOptions& options, double height,
                      bool& used_chords) {
+  const BsplineCurve& curve = fair.curve;
   const double deviation = options.max_deviation;
   switch (options.linearize) {
     case Linearize::kMinLink:
@@ -104,28 +137,30 @@ Vertices vertices_on(const BsplineCurve& curve, const MarkedPieces& pieces,
         return on_the_curve(curve, row->parameters);
       }
       used_chords = true;
-      return on_the_curve(pieces.pieces, chords(pieces, section.from, section.to,
-                                                {.finest = deviation, .coarsest = deviation}));
+      break;
     case Linearize::kBlca:
       return on_the_curve(curve,
                           geometry::blca(curve, section.from, section.to, deviation).parameters);
     case Linearize::kChord:
       break;
   }
-  const std::vector<double> parameters =
-      chords(pieces, section.from, section.to, fineness_for(section.feed, options, finest));
-  return options.prefer == Prefer::kAccuracy ? geometry::balanced_chords(curve, parameters)
-                                             : on_the_curve(pieces.pieces, parameters);
+  std::vector<double> parameters = {section.from};
+  for (const ChordSection& part : chord_sections(fair, section, options, height)) {
+    const std::vector<double> some =
+        chords(pieces, part.from, part.to, fineness_for(section.feed, options, part.height));
+    parameters.insert(parameters.end(), some.begin() + 1, some.end());
+  }
+  return geometry::balanced_chords(curve, parameters);
 }
 
 OutputPlan lines_of(const Run& run, const geometry::SmoothCurve& fair, const MarkedPieces& pieces,
-                    const PlanOptions& options, double finest) {
+                    const PlanOptions& options, double height) {
   OutputPlan plan;
   plan.form = Form::kLines;
   geometry::Point3 place = run.points.front();
   for (const FeedSection& section : feed_sections(run, fair)) {
     const Vertices vertices =
-        vertices_on(fair.curve, pieces, section, options, finest, plan.chords_for_steps);
+        vertices_on(fair, pieces, section, options, height, plan.chords_for_steps);
     for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
       const bool last = i + 2 == vertices.size() && section.to >= fair.curve.last();
       const geometry::Point3 next = last ? run.points.back() : vertices[i + 1].place;
@@ -141,24 +176,17 @@ OutputPlan lines_of(const Run& run, const geometry::SmoothCurve& fair, const Mar
 
 OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair, const MarkedPieces& pieces,
                       const PlanOptions& options) {
-  const bool accurate =
-      options.prefer == Prefer::kAccuracy && options.linearize == Linearize::kChord;
-  if (!accurate) return lines_of(run, fair, pieces, options, 0);
-  const double step =
-      gcode::printed_step(place_format(*options.target, options.units), options.units);
-  const double tenth_of_rounding = step / 2 / 10;
-  double finest = std::min(tenth_of_rounding, kPlans.balanced * options.max_deviation);
-  OutputPlan plan = lines_of(run, fair, pieces, options, finest);
+  const double highest = std::max(kPlans.balanced * options.max_deviation, options.chord_height);
+  double height = options.chord_height;
+  OutputPlan plan = lines_of(run, fair, pieces, options, height);
+  if (options.linearize != Linearize::kChord) return plan;
   // The number of chords goes with the root of their height.
-  while (options.most_moves > 0 && plan.moves.size() > options.most_moves &&
-         finest < kPlans.balanced * options.max_deviation) {
+  while (options.most_moves > 0 && plan.moves.size() > options.most_moves && height < highest) {
     const double over =
         static_cast<double>(plan.moves.size()) / static_cast<double>(options.most_moves);
-    finest = std::min(kPlans.balanced * options.max_deviation,
-                      std::max(over * over, kPlans.coarser_again) * finest);
-    plan = lines_of(run, fair, pieces, options, finest);
+    height = std::min(highest, std::max(over * over, kPlans.coarser_again) * height);
+    plan = lines_of(run, fair, pieces, options, height);
   }
-  plan.error = geometry::kBalancedError / geometry::kChordError * finest;
   return plan;
 }
 

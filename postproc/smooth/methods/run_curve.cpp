@@ -47,6 +47,7 @@ std::optional<SmoothCurve> fair_curve(std::span<const Point3> run, const CurveRe
   options.tolerance = request.tolerance;
   options.rounding = request.rounding;
   options.keep_corner_angle = request.keep_corner_angle;
+  options.keep_found_corner = request.keep_found_corner;
   options.feed = std::max(1.0, 60 * request.limits.feed);
   options.acceleration = request.limits.acceleration.minCoeff();
   options.jerk = request.jerk;

@@ -29,6 +29,7 @@ struct CurveRequest {
   double side_margin = 0;            // mm, see geometry::OneSidedOptions
   double rounding = 0.0005;          // mm, greatest error of one printed coordinate of the run
   double keep_corner_angle = 3.2;    // radians: vertices that turn more stay as they are
+  double keep_found_corner = 3.2;    // radians: see geometry::FairOptions
   geometry::KinematicLimits limits;  // what the machine can do at the greatest feed of the run
   double jerk = std::numeric_limits<double>::infinity();  // mm/s^3, see geometry::FairOptions
   double scatter = 0;                                     // mm, see geometry::FairOptions

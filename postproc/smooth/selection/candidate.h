@@ -15,19 +15,9 @@
 #include "postproc/runs/section.h"
 #include "postproc/smooth/forms/output_plan.h"
 #include "postproc/smooth/forms/program_writer.h"
+#include "postproc/smooth/selection/cost.h"
 
 namespace batten::postproc {
-
-// Seconds.
-struct Times {
-  double as_set = 0;           // as the machine's model says
-  double without_merging = 0;  // LinuxCNC: G64 P with Q0, lines are not joined before planning
-  double flat_out = 0;         // whatever the F words say, as with the feed override turned up
-  double exact_path = 0;       // G61: kinks cost stops
-
-  Times& operator+=(const Times& other) { return add(other, 1); }
-  Times& add(const Times& other, double multiple);
-};
 
 struct RunContext {
   const gcode::Program& program;
@@ -51,21 +41,19 @@ struct Candidate {
   std::string_view method;  // name_of(Method): "fair", "guo" ..
   Form form = Form::kLines;
   RunText text;
-  double error = 0;  // mm, the written form from the path that was meant, as far as it is known
+  Figures figures;
   double max_curvature = 0;       // 1/mm, greatest of the curve that it was made of
   bool chords_for_steps = false;  // see plan_lines
-  double kink = 0;                // radians, see greatest_kink; 0 where the run is one of lines
-  Times times;                    // slower in one way: the ways that were not asked are the run's
   std::vector<TimedPiece> moves;  // of a piece of a run; empty otherwise
 };
 
 struct RunFacts {             // whether it is rewritten or not
-  Times times;                // but exact_path, which nobody compares with: 0
+  CostScale scale;            // with the figures of the blocks as they are
+  Form form = Form::kLines;   // of these: arcs where one of them is one
+  double length = 0;          // mm
   double max_curvature = 0;   // 1/mm, circle through three neighbouring vertices
   double noise = 0;           // mm, rms distance of the vertices from the fair curve
-  double error = 0;           // mm, how far the old path is from the one that was meant
   double fair_curvature = 0;  // 1/mm, greatest of the fair curve
-  double kink = 0;            // radians, greatest between motions of a run with arcs, or 0
 };
 
 struct SmoothedRun {

@@ -1,7 +1,6 @@
 // What a run, and what could be written instead of it, takes on the machine.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,25 +10,7 @@
 
 namespace batten::postproc {
 
-// Of a chain from rest to rest, each when it is asked for.
-class SettingTimes {
- public:
-  // `path`: as the program says. The machine must live as long. Throws as cutting_time does.
-  SettingTimes(std::span<const TimedPiece> chain, const Machine& machine, gcode::PathMode path);
-
-  [[nodiscard]] double as_set();
-  [[nodiscard]] double without_merging();
-  [[nodiscard]] double exact_path() const;
-  [[nodiscard]] double flat_out();  // the last that may be asked for: the feeds are gone then
-
- private:
-  const Machine& machine_;
-  gcode::PathMode path_;
-  TimedChain chain_;
-  std::optional<double> as_set_;
-};
-
-// All of them.
+// Of a chain from rest to rest. `path`: as the program says. Throws as cutting_time does.
 [[nodiscard]] Times times_of(std::span<const TimedPiece> chain, const Machine& machine,
                              gcode::PathMode path);
 
@@ -40,34 +21,24 @@ class RunTimes {
   // Both must live as long.
   RunTimes(const RunContext& context, const Machine& machine);
 
-  // `exact_path` is 0: nobody compares with it.
   [[nodiscard]] Times of_run(const std::vector<TimedPiece>& motions) const;
 
-  // The first of them alone.
-  [[nodiscard]] double as_set_of_run(const std::vector<TimedPiece>& motions) const;
+  // The programmed time alone.
+  [[nodiscard]] double programmed(const std::vector<TimedPiece>& moves) const;
 
-  // As far as they must be known: of moves in so many blocks that are slower than the run (`old`)
-  // in one way, the others are those of the run. `wanted`: see `slower`.
-  [[nodiscard]] Times of_candidate(const std::vector<TimedPiece>& moves, std::size_t blocks,
-                                   const Times& old, bool exact_path, bool wanted) const;
-
-  // With kinks so many times smaller, as the control is set and under exact path: about, and rather
-  // too little, where moves take longer than two block periods. 0 where nothing is known of it.
-  [[nodiscard]] double as_set_with_less_kinks(const std::vector<TimedPiece>& moves,
-                                              double times_less) const;
-  [[nodiscard]] double exact_path_with_less_kinks(const std::vector<TimedPiece>& moves,
-                                                  double times_less) const;
+  // Of moves that are slower than the run (`old`) as programmed the other times are the run's.
+  [[nodiscard]] Times of_candidate(const std::vector<TimedPiece>& moves, const Times& old) const;
 
  private:
-  [[nodiscard]] double multiple_for_kinks(const std::vector<TimedPiece>& moves,
-                                          double times_less) const;
   [[nodiscard]] Times of_neighbours() const;
-  [[nodiscard]] SettingTimes in_place(const std::vector<TimedPiece>& moves,
-                                      const Machine& machine) const;
+  [[nodiscard]] std::vector<TimedPiece> in_place(const std::vector<TimedPiece>& moves) const;
 
   const RunContext& context_;
   const Machine& machine_;
   Times around_;
 };
+
+// s: what nobody measures on this machine.
+[[nodiscard]] double control_period(const Machine& machine);
 
 }  // namespace batten::postproc

@@ -143,7 +143,7 @@ TEST(Klartext, BothRunsOfAPocketAreRewritten) {
     const SmoothResult result = smoothed(before, options);
     expect_promises(before, options, result);
     EXPECT_EQ(rewritten_runs(result), 2U);
-    EXPECT_LT(3 * result.blocks_out, result.blocks_in);
+    EXPECT_LT(2 * result.blocks_out, result.blocks_in);
     for (const RunReport& run : result.runs) {
       if (run.status == RunStatus::kRewritten) {
         EXPECT_EQ(run.form, wanted);

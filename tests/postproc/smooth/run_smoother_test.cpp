@@ -9,8 +9,6 @@
 #include <vector>
 
 #include "gcode/state/reason.h"
-#include "postproc/runs/run_path.h"
-#include "postproc/smooth/selection/run_times.h"
 #include "postproc/smooth/selection/selection.h"
 #include "tests/support/one_run.h"
 #include "tests/support/wavy_programs.h"
@@ -25,7 +23,7 @@ namespace {
 TEST(SmoothRun, KnowsTheCurvatureOfACircleAndHowFarChordsAreFromIt) {
   const RunFacts facts = OneRun(circle_program(80)).smooth(options_for("linuxcnc")).facts;
   const double height = 10 * (1 - std::cos(3.141592653589793 / 160));
-  EXPECT_NEAR(facts.error, height, 0.05 * height);
+  EXPECT_NEAR(facts.scale.original.distance, std::sqrt(8.0 / 15) * height, 0.05 * height);
   EXPECT_LT(facts.noise, 0.0001);
   EXPECT_NEAR(facts.max_curvature, 0.1, 0.001);
   EXPECT_NEAR(facts.fair_curvature, 0.1, 0.005);
@@ -37,38 +35,17 @@ TEST(SmoothRun, KnowsHowMuchVerticesScatter) {
   const RunFacts facts = OneRun(wave_program(wave)).smooth(options_for("linuxcnc")).facts;
   EXPECT_GT(facts.noise, 0.0012);
   EXPECT_LT(facts.noise, 0.0022);
-  EXPECT_GE(facts.error, facts.noise) << "noisy vertices are as far off as they scatter";
+  EXPECT_GE(facts.scale.original.distance, 0.7 * facts.noise) << "as far as they scatter";
 }
 
 // 31.416 mm at 3000 mm/min take 0.628 s, and a little more to start and to stop.
-TEST(SmoothRun, KnowsTheTimeOfTheRunUnderEachSetting) {
+TEST(SmoothRun, KnowsTheTimeOfTheRun) {
   const OneRun run(circle_program(100));
   const SmoothOptions options = options_for("linuxcnc");
-  const Times times = run.smooth(options).facts.times;
+  const Times times = run.smooth(options).facts.scale.original.times;
   const double at_feed = 3.141592653589793 * 10 / 50;
-  EXPECT_GE(times.as_set, at_feed);
-  EXPECT_LT(times.as_set, 1.3 * at_feed);
-  EXPECT_LE(times.flat_out, times.as_set);
-  EXPECT_GE(times.without_merging, at_feed);
-  const std::vector<TimedPiece> motions = timed_pieces(run.run(), 0, 100);
-  const Times all = times_of(motions, *options.machine, gcode::PathMode::kBlending);
-  EXPECT_EQ(times.as_set, all.as_set);
-  EXPECT_EQ(times.without_merging, all.without_merging);
-  EXPECT_EQ(times.flat_out, all.flat_out);
-  EXPECT_GT(all.exact_path, all.as_set) << "a hundred kinks";
-}
-
-// Kinks are what candidates of one time differ by.
-TEST(SmoothRun, TimesCandidatesThatAreNotSlowerUnderEachSetting) {
-  const SmoothedRun smoothed = OneRun(circle_program(100)).smooth(options_for("linuxcnc"));
-  int timed = 0;
-  for (const Candidate& candidate : smoothed.candidates) {
-    if (slower(candidate.times, smoothed.facts.times, false, false)) continue;
-    ++timed;
-    EXPECT_GE(candidate.times.exact_path, candidate.times.as_set * (1 - 1e-9));
-    EXPECT_LE(candidate.times.flat_out, candidate.times.as_set * (1 + 1e-9));
-  }
-  EXPECT_GE(timed, 2);
+  EXPECT_GE(times.programmed, at_feed);
+  EXPECT_LT(times.programmed, 1.3 * at_feed);
 }
 
 // --- what could be written --------------------------------------------------------------------
@@ -83,9 +60,9 @@ TEST(SmoothRun, MakesEveryCandidateGoodEnoughToBeProved) {
       for (const Candidate& candidate : smoothed.candidates) {
         EXPECT_TRUE(verdict(text, run.with(candidate), 0.01).proved());
         EXPECT_EQ(candidate.method, "fair");
-        EXPECT_GT(candidate.error, 0);
-        EXPECT_LE(candidate.error, 0.01);
-        EXPECT_GT(candidate.times.as_set, 0);
+        EXPECT_GT(candidate.figures.distance, 0);
+        EXPECT_LE(candidate.figures.distance, 0.01);
+        EXPECT_GT(candidate.figures.times.programmed, 0);
       }
     }
   }
@@ -104,9 +81,12 @@ TEST(SmoothRun, ChoosesAmongFewerCandidatesAsAmongAll) {
   programs.push_back(wave_program({.height = 0.5, .length = 40, .noise = 0.003, .decimals = 4}));
   programs.push_back(wave_program({.lines = 800, .step = 0.5, .height = 5, .length = 900}));
   for (const std::string& text : programs) {
-    for (const char* target : {"linuxcnc", "grbl"}) {
+    for (const auto& [target, prefer] :
+         {std::pair{"linuxcnc", Prefer::kTime}, {"grbl", Prefer::kTime}, {"grbl", Prefer::kSize},
+          {"fanuc", Prefer::kAccuracy}}) {
       const OneRun run(text);
-      const SmoothOptions options = options_for(target);
+      SmoothOptions options = options_for(target);
+      options.prefer = prefer;
       if (run.smooth(options, CandidateScope::kToChoose).left_out) ++left_out;
       EXPECT_EQ(run.chosen(options, CandidateScope::kToChoose),
                 run.chosen(options, CandidateScope::kAll));
@@ -140,7 +120,7 @@ TEST(SmoothRun, SaysACircleInFewArcs) {
   std::size_t fewest = 200;
   for (const Candidate& candidate : candidates) {
     EXPECT_EQ(candidate.form, Form::kArcs);
-    EXPECT_LE(candidate.text.arcs, 10u);
+    EXPECT_LE(candidate.text.arcs, 20u) << "those that are nearer than it is printed";
     fewest = std::min(fewest, candidate.text.arcs);
   }
   EXPECT_LE(fewest, 2u) << "two halves: those in the whole band";
@@ -159,7 +139,7 @@ TEST(SmoothRun, SaysWhyThereIsNoCandidate) {
   for (const SmoothOptions& options : {none, tiny}) {
     const SmoothedRun kept = run.smooth(options);
     EXPECT_TRUE(kept.candidates.empty());
-    EXPECT_GT(kept.facts.times.as_set, 0) << "its time is known all the same";
+    EXPECT_GT(kept.facts.scale.original.times.programmed, 0) << "its time is known all the same";
     EXPECT_GT(kept.facts.max_curvature, 0);
   }
 }

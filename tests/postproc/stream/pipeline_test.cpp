@@ -160,7 +160,7 @@ TEST(Pipeline, KeepsFeedsInTheirOrderAndAtTheirPlaces) {
   lines[80] += " F1000";
   lines[120] += " F1500";
   const std::string text = head("G21") + joined(lines, "\n") + tail();
-  const SmoothResult result = smoothed(text, options_for("linuxcnc"));
+  const SmoothResult result = smoothed(text, options_for("grbl"));
   ASSERT_EQ(rewritten_runs(result), 1u);
   EXPECT_TRUE(verdict(text, result.text, 0.01).proved());
   std::vector<std::string> feeds;

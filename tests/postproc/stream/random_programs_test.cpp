@@ -154,13 +154,14 @@ void expect_promises(const std::string& text, SmoothOptions options) {
   const Verification found = verdict(text, result.text, options.tolerance_mm);
   EXPECT_TRUE(found.proved()) << found.violations.front().message;
   expect_rest_copied(text, result);
-  const double costs = options.output == Form::kAuto ? 1.006 : 1.16;  // a form asked for by name
-  EXPECT_LE(result.time_after_s, costs * result.time_before_s);
+  const double costs = options.output == Form::kAuto ? 1.006 : 1.5;  // a form asked for by name
+  const auto allowed = [&](double before) { return std::max(costs * before, before + 0.001); };
+  EXPECT_LE(result.time_after_s, allowed(result.time_before_s));
   for (const RunReport& run : result.runs) {
     EXPECT_EQ(run.reason.empty(), run.status == RunStatus::kRewritten);
     EXPECT_TRUE(run.proved);
     EXPECT_LE(run.deviation_mm, options.tolerance_mm);
-    EXPECT_LE(run.time_after_s, costs * run.time_before_s) << "line " << run.first_line;
+    EXPECT_LE(run.time_after_s, allowed(run.time_before_s)) << "line " << run.first_line;
   }
   EXPECT_EQ(smoothed(result.text, options).text, result.text) << "a second pass";
   options.threads = 2;

@@ -29,7 +29,7 @@ std::string star_program() {
 SmoothResult smoothed_star(ToleranceKind kind) {
   SmoothOptions options = options_for("grbl");
   options.method = Method::kGuo;
-  options.output = Form::kLines;
+  options.output = Form::kArcs;
   options.tolerance_mm = kTolerance;
   options.tolerance_kind = kind;
   return smoothed(star_program(), options);

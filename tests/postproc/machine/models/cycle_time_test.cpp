@@ -468,11 +468,10 @@ TEST(TimedChain, GivesTheTimesOfCuttingTime) {
         EXPECT_EQ(chain.time(machine, path, ChainEnd::kEndOfMotion),
                   cutting_time(pieces, machine, path, ChainEnd::kEndOfMotion));
       }
-      std::vector<TimedPiece> unlimited = pieces;
-      for (TimedPiece& piece : unlimited) piece.feed = 0;
-      chain.lift_feeds(machine);
-      EXPECT_EQ(chain.time(machine, PathMode::kBlending),
-                cutting_time(unlimited, machine, PathMode::kBlending));
+      std::vector<TimedPiece> slower = pieces;
+      for (TimedPiece& piece : slower) piece.feed *= 0.5;
+      EXPECT_EQ(TimedChain(pieces, machine, 0.5).time(machine, PathMode::kBlending),
+                cutting_time(slower, machine, PathMode::kBlending));
     }
   }
 }

@@ -55,13 +55,14 @@ Machine machine_with(double block_period) {
 
 struct Planning {
   std::string_view target = "linuxcnc";
-  Prefer prefer = Prefer::kTime;
+  double chord_height = 0.005;
   double block_period = 0.001;
+  double max_deviation = 0.005;
 
   [[nodiscard]] PlanOptions options(const Machine& machine) const {
     PlanOptions options{gcode::find_control(target), &machine};
-    options.prefer = prefer;
-    options.max_deviation = 0.005;
+    options.chord_height = chord_height;
+    options.max_deviation = max_deviation;
     return options;
   }
   [[nodiscard]] OutputPlan lines(const Smoothed& s) const {
@@ -75,7 +76,7 @@ struct Planning {
   }
 };
 
-constexpr Prefer kAll[] = {Prefer::kTime, Prefer::kAccuracy, Prefer::kSize};
+constexpr double kHeights[] = {0.0005, 0.0025, 0.006};
 
 void expect_chain(const OutputPlan& plan, const Run& run) {
   ASSERT_FALSE(plan.moves.empty());
@@ -103,8 +104,8 @@ TEST(PlanLines, ChainFromTheFirstPointToTheLastAndKeepTheDeviation) {
   for (const double feed : {100.0, 12000.0, 60000.0}) {
     Smoothed wavy = wave(feed);
     wavy.run.points.back() += Point3(1e-10, 0, 0);  // the run's own digits, not the curve's
-    for (const Prefer prefer : kAll) {
-      const OutputPlan plan = Planning{.prefer = prefer}.lines(wavy);
+    for (const double height : kHeights) {
+      const OutputPlan plan = Planning{.chord_height = height}.lines(wavy);
       EXPECT_EQ(plan.form, Form::kLines);
       expect_chain(plan, wavy.run);
       deviation_within(0.00505, plan, wavy.fair.curve);
@@ -112,12 +113,46 @@ TEST(PlanLines, ChainFromTheFirstPointToTheLastAndKeepTheDeviation) {
   }
 }
 
-TEST(PlanLines, SizeTakesNoMoreThanTimeAndTimeNoMoreThanAccuracy) {
-  const auto count = [wavy = wave(3000)](Prefer prefer) {
-    return Planning{.prefer = prefer}.lines(wavy).moves.size();
+// Their number goes with the root of their height.
+TEST(PlanLines, AreFewerTheHigherTheyAre) {
+  const Smoothed wavy = wave(100);
+  const auto count = [&](double height) {
+    return static_cast<double>(Planning{.chord_height = height}.lines(wavy).moves.size());
   };
-  EXPECT_LT(count(Prefer::kSize), count(Prefer::kTime));
-  EXPECT_LT(count(Prefer::kTime), count(Prefer::kAccuracy));
+  EXPECT_NEAR(count(0.001) / count(0.004), 2, 0.1);
+}
+
+TEST(PlanLines, AreNoMoreThanAskedFor) {
+  const Smoothed wavy = wave(100);
+  const Machine machine = machine_with(0.001);
+  PlanOptions options = Planning{.chord_height = 1e-4}.options(machine);
+  const geometry::MarkedPieces pieces(wavy.fair.curve);
+  const std::size_t many = plan_lines(wavy.run, wavy.fair, pieces, options).moves.size();
+  options.most_moves = many / 2;
+  const std::size_t few = plan_lines(wavy.run, wavy.fair, pieces, options).moves.size();
+  EXPECT_LE(few, many / 2);
+  EXPECT_GE(few, many / 3);
+}
+
+// A curve that is off its run by most of the tolerance for a third of the way leaves chords less.
+TEST(PlanLines, AreFinerWhereTheCurveLeavesLessOfTheTolerance) {
+  Smoothed wavy = wave(100);
+  wavy.fair.edge_deviations.assign(wavy.run.points.size() - 1, 0.001);
+  for (std::size_t edge = 40; edge < 80; ++edge) wavy.fair.edge_deviations[edge] = 0.0085;
+  const Machine machine = machine_with(0.001);
+  PlanOptions options = Planning{.chord_height = 0.01}.options(machine);
+  options.tolerance = 0.01;
+  const OutputPlan plan =
+      plan_lines(wavy.run, wavy.fair, geometry::MarkedPieces(wavy.fair.curve), options);
+  expect_chain(plan, wavy.run);
+  double there = 0;
+  double elsewhere = 0;
+  for (const PlannedMove& move : plan.moves) {
+    const double x = geometry::start_point(move.piece).x();
+    double& longest = x > 20.2 && x < 39 ? there : elsewhere;
+    longest = std::max(longest, geometry::length_of(move.piece));
+  }
+  EXPECT_LT(there, 0.6 * elsewhere);
 }
 
 struct Fineness {
@@ -143,34 +178,22 @@ TEST_P(PlanLinesFineness, IsWhatThePreferenceAndTheControlAsk) {
   EXPECT_LE(static_cast<std::size_t>(too_short), plan.moves.size() / test.one_in);
 }
 
-// At the crests (radius 5) a chord of deviation d is sqrt(8 * 5 * d) long: 0.316 mm at half of
-// 0.005, 0.447 at all of it. At 12000 mm/min two periods of 1 ms are 0.4 mm, and one is 0.2 mm.
+// At the crests (radius 5) a chord of height h is sqrt(8 * 5 * h) long: 0.316 mm at 0.0025, 0.55 at
+// 0.0075. At 12000 mm/min a period of 1 ms is 0.2 mm. Balanced, two thirds of the height are left.
 INSTANTIATE_TEST_SUITE_P(
     Plan, PlanLinesFineness,
     testing::Values(
-        Fineness{"HalfTheDeviationWhereTheControlHoldsTheFeed", {}, 6000, 0.0020, 0.00255, 0, 1},
-        Fineness{"MoreAtTheCrestsWhereItWouldSlowDown", {}, 12000, 0.0030, 0.00505, 0.4, 20},
-        Fineness{"ATenthOfTheRounding",  // which is 0.0005 mm
-                 {"grbl", Prefer::kAccuracy, 1e-6},
-                 100,
-                 3e-5,
-                 5.2e-5,
-                 0,
-                 1},
-        Fineness{"AccuracyIsNoFinerThanTheBlockPeriod",
-                 {.prefer = Prefer::kAccuracy},
-                 12000,
-                 0,
-                 0.00505,
-                 0.2,
-                 10}),
+        Fineness{"WhatIsAskedForWhereTheControlHoldsTheFeed", {.chord_height = 0.003}, 6000, 0.0015,
+                 0.0021, 0, 1},
+        Fineness{"MoreAtTheCrestsWhereItWouldSlowDown", {.chord_height = 0.0005}, 12000, 0.0003,
+                 0.00505, 0.2, 10}),
     [](const auto& test) { return test.param.name; });
 
 TEST(PlanLines, AStraightRunIsOneLine) {
   const auto f = [](double u) { return Point3(u, 2 * u, -u / 3); };
   const Smoothed straight = smoothed(geometry::curve_of(f, 0, 50, 100), 101, 1000);
-  for (const Prefer prefer : kAll) {
-    EXPECT_EQ((Planning{"grbl", prefer}.lines(straight).moves.size()), 1U);
+  for (const double height : kHeights) {
+    EXPECT_EQ((Planning{"grbl", height}.lines(straight).moves.size()), 1U);
   }
 }
 
@@ -296,10 +319,10 @@ TEST(PlanArcs, TakesThePlaneThatTheRunLiesIn) {
   }
 }
 
-TEST(PlanArcs, AccuracyIsNearer) {
+TEST(PlanArcs, AreMoreTheNearerTheyAre) {
   const Smoothed wavy = wave();
   const auto coarse = Planning().arcs(wavy);
-  const auto fine = Planning{.prefer = Prefer::kAccuracy}.arcs(wavy);
+  const auto fine = Planning{.max_deviation = 0.0005}.arcs(wavy);
   ASSERT_TRUE(coarse && fine);
   deviation_within(0.00055, *fine, wavy.fair.curve);
   EXPECT_GT(fine->moves.size(), coarse->moves.size());

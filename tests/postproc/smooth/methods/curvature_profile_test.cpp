@@ -45,11 +45,11 @@ TEST(CurvatureProfile, ExpectChordsWithinAFifthOfThoseThatArePlanned) {
   for (const double deviation : {0.0005, 0.002, 0.005}) {
     SCOPED_TRACE(testing::Message() << deviation << " mm");
     PlanOptions plan{options.target, options.machine};
-    plan.max_deviation = deviation;
+    plan.chord_height = deviation;
     const OutputPlan lines = plan_lines(run, *fair, geometry::MarkedPieces(fair->curve), plan);
     const auto planned = static_cast<double>(lines.moves.size());
     const double step = 10 * options.machine->block_period;
-    const double estimated = CurvatureProfile(fair->curve).chords(0.5 * deviation, 2 * step);
+    const double estimated = CurvatureProfile(fair->curve).chords(deviation, kPlans.periods * step);
     EXPECT_NEAR(estimated, planned, 0.2 * planned);
   }
 }

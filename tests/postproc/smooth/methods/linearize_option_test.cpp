@@ -74,7 +74,6 @@ struct Wave {
 
   [[nodiscard]] OutputPlan planned(Linearize linearize) const {
     PlanOptions options{gcode::find_control("linuxcnc"), find_machine("linuxcnc")};
-    options.prefer = Prefer::kSize;
     options.max_deviation = 0.005;
     options.linearize = linearize;
     return plan_lines(run, fair, geometry::MarkedPieces(fair.curve), options);

@@ -80,28 +80,5 @@ TEST(MethodsWorthTrying, SearchNoCornersOfARunThatHasMany) {
   EXPECT_EQ(methods_worth_trying(1, 80, 5, 10), std::vector{Method::kGuo});
 }
 
-// --- may_gain: the figures are far from the margins ----------------------------------------------
-
-class MayGain : public testing::Test {
- protected:
-  [[nodiscard]] bool may_gain(const Bound& bound) const {
-    RunFacts before;
-    before.times = {10, 10, 10, 10};
-    before.error = 0.004;
-    return postproc::may_gain(bound, before, 100, Prefer::kTime);
-  }
-};
-
-TEST_F(MayGain, WhatMayBecomeFasterSmallerOrNearer) {
-  EXPECT_TRUE(may_gain({.least_time = 5, .error = 0.01, .blocks = 900})) << "faster";
-  EXPECT_TRUE(may_gain({.least_time = 10, .error = 0.01, .blocks = 50})) << "smaller";
-  EXPECT_TRUE(may_gain({.least_time = 10, .error = 0.001, .blocks = 120})) << "nearer";
-}
-
-TEST_F(MayGain, NothingWithTheFeedHeldAndManyMoreBlocks) {
-  EXPECT_FALSE(may_gain({.least_time = 10, .error = 0.001, .blocks = 300}));
-  EXPECT_FALSE(may_gain({.least_time = 10, .error = 0.01, .blocks = 130}));
-}
-
 }  // namespace
 }  // namespace batten::postproc

@@ -1,9 +1,11 @@
-// Which candidate replaces a run. The figures are far from the margins, so that these are
-// promises and no copy of the margins.
+// Which candidate replaces a run: one order by cost, and what speaks against writing a form at all.
+// The figures are far from the margins, so that these are promises and no copy of the margins.
 #include "postproc/smooth/selection/selection.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,76 +18,43 @@ namespace {
 
 using Order = std::vector<std::size_t>;
 
-// Seconds, the same under every setting of the control.
-Times all(double seconds) { return {seconds, seconds, seconds, seconds}; }
+constexpr Prefer kAll[] = {Prefer::kTime, Prefer::kAccuracy, Prefer::kSize};
 
-Candidate candidate(double seconds, std::size_t blocks, double error) {
+Figures figures(double seconds, double blocks, double distance, double roughness = 0.2) {
+  return {{seconds, 2 * seconds, seconds / 1.5}, blocks, 20 * blocks, distance, roughness};
+}
+
+Candidate candidate(double seconds, double blocks, double distance) {
   Candidate c;
   c.method = "fair";
-  c.times = all(seconds);
-  c.text.blocks = blocks;
-  c.text.text = std::string(20 * blocks, 'x');
-  c.error = error;
+  c.figures = figures(seconds, blocks, distance);
   return c;
 }
 
 // A run of 100 blocks and 2000 bytes that takes 10 s and is 0.004 mm off.
 class Choose : public testing::Test {
  protected:
-  Choose() { run_.facts = {all(10), 1, 0, 0.004, 0.5}; }
+  Choose() {
+    CostScale& scale = run_.facts.scale;
+    scale.original = figures(10, 100, 0.004);
+    scale.alone = 10;
+    scale.printed = 3e-6;
+    scale.near = 3e-4;
+    scale.period = 0.001;
+  }
 
   [[nodiscard]] Selection choose(std::vector<Candidate> candidates) {
     run_.candidates = std::move(candidates);
-    const gcode::ModalState& state = read_.meaning.states.front();
-    return postproc::choose(run_, {read_.program, state, state, "\n", 100, 2000}, options_);
+    return postproc::choose(run_, options_);
   }
 
-  ReadText read_{"G21\n"};
+  [[nodiscard]] double cost(const Figures& f) const {
+    return cost_of(f, run_.facts.scale, options_.prefer);
+  }
+
   SmoothedRun run_;
   SmoothOptions options_ = options_for("linuxcnc");
 };
-
-// Of another one only bounds are known: what is left to chance speaks for it.
-TEST_F(Choose, KnowsWhichRivalsACandidateBeatsWhateverTheirTime) {
-  const gcode::ModalState& state = read_.meaning.states.front();
-  const RunContext context{read_.program, state, state, "\n", 100, 2000};
-  const auto beats = [&](const Candidate& c, const Bound& bound) {
-    return postproc::beats(c, bound, run_, context, options_);
-  };
-  const Candidate good = candidate(10, 50, 0.001);
-  EXPECT_TRUE(beats(good, {10, 0.004, 1})) << "four times as near";
-  EXPECT_TRUE(beats(good, {10, 0.001, 100})) << "half the blocks";
-  EXPECT_FALSE(beats(good, {9, 0.004, 1})) << "the other may be faster";
-  EXPECT_FALSE(beats(good, {10, 0.0002, 100})) << "the other is nearer";
-  EXPECT_FALSE(beats(good, {10, 0.001, 55})) << "the other may have fewer blocks after all";
-  EXPECT_FALSE(beats(candidate(12, 50, 0.001), {12, 0.004, 1})) << "slower than the run";
-  Candidate kinked = good;
-  kinked.times.exact_path = 30;
-  EXPECT_FALSE(beats(kinked, {10, 0.004, 1})) << "the other may have fewer kinks";
-  options_.prefer = Prefer::kAccuracy;
-  EXPECT_FALSE(beats(good, {10, 0.004, 1}));
-}
-
-// What a control could not hold its feed for before it can hold now: with the feed turned up, two
-// hundredths are a fair price, for no more blocks. As the program has it nothing may be slower.
-TEST_F(Choose, TakesWhatHasNoKinksWhereOnlyAFeedTurnedUpCostsALittle) {
-  run_.facts.kink = 0.02;
-  Candidate smooth = candidate(10, 100, 0.004);
-  smooth.times.flat_out = 10.2;
-  EXPECT_EQ(choose({smooth}).order, Order{0});
-  Candidate kinked = smooth;
-  kinked.kink = 0.01;
-  EXPECT_TRUE(choose({kinked}).order.empty()) << "half the kink is no tenth";
-  Candidate longer = smooth;
-  longer.text.blocks = 101;
-  EXPECT_TRUE(choose({longer}).order.empty());
-  Candidate dear = smooth;
-  dear.times.flat_out = 10.4;
-  EXPECT_TRUE(choose({dear}).order.empty());
-  Candidate slower = smooth;
-  slower.times.as_set = 10.2;
-  EXPECT_TRUE(choose({slower}).order.empty());
-}
 
 TEST_F(Choose, PassesOnWhyThereIsNoCandidate) {
   run_.reason = gcode::reason::kNoFit;
@@ -107,17 +76,34 @@ TEST_F(Choose, TakesWhatGainsAndSaysWhyItLeavesTheRest) {
   constexpr auto kTime = Prefer::kTime;
   constexpr auto kAuto = Form::kAuto;
   using namespace gcode::reason;
+  Candidate arcs = candidate(11, 20, 0.006);
+  arcs.form = Form::kArcs;
+  Candidate useless = candidate(11, 120, 0.006);
+  useless.form = Form::kArcs;
+  Candidate overridden = candidate(10, 50, 0.001);
+  overridden.figures.times.at_half = 21;
   for (const auto& [why, one, prefer, output, reason] : {
            OneCandidate{"faster", candidate(8, 100, 0.004), kTime, kAuto, kTaken},
+           OneCandidate{"faster, but farther", candidate(8, 100, 0.006), kTime, kAuto, kTaken},
+           OneCandidate{"faster, but larger", candidate(8, 150, 0.003), kTime, kAuto, kTaken},
            OneCandidate{"smaller", candidate(10, 50, 0.004), kTime, kAuto, kTaken},
            OneCandidate{"nearer", candidate(10, 100, 0.001), kTime, kAuto, kTaken},
+           OneCandidate{"half as far", candidate(10, 140, 0.001), Prefer::kAccuracy, kAuto, kTaken},
+           OneCandidate{"half as far for time", candidate(10, 140, 0.001), kTime, kAuto, kLarger},
            OneCandidate{"the same", candidate(10, 100, 0.004), kTime, kAuto, kNoGain},
            OneCandidate{"hardly better", candidate(9.99, 99, 0.0039), kTime, kAuto, kNoGain},
-           OneCandidate{"far more blocks", candidate(10, 300, 0.001), kTime, kAuto, kNoGain},
-           OneCandidate{"not fewer bytes", candidate(5, 100, 0), Prefer::kSize, kAuto, kNoGain},
-           OneCandidate{"not asked for", candidate(11, 20, 0.004), kTime, kAuto, kSlower},
-           OneCandidate{"asked for", candidate(11, 20, 0.004), kTime, Form::kArcs, kTaken},
-           OneCandidate{"too slow", candidate(13, 20, 0.004), kTime, Form::kArcs, kSlower},
+           OneCandidate{"larger, a little nearer", candidate(10, 120, 0.003), kTime, kAuto,
+                        kLarger},
+           OneCandidate{"larger", candidate(5, 101, 0), Prefer::kSize, kAuto, kLarger},
+           OneCandidate{"smaller, but farther", candidate(10, 20, 0.006), kTime, kAuto, kFarther},
+           OneCandidate{"for accuracy", candidate(10, 20, 0.006), Prefer::kAccuracy, kAuto,
+                        kFarther},
+           OneCandidate{"for size", candidate(10, 20, 0.006), Prefer::kSize, kAuto, kTaken},
+           OneCandidate{"slower", candidate(10.1, 20, 0.001), kTime, kAuto, kSlower},
+           OneCandidate{"slower at half the feed", overridden, kTime, kAuto, kSlower},
+           OneCandidate{"asked for", arcs, kTime, Form::kArcs, kTaken},
+           OneCandidate{"asked for, in vain", useless, kTime, Form::kArcs, kNoGain},
+           OneCandidate{"not asked for", arcs, kTime, kAuto, kSlower},
        }) {
     SCOPED_TRACE(why);
     options_.prefer = prefer;
@@ -128,23 +114,12 @@ TEST_F(Choose, TakesWhatGainsAndSaysWhyItLeavesTheRest) {
   }
 }
 
-// Whatever is gained besides, and under whichever setting it is slower.
-TEST_F(Choose, NeverTakesWhatIsSlower) {
-  std::vector<Candidate> slower(3, candidate(8, 50, 0.0005));
-  slower[0].times.as_set = 10.5;
-  slower[1].times.without_merging = 10.5;
-  slower[2].times.flat_out = 10.5;
-  for (const Prefer prefer : {Prefer::kTime, Prefer::kAccuracy, Prefer::kSize}) {
-    options_.prefer = prefer;
-    const Selection selection = choose(slower);
-    EXPECT_TRUE(selection.order.empty()) << name_of(prefer);
-    EXPECT_EQ(selection.reason, gcode::reason::kSlower) << name_of(prefer);
-  }
-}
-
-TEST_F(Choose, SaysNoGainWhereOneWasNotSlower) {
-  EXPECT_EQ(choose({candidate(12, 20, 0.001), candidate(10, 100, 0.004)}).reason,
-            gcode::reason::kNoGain);
+// A control's period is no time, and chords that cut the bends short are no faster path.
+TEST_F(Choose, TakesWhatIsSlowerByLessThanAnybodyMeasures) {
+  run_.facts.scale.original = figures(0.1, 100, 0.004);
+  run_.facts.scale.alone = 0.1;
+  EXPECT_EQ(choose({candidate(0.1009, 50, 0.001)}).order, Order{0});
+  EXPECT_TRUE(choose({candidate(0.1011, 50, 0.001)}).order.empty());
 }
 
 TEST_F(Choose, PutsTheBestFirst) {
@@ -164,20 +139,69 @@ TEST_F(Choose, PutsTheBestFirst) {
   }
 }
 
-TEST_F(Choose, PutsTheNearerFirstAmongEqualTimesThenTheSmallerThenThatOfFewerKinks) {
-  EXPECT_EQ(choose({candidate(8, 50, 0.002), candidate(8, 60, 0.0001)}).order, (Order{1, 0}));
+TEST_F(Choose, PutsTheNearerFirstAmongEqualTimesAndSizesAndTheSmallerAmongEqualTimesAndDistances) {
+  EXPECT_EQ(choose({candidate(8, 50, 0.002), candidate(8, 50, 0.0001)}).order, (Order{1, 0}));
   EXPECT_EQ(choose({candidate(8, 60, 0.002), candidate(8, 50, 0.002)}).order, (Order{1, 0}));
-  // Kinks cost stops under exact path, on any control.
   std::vector<Candidate> candidates(2, candidate(8, 50, 0.002));
-  candidates[1].times.exact_path = 3;
+  candidates[1].figures.roughness = 0.1;
   EXPECT_EQ(choose(candidates).order, (Order{1, 0}));
 }
 
-TEST_F(Choose, NamesEachCandidateOnce) {
-  Selection selection = choose({candidate(8, 50, 0.002), candidate(12, 5, 0),
-                                candidate(7, 50, 0.002), candidate(6, 50, 0.002)});
-  std::ranges::sort(selection.order);
-  EXPECT_EQ(selection.order, (Order{0, 2, 3}));
+// --- one order, whatever the candidates --------------------------------------------------------
+
+std::vector<Candidate> random_candidates(std::mt19937& random) {
+  std::uniform_real_distribution<double> part(0.3, 1.5);
+  std::vector<Candidate> all(1 + random() % 8);
+  for (Candidate& c : all) {
+    c = candidate(10 * (0.9 + 0.12 * part(random)), std::round(100 * part(random)),
+                  0.004 * part(random));
+  }
+  return all;
+}
+
+TEST_F(Choose, OneMoreCandidateNeverMakesTheResultWorse) {
+  std::mt19937 random(7);
+  int better = 0;
+  for (int i = 0; i < 2000; ++i) {
+    options_.prefer = kAll[i % 3];
+    std::vector<Candidate> candidates = random_candidates(random);
+    const Selection all = choose(candidates);
+    const double least = cost_to_beat(run_, options_);
+    EXPECT_LE(least, cost(run_.facts.scale.original));
+    if (!all.order.empty()) {
+      EXPECT_EQ(least, cost(candidates[all.order.front()].figures));
+    }
+    candidates.pop_back();
+    const Selection fewer = choose(candidates);
+    EXPECT_GE(cost_to_beat(run_, options_), least);
+    if (cost_to_beat(run_, options_) > least) ++better;
+    Order without = all.order;
+    std::erase(without, candidates.size());
+    EXPECT_EQ(fewer.order, without) << "the others keep their order";
+  }
+  EXPECT_GE(better, 100);
+}
+
+// Each preference has the least of its own figure, but for what the weights give away.
+TEST_F(Choose, EachPreferenceIsTheBestInItsOwnFigure) {
+  std::mt19937 random(11);
+  for (int i = 0; i < 500; ++i) {
+    const std::vector<Candidate> candidates = random_candidates(random);
+    const auto chosen = [&](Prefer prefer) {
+      options_.prefer = prefer;
+      const Selection selection = choose(candidates);
+      return selection.order.empty() ? run_.facts.scale.original
+                                     : candidates[selection.order.front()].figures;
+    };
+    const Figures fast = chosen(Prefer::kTime);
+    const Figures near = chosen(Prefer::kAccuracy);
+    const Figures small = chosen(Prefer::kSize);
+    for (const Figures& other : {fast, near, small}) {
+      EXPECT_LE(fast.times.programmed, 1.03 * other.times.programmed);
+      EXPECT_LE(small.blocks, 1.05 * other.blocks);
+      EXPECT_LE(near.distance, other.distance + 0.1 * 0.004);
+    }
+  }
 }
 
 }  // namespace
