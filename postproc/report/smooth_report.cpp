@@ -286,6 +286,26 @@ Json smooth_json(const SmoothReport& report) {
 
 std::string json_report(const SmoothReport& report) { return json_text(smooth_json(report)); }
 
+namespace {
+
+std::string percent_text(double before, double after) {
+  const double percent = before > 0 ? 100 * (after / before - 1) : 0;
+  return std::abs(percent) < 0.5 ? "" : fmt::format(", {:+.0f} %", percent);
+}
+
+// Of the runs that were tried. docs/algorithms/choice.md.
+std::string path_lines(const PathFigures& before, const PathFigures& after) {
+  return titled("distance",
+                fmt::format("{:.4f} -> {:.4f} mm  (rms, from the path that was meant{})",
+                            before.distance_mm, after.distance_mm,
+                            percent_text(before.distance_mm, after.distance_mm))) +
+         titled("roughness",
+                fmt::format("{:.3f} -> {:.3f}  (turns at joints, rad/sqrt(mm){})", before.roughness,
+                            after.roughness, percent_text(before.roughness, after.roughness)));
+}
+
+}  // namespace
+
 std::string summary_text(const SmoothReport& report) {
   const SmoothResult& result = report.result;
   std::string lines =
@@ -294,6 +314,7 @@ std::string summary_text(const SmoothReport& report) {
                   report.options.target->name);
   lines += titled("blocks", change(result.blocks_in, result.blocks_out));
   lines += titled("bytes", change(report.source.text().size(), result.bytes_out()));
+  if (result.path_before.length_mm > 0) lines += path_lines(result.path_before, result.path_after);
   add_runs(result, lines);
   lines += titled("cutting time", times(result, *report.options.machine));
   add_methods(result, lines);

@@ -40,6 +40,8 @@ struct SmoothReport {
 //   part.nc -> part.smooth.nc, for linuxcnc
 //     blocks        1785 -> 158    (-91 %)
 //     bytes         41620 -> 4105  (-90 %)
+//     distance      0.0031 -> 0.0004 mm  (rms, from the path that was meant, -87 %)
+//     roughness     0.248 -> 0.001  (turns at joints, rad/sqrt(mm), -100 %)
 //     runs          1 rewritten, 2 kept
 //                   kept: 2 runs, 9 blocks: too-short: ...
 //     cutting time  3.56 s -> 2.09 s  (machine linuxcnc, 1.7 times as fast)

@@ -13,6 +13,17 @@
 
 namespace batten::postproc {
 
+namespace {
+
+std::vector<TimedPiece> timed(const OutputPlan& plan) {
+  std::vector<TimedPiece> moves;
+  moves.reserve(plan.moves.size());
+  for (const PlannedMove& move : plan.moves) moves.push_back({move.piece, move.feed});
+  return moves;
+}
+
+}  // namespace
+
 std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& times,
                                         const OutputPlan& plan, const RunFacts& facts) {
   const auto& [run, context, options, scope] = task;
@@ -32,13 +43,14 @@ std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& tim
   Candidate candidate;
   candidate.form = plan.form;
   candidate.chords_for_steps = plan.chords_for_steps;
-  for (const PlannedMove& move : plan.moves) candidate.moves.push_back({move.piece, move.feed});
+  const std::vector<TimedPiece> moves = timed(plan);
   Figures& figures = candidate.figures;
-  figures.times = times.of_candidate(candidate.moves, facts.scale.original.times);
+  figures.times = times.of_candidate(moves, facts.scale.original.times);
   figures.blocks = static_cast<double>(text->blocks);
   figures.bytes = static_cast<double>(text->text.size());
-  figures.roughness = roughness_of(candidate.moves);
+  figures.roughness = roughness_of(moves);
   candidate.text = std::move(*text);
+  if (context.is_piece()) candidate.moves = moves;
   return candidate;
 }
 
@@ -192,10 +204,14 @@ class CurveForms {
   void offer_arcs() {
     // Each straight part is a line, and what joins two of them gently takes two arcs or more.
     const auto blocks = 3.0 * static_cast<double>(pieces_.straight_runs.size());
-    const auto plan = [this](double deviation) {
-      return plan_arcs(task_.run, curve_.path, pieces_, bends_, plan_within(deviation));
-    };
     std::vector<double> all = deviations();
+    const auto plan = [this, furthest = all.back()](double deviation) {
+      PlanOptions options = plan_within(deviation);
+      // Those are there to be near, not few.
+      const bool near = deviation < furthest && !wants_few_moves(task_.options);
+      if (near) options.arc_effort = geometry::ArcEffort::kBrief;
+      return plan_arcs(task_.run, curve_.path, pieces_, bends_, options);
+    };
     const bool flat =
         lies_across(task_.run, 0) || lies_across(task_.run, 1) || lies_across(task_.run, 2);
     if (!flat) {
@@ -237,13 +253,11 @@ class CurveForms {
     const auto arcs = plan_arcs(section, fair, geometry::MarkedPieces(fair.curve),
                                 CurvatureProfile(fair.curve), plan_within(deviations().back()));
     if (!arcs || arcs->moves.size() > last - first) return false;
-    std::vector<TimedPiece> moves;
-    for (const PlannedMove& move : arcs->moves) moves.push_back({move.piece, move.feed});
     const auto time = [&](const std::vector<TimedPiece>& chain) {
       return cutting_time(chain, *task_.options.machine, task_.context.after.path);
     };
     const std::vector<TimedPiece> before = timed_pieces(task_.run, first, last);
-    return time(moves) <= (1 + kFormTuning.tried_slower) * time(before);
+    return time(timed(*arcs)) <= (1 + kFormTuning.tried_slower) * time(before);
   }
 
   // Arcs in the band around the vertices themselves. Of arcs no more should come than there were:

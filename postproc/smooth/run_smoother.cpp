@@ -231,9 +231,6 @@ SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOp
   }
   const RunTask task{run, context, options, scope};
   result.reason = RunSmoother(task, times, shares, result).smooth();
-  if (!context.is_piece()) {
-    for (Candidate& candidate : result.candidates) candidate.moves = {};
-  }
   return result;
 }
 

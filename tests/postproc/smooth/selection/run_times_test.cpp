@@ -30,20 +30,5 @@ TEST(RunTimes, FollowTheOverrideAsFarAsTheMachineCan) {
   }
 }
 
-// What is slower as programmed is not timed further.
-TEST(RunTimes, OfASlowerCandidateAreThoseOfTheRun) {
-  const OneRun run(circle_program(100));
-  const RunContext context = run.context();
-  const RunTimes times(context, *find_machine("linuxcnc"));
-  std::vector<TimedPiece> motions = timed_pieces(run.run(), 0, 100);
-  const Times old = times.of_run(motions);
-  EXPECT_EQ(times.of_candidate(motions, old).at_half, old.at_half);
-  for (TimedPiece& each : motions) each.feed /= 2;
-  const Times slow = times.of_candidate(motions, old);
-  EXPECT_GT(slow.programmed, 1.5 * old.programmed);
-  EXPECT_EQ(slow.at_half, old.at_half);
-  EXPECT_TRUE(is_slower(slow, old, 0.001));
-}
-
 }  // namespace
 }  // namespace batten::postproc
