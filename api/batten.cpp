@@ -133,7 +133,8 @@ InnerOptions inner(const Options& given) {
   options.target = find_target(given.target, problems);
   if (given.target.empty()) problems.emplace_back("target: there is no ''");
   if (!given.machine.empty() || options.target != nullptr) {
-    const std::string choice = given.machine.empty() ? options.target->machine : given.machine;
+    const bool own = options.target == nullptr || !given.machine.empty();
+    const std::string choice = own ? given.machine : options.target->machine;
     all.own_machine = postproc::choose_machine(choice, "machine", problems);
     options.machine = all.own_machine.get();
   }

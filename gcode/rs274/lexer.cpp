@@ -317,7 +317,8 @@ const Token& LineLexer::keyword() {
 // comment for some (ISG): read as one when the brackets balance, which nobody reads as words.
 const Token& LineLexer::comment() {
   const std::size_t first_close = text_.find(')', at_);
-  const bool nested = text_.substr(at_ + 1, first_close - at_ - 1).find('(') != text_.npos;
+  const bool nested =
+      text_.substr(at_ + 1, first_close - at_ - 1).find('(') != std::string_view::npos;
   std::size_t end = at_;
   int depth = 0;
   do {

@@ -121,6 +121,7 @@ std::vector<SegmentCluster> clusters_near_other_parts(const std::vector<SegmentC
     if (plane.edges.add(from, to)) plane.clusters.push_back(i);
   }
   std::vector<bool> is_near;
+  is_near.reserve(clusters.size());
   for (const SegmentCluster& cluster : clusters) {
     is_near.push_back(part_of(cluster.first, cuts) != part_of(cluster.last, cuts));
   }

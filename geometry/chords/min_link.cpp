@@ -29,10 +29,10 @@ using Vertices = std::vector<LinkVertex>;
 // Few links in the tolerance tube of a curve in space, each as long as it can be.
 
 // The corners after the first, which is at (1, 0), and that again.
-const std::array<Point2, kLink.corners> kCircle = [] {
-  std::array<Point2, kLink.corners> corners;
-  for (int i = 0; i < kLink.corners; ++i) {
-    corners[static_cast<std::size_t>(i)] = unit_vector(2 * kPi * (i + 1) / kLink.corners);
+const std::array<Point2, MinLinkTuning::corners> kCircle = [] {
+  std::array<Point2, MinLinkTuning::corners> corners;
+  for (int i = 0; i < MinLinkTuning::corners; ++i) {
+    corners[static_cast<std::size_t>(i)] = unit_vector(2 * kPi * (i + 1) / MinLinkTuning::corners);
   }
   return corners;
 }();
@@ -65,7 +65,7 @@ class View {
 
   // Only ways through this circle from now on. Nothing is changed when there are none.
   bool pass(const Circle& circle) {
-    const double inner = circle.radius * std::cos(kPi / kLink.corners);
+    const double inner = circle.radius * std::cos(kPi / MinLinkTuning::corners);
     const double distance = (circle.center - eye_).dot(circle.along);
     if (distance <= 0) return true;  // beside the eye
     if (std::ranges::all_of(polygon_, [&](const Point2& p) {

@@ -203,7 +203,8 @@ Point3 BsplineCurve::point_at(double u) const {
 
 Vector3 BsplineCurve::derivative_at(double u, int order) const {
   const std::size_t span = basis_.find_span(u);
-  std::array<double, (kMaxDegree + 1) * (kMaxDegree + 1)> n{};
+  constexpr std::size_t kOrder = kMaxDegree + 1;
+  std::array<double, kOrder * kOrder> n{};
   if (order > degree()) return Vector3::Zero();
   basis_.evaluate_derivatives(span, std::clamp(u, first(), last()), order, n.data());
   Vector3 sum = Vector3::Zero();

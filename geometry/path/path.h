@@ -43,7 +43,7 @@ using Path = std::vector<PathPiece>;
 
 // Unit direction of travel at t; the zero vector where the piece has none (zero length).
 [[nodiscard]] Vector3 direction_at(const PathPiece& piece, double t);
-[[nodiscard]] Vector3 direction_at(const CubicBezier& piece, double t);
+[[nodiscard]] Vector3 direction_at(const CubicBezier& b, double t);
 
 [[nodiscard]] double radius_of(const Arc& arc);  // mm, at its start
 

@@ -66,7 +66,7 @@ double distance(const Point3& point, const Point3& a, const Point3& b) {
 struct Entry {
   std::uint32_t cell = 0;  // its number, of few: others may have the same
   std::uint32_t edge = 0;
-  auto operator<=>(const Entry&) const = default;
+  auto operator<=>(const Entry&) const = default;  // NOLINT(modernize-use-nullptr): a false alarm
 };
 
 // The cells of a grid in space through which the edges of a path go.

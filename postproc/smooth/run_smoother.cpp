@@ -271,7 +271,8 @@ void revert_growth(const CutRun& cut, std::span<RunState> pieces, const SmoothOp
   for (const RunState& piece : pieces) {
     const RunFacts& facts = piece.smoothed.facts;
     const Figures& old = facts.scale.original;
-    const Figures& now = piece.chosen() != nullptr ? piece.chosen()->figures : old;
+    const Candidate* chosen = piece.chosen();
+    const Figures& now = chosen != nullptr ? chosen->figures : old;
     length += facts.length;
     const auto add = [&](const Figures& figures, Figures& sum) {
       sum.blocks += figures.blocks;
@@ -285,10 +286,11 @@ void revert_growth(const CutRun& cut, std::span<RunState> pieces, const SmoothOp
   after.distance /= std::sqrt(length);
   if (objection_to(after, scale, options.prefer) != Objection::kLarger) return;
   for (RunState& piece : pieces) {
-    while (piece.chosen() != nullptr && (piece.chosen()->text.blocks > piece.context.blocks ||
-                                         piece.chosen()->text.text.size() > piece.context.bytes)) {
-      piece.reject(gcode::reason::kLarger);
-    }
+    const auto is_larger = [&](const Candidate* candidate) {
+      return candidate != nullptr && (candidate->text.blocks > piece.context.blocks ||
+                                      candidate->text.text.size() > piece.context.bytes);
+    };
+    while (is_larger(piece.chosen())) piece.reject(gcode::reason::kLarger);
   }
 }
 

@@ -221,6 +221,7 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> last_common_position(
   const std::vector<MotionEnd> old_ends = motion_ends(before);
   const std::vector<MotionEnd> new_ends = motion_ends(after);
   const EndsByPosition by_position(new_ends);
+  // NOLINTNEXTLINE(modernize-loop-convert): Clang 14 reads no reverse views
   for (auto old = old_ends.rbegin(); old != old_ends.rend(); ++old) {
     const auto apart = [&](const MotionEnd& end) { return std::abs(end.length - old->length); };
     const MotionEnd* nearest = nullptr;  // the first of those as near

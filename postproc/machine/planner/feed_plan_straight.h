@@ -25,7 +25,7 @@ struct StraightRun {
   double time = 0;    // s
 
   // At a time between 0 and the whole. Not for a run that is too short for its speeds.
-  [[nodiscard]] StraightState state_at(double time) const;
+  [[nodiscard]] StraightState state_at(double at) const;
 };
 
 // Speeds above limits.speed count as that. Where the way is too short to change from the one speed

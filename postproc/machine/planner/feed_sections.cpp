@@ -419,8 +419,7 @@ class GridMaker {
     const double count = std::max(1.0, rule_.joins_parts ? std::round(nodes_) : std::ceil(nodes_));
     double passed = 0;
     double next = 1;
-    for (std::size_t i = 0; i < group_.size(); ++i) {
-      const Rise& rise = group_[i];
+    for (const Rise& rise : group_) {
       double at = rise.from();
       for (; next < count && next * nodes_ / count < passed + rise.nodes; ++next) {
         const double share = (next * nodes_ / count - passed) / rise.nodes;
