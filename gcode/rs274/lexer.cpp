@@ -327,7 +327,7 @@ const Token& LineLexer::comment() {
   } while (depth > 0 && end < text_.size());
   // Where nothing closes it, words behind the first closing bracket would be read by some controls.
   const std::size_t said = depth == 0 ? end : first_close + 1;
-  const bool closed = first_close != text_.npos;
+  const bool closed = first_close != std::string_view::npos;
   if (closed && (nested || depth > 0) && after_blanks(text_, said) < text_.size()) {
     return unreadable(at_, "a comment in a comment, and words after it");
   }

@@ -41,6 +41,7 @@ struct Codes {
   std::array<Code, 7> each;
   std::size_t count;
 };
+// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding): rows of a table
 struct Meaning {
   Codes codes;
   CodeGroup group = CodeGroup::kUnknown;

@@ -54,7 +54,8 @@ class FlatEdges {
 struct EdgePair {
   std::uint32_t first = 0;
   std::uint32_t second = 0;  // above `first`
-  friend auto operator<=>(const EdgePair& a, const EdgePair& b) = default;
+  friend auto operator<=>(const EdgePair& a,
+                          const EdgePair& b) = default;  // NOLINT(modernize-use-nullptr)
 };
 
 inline constexpr std::size_t kMostPairs = 200;  // for each edge; more are a heap

@@ -35,8 +35,9 @@ enum class Linearize { kMinLink, kChord, kIlca, kBlca };
 
 // A value that the user chooses by name.
 template <typename Value>
+// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding): rows of short tables
 struct Choice {
-  Value value;  // NOLINT(clang-analyzer-optin.performance.Padding): rows of short tables
+  Value value;
   std::string_view name;
   std::string_view text;  // one line for the user
   bool in_help = true;    // false: taken, but only `batten methods` and messages name it
