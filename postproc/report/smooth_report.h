@@ -26,9 +26,8 @@ struct SmoothReport {
 // the same input and options (threads do not show).
 //
 //   batten, options, input, output, runs[], reasons[], deviation_mm, deviation_line,
-//   time_before_s, time_after_s, path_before, path_after {length_mm, distance_mm, roughness}, proved,
-//   understood, diagnostics[], and profile where one
-//   was given
+//   time_before_s, time_after_s, path_before, path_after {length_mm, distance_mm, roughness},
+//   proved, understood, diagnostics[], and profile where one was given
 //
 // Bytes of names and messages that are not UTF-8 become U+FFFD; numbers that are not finite
 // become null.

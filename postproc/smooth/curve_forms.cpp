@@ -133,7 +133,7 @@ class CurveForms {
                                [&](const Candidate& c) { return c.form == form; });
   }
 
-  // The most promising ones first, until no other one could be better.
+  // In the order in which they were offered, but for those that what there is then beats.
   void make_best() {
     const bool all = task_.scope == CandidateScope::kAll || task_.context.is_piece();
     for (const Offer& offer : offers_) {

@@ -26,6 +26,10 @@ struct RunTuning {
   double lent_to_fair = 0.5;
   // Chords that are farther from the path than by so many times their rounding are there for it.
   double of_rounding = 3;
+  // Chords that are so far from the path (rms), in parts of the tolerance of the curve, may leave
+  // no room to pass their ends; with so many times the tolerance there is.
+  double takes_much = 0.35;
+  double more_room = 3;
   double side_margin = 0.25;  // of the form's share, on the side where the run must not be cut
   double sharp_corner = 30 * geometry::kPi / 180;  // radians: corners that turn more may stay
   // So many of the pieces are reverted at once that a long run is timed a few times only.
@@ -69,7 +73,7 @@ class RunSmoother {
     const auto fair = curve_of(Method::kFair, run().points, meant);
     if (method == Method::kBest || method == Method::kFair) {
       if (fair) {
-        find_meant(fair->path);
+        find_meant(fair->path, meant);
         add_candidates_of(*fair);
         try_simpler(meant);
         if (options().prefer != Prefer::kAccuracy && may_win_time()) {
@@ -78,7 +82,7 @@ class RunSmoother {
         if (method == Method::kBest) try_others();
       }
     } else if (const auto curve = curve_of(method, run().points, curve_request(method))) {
-      find_meant((fair ? *fair : *curve).path);
+      find_meant((fair ? *fair : *curve).path, meant);
       add_candidates_of(*curve);
     }
     if (!fits_) return gcode::reason::kNoFit;
@@ -106,15 +110,23 @@ class RunSmoother {
     return request;
   }
 
-  // The fair curve is the path that was meant.
-  void find_meant(const geometry::SmoothCurve& fair) {
+  // The path that was meant is the curve through the vertices. Where chords take much of the
+  // tolerance, the fair curve has to run between vertices and chords: then it is fitted once more,
+  // with more room.
+  void find_meant(const geometry::SmoothCurve& fair, CurveRequest request) {
     fair_ = fair;
     meant_.emplace(*fair_);
     RunFacts& facts = result_.facts;
     facts.noise = fair.noise;
     facts.fair_curvature = CurvatureProfile(fair.curve).greatest();
     facts.scale.original.distance = meant_->distance_of(run());
-    facts.scale.known = kBounds.known * fair.noise;
+    if (facts.scale.original.distance > kRun.takes_much * request.tolerance) {
+      request.tolerance *= kRun.more_room;
+      const auto through = curve_of(Method::kFair, run().points, request);
+      if (through) fair_ = through->path;
+      facts.scale.original.distance = meant_->distance_of(run());
+    }
+    facts.scale.known = kBounds.known * fair_->noise;
   }
 
   void try_curve(Method method, const CurveRequest& request) {
@@ -255,43 +267,51 @@ double cost_of(const RunState& piece) {
   return cost.programmed + cost.at_half + cost.at_one_and_half;
 }
 
-}  // namespace
-
-namespace {
-
-// Pieces may be more blocks where they are faster or nearer; of the whole that has to be true, too.
-void revert_growth(const CutRun& cut, std::span<RunState> pieces, const SmoothOptions& options) {
+// What the whole has with its pieces as they are, and the scale of what it had.
+struct WholeFigures {
   CostScale scale;
-  scale.original.times = cut.before;
-  scale.alone = cut.before.programmed;
-  scale.near = kCost.near * options.tolerance_mm;
   Figures after;
-  after.times = times_of(chain_with(cut, pieces), *options.machine, cut.path);
+};
+
+WholeFigures figures_with(const CutRun& cut, std::span<const RunState> pieces,
+                          const SmoothOptions& options) {
+  WholeFigures whole;
+  Figures& before = whole.scale.original;
   double length = 0;
   for (const RunState& piece : pieces) {
     const RunFacts& facts = piece.smoothed.facts;
     const Figures& old = facts.scale.original;
     const Candidate* chosen = piece.chosen();
-    const Figures& now = chosen != nullptr ? chosen->figures : old;
     length += facts.length;
     const auto add = [&](const Figures& figures, Figures& sum) {
       sum.blocks += figures.blocks;
       sum.bytes += figures.bytes;
       sum.distance = std::hypot(sum.distance, figures.distance * std::sqrt(facts.length));
     };
-    add(old, scale.original);
-    add(now, after);
+    add(old, before);
+    add(chosen != nullptr ? chosen->figures : old, whole.after);
   }
-  scale.original.distance /= std::sqrt(length);
-  after.distance /= std::sqrt(length);
-  if (objection_to(after, scale, options.prefer) != Objection::kLarger) return;
-  for (RunState& piece : pieces) {
-    const auto is_larger = [&](const Candidate* candidate) {
-      return candidate != nullptr && (candidate->text.blocks > piece.context.blocks ||
-                                      candidate->text.text.size() > piece.context.bytes);
-    };
-    while (is_larger(piece.chosen())) piece.reject(gcode::reason::kLarger);
+  if (length > 0) {
+    before.distance /= std::sqrt(length);
+    whole.after.distance /= std::sqrt(length);
   }
+  before.times = cut.before;
+  whole.after.times = times_of(chain_with(cut, pieces), *options.machine, cut.path);
+  whole.scale.alone = cut.before.programmed;
+  whole.scale.near = kCost.near * options.tolerance_mm;
+  whole.scale.period = control_period(*options.machine);
+  return whole;
+}
+
+void keep(RunState& piece, std::string_view why) {
+  while (piece.chosen() != nullptr) piece.reject(why);
+}
+
+bool is_worse_in(const RunState& piece, Objection objection) {
+  const Figures& now = piece.chosen()->figures;
+  const Figures& old = piece.smoothed.facts.scale.original;
+  return objection == Objection::kLarger ? now.blocks > old.blocks || now.bytes > old.bytes
+                                         : now.distance > old.distance;
 }
 
 }  // namespace
@@ -332,27 +352,29 @@ void revert_costly_pieces(CutRun& cut, std::vector<RunState>& works, const Smoot
     cut.before =
         times_of(timed_pieces(cut.run, 0, cut.run.points.size() - 1), *options.machine, cut.path);
   }
-  cut.after = cut.before;
   const auto by_cost = [](const RunState* a, const RunState* b) {
     const double cost_a = cost_of(*a);
     const double cost_b = cost_of(*b);
     return cost_a != cost_b ? cost_a < cost_b : a->section < b->section;
   };
   std::sort(rewritten.begin(), rewritten.end(), by_cost);
-  revert_growth(cut, pieces, options);
-  std::erase_if(rewritten, [](const RunState* piece) { return piece->chosen() == nullptr; });
   while (!rewritten.empty()) {
-    cut.after = times_of(chain_with(cut, pieces), *options.machine, cut.path);
-    const double period = control_period(*options.machine);
-    if (!is_slower(cut.after, cut.before, period)) return;
-    const std::size_t giving = std::max<std::size_t>(1, rewritten.size() / kRun.reverted_share);
-    for (std::size_t i = 0; i < giving; ++i) {
-      RunState& piece = *rewritten.back();
-      rewritten.pop_back();
-      while (piece.chosen() != nullptr) piece.reject(gcode::reason::kSlower);
+    const WholeFigures whole = figures_with(cut, pieces, options);
+    cut.after = whole.after.times;
+    const Objection objection = objection_to(whole.after, whole.scale, options.prefer);
+    if (objection == Objection::kSlower) {
+      const std::size_t giving = std::max<std::size_t>(1, rewritten.size() / kRun.reverted_share);
+      for (RunState* piece : std::span(rewritten).last(giving)) keep(*piece, reason_for(objection));
+    } else if (objection == Objection::kLarger || objection == Objection::kFarther) {
+      for (RunState* piece : rewritten) {
+        if (is_worse_in(*piece, objection)) keep(*piece, reason_for(objection));
+      }
+    } else {
+      return;
     }
-    cut.after = cut.before;
+    std::erase_if(rewritten, [](const RunState* piece) { return piece->chosen() == nullptr; });
   }
+  cut.after = cut.before;
 }
 
 }  // namespace batten::postproc

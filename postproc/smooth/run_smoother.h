@@ -49,7 +49,8 @@ struct CutRun {  // into pieces, which follow each other in the list of works
 };
 
 // Pieces were chosen one by one, each beside unchanged neighbours. Gives back the original blocks
-// of those that cost most, until the run as a whole is not slower than it was.
+// of those that cost most, are larger or are farther off, until nothing speaks against the run as a
+// whole (postproc/smooth/selection/cost.h).
 void revert_costly_pieces(CutRun& cut, std::vector<RunState>& works, const SmoothOptions& options);
 
 }  // namespace batten::postproc

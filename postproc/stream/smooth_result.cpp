@@ -59,7 +59,8 @@ class Reporter {
       before += part->smoothed.facts.scale.original.times;
       after += (chosen != nullptr ? chosen->figures : part->smoothed.facts.scale.original).times;
     }
-    const double share_before = before.programmed > 0 ? cut.before.programmed / before.programmed : 1;
+    const double share_before =
+        before.programmed > 0 ? cut.before.programmed / before.programmed : 1;
     const double share_after = after.programmed > 0 ? cut.after.programmed / after.programmed : 1;
     r.time_before_s *= share_before;
     r.time_after_s *= share_after;

@@ -272,6 +272,7 @@ TEST(SmoothCurve, DeviatesAlikeOnNeighbouringRows) {
   }
   std::sort(differences.begin(), differences.end());
   const double most = differences[differences.size() * 95 / 100];
+  RecordProperty("difference_nm", static_cast<int>(1e6 * most));
   EXPECT_LE(most, kTolerance / 4);
 }
 

@@ -106,7 +106,7 @@ struct FairTuning {
   // Where the curve through the vertices would leave the chords by more than this part of the
   // limit, the vertices no longer bind: the curve runs between vertices and chords. Otherwise it
   // would have to swing out to each vertex.
-  double too_high = 0.7;
+  double too_high = 0.88;
   // Printed coordinates scatter by their rounding, 0.58 of its greatest error (rms), and the curve
   // leaves this part of that error: with less it would follow the rounding itself. So near a curve
   // is worth its knots only where chords leave the path by more than the rounding does: it may

@@ -38,7 +38,7 @@ struct OutputPlan {
   std::vector<PlannedMove> moves;
   std::vector<PlannedCurve> curves;         // in order
   std::vector<std::size_t> comments_after;  // of the run's last blocks
-  bool chords_for_steps = false;  // see plan_lines
+  bool chords_for_steps = false;            // see plan_lines
 };
 
 struct PlanOptions {
@@ -60,7 +60,7 @@ struct PlanOptions {
 // Parts are of max_deviation unless said otherwise.
 struct PlanTuning {
   // Lines.
-  double coarser = 4;                 // the next fineness that is tried: chords twice as long
+  double coarser = 4;           // the next fineness that is tried: chords twice as long
   double balanced = 1.45;       // so much higher balanced chords may be: two thirds of it are left
   double least_room = 0.3;      // where the curve comes near to the limit: the proof decides
   double height_step = 0.8;     // from one height to the next lower one
@@ -69,7 +69,7 @@ struct PlanTuning {
   // Arcs. There are few that the target refuses: too tight, too short.
   double arc_chords = 0.1;      // kept for chords in their place
   double spline_chords = 0.03;  // the same where they are refused after rounding only
-  int newton_steps = 3;       // to the parameter of an end, from about the right one
+  int newton_steps = 3;         // to the parameter of an end, from about the right one
   double reversal = 170 * geometry::kPi / 180;  // greater turns stay: see geometry::find_features
   double no_corner = 1e-3;  // radians between the two ends of a closed run that make no corner
   // Curves.
@@ -88,10 +88,10 @@ inline constexpr PlanTuning kPlans;
 // Lines along the curve, as `linearize` says; chords where the equal steps of ilca would be too
 // many (geometry/chords/ilca.h), which the plan says. minlink, ilca and blca take all of
 // max_deviation; the vertices of minlink alone leave the curve. Chords are balanced
-// (geometry/chords/linearize.h) and chord_height high, but coarser where the control would slow down
-// for so short ones, or where they would be more than most_moves, and finer where the curve leaves
-// too little of the tolerance: no further from the curve than max_deviation, or where `tolerance` is
-// given, than the curve leaves of it there.
+// (geometry/chords/linearize.h) and chord_height high, but coarser where the control would slow
+// down for so short ones, or where they would be more than most_moves, and finer where the curve
+// leaves too little of the tolerance: no further from the curve than max_deviation, or where
+// `tolerance` is given, than the curve leaves of it there.
 [[nodiscard]] OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair,
                                     const geometry::MarkedPieces& pieces,
                                     const PlanOptions& options);

@@ -176,7 +176,9 @@ OutputPlan lines_of(const Run& run, const geometry::SmoothCurve& fair, const Mar
 
 OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair, const MarkedPieces& pieces,
                       const PlanOptions& options) {
-  const double highest = std::max(kPlans.balanced * options.max_deviation, options.chord_height);
+  // Where the tolerance is known, each section has its own limit (chord_sections).
+  const double deviation = std::max(options.max_deviation, options.tolerance);
+  const double highest = std::max(kPlans.balanced * deviation, options.chord_height);
   double height = options.chord_height;
   OutputPlan plan = lines_of(run, fair, pieces, options, height);
   if (options.linearize != Linearize::kChord) return plan;

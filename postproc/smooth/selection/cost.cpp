@@ -36,7 +36,8 @@ double time_of(const Figures& figures, const CostScale& scale) {
   return 1 + (figures.times.programmed - scale.original.times.programmed) / scale.alone;
 }
 
-// What is more than it was counts by its logarithm: a run of ten blocks may become one of a hundred.
+// What is more than it was counts by its logarithm: a run of ten blocks may become one of a
+// hundred.
 double counted(double ratio) { return ratio > 1 ? 1 + std::log(ratio) : ratio; }
 
 double distance_before(const CostScale& scale) {
@@ -51,7 +52,8 @@ double cost_of(const Figures& figures, const CostScale& scale, Prefer prefer) {
       std::max({figures.distance, scale.printed, scale.known}) / distance_before(scale);
   const double roughness = std::max(figures.roughness, kCost.no_kinks) /
                            std::max(scale.original.roughness, kCost.no_kinks);
-  return weights.time * time_of(figures, scale) + weights.size * counted(size_of(figures, scale.original)) +
+  return weights.time * time_of(figures, scale) +
+         weights.size * counted(size_of(figures, scale.original)) +
          weights.distance * counted(distance) + weights.roughness * counted(roughness);
 }
 

@@ -34,7 +34,7 @@ struct CostTuning {
   // Never slower. The path that was meant is longer than chords inside its bends, by about this.
   double longer = 1e-3;
   double overridden = 0.02;  // slower at other settings of the override, at most
-  // A little time for much, and what is farther off or larger only for time or for nearness.
+  // What a gain is, and what makes up for being larger or farther off.
   double clearly_faster = 0.99;
   double clearly_smaller = 0.9;
   double clearly_nearer = 0.7;

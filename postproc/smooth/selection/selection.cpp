@@ -13,6 +13,19 @@ namespace batten::postproc {
 
 namespace {
 
+struct Ranked {
+  bool forced = false;
+  double cost = 0;
+  std::size_t index = 0;
+
+  // Forced ones first.
+  friend bool operator<(const Ranked& a, const Ranked& b) {
+    return std::tuple(!a.forced, a.cost, a.index) < std::tuple(!b.forced, b.cost, b.index);
+  }
+};
+
+}  // namespace
+
 std::string_view reason_for(Objection objection) {
   switch (objection) {
     case Objection::kSlower:
@@ -28,19 +41,6 @@ std::string_view reason_for(Objection objection) {
   }
   return {};
 }
-
-struct Ranked {
-  bool forced = false;
-  double cost = 0;
-  std::size_t index = 0;
-
-  // Forced ones first.
-  friend bool operator<(const Ranked& a, const Ranked& b) {
-    return std::tuple(!a.forced, a.cost, a.index) < std::tuple(!b.forced, b.cost, b.index);
-  }
-};
-
-}  // namespace
 
 bool is_forced(Form form, const RunFacts& facts, const SmoothOptions& options) {
   return options.output != Form::kAuto && form == options.output && form != facts.form;

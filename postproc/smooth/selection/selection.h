@@ -15,6 +15,9 @@ struct Selection {
   std::string_view reason;         // why there is none
 };
 
+// The reason id; empty for kNone.
+[[nodiscard]] std::string_view reason_for(Objection objection);
+
 // Whether a candidate is of the form that the user asked for by name, and the run as it is not:
 // then the run is rewritten so, whatever it costs, where any figure gains by it.
 [[nodiscard]] bool is_forced(Form form, const RunFacts& facts, const SmoothOptions& options);

@@ -111,10 +111,11 @@ TEST_F(SmoothReports, HaveTheirFieldsInAFixedOrder) {
       "time_before_s time_after_s path_before path_after proved understood diagnostics ");
   EXPECT_EQ(keys_of(report["input"]), "file bytes blocks units ");
   EXPECT_EQ(keys_of(report["output"]), "file bytes blocks target ");
-  EXPECT_EQ(keys_of(report["runs"][0]),
-            "first_line last_line points status reason method methods form blocks_in blocks_out "
-            "deviation_mm proved noise_mm max_curvature_before max_curvature_after bytes_in bytes_out "
-            "path_before path_after time_before_s time_after_s ");
+  EXPECT_EQ(
+      keys_of(report["runs"][0]),
+      "first_line last_line points status reason method methods form blocks_in blocks_out "
+      "deviation_mm proved noise_mm max_curvature_before max_curvature_after bytes_in bytes_out "
+      "path_before path_after time_before_s time_after_s ");
 }
 
 TEST_F(SmoothReports, SayTheFiguresOfTheResultToPrograms) {

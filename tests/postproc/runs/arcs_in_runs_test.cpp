@@ -77,6 +77,12 @@ TEST(KinkedArcs, BecomeSmoothInNoMoreBlocks) {
   const double after = greatest_kink(cuts_of(result.text));
   const double planned_before = planned_time_of(program);
   const double planned_after = planned_time_of(result.text);
+  RecordProperty("kink_before_deg", std::to_string(before / kDegree));
+  RecordProperty("kink_after_deg", std::to_string(after / kDegree));
+  RecordProperty("blocks_before", std::to_string(result.blocks_in));
+  RecordProperty("blocks_after", std::to_string(result.blocks_out));
+  RecordProperty("planned_before_s", std::to_string(planned_before));
+  RecordProperty("planned_after_s", std::to_string(planned_after));
   EXPECT_GT(before, 0.5 * kDegree);
   EXPECT_LT(after, 0.1 * before);
   EXPECT_LE(cuts_of(result.text).size(), cuts_of(program).size());
@@ -119,6 +125,7 @@ TEST(KinkedArcs, StayInTheBandOrAsTheyAre) {
     EXPECT_LE(greatest_kink(cuts_of(result.text)), greatest_kink(cuts_of(program)));
     EXPECT_LE(time_of(result.text), 1.01 * time_of(program));
   }
+  RecordProperty("rewritten", std::to_string(rewritten));
   EXPECT_GE(rewritten, kOutlines / 2);
 }
 

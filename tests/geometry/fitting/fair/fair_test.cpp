@@ -96,6 +96,8 @@ TEST(SmoothCurve, OfASurfaceProgramIsNearerToTheSurfaceThanItsChords) {
       }
     }
   }
+  RecordProperty("chords_nm", static_cast<int>(1e6 * chords.root()));
+  RecordProperty("fair_nm", static_cast<int>(1e6 * fair.root()));
   // Chords of constant curvature whose greatest distance is 0.005 have sqrt(8/15) of it.
   EXPECT_NEAR(chords.root(), 0.0035, 0.0003);
   EXPECT_LE(fair.root(), 0.5 * 0.0035);
@@ -110,6 +112,7 @@ TEST(SmoothCurve, OfANoisyLineIsStraight) {
   EXPECT_NEAR(greatest_curvature(points), 0.12 / (0.06 * 0.06 + 0.25), 1e-9);
   const auto path = fair_path(points, with_tolerance(0.05));
   ASSERT_TRUE(path);
+  RecordProperty("curvature_nano", static_cast<int>(1e9 * greatest_curvature(path->curve)));
   EXPECT_LE(greatest_curvature(path->curve), 1e-6);
 }
 
@@ -121,6 +124,7 @@ TEST(SmoothCurve, OfANoisyHalfCircleIsNearlyTheCircle) {
   const auto path = fair_path(points, with_tolerance(0.05));
   ASSERT_TRUE(path);
   const double greatest = greatest_curvature(path->curve);
+  RecordProperty("curvature_micro", static_cast<int>(1e6 * greatest));
   EXPECT_LE(greatest, 0.06);
   EXPECT_GE(greatest, 0.049);  // a half circle cannot be flatter than 1 / 20.05 throughout
 }

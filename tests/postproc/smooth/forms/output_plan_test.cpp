@@ -180,14 +180,22 @@ TEST_P(PlanLinesFineness, IsWhatThePreferenceAndTheControlAsk) {
 
 // At the crests (radius 5) a chord of height h is sqrt(8 * 5 * h) long: 0.316 mm at 0.0025, 0.55 at
 // 0.0075. At 12000 mm/min a period of 1 ms is 0.2 mm. Balanced, two thirds of the height are left.
-INSTANTIATE_TEST_SUITE_P(
-    Plan, PlanLinesFineness,
-    testing::Values(
-        Fineness{"WhatIsAskedForWhereTheControlHoldsTheFeed", {.chord_height = 0.003}, 6000, 0.0015,
-                 0.0021, 0, 1},
-        Fineness{"MoreAtTheCrestsWhereItWouldSlowDown", {.chord_height = 0.0005}, 12000, 0.0003,
-                 0.00505, 0.2, 10}),
-    [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(Plan, PlanLinesFineness,
+                         testing::Values(Fineness{"WhatIsAskedForWhereTheControlHoldsTheFeed",
+                                                  {.chord_height = 0.003},
+                                                  6000,
+                                                  0.0015,
+                                                  0.0021,
+                                                  0,
+                                                  1},
+                                         Fineness{"MoreAtTheCrestsWhereItWouldSlowDown",
+                                                  {.chord_height = 0.0005},
+                                                  12000,
+                                                  0.0003,
+                                                  0.00505,
+                                                  0.2,
+                                                  10}),
+                         [](const auto& test) { return test.param.name; });
 
 TEST(PlanLines, AStraightRunIsOneLine) {
   const auto f = [](double u) { return Point3(u, 2 * u, -u / 3); };
