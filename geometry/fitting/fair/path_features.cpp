@@ -127,25 +127,60 @@ void drop_corners_of_noise(std::span<const Point3> points, std::span<const doubl
   }
 }
 
-// Which edges were meant as lines: those longer than the first edge at either end that is not
-// their straight continuation. A corner or an end of the path there counts as an edge of no length.
-std::vector<bool> lines_of(const PathFeatures& f) {
-  const std::size_t edges = f.parameters.size() - 1;
-  const auto length = [&](std::size_t e) { return f.parameters[e + 1] - f.parameters[e]; };
-  // The length beyond vertex v, seen along the path, where `next` is the edge behind it and
-  // `further` what lies beyond that one.
-  const auto beyond = [&](std::size_t v, std::size_t next, double further) {
-    if (f.kinds[v] != VertexKind::kSmooth) return 0.0;
-    return f.turns[v] > kFeatureTuning.no_turn ? length(next) : further;
+// Where sections of edges end that together are as good as one straight edge: indices of vertices,
+// increasing, the first and the last included. `off`: mm, by which their vertices may be off it.
+std::vector<std::size_t> straight_ends(std::span<const Point3> points, const PathFeatures& f,
+                                       double off) {
+  std::vector<std::size_t> ends = {0};
+  Eigen::Matrix<double, 3, 2> across;  // of the section's first edge
+  Eigen::Array2d least;                // slopes from it that pass all vertices so far
+  Eigen::Array2d most;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Point3& start = points[ends.back()];
+    const double along = f.parameters[i] - f.parameters[ends.back()];
+    const double room = std::max(off / along, kFeatureTuning.no_turn);
+    const bool is_first = i == ends.back() + 1;
+    if (!is_first) {
+      const Eigen::Array2d slope = across.transpose() * (points[i] - start) / along;
+      const bool goes_on =
+          f.kinds[i - 1] == VertexKind::kSmooth && (slope >= least).all() && (slope <= most).all();
+      if (goes_on) {
+        least = least.max(slope - room);
+        most = most.min(slope + room);
+        continue;
+      }
+      ends.push_back(i - 1);
+      --i;
+      continue;
+    }
+    const Vector3 direction = (points[i] - start).normalized();
+    across.col(0) = direction.unitOrthogonal();
+    across.col(1) = direction.cross(across.col(0));
+    least.setConstant(-room);
+    most.setConstant(room);
+  }
+  ends.push_back(points.size() - 1);
+  return ends;
+}
+
+// Which edges were meant as lines: those that alone or with their straight continuation are longer
+// than what is next to them. A corner or an end of the path there counts as nothing.
+std::vector<bool> lines_of(std::span<const Point3> points, const PathFeatures& f,
+                           const FeatureOptions& options) {
+  const double off = std::max(kFeatureTuning.ends_apart * options.rounding,
+                              kFeatureTuning.straight * options.tolerance);
+  const std::vector<std::size_t> ends = straight_ends(points, f, off);
+  // The length of such a section, seen from the vertex that it begins or ends with.
+  const auto length = [&](std::size_t section, std::size_t seen_from) {
+    if (f.kinds[seen_from] != VertexKind::kSmooth) return 0.0;
+    return f.parameters[ends[section + 1]] - f.parameters[ends[section]];
   };
-  std::vector<double> after(edges, 0);
-  for (std::size_t e = edges - 1; e-- > 0;) after[e] = beyond(e + 1, e + 1, after[e + 1]);
-  std::vector<bool> lines(edges, false);
-  double before = 0;
-  for (std::size_t e = 0; e < edges; ++e) {
-    if (e > 0) before = beyond(e, e - 1, before);
-    lines[e] = length(e) > kFeatureTuning.line_is_longer * before &&
-               length(e) > kFeatureTuning.line_is_longer * after[e];
+  std::vector<bool> lines;
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    const double before = k == 0 ? 0 : length(k - 1, ends[k]);
+    const double after = k + 2 == ends.size() ? 0 : length(k + 1, ends[k + 1]);
+    const double here = f.parameters[ends[k + 1]] - f.parameters[ends[k]];
+    lines.resize(ends[k + 1], here > kFeatureTuning.line_is_longer * std::max(before, after));
   }
   return lines;
 }
@@ -203,7 +238,7 @@ PathFeatures find_features(std::span<const Point3> points, const FeatureOptions&
     const bool stays = f.kinds[i] == VertexKind::kCorner && f.turns[i] > options.keep_found_corner;
     if (stays) f.kinds[i] = VertexKind::kKeptCorner;
   }
-  f.lines = lines_of(f);
+  f.lines = lines_of(points, f, options);
   return f;
 }
 

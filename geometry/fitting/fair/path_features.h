@@ -44,7 +44,13 @@ struct FeatureTuning {
   // Vertices that a kink is judged by: on either side at the most, and on both together at least.
   std::size_t most_beside_kink = 6;
   std::size_t fewest_around_kink = 5;  // [Kink.IsTheAngleOfTwoLinesWhereverTheirEndsAre]
-  double no_turn = 1e-6;  // a line cut into blocks [> SmoothCurve.AddsNothingToALineWithoutNoise]
+  // A line cut into blocks turns by less [> SmoothCurve.AddsNothingToALineWithoutNoise], or its
+  // vertices are off it by no more than the greatest rounding errors of both ends explain (across,
+  // 2 sqrt(3) of a coordinate's), or by this part of the tolerance: where it meets a curve, a CAM
+  // system ends its last edge beyond the joint.
+  double no_turn = 1e-6;
+  double ends_apart = 3.5;
+  double straight = 0.05;
   // A line is this many times longer than the edges beside it. Chords of a curve whose curvature
   // changes smoothly differ less from their neighbours.
   double line_is_longer = 6;  // [>]
