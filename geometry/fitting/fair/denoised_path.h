@@ -34,7 +34,7 @@ struct DenoiseTuning {
   // greatest rounding errors, are drawn to their denoised positions. A curve that is only expected
   // to leave their scatter leaves some of the path, too, where they are coarse, and would find room
   // for the feed on any side of it.
-  double much = 0.2;
+  double much = 0.08;
   double rounding_noise = 2;
   // Of normal noise an eighth is beyond 1.5 standard deviations, and noise is known to a third.
   double may_fill = 0.4;  // [> MeantPath.IsTheVerticesWhereRoundingLeavesRoom]

@@ -127,7 +127,10 @@ class ProblemMaker {
     sample.target += std::min(1.0, room / std::max(off.norm(), room)) * off;
     sample.limit -= noise_fills_band(i) ? (sample.target - p_[i]).norm() : room;
     const double loose = care_.loosen[i];
-    sample.scatter = std::isinf(loose) ? 0 : kFairTuning.denoised_scatter * limit_ * loose;
+    const double widest = kFairTuning.denoised_scatter * limit_;
+    const double noise = f_.noise[i];
+    const double near = noise < widest ? kFairTuning.denoised_part * noise : widest;
+    sample.scatter = std::isinf(loose) ? 0 : near * loose;
   }
 
   [[nodiscard]] double share(std::size_t edge) const { return care_.edges[edge].share; }

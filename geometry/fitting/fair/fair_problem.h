@@ -123,6 +123,9 @@ struct FairTuning {
   // So much of the limit is the curve expected to pass the drawn vertices at: with less of it edges
   // are kept, with more the curve is no smoother.
   double denoised_scatter = 0.3;
+  // Nor, where noise is less than that, at more than this part of it: the estimate is off by about
+  // as much.
+  double denoised_part = 0.35;
 };
 inline constexpr FairTuning kFairTuning;
 

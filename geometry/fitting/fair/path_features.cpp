@@ -163,25 +163,34 @@ std::vector<std::size_t> straight_ends(std::span<const Point3> points, const Pat
   return ends;
 }
 
-// Which edges were meant as lines: those that alone or with their straight continuation are longer
-// than what is next to them. A corner or an end of the path there counts as nothing.
+// Which edges were meant as lines: those that with their straight continuation are longer than what
+// is next to them, and those that are so alone where the continuation is nearly straight only. A
+// corner or an end of the path next to one counts as nothing.
 std::vector<bool> lines_of(std::span<const Point3> points, const PathFeatures& f,
                            const FeatureOptions& options) {
-  const double off = std::max(kFeatureTuning.ends_apart * options.rounding,
-                              kFeatureTuning.straight * options.tolerance);
-  const std::vector<std::size_t> ends = straight_ends(points, f, off);
-  // The length of such a section, seen from the vertex that it begins or ends with.
-  const auto length = [&](std::size_t section, std::size_t seen_from) {
-    if (f.kinds[seen_from] != VertexKind::kSmooth) return 0.0;
-    return f.parameters[ends[section + 1]] - f.parameters[ends[section]];
+  std::vector<bool> lines(points.size() - 1, false);
+  const auto length = [&](std::size_t from, std::size_t to) {
+    return f.parameters[to] - f.parameters[from];
   };
-  std::vector<bool> lines;
-  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
-    const double before = k == 0 ? 0 : length(k - 1, ends[k]);
-    const double after = k + 2 == ends.size() ? 0 : length(k + 1, ends[k + 1]);
-    const double here = f.parameters[ends[k + 1]] - f.parameters[ends[k]];
-    lines.resize(ends[k + 1], here > kFeatureTuning.line_is_longer * std::max(before, after));
-  }
+  const auto find = [&](double off, bool alone) {
+    const std::vector<std::size_t> ends = straight_ends(points, f, off);
+    for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+      const auto beside = [&](std::size_t vertex, std::size_t section) {
+        const bool meets = f.kinds[vertex] == VertexKind::kSmooth;
+        return meets ? length(ends[section], ends[section + 1]) : 0.0;
+      };
+      const double next = std::max(beside(ends[k], k - 1), beside(ends[k + 1], k + 1));
+      for (std::size_t edge = ends[k]; edge < ends[k + 1]; ++edge) {
+        const double here = alone ? length(edge, edge + 1) : length(ends[k], ends[k + 1]);
+        const bool is_longer = here > kFeatureTuning.line_is_longer * next && (next > 0 || !alone);
+        lines[edge] = lines[edge] || is_longer;
+      }
+    }
+  };
+  find(0, false);
+  find(std::max(kFeatureTuning.ends_apart * options.rounding,
+                kFeatureTuning.straight * options.tolerance),
+       true);
   return lines;
 }
 
