@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 
 #include "gcode/curves/heidenhain_spl.h"
 #include "gcode/state/modal_state.h"

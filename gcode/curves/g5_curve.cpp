@@ -166,20 +166,6 @@ double flatness(const CubicBezier& part) {
   return 0.75 * std::max(off(p[1]), off(p[2]));
 }
 
-// What all controls with G5 have in common.
-CurveFormat g5_format() {
-  CurveFormat format;
-  format.name = "G5";
-  // Arcs say the same with a deviation that we choose, and the controls run G5 as arcs or chords:
-  // so it is no default.
-  format.only_in_xy = true;
-  // The pieces that LinuxCNC takes: the others have no use for pieces that are nearly straight.
-  format.takes = bends_one_way;
-  format.write = write_g5;
-  format.read = read_g5;
-  return format;
-}
-
 }  // namespace
 
 std::vector<double> chopped_at(const CubicBezier& piece) {
@@ -211,21 +197,26 @@ double chopping_error(const CubicBezier& piece) {
 
 }  // namespace
 
+// Arcs say the same with a deviation that we choose, and the controls run G5 as arcs or chords: so
+// it is no default. Only LinuxCNC asks for pieces that bend one way; the others have no use for
+// pieces that are nearly straight.
 const CurveFormat& linuxcnc_g5() {
-  static const CurveFormat kFormat = [] {
-    CurveFormat format = g5_format();
-    // As many as arc ends have: a direction that is off by half a step of the fifth decimal over
-    // the third of a millimetre turns the joint by 2e-5 radians.
-    format.other_mm = {.decimals = 5};
-    format.other_inch = {.decimals = 6};
-    return format;
-  }();
+  static const CurveFormat kFormat = {
+      .name = "G5",
+      .only_in_xy = true,
+      // As many as arc ends have: a direction that is off by half a step of the fifth decimal over
+      // the third of a millimetre turns the joint by 2e-5 radians.
+      .other_mm = {.decimals = 5},
+      .other_inch = {.decimals = 6},
+      .write = write_g5,
+      .read = read_g5,
+      .takes = bends_one_way};
   return kFormat;
 }
 
 const CurveFormat& chopped_g5() {
   static const CurveFormat kFormat = [] {
-    CurveFormat format = g5_format();
+    CurveFormat format = linuxcnc_g5();
     format.is_run_as_chords = true;
     format.chords_error = chopping_error;
     // Chords are found in 32-bit numbers: the fifth decimal would be noise.

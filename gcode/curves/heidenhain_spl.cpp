@@ -296,15 +296,13 @@ std::optional<PrintedCoefficient> print_spl_coefficient(double value, int decima
 }
 
 const CurveFormat& heidenhain_spl() {
-  static const CurveFormat kFormat = [] {
-    CurveFormat format;
-    format.name = "SPL";  // a software option on the iTNC 530: no default
-    // Of the size of the piece; more where a joint would have a kink.
-    format.other_mm = format.other_inch = {.decimals = 6};
-    format.write = write_spl;
-    format.read = read_spl;
-    return format;
-  }();
+  static const CurveFormat kFormat = {
+      .name = "SPL",  // a software option on the iTNC 530: no default
+      // Of the size of the piece; more where a joint would have a kink.
+      .other_mm = {.decimals = 6},
+      .other_inch = {.decimals = 6},
+      .write = write_spl,
+      .read = read_spl};
   return kFormat;
 }
 

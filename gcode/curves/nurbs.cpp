@@ -322,19 +322,17 @@ CurveWriting write_nurbs(const BsplineCurve& curve, const CurveSetting& setting,
 }
 
 CurveFormat nurbs_format(const NurbsRules& rules) {
-  CurveFormat format;
-  format.name = "G06.2";
-  format.is_block_per_piece = false;
-  format.names_all_axes = rules.three_axes;
-  format.other_mm = {.decimals = rules.mm.decimals, .always_point = true};
-  format.other_inch = {.decimals = rules.inch.decimals, .always_point = true};
-  format.write = [rules](const BsplineCurve& curve, const CurveSetting& setting) {
-    return write_nurbs(curve, setting, rules);
-  };
-  format.read = [rules](const Program& program, std::uint32_t first, const CurveStart& start) {
-    return NurbsReader(program, start, rules).read(first);
-  };
-  return format;
+  return {.name = "G06.2",
+          .is_block_per_piece = false,
+          .names_all_axes = rules.three_axes,
+          .other_mm = {.decimals = rules.mm.decimals, .always_point = true},
+          .other_inch = {.decimals = rules.inch.decimals, .always_point = true},
+          .write = [rules](const auto& curve,
+                           const auto& setting) { return write_nurbs(curve, setting, rules); },
+          .read =
+              [rules](const Program& program, std::uint32_t first, const CurveStart& start) {
+                return NurbsReader(program, start, rules).read(first);
+              }};
 }
 
 }  // namespace

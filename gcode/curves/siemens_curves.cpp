@@ -344,34 +344,30 @@ CurveResult read_bspline(const Program& program, std::uint32_t first, const Curv
 }  // namespace
 
 const CurveFormat& siemens_poly() {
-  static const CurveFormat kFormat = [] {
-    CurveFormat format;
-    format.name = "POLY";
-    format.is_default = true;
-    // Of the size of the piece: half a step moves the piece by less than the rounding of its ends.
-    format.other_mm = format.other_inch = {.decimals = 6};
-    format.write = write_poly;
-    format.read = read_poly;
-    return format;
-  }();
+  static const CurveFormat kFormat = {.name = "POLY",
+                                      .is_default = true,
+                                      // Of the size of the piece: half a step moves the piece by
+                                      // less than the rounding of its ends.
+                                      .other_mm = {.decimals = 6},
+                                      .other_inch = {.decimals = 6},
+                                      .write = write_poly,
+                                      .read = read_poly};
   return kFormat;
 }
 
 const CurveFormat& siemens_bspline() {
-  static const CurveFormat kFormat = [] {
-    CurveFormat format;
-    format.name = "BSPLINE";
-    format.caution =
-        "BSPLINE is not verified: how PL maps to the knots, what the first and the last blocks "
-        "mean and where the curve starts were found in no manual; run the program on the control "
-        "or on SinuTrain and compare it with POLY before cutting";
-    format.is_block_per_piece = false;
-    // PL, in the units of the curve's parameter: scaled as the knots of G06.2 are.
-    format.other_mm = format.other_inch = {.decimals = 4};
-    format.write = write_bspline;
-    format.read = read_bspline;
-    return format;
-  }();
+  static const CurveFormat kFormat = {
+      .name = "BSPLINE",
+      .caution =
+          "BSPLINE is not verified: how PL maps to the knots, what the first and the last blocks "
+          "mean and where the curve starts were found in no manual; run the program on the control "
+          "or on SinuTrain and compare it with POLY before cutting",
+      .is_block_per_piece = false,
+      // PL, in the units of the curve's parameter: scaled as the knots of G06.2 are.
+      .other_mm = {.decimals = 4},
+      .other_inch = {.decimals = 4},
+      .write = write_bspline,
+      .read = read_bspline};
   return kFormat;
 }
 

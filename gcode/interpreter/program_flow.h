@@ -2,9 +2,7 @@
 // as is needed to leave such blocks alone.
 #pragma once
 
-#include <cstdint>
 #include <string_view>
-#include <vector>
 
 #include "gcode/state/block_flow.h"
 #include "gcode/text/program.h"

@@ -177,34 +177,9 @@ class WordApplier {
   }
 
   void apply_m(const CodeRow& row) {
-    using enum CodeAct;
     apply_traits(row);
-    switch (row.act) {
-      case kMirrors:
-        modal().mirror = row.value.as<TriState>();
-        return;
-      case kTurnsToolTip:
-        modal().tool_center_point = row.value.as<TriState>();
-        return;
-      case kNothing:
-      case kDwell:
-      case kMachinePlace:
-      case kHome:
-      case kStoresHome:
-      case kSetsPlace:
-      case kWritesData:
-      case kMovesOrigin:
-      case kDrills:
-      case kCalls:
-      case kSpindleOn:
-      case kChangesTool:
-      case kSwitches:
-      case kStops:
-      case kEnds:
-      case kOverride:
-      case kBuilders:
-        return;  // they set no mode
-    }
+    if (row.act == CodeAct::kMirrors) modal().mirror = row.value.as<TriState>();
+    if (row.act == CodeAct::kTurnsToolTip) modal().tool_center_point = row.value.as<TriState>();
   }
 
   // --- words that move the origin, bend the coordinates, or act in their own block only --------

@@ -1,7 +1,6 @@
 #include "gcode/siemens/flow.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <string>
 #include <unordered_set>

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "geometry/arcs/arc_chain.h"
+#include "geometry/basic/require.h"
 #include "geometry/basic/rounding.h"
 #include "geometry/distance/chord_polyline.h"
 #include "geometry/path/plane_curve.h"
@@ -257,14 +256,9 @@ class ArcFit {
 };
 
 void check(const ArcFitOptions& options) {
-  if (!(options.max_deviation > 0)) {
-    throw std::invalid_argument("fit_arcs: max_deviation " + std::to_string(options.max_deviation) +
-                                ", expected > 0");
-  }
-  if (!(options.max_sweep > 0 && options.max_sweep < std::numbers::pi)) {
-    throw std::invalid_argument("fit_arcs: max_sweep " + std::to_string(options.max_sweep) +
-                                ", expected above 0 and below pi");
-  }
+  require(options.max_deviation > 0, "fit_arcs: max_deviation", options.max_deviation, "> 0");
+  require(options.max_sweep > 0 && options.max_sweep < std::numbers::pi, "fit_arcs: max_sweep",
+          options.max_sweep, "above 0 and below pi");
 }
 
 }  // namespace

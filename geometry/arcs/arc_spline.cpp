@@ -6,12 +6,11 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "geometry/arcs/plane_band.h"
 #include "geometry/basic/point.h"
+#include "geometry/basic/require.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::geometry {
@@ -382,16 +381,12 @@ class Search {
 };
 
 void check(const ArcSplineOptions& options) {
-  const auto require = [](bool holds, const char* what, double value) {
-    if (!holds) {
-      throw std::invalid_argument(std::string("fit_arc_spline: ") + what + " " +
-                                  std::to_string(value) + " out of range");
-    }
-  };
-  require(options.tolerance > 0, "tolerance", options.tolerance);
-  require(options.min_radius > 0, "min_radius", options.min_radius);
-  require(options.max_radius > options.min_radius, "max_radius", options.max_radius);
-  require(options.max_sweep > 0 && options.max_sweep < kPi, "max_sweep", options.max_sweep);
+  require(options.tolerance > 0, "fit_arc_spline: tolerance", options.tolerance, "> 0");
+  require(options.min_radius > 0, "fit_arc_spline: min_radius", options.min_radius, "> 0");
+  require(options.max_radius > options.min_radius, "fit_arc_spline: max_radius", options.max_radius,
+          "above min_radius");
+  require(options.max_sweep > 0 && options.max_sweep < kPi, "fit_arc_spline: max_sweep",
+          options.max_sweep, "above 0 and below pi");
 }
 
 std::size_t cost_of(const ArcSpline& spline) {

@@ -1,7 +1,6 @@
 #include "geometry/arcs/plane_band.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "geometry/basic/point.h"
@@ -14,17 +13,12 @@ constexpr PlaneBandTuning kBand = kPlaneBandTuning;
 
 double heading_of(const Vector2& v) { return std::atan2(v.y(), v.x()); }
 
-// Samples that a fan meets together.
-constexpr std::size_t kTogether = 8;
-
 // A fan that closes sample by sample. An arc from the origin along the first axis with
 // curvature k passes a place (x, y) at a distance of at most e when
 //   k (x^2 + y^2 - e^2) lies between 2 (y - e) and 2 (y + e),
 // from | |place - centre| - 1 / |k| | <= e.
 class ClosingFan {
  public:
-  using Ranges = std::array<CurvatureRange, kTogether>;
-
   ClosingFan(const BandEntry& entry, const PlaneBand::Limits& limits, double steepest)
       : place_(entry.place),
         along_(unit_vector(entry.angle)),
@@ -45,42 +39,6 @@ class ClosingFan {
     if (low > high) return false;
     range_ = {low, high};
     squared_ = beyond;
-    return true;
-  }
-
-  // The same for each `step`-th of kTogether samples, without a branch between them. `after`: the
-  // range after each. False where one of them is too near or not passed: then nothing has changed,
-  // and they must be asked for one by one.
-  bool narrow_together(const double* xs, const double* ys, std::size_t step, Ranges& after) {
-    std::array<double, kTogether> ways_x;
-    std::array<double, kTogether> ways_y;
-    for (std::size_t k = 0; k < kTogether; ++k) {
-      ways_x[k] = xs[k * step] - place_.x();
-      ways_y[k] = ys[k * step] - place_.y();
-    }
-    std::array<double, kTogether> lows;
-    std::array<double, kTogether> highs;
-    std::array<double, kTogether> beyonds;
-    std::array<double, kTogether> rooms;  // 0 or above where the place lies ahead
-    for (std::size_t k = 0; k < kTogether; ++k) {
-      const double x = ways_x[k] * along_.x() + ways_y[k] * along_.y();
-      const double y = along_.x() * ways_y[k] - along_.y() * ways_x[k];
-      beyonds[k] = x * x + y * y - tolerance_ * tolerance_;
-      rooms[k] = steepest_ * x - std::abs(y);
-      lows[k] = 2 * (y - tolerance_) / beyonds[k];
-      highs[k] = 2 * (y + tolerance_) / beyonds[k];
-    }
-    CurvatureRange range = range_;
-    bool ahead = true;
-    for (std::size_t k = 0; k < kTogether; ++k) {
-      ahead = ahead && beyonds[k] > 0 && rooms[k] >= 0;
-      range = {std::max(range.low, lows[k]), std::min(range.high, highs[k])};
-      after[k] = range;
-    }
-    // Ranges only close: what is open after the last was open after each.
-    if (!ahead || range.low > range.high) return false;
-    range_ = range;
-    squared_ = beyonds.back();
     return true;
   }
 
@@ -194,21 +152,13 @@ PlaneBand::PlaneBand(std::span<const Point2> points, const Limits& limits)
   std::vector<double> angles(n - 1);
   for (std::size_t i = 0; i + 1 < n; ++i) angles[i] = heading_of(points[i + 1] - points[i]);
   samples_.reserve(2 * n);
-  x_.reserve(2 * n);
-  y_.reserve(2 * n);
-  add_sample({points[0], 0, angles[0], 0, unit_vector(angles[0])});
+  samples_.push_back({points[0], 0, angles[0], 0, unit_vector(angles[0])});
   double turn_before = 0;
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const double turn_after = i + 2 < n ? wrapped(angles[i + 1] - angles[i]) : 0;
     add_edge(points[i], points[i + 1], angles[i], turn_before, turn_after);
     turn_before = turn_after;
   }
-}
-
-void PlaneBand::add_sample(const Sample& sample) {
-  samples_.push_back(sample);
-  x_.push_back(sample.place.x());
-  y_.push_back(sample.place.y());
 }
 
 void PlaneBand::add_edge(const Point2& from, const Point2& to, double angle, double turn_before,
@@ -237,51 +187,27 @@ void PlaneBand::add_edge(const Point2& from, const Point2& to, double angle, dou
   double last = 0;
   for (const double at : inner) {
     if (at - last < nearest / 2) continue;
-    add_sample({from + (at / length) * way, start + at, angle, 0, edge_way});
+    samples_.push_back({from + (at / length) * way, start + at, angle, 0, edge_way});
     last = at;
   }
-  add_sample({to, start + length, angle, turn_after, edge_way});
+  samples_.push_back({to, start + length, angle, turn_after, edge_way});
 }
 
 ArcFan PlaneBand::fan(const BandEntry& entry) const {
   ArcFan fan;
   ClosingFan closing(entry, limits_, steepest_);
-  ClosingFan::Ranges after;
-  const std::size_t count = samples_.size();
-  for (std::size_t i = entry.next; i < count;) {
-    if (i + kTogether <= count && closing.narrow_together(&x_[i], &y_[i], 1, after)) {
-      fan.insert(fan.end(), after.begin(), after.end());
-      i += kTogether;
-      continue;
-    }
-    const std::size_t end = std::min(i + kTogether, count);
-    for (; i < end; ++i) {
-      if (!closing.narrow(samples_[i].place)) return fan;
-      fan.push_back(closing.range());
-    }
+  for (std::size_t i = entry.next; i < samples_.size(); ++i) {
+    if (!closing.narrow(samples_[i].place)) break;
+    fan.push_back(closing.range());
   }
   return fan;
 }
 
 ArcReach PlaneBand::reach(const BandEntry& entry) const {
   ClosingFan closing(entry, limits_, steepest_);
-  ClosingFan::Ranges after;
-  const std::size_t count = samples_.size();
   std::size_t i = entry.next;  // the first sample that is not known to be passed
   for (std::size_t step = limits_.stride; step > 0; step = step > 1 ? 1 : 0) {
-    bool passes = true;
-    while (passes && i + step <= count) {
-      const std::size_t first = i + step - 1;
-      if (i + step * kTogether <= count &&
-          closing.narrow_together(&x_[first], &y_[first], step, after)) {
-        i += step * kTogether;
-        continue;
-      }
-      for (std::size_t k = 0; k < kTogether && passes && i + step <= count; ++k) {
-        passes = closing.narrow(samples_[i + step - 1].place);
-        if (passes) i += step;
-      }
-    }
+    while (i + step <= samples_.size() && closing.narrow(samples_[i + step - 1].place)) i += step;
   }
   return {i, closing.width()};
 }

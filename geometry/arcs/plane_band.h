@@ -89,14 +89,10 @@ class PlaneBand {
  private:
   void add_edge(const Point2& from, const Point2& to, double angle, double turn_before,
                 double turn_after);
-  void add_sample(const Sample& sample);
 
   Limits limits_;
   double steepest_;  // a place seen at half the sweep from the tangent: the arc has turned by it
   std::vector<Sample> samples_;
-  // The places once more, for fans: many of them are asked for together.
-  std::vector<double> x_;
-  std::vector<double> y_;
 };
 
 }  // namespace batten::geometry

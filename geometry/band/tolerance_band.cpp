@@ -1,12 +1,10 @@
 #include "geometry/band/tolerance_band.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "geometry/band/tolerance_band_pairs.h"
+#include "geometry/basic/require.h"
 #include "geometry/basic/rounding.h"
 #include "geometry/path/plane_curve.h"
 
@@ -73,10 +71,8 @@ void add_pair(std::optional<BandOverlap>& overlap, const FlatEdges& edges, const
 }  // namespace
 
 std::optional<BandStructure> band_structure(std::span<const Point2> points, double tolerance) {
-  if (!(tolerance > 0) || !std::isfinite(tolerance)) {
-    throw std::invalid_argument(fmt::format(
-        "band_structure: tolerance {} mm, expected a finite number above 0", tolerance));
-  }
+  require(tolerance > 0 && std::isfinite(tolerance), "band_structure: tolerance", tolerance,
+          "a finite number above 0");
   const Distinct path = distinct(points);
   const double reach = 2 * tolerance;
   const auto pairs = near_pairs(path.edges, reach);

@@ -1,14 +1,13 @@
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Polygon_set_2.h>
 #include <CGAL/Simple_cartesian.h>
-#include <fmt/format.h>
 
 #include <cmath>
 #include <iterator>
 #include <numbers>
-#include <stdexcept>
 
 #include "geometry/band/tolerance_band.h"
+#include "geometry/basic/require.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::geometry {
@@ -52,10 +51,8 @@ std::vector<Point2> corners_of(const Polygon& polygon) {
 }  // namespace
 
 std::vector<std::vector<Point2>> band_outline(std::span<const Point2> points, double tolerance) {
-  if (!(tolerance > 0) || !std::isfinite(tolerance)) {
-    throw std::invalid_argument(
-        fmt::format("band_outline: tolerance {} mm, expected a finite number above 0", tolerance));
-  }
+  require(tolerance > 0 && std::isfinite(tolerance), "band_outline: tolerance", tolerance,
+          "a finite number above 0");
   std::vector<Polygon> capsules;
   std::size_t last = 0;
   for (std::size_t i = 1; i < points.size(); ++i) {

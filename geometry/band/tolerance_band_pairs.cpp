@@ -106,39 +106,6 @@ bool share_a_vertex(const FlatEdges& edges, std::size_t a, std::size_t b) {
   return edges.to(a) == edges.from(b) || edges.to(b) == edges.from(a);
 }
 
-// Both places lie on one side of the line through an edge, further from it than `reach` and the
-// rounding of it.
-bool lie_beside(const FlatEdges& edges, std::size_t edge, const Point2& a, const Point2& b,
-                double reach) {
-  const Point2& from = edges.from(edge);
-  const Vector2 along = edges.to(edge) - from;
-  const double limit = (reach + kSamePlace) * along.norm();
-  const double first = cross(along, a - from);
-  const double second = cross(along, b - from);
-  return (first > limit && second > limit) || (first < -limit && second < -limit);
-}
-
-// Whether two edges are no further apart than `reach`: nearly all are neighbours or lie beside each
-// other, which needs no exact distance.
-bool are_near(const FlatEdges& edges, const EdgePair& pair, double reach) {
-  const auto [a, b] = pair;
-  if (share_a_vertex(edges, a, b)) return true;
-  if (lie_beside(edges, a, edges.from(b), edges.to(b), reach) ||
-      lie_beside(edges, b, edges.from(a), edges.to(a), reach)) {
-    return false;
-  }
-  return edge_distance(edges, pair) <= reach;
-}
-
-bool is_near(const FlatEdges& edges, std::size_t edge, const Point2& place, double reach) {
-  const Point2& from = edges.from(edge);
-  const Vector2 along = edges.to(edge) - from;
-  const double t = std::clamp((place - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  const double distance = (place - from - t * along).norm();
-  if (std::abs(distance - reach) > kSamePlace) return distance < reach;
-  return edge_distance(edges, edge, place) <= reach;
-}
-
 // Puts pairs together whose edges are neighbours.
 class Grouping {
  public:
@@ -158,10 +125,10 @@ class Grouping {
         if (beside_) join(*beside_, i);
         beside_ = i;
       }
-      if (after_first && is_near(edges_, second, edges_.to(first), reach_)) {
+      if (after_first && edge_distance(edges_, second, edges_.to(first)) <= reach_) {
         join(i, *after_first, second);
       }
-      if (after_second && is_near(edges_, first, edges_.to(second), reach_)) {
+      if (after_second && edge_distance(edges_, first, edges_.to(second)) <= reach_) {
         join(i, first, *after_second);
       }
     }
@@ -210,10 +177,6 @@ class Grouping {
 
 // The path turns right back at the vertex that two neighbours share.
 bool folds(const FlatEdges& edges, std::size_t before, std::size_t after) {
-  const Point2& corner = edges.to(before);
-  // Legs that point to different half planes: the angle is not acute by far more than rounding.
-  const double turned_back = (edges.from(before) - corner).dot(edges.to(after) - corner);
-  if (turned_back < -kSamePlace * (edges.from(before) - corner).norm()) return false;
   const PairKernel::Point_2 start = to_cgal(edges.from(before));
   const PairKernel::Point_2 vertex = to_cgal(edges.to(before));
   const PairKernel::Point_2 end = to_cgal(edges.to(after));
@@ -257,7 +220,8 @@ std::optional<std::vector<EdgePair>> near_pairs(const FlatEdges& edges, double r
   struct TooMany {};  // ends a search that finds too much
   const auto found = [&](const PairBox& a, const PairBox& b) {
     const EdgePair pair{std::min(a.info(), b.info()), std::max(a.info(), b.info())};
-    if (!are_near(edges, pair, reach)) return;
+    const bool neighbours = share_a_vertex(edges, pair.first, pair.second);
+    if (!neighbours && edge_distance(edges, pair) > reach) return;
     pairs.push_back(pair);
     if (pairs.size() > kMostPairs * edges.size()) throw TooMany{};
   };

@@ -1,11 +1,9 @@
 #include "geometry/chords/chord_proof.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <utility>
 
 #include "geometry/path/cubic_polynomial.h"
 

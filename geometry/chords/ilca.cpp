@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
+#include "geometry/basic/require.h"
 #include "geometry/chords/chord_proof.h"
 #include "geometry/path/curve_pieces.h"
 
@@ -28,11 +27,8 @@ std::vector<double> section_ends(const CurvePieces& pieces, double to) {
 
 std::optional<ChordRow> ilca(const BsplineCurve& curve, double from, double to,
                              const IlcaOptions& options) {
-  if (!(options.max_deviation > 0) || options.first_step < 0) {
-    throw std::invalid_argument("ilca: max_deviation " + std::to_string(options.max_deviation) +
-                                ", expected > 0; first_step " + std::to_string(options.first_step) +
-                                ", expected >= 0");
-  }
+  require(options.max_deviation > 0, "ilca: max_deviation", options.max_deviation, "> 0");
+  require(options.first_step >= 0, "ilca: first_step", options.first_step, ">= 0");
   const CurvePieces pieces(curve, from, to);
   const double most =
       std::max(kIlcaLeastBound, kIlcaChordsPerPiece * static_cast<double>(pieces.size()));
@@ -69,9 +65,7 @@ std::optional<ChordRow> ilca(const BsplineCurve& curve, double from, double to,
 }
 
 ChordRow blca(const BsplineCurve& curve, double from, double to, double tolerance) {
-  if (!(tolerance > 0)) {
-    throw std::invalid_argument("blca: tolerance " + std::to_string(tolerance) + ", expected > 0");
-  }
+  require(tolerance > 0, "blca: tolerance", tolerance, "> 0");
   const CurvePieces pieces(curve, from, to);
   const auto holds = [&](double start, double end) {
     return chord_proved(pieces, start, end,

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
+#include "geometry/basic/require.h"
 #include "geometry/chords/chord_proof.h"
 
 namespace batten::geometry {
@@ -227,10 +226,7 @@ std::vector<double> ends_of_runs(const MarkedPieces& curve, double from, double 
 
 std::vector<double> chord_vertices(const MarkedPieces& curve, double from, double to,
                                    const ChordOptions& options) {
-  if (!(options.max_deviation > 0)) {
-    throw std::invalid_argument("chord_vertices: max_deviation " +
-                                std::to_string(options.max_deviation) + ", expected > 0");
-  }
+  require(options.max_deviation > 0, "chord_vertices: max_deviation", options.max_deviation, "> 0");
   const CurvePieces& pieces = curve.pieces;
   std::vector<double> vertices = {from};
   auto corner = std::upper_bound(curve.corners.begin(), curve.corners.end(), from);

@@ -9,10 +9,10 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "geometry/basic/require.h"
 #include "geometry/chords/chord_proof.h"
 #include "geometry/chords/min_link_gates.h"
 #include "geometry/chords/min_link_plane.h"
@@ -398,15 +398,9 @@ class LinkSection {
 };
 
 void check(const MinLinkOptions& options) {
-  if (!(options.tolerance > 0)) {
-    throw std::invalid_argument("min_link_vertices: tolerance " +
-                                std::to_string(options.tolerance) + ", expected > 0");
-  }
-  if (options.gates_per_link < kLink.least_gates) {
-    throw std::invalid_argument("min_link_vertices: gates_per_link " +
-                                std::to_string(options.gates_per_link) + ", expected " +
-                                std::to_string(kLink.least_gates) + " or more");
-  }
+  require(options.tolerance > 0, "min_link_vertices: tolerance", options.tolerance, "> 0");
+  require(options.gates_per_link >= kLink.least_gates, "min_link_vertices: gates_per_link",
+          options.gates_per_link, std::to_string(kLink.least_gates) + " or more");
 }
 
 }  // namespace

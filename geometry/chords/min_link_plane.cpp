@@ -1,7 +1,6 @@
 #include "geometry/chords/min_link_plane.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 

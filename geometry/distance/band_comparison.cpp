@@ -1,15 +1,13 @@
 #include "geometry/distance/band_comparison.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "geometry/basic/require.h"
 #include "geometry/basic/rounding.h"
 #include "geometry/basic/tolerance_kind.h"
 #include "geometry/distance/chord_polyline.h"
@@ -118,9 +116,8 @@ class BandComparer {
         tolerance_(tolerance),
         corners_(corners_of(old_path)),
         pairs_(pairs) {
-    if (tolerance > 2 * kSamePlace && std::isfinite(tolerance)) return;
-    throw std::invalid_argument(fmt::format(
-        "compare_in_band: tolerance {:f} mm, expected a finite number above 2e-9", tolerance));
+    require(tolerance > 2 * kSamePlace && std::isfinite(tolerance), "compare_in_band: tolerance",
+            tolerance, "a finite number above 2e-9");
   }
 
   BandComparison run() {

@@ -3,15 +3,14 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Simple_cartesian.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
+#include "geometry/basic/require.h"
 #include "geometry/distance/chord_polyline.h"
 #include "geometry/distance/free_space.h"
 
@@ -411,10 +410,8 @@ class Comparison {
 // `pairs`: where the certificate is wanted, else null.
 PathComparison compare(std::span<const PathPiece> a, std::span<const PathPiece> b, double tolerance,
                        std::vector<PlacePair>* pairs) {
-  if (!(tolerance > 0) || !std::isfinite(tolerance)) {
-    throw std::invalid_argument(
-        fmt::format("compare_paths: tolerance {} mm, expected a finite number above 0", tolerance));
-  }
+  require(tolerance > 0 && std::isfinite(tolerance), "compare_paths: tolerance", tolerance,
+          "a finite number above 0");
   PathComparison found;
   if (a.empty() && b.empty()) {
     found.verdict = Verdict::kProved;

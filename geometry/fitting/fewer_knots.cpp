@@ -1,11 +1,9 @@
 #include "geometry/fitting/fewer_knots.h"
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
+#include "geometry/basic/require.h"
 #include "geometry/fitting/bspline_fit.h"
 #include "geometry/path/curve_pieces.h"
 
@@ -166,11 +164,7 @@ class Reducer {
 
 std::optional<BsplineCurve> on_fewer_knots(const BsplineCurve& curve,
                                            const FewerKnotsOptions& options) {
-  if (!(options.max_deviation > 0)) {
-    throw std::invalid_argument("on_fewer_knots: deviation " +
-                                std::to_string(options.max_deviation) +
-                                " mm, expected more than 0");
-  }
+  require(options.max_deviation > 0, "on_fewer_knots: deviation", options.max_deviation, "> 0");
   return Reducer(curve, options).reduce();
 }
 

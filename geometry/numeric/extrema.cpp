@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <stdexcept>
-#include <string>
 #include <utility>
+
+#include "geometry/basic/require.h"
 
 namespace batten::geometry {
 namespace {
@@ -52,11 +52,8 @@ PatternSearchResult pattern_search(const std::function<double(const std::vector<
   constexpr double kNarrower = 0.7;
   constexpr double kWider = 2;
   const std::size_t n = start.size();
-  if (options.steps.size() != n || n == 0) {
-    throw std::invalid_argument("pattern_search: " + std::to_string(options.steps.size()) +
-                                " steps for " + std::to_string(n) +
-                                " variables, expected one each and one or more");
-  }
+  require(options.steps.size() == n && n > 0, "pattern_search: steps",
+          static_cast<double>(options.steps.size()), "one for each variable, and one or more");
   PatternSearchResult best{std::move(start), 0, 1};
   best.value = f(best.at);
   std::vector<double> last_move;

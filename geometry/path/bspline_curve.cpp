@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "geometry/basic/require.h"
 #include "geometry/path/cubic_polynomial.h"
 
 namespace batten::geometry {
@@ -36,10 +37,8 @@ BsplineBasis::BsplineBasis(int degree, std::vector<double> knots)
 }
 
 BsplineBasis BsplineBasis::clamped(int degree, const std::vector<double>& breakpoints) {
-  if (breakpoints.size() < 2) {
-    throw std::invalid_argument(fmt::format(
-        "BsplineBasis::clamped: {} breakpoints, expected 2 or more", breakpoints.size()));
-  }
+  require(breakpoints.size() >= 2, "BsplineBasis::clamped: breakpoints",
+          static_cast<double>(breakpoints.size()), "2 or more");
   const auto p = static_cast<std::size_t>(degree);
   std::vector<double> knots(p, breakpoints.front());
   knots.insert(knots.end(), breakpoints.begin(), breakpoints.end());
@@ -148,36 +147,6 @@ Point3 blossom(const BsplineBasis& basis, const std::vector<Point3>& points, std
   return d[p];
 }
 
-Point3 between(const Point3& a, const Point3& b, double part) { return (1 - part) * a + part * b; }
-
-// The last three Bezier points of a cubic span that is not empty: blossoms of its two knots, where
-// all but four of the steps of de Boor's algorithm have weights of 0 and 1. `t` points to the
-// span's first knot, `p` to the last of its four control points.
-std::array<Point3, 3> cubic_span(const double* t, const Point3* p) {
-  const Point3 third = between(p[-2], p[-1], (t[1] - t[-1]) / (t[2] - t[-1]));
-  const Point3 beyond = between(p[-1], p[0], (t[1] - t[0]) / (t[3] - t[0]));
-  return {between(p[-2], third, (t[0] - t[-1]) / (t[1] - t[-1])), third,
-          between(third, beyond, (t[1] - t[0]) / (t[2] - t[0]))};
-}
-
-std::vector<CubicBezier> cubic_pieces(const BsplineBasis& basis,
-                                      const std::vector<Point3>& points) {
-  constexpr std::size_t kCubic = 3;
-  const std::vector<double>& t = basis.knots();
-  std::vector<CubicBezier> pieces;
-  pieces.reserve(basis.size() - kCubic);
-  for (std::size_t span = kCubic; span < basis.size(); ++span) {
-    if (!(t[span] < t[span + 1])) continue;
-    const std::array<Point3, 3> q = cubic_span(&t[span], &points[span]);
-    // Neighbours share their joint to the last bit.
-    const std::array<double, 3> start{t[span], t[span], t[span]};
-    const Point3 first =
-        pieces.empty() ? blossom(basis, points, span, start.data()) : pieces.back().control[3];
-    pieces.push_back({{first, q[0], q[1], q[2]}});
-  }
-  return pieces;
-}
-
 }  // namespace
 
 BsplineCurve::BsplineCurve(BsplineBasis basis, std::vector<Point3> control_points)
@@ -280,11 +249,7 @@ std::vector<double> BsplineCurve::breakpoints() const {
 
 std::vector<CubicBezier> BsplineCurve::bezier_pieces() const {
   const int p = degree();
-  if (p > 3) {
-    throw std::invalid_argument(
-        fmt::format("BsplineCurve::bezier_pieces: degree {}, expected 3 or less", p));
-  }
-  if (p == 3) return cubic_pieces(basis_, control_points_);
+  require(p <= 3, "BsplineCurve::bezier_pieces: degree", p, "3 or less");
   const auto& t = basis_.knots();
   std::vector<CubicBezier> pieces;
   pieces.reserve(basis_.size() - p);

@@ -1,9 +1,8 @@
 #include "geometry/path/parameter_samples.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <stdexcept>
+
+#include "geometry/basic/require.h"
 
 namespace batten::geometry {
 namespace {
@@ -35,10 +34,7 @@ class SpanDerivatives {
 }  // namespace
 
 std::vector<ParameterSample> parameter_samples(const BsplineCurve& curve, int steps) {
-  if (steps < 1) {
-    throw std::invalid_argument(
-        fmt::format("parameter_samples: {} steps, expected 1 or more", steps));
-  }
+  require(steps >= 1, "parameter_samples: steps", steps, "1 or more");
   const std::vector<double> knots = curve.breakpoints();
   const std::vector<CubicBezier> pieces = curve.bezier_pieces();
   std::vector<ParameterSample> samples;

@@ -1,6 +1,5 @@
 #include "geometry/path/plane_curve.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

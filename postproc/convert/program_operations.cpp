@@ -1,7 +1,5 @@
 #include "postproc/convert/program_operations.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -72,17 +72,6 @@ class ProgramLister : EventLister {
     return std::move(list_);
   }
 
-  // As run(), without a list of events.
-  EventsBefore at_end() {
-    for (block_index_ = 0; block_index_ < program_.blocks.size(); ++block_index_) {
-      const Block& block = program_.blocks[block_index_];
-      if (interpretation_.blocks[block_index_].of_curve) continue;
-      if (block.opacity == gcode::ParseStatus::kNone && !block.block_delete) remember_words(block);
-      forget_words(block);
-    }
-    return {set_by_word_, last_end(), feed_is_new_at_end()};
-  }
-
   [[nodiscard]] bool is_plain_rapid(std::uint32_t index) {
     block_index_ = index;
     const Block& block = program_.blocks[index];
@@ -119,23 +108,6 @@ class ProgramLister : EventLister {
         state_after().distance == gcode::DistanceMode::kUnknown) {
       set_by_word_.fill(kNotSet);
     }
-  }
-
-  [[nodiscard]] bool feed_is_new_at_end() {
-    for (block_index_ = static_cast<std::uint32_t>(program_.blocks.size()); block_index_-- > 0;) {
-      const Block& block = program_.blocks[block_index_];
-      if (is_cut(block, interpretation_.blocks[block_index_])) return false;
-      if (names_feed(block)) return true;
-    }
-    return feed_is_new_;
-  }
-
-  // Does list_block add a cut?
-  [[nodiscard]] bool is_cut(const Block& block, const BlockMeaning& meaning) const {
-    if (meaning.motion < 0 || meaning.of_curve) return meaning.motion >= 0;
-    return block.opacity == gcode::ParseStatus::kNone && !block.block_delete &&
-           motion_of(meaning).kind != MotionKind::kRapid && goes_on(motion_of(meaning)) &&
-           !must_be_kept_as_text(block, meaning);
   }
 
   [[nodiscard]] std::optional<geometry::Point3> last_end() const {
@@ -189,17 +161,7 @@ class ProgramLister : EventLister {
     }
     if (!moves) return false;
     const Motion& motion = motion_of(meaning);
-    return !motion.start_known || !motion.end_known || !path_alone_counts_here();
-  }
-
-  // States are shared by many blocks: asked once for each.
-  [[nodiscard]] bool path_alone_counts_here() const {
-    const std::uint32_t state = interpretation_.blocks[block_index_].state_after;
-    if (asked_state_ != state) {
-      asked_state_ = state;
-      answer_ = path_alone_counts(interpretation_.states[state]);
-    }
-    return answer_;
+    return !motion.start_known || !motion.end_known || !path_alone_counts(state_after());
   }
 
   // Does the word mean what it means without its neighbours? X of a line does, X of G28 not.
@@ -315,8 +277,6 @@ class ProgramLister : EventLister {
 
   const ReadProgram& read_;
   bool acts_with_motion_ = false;
-  mutable std::optional<std::uint32_t> asked_state_;
-  mutable bool answer_ = false;
 };
 
 }  // namespace
@@ -368,7 +328,7 @@ bool is_one_feed(const Cut& a, const Cut& b) {
 
 ProgramEvents list_events(const ReadProgram& read) { return ProgramLister(read).run(); }
 
-EventsBefore events_before_next(const ReadProgram& read) { return ProgramLister(read).at_end(); }
+EventsBefore events_before_next(const ReadProgram& read) { return list_events(read).at_end; }
 
 bool is_plain_rapid(const ReadProgram& read, std::uint32_t block) {
   return ProgramLister(read).is_plain_rapid(block);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
-#include <utility>
 
 #include "geometry/distance/chord_polyline.h"
 

@@ -1,15 +1,16 @@
 #include "geometry/fitting/corners/corner_blend.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <stdexcept>
-#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "geometry/basic/require.h"
 #include "geometry/basic/rounding.h"
 #include "geometry/numeric/extrema.h"
 #include "geometry/path/cubic_polynomial.h"
@@ -121,9 +122,8 @@ double measure_deviation(const BsplineCurve& curve, const CornerFrame& frame, To
 }
 
 void require_positive_tolerance(double tolerance, std::string_view caller) {
-  if (tolerance > 0 && std::isfinite(tolerance)) return;
-  throw std::invalid_argument(std::string(caller) + ": tolerance " + std::to_string(tolerance) +
-                              " mm, expected a positive number");
+  require(tolerance > 0 && std::isfinite(tolerance), fmt::format("{}: tolerance", caller),
+          tolerance, "a positive number of mm");
 }
 
 namespace {

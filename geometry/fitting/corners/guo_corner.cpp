@@ -1,11 +1,10 @@
 #include "geometry/fitting/corners/guo_corner.h"
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
+#include "geometry/basic/require.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::geometry {
@@ -103,10 +102,8 @@ GuoOptions GuoOptions::literal(double tolerance, double lambda) {
 
 GuoPath guo_path(std::span<const Point3> points, const GuoOptions& options) {
   require_positive_tolerance(options.tolerance, "guo_path");
-  if (!(options.lambda >= 0 && options.lambda < 1)) {
-    throw std::invalid_argument("guo_path: lambda " + std::to_string(options.lambda) +
-                                ", expected 0 or more and less than 1");
-  }
+  require(options.lambda >= 0 && options.lambda < 1, "guo_path: lambda", options.lambda,
+          "0 or more and less than 1");
   if (options.sharing == GuoSharing::kFair) {
     return path_with_blends<GuoBlend>(
         points, options, [&](const SharedCorner& each, const CornerFrame& /*frame*/) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/basic/require.h"
 #include "geometry/basic/rounding.h"
 #include "geometry/fitting/band_curve.h"
 #include "geometry/fitting/corners/guo_corner.h"
@@ -254,10 +255,8 @@ void check(const TimeOptimalOptions& options) {
     throw std::invalid_argument("time_optimal_corner: axis " + std::to_string(axis) +
                                 " with neither acceleration nor jerk limited");
   }
-  if (!(options.limits.feed > 0 && std::isfinite(options.limits.feed))) {
-    throw std::invalid_argument("time_optimal_corner: feed " + std::to_string(options.limits.feed) +
-                                " mm/s, expected a positive number");
-  }
+  require(options.limits.feed > 0 && std::isfinite(options.limits.feed),
+          "time_optimal_corner: feed", options.limits.feed, "a positive number of mm/s");
 }
 
 }  // namespace

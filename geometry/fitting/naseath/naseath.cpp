@@ -5,11 +5,10 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "geometry/basic/point.h"
+#include "geometry/basic/require.h"
 #include "geometry/path/parameter_samples.h"
 
 namespace batten::geometry {
@@ -367,23 +366,20 @@ struct BestPass {
 };
 
 void check(const BsplineCurve& curve, const NaseathOptions& options) {
-  const auto refuse = [](const std::string& name, double found) {
-    throw std::invalid_argument("smooth_naseath: " + name + " " + std::to_string(found) +
-                                ", expected above 0");
+  const auto above_zero = [](const char* what, double found) {
+    require(found > 0, what, found, "above 0");
   };
-  if (!(options.radius > 0)) refuse("radius", options.radius);
-  if (!(options.accuracy > 0)) refuse("accuracy", options.accuracy);
-  if (options.precision < 1) refuse("precision", options.precision);
-  if (options.max_passes < 1) refuse("max_passes", options.max_passes);
+  above_zero("smooth_naseath: radius", options.radius);
+  above_zero("smooth_naseath: accuracy", options.accuracy);
+  above_zero("smooth_naseath: precision", options.precision);
+  above_zero("smooth_naseath: max_passes", options.max_passes);
   const BsplineBasis& basis = curve.basis();
   const auto& t = basis.knots();
   bool fits = curve.degree() == static_cast<int>(kNaseathDegree) && t.front() == basis.first() &&
               t.back() == basis.last();
   for (std::size_t i = kNaseathDegree; fits && i < basis.size(); ++i) fits = t[i] < t[i + 1];
-  if (!fits) {
-    throw std::invalid_argument("smooth_naseath: degree " + std::to_string(curve.degree()) +
-                                ", expected a clamped cubic with single inner knots");
-  }
+  require(fits, "smooth_naseath: degree", curve.degree(),
+          "a clamped cubic with single inner knots");
 }
 
 }  // namespace
