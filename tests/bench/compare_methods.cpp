@@ -6,7 +6,6 @@
 // Second table: Naseath's curves in his form.
 #include <fmt/core.h>
 
-#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -19,8 +19,6 @@
 #include <vector>
 
 #include "gcode/controls/built_in.h"
-#include "gcode/interpreter/interpreter.h"
-#include "gcode/reading/parser.h"
 #include "geometry/fitting/fair/fair_measure.h"
 #include "postproc/machine/planner/feed_plan.h"
 #include "postproc/smooth/methods/run_curve.h"
@@ -112,22 +110,6 @@ void curves(double cam, const Settings& settings) {
   }
 }
 
-double rms_of_program(const std::string& text) {
-  const gcode::SourceText source("rows.nc", text);
-  gcode::Diagnostics ignored;
-  const gcode::Program program = gcode::parse(source, ignored);
-  geometry::SurfaceDistances distances;
-  for (const gcode::Motion& motion : gcode::interpret(program, {}, ignored).motions) {
-    if (motion.kind == gcode::MotionKind::kRapid) continue;
-    const double step = geometry::length_of(motion.piece) / geometry::kPlacesPerEdge;
-    for (int k = 0; k < geometry::kPlacesPerEdge; ++k) {
-      const double t = (k + 0.5) / geometry::kPlacesPerEdge;
-      distances.add(geometry::FinishSurface::distance(geometry::point_at(motion.piece, t)), step);
-    }
-  }
-  return distances.rms();
-}
-
 void programs(double cam, std::string_view machine, postproc::Prefer prefer,
               const Settings& settings) {
   for (unsigned seed = 1; seed <= settings.seeds; ++seed) {
@@ -154,7 +136,8 @@ void programs(double cam, std::string_view machine, postproc::Prefer prefer,
         "{:.5f} {:.5f}\n",
         cam, machine, name_of(prefer), seed, result.time_before_s, result.time_after_s,
         100 * (result.time_after_s / result.time_before_s - 1), rewritten, reasons,
-        result.blocks_in, result.blocks_out, rms_of_program(text), rms_of_program(result.text));
+        result.blocks_in, result.blocks_out, geometry::rms_of_cuts(text),
+        geometry::rms_of_cuts(result.text));
   }
 }
 

@@ -64,13 +64,13 @@ inline std::string construct_name(const testing::TestParamInfo<Construct>& info)
   return name;
 }
 
-constexpr int kWaveLines = 150;
+constexpr int kWaveLines = 100;
 
 // The `index`th wave of a program.
 inline std::string wave_part(gcode::Language language, int index) {
   std::string text;
   for (int i = 1; i <= kWaveLines; ++i) {
-    const double x = 0.2 * (i + kWaveLines * index);
+    const double x = 0.3 * (i + kWaveLines * index);
     const double y = 2 * std::sin(2 * std::numbers::pi * x / 18);
     if (language == gcode::Language::kKlartext) {
       text += fmt::format("L X{:+.3f} Y{:+.3f}{}\n", x, y, i == 1 ? " F2000" : "");

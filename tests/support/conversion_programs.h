@@ -27,24 +27,10 @@ inline SmoothOptions ways_to(std::string_view target) {
   return options;
 }
 
-struct ReadAs {
-  ReadAs(const std::string& text, gcode::Language language,
-         const gcode::CurveFormat* curves = nullptr,
-         gcode::DwellForm dwells = gcode::DwellForm::kUnknown)
-      : program(gcode::parse(gcode::SourceText("test.nc", text),
-                             gcode::Reading{.language = language, .dwells = dwells}, found)),
-        meaning(gcode::interpret(program, {.curves = curves}, found)) {}
-  [[nodiscard]] ReadProgram read() const { return {&program, &meaning}; }
-  gcode::Diagnostics found;
-  gcode::Program program;
-  gcode::Interpretation meaning;
-};
-
 inline bool is_proved(const std::string& before, gcode::Language from, const std::string& after,
                       gcode::Language to, double tolerance_mm = 0.01) {
-  const ReadAs old_text(before, from);
-  const ReadAs new_text(after, to);
-  return verify(old_text.read(), new_text.read(), tolerance_mm).proved();
+  const ReadText old_text(before, from);
+  return verify(old_text.read(), ReadText(after, to).read(), tolerance_mm).proved();
 }
 
 // "line:column: message" of each error.

@@ -45,8 +45,8 @@ class OneRun {
   }
 
   // What is written in its place.
-  [[nodiscard]] std::string chosen(const SmoothOptions& options, CandidateScope scope) const {
-    const SmoothedRun smoothed = smooth(options, scope);
+  [[nodiscard]] static std::string chosen_of(const SmoothedRun& smoothed,
+                                             const SmoothOptions& options) {
     const Selection selection = choose(smoothed, options);
     if (selection.order.empty()) return std::string(selection.reason);
     return smoothed.candidates[selection.order.front()].text.text;

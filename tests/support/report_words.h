@@ -1,8 +1,6 @@
 // A result as `batten smooth` could have made it, for the tests of the reports.
 #pragma once
 
-#include <string>
-
 #include "gcode/controls/built_in.h"
 #include "gcode/state/reason.h"
 #include "postproc/report/smooth_report.h"

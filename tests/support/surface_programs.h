@@ -6,8 +6,12 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "gcode/controls/built_in.h"
+#include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/parser.h"
 #include "tests/support/paths.h"
 
 namespace batten::geometry {
@@ -71,6 +75,25 @@ class SurfaceDistances {
 inline double rms_of_rows(const std::vector<std::vector<Point3>>& rows) {
   SurfaceDistances distances;
   for (const auto& row : rows) distances.add_polyline(row);
+  return distances.rms();
+}
+
+// Of all cutting moves of a program, with the curve blocks of a target.
+inline double rms_of_cuts(const std::string& text, std::string_view target = "linuxcnc") {
+  const gcode::SourceText source("rows.nc", text);
+  gcode::Diagnostics ignored;
+  const gcode::Program program = gcode::parse(source, ignored);
+  SurfaceDistances distances;
+  gcode::ReadOptions reading;
+  reading.curves = gcode::find_control(target)->curves;
+  for (const gcode::Motion& motion : gcode::interpret(program, reading, ignored).motions) {
+    if (motion.kind == gcode::MotionKind::kRapid) continue;
+    const double step = length_of(motion.piece) / kPlacesPerEdge;
+    for (int k = 0; k < kPlacesPerEdge; ++k) {
+      distances.add(FinishSurface::distance(point_at(motion.piece, (k + 0.5) / kPlacesPerEdge)),
+                    step);
+    }
+  }
   return distances.rms();
 }
 

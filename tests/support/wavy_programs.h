@@ -106,9 +106,13 @@ inline std::string replaced(std::string text, std::string_view what, std::string
 
 // A text that was read, for as long as its meaning is needed.
 struct ReadText {
-  explicit ReadText(const std::string& text, gcode::Language language = gcode::Language::kRs274)
-      : program(gcode::parse(gcode::SourceText("test.nc", text), language, found)),
-        meaning(gcode::interpret(program, {}, found)) {}
+  explicit ReadText(const std::string& text, gcode::Language language = gcode::Language::kRs274,
+                    const gcode::CurveFormat* curves = nullptr,
+                    gcode::DwellForm dwells = gcode::DwellForm::kUnknown)
+      : program(gcode::parse(gcode::SourceText("test.nc", text),
+                             gcode::Reading{.language = language, .dwells = dwells}, found)),
+        meaning(gcode::interpret(program, {.curves = curves}, found)) {}
+  [[nodiscard]] ReadProgram read() const { return {&program, &meaning}; }
   gcode::Diagnostics found;
   gcode::Program program;
   gcode::Interpretation meaning;
@@ -117,10 +121,7 @@ struct ReadText {
 // The verdict on two texts, whatever `smooth_program` said.
 inline Verification verdict(const std::string& before, const std::string& after,
                             double tolerance_mm) {
-  const ReadText old_text(before);
-  const ReadText new_text(after);
-  return verify({&old_text.program, &old_text.meaning}, {&new_text.program, &new_text.meaning},
-                tolerance_mm);
+  return verify(ReadText(before).read(), ReadText(after).read(), tolerance_mm);
 }
 
 inline std::size_t rewritten_runs(const SmoothResult& result) {

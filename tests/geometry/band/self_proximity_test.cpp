@@ -95,7 +95,7 @@ TEST(ClusterCover, LeavesOutWhatIsNotFlat) {
 TEST(StrandsNearOtherParts, AreThoseThatComparingAllFinds) {
   const double reach = reach_between_parts(kTolerance, kTolerance);
   std::size_t near_ones = 0;
-  for (unsigned seed = 0; seed < 6; ++seed) {
+  for (unsigned seed = 0; seed < 2; ++seed) {
     const std::vector<SegmentCluster> clusters = cover_of(wandering(seed, 1200), kTolerance);
     const std::vector<std::uint32_t> cuts = {300, 700, 1000};
     std::vector<std::uint32_t> found;
@@ -115,7 +115,7 @@ TEST(StrandsNearOtherParts, AreThoseThatComparingAllFinds) {
     }
     near_ones += found.size();
   }
-  EXPECT_GE(near_ones, 60U) << "or nothing was asked";
+  EXPECT_GE(near_ones, 20U) << "or nothing was asked";
 }
 
 // --- crossings -----------------------------------------------------------------------------------

@@ -30,7 +30,7 @@ using exact::ratio;
 using exact::Rational;
 
 // Pairs of chains that are tried when nobody asks for more.
-constexpr int kPairs = 10'000;
+constexpr int kPairs = 4'000;
 
 // Tolerances are whole numbers of 1e-9 mm; chains are in thousandths of a millimetre.
 constexpr std::int64_t kNanometresPerThousandth = 1'000'000'000 / 1'000;

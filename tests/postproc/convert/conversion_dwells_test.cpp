@@ -89,8 +89,8 @@ TEST(ConversionDwells, WaitAsLongInEachLanguage) {
       const SmoothResult result = converted(from, text, to.target);
       ASSERT_TRUE(result.proved) << testing::PrintToString(told(result, text));
       EXPECT_NE(unnumbered(result.text).find("\n" + to.block), std::string::npos) << result.text;
-      const ReadAs before(text, from.language, nullptr, gcode::dwells_of(from.source));
-      const ReadAs after(result.text, target.language, nullptr, target.dwell_form);
+      const ReadText before(text, from.language, nullptr, gcode::dwells_of(from.source));
+      const ReadText after(result.text, target.language, nullptr, target.dwell_form);
       EXPECT_TRUE(verify(before.read(), after.read(), 0.01).proved());
     }
   }
@@ -173,8 +173,8 @@ TEST(ConversionDwells, OfKlartextAreTwoBlocksThatFollowEachOther) {
     const std::string text = around(Language::kKlartext, blocks);
     EXPECT_FALSE(smoothed(text, ways_to("linuxcnc")).understood) << text;
     const std::string plain = around(Language::kRs274, "G4 P1.5\n");
-    const ReadAs before(text, Language::kKlartext);
-    const ReadAs after(plain, Language::kRs274, nullptr, DwellForm::kSecondsP);
+    const ReadText before(text, Language::kKlartext);
+    const ReadText after(plain, Language::kRs274, nullptr, DwellForm::kSecondsP);
     EXPECT_FALSE(verify(before.read(), after.read(), 0.01).proved()) << text;
   }
 }
@@ -183,7 +183,7 @@ TEST(ConversionDwells, OfKlartextAreTwoBlocksThatFollowEachOther) {
 
 TEST(ConversionDwells, AreCopiedWhereTheyLastAsLong) {
   const auto first_told = [](DwellForm source, const char* block, std::string_view target) {
-    const ReadAs read(std::string(block) + "\n", Language::kRs274, nullptr, source);
+    const ReadText read(std::string(block) + "\n", Language::kRs274, nullptr, source);
     gcode::Diagnostics found;
     tell_what_cannot_be_said(read.program, *gcode::find_control(target), found);
     return found.empty() ? std::string("taken") : found.front().message;
@@ -230,8 +230,8 @@ TEST(ConversionDwells, ProveNoOtherTime) {
   const std::string text =
       around(Language::kKlartext, "CYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 1.5\n");
   const auto proved = [&](const std::string& block, DwellForm form) {
-    const ReadAs before(text, Language::kKlartext);
-    const ReadAs after(around(Language::kRs274, block), Language::kRs274, nullptr, form);
+    const ReadText before(text, Language::kKlartext);
+    const ReadText after(around(Language::kRs274, block), Language::kRs274, nullptr, form);
     return verify(before.read(), after.read(), 0.01).proved();
   };
   EXPECT_TRUE(proved("G4 P1.5\n", DwellForm::kSecondsP));
@@ -251,20 +251,20 @@ TEST(ConversionDwells, ProveNoDwellAtAnotherPlace) {
       "%_N_TEST_MPF\nG710\nG17 G40 G90 G94\nG0 X0 Y0 Z5\nG1 X1 F100\nG4 F2\nX2\nM30\n";
   const std::string right = "G21 G17 G40 G90 G94\nG0 X0 Y0 Z5\nG1 X1 F100\nG4 P2\nX2\nM30\n";
   const std::string late = "G21 G17 G40 G90 G94\nG0 X0 Y0 Z5\nG1 X1 F100\nX2\nG4 P2\nM30\n";
-  const ReadAs before(text, Language::kSiemens);
-  const ReadAs after(right, Language::kRs274, nullptr, DwellForm::kSecondsP);
-  const ReadAs other(late, Language::kRs274, nullptr, DwellForm::kSecondsP);
+  const ReadText before(text, Language::kSiemens);
+  const ReadText after(right, Language::kRs274, nullptr, DwellForm::kSecondsP);
+  const ReadText other(late, Language::kRs274, nullptr, DwellForm::kSecondsP);
   EXPECT_TRUE(verify(before.read(), after.read(), 0.01).proved());
   EXPECT_FALSE(verify(before.read(), other.read(), 0.01).proved());
 }
 
 // Behind a dwell the place and the feed are as before it, where its word is a time for certain.
 TEST(ConversionDwells, ChangeNeitherPlaceNorFeed) {
-  const ReadAs siemens("G710\nG0 X0 Y0 Z5\nG1 X1 F100\nG4 F2\nX2\n", Language::kSiemens);
+  const ReadText siemens("G710\nG0 X0 Y0 Z5\nG1 X1 F100\nG4 F2\nX2\n", Language::kSiemens);
   EXPECT_EQ(siemens.meaning.states[siemens.meaning.blocks[3].state_after].feed, 100);
-  const ReadAs plain("G21\nG0 X0 Y0 Z5\nG1 X1 F100\nG4 X2.\nX2\n", Language::kRs274);
+  const ReadText plain("G21\nG0 X0 Y0 Z5\nG1 X1 F100\nG4 X2.\nX2\n", Language::kRs274);
   EXPECT_TRUE(plain.meaning.motions.back().start_known);
-  const ReadAs unsure("G21\nG0 X0 Y0 Z5\nG1 X1 F100\nG4 X2\nX2\n", Language::kRs274);
+  const ReadText unsure("G21\nG0 X0 Y0 Z5\nG1 X1 F100\nG4 X2\nX2\n", Language::kRs274);
   EXPECT_FALSE(unsure.meaning.motions.back().start_known);
 }
 

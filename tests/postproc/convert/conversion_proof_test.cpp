@@ -13,7 +13,7 @@ using gcode::Language;
 // --- round trips --------------------------------------------------------------------------------
 
 std::vector<std::string> events_of(const std::string& text, Language language) {
-  const ReadAs as(text, language);
+  const ReadText as(text, language);
   const ProgramEvents list = list_common_events(as.read());
   std::vector<std::string> all;
   std::size_t next = 0;

@@ -22,8 +22,8 @@ SmoothOptions converting_to(std::string_view target) {
 Verification verdict_for(std::string_view target, const std::string& before,
                          const std::string& after, double tolerance_mm = 0.01) {
   const gcode::Control& control = *gcode::find_control(target);
-  const ReadAs old_text(before, gcode::Language::kRs274);
-  const ReadAs new_text(after, control.language, control.curves);
+  const ReadText old_text(before, gcode::Language::kRs274);
+  const ReadText new_text(after, control.language, control.curves);
   return verify(old_text.read(), new_text.read(), tolerance_mm);
 }
 

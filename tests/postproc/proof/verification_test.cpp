@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "tests/support/wavy_programs.h"
 

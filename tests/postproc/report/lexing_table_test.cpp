@@ -195,7 +195,7 @@ TEST(LexingTableLabels, MayBeNamedByAProgramThatIsCalled) {
   EXPECT_TRUE(kept.proved);
   EXPECT_TRUE(is_rewritten_within(kept, 1, 4 + kWaveLines));
   EXPECT_FALSE(is_rewritten_within(kept, 5 + kWaveLines, 500));
-  EXPECT_NE(kept.text.find("N500 G1 X30.200"), std::string::npos);
+  EXPECT_NE(kept.text.find("N500 G1 X30.300"), std::string::npos);
   expect_rest_copied(before, kept);
 
   options.allowed = {"subprogram"};

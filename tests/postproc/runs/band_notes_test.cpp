@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
-
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
 #include "postproc/runs/run_grouping.h"

@@ -6,9 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
-#include <string>
 #include <variant>
-#include <vector>
 
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/part_reading.h"

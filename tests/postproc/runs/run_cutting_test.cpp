@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
-#include <vector>
 
 #include "postproc/runs/run_grouping.h"
 #include "tests/support/wavy_programs.h"

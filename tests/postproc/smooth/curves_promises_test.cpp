@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
-#include <vector>
 
 #include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
@@ -66,9 +64,8 @@ std::string head_at(const Point3& place) {
 
 // A program as a control with these curves reads it.
 struct ReadCurves : ReadText {
-  ReadCurves(const std::string& text, const gcode::CurveFormat& format) : ReadText(text) {
-    meaning = gcode::interpret(program, {.curves = &format}, found);
-  }
+  ReadCurves(const std::string& text, const gcode::CurveFormat& format)
+      : ReadText(text, gcode::Language::kRs274, &format) {}
 };
 
 // The cutting moves after the first one of a program.

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "gcode/state/reason.h"
 #include "geometry/fitting/one_sided/one_sided_fair.h"

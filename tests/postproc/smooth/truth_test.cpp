@@ -5,8 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <vector>
+#include <cstdlib>
 
 #include "gcode/controls/built_in.h"
 #include "geometry/fitting/fair/fair.h"
@@ -20,6 +19,7 @@ namespace {
 using geometry::FinishSurface;
 using geometry::kPlacesPerEdge;
 using geometry::Point3;
+using geometry::rms_of_cuts;
 using geometry::rms_of_rows;
 using geometry::surface_program;
 using geometry::surface_rows;
@@ -82,6 +82,12 @@ CurveTruth curve_truth(const std::vector<std::vector<Point3>>& rows, double tole
   return {fair.rms(), percentile_95(differences)};
 }
 
+// Of noise; more with BATTEN_TRUTH_SEEDS=6.
+unsigned seeds_to_try() {
+  const char* given = std::getenv("BATTEN_TRUTH_SEEDS");
+  return given == nullptr ? 2 : static_cast<unsigned>(std::atoi(given));
+}
+
 class Truth : public testing::TestWithParam<double> {};
 
 // A coordinate of three decimals is off by 0.0003 mm (rms) of itself, which is a fifth of the
@@ -106,7 +112,7 @@ constexpr double kNoise = 0.02;  // mm, the most that vertices are moved
 // surface than the vertices were.
 TEST_P(Truth, OfTheCurveThroughNoiseIsNearerThanThatOfTheNoisyChords) {
   const double cam = GetParam();
-  for (unsigned seed = 1; seed <= 6; ++seed) {
+  for (unsigned seed = 1; seed <= seeds_to_try(); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const auto rows = surface_rows(cam, kNoise, seed);
     const CurveTruth found = curve_truth(rows, 2 * cam, false);
@@ -133,7 +139,7 @@ double shortest_edge(const std::vector<Point3>& row) {
 // places; one with corners at noisy vertices did so a hundred times.
 TEST_P(Truth, OfTheCurveThroughNoiseHasNoCorners) {
   const double tolerance = 2 * GetParam();
-  for (unsigned seed = 1; seed <= 6; ++seed) {
+  for (unsigned seed = 1; seed <= seeds_to_try(); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     for (const auto& row : surface_rows(GetParam(), kNoise, seed)) {
       const geometry::SmoothCurve path = fair_row(row, tolerance, false);
@@ -152,26 +158,6 @@ INSTANTIATE_TEST_SUITE_P(Surface, Truth, testing::Values(0.002, 0.005, 0.01));
 
 // --- as written --------------------------------------------------------------------------------
 
-// Of all cutting moves of a program, with the curve blocks of a target.
-double rms_of(const std::string& text, std::string_view target = "linuxcnc") {
-  const gcode::SourceText source("rows.nc", text);
-  gcode::Diagnostics ignored;
-  const gcode::Program program = gcode::parse(source, ignored);
-  geometry::SurfaceDistances distances;
-  gcode::ReadOptions reading;
-  reading.curves = gcode::find_control(target)->curves;
-  for (const gcode::Motion& motion : gcode::interpret(program, reading, ignored).motions) {
-    if (motion.kind == gcode::MotionKind::kRapid) continue;
-    const double step = geometry::length_of(motion.piece) / kPlacesPerEdge;
-    for (int k = 0; k < kPlacesPerEdge; ++k) {
-      distances.add(
-          FinishSurface::distance(geometry::point_at(motion.piece, (k + 0.5) / kPlacesPerEdge)),
-          step);
-    }
-  }
-  return distances.rms();
-}
-
 // Of what is written in place of rows without noise: no farther from the surface than the chords
 // were, whatever the control, and far nearer where that is asked for or the form is a curve. Three
 // decimals are a fifth of the least tolerance here.
@@ -184,7 +170,7 @@ TEST_P(Truth, OfWhatIsWrittenIsNearerThanThatOfTheChords) {
   };
   const double cam = GetParam();
   const std::string before = surface_program(surface_rows(cam), 2000);
-  const double rms_before = rms_of(before);
+  const double rms_before = rms_of_cuts(before);
   for (const auto& [target, output, prefer, part] :
        {Written{"linuxcnc", Form::kAuto, Prefer::kTime, 1},
         {"grbl", Form::kAuto, Prefer::kTime, 1},
@@ -201,7 +187,7 @@ TEST_P(Truth, OfWhatIsWrittenIsNearerThanThatOfTheChords) {
     options.prefer = prefer;
     const SmoothResult result = smoothed(before, options);
     EXPECT_TRUE(result.proved);
-    const double rms_after = rms_of(result.text, target);
+    const double rms_after = rms_of_cuts(result.text, target);
     fmt::print("CAM tolerance {}, {}, {}: rms {:.6f} -> {:.6f} mm, blocks {} -> {}\n", cam, target,
                name_of(prefer), rms_before, rms_after, result.blocks_in, result.blocks_out);
     EXPECT_LE(rms_after, part * rms_before);
@@ -213,7 +199,7 @@ TEST_P(Truth, OfWhatIsWrittenIsNearerThanThatOfTheChords) {
 
 // Rows that a machine with limits on acceleration and jerk cannot run at their feed for noise.
 void expect_faster_and_nearer(double cam, double feed, double part) {
-  for (unsigned seed = 1; seed <= 6; ++seed) {
+  for (unsigned seed = 1; seed <= seeds_to_try(); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const std::string before = surface_program(surface_rows(cam, kNoise, seed), feed);
     SmoothOptions options = options_for("fanuc");
@@ -222,13 +208,14 @@ void expect_faster_and_nearer(double cam, double feed, double part) {
     const SmoothResult result = smoothed(before, options);
     EXPECT_TRUE(result.proved);
     EXPECT_EQ(rewritten_runs(result), static_cast<std::size_t>(geometry::kSurfaceRows));
+    const double rms_before = rms_of_cuts(before);
+    const double rms_after = rms_of_cuts(result.text);
     fmt::print(
         "CAM tolerance {}, noise 0.02, F{}, seed {}: rms {:.6f} -> {:.6f} mm, time {:.3f} -> "
         "{:.3f} s\n",
-        cam, feed, seed, rms_of(before), rms_of(result.text), result.time_before_s,
-        result.time_after_s);
+        cam, feed, seed, rms_before, rms_after, result.time_before_s, result.time_after_s);
     EXPECT_LT(result.time_after_s, part * result.time_before_s);
-    EXPECT_LT(rms_of(result.text), rms_of(before));
+    EXPECT_LT(rms_after, rms_before);
   }
 }
 
@@ -244,7 +231,7 @@ TEST_P(Truth, OfNoisyRowsIsCutNearerAndFasterAtAHighFeed) {
 // six times the CAM tolerance to spend: in less time, and a fifth nearer to the surface than the
 // noisy chords.
 TEST(NoisyTruth, IsCutFasterAndNearer) {
-  for (unsigned seed = 1; seed <= 6; ++seed) {
+  for (unsigned seed = 1; seed <= seeds_to_try(); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const std::string before = surface_program(surface_rows(0.005, kNoise, seed), 10000);
     SmoothOptions options = options_for("linuxcnc");
@@ -252,10 +239,12 @@ TEST(NoisyTruth, IsCutFasterAndNearer) {
     const SmoothResult result = smoothed(before, options);
     EXPECT_TRUE(result.proved);
     EXPECT_EQ(rewritten_runs(result), static_cast<std::size_t>(geometry::kSurfaceRows));
+    const double rms_before = rms_of_cuts(before);
+    const double rms_after = rms_of_cuts(result.text);
     fmt::print("noise 0.02, seed {}: rms {:.6f} -> {:.6f} mm, time {:.3f} -> {:.3f} s\n", seed,
-               rms_of(before), rms_of(result.text), result.time_before_s, result.time_after_s);
+               rms_before, rms_after, result.time_before_s, result.time_after_s);
     EXPECT_LT(result.time_after_s, 0.95 * result.time_before_s);
-    EXPECT_LT(rms_of(result.text), 0.8 * rms_of(before));
+    EXPECT_LT(rms_after, 0.8 * rms_before);
   }
 }
 

@@ -1,8 +1,6 @@
 // The words of a profile in a written program: exactly these are taken, and nothing else.
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "postproc/stream/assembly.h"
 #include "tests/support/wavy_programs.h"
 

@@ -78,7 +78,7 @@ class EveryTargetSmooths : public testing::TestWithParam<std::string> {
 
 TEST_P(EveryTargetSmooths, AWaveInMillimetresProvedAndOnce) {
   const std::string text =
-      program({.noise = 0.003}, word_of_units(target_, gcode::Units::kMillimetre));
+      program({.lines = 120, .noise = 0.003}, word_of_units(target_, gcode::Units::kMillimetre));
   for (const Form form : {Form::kAuto, Form::kLines, Form::kArcs}) {
     SmoothOptions options = options_for(GetParam());
     options.output = form;
@@ -93,8 +93,13 @@ TEST_P(EveryTargetSmooths, AWaveInMillimetresProvedAndOnce) {
 TEST_P(EveryTargetSmooths, AWaveInInchesProved) {
   const std::string units = word_of_units(target_, gcode::Units::kInch);
   if (units.empty()) return;  // tested: Conversion refuses G20 there
-  const Wave wave{
-      .step = 0.008, .height = 0.08, .length = 0.7, .noise = 0.0001, .decimals = 4, .feed = 80};
+  const Wave wave{.lines = 120,
+                  .step = 0.008,
+                  .height = 0.08,
+                  .length = 0.7,
+                  .noise = 0.0001,
+                  .decimals = 4,
+                  .feed = 80};
   SmoothOptions options = options_for(GetParam());
   options.prefer = Prefer::kSize;  // some targets print steps of the noise's own size
   (void)expect_smoothed(program(wave, units), options);

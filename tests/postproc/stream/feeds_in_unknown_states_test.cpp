@@ -5,9 +5,7 @@
 
 #include <random>
 #include <sstream>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "tests/support/wavy_programs.h"
 

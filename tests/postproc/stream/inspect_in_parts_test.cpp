@@ -7,10 +7,8 @@
 #include <cstddef>
 #include <optional>
 #include <random>
-#include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "postproc/stream/inspect.h"
 #include "tests/support/in_windows.h"

@@ -10,9 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "gcode/controls/built_in.h"
 #include "gcode/state/motion.h"

@@ -10,9 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "gcode/state/reason.h"
 #include "gcode/text/source_text.h"
@@ -69,8 +67,8 @@ std::string two_clusters(const Teeth& teeth) {
 
 std::vector<Teeth> all_teeth() {
   std::vector<Teeth> all;
-  for (const double turn : {30, 45, 60}) {
-    for (const double gap : {0.004, 0.006, 0.009}) {
+  for (const double turn : {30, 60}) {
+    for (const double gap : {0.004, 0.009}) {
       for (const double more : {0.003, 0.006}) {
         if (more < gap) all.push_back({turn, gap, more});
       }

@@ -2,7 +2,6 @@
 // were left out, and in the end the blocks as they were.
 #include <gtest/gtest.h>
 
-#include <string>
 #include <variant>
 
 #include "gcode/state/reason.h"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <string>
 
 #include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <iterator>
 #include <numbers>
-#include <string>
 
 #include "tests/support/constructs.h"
 #include "tests/support/places.h"

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include "tests/support/method_cases.h"
 #include "tests/support/wavy_programs.h"

@@ -2,8 +2,6 @@
 // there, with the state as the reason; in front of them and behind them smoothing goes on.
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "tests/support/constructs.h"
 
 namespace batten::postproc {

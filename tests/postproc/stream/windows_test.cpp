@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <initializer_list>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "postproc/stream/pipeline.h"
 #include "postproc/stream/prescan.h"
@@ -36,7 +34,7 @@ std::size_t compare_both_ways(const std::string& text, const SmoothOptions& opti
   return most;
 }
 
-constexpr unsigned kSeeds = 30;
+constexpr unsigned kSeeds = 20;
 
 class Seed : public testing::TestWithParam<unsigned> {};
 

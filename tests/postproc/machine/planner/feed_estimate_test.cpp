@@ -72,7 +72,7 @@ TEST(FeedEstimate, IsNearThePlanOnPathsOfAllKinds) {
 
 TEST(FeedEstimate, IsNearThePlanOnRandomCurves) {
   Spread spread;
-  for (int seed = 0; seed < 60; ++seed) {
+  for (int seed = 0; seed < 40; ++seed) {
     std::mt19937 random(static_cast<unsigned>(seed));
     const Path path = path_of(random_curve(random));
     const KinematicPathLimits limits = random_limits(random);

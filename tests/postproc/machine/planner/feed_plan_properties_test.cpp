@@ -23,7 +23,7 @@ using geometry::Point3;
 using geometry::Vector3;
 
 constexpr double kNoSuchLimit = KinematicPathLimits::kNone;
-constexpr int kPaths = 50;
+constexpr int kPaths = 20;
 
 struct Case {
   Path path;
@@ -301,7 +301,7 @@ class Reachability {
 
 TEST(FeedPlanProperties, WithoutJerkLimitTheTimeIsThatOfReachabilityAnalysis) {
   Differences differences;
-  for (int seed = 0; seed < 20; ++seed) {
+  for (int seed = 0; seed < 10; ++seed) {
     Case test = random_case(5 * seed);  // curves, whose curvature runs on
     test.limits.jerk.setConstant(kNoSuchLimit);
     test.limits.tangential_jerk = kNoSuchLimit;

@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
 #include <variant>
-#include <vector>
 
 #include "gcode/controls/built_in.h"
 #include "geometry/path/path.h"

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "geometry/fitting/fair/fair.h"
 #include "postproc/smooth/forms/output_plan.h"

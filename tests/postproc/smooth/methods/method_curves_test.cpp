@@ -40,17 +40,12 @@ class EveryMethod : public testing::TestWithParam<NamedMethod> {
                                               const CurveRequest& request) const {
     return curve_of(GetParam().method, points, request);
   }
-  [[nodiscard]] bool is_corner_method() const {
-    const Method m = GetParam().method;
-    return m == Method::kGuo || m == Method::kGuoLiteral || m == Method::kOzcan ||
-           m == Method::kTimeOptimal;
-  }
 };
 
 // A wavy line in space as a CAM system cuts it into chords of 0.005 mm.
 std::vector<Point3> wavy() {
   return geometry::greedy_chords(
-      [](double u) { return Point3(u, 2 * std::sin(u / 3), std::cos(u / 5)); }, 0.0, 40.0, 0.005, 4,
+      [](double u) { return Point3(u, 2 * std::sin(u / 3), std::cos(u / 5)); }, 0.0, 20.0, 0.005, 4,
       4000);
 }
 

@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
-#include <vector>
 
 #include "gcode/state/reason.h"
 #include "postproc/smooth/run_smoother.h"

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <vector>
 
 #include "postproc/smooth/selection/candidate_bounds.h"
 #include "postproc/smooth/selection/selection.h"

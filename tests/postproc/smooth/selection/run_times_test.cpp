@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
 #include "postproc/runs/run_path.h"
 #include "tests/support/one_run.h"
 

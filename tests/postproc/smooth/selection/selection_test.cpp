@@ -4,11 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <random>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "gcode/state/reason.h"
 #include "tests/support/wavy_programs.h"
