@@ -82,7 +82,7 @@ std::string xyz(const Machine& machine, double AxisLimits::*limit, double unit =
 // Columns of the table: name, control, limits, blocks per second and ahead, bytes, description.
 template <typename... Columns>
 std::string table_line(const Columns&... columns) {
-  return fmt::format("{:<12} {:<11} {:>7} {:>7} {:>7} {:>7} {:>9} {:>6} {:>8}  {}\n", columns...);
+  return fmt::format("{:<13} {:<11} {:>8} {:>8} {:>7} {:>7} {:>9} {:>6} {:>8}  {}\n", columns...);
 }
 
 std::string table_of(std::span<const Machine> machines) {
@@ -97,6 +97,8 @@ std::string table_of(std::span<const Machine> machines) {
                        xyz(m, &AxisLimits::jerk, kMetre), fmt::format("{:.0f}", 1 / m.block_period),
                        m.look_ahead, short_number(m.stream_rate), m.description);
   }
+  text += "\nwhere the numbers come from\n";
+  for (const Machine& m : machines) text += fmt::format("{:<13} {}\n", m.name, m.source);
   return text;
 }
 
@@ -119,6 +121,7 @@ Json number_or_null(double value) { return std::isinf(value) ? Json(nullptr) : J
 Json json_of(const Machine& machine) {
   Json json = {{"name", machine.name},
                {"description", machine.description},
+               {"source", machine.source},
                {"model", name_of(machine.model)},
                {"path_mode", name_of(machine.path_mode)},
                {"max_velocity_mm_per_s", machine.max_velocity()},

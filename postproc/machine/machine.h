@@ -47,6 +47,7 @@ struct Machine {
 
   std::string name;
   std::string description;
+  std::string source;  // where its numbers come from
   ControllerModel model = ControllerModel::kLookAhead;
 
   std::array<AxisLimits, kAxes> axes = {kLinearAxis, kLinearAxis, kLinearAxis,

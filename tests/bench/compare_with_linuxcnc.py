@@ -177,7 +177,7 @@ def smoothed_programs(args, folder):
     for file in files:
         out = os.path.join(folder, "smooth_" + os.path.basename(file))
         r = subprocess.run([args.batten, "smooth", file, "-o", out, "--target", "linuxcnc",
-                            "--tolerance", "0.01", "--force"], capture_output=True, text=True)
+                            "--machine", "linuxcnc-fast", "--tolerance", "0.01", "--force"], capture_output=True, text=True)
         if r.returncode == 0:
             programs.append((os.path.splitext(os.path.basename(file))[0] + ", smoothed", read(out)))
         else:

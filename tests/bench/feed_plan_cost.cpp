@@ -74,14 +74,14 @@ double seconds_of(const Run& run) {
 
 // The pieces per second of each control's model, on what programs are made of.
 void print_controls(int most) {
-  fmt::print("{:28} {:>8} {:>14} {:>14} {:>14}  pieces/s\n", "path", "pieces", "linuxcnc", "grbl",
-             "high-speed");
+  fmt::print("{:28} {:>8} {:>14} {:>14} {:>14}  pieces/s\n", "path", "pieces", "linuxcnc-fast",
+             "grbl", "high-speed");
   for (const Kind& kind : {kKinds[0], kKinds[3]}) {
     for (int pieces = 1000; pieces <= most; pieces *= 10) {
       std::vector<postproc::TimedPiece> chain;
       for (const geometry::PathPiece& piece : kind.make(pieces)) chain.push_back({piece, 6000});
       fmt::print("{:28} {:8}", kind.name, pieces);
-      for (const std::string_view name : {"linuxcnc", "grbl", "high-speed"}) {
+      for (const std::string_view name : {"linuxcnc-fast", "grbl", "high-speed"}) {
         const postproc::Machine& machine = *postproc::find_machine(name);
         const int times = std::max(1, 20000 / pieces);
         const double seconds = seconds_of([&] {

@@ -52,7 +52,7 @@ void print_parabolas() {
 postproc::SmoothResult smoothed(const gcode::SourceText& source, Linearize linearize) {
   postproc::SmoothOptions options;
   options.target = gcode::find_control("linuxcnc");
-  options.machine = postproc::find_machine(options.target->machine);
+  options.machine = postproc::find_machine("linuxcnc-fast");
   options.tolerance_mm = 0.01;
   options.method = postproc::Method::kFair;  // the same curves for both
   options.output = postproc::Form::kLines;

@@ -52,8 +52,8 @@ def main():
                                 args.folder, kind, "--blocks", str(blocks)],
                                check=True, stdout=subprocess.DEVNULL)
             size = os.path.getsize(program) / 1e6
-            options = ["--target", "linuxcnc", "--tolerance", "0.01", "--method", args.method,
-                       "--progress", "off"]
+            options = ["--target", "linuxcnc", "--machine", "linuxcnc-fast", "--tolerance", "0.01",
+                       "--method", args.method, "--progress", "off"]
             result = program + ".smooth"
             if args.stdin:
                 with open(program, "rb") as old, open(result, "wb") as new:

@@ -117,7 +117,7 @@ void programs(double cam, std::string_view machine, postproc::Prefer prefer,
         geometry::surface_program(geometry::surface_rows(cam, settings.noise, seed), settings.feed);
     postproc::SmoothOptions options;
     options.target = gcode::find_control(machine == "router" || machine == "grbl" ? "grbl"
-                                         : machine == "linuxcnc"                  ? "linuxcnc"
+                                         : machine == "linuxcnc-fast"             ? "linuxcnc"
                                                                                   : "fanuc");
     options.machine = postproc::find_machine(machine);
     options.threads = 1;
@@ -200,13 +200,13 @@ int main(int count, char** arguments) {
   fmt::print(
       "\nCAM    machine    prefer   seed | seconds: before, after | runs rewritten | "
       "blocks | rms: before, after\n");
-  for (const std::string_view machine : {"linuxcnc", "high-speed", "mill", "router"}) {
+  for (const std::string_view machine : {"linuxcnc-fast", "high-speed", "mill", "router"}) {
     for (const double cam : kCamTolerances) {
       programs(cam, machine, postproc::Prefer::kTime, settings);
     }
   }
   for (const double cam : kCamTolerances) {
-    programs(cam, "linuxcnc", postproc::Prefer::kAccuracy, settings);
+    programs(cam, "linuxcnc-fast", postproc::Prefer::kAccuracy, settings);
   }
   fmt::print("\nCAM    noise | by places: without need, with, gain | by the planner: the same\n");
   for (const double noise : {0.0, settings.noise}) {

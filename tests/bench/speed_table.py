@@ -47,8 +47,8 @@ def run(command):
 
 
 def commands(batten, rs274, file, new, threads):
-    smooth = [batten, "smooth", file, "--force", "--quiet", "--target", "linuxcnc", "--tolerance",
-              "0.01", "--threads", str(threads)]
+    smooth = [batten, "smooth", file, "--force", "--quiet", "--target", "linuxcnc", "--machine",
+              "linuxcnc-fast", "--tolerance", "0.01", "--threads", str(threads)]
     rows = {"cat": ["cat", file]}
     if rs274:
         rows["rs274 -g"] = [rs274, "-g", file, "/dev/null"]

@@ -38,7 +38,7 @@ std::string wave(int blocks) {
 postproc::SmoothOptions smooth_options() {
   postproc::SmoothOptions options;
   options.target = gcode::find_control("linuxcnc");
-  options.machine = postproc::find_machine(options.target->machine);
+  options.machine = postproc::find_machine("linuxcnc-fast");
   options.method = postproc::Method::kFair;
   options.threads = 1;
   return options;

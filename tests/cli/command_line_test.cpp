@@ -358,14 +358,16 @@ TEST_F(CommandLine, PrintsAMachineAsAFileThatIsReadAgain) {
   EXPECT_TRUE(contains(first.out, "[axis.z]\nvelocity = 10  # mm/s")) << first.out;
 }
 
-TEST_F(CommandLine, ListsTheMachinesInOneTable) {
+TEST_F(CommandLine, ListsTheMachinesAndWhereTheirNumbersComeFrom) {
   const auto machines = nlohmann::json::parse(batten("machines --json -").out);
   const std::string table = batten("machines").out;
   ASSERT_GE(machines.size(), 6u);
   for (const auto& machine : machines) {
     EXPECT_TRUE(contains(table, "\n" + std::string(machine["name"]) + " ")) << table;
+    EXPECT_TRUE(contains(table, " " + std::string(machine["source"]) + "\n")) << table;
   }
-  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), static_cast<long>(machines.size()) + 2);
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'),
+            2 * static_cast<long>(machines.size()) + 4);
 }
 
 // --- progress and interrupts ---------------------------------------------------------------------

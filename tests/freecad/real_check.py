@@ -55,8 +55,8 @@ def check(batten, root, folder):
     expect(not [p for p in (folder / "home").rglob("Mod")], "no Mod folder of the user's")
 
     run = run_freecad(home, str(root / "tests/freecad/real_job.py"), REAL_JOB=str(out),
-                      REAL_JOB_ARGUMENTS=f"--target linuxcnc --tolerance {TOLERANCE} --json "
-                                         f"{out}/report.json --force")
+                      REAL_JOB_ARGUMENTS="--target linuxcnc --machine linuxcnc-fast "
+                                         f"--tolerance {TOLERANCE} --json {out}/report.json --force")
     told = out / "told.txt"
     expect(not told.exists(), "job made and posted", told.exists() and told.read_text(), run.stdout)
     if wrong:
@@ -82,7 +82,8 @@ def smoothed(batten, out, name, *options):
 
 def check_other_forms(batten, out):
     """At the feed of the job the time is length over feed; where it can be less, it is."""
-    blocks, seconds = smoothed(batten, out, "old.nc", "--target", "linuxcnc", "--output", "arcs")
+    blocks, seconds = smoothed(batten, out, "old.nc", "--target", "linuxcnc", "--machine",
+                               "linuxcnc-fast", "--output", "arcs")
     print(f"--output arcs: {blocks[0]} -> {blocks[1]} blocks, {seconds[0]:.2f} -> {seconds[1]:.2f} s")
     expect(blocks[1] < 0.75 * blocks[0], "a quarter fewer blocks as arcs", blocks)
     expect(seconds[1] < (1 + SAME_TIME) * seconds[0], "no more time as arcs", seconds)

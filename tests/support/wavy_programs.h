@@ -83,10 +83,11 @@ inline std::string bend_program(const std::string& middle = "") {
   return text + "G0 Z50\nM2\n";
 }
 
+// LinuxCNC runs a fast machine here: what is smoother is faster on it, so that it is written.
 inline SmoothOptions options_for(std::string_view target) {
   SmoothOptions options;
   options.target = gcode::find_control(target);
-  options.machine = find_machine(options.target->machine);
+  options.machine = find_machine(target == "linuxcnc" ? "linuxcnc-fast" : options.target->machine);
   options.threads = 1;
   options.decimals = gcode::Decimals{};  // Z5 here is 5 mm for every target
   return options;

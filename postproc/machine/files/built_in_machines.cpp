@@ -1,5 +1,5 @@
 // The machines that need no file. Limits of real ones differ by more than a factor of ten, so each
-// says where its figures come from; a machine file starts as one of them.
+// says in `source` where its figures come from; a machine file starts as one of them.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -21,22 +21,46 @@ AllAxes xyz(const AxisLimits& limits) {
 
 constexpr double kPerMinute = 1.0 / 60;
 
-// LinuxCNC, with the limits under which its model was compared with the real control
-// (docs/algorithms/cycle_time.md): a fast router or engraving machine.
+// What every LinuxCNC has in common.
+Machine any_linuxcnc() {
+  return {.name = "",
+          .description = "",
+          .source = "",
+          .model = ControllerModel::kLinuxcnc,
+          .block_period = 0.001,
+          // What the planner optimises ([TRAJ]ARC_BLEND_OPTIMIZATION_DEPTH); its queue of 2000
+          // blocks is never the limit.
+          .look_ahead = 50,
+          .servo_period = 0.001};
+}
+
+// A metric mill or router with stepper motors, as LinuxCNC's own configuration has it.
 Machine linuxcnc() {
-  return {
-      .name = "linuxcnc",
-      .description = "LinuxCNC 2.9, G64 P0.01, 400 mm/s and 4000 mm/s2 on every axis, 1 ms servo",
-      .model = ControllerModel::kLinuxcnc,
-      .axes = xyz({400, 4000, Machine::kNone, 400}),
-      .path_feed = 400,
-      .block_period = 0.001,
-      // What the planner optimises ([TRAJ]ARC_BLEND_OPTIMIZATION_DEPTH); its queue of 2000
-      // blocks is never the limit.
-      .look_ahead = 50,
-      .servo_period = 0.001,
-      .blend_tolerance = 0.01,
-      .naive_cam_tolerance = 0.01};
+  Machine m = any_linuxcnc();
+  m.name = "linuxcnc";
+  m.description = "LinuxCNC 2.9, G64 P0.0127, 60 mm/s (Z 40 mm/s) and 500 mm/s2, 1 ms servo";
+  m.source = "LinuxCNC 2.9, its sample configuration sim/qtdragon/qtdragon_xyz/qtdragon_metric.ini";
+  m.axes = xyz({60, 500, Machine::kNone, 60});
+  m.axis(Axis::kZ) = {40, 500, Machine::kNone, 40};
+  m.path_feed = 60;
+  m.blend_tolerance = 0.0127;
+  m.naive_cam_tolerance = 0.0127;
+  return m;
+}
+
+Machine fast_linuxcnc() {
+  Machine m = any_linuxcnc();
+  m.name = "linuxcnc-fast";
+  m.description = "LinuxCNC 2.9, G64 P0.01, 400 mm/s and 4000 mm/s2 on every axis, 1 ms servo";
+  m.source =
+      "typical of a fast router or engraving machine; the limits under which the model was "
+      "compared "
+      "with LinuxCNC 2.9 itself";
+  m.axes = xyz({400, 4000, Machine::kNone, 400});
+  m.path_feed = 400;
+  m.blend_tolerance = 0.01;
+  m.naive_cam_tolerance = 0.01;
+  return m;
 }
 
 // What every grbl 1.1 has in common: 16 MHz, and a serial line of 115200 baud, which is 11,520
@@ -44,6 +68,7 @@ Machine linuxcnc() {
 Machine any_grbl() {
   return {.name = "",
           .description = "",
+          .source = "",
           .model = ControllerModel::kGrbl,
           .block_period = 0.0013,
           .stream_rate = 11520,
@@ -64,26 +89,30 @@ Machine grbl() {
   if (!m) throw std::logic_error("grbl: " + problems.front());
   m->name = "grbl";
   m->description = "grbl 1.1 as it comes ($110=500, $120=10): for first steps of any machine";
+  m->source = "grbl 1.1, defaults.h, DEFAULTS_GENERIC";
   return *m;
 }
 
-// A belt-driven hobby router: defaults.h of grbl has such values for the Shapeoko 3.
+// A belt-driven hobby router.
 Machine router() {
   Machine m = any_grbl();
   m.name = "router";
   m.description = "hobby router, grbl 1.1 at 115200 baud, 5000 mm/min and 400 mm/s2";
+  m.source = "grbl 1.1, defaults.h: limits of DEFAULTS_SHAPEOKO_3, $11 and $12 of DEFAULTS_GENERIC";
   m.axes = xyz({5000 * kPerMinute, 400, Machine::kNone, 5000 * kPerMinute});
   m.junction_deviation = 0.01;
   m.arc_tolerance = 0.002;
   return m;
 }
 
-// A machining centre with an industrial control of which nothing else is known: 20 m/min,
-// a fifth of g, 2 ms a block (500 blocks/s) and 200 blocks of look-ahead are what makers
-// name for mid-range controls; 6 s from chip to chip with a carousel.
+// A machining centre with an industrial control of which nothing else is known; 6 s from chip to
+// chip with a carousel.
 Machine mill() {
   return {.name = "mill",
           .description = "machining centre, 20 m/min and 2000 mm/s2 on every axis, 500 blocks/s",
+          .source =
+              "typical of the class: what makers name for mid-range machining centres and "
+              "controls (20 m/min, 500 blocks/s, 200 blocks ahead); not one machine",
           .axes = xyz({20000 * kPerMinute, 2000, Machine::kNone, 20000 * kPerMinute}),
           .block_period = 0.002,
           .look_ahead = 200,
@@ -92,11 +121,13 @@ Machine mill() {
           .spindle_start_time = 2};
 }
 
-// A high-speed mill for dies: 0.5 ms a block and 1024 blocks ahead are what Heidenhain names for
-// its iTNC 530; 40 m/min, one g and 100 m/s^3 what makers of such machines name.
+// A high-speed mill for dies.
 Machine high_speed_mill() {
   return {.name = "high-speed",
           .description = "high-speed mill, 40 m/min, 10 m/s2, jerk 100 m/s3, 2000 blocks/s",
+          .source =
+              "0.5 ms a block and 1024 blocks ahead: Heidenhain on its iTNC 530; limits "
+              "typical of the class: what makers name for such mills; not one machine",
           .axes = xyz({40000 * kPerMinute, 10000, 100000, 60000 * kPerMinute}),
           .block_period = 0.0005,
           .look_ahead = 1024,
@@ -110,6 +141,7 @@ Machine high_speed_mill() {
 Machine old_mill() {
   return {.name = "old-mill",
           .description = "old shop control, 10 m/min, 1000 mm/s2, 1000 blocks/s, 20 blocks ahead",
+          .source = "typical of the class: fast controls of the nineties; not one machine",
           .axes = xyz({10000 * kPerMinute, 1000, Machine::kNone, 15000 * kPerMinute}),
           .block_period = 0.001,
           .look_ahead = 20,
@@ -122,7 +154,7 @@ Machine old_mill() {
 }  // namespace
 
 std::span<const Machine> built_in_machines() {
-  static const std::array machines = {linuxcnc(), router(),          grbl(),
+  static const std::array machines = {linuxcnc(), fast_linuxcnc(),   router(),  grbl(),
                                       mill(),     high_speed_mill(), old_mill()};
   return machines;
 }

@@ -28,6 +28,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kBasedOn = "based-on";
 constexpr std::string_view kName = "name";
 constexpr std::string_view kDescription = "description";
+constexpr std::string_view kSource = "source";
 constexpr std::string_view kModel = "model";
 constexpr std::string_view kPathMode = "path-mode";
 constexpr std::string_view kBlockRate = "block-rate";
@@ -36,7 +37,7 @@ constexpr std::string_view kAxis = "axis";
 
 // Keys outside of the tables of axes.
 std::vector<std::string_view> possible_keys() {
-  std::vector<std::string_view> keys = {kBasedOn,  kName,         kDescription, kModel,
+  std::vector<std::string_view> keys = {kBasedOn,  kName,         kDescription, kSource, kModel,
                                         kPathMode, kLookAheadKey, kBlockRate,   kAxis};
   for (const MachineField& field : machine_fields()) keys.push_back(field.key);
   for (const AxisField& field : axis_fields()) keys.push_back(field.key_of_xyz);
@@ -93,6 +94,7 @@ class MachineReader {
     machine_ = base_of(table);
     machine_.name = fs::path(file_).stem().string();
     machine_.description = "from " + file_;
+    machine_.source = file_;
     read_xyz(table);
     for (const auto& [key, node] : table) read_entry(key, node);
     if (!table.contains(kBasedOn)) require_everything();
@@ -149,8 +151,10 @@ class MachineReader {
     if (field != fields.end()) {
       read_into(machine_.*field->place, field->quantity, name, node);
       found(std::string(name), name, node);
-    } else if (name == kName || name == kDescription) {
-      read_text(name == kName ? machine_.name : machine_.description, name, node);
+    } else if (name == kName) {
+      read_text(machine_.name, name, node);
+    } else if (name == kDescription || name == kSource) {
+      read_text(name == kSource ? machine_.source : machine_.description, name, node);
     } else if (name == kModel) {
       read_choice_into(machine_.model, kControllerModels, name, node);
     } else if (name == kPathMode) {
@@ -388,6 +392,7 @@ std::shared_ptr<const Machine> machine_with_grbl_settings(const Machine* base,
   if (!machine) return nullptr;
   machine->name = std::filesystem::path(file).stem().string();
   machine->description = "grbl with the settings in " + file;
+  machine->source = file;
   return std::make_shared<const Machine>(std::move(*machine));
 }
 
@@ -408,6 +413,7 @@ std::string machine_file_text(const Machine& machine) {
       "needed.\n";
   text += fmt::format("name = {}\n", toml_quoted(machine.name));
   text += fmt::format("description = {}\n", toml_quoted(machine.description));
+  text += fmt::format("source = {}  # where the numbers come from\n", toml_quoted(machine.source));
   text += fmt::format("model = \"{}\"  # linuxcnc, grbl or look-ahead\n", name_of(machine.model));
   text += fmt::format(
       "path-mode = \"{}\"  # until the program says: blend (G64), exact-path (G61) or exact-stop\n",

@@ -149,6 +149,7 @@ class MachineIniReader {
     machine_ = *find_machine("linuxcnc");
     machine_.name = std::filesystem::path(file_).stem().string();
     machine_.description = "LinuxCNC machine from " + file_;
+    machine_.source = file_;
     machine_.blend_tolerance = 0;
     machine_.naive_cam_tolerance = 0;
     mm_ = unit_of("LINEAR_UNITS", kLengthUnits);

@@ -23,6 +23,7 @@ TEST(BuiltInMachines, AreSoundAndCoverEveryModel) {
     EXPECT_TRUE(names.insert(m.name).second);
     EXPECT_EQ(find_machine(m.name), &m);
     EXPECT_FALSE(m.description.empty());
+    EXPECT_FALSE(m.source.empty());
     for (const MachineProblem& problem : problems_of(m)) {
       ADD_FAILURE() << problem.key << ": " << problem.value << ", expected " << problem.expected;
     }
@@ -51,10 +52,25 @@ TEST(BuiltInMachines, HaveGrblAsItComes) {
   EXPECT_EQ(m.look_ahead, 15);
 }
 
+// LinuxCNC's sim/qtdragon/qtdragon_xyz/qtdragon_metric.ini: MAX_VELOCITY 60, of Z 40,
+// MAX_ACCELERATION 500, MAX_LINEAR_VELOCITY 60, startup code G64P0.0127.
+TEST(BuiltInMachines, HaveLinuxcncAsItsSampleConfigurationIs) {
+  const Machine& m = *find_machine("linuxcnc");
+  const AxisLimits limits{60, 500, Machine::kNone, 60};
+  EXPECT_EQ(m.axis(Axis::kX), limits);
+  EXPECT_EQ(m.axis(Axis::kY), limits);
+  EXPECT_EQ(m.axis(Axis::kZ), (AxisLimits{40, 500, Machine::kNone, 40}));
+  EXPECT_EQ(m.path_feed, 60);
+  EXPECT_EQ(m.blend_tolerance, 0.0127);
+  EXPECT_EQ(m.naive_cam_tolerance, 0.0127);
+}
+
 TEST(BuiltInMachines, HaveWhatTheirDescriptionsSay) {
   const Machine& router = *find_machine("router");
   EXPECT_EQ(router.model, ControllerModel::kGrbl);
   EXPECT_DOUBLE_EQ(router.stream_rate, 115200.0 / 10);  // a start bit, eight of data and a stop bit
+  EXPECT_EQ(find_machine("linuxcnc-fast")->max_velocity(), 400);
+  EXPECT_EQ(find_machine("linuxcnc-fast")->max_acceleration(), 4000);
   EXPECT_EQ(find_machine("old-mill")->look_ahead, 20);
   EXPECT_DOUBLE_EQ(find_machine("old-mill")->block_period, 1.0 / 1000);
   EXPECT_TRUE(std::isfinite(find_machine("high-speed")->max_jerk()));

@@ -32,7 +32,7 @@ std::vector<TimedPiece> cuts_of(const std::string& text) {
 }
 
 double time_of(const std::string& text) {
-  return cutting_time(cuts_of(text), *find_machine("linuxcnc"), gcode::PathMode::kBlending);
+  return cutting_time(cuts_of(text), *find_machine("linuxcnc-fast"), gcode::PathMode::kBlending);
 }
 
 // With the feed turned up as far as the machine goes, and without cutting corners: kinks cost
@@ -40,7 +40,7 @@ double time_of(const std::string& text) {
 double exact_time_of(const std::string& text) {
   std::vector<TimedPiece> cuts = cuts_of(text);
   for (TimedPiece& cut : cuts) cut.feed = 0;
-  return cutting_time(cuts, *find_machine("linuxcnc"), gcode::PathMode::kExactPath);
+  return cutting_time(cuts, *find_machine("linuxcnc-fast"), gcode::PathMode::kExactPath);
 }
 
 // Seconds on a machine that keeps 3000 mm/s^2 and 50000 mm/s^3 on every axis, at 100 mm/s, and

@@ -64,6 +64,7 @@ TEST(MachineFile, ChangesWhatDiffersFromItsBase) {
   Machine expected = *find_machine("linuxcnc");
   expected.name = "my";
   expected.description = m.description;
+  expected.source = m.source;
   set_max_velocity(expected, 200);
   set_max_acceleration(expected, 1500);
   set_rapid_velocity(expected, 250);
@@ -271,12 +272,12 @@ TEST(MachineFile, SaysWhatIsWrongWithItAsAWhole) {
            BadWhole{"max-velocity = 5\nmodel = \"grbl\"\n", "my.toml: no based-on in it",
                     "axis.x.acceleration"},
            BadWhole{"based-on = \"mill\"\nmax-velocity = 5 mm\n", "my.toml:2:", ""},
-           BadWhole{
-               "based-on = \"rooter\"\n",
-               "my.toml:1:12: based-on: there is no machine 'rooter', did you mean 'router'?; "
-               "possible: linuxcnc, router, grbl, mill, high-speed, old-mill, a file NAME.toml, "
-               "or the NAME.ini of a LinuxCNC machine\n",
-               ""},
+           BadWhole{"based-on = \"rooter\"\n",
+                    "my.toml:1:12: based-on: there is no machine 'rooter', did you mean 'router'?; "
+                    "possible: linuxcnc, linuxcnc-fast, router, grbl, mill, high-speed, old-mill, "
+                    "a file NAME.toml, "
+                    "or the NAME.ini of a LinuxCNC machine\n",
+                    ""},
        }) {
     const Read result = read_toml(text);
     EXPECT_EQ(result.machine, nullptr);
@@ -632,7 +633,8 @@ TEST(ChooseMachine, ReadsFilesByTheirSuffix) {
   EXPECT_EQ(machine_of(read(folder, both)).tool_change_time, 8);
   EXPECT_EQ(read(folder, "ruter").problems,
             "--machine: there is no machine 'ruter', did you mean 'router'?; possible: linuxcnc, "
-            "router, grbl, mill, high-speed, old-mill, a file NAME.toml, or the NAME.ini of a "
+            "linuxcnc-fast, router, grbl, mill, high-speed, old-mill, a file NAME.toml, or the "
+            "NAME.ini of a "
             "LinuxCNC machine\n");
 }
 

@@ -22,7 +22,7 @@ using std::numbers::pi;
 using Chain = std::vector<TimedPiece>;
 
 Machine bench_machine(double tolerance) {
-  Machine m = *find_machine("linuxcnc");
+  Machine m = *find_machine("linuxcnc-fast");
   set_max_velocity(m, 400);
   set_max_acceleration(m, 4000);
   m.block_period = 0.001;

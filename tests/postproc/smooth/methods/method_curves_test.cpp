@@ -23,7 +23,7 @@ using geometry::Point3;
 CurveRequest request_with(double tolerance) {
   CurveRequest request;
   request.tolerance = tolerance;
-  request.limits = limits_of(*find_machine("linuxcnc"), 3000);
+  request.limits = limits_of(*find_machine("linuxcnc-fast"), 3000);
   return request;
 }
 

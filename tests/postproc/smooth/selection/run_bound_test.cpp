@@ -29,7 +29,7 @@ std::vector<Point3> half_circle(int chords) {
   return points;
 }
 
-Machine machine() { return *find_machine("linuxcnc"); }
+Machine machine() { return *find_machine("linuxcnc-fast"); }
 
 TEST(LeastTime, OfALineIsItsLengthAtItsFeed) {
   const postproc::Run line = run_through({{0, 0, 0}, {20, 0, 0}, {50, 0, 0}});

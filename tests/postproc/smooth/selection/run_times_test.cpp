@@ -12,7 +12,7 @@ namespace {
 // A half circle of 31.4 mm at 3000 mm/min: far from what limits the axes at half of the feed.
 TEST(RunTimes, FollowTheOverrideAsFarAsTheMachineCan) {
   const OneRun run(circle_program(100));
-  const Machine& machine = *find_machine("linuxcnc");
+  const Machine& machine = *find_machine("linuxcnc-fast");
   const std::vector<TimedPiece> motions = timed_pieces(run.run(), 0, 100);
   const Times times = times_of(motions, machine, gcode::PathMode::kBlending);
   EXPECT_EQ(times.programmed, cutting_time(motions, machine, gcode::PathMode::kBlending));
