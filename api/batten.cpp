@@ -199,8 +199,8 @@ SmoothedProgram smooth(std::string_view program, const Options& options) {
   // The same bytes need no proof.
   result.proved = done.understood && (done.proved || done.text == program);
   result.deviation_mm = done.deviation_mm;
-  result.seconds_before = done.time_before_s;
-  result.seconds_after = done.time_after_s;
+  result.seconds_before = done.program_before.seconds;
+  result.seconds_after = done.program_after.seconds;
   result.blocks_before = done.blocks_in;
   result.blocks_after = done.blocks_out;
   for (const postproc::RunReport& run : done.runs) {

@@ -37,7 +37,7 @@ int smooth_file(const std::string& file, double tolerance_mm, const std::string&
                                              batten::ProgramUnits::kAsWritten, target);
   std::cerr << "batten " << batten::version() << ": " << smoothed.blocks_before << " -> "
             << smoothed.blocks_after << " blocks, " << smoothed.seconds_before << " -> "
-            << smoothed.seconds_after << " s of cutting, at most " << proof.deviation_mm
+            << smoothed.seconds_after << " s, at most " << proof.deviation_mm
             << " mm off\n";
   const batten::ProgramTime time =
       batten::time(smoothed.text, {.machine = "linuxcnc", .target = target});

@@ -147,8 +147,10 @@ class Worker {
         std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status);
     record_.runs_rewritten = static_cast<std::size_t>(rewritten);
     record_.runs_kept = result.runs.size() - record_.runs_rewritten;
-    record_.time_before_s = result.time_before_s;
-    record_.time_after_s = result.time_after_s;
+    record_.time_before = result.program_before;
+    record_.time_after = result.program_after;
+    record_.path_before = result.path_before;
+    record_.path_after = result.path_after;
     record_.deviation_mm = result.deviation_mm;
   }
 

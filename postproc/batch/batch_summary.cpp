@@ -40,10 +40,6 @@ bool is_written(ProgramStatus status) {
   return status == ProgramStatus::kSmoothed || status == ProgramStatus::kUnchanged;
 }
 
-std::string arrow(std::size_t before, std::size_t after) {
-  return fmt::format("{} -> {}", before, after);
-}
-
 std::string counts_line(const BatchTotals& totals) {
   std::string text = plural(totals.programs, "program") + ":";
   for (std::size_t i = 0; i < kStatuses; ++i) {
@@ -193,24 +189,39 @@ BatchTotals totals_of(std::span<const ProgramRecord> records) {
     totals.bytes_out += record.bytes_out;
     totals.blocks_in += record.blocks_in;
     totals.blocks_out += record.blocks_out;
-    totals.time_before_s += record.time_before_s;
-    totals.time_after_s += record.time_after_s;
+    totals.time_before += record.time_before;
+    totals.time_after += record.time_after;
+    totals.path_before += record.path_before;
+    totals.path_after += record.path_after;
     totals.deviation_mm = std::max(totals.deviation_mm, record.deviation_mm);
   }
   return totals;
 }
 
+constexpr std::string_view kTableRow =
+    "{:<{}}  {:<14}  {:>18}  {:>22}  {:>22}  {:>16}  {:>14}  {:>12}  {:>9}\n";
+
+std::string arrow(double before, double after, int digits) {
+  return fmt::format("{:.{}f} -> {:.{}f}", before, digits, after, digits);
+}
+
 std::string summary_table(std::span<const ProgramRecord> records) {
   std::size_t width = std::string_view("program").size();
   for (const ProgramRecord& record : records) width = std::max(width, record.program.size());
-  std::string text = fmt::format("{:<{}}  {:<14}  {:>18}  {:>22}  {:>22}  {:>9}\n", "program",
-                                 width, "status", "blocks", "bytes", "cutting time s", "within mm");
+  std::string text = fmt::format(kTableRow, "program", width, "status", "blocks", "bytes", "time s",
+                                 "distance mm", "roughness", "slow %", "within mm");
   const auto add_row = [&](std::string_view name, std::string_view status,
                            const ProgramFigures& row) {
-    fmt::format_to(
-        std::back_inserter(text), "{:<{}}  {:<14}  {:>18}  {:>22}  {:>22}  {:>9.4f}\n", name, width,
-        status, arrow(row.blocks_in, row.blocks_out), arrow(row.bytes_in, row.bytes_out),
-        fmt::format("{:.2f} -> {:.2f}", row.time_before_s, row.time_after_s), row.deviation_mm);
+    const PathFigures& old = row.path_before;
+    const bool tried = old.length_mm > 0;  // any run
+    text += fmt::format(
+        kTableRow, name, width, status, arrow(double(row.blocks_in), double(row.blocks_out), 0),
+        arrow(double(row.bytes_in), double(row.bytes_out), 0),
+        arrow(row.time_before.seconds, row.time_after.seconds, 2),
+        tried ? arrow(old.distance_mm, row.path_after.distance_mm, 4) : "-",
+        tried ? arrow(old.roughness, row.path_after.roughness, 3) : "-",
+        arrow(100 * row.time_before.slow_share(), 100 * row.time_after.slow_share(), 1),
+        fmt::format("{:.4f}", row.deviation_mm));
   };
   for (const ProgramRecord& record : records) {
     if (is_written(record.status)) {
@@ -228,12 +239,17 @@ std::string summary_table(std::span<const ProgramRecord> records) {
 std::string summary_csv(std::span<const ProgramRecord> records) {
   std::string text =
       "program,status,exit_code,blocks_in,blocks_out,bytes_in,bytes_out,runs_rewritten,runs_kept,"
-      "time_before_s,time_after_s,deviation_mm,input_sha256,output_sha256,message\n";
+      "time_before_s,time_after_s,distance_before_mm,distance_after_mm,roughness_before,"
+      "roughness_after,slow_share_before,slow_share_after,deviation_mm,input_sha256,"
+      "output_sha256,message\n";
   for (const ProgramRecord& r : records) {
-    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+    fmt::format_to(std::back_inserter(text),
+                   "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                    csv_field(r.program), name_of(r.status), r.exit_code, r.blocks_in, r.blocks_out,
-                   r.bytes_in, r.bytes_out, r.runs_rewritten, r.runs_kept, r.time_before_s,
-                   r.time_after_s, r.deviation_mm, r.input_sha256, r.output_sha256,
+                   r.bytes_in, r.bytes_out, r.runs_rewritten, r.runs_kept, r.time_before.seconds,
+                   r.time_after.seconds, r.path_before.distance_mm, r.path_after.distance_mm,
+                   r.path_before.roughness, r.path_after.roughness, r.time_before.slow_share(),
+                   r.time_after.slow_share(), r.deviation_mm, r.input_sha256, r.output_sha256,
                    csv_field(r.message));
   }
   return text;

@@ -19,6 +19,7 @@
 #include <string>
 #include <string_view>
 
+#include "postproc/stream/smooth_result.h"
 #include "postproc/text/json_values.h"
 
 namespace batten::postproc {
@@ -40,8 +41,10 @@ struct ProgramFigures {
   std::size_t bytes_out = 0;
   std::size_t blocks_in = 0;
   std::size_t blocks_out = 0;
-  double time_before_s = 0;  // cutting runs, predicted for the machine of the settings
-  double time_after_s = 0;
+  TimeFigures time_before;  // predicted for the machine of the settings
+  TimeFigures time_after;
+  PathFigures path_before;
+  PathFigures path_after;
   double deviation_mm = 0;  // proved bound
 };
 
@@ -52,8 +55,18 @@ void each_figure(Figures& figures, const Take& take) {
   take("bytes_out", figures.bytes_out);
   take("blocks_in", figures.blocks_in);
   take("blocks_out", figures.blocks_out);
-  take("time_before_s", figures.time_before_s);
-  take("time_after_s", figures.time_after_s);
+  take("time_before_s", figures.time_before.seconds);
+  take("time_after_s", figures.time_after.seconds);
+  take("cutting_before_s", figures.time_before.cutting_s);
+  take("cutting_after_s", figures.time_after.cutting_s);
+  take("slow_before_s", figures.time_before.slow_s);
+  take("slow_after_s", figures.time_after.slow_s);
+  take("length_before_mm", figures.path_before.length_mm);
+  take("length_after_mm", figures.path_after.length_mm);
+  take("distance_before_mm", figures.path_before.distance_mm);
+  take("distance_after_mm", figures.path_after.distance_mm);
+  take("roughness_before", figures.path_before.roughness);
+  take("roughness_after", figures.path_after.roughness);
   take("deviation_mm", figures.deviation_mm);
 }
 

@@ -34,8 +34,7 @@ void append_row(const ProfileSample& s, std::string& text) {
       s.acceleration.z(), s.jerk.x(), s.jerk.y(), s.jerk.z());
 }
 
-int write_profile(const TimeCommand& command, const gcode::Program& program,
-                  const ProgramSteps& steps) {
+int write_profile(const TimeCommand& command, const ProgramSteps& steps) {
   const auto parts = [&](const PartWriter& write) {
     std::string text(kProfileHead);
     const auto take = [&](const ProfileSample& sample) {
@@ -45,7 +44,7 @@ int write_profile(const TimeCommand& command, const gcode::Program& program,
       text.clear();
       return written;
     };
-    if (sample_program(program, steps, *command.machine, kProfilePeriod, take)) (void)write(text);
+    if (sample_program(steps, *command.machine, kProfilePeriod, take)) (void)write(text);
   };
   return write_parts(command.profile_file, parts, command.force);
 }
@@ -77,10 +76,9 @@ int run(const TimeCommand& command) {
   print(found, *source, command.log_level);
   if (gcode::has_error(found)) return static_cast<int>(ExitCode::kNotUnderstood);
 
-  const ProgramSteps steps = read_steps(
-      program, meaning,
-      {.dwell_unit = dwell_unit_of(command.target, *command.machine), .start = command.start});
-  const ProgramTime time = time_steps(program, steps, *command.machine);
+  const StepOptions options = {.dwell_unit = dwell_unit_of(command.target, *command.machine),
+                               .start = command.start};
+  const ProgramTime time = time_program(program, meaning, *command.machine, options);
   const TimeReport report{program, *command.machine, time, found};
   const bool standard_output_taken = command.json_file == "-" || command.profile_file == "-";
   if (!standard_output_taken) {
@@ -89,7 +87,8 @@ int run(const TimeCommand& command) {
   const int code =
       write_report(command.json_file, command.force, [&] { return time_json(report); });
   if (code != 0) return code;
-  if (!command.profile_file.empty()) return write_profile(command, program, steps);
+  if (!command.profile_file.empty())
+    return write_profile(command, read_steps(program, meaning, options));
   return static_cast<int>(ExitCode::kDone);
 }
 

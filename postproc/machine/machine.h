@@ -45,9 +45,9 @@ struct Machine {
   // 15 turns a minute within 0.1 s: a common indexing table that can also cut.
   static constexpr AxisLimits kRotaryAxis{90, 900, kNone, 90};
 
-  std::string name;
-  std::string description;
-  std::string source;  // where its numbers come from
+  std::string name = {};
+  std::string description = {};
+  std::string source = {};  // where its numbers come from
   ControllerModel model = ControllerModel::kLookAhead;
 
   std::array<AxisLimits, kAxes> axes = {kLinearAxis, kLinearAxis, kLinearAxis,

@@ -137,11 +137,13 @@ std::string length(double mm, gcode::Units units) {
 }
 
 std::string times(const SmoothResult& result, const Machine& machine) {
-  if (result.time_before_s <= 0) return "no cutting moves";
-  std::string text = fmt::format("{} -> {}  (machine {}", seconds(result.time_before_s),
-                                 seconds(result.time_after_s), machine.name);
+  const double before = result.program_before.seconds;
+  const double after = result.program_after.seconds;
+  if (before <= 0) return "none: nothing moves or waits";
+  std::string text =
+      fmt::format("{} -> {}  (machine {}", seconds(before), seconds(after), machine.name);
   // Less than half a percent is not worth a claim: the model is not that good.
-  const double ratio = result.time_after_s > 0 ? result.time_before_s / result.time_after_s : 1;
+  const double ratio = after > 0 ? before / after : 1;
   if (ratio > 1.995) {
     text += fmt::format(", {:.1f} times as fast", ratio);
   } else if (std::abs(ratio - 1) > 0.005) {
@@ -273,8 +275,12 @@ Json smooth_json(const SmoothReport& report) {
                {"deviation_mm", result.deviation_mm},
                {"deviation_line", result.deviation_line},
                {"corner_mm", result.corner_mm},
-               {"time_before_s", result.time_before_s},
-               {"time_after_s", result.time_after_s},
+               {"time_before_s", result.program_before.seconds},
+               {"time_after_s", result.program_after.seconds},
+               {"cutting_before_s", result.program_before.cutting_s},
+               {"cutting_after_s", result.program_after.cutting_s},
+               {"slow_share_before", result.program_before.slow_share()},
+               {"slow_share_after", result.program_after.slow_share()},
                {"path_before", json_of(result.path_before)},
                {"path_after", json_of(result.path_after)},
                {"proved", result.proved},
@@ -316,7 +322,13 @@ std::string summary_text(const SmoothReport& report) {
   lines += titled("bytes", change(report.source.text().size(), result.bytes_out()));
   if (result.path_before.length_mm > 0) lines += path_lines(result.path_before, result.path_after);
   add_runs(result, lines);
-  lines += titled("cutting time", times(result, *report.options.machine));
+  lines += titled("time", times(result, *report.options.machine));
+  if (result.program_before.cutting_s > 0) {
+    lines += titled("slow", fmt::format("{:.1f} -> {:.1f} % of the cutting time is below half of "
+                                        "the programmed feed",
+                                        100 * result.program_before.slow_share(),
+                                        100 * result.program_after.slow_share()));
+  }
   add_methods(result, lines);
   const bool rewritten =
       std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status) > 0;

@@ -20,6 +20,7 @@
 #include "postproc/convert/conversion.h"
 #include "postproc/convert/program_operations.h"
 #include "postproc/convert/translation.h"
+#include "postproc/machine/program_time/program_time.h"
 #include "postproc/profile/target_profile.h"
 #include "postproc/proof/verification.h"
 #include "postproc/runs/band_notes.h"
@@ -174,6 +175,9 @@ class Windows {
         facts.was_smoothed && !is_allowed(gcode::reason::kAlreadySmoothed, options_);
     setting_.long_runs = limits.long_runs;
     windows_ = std::move(facts.windows);
+    StepOptions steps = step_options_of(options_);
+    steps.has_m6 = facts.has_m6;
+    old_time_.emplace(*options_.machine, steps);
     known_.known.control.lathe.settle();
     setting_.facts.near = std::make_shared<const std::vector<SelfProximity>>(std::move(facts.near));
     if (copied_ != nullptr) setting_.facts.copied = *copied_;
@@ -188,7 +192,10 @@ class Windows {
       if (copied_ != nullptr) *copied_ = more_to_copy(*copied_, found, *setting_.facts.near);
       return std::nullopt;
     }
-    collected_.result.proved = true;
+    SmoothResult& result = collected_.result;
+    result.program_before = figures_of(old_time_->finish());
+    result.program_after = new_time_ ? figures_of(new_time_->finish()) : result.program_before;
+    result.proved = true;
     return collected_.finish();
   }
 
@@ -240,12 +247,22 @@ class Windows {
     collected_.result.bytes_handed_on += bytes.size();
     if (!sink_(bytes)) return WindowOutcome::kStopped;
     if (unchanged) source_.release_pages(span);  // they were read once more
+    add_time(made);
     known_ = {std::move(made.after.known), known_.says_smoothed || !unchanged};
     guess_.learn(made.old_after, known_.known);
     crossings_->take(std::move(made.proof.near_edges));
     crossings_->look_up_to(made.last_line);
     collected_.take(std::move(made));
     return WindowOutcome::kDone;
+  }
+
+  // One time is both up to the first window that is rewritten.
+  void add_time(const WindowDone& made) {
+    if (!new_time_ && !made.proof.unchanged) new_time_.emplace(*old_time_);
+    old_time_->add(made.old->program, made.old->meaning);
+    if (!new_time_) return;
+    const gcode::ReadPart& written = made.proof.read ? *made.proof.read : *made.old;
+    new_time_->add(written.program, written.meaning);
   }
 
   // Where nothing is rewritten nothing is said of it.
@@ -269,6 +286,8 @@ class Windows {
   std::atomic<WindowOutcome> outcome_ = WindowOutcome::kDone;
   StartGuess guess_;
   NewTextBefore known_;  // after the windows that were taken
+  std::optional<ProgramTimer> old_time_;
+  std::optional<ProgramTimer> new_time_;
   CollectedResult collected_;
 };
 
@@ -362,8 +381,17 @@ class WholeProgram {
     ProvedText& proof = done.proof;
     result.text = proof.unchanged ? std::string(source_.text()) : std::move(proof.text);
     result.proved = proof.proved;
+    result.program_before = time_of(part_.program, part_.meaning, options_);
+    result.program_after = proof.unchanged ? result.program_before : time_of_text(result.text);
     collected_.take(std::move(done));
     return collected_.finish();
+  }
+
+  [[nodiscard]] TimeFigures time_of_text(const std::string& text) const {
+    gcode::Diagnostics ignored;
+    const gcode::Program program =
+        gcode::parse({source_.name(), text}, reading_of(options_, part_.program.language), ignored);
+    return time_of(program, gcode::interpret(program, setting_.read_options, ignored), options_);
   }
 
   const gcode::SourceText& source_;
@@ -529,6 +557,8 @@ class TranslatedSmoothing {
       return false;
     }
     result.text = std::move(written);
+    result.program_before = time_of(read_.program, read_.meaning, options_);
+    result.program_after = time_of(program, meaning, options_);
     result.proved = true;
     result.blocks_out = program.blocks.size();
     result.deviation_mm = verification.deviation_mm;

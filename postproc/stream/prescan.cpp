@@ -14,6 +14,7 @@
 #include "gcode/reading/source_kind.h"
 #include "gcode/state/reason.h"
 #include "postproc/convert/conversion.h"
+#include "postproc/machine/program_time/program_time_steps.h"
 #include "postproc/profile/target_profile.h"
 #include "postproc/proof/program_events.h"
 #include "postproc/stream/smooth_result.h"
@@ -144,6 +145,7 @@ class PrescanWork {
     report_.blocks += part.blocks.size();
     if (report_.units == gcode::Units::kUnknown) report_.units = first_units(meaning);
     report_.was_smoothed = report_.was_smoothed || was_smoothed(part);
+    report_.has_m6 = report_.has_m6 || has_m6(part);
   }
 
   void finish() {

@@ -39,6 +39,7 @@ struct PrescanReport {
   std::size_t blocks = 0;
   gcode::Units units = gcode::Units::kUnknown;  // the first that are known
   bool was_smoothed = false;
+  bool has_m6 = false;  // of a tool change
 };
 
 struct WindowLimits {

@@ -10,6 +10,7 @@
 #include "gcode/state/reason.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/number_format.h"
+#include "postproc/machine/program_time/program_time_blocks.h"
 #include "postproc/runs/run_path.h"
 
 namespace batten::postproc {
@@ -188,6 +189,26 @@ PathFigures& PathFigures::operator+=(const PathFigures& other) {
   roughness = together(roughness, length_mm, other.roughness, other.length_mm);
   length_mm += other.length_mm;
   return *this;
+}
+
+TimeFigures& TimeFigures::operator+=(const TimeFigures& other) {
+  seconds += other.seconds;
+  cutting_s += other.cutting_s;
+  slow_s += other.slow_s;
+  return *this;
+}
+
+StepOptions step_options_of(const SmoothOptions& options) {
+  return {.dwell_unit = dwell_unit_of(options.target, *options.machine)};
+}
+
+TimeFigures figures_of(const ProgramTime& time) {
+  return {time.seconds.sum(), time.seconds.cutting, time.below_half_feed};
+}
+
+TimeFigures time_of(const gcode::Program& program, const gcode::Interpretation& meaning,
+                    const SmoothOptions& options) {
+  return figures_of(time_program(program, meaning, *options.machine, step_options_of(options)));
 }
 
 std::vector<RunReport> report_runs(const ProgramPart& part, const PartRuns& runs,

@@ -15,6 +15,8 @@
 #include "gcode/state/motion.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"
+#include "postproc/machine/program_time/program_time.h"
+#include "postproc/machine/program_time/program_time_steps.h"
 #include "postproc/proof/verification.h"
 #include "postproc/runs/section.h"
 #include "postproc/smooth/forms/output_plan.h"
@@ -66,6 +68,22 @@ struct RunReport {
 [[nodiscard]] std::vector<RunReport> report_runs(const ProgramPart& part, const PartRuns& runs,
                                                  std::span<const Stretch> stretches, bool proved);
 
+// Of a whole program, as `batten time` predicts it for the machine: rapids and waits count.
+struct TimeFigures {
+  double seconds = 0;
+  double cutting_s = 0;
+  double slow_s = 0;  // of the cutting time: below half of the programmed feed
+
+  [[nodiscard]] double slow_share() const { return cutting_s > 0 ? slow_s / cutting_s : 0; }
+  TimeFigures& operator+=(const TimeFigures& other);
+};
+
+[[nodiscard]] StepOptions step_options_of(const SmoothOptions& options);
+[[nodiscard]] TimeFigures figures_of(const ProgramTime& time);
+[[nodiscard]] TimeFigures time_of(const gcode::Program& program,
+                                  const gcode::Interpretation& meaning,
+                                  const SmoothOptions& options);
+
 struct SmoothResult {
   std::string text;  // the new program; the input's bytes where nothing was rewritten
   std::vector<RunReport> runs;
@@ -80,6 +98,8 @@ struct SmoothResult {
   double corner_mm = 0;      // band reading: greatest distance of a corner that was cut
   double time_before_s = 0;  // cutting runs only
   double time_after_s = 0;
+  TimeFigures program_before;  // the source, and what is written
+  TimeFigures program_after;
   PathFigures path_before;
   PathFigures path_after;
   bool proved = false;  // of the whole text

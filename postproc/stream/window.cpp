@@ -33,7 +33,7 @@ class WindowWork {
       : setting_(setting), place_(place), at_(place.from) {}
 
   WindowDone run(const Guess& guess, const ProgressCallback& tell) {
-    const ProgramPart part = read(guess);
+    ProgramPart part = read(guess);
     PartRuns runs = find_runs(part, setting_.options, setting_.long_runs, setting_.facts);
     Additions additions;
     if (!before_.says_smoothed) {
@@ -49,6 +49,7 @@ class WindowWork {
     if (done.outcome != WindowOutcome::kDone) return done;
     done.after = {done.proof.after.value_or(old_after_),
                   before_.says_smoothed || !done.proof.unchanged};
+    done.old = std::make_shared<gcode::ReadPart>(std::move(part.program), std::move(part.meaning));
     setting_.source.release_pages({place_.from.text.begin, place_.end});
     return done;
   }
@@ -213,11 +214,10 @@ class Prover {
     AddedLines added = take_added_lines(part_.program, round.text, additions_.words);
     const gcode::SourceText written(part_.program.source.name(), std::move(added.text));
     gcode::Diagnostics ignored;
-    const gcode::Program program = read_text(written, ignored);
+    gcode::Program program = read_text(written, ignored);
     gcode::ControlCarry control =
         part_.window ? part_.window->new_text.control : gcode::ControlCarry(read_options_.units);
-    const gcode::Interpretation meaning =
-        gcode::interpret_part(program, read_options_, control, ignored);
+    gcode::Interpretation meaning = gcode::interpret_part(program, read_options_, control, ignored);
     ReadProgram before{&part_.program, &part_.meaning};
     ReadProgram after{&program, &meaning};
     const std::vector<std::uint32_t> begins = blocks_at(assembled.begins, program);
@@ -251,7 +251,10 @@ class Prover {
     if (round.proved && additions_.words.empty()) {
       round.near_edges = near_edges(WrittenSections{after, begins});
     }
-    if (part_.window) round.after = {std::move(control), events_before_next(after)};
+    if (part_.window) {
+      round.after = {std::move(control), events_before_next(after)};
+      round.read = std::make_shared<gcode::ReadPart>(std::move(program), std::move(meaning));
+    }
     return round;
   }
 

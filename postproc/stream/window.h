@@ -67,7 +67,8 @@ struct ProvedText {
   Verification verification;          // of the text as it is
   std::optional<TextBefore> after;    // where a window's new text was read: for the next one
   std::vector<NearEdges> near_edges;  // of long runs, to be checked with those of other windows
-  bool stands_alone = true;           // false: something differs that none of its runs caused
+  std::shared_ptr<const gcode::ReadPart> read;  // a window's new text, where it was read
+  bool stands_alone = true;  // false: something differs that none of its runs caused
 };
 
 enum class WindowOutcome { kDone, kStopped, kNeedsWhole };
@@ -83,6 +84,7 @@ struct WindowDone {
   gcode::Diagnostics notes_on_runs;                        // postproc/stream/smooth_result.h
   std::shared_ptr<const std::vector<SelfProximity>> near;  // of its long runs; or none
   std::uint32_t last_line = 0;
+  std::shared_ptr<const gcode::ReadPart> old;  // a window's old text
 };
 
 // What the new text before a window may have set in the control, by what the old text set there.

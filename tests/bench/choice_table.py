@@ -70,12 +70,16 @@ def smooth(options, file, target, prefer):
         return json.loads(report.read_text()) if report.exists() else None
 
 
+def seconds_of_runs(report, when):
+    return sum(run[f"time_{when}_s"] for run in report["runs"])
+
+
 def figures(report):
     """Before and after, of what is cut in runs; bytes and blocks of the program."""
-    before = {"time": report["time_before_s"], "blocks": report["input"]["blocks"],
+    before = {"time": seconds_of_runs(report, "before"), "blocks": report["input"]["blocks"],
               "bytes": report["input"]["bytes"], "distance": report["path_before"]["distance_mm"],
               "roughness": report["path_before"]["roughness"]}
-    after = {"time": report["time_after_s"], "blocks": report["output"]["blocks"],
+    after = {"time": seconds_of_runs(report, "after"), "blocks": report["output"]["blocks"],
              "bytes": report["output"]["bytes"], "distance": report["path_after"]["distance_mm"],
              "roughness": report["path_after"]["roughness"]}
     return before, after

@@ -242,7 +242,7 @@ def measure(options, shape, chords, target, prefer):
         runs = [run for run in report["runs"] if run["points"] > 2]
         kept = sum(run["status"] == "kept" for run in runs)
         return {"was": before[0] * 1000, "rows was": before[1] * 1000, "rms": after[0] / before[0], "blocks": report["output"]["blocks"] / report["input"]["blocks"],
-                "time": report["time_after_s"] / report["time_before_s"], "rows": after[1] / before[1],
+                "time": sum(run["time_after_s"] for run in report["runs"]) / sum(run["time_before_s"] for run in report["runs"]), "rows": after[1] / before[1],
                 "kept": f"{kept}/{len(runs)}"}
 
 

@@ -8,6 +8,7 @@
 //    "time_ratio_at_most": 1.0,              time after / time before, by the machine model
 //    "keeps": ["text that must stand in the new program"]}
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -112,6 +113,30 @@ TEST_P(Sample, ComesOutAsExpectedIsAcceptedByVerifyAndStaysForASecondPassAndTwoT
   EXPECT_TRUE(folder_.text_of("again.ngc") == text) << second.err;
   EXPECT_TRUE(smoothed(" --threads 2 --force --json two.json") == text) << "two threads";
   EXPECT_EQ(folder_.text_of("one.json"), folder_.text_of("two.json"));
+}
+
+// What `smooth` and `time` predict of a program is one figure, for the old text and the new one.
+TEST_P(Sample, TakesTheTimeThatBattenTimePredicts) {
+  for (const Json& machine : Json::parse(folder_.batten("machines --json -").out)) {
+    const std::string name = " --machine " + machine["name"].get<std::string>();
+    expect_exit(folder_.shell(command_ + name + " --force --json report.json"), 0);
+    const Json report = Json::parse(folder_.text_of("report.json"));
+    for (const auto& [file, when] :
+         {std::pair("program.ngc", "before"), std::pair("program.smooth.ngc", "after")}) {
+      SCOPED_TRACE(file + name);
+      const auto figure = [&](const char* what, const char* unit) {
+        return report[fmt::format("{}_{}{}", what, when, unit)].get<double>();
+      };
+      const std::string target = report["output"]["target"];
+      const Json time = Json::parse(expect_exit(folder_.batten(std::string("time ") + file + name +
+                                                               " --target " + target + " --json -"),
+                                                0)
+                                        .out);
+      EXPECT_EQ(figure("time", "_s"), time["time_s"].get<double>());
+      EXPECT_NEAR(figure("slow_share", "") * figure("cutting", "_s"),
+                  time["below_half_feed_s"].get<double>(), 1e-12 * figure("cutting", "_s"));
+    }
+  }
 }
 
 TEST_P(Sample, HasAReadme) {

@@ -78,6 +78,12 @@ class PageCheck:
         expected = {
             "time_before_s": report["time_before_s"], "time_after_s": report["time_after_s"],
             "deviation_mm": report["deviation_mm"],
+            "path_before.distance_mm": report["path_before"]["distance_mm"],
+            "path_after.distance_mm": report["path_after"]["distance_mm"],
+            "path_before.roughness": report["path_before"]["roughness"],
+            "path_after.roughness": report["path_after"]["roughness"],
+            "slow_before": 100 * report["slow_share_before"],
+            "slow_after": 100 * report["slow_share_after"],
             "input.blocks": report["input"]["blocks"], "output.blocks": report["output"]["blocks"],
             "rewritten": len(rewritten), "kept": len(report["runs"]) - len(rewritten),
         }
@@ -88,6 +94,11 @@ class PageCheck:
             wanted = {"input.blocks", "output.blocks", "rewritten", "kept"}
             if report["time_before_s"] > 0:
                 wanted |= {"time_before_s", "time_after_s"}
+            if report["cutting_before_s"] > 0:
+                wanted |= {"slow_before", "slow_after"}
+            if report["path_before"]["length_mm"] > 0:
+                wanted |= {f"path_{when}.{what}" for when in ("before", "after")
+                           for what in ("distance_mm", "roughness")}
             if rewritten:
                 wanted |= {"deviation_mm"}
         expect_equal(set(shown), wanted, "figures shown")

@@ -109,7 +109,7 @@ struct SmoothedProgram {
   bool proved = false;
   std::string text;           // the bytes of the input where nothing was rewritten
   double deviation_mm = 0;    // greatest proved bound
-  double seconds_before = 0;  // predicted, of the cutting runs
+  double seconds_before = 0;  // predicted, of the whole program as by time()
   double seconds_after = 0;
   std::size_t blocks_before = 0;
   std::size_t blocks_after = 0;

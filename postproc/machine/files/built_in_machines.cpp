@@ -21,35 +21,29 @@ AllAxes xyz(const AxisLimits& limits) {
 
 constexpr double kPerMinute = 1.0 / 60;
 
-// What every LinuxCNC has in common.
-Machine any_linuxcnc() {
-  return {.name = "",
-          .description = "",
-          .source = "",
-          .model = ControllerModel::kLinuxcnc,
-          .block_period = 0.001,
-          // What the planner optimises ([TRAJ]ARC_BLEND_OPTIMIZATION_DEPTH); its queue of 2000
-          // blocks is never the limit.
-          .look_ahead = 50,
-          .servo_period = 0.001};
-}
-
 // A metric mill or router with stepper motors, as LinuxCNC's own configuration has it.
 Machine linuxcnc() {
-  Machine m = any_linuxcnc();
-  m.name = "linuxcnc";
-  m.description = "LinuxCNC 2.9, G64 P0.0127, 60 mm/s (Z 40 mm/s) and 500 mm/s2, 1 ms servo";
-  m.source = "LinuxCNC 2.9, its sample configuration sim/qtdragon/qtdragon_xyz/qtdragon_metric.ini";
-  m.axes = xyz({60, 500, Machine::kNone, 60});
+  Machine m = {
+      .name = "linuxcnc",
+      .description = "LinuxCNC 2.9, G64 P0.0127, 60 mm/s (Z 40 mm/s) and 500 mm/s2, 1 ms servo",
+      .source =
+          "LinuxCNC 2.9, its sample configuration sim/qtdragon/qtdragon_xyz/qtdragon_metric.ini",
+      .model = ControllerModel::kLinuxcnc,
+      .axes = xyz({60, 500, Machine::kNone, 60}),
+      .path_feed = 60,
+      .block_period = 0.001,
+      // What the planner optimises ([TRAJ]ARC_BLEND_OPTIMIZATION_DEPTH); its queue of 2000
+      // blocks is never the limit.
+      .look_ahead = 50,
+      .servo_period = 0.001,
+      .blend_tolerance = 0.0127,
+      .naive_cam_tolerance = 0.0127};
   m.axis(Axis::kZ) = {40, 500, Machine::kNone, 40};
-  m.path_feed = 60;
-  m.blend_tolerance = 0.0127;
-  m.naive_cam_tolerance = 0.0127;
   return m;
 }
 
 Machine fast_linuxcnc() {
-  Machine m = any_linuxcnc();
+  Machine m = linuxcnc();
   m.name = "linuxcnc-fast";
   m.description = "LinuxCNC 2.9, G64 P0.01, 400 mm/s and 4000 mm/s2 on every axis, 1 ms servo";
   m.source =
@@ -66,10 +60,7 @@ Machine fast_linuxcnc() {
 // What every grbl 1.1 has in common: 16 MHz, and a serial line of 115200 baud, which is 11,520
 // bytes a second: X12.345Y-6.789 and its line end take 1.3 ms.
 Machine any_grbl() {
-  return {.name = "",
-          .description = "",
-          .source = "",
-          .model = ControllerModel::kGrbl,
+  return {.model = ControllerModel::kGrbl,
           .block_period = 0.0013,
           .stream_rate = 11520,
           .look_ahead = 15,      // the ring of 16 holds one block less

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <functional>
 #include <utility>
 
@@ -33,54 +34,6 @@ constexpr std::array<KindRow, 7> kKinds = {{{&TimeParts::cutting, &StepCounts::c
                                             {&TimeParts::spindle, &StepCounts::spindle_starts},
                                             {&TimeParts::rotary, nullptr},
                                             {&TimeParts::dwells, nullptr}}};
-
-// Seconds of each step of a program, and of each the part below half its feed.
-class StepTimes {
- public:
-  explicit StepTimes(const std::vector<ProgramStep>& steps)
-      : steps_(steps), seconds_(steps.size(), 0.0) {}
-
-  void add(const RunChain& chain) {
-    if (chain.pieces.empty()) {
-      seconds_[chain.steps.front()] += chain.seconds;
-      return;
-    }
-    const ChainMotion motion(chain.stretches);
-    for (std::size_t i = 0; i < chain.stretches.places.size(); ++i) add_stretch(chain, motion, i);
-  }
-
-  [[nodiscard]] double seconds(std::size_t step) const { return seconds_[step]; }
-  [[nodiscard]] double below_half_feed() const { return below_half_feed_; }
-
- private:
-  void add_stretch(const RunChain& chain, const ChainMotion& motion, std::size_t i) {
-    const StretchPlace& place = chain.stretches.places[i];
-    const double duration = motion.end_of(i) - motion.start_of(i);
-    const ProgramStep& step = steps_[chain.steps[place.first_piece]];
-    if (step.feed > 0) {
-      below_half_feed_ += motion.time_below(i, kSlowShare * step.feed / kMinute);
-    }
-    const auto add = [&](std::uint32_t piece, double part) {
-      seconds_[chain.steps[piece]] += part;
-    };
-    if (place.first_piece == place.last_piece) return add(place.first_piece, duration);
-    if (place.is_corner) {
-      add(place.first_piece, duration / 2);
-      return add(place.last_piece, duration / 2);
-    }
-    double length = 0;
-    for (auto p = place.first_piece; p <= place.last_piece; ++p) {
-      length += geometry::length_of(chain.pieces[p].piece);
-    }
-    for (auto p = place.first_piece; p <= place.last_piece; ++p) {
-      add(p, duration * (geometry::length_of(chain.pieces[p].piece) / length));
-    }
-  }
-
-  const std::vector<ProgramStep>& steps_;
-  std::vector<double> seconds_;
-  double below_half_feed_ = 0;
-};
 
 ToolTime& tool_of(std::vector<ToolTime>& tools, std::int32_t number) {
   const auto known = std::ranges::find(tools, number, &ToolTime::tool);
@@ -131,45 +84,130 @@ class SlowPlaces {
   bool open_ = false;
 };
 
+// Seconds of each step, and of each the part below half its feed, as far as its chain is known.
+class StepTimes {
+ public:
+  explicit StepTimes(const Machine& machine) : cutter_(machine, ChainCutter::kMostPieces) {}
+
+  void add(const ProgramSteps& steps) {
+    const auto use = [this](const RunChain& chain) { take(chain); };
+    for (const ProgramStep& step : steps.steps) {
+      open_.push_back({step, 0});
+      cutter_.add(step, steps.controls, use);
+    }
+  }
+
+  ProgramTime finish(const NotTimedList& not_timed) {
+    cutter_.finish([this](const RunChain& chain) { take(chain); });
+    count_up_to(first_open_ + open_.size());
+    result_.not_timed = not_timed.entries();
+    result_.slowest = slow_.finish();
+    return std::move(result_);
+  }
+
+ private:
+  struct OpenStep {
+    ProgramStep step;
+    double seconds = 0;
+  };
+
+  void take(const RunChain& chain) {
+    if (chain.pieces.empty()) {
+      open_[chain.steps.front() - first_open_].seconds += chain.seconds;
+      return count_up_to(chain.steps.front() + 1);
+    }
+    const ChainMotion motion(chain.stretches);
+    for (std::size_t i = 0; i < chain.stretches.places.size(); ++i) add_stretch(chain, motion, i);
+    count_up_to(chain.steps[chain.end_counted - 1] + 1);
+  }
+
+  void add_stretch(const RunChain& chain, const ChainMotion& motion, std::size_t i) {
+    const StretchPlace& place = chain.stretches.places[i];
+    const double duration = motion.end_of(i) - motion.start_of(i);
+    const auto add = [&](std::uint32_t piece, double part) {
+      if (chain.counts(piece)) open_[chain.steps[piece] - first_open_].seconds += part;
+    };
+    if (chain.counts(place.first_piece)) {
+      const double feed = open_[chain.steps[place.first_piece] - first_open_].step.feed;
+      if (feed > 0) result_.below_half_feed += motion.time_below(i, kSlowShare * feed / kMinute);
+    }
+    if (place.first_piece == place.last_piece) return add(place.first_piece, duration);
+    if (place.is_corner) {
+      add(place.first_piece, duration / 2);
+      return add(place.last_piece, duration / 2);
+    }
+    double length = 0;
+    for (auto p = place.first_piece; p <= place.last_piece; ++p) {
+      length += geometry::length_of(chain.pieces[p].piece);
+    }
+    for (auto p = place.first_piece; p <= place.last_piece; ++p) {
+      add(p, duration * (geometry::length_of(chain.pieces[p].piece) / length));
+    }
+  }
+
+  void count_up_to(std::size_t end) {
+    for (; first_open_ < end; ++first_open_, open_.pop_front()) count(open_.front());
+  }
+
+  void count(const OpenStep& done) {
+    const auto& [step, seconds] = done;
+    const KindRow& kind = kKinds[static_cast<std::size_t>(step.kind)];
+    result_.seconds.*kind.seconds += seconds;
+    tool_of(result_.tools, step.tool).seconds.*kind.seconds += seconds;
+    if (kind.count != nullptr) ++(result_.counts.*kind.count);
+    if (step.kind == StepKind::kRapid) result_.rapid_mm += geometry::length_of(step.piece);
+    if (step.kind != StepKind::kCut) {
+      if (step.kind != StepKind::kRest) slow_.close();
+      return;
+    }
+    const double length = geometry::length_of(step.piece);
+    result_.cutting_mm += length;
+    if (step.feed > 0 && length > 0) {
+      result_.cutting_at_feed += length / step.feed * kMinute;
+      slow_.add_cut(step.line, seconds, length, step.feed);
+    } else {
+      result_.cutting_at_feed += seconds;
+    }
+  }
+
+  ChainCutter cutter_;
+  std::deque<OpenStep> open_;  // whose chain is not at its end
+  std::size_t first_open_ = 0;
+  SlowPlaces slow_;
+  ProgramTime result_;
+};
+
 }  // namespace
+
+struct ProgramTimer::Work {
+  StepReader read;
+  StepTimes times;
+  NotTimedList not_timed = {};
+};
+
+ProgramTimer::ProgramTimer(const Machine& machine, const StepOptions& options)
+    : work_(new Work{step_reader(options), StepTimes(machine)}) {}
+ProgramTimer::ProgramTimer(const ProgramTimer& other)
+    : work_(std::make_unique<Work>(*other.work_)) {}
+ProgramTimer::~ProgramTimer() = default;
+
+void ProgramTimer::add(const gcode::Program& part, const gcode::Interpretation& meaning) {
+  constexpr std::size_t kBlocksAtOnce = 1024;
+  for (std::size_t i = 0; i < part.blocks.size(); i += kBlocksAtOnce) {
+    const std::size_t end = std::min(part.blocks.size(), i + kBlocksAtOnce);
+    const ProgramSteps& steps = work_->read(part, meaning, i, end);
+    work_->times.add(steps);
+    work_->not_timed = steps.not_timed;
+  }
+}
+
+ProgramTime ProgramTimer::finish() { return work_->times.finish(work_->not_timed); }
 
 ProgramTime time_program(const gcode::Program& program, const gcode::Interpretation& meaning,
                          const Machine& machine, const StepOptions& options) {
-  return time_steps(program, read_steps(program, meaning, options), machine);
-}
-
-ProgramTime time_steps(const gcode::Program& program, const ProgramSteps& steps,
-                       const Machine& machine) {
-  StepTimes times(steps.steps);
-  for_each_chain(program, steps, machine, [&](const RunChain& chain) { times.add(chain); });
-
-  ProgramTime result;
-  result.not_timed = steps.not_timed.entries();
-  result.below_half_feed = times.below_half_feed();
-  SlowPlaces slow;
-  for (std::size_t i = 0; i < steps.steps.size(); ++i) {
-    const ProgramStep& step = steps.steps[i];
-    const double seconds = times.seconds(i);
-    const KindRow& kind = kKinds[static_cast<std::size_t>(step.kind)];
-    result.seconds.*kind.seconds += seconds;
-    tool_of(result.tools, step.tool).seconds.*kind.seconds += seconds;
-    if (kind.count != nullptr) ++(result.counts.*kind.count);
-    if (step.kind == StepKind::kRapid) result.rapid_mm += geometry::length_of(step.piece);
-    if (step.kind != StepKind::kCut) {
-      if (step.kind != StepKind::kRest) slow.close();
-      continue;
-    }
-    const double length = geometry::length_of(step.piece);
-    result.cutting_mm += length;
-    if (step.feed > 0 && length > 0) {
-      result.cutting_at_feed += length / step.feed * kMinute;
-      slow.add_cut(program.blocks[step.block].line, seconds, length, step.feed);
-    } else {
-      result.cutting_at_feed += seconds;
-    }
-  }
-  result.slowest = slow.finish();
-  return result;
+  ProgramTimer timer(machine, options);
+  timer.add(program, meaning);
+  return timer.finish();
 }
 
 }  // namespace batten::postproc

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -63,14 +64,25 @@ struct ProgramTime {
   std::vector<NotTimed> not_timed;  // what is left out or assumed
 };
 
-// Linear cost. Throws as cutting_time does for a machine without limits. `steps` are those of
-// the program.
-[[nodiscard]] ProgramTime time_steps(const gcode::Program& program, const ProgramSteps& steps,
-                                     const Machine& machine);
-
-// The same, from the program's meaning on.
+// Linear cost. Throws as cutting_time does for a machine without limits.
 [[nodiscard]] ProgramTime time_program(const gcode::Program& program,
                                        const gcode::Interpretation& meaning, const Machine& machine,
                                        const StepOptions& options);
+
+// The same for a program that is read part by part; see StepReader. Holds some thousand steps. A
+// copy goes on from there.
+class ProgramTimer {
+ public:
+  ProgramTimer(const Machine& machine, const StepOptions& options);
+  ProgramTimer(const ProgramTimer& other);
+  ~ProgramTimer();
+
+  void add(const gcode::Program& part, const gcode::Interpretation& meaning);
+  [[nodiscard]] ProgramTime finish();  // after the last part
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
 
 }  // namespace batten::postproc

@@ -15,94 +15,73 @@ bool rests_between_rapids_and_cuts(const Machine& machine) {
   return machine.model != ControllerModel::kGrbl;
 }
 
-class ChainCutter {
- public:
-  ChainCutter(const gcode::Program& program, const ProgramSteps& steps, const Machine& machine,
-              const std::function<void(const RunChain&)>& use)
-      : program_(program), steps_(steps), machine_(machine), base_(machine), use_(use) {}
+}  // namespace
 
-  void run() {
-    for (std::size_t i = 0; i < steps_.steps.size(); ++i) {
-      const ProgramStep& step = steps_.steps[i];
-      if (!is_motion(step.kind)) {
-        close(ChainEnd::kEndOfMotion);
-        add_wait(step, static_cast<std::uint32_t>(i));
-      } else {
-        add_motion(step, static_cast<std::uint32_t>(i));
-      }
-    }
-    close(ChainEnd::kEndOfMotion);
-  }
-
- private:
-  void add_wait(const ProgramStep& step, std::uint32_t index) {
+void ChainCutter::add(const ProgramStep& step, const std::vector<PathControl>& controls,
+                      const Use& use) {
+  sent_ += static_cast<int>(step.bytes);
+  if (is_motion(step.kind)) {
+    add_motion(step, controls, use);
+  } else {
+    close(ChainEnd::kEndOfMotion, use);
     RunChain wait;
     wait.wait = step.kind;
     wait.seconds = seconds_of(step);
-    wait.steps.push_back(index);
-    use_(wait);
+    wait.steps.push_back(steps_);
+    use(wait);
   }
+  ++steps_;
+}
 
-  [[nodiscard]] double seconds_of(const ProgramStep& step) const {
-    switch (step.kind) {
-      case StepKind::kToolChange:
-        return base_.tool_change_time;
-      case StepKind::kSpindle:
-        return base_.spindle_start_time;
-      case StepKind::kDwell:
-        return step.seconds + base_.extra_dwell_time;
-      default:
-        return step.seconds;
-    }
+double ChainCutter::seconds_of(const ProgramStep& step) const {
+  switch (step.kind) {
+    case StepKind::kToolChange:
+      return base_.tool_change_time;
+    case StepKind::kSpindle:
+      return base_.spindle_start_time;
+    case StepKind::kDwell:
+      return step.seconds + base_.extra_dwell_time;
+    default:
+      return step.seconds;
   }
+}
 
-  void add_motion(const ProgramStep& step, std::uint32_t index) {
-    if (geometry::length_of(step.piece) <= geometry::kSamePlace) return;
-    const bool rapid = step.kind == StepKind::kRapid;
-    if (!chain_.pieces.empty()) {
-      const bool class_changes = chain_.pieces.back().rapid != rapid;
-      if (class_changes && rests_between_rapids_and_cuts(machine_)) close(ChainEnd::kStop);
-      if (step.control != control_) close(ChainEnd::kStop);
-    }
-    control_ = step.control;
-    chain_.pieces.push_back({step.piece, step.feed, rapid, bytes_up_to(step.block)});
-    chain_.steps.push_back(index);
-    if (step.stops_after) close(ChainEnd::kStop);
+void ChainCutter::add_motion(const ProgramStep& step, const std::vector<PathControl>& controls,
+                             const Use& use) {
+  if (geometry::length_of(step.piece) <= geometry::kSamePlace) return;
+  const bool rapid = step.kind == StepKind::kRapid;
+  const PathControl& control = controls[step.control];
+  if (!chain_.pieces.empty()) {
+    const bool class_changes = chain_.pieces.back().rapid != rapid;
+    if (class_changes && rests_between_rapids_and_cuts(base_)) close(ChainEnd::kStop, use);
+    if (control != control_) close(ChainEnd::kStop, use);
   }
+  control_ = control;
+  // Bytes of blocks before it that made no motion: the line sends them too.
+  chain_.pieces.push_back({step.piece, step.feed, rapid, std::exchange(sent_, 0)});
+  chain_.steps.push_back(steps_);
+  if (step.stops_after) return close(ChainEnd::kStop, use);
+  if (chain_.pieces.size() < most_pieces_) return;
+  use_part(ChainEnd::kStop, chain_.pieces.size() - kMargin, use);
+  chain_.pieces.erase(chain_.pieces.begin(), chain_.pieces.end() - 2 * std::ptrdiff_t{kMargin});
+  chain_.steps.erase(chain_.steps.begin(), chain_.steps.end() - 2 * std::ptrdiff_t{kMargin});
+  chain_.first_counted = kMargin;
+}
 
-  // Bytes of the block and of those before it that made no motion: the line sends them too.
-  int bytes_up_to(std::uint32_t block) {
-    const std::uint32_t end = program_.blocks[block].end;
-    return static_cast<int>(end - std::exchange(sent_, std::max(sent_, end)));
-  }
+void ChainCutter::close(ChainEnd end, const Use& use) {
+  if (chain_.pieces.empty()) return;
+  use_part(end, chain_.pieces.size(), use);
+  chain_ = RunChain{};
+}
 
-  void close(ChainEnd end) {
-    if (chain_.pieces.empty()) return;
-    const PathControl& control = steps_.controls[control_];
-    machine_.blend_tolerance = control.blend_tolerance.value_or(base_.blend_tolerance);
-    machine_.naive_cam_tolerance = control.naive_cam_tolerance.value_or(base_.naive_cam_tolerance);
-    chain_.pieces = with_length_and_feed(chain_.pieces, machine_);
-    const auto mode = control.mode == gcode::PathMode::kUnknown ? base_.path_mode : control.mode;
-    chain_.stretches = stretches_of(chain_.pieces, machine_, mode, end, WithPositions::kYes);
-    use_(chain_);
-    chain_ = RunChain{};
-  }
-
-  const gcode::Program& program_;
-  const ProgramSteps& steps_;
-  Machine machine_;  // with the tolerances that hold for the chain
-  const Machine& base_;
-  const std::function<void(const RunChain&)>& use_;
-  RunChain chain_;
-  std::uint16_t control_ = 0;
-  std::uint32_t sent_ = 0;  // bytes of the program that are counted
-};
-
-}  // namespace
-
-void for_each_chain(const gcode::Program& program, const ProgramSteps& steps,
-                    const Machine& machine, const std::function<void(const RunChain&)>& use) {
-  ChainCutter(program, steps, machine, use).run();
+void ChainCutter::use_part(ChainEnd end, std::size_t end_counted, const Use& use) {
+  machine_.blend_tolerance = control_.blend_tolerance.value_or(base_.blend_tolerance);
+  machine_.naive_cam_tolerance = control_.naive_cam_tolerance.value_or(base_.naive_cam_tolerance);
+  chain_.pieces = with_length_and_feed(chain_.pieces, machine_);
+  const auto mode = control_.mode == gcode::PathMode::kUnknown ? base_.path_mode : control_.mode;
+  chain_.stretches = stretches_of(chain_.pieces, machine_, mode, end, WithPositions::kYes);
+  chain_.end_counted = static_cast<std::uint32_t>(end_counted);
+  use(chain_);
 }
 
 ChainMotion::ChainMotion(const StretchChain& chain)

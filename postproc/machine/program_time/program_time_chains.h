@@ -16,17 +16,51 @@ namespace batten::postproc {
 
 // Motions from rest to rest, or one wait.
 struct RunChain {
-  StepKind wait = StepKind::kRest;   // meaningful where there are no pieces
-  double seconds = 0;                // of the wait
-  std::vector<TimedPiece> pieces;    // each with a length and a feed
-  std::vector<std::uint32_t> steps;  // the step of each piece; of a wait its own
-  StretchChain stretches;            // with places
+  StepKind wait = StepKind::kRest;  // meaningful where there are no pieces
+  double seconds = 0;               // of the wait
+  std::vector<TimedPiece> pieces;   // each with a length and a feed
+  std::vector<std::size_t> steps;   // the step of each piece; of a wait its own
+  StretchChain stretches;           // with places
+  std::uint32_t first_counted = 0;  // pieces of a part of a longer chain that count here
+  std::uint32_t end_counted = 0;
+
+  [[nodiscard]] bool counts(std::uint32_t piece) const {
+    return piece >= first_counted && piece < end_counted;
+  }
 };
 
-// Calls `use` for each chain in the order of the program. The memory it needs is that of the
-// longest chain. Times of tool changes and of the spindle are the machine's.
-void for_each_chain(const gcode::Program& program, const ProgramSteps& steps,
-                    const Machine& machine, const std::function<void(const RunChain&)>& use);
+// Cuts steps, numbered from 0 as they are added, into chains. Times of tool changes and of the
+// spindle are the machine's.
+class ChainCutter {
+ public:
+  using Use = std::function<void(const RunChain&)>;
+
+  // A chain of `most_pieces` or more is used in parts that overlap: kMargin pieces from its ends a
+  // part moves as the whole. No control looks further ahead, no machine takes longer to its speed.
+  ChainCutter(const Machine& machine, std::size_t most_pieces)
+      : machine_(machine), base_(machine), most_pieces_(most_pieces) {}
+
+  void add(const ProgramStep& step, const std::vector<PathControl>& controls, const Use& use);
+  void finish(const Use& use) { close(ChainEnd::kEndOfMotion, use); }
+
+  static constexpr std::uint32_t kMargin = 1024;
+  static constexpr std::size_t kMostPieces = std::size_t{8} * kMargin;
+
+ private:
+  [[nodiscard]] double seconds_of(const ProgramStep& step) const;
+  void add_motion(const ProgramStep& step, const std::vector<PathControl>& controls,
+                  const Use& use);
+  void close(ChainEnd end, const Use& use);
+  void use_part(ChainEnd end, std::size_t end_counted, const Use& use);
+
+  Machine machine_;  // with the tolerances that hold for the chain
+  Machine base_;
+  std::size_t most_pieces_;
+  RunChain chain_;
+  PathControl control_;
+  std::size_t steps_ = 0;  // that were added
+  int sent_ = 0;           // bytes since the last piece
+};
 
 // A chain of stretches in time, whatever limits its control keeps.
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "postproc/machine/machine.h"
@@ -19,9 +20,9 @@ constexpr double kJump = 1e-3;
 
 class Sampler {
  public:
-  Sampler(const gcode::Program& program, const ProgramSteps& steps, double period,
+  Sampler(const ProgramSteps& steps, double period,
           const std::function<bool(const ProfileSample&)>& use)
-      : program_(program), steps_(steps), period_(period), use_(use) {}
+      : steps_(steps), period_(period), use_(use) {}
 
   void run(const RunChain& chain) {
     if (stopped_) return;
@@ -80,9 +81,7 @@ class Sampler {
     return place.last_piece;
   }
 
-  [[nodiscard]] std::uint32_t line_of(std::uint32_t step) const {
-    return program_.blocks[steps_.steps[step].block].line;
-  }
+  [[nodiscard]] std::uint32_t line_of(std::size_t step) const { return steps_.steps[step].line; }
 
   void begin_at(const Point3& place) {
     moved_ = true;
@@ -108,7 +107,6 @@ class Sampler {
     stopped_ = !use_(sample);
   }
 
-  const gcode::Program& program_;
   const ProgramSteps& steps_;
   double period_;
   const std::function<bool(const ProfileSample&)>& use_;
@@ -125,12 +123,14 @@ class Sampler {
 
 }  // namespace
 
-bool sample_program(const gcode::Program& program, const ProgramSteps& steps,
-                    const Machine& machine, double period,
+bool sample_program(const ProgramSteps& steps, const Machine& machine, double period,
                     const std::function<bool(const ProfileSample&)>& use) {
   if (!(period > 0)) throw std::invalid_argument("sample_program: the period must be above 0");
-  Sampler sampler(program, steps, period, use);
-  for_each_chain(program, steps, machine, [&](const RunChain& chain) { sampler.run(chain); });
+  Sampler sampler(steps, period, use);
+  const auto run = [&](const RunChain& chain) { sampler.run(chain); };
+  ChainCutter cutter(machine, std::numeric_limits<std::size_t>::max());
+  for (const ProgramStep& step : steps.steps) cutter.add(step, steps.controls, run);
+  cutter.finish(run);
   sampler.finish();
   return !sampler.stopped();
 }

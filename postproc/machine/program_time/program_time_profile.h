@@ -27,8 +27,7 @@ struct ProfileSample {
 //
 // The places are those of the programmed path and of the bends that the control puts into its
 // corners; where a control cuts arcs into chords, those of the chords.
-[[nodiscard]] bool sample_program(const gcode::Program& program, const ProgramSteps& steps,
-                                  const Machine& machine, double period,
+[[nodiscard]] bool sample_program(const ProgramSteps& steps, const Machine& machine, double period,
                                   const std::function<bool(const ProfileSample&)>& use);
 
 }  // namespace batten::postproc

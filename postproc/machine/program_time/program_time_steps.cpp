@@ -67,7 +67,29 @@ std::string_view text_of(std::string_view id) {
   return "not understood: not timed";
 }
 
+using gcode::BlockKind;
+using gcode::BlockWords;
+using gcode::Code;
+using gcode::CodeAct;
+using gcode::CodeGroup;
+using gcode::ModalState;
+using gcode::PathMode;
+using gcode::TriState;
+
+// The control bends or shifts the programmed path.
+bool is_path_changed(const ModalState& s) {
+  return std::ranges::any_of(gcode::kModalSwitches, [&s](const gcode::ModalSwitch& each) {
+    return each.moves_path && s.*each.item == TriState::kOn;
+  });
+}
+
 }  // namespace
+
+bool has_m6(const gcode::Program& program) {
+  return std::ranges::any_of(program.words, [](const gcode::Word& w) {
+    return w.letter == 'M' && w.is_number && w.value == 6;
+  });
+}
 
 void NotTimedList::add(std::string_view id, std::uint32_t line) {
   const auto known = std::ranges::find(entries_, id, &NotTimed::id);
@@ -80,47 +102,37 @@ void NotTimedList::add(std::string_view id, std::uint32_t line) {
 
 namespace {
 
-using gcode::BlockKind;
-using gcode::BlockWords;
-using gcode::Code;
-using gcode::CodeAct;
-using gcode::CodeGroup;
-using gcode::ModalState;
-using gcode::PathMode;
-using gcode::TriState;
-namespace reason = gcode::reason;
-
-// The control bends or shifts the programmed path.
-bool is_path_changed(const ModalState& s) {
-  return std::ranges::any_of(gcode::kModalSwitches, [&s](const gcode::ModalSwitch& each) {
-    return each.moves_path && s.*each.item == TriState::kOn;
-  });
-}
-
-class StepReader {
+class StepWork {
  public:
-  StepReader(const gcode::Program& program, const gcode::Interpretation& meaning,
-             const StepOptions& options)
-      : program_(program), meaning_(meaning), options_(options) {
+  explicit StepWork(const StepOptions& options) : options_(options), has_m6_(options.has_m6) {
     read_.controls.emplace_back();
-    read_.steps.reserve(meaning.motions.size());
     if (options.start) place_.set(*options.start);
   }
 
-  ProgramSteps run() {
-    for (index_ = 0; index_ < program_.blocks.size() && !ended_; ++index_) read_block();
-    if (ended_) note_what_follows();
-    return std::move(read_);
+  ProgramSteps& read(const gcode::Program& part, const gcode::Interpretation& meaning,
+                     std::size_t first_block, std::size_t end_block) {
+    program_ = &part;
+    meaning_ = &meaning;
+    read_.steps.clear();
+    read_.steps.reserve(end_block - first_block);
+    if (first_block == end_block) return read_;
+    sent_ = part.blocks[first_block].span.begin;
+    for (index_ = first_block; index_ < end_block && !ended_; ++index_) read_block();
+    if (ended_) note_what_follows(end_block);
+    unsent_ += part.blocks[end_block - 1].end - sent_;
+    return read_;
   }
 
  private:
-  [[nodiscard]] const gcode::Block& block() const { return program_.blocks[index_]; }
-  [[nodiscard]] const gcode::BlockMeaning& block_meaning() const { return meaning_.blocks[index_]; }
+  [[nodiscard]] const gcode::Block& block() const { return program_->blocks[index_]; }
+  [[nodiscard]] const gcode::BlockMeaning& block_meaning() const {
+    return meaning_->blocks[index_];
+  }
   [[nodiscard]] const ModalState& state() const {
-    return meaning_.states[block_meaning().state_after];
+    return meaning_->states[block_meaning().state_after];
   }
   [[nodiscard]] const gcode::Motion& motion() const {
-    return meaning_.motions[static_cast<std::size_t>(block_meaning().motion)];
+    return meaning_->motions[static_cast<std::size_t>(block_meaning().motion)];
   }
   void note(std::string_view id) { read_.not_timed.add(id, block().line); }
 
@@ -131,10 +143,10 @@ class StepReader {
       case BlockKind::kEmpty:
         return;
       case BlockKind::kMotion:
-        return add_motion(BlockWords(program_.words_of(block())));
+        return add_motion(BlockWords(program_->words_of(block())));
       case BlockKind::kSettings:
       case BlockKind::kMotionAndMore:
-        return read_words(BlockWords(program_.words_of(block())));
+        return read_words(BlockWords(program_->words_of(block())));
       case BlockKind::kOpaque:
         return read_opaque();
     }
@@ -145,7 +157,7 @@ class StepReader {
   void read_opaque() {
     const gcode::BlockMeaning& m = block_meaning();
     if (m.barrier == reason::kProgramMark || m.barrier == reason::kAssignment) return;
-    const BlockWords words(program_.words_of(block()));
+    const BlockWords words(program_->words_of(block()));
     const bool exact_stop = m.barrier == reason::kExactStop && words.has_g(90) && is_line_mode();
     if (exact_stop && words.all_numbers() && words.has_any("XYZ")) {
       read_words(words);
@@ -194,11 +206,7 @@ class StepReader {
 
   // A lathe's T changes the tool at once; where a program says M6, T only gets it ready.
   bool changes_by_m6() {
-    if (!has_m6_) {
-      has_m6_ = std::ranges::any_of(program_.words, [](const gcode::Word& w) {
-        return w.letter == 'M' && w.is_number && w.value == 6;
-      });
-    }
+    if (!has_m6_) has_m6_ = has_m6(*program_);
     return *has_m6_;
   }
 
@@ -343,16 +351,18 @@ class StepReader {
     step.kind = kind;
     step.control = control_;
     step.tool = tool_;
-    step.block = static_cast<std::uint32_t>(index_);
+    step.line = block().line;
+    step.bytes = unsent_ + block().end - sent_;
+    unsent_ = 0;
+    sent_ = block().end;
+    is_moving_ = kind == StepKind::kCut || kind == StepKind::kRapid;
     return step;
   }
 
   void add_wait(StepKind kind, double seconds) { add_step(kind).seconds = seconds; }
 
   void add_rest() {
-    const bool moves_before = !read_.steps.empty() && (read_.steps.back().kind == StepKind::kCut ||
-                                                       read_.steps.back().kind == StepKind::kRapid);
-    if (moves_before) add_step(StepKind::kRest);
+    if (is_moving_) add_step(StepKind::kRest);
   }
 
   void add_dwell(const BlockWords& words) {
@@ -487,17 +497,20 @@ class StepReader {
     place_.set(move.line.end);
   }
 
-  void note_what_follows() {
-    for (; index_ < program_.blocks.size(); ++index_) {
-      if (BlockWords(program_.words_of(block())).has_any("XYZ")) note(not_timed::kAfterEnd);
+  void note_what_follows(std::size_t end_block) {
+    for (; index_ < end_block; ++index_) {
+      if (BlockWords(program_->words_of(block())).has_any("XYZ")) note(not_timed::kAfterEnd);
     }
   }
 
-  const gcode::Program& program_;
-  const gcode::Interpretation& meaning_;
-  const StepOptions& options_;
+  const gcode::Program* program_ = nullptr;  // the part that is being read
+  const gcode::Interpretation* meaning_ = nullptr;
+  StepOptions options_;
   ProgramSteps read_;
-  std::size_t index_ = 0;  // of the block that is being read
+  std::uint32_t sent_ = 0;    // where the bytes end that a step has counted
+  std::uint32_t unsent_ = 0;  // bytes of the parts before that no step has counted
+  bool is_moving_ = false;    // the last step is a motion
+  std::size_t index_ = 0;     // of the block that is being read
   ToolPlace place_;
   std::int32_t tool_ = ProgramStep::kNoTool;
   std::int32_t selected_ = ProgramStep::kNoTool;
@@ -512,9 +525,15 @@ class StepReader {
 
 }  // namespace
 
+StepReader step_reader(const StepOptions& options) {
+  return [work = StepWork(options)](const auto&... part) mutable -> const ProgramSteps& {
+    return work.read(part...);
+  };
+}
+
 ProgramSteps read_steps(const gcode::Program& program, const gcode::Interpretation& meaning,
                         const StepOptions& options) {
-  return StepReader(program, meaning, options).run();
+  return std::move(StepWork(options).read(program, meaning, 0, program.blocks.size()));
 }
 
 }  // namespace batten::postproc

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -61,7 +62,8 @@ struct ProgramStep {
   bool stops_after = false;     // G9: exact stop of this block
   std::uint16_t control = 0;    // index into ProgramSteps::controls
   std::int32_t tool = kNoTool;  // number of the tool in the spindle
-  std::uint32_t block = 0;      // index into Program::blocks
+  std::uint32_t line = 0;       // of its block
+  std::uint32_t bytes = 0;      // of the blocks since the step before it, its own with them
   double feed = 0;              // kCut: mm/min; 0: not known
   double seconds = 0;           // kDwell, kRotary
   geometry::PathPiece piece;    // kCut, kRapid: absolute mm
@@ -71,7 +73,8 @@ struct ProgramStep {
 
 struct StepOptions {
   gcode::DwellUnit dwell_unit = gcode::DwellUnit::kByPoint;
-  std::optional<geometry::Point3> start;  // mm: where the tool is before the program
+  std::optional<geometry::Point3> start = {};  // mm: where the tool is before the program
+  std::optional<bool> has_m6 = {};  // changes the tools; nothing: the text that is read says it
 };
 
 struct ProgramSteps {
@@ -90,5 +93,13 @@ struct ProgramSteps {
 [[nodiscard]] ProgramSteps read_steps(const gcode::Program& program,
                                       const gcode::Interpretation& meaning,
                                       const StepOptions& options);
+
+// The same for a program that is read part by part, of which StepOptions must say has_m6: gives the
+// steps of the blocks from `first` to before `end`, and the controls and what is not timed so far.
+using StepReader = std::function<const ProgramSteps&(const gcode::Program& part,
+                                                     const gcode::Interpretation& meaning,
+                                                     std::size_t first, std::size_t end)>;
+[[nodiscard]] StepReader step_reader(const StepOptions& options);
+[[nodiscard]] bool has_m6(const gcode::Program& program);
 
 }  // namespace batten::postproc

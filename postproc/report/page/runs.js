@@ -102,13 +102,13 @@ class Runs {
 
   // Two bars, before above and after below, each as long as the time and in the order of the program.
   drawStrip() {
-    const total = this.report.time_before_s;
+    const total = this.runs.reduce((sum, r) => sum + r.time_before_s, 0);
     this.strip.hidden = !(total > 0);
     if (this.strip.hidden) return;
     const { context, width, height } = sharpContext(this.strip);
     const colours = themeColours();
     const left = 52;
-    const per = (width - left - 2) / Math.max(total, this.report.time_after_s);
+    const per = (width - left - 2) / Math.max(total, this.runs.reduce((sum, r) => sum + r.time_after_s, 0));
     context.font = '12px system-ui, sans-serif';
     context.textBaseline = 'middle';
     this.stripParts = [];

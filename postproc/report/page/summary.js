@@ -87,10 +87,22 @@ class Summary {
     // Less than half a percent is not worth a claim: the model is not that good.
     const same = before > 0 && Math.abs(after / before - 1) < 0.005;
     const time = before > 0
-      ? this.tile('Cutting time, predicted',
+      ? this.tile('Time, predicted',
         [figure('time_before_s', before, timeText(before)), ' \u2192 ', figure('time_after_s', after, timeText(after))],
         [same ? 'unchanged' : gain(before, after, 1), ` on machine ${report.options.machine}`], this.bars(before, after))
-      : this.tile('Cutting time, predicted', ['\u2013'], ['no cutting moves']);
+      : this.tile('Time, predicted', ['\u2013'], ['nothing moves or waits']);
+    // Before and after of one figure.
+    const pair = (title, names, values, digits, unit, note) => this.tile(title,
+      [figure(names[0], values[0], values[0].toFixed(digits)), ' \u2192 ', figure(names[1], values[1], values[1].toFixed(digits) + unit)],
+      [gain(...values), note], this.bars(...values));
+    const [old, now] = [report.path_before, report.path_after];
+    const ofPath = old.length_mm > 0 ? [
+      pair('Distance, rms', ['path_before.distance_mm', 'path_after.distance_mm'], [old.distance_mm, now.distance_mm], 4, ' mm', ', from the path that was meant'),
+      pair('Roughness', ['path_before.roughness', 'path_after.roughness'], [old.roughness, now.roughness], 3, '', ', turns at joints in rad/\u221amm'),
+    ] : [];
+    const slow = report.cutting_before_s > 0
+      ? [pair('Slow', ['slow_before', 'slow_after'], [100 * report.slow_share_before, 100 * report.slow_share_after], 1, '\u00a0%',
+        ', of the cutting time below half of the programmed feed')] : [];
     const kept = report.runs.length - this.rewritten;
     const inOut = [report.input.blocks, report.output.blocks];
     const allowed = report.options.tolerance_mm;
@@ -105,6 +117,8 @@ class Summary {
         : ['every block is as it was'], gauge),
       this.tile('Blocks', [figure('input.blocks', inOut[0], thousands(inOut[0])), ' \u2192 ', figure('output.blocks', inOut[1], thousands(inOut[1]))],
         [gain(...inOut), `, ${thousands(report.input.bytes)} \u2192 ${thousands(report.output.bytes)} bytes`], this.bars(...inOut)),
+      ...ofPath,
+      ...slow,
       this.tile('Runs', [figure('rewritten', this.rewritten, thousands(this.rewritten)), element('small', {}, ' rewritten, '),
         figure('kept', kept, thousands(kept)), element('small', {}, ' kept')],
       [this.rewritten ? `${this.shareRewritten()} of the blocks are in rewritten runs` : report.reasons.length ? `mostly kept: ${report.reasons[0].id}` : ''],

@@ -26,8 +26,10 @@ ProgramRecord smoothed(const std::string& program) {
   record.blocks_out = 30;
   record.runs_rewritten = 2;
   record.runs_kept = 1;
-  record.time_before_s = 3.5;
-  record.time_after_s = 2.25;
+  record.time_before = {3.5, 3, 1.5};
+  record.time_after = {2.25, 2, 0.5};
+  record.path_before = {10, 0.005, 0.25};
+  record.path_after = {10, 0.002, 0.125};
   record.deviation_mm = 0.0098;
   return record;
 }
@@ -60,7 +62,11 @@ TEST(BatchRecord, SaysAllOfAProgram) {
     "input_sha256": "aa", "settings_sha256": "bb", "output_sha256": "cc", "report_sha256": "dd",
     "bytes_in": 1000, "bytes_out": 400, "blocks_in": 100, "blocks_out": 30,
     "runs_rewritten": 2, "runs_kept": 1,
-    "time_before_s": 3.5, "time_after_s": 2.25, "deviation_mm": 0.0098})"));
+    "time_before_s": 3.5, "time_after_s": 2.25, "cutting_before_s": 3, "cutting_after_s": 2,
+    "slow_before_s": 1.5, "slow_after_s": 0.5,
+    "length_before_mm": 10, "length_after_mm": 10, "distance_before_mm": 0.005,
+    "distance_after_mm": 0.002, "roughness_before": 0.25, "roughness_after": 0.125,
+    "deviation_mm": 0.0098})"));
 }
 
 TEST(BatchRecord, OfOtherTextIsNone) {
@@ -90,7 +96,9 @@ TEST(BatchTotals, CountWhatWasWrittenAndTheWorstExitCode) {
   EXPECT_EQ(totals.with_status, (std::array<std::size_t, kStatuses>{1, 1, 1, 0, 1, 0}));
   EXPECT_EQ(totals.blocks_in, 200u);
   EXPECT_EQ(totals.blocks_out, 60u);
-  EXPECT_EQ(totals.time_after_s, 4.5);
+  EXPECT_EQ(totals.time_after.seconds, 4.5);
+  EXPECT_EQ(totals.time_after.slow_share(), 0.25);
+  EXPECT_EQ(totals.path_before.roughness, 0.25);
   EXPECT_EQ(totals.deviation_mm, 0.0098);
   EXPECT_EQ(totals.exit_code, 4);
   EXPECT_EQ(totals_of({}).exit_code, 0);
@@ -101,7 +109,9 @@ TEST(BatchSummary, SaysTheSameInAllItsForms) {
   const std::string table = summary_table(records);
   EXPECT_NE(table.find("a/b.nc   smoothed"), std::string::npos) << table;
   EXPECT_NE(table.find("100 -> 30"), std::string::npos) << table;
-  EXPECT_NE(table.find("3.50 -> 2.25"), std::string::npos) << table;
+  EXPECT_NE(table.find("3.50 -> 2.25  0.0050 -> 0.0020  0.250 -> 0.125  50.0 -> 25.0     0.0098"),
+            std::string::npos)
+      << table;
   EXPECT_NE(table.find(records[1].message), std::string::npos) << table;
   EXPECT_NE(table.find("2 programs: 1 smoothed, 0 unchanged, 1 not understood\n"),
             std::string::npos)
@@ -118,7 +128,8 @@ TEST(BatchSummary, SaysTheSameInAllItsForms) {
 TEST(BatchSummary, QuotesWhatCsvNeedsQuoted) {
   const std::string csv =
       summary_csv(std::vector<ProgramRecord>{smoothed("a.nc"), refused("c.nc")});
-  EXPECT_NE(csv.find("\na.nc,smoothed,0,100,30,1000,400,2,1,3.5,2.25,0.0098,aa,cc,\n"),
+  EXPECT_NE(csv.find("\na.nc,smoothed,0,100,30,1000,400,2,1,3.5,2.25,0.005,0.002,0.25,0.125,0.5,0."
+                     "25,0.0098,aa,cc,\n"),
             std::string::npos)
       << csv;
   EXPECT_NE(csv.find("\"c.nc:1:1: error: \"\"quoted\"\", and a comma\"\n"), std::string::npos)

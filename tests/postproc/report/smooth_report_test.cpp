@@ -42,13 +42,14 @@ const SummaryCase kSummaries[] = {
       "kept: 1 run, 10 blocks (exact-stop): ", "kept: 2 runs, 5 blocks (too-short): ",
       "--allow exact-stop lifts this rule",
       "4.00 s -> 2.00 s  (machine linuxcnc, 2.0 times as fast)",
+      "50.0 -> 12.5 % of the cutting time is below half of the programmed feed",
       "at most 0.0098 mm, near line 120; allowed 0.0100 mm", "keeps the tolerance"},
      // One method alone wins nothing.
      {"--allow too-short", "methods"}},
     {"LongTimes",
      [](SmoothResult& result) {
-       result.time_before_s = 7300;
-       result.time_after_s = 6570;
+       result.program_before.seconds = 7300;
+       result.program_after.seconds = 6570;
      },
      {"2 h 01 min -> 1 h 49 min  (machine linuxcnc, -10.0 %)"}},
     // One run by guo, 0.5 s before fair; one by fair, 0.1 s before guo. Kept runs do not count.
@@ -108,7 +109,8 @@ TEST_F(SmoothReports, HaveTheirFieldsInAFixedOrder) {
   EXPECT_EQ(
       keys_of(report),
       "batten options input output machine runs reasons deviation_mm deviation_line corner_mm "
-      "time_before_s time_after_s path_before path_after proved understood diagnostics ");
+      "time_before_s time_after_s cutting_before_s cutting_after_s slow_share_before "
+      "slow_share_after path_before path_after proved understood diagnostics ");
   EXPECT_EQ(keys_of(report["input"]), "file bytes blocks units ");
   EXPECT_EQ(keys_of(report["output"]), "file bytes blocks target ");
   EXPECT_EQ(
@@ -139,6 +141,8 @@ TEST_F(SmoothReports, SayTheFiguresOfTheResultToPrograms) {
   EXPECT_EQ(report["deviation_line"], 120);
   EXPECT_EQ(report["time_before_s"], 4.0);
   EXPECT_EQ(report["time_after_s"], 2.0);
+  EXPECT_EQ(report["cutting_before_s"], 3.0);
+  EXPECT_EQ(report["slow_share_after"], 0.125);
   EXPECT_EQ(report["proved"], true);
   EXPECT_EQ(report["diagnostics"],
             Json::parse(R"([{"severity": "warning", "id": "some-id", "line": 2, "column": 4,

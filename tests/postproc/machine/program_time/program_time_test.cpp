@@ -17,6 +17,7 @@
 #include "gcode/reading/parser.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/models/cycle_time.h"
+#include "postproc/machine/program_time/program_time_chains.h"
 #include "postproc/machine/program_time/program_time_profile.h"
 #include "tests/support/interpreted.h"
 #include "tests/support/machine_limits.h"
@@ -462,6 +463,27 @@ TEST(ProgramTimeSlowPlaces, AreWhereTheCornersAre) {
               time.slowest[0].seconds - time.slowest[0].length_mm / 100, 1e-9);
 }
 
+// --- long motions --------------------------------------------------------------------------------
+
+// A wave of 40,000 moves with no rest takes what its one chain takes, read as a whole and in parts.
+TEST_P(EveryControl, TimesALongMotionInPartsAsTheWhole) {
+  const Machine m = machine_of(GetParam());
+  std::string text = "G21 G90 G64\nG1 F3000 X0 Y0 Z0\n";
+  for (int i = 1; i <= 40000; ++i) {
+    text += fmt::format("X{:.3f} Y{:.3f}\n", 0.1 * i, 2 * std::sin(0.05 * i));
+  }
+  const tests::Interpreted program(text);
+  const ProgramSteps steps = read_steps(program.program, program.read, from_zero());
+  double whole = 0;
+  const auto add = [&](const RunChain& c) {
+    whole += c.seconds + ChainMotion(c.stretches).duration();
+  };
+  ChainCutter uncut(m, steps.steps.size() + 1);
+  for (const ProgramStep& step : steps.steps) uncut.add(step, steps.controls, add);
+  uncut.finish(add);
+  EXPECT_NEAR(seconds_of(text, m), whole, 1e-5 * whole);
+}
+
 // --- samples -------------------------------------------------------------------------------------
 
 struct SampledProgram {
@@ -473,11 +495,11 @@ SampledProgram sampled(const std::string& text, const Machine& m, double period 
   const tests::Interpreted program(text);
   const ProgramSteps steps = read_steps(program.program, program.read, from_zero());
   SampledProgram result;
-  EXPECT_TRUE(sample_program(program.program, steps, m, period, [&](const ProfileSample& s) {
+  EXPECT_TRUE(sample_program(steps, m, period, [&](const ProfileSample& s) {
     result.samples.push_back(s);
     return true;
   }));
-  result.seconds = time_steps(program.program, steps, m).seconds.sum();
+  result.seconds = seconds_of(text, m);
   return result;
 }
 
@@ -566,8 +588,8 @@ TEST(Profile, StopsWhenItIsTold) {
   const tests::Interpreted program("G21 G90\nG1 X50 F6000\nM2\n");
   const ProgramSteps steps = read_steps(program.program, program.read, from_zero());
   int samples = 0;
-  EXPECT_FALSE(sample_program(program.program, steps, machine_of(ControllerModel::kLookAhead),
-                              0.001, [&](const ProfileSample&) { return ++samples < 10; }));
+  EXPECT_FALSE(sample_program(steps, machine_of(ControllerModel::kLookAhead), 0.001,
+                              [&](const ProfileSample&) { return ++samples < 10; }));
   EXPECT_EQ(samples, 10);
 }
 
