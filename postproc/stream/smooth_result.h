@@ -82,6 +82,7 @@ struct SmoothResult {
   double time_after_s = 0;
   PathFigures path_before;
   PathFigures path_after;
+  Outlook outlook;
   bool proved = false;  // of the whole text
   // Of a text that was handed on window by window (postproc/stream/pipeline.h), in place of `text`.
   std::size_t bytes_handed_on = 0;
