@@ -132,7 +132,7 @@ constexpr Explanation kExplanations[] = {
 
     {kTooShort, "Fewer motions in a row than a run needs.", "--min-points lowers the number."},
     {kNoGain, "The new form was not clearly faster, smaller, nearer to the path or smoother.",
-     "Nothing: the program is good here."},
+     "batten explore shows what other tolerances, forms and preferences would give."},
     {kSlower, "The new form would take more time on the machine.", "A larger tolerance may help."},
     {kLarger, "The new form would be more blocks or bytes, for too little.",
      "--prefer accuracy where nearness is worth blocks, or a larger tolerance."},

@@ -129,22 +129,6 @@ Command any_command_of(std::string_view name, Arguments& in) {
   return PrintText{man_page()};
 }
 
-// The command line as one could type it again.
-std::string shell_words(const std::vector<std::string>& arguments) {
-  constexpr std::string_view kPlain =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./:+,@%=-";
-  std::string text = "batten";
-  for (const std::string& word : arguments) {
-    text += ' ';
-    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) {
-      text += word;
-      continue;
-    }
-    text += "'" + escaped(word, {{'\'', "'\\''"}}) + "'";
-  }
-  return text;
-}
-
 std::string no_command(const CLI::App& app) {
   std::vector<std::string_view> names;
   for (const CommandRow& row : command_rows()) names.push_back(row.name);
@@ -194,7 +178,7 @@ CommandLine read_command_line(const std::vector<std::string>& given_arguments) {
   line.command = any_command_of(name, in);
   line.problems = std::move(in.problems);
   if (auto* smooth = std::get_if<SmoothCommand>(&line.command)) {
-    smooth->command_line = shell_words(arguments);
+    smooth->command_line = command_line_of(arguments);
   }
   return line;
 }

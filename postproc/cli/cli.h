@@ -32,8 +32,9 @@ struct PrintText {
   std::string text;
 };
 
-using Command = std::variant<PrintText, SmoothCommand, VerifyCommand, InspectCommand, TimeCommand,
-                             BatchCommand, FreecadCommand, ListCommand>;
+using Command =
+    std::variant<PrintText, SmoothCommand, ExploreCommand, VerifyCommand, InspectCommand,
+                 TimeCommand, BatchCommand, FreecadCommand, ListCommand>;
 
 // `name` is one of those that read, list or write programs and machines: "smooth" .. "methods".
 [[nodiscard]] Command command_of(std::string_view name, Arguments& in);

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "gcode/controls/built_in.h"
+#include "gcode/curves/curve_format.h"
 #include "gcode/state/modal_state.h"
 #include "postproc/batch/program_tree.h"
 #include "postproc/cli/cli.h"
@@ -50,21 +51,25 @@ std::optional<double> decimal(std::string_view text) {
 // "0.01" and "0.01mm" are millimetres, "0.0005in" (or inch) inches, a blank before the unit or not.
 // Returns millimetres; `inch` is set where inches are given. Whether the size makes sense is not
 // asked here.
-std::optional<double> tolerance_given(Arguments& in, std::optional<double>& inch) {
-  const auto text = in.given.value("tolerance");
-  if (!text) return std::nullopt;
-  std::string_view number = trimmed(*text);
+std::optional<double> tolerance_in(const std::string& text, Arguments& in,
+                                   std::optional<double>& inch) {
+  std::string_view number = trimmed(text);
   const bool inches = take_suffix(number, "inch") || take_suffix(number, "in");
   if (!inches) take_suffix(number, "mm");
   const auto value = decimal(number);
   if (!value) {
     const bool comma = number.find(',') != std::string_view::npos;
-    in.complain("--tolerance: '{}', expected a length such as 0.01, 0.01mm or 0.0005in{}", *text,
+    in.complain("--tolerance: '{}', expected a length such as 0.01, 0.01mm or 0.0005in{}", text,
                 comma ? " (with a point, not a comma)" : "");
   }
   if (!value || !inches) return value;
   inch = value;
   return *value * gcode::millimetres_per(gcode::Units::kInch);
+}
+
+std::optional<double> tolerance_given(Arguments& in, std::optional<double>& inch) {
+  const auto text = in.given.value("tolerance");
+  return text ? tolerance_in(*text, in, inch) : std::nullopt;
 }
 
 std::optional<double> read_decimal(std::string_view option, std::string_view text, Arguments& in) {
@@ -547,12 +552,59 @@ SmoothCommand smooth_command(Arguments& in) {
   return command;
 }
 
+namespace {
+
+// One for each tolerance, form and preference that may be. Curves only where they are asked for, or
+// auto takes them: they are dear to make.
+ExploreCommand explore_command(Arguments& in) {
+  ExploreCommand command{smooth_command(in), {}, {}};
+  SmoothOptions options = command.smooth.options;
+  options.convert = false;
+  std::vector<std::string> tolerances = in.given.values("tolerance");
+  if (tolerances.empty()) tolerances = {"0.005", "0.01", "0.02", "0.05"};
+  const bool curves = options.target != nullptr && options.target->curves != nullptr &&
+                      options.target->curves->is_default;
+  for (const std::string& text : tolerances) {
+    // What is wrong with the first has been said.
+    if (&text != &tolerances.front() || !in.given.has("tolerance")) {
+      options.tolerance_inch.reset();
+      options.tolerance_mm = tolerance_in(text, in, options.tolerance_inch).value_or(1);
+      check_options(options, in);
+    }
+    for (const auto& form : forms()) {
+      const bool named = in.given.has("output");
+      if (named ? form.value != command.smooth.options.output
+                : form.value == Form::kCurves && !curves) {
+        continue;
+      }
+      for (const auto& prefer : preferences()) {
+        if (in.given.has("prefer") && prefer.value != options.prefer) continue;
+        command.settings.push_back(options);
+        command.settings.back().output = form.value;
+        command.settings.back().prefer = prefer.value;
+        if (!named && !problems_of(command.settings.back()).empty()) command.settings.pop_back();
+      }
+    }
+  }
+  for (const OptionRow& row : option_rows("explore")) {
+    const bool explored = row.name == "output" || row.name == "prefer";
+    if (!row.in_config || explored || row.name == "threads" || !in.given.has(row.name)) continue;
+    command.options_of_smooth.push_back(fmt::format("--{}", row.name));
+    command.options_of_smooth.push_back(
+        fmt::format("{}", fmt::join(in.given.values(row.name), ",")));
+  }
+  return command;
+}
+
+}  // namespace
+
 Command command_of(std::string_view name, Arguments& in) {
   if (name == "smooth") {
     SmoothCommand command = smooth_command(in);
     if (in.given.flag("print-config")) return PrintText{config_text(in.given)};
     return command;
   }
+  if (name == "explore") return explore_command(in);
   if (name == "verify") return verify_command(in);
   if (name == "inspect") return inspect_command(in);
   if (name == "time") return time_command(in);

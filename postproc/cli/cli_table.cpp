@@ -200,6 +200,24 @@ std::vector<OptionRow> batch_rows() {
   return rows;
 }
 
+// Those of `smooth` that say what is written, and lists of what is explored.
+std::vector<OptionRow> explore_rows() {
+  std::vector<OptionRow> rows = smooth_rows();
+  std::erase_if(rows, [](const OptionRow& row) {
+    return row.kind == kFlag && row.name != "force" && row.name != "quiet";
+  });
+  std::erase_if(rows,
+                [](const OptionRow& row) { return row.name == "out" || row.name == "report"; });
+  for (OptionRow& row : rows) {
+    if (row.name == "output" || row.name == "prefer") row.default_value = "each";
+    if (row.name == "tolerance") {
+      row = option("tolerance", kList, "LENGTH,..", "tolerances, each as smooth takes it",
+                   "0.005,0.01,0.02,0.05");
+    }
+  }
+  return rows;
+}
+
 // --- commands ------------------------------------------------------------------------------------
 
 std::vector<CommandRow> make_command_rows() {
@@ -211,6 +229,15 @@ std::vector<CommandRow> make_command_rows() {
        "Example:\n"
        "  batten smooth part.nc --target linuxcnc --tolerance 0.01\n"
        "writes part.smooth.nc, nowhere more than 0.01 mm from part.nc."},
+      {"explore",
+       "Show what other tolerances, forms and preferences would win, and recommend one.",
+       explore_rows(),
+       {{"FILE", "the program, - is standard input"}},
+       "Examples:\n"
+       "  batten explore part.nc --target linuxcnc\n"
+       "  batten explore part.nc --target grbl --tolerance 0.01,0.02 --prefer time --json -\n"
+       "Nothing is written. The recommended setting is smoothed and proved as smooth does it. Of\n"
+       "the others smooth may keep a run that counts here, and find fewer blocks."},
       {"verify",
        "Prove that a new program does what the old one did, within a tolerance.",
        verify_rows(),

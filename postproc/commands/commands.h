@@ -53,6 +53,14 @@ struct BatchCommand : SmoothingCommand {
 };
 [[nodiscard]] int run(const BatchCommand& command);
 
+// What could be had with other tolerances, forms and preferences: a table, nothing is written.
+struct ExploreCommand {
+  SmoothCommand smooth;                        // its input, JSON, progress and log level
+  std::vector<SmoothOptions> settings;         // of explore_program
+  std::vector<std::string> options_of_smooth;  // for the command that is recommended, as given
+};
+[[nodiscard]] int run(const ExploreCommand& command);
+
 // How programs are read where none is written.
 struct ReadingCommand {
   gcode::Units units = gcode::Units::kUnknown;

@@ -101,7 +101,7 @@ double rounding_of(const SmoothOptions& options, gcode::Units units, int run_dec
   gcode::NumberFormat places = place_format(*options.target, units);
   places.decimals = std::max(places.decimals, run_decimals);
   const double place = std::numbers::sqrt3 / 2 * gcode::printed_step(places, units);
-  if (!may_have_arcs(options.output)) return place;
+  if (!may_have_arcs(options.output) && !options.quick) return place;
   const double offset = gcode::printed_step(center_format(*options.target, units), units);
   return place + std::numbers::sqrt2 / 2 * offset;
 }
@@ -252,11 +252,12 @@ std::vector<std::string> problems_of_side(geometry::Side side, geometry::Toleran
 
 Linearize linearize_of(const SmoothOptions& options) {
   if (options.linearize) return *options.linearize;
-  return options.prefer == Prefer::kSize ? Linearize::kMinLink : Linearize::kChord;
+  const bool few = options.prefer == Prefer::kSize && !options.quick;
+  return few ? Linearize::kMinLink : Linearize::kChord;
 }
 
 bool wants_few_moves(const SmoothOptions& options) {
-  if (options.prefer == Prefer::kAccuracy) return false;
+  if (options.prefer == Prefer::kAccuracy || options.quick) return false;
   return options.output == Form::kArcs || options.prefer == Prefer::kSize;
 }
 

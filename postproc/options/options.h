@@ -84,6 +84,7 @@ struct SmoothOptions {
   ProfileWords words;    // that a profile adds; its target is `target`
   std::string profile;   // the profile's file, for reports; empty: none
   int threads = 0;       // 0: all cores
+  bool quick = false;    // less effort for few moves, all forms from the same curves: for a survey
 };
 
 // How lines are laid along a curve: as the user said, otherwise minlink for the fewest bytes and

@@ -48,7 +48,7 @@ Json json_of(const SmoothOptions& options, bool strict) {
   // it, in Options of api/include/batten/batten.h and `inner` of api/batten.cpp.
   const auto& [target, machine, tolerance_mm, tolerance_inch, tolerance_kind, side, units, source,
                decimals, method, output, prefer, linearize, keep_corners_deg, allowed, convert,
-               words, profile, threads] = options;
+               words, profile, threads, quick] = options;
   Json json = {
       {"target", target->name}, {"machine", machine->name}, {"tolerance_mm", tolerance_mm}};
   if (tolerance_inch) json["tolerance_inch"] = *tolerance_inch;
@@ -310,6 +310,51 @@ std::string path_lines(const PathFigures& before, const PathFigures& after) {
                             after.roughness, percent_text(before.roughness, after.roughness)));
 }
 
+// Where little was found: what other options would have given of the candidates that were made; or
+// that the program is good.
+void add_outlook(const SmoothReport& report, std::string& lines) {
+  const SmoothResult& result = report.result;
+  const Outlook& outlook = result.outlook;
+  const double length = result.path_before.length_mm;
+  const auto blocks_in = static_cast<double>(result.blocks_in);
+  const Eigen::Array3d before(result.time_before_s, blocks_in, result.path_before.distance_mm);
+  const Eigen::Array3d now(result.time_after_s, static_cast<double>(result.blocks_out),
+                           result.path_after.distance_mm);
+  const Eigen::Array3d clearly(kCost.clearly_faster, kCost.clearly_smaller, kCost.clearly_nearer);
+  if (!(length > 0) || (now.head(2) <= clearly.head(2) * before.head(2)).any()) return;
+  constexpr std::string_view kChanges[][2] = {{"less time", "more time"},
+                                              {"fewer blocks", "more blocks"},
+                                              {"nearer to the path", "farther from the path"}};
+  std::string said;
+  for (int row = 0; row < outlook.others.rows(); ++row) {
+    Eigen::Array3d other = outlook.others.row(row).transpose();
+    other[2] = std::sqrt(std::max(0.0, before[2] * before[2] + other[2] / length));
+    other.head(2) += before.head(2);
+    const bool slower = other[0] > (1 + kCost.longer) * now[0];
+    if (slower || !(other <= clearly * now).any()) continue;
+    std::string changes;
+    for (int i = 0; i < other.size(); ++i) {
+      const double percent = now[i] > 0 ? 100 * (other[i] / now[i] - 1) : 0;
+      if (std::abs(percent) < 0.5) continue;
+      changes += fmt::format("{} {:.0f} % {}", changes.empty() ? ":" : ",", std::abs(percent),
+                             kChanges[i][percent > 0 ? 1 : 0]);
+    }
+    if (changes == said) continue;
+    said = changes;
+    const SmoothOptions options = other_options(report.options, row);
+    const bool form = options.output != report.options.output;
+    lines += titled("found",
+                    fmt::format("--{} {}{}", form ? "output" : "prefer",
+                                form ? name_of(options.output) : name_of(options.prefer), changes));
+  }
+  const bool at_feeds = kCost.clearly_faster * before[0] <= outlook.at_feeds_s;
+  if (!said.empty()) {
+    lines += titled("", "by the forms that were made; batten explore looks for more");
+  } else if (at_feeds && outlook.better == 0) {
+    lines += titled("found", "the program is good here: at its feeds, and no form clearly better");
+  }
+}
+
 }  // namespace
 
 std::string summary_text(const SmoothReport& report) {
@@ -330,6 +375,7 @@ std::string summary_text(const SmoothReport& report) {
                                         100 * result.program_after.slow_share()));
   }
   add_methods(result, lines);
+  add_outlook(report, lines);
   const bool rewritten =
       std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status) > 0;
   add_proof(report, rewritten, lines);

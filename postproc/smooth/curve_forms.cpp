@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -26,7 +25,7 @@ std::vector<TimedPiece> timed(const OutputPlan& plan) {
 
 std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& times,
                                         const OutputPlan& plan, const RunFacts& facts) {
-  const auto& [run, context, options, scope] = task;
+  const auto& [run, context, options, scope, memo] = task;
   gcode::ModalState before = context.before;
   if (!options.words.before_run.empty()) {  // after words of a profile it says motion and feed
     before.motion = gcode::MotionMode::kUnknown;
@@ -50,7 +49,7 @@ std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& tim
   figures.bytes = static_cast<double>(text->text.size());
   figures.roughness = roughness_of(moves);
   candidate.text = std::move(*text);
-  if (context.is_piece()) candidate.moves = moves;
+  if (context.is_piece() || memo != nullptr) candidate.moves = moves;
   return candidate;
 }
 
@@ -91,7 +90,8 @@ struct Offer {
   Form form = Form::kLines;
   double blocks = 0;    // about
   double distance = 0;  // mm, rms from the path that was meant
-  std::function<std::optional<OutputPlan>()> plan;
+  PlanOptions options;
+  bool around_vertices = false;  // arcs
 };
 
 class CurveForms {
@@ -148,7 +148,25 @@ class CurveForms {
   }
 
   [[nodiscard]] std::optional<Candidate> made(const Offer& offer) const {
-    const std::optional<OutputPlan> plan = offer.plan();
+    if (task_.memo == nullptr) return newly_made(offer);
+    const RunMemo::PlanKey key{curve_.number, offer.form, offer.around_vertices, offer.options};
+    return task_.memo->candidates.get(key, [&](std::size_t) {
+      auto candidate = newly_made(offer);
+      if (candidate) candidate->text.text.clear();
+      return candidate;
+    });
+  }
+
+  [[nodiscard]] std::optional<OutputPlan> plan_of(const Offer& offer) const {
+    const Run& run = task_.run;
+    if (offer.form == Form::kCurves) return plan_curves(run, curve_.path, offer.options);
+    if (offer.form == Form::kLines) return plan_lines(run, curve_.path, pieces_, offer.options);
+    return offer.around_vertices ? plan_arc_spline(run, curve_.path, offer.options)
+                                 : plan_arcs(run, curve_.path, pieces_, bends_, offer.options);
+  }
+
+  [[nodiscard]] std::optional<Candidate> newly_made(const Offer& offer) const {
+    const std::optional<OutputPlan> plan = plan_of(offer);
     if (!plan) return std::nullopt;
     auto candidate = make_candidate(task_, setting_.times, *plan, facts());
     if (!candidate) return std::nullopt;
@@ -160,7 +178,7 @@ class CurveForms {
   }
 
   [[nodiscard]] PlanOptions plan_within(double deviation) const {
-    const auto& [run, context, options, scope] = task_;
+    const auto& [run, context, options, scope, memo] = task_;
     PlanOptions plan;
     plan.target = options.target;
     plan.machine = options.machine;
@@ -174,11 +192,6 @@ class CurveForms {
   }
 
   [[nodiscard]] double far() const { return std::min(left_, kFormTuning.far * share_); }
-
-  void offer(Form form, double blocks, double distance,
-             std::function<std::optional<OutputPlan>()> plan) {
-    offers_.push_back({form, blocks, distance, std::move(plan)});
-  }
 
   // mm, ascending: near to the curve, where that is much nearer than the tolerance allows, and far.
   // The nearest are dear, and for who asks for them alone.
@@ -195,41 +208,31 @@ class CurveForms {
   }
 
   void offer_curves() {
-    for (const double deviation : deviations()) {
-      offer(Form::kCurves, 0, 0,
-            [=, this] { return plan_curves(task_.run, curve_.path, plan_within(deviation)); });
+    const bool few = task_.options.quick && !task_.options.target->curves->is_default;
+    const std::vector<double> all = deviations();
+    for (const double deviation : std::span(all).last(few ? 1 : all.size())) {
+      offers_.push_back({Form::kCurves, 0, 0, plan_within(deviation)});
     }
   }
 
   void offer_arcs() {
     // Each straight part is a line, and what joins two of them gently takes two arcs or more.
     const auto blocks = 3.0 * static_cast<double>(pieces_.straight_runs.size());
-    std::vector<double> all = deviations();
-    const auto plan = [this, furthest = all.back()](double deviation) {
-      PlanOptions options = plan_within(deviation);
-      // Those are there to be near, not few.
-      const bool near = deviation < furthest && !wants_few_moves(task_.options);
-      if (near) options.arc_effort = geometry::ArcEffort::kBrief;
-      return plan_arcs(task_.run, curve_.path, pieces_, bends_, options);
-    };
+    const std::vector<double> all = deviations();
     const bool flat =
         lies_across(task_.run, 0) || lies_across(task_.run, 1) || lies_across(task_.run, 2);
-    if (!flat) {
-      if (!arcs_may_serve()) {
-        result_.left_out = true;
-        return;
-      }
-      for (const double deviation : all) {
-        offer(Form::kArcs, blocks, 0, [=] { return plan(deviation); });
-      }
+    if (!flat && !arcs_may_serve()) {
+      result_.left_out = true;
       return;
     }
-    double nearer = 0;
     for (const double deviation : all) {
       // Were those of the next smaller deviation as near as can be, these would be the same.
-      const double distance = nearer > 0 ? kFormTuning.of_arcs * deviation : 0;
-      nearer = deviation;
-      offer(Form::kArcs, blocks, distance, [=] { return plan(deviation); });
+      const bool farther = flat && deviation > all.front();
+      PlanOptions plan = plan_within(deviation);
+      // Those are there to be near, not few.
+      const bool near = deviation < all.back() && !wants_few_moves(task_.options);
+      if (near) plan.arc_effort = geometry::ArcEffort::kBrief;
+      offers_.push_back({Form::kArcs, blocks, farther ? kFormTuning.of_arcs * deviation : 0, plan});
     }
   }
 
@@ -266,11 +269,9 @@ class CurveForms {
     if (one_sided_ || !(wants_few_moves(task_.options) || !task_.run.arcs.empty())) return;
     const double whole = left_ + curve_.path.deviation;
     for (const double part : kFormTuning.bands) {
-      offer(Form::kArcs, 0, 0, [=, this]() -> std::optional<OutputPlan> {
-        PlanOptions band = plan_within(left_);
-        band.max_deviation = part * whole;
-        return plan_arc_spline(task_.run, curve_.path, band);
-      });
+      PlanOptions band = plan_within(left_);
+      band.max_deviation = part * whole;
+      offers_.push_back({Form::kArcs, 0, 0, band, true});
       if (task_.run.arcs.empty()) return;
     }
   }
@@ -305,8 +306,7 @@ class CurveForms {
       blocks = std::min(blocks,
                         std::max(static_cast<double>(plan.most_moves), bends_.chords(highest, 0)));
     }
-    offer(Form::kLines, blocks, kFormTuning.of_height * height,
-          [=, this] { return plan_lines(task_.run, curve_.path, pieces_, plan); });
+    offers_.push_back({Form::kLines, blocks, kFormTuning.of_height * height, plan});
   }
 
   void offer_named_lines() {
@@ -315,8 +315,7 @@ class CurveForms {
       const PlanOptions plan = plan_within(multiple * share_);
       if (before > 0 && plan.max_deviation > kFormTuning.another * before) continue;
       before = plan.max_deviation;
-      offer(Form::kLines, 0.5 * bends_.chords(plan.max_deviation, 0), 0,
-            [=, this] { return plan_lines(task_.run, curve_.path, pieces_, plan); });
+      offers_.push_back({Form::kLines, 0.5 * bends_.chords(plan.max_deviation, 0), 0, plan});
     }
   }
 

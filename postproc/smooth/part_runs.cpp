@@ -17,6 +17,7 @@
 #include "postproc/runs/run_grouping.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/run_smoother.h"
+#include "postproc/smooth/selection/candidate_bounds.h"
 #include "postproc/smooth/selection/run_times.h"
 #include "postproc/smooth/selection/selection.h"
 #include "postproc/system/parallel_for.h"
@@ -162,8 +163,8 @@ std::vector<std::uint32_t> cuts_about(std::span<const LineRange> copied,
 class PartSmoother {
  public:
   PartSmoother(const ProgramPart& part, const SmoothOptions& options,
-               const ProgressCallback& progress, PartRuns& runs)
-      : part_(part), options_(options), progress_(progress), runs_(runs) {}
+               const ProgressCallback& progress, PartRuns& runs, RunMemos* memos)
+      : part_(part), options_(options), progress_(progress), runs_(runs), memos_(memos) {}
 
   // False: the work was stopped.
   bool run() {
@@ -171,7 +172,9 @@ class PartSmoother {
     for (std::size_t i = 0; i < runs_.works.size(); ++i) {
       if (runs_.works[i].selection.reason.empty()) whole.push_back(i);
     }
-    if (options_.method != Method::kNone) note_bands();  // they warn of what new paths may do
+    if (options_.method != Method::kNone && memos_ == nullptr) {
+      note_bands();  // they warn of what new paths may do
+    }
     for (const RunState& work : runs_.works) points_ += run_of(work).points.size();
     if (!smooth_works(whole)) return false;
     const std::vector<std::size_t> pieces = cut_runs();
@@ -200,8 +203,14 @@ class PartSmoother {
     const auto one = [&](std::size_t i) {
       if (stopped) return;
       RunState& work = runs_.works[works[i]];
-      work.smoothed = smooth_run(run_of(work), work.context, options_);
+      RunMemo* memo = memos_ != nullptr ? &memos_->of(runs_.sections[work.section]) : nullptr;
+      work.smoothed =
+          smooth_run(run_of(work), work.context, options_, CandidateScope::kToChoose, memo);
       work.selection = choose(work.smoothed, options_);
+      if (memos_ == nullptr && options_.method != Method::kNone) {
+        work.outlook = outlook_of(work.smoothed, options_);
+        work.outlook.at_feeds_s = least_time(run_of(work), 0, *options_.machine);
+      }
       work.drop_what_is_not_written();
       const std::scoped_lock lock(reporting);
       smoothed_points_ += run_of(work).points.size();
@@ -248,6 +257,7 @@ class PartSmoother {
     cut.path = work.context.after.path;
     cut.facts = work.smoothed.facts;
     cut.reason = work.selection.reason;
+    cut.outlook = std::move(work.outlook);
     cut.first_work = works.size();
     cut.pieces = pieces.size();
     cut.run = std::move(std::get<Run>(runs_.sections[work.section].content));
@@ -272,6 +282,7 @@ class PartSmoother {
   const SmoothOptions& options_;
   const ProgressCallback& progress_;
   PartRuns& runs_;
+  RunMemos* memos_;
   std::size_t points_ = 0;           // of all runs
   std::size_t smoothed_points_ = 0;  // pieces count again
 };
@@ -326,9 +337,14 @@ void keep_as_smoothed(PartRuns& runs) {
   for (RunState& work : runs.works) work.selection.reason = gcode::reason::kAlreadySmoothed;
 }
 
+RunMemo& RunMemos::of(const Section& section) {
+  const std::scoped_lock lock(looking_);
+  return memos_[{section.first_block, section.last_block}];
+}
+
 bool smooth_runs(const ProgramPart& part, const SmoothOptions& options,
-                 const ProgressCallback& progress, PartRuns& runs) {
-  return PartSmoother(part, options, progress, runs).run();
+                 const ProgressCallback& progress, PartRuns& runs, RunMemos* memos) {
+  return PartSmoother(part, options, progress, runs, memos).run();
 }
 
 }  // namespace batten::postproc

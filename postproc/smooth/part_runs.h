@@ -3,8 +3,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "gcode/text/diagnostic.h"
@@ -52,9 +55,21 @@ void keep_as_smoothed(PartRuns& runs);
 // Called with the share of the work that is done, 0..1; false stops it.
 using ProgressCallback = std::function<bool(double)>;
 
+// Of all runs of a part and their pieces.
+class RunMemos {
+ public:
+  // May be called from several threads.
+  [[nodiscard]] RunMemo& of(const Section& section);
+
+ private:
+  std::mutex looking_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, RunMemo> memos_;  // by first and last block
+};
+
 // Makes candidates for all runs and chooses among them. The same for any number of threads. False:
-// the work was stopped.
+// the work was stopped. With memos the bands of the runs are not noted.
 [[nodiscard]] bool smooth_runs(const ProgramPart& part, const SmoothOptions& options,
-                               const ProgressCallback& progress, PartRuns& runs);
+                               const ProgressCallback& progress, PartRuns& runs,
+                               RunMemos* memos = nullptr);
 
 }  // namespace batten::postproc

@@ -70,7 +70,7 @@ class RunSmoother {
     meant.accurate = true;
     const bool sharp = !options().keep_corners_deg && has_sharp_corner(run().points);
     if (sharp) meant.keep_found_corner = kRun.sharp_corner;
-    const auto fair = curve_of(Method::kFair, run().points, meant);
+    const auto fair = curve_by(Method::kFair, meant);
     if (method == Method::kBest || method == Method::kFair) {
       if (fair) {
         find_meant(fair->path, meant);
@@ -81,7 +81,7 @@ class RunSmoother {
         }
         if (method == Method::kBest) try_others();
       }
-    } else if (const auto curve = curve_of(method, run().points, curve_request(method))) {
+    } else if (const auto curve = curve_by(method, curve_request(method))) {
       find_meant((fair ? *fair : *curve).path, meant);
       add_candidates_of(*curve);
     }
@@ -122,15 +122,27 @@ class RunSmoother {
     facts.scale.original.distance = meant_->distance_of(run());
     if (facts.scale.original.distance > kRun.takes_much * request.tolerance) {
       request.tolerance *= kRun.more_room;
-      const auto through = curve_of(Method::kFair, run().points, request);
+      const auto through = curve_by(Method::kFair, request);
       if (through) fair_ = through->path;
       facts.scale.original.distance = meant_->distance_of(run());
     }
     facts.scale.known = kBounds.known * fair_->noise;
   }
 
+  [[nodiscard]] std::optional<RunCurve> curve_by(Method method, const CurveRequest& request) const {
+    if (task_.memo == nullptr) return curve_of(method, run().points, request);
+    const RunMemo::CurveKey key{method,          request.tolerance,         request.side_margin,
+                                request.scatter, request.keep_found_corner, request.accurate,
+                                request.near};
+    return task_.memo->curves.get(key, [&](std::size_t number) {
+      auto curve = curve_of(method, run().points, request);
+      if (curve) curve->number = number;
+      return curve;
+    });
+  }
+
   void try_curve(Method method, const CurveRequest& request) {
-    const auto curve = curve_of(method, run().points, request);
+    const auto curve = curve_by(method, request);
     if (curve) add_candidates_of(*curve);
   }
 
@@ -146,7 +158,8 @@ class RunSmoother {
   // A curve that leaves of the vertices what their decimals do may be, and where few blocks are
   // wanted, more than that, takes fewer of them. Parts of a run are fitted alike.
   void try_simpler(CurveRequest request) {
-    const bool few = wants_few_moves(options()) || options().output == Form::kCurves;
+    const bool few =
+        wants_few_moves(options()) || (options().output == Form::kCurves && !options().quick);
     const bool none = choose(result_, options()).order.empty() && !context().is_piece();
     if (options().prefer == Prefer::kAccuracy || !(few || none)) return;
     const bool fine = result_.facts.scale.original.distance < kRun.of_rounding * rounding_;
@@ -227,7 +240,7 @@ RunFacts facts_of(const Run& run, const RunContext& context, const SmoothOptions
 }  // namespace
 
 SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOptions& options,
-                       CandidateScope scope) {
+                       CandidateScope scope, RunMemo* memo) {
   const RunTimes times(context, *options.machine);
   SmoothedRun result;
   result.facts = facts_of(run, context, options, times);
@@ -241,12 +254,10 @@ SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOp
     result.reason = gcode::reason::kNoFit;
     return result;
   }
-  const RunTask task{run, context, options, scope};
+  const RunTask task{run, context, options, scope, memo};
   result.reason = RunSmoother(task, times, shares, result).smooth();
   return result;
 }
-
-namespace {
 
 std::vector<TimedPiece> chain_with(const CutRun& cut, std::span<const RunState> pieces) {
   std::vector<TimedPiece> chain;
@@ -259,6 +270,8 @@ std::vector<TimedPiece> chain_with(const CutRun& cut, std::span<const RunState> 
   }
   return chain;
 }
+
+namespace {
 
 // Seconds that a rewritten piece costs, summed over the settings of the override.
 double cost_of(const RunState& piece) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace batten::postproc {
 
 [[nodiscard]] SmoothedRun smooth_run(const Run& run, const RunContext& context,
                                      const SmoothOptions& options,
-                                     CandidateScope scope = CandidateScope::kToChoose);
+                                     CandidateScope scope = CandidateScope::kToChoose,
+                                     RunMemo* memo = nullptr);
 
 // A section that may be rewritten, and what became of it.
 struct RunState {
@@ -23,6 +25,7 @@ struct RunState {
   RunContext context;
   SmoothedRun smoothed = {};
   Selection selection = {};
+  Outlook outlook = {};
   std::size_t tried = 0;                    // candidates that were given up
   std::string_view reject_reason = {};      // why none of them is left
   std::optional<std::size_t> cut_run = {};  // set for a piece: the run it belongs to
@@ -42,11 +45,16 @@ struct CutRun {  // into pieces, which follow each other in the list of works
   gcode::PathMode path = gcode::PathMode::kUnknown;
   std::optional<RunFacts> facts = {};  // where the whole was smoothed first
   std::string_view reason = {};        // why the whole was kept then
+  Outlook outlook = {};
   std::size_t first_work = 0;
   std::size_t pieces = 0;
   Times before = {};  // of the whole
   Times after = {};   // with the pieces that are rewritten
 };
+
+// The moves of the whole, with what was chosen for the pieces.
+[[nodiscard]] std::vector<TimedPiece> chain_with(const CutRun& cut,
+                                                 std::span<const RunState> pieces);
 
 // Pieces were chosen one by one, each beside unchanged neighbours. Gives back the original blocks
 // of those that cost most, are larger or are farther off, until nothing speaks against the run as a

@@ -51,6 +51,7 @@ class CollectedResult {
     notes_.add(window.notes, result.diagnostics);
     result.blocks_out += proof.blocks;
     result.added_lines += proof.added_lines;
+    result.outlook += window.outlook;
     result.corner_mm = std::max(result.corner_mm, proof.verification.corner_mm);
     if (proof.verification.deviation_mm > result.deviation_mm) {
       result.deviation_mm = proof.verification.deviation_mm;
@@ -145,7 +146,7 @@ class StartGuess {
 class Windows {
  public:
   Windows(const gcode::SourceText& source, const SmoothOptions& options, const TextSink& sink,
-          const Progress& progress, std::vector<LineRange>* copied)
+          const Progress& progress, std::vector<LineRange>* copied, const PartSurvey& survey)
       : source_(source),
         options_(options),
         for_windows_(options),
@@ -156,6 +157,7 @@ class Windows {
         known_{{gcode::ControlCarry(options.units)}, false} {
     for_windows_.threads = kThreadsOfCaller;
     setting_.read_options = read_options_of(options);
+    setting_.survey = survey;
   }
 
   std::optional<SmoothResult> run(const WindowLimits& limits) {
@@ -295,12 +297,12 @@ class Windows {
 class WholeProgram {
  public:
   WholeProgram(const gcode::SourceText& source, const SmoothOptions& options,
-               const Progress& progress, const LongRunLimits& long_runs)
+               const Progress& progress, const LongRunLimits& long_runs, const PartSurvey& survey)
       : source_(source),
         options_(options),
         progress_(progress),
         part_{{source, {}, {}, {}, {}}, {}},
-        setting_{source, options, {}, long_runs, false, {}} {}
+        setting_{source, options, {}, long_runs, false, {}, survey} {}
 
   SmoothResult run() {
     read();
@@ -589,31 +591,34 @@ class TranslatedSmoothing {
 std::optional<SmoothResult> smooth_in_windows(const gcode::SourceText& source,
                                               const SmoothOptions& options, const TextSink& sink,
                                               const Progress& progress, const WindowLimits& limits,
-                                              std::vector<LineRange>* copied) {
-  return Windows(source, options, sink, progress, copied).run(limits);
+                                              std::vector<LineRange>* copied,
+                                              const PartSurvey& survey) {
+  return Windows(source, options, sink, progress, copied, survey).run(limits);
 }
 
 SmoothResult smooth_program(const gcode::SourceText& source, const SmoothOptions& options,
-                            const Progress& progress, const LongRunLimits& long_runs) {
+                            const Progress& progress, const LongRunLimits& long_runs,
+                            const PartSurvey& survey) {
   if (is_to_be_translated(source, options)) {
     return TranslatedSmoothing(source, options, progress, long_runs).run();
   }
-  return WholeProgram(source, options, progress, long_runs).run();
+  return WholeProgram(source, options, progress, long_runs, survey).run();
 }
 
 SmoothResult smooth_program(const gcode::SourceText& source, const SmoothOptions& options,
                             const ProgramSink& sink, const Progress& progress,
-                            const StreamLimits& limits) {
+                            const StreamLimits& limits, const PartSurvey& survey) {
   std::vector<LineRange> copied;
   bool in_windows = source.text().size() >= limits.bytes_for_windows;
   while (in_windows) {
     const std::size_t lines = lines_in(copied);
-    auto result = smooth_in_windows(source, options, sink.take, progress, limits.windows, &copied);
+    auto result =
+        smooth_in_windows(source, options, sink.take, progress, limits.windows, &copied, survey);
     if (result) return std::move(*result);
     if (!sink.restart()) return {};
     in_windows = lines_in(copied) > lines;  // each round copies more, so the loop ends
   }
-  SmoothResult result = smooth_program(source, options, progress, limits.windows.long_runs);
+  SmoothResult result = smooth_program(source, options, progress, limits.windows.long_runs, survey);
   const std::string text = std::move(result.text);
   result.text.clear();
   result.bytes_handed_on = text.size();

@@ -12,6 +12,7 @@
 #include "postproc/runs/run_cutting.h"
 #include "postproc/stream/prescan.h"
 #include "postproc/stream/smooth_result.h"
+#include "postproc/stream/window.h"
 
 namespace batten::postproc {
 
@@ -27,7 +28,7 @@ using TextSink = std::function<bool(std::string_view)>;
 [[nodiscard]] std::optional<SmoothResult> smooth_in_windows(
     const gcode::SourceText& source, const SmoothOptions& options, const TextSink& sink,
     const Progress& progress = {}, const WindowLimits& limits = {},
-    std::vector<LineRange>* copied = nullptr);
+    std::vector<LineRange>* copied = nullptr, const PartSurvey& survey = {});
 
 // The whole program as one window, its text in memory. `long_runs`: where long runs are cut.
 //
@@ -39,7 +40,8 @@ using TextSink = std::function<bool(std::string_view)>;
 [[nodiscard]] SmoothResult smooth_program(const gcode::SourceText& source,
                                           const SmoothOptions& options,
                                           const Progress& progress = {},
-                                          const LongRunLimits& long_runs = {});
+                                          const LongRunLimits& long_runs = {},
+                                          const PartSurvey& survey = {});
 
 // Where the new program goes while it is made.
 struct ProgramSink {
@@ -56,10 +58,11 @@ struct StreamLimits {
 
 // The same with the text handed on as it comes: window by window where the program is long, as one
 // window where it is short or needs the whole. The same bytes, report and diagnostics either way.
-// Where the result is not understood, what the sink was given is void.
+// Where the result is not understood, what the sink was given is void. With a survey nothing is
+// rewritten; when the sink is told to restart, what the survey has seen is void, too.
 [[nodiscard]] SmoothResult smooth_program(const gcode::SourceText& source,
                                           const SmoothOptions& options, const ProgramSink& sink,
-                                          const Progress& progress,
-                                          const StreamLimits& limits = {});
+                                          const Progress& progress, const StreamLimits& limits = {},
+                                          const PartSurvey& survey = {});
 
 }  // namespace batten::postproc

@@ -102,6 +102,7 @@ struct SmoothResult {
   TimeFigures program_after;
   PathFigures path_before;
   PathFigures path_after;
+  Outlook outlook;
   bool proved = false;  // of the whole text
   // Of a text that was handed on window by window (postproc/stream/pipeline.h), in place of `text`.
   std::size_t bytes_handed_on = 0;

@@ -104,6 +104,8 @@ WindowDone smooth_part(const WindowSetting& setting, const ProgramPart& part, Pa
   const ProgressCallback tell_round = [&](double) { return tell(kAfterRuns); };
   if (setting.was_smoothed) {
     keep_as_smoothed(runs);
+  } else if (setting.survey) {
+    if (!setting.survey(part, runs, tell_runs)) return done;
   } else if (!smooth_runs(part, setting.options, tell_runs, runs)) {
     return done;
   }
@@ -116,6 +118,10 @@ WindowDone smooth_part(const WindowSetting& setting, const ProgramPart& part, Pa
   }
   const std::vector<Stretch> stretches = std::exchange(done.proof.verification.stretches, {});
   done.runs = report_runs(part, runs, stretches, done.proof.proved);
+  for (const RunState& work : runs.works) {
+    if (!work.cut_run) done.outlook += work.outlook;
+  }
+  for (const CutRun& cut : runs.cut_runs) done.outlook += cut.outlook;
   done.notes_on_runs = notes_on_runs(done.runs, part.program, *setting.options.target);
   done.notes = std::move(runs.notes);
   done.near = std::move(runs.near);

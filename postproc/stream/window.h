@@ -41,6 +41,11 @@
 
 namespace batten::postproc {
 
+// Looks at the runs of a part in place of rewriting them, with the share of the work that is done
+// as in smooth_runs. From several threads, one for each part; false stops the work.
+using PartSurvey =
+    std::function<bool(const ProgramPart&, const PartRuns&, const ProgressCallback&)>;
+
 // What the windows of a program have in common.
 struct WindowSetting {
   const gcode::SourceText& source;
@@ -49,6 +54,7 @@ struct WindowSetting {
   LongRunLimits long_runs = {};
   bool was_smoothed = false;  // the program: all runs are kept
   LongRunFacts facts = {};
+  PartSurvey survey = {};
 };
 
 // What a window takes over from the new text before it.
@@ -80,6 +86,7 @@ struct WindowDone {
   NewTextBefore after;
   TextBefore old_after;
   std::vector<RunReport> runs;
+  Outlook outlook;
   std::vector<gcode::Diagnostics> notes;
   gcode::Diagnostics notes_on_runs;                        // postproc/stream/smooth_result.h
   std::shared_ptr<const std::vector<SelfProximity>> near;  // of its long runs; or none

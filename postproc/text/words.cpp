@@ -62,6 +62,21 @@ std::string plural(std::size_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
+std::string command_line_of(std::span<const std::string> arguments) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./:+,@%=-";
+  std::string text = "batten";
+  for (const std::string& word : arguments) {
+    text += ' ';
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) {
+      text += word;
+      continue;
+    }
+    text += "'" + escaped(word, {{'\'', "'\\''"}}) + "'";
+  }
+  return text;
+}
+
 std::string titled(std::string_view title, std::string_view text) {
   return fmt::format("  {:<14}{}\n", title, text);
 }

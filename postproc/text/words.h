@@ -22,6 +22,9 @@ namespace batten::postproc {
 // "1 run", "2 runs"
 [[nodiscard]] std::string plural(std::size_t count, std::string_view noun);
 
+// `batten` with these arguments, as one could type it in a shell.
+[[nodiscard]] std::string command_line_of(std::span<const std::string> arguments);
+
 // A line of a summary: the title in a column of its own.
 [[nodiscard]] std::string titled(std::string_view title, std::string_view text);
 

@@ -56,7 +56,7 @@ TEST_F(CommandLine, ListsWhatIsBuiltIn) {
 // --- wrong usage -------------------------------------------------------------------------------
 
 constexpr WrongUsage kWrongUsages[] = {
-    {"NoCommand", "", "no command given; possible: smooth, verify"},
+    {"NoCommand", "", "no command given; possible: smooth, explore"},
     {"UnknownCommand", "smoth part.nc", "did you mean 'smooth'?"},
     {"NoFile", "smooth --target linuxcnc", "IN: no file given"},
     {"TwoFiles", "smooth --target linuxcnc part.nc b.nc", "one file too many"},

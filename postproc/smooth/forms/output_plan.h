@@ -55,6 +55,8 @@ struct PlanOptions {
   double chord_height = 0.005;
   std::size_t most_moves = 0;
   double tolerance = 0;  // mm, moves to run, where max_deviation is not to be the same everywhere
+
+  bool operator==(const PlanOptions&) const = default;
 };
 
 // Parts are of max_deviation unless said otherwise.

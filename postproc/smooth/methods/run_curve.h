@@ -20,6 +20,7 @@ namespace batten::postproc {
 struct RunCurve {
   Method method = Method::kFair;
   geometry::SmoothCurve path;  // `noise` and `rounds` are known to `fair` alone, 0 with the others
+  std::size_t number = 0;      // among those of a RunMemo
 };
 
 struct CurveRequest {

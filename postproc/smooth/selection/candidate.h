@@ -2,8 +2,12 @@
 // candidate costs. Values that the methods, the forms and the selection hand on.
 #pragma once
 
+#include <algorithm>
+#include <deque>
 #include <optional>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "gcode/state/modal_state.h"
@@ -15,6 +19,7 @@
 #include "postproc/runs/section.h"
 #include "postproc/smooth/forms/output_plan.h"
 #include "postproc/smooth/forms/program_writer.h"
+#include "postproc/smooth/methods/run_curve.h"
 #include "postproc/smooth/selection/cost.h"
 
 namespace batten::postproc {
@@ -44,7 +49,7 @@ struct Candidate {
   Figures figures;
   double max_curvature = 0;       // 1/mm, greatest of the curve that it was made of
   bool chords_for_steps = false;  // see plan_lines
-  std::vector<TimedPiece> moves;  // of a piece of a run; empty otherwise
+  std::vector<TimedPiece> moves;  // of a piece of a run, and in a RunMemo; empty otherwise
 };
 
 struct RunFacts {             // whether it is rewritten or not
@@ -67,11 +72,38 @@ struct SmoothedRun {
 // Which candidates are made. Others are of use where the proof of the chosen one fails.
 enum class CandidateScope { kToChoose, kAll };
 
+// What was made of a run already, for options that differ in form, preference and effort only: they
+// ask for the same curves and plans over and over. The texts of its candidates are empty.
+struct RunMemo {
+  template <typename Key, typename Value>
+  class Made {
+   public:
+    // `make` is called where there is none; it is told how many there are.
+    template <typename Make>
+    const Value& get(const Key& key, const Make& make) {
+      const auto known = std::ranges::find(all_, key, &std::pair<Key, Value>::first);
+      if (known != all_.end()) return known->second;
+      return all_.emplace_back(key, make(all_.size())).second;
+    }
+
+   private:
+    std::deque<std::pair<Key, Value>> all_;
+  };
+
+  // What differs between the requests of one run.
+  using CurveKey = std::tuple<Method, double, double, double, double, bool, bool>;
+  Made<CurveKey, std::optional<RunCurve>> curves;
+  // Of which curve, in which form, whether around the vertices, and how.
+  using PlanKey = std::tuple<std::size_t, Form, bool, PlanOptions>;
+  Made<PlanKey, std::optional<Candidate>> candidates;
+};
+
 struct RunTask {  // all must live as long
   const Run& run;
   const RunContext& context;
   const SmoothOptions& options;
   CandidateScope scope = CandidateScope::kToChoose;
+  RunMemo* memo = nullptr;
 };
 
 }  // namespace batten::postproc

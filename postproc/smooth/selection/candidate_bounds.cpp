@@ -30,7 +30,7 @@ Figures CandidateBounds::least(double blocks, double distance) const {
 
 // What only rounds corners is no nearer to the path than the lines are.
 bool CandidateBounds::is_hopeless() const {
-  const auto& [run, context, options, scope] = task_;
+  const auto& [run, context, options, scope, memo] = task_;
   if (options.prefer == Prefer::kSize) return false;
   if (coarse_part(run, options.tolerance_mm) < kBounds.coarse) return false;
   const CostScale& scale = so_far_.facts.scale;

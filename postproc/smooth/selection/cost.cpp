@@ -80,12 +80,18 @@ Objection objection_to(const Figures& figures, const CostScale& scale, Prefer pr
   if (more_blocks && (is_size || !pays_blocks)) return Objection::kLarger;
   if (more_bytes && (is_size || !pays_bytes)) return Objection::kLarger;
   if (figures.distance > before && !faster && !is_size) return Objection::kFarther;
+  return is_clearly_better(figures, scale) ? Objection::kNone : Objection::kNoGain;
+}
+
+bool is_clearly_better(const Figures& figures, const CostScale& scale) {
+  const Figures& old = scale.original;
+  const bool faster = time_of(figures, scale) <= kCost.clearly_faster;
   const bool smaller = figures.blocks <= kCost.clearly_smaller * old.blocks ||
                        figures.bytes <= kCost.clearly_smaller * old.bytes;
-  const bool nearer = figures.distance <= kCost.clearly_nearer * before;
+  const bool nearer = figures.distance <= kCost.clearly_nearer * distance_before(scale);
   const bool smoother =
       std::max(figures.roughness, kCost.no_kinks) <= kCost.clearly_smoother * old.roughness;
-  return faster || smaller || nearer || smoother ? Objection::kNone : Objection::kNoGain;
+  return faster || smaller || nearer || smoother;
 }
 
 bool any_gain(const Figures& figures, const CostScale& scale) {

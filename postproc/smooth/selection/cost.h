@@ -79,6 +79,9 @@ enum class Objection {
 };
 [[nodiscard]] Objection objection_to(const Figures& figures, const CostScale& scale, Prefer prefer);
 
+// Whether one of the figures is: a gain.
+[[nodiscard]] bool is_clearly_better(const Figures& figures, const CostScale& scale);
+
 // Whether any figure is less than the original's.
 [[nodiscard]] bool any_gain(const Figures& figures, const CostScale& scale);
 

@@ -84,6 +84,39 @@ Selection choose(const SmoothedRun& run, const SmoothOptions& options) {
   return selection;
 }
 
+Outlook& Outlook::operator+=(const Outlook& other) {
+  others += other.others;
+  at_feeds_s += other.at_feeds_s;
+  better += other.better;
+  return *this;
+}
+
+SmoothOptions other_options(SmoothOptions options, int row) {
+  const auto index = static_cast<std::size_t>(row);
+  if (index < forms().size()) {
+    options.output = forms()[index].value;
+  } else {
+    options.prefer = preferences()[index - forms().size()].value;
+  }
+  return options;
+}
+
+Outlook outlook_of(const SmoothedRun& run, const SmoothOptions& options) {
+  const CostScale& scale = run.facts.scale;
+  const Figures& old = scale.original;
+  Outlook outlook;
+  for (int i = 0; i < outlook.others.rows(); ++i) {
+    const Selection selection = choose(run, other_options(options, i));
+    if (selection.order.empty()) continue;
+    const Figures& now = run.candidates[selection.order.front()].figures;
+    outlook.others.row(i) << now.times.programmed - old.times.programmed, now.blocks - old.blocks,
+        (now.distance * now.distance - old.distance * old.distance) * run.facts.length;
+  }
+  const auto better = [&](const Candidate& c) { return is_clearly_better(c.figures, scale); };
+  outlook.better = std::ranges::any_of(run.candidates, better) ? 1 : 0;
+  return outlook;
+}
+
 double cost_to_beat(const SmoothedRun& run, const SmoothOptions& options) {
   const CostScale& scale = run.facts.scale;
   const bool forced = is_forced(options.output, run.facts, options);

@@ -2,6 +2,7 @@
 // they are, the one of the least cost. Method: docs/algorithms/choice.md.
 #pragma once
 
+#include <Eigen/Core>
 #include <string_view>
 #include <vector>
 
@@ -28,6 +29,23 @@ struct Selection {
                                               const RunFacts& facts, const SmoothOptions& options);
 
 [[nodiscard]] Selection choose(const SmoothedRun& run, const SmoothOptions& options);
+
+// What the candidates that were made would give under other options, and whether there is anything
+// to win. Of several runs: sums.
+struct Outlook {
+  // For each of all forms, then of all preferences, what it has more than the original: seconds,
+  // blocks, squared distance by length (mm^3).
+  Eigen::Array<double, 7, 3> others = Eigen::Array<double, 7, 3>::Zero();
+  double at_feeds_s = 0;  // the length at the programmed feeds
+  int better = 0;         // runs with a candidate that is clearly better in a figure
+
+  Outlook& operator+=(const Outlook& other);
+};
+
+// With the form or the preference of such a row.
+[[nodiscard]] SmoothOptions other_options(SmoothOptions options, int row);
+
+[[nodiscard]] Outlook outlook_of(const SmoothedRun& run, const SmoothOptions& options);
 
 // The cost that another candidate has to be below: of the best one so far, or of the blocks as they
 // are. Infinite where a form is forced and there is none of it.

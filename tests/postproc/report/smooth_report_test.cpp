@@ -33,6 +33,12 @@ struct SummaryCase {
   Parts says_not = {};
 };
 
+void find_nothing(SmoothResult& result) {
+  result.time_after_s = result.time_before_s;
+  result.blocks_out = result.blocks_in;
+  result.path_before = result.path_after = {100, 0.001, 0.1};
+}
+
 const SummaryCase kSummaries[] = {
     {"AsItIs",
      [](SmoothResult&) {},
@@ -80,6 +86,27 @@ const SummaryCase kSummaries[] = {
        result.blocks_out = result.blocks_in;
      },
      {"0 rewritten, 5 kept", "200, unchanged", "every block is as it was"}},
+    // Of 200 blocks 100 fewer; (0.002 mm)^2 over 100 mm is 3e-4 more than (0.001 mm)^2.
+    {"OutlookOnAnotherForm",
+     [](SmoothResult& result) {
+       find_nothing(result);
+       result.outlook.others.row(2) << 0, -100, 3e-4;
+     },
+     {"--output arcs: 50 % fewer blocks, 100 % farther from the path"},
+     {"--prefer", "the program is good"}},
+    {"OutlookAtItsFeeds",
+     [](SmoothResult& result) {
+       find_nothing(result);
+       result.outlook.at_feeds_s = 0.995 * result.time_before_s;
+     },
+     {"the program is good here"}},
+    {"OutlookOnABetterForm",
+     [](SmoothResult& result) {
+       find_nothing(result);
+       result.outlook = {.at_feeds_s = result.time_before_s, .better = 1};
+     },
+     {},
+     {"the program is good", "found"}},
 };
 
 TEST_F(SmoothReports, SayToPeopleWhatBecameOfTheProgram) {

@@ -1,0 +1,35 @@
+#include <fmt/format.h>
+
+#include "postproc/commands/commands.h"
+#include "postproc/commands/files.h"
+#include "postproc/report/explore_report.h"
+#include "postproc/system/exit_code.h"
+#include "postproc/system/interrupt.h"
+
+namespace batten::postproc {
+
+int run(const ExploreCommand& explore) {
+  const SmoothCommand& command = explore.smooth;
+  const WatchedFile watched(command.input);
+  const auto source = read_program(command.input);
+  if (interrupted()) return end_interrupted();
+  if (!source) return static_cast<int>(ExitCode::kFileError);
+
+  const Progress progress = show_progress(command.progress, source->text().size());
+  const Exploration found = explore_program(*source, explore.settings, progress);
+  (void)progress(1);  // the progress line is gone
+  if (interrupted()) return end_interrupted();
+  if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
+  print(found.read.diagnostics, *source, command.log_level);
+  const ExploreReport report{*source, found, command.input, explore.options_of_smooth};
+  if (found.read.understood && command.json_file != "-") {
+    if (const int code = write_result("-", explore_text(report), false); code != 0) return code;
+  }
+  const int code =
+      write_report(command.json_file, command.force, [&] { return explore_json(report); });
+  if (code != 0 || found.read.understood) return code;
+  say(complaint(ExitCode::kNotUnderstood, false));
+  return static_cast<int>(ExitCode::kNotUnderstood);
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,220 @@
+#include "postproc/stream/explore.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <span>
+#include <utility>
+#include <variant>
+
+#include "postproc/runs/run_path.h"
+#include "postproc/smooth/part_runs.h"
+#include "postproc/smooth/selection/cost.h"
+#include "postproc/stream/pipeline.h"
+
+namespace batten::postproc {
+
+namespace {
+
+// Of the cost, what a larger tolerance has to win: as half a percent of the time does.
+constexpr double kWorthMore = 0.005;
+
+void add_to(ExploredFigures& sum, const ExploredFigures& part) {
+  sum.time_s += part.time_s;
+  sum.blocks += part.blocks;
+  sum.path += part.path;
+  sum.rewritten = sum.rewritten || part.rewritten;
+  for (std::size_t i = 0; i < sum.at_feeds.size(); ++i) sum.at_feeds[i] += part.at_feeds[i];
+}
+
+// From rest to rest; where runs were cut from a long one only the ratios count.
+void add_times_at_feeds(const PartRuns& runs, const Machine& machine, ExploredFigures& sum) {
+  const auto add = [&](const std::vector<TimedPiece>& chain, gcode::PathMode path) {
+    for (std::size_t i = 0; i < sum.at_feeds.size(); ++i) {
+      sum.at_feeds[i] += TimedChain(chain, machine, kExploredFeeds[i]).time(machine, path);
+    }
+  };
+  for (std::size_t i = 0; i < runs.works.size(); ++i) {
+    const RunState& work = runs.works[i];
+    const CutRun* cut = work.cut_run ? &runs.cut_runs[*work.cut_run] : nullptr;
+    if (cut != nullptr && cut->first_work != i) continue;
+    if (cut != nullptr) {
+      add(chain_with(*cut, std::span(runs.works).subspan(i, cut->pieces)), cut->path);
+      continue;
+    }
+    const Run& run = std::get<Run>(runs.sections[work.section].content);
+    add(work.chosen() != nullptr ? work.chosen()->moves
+                                 : timed_pieces(run, 0, run.points.size() - 1),
+        work.context.after.path);
+  }
+}
+
+// The settings of one tolerance, looked at part by part.
+class ToleranceSurvey {
+ public:
+  explicit ToleranceSurvey(std::span<const SmoothOptions> settings) {
+    for (const SmoothOptions& options : settings) {
+      settings_.push_back(options);
+      settings_.back().quick = true;
+    }
+  }
+
+  // Nothing in `rows` where the program is not understood.
+  SmoothResult run(const gcode::SourceText& source, const Progress& progress,
+                   std::vector<ExploredRow>& rows) {
+    const ProgramSink sink = {[](std::string_view) { return true; },
+                              [this] {
+                                parts_.clear();
+                                return true;
+                              }};
+    SmoothResult read =
+        smooth_program(source, settings_.front(), sink, progress, {},
+                       [this](const ProgramPart& part, const PartRuns& runs,
+                              const ProgressCallback& tell) { return look_at(part, runs, tell); });
+    for (std::size_t i = 0; read.understood && i < settings_.size(); ++i) {
+      ExploredRow row{settings_[i], {}, {}};
+      row.options.quick = false;
+      for (const auto& [line, figures] : parts_) {
+        add_to(row.before, figures[i].first);
+        add_to(row.after, figures[i].second);
+      }
+      // The comment that the program was smoothed.
+      const bool commented = !provenance_comment(*row.options.target, 1).empty();
+      if (row.after.rewritten && commented) row.after.blocks += 1;
+      for (ExploredFigures* figures : {&row.before, &row.after}) {
+        figures->blocks += static_cast<double>(read.blocks_in);
+        const double part = figures->at_feeds[0] > 0 ? figures->time_s / figures->at_feeds[0] : 0;
+        for (double& time : figures->at_feeds) time *= part;
+      }
+      rows.push_back(std::move(row));
+    }
+    return read;
+  }
+
+ private:
+  bool look_at(const ProgramPart& part, const PartRuns& runs, const ProgressCallback& tell) {
+    if (runs.works.empty()) return true;
+    RunMemos memos;
+    std::vector<std::pair<ExploredFigures, ExploredFigures>> all;
+    for (const SmoothOptions& options : settings_) {
+      PartRuns own = runs;
+      const auto done = static_cast<double>(all.size());
+      const auto tell_share = [&](double share) {
+        return tell((done + share) / static_cast<double>(settings_.size()));
+      };
+      if (!smooth_runs(part, options, tell_share, own, &memos)) return false;
+      auto& [before, after] = all.emplace_back();
+      for (const RunReport& run : report_runs(part, own, {}, false)) {
+        add_to(before, {run.time_before_s, 0, run.path_before});
+        const auto blocks_in = static_cast<double>(run.blocks_in);
+        add_to(after, {run.time_after_s, static_cast<double>(run.blocks_out) - blocks_in,
+                       run.path_after, run.status == RunStatus::kRewritten});
+      }
+      add_times_at_feeds(runs, *options.machine, before);
+      add_times_at_feeds(own, *options.machine, after);
+    }
+    const std::scoped_lock lock(adding_);
+    parts_.insert_or_assign(part.program.blocks.front().line, std::move(all));
+    return true;
+  }
+
+  std::vector<SmoothOptions> settings_;
+  std::mutex adding_;
+  // By first line, for each setting: before and after. Of blocks what they are more.
+  std::map<std::uint32_t, std::vector<std::pair<ExploredFigures, ExploredFigures>>> parts_;
+};
+
+// Of a text that could not be proved nothing is written.
+void set_proved(const SmoothResult& result, ExploredRow& row) {
+  row.proved = true;
+  if (!result.proved) {
+    row.after = row.before;
+    return;
+  }
+  const double part = row.after.time_s > 0 ? result.time_after_s / row.after.time_s : 1;
+  for (double& time : row.after.at_feeds) time *= part;
+  row.after.time_s = result.time_after_s;
+  row.after.blocks = static_cast<double>(result.blocks_out);
+  row.after.path = result.path_after;
+}
+
+std::array<double, 4> four_of(const ExploredFigures& f) {
+  return {f.time_s, f.blocks, f.path.distance_mm, f.path.roughness};
+}
+
+bool dominates(const ExploredRow& one, const ExploredRow& other) {
+  const auto a = four_of(one.after);
+  const auto b = four_of(other.after);
+  return a != b && std::ranges::equal(a, b, std::ranges::less_equal{});
+}
+
+Figures as_figures(const ExploredFigures& f) {
+  const double t = f.time_s;
+  return {{t, t, t}, f.blocks, f.blocks, f.path.distance_mm, f.path.roughness};
+}
+
+}  // namespace
+
+void mark_dominated(std::vector<ExploredRow>& rows) {
+  for (ExploredRow& row : rows) {
+    row.dominated =
+        std::ranges::any_of(rows, [&](const ExploredRow& other) { return dominates(other, row); });
+  }
+}
+
+std::optional<std::size_t> recommended_row(const std::vector<ExploredRow>& rows) {
+  if (rows.empty()) return std::nullopt;
+  const Prefer first = rows.front().options.prefer;
+  const Prefer prefer = first == rows.back().options.prefer ? first : Prefer::kTime;
+  std::optional<std::size_t> best;
+  double least = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    CostScale scale{as_figures(rows[i].before), rows[i].before.time_s};
+    scale.near = kCost.near * rows[i].options.tolerance_mm;
+    if (!(rows[i].before.time_s > 0)) continue;
+    const Figures after = as_figures(rows[i].after);
+    if (objection_to(after, scale, prefer) != Objection::kNone) continue;
+    const double cost = cost_of(after, scale, prefer);
+    const bool larger = best && rows[i].options.tolerance_mm > rows[*best].options.tolerance_mm;
+    if (best && cost >= least - (larger ? kWorthMore : 0)) continue;
+    best = i;
+    least = cost;
+  }
+  return best;
+}
+
+Exploration explore_program(const gcode::SourceText& source,
+                            const std::vector<SmoothOptions>& settings, const Progress& progress) {
+  Exploration found;
+  double done = 0;
+  double now = 1;  // settings at once; in the end one is smoothed
+  const Progress share_of_all = [&](double share) {
+    return !progress || progress((done + share * now) / static_cast<double>(settings.size() + 1));
+  };
+  for (auto rest = std::span(settings); !rest.empty();) {
+    const auto end = std::ranges::find_if(rest, [&](const SmoothOptions& options) {
+      return options.tolerance_mm != rest.front().tolerance_mm;
+    });
+    const auto count = static_cast<std::size_t>(end - rest.begin());
+    now = static_cast<double>(count);
+    found.read = ToleranceSurvey(rest.first(count)).run(source, share_of_all, found.rows);
+    if (!found.read.understood) return {std::move(found.read), {}, {}};
+    done += std::exchange(now, 1);
+    rest = rest.subspan(count);
+  }
+  const ProgramSink nowhere = {[](std::string_view) { return true; }, [] { return true; }};
+  for (auto best = recommended_row(found.rows); best; best = recommended_row(found.rows)) {
+    ExploredRow& row = found.rows[*best];
+    if (row.proved) {
+      found.recommended = best;
+      break;
+    }
+    SmoothResult result = smooth_program(source, row.options, nowhere, share_of_all);
+    if (!result.understood) return {std::move(result), {}, {}};
+    set_proved(result, row);
+  }
+  mark_dominated(found.rows);
+  return found;
+}
+
+}  // namespace batten::postproc

@@ -1,0 +1,113 @@
+// What `explore_program` shows is what `smooth` gives, and what it recommends is no worse.
+#include "postproc/stream/explore.h"
+
+#include <gtest/gtest.h>
+
+#include "postproc/stream/pipeline.h"
+#include "tests/support/places.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+std::vector<SmoothOptions> settings_of(const char* target, std::vector<double> tolerances) {
+  std::vector<SmoothOptions> settings;
+  for (const double tolerance : tolerances) {
+    for (const Form output : {Form::kAuto, Form::kArcs, Form::kLines}) {
+      for (const Prefer prefer : {Prefer::kTime, Prefer::kAccuracy, Prefer::kSize}) {
+        SmoothOptions& options = settings.emplace_back(options_for(target));
+        options.tolerance_mm = tolerance;
+        options.output = output;
+        options.prefer = prefer;
+      }
+    }
+  }
+  return settings;
+}
+
+gcode::SourceText sample(const std::string& name) {
+  return {name, text_of_file(std::string(BATTEN_SOURCE_DIR) + "/samples/" + name + "/program.ngc")};
+}
+
+void expect_figures(const ExploredFigures& figures, const SmoothResult& result) {
+  EXPECT_NEAR(figures.time_s, result.time_after_s, 1e-9);
+  EXPECT_EQ(figures.blocks, static_cast<double>(result.blocks_out));
+  EXPECT_NEAR(figures.path.distance_mm, result.path_after.distance_mm, 1e-12);
+  EXPECT_NEAR(figures.path.roughness, result.path_after.roughness, 1e-12);
+}
+
+// Where the proof refuses nothing, as here.
+TEST(Explore, ShowsForAutoWhatSmoothGives) {
+  for (const char* name : {"butterfly", "gear", "engraved_text"}) {
+    SCOPED_TRACE(name);
+    const gcode::SourceText source = sample(name);
+    const Exploration found = explore_program(source, settings_of("linuxcnc", {0.01, 0.05}));
+    ASSERT_EQ(found.rows.size(), 18u);
+    for (const ExploredRow& row : found.rows) {
+      if (row.options.output != Form::kAuto || row.options.prefer == Prefer::kSize) continue;
+      SCOPED_TRACE(name_of(row.options.prefer));
+      expect_figures(row.after, smooth_program(source, row.options));
+    }
+  }
+}
+
+bool is_as_good(const ExploredFigures& a, const ExploredFigures& b) {
+  return a.time_s <= b.time_s && a.blocks <= b.blocks && a.path.distance_mm <= b.path.distance_mm &&
+         a.path.roughness <= b.path.roughness;
+}
+
+TEST(Explore, MarksWhatIsDominatedAndNothingElse) {
+  const Exploration found =
+      explore_program(sample("butterfly"), settings_of("linuxcnc", {0.005, 0.02}));
+  for (const ExploredRow& row : found.rows) {
+    const bool dominated = std::ranges::any_of(found.rows, [&](const ExploredRow& other) {
+      return is_as_good(other.after, row.after) && !is_as_good(row.after, other.after);
+    });
+    EXPECT_EQ(row.dominated, dominated);
+  }
+}
+
+// Where the tool runs at its feed, four times the feed takes a quarter of the time or more.
+TEST(Explore, FasterFeedsTakeNoLongerAndNoLessThanTheirShare) {
+  const Exploration found = explore_program(sample("butterfly"), settings_of("linuxcnc", {0.01}));
+  for (const ExploredRow& row : found.rows) {
+    for (const ExploredFigures* figures : {&row.before, &row.after}) {
+      EXPECT_NEAR(figures->at_feeds[0], figures->time_s, 1e-9);
+      for (std::size_t i = 1; i < kExploredFeeds.size(); ++i) {
+        EXPECT_LE(figures->at_feeds[i], figures->at_feeds[i - 1]);
+        EXPECT_GE(figures->at_feeds[i] * kExploredFeeds[i], figures->time_s * (1 - 1e-9));
+      }
+    }
+  }
+}
+
+TEST(Explore, IsTheSameForAnyNumberOfThreads) {
+  const gcode::SourceText source = sample("engraved_text");
+  std::vector<SmoothOptions> settings = settings_of("grbl", {0.01});
+  const Exploration all = explore_program(source, settings);
+  for (SmoothOptions& options : settings) options.threads = 1;
+  const Exploration one = explore_program(source, settings);
+  EXPECT_EQ(all.recommended, one.recommended);
+  for (std::size_t i = 0; i < one.rows.size(); ++i) {
+    EXPECT_EQ(all.rows[i].after.time_s, one.rows[i].after.time_s);
+    EXPECT_EQ(all.rows[i].after.at_feeds, one.rows[i].after.at_feeds);
+  }
+}
+
+TEST(Explore, RecommendsNothingWhereNothingIsGainedOrUnderstood) {
+  const auto settings = settings_of("linuxcnc", {0.01});
+  const gcode::SourceText lines("lines.ngc", head("G21") + "G1 X10 F500\nX20 Y10\n" + tail());
+  const Exploration kept = explore_program(lines, settings);
+  EXPECT_EQ(kept.rows.size(), settings.size());
+  EXPECT_FALSE(kept.recommended);
+  const gcode::SourceText no_units("none.ngc", wave_program({}, "G94"));
+  const Exploration refused = explore_program(no_units, settings);
+  EXPECT_FALSE(refused.read.understood);
+  EXPECT_TRUE(refused.rows.empty());
+  EXPECT_FALSE(
+      explore_program(sample("butterfly"), settings, [](double) { return false; }).read.understood);
+}
+
+}  // namespace
+}  // namespace batten::postproc
