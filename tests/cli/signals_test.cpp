@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <random>
 
 #include "batten_process.h"
 #include "tests/support/wavy_programs.h"

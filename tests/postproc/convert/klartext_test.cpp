@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
-#include <random>
 #include <tuple>
 
 #include "gcode/writer/block_numbers.h"

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <string_view>
 
 #include "tests/support/wavy_programs.h"
 

@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
-#include <random>
 
 #include "gcode/state/reason.h"
 #include "postproc/machine/models/cycle_time.h"

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <random>
 #include <variant>
 
 #include "gcode/interpreter/interpreter.h"

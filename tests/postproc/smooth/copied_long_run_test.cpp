@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "postproc/stream/pipeline.h"
 #include "tests/support/wavy_programs.h"

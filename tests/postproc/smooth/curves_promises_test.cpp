@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"

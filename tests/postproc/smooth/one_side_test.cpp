@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "gcode/state/reason.h"
 #include "geometry/fitting/one_sided/one_sided_fair.h"

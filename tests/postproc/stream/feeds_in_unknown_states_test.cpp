@@ -3,9 +3,7 @@
 // The verifier must compare each of them, in every language.
 #include <gtest/gtest.h>
 
-#include <random>
 #include <sstream>
-#include <string_view>
 
 #include "tests/support/wavy_programs.h"
 

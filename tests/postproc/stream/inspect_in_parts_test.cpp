@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <random>
-#include <string_view>
 #include <utility>
 
 #include "postproc/stream/inspect.h"

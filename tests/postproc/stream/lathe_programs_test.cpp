@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <ostream>
-#include <string_view>
 
 #include "postproc/machine/program_time/program_time_steps.h"
 #include "postproc/report/smooth_report.h"

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <random>
-#include <string_view>
 
 #include "postproc/proof/verification.h"
 #include "postproc/stream/prescan.h"

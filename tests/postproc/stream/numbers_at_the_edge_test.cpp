@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <string_view>
 
 #include "gcode/controls/built_in.h"
 #include "gcode/state/motion.h"

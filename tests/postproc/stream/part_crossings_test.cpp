@@ -9,8 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
-#include <string_view>
 
 #include "gcode/state/reason.h"
 #include "gcode/text/source_text.h"

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <random>
 #include <utility>
 
 #include "postproc/proof/verification.h"

@@ -6,9 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <random>
-#include <string_view>
 
 #include "tests/support/wavy_programs.h"
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <numbers>
 
 #include "tests/support/constructs.h"
 #include "tests/support/places.h"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/support/method_cases.h"
 #include "tests/support/wavy_programs.h"

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "geometry/fitting/fair/fair.h"
 #include "postproc/smooth/forms/output_plan.h"

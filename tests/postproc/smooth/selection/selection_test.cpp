@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
 #include <utility>
 
 #include "gcode/state/reason.h"
