@@ -48,7 +48,7 @@ std::string feeds_text(std::string_view title, const ExploredFigures& old,
 
 std::string sentence_of(const Exploration& found) {
   if (!found.recommended) {
-    const bool any = !found.rows.empty() && found.rows.front().before.time_s > 0;
+    const bool any = !found.rows.empty() && found.rows.front().before.path.length_mm > 0;
     return any ? "Leave the program as it is: no setting takes 1 % less time, 10 % fewer blocks or "
                  "comes 30 % nearer to the path that was meant, and is no worse otherwise."
                : "There is no run that may be rewritten: batten smooth --dry-run tells why.";

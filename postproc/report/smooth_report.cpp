@@ -317,8 +317,9 @@ void add_outlook(const SmoothReport& report, std::string& lines) {
   const Outlook& outlook = result.outlook;
   const double length = result.path_before.length_mm;
   const auto blocks_in = static_cast<double>(result.blocks_in);
-  const Eigen::Array3d before(result.time_before_s, blocks_in, result.path_before.distance_mm);
-  const Eigen::Array3d now(result.time_after_s, static_cast<double>(result.blocks_out),
+  const Eigen::Array3d before(result.program_before.seconds, blocks_in,
+                              result.path_before.distance_mm);
+  const Eigen::Array3d now(result.program_after.seconds, static_cast<double>(result.blocks_out),
                            result.path_after.distance_mm);
   const Eigen::Array3d clearly(kCost.clearly_faster, kCost.clearly_smaller, kCost.clearly_nearer);
   if (!(length > 0) || (now.head(2) <= clearly.head(2) * before.head(2)).any()) return;
@@ -347,7 +348,7 @@ void add_outlook(const SmoothReport& report, std::string& lines) {
                     fmt::format("--{} {}{}", form ? "output" : "prefer",
                                 form ? name_of(options.output) : name_of(options.prefer), changes));
   }
-  const bool at_feeds = kCost.clearly_faster * before[0] <= outlook.at_feeds_s;
+  const bool at_feeds = kCost.clearly_faster * result.time_before_s <= outlook.at_feeds_s;
   if (!said.empty()) {
     lines += titled("", "by the forms that were made; batten explore looks for more");
   } else if (at_feeds && outlook.better == 0) {

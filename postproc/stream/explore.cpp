@@ -81,10 +81,12 @@ class ToleranceSurvey {
       // The comment that the program was smoothed.
       const bool commented = !provenance_comment(*row.options.target, 1).empty();
       if (row.after.rewritten && commented) row.after.blocks += 1;
+      const double elsewhere = read.program_before.seconds - row.before.time_s;
       for (ExploredFigures* figures : {&row.before, &row.after}) {
         figures->blocks += static_cast<double>(read.blocks_in);
         const double part = figures->at_feeds[0] > 0 ? figures->time_s / figures->at_feeds[0] : 0;
-        for (double& time : figures->at_feeds) time *= part;
+        for (double& time : figures->at_feeds) time = part * time + elsewhere;
+        figures->time_s += elsewhere;
       }
       rows.push_back(std::move(row));
     }
@@ -131,9 +133,10 @@ void set_proved(const SmoothResult& result, ExploredRow& row) {
     row.after = row.before;
     return;
   }
-  const double part = row.after.time_s > 0 ? result.time_after_s / row.after.time_s : 1;
-  for (double& time : row.after.at_feeds) time *= part;
-  row.after.time_s = result.time_after_s;
+  const double time = result.program_after.seconds;
+  const double part = row.after.time_s > 0 ? time / row.after.time_s : 1;
+  for (double& at_feed : row.after.at_feeds) at_feed *= part;
+  row.after.time_s = time;
   row.after.blocks = static_cast<double>(result.blocks_out);
   row.after.path = result.path_after;
 }
@@ -171,7 +174,7 @@ std::optional<std::size_t> recommended_row(const std::vector<ExploredRow>& rows)
   for (std::size_t i = 0; i < rows.size(); ++i) {
     CostScale scale{as_figures(rows[i].before), rows[i].before.time_s};
     scale.near = kCost.near * rows[i].options.tolerance_mm;
-    if (!(rows[i].before.time_s > 0)) continue;
+    if (!rows[i].after.rewritten) continue;
     const Figures after = as_figures(rows[i].after);
     if (objection_to(after, scale, prefer) != Objection::kNone) continue;
     const double cost = cost_of(after, scale, prefer);

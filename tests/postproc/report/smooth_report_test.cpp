@@ -34,6 +34,7 @@ struct SummaryCase {
 };
 
 void find_nothing(SmoothResult& result) {
+  result.program_after = result.program_before;
   result.time_after_s = result.time_before_s;
   result.blocks_out = result.blocks_in;
   result.path_before = result.path_after = {100, 0.001, 0.1};
