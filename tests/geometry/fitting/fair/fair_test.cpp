@@ -136,6 +136,65 @@ TEST(SmoothCurve, AddsNothingToALineWithoutNoise) {
   EXPECT_LE(greatest_curvature(path->curve), 1.6e-5);
 }
 
+// A flat and a slope, both cut into blocks of 5 mm, and between them a rounding of 8 mm in chords
+// of 0.25 mm, to four decimals. The last chord ends on the slope, 0.4 um beside it, where a CAM
+// system ends a chord of 1 um beyond the joint. The curve does not swing out along either: with
+// such blocks taken for samples of a curve it leaves them by 7 um.
+TEST(SmoothCurve, StaysOnLinesThatAreCutIntoBlocksBesideARounding) {
+  const auto rounded = [](double x, double z) {
+    return Point3(std::round(x * 1e4) / 1e4, 0, std::round(z * 1e4) / 1e4);
+  };
+  std::vector<Point3> points;
+  for (int i = 0; i <= 6; ++i) points.push_back(rounded(5 * i, 0));
+  constexpr int kChords = 25;
+  const double turn = 45 * kDegree;
+  for (int i = 1; i <= kChords; ++i) {
+    points.push_back(
+        rounded(30 + 8 * std::sin(turn * i / kChords), 8 - 8 * std::cos(turn * i / kChords)));
+  }
+  const Point3 joint(30 + 8 * std::sin(turn), 0, 8 - 8 * std::cos(turn));
+  points.back().z() += 4e-4;
+  for (const double x : {5.1234, 10.1234, 15.1234, 20.1234, 24.0}) {
+    points.push_back(rounded(joint.x() + x, joint.z() + x));
+  }
+  FairOptions options = with_tolerance(0.01);
+  options.rounding = 5e-5;
+  options.accurate = true;
+  const auto path = fair_path(points, options);
+  ASSERT_TRUE(path);
+  double off = 0;
+  for (double u = path->curve.first(); u < path->curve.last(); u += 0.05) {
+    const Point3 p = path->curve.point_at(u);
+    if (p.x() < 29) off = std::max(off, std::abs(p.z()));
+    if (p.x() > joint.x() + 1.5)
+      off = std::max(off, std::abs(p.z() - joint.z() - p.x() + joint.x()));
+  }
+  EXPECT_LT(off, 7e-4);
+}
+
+// Vertices 0.5 mm apart on a wave, each off by up to 8 um, in a band of 30 um: the curve is nearer
+// to the wave than they are, not as far off as the band allows.
+TEST(SmoothCurve, AmongLittleNoiseIsNearerToThePathThanTheVertices) {
+  const auto wave = [](double x) { return 3 * std::sin(x / 4.8); };
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> off(-0.008, 0.008);
+    std::vector<Point3> points;
+    for (int i = 0; i <= 120; ++i) points.emplace_back(0.5 * i, 0, wave(0.5 * i) + off(random));
+    FairOptions options = with_tolerance(0.03);
+    options.accurate = true;
+    const auto path = fair_path(points, options);
+    ASSERT_TRUE(path);
+    double squares = 0;
+    int places = 0;
+    for (double u = path->curve.first(); u < path->curve.last(); u += 0.05, ++places) {
+      const Point3 p = path->curve.point_at(u);
+      squares += std::pow(p.z() - wave(p.x()), 2);
+    }
+    EXPECT_LT(std::sqrt(squares / places), 0.8 * 0.008 / std::sqrt(3)) << seed;
+  }
+}
+
 // A square of 20 mm in steps of 0.4 mm, normal noise across its sides that is more than twice the
 // tolerance.
 std::vector<Point3> noisy_square(double noise, unsigned seed) {
