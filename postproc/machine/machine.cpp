@@ -18,28 +18,13 @@ double Machine::max_jerk() const { return least_of_xyz(*this, &AxisLimits::jerk)
 double Machine::rapid_velocity() const { return least_of_xyz(*this, &AxisLimits::rapid_velocity); }
 
 std::string_view name_of(ControllerModel model) {
-  switch (model) {
-    case ControllerModel::kLinuxcnc:
-      return "linuxcnc";
-    case ControllerModel::kGrbl:
-      return "grbl";
-    case ControllerModel::kLookAhead:
-      break;
-  }
-  return "look-ahead";
+  constexpr std::array<std::string_view, 3> kNames = {"look-ahead", "linuxcnc", "grbl"};
+  return kNames[static_cast<std::size_t>(model)];
 }
 
 std::string_view name_of(gcode::PathMode mode) {
-  switch (mode) {
-    case gcode::PathMode::kExactPath:
-      return "exact-path";
-    case gcode::PathMode::kExactStop:
-      return "exact-stop";
-    case gcode::PathMode::kBlending:
-    case gcode::PathMode::kUnknown:  // no machine is set so
-      break;
-  }
-  return "blend";
+  if (mode == gcode::PathMode::kExactPath) return "exact-path";
+  return mode == gcode::PathMode::kExactStop ? "exact-stop" : "blend";
 }
 
 std::string_view name_of(Axis axis) {

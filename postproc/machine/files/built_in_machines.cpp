@@ -2,9 +2,7 @@
 // says in `source` where its figures come from; a machine file starts as one of them.
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 
-#include "postproc/machine/files/grbl_settings.h"
 #include "postproc/machine/machine.h"
 
 namespace batten::postproc {
@@ -65,23 +63,19 @@ Machine any_grbl() {
           .stream_rate = 11520,
           .look_ahead = 15,      // the ring of 16 holds one block less
           .servo_period = 0.01,  // speeds change in steps of a hundredth of a second
+          .junction_deviation = 0.01,
+          .arc_tolerance = 0.002,
           .blend_tolerance = 0};
 }
 
 // What a new grbl answers to `$$` (DEFAULTS_GENERIC of its defaults.h), as far as time goes.
-constexpr std::string_view kGrblDefaults =
-    "$11=0.010\n$12=0.002\n"
-    "$110=500.000\n$111=500.000\n$112=500.000\n"
-    "$120=10.000\n$121=10.000\n$122=10.000\n";
-
 Machine grbl() {
-  std::vector<std::string> problems;
-  auto m = with_grbl_settings(any_grbl(), kGrblDefaults, "default settings", problems);
-  if (!m) throw std::logic_error("grbl: " + problems.front());
-  m->name = "grbl";
-  m->description = "grbl 1.1 as it comes ($110=500, $120=10): for first steps of any machine";
-  m->source = "grbl 1.1, defaults.h, DEFAULTS_GENERIC";
-  return *m;
+  Machine m = any_grbl();
+  m.name = "grbl";
+  m.description = "grbl 1.1 as it comes ($110=500, $120=10): for first steps of any machine";
+  m.source = "grbl 1.1, defaults.h, DEFAULTS_GENERIC";
+  m.axes = xyz({500 / kMinute, 10, Machine::kNone, 500 / kMinute});
+  return m;
 }
 
 // A belt-driven hobby router.
@@ -91,8 +85,6 @@ Machine router() {
   m.description = "hobby router, grbl 1.1 at 115200 baud, 5000 mm/min and 400 mm/s2";
   m.source = "grbl 1.1, defaults.h: limits of DEFAULTS_SHAPEOKO_3, $11 and $12 of DEFAULTS_GENERIC";
   m.axes = xyz({5000 * kPerMinute, 400, Machine::kNone, 5000 * kPerMinute});
-  m.junction_deviation = 0.01;
-  m.arc_tolerance = 0.002;
   return m;
 }
 

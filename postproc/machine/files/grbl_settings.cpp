@@ -1,5 +1,4 @@
-#include "postproc/machine/files/grbl_settings.h"
-
+// The settings of a grbl control, as it prints them when asked for `$$`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,10 +6,15 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <initializer_list>
 #include <map>
+#include <optional>
+#include <string_view>
 
 #include "gcode/text/characters.h"
+#include "gcode/text/source_text.h"
+#include "postproc/machine/files/machine_file.h"
 #include "postproc/machine/machine_fields.h"
 
 namespace batten::postproc {
@@ -112,11 +116,11 @@ class DumpReader {
   std::map<int, Setting> settings_;
 };
 
-}  // namespace
-
-std::optional<Machine> with_grbl_settings(const Machine& base, std::string_view dump,
-                                          const std::string& file,
-                                          std::vector<std::string>& problems) {
+// Nothing where a line is no setting, no answer of the control and no comment, where a value is no
+// number or too small, or a setting is missing: `problems` have file and place then. All other
+// settings are passed over; one that is there twice counts as it is last.
+std::optional<Machine> with_settings(const Machine& base, std::string_view dump,
+                                     const std::string& file, std::vector<std::string>& problems) {
   const std::size_t problems_before = problems.size();
   DumpReader reader(file, problems);
   reader.read(dump);
@@ -162,6 +166,33 @@ std::optional<Machine> with_grbl_settings(const Machine& base, std::string_view 
   origins.add_problems_of(machine, problems);
   if (problems.size() > problems_before) return std::nullopt;
   return machine;
+}
+
+}  // namespace
+
+std::shared_ptr<const Machine> machine_with_grbl_settings(const Machine* base,
+                                                          const std::string& file,
+                                                          std::vector<std::string>& problems) {
+  if (base != nullptr && base->model != ControllerModel::kGrbl) {
+    problems.push_back(
+        fmt::format("--grbl-settings: the control of machine {} is {}, expected a machine with "
+                    "grbl, such as router",
+                    base->name, name_of(base->model)));
+    return nullptr;
+  }
+  std::string error;
+  const auto dump = gcode::SourceText::map_file(file, error);
+  if (!dump) {
+    problems.push_back("--grbl-settings: " + error);
+    return nullptr;
+  }
+  auto machine =
+      with_settings(base == nullptr ? *find_machine("grbl") : *base, dump->text(), file, problems);
+  if (!machine) return nullptr;
+  machine->name = std::filesystem::path(file).stem().string();
+  machine->description = "grbl with the settings in " + file;
+  machine->source = file;
+  return std::make_shared<const Machine>(std::move(*machine));
 }
 
 }  // namespace batten::postproc

@@ -14,8 +14,6 @@
 #include <system_error>
 
 #include "gcode/text/characters.h"
-#include "gcode/text/source_text.h"
-#include "postproc/machine/files/grbl_settings.h"
 #include "postproc/machine/machine_fields.h"
 #include "postproc/text/words.h"
 
@@ -369,31 +367,6 @@ std::shared_ptr<const Machine> choose_machine(
   problems.push_back(fmt::format("{}: there is no machine '{}'{}; possible: {}", asked_by, choice,
                                  suggestion(choice, built_in_names()), possible_machines()));
   return nullptr;
-}
-
-std::shared_ptr<const Machine> machine_with_grbl_settings(const Machine* base,
-                                                          const std::string& file,
-                                                          std::vector<std::string>& problems) {
-  if (base != nullptr && base->model != ControllerModel::kGrbl) {
-    problems.push_back(
-        fmt::format("--grbl-settings: the control of machine {} is {}, expected a machine with "
-                    "grbl, such as router",
-                    base->name, name_of(base->model)));
-    return nullptr;
-  }
-  std::string error;
-  const auto dump = gcode::SourceText::map_file(file, error);
-  if (!dump) {
-    problems.push_back("--grbl-settings: " + error);
-    return nullptr;
-  }
-  auto machine = with_grbl_settings(base == nullptr ? *find_machine("grbl") : *base, dump->text(),
-                                    file, problems);
-  if (!machine) return nullptr;
-  machine->name = std::filesystem::path(file).stem().string();
-  machine->description = "grbl with the settings in " + file;
-  machine->source = file;
-  return std::make_shared<const Machine>(std::move(*machine));
 }
 
 namespace {

@@ -21,7 +21,8 @@ namespace batten::postproc {
     const std::vector<std::filesystem::path>& being_read = {});
 
 // `base` with the settings in a file that holds grbl's answer to `$$`; named after the file. No
-// `base`: grbl. Adds to `problems` what is wrong and returns nothing then.
+// `base`: grbl. Read are $11, $12, and $110 to $112 and $120 to $122 for X Y Z (a dump of grblHAL
+// goes on for A B C). Adds to `problems` what is wrong and returns nothing then.
 [[nodiscard]] std::shared_ptr<const Machine> machine_with_grbl_settings(
     const Machine* base, const std::string& file, std::vector<std::string>& problems);
 

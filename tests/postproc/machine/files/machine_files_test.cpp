@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "postproc/machine/files/grbl_settings.h"
 #include "postproc/machine/files/machine_file.h"
 #include "postproc/machine/machine_fields.h"
 #include "tests/support/machine_limits.h"
@@ -19,14 +18,17 @@ struct Read {
   std::string problems;  // one a line, without the folder
 };
 
+std::string lines_of(const ScratchFolder& folder, const std::vector<std::string>& problems) {
+  std::string lines;
+  for (const std::string& problem : problems) lines += folder.without_folder(problem) + "\n";
+  return lines;
+}
+
 // By its suffix, as --machine does.
 Read read(const ScratchFolder& folder, const std::string& file) {
   std::vector<std::string> problems;
-  Read result{choose_machine(file, "--machine", problems), {}};
-  for (const std::string& problem : problems) {
-    result.problems += folder.without_folder(problem) + "\n";
-  }
-  return result;
+  const auto machine = choose_machine(file, "--machine", problems);
+  return {machine, lines_of(folder, problems)};
 }
 
 Read read_toml(std::string_view text) {
@@ -40,11 +42,11 @@ Read read_ini(std::string_view text) {
 }
 
 Read read_dump(std::string_view dump) {
+  const ScratchFolder folder;
   std::vector<std::string> problems;
-  const auto machine = with_grbl_settings(*find_machine("router"), dump, "dump.txt", problems);
-  Read result{machine ? std::make_shared<const Machine>(*machine) : nullptr, {}};
-  for (const std::string& problem : problems) result.problems += problem + "\n";
-  return result;
+  const auto machine =
+      machine_with_grbl_settings(find_machine("router"), folder.put("dump.txt", dump), problems);
+  return {machine, lines_of(folder, problems)};
 }
 
 // Of a file in which nothing is wrong.
