@@ -25,6 +25,7 @@
 #include "postproc/stream/pipeline.h"
 #include "tests/support/machine_limits.h"
 #include "tests/support/paths.h"
+#include "tests/support/sampled_motion.h"
 #include "tests/support/surface_programs.h"
 
 namespace {

@@ -14,6 +14,7 @@
 #include "geometry/fitting/corners/ozcan_corner.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/planner/feed_plan.h"
+#include "tests/support/sampled_motion.h"
 
 namespace batten::postproc {
 

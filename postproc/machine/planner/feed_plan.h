@@ -10,8 +10,6 @@
 #include <span>
 #include <vector>
 
-#include "geometry/basic/point.h"
-#include "geometry/path/bspline_curve.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/planner/feed_plan_path.h"
 
@@ -49,38 +47,11 @@ inline constexpr double kPlanDensity = 6;
                                  const KinematicPathLimits& limits, const PlanEnds& ends = {},
                                  double density = kPlanDensity);
 
-// Seconds; the time of the plan.
-[[nodiscard]] double planned_time(std::span<const geometry::PathPiece> path,
-                                  const KinematicPathLimits& limits, const PlanEnds& ends = {},
-                                  double density = kPlanDensity);
-
 // Seconds: the planned time within a percent or two, at a hundredth of its cost, for a choice
 // between many candidates. The same limits, ends and stops; straight moves from rest to rest have
 // their exact time. Elsewhere limits are kept in the middle of each interval of a grid that is as
 // coarse as the estimate allows, so the motion is no plan. Linear cost. Throws as plan_feed does.
 [[nodiscard]] double estimated_time(std::span<const geometry::PathPiece> path,
                                     const KinematicPathLimits& limits, const PlanEnds& ends = {});
-
-// A curve of degree 3 or less as a path: its Bezier pieces.
-[[nodiscard]] geometry::Path path_of(const geometry::BsplineCurve& curve);
-
-// A feed plan in time, as a control would send it to the axes.
-struct MotionSample {
-  double time = 0;                     // s
-  double speed = 0;                    // mm/s along the path
-  double tangential_acceleration = 0;  // mm/s^2
-  double tangential_jerk = 0;          // mm/s^3
-  geometry::Point3 position;
-  geometry::Vector3 velocity;      // mm/s
-  geometry::Vector3 acceleration;  // mm/s^2
-  geometry::Vector3 jerk;          // mm/s^3
-};
-
-// The state every `period` seconds from 0 on, the end of the plan not included. `path` is the one
-// that was planned.
-//
-// Throws std::invalid_argument where the period is not above 0.
-[[nodiscard]] std::vector<MotionSample> sample_motion(std::span<const geometry::PathPiece> path,
-                                                      const FeedPlan& plan, double period);
 
 }  // namespace batten::postproc

@@ -6,9 +6,9 @@
 
 #include "gcode/state/reason.h"
 #include "postproc/machine/models/cycle_time.h"
-#include "postproc/machine/planner/feed_plan.h"
 #include "postproc/runs/run_path.h"
 #include "tests/support/kinked_arcs.h"
+#include "tests/support/sampled_motion.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
