@@ -1,4 +1,4 @@
-// What a feed plan and its quick estimate cost, and the models of controls by which `smooth`
+// What a feed plan costs, and the models of controls by which `smooth`
 // chooses between forms: processor time on ever longer paths of each kind.
 //   feed_plan_cost [most pieces]        1000000 unless given; the plan stops at a hundredth of it
 #include <fmt/format.h>
@@ -13,7 +13,8 @@
 #include "geometry/path/path.h"
 #include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/planner/feed_plan.h"
-#include "tests/support/estimated_paths.h"
+#include "tests/support/feed_rows.h"
+#include "tests/support/sampled_motion.h"
 
 namespace {
 
@@ -102,29 +103,15 @@ int main(int argc, char** argv) {
   const int most = argc > 1 ? std::atoi(argv[1]) : 1000000;
   print_controls(most);
   const auto limits = postproc::even_limits(100, 3000, 50000);
-  fmt::print("{:28} {:>8} {:>10} {:>10} {:>10} {:>10} {:>11} {:>9}\n", "path", "pieces", "estimate",
-             "pieces/s", "plan", "pieces/s", "nodes/piece", "est/plan");
+  fmt::print("{:28} {:>8} {:>10} {:>10} {:>11}\n", "path", "pieces", "plan", "pieces/s",
+             "nodes/piece");
   for (const Kind& kind : kKinds) {
-    for (int pieces = 100; pieces <= most; pieces *= 10) {
+    for (int pieces = 100; pieces <= most / 100; pieces *= 10) {
       const Path path = kind.make(pieces);
-      double estimated = 0;
-      // Short paths several times, for the clock.
-      const int times = std::max(1, 20000 / pieces);
-      const double quick = seconds_of([&] {
-                             for (int i = 0; i < times; ++i) {
-                               estimated = postproc::estimated_time(path, limits);
-                             }
-                           }) /
-                           times;
-      fmt::print("{:28} {:8} {:8.2f}ms {:10.0f}", kind.name, pieces, 1e3 * quick, pieces / quick);
-      if (pieces <= most / 100) {
-        postproc::FeedPlan plan;
-        const double exact = seconds_of([&] { plan = postproc::plan_feed(path, limits); });
-        fmt::print(" {:8.1f}ms {:10.0f} {:11.1f} {:+8.2f}%", 1e3 * exact, pieces / exact,
-                   static_cast<double>(plan.nodes.size()) / pieces,
-                   100 * (estimated / plan.time - 1));
-      }
-      fmt::print("\n");
+      postproc::FeedPlan plan;
+      const double seconds = seconds_of([&] { plan = postproc::plan_feed(path, limits); });
+      fmt::print("{:28} {:8} {:8.1f}ms {:10.0f} {:11.1f}\n", kind.name, pieces, 1e3 * seconds,
+                 pieces / seconds, static_cast<double>(plan.nodes.size()) / pieces);
     }
   }
 }

@@ -169,7 +169,7 @@ void needs(double cam, double noise, const Settings& settings) {
     for (const int needy : {0, 1}) {
       const auto path = fair_of(row, 2 * cam, machine, needy == 1 ? feed : 60);
       places[needy] += time_by_places(path.curve, limits);
-      planned[needy] += postproc::estimated_time(postproc::path_of(path.curve), planner);
+      planned[needy] += postproc::planned_time(postproc::path_of(path.curve), planner);
     }
   }
   fmt::print("{:<6} {:<5} | {:>7.3f} {:>7.3f} {:>5.1f} % | {:>7.3f} {:>7.3f} {:>5.1f} %\n", cam,

@@ -19,7 +19,7 @@ SKIPPED = 77
 LATER = (
     "geometry/band/tolerance_band_outline",  # the outline of a band as polygons
     "geometry/fitting/tube/tube_smoothing",  # curves of least time
-    "postproc/machine/planner/",  # feeds under jerk limits, and the time of such a plan without it
+    "postproc/machine/planner/",  # feeds under jerk limits
 )
 
 

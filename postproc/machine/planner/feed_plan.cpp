@@ -20,13 +20,10 @@ using geometry::Vector3;
 // phase by time is a 27th by way; at the end of that phase, at half the speed, the potential is
 // 0.35 of its greatest.
 constexpr GridRule kPlanGrid = {
-    .density = kPlanDensity, .nodes_per_bend = 2, .rest_share = 0.35 / 27, .joins_parts = false};
+    .density = kPlanDensity, .nodes_per_bend = 2, .rest_share = 0.35 / 27};
 
 // A straight move is not refined, so it has more nodes from the start.
 constexpr double kStraightDensity = 2;
-
-// 1.6e-5 of a ramp's time is lost at a joint that counts as slow.
-constexpr double kSlowJoint = 160;
 
 // The search ends where no limit is exceeded by more than this part: a fiftieth of what is allowed
 // between the nodes.
@@ -183,7 +180,7 @@ void BentSection::add_interval(std::size_t number, SearchProblem& problem) const
   sums[2] << 0, 0, 1, 0, 0, 0, 0, 1, k, 2 / h, -k, 4 / h;
   const std::array<double, 3> t = {at.t0, middle_of(path_[at.piece], at), at.t1};
   for (std::size_t which = 0; which < 3; ++which) {
-    SearchPlace place{.sums = sums[which], .first = 2 * number, .width = 4};
+    SearchPlace place{.sums = sums[which], .first = 2 * number};
     place.time = which == 1 ? 4 * h / 6 : h / 6;
     const LengthDerivatives here = derivatives_by_length(path_[at.piece], t[which]);
     problem.add_jerk_rows(here, limits_, place);
@@ -201,8 +198,8 @@ SearchProblem BentSection::problem() const {
   problem.unknowns = 2 * intervals.size() + 2;
   for (std::size_t k = 0; k < intervals.size(); ++k) add_interval(k, problem);
   const std::size_t q = problem.unknowns - 2;
-  set_end(section_.start, start, {0, 1, start.slope(), 0}, problem.places.front(), problem);
-  set_end(section_.end, end, {q, q + 1, -end.slope(), 0}, problem.places.back(), problem);
+  set_end(section_.start, start, 0, start.slope(), problem.places.front(), problem);
+  set_end(section_.end, end, q, -end.slope(), problem.places.back(), problem);
   return problem;
 }
 
@@ -336,7 +333,7 @@ class Planner {
 
   FeedPlan run(const PlanEnds& ends) {
     const PassedJoints joints =
-        for_each_section(path_, limits_, ends, kSlowJoint, [this](const PlannedSection& section) {
+        for_each_section(path_, limits_, ends, [this](const PlannedSection& section) {
           section.is_straight() ? plan_straight(section) : plan_bent(section);
         });
     plan_.stops = joints.stops;

@@ -47,11 +47,4 @@ inline constexpr double kPlanDensity = 6;
                                  const KinematicPathLimits& limits, const PlanEnds& ends = {},
                                  double density = kPlanDensity);
 
-// Seconds: the planned time within a percent or two, at a hundredth of its cost, for a choice
-// between many candidates. The same limits, ends and stops; straight moves from rest to rest have
-// their exact time. Elsewhere limits are kept in the middle of each interval of a grid that is as
-// coarse as the estimate allows, so the motion is no plan. Linear cost. Throws as plan_feed does.
-[[nodiscard]] double estimated_time(std::span<const geometry::PathPiece> path,
-                                    const KinematicPathLimits& limits, const PlanEnds& ends = {});
-
 }  // namespace batten::postproc

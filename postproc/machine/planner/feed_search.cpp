@@ -151,14 +151,12 @@ void Search::add_place(const SearchPlace& place, const PlaceState& at, double pr
     center -= side.inverse * g;
     unexplained += side.dual * g;
   }
-  for (std::size_t a = 0; a < place.width; ++a) {
-    const auto column = static_cast<Eigen::Index>(a);
-    const Vector3d w = place.sums.col(column);
+  for (Eigen::Index a = 0; a < place.sums.cols(); ++a) {
+    const Vector3d w = place.sums.col(a);
     const Vector3d by = square * w;
-    const std::size_t row = place.first + a;
-    for (std::size_t b = 0; b <= a; ++b) {
-      matrix_.at(row, static_cast<int>(a - b)) +=
-          by.dot(place.sums.col(static_cast<Eigen::Index>(b)));
+    const std::size_t row = place.first + static_cast<std::size_t>(a);
+    for (Eigen::Index b = 0; b <= a; ++b) {
+      matrix_.at(row, static_cast<int>(a - b)) += by.dot(place.sums.col(b));
     }
     base_[row] += base.dot(w);
     center_[row] += center.dot(w);
@@ -232,9 +230,7 @@ SearchResult Search::run(const SearchRule& rule) {
   bool found = false;
   for (int step = 0; step < rule.most_steps && !found; ++step) {
     double wanted = std::max(rule.least_gap_part, 1 - share) * gap_;
-    if (rule.per_unexplained > 0) {
-      wanted = std::max(wanted, std::min(gap_, rule.per_unexplained * unexplained()));
-    }
+    wanted = std::max(wanted, std::min(gap_, rule.per_unexplained * unexplained()));
     const double target = wanted / static_cast<double>(sides_.size());
     for (std::size_t i = 0; i < base_.size(); ++i) base_[i] += target * center_[i];
     if (!matrix_.solve(base_)) break;
@@ -253,8 +249,8 @@ SearchResult Search::run(const SearchRule& rule) {
 
 Vector3d SearchPlace::state_of(const std::vector<double>& unknowns) const {
   Vector3d x = Vector3d::Zero();
-  for (std::size_t i = 0; i < width; ++i) {
-    x += unknowns[first + i] * sums.col(static_cast<Eigen::Index>(i));
+  for (Eigen::Index i = 0; i < sums.cols(); ++i) {
+    x += unknowns[first + static_cast<std::size_t>(i)] * sums.col(i);
   }
   return x;
 }

@@ -1,6 +1,5 @@
 // The search for the fastest motion along a path: an optimisation over unknowns whose sums are
-// q = (ds/dt)^2 and its first two derivatives p and r by the way, at positions where limits hold. A
-// plan (feed_plan.cpp) and a quick estimate (feed_estimate.cpp) state such problems.
+// q = (ds/dt)^2 and its first two derivatives p and r by the way, at positions where limits hold.
 //
 // A primal-dual interior-point method from any unknowns, also such that exceed limits, with a slack
 // of its own for each side of each limit. All is convex but the jerk, |c.x| <= 1 / sqrt(q): the
@@ -17,10 +16,9 @@
 namespace batten::postproc {
 
 struct SearchPlace {
-  // q, p and r (rows) as sums over `width` neighbouring unknowns, `first` and on.
+  // q, p and r (rows) as sums over four neighbouring unknowns, `first` and on.
   Eigen::Matrix<double, 3, 4> sums = Eigen::Matrix<double, 3, 4>::Zero();
   std::size_t first = 0;
-  std::size_t width = 0;
 
   double time = 0;                           // mm, of 1 / sqrt(q) in the time
   double most = KinematicPathLimits::kNone;  // of q, mm^2/s^2

@@ -24,8 +24,8 @@ struct CutTuning {
   int most_cuts = 8;                // in two: a bend of a 250th of a piece is seen
   int uneven_cuts = 2;              // of a cubic that does not run evenly, in any case
   double even_legs = 0.5;           // its control points are about as far from each other as that
+  double slow_times = 160;          // than the envelope beside it: 1.6e-5 of a ramp is lost there
   double arc_part = 0.4;            // radians: which axis is the slowest changes with direction
-  double full_group = 0.75;         // joined parts are an interval with so many nodes' worth
 };
 constexpr CutTuning kCut;
 
@@ -125,7 +125,7 @@ class PartChain {
   void set_end_bound(double speed) { parts_.back().end_bound = speed; }
 
   // Calls `use` for each section, and forgets the parts.
-  void finish(const SectionEnd& start, const SectionEnd& end, double slow_times,
+  void finish(const SectionEnd& start, const SectionEnd& end,
               const std::function<void(const PlannedSection&)>& use) {
     find_envelope(start.speed, end.speed);
     std::size_t first = 0;
@@ -136,7 +136,7 @@ class PartChain {
       first = last;
       from = to;
     };
-    for (const std::size_t joint : slow_joints(slow_times)) {
+    for (const std::size_t joint : slow_joints()) {
       close(joint, {potential_.speed(w_[joint]), false});
     }
     close(parts_.size(), end);
@@ -191,8 +191,8 @@ class PartChain {
   }
 
   // As numbers of the parts after them.
-  [[nodiscard]] std::vector<std::size_t> slow_joints(double times) const {
-    const double much = potential_.of_speed(times);
+  [[nodiscard]] std::vector<std::size_t> slow_joints() const {
+    const double much = potential_.of_speed(kCut.slow_times);
     std::vector<std::size_t> joints;
     double highest = 0;         // since the last joint whose bound the envelope meets
     std::size_t candidate = 0;  // that joint, if what is before it is fast enough
@@ -238,7 +238,7 @@ StraightRun straight_run(const PlannedSection& section, std::span<const PathPiec
 }
 
 PassedJoints for_each_section(std::span<const PathPiece> path, const KinematicPathLimits& limits,
-                              const PlanEnds& ends, double slow_times,
+                              const PlanEnds& ends,
                               const std::function<void(const PlannedSection&)>& use) {
   require_sound(limits);
   if (!(ends.start_speed >= 0 && ends.end_speed >= 0)) {
@@ -257,7 +257,7 @@ PassedJoints for_each_section(std::span<const PathPiece> path, const KinematicPa
       chain.set_end_bound(bound);
       if (bound == 0) {
         ++joints.stops;
-        chain.finish(from, {}, slow_times, use);
+        chain.finish(from, {}, use);
         from = {};
       } else if (!std::isinf(bound)) {
         ++joints.jumps;
@@ -268,7 +268,7 @@ PassedJoints for_each_section(std::span<const PathPiece> path, const KinematicPa
     chain.add(path[i], i, start, last);
   }
   if (!chain.is_empty()) {
-    chain.finish(from, {ends.end_speed, ends.end_speed > 0}, slow_times, use);
+    chain.finish(from, {ends.end_speed, ends.end_speed > 0}, use);
   }
   return joints;
 }
@@ -361,7 +361,7 @@ class GridMaker {
     }
     close_group();
     if (last.length > 0) {
-      extend(parts.back(), parts.back().length - last.length, parts.back().length, last.w);
+      extend(parts.back(), parts.back().length - last.length, parts.back().length);
       close_interval(last.w);
     }
     return std::move(intervals_);
@@ -393,30 +393,19 @@ class GridMaker {
     const FeedPart& outer = at_start ? section_.parts.front() : section_.parts.back();
     const double rise = rule_.rest_share * std::min(first_rise(at_start), outer.top);
     const double length = std::min(rise / outer.slope, 0.25 * outer.length);
-    if (at_start) extend(outer, 0, length, 0);
+    if (at_start) extend(outer, 0, length);
     return {length, outer.slope * length};
   }
 
   void add(const Rise& rise) {
-    const FeedPart& part = rise.part();
-    if (!group_.empty()) {
-      const FeedPart& before = group_.back().part();
-      const bool closes = rule_.joins_parts
-                              ? nodes_ + rise.nodes > 1 || part.straight != before.straight
-                              : part.piece != before.piece;
-      if (closes) close_group();
-    }
+    if (!group_.empty() && rise.part().piece != group_.back().part().piece) close_group();
     group_.push_back(rise);
     nodes_ += rise.nodes;
-    if (!rule_.joins_parts) return;
-    const bool touches = rise.reaches_joint() &&
-                         potential_.of_speed(part.end_bound) <= rise.end() * (1 + kSameBound);
-    if (touches || nodes_ >= kCut.full_group) close_group();
   }
 
   // Cuts what was added into intervals of as many nodes' worth.
   void close_group() {
-    const double count = std::max(1.0, rule_.joins_parts ? std::round(nodes_) : std::ceil(nodes_));
+    const double count = std::max(1.0, std::ceil(nodes_));
     double passed = 0;
     double next = 1;
     for (const Rise& rise : group_) {
@@ -425,11 +414,11 @@ class GridMaker {
         const double share = (next * nodes_ / count - passed) / rise.nodes;
         const double to = std::min(rise.to(), rise.position(share * rise.measure()));
         if (!(to > at)) continue;
-        extend(rise.part(), at, to, rise.w_at(0.5 * (at + to)));
+        extend(rise.part(), at, to);
         close_interval(rise.w_at(to));
         at = to;
       }
-      if (rise.to() > at) extend(rise.part(), at, rise.to(), rise.w_at(0.5 * (at + rise.to())));
+      if (rise.to() > at) extend(rise.part(), at, rise.to());
       if (rise.reaches_joint()) {
         (open_.length > 0 ? open_ : intervals_.back()).end_bound = rise.part().end_bound;
       }
@@ -440,26 +429,20 @@ class GridMaker {
     nodes_ = 0;
   }
 
-  void extend(const FeedPart& part, double from, double to, double middle_w) {
+  void extend(const FeedPart& part, double from, double to) {
     const auto t = [&](double s) { return part.t0 + (part.t1 - part.t0) * s / part.length; };
-    const bool is_new = !(open_.length > 0);
-    if (is_new) cap_ = speed_ = kNone;
-    if (part.cap < cap_ || is_new || !rule_.joins_parts) {
-      cap_ = std::min(cap_, part.cap);
+    if (!(open_.length > 0)) {
       open_.piece = part.piece;
-      if (is_new || rule_.joins_parts) open_.t0 = t(from);
-      open_.t1 = to == part.length ? part.t1 : t(to);
+      open_.t0 = t(from);
     }
-    open_.inner_bound = std::min(open_.inner_bound, open_.end_bound);
+    open_.t1 = to == part.length ? part.t1 : t(to);
     open_.end_bound = kNone;
     open_.length += to - from;
-    speed_ = std::min(speed_, potential_.speed(middle_w));
   }
 
   void close_interval(double end_w) {
     if (!(open_.length > 0)) return;
-    if (!rule_.joins_parts) open_.length = length_between(path_[open_.piece], open_.t0, open_.t1);
-    open_.speed = speed_;
+    open_.length = length_between(path_[open_.piece], open_.t0, open_.t1);
     open_.end_speed = potential_.speed(end_w);
     intervals_.push_back(std::exchange(open_, {}));
   }
@@ -470,8 +453,6 @@ class GridMaker {
   const GridRule& rule_;
   std::vector<FeedInterval> intervals_;
   FeedInterval open_;
-  double cap_ = kNone;
-  double speed_ = kNone;
   std::vector<Rise> group_;
   double nodes_ = 0;
 };
@@ -508,24 +489,18 @@ RestMotion rest_motion(const PathPiece& piece, const FeedInterval& interval,
   return rest;
 }
 
-void set_end(const SectionEnd& end, const RestMotion& rest, const EndUnknowns& unknowns,
+void set_end(const SectionEnd& end, const RestMotion& rest, std::size_t q, double slope,
              SearchPlace& place, SearchProblem& problem) {
-  const bool has_beside = unknowns.beside != unknowns.q;
-  const double q = end.speed * end.speed;
   if (rest.is_there()) {
     place.time += rest.time();
     place.lower_speed(rest.speed);
-    if (has_beside) {
-      problem.ties.push_back({unknowns.beside, unknowns.q, unknowns.factor_from_rest, 0});
-    }
+    problem.ties.push_back({q + 1, q, slope, 0});
   } else if (end.is_free) {
     place.lower_speed(end.speed);
   } else {
     place.most = kNone;
-    problem.ties.push_back({unknowns.q, unknowns.q, 0, q});
-    if (has_beside) {
-      problem.ties.push_back({unknowns.beside, unknowns.q, 0, unknowns.factor_if_given * q});
-    }
+    problem.ties.push_back({q, q, 0, end.speed * end.speed});
+    problem.ties.push_back({q + 1, q, 0, 0});
   }
 }
 

@@ -63,7 +63,7 @@ struct PassedJoints {
 };
 
 // Calls `use` for each section of the path. It ends where the path has to stop, and at joints that
-// are `slow_times` slower than the envelope before and after them: they are passed without
+// are 160 times slower than the envelope before and after them: they are passed without
 // acceleration. An acceleration there wins on one side and loses on the other, at most 0.15 times
 // the square of the ratio of the speeds, as part of the time of a ramp; the envelope is 1.65 times
 // what jerk allows between two rests.
@@ -72,25 +72,21 @@ struct PassedJoints {
 // speeds.
 PassedJoints for_each_section(std::span<const geometry::PathPiece> path,
                               const KinematicPathLimits& limits, const PlanEnds& ends,
-                              double slow_times,
                               const std::function<void(const PlannedSection&)>& use);
 
 struct FeedInterval {
-  std::size_t piece = 0;  // where it is; of several parts, the part that allows least
+  std::size_t piece = 0;  // where it is
   double t0 = 0;
   double t1 = 1;
-  double length = 0;                                // mm
-  double speed = 0;                                 // mm/s, a rough bound in its middle
-  double end_speed = 0;                             // and at its end
-  double inner_bound = KinematicPathLimits::kNone;  // mm/s, the least of the joints inside
-  double end_bound = KinematicPathLimits::kNone;    // mm/s, of the joint at its end
+  double length = 0;                              // mm
+  double end_speed = 0;                           // mm/s, a rough bound at its end
+  double end_bound = KinematicPathLimits::kNone;  // mm/s, of the joint at its end
 };
 
 struct GridRule {
   double density = 0;         // nodes in the time sqrt(v / jerk), half of what a change by v takes
   double nodes_per_bend = 0;  // for a share of a limit that goes from nothing to all
   double rest_share = 0;      // the interval from rest goes up to this part of the first rise of w
-  bool joins_parts = false;   // intervals may run over several pieces
 };
 
 // Where a section ends at rest, its outer interval is the motion from rest: constant jerk, or
@@ -121,16 +117,9 @@ struct RestMotion {
 [[nodiscard]] RestMotion rest_motion(const geometry::PathPiece& piece, const FeedInterval& interval,
                                      const KinematicPathLimits& limits);
 
-// States one end of a section, where q is the unknown of number `q` and the limits of `place` hold.
-// The unknown beside it is `factor_from_rest` times q after rest, `factor_if_given` times q where
-// the speed is given; none is where that is q itself.
-struct EndUnknowns {
-  std::size_t q = 0;
-  std::size_t beside = 0;
-  double factor_from_rest = 0;
-  double factor_if_given = 0;
-};
-void set_end(const SectionEnd& end, const RestMotion& rest, const EndUnknowns& unknowns,
+// States one end of a section, where q is the unknown of number `q`, p the next one, and the limits
+// of `place` hold. `slope`: p by q after rest.
+void set_end(const SectionEnd& end, const RestMotion& rest, std::size_t q, double slope,
              SearchPlace& place, SearchProblem& problem);
 
 }  // namespace batten::postproc

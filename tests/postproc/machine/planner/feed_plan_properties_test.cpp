@@ -10,7 +10,6 @@
 
 #include "postproc/machine/planner/feed_plan.h"
 #include "postproc/machine/planner/feed_plan_path.h"
-#include "tests/support/estimated_paths.h"
 #include "tests/support/planned_paths.h"
 
 namespace batten::postproc {
@@ -24,6 +23,29 @@ using geometry::Vector3;
 
 constexpr double kNoSuchLimit = KinematicPathLimits::kNone;
 constexpr int kPaths = 20;
+
+// Lines and the tangent arcs between them.
+Path slots(int count, int seed) {
+  std::mt19937 random(static_cast<unsigned>(seed));
+  std::uniform_real_distribution<double> unit(0.1, 1);
+  geometry::Path path;
+  geometry::Point3 at = geometry::Point3::Zero();
+  double angle = 0;
+  for (int i = 0; i < count; ++i) {
+    const geometry::Vector3 forward(std::cos(angle), std::sin(angle), 0);
+    const geometry::Point3 end = at + 10 * unit(random) * forward;
+    path.emplace_back(geometry::Line{at, end});
+    const double side = random() % 2 == 0 ? 1 : -1;
+    const double sweep = side * 3 * unit(random);
+    const double radius = 8 * unit(random);
+    const geometry::Vector3 left(-forward.y(), forward.x(), 0);
+    const geometry::Point3 center = end + side * radius * left;
+    angle += sweep;
+    at = center - side * radius * geometry::Vector3(-std::sin(angle), std::cos(angle), 0);
+    path.emplace_back(geometry::Arc{end, at, center, {0, 0, 1}, sweep});
+  }
+  return path;
+}
 
 struct Case {
   Path path;
@@ -78,6 +100,17 @@ TEST(FeedPlanProperties, SamplesAreOneMotionFromStartToEnd) {
       const Vector3 gained = b.velocity - a.velocity - 0.5 * h * (a.acceleration + b.acceleration);
       ASSERT_LT(gained.norm(), 2 * steepest * h * h);
     }
+  }
+}
+
+// Curves that bend so sharply that the tool next to stops: nodes that were added there once made
+// the plan's time no number.
+TEST(FeedPlanProperties, HasATimeWhereThePathTurnsBack) {
+  for (const unsigned seed : {9u, 387u}) {
+    std::mt19937 random(seed);
+    const Path path = path_of(random_curve(random, true));
+    const KinematicPathLimits limits = random_limits(random);
+    EXPECT_TRUE(std::isfinite(planned_time(path, limits))) << seed;
   }
 }
 
