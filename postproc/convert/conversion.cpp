@@ -196,10 +196,9 @@ gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language
 }
 
 bool is_of_another_family(const gcode::Program& program, const gcode::Control& target) {
-  return other_dwell(program, target) ||
-         std::ranges::any_of(gcode::source_marks(program), [&](const gcode::FoundMark& found) {
-           return (target.known_marks & gcode::mark(found.mark)) == 0;
-         });
+  gcode::Diagnostics found;
+  tell_of_other_family(program, target, found);
+  return !found.empty();
 }
 
 void tell_of_other_family(const gcode::Program& program, const gcode::Control& target,

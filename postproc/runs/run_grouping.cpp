@@ -21,8 +21,6 @@ using gcode::TriState;
 using geometry::Point3;
 namespace reason = gcode::reason;
 
-constexpr double kMmPerInch = 25.4;
-
 // The part of the tolerance by which a run's points may miss its arcs, taken off the smoothing's.
 constexpr double kArcShare = 0.03;
 
@@ -379,7 +377,7 @@ PrintedErrors RunBlocks::errors_of(std::span<const std::uint32_t> blocks) const 
     of_centers = std::max(of_centers, decimals(block, "IJKR"));
   }
   const gcode::ModalState& state = read_.states[read_.blocks[blocks.front()].state_after];
-  const double unit = state.units == gcode::Units::kInch ? kMmPerInch : 1;
+  const double unit = gcode::millimetres_per(state.units);
   return {unit / 2 * std::pow(10.0, -of_places), unit / 2 * std::pow(10.0, -of_centers)};
 }
 

@@ -275,11 +275,9 @@ class MachineIniReader {
     AxisLimits most;
     for (std::size_t i = 0; i < kLinearAxes; ++i) {
       if (!present_[i]) continue;
-      const AxisLimits& own = machine_.axes[i];
-      most.velocity = std::max(most.velocity, own.velocity);
-      most.acceleration = std::max(most.acceleration, own.acceleration);
-      most.jerk = std::max(most.jerk, own.jerk);
-      most.rapid_velocity = std::max(most.rapid_velocity, own.rapid_velocity);
+      for (const AxisField& field : axis_fields()) {
+        most.*field.place = std::max(most.*field.place, machine_.axes[i].*field.place);
+      }
     }
     for (std::size_t i = 0; i < kLinearAxes; ++i) {
       if (!present_[i]) machine_.axes[i] = most;

@@ -27,13 +27,6 @@ double feed_of(const TimedPiece& p, const Machine& machine, double feed_override
   return axis_velocities(machine, p.rapid).maxCoeff() * 60 * 2;
 }
 
-bool has_length(const TimedPiece& p) { return geometry::length_of(p.piece) > geometry::kSamePlace; }
-
-void require_feed(const TimedPiece& p) {
-  if (p.feed >= 0) return;
-  throw std::invalid_argument(fmt::format("feed is {} mm/min, expected 0 or above", p.feed));
-}
-
 // Lowers feeds to what the line can keep up with: over the blocks that the control holds at a
 // time (its look-ahead, half of it before and half after), the way is run no faster than the bytes
 // of these blocks come in. A few short blocks among long ones cost nothing, a long row of them
@@ -65,8 +58,10 @@ std::vector<TimedPiece> with_length_and_feed(std::span<const TimedPiece> pieces,
   std::vector<TimedPiece> moving;
   moving.reserve(pieces.size());
   for (const TimedPiece& p : pieces) {
-    require_feed(p);
-    if (!has_length(p)) continue;
+    if (!(p.feed >= 0)) {
+      throw std::invalid_argument(fmt::format("feed is {} mm/min, expected 0 or above", p.feed));
+    }
+    if (!(geometry::length_of(p.piece) > geometry::kSamePlace)) continue;
     moving.push_back(p);
     moving.back().feed = feed_of(p, machine, feed_override);
   }

@@ -136,10 +136,7 @@ class StepTimes {
       add(place.first_piece, duration / 2);
       return add(place.last_piece, duration / 2);
     }
-    double length = 0;
-    for (auto p = place.first_piece; p <= place.last_piece; ++p) {
-      length += geometry::length_of(chain.pieces[p].piece);
-    }
+    const double length = chain.length_of(place);
     for (auto p = place.first_piece; p <= place.last_piece; ++p) {
       add(p, duration * (geometry::length_of(chain.pieces[p].piece) / length));
     }

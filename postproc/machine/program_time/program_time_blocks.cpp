@@ -173,8 +173,6 @@ void ToolPlace::set_axis(std::size_t axis, double mm, Certainty certainty) {
   certainty_[axis] = certainty;
 }
 
-void ToolPlace::forget() { certainty_.fill(Certainty::kUnknown); }
-
 void ToolPlace::doubt() {
   for (Certainty& c : certainty_) c = std::min(c, Certainty::kAssumed);
 }

@@ -94,7 +94,7 @@ class ToolPlace {
   void set(const geometry::Point3& mm);
   void set_axis(std::size_t axis, double mm, Certainty certainty);
   void forget_axis(std::size_t axis) { certainty_[axis] = Certainty::kUnknown; }
-  void forget();
+  void forget() { certainty_.fill(Certainty::kUnknown); }
   // From now on it is an assumption that the tool still is there.
   void doubt();
 

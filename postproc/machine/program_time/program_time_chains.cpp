@@ -17,6 +17,14 @@ bool rests_between_rapids_and_cuts(const Machine& machine) {
 
 }  // namespace
 
+double RunChain::length_of(const StretchPlace& place) const {
+  double length = 0;
+  for (auto p = place.first_piece; p <= place.last_piece; ++p) {
+    length += geometry::length_of(pieces[p].piece);
+  }
+  return length;
+}
+
 void ChainCutter::add(const ProgramStep& step, const std::vector<PathControl>& controls,
                       const Use& use) {
   sent_ += static_cast<int>(step.bytes);

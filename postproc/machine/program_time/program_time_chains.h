@@ -27,6 +27,8 @@ struct RunChain {
   [[nodiscard]] bool counts(std::uint32_t piece) const {
     return piece >= first_counted && piece < end_counted;
   }
+  // mm, of the pieces that a stretch serves.
+  [[nodiscard]] double length_of(const StretchPlace& place) const;
 };
 
 // Cuts steps, numbered from 0 as they are added, into chains. Times of tool changes and of the

@@ -69,11 +69,7 @@ class Sampler {
   static std::uint32_t piece_at(const RunChain& chain, const StretchPlace& place, double share) {
     if (place.first_piece == place.last_piece) return place.first_piece;
     if (place.is_corner) return share < 0.5 ? place.first_piece : place.last_piece;
-    double length = 0;
-    for (auto p = place.first_piece; p <= place.last_piece; ++p) {
-      length += geometry::length_of(chain.pieces[p].piece);
-    }
-    double way = share * length;
+    double way = share * chain.length_of(place);
     for (auto p = place.first_piece; p < place.last_piece; ++p) {
       way -= geometry::length_of(chain.pieces[p].piece);
       if (way <= 0) return p;
