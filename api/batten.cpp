@@ -1,5 +1,8 @@
 #include "batten/batten.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -78,9 +81,7 @@ struct Reading {
 
 void refuse_if_any(const std::vector<std::string>& problems) {
   if (problems.empty()) return;
-  std::string text;
-  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
-  throw std::invalid_argument(text);
+  throw std::invalid_argument(fmt::format("{}", fmt::join(problems, "\n")));
 }
 
 template <typename Value>
