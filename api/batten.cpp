@@ -1,8 +1,5 @@
 #include "batten/batten.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -81,7 +78,9 @@ struct Reading {
 
 void refuse_if_any(const std::vector<std::string>& problems) {
   if (problems.empty()) return;
-  throw std::invalid_argument(fmt::format("{}", fmt::join(problems, "\n")));
+  std::string text;
+  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
+  throw std::invalid_argument(text);
 }
 
 template <typename Value>

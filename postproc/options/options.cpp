@@ -282,11 +282,11 @@ std::vector<std::string> problems_of(const SmoothOptions& options) {
         fmt::format("--keep-corners: {:g} degrees, expected more than 0 and at most 180",
                     *options.keep_corners_deg));
   }
-  for (const auto& found : {problems_of_side(options.side, options.tolerance_kind),
-                            problems_of_decimals(options.decimals, options.source, options.target),
-                            problems_of_allowed(options.allowed)}) {
-    problems.insert(problems.end(), found.begin(), found.end());
-  }
+  std::ranges::move(problems_of_side(options.side, options.tolerance_kind),
+                    std::back_inserter(problems));
+  std::ranges::move(problems_of_decimals(options.decimals, options.source, options.target),
+                    std::back_inserter(problems));
+  std::ranges::move(problems_of_allowed(options.allowed), std::back_inserter(problems));
   if (options.threads < 0 || options.threads > kMostThreads) {
     problems.push_back(
         fmt::format("--threads: {}, expected 0 (all cores) to {}", options.threads, kMostThreads));
