@@ -20,12 +20,7 @@ namespace {
 
 using namespace batten::postproc;
 
-int done(const PrintText& text) { return write_result("-", text.text, false); }
-
-template <typename AnyCommand>
-int done(const AnyCommand& command) {
-  return run(command);
-}
+int run(const PrintText& text) { return write_result("-", text.text, false); }
 
 // A standard stream that was closed (`2>&-`) would give its number to the next file that is opened,
 // and messages would go into that file. Input and output become streams on which reading and
@@ -58,7 +53,7 @@ int run_command_line(const std::vector<std::string>& arguments) {
     say("nothing was done; see " + line.help_hint);
     return static_cast<int>(ExitCode::kUsage);
   }
-  return std::visit([](const auto& command) { return done(command); }, line.command);
+  return std::visit([](const auto& command) { return run(command); }, line.command);
 }
 
 }  // namespace

@@ -3,16 +3,13 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <sched.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <thread>
 #include <utility>
 
 #include "postproc/system/output_file.h"
@@ -115,15 +112,6 @@ std::optional<JobEnd> ProcessPool::read_from(std::size_t index) {
 
 void ProcessPool::stop() const {
   for (const Running& running : running_) ::kill(running.process, SIGTERM);
-}
-
-std::size_t usable_processors() {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  if (::sched_getaffinity(0, sizeof set, &set) == 0) {
-    return std::max<std::size_t>(1, static_cast<std::size_t>(CPU_COUNT(&set)));
-  }
-  return std::max<std::size_t>(1, std::thread::hardware_concurrency());
 }
 
 }  // namespace batten::postproc

@@ -55,7 +55,4 @@ class ProcessPool {
   std::vector<Running> running_;
 };
 
-// Processors that this process may use: what `taskset` or a batch system left of the machine's.
-[[nodiscard]] std::size_t usable_processors();
-
 }  // namespace batten::postproc

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "gcode/state/reason.h"
 
@@ -164,6 +163,7 @@ std::string_view first_sentence(std::string_view text) {
 }
 
 struct Explained {
+  std::string_view group;  // its title
   std::string_view id;
   std::string what;  // it is
   std::string_view text;
@@ -171,32 +171,26 @@ struct Explained {
   bool can_be_allowed = false;
 };
 
-struct ExplainedGroup {
-  std::string_view title;
-  std::vector<Explained> all = {};
-};
-
-std::array<ExplainedGroup, 3> explained_groups() {
-  std::array<ExplainedGroup, 3> groups = {ExplainedGroup{"Why blocks are kept as they are:"},
-                                          ExplainedGroup{"\nMessages about a program:"},
-                                          ExplainedGroup{"\nViolations found by batten verify:"}};
-  auto& [reasons, messages, violations] = groups;
+// Group after group.
+std::vector<Explained> all_explained() {
+  std::vector<Explained> all;
   for (const auto& each : gcode::reason::explanations()) {
-    reasons.all.push_back(
-        {each.id, "why blocks are kept as they are", each.text, each.advice, each.can_be_allowed});
+    all.push_back({"Why blocks are kept as they are:", each.id, "why blocks are kept as they are",
+                   each.text, each.advice, each.can_be_allowed});
   }
   using List = std::span<const gcode::ExplainedDiagnostic>;
   for (const List list : {gcode::explained_diagnostics(), List(kNotes)}) {
     for (const auto& each : list) {
-      messages.all.push_back({each.id, fmt::format("a message about a program ({})", each.severity),
-                              each.text, each.advice});
+      all.push_back({"\nMessages about a program:", each.id,
+                     fmt::format("a message about a program ({})", each.severity), each.text,
+                     each.advice});
     }
   }
   for (const auto& each : kViolations) {
-    violations.all.push_back(
-        {each.id, "a violation found by batten verify", each.text, each.advice});
+    all.push_back({"\nViolations found by batten verify:", each.id,
+                   "a violation found by batten verify", each.text, each.advice});
   }
-  return groups;
+  return all;
 }
 
 }  // namespace
@@ -205,9 +199,7 @@ std::span<const gcode::ExplainedDiagnostic> explained_violations() { return kVio
 
 std::vector<std::string_view> explained_ids() {
   std::vector<std::string_view> ids;
-  for (const ExplainedGroup& group : explained_groups()) {
-    for (const Explained& each : group.all) ids.push_back(each.id);
-  }
+  for (const Explained& each : all_explained()) ids.push_back(each.id);
   std::ranges::sort(ids);
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   return ids;
@@ -215,12 +207,11 @@ std::vector<std::string_view> explained_ids() {
 
 std::string explanation_of(std::string_view id) {
   std::string text;
-  for (const ExplainedGroup& group : explained_groups()) {
-    const auto found = std::ranges::find(group.all, id, &Explained::id);
-    if (found == group.all.end()) continue;
-    text += fmt::format("{}{}: {}\n{}  What to do:\n{}", text.empty() ? "" : "\n", id, found->what,
-                        wrapped(found->text, 2), wrapped(found->advice, 4));
-    if (found->can_be_allowed) {
+  for (const Explained& each : all_explained()) {
+    if (each.id != id) continue;
+    text += fmt::format("{}{}: {}\n{}  What to do:\n{}", text.empty() ? "" : "\n", id, each.what,
+                        wrapped(each.text, 2), wrapped(each.advice, 4));
+    if (each.can_be_allowed) {
       text += fmt::format("    batten smooth .. --allow {} lifts this rule.\n", id);
     }
   }
@@ -229,11 +220,11 @@ std::string explanation_of(std::string_view id) {
 
 std::string all_explanations() {
   std::string text;
-  for (const ExplainedGroup& group : explained_groups()) {
-    text += fmt::format("{}\n", group.title);
-    for (const Explained& each : group.all) {
-      text += fmt::format("  {:<24} {}\n", each.id, first_sentence(each.text));
-    }
+  std::string_view group;
+  for (const Explained& each : all_explained()) {
+    if (each.group != group) text += fmt::format("{}\n", each.group);
+    group = each.group;
+    text += fmt::format("  {:<24} {}\n", each.id, first_sentence(each.text));
   }
   return text;
 }

@@ -8,11 +8,11 @@
 
 #include "postproc/batch/batch_run.h"
 #include "postproc/batch/batch_summary.h"
-#include "postproc/batch/process_pool.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
+#include "postproc/system/parallel_for.h"
 
 namespace batten::postproc {
 
@@ -97,7 +97,7 @@ BatchRequest request_of(const BatchCommand& command, const ProgramTree& tree) {
                    .strict = command.strict,
                    .force = command.force},
           .programs = programs_of(command.shard, tree.programs),
-          .jobs = command.jobs > 0 ? static_cast<std::size_t>(command.jobs) : usable_processors(),
+          .jobs = static_cast<std::size_t>(command.jobs > 0 ? command.jobs : threads_at_once(0)),
           .fail_fast = command.fail_fast};
 }
 

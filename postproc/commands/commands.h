@@ -67,6 +67,7 @@ struct ReadingCommand {
   gcode::SourceKind source = gcode::SourceKind::kAuto;
   std::optional<gcode::Decimals> decimals;  // as SmoothOptions::decimals
   const gcode::Control* target = nullptr;   // whose curves are read; nullptr: none are
+  std::vector<std::string> allowed;         // of these only `subprogram` changes what is read
   std::string json_file;
   LogLevel log_level = LogLevel::kInfo;
   bool force = false;
@@ -79,13 +80,11 @@ struct VerifyCommand : ReadingCommand {
   geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
   geometry::Side side = geometry::Side::kBoth;
   std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
-  std::vector<std::string> allowed;              // of these only `subprogram` changes what is read
 };
 [[nodiscard]] int run(const VerifyCommand& command);
 
 struct InspectCommand : ReadingCommand {
   std::string input;
-  std::vector<std::string> allowed;
 };
 [[nodiscard]] int run(const InspectCommand& command);
 

@@ -115,6 +115,23 @@ std::optional<gcode::SourceText> read_program(const std::string& name) {
   return source;
 }
 
+PartReading reading_of(const gcode::SourceText& source, const ReadingCommand& command,
+                       gcode::SourceKind kind, std::optional<gcode::Language> fallback,
+                       gcode::DwellForm dwells) {
+  PartReading reading;
+  reading.source = kind;
+  const auto found = gcode::source_language(source, kind, fallback, reading.of_language);
+  reading.text.language = found.value_or(gcode::Language::kRs274);
+  reading.text.decimals =
+      gcode::decimals_read(kind, command.target, reading.text.language, command.decimals);
+  reading.text.units = command.units;
+  reading.text.dwells = dwells;
+  reading.options = {.units = command.units,
+                     .curves = command.target != nullptr ? command.target->curves : nullptr,
+                     .calls_keep_modes = calls_keep_modes(command.allowed)};
+  return reading;
+}
+
 bool changed_while_read(const WatchedFile& file) {
   if (file.now() != FileNow::kChanged) return false;
   say(file.path().string() + kWasChanged);
@@ -127,11 +144,14 @@ int end_interrupted() {
 }
 
 int write_result(const std::string& name, std::string_view bytes, bool replace_existing) {
-  if (name == "-") {
-    return exit_code_of(write_to_descriptor(STDOUT_FILENO, "<stdout>", bytes, interrupted));
-  }
-  return exit_code_of(write_file(
-      {.target = name, .bytes = bytes, .replace_existing = replace_existing, .stop = interrupted}));
+  return write({.target = name, .bytes = bytes, .replace_existing = replace_existing});
+}
+
+int write(WriteRequest request) {
+  request.stop = interrupted;
+  return exit_code_of(request.target == "-"
+                          ? write_request_to_descriptor(STDOUT_FILENO, "<stdout>", request)
+                          : write_file(request));
 }
 
 int exit_code_of(const WriteResult& result) {
@@ -151,29 +171,6 @@ std::string objection_to_place_of(const WatchedFile& input) {
       break;
   }
   return "";
-}
-
-int write_in_place_of(const WatchedFile& input, std::string_view bytes) {
-  WriteRequest request;
-  request.target = input.path();
-  request.bytes = bytes;
-  request.replace_existing = true;
-  request.stop = interrupted;
-  request.objection = [&input] { return objection_to_place_of(input); };
-  return exit_code_of(write_file(request));
-}
-
-int write_parts(const std::string& name, const std::function<void(const PartWriter&)>& parts,
-                bool replace_existing) {
-  WriteRequest request;
-  request.target = name;
-  request.replace_existing = replace_existing;
-  request.stop = interrupted;
-  request.parts = parts;
-  if (name == "-") {
-    return exit_code_of(write_request_to_descriptor(STDOUT_FILENO, "<stdout>", request));
-  }
-  return exit_code_of(write_file(request));
 }
 
 void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source, LogLevel level) {

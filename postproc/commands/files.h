@@ -3,20 +3,29 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/source_text.h"
+#include "postproc/commands/commands.h"
 #include "postproc/options/options.h"
+#include "postproc/stream/part_reader.h"
 #include "postproc/system/output_file.h"
 
 namespace batten::postproc {
 
 // Reads a file, or standard input to its end. On failure says why and returns nothing.
 [[nodiscard]] std::optional<gcode::SourceText> read_program(const std::string& name);
+
+// How a command that writes no program reads this one. `kind`: the control that it was written for;
+// `fallback`: what a text without certain marks is read in; `dwells`: what its G4 means.
+// `of_language` of the result has an error where the language is not certain.
+[[nodiscard]] PartReading reading_of(const gcode::SourceText& source, const ReadingCommand& command,
+                                     gcode::SourceKind kind,
+                                     std::optional<gcode::Language> fallback,
+                                     gcode::DwellForm dwells = gcode::DwellForm::kUnknown);
 
 // Asked when all was read: was the file written into since it is watched? Then what was made of it
 // is worth nothing, and this says so.
@@ -36,18 +45,14 @@ template <typename Text>
   return name.empty() ? 0 : write_result(name, text(), replace_existing);
 }
 
-// Of a program in the place of the one that it was made of: not where that one was written into,
-// put away or replaced meanwhile.
-[[nodiscard]] int write_in_place_of(const WatchedFile& input, std::string_view bytes);
-// Why it may not be put there; empty: it may.
+// As the request says, until a signal comes; "-" is standard output.
+[[nodiscard]] int write(WriteRequest request);
+
+// Why a program may not be put in the place of the one that it was made of: that one was written
+// into, put away or replaced meanwhile. Empty: it may.
 [[nodiscard]] std::string objection_to_place_of(const WatchedFile& input);
 
 [[nodiscard]] int exit_code_of(const WriteResult& result);
-
-// Of a file that is made part by part.
-[[nodiscard]] int write_parts(const std::string& name,
-                              const std::function<void(const PartWriter&)>& parts,
-                              bool replace_existing);
 
 // file:line:column lines on standard error: all errors, notes and warnings up to a readable number
 // and as far as `level` wants them. On a terminal with colours.

@@ -134,19 +134,11 @@ int run(const InspectCommand& command) {
   if (interrupted()) return end_interrupted();
   if (!source) return static_cast<int>(ExitCode::kFileError);
 
-  PartReading reading;
-  reading.source = command.source;
-  const auto language =
-      gcode::source_language(*source, command.source, std::nullopt, reading.of_language);
-  if (!language) {
+  const PartReading reading = reading_of(*source, command, command.source, std::nullopt);
+  if (gcode::has_error(reading.of_language)) {
     print(reading.of_language, *source, command.log_level);
     return static_cast<int>(ExitCode::kNotUnderstood);
   }
-  reading.text.language = *language;
-  reading.text.decimals =
-      gcode::decimals_read(command.source, nullptr, *language, command.decimals);
-  reading.text.units = command.units;
-  reading.options = {.units = command.units, .calls_keep_modes = calls_keep_modes(command.allowed)};
   GroupingOptions grouping;
   grouping.allowed.assign(command.allowed.begin(), command.allowed.end());
   const InspectedProgram result = inspect(*source, reading, grouping);

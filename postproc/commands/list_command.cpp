@@ -116,8 +116,7 @@ std::string json_key(std::string_view key, Quantity quantity) {
   return name.append(kSuffixes.at(static_cast<std::size_t>(quantity)));
 }
 
-Json number_or_null(double value) { return std::isinf(value) ? Json(nullptr) : Json(value); }
-
+// Without a limit: infinite, which JSON writes as null.
 Json json_of(const Machine& machine) {
   Json json = {{"name", machine.name},
                {"description", machine.description},
@@ -129,7 +128,7 @@ Json json_of(const Machine& machine) {
                {"rapid_velocity_mm_per_s", machine.rapid_velocity()},
                {"look_ahead_blocks", machine.look_ahead}};
   for (const MachineField& field : machine_fields()) {
-    json[json_key(field.key, field.quantity)] = number_or_null(machine.*field.place);
+    json[json_key(field.key, field.quantity)] = machine.*field.place;
   }
   Json axes;
   for (std::size_t i = 0; i < kAxes; ++i) {
@@ -137,7 +136,7 @@ Json json_of(const Machine& machine) {
     Json limits;
     for (const AxisField& field : axis_fields()) {
       limits[json_key(field.key, i < kLinearAxes ? field.linear : field.rotary)] =
-          number_or_null(machine.axis(axis).*field.place);
+          machine.axis(axis).*field.place;
     }
     axes[std::string(name_of(axis))] = std::move(limits);
   }

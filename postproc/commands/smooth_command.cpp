@@ -83,9 +83,7 @@ class SmoothWork {
     const bool tells = result_.understood && command_.log_level >= LogLevel::kInfo;
     if (tells) summary_ = summary_text(report);
     if (!command_.json_file.empty()) json_ = json_report(report);
-    if (!command_.report_file.empty()) {
-      page_ = html_report(report, {.command = command_.command_line});
-    }
+    if (!command_.report_file.empty()) page_ = html_report(report, command_.command_line);
     return verdict_ == ExitCode::kDone;
   }
 
@@ -102,8 +100,10 @@ class SmoothWork {
   int write_from_memory() {
     smooth();
     if (!tell_of_smoothing()) return end();
-    return finish(command_.in_place ? write_in_place_of(watched_, result_.text)
-                                    : write_result(output_, result_.text, replaces()));
+    return finish(write({.target = output_,
+                         .bytes = result_.text,
+                         .replace_existing = replaces(),
+                         .objection = [this] { return objection_to_place(); }}));
   }
 
   int write_beside() {
@@ -121,7 +121,7 @@ class SmoothWork {
     };
     request.objection = [&]() -> std::string {
       if (!may_be_told || !tell_of_smoothing()) return kNotWanted;
-      return command_.in_place ? objection_to_place_of(watched_) : "";
+      return objection_to_place();
     };
     const WriteResult written = write_file(request);
     if (code_) return *code_;
@@ -143,8 +143,9 @@ class SmoothWork {
       return static_cast<int>(ExitCode::kFileError);
     }
     if (!tell_of_smoothing()) return end();
-    const auto parts = [&](const PartWriter& writer) { spool->write_to(writer); };
-    return finish(write_parts(output_, parts, replaces()));
+    return finish(write({.target = output_,
+                         .replace_existing = replaces(),
+                         .parts = [&](const PartWriter& writer) { spool->write_to(writer); }}));
   }
 
   // `code`: of the program's own file.
@@ -160,6 +161,10 @@ class SmoothWork {
   }
 
   [[nodiscard]] bool replaces() const { return command_.force || command_.in_place; }
+
+  [[nodiscard]] std::string objection_to_place() const {
+    return command_.in_place ? objection_to_place_of(watched_) : "";
+  }
 
   static constexpr const char* kNotWanted = "not wanted";
 

@@ -46,7 +46,7 @@ int write_profile(const TimeCommand& command, const ProgramSteps& steps) {
     };
     if (sample_program(steps, *command.machine, kProfilePeriod, take)) (void)write(text);
   };
-  return write_parts(command.profile_file, parts, command.force);
+  return write({.target = command.profile_file, .replace_existing = command.force, .parts = parts});
 }
 
 }  // namespace
@@ -57,21 +57,15 @@ int run(const TimeCommand& command) {
   if (interrupted()) return end_interrupted();
   if (!source) return static_cast<int>(ExitCode::kFileError);
 
-  gcode::Diagnostics found;
   const auto of_target = command.target != nullptr ? std::optional(command.target->language)
                                                    : std::optional<gcode::Language>();
-  const auto language = gcode::source_language(*source, command.source, of_target, found);
-  if (!language) {
+  const PartReading reading = reading_of(*source, command, command.source, of_target);
+  gcode::Diagnostics found = reading.of_language;
+  if (gcode::has_error(found)) {
     print(found, *source, command.log_level);
     return static_cast<int>(ExitCode::kNotUnderstood);
   }
-  const gcode::Decimals decimals =
-      gcode::decimals_read(command.source, command.target, *language, command.decimals);
-  const gcode::Program program = gcode::parse(*source, {*language, decimals, command.units}, found);
-  gcode::tell_of_contradictions(program, command.source, found);
-  const gcode::CurveFormat* curves = command.target != nullptr ? command.target->curves : nullptr;
-  const gcode::Interpretation meaning =
-      gcode::interpret(program, {.units = command.units, .curves = curves}, found);
+  const auto [program, meaning] = read_whole(*source, reading, found);
   if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
   print(found, *source, command.log_level);
   if (gcode::has_error(found)) return static_cast<int>(ExitCode::kNotUnderstood);

@@ -1,7 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "gcode/interpreter/interpreter.h"
@@ -41,24 +42,6 @@ std::optional<gcode::Language> language_before(const gcode::SourceText& old_sour
   const auto after =
       gcode::source_language(new_source, gcode::SourceKind::kAuto, std::nullopt, uncertain);
   return before != target && after == target ? before : std::nullopt;
-}
-
-// `language`: what a text without certain marks is read in. `dwells`: what its G4 means.
-PartReading reading_of(const gcode::SourceText& source, const VerifyCommand& command,
-                       gcode::SourceKind kind, std::optional<gcode::Language> language,
-                       gcode::DwellForm dwells) {
-  PartReading reading;
-  reading.source = kind;
-  const auto found = gcode::source_language(source, kind, language, reading.of_language);
-  reading.text.language = found.value_or(gcode::Language::kRs274);
-  reading.text.decimals =
-      gcode::decimals_read(kind, command.target, reading.text.language, command.decimals);
-  reading.text.units = command.units;
-  reading.text.dwells = dwells;
-  reading.options = {.units = command.units,
-                     .curves = command.target != nullptr ? command.target->curves : nullptr,
-                     .calls_keep_modes = calls_keep_modes(command.allowed)};
-  return reading;
 }
 
 // By ViolationKind.
@@ -105,8 +88,7 @@ Json json_of(const Stretch& stretch) {
           {"new_last_line", stretch.new_last_line},
           {"proved", comparison.verdict == geometry::Verdict::kProved},
           {"at_least_mm", comparison.bounds.at_least},
-          {"at_most_mm", std::isfinite(comparison.bounds.at_most) ? Json(comparison.bounds.at_most)
-                                                                  : Json(nullptr)},
+          {"at_most_mm", comparison.bounds.at_most},  // infinite: null
           {"certificate_size", comparison.certificate_size}};
 }
 
@@ -199,11 +181,6 @@ void compare_points(const VerifyCommand& command, const gcode::SourceText& old_s
   }
 }
 
-void append(const std::vector<Violation>& violations, Verification& verification) {
-  verification.violations.insert(verification.violations.end(), violations.begin(),
-                                 violations.end());
-}
-
 // Says what was found, and returns the exit code. `added`: lines of a profile, which are not
 // compared.
 int tell(const VerifyCommand& command, const Verification& verification, std::size_t added,
@@ -277,8 +254,8 @@ int run(const VerifyCommand& command) {
       after.reading.text.language == gcode::Language::kRs274) {
     compare_points(command, *old_source, *new_source, verification);
   }
-  append(added.violations, verification);
-  append(verified->in_brackets, verification);
+  std::ranges::move(added.violations, std::back_inserter(verification.violations));
+  std::ranges::move(verified->in_brackets, std::back_inserter(verification.violations));
   return tell(command, verification, added.lines, verified->of_new, compared);
 }
 

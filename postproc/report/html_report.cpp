@@ -106,7 +106,7 @@ Json path_columns(const PagePath& path) {
           {"speed_after", speed(&PageVertex::speed_after)}};
 }
 
-Json path_of(const SmoothReport& report, std::size_t most_vertices) {
+Json path_of(const SmoothReport& report) {
   const SmoothResult& result = report.result;
   const SmoothOptions& options = report.options;
   if (!result.understood) return path_columns({});
@@ -127,9 +127,10 @@ Json path_of(const SmoothReport& report, std::size_t most_vertices) {
   const ReadProgram new_program{&after, &new_meaning};
   const Verification verification =
       verify(old_program, new_program, {options.tolerance_mm, options.tolerance_kind});
-  Json columns = path_columns(
-      page_path(old_program, new_program, verification, result.runs,
-                {options.tolerance_mm, options.tolerance_kind, most_vertices, options.machine}));
+  Json columns = path_columns(page_path(old_program, new_program, verification, result.runs,
+                                        {.tolerance_mm = options.tolerance_mm,
+                                         .kind = options.tolerance_kind,
+                                         .machine = options.machine}));
   columns["events"] = verification.events_compared;
   return columns;
 }
@@ -159,16 +160,14 @@ std::string filled(std::string_view page,
 
 }  // namespace
 
-Json page_data(const SmoothReport& report, const HtmlReportOptions& options) {
+Json page_data(const SmoothReport& report, const std::string& command) {
   Json figures = smooth_json(report);
   figures["runs"] = columns_of(figures["runs"]);
-  return {{"report", std::move(figures)},
-          {"command", options.command},
-          {"path", path_of(report, options.most_vertices)}};
+  return {{"report", std::move(figures)}, {"command", command}, {"path", path_of(report)}};
 }
 
-std::string html_report(const SmoothReport& report, const HtmlReportOptions& options) {
-  const Json data = page_data(report, options);
+std::string html_report(const SmoothReport& report, const std::string& command) {
+  const Json data = page_data(report, command);
   const std::string json = data.dump(-1, ' ', false, Json::error_handler_t::replace);
   return filled(page_template(), {{"@TITLE@", html_safe(report.source.name())},
                                   {"@STYLE@", page_style()},

@@ -4,7 +4,6 @@
 // input and options give the same bytes.
 #pragma once
 
-#include <cstddef>
 #include <string>
 
 #include "postproc/report/page_path.h"
@@ -13,15 +12,11 @@
 
 namespace batten::postproc {
 
-struct HtmlReportOptions {
-  std::string command;                 // as it was called, for the reader; may be empty
-  std::size_t most_vertices = 400000;  // see PagePathOptions
-};
-
-[[nodiscard]] std::string html_report(const SmoothReport& report, const HtmlReportOptions& options);
+// `command`: as it was called, for the reader; may be empty.
+[[nodiscard]] std::string html_report(const SmoothReport& report, const std::string& command);
 
 // {"report": .., "command": "", "path": ..}, as postproc/report/page/data.js reads it. `report` is
 // that of json_report, its runs as one list per field.
-[[nodiscard]] Json page_data(const SmoothReport& report, const HtmlReportOptions& options);
+[[nodiscard]] Json page_data(const SmoothReport& report, const std::string& command);
 
 }  // namespace batten::postproc

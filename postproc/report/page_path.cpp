@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -413,10 +414,6 @@ void for_each_speed(const StretchChain& chain, const Use& use) {
   }
 }
 
-using geometry::Line;
-using geometry::PathPiece;
-using geometry::Point3;
-
 // 1/mm, of the circle through three places; 0 where two of them are one.
 double circle_through(const Point3& a, const Point3& b, const Point3& c) {
   const double sides = (b - a).norm() * (c - b).norm() * (c - a).norm();
@@ -424,7 +421,7 @@ double circle_through(const Point3& a, const Point3& b, const Point3& c) {
   return 2 * (b - a).cross(c - b).norm() / sides;
 }
 
-bool is_line(const PathPiece& piece) { return std::holds_alternative<Line>(piece); }
+bool is_line(const PathPiece& piece) { return std::holds_alternative<geometry::Line>(piece); }
 
 double at_joint(const PathPiece& before, const PathPiece& after) {
   if (is_line(before) && is_line(after)) {
@@ -584,7 +581,7 @@ double share_of_piece(const PathPiece& piece, const Point3& place) {
     double angle = std::atan2(arc->axis.dot(from.cross(to)),
                               from.dot(to) - arc->axis.dot(from) * arc->axis.dot(to));
     if (arc->sweep < 0) angle = -angle;
-    constexpr double kTurn = 2 * 3.14159265358979323846;
+    constexpr double kTurn = 2 * std::numbers::pi;
     const double sweep = std::abs(arc->sweep);
     // Places a little before the start or behind the end by rounding belong to that end.
     if (angle < 0 && angle + kTurn > sweep) angle = -angle < angle + kTurn - sweep ? 0 : sweep;

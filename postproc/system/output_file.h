@@ -51,7 +51,7 @@ struct PartWriter {
 
 struct WriteRequest {
   std::filesystem::path target;  // links are followed: the file they lead to is replaced
-  std::string_view bytes;
+  std::string_view bytes = {};
   bool replace_existing = false;
   std::function<bool()> stop = {};  // asked between parts of the file; true: give up
   // For files too long to be held in memory: hands one part after the other to the writer, in

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -16,19 +17,9 @@ std::string_view environment(const char* name) {
   return value == nullptr ? std::string_view() : std::string_view(value);
 }
 
-std::string_view code_of(Ink ink) {
-  switch (ink) {
-    case Ink::kError:
-      return "\x1b[1;31m";
-    case Ink::kWarning:
-      return "\x1b[1;33m";
-    case Ink::kNote:
-      return "\x1b[1m";
-    case Ink::kGood:
-      break;
-  }
-  return "\x1b[1;32m";
-}
+// By Ink.
+constexpr std::array<std::string_view, 4> kCodes = {"\x1b[1;31m", "\x1b[1;33m", "\x1b[1m",
+                                                    "\x1b[1;32m"};
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
 
@@ -63,7 +54,7 @@ bool shows_colour() {
 
 std::string inked(std::string_view text, Ink ink, bool colour) {
   if (!colour) return std::string(text);
-  return std::string(code_of(ink)) + std::string(text) + "\x1b[0m";
+  return fmt::format("{}{}\x1b[0m", kCodes.at(static_cast<std::size_t>(ink)), text);
 }
 
 std::string rate_text(double bytes_per_second) {

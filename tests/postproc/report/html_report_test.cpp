@@ -36,9 +36,7 @@ class HtmlReport : public testing::Test {
     return {
         .source = source_, .options = options_, .result = result_, .output_file = "part.smooth.nc"};
   }
-  [[nodiscard]] std::string page() const {
-    return html_report(report(), {.command = "batten smooth part.nc"});
-  }
+  [[nodiscard]] std::string page() const { return html_report(report(), "batten smooth part.nc"); }
   // What stands in the page's data element.
   [[nodiscard]] Json data() const {
     const std::string text = page();

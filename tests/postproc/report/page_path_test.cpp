@@ -281,9 +281,8 @@ TEST(PageData, HasTheSpeedOfTheOldProgramBeforeAndOfTheNewOneAfter) {
   result.understood = true;
   result.proved = true;
   result.text = kFast;
-  const Json path =
-      page_data({.source = source, .options = options, .result = result, .output_file = ""},
-                {.command = ""})["path"];
+  const Json path = page_data(
+      {.source = source, .options = options, .result = result, .output_file = ""}, "")["path"];
 
   const std::vector<std::int64_t> x = column(path["x"]);
   const std::vector<std::int64_t> before = column(path["speed_before"]);
