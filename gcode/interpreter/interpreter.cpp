@@ -68,7 +68,7 @@ class BlockDiagnostics {
                                       : fmt::format("{}.{}", code / 10, code % 10)));
   }
 
-  // The whole block is at fault. `id`: of a warning (gcode/reading/explained_diagnostics.h).
+  // The whole block is at fault. `id`: of a warning (docs/diagnostics.md).
   void report(std::string_view id, std::string message) {
     report(id, program_.blocks[block_].span, std::move(message));
   }

@@ -1,17 +1,14 @@
 // `batten explain ID`: what a reason, a message or a violation means, and what to do about it.
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "gcode/reading/explained_diagnostics.h"
-
 namespace batten::postproc {
 
-// The violations that `batten verify` can find (Violation::id), each once.
-[[nodiscard]] std::span<const gcode::ExplainedDiagnostic> explained_violations();
+// docs/diagnostics.md, which is built into the program.
+[[nodiscard]] std::string_view diagnostics_page();
 
 // All ids that can be asked for, sorted, each once: reasons why runs are kept, messages about a
 // program, violations. Some are both a reason and a violation.

@@ -203,7 +203,6 @@ std::string_view name_of(Linearize linearize) { return name_in(linearizations(),
 
 std::string_view name_of(ToleranceKind kind) { return name_in(tolerance_kinds(), kind); }
 std::string_view name_of(Side side) { return name_in(sides(), side); }
-std::string_view name_of(SourceKind source) { return name_in(sources(), source); }
 
 std::string_view name_of(gcode::Units units) {
   if (units == gcode::Units::kUnknown) return "unknown";

@@ -57,7 +57,6 @@ struct Choice {
 [[nodiscard]] std::string_view name_of(Linearize linearize);
 [[nodiscard]] std::string_view name_of(geometry::ToleranceKind kind);
 [[nodiscard]] std::string_view name_of(geometry::Side side);
-[[nodiscard]] std::string_view name_of(gcode::SourceKind source);
 [[nodiscard]] std::string_view name_of(gcode::Units units);  // "mm", "inch", "unknown"
 
 // Whether there may be arcs in runs of this form: the ends of arcs have decimals of their own.

@@ -143,16 +143,6 @@ double arc_scatter(const Run& run) {
   return length > 0 ? std::sqrt(squares / length) : 0;
 }
 
-double greatest_kink(std::span<const TimedPiece> moves) {
-  constexpr double kCorner = 30 * std::numbers::pi / 180;
-  double greatest = 0;
-  for (std::size_t i = 1; i < moves.size(); ++i) {
-    const double turn = turn_between(moves[i - 1].piece, moves[i].piece);
-    if (turn < kCorner) greatest = std::max(greatest, turn);
-  }
-  return greatest;
-}
-
 std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::size_t last) {
   std::vector<TimedPiece> pieces;
   std::size_t next = 0;

@@ -36,9 +36,6 @@ struct RunMotion {
 [[nodiscard]] double turn_between(const geometry::PathPiece& before,
                                   const geometry::PathPiece& after);
 
-// Radians: the greatest turn between two consecutive moves, but for corners (above 30 degrees).
-[[nodiscard]] double greatest_kink(std::span<const TimedPiece> moves);
-
 // The same motions, with their feeds.
 [[nodiscard]] std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first,
                                                    std::size_t last);

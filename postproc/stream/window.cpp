@@ -49,7 +49,8 @@ class WindowWork {
     if (done.outcome != WindowOutcome::kDone) return done;
     done.after = {done.proof.after.value_or(old_after_),
                   before_.says_smoothed || !done.proof.unchanged};
-    done.old = std::make_shared<gcode::ReadPart>(std::move(part.program), std::move(part.meaning));
+    done.old = std::make_shared<gcode::ReadPart>(
+        gcode::ReadPart{std::move(part.program), std::move(part.meaning)});
     setting_.source.release_pages({place_.from.text.begin, place_.end});
     return done;
   }

@@ -278,22 +278,6 @@ double greatest_curvature(std::span<const Point3> p) {
   return most;
 }
 
-double chord_error(const Run& run, const SmoothCurve& meant, double rounding) {
-  double squares = 0;
-  geometry::SplineWalk curve(meant.curve.basis().knots(), meant.curve.control_points());
-  for (std::size_t i = 0; i + 1 < run.points.size(); ++i) {
-    const double u = 0.5 * (meant.vertex_parameters[i] + meant.vertex_parameters[i + 1]);
-    const Point3 middle = 0.5 * (run.points[i] + run.points[i + 1]);
-    const Vector3 off = curve.point_at(u) - middle;
-    const Vector3 along = run.points[i + 1] - run.points[i];
-    const double length = along.squaredNorm();
-    const double slide = length > 0 ? off.dot(along) / length : 0;
-    squares += (off - slide * along).squaredNorm();
-  }
-  const double chords = std::sqrt(squares / static_cast<double>(run.points.size() - 1));
-  return meant.noise > 2 * rounding ? std::max(chords, meant.noise) : chords;
-}
-
 CurvatureProfile::CurvatureProfile(const geometry::BsplineCurve& curve) {
   constexpr int kParts = 8;
   geometry::SplineWalk walk(curve.basis().knots(), curve.control_points());

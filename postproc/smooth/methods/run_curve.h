@@ -59,11 +59,6 @@ struct CurveRequest {
 // 1/mm: the greatest of the circles through three neighbouring vertices.
 [[nodiscard]] double greatest_curvature(std::span<const geometry::Point3> points);
 
-// How far the chords of the run are from the curve that was meant, as the height of equal chords:
-// the rms distance of their middles (mm). Noisy vertices are as far off as they scatter.
-[[nodiscard]] double chord_error(const Run& run, const geometry::SmoothCurve& meant,
-                                 double rounding);
-
 // How a curve bends, looked at in some points of each span.
 class CurvatureProfile {
  public:

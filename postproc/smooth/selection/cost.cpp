@@ -36,9 +36,9 @@ double time_of(const Figures& figures, const CostScale& scale) {
   return 1 + (figures.times.programmed - scale.original.times.programmed) / scale.alone;
 }
 
-// What is more than it was counts by its logarithm: a run of ten blocks may become one of a
-// hundred.
-double counted(double ratio) { return ratio > 1 ? 1 + std::log(ratio) : ratio; }
+// What is more than it was counts by its logarithm, since a run of ten blocks may become one of a
+// hundred, and more than a gain does: who loses it has not asked for a change.
+double counted(double ratio) { return ratio > 1 ? 1 + kCost.loss * std::log(ratio) : ratio; }
 
 double distance_before(const CostScale& scale) {
   return std::max(scale.original.distance, scale.near);

@@ -29,6 +29,16 @@ std::vector<TimedPiece> cuts_of(const std::string& text) {
   return cuts;
 }
 
+// Radians: the greatest turn between two consecutive moves, but for corners (above 30 degrees).
+double greatest_kink(std::span<const TimedPiece> moves) {
+  double greatest = 0;
+  for (std::size_t i = 1; i < moves.size(); ++i) {
+    const double turn = turn_between(moves[i - 1].piece, moves[i].piece);
+    if (turn < 30 * kDegree) greatest = std::max(greatest, turn);
+  }
+  return greatest;
+}
+
 double time_of(const std::string& text) {
   return cutting_time(cuts_of(text), *find_machine("linuxcnc-fast"), gcode::PathMode::kBlending);
 }
