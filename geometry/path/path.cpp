@@ -192,12 +192,6 @@ double length_of(const PathPiece& piece) {
   return integrate_speed([&bezier](double t) { return bezier_first(bezier, t).norm(); });
 }
 
-double length_of(std::span<const PathPiece> path) {
-  double sum = 0;
-  for (const PathPiece& piece : path) sum += length_of(piece);
-  return sum;
-}
-
 double curvature_at(const PathPiece& piece, double t) {
   if (std::holds_alternative<Line>(piece)) return 0;
   if (const auto* arc = std::get_if<Arc>(&piece)) {

@@ -49,7 +49,6 @@ using Path = std::vector<PathPiece>;
 
 // mm. Exact for lines and arcs of constant radius; else by quadrature (relative error below 1e-9).
 [[nodiscard]] double length_of(const PathPiece& piece);
-[[nodiscard]] double length_of(std::span<const PathPiece> path);
 
 // 1/mm at t. 0 on lines.
 [[nodiscard]] double curvature_at(const PathPiece& piece, double t);

@@ -51,25 +51,21 @@ std::optional<double> decimal(std::string_view text) {
 // "0.01" and "0.01mm" are millimetres, "0.0005in" (or inch) inches, a blank before the unit or not.
 // Returns millimetres; `inch` is set where inches are given. Whether the size makes sense is not
 // asked here.
-std::optional<double> tolerance_in(const std::string& text, Arguments& in,
+std::optional<double> tolerance_in(const std::optional<std::string>& text, Arguments& in,
                                    std::optional<double>& inch) {
-  std::string_view number = trimmed(text);
+  if (!text) return std::nullopt;
+  std::string_view number = trimmed(*text);
   const bool inches = take_suffix(number, "inch") || take_suffix(number, "in");
   if (!inches) take_suffix(number, "mm");
   const auto value = decimal(number);
   if (!value) {
     const bool comma = number.find(',') != std::string_view::npos;
-    in.complain("--tolerance: '{}', expected a length such as 0.01, 0.01mm or 0.0005in{}", text,
+    in.complain("--tolerance: '{}', expected a length such as 0.01, 0.01mm or 0.0005in{}", *text,
                 comma ? " (with a point, not a comma)" : "");
   }
   if (!value || !inches) return value;
   inch = value;
   return *value * gcode::millimetres_per(gcode::Units::kInch);
-}
-
-std::optional<double> tolerance_given(Arguments& in, std::optional<double>& inch) {
-  const auto text = in.given.value("tolerance");
-  return text ? tolerance_in(*text, in, inch) : std::nullopt;
 }
 
 std::optional<double> read_decimal(std::string_view option, std::string_view text, Arguments& in) {
@@ -292,7 +288,8 @@ void read_smooth_options(SmoothingCommand& command, Arguments& in) {
   read_target(command, in);
   command.own_machine = machine_given(options.target, in);
   options.machine = command.own_machine.get();
-  options.tolerance_mm = tolerance_given(in, options.tolerance_inch).value_or(options.tolerance_mm);
+  const auto tolerance = tolerance_in(in.given.value("tolerance"), in, options.tolerance_inch);
+  options.tolerance_mm = tolerance.value_or(options.tolerance_mm);
   choose(options.tolerance_kind, "tolerance-kind", tolerance_kinds(), in);
   choose(options.side, "side", sides(), in);
   read_language_into(options, in);
@@ -363,7 +360,8 @@ VerifyCommand verify_command(Arguments& in) {
   choose(command.side, "side", sides(), in);
   add_problems(problems_of_side(command.side, command.tolerance_kind), in);
   std::optional<double> inch;
-  command.tolerance_mm = tolerance_given(in, inch).value_or(command.tolerance_mm);
+  command.tolerance_mm =
+      tolerance_in(in.given.value("tolerance"), in, inch).value_or(command.tolerance_mm);
   if (!(command.tolerance_mm > 0)) {
     in.complain("--tolerance: '{}', expected a length above 0, such as 0.01",
                 in.given.text("tolerance"));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "postproc/report/smooth_report.h"
 #include "postproc/text/json_values.h"
 #include "postproc/text/words.h"
 
@@ -15,13 +16,9 @@ namespace {
 // Less than any digit that is shown.
 constexpr double kNothing = 1e-6;
 
-double percent(double before, double after) {
-  return before > kNothing ? 100 * (after / before - 1) : 0;
-}
-
 // A figure in a column, and how it was changed.
 std::string changed(const std::string& figure, double before, double after) {
-  const double change = percent(before, after);
+  const double change = before > kNothing ? 100 * (after / before - 1) : 0;
   const bool same = std::abs(change) < 0.5;
   return fmt::format(" {:>10} {:>7}", figure, same ? "" : fmt::format("{:+.0f} %", change));
 }
@@ -54,21 +51,10 @@ std::string sentence_of(const Exploration& found) {
                : "There is no run that may be rewritten: batten smooth --dry-run tells why.";
   }
   const ExploredRow& row = found.rows[*found.recommended];
-  std::string gains;
-  const auto add = [&](double before, double after, std::string_view less, std::string_view more) {
-    const double change = percent(before, after);
-    if (std::abs(change) < 0.5) return;
-    gains += fmt::format("{} {:.0f} % {}", gains.empty() ? ":" : ",", std::abs(change),
-                         change < 0 ? less : more);
-  };
-  const auto& [options, old, now, dominated, proved] = row;
-  add(old.time_s, now.time_s, "less time", "more time");
-  add(old.blocks, now.blocks, "fewer blocks", "more blocks");
-  add(old.path.distance_mm, now.path.distance_mm, "nearer to the path that was meant",
-      "farther from the path that was meant");
-  add(old.path.roughness, now.path.roughness, "smoother", "rougher");
+  const SmoothOptions& options = row.options;
   return fmt::format("Recommended is a tolerance of {:g} mm, output {}, prefer {}{}.",
-                     options.tolerance_mm, name_of(options.output), name_of(options.prefer), gains);
+                     options.tolerance_mm, name_of(options.output), name_of(options.prefer),
+                     changes_text(row.before.four(), row.after.four()));
 }
 
 // Arguments that smooth the program so; none where nothing is recommended.

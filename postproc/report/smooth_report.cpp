@@ -119,7 +119,6 @@ constexpr std::size_t kMostReasons = 8;
 
 std::string change(std::size_t before, std::size_t after) {
   if (before == after) return fmt::format("{}, unchanged", before);
-  if (before == 0) return fmt::format("{} -> {}", before, after);
   const double percent = 100 * (static_cast<double>(after) / static_cast<double>(before) - 1);
   return fmt::format("{} -> {}  ({:+.0f} %)", before, after, percent);
 }
@@ -323,9 +322,6 @@ void add_outlook(const SmoothReport& report, std::string& lines) {
                            result.path_after.distance_mm);
   const Eigen::Array3d clearly(kCost.clearly_faster, kCost.clearly_smaller, kCost.clearly_nearer);
   if (!(length > 0) || (now.head(2) <= clearly.head(2) * before.head(2)).any()) return;
-  constexpr std::string_view kChanges[][2] = {{"less time", "more time"},
-                                              {"fewer blocks", "more blocks"},
-                                              {"nearer to the path", "farther from the path"}};
   std::string said;
   for (int row = 0; row < outlook.others.rows(); ++row) {
     Eigen::Array3d other = outlook.others.row(row).transpose();
@@ -333,22 +329,16 @@ void add_outlook(const SmoothReport& report, std::string& lines) {
     other.head(2) += before.head(2);
     const bool slower = other[0] > (1 + kCost.longer) * now[0];
     if (slower || !(other <= clearly * now).any()) continue;
-    std::string changes;
-    for (int i = 0; i < other.size(); ++i) {
-      const double percent = now[i] > 0 ? 100 * (other[i] / now[i] - 1) : 0;
-      if (std::abs(percent) < 0.5) continue;
-      changes += fmt::format("{} {:.0f} % {}", changes.empty() ? ":" : ",", std::abs(percent),
-                             kChanges[i][percent > 0 ? 1 : 0]);
-    }
+    std::string changes = changes_text({now.data(), 3}, {other.data(), 3});
     if (changes == said) continue;
-    said = changes;
     const SmoothOptions options = other_options(report.options, row);
     const bool form = options.output != report.options.output;
     lines += titled("found",
                     fmt::format("--{} {}{}", form ? "output" : "prefer",
                                 form ? name_of(options.output) : name_of(options.prefer), changes));
+    said = std::move(changes);
   }
-  const bool at_feeds = kCost.clearly_faster * result.time_before_s <= outlook.at_feeds_s;
+  const bool at_feeds = kCost.clearly_faster * result.runs_before_s <= outlook.at_feeds_s;
   if (!said.empty()) {
     lines += titled("", "by the forms that were made; batten explore looks for more");
   } else if (at_feeds && outlook.better == 0) {
@@ -357,6 +347,22 @@ void add_outlook(const SmoothReport& report, std::string& lines) {
 }
 
 }  // namespace
+
+std::string changes_text(std::span<const double> before, std::span<const double> after) {
+  static constexpr std::string_view kChanges[][2] = {
+      {"less time", "more time"},
+      {"fewer blocks", "more blocks"},
+      {"nearer to the path", "farther from the path"},
+      {"smoother", "rougher"}};
+  std::string text;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const double percent = before[i] > 0 ? 100 * (after[i] / before[i] - 1) : 0;
+    if (std::abs(percent) < 0.5) continue;
+    text += fmt::format("{} {:.0f} % {}", text.empty() ? ":" : ",", std::abs(percent),
+                        kChanges[i][percent > 0 ? 1 : 0]);
+  }
+  return text;
+}
 
 std::string summary_text(const SmoothReport& report) {
   const SmoothResult& result = report.result;

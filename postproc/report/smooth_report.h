@@ -51,4 +51,9 @@ struct SmoothReport {
 //     proof         the written text was read again: every rewritten run keeps the tolerance
 [[nodiscard]] std::string summary_text(const SmoothReport& report);
 
+// ": 3 % less time, 84 % fewer blocks, 20 % farther from the path, 50 % smoother": what changes by
+// half a percent or more of time, blocks, distance, roughness (or the first of these), in order.
+[[nodiscard]] std::string changes_text(std::span<const double> before,
+                                       std::span<const double> after);
+
 }  // namespace batten::postproc

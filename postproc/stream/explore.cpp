@@ -141,16 +141,6 @@ void set_proved(const SmoothResult& result, ExploredRow& row) {
   row.after.path = result.path_after;
 }
 
-std::array<double, 4> four_of(const ExploredFigures& f) {
-  return {f.time_s, f.blocks, f.path.distance_mm, f.path.roughness};
-}
-
-bool dominates(const ExploredRow& one, const ExploredRow& other) {
-  const auto a = four_of(one.after);
-  const auto b = four_of(other.after);
-  return a != b && std::ranges::equal(a, b, std::ranges::less_equal{});
-}
-
 Figures as_figures(const ExploredFigures& f) {
   const double t = f.time_s;
   return {{t, t, t}, f.blocks, f.blocks, f.path.distance_mm, f.path.roughness};
@@ -160,8 +150,11 @@ Figures as_figures(const ExploredFigures& f) {
 
 void mark_dominated(std::vector<ExploredRow>& rows) {
   for (ExploredRow& row : rows) {
-    row.dominated =
-        std::ranges::any_of(rows, [&](const ExploredRow& other) { return dominates(other, row); });
+    const auto four = row.after.four();
+    row.dominated = std::ranges::any_of(rows, [&](const ExploredRow& other) {
+      const auto others = other.after.four();
+      return others != four && std::ranges::equal(others, four, std::ranges::less_equal{});
+    });
   }
 }
 

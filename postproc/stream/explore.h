@@ -20,6 +20,10 @@ struct ExploredFigures {
   PathFigures path;                                      // of the runs that may be rewritten
   bool rewritten = false;                                // any of these
   std::array<double, kExploredFeeds.size()> at_feeds{};  // s, with other feeds in its runs
+
+  [[nodiscard]] std::array<double, 4> four() const {
+    return {time_s, blocks, path.distance_mm, path.roughness};
+  }
 };
 
 struct ExploredRow {

@@ -62,8 +62,8 @@ class CollectedResult {
       if (!noted) notes_on_runs_.push_back(std::move(note));
     }
     for (RunReport& run : window.runs) {
-      result.time_before_s += run.time_before_s;
-      result.time_after_s += run.time_after_s;
+      result.runs_before_s += run.time_before_s;
+      result.runs_after_s += run.time_after_s;
       result.path_before += run.path_before;
       result.path_after += run.path_after;
       result.runs.push_back(std::move(run));
@@ -532,7 +532,7 @@ class TranslatedSmoothing {
       run.max_curvature_after = run.max_curvature_before;
       run.deviation_mm = 0;
     }
-    result.time_after_s = result.time_before_s;
+    result.runs_after_s = result.runs_before_s;
     result.path_after = result.path_before;
   }
 

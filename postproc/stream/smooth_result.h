@@ -96,8 +96,8 @@ struct SmoothResult {
   double deviation_mm = 0;
   std::uint32_t deviation_line = 0;
   double corner_mm = 0;      // band reading: greatest distance of a corner that was cut
-  double time_before_s = 0;  // cutting runs only
-  double time_after_s = 0;
+  double runs_before_s = 0;  // their cutting moves only
+  double runs_after_s = 0;
   TimeFigures program_before;  // the source, and what is written
   TimeFigures program_after;
   PathFigures path_before;

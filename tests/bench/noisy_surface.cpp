@@ -135,8 +135,8 @@ void programs(double cam, std::string_view machine, postproc::Prefer prefer,
     fmt::print(
         "{:<6} {:<10} {:<8} {:>4} | {:>8.3f} {:>8.3f} {:>6.1f} % | {} {:<8} | {:>5} {:>5} | "
         "{:.5f} {:.5f}\n",
-        cam, machine, name_of(prefer), seed, result.time_before_s, result.time_after_s,
-        100 * (result.time_after_s / result.time_before_s - 1), rewritten, reasons,
+        cam, machine, name_of(prefer), seed, result.runs_before_s, result.runs_after_s,
+        100 * (result.runs_after_s / result.runs_before_s - 1), rewritten, reasons,
         result.blocks_in, result.blocks_out, geometry::rms_of_cuts(text),
         geometry::rms_of_cuts(result.text));
   }

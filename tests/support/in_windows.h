@@ -91,8 +91,8 @@ inline void expect_same(const InWindows& windows, const SmoothResult& whole) {
   }
   const auto figures = [](const SmoothResult& r) {
     return std::tuple(r.understood, r.units, r.blocks_in, r.blocks_out, r.bytes_out(),
-                      r.added_lines, r.deviation_mm, r.deviation_line, r.corner_mm, r.time_before_s,
-                      r.time_after_s, r.program_before.seconds, r.program_before.slow_s,
+                      r.added_lines, r.deviation_mm, r.deviation_line, r.corner_mm, r.runs_before_s,
+                      r.runs_after_s, r.program_before.seconds, r.program_before.slow_s,
                       r.program_after.seconds, r.program_after.slow_s, r.proved);
   };
   EXPECT_EQ(figures(parts), figures(whole));

@@ -19,7 +19,7 @@ inline SmoothResult five_runs() {
   result.blocks_out = 50;
   result.deviation_mm = 0.0098;
   result.deviation_line = 120;
-  result.time_before_s = result.time_after_s = 3.0;
+  result.runs_before_s = result.runs_after_s = 3.0;
   result.program_before = {4.0, 3.0, 1.5};
   result.program_after = {2.0, 1.0, 0.125};
   RunReport lines;

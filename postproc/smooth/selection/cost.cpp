@@ -36,9 +36,11 @@ double time_of(const Figures& figures, const CostScale& scale) {
   return 1 + (figures.times.programmed - scale.original.times.programmed) / scale.alone;
 }
 
-// What is more than it was counts by its logarithm, since a run of ten blocks may become one of a
-// hundred, and more than a gain does: who loses it has not asked for a change.
-double counted(double ratio) { return ratio > 1 ? 1 + kCost.loss * std::log(ratio) : ratio; }
+// What is more than it was counts more than a gain does, since who loses it has not asked for a
+// change; but a run of ten blocks may become one of a hundred, so that it has an end.
+double counted(double ratio, double loss = kCost.loss) {
+  return ratio > 1 ? 1 + loss * (1 - 1 / ratio) : ratio;
+}
 
 double distance_before(const CostScale& scale) {
   return std::max(scale.original.distance, scale.near);
@@ -54,7 +56,7 @@ double cost_of(const Figures& figures, const CostScale& scale, Prefer prefer) {
                            std::max(scale.original.roughness, kCost.no_kinks);
   return weights.time * time_of(figures, scale) +
          weights.size * counted(size_of(figures, scale.original)) +
-         weights.distance * counted(distance) + weights.roughness * counted(roughness);
+         weights.distance * counted(distance) + weights.roughness * counted(roughness, 1);
 }
 
 bool is_slower(const Times& now, const Times& before, double period) {

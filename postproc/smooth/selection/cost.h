@@ -31,7 +31,7 @@ struct CostTuning {
   // it is less than what a machine repeats.
   double near = 0.03;
   double no_kinks = 1e-3;  // rad/sqrt(mm): less is as smooth
-  double loss = 8;         // what is more than it was counts so many times as much as what is less
+  double loss = 3;  // a little more size or distance counts so many times what as much less does
   // Never slower. The path that was meant is longer than chords inside its bends, by about this.
   double longer = 1e-3;
   double overridden = 0.02;  // slower at other settings of the override, at most

@@ -195,10 +195,10 @@ TEST(Blca, HasTheFiguresOfTheRestatedMethod) {
     for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(row.parameters[i], x[i], 1e-4);
     const Path path = blca_tool_path(curve, row.parameters, tolerance);
     ASSERT_EQ(path.size(), 2 * (x.size() - 1));
-    double length = 0;
-    for (std::size_t i = 1; i < path.size(); i += 2) length += length_of(path[i]);
-    EXPECT_NEAR(length, secants, 1e-6);
-    EXPECT_NEAR(length_of(path), with_jumps, 1e-6);
+    double lengths[2] = {};  // of the jumps, of the secants
+    for (std::size_t i = 0; i < path.size(); ++i) lengths[i % 2] += length_of(path[i]);
+    EXPECT_NEAR(lengths[1], secants, 1e-6);
+    EXPECT_NEAR(lengths[0] + lengths[1], with_jumps, 1e-6);
     EXPECT_NEAR(parabola.chords_length(row.parameters), chords, 1e-6);
     EXPECT_NEAR(row.deviation, deviation, 1e-6);
     // A whole step ends on the curve: the secant meets the next vertex.

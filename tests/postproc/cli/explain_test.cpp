@@ -6,6 +6,7 @@
 #include <regex>
 #include <set>
 
+#include "gcode/state/reason.h"
 #include "tests/support/places.h"
 #include "tests/support/scratch_folder.h"
 
@@ -61,6 +62,7 @@ TEST(Explain, KnowsEveryViolationOfTheVerifier) {
 
 TEST(Explain, KnowsNothingThatIsNeverSaid) {
   Ids said = {"distance"};
+  for (const auto& reason : gcode::reason::explanations()) said.emplace(reason.id);
   for (const std::string_view library : {"gcode", "postproc"}) {
     for (const auto& entry : fs::recursive_directory_iterator(source_folder() / library)) {
       const std::string kind = entry.path().extension().string();

@@ -35,7 +35,7 @@ struct SummaryCase {
 
 void find_nothing(SmoothResult& result) {
   result.program_after = result.program_before;
-  result.time_after_s = result.time_before_s;
+  result.runs_after_s = result.runs_before_s;
   result.blocks_out = result.blocks_in;
   result.path_before = result.path_after = {100, 0.001, 0.1};
 }
@@ -98,13 +98,13 @@ const SummaryCase kSummaries[] = {
     {"OutlookAtItsFeeds",
      [](SmoothResult& result) {
        find_nothing(result);
-       result.outlook.at_feeds_s = 0.995 * result.time_before_s;
+       result.outlook.at_feeds_s = 0.995 * result.runs_before_s;
      },
      {"the program is good here"}},
     {"OutlookOnABetterForm",
      [](SmoothResult& result) {
        find_nothing(result);
-       result.outlook = {.at_feeds_s = result.time_before_s, .better = 1};
+       result.outlook = {.at_feeds_s = result.runs_before_s, .better = 1};
      },
      {},
      {"the program is good", "found"}},

@@ -44,11 +44,11 @@ TEST(CopiedLongRun, IsCopiedPieceByPiece) {
 TEST(CopiedLongRun, TakesAsLongAsInOnePiece) {
   const std::string text = one_long_run(2000);
   const gcode::SourceText source("part.nc", text);
-  const double whole = smooth_program(source, copying()).time_before_s;
+  const double whole = smooth_program(source, copying()).runs_before_s;
   const SmoothResult cut = smooth_program(source, copying(), {}, kShort);
   ASSERT_GE(cut.runs.size(), 10U);
-  EXPECT_NEAR(cut.time_before_s, whole, 1e-3 * whole);
-  EXPECT_EQ(cut.time_after_s, cut.time_before_s);
+  EXPECT_NEAR(cut.runs_before_s, whole, 1e-3 * whole);
+  EXPECT_EQ(cut.runs_after_s, cut.runs_before_s);
 }
 
 }  // namespace

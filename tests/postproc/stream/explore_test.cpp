@@ -34,8 +34,8 @@ gcode::SourceText sample(const std::string& name) {
 // the time of their runs and of all else.
 void expect_figures(const ExploredRow& row, const SmoothResult& result) {
   const ExploredFigures& figures = row.after;
-  const double elsewhere = result.program_before.seconds - result.time_before_s;
-  const double time = row.proved ? result.program_after.seconds : result.time_after_s + elsewhere;
+  const double elsewhere = result.program_before.seconds - result.runs_before_s;
+  const double time = row.proved ? result.program_after.seconds : result.runs_after_s + elsewhere;
   EXPECT_NEAR(figures.time_s, time, 1e-9);
   EXPECT_EQ(figures.blocks, static_cast<double>(result.blocks_out));
   EXPECT_NEAR(figures.path.distance_mm, result.path_after.distance_mm, 1e-12);

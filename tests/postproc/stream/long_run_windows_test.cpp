@@ -146,10 +146,10 @@ TEST(LongRunWindows, TakeAsLongAsTheRunThatTheyAreCutFrom) {
   SmoothOptions options = options_for("linuxcnc");
   options.method = Method::kFair;
   const std::string text = one_run(2000);
-  const double whole = as_a_whole(text, options).time_before_s;
+  const double whole = as_a_whole(text, options).runs_before_s;
   const SmoothResult cut = as_a_whole(text, options, kShortRuns);
   ASSERT_GE(cut.runs.size(), 10U);
-  EXPECT_NEAR(cut.time_before_s, whole, 1e-3 * whole);
+  EXPECT_NEAR(cut.runs_before_s, whole, 1e-3 * whole);
 }
 
 WindowDone second_window(const std::string& text, const TextBefore* begin) {

@@ -60,7 +60,7 @@ TEST(ToleranceKind, OfAPathIsTheDefaultAndCutsNoCornerFurther) {
   EXPECT_EQ(path.corner_mm, 0);
   EXPECT_TRUE(verdict_of(path, ToleranceKind::kPath).proved());
   EXPECT_TRUE(verdict_of(path, ToleranceKind::kBand).proved()) << "the looser reading";
-  EXPECT_LT(smoothed_star(ToleranceKind::kBand).time_after_s, path.time_after_s);
+  EXPECT_LT(smoothed_star(ToleranceKind::kBand).runs_after_s, path.runs_after_s);
 }
 
 // A shift of the whole path by a little more than the tolerance is no cut corner.

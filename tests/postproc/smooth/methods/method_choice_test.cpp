@@ -63,7 +63,7 @@ TEST_P(MethodEndToEnd, IsWrittenAndProvedWithinTheTolerance) {
   EXPECT_EQ(rewritten_runs(result), 1u);
   EXPECT_EQ(rewritten_run(result).method, name_of(GetParam().method));
   EXPECT_LE(result.deviation_mm, 0.05);
-  EXPECT_LE(result.time_after_s, 1.005 * result.time_before_s);
+  EXPECT_LE(result.runs_after_s, 1.005 * result.runs_before_s);
   EXPECT_TRUE(verdict(before, result.text, 0.05).proved());
   expect_rest_copied(before, result);
 }
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
 double time_of_star(Method method, Form output) {
   SmoothOptions options = options_with(method, "grbl");
   options.output = output;
-  return smoothed(star_program(), options).time_after_s;
+  return smoothed(star_program(), options).runs_after_s;
 }
 
 // Times of one method that differ by less than a percent are equal, and then other merits count.

@@ -33,7 +33,7 @@ TEST(Piecewise, RewritesThePartThatGainsAndKeepsTheOtherAndSaysWhy) {
   expect_rest_copied(text, result);
   const std::vector<std::string> lines = lines_of(text);
   EXPECT_NE(result.text.find(lines[1200]), std::string::npos) << "a coarse line";
-  EXPECT_LE(result.time_after_s, 1.005 * result.time_before_s);
+  EXPECT_LE(result.runs_after_s, 1.005 * result.runs_before_s);
   std::uint32_t next = 5;  // the head has four lines
   for (const RunReport& run : result.runs) {
     if (run.last_line < next) continue;
