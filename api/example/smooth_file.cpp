@@ -4,7 +4,6 @@
 
 #include <batten/batten.h>
 
-#include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <iostream>
@@ -37,8 +36,7 @@ int smooth_file(const std::string& file, double tolerance_mm, const std::string&
                                              batten::ProgramUnits::kAsWritten, target);
   std::cerr << "batten " << batten::version() << ": " << smoothed.blocks_before << " -> "
             << smoothed.blocks_after << " blocks, " << smoothed.seconds_before << " -> "
-            << smoothed.seconds_after << " s, at most " << proof.deviation_mm
-            << " mm off\n";
+            << smoothed.seconds_after << " s, at most " << proof.deviation_mm << " mm off\n";
   const batten::ProgramTime time =
       batten::time(smoothed.text, {.machine = "linuxcnc", .target = target});
   std::cerr << "the whole program: " << time.seconds << " s\n";

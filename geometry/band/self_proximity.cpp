@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
 
 #include "geometry/band/tolerance_band_pairs.h"
 #include "geometry/basic/rounding.h"

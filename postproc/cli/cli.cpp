@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 
 #include "postproc/cli/cli_table.h"
 #include "postproc/cli/explain.h"

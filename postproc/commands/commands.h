@@ -59,7 +59,7 @@ struct ExploreCommand {
   std::vector<SmoothOptions> settings;         // of explore_program
   std::vector<std::string> options_of_smooth;  // for the command that is recommended, as given
 };
-[[nodiscard]] int run(const ExploreCommand& command);
+[[nodiscard]] int run(const ExploreCommand& explore);
 
 // How programs are read where none is written.
 struct ReadingCommand {

@@ -1,7 +1,6 @@
 #include "postproc/report/page_path.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>

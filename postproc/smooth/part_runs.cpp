@@ -4,7 +4,6 @@
 #include <atomic>
 #include <iterator>
 #include <mutex>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <variant>

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "gcode/state/reason.h"
 #include "postproc/runs/run_path.h"

@@ -260,7 +260,8 @@ class Prover {
     }
     if (part_.window) {
       round.after = {std::move(control), events_before_next(after)};
-      round.read = std::make_shared<gcode::ReadPart>(std::move(program), std::move(meaning));
+      round.read = std::make_shared<gcode::ReadPart>(
+          gcode::ReadPart{std::move(program), std::move(meaning)});
     }
     return round;
   }

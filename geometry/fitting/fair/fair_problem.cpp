@@ -1,6 +1,5 @@
 #include "geometry/fitting/fair/fair_problem.h"
 
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>

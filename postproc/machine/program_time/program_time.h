@@ -75,6 +75,7 @@ class ProgramTimer {
  public:
   ProgramTimer(const Machine& machine, const StepOptions& options);
   ProgramTimer(const ProgramTimer& other);
+  ProgramTimer& operator=(const ProgramTimer&) = delete;
   ~ProgramTimer();
 
   void add(const gcode::Program& part, const gcode::Interpretation& meaning);

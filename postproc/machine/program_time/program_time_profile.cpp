@@ -1,7 +1,5 @@
 #include "postproc/machine/program_time/program_time_profile.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 

@@ -1,7 +1,6 @@
 #include "postproc/smooth/forms/program_writer.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "gcode/curves/curve_format.h"
 #include "gcode/state/modal_state.h"

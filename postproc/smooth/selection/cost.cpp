@@ -1,7 +1,6 @@
 #include "postproc/smooth/selection/cost.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace batten::postproc {
 
