@@ -124,7 +124,7 @@ TEST_P(Sample, TakesTheTimeThatBattenTimePredicts) {
     for (const auto& [file, when] :
          {std::pair("program.ngc", "before"), std::pair("program.smooth.ngc", "after")}) {
       SCOPED_TRACE(file + name);
-      const auto figure = [&](const char* what, const char* unit) {
+      const auto figure = [&, when = when](const char* what, const char* unit) {
         return report[fmt::format("{}_{}{}", what, when, unit)].get<double>();
       };
       const std::string target = report["output"]["target"];
