@@ -11,7 +11,8 @@ namespace {
 // One block's words at work on the control.
 class WordApplier {
  public:
-  WordApplier(const BlockWords& words, ControlState& state) : words_(words), state_(state) {}
+  WordApplier(const BlockWords& words, ControlState& state)
+      : words_(words), state_(state), units_before_(state.modal.units) {}
 
   StateEffect apply() {
     for (const Code code : words_.g_codes()) apply_g(code);
@@ -151,9 +152,10 @@ class WordApplier {
 
   std::optional<double> feed_of(const Word& f) const {
     const ModalState& now = state_.modal;
-    // F of a dwell or a thread is no feed.
+    // F of a dwell or a thread is no feed. Beside a word that changes the units, LinuxCNC takes F in
+    // the units before it, grbl in those after it.
     const bool known = f.is_number && f.value > 0 && now.feed_mode != FeedMode::kUnknown &&
-                       !words_.has_trait(trait::kOwnFeed);
+                       now.units == units_before_ && !words_.has_trait(trait::kOwnFeed);
     if (!known) return std::nullopt;
     const bool inches = now.units == Units::kInch && now.feed_mode != FeedMode::kInverseTime;
     return inches ? f.value * kMillimetresPerInch : f.value;
@@ -323,6 +325,7 @@ class WordApplier {
 
   const BlockWords& words_;
   ControlState& state_;
+  Units units_before_;
   StateEffect effect_;
 };
 

@@ -124,7 +124,11 @@ constexpr Explanation kExplanations[] = {
      "G92 and G94 cycles.",
      "Programs for lathes are copied as they are. The warning names the mark: if this is a program "
      "for a mill, write that word in another way."},
-    {kFeedUnknown, "No feed is known for this motion.", "Write F before the first cutting move."},
+    {kFeedUnknown,
+     "No feed is known for this motion. F in a block that changes the units (G20 F6) is none: some "
+     "controls take it in the units before the block, others in those after it.",
+     "Write F before the first cutting move, in a block behind that of the units; or say --units "
+     "where the control has them from the beginning."},
     {kLoopBody,
      "The block is inside a loop, a branch, a subprogram or a contour that a cycle uses: it can be "
      "entered in a state that is not seen here.",

@@ -356,7 +356,8 @@ std::string changes_text(std::span<const double> before, std::span<const double>
       {"smoother", "rougher"}};
   std::string text;
   for (std::size_t i = 0; i < after.size(); ++i) {
-    const double percent = before[i] > 0 ? 100 * (after[i] / before[i] - 1) : 0;
+    // Less than a millionth is no digit that is shown.
+    const double percent = before[i] > 1e-6 ? 100 * (after[i] / before[i] - 1) : 0;
     if (std::abs(percent) < 0.5) continue;
     text += fmt::format("{} {:.0f} % {}", text.empty() ? ":" : ",", std::abs(percent),
                         kChanges[i][percent > 0 ? 1 : 0]);

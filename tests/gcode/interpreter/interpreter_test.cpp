@@ -105,11 +105,19 @@ TEST(Interpreter, ChainsMotionsWithoutGaps) {
 // --- feed ---------------------------------------------------------------------------------------
 
 TEST(Interpreter, ReadsFeedsInMillimetresPerMinute) {
-  const Interpreted it("G20 G94 F10\nG1 X1\nF20\nG93\nG1 X2 F3\n");
-  EXPECT_EQ(it.state_after_line(1).feed, 254.0);
-  EXPECT_EQ(it.state_after_line(3).feed, 508.0);
-  EXPECT_EQ(it.state_after_line(4).feed, std::nullopt);  // 508 is not 508 per minute
-  EXPECT_EQ(it.state_after_line(5).feed, 3.0);           // 1/min has no inch in it
+  const Interpreted it("G20\nG94 F10\nG1 X1\nF20\nG93\nG1 X2 F3\n");
+  EXPECT_EQ(it.state_after_line(2).feed, 254.0);
+  EXPECT_EQ(it.state_after_line(4).feed, 508.0);
+  EXPECT_EQ(it.state_after_line(5).feed, std::nullopt);  // 508 is not 508 per minute
+  EXPECT_EQ(it.state_after_line(6).feed, 3.0);           // 1/min has no inch in it
+}
+
+// LinuxCNC reads such an F in the units before the block, grbl in those after it.
+TEST(Interpreter, TakesNoFeedFromABlockThatChangesTheUnits) {
+  EXPECT_EQ(Interpreted("G20 F6\n").last_state().feed, std::nullopt);
+  EXPECT_EQ(Interpreted("G20\nF6\nF6 G21\n").last_state().feed, std::nullopt);
+  EXPECT_EQ(Interpreted("G21\nG20 F6\nG1 X1\nF7\n").last_state().feed, 7 * 25.4);
+  EXPECT_EQ(Interpreted("G20\nG20 F10\n").last_state().feed, 254.0);
 }
 
 TEST(Interpreter, TakesNoFeedFromADwellOrAZero) {

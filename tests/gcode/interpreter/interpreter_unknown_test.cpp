@@ -214,7 +214,7 @@ TEST(InterpreterUnknown, ADeletableBlockMakesUnknownWhatItChanges) {
 }
 
 TEST(InterpreterUnknown, ModesThatAreSetAgainAreKnownAgain) {
-  const Interpreted it(std::string(kStart) + "M98 P1\nG21 G90 G18 G94 G61 G40 F50\nG1 X1\n");
+  const Interpreted it(std::string(kStart) + "M98 P1\nG21 G90 G18 G94 G61 G40\nG1 X1 F50\n");
   const ModalState& now = it.last_state();
   EXPECT_EQ(now.units, Units::kMillimetre);
   EXPECT_EQ(now.distance, DistanceMode::kAbsolute);

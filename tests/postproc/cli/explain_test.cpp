@@ -96,7 +96,10 @@ TEST(Explain, SaysForEveryIdWhatToDoInShortLines) {
   for (const std::string_view id : ids) {
     std::string text = explanation_of(id);
     EXPECT_TRUE(text.starts_with(std::string(id) + ":")) << text;
-    EXPECT_NE(text.find("What to do:"), std::string::npos) << text;
+    EXPECT_NE(text.find("What to do:\n    "), std::string::npos) << text;
+    EXPECT_EQ(text.find("What to do:\n    \n"), std::string::npos) << text;
+    EXPECT_EQ(text.find_first_of("`|"), std::string::npos) << text;
+    EXPECT_EQ(text.find("]("), std::string::npos) << text;
     EXPECT_NE(all.find("  " + std::string(id) + " "), std::string::npos) << id;
     EXPECT_NE(page.find("`" + std::string(id) + "`"), std::string::npos) << id;
     for (std::size_t end; (end = text.find('\n')) != std::string::npos; text.erase(0, end + 1)) {

@@ -60,7 +60,7 @@ std::string arcs_program(std::size_t arcs, std::size_t rising = 0) {
   return text;
 }
 
-constexpr const char* kStart = "G21 G90 G94 G17 F100 S500\nG0 X0 Y0 Z0\n";  // 2 lines
+constexpr const char* kStart = "G21 G90 G94 G17 S500\nG0 X0 Y0 Z0 F100\n";  // 2 lines
 constexpr const char* kThree = "G1 X1\nX2 Y1\nX3\n";
 constexpr const char* kThreeMore = "G1 X4\nX5 Y2\nX6\n";
 
@@ -122,15 +122,15 @@ INSTANTIATE_TEST_SUITE_P(
                     "1-1 state-change; 2-2 rapid; 3-5 run; 6-6 misc-function; "
                     "7-8 position-unknown; 9-9 too-short"},
         OutlineCase{"StartsAfterTheMotionThatMakesThePositionKnown",
-                    "G21 F9\nG1 X0 Y0\nX1\nX2\nX3\n",
+                    "G21\nG1 X0 Y0 F9\nX1\nX2\nX3\n",
                     "1-1 state-change; 2-2 position-unknown; 3-5 run"},
         OutlineCase{"ZIsNamedForTheFirstTimeInTheMiddle",
-                    "G21 F9\nG0 X0 Y0\nG1 X1\nX2\nX3\nZ1\nX4\nX5\nX6\n",
+                    "G21\nG0 X0 Y0 F9\nG1 X1\nX2\nX3\nZ1\nX4\nX5\nX6\n",
                     "1-1 state-change; 2-2 rapid; 3-5 run; 6-6 position-unknown; 7-9 run"},
         OutlineCase{"KeepsWhatIsAroundARun",
-                    "(head)\n\nG21 F9\nG0 X0 Y0\n(before)\nG1 X1\nX2\nX3\n(after)\n\nM30\n(end)\n",
+                    "(head)\n\nG21\nG0 X0 Y0 F9\n(before)\nG1 X1\nX2\nX3\n(after)\n\nM30\n(end)\n",
                     "1-3 state-change; 4-5 rapid; 6-8 run; 9-12 program-end"},
-        OutlineCase{"KeepsAFeedAfterARun", "G21 F9\nG0 X0 Y0\nG1 X1\nX2\nX3\nF20\n(end)\n",
+        OutlineCase{"KeepsAFeedAfterARun", "G21\nG0 X0 Y0 F9\nG1 X1\nX2\nX3\nF20\n(end)\n",
                     "1-1 state-change; 2-2 rapid; 3-5 run; 6-7 comment"},
         OutlineCase{"KeepsComments", "(only)\n\n", "1-2 comment"}, OutlineCase{"Nothing", "", ""},
         OutlineCase{"CopiesMotionsWithoutLengthAtItsEnds",
@@ -160,7 +160,7 @@ TEST(RunGrouping, CopiesChainsThatAreTooShort) {
 }
 
 TEST(Run, HasThePlacesInMillimetres) {
-  const Grouped grouped("G20 F10\nG0 X0 Y0 Z0\nG1 X1 Z-.125\nY2\nX0 Y0 Z0\n");
+  const Grouped grouped("G20\nG0 X0 Y0 Z0 F10\nG1 X1 Z-.125\nY2\nX0 Y0 Z0\n");
   const postproc::Run& run = grouped.only_run();
   ASSERT_EQ(run.points.size(), 4U);
   EXPECT_LT((run.points[1] - Point3(25.4, 0, -3.175)).norm(), 1e-12);
@@ -199,7 +199,7 @@ TEST(Run, DropsThePointsOfMotionsWithoutLengthButNotTheirComments) {
 }
 
 TEST(Run, StandsAtZeroOnAxesThatItDoesNotName) {
-  const Grouped grouped("G21 F9\nG0 X0 Y0 Z7\nG28 Z0\nG1 X1\nX2\nX3\n");
+  const Grouped grouped("G21\nG0 X0 Y0 Z7 F9\nG28 Z0\nG1 X1\nX2\nX3\n");
   for (const Point3& point : grouped.only_run().points) {
     EXPECT_EQ(point.z(), 0.0);
   }
@@ -302,7 +302,7 @@ TEST(RunGrouping, CoversEveryBlockOnceAndRunsMeetTheirMotions) {
     std::mt19937 random(static_cast<unsigned>(seed));
     // Cubed: early entries come more often, so that there are runs.
     std::uniform_real_distribution<double> pick(0, 1);
-    std::string text = "G21 G90 G94 F100\nG0 X0 Y0 Z0\n";
+    std::string text = "G21 G90 G94\nG0 X0 Y0 Z0 F100\n";
     for (int i = 0; i < 80; ++i) {
       const double p = pick(random);
       text += kBlocks[static_cast<std::size_t>(p * p * p * std::size(kBlocks))];

@@ -1,6 +1,7 @@
 // F words where the state of the control is not known, or where what uses them is not followed:
 // behind calls, labels and unknown words, before cycles and user functions, at a change of units.
 // The verifier must compare each of them, in every language.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -68,6 +69,17 @@ BeforeTheEndOfASubprogram|G1 X5 F9\nF750\nM99\n
 BeforeTheEnd|G1 X5 F9\nF750\nM30\n
 AtTheEndOfTheText|G1 X5 F9\nF750\n
 )");
+}
+
+TEST(FeedsInUnknownStates, RepeatNoneThatStandsBesideOtherUnits) {
+  const std::string_view cuts = "\nX2\nM30\n";
+  for (const auto& [units, proved] : {std::pair("G20 F9", false), std::pair("G21 F9", true)}) {
+    const std::string begin = fmt::format("{}{}\nG1 X1", kRs274Begin, units);
+    const auto with = fmt::format("{} F9{}", begin, cuts);
+    const auto without = fmt::format("{}{}", begin, cuts);
+    EXPECT_EQ(is_proved(with, without, Language::kRs274), proved) << units;
+    EXPECT_EQ(is_proved(without, with, Language::kRs274), proved) << units;
+  }
 }
 
 TEST(FeedsInUnknownStates, AreComparedInSiemensPrograms) {

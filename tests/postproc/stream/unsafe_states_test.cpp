@@ -155,7 +155,7 @@ TEST(UnsafePrograms, ThatOthersCallAreKept) {
 // The first motion of a file leads from nowhere.
 TEST(UnsafePrograms, HaveAFirstMotionFromNowhere) {
   const std::string before =
-      "G21 G90 G17 F2000.\nG1 X0. Y0.\n" + wave_part(gcode::Language::kRs274, 0) + "M30\n";
+      "G21 G90 G17\nG1 X0. Y0. F2000.\n" + wave_part(gcode::Language::kRs274, 0) + "M30\n";
   const SmoothResult result = smoothed(before, options_for("fanuc"));
   EXPECT_EQ(reason_at(inspected(before, options_for("fanuc")), 2), "position-unknown");
   EXPECT_TRUE(is_rewritten_within(result, 3, 200));

@@ -135,6 +135,13 @@ TEST_F(Choose, PutsTheBestFirst) {
   }
 }
 
+// Who loses blocks or nearness has not asked for a change.
+TEST_F(Choose, BuysNoLittleTimeWithManyBlocksOrMuchDistance) {
+  EXPECT_EQ(choose({candidate(9.88, 100, 0.004)}).order, Order{0});
+  EXPECT_TRUE(choose({candidate(9.88, 150, 0.006)}).order.empty());
+  EXPECT_EQ(choose({candidate(9, 1000, 0.04)}).order, Order{0}) << "a tenth is worth them";
+}
+
 TEST_F(Choose, PutsTheNearerFirstAmongEqualTimesAndSizesAndTheSmallerAmongEqualTimesAndDistances) {
   EXPECT_EQ(choose({candidate(8, 50, 0.002), candidate(8, 50, 0.0001)}).order, (Order{1, 0}));
   EXPECT_EQ(choose({candidate(8, 60, 0.002), candidate(8, 50, 0.002)}).order, (Order{1, 0}));
