@@ -56,10 +56,9 @@ struct Explained {
 };
 
 // Markdown without its marks; a bracket that only names another page goes.
-std::string plain(std::string text) {
+std::string plain(const std::string& cell) {
   static const std::regex page(R"( \(\[[^\]]*\]\([^)]*\)\))");
-  static const std::regex link(R"(\[([^\]]*)\]\([^)]*\))");
-  text = std::regex_replace(std::regex_replace(text, page, ""), link, "$1");
+  std::string text = std::regex_replace(cell, page, "");
   std::erase(text, '`');
   return std::string(trimmed(text));
 }
