@@ -333,7 +333,7 @@ class StepWork {
       const double unit = state().units == gcode::Units::kInch ? gcode::kMillimetresPerInch : 1;
       const auto value = [&](char letter, double otherwise) {
         const gcode::Word* word = words.find(letter);
-        return word != nullptr && word->is_number ? word->value * unit : otherwise;
+        return word != nullptr && word->is_number ? std::max(0.0, word->value * unit) : otherwise;
       };
       control.blend_tolerance = value('P', 0);
       control.naive_cam_tolerance = value('Q', *control.blend_tolerance);

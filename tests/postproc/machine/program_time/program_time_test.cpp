@@ -289,6 +289,7 @@ TEST(ProgramTimeOnLinuxcnc, TakesTheTolerancesOfTheProgram) {
   EXPECT_NEAR(saying("G64 P0.02 Q0"), with_tolerances(0.02, 0), 1e-12);
   EXPECT_NEAR(saying("G64 P0.05"), with_tolerances(0.05, 0.05), 1e-12);
   EXPECT_NEAR(saying("G64"), with_tolerances(0, 0), 1e-12);
+  EXPECT_NEAR(saying("G64 P-1 Q-2"), with_tolerances(0, 0), 1e-12) << "as rs274 says";
   EXPECT_NEAR(saying(""), with_tolerances(0.3, 0.3), 1e-12) << "nothing said: as the machine is";
   EXPECT_GT(std::abs(saying("G64 P0.02 Q0") - saying("")), 0.01);
 }
