@@ -8,6 +8,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -68,6 +69,11 @@ int main(int argc, char** argv) {
     // Plain text: there may be no memory for more.
     std::fputs("batten: not enough memory, nothing was written\n", stderr);
   } catch (const std::exception& error) {
+    if (std::string_view(error.what()).find("pthread_create") != std::string_view::npos) {
+      say("not enough memory for threads, or too many of them, nothing was written; --threads 1 "
+          "needs least");
+      return static_cast<int>(ExitCode::kInternalError);
+    }
     say(std::string("internal error, nothing was written: ") + error.what());
     say("please report it with the program and the options that led to it");
   } catch (...) {

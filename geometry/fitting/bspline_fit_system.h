@@ -4,7 +4,6 @@
 // range of the control points, all others held where they are.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>

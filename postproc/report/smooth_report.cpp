@@ -262,7 +262,7 @@ Json smooth_json(const SmoothReport& report) {
                  {"units", name_of(result.units)}}},
                {"output",
                 {{"file", report.output_file},
-                 {"bytes", result.bytes_out()},
+                 {"bytes", result.bytes_out},
                  {"blocks", result.blocks_out},
                  {"target", report.options.target->name}}},
                {"machine",
@@ -372,7 +372,7 @@ std::string summary_text(const SmoothReport& report) {
                   report.output_file.empty() ? "nothing written" : report.output_file,
                   report.options.target->name);
   lines += titled("blocks", change(result.blocks_in, result.blocks_out));
-  lines += titled("bytes", change(report.source.text().size(), result.bytes_out()));
+  lines += titled("bytes", change(report.source.text().size(), result.bytes_out));
   if (result.path_before.length_mm > 0) lines += path_lines(result.path_before, result.path_after);
   add_runs(result, lines);
   lines += titled("time", times(result, *report.options.machine));

@@ -4,8 +4,6 @@
 
 #include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"

@@ -167,7 +167,7 @@ void PartCrossings::take(std::vector<NearEdges> edges) {
 
 void PartCrossings::look_up_to(std::uint32_t line) {
   std::erase_if(held_, [&](const Held& held) {
-    const SelfProximity& near = near_[held.edges.run];
+    const SelfProximity& near = (*near_)[held.edges.run];
     if (near.last_line > line) return false;
     for (const geometry::PartCrossing& crossing :
          geometry::new_crossings_of_parts(held.edges.before, held.edges.after, tolerance_)) {

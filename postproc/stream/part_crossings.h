@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "gcode/interpreter/interpreter.h"
@@ -16,6 +16,7 @@
 #include "postproc/proof/program_events.h"
 #include "postproc/runs/run_cutting.h"
 #include "postproc/runs/section.h"
+#include "postproc/smooth/part_runs.h"
 
 namespace batten::postproc {
 
@@ -42,8 +43,8 @@ struct WrittenSections {
 // Gathers a program's windows, one after the other.
 class PartCrossings {
  public:
-  PartCrossings(std::span<const SelfProximity> near, double tolerance_mm)
-      : near_(near), tolerance_(tolerance_mm) {}
+  PartCrossings(NearParts near, double tolerance_mm)
+      : near_(std::move(near)), tolerance_(tolerance_mm) {}
 
   void take(std::vector<NearEdges> edges);
   // All of the runs that end up to this line was taken: their crossings are found, and their edges
@@ -52,6 +53,7 @@ class PartCrossings {
   // The sections about crossings, of both paths: where these are copied nothing crosses that did
   // not. As `joined` gives them; none where nothing crosses.
   [[nodiscard]] std::vector<LineRange> found() const { return joined(found_, {}); }
+  [[nodiscard]] std::span<const SelfProximity> near() const { return *near_; }
 
   // Above this nothing is said of a run: most of it is near to itself.
   static constexpr std::size_t kMostEdges = std::size_t{1} << 20;
@@ -62,7 +64,7 @@ class PartCrossings {
     bool too_many = false;
   };
 
-  std::span<const SelfProximity> near_;
+  NearParts near_;
   double tolerance_;
   std::vector<Held> held_;
   std::vector<LineRange> found_;

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "postproc/options/options.h"
 #include "postproc/stream/smooth_result.h"

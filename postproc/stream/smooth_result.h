@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -85,7 +84,7 @@ struct TimeFigures {
                                   const SmoothOptions& options);
 
 struct SmoothResult {
-  std::string text;  // the new program; the input's bytes where nothing was rewritten
+  std::string text;  // the new program, where it was not handed on as it came; or empty
   std::vector<RunReport> runs;
   gcode::Diagnostics diagnostics;
   bool understood = false;  // false: nothing may be rewritten (no units ..): exit code 2
@@ -104,9 +103,7 @@ struct SmoothResult {
   PathFigures path_after;
   Outlook outlook;
   bool proved = false;  // of the whole text
-  // Of a text that was handed on window by window (postproc/stream/pipeline.h), in place of `text`.
-  std::size_t bytes_handed_on = 0;
-  [[nodiscard]] std::size_t bytes_out() const { return text.size() + bytes_handed_on; }
+  std::size_t bytes_out = 0;
 };
 
 // The first that are known.

@@ -33,25 +33,21 @@ class WindowWork {
       : setting_(setting), place_(place), at_(place.from) {}
 
   WindowDone run(const Guess& guess, const ProgressCallback& tell) {
-    ProgramPart part = read(guess);
-    PartRuns runs = find_runs(part, setting_.options, setting_.long_runs, setting_.facts);
-    Additions additions;
-    if (!before_.says_smoothed) {
-      additions.comment =
-          provenance_comment(*setting_.options.target, setting_.options.tolerance_mm);
+    WindowDone done;
+    if (setting_.whole) {
+      before_ = guess(at_.before);
+      old_after_ = at_.before;
+      done.part = setting_.whole;
+    } else {
+      done.part = std::make_shared<const ProgramPart>(read(guess));
     }
-    WindowDone done = smooth_part(setting_, part, std::move(runs), additions, tell);
     done.before = before_;
     done.old_after = old_after_;
-    if (done.outcome == WindowOutcome::kDone && !done.proof.proved) {
-      done.outcome = WindowOutcome::kNeedsWhole;
-    }
+    smooth(tell, done);
     if (done.outcome != WindowOutcome::kDone) return done;
     done.after = {done.proof.after.value_or(old_after_),
                   before_.says_smoothed || !done.proof.unchanged};
-    done.old = std::make_shared<gcode::ReadPart>(
-        gcode::ReadPart{std::move(part.program), std::move(part.meaning)});
-    setting_.source.release_pages({place_.from.text.begin, place_.end});
+    if (!setting_.whole) setting_.source.release_pages({place_.from.text.begin, place_.end});
     return done;
   }
 
@@ -89,6 +85,49 @@ class WindowWork {
     return {std::move(window.program), std::move(window.meaning), std::move(start)};
   }
 
+  void smooth(const ProgressCallback& tell, WindowDone& done) {
+    const ProgramPart& part = *done.part;
+    PartRuns runs = find_runs(part, setting_.options, setting_.long_runs, setting_.facts);
+    const ProgressCallback tell_runs = [&](double share) { return tell(share * kAfterRuns); };
+    const ProgressCallback tell_round = [&](double) { return tell(kAfterRuns); };
+    if (setting_.was_smoothed) {
+      keep_as_smoothed(runs);
+    } else if (setting_.survey) {
+      if (!setting_.survey(part, runs, tell_runs)) return;
+    } else if (!smooth_runs(part, setting_.options, tell_runs, runs)) {
+      return;
+    }
+    auto proof =
+        prove_text(part, setting_.options, setting_.read_options, additions(), tell_round, runs);
+    if (!proof) return;
+    done.proof = std::move(*proof);
+    if (!done.proof.stands_alone || (part.window && !done.proof.proved)) {
+      done.outcome = WindowOutcome::kNotProvedAlone;
+      return;
+    }
+    const std::vector<Stretch> stretches = std::exchange(done.proof.verification.stretches, {});
+    done.runs = report_runs(part, runs, stretches, done.proof.proved);
+    for (const RunState& work : runs.works) {
+      if (!work.cut_run) done.outlook += work.outlook;
+    }
+    for (const CutRun& cut : runs.cut_runs) done.outlook += cut.outlook;
+    done.notes_on_runs = notes_on_runs(done.runs, part.program, *setting_.options.target);
+    done.notes = std::move(runs.notes);
+    done.near = std::move(runs.near);
+    if (!part.program.blocks.empty()) done.last_line = part.program.blocks.back().line;
+    if (tell(1)) done.outcome = WindowOutcome::kDone;
+  }
+
+  [[nodiscard]] Additions additions() const {
+    Additions additions;
+    additions.words = setting_.words;
+    if (!before_.says_smoothed) {
+      additions.comment =
+          provenance_comment(*setting_.options.target, setting_.options.tolerance_mm);
+    }
+    return additions;
+  }
+
   const WindowSetting& setting_;
   const WindowPlace& place_;
   ReadingPlace at_;  // what is read up to here
@@ -97,39 +136,6 @@ class WindowWork {
 };
 
 }  // namespace
-
-WindowDone smooth_part(const WindowSetting& setting, const ProgramPart& part, PartRuns runs,
-                       const Additions& additions, const ProgressCallback& tell) {
-  WindowDone done;
-  const ProgressCallback tell_runs = [&](double share) { return tell(share * kAfterRuns); };
-  const ProgressCallback tell_round = [&](double) { return tell(kAfterRuns); };
-  if (setting.was_smoothed) {
-    keep_as_smoothed(runs);
-  } else if (setting.survey) {
-    if (!setting.survey(part, runs, tell_runs)) return done;
-  } else if (!smooth_runs(part, setting.options, tell_runs, runs)) {
-    return done;
-  }
-  auto proof = prove_text(part, setting.options, setting.read_options, additions, tell_round, runs);
-  if (!proof) return done;
-  done.proof = std::move(*proof);
-  if (!done.proof.stands_alone) {
-    done.outcome = WindowOutcome::kNeedsWhole;
-    return done;
-  }
-  const std::vector<Stretch> stretches = std::exchange(done.proof.verification.stretches, {});
-  done.runs = report_runs(part, runs, stretches, done.proof.proved);
-  for (const RunState& work : runs.works) {
-    if (!work.cut_run) done.outlook += work.outlook;
-  }
-  for (const CutRun& cut : runs.cut_runs) done.outlook += cut.outlook;
-  done.notes_on_runs = notes_on_runs(done.runs, part.program, *setting.options.target);
-  done.notes = std::move(runs.notes);
-  done.near = std::move(runs.near);
-  if (!part.program.blocks.empty()) done.last_line = part.program.blocks.back().line;
-  if (tell(1)) done.outcome = WindowOutcome::kDone;
-  return done;
-}
 
 WindowDone smooth_window(const WindowSetting& setting, const WindowPlace& place,
                          const Guess& before, const ProgressCallback& tell) {
@@ -258,12 +264,22 @@ class Prover {
     if (round.proved && additions_.words.empty()) {
       round.near_edges = near_edges(WrittenSections{after, begins});
     }
-    if (part_.window) {
-      round.after = {std::move(control), events_before_next(after)};
-      round.read = std::make_shared<gcode::ReadPart>(
-          gcode::ReadPart{std::move(program), std::move(meaning)});
-    }
+    if (part_.window) round.after = {std::move(control), events_before_next(after)};
+    round.read = read_as_written(round.text, {std::move(program), std::move(meaning)});
     return round;
+  }
+
+  // With the lines that a profile adds, which are none of what was proved.
+  [[nodiscard]] std::shared_ptr<const gcode::ReadPart> read_as_written(
+      const std::string& text, gcode::ReadPart without_added) const {
+    if (additions_.words.empty()) {
+      return std::make_shared<const gcode::ReadPart>(std::move(without_added));
+    }
+    gcode::Diagnostics ignored;
+    gcode::Program program = read_text({part_.program.source.name(), text}, ignored);
+    gcode::Interpretation meaning = gcode::interpret(program, read_options_, ignored);
+    return std::make_shared<const gcode::ReadPart>(
+        gcode::ReadPart{std::move(program), std::move(meaning)});
   }
 
   // What the target refuses is new text: it belongs to the run that it was written for.

@@ -51,9 +51,11 @@ struct WindowSetting {
   const gcode::SourceText& source;
   const SmoothOptions& options;
   gcode::ReadOptions read_options;
+  ProfileWords words = {};  // with the tolerance filled in; of one window
   LongRunLimits long_runs = {};
   bool was_smoothed = false;  // the program: all runs are kept
   LongRunFacts facts = {};
+  std::shared_ptr<const ProgramPart> whole = {};  // of one window, that was read already
   PartSurvey survey = {};
 };
 
@@ -71,13 +73,13 @@ struct ProvedText {
   std::size_t blocks = 0;
   std::size_t added_lines = 0;
   Verification verification;          // of the text as it is
-  std::optional<TextBefore> after;    // where a window's new text was read: for the next one
+  std::optional<TextBefore> after;    // for the next window, where the new text was read
   std::vector<NearEdges> near_edges;  // of long runs, to be checked with those of other windows
-  std::shared_ptr<const gcode::ReadPart> read;  // a window's new text, where it was read
+  std::shared_ptr<const gcode::ReadPart> read;  // the new text, where it was read
   bool stands_alone = true;  // false: something differs that none of its runs caused
 };
 
-enum class WindowOutcome { kDone, kStopped, kNeedsWhole };
+enum class WindowOutcome { kDone, kStopped, kNotProvedAlone };
 
 struct WindowDone {
   WindowOutcome outcome = WindowOutcome::kStopped;
@@ -91,20 +93,14 @@ struct WindowDone {
   gcode::Diagnostics notes_on_runs;                        // postproc/stream/smooth_result.h
   std::shared_ptr<const std::vector<SelfProximity>> near;  // of its long runs; or none
   std::uint32_t last_line = 0;
-  std::shared_ptr<const gcode::ReadPart> old;  // a window's old text
+  std::shared_ptr<const ProgramPart> part;  // the old text
 };
 
 // What the new text before a window may have set in the control, by what the old text set there.
 using Guess = std::function<NewTextBefore(const TextBefore& old_before)>;
 
-// Smooths the runs of a window and proves its text. `tell` gets the share of the work that is done.
-// Sets neither `before` nor what is known after it.
-[[nodiscard]] WindowDone smooth_part(const WindowSetting& setting, const ProgramPart& part,
-                                     PartRuns runs, const Additions& additions,
-                                     const ProgressCallback& tell);
-
-// A window of a long program, read from its position and smoothed. One that is not proved needs the
-// whole.
+// A window read from its position, smoothed and proved. `tell` gets the share of the work that is
+// done. What is wrong between it and others shows as one of several that is not proved.
 [[nodiscard]] WindowDone smooth_window(const WindowSetting& setting, const WindowPlace& place,
                                        const Guess& before, const ProgressCallback& tell);
 

@@ -5,7 +5,6 @@
 #include <climits>
 #include <csignal>
 #include <cstring>
-#include <exception>
 #include <string_view>
 
 #include "postproc/system/exit_code.h"

@@ -1,4 +1,4 @@
-// Programs smoothed window by window beside the same ones as a whole.
+// Programs smoothed window by window beside the same ones as one window.
 #pragma once
 
 #include <fmt/format.h>
@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
-#include <optional>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -24,28 +24,29 @@
 namespace batten::postproc {
 
 struct InWindows {
-  std::optional<SmoothResult> result;
+  SmoothResult result;
   std::string text;
-  std::size_t parts = 0;
+  std::size_t parts = 0;  // windows; 1 where the program was not cut
+  std::size_t restarts = 0;
+  [[nodiscard]] bool cut() const { return parts > 1; }
 };
 
 inline InWindows in_windows(const std::string& text, const SmoothOptions& options,
                             const WindowLimits& limits) {
   InWindows done;
-  const TextSink sink = [&](std::string_view part) {
-    done.text += part;
-    ++done.parts;
-    return true;
-  };
+  const ProgramSink sink = {[&](std::string_view part) {
+                              done.text += part;
+                              ++done.parts;
+                              return true;
+                            },
+                            [&] {
+                              done.text.clear();
+                              done.parts = 0;
+                              ++done.restarts;
+                              return true;
+                            }};
   const gcode::SourceText source("part.nc", text);
-  std::vector<LineRange> copied;
-  for (bool again = true; again;) {
-    const std::size_t before = lines_in(copied);
-    done.text.clear();
-    done.parts = 0;
-    done.result = smooth_in_windows(source, options, sink, {}, limits, &copied);
-    again = !done.result && lines_in(copied) > before;
-  }
+  done.result = smooth_program(source, options, sink, {}, {0, limits});
   return done;
 }
 
@@ -56,7 +57,9 @@ inline InWindows in_windows(const std::string& text, const SmoothOptions& option
 
 inline SmoothResult as_a_whole(const std::string& text, const SmoothOptions& options,
                                const LongRunLimits& long_runs = {}) {
-  return smooth_program(gcode::SourceText("part.nc", text), options, {}, long_runs);
+  constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
+  return smooth_program(gcode::SourceText("part.nc", text), options, {},
+                        {kNever, {.long_runs = long_runs}});
 }
 
 inline std::vector<std::string> words_of(const gcode::Diagnostics& diagnostics) {
@@ -82,7 +85,7 @@ inline std::string words_of(const RunReport& run) {
 }
 
 inline void expect_same(const InWindows& windows, const SmoothResult& whole) {
-  const SmoothResult& parts = *windows.result;
+  const SmoothResult& parts = windows.result;
   ASSERT_EQ(windows.text, whole.text);
   EXPECT_EQ(words_of(parts.diagnostics), words_of(whole.diagnostics));
   ASSERT_EQ(parts.runs.size(), whole.runs.size());
@@ -90,8 +93,8 @@ inline void expect_same(const InWindows& windows, const SmoothResult& whole) {
     EXPECT_EQ(words_of(parts.runs[i]), words_of(whole.runs[i])) << "run " << i;
   }
   const auto figures = [](const SmoothResult& r) {
-    return std::tuple(r.understood, r.units, r.blocks_in, r.blocks_out, r.bytes_out(),
-                      r.added_lines, r.deviation_mm, r.deviation_line, r.corner_mm, r.runs_before_s,
+    return std::tuple(r.understood, r.units, r.blocks_in, r.blocks_out, r.bytes_out, r.added_lines,
+                      r.deviation_mm, r.deviation_line, r.corner_mm, r.runs_before_s,
                       r.runs_after_s, r.program_before.seconds, r.program_before.slow_s,
                       r.program_after.seconds, r.program_after.slow_s, r.proved);
   };

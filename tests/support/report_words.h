@@ -12,6 +12,7 @@ namespace batten::postproc {
 inline SmoothResult five_runs() {
   SmoothResult result;
   result.text = "G21\nG1 X1\n";
+  result.bytes_out = result.text.size();
   result.understood = true;
   result.proved = true;
   result.units = gcode::Units::kMillimetre;

@@ -2,7 +2,6 @@
 // Method: docs/algorithms/fair.md.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <limits>
 #include <span>
-#include <vector>
 
 #include "geometry/basic/point.h"
 #include "geometry/path/bspline_curve.h"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "geometry/fitting/fair/fair.h"
 #include "postproc/runs/section.h"

@@ -124,6 +124,7 @@ TEST_P(TranslatedWave, IsSmoothedAndProvedAgainstTheOldProgram) {
   EXPECT_GE(rewritten_runs(result), 1U);
   EXPECT_TRUE(verdict_for(GetParam(), text, result.text).proved());
   EXPECT_LT(lines_of(result.text).size(), lines_of(text).size());
+  EXPECT_EQ(result.bytes_out, result.text.size());
   // Places are those of the program that the user has.
   for (const RunReport& run : result.runs) {
     if (run.status != RunStatus::kRewritten) continue;

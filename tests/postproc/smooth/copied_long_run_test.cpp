@@ -27,17 +27,18 @@ TEST(CopiedLongRun, IsCopiedPieceByPiece) {
   const gcode::SourceText source("part.nc", text);
   std::string copy;
   std::size_t longest = 0;
-  const TextSink sink = [&](std::string_view part) {
-    copy += part;
-    longest = std::max(longest, static_cast<std::size_t>(std::ranges::count(part, '\n')));
-    return true;
-  };
-  const auto result =
-      smooth_in_windows(source, copying(), sink, {}, {.least_blocks = 100, .long_runs = kShort});
-  ASSERT_TRUE(result);
+  const ProgramSink sink = {
+      [&](std::string_view part) {
+        copy += part;
+        longest = std::max(longest, static_cast<std::size_t>(std::ranges::count(part, '\n')));
+        return true;
+      },
+      {}};
+  const SmoothResult result =
+      smooth_program(source, copying(), sink, {}, {0, {.least_blocks = 100, .long_runs = kShort}});
   EXPECT_EQ(copy, text);
   EXPECT_LE(longest, 210U);
-  EXPECT_GE(result->runs.size(), 3000U / 200U);
+  EXPECT_GE(result.runs.size(), 3000U / 200U);
 }
 
 // Seconds about the pieces' joints are counted once.
@@ -45,7 +46,8 @@ TEST(CopiedLongRun, TakesAsLongAsInOnePiece) {
   const std::string text = one_long_run(2000);
   const gcode::SourceText source("part.nc", text);
   const double whole = smooth_program(source, copying()).runs_before_s;
-  const SmoothResult cut = smooth_program(source, copying(), {}, kShort);
+  const SmoothResult cut =
+      smooth_program(source, copying(), {}, {.windows = {.long_runs = kShort}});
   ASSERT_GE(cut.runs.size(), 10U);
   EXPECT_NEAR(cut.runs_before_s, whole, 1e-3 * whole);
   EXPECT_EQ(cut.runs_after_s, cut.runs_before_s);

@@ -257,14 +257,14 @@ std::string lathe_passes(int count) {
 TEST(LatheProgram, IsLeftToTheWholeHoweverLateItShows) {
   const std::string text = lathe_passes(30);  // more blocks than are looked at at once
   const SmoothOptions options = options_for("fanuc");
-  ASSERT_TRUE(in_windows(text + "M30\n", options, 40).result);
+  ASSERT_TRUE(in_windows(text + "M30\n", options, 40).cut());
   const auto inspected_as_whole = [](const std::string& program) {
     const InspectLimits limits{.parts = {.least_text = 0}};
     return inspect(gcode::SourceText("part.nc", program), {}, {}, limits).as_whole;
   };
   ASSERT_FALSE(inspected_as_whole(text + "M30\n"));
   for (const char* end : {"G50 S2000\nM30\n", "T0101\nG97 S800 M3\nG1 Z0 F0.2\nM30\n"}) {
-    EXPECT_FALSE(in_windows(text + end, options, 40).result) << end;
+    EXPECT_FALSE(in_windows(text + end, options, 40).cut()) << end;
     EXPECT_TRUE(inspected_as_whole(text + end)) << end;
   }
 }
@@ -274,10 +274,10 @@ TEST(LatheProgram, IsNoneInWindowsWhereYIsNamedBehindItsMarks) {
   const std::string text =
       "T0101\nG99\nG94\n" + lathe_passes(3) + "G0 Y5\n" + lathe_passes(30) + "M30\n";
   const InWindows windows = in_windows(text, options, 40);
-  ASSERT_TRUE(windows.result);
+  ASSERT_TRUE(windows.cut());
   EXPECT_GT(windows.parts, 3U);
   expect_same(windows, as_a_whole(text, options));
-  EXPECT_GT(rewritten_runs(*windows.result), 15U);
+  EXPECT_GT(rewritten_runs(windows.result), 15U);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ TEST_P(LongSeed, GivesTheSameBytesReportAndMessagesForAnyThreads) {
     options.threads = threads;
     const WindowLimits limits = {.least_blocks = 100, .long_runs = kShortRuns};
     const InWindows windows = in_windows(text, options, limits);
-    if (windows.result) expect_same(windows, whole);
+    expect_same(windows, whole);
   }
 }
 
@@ -107,7 +107,7 @@ TEST(LongRunWindows, AreMadeOfLongRunsAndRewrittenThere) {
     const SmoothOptions options = options_of_seed(seed);
     const WindowLimits limits = {.least_blocks = 100000, .long_runs = kShortRuns};
     const InWindows windows = in_windows(text, options, limits);
-    if (!windows.result || rewritten_runs(*windows.result) == 0) continue;
+    if (!windows.cut() || rewritten_runs(windows.result) == 0) continue;
     ++cut;  // between rapids alone there is no place for so long windows
     // The verifier that knows of no windows and no cuts has the last word.
     const Verification all = verdict_under(options, text, windows.text);
@@ -157,7 +157,7 @@ WindowDone second_window(const std::string& text, const TextBefore* begin) {
   const SmoothOptions options = options_for("linuxcnc");
   const ProgressCallback go_on = [](double) { return true; };
   const PrescanReport found = prescan(source, options, {.long_runs = kShortRuns}, go_on);
-  const WindowSetting setting{source, options, {}, kShortRuns, false};
+  const WindowSetting setting{source, options, {}, {}, kShortRuns};
   const Guess guess = [&](const TextBefore& old_before) {
     return NewTextBefore{begin != nullptr ? *begin : old_before, false};
   };
@@ -174,11 +174,11 @@ TEST(LongRunWindows, AreNotProvedWhereTheNewTextBeforeThemEndsElsewhere) {
   elsewhere.control.state.position.mm.x() += 0.05;
   elsewhere.events.place->x() += 0.05;
   const WindowDone wrong = second_window(text, &elsewhere);
-  EXPECT_EQ(wrong.outcome, WindowOutcome::kNeedsWhole);
+  EXPECT_EQ(wrong.outcome, WindowOutcome::kNotProvedAlone);
   EXPECT_FALSE(same_before(right.before, wrong.before));
   TextBefore in_inches = right.before.known;
   in_inches.control.state.modal.units = gcode::Units::kInch;
-  EXPECT_EQ(second_window(text, &in_inches).outcome, WindowOutcome::kNeedsWhole);
+  EXPECT_EQ(second_window(text, &in_inches).outcome, WindowOutcome::kNotProvedAlone);
 }
 
 }  // namespace

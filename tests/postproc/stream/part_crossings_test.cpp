@@ -121,17 +121,10 @@ TEST(PartCrossings, AreFoundByTheWholeAndByWindows) {
     for (const int threads : {1, 3}) {
       options.threads = threads;
       const InWindows windows = in_windows(text, options, limits);
-      ASSERT_TRUE(windows.result);
+      EXPECT_TRUE(windows.cut());
       expect_same(windows, whole);
+      crossing += threads == 1 && windows.restarts > 0 ? 1 : 0;
     }
-    // Windows that are made once say that they cross by nothing: the whole is needed.
-    const gcode::SourceText source("part.nc", text);
-    const TextSink sink = [](std::string_view) { return true; };
-    std::vector<LineRange> copied;
-    const auto first = smooth_in_windows(source, asked(), sink, {}, limits, &copied);
-    EXPECT_EQ(first.has_value(), copied.empty());
-    EXPECT_EQ(first.has_value(), smooth_in_windows(source, asked(), sink, {}, limits).has_value());
-    crossing += first ? 0 : 1;
   }
   EXPECT_GE(gave_back, 3U) << "else nothing was asked";
   EXPECT_GE(crossing, 3U);

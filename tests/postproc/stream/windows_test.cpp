@@ -17,8 +17,7 @@
 namespace batten::postproc {
 namespace {
 
-// Returns how many windows there were, as many as `least_blocks` allow; 0 where the program needs
-// the whole.
+// Returns how many windows there were, as many as `least_blocks` allow.
 std::size_t compare_both_ways(const std::string& text, const SmoothOptions& options,
                               std::initializer_list<std::size_t> least_blocks) {
   std::size_t most = 0;
@@ -26,7 +25,6 @@ std::size_t compare_both_ways(const std::string& text, const SmoothOptions& opti
   for (const std::size_t least : least_blocks) {
     SCOPED_TRACE(testing::Message() << "windows of " << least << " blocks and more");
     const InWindows windows = in_windows(text, options, least);
-    if (!windows.result) return 0;
     if (!whole) whole = as_a_whole(text, options);
     expect_same(windows, *whole);
     most = std::max(most, windows.parts);
@@ -59,7 +57,7 @@ TEST(Windows, AreMadeOfMostProgramsAndRewrittenThere) {
   for (unsigned seed = 0; seed < kSeeds; ++seed) {
     const InWindows windows = in_windows(RandomPasses(seed).make(), options_of_seed(seed), 1);
     cut += windows.parts > 2 ? 1 : 0;
-    rewritten += windows.result && rewritten_runs(*windows.result) > 1 ? 1 : 0;
+    rewritten += windows.cut() && rewritten_runs(windows.result) > 1 ? 1 : 0;
   }
   EXPECT_GE(cut, kSeeds / 2);
   EXPECT_GE(rewritten, kSeeds / 3);
@@ -91,9 +89,8 @@ const std::string kPlain = passes_of_windows(kHead, "M30\n");
 
 TEST(Windows, AreMadeOfPlainPassesAndSayOnceThatTheProgramIsSmoothed) {
   const InWindows windows = in_windows(kPlain, options_for("linuxcnc"), 1);
-  ASSERT_TRUE(windows.result);
   EXPECT_EQ(windows.parts, 4U);  // the head with the first rapid, two passes, the last with the end
-  EXPECT_EQ(rewritten_runs(*windows.result), 3U);
+  EXPECT_EQ(rewritten_runs(windows.result), 3U);
   const std::size_t first = windows.text.find("Batten: smoothed within");
   ASSERT_NE(first, std::string::npos);
   EXPECT_EQ(windows.text.find("Batten: smoothed within", first + 1), std::string::npos);
@@ -102,7 +99,7 @@ TEST(Windows, AreMadeOfPlainPassesAndSayOnceThatTheProgramIsSmoothed) {
 TEST(Windows, KeepAProgramThatWasSmoothedWhereverThatStands) {
   const std::string text = passes_of_windows(kHead, "M5\n(Batten: smoothed within 0.01 mm)\nM30\n");
   const InWindows windows = in_windows(text, options_for("linuxcnc"), 1);
-  ASSERT_TRUE(windows.result);
+  EXPECT_TRUE(windows.cut());
   EXPECT_EQ(windows.text, text);
   expect_same(windows, as_a_whole(text, options_for("linuxcnc")));
 }
@@ -113,15 +110,15 @@ struct WholeCase {
   std::string behind;
 };
 
-class NeedsTheWhole : public testing::TestWithParam<WholeCase> {};
+class IsOneWindow : public testing::TestWithParam<WholeCase> {};
 
-TEST_P(NeedsTheWhole, AndIsNotCut) {
+TEST_P(IsOneWindow, AndIsNotCut) {
   const std::string text = passes_of_windows(GetParam().before, GetParam().behind);
-  EXPECT_FALSE(in_windows(text, options_for("linuxcnc"), 1).result) << text;
+  EXPECT_FALSE(in_windows(text, options_for("linuxcnc"), 1).cut()) << text;
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Windows, NeedsTheWhole,
+    Windows, IsOneWindow,
     testing::Values(WholeCase{"Jump", "N5 G21 G90 G17\nS12000 M3\n", "IF [#1 EQ 1] GOTO 5\nM30\n"},
                     WholeCase{"Subprogram", kHead, "M99\n"},
                     WholeCase{"Loop", kHead + "o1 while [#1 lt 2]\n", "o1 endwhile\nM30\n"},
@@ -132,83 +129,53 @@ INSTANTIATE_TEST_SUITE_P(
                     WholeCase{"AnotherFamily", kHead, "G187 P3\nM30\n"}),
     [](const auto& test) { return test.param.name; });
 
-TEST(Windows, LeaveWordsOfAProfileToTheWhole) {
+TEST(Windows, AreOneWithWordsOfAProfile) {
   SmoothOptions options = options_for("linuxcnc");
   options.words.header = {"(made in the shop)"};
-  EXPECT_FALSE(in_windows(kPlain, options, 1).result);
+  EXPECT_EQ(in_windows(kPlain, options, 1).parts, 1U);
 }
+
+constexpr StreamLimits kMany = {.bytes_for_windows = 0, .windows = {.least_blocks = 1}};
 
 TEST(Windows, StopWhereTheSinkTakesNoMore) {
   const gcode::SourceText source("part.nc", kPlain);
   std::size_t parts = 0;
-  const TextSink sink = [&](std::string_view) { return ++parts < 2; };
-  const auto result =
-      smooth_in_windows(source, options_for("linuxcnc"), sink, {}, {.least_blocks = 1});
-  ASSERT_TRUE(result);
-  EXPECT_FALSE(result->understood);
+  const ProgramSink sink = {[&](std::string_view) { return ++parts < 2; }, {}};
+  EXPECT_FALSE(smooth_program(source, options_for("linuxcnc"), sink, {}, kMany).understood);
   EXPECT_EQ(parts, 2U);
 }
 
 TEST(Windows, StopWhereTheUserWantsItAndTellHowFarTheyAre) {
   const gcode::SourceText source("part.nc", kPlain);
-  std::vector<double> told;
-  const auto all = [&](double part) {
-    told.push_back(part);
-    return true;
-  };
-  const TextSink sink = [](std::string_view) { return true; };
-  ASSERT_TRUE(smooth_in_windows(source, options_for("linuxcnc"), sink, all, {.least_blocks = 1})
-                  ->understood);
-  ASSERT_GE(told.size(), 5U);
-  EXPECT_GE(told.front(), 0);
-  EXPECT_LE(*std::ranges::max_element(told), 1);
-  for (const std::size_t most : {std::size_t{1}, told.size() / 2}) {
-    std::size_t calls = 0;
-    const auto some = [&](double) { return ++calls < most; };
-    EXPECT_FALSE(smooth_in_windows(source, options_for("linuxcnc"), sink, some, {.least_blocks = 1})
-                     ->understood);
+  const SmoothOptions options = options_for("linuxcnc");
+  for (const StreamLimits& limits : {kMany, StreamLimits{}}) {
+    std::vector<double> told;
+    const auto all = [&](double part) {
+      told.push_back(part);
+      return true;
+    };
+    ASSERT_TRUE(smooth_program(source, options, all, limits).understood);
+    ASSERT_GE(told.size(), 5U);
+    EXPECT_GE(told.front(), 0);
+    EXPECT_LE(*std::ranges::max_element(told), 1);
+    for (const std::size_t most : {std::size_t{1}, told.size() / 2}) {
+      std::size_t calls = 0;
+      const auto some = [&](double) { return ++calls < most; };
+      EXPECT_FALSE(smooth_program(source, options, some, limits).understood);
+    }
   }
 }
 
-struct Streamed {
-  SmoothResult result;
-  std::string text;
-  std::size_t restarts = 0;
-};
-
-Streamed streamed(const std::string& text, const StreamLimits& limits) {
-  Streamed done;
-  const ProgramSink sink{[&](std::string_view part) {
-                           done.text += part;
-                           return true;
-                         },
-                         [&] {
-                           done.text.clear();
-                           ++done.restarts;
-                           return true;
-                         }};
-  const gcode::SourceText source("part.nc", text);
-  done.result = smooth_program(source, options_for("linuxcnc"), sink, {}, limits);
-  return done;
-}
-
 TEST(Pipeline, HandsOnTheSameTextInWindowsAndAsOne) {
-  const std::string text = kPlain;
-  const SmoothResult whole = as_a_whole(text, options_for("linuxcnc"));
-  const Streamed as_one = streamed(text, {});
-  const Streamed windows = streamed(text, {.bytes_for_windows = 0, .windows = {.least_blocks = 1}});
-  EXPECT_EQ(as_one.text, whole.text);
+  const SmoothResult whole = as_a_whole(kPlain, options_for("linuxcnc"));
+  const InWindows windows = in_windows(kPlain, options_for("linuxcnc"), 1);
+  const InWindows one = in_windows(kPlain, options_for("linuxcnc"), kPlain.size());
+  EXPECT_EQ(one.parts, 1U);
+  EXPECT_EQ(one.text, whole.text);
   EXPECT_EQ(windows.text, whole.text);
-  EXPECT_EQ(as_one.result.bytes_out(), whole.bytes_out());
-  EXPECT_EQ(windows.result.bytes_out(), whole.bytes_out());
-  EXPECT_EQ(as_one.restarts + windows.restarts, 0U);
-}
-
-TEST(Pipeline, BeginsTheTextAnewWhereWindowsAreNotEnough) {
-  const std::string text = passes_of_windows(kHead, "M99\n");
-  const Streamed done = streamed(text, {.bytes_for_windows = 0, .windows = {.least_blocks = 1}});
-  EXPECT_EQ(done.restarts, 1U);
-  EXPECT_EQ(done.text, as_a_whole(text, options_for("linuxcnc")).text);
+  EXPECT_EQ(one.result.bytes_out, whole.bytes_out);
+  EXPECT_EQ(windows.result.bytes_out, whole.bytes_out);
+  EXPECT_EQ(one.restarts + windows.restarts, 0U);
 }
 
 }  // namespace
