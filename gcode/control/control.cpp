@@ -19,17 +19,6 @@ bool can_stand_in_comment(char c) { return c >= ' ' && c <= '~' && c != '(' && c
 
 }  // namespace
 
-double chord_error(const ArcChords& chords, double radius) {
-  if (!(chords.longest > 0)) return chords.error;
-  double length = chords.longest;
-  if (chords.per_circle > 0) {
-    const double wished = 2 * std::numbers::pi * radius / chords.per_circle;
-    length = std::clamp(wished, chords.shortest, chords.longest);
-  }
-  const double half_angle = std::min(length / (2 * radius), std::numbers::pi / 2);
-  return std::max(chords.error, radius * (1 - std::cos(half_angle)));
-}
-
 NumberFormat place_format(const Control& control, Units units) {
   return format_of(control, control.places, units);
 }

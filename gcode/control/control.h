@@ -49,17 +49,20 @@ enum class ArcRule : std::uint8_t {
   kHeidenhain,
 };
 
-// How a control that runs nothing but lines cuts arcs into chords, as far as that is coarse enough
-// to count. All 0: not known to count.
+// How a control that runs nothing but lines cuts arcs into equal chords, as far as that is coarse
+// enough to count: what is wanted of a chord. Their number is rounded down, so they are up to twice
+// as long. All 0: not known to count.
 struct ArcChords {
-  double error = 0;       // mm: chords that leave the arc by this much
-  double longest = 0;     // mm: chords of this length
+  double error = 0;       // mm: that leaves the arc by this much
+  double longest = 0;     // mm: of this length
   double shortest = 0;    // mm: where there are this many chords in a circle, but none shorter
   double per_circle = 0;  // than `shortest` and none longer than `longest`
-};
+  // Ends are turned on by the first terms of the series of sine and cosine; after so many of them
+  // one is computed anew. 0: all are.
+  double turned = 0;
 
-// mm: how far such chords leave an arc of this radius at the most.
-[[nodiscard]] double chord_error(const ArcChords& chords, double radius);
+  [[nodiscard]] bool any() const { return error > 0 || longest > 0; }
+};
 
 // Which bytes of a line a control has to keep.
 enum class LineCount : std::uint8_t {

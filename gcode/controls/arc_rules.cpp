@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "gcode/curves/heidenhain_spl.h"
 #include "gcode/state/modal_state.h"
@@ -175,6 +176,39 @@ std::string_view complaint(const geometry::Arc& printed, Units units, const Cont
 }
 
 }  // namespace
+
+namespace {
+
+// How many equal chords the control makes of an arc; 0: none.
+double chord_count(const ArcChords& chords, const geometry::Arc& arc) {
+  const double radius = geometry::radius_of(arc);
+  double count = std::numeric_limits<double>::infinity();
+  if (chords.error > 0) {
+    const double half = std::sqrt(std::max(0.0, chords.error * (2 * radius - chords.error)));
+    count = half > 0 ? std::abs(arc.sweep) * radius / (2 * half) : 1;
+  }
+  if (chords.longest > 0) {
+    double length = chords.longest;
+    if (chords.per_circle > 0) {
+      const double wished = 2 * std::numbers::pi * radius / chords.per_circle;
+      length = std::clamp(wished, chords.shortest, chords.longest);
+    }
+    count = std::min(count, geometry::length_of(arc) / length);
+  }
+  return std::isinf(count) ? 0 : std::max(1.0, std::floor(count));
+}
+
+}  // namespace
+
+double chord_error(const ArcChords& chords, const geometry::Arc& arc) {
+  const double count = chord_count(chords, arc);
+  if (count == 0) return 0;
+  const double radius = geometry::radius_of(arc);
+  const double turn = std::abs(arc.sweep) / count;
+  // The next term of the series, by which the radius shrinks with each chord.
+  const double shrinks = radius * turn * turn * turn * turn / 24;
+  return radius * (1 - std::cos(turn / 2)) + std::min(count - 1, chords.turned) * shrinks;
+}
 
 std::string_view arc_refusal(const Control& control, const geometry::Arc& printed, Units units) {
   if (!is_written(printed, millimetres_per(units))) return "numbers greater than any control takes";

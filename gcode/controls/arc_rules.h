@@ -46,4 +46,8 @@ inline constexpr ArcRuleNumbers kArcRules;
 [[nodiscard]] std::string_view arc_refusal(const Control& control, const geometry::Arc& printed,
                                            Units units);
 
+// mm: how far the chords that the control makes of this arc leave it; 0: it makes none. Facts:
+// docs/controllers/grbl.md, docs/controllers/printer_family.md.
+[[nodiscard]] double chord_error(const ArcChords& chords, const geometry::Arc& arc);
+
 }  // namespace batten::gcode

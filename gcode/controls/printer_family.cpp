@@ -31,7 +31,7 @@ std::vector<Control> printer_family() {
   // One command to a line: a plane word would take the arc's place, so arcs in G17 alone.
   Control marlin = printer(
       "marlin", "Marlin: arcs and helices in G17 where its own chords are fine enough; millimetres",
-      {.longest = 1, .shortest = 0.1, .per_circle = 72});
+      {.longest = 1, .shortest = 0.1, .per_circle = 72, .turned = 25});
   marlin.planes = {true, false, false};
   // 96 bytes with terminator; a sender adds up to 14 for N1234567 and *123.
   marlin.max_line_length = 80;
@@ -59,7 +59,7 @@ std::vector<Control> printer_family() {
   Control smoothieware = printer(
       "smoothieware",
       "Smoothieware: arcs and helices in G17, G18, G19 where its own chords are fine enough",
-      {.error = 0.01});  // mm_max_arc_error
+      {.error = 0.01, .turned = 5});  // mm_max_arc_error, arc_correction
   smoothieware.comments = CommentStyle::kParentheses;
   smoothieware.max_line_length = 120;  // its buffer was not read; no line of ours needs more
 

@@ -38,7 +38,7 @@ geometry::ArcPartsOptions parts_for(const geometry::Arc& arc, const gcode::Contr
 bool is_taken(const geometry::Arc& arc, const PlanOptions& options) {
   const gcode::Control& target = *options.target;
   return gcode::arc_refusal(target, arc, options.units).empty() &&
-         gcode::chord_error(target.chords, geometry::radius_of(arc)) <= options.max_deviation;
+         gcode::chord_error(target.chords, arc) <= options.max_deviation;
 }
 
 // Planes that the target takes arcs in, the active one first.

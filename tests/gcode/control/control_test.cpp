@@ -233,18 +233,6 @@ TEST(Controls, RefuseWords) {
   EXPECT_FALSE(refuses_word(named_control("haas"), 'G', 540));
 }
 
-// By hand: a chord of 1 mm leaves a circle of 5 mm by 5 (1 - cos 0.1) = 0.02498 mm.
-TEST(ChordError, IsTheHeightOfTheSegment) {
-  EXPECT_NEAR(chord_error({.longest = 1}, 5), 0.0249792, 1e-6);
-  EXPECT_EQ(chord_error({}, 5), 0);
-  EXPECT_EQ(chord_error({.error = 0.01}, 5), 0.01);
-  // 72 chords of a circle of 5 mm are 0.436 mm each: 5 (1 - cos(pi / 72)) = 0.00476 mm.
-  EXPECT_NEAR(chord_error({.longest = 1, .shortest = 0.1, .per_circle = 72}, 5), 0.0047595, 1e-6);
-  // A small circle has the shortest chords, a large one the longest.
-  EXPECT_NEAR(chord_error({.longest = 1, .shortest = 0.1, .per_circle = 72}, 0.2), 0.0062174, 1e-6);
-  EXPECT_NEAR(chord_error({.longest = 1, .shortest = 0.1, .per_circle = 72}, 100), 0.00125, 1e-6);
-}
-
 // --- byte for byte -----------------------------------------------------------------------------
 
 std::string text_of(const fs::path& file) {

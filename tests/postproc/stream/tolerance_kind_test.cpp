@@ -25,7 +25,7 @@ std::string star_program() {
 }
 
 SmoothResult smoothed_star(ToleranceKind kind) {
-  SmoothOptions options = options_for("grbl");
+  SmoothOptions options = options_for("fanuc");
   options.method = Method::kGuo;
   options.output = Form::kArcs;
   options.tolerance_mm = kTolerance;
