@@ -61,9 +61,9 @@ class ArcChain {
   ArcChain(const PlaneCurve& curve, const ArcChainLimits& limits)
       : curve_(curve), limits_(limits) {}
 
-  // The chain of the farthest steps. `whole`: as arc_chain.
+  // The chain of the farthest steps.
   std::optional<std::vector<ChainPiece>> greedy(const ChainNode& start, const ChainNode& end,
-                                                std::size_t at_most, double whole) const {
+                                                std::size_t at_most) const {
     struct OpenPair {  // whose joint is still to be chosen
       std::size_t first;
       ChainNode start;
@@ -81,21 +81,18 @@ class ArcChain {
         const double half = (end.u - at.u) / 2;
         if (auto shorter = next_step(at, end, at.u + half, half)) step = std::move(shorter);
       }
-      const bool is_far_from_end = at.u < (start.u + end.u) / 2;
-      if (!step && end.u < whole && !is_far_from_end) return pieces;
       if (!step || pieces.size() + step->pieces.size() > at_most) return std::nullopt;
       if (step->pair) open.push_back({pieces.size(), at, *step->pair});
       pieces.insert(pieces.end(), step->pieces.begin(), step->pieces.end());
       guess = step->end.u - at.u;
       at = step->end;
-      const double done = (at.u - start.u) / (whole - start.u);
+      const double done = (at.u - start.u) / (end.u - start.u);
       const bool is_behind = static_cast<double>(pieces.size()) >
                              kChain.hopeless_pace * done * static_cast<double>(at_most);
       if ((done > kChain.pace_known && is_behind) || falls_behind(done, pieces.size(), at_most)) {
         return std::nullopt;
       }
     }
-    if (end.u < whole) return pieces;
     // The chain goes the same way whichever joints its pairs have, and most chains are given up.
     for (const OpenPair& each : open) {
       std::ranges::copy(pieces_of(best_pair(each.start, each.found)),
@@ -261,7 +258,7 @@ class ArcChain {
   // to a joint far away and back would pass.
   bool is_passed(const Point2& joint, double u) const {
     const double off = (in_plane(curve_.point_at(u)) - joint).norm();
-    return off <= kChain.joint_off * limits_.deviation + limits_.grid;
+    return off <= 2 * limits_.deviation + limits_.grid;
   }
 
   bool holds(ArcPair& pair, const ChainNode& start) const {
@@ -413,9 +410,9 @@ bool pair_of_arcs_holds(const PlaneCurve& curve, const ArcChainLimits& limits, d
 std::optional<std::vector<ChainPiece>> arc_chain(const PlaneCurve& curve,
                                                  const ArcChainLimits& limits,
                                                  const ChainNode& start, const ChainNode& end,
-                                                 std::size_t at_most, double whole) {
-  auto best = ArcChain(curve, limits).greedy(start, end, at_most, whole);
-  if (!best || end.u < whole || best->size() > kChain.balanced_pieces) return best;
+                                                 std::size_t at_most) {
+  auto best = ArcChain(curve, limits).greedy(start, end, at_most);
+  if (!best || best->size() > kChain.balanced_pieces) return best;
   // With as many pieces, how much smaller can the deviation be?
   double good = 1;
   double small = 0;
@@ -424,7 +421,7 @@ std::optional<std::vector<ChainPiece>> arc_chain(const PlaneCurve& curve,
     ArcChainLimits narrower = limits;
     narrower.deviation *= part;
     narrower.max_sweep *= std::cbrt(part);  // deviations grow with the cube of the length
-    auto chain = ArcChain(curve, narrower).greedy(start, end, best->size(), whole);
+    auto chain = ArcChain(curve, narrower).greedy(start, end, best->size());
     if (chain) {
       best = std::move(chain);
       good = part;

@@ -31,7 +31,7 @@ struct ArcChainTuning {
   // way.
   double pace_known = 0.2;
   double hopeless_pace = 1.5;
-  double pieces_ahead = 64;  // [-]
+  double pieces_ahead = 64;  // [at 4]
   double kink_noise = 1e-5;  // radians, of a single arc at a fixed tangent of a fitted curve [>]
   // How much of the best crossing angle is used. With all of it only chains of just the best length
   // hold, shorter ones swing too far, and the search would fall between; half of it already gives
@@ -42,7 +42,8 @@ struct ArcChainTuning {
   // jump where heights are within their tolerance.
   double slope_error = 5e-3;
   double sampled_part = 0.9;  // of height_deviation; the rest is for what lies between samples
-  double most_turned = 1;  // radians that arcs and curve may turn apart: no loop more or less [-]
+  // Radians that arcs and curve may turn apart: no loop more or less [at 0.1]
+  double most_turned = 1;
   // The deviation is narrowed by halving the doubt so often; only for chains so short that
   // the last step can be a remainder that is worth spreading.
   int balancing_rounds = 5;
@@ -50,12 +51,9 @@ struct ArcChainTuning {
   double shortest_in_grids = 10;  // a shorter step's tangent is turned 0.1 radians by rounding
   double shortest = 1e-5;         // mm, without a grid [>]
   double part_of_section = 0.01;  // is short in any case: a closed section has no span [<]
-  // A joint is about as far from the curve as the arcs that meet there. One that is farther away by
-  // this many times the deviation, and a step of the grid, is none, whatever noise there is.
-  double joint_off = 10;      // [-]
-  int joint_halvings = 24;    // 1e-7 of a piece [<]
-  int joint_places = 40;      // to each side, that are tried for a joint near the grid
-  double widest_joint = 1.3;  // balance: beyond, one arc is much shorter than the other
+  int joint_halvings = 24;        // 1e-7 of a piece [<]
+  int joint_places = 40;          // to each side, that are tried for a joint near the grid
+  double widest_joint = 1.3;      // balance: beyond, one arc is much shorter than the other
 };
 inline constexpr ArcChainTuning kArcChainTuning;
 
@@ -76,14 +74,12 @@ struct ChainPiece {
 [[nodiscard]] bool falls_behind(double done, std::size_t used, std::size_t most);
 
 // Pieces from one node to the other, the fewest first, then the least deviation. Nothing
-// when neither arcs nor short lines hold, or when more than `at_most` would be needed. Where the
-// section goes on behind `end`, to `whole`: what is found before `end`, or nothing when the chain
-// falls behind its pace for the whole or sticks long before `end`.
+// when neither arcs nor short lines hold, or when more than `at_most` would be needed.
 [[nodiscard]] std::optional<std::vector<ChainPiece>> arc_chain(const PlaneCurve& curve,
                                                                const ArcChainLimits& limits,
                                                                const ChainNode& start,
                                                                const ChainNode& end,
-                                                               std::size_t at_most, double whole);
+                                                               std::size_t at_most);
 
 // Whether a pair of arcs leads from the curve at one parameter to the curve at another one.
 [[nodiscard]] bool pair_of_arcs_holds(const PlaneCurve& curve, const ArcChainLimits& limits,

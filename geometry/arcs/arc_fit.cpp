@@ -55,27 +55,23 @@ double range_along(const CurvePieces& pieces, const Vector3& axis) {
   return greatest - least;
 }
 
-// One curve, or its first pieces, chained in one plane.
+// One curve, chained in one plane.
 class ArcFit {
  public:
-  ArcFit(const MarkedPieces& marked, double chords, const ArcFitOptions& options, bool flat,
-         std::size_t count)
+  ArcFit(const MarkedPieces& marked, double chords, const ArcFitOptions& options, bool flat)
       : marked_(marked),
         chords_(chords),
         options_(options),
         flat_(flat),
         frame_(PlaneFrame::across(options.axis)),
-        end_(marked.pieces.breaks()[count]),
-        curve_(marked.pieces, count, frame_) {
+        curve_(marked.pieces, frame_) {
     limits_.ArcRange::operator=(options);
     limits_.deviation = options.max_deviation * (flat_ ? 1.0 : kFit.plane_share);
     limits_.height_deviation = options.max_deviation * kFit.height_share;
     limits_.flat = flat_;
-    if (end_ < marked.pieces.last()) limits_.precision = kFit.precision_of_tries;
   }
 
-  // Of the first pieces alone: what is found of them, or nothing where they already take so many
-  // arcs that the whole would be given up.
+  // Nothing where it takes too many arcs.
   [[nodiscard]] std::optional<Path> path() const {
     const std::vector<ArcSection> sections = cut();
     const std::vector<ArcStop> stops = stops_of(sections);
@@ -83,8 +79,7 @@ class ArcFit {
     // pay. In the plane arcs are worth more than chords, since their tangents agree.
     const std::size_t most =
         flat_ ? std::numeric_limits<std::size_t>::max()
-              : std::min(most_sections(sections.size()) + static_cast<std::size_t>(chords_),
-                         options_.at_most);
+              : std::min(sections.size() + static_cast<std::size_t>(chords_), options_.at_most);
     std::size_t left = most;
     const double from = marked_.pieces.first();
     const double length = marked_.pieces.last() - from;
@@ -99,10 +94,8 @@ class ArcFit {
       const ChainNode start{section.from, stops[i].place, stops[i].leaving};
       const ChainNode end{section.to, to, stops[i + 1].arriving};
       auto pieces = flat_ ? spline_between(start, end) : std::nullopt;
-      const double whole = section.to < end_ ? section.to : end_of_section(end_);
-      if (!pieces) pieces = arc_chain(curve_, limits_, start, end, left, whole);
+      if (!pieces) pieces = arc_chain(curve_, limits_, start, end, left);
       if (!pieces) return std::nullopt;
-      if (section.to < whole) return path;
       left -= pieces->size();
       if (falls_behind((section.to - from) / length, most - left, most)) return std::nullopt;
       for (const ChainPiece& piece : *pieces) append(piece.arc, piece.end_height, path);
@@ -111,33 +104,9 @@ class ArcFit {
   }
 
  private:
-  // Of the whole curve, of which `found` are on its first pieces: no more than at corners and about
-  // straight runs.
-  [[nodiscard]] std::size_t most_sections(std::size_t found) const {
-    if (end_ == marked_.pieces.last()) return found;
-    const auto runs = std::ranges::count_if(
-        marked_.straight_runs, [this](const StraightRun& run) { return is_long(run); });
-    return marked_.corners.size() + 2 * static_cast<std::size_t>(runs) + 2;
-  }
-
-  // Where the smooth section that holds u ends, or before: at the next corner or straight run.
-  [[nodiscard]] double end_of_section(double u) const {
-    const auto corner = std::ranges::upper_bound(marked_.corners, u);
-    auto run = std::ranges::upper_bound(marked_.straight_runs, u, {}, &StraightRun::from);
-    while (run != marked_.straight_runs.end() && !is_long(*run)) ++run;
-    return std::min(corner == marked_.corners.end() ? marked_.pieces.last() : *corner,
-                    run == marked_.straight_runs.end() ? marked_.pieces.last() : run->from);
-  }
-
-  [[nodiscard]] bool is_long(const StraightRun& run) const {
-    const Vector3 way = marked_.pieces.point_at(run.to) - marked_.pieces.point_at(run.from);
-    return way.norm() >= kFit.least_run_in_grids * options_.grid;
-  }
-
   [[nodiscard]] std::vector<ArcSection> cut() const {
     std::vector<double> corners = marked_.corners;
-    corners.erase(std::ranges::lower_bound(corners, end_), corners.end());
-    corners.push_back(end_);
+    corners.push_back(marked_.pieces.last());
     std::vector<ArcSection> sections;
     auto run = marked_.straight_runs.begin();
     double at = marked_.pieces.first();
@@ -250,7 +219,6 @@ class ArcFit {
   const ArcFitOptions& options_;
   bool flat_;
   PlaneFrame frame_;
-  double end_;  // of the pieces that are chained
   PlaneCurve curve_;
   ArcChainLimits limits_;
 };
@@ -277,12 +245,7 @@ std::optional<Path> fit_arcs(const MarkedPieces& pieces, double chords,
   check(options);
   const bool flat = range_along(pieces.pieces, options.axis) <= kFit.one_height;
   if (!flat && !options.helical) return std::nullopt;
-  const std::size_t all = pieces.pieces.size();
-  if (!flat && all > 2 * kFit.first_pieces &&
-      !ArcFit(pieces, chords, options, flat, kFit.first_pieces).path()) {
-    return std::nullopt;
-  }
-  return ArcFit(pieces, chords, options, flat, all).path();
+  return ArcFit(pieces, chords, options, flat).path();
 }
 
 double chords_along(const CurvePieces& pieces, double deviation) {

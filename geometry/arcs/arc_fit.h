@@ -24,20 +24,17 @@ struct ArcFitOptions : ArcRange {
 
 struct ArcFitTuning {
   // [..]: what fails at half and double (docs/ARCHITECTURE.md).
-  double one_height = 1e-6;  // mm: the last decimal that any program carries [-]
+  // mm: the last decimal that any program carries [at 0: PlanArcs.TakesThePlaneThatTheRunLiesIn]
+  double one_height = 1e-6;
   // Of the deviation of a helix. The two parts are at right angles: 0.8^2 + 0.6^2 = 1.
   double plane_share = 0.8;
   double height_share = 0.6;
   double beyond_run = 1.5;  // arcs that hold a straight run and half as much again go over it [<]
-  double least_run_in_grids = 50;  // a shorter run would have its direction from rounding [-]
+  double least_run_in_grids = 50;  // a shorter run would have its direction from rounding [at 0]
   // In the plane the curve is held against chords that leave it by no more than this part of
   // the deviation: below what the band takes for one edge without samples between.
   double chord_part = 0.018;
   int chords_read = 3;  // of a piece [< FitArcs.ChordsAlongAnSAreThoseOfBothItsBends]
-  // Most chains off the plane are given up: where the first pieces, chained to
-  // `precision_of_tries`, already fall too far behind, the rest is not looked at.
-  std::size_t first_pieces = 1500;   // [-]
-  double precision_of_tries = 0.03;  // [-]
 };
 inline constexpr ArcFitTuning kArcFitTuning;
 

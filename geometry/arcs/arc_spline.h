@@ -28,18 +28,22 @@ struct ArcSplineOptions : ArcRange {
 struct ArcSplineTuning {
   // [..]: what fails at half and double (docs/ARCHITECTURE.md).
   std::size_t kink_costs = 3;  // a kink counts as so many arcs
-  std::size_t patience = 4;    // levels beyond a kink's that may pass without seeing farther [-]
+  std::size_t patience = 4;    // levels beyond a kink's that may pass without seeing farther [at 0]
   // Radians: vertices of the polyline that turn more may be kinks.
-  double kink_turn = 0.2;        // [ArcSpline.OfAButterflyInBriefTakesFewArcsAndOneKink]
-  std::size_t corner_back = 16;  // samples before the reach's end: where such are looked for [-]
-  double range_margin = 0.05;    // of a range of curvatures: arcs to a corner keep off its ends [-]
-  double same_turn = 1e-6;       // radians: what differs less is the same tangent [>]
-  double two_reach = 1.5;        // two arcs get so much farther than one, at most [-]
+  double kink_turn = 0.2;  // [ArcSpline.OfAButterflyInBriefTakesFewArcsAndOneKink]
+  // Samples before the reach's end: where such are looked for [at 0:
+  // ArcSpline.LinesStayLinesAndTheirCornerAKink]
+  std::size_t corner_back = 16;
+  // Of a range of curvatures: arcs to a corner keep off its ends [at 0.4:
+  // ArcSpline.OfAButterflyInBriefTakesFewArcsAndOneKink]
+  double range_margin = 0.05;
+  double same_turn = 1e-6;  // radians: what differs less is the same tangent [>]
+  double two_reach = 1.5;   // two arcs get so much farther than one, at most [at 1e9]
   // Chains of no more arcs than `few` are tried again with a part of the tolerance: circles and
   // fillets come out with their own radius.
-  std::size_t few = 8;    // [-]
+  std::size_t few = 8;    // [at 0: FitArcs.ACircleIsAFewArcsOfItsRadius]
   double nearer = 0.3;    // [>]
-  int nearer_rounds = 3;  // [-]
+  int nearer_rounds = 3;  // [at 0: FitArcs.ACircleIsAFewArcsOfItsRadius]
 };
 inline constexpr ArcSplineTuning kArcSplineTuning;
 

@@ -47,7 +47,7 @@ struct Circle {
 Circle circle_of(const Gate& gate, double width) {
   Vector3 across = gate.bend;
   if (across.isZero()) across = gate.along.unitOrthogonal();
-  return {gate.center, gate.along, across, std::min(width - gate.gap, gate.room)};
+  return {gate.center, gate.along, across, width - gate.gap};
 }
 
 // The directions of straight ways from one point through circles, one after the other, as a
@@ -364,13 +364,13 @@ class LinkSection {
       const bool again = vertices[i].place == proved.back().place && i + 1 < vertices.size();
       if (again) continue;
       if (!is_near_curve(vertices[i])) return false;
-      if (!prove_link(vertices[i], kLink.most_cuts, proved)) return false;
+      if (!prove_link(vertices[i], proved)) return false;
     }
     vertices = std::move(proved);
     return true;
   }
 
-  bool prove_link(const LinkVertex& end, int cuts, Vertices& proved) const {
+  bool prove_link(const LinkVertex& end, Vertices& proved) const {
     const LinkVertex start = proved.back();
     if (chord_proved(pieces_, start.parameter, end.parameter,
                      ChordProof(start.place, end.place, options_.tolerance, kSharpProofCuts))) {
@@ -378,9 +378,8 @@ class LinkSection {
       return true;
     }
     const double middle = (start.parameter + end.parameter) / 2;
-    if (cuts == 0 || !(start.parameter < middle && middle < end.parameter)) return false;
-    return prove_link({pieces_.point_at(middle), middle}, cuts - 1, proved) &&
-           prove_link(end, cuts - 1, proved);
+    if (!(start.parameter < middle && middle < end.parameter)) return false;
+    return prove_link({pieces_.point_at(middle), middle}, proved) && prove_link(end, proved);
   }
 
   [[nodiscard]] bool is_near_curve(const LinkVertex& vertex) const {

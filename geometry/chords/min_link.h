@@ -35,14 +35,13 @@ struct MinLinkTuning {
   int least_gates = 8;  // fewer show no link [< MinLinkVertices.RefuseOptionsOutsideTheirRange]
   // Of the tolerance: a curve this near to a plane is taken as plane. Two points of a link and the
   // curve may be apart twice that across the plane, which costs 0.1 % of the tolerance.
-  double flat = 0.02;  // [-]
+  double flat = 0.02;  // [at 0: MinLinkCount.IsThatOfTheTable]
   // Balancing: halvings in search of the least tolerance that needs as many links, above this part
   // of it (9/16 needs a third more links), over the last links only: the cost does not grow with
   // the run.
   int balancing_rounds = 4;
   double narrowest = 9.0 / 16;
   std::size_t balanced = 40;
-  int most_cuts = 12;  // a link that is not proved is cut in two, so often [-]
   // In space. Corners of the polygon in a gate's circle: between two of them it is 2 % narrower; to
   // where the curve bends, where the width is needed, it is not.
   static constexpr int corners = 16;
@@ -52,7 +51,7 @@ struct MinLinkTuning {
       1;  // tangent: a link turns from the curve's direction by less than 45 degrees
   // Where a link may turn before the farthest point it gets to, as parts of its gates: there the
   // link after it may see more, when the curve begins to bend another way.
-  std::array<double, 3> earlier_turns = {0.125, 0.25, 0.5};  // the last: [-]
+  std::array<double, 3> earlier_turns = {0.125, 0.25, 0.5};  // the last: [at 0.25]
 };
 inline constexpr MinLinkTuning kMinLinkTuning;
 

@@ -51,13 +51,6 @@ void cut_long_pieces(std::vector<PieceSteps>& cuts) {
   }
 }
 
-// Up to which width on the side of `bend` the ends of two gates go forward.
-double room_between(const Gate& a, const Gate& b, const Vector3& bend) {
-  const double turned = (b.along - a.along).dot(bend);
-  const double way = (b.center - a.center).norm();
-  return turned > kGates.no_bend ? way / turned : std::numeric_limits<double>::infinity();
-}
-
 }  // namespace
 
 GateChain::GateChain(const CurvePieces& pieces, double from, double to, double gap)
@@ -95,14 +88,7 @@ void GateChain::find_bends() {
     const Vector3 turn = after.along - before.along;
     gate.bend = turn - turn.dot(gate.along) * gate.along;
     const double size = gate.bend.norm();
-    gate.room = std::numeric_limits<double>::infinity();
-    if (size <= kGates.no_bend) {
-      gate.bend = Vector3::Zero();
-      continue;
-    }
-    gate.bend /= size;
-    gate.room = kGates.room * std::min(room_between(before, gate, gate.bend),
-                                       room_between(gate, after, gate.bend));
+    gate.bend = size > kGates.no_bend ? Vector3(gate.bend / size) : Vector3(Vector3::Zero());
   }
 }
 
@@ -129,7 +115,6 @@ Gate GateChain::between(std::size_t i, double part) const {
   const Gate& after = gates_[i + 1];
   Gate gate = gate_at(before.parameter + part * (after.parameter - before.parameter));
   gate.gap = before.gap;
-  gate.room = std::min(before.room, after.room);
   const Vector3 bend = before.bend + after.bend;
   const Vector3 across = bend - bend.dot(gate.along) * gate.along;
   const double size = across.norm();

@@ -15,20 +15,18 @@ struct GateTuning {
   // A piece that is this many times longer than the steps beside it is cut into parts about as long
   // as they, so many at most: points to turn are wanted near its ends.
   double growth = 4;         // [<]
-  double most_in_line = 16;  // [-]
+  double most_in_line = 16;  // [at 1 and 1e6]
   int most_halvings = 20;  // of one Bezier piece, a million gates [< MinLinkCount.IsThatOfTheTable]
-  double room = 0.9;       // of the width up to which inner ends do not cross: gates keep that [-]
-  double no_bend = 1e-12;  // radians between tangents: less is rounding [-]
+  double no_bend = 1e-12;  // radians between tangents: less is rounding [at 0]
 };
 inline constexpr GateTuning kGateTuning;
 
 struct Gate {
   double parameter = 0;
-  Point3 center;    // on the curve
-  Vector3 along;    // unit tangent
-  Vector3 bend;     // to where the curve bends; no length where it is straight
-  double gap = 0;   // mm: how far the curve beside the gate is from the chords to its neighbours
-  double room = 0;  // mm: to this width on the inside, gates beside each other do not cross
+  Point3 center;   // on the curve
+  Vector3 along;   // unit tangent
+  Vector3 bend;    // to where the curve bends; no length where it is straight
+  double gap = 0;  // mm: how far the curve beside the gate is from the chords to its neighbours
 };
 
 class GateChain {

@@ -247,7 +247,7 @@ class GateSweep {
     const Vector2 along = (axes_ * gate.along).normalized();
     plane.normal = Vector2(-along.y(), along.x());
     const double bend = plane.normal.dot(axes_ * gate.bend);
-    const double inside = std::min(width_ - gate.gap, gate.room);
+    const double inside = width_ - gate.gap;
     plane.open = {bend < 0 ? -inside : -width_, bend > 0 ? inside : width_};
     return plane;
   }

@@ -26,22 +26,25 @@ struct BandTuning {
   double wider = 1.05;  // a start outside: the band is widened by this much more than it needs
   // The band is no longer widened when the greatest ratio is below this: strictly inside, so that
   // the barrier is finite.
-  double inside = 0.9999;  // [-]
+  double inside = 0.9999;  // [at 0.9]
   // The part that the energy at the start has in what is made least, beside the widening.
   double trace = 1e-3;  // [<]
   // The part that counts of an energy that counts next to nothing: it still holds the parameter.
-  double next_to_nothing = 1e-3;  // [-]
+  double next_to_nothing = 1e-3;  // [at 1: SolveBand.EnergyAlongADirectionMayBeLeftOut]
   // Of coordinates: they are rounded to 1e-16 of themselves, and what a Newton step solves for is
   // wrong by some tens of that.
   double rounding = 4e-15;  // [< SolveBand.NoiseInsideTheBandBecomesStraight]
   // Added to the diagonal in parts of itself: what the band and the energy leave free (a straight
   // run may slide along itself) must not make the system singular. Ten thousand times the rounding
   // of a pivot, and too little to slow any step down.
-  double damping = 1e-12;           // [-]
-  int more_damping = 6;             // tries, times a hundred each, where rounding still wins [-]
-  double most_of_the_way = 0.99;    // to the edge of the band: no step goes further [-]
+  double damping = 1e-12;  // [at 0: SolveBand.NoiseInsideTheBandBecomesStraight]
+  // Tries, times a hundred each, where rounding still wins [at 0: SolveBand.BendsAsABeamDoes]
+  int more_damping = 6;
+  // To the edge of the band: no step goes further [at 1 - 1e-10:
+  // SolveBand.EndsInsideWithTheLeastEnergy]
+  double most_of_the_way = 0.99;
   double search_near_enough = 0.1;  // of the slope at the start of a step, where its search ends
-  int search_tries = 20;            // [-]
+  int search_tries = 20;            // [at 2: SolveBand.EndsInsideWithTheLeastEnergy]
 };
 inline constexpr BandTuning kBandTuning;
 

@@ -65,7 +65,8 @@ PlaneFrame PlaneFrame::across(const Vector3& axis) {
   return frame;
 }
 
-PlaneCurve::PlaneCurve(const CurvePieces& pieces, std::size_t count, const PlaneFrame& frame) {
+PlaneCurve::PlaneCurve(const CurvePieces& pieces, const PlaneFrame& frame) {
+  const std::size_t count = pieces.size();
   breaks_.reserve(count + 1);
   pieces_.reserve(count);
   start_angles_.reserve(count);

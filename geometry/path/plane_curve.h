@@ -30,8 +30,8 @@ struct PlaneFrame {
 
 class PlaneCurve : public PieceRow {
  public:
-  // Of the first `count` pieces. Those that turn by more than a radian are halved.
-  PlaneCurve(const CurvePieces& pieces, std::size_t count, const PlaneFrame& frame);
+  // Pieces that turn by more than a radian are halved.
+  PlaneCurve(const CurvePieces& pieces, const PlaneFrame& frame);
 
   // Of the tangent in the plane, radians, continuous but for corners, where it is the angle of
   // leaving (`angle_before`: of arriving).

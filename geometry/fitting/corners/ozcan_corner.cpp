@@ -53,14 +53,15 @@ struct Problem : OzcanProblem {
     return {std::min(tolerance, frame.cos_half * leg[2] / 2), std::min(tolerance, leg[2] / 2)};
   }
 
-  // The paper's objective (11): the deviation, weighed so that it outdoes all else, where the
-  // tolerance is broken; else the inverse of the feed.
+  // The paper's objective (11), the inverse of the feed; where the tolerance is broken, a weight
+  // that outdoes all else.
   [[nodiscard]] double cost(const std::vector<double>& v) const {
     const BesideLeg fourth = place(v);
     if (!goes_forward(fourth)) return std::numeric_limits<double>::infinity();
     const BsplineCurve curve = ozcan_curve(frame, leg, fourth);
-    const double off = measure_deviation(curve, frame, kind);
-    if (off > tolerance) return kOzcanTuning.broken * (1 + off);
+    if (measure_deviation(curve, frame, kind) > tolerance) {
+      return std::numeric_limits<double>::infinity();
+    }
     return 1 / feed_estimate(curve, limits);
   }
 };

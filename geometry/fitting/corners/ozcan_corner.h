@@ -68,7 +68,6 @@ struct OzcanTuning {
   int halvings = 48;  // of the usual corner's places: the deviation is right to 1e-14 of the blend
   int evaluations = 600;  // of one search [<]
   double finest = 1e-4;   // of the first step, about a tolerance: changes no feed by a thousandth
-  double broken = 1e6;    // s/mm^2: no feed is as slow as 1e-6 mm/s over 1 mm [-]
 };
 inline constexpr OzcanTuning kOzcanTuning;
 

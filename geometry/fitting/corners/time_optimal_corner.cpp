@@ -272,7 +272,7 @@ std::variant<TimeOptimalBlend, NoBlend> time_optimal_corner(const Corner& corner
 namespace {
 
 bool bends_more_than(const BsplineCurve& curve, double curvature) {
-  constexpr int kSteps = kRacing.curvatures_per_span;
+  constexpr int kSteps = kRacing.watched;
   const std::vector<double> breaks = curve.breakpoints();
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
     for (int k = 0; k < kSteps; ++k) {

@@ -23,28 +23,27 @@ struct TimeOptimalOptions {
 
 struct TimeOptimalTuning {
   // [..]: what fails at half and double (docs/ARCHITECTURE.md).
-  int spans_each =
-      16;  // of the curve, to each side: more are faster by little and cost as much more
+  int spans_each = 16;   // of the curve, to each side: more are faster by little, and dear
   double growth = 1.05;  // of spans from the apex outwards: all that is quick happens near it
-  int watched = 4;       // samples per span where the band is held
+  int watched = 4;       // samples per span where the band is held, and the bends are looked at
   // The speed may be above the feed by this part: the planner that runs the curve caps it, which
   // costs no more than that, and the ends, which have the feed itself, are strictly inside.
   double overspeed = 2e-4;
-  double time_error = 2e-4;  // of what a stop costs: the time is found to this [-]
+  double time_error = 2e-4;  // of what a stop costs: the time is found to this [at 0.1]
   int time_tries = 16;       // [<]
   // The lost time is between these parts of the ramps' and of a stop's: with a wide tolerance the
   // way is shorter, and time is won. First it is thought to be the third.
   double least_lost = -1.5;
-  double most_lost = 1.2;  // [-]
+  // [at 0.41: TimeOptimalCorner.KeepsTheToleranceTheLegsAndTheMachinesLimitsInItsTime]
+  double most_lost = 1.2;
   double first_lost = 0.4;
   double from_ends = 0.05;  // of the interval of times: the next try keeps so far from its ends
   // Rounds of solving again further inside, since the band is held at samples only.
-  int band_rounds = 4;  // [-]
+  int band_rounds = 4;  // [at 0: the same]
   double further_inside = 1e-4;
   // A curve that bends this many times as hard as the five points do is none: where there is
   // hardly any room (teeth of noise), the search ends with one that stops on its way.
   double sharper = 2;
-  int curvatures_per_span = 8;  // looked at for that [-]
 };
 inline constexpr TimeOptimalTuning kTimeOptimalTuning;
 

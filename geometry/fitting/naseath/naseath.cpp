@@ -217,10 +217,10 @@ class NaseathPasses {
   }
 
   // mm: no more than this between the curves at any parameter, and above the greatest by a
-  // ten-millionth of accuracy times radius at most.
+  // hundredth of accuracy times radius at most.
   [[nodiscard]] double greatest_displacement(const ControlPolygon& polygon) const {
-    return std::ranges::max(
-        displacement_bounds(displacement_of(polygon), kNaseathTuning.last_slack * at_tube_));
+    constexpr double kLast = kNaseathTuning.slack * kNaseathTuning.slack;
+    return std::ranges::max(displacement_bounds(displacement_of(polygon), kLast * at_tube_));
   }
 
   // Moves the points inside the room given. False when none has anywhere to go.

@@ -50,22 +50,23 @@ struct NaseathTuning {
   // [..]: what fails at half and double (docs/ARCHITECTURE.md).
   // Legs that differ less (sine of the angle) do not turn. A straight end gives three control
   // points on one line to within rounding, and the class of the third must not hang on that.
-  double no_turn = 1e-12;           // [<]
-  double no_direction = 1e-12;      // mm, or of unit vectors [< Naseath.TurnsWithTheCurveIntoSpace]
-  double no_influence = 1e-12;      // part of the move: less, and the quotient is rounding [-]
+  double no_turn = 1e-12;       // [<]
+  double no_direction = 1e-12;  // mm, or of unit vectors [< Naseath.TurnsWithTheCurveIntoSpace]
+  // Part of the move: less, and the quotient is rounding [at 0:
+  // Naseath.BendsCurvesHarderLiterallyAndNotWithRepairs].
+  double no_influence = 1e-12;
   std::size_t fewest_in_group = 3;  // points
   double apex_share = 9;            // a side point goes with its apex, to one of its own bisector
-  // A bound on the displacement may exceed it by so much of what `accuracy` resolves: while
-  // passes are made, and in the end.
+  // A bound on the displacement may exceed it by so much of what `accuracy` resolves while passes
+  // are made; in the end by the square of that.
   double slack = 0.1;
-  double last_slack = 1e-7;  // [-]
   // The part of the room that moves take. All of it is at the tube to within rounding; this much
   // less and the last bound, too, is inside it.
   double inside = 1 - 1e-6;      // [<]
   double least_part = 1.0 / 64;  // of a move that was taken back: it is halved down to this
-  int steps_per_pass = 32;     // a span's, of single passes; the one returned has kNaseathSteps [-]
+  int steps_per_pass = 32;  // a span's, of single passes; the one returned has kNaseathSteps [at 4]
   double same_bending = 1e-9;  // relative: rounding [> Naseath.StaysInTheTubeAndBendsNoHarder]
-  double progress = 1e-3;      // relative: a pass that bends less by no more is no progress [-]
+  double progress = 1e-3;  // relative: a pass that bends less by no more is no progress [at 0.1]
 };
 inline constexpr NaseathTuning kNaseathTuning;
 

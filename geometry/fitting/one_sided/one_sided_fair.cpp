@@ -131,8 +131,8 @@ class OneSided {
     for (std::size_t i = 1; i + 1 < points.size(); ++i) {
       const Vector3& before = normals_[i - 1];
       const Vector3& after = normals_[i];
-      points[i] +=
-          move_[i] / std::max(kOneSidedTuning.sharpest, 1 + before.dot(after)) * (before + after);
+      // At a turn of more than a right angle the corner of the moved path would be far off.
+      points[i] += move_[i] / std::max(1.0, 1 + before.dot(after)) * (before + after);
     }
     return points;
   }

@@ -25,9 +25,6 @@ struct OneSidedTuning {
   // The room that a curve has at the ends of a run, where nothing is moved yet: less than what is
   // let through, in parts of the tolerance.
   double least_room = 0.8 * let_through;
-  // Vertices whose neighbours leave less than this of the way round (1 + cosine of the turn) move
-  // no further than others with it: the corner of the moved path would be far off.
-  double sharpest = 0.5;  // [-]
   // Where the path turns to the other side, the path beside it turns round the vertex on an arc.
   // Its corner is held back by this many moves, for beyond 75 degrees the corner of the moved edges
   // would leave too little room.

@@ -79,6 +79,17 @@ TEST(OzcanPath, SearchesCornersThatAreAlikeOnce) {
   EXPECT_EQ(path.searched, 2) << "to the left and to the right";
 }
 
+// Corners of printed programs are alike to their last digit, and those that only look alike are
+// measured, which shows as another blend.
+TEST(OzcanPath, TakesCornersAsAlikeToAMillionth) {
+  for (const auto& [off, searched] : {std::pair{1e-8, 1}, {1e-3, 2}}) {
+    const std::vector<Point3> points = {
+        {0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {4, 2, 0}, {4 + off, 4, 0}};
+    const OzcanPath path = ozcan_path(points, with_tolerance(0.05, ToleranceKind::kPath));
+    EXPECT_EQ(path.searched, 1 + searched) << off;
+  }
+}
+
 TEST(OzcanPath, SearchesNoGentleCorner) {
   std::vector<Point3> ring;
   for (int i = 0; i <= 360; ++i) {
