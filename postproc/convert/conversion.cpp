@@ -195,12 +195,6 @@ gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language
           .dwells = gcode::dwells_of(options.source)};
 }
 
-bool is_of_another_family(const gcode::Program& program, const gcode::Control& target) {
-  gcode::Diagnostics found;
-  tell_of_other_family(program, target, found);
-  return !found.empty();
-}
-
 void tell_of_other_family(const gcode::Program& program, const gcode::Control& target,
                           gcode::Diagnostics& found) {
   for (const gcode::FoundMark& each : gcode::source_marks(program)) {

@@ -42,12 +42,9 @@ namespace batten::postproc {
 // How a program in this language is read with these options.
 [[nodiscard]] gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language);
 
-// Whether the program has words of controls that the target is none of, or a dwell that, as its
-// source reads it, waits for another time than the target does.
-[[nodiscard]] bool is_of_another_family(const gcode::Program& program,
-                                        const gcode::Control& target);
-
-// Adds an error "other-family" for each kind of such words, at its first place.
+// Adds an error "other-family" for each kind of words of controls that the target is none of, at
+// its first place, and for a dwell that, as its source reads it, waits for another time than the
+// target does.
 void tell_of_other_family(const gcode::Program& program, const gcode::Control& target,
                           gcode::Diagnostics& found);
 

@@ -83,7 +83,8 @@ class PrescanWork {
   [[nodiscard]] bool target_takes_otherwise(const gcode::Program& part) const {
     gcode::Diagnostics others;
     tell_of_other_meanings(part, target_, others);
-    return !others.empty() || is_of_another_family(part, target_);
+    tell_of_other_family(part, target_, others);
+    return !others.empty();
   }
 
   // False: the report says why it ends here.

@@ -39,7 +39,6 @@ class CollectedResult {
     result.diagnostics = facts.found;
     result.blocks_in = facts.blocks;
     result.units = facts.units;
-    result.proved = true;
   }
 
   SmoothResult result;
@@ -47,7 +46,7 @@ class CollectedResult {
   // The figures, runs and notes of the next window; its text is the caller's.
   void take(WindowDone window) {
     const ProvedText& proof = window.proof;
-    result.proved = result.proved && proof.proved;
+    proved_ = proved_ && proof.proved;
     notes_.add(window.notes, result.diagnostics);
     result.blocks_out += proof.blocks;
     result.added_lines += proof.added_lines;
@@ -75,11 +74,13 @@ class CollectedResult {
     notes_.tell_rest(result.diagnostics);
     std::ranges::move(notes_on_runs_, std::back_inserter(result.diagnostics));
     result.understood = true;
+    result.proved = proved_;
     return std::move(result);
   }
 
  private:
   BandNoteTally notes_;
+  bool proved_ = true;
   gcode::Diagnostics notes_on_runs_;  // one of each id
 };
 
@@ -176,13 +177,8 @@ class Smoothing {
 
   bool read() {
     gcode::Diagnostics of_language;
-    const auto language = language_read(source_, options_, of_language);
-    if (!language) {
-      facts_.found = std::move(of_language);
-      return false;
-    }
     if (source_.text().size() < limits_.bytes_for_windows || !options_.words.empty() ||
-        *language != gcode::Language::kRs274) {
+        language_read(source_, options_, of_language) != gcode::Language::kRs274) {
       return read_as_one_window();
     }
     facts_ = prescan(source_, options_, limits_.windows,
@@ -239,10 +235,14 @@ class Smoothing {
 
   // What is copied must say on the target what it said on the control that it was made for.
   bool fits_target(const ProgramPart& part) {
-    if (!is_of_another_family(part.program, *options_.target)) return true;
-    if (find_runs(part, options_, setting_.long_runs).works.empty()) return true;
-    const auto tell = options_.convert ? &tell_what_cannot_be_said : &tell_of_other_family;
-    tell(part.program, *options_.target, facts_.found);
+    gcode::Diagnostics others;
+    tell_of_other_family(part.program, *options_.target, others);
+    if (others.empty() || find_runs(part, options_, setting_.long_runs).works.empty()) return true;
+    if (options_.convert) {
+      others.clear();
+      tell_what_cannot_be_said(part.program, *options_.target, others);
+    }
+    std::ranges::move(others, std::back_inserter(facts_.found));
     return !gcode::has_error(facts_.found);
   }
 
@@ -356,11 +356,7 @@ class Smoothing {
     return lines_in(copied) > lines;  // each round copies more, so the rounds end
   }
 
-  SmoothResult refused() {
-    SmoothResult result = CollectedResult(facts_).result;
-    result.proved = false;
-    return result;
-  }
+  SmoothResult refused() { return CollectedResult(facts_).result; }
 
   SmoothResult finished() {
     SmoothResult& result = collected_->result;
