@@ -73,7 +73,7 @@ struct FairTuning {
   // A knot that is nearer to a cut than this part of the spans beside it is put on the cut. Left
   // where it is, it would make a span of next to no length, and what is done to the control points
   // at the seam would bend the curve there as hard as that span is short.
-  double on_cut = 0.1;
+  double on_cut = 0.1;  // [at 1]
 
   // --- corners, in limits
   // They are rounded within this along their legs: enough for the curve to leave the line gently,

@@ -188,9 +188,8 @@ std::vector<bool> lines_of(std::span<const Point3> points, const PathFeatures& f
     }
   };
   find(0, false);
-  find(std::max(kFeatureTuning.ends_apart * options.rounding,
-                kFeatureTuning.straight * options.tolerance),
-       true);
+  const double both_ends = 2 * std::sqrt(3.0) * options.rounding;
+  find(std::max(both_ends, kFeatureTuning.straight * options.tolerance), true);
   return lines;
 }
 

@@ -36,8 +36,8 @@ struct FeatureTuning {
   double known = 1.5;
   // What scatters by more than the tolerance and more than this part of the edges is no noise, but
   // stairs and teeth: noise of that size would turn every vertex by 35 degrees (rms).
-  double noise_of_edge = 0.25;
-  double much_noise = 0.25;  // above this part of the tolerance it may make corners
+  double noise_of_edge = 0.25;  // [at 4: PathFeatures.StairsAreNoNoise]
+  double much_noise = 0.25;     // above this part of the tolerance it may make corners
   // The sides of a corner among noise meet at so many standard deviations of what noise explains. A
   // vertex that alone is 4.5 noises off makes 3.3 of it.
   double sure_kink = 5;
@@ -49,7 +49,7 @@ struct FeatureTuning {
   // 2 sqrt(3) of a coordinate's), or by this part of the tolerance: where it meets a curve, a CAM
   // system ends its last edge beyond the joint.
   double no_turn = 1e-6;
-  double ends_apart = 3.5;
+  // [at 1e-4: SmoothCurve.StaysOnLinesThatAreCutIntoBlocksBesideARounding]
   double straight = 0.05;
   // A line is this many times longer than the edges beside it. Chords of a curve whose curvature
   // changes smoothly differ less from their neighbours.

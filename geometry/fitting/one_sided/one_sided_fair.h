@@ -28,8 +28,8 @@ struct OneSidedTuning {
   // Where the path turns to the other side, the path beside it turns round the vertex on an arc.
   // Its corner is held back by this many moves, for beyond 75 degrees the corner of the moved edges
   // would leave too little room.
-  double furthest_corner = 1.25;
-  int samples = 8;  // beside each edge, at which the curve is looked at
+  double furthest_corner = 1.25;  // [<]
+  int samples = 8;  // beside each edge, at which the curve is looked at [>]
 };
 inline constexpr OneSidedTuning kOneSidedTuning;
 
