@@ -60,8 +60,6 @@ struct ArcChords {
   // Ends are turned on by the first terms of the series of sine and cosine; after so many of them
   // one is computed anew. 0: all are.
   double turned = 0;
-
-  [[nodiscard]] bool any() const { return error > 0 || longest > 0; }
 };
 
 // Which bytes of a line a control has to keep.

@@ -175,10 +175,6 @@ std::string_view complaint(const geometry::Arc& printed, Units units, const Cont
   return strictest(printed, units, control);
 }
 
-}  // namespace
-
-namespace {
-
 // How many equal chords the control makes of an arc; 0: none.
 double chord_count(const ArcChords& chords, const geometry::Arc& arc) {
   const double radius = geometry::radius_of(arc);

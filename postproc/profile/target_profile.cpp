@@ -116,7 +116,7 @@ constexpr ProfileKey kKeys[] = {
      [](Control& c) -> double& { return c.min_radius; }, 0.001, 1e6},
     {"arcs", "max-radius", "mm; flatter arcs become lines",
      [](Control& c) -> double& { return c.max_radius; }, 0.001, 1e6},
-    {"arcs", "chord-error", "mm by which the control's own chords leave an arc; 0: none",
+    {"arcs", "chord-error", "mm by which the control wants its own chords to leave an arc; 0: none",
      [](Control& c) -> double& { return c.chords.error; }, 0, 10},
     {"arcs", "chord-length", "mm, of the control's own chords; 0: not by length",
      [](Control& c) -> double& { return c.chords.longest; }, 0, 100},

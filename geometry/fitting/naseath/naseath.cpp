@@ -216,11 +216,11 @@ class NaseathPasses {
     return std::ranges::max(room.per_point) >= at_tube_;
   }
 
-  // mm: no more than this between the curves at any parameter, and above the greatest by a
-  // hundredth of accuracy times radius at most.
+  // mm: no more than this between the curves at any parameter, and above the greatest by half of
+  // what `inside` keeps free at most, so that it is inside the tube as well.
   [[nodiscard]] double greatest_displacement(const ControlPolygon& polygon) const {
-    constexpr double kLast = kNaseathTuning.slack * kNaseathTuning.slack;
-    return std::ranges::max(displacement_bounds(displacement_of(polygon), kLast * at_tube_));
+    const double free = (1 - kNaseathTuning.inside) * options_.radius;
+    return std::ranges::max(displacement_bounds(displacement_of(polygon), free / 2));
   }
 
   // Moves the points inside the room given. False when none has anywhere to go.

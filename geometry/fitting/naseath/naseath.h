@@ -57,8 +57,8 @@ struct NaseathTuning {
   double no_influence = 1e-12;
   std::size_t fewest_in_group = 3;  // points
   double apex_share = 9;            // a side point goes with its apex, to one of its own bisector
-  // A bound on the displacement may exceed it by so much of what `accuracy` resolves while passes
-  // are made; in the end by the square of that.
+  // While passes are made a bound on the displacement may exceed it by so much of what `accuracy`
+  // resolves.
   double slack = 0.1;
   // The part of the room that moves take. All of it is at the tube to within rounding; this much
   // less and the last bound, too, is inside it.

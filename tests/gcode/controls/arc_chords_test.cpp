@@ -38,6 +38,11 @@ TEST(ArcChords, AreSoMuchFartherAsTheirNumberIsRoundedDown) {
   const ArcChords grbl{.error = 0.002};
   EXPECT_NEAR(chord_error(grbl, arc_of(1, 14.4)), 0.0078853, 1e-6);
   EXPECT_NEAR(chord_error(grbl, arc_of(1, 14.6)), 0.0020284, 1e-6);
+  // Ends that are turned on by a series are nearer to the centre: grbl was 0.00316 mm off here.
+  const double turned = chord_error({.error = 0.002, .turned = 12}, arc_of(0.02, 120.029));
+  EXPECT_GE(turned, 0.00316);
+  EXPECT_LE(turned, 1.3 * 0.00316);
+  EXPECT_LT(chord_error(grbl, arc_of(0.02, 120.029)), 0.0027);
 }
 
 struct FirmwareRow {
