@@ -178,5 +178,20 @@ TEST(ProfileWordsInPrograms, FollowTheMarksOfTheProgram) {
   EXPECT_TRUE(result.text.ends_with("M5\r\nG5.1 Q0\r\nM2\r\n%\r\n"));
 }
 
+// A dwell of the profile is a second of the program that is written, as `batten time` counts it.
+TEST(AddedLines, CountInTheTimeOfWhatIsWritten) {
+  SmoothOptions options = options_for("linuxcnc");
+  const std::string text = wave_program();
+  const double without = smoothed(text, options).program_after.seconds;
+  options.words.before_run = {"G4 P1"};
+  options.words.after_run = {"G64 P0.01"};
+  const SmoothResult result = smoothed(text, options);
+  ASSERT_EQ(rewritten_runs(result), 1U);
+  const ReadText written(result.text);
+  EXPECT_EQ(result.program_after.seconds,
+            time_of(written.program, written.meaning, options).seconds);
+  EXPECT_NEAR(result.program_after.seconds, without + 1, 0.01);
+}
+
 }  // namespace
 }  // namespace batten::postproc
