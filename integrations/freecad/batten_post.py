@@ -19,10 +19,19 @@ BATTEN = ""
 TOOLTIP = """Runs another post-processor, then Batten, which makes the chains of short moves of
 its program smooth and proves that the new program stays within the tolerance of the old one."""
 
+# Targets of Batten and the post of FreeCAD that writes for them, where the names differ.
+POST_OF_TARGET = {
+    "brother": "fanuc", "fluidnc": "grbl", "g2core": "grbl", "grblhal": "grbl", "haas": "fanuc",
+    "itnc530": "heidenhain", "klipper": "marlin", "mach3": "mach3_mach4", "mach4": "mach3_mach4",
+    "mazak": "fanuc", "mitsubishi": "fanuc", "planetcnc": "linuxcnc", "reprapfirmware": "rrf",
+    "smoothieware": "smoothie", "syntec": "fanuc"}
+# The target of a post whose name is none; without a row it is the one with the post's name.
+TARGET_OF_POST = {"mach3_mach4": "mach3", "rrf": "reprapfirmware", "smoothie": "smoothieware"}
+
 TOOLTIP_ARGS = """Arguments: --target CONTROL [--tolerance 0.01] [more options of batten smooth] [-- arguments of the other post]
 
 --target CONTROL   what the program is for, such as linuxcnc or grbl (batten targets)
---post NAME        the post that runs first; without it the one with the name of the target
+--post NAME        the post that runs first; without it the one for the target
 --tolerance 0.01   greatest distance of the new path from the old one; 0.01, 0.01mm, 0.0005in
 --or-unsmoothed    when Batten refuses, write what the other post wrote; without it nothing is written
 --batten FILE      the program, when it is not where it was installed
@@ -60,10 +69,14 @@ class Arguments:
         self.own = {}
         self.or_unsmoothed = False
         self._sort(words[:cut])
-        self.target = self._value_of("--target")
-        self.post = self.own.get("--post") or self.target
-        if not self.post:
+        target = self._value_of("--target")
+        self.post = self.own.get("--post")
+        if not target and not self.post:
             raise Refusal("arguments: no --target given, such as: --target linuxcnc --tolerance 0.01")
+        if not target:
+            self.smooth += ["--target", TARGET_OF_POST.get(self.post, self.post)]
+        # A post with the name of the target itself goes first: a user's own, or one of later versions.
+        self.possible_posts = [self.post] if self.post else [target, POST_OF_TARGET.get(target, target)]
         self.timeout = self._seconds(self.own.get("--timeout", str(DEFAULT_TIMEOUT)))
 
     def _sort(self, words):
@@ -149,9 +162,11 @@ def run_batten(command, folder, timeout):
     FreeCAD.Console.PrintMessage(said)
 
 
-def smoothed_or_told(gcode, arguments, name):
+def smoothed_or_told(gcode, arguments, name, units=None):
     if not gcode:
         return gcode  # nothing was posted
+    if units and not any(word.partition("=")[0] == "--units" for word in arguments.smooth):
+        arguments.smooth += ["--units", units]
     try:
         return smoothed(gcode, arguments, name)
     except Refusal as refusal:
@@ -199,14 +214,16 @@ def source_of(name, folders):
     return None
 
 
-def checked_name(name, preferences):
-    """Says what there is when there is no such post."""
-    if name == "batten":
+def post_for(arguments, preferences):
+    """The name of the post that runs first; says what there is when there is no such post."""
+    if arguments.post == "batten":
         raise Refusal("--post: batten is this post; name the one that runs before it")
-    possible = [post for post in preferences.allAvailablePostProcessors() if post != "batten"]
-    if name not in possible:
-        raise Refusal("--post: there is no post '%s'; possible: %s" % (name, ", ".join(possible)))
-    return name
+    there = [post for post in preferences.allAvailablePostProcessors() if post != "batten"]
+    for name in arguments.possible_posts:
+        if name in there:
+            return name
+    raise Refusal("%s: there is no post '%s'; --post names one of: %s" % (
+        "--post" if arguments.post else "--target", arguments.possible_posts[-1], ", ".join(there)))
 
 
 def called(name, post):
@@ -216,6 +233,50 @@ def called(name, post):
     except SystemExit as end:  # argparse did not understand its arguments
         raise Refusal("the post '%s' ended with code %s; see the report view for what it said, and "
                       "what stands behind -- in the arguments" % (name, end.code))
+
+
+def program_of(name, export, objects, file_named, line):
+    """The text of a script, None when it gave none. Some return it; some only write it to the file
+    they are given, even where that is "-" (grbl, rrf and marlin of 0.20); jtech can only return it."""
+    with tempfile.TemporaryDirectory(prefix="batten-freecad-") as folder:
+        file = os.path.join(folder, file_named)
+        try:
+            text = called(name, lambda: export(objects, file, line))
+        except Exception as trouble:
+            try:
+                text = called(name, lambda: export(objects, "-", line))
+            except Exception:
+                raise trouble from None
+        if isinstance(text, str) and "\n" in text:  # nccad returns the name of its file
+            return text
+        if not os.path.isfile(file):
+            return text if text == "" else None
+        with open(file, encoding="utf-8", errors="surrogateescape", newline="") as written:
+            return written.read()
+
+
+def without_editor(module, stock):
+    """philips and comparams know no option for it, or do not read it."""
+    if getattr(module, "SHOW_EDITOR", False) and "--show-editor" not in stock:
+        module.SHOW_EDITOR = False
+
+
+def units_of(module):
+    """What the post wrote in, as it says itself: uccnc writes neither G20 nor G21."""
+    return {"G20": "inch", "G21": "mm"}.get(getattr(module, "UNITS", None))
+
+
+class Script:
+    """A script as FreeCAD 1.0 holds it, whose `export` returns the text whichever way it gives it."""
+
+    def __init__(self, name, module, file_named):
+        self._name, self._module, self._file_named = name, module, file_named
+
+    def __getattr__(self, name):
+        return getattr(self.__dict__["_module"], name)
+
+    def export(self, objects, _, line):
+        return program_of(self._name, self._module.export, objects, self._file_named, line)
 
 
 # --- FreeCAD 0.20 and 0.21 ---------------------------------------------------------------------
@@ -236,14 +297,16 @@ def export(objectslist, filename, argstring):
     try:
         arguments = Arguments(argstring)
         loader, preferences = loader_and_preferences()
-        name = checked_name(arguments.post, preferences)
+        name = post_for(arguments, preferences)
         source = source_of(name, preferences.searchPathsPost()) or ""
         stock = with_quiet_editor(arguments.stock, "--no-show-editor" in source)
         post = loader.load(name)
-        gcode = called(name, lambda: post.export(objectslist, "-", line_of(stock)))
-        if not isinstance(gcode, str) or not gcode:
+        without_editor(post.script, stock)
+        file_named = file_name("" if filename == "-" else filename)
+        gcode = program_of(name, post.export, objectslist, file_named, line_of(stock))
+        if not gcode:
             raise Refusal("the post '%s' gave no program" % name)
-        text = smoothed_or_told(gcode, arguments, file_name("" if filename == "-" else filename))
+        text = smoothed_or_told(gcode, arguments, file_named, units_of(post.script))
     except Refusal as refusal:
         remove_stale(filename)
         tell(refusal)
@@ -336,7 +399,7 @@ if PostProcessorFactory is not None:
             import Path.Preferences as preferences
             job = the_job_in(self._chosen)
             arguments = Arguments(job.PostProcessorArgs)
-            name = checked_name(arguments.post, preferences)
+            name = post_for(arguments, preferences)
             quiet_job = JobWithArguments(job, "")
             post = PostProcessorFactory.get_post_processor(with_job(self._chosen, quiet_job), name)
             if post is None:
@@ -344,9 +407,14 @@ if PostProcessorFactory is not None:
             source = source_of(name, preferences.searchPathsPost()) or ""
             quiet_job.PostProcessorArgs = line_of(
                 with_quiet_editor(arguments.stock, knows_editor_option(post, source)))
+            label = getattr(job, "Label", "") or "part"
+            module = getattr(post, "script_module", None)
+            if module:
+                without_editor(module, arguments.stock)
+                post.script_module = Script(name, module, file_name(label + ".nc"))
             sections = called(name, post.export)
             if not sections:
                 raise Refusal("the post '%s' gave no program" % name)
-            label = getattr(job, "Label", "") or "part"
-            return [(part, smoothed_or_told(gcode, arguments, file_name("%s-%s.nc" % (label, part))))
+            return [(part, smoothed_or_told(gcode, arguments, file_name("%s-%s.nc" % (label, part)),
+                                            units_of(module)))
                     for part, gcode in sections]

@@ -385,11 +385,13 @@ InspectCommand inspect_command(Arguments& in) {
 // --- freecad, targets, methods, machines ---------------------------------------------------------
 
 FreecadCommand freecad_command(Arguments& in) {
-  if (in.files.size() != 1 || in.files.front() != "install") {
-    in.complain("freecad: expected one word, install");
+  const std::string action = in.files.size() == 1 ? in.files.front() : "";
+  if (action != "install" && action != "uninstall") {
+    in.complain("freecad: expected one word, install or uninstall");
   }
   return {.freecad = in.given.text("freecad"),
           .folder = in.given.text("folder"),
+          .uninstall = action == "uninstall",
           .force = in.given.flag("force")};
 }
 

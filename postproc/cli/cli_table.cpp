@@ -269,15 +269,16 @@ std::vector<CommandRow> make_command_rows() {
        "Example:\n"
        "  batten batch programs smooth --target linuxcnc --tolerance 0.01"},
       {"freecad",
-       "Put the post script for FreeCAD where FreeCAD looks for posts.",
+       "Put the post script for FreeCAD where FreeCAD looks for posts, or remove it.",
        {option("freecad", kValue, "PROGRAM",
                "the FreeCAD without a window that is asked; default: the one in PATH"),
-        option("folder", kValue, "DIR", "write into this folder of macros and ask nobody"),
-        option("force", kFlag, "", "replace a batten_post.py that is not ours")},
-       {{"ACTION", "install"}},
+        option("folder", kValue, "DIR", "the folder of your macros; FreeCAD is not asked"),
+        option("force", kFlag, "", "replace or remove a batten_post.py that is not ours")},
+       {{"ACTION", "install or uninstall"}},
        "Example:\n"
        "  batten freecad install\n"
-       "asks the installed FreeCAD for the folder of your macros and writes batten_post.py there."},
+       "asks the installed FreeCAD for the folder of your macros and writes batten_post.py there;\n"
+       "batten freecad uninstall removes it."},
       {"targets",
        "List the controls that programs can be written for, or show one as a profile.",
        {option("show", kValue, "NAME", "print a profile of this target to start from"), kJson,

@@ -101,7 +101,8 @@ struct TimeCommand : ReadingCommand {
 struct FreecadCommand {
   std::string freecad;  // the program to ask, not given: the one in PATH
   std::string folder;   // given: nobody is asked
-  bool force = false;
+  bool uninstall = false;
+  bool force = false;  // a file of the post's name that is not ours is replaced, or removed
 };
 [[nodiscard]] int run(const FreecadCommand& command);
 

@@ -48,26 +48,50 @@ std::optional<fs::path> folder_for(const FreecadCommand& command) {
   return answer->folder;
 }
 
+// Whether a post is there that is not ours.
+bool is_foreign(const fs::path& post) {
+  std::ifstream there(post, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(there), {});
+  return there.is_open() && !is_freecad_post(text);
+}
+
+int install(const fs::path& post, bool force) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const int code =
+      write_result(post.string(), freecad_post_calling(program), force || !is_foreign(post));
+  if (code != 0) return code;
+  say_lines(fmt::format(
+      "{} written; it calls {}\n"
+      "In FreeCAD, choose the post \"batten\" in the output page of a job, with arguments such as\n"
+      "  --target linuxcnc --tolerance 0.01 -- --no-header\n",
+      post.string(), program.string()));
+  return static_cast<int>(ExitCode::kDone);
+}
+
+int uninstall(const fs::path& post, bool force) {
+  if (!force && is_foreign(post)) {
+    say(post.string() + ": is not Batten's, so it stays; --force removes it");
+    return static_cast<int>(ExitCode::kFileError);
+  }
+  std::error_code error;
+  const bool removed = fs::remove(post, error);
+  if (error) {
+    say(post.string() + ": cannot be removed: " + error.message());
+    return static_cast<int>(ExitCode::kFileError);
+  }
+  say_lines(post.string() + (removed ? " removed\n" : " is not there; nothing to remove\n"));
+  return static_cast<int>(ExitCode::kDone);
+}
+
 }  // namespace
 
 int run(const FreecadCommand& command) {
   const auto folder = folder_for(command);
   if (interrupted()) return end_interrupted();
   if (!folder) return static_cast<int>(ExitCode::kFileError);
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path target = *folder / kFreecadPostName;
-  std::ifstream there(target, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(there), {});
-  const bool replace = command.force || !there.is_open() || is_freecad_post(text);
-  const int code = write_result(target.string(), freecad_post_calling(program), replace);
-  if (code != 0) return code;
-  say_lines(fmt::format(
-      "{} written; it calls {}\n"
-      "In FreeCAD, choose the post \"batten\" in the output page of a job, with arguments such as\n"
-      "  --target linuxcnc --tolerance 0.01 -- --no-header\n",
-      target.string(), program.string()));
-  return static_cast<int>(ExitCode::kDone);
+  const fs::path post = *folder / kFreecadPostName;
+  return command.uninstall ? uninstall(post, command.force) : install(post, command.force);
 }
 
 }  // namespace batten::postproc

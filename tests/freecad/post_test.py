@@ -5,12 +5,19 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
+import unittest.mock
 
 import stand_in
 
+sys.path.insert(0, str(stand_in.POSTS))
+import wave_program  # noqa: E402
+sys.path.pop(0)
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ARGUMENTS = "--target linuxcnc --tolerance 0.01"
+WAYS_TO_GIVE = ("grbl", "reprapfirmware", "mach4")  # a file, a file and its name, a returned text
 
 
 class WithFolder(unittest.TestCase):
@@ -84,7 +91,8 @@ class Version10(WithFolder):
         self.refused("--target linuxcn --post linuxcnc", "did you mean 'linuxcnc'?")
         self.refused(ARGUMENTS + " -- --no-units", "units-missing")
         self.refused(ARGUMENTS + " -- --no-such-option", "ended with code 2")
-        self.refused(ARGUMENTS + " --post nonesuch", "possible: classy, linuxcnc, silent")
+        self.refused(ARGUMENTS + " --post nonesuch", "one of: classy, grbl, linuxcnc, mach3")
+        self.refused("--target hurco", "--target: there is no post 'hurco'")
         self.refused(ARGUMENTS + " --post batten", "is this post")
         self.refused(ARGUMENTS + " --batten /no/such/program", "/no/such/program")
         self.refused(ARGUMENTS + " --timeout soon", "expected seconds")
@@ -107,6 +115,33 @@ class Version10(WithFolder):
     def test_a_part_without_a_program_is_passed_on(self):
         self.assertEqual(self.post(ARGUMENTS + " --post silent"), {})
 
+    def test_every_way_to_give_a_text_is_taken(self):
+        here = sorted(os.listdir())
+        for target in WAYS_TO_GIVE:
+            new = self.post(f"--target {target} --tolerance 0.01 --prefer size")["allitems"]
+            self.assert_smoothed(wave_program.gcode().encode(), new)
+        self.assertEqual(sorted(os.listdir()), here, "no file named -")
+
+    def test_a_post_has_its_target(self):
+        self.post("--post mach3_mach4")
+        self.assertIn("for mach3", self.console.text("message"))
+        self.post("--post linuxcnc --tolerance 0.02")
+        self.assertIn("for linuxcnc", self.console.text("message"))
+
+    def test_a_post_named_as_the_target_goes_first(self):
+        post = stand_in.load("batten_post", stand_in.SCRIPT)
+        with unittest.mock.patch.object(stand_in, "available", lambda: ["fanuc", "haas"]):
+            preferences = types.SimpleNamespace(allAvailablePostProcessors=stand_in.available)
+            self.assertEqual(post.post_for(post.Arguments("--target haas"), preferences), "haas")
+            self.assertEqual(post.post_for(post.Arguments("--target mazak"), preferences), "fanuc")
+
+    def test_names_of_posts_are_of_targets_that_there_are(self):
+        post = stand_in.load("batten_post", stand_in.SCRIPT)
+        done = subprocess.run([os.environ["BATTEN"], "targets"], capture_output=True, text=True)
+        targets = {line.split()[0] for line in done.stdout.splitlines()[1:] if line}
+        self.assertLessEqual(set(post.POST_OF_TARGET), targets)
+        self.assertLessEqual(set(post.TARGET_OF_POST.values()), targets)
+
     def test_help_is_safe_in_the_dialog(self):
         post = stand_in.PostProcessorFactory.get_post_processor(stand_in.Job(None), "batten")
         for text in (post.tooltip, post.tooltipArgs):
@@ -128,6 +163,18 @@ class Scripts(WithFolder):
             self.assertEqual(file.read_text(), text)
             self.assert_smoothed(old.encode(), text.encode())
             self.assertFalse(hasattr(post, "Batten"))
+
+    def test_every_way_to_give_a_text_is_taken(self):
+        for version in self.versions:
+            post, _ = version()
+            here = sorted(os.listdir())
+            for target in WAYS_TO_GIVE:
+                file = self.folder / "part.nc"
+                post.export(["Job"], str(file),
+                            f"--target {target} --tolerance 0.01 --prefer size")
+                self.assert_smoothed(wave_program.gcode().encode(), file.read_bytes())
+                post.export(["Job"], "-", f"--target {target} --tolerance 0.01")
+            self.assertEqual(sorted(os.listdir()), here, "no file named -")
 
     def test_a_dash_is_no_file(self):
         for version in self.versions:
@@ -167,6 +214,28 @@ class Installed(WithFolder):
         self.assertEqual(other.read_text(), "# mine\n")
         self.assertEqual(subprocess.run(command + ["--force"], capture_output=True).returncode, 0)
         self.assertEqual(subprocess.run(command, capture_output=True).returncode, 0, "ours")
+
+    def test_uninstall_removes_ours_only(self):
+        def run(*words):
+            done = subprocess.run([os.environ["BATTEN"], "freecad", *words, "--folder", self.folder],
+                                  capture_output=True, text=True)
+            return done.returncode, done.stderr
+
+        script = self.folder / "batten_post.py"
+        self.assertEqual(run("install")[0], 0)
+        code, said = run("uninstall")
+        self.assertEqual(code, 0)
+        self.assertIn("removed", said)
+        self.assertFalse(script.exists())
+        code, said = run("uninstall")
+        self.assertEqual(code, 0)
+        self.assertIn("nothing to remove", said)
+        script.write_text("# mine\n")
+        self.assertEqual(run("uninstall")[0], 4)
+        self.assertEqual(script.read_text(), "# mine\n")
+        self.assertEqual(run("uninstall", "--force")[0], 0)
+        self.assertFalse(script.exists())
+        self.assertEqual(run("remove")[0], 1)
 
     def test_asks_the_freecad_that_is_named(self):
         """A stand-in for FreeCADCmd that runs the question with a FreeCAD of its own."""

@@ -16,6 +16,15 @@ SKIPPED = 77
 TOLERANCE = "0.01"
 SAME_TIME = 0.005  # what smooth itself takes for no slower: the error of its estimate
 HANGS = 300  # s
+# Every post of FreeCAD 0.20 and the target that its program is for, or one that can read it.
+POSTS = {
+    "linuxcnc": "linuxcnc", "grbl": "grbl", "jtech": "grbl", "marlin": "marlin",
+    "rrf": "reprapfirmware", "smoothie": "smoothieware", "mach3_mach4": "mach3", "uccnc": "uccnc",
+    "KineticNCBeamicon2": "linuxcnc", "dynapath": "fanuc", "centroid": "centroid", "fanuc": "fanuc",
+    "philips": "fanuc", "heidenhain": "heidenhain", "fablin": "grbl", "nccad": "fanuc",
+    "comparams": "grbl", "dxf": "grbl", "opensbp": "grbl", "rml": "grbl"}
+REFUSED = {"fablin": "units-missing", "nccad": "units-missing"}
+LEFT_ALONE = ("centroid", "fanuc", "philips", "heidenhain", "comparams", "dxf", "opensbp", "rml")
 wrong = []
 
 
@@ -55,6 +64,7 @@ def check(batten, root, folder):
     expect(not [p for p in (folder / "home").rglob("Mod")], "no Mod folder of the user's")
 
     run = run_freecad(home, str(root / "tests/freecad/real_job.py"), REAL_JOB=str(out),
+                      REAL_JOB_POSTS=" ".join(map("=".join, POSTS.items())),
                       REAL_JOB_ARGUMENTS="--target linuxcnc --machine linuxcnc-fast "
                                          f"--tolerance {TOLERANCE} --json {out}/report.json --force")
     told = out / "told.txt"
@@ -62,6 +72,7 @@ def check(batten, root, folder):
     if wrong:
         return
     check_programs(batten, out)
+    check_each_post(batten, out)
     expect(not (out / "refused.nc").exists(), "nothing is written after a refusal")
     expect("there is no 'nonesuch'" in (out / "refusal.txt").read_text(), "the reason is told")
 
@@ -110,6 +121,29 @@ def check_programs(batten, out):
           f"rewritten, {blocks[0]} -> {blocks[1]} blocks, "
           f"{seconds[0]:.2f} -> {seconds[1]:.2f} s of cutting, within {report['deviation_mm']:.4f} mm")
     check_other_forms(batten, out)
+
+
+def check_each_post(batten, out):
+    """Prints the table of docs/freecad.md: the job without its pocket, at F6000."""
+    names = (out / "posts.txt").read_text().split()
+    expect(set(names) - {"batten"} == set(POSTS), "every installed post is tried", names)
+    print("| post | target | runs rewritten | blocks | cutting time |\n|---|---|---|---|---|")
+    for post, target in POSTS.items():
+        why = out / f"{post}.txt"
+        expect(why.exists() == (post in REFUSED), f"{post}: posted", why.exists() and why.read_text())
+        if why.exists():
+            expect(REFUSED[post] in why.read_text(), f"{post}: refused for", why.read_text())
+            continue
+        report = json.loads((out / f"{post}.json").read_text())
+        rewritten = [run for run in report["runs"] if run["status"] == "rewritten"]
+        expect(bool(rewritten) != (post in LEFT_ALONE), f"{post}: runs rewritten", report["runs"])
+        blocks, seconds = figures(report)
+        if rewritten:
+            done = subprocess.run([batten, "verify", out / f"{post}.stock", out / f"{post}.nc",
+                                   "--target", target, "--units", "mm"], capture_output=True, text=True)
+            expect(done.returncode == 0, f"{post}: proved", done.stderr)
+        print(f"| `{post}` | `{target}` | {len(rewritten)} of {len(report['runs'])} | "
+              f"{blocks[0]} -> {blocks[1]} | {seconds[0]:.2f} s -> {seconds[1]:.2f} s |")
 
 
 def main(batten, root):

@@ -1,7 +1,8 @@
 """Run by freecadcmd: a job with a profile along a B-spline, an adaptive pocket and an engraving, posted
 by FreeCAD's own post and by the Batten post into the folder REAL_JOB. FreeCAD 0.20 and 0.21.
 
-Writes old.nc, new.nc, and told.txt with what went wrong; freecadcmd itself hides it."""
+Writes old.nc, new.nc, for each POST=TARGET in REAL_JOB_POSTS POST.stock, POST.nc and POST.json (or
+POST.txt, why there is none), and told.txt with what went wrong; freecadcmd itself hides it."""
 
 import os
 import sys
@@ -23,6 +24,9 @@ def modules():
         from Path.Post.Processor import PostProcessor
     except ImportError:
         import PathScripts.PathAdaptive as adaptive
+        import PathScripts.PathHelix  # these three are there in a window; the post heidenhain needs them
+        import PathScripts.PathMillFace
+        import PathScripts.PathProfileEdges
         import PathScripts.PathEngrave as engrave
         import PathScripts.PathJob as job
         import PathScripts.PathProfile as profile
@@ -121,6 +125,8 @@ def posted(job, tool, operations):
 
     class Fixture:
         Name = Label = "Fixture"
+        Proxy = None  # read by the post heidenhain
+        InList = []  # read by the post KineticNCBeamicon2
 
     fixture = Fixture()
     fixture.Path = Path.Path([Path.Command("G54"), Path.Command("G0 Z20")])
@@ -136,6 +142,34 @@ def posted(job, tool, operations):
     except RuntimeError as refusal:
         with open(os.path.join(OUT, "refusal.txt"), "w") as file:
             file.write(str(refusal))
+    tool.HorizFeed = "6000 mm/min"
+    if not hasattr(tool.Tool, "ToolType"):  # read by the post fanuc
+        tool.Tool.addProperty("App::PropertyString", "ToolType")
+        tool.Tool.ToolType = "EndMill"
+    FreeCAD.ActiveDocument.recompute()
+    post_each(loader, objects[:2] + [operations[0], operations[2]])
+
+
+def post_each(loader, objects):
+    """Without the adaptive pocket, whose path is another one in each run. POST.stock is what the other
+    post wrote."""
+    try:
+        from Path.Preferences import allAvailablePostProcessors
+    except ImportError:
+        from PathScripts.PathPreferences import allAvailablePostProcessors
+    with open(os.path.join(OUT, "posts.txt"), "w") as file:
+        file.write(" ".join(allAvailablePostProcessors()))
+    for pair in os.environ["REAL_JOB_POSTS"].split():
+        post, target = pair.split("=")
+        place = os.path.join(OUT, post)
+        try:
+            loader.load("batten").export(
+                objects, place + ".nc", "--post %s --target %s --json %s.json" % (post, target, place))
+            loader.load("batten").export(objects, place + ".stock", "--post %s --target nonesuch "
+                                         "--or-unsmoothed" % post)
+        except BaseException as error:
+            with open(place + ".txt", "w") as file:
+                file.write("%s: %s" % (type(error).__name__, error))
 
 
 def main():
