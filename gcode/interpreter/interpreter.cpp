@@ -7,6 +7,7 @@
 
 #include "gcode/curves/curve_format.h"
 #include "gcode/interpreter/motion_words.h"
+#include "gcode/interpreter/plain_text.h"
 #include "gcode/interpreter/program_flow.h"
 #include "gcode/interpreter/word_applier.h"
 #include "gcode/klartext/state.h"
@@ -122,6 +123,7 @@ class Interpreter {
         ++i;
       }
     }
+    carry_.any_words |= !nothing_said_yet();
     carry_.state = now_;
     carry_.unit_word_seen = read_.unit_word_seen;
     carry_.reaches_out |= whole_flow.reaches_out;
@@ -222,9 +224,28 @@ class Interpreter {
       if (siemens_flow_effect(text) != FlowEffect::kNothing) forget_everything(now_);
       return make_opaque(reason::kProgramFlow);
     }
+    if (block.opacity == ParseStatus::kForeign || block.opacity == ParseStatus::kUnreadable) {
+      if (speaks_to_people(text)) return make_opaque(reason::kForeignWords);
+    }
     apply_opaque(block.opacity, text, now_);
     const bool calls = is_flow && flow_effect(text) == FlowEffect::kCall;
     make_opaque(calls ? reason::kSubprogram : opacity_reason(block.opacity));
+  }
+
+  // Before the first motion such a line changes nothing; behind it, what it is for is not known.
+  bool speaks_to_people(std::string_view text) {
+    if (carry_.any_motion || !read_.motions.empty() || is_siemens()) return false;
+    return is_plain_text(text) || (nothing_said_yet() && is_title(text));
+  }
+
+  // Only comments, program numbers and titles so far.
+  bool nothing_said_yet() {
+    const auto is_silent = [](const BlockMeaning& block) {
+      return block.kind == BlockKind::kEmpty || block.barrier == reason::kProgramMark ||
+             block.barrier == reason::kForeignWords;
+    };
+    while (silent_ < read_.blocks.size() && is_silent(read_.blocks[silent_])) ++silent_;
+    return !carry_.any_words && silent_ == read_.blocks.size();
   }
 
   [[nodiscard]] bool is_siemens() const { return program_.language == Language::kSiemens; }
@@ -460,6 +481,7 @@ class Interpreter {
   BlockDiagnostics diagnostics_;
   ControlState now_;
   SiemensVariables variables_;
+  std::size_t silent_ = 0;  // so many blocks at the beginning say nothing to the control
   Interpretation read_;
   BlockMeaning meaning_;  // of the block that is being read
   std::uint32_t block_index_ = 0;

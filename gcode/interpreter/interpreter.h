@@ -19,6 +19,7 @@ struct ControlCarry {
   ControlState state;
   bool unit_word_seen;
   bool is_klartext = false;  // such programs are read as a whole
+  bool any_words = false;    // more than comments, program numbers and titles
   bool any_motion = false;
   SourceSpan first_motion;   // its block
   bool reaches_out = false;  // a part was not for itself (gcode/reading/part_reading.h)

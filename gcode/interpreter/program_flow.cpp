@@ -121,6 +121,16 @@ bool has_code(std::span<const Word> words, char letter, double low, double high)
   });
 }
 
+// A G word whose effect the beginning of a main program may not take back when it starts again: all
+// but motions, dwells, planes, units, cutter and length compensation, offsets, cycles, G90, G94.
+bool lasts_beyond_end(const Word& word) {
+  static constexpr double kTakenBack[] = {0,  1,  2,  3,  4,  17, 18, 19, 20, 21, 28,
+                                          30, 40, 41, 42, 43, 49, 53, 54, 55, 56, 57,
+                                          58, 59, 80, 81, 82, 83, 85, 90, 94, 98, 99};
+  return word.letter == 'G' &&
+         (!word.is_number || std::ranges::find(kTakenBack, word.value) == std::end(kTakenBack));
+}
+
 // The letters of labels, calls and cycles: a block without them has no part in the flow.
 bool names_flow(const Word& word) {
   return word.letter == 'N' || word.letter == 'M' || word.letter == 'G';
@@ -154,8 +164,11 @@ class FlowFinder {
       flow_[i].in_body |= depth_ > 0;
       return;
     }
+    says_more_ |= block.opacity == ParseStatus::kFlow || block.opacity == ParseStatus::kForeign ||
+                  block.opacity == ParseStatus::kUnreadable;
     if (block.opacity != ParseStatus::kNone) read_text(i, block.opacity == ParseStatus::kFlow);
-    if (find_word(words, 'M') != nullptr) read_calls(words);
+    note_own_start(words);
+    if (find_word(words, 'M') != nullptr) read_calls(i, words);
     if (find_word(words, 'G') != nullptr) read_lathe_cycle(words);
     note_call(words);
     flow_[i].in_body |= depth_ > 0;
@@ -211,11 +224,15 @@ class FlowFinder {
   }
 
   // M97 P, M99 P and M98 P.. H name a block; M98 P alone names a program.
-  void read_calls(std::span<const Word> words) {
+  void read_calls(std::size_t i, std::span<const Word> words) {
     const bool ends_subprogram = has_code(words, 'M', 99, 99);
     if (ends_subprogram || has_code(words, 'M', 97, 97)) add_target(find_word(words, 'P'));
     if (has_code(words, 'M', 98, 98)) add_target(find_word(words, 'H'));
-    segment_is_subprogram_ |= ends_subprogram;
+    if (ends_subprogram) {
+      is_left_early_ |= segment_is_subprogram_ || find_word(words, 'P') != nullptr;
+      segment_is_subprogram_ = true;
+      last_block_ = i;
+    }
     reaches_out_ |= ends_subprogram;
   }
 
@@ -267,12 +284,36 @@ class FlowFinder {
     if (first && last) contours_.emplace_back(*first, *last);
   }
 
+  // What a program says for itself before its first cut, and no subprogram does: it depends on
+  // nothing that a caller, or its own end when it starts again, could have left.
+  void note_own_start(std::span<const Word> words) {
+    says_more_ |= std::ranges::any_of(words, lasts_beyond_end);
+    cuts_ |= has_code(words, 'G', 1, 3);
+    if (cuts_) return;
+    says_plane_ |= has_code(words, 'G', 17, 19);
+    says_units_ |= has_code(words, 'G', 20, 21);
+    says_distance_ |= has_code(words, 'G', 90, 90);
+    says_cutter_ |= has_code(words, 'G', 40, 40);
+    changes_tool_ |= has_code(words, 'M', 6, 6);
+  }
+
+  // M99 stands behind all of it, once.
+  [[nodiscard]] bool is_main_program(std::size_t end) const {
+    bool is_over = !is_left_early_;
+    for (std::size_t i = last_block_ + 1; i < end; ++i) {
+      const Block& block = program_.blocks[i];
+      is_over &= block.opacity == ParseStatus::kProgramMark ||
+                 (block.opacity == ParseStatus::kNone && program_.words_of(block).empty());
+    }
+    return is_over && !says_more_ && segment_begin_ == 0 && end == program_.blocks.size() &&
+           says_plane_ && says_units_ && says_distance_ && says_cutter_ && changes_tool_;
+  }
+
   // A program with M99 is a subprogram, or starts again from its beginning: its blocks can be
   // entered in a state that we do not see.
   void close_segment(std::size_t end) {
-    for (std::size_t i = segment_begin_; segment_is_subprogram_ && i < end; ++i) {
-      flow_[i].in_body = true;
-    }
+    const bool is_body = segment_is_subprogram_ && !is_main_program(end);
+    for (std::size_t i = segment_begin_; is_body && i < end; ++i) flow_[i].in_body = true;
     segment_begin_ = end;
     segment_is_subprogram_ = false;
   }
@@ -314,6 +355,11 @@ class FlowFinder {
   int depth_ = 0;
   std::size_t segment_begin_ = 0;
   bool segment_is_subprogram_ = false;
+  bool is_left_early_ = false;  // by an M99 before the last one, or one that names a block
+  std::size_t last_block_ = 0;  // with M99
+  bool says_more_ = false;
+  bool cuts_ = false, says_plane_ = false, says_units_ = false, says_distance_ = false,
+       says_cutter_ = false, changes_tool_ = false;
   bool reaches_out_ = false;
 };
 

@@ -1,9 +1,10 @@
 """Run by freecadcmd: a job with a profile along a B-spline, an adaptive pocket and an engraving, posted
 by FreeCAD's own post and by the Batten post into the folder REAL_JOB. FreeCAD 0.20 and 0.21.
 
-Writes old.nc, new.nc, for each POST=TARGET in REAL_JOB_POSTS POST.stock, POST.nc and POST.json (or
+Writes old.nc, new.nc, for each [post, target, options] in REAL_JOB_POSTS old/POST.nc, POST.nc and POST.json (or
 POST.txt, why there is none), and told.txt with what went wrong; freecadcmd itself hides it."""
 
+import json
 import os
 import sys
 import traceback
@@ -151,7 +152,7 @@ def posted(job, tool, operations):
 
 
 def post_each(loader, objects):
-    """Without the adaptive pocket, whose path is another one in each run. POST.stock is what the other
+    """Without the adaptive pocket, whose path is another one in each run. old/POST.nc is what the other
     post wrote."""
     try:
         from Path.Preferences import allAvailablePostProcessors
@@ -159,13 +160,13 @@ def post_each(loader, objects):
         from PathScripts.PathPreferences import allAvailablePostProcessors
     with open(os.path.join(OUT, "posts.txt"), "w") as file:
         file.write(" ".join(allAvailablePostProcessors()))
-    for pair in os.environ["REAL_JOB_POSTS"].split():
-        post, target = pair.split("=")
+    for post, target, options in json.loads(os.environ["REAL_JOB_POSTS"]):
         place = os.path.join(OUT, post)
         try:
             loader.load("batten").export(
-                objects, place + ".nc", "--post %s --target %s --json %s.json" % (post, target, place))
-            loader.load("batten").export(objects, place + ".stock", "--post %s --target nonesuch "
+                objects, place + ".nc",
+                "--post %s --target %s --json %s.json %s" % (post, target, place, options))
+            loader.load("batten").export(objects, os.path.join(OUT, "old", post + ".nc"), "--post %s --target nonesuch "
                                          "--or-unsmoothed" % post)
         except BaseException as error:
             with open(place + ".txt", "w") as file:

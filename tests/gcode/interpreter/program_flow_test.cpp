@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,38 @@ const FlowCase kFlowRows[] = {
     {"G71 P10 Q20\nN10 G0 X1\nX2\nN20 X3\nX4\n", {2, 4}, {}, {2, 3, 4}},
     {"N2 X1\nG73 X1 Z-2 R1 P1 Q2\nN1 X2\n", {}, {}, {}},
     {"%\nN10 X1\n%\nGOTO 10\n", {}, {}, {}}};
+
+constexpr const char* kMain = "G90 G40 G80\nG17 G21\nM6 T1\nG0 X0\nG1 X1 F100\nX2\n";
+
+bool is_body(const std::string& text) {
+  Diagnostics found;
+  const Program program = parse(SourceText("test.nc", text), found);
+  const std::vector<BlockFlow> flow = follow_flow(program, Returns::kBehindCalls).blocks;
+  return std::ranges::any_of(flow, &BlockFlow::in_body);
+}
+
+// A program for Centroid ends so. It says for itself what the end of the round before, or a caller,
+// could have left; where it does not, its blocks are entered in states that are not seen.
+TEST(AProgramThatStartsAgain, IsNoBodyWhereItSetsItsModesItself) {
+  const std::string main = kMain;
+  EXPECT_FALSE(is_body(main + "M5\nM99\n"));
+  EXPECT_FALSE(is_body("%\nO1\n" + main + "M99\n(end)\n%\n"));
+  EXPECT_TRUE(is_body(main + "M99 P10\n"));
+  EXPECT_TRUE(is_body(main + "M99\nX1\n"));
+  EXPECT_TRUE(is_body(main + "/M99\nX1\nM99\n"));
+  EXPECT_TRUE(is_body(main + "M99\nO2\nX1\nM30\n"));
+  EXPECT_TRUE(is_body(main + "TRANS X1\nM99\n"));
+  for (const char* lasting : {"G68 X0 Y0 R30", "G51 X2", "G16", "G93", "G92 X1", "G10 L2 P1 X1",
+                              "G52 X1", "G5.1 Q2", "G66 P100", "G#1"}) {
+    EXPECT_TRUE(is_body(main + lasting + "\nM99\n")) << lasting;
+  }
+  for (const std::string word : {"G90", "G40", "G17", "G21", "M6"}) {
+    std::string without = main;
+    without.replace(without.find(word), word.size(), "G94");
+    EXPECT_TRUE(is_body(without + "M99\n")) << word;
+    EXPECT_TRUE(is_body(without + word + "\nM99\n")) << word << " behind the cut";
+  }
+}
 
 TEST(Flow, IsFound) {
   for (const FlowCase& test : kFlowRows) {

@@ -1,0 +1,88 @@
+#include "gcode/interpreter/plain_text.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "gcode/text/characters.h"
+
+namespace batten::gcode {
+namespace {
+
+// Upper case, without comments and without blanks at the ends.
+std::string said_in(std::string_view line) {
+  std::string said;
+  int depth = 0;
+  for (const char c : line) {
+    if (c == ';' && depth == 0) break;
+    depth += c == '(' ? 1 : 0;
+    if (depth == 0) said.push_back(is_blank(c) ? ' ' : upper(c));
+    depth -= c == ')' && depth > 0 ? 1 : 0;
+  }
+  const std::size_t first = said.find_first_not_of(' ');
+  if (first == std::string::npos) return {};
+  return said.substr(first, said.find_last_not_of(' ') + 1 - first);
+}
+
+constexpr std::string_view kFileSuffixes[] = {"NC",  "NCC", "NCP", "NGC", "CNC",  "TAP", "TXT",
+                                              "MPF", "SPF", "EIA", "MIN", "ARC",  "PIM", "ISO",
+                                              "ANC", "FNC", "DNC", "PRG", "GCODE"};
+
+bool is_file_name(std::string_view said) {
+  const std::size_t point = said.rfind('.');
+  if (point == std::string_view::npos || point < 2) return false;
+  const std::string_view stem = said.substr(0, point);
+  const bool plain = std::ranges::all_of(
+      stem, [](char c) { return is_letter(c) || is_digit(c) || c == '-' || c == '_'; });
+  // X1.NC is no number of X, but P100.NC might stand behind a word that is not known here.
+  const bool named = is_letter(stem[0]) && is_letter(stem[1]);
+  return plain && named &&
+         std::ranges::find(kFileSuffixes, said.substr(point + 1)) !=
+             std::ranges::end(kFileSuffixes);
+}
+
+std::vector<std::string_view> split(std::string_view said) {
+  std::vector<std::string_view> parts;
+  for (std::size_t at = 0; at < said.size();) {
+    const std::size_t end = std::min(said.find(' ', at), said.size());
+    if (end > at) parts.push_back(said.substr(at, end - at));
+    at = end + 1;
+  }
+  return parts;
+}
+
+// What begins a statement on Klartext, Siemens, Fagor, NUM, Okuma, Mazak, Klipper and
+// RepRapFirmware controls, or stands in one.
+constexpr std::string_view kCommandWords[] = {
+    "CALL", "CYCL",    "CYCLE",  "DEF",    "LBL",    "TOOL",   "PLANE",    "FUNCTION", "TRANS",
+    "ROT",  "AROT",    "ATRANS", "SCALE",  "ASCALE", "MIRROR", "MODIN",    "MODOUT",   "SET",
+    "VAR",  "IF",      "WHILE",  "GLOBAL", "ECHO",   "GOTO",   "WORK",     "EXTERN",   "PROC",
+    "FOR",  "LOOP",    "REPEAT", "DATUM",  "SHIFT",  "RTCP",   "TCPM",     "BLK",      "FORM",
+    "FN",   "BEGIN",   "END",    "STOP",   "START",  "RUN",    "PATHCTRL", "DRAW",     "COPY",
+    "ACT",  "SELECT",  "SPEED",  "FEED",   "UNIT",   "UNITS",  "OFFSET",   "ORIGIN",   "REPOS",
+    "SUPA", "TOFRAME", "ABORT",  "BREAK",  "ELIF",   "ELSE",   "EXIT",     "RETURN"};
+
+bool is_title_word(std::string_view word) {
+  const bool plain = std::ranges::all_of(
+      word, [](char c) { return is_letter(c) || is_digit(c) || c == '.' || c == '-' || c == '/'; });
+  const bool of_rs274 = word.size() > 1 && is_letter(word[0]) && !is_letter(word[1]);
+  return plain && !of_rs274 &&
+         std::ranges::find(kCommandWords, word) == std::ranges::end(kCommandWords);
+}
+
+}  // namespace
+
+bool is_plain_text(std::string_view line) {
+  const std::string said = said_in(line);
+  const bool bracketed = said.starts_with('[') && said.find(']') == said.size() - 1;
+  return bracketed || is_file_name(said);
+}
+
+bool is_title(std::string_view line) {
+  const std::string said = said_in(line);
+  const std::vector<std::string_view> words = split(said);
+  return words.size() > 1 && words[0].size() > 1 && is_letter(words[0][0]) &&
+         std::ranges::all_of(words, is_title_word);
+}
+
+}  // namespace batten::gcode

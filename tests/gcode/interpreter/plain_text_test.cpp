@@ -1,0 +1,63 @@
+#include "gcode/interpreter/plain_text.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/interpreted.h"
+
+namespace batten::gcode {
+namespace {
+
+TEST(PlainText, IsAFileNameOrInBrackets) {
+  for (const char* line : {"part.nc", "fanuc.nc (FREECAD-FILENAME-GOES-HERE, JOB)", "wing-3_a.NGC",
+                           "[ROUGHING WITH T1]", " [ ] ", "plate.mpf ; left"}) {
+    EXPECT_TRUE(is_plain_text(line)) << line;
+  }
+  for (const char* line :
+       {"", "X1.NC", "P100.NC", "part.exe", "part.nc X10", "part.nc part.nc", "[1] [2]",
+        "[#1=2] G91", "TRANS", "START_PRINT", "CALL PGM part.h", "a.nc", "$32=1", "run=part.nc"}) {
+    EXPECT_FALSE(is_plain_text(line)) << line;
+  }
+}
+
+TEST(Title, IsWordsThatNoControlTakesForACommand) {
+  for (const char* line : {"PART NUMBER 12345", "Bracket left side", "Mold insert rev. 2 (old)"}) {
+    EXPECT_TRUE(is_title(line)) << line;
+  }
+  for (const char* line : {"", "PART", "START_PRINT", "START_PRINT BED=60", "TRANS X10 Y5",
+                           "ROT RPL 30", "CYCL DEF 7.0", "PLANE RESET STAY", "Call subprogram 5",
+                           "MODIN O100", "#RTCP ON", "part X10", "G91 mode on", "TRANS DATUM",
+                           "10 L X5", "SET_VELOCITY_LIMIT ACCEL=500", "TOOL CALL 1 Z"}) {
+    EXPECT_FALSE(is_title(line)) << line;
+  }
+}
+
+constexpr const char* kModes = "G17 G21 G90 G40\n";
+constexpr const char* kCut = "G0 X0 Y0 Z5\nG1 Z0 F100\nX1\n";
+
+bool cuts_are_known(const std::string& text) {
+  const tests::Interpreted it(text);
+  const Motion& last = it.read.motions.back();
+  return last.start_known && is_known(it.last_state());
+}
+
+TEST(PlainText, TakesNothingAwayBeforeTheFirstMotion) {
+  for (const char* line : {"part.nc (X)", "[ROUGHING]"}) {
+    EXPECT_TRUE(cuts_are_known(std::string(kModes) + line + "\n" + kCut)) << line;
+    EXPECT_FALSE(cuts_are_known(std::string(kModes) + kCut + line + "\nX3 Y2\nX4\n")) << line;
+  }
+}
+
+TEST(Title, TakesNothingAwayInFrontOfAllWords) {
+  const std::string program = std::string(kModes) + kCut;
+  EXPECT_TRUE(cuts_are_known("%\nO1000\n(a)\nBracket left side\nsecond setup\n" + program));
+  // Behind words it may be a macro's that moves the origin or sets G91.
+  EXPECT_FALSE(cuts_are_known(std::string(kModes) + "Bracket left side\n" + kCut));
+  for (const char* command : {"TRANS X10 Y5", "START_PRINT", "PLANE RESET STAY", "#RTCP ON"}) {
+    EXPECT_FALSE(cuts_are_known(std::string(command) + "\nG21\n" + kCut)) << command;
+  }
+}
+
+}  // namespace
+}  // namespace batten::gcode
