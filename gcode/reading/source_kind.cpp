@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "gcode/control/control.h"
+#include "gcode/reading/foreign_file.h"
 #include "gcode/rs274/plain_words.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/line_cursor.h"
@@ -50,6 +51,13 @@ std::span<const SourceFamily> source_families() { return kFamilies; }
 
 std::optional<Language> source_language(const SourceText& source, SourceKind kind,
                                         std::optional<Language> target, Diagnostics& found) {
+  if (const std::string_view is = foreign_kind_of(source.text()); !is.empty()) {
+    found.push_back({Severity::kError,
+                     "not-a-program",
+                     {},
+                     fmt::format("the file is {}; expected a program of a control", is)});
+    return std::nullopt;
+  }
   const std::vector<LanguageMark> marks = language_marks(source);
   if (const SourceFamily* family = family_of(kind)) {
     const auto other = std::ranges::find_if(

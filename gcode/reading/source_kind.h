@@ -44,6 +44,7 @@ struct SourceFamily {
 // language has; without any, Klartext where the target reads that and the text does
 // not begin with plain words (gcode/rs274/plain_words.h), else RS-274. Nothing, and an
 // error in `found`, when
+//   not-a-program: the file is of another kind (gcode/reading/foreign_file.h);
 //   source-ambiguous: the text has certain marks of two languages;
 //   source-contradicted: a kind was given, and the text has a certain mark of another language.
 // Linear in the text.

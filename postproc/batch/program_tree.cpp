@@ -13,8 +13,9 @@ namespace fs = std::filesystem;
 namespace {
 
 // What CAM systems and controls call programs in the language that is read here.
-constexpr std::array<std::string_view, 8> kSuffixes = {"nc",    "ngc", "tap", "cnc",
-                                                       "gcode", "ncc", "eia", "iso"};
+constexpr auto kSuffixes =
+    std::to_array<std::string_view>({"nc", "ngc", "tap", "cnc", "gcode", "ncc", "eia", "iso", "h",
+                                     "mpf", "spf", "arc", "min", "pim", "anc"});
 
 bool is_program(const fs::path& file, std::span<const std::string> suffixes) {
   const std::string extension = file.extension().string();

@@ -109,6 +109,14 @@ PrintText completion_text(Arguments& in) {
   return {text.value_or("")};
 }
 
+// `batten help COMMAND` is `batten COMMAND --help`.
+std::vector<std::string> with_help_as_option(std::vector<std::string> arguments) {
+  if (arguments.empty() || arguments.front() != "help") return arguments;
+  arguments.erase(arguments.begin());
+  arguments.emplace_back("--help");
+  return arguments;
+}
+
 // `batten --explain ID` is `batten explain ID`.
 std::vector<std::string> with_explain_as_command(std::vector<std::string> arguments) {
   constexpr std::string_view kOption = "--explain";
@@ -141,9 +149,10 @@ std::string no_command(const CLI::App& app) {
 }  // namespace
 
 CommandLine read_command_line(const std::vector<std::string>& given_arguments) {
-  const std::vector<std::string> arguments = with_explain_as_command(given_arguments);
+  const std::vector<std::string> arguments =
+      with_help_as_option(with_explain_as_command(given_arguments));
   CLI::App app("Smooths CAM programs made of short lines and proves what it wrote.", "batten");
-  app.set_version_flag("--version", std::string("batten " BATTEN_VERSION));
+  app.set_version_flag("-V,--version", std::string("batten " BATTEN_VERSION));
   app.footer(std::string(kExitCodes));
   app.require_subcommand(0, 1);
   app.allow_extras();

@@ -327,6 +327,11 @@ void check_outputs(const SmoothCommand& command, Arguments& in) {
     in.complain("--report: {} takes the JSON report already",
                 both_to_standard_output ? "standard output" : command.report_file);
   }
+  const bool is_page = command.report_file.empty() || command.report_file == "-" ||
+                       command.report_file.ends_with(".html") ||
+                       command.report_file.ends_with(".htm");
+  if (!is_page)
+    in.complain("--report: {}: a page is written, so name it .html", command.report_file);
   const std::string output = command.output.empty() && command.input != "-"
                                  ? default_output_path(command.input).string()
                                  : command.output;

@@ -188,8 +188,9 @@ std::vector<OptionRow> batch_rows() {
        option("shard", kValue, "I/N",
               "only every N-th program from the I-th on, for several machines", "1/1"),
        option("suffix", kList, "SUFFIX",
-              "what is a program, in place of nc, ngc, tap, cnc, gcode, ncc, eia, iso; none: "
-              "names without a suffix, all: every file; a list with commas, or repeated"),
+              "what is a program, in place of nc, ngc, tap, cnc, gcode, ncc, eia, iso, h, mpf, "
+              "spf, arc, min, pim, anc, in either case; none: names without a suffix, all: every "
+              "file; a list with commas, or repeated"),
        option("fail-fast", kFlag, "",
               "stop at the first program that cannot be written; otherwise carry on"),
        option("force", kFlag, "", "replace programs in OUT_TREE that no batch wrote"),
@@ -577,7 +578,9 @@ const std::vector<OptionRow>& option_rows(std::string_view command) {
   return std::ranges::find(command_rows(), command, &CommandRow::name)->rows;
 }
 
-std::string_view short_form_of(const OptionRow& row) { return row.name == "out" ? "-o" : ""; }
+std::string_view short_form_of(const OptionRow& row) {
+  return row.name == "out" ? "-o" : row.name == "target" ? "-t" : "";
+}
 
 std::optional<std::string> completion_for(std::string_view shell) {
   if (shell == "bash") return bash_completion();

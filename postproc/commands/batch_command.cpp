@@ -103,6 +103,9 @@ BatchRequest request_of(const BatchCommand& command, const ProgramTree& tree) {
 
 void tell_what_was_left_out(const ProgramTree& tree) {
   for (const std::string& problem : tree.problems) say(problem);
+  if (tree.programs.empty()) {
+    say("no programs in it: no name ends as those of programs do; --suffix says how yours end");
+  }
   if (tree.other_files > 0) {
     say(fmt::format("other files left alone: {} (--suffix says what is a program)",
                     tree.other_files));

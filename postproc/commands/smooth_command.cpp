@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <filesystem>
 #include <system_error>
 
@@ -32,6 +36,27 @@ bool would_be_refused(const std::string& file, bool replace_existing) {
   return true;
 }
 
+// Nor with "no such folder".
+bool cannot_be_written(const std::string& file) {
+  namespace fs = std::filesystem;
+  if (file.empty() || file == "-") return false;
+  std::error_code error;
+  const fs::path path(file);
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const bool is_device = fs::exists(path, error) && !fs::is_regular_file(path, error);
+  std::string why;
+  if (fs::is_directory(path, error)) {
+    why = "it is a folder";
+  } else if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+    why = folder.string() + " is no folder";
+  } else if (!is_device && ::access(folder.c_str(), W_OK) != 0) {
+    why = folder.string() + ": " + std::generic_category().message(errno);
+  }
+  if (why.empty()) return false;
+  say(fmt::format("{}: cannot be written: {}; nothing was done", file, why));
+  return true;
+}
+
 class SmoothWork {
  public:
   SmoothWork(const SmoothCommand& command, std::string output)
@@ -40,7 +65,10 @@ class SmoothWork {
   int run() {
     source_ = read_program(command_.input);
     if (interrupted()) return end_interrupted();
-    if (!source_) return static_cast<int>(ExitCode::kFileError);
+    const bool may_work = source_ && (command_.dry_run || !cannot_be_written(output_)) &&
+                          !cannot_be_written(command_.json_file) &&
+                          !cannot_be_written(command_.report_file);
+    if (!may_work) return static_cast<int>(ExitCode::kFileError);
     if (command_.dry_run) return look_only();
     // The page draws the whole path, and a short program needs no file beside the output.
     const bool in_memory =

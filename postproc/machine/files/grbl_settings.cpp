@@ -12,6 +12,7 @@
 #include <optional>
 #include <string_view>
 
+#include "gcode/reading/foreign_file.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/source_text.h"
 #include "postproc/machine/files/machine_file.h"
@@ -124,7 +125,13 @@ std::optional<Machine> with_settings(const Machine& base, std::string_view dump,
   const std::size_t problems_before = problems.size();
   DumpReader reader(file, problems);
   reader.read(dump);
-  if (problems.size() > problems_before) return std::nullopt;
+  if (problems.size() > problems_before) {
+    // One line of another kind is a slip; in a file of another kind each line is.
+    const std::size_t wrong = problems.size() - problems_before;
+    problems.resize(problems_before + 1);
+    if (wrong > 1) problems.back() += fmt::format("; {} more lines are none either", wrong - 1);
+    return std::nullopt;
+  }
 
   Machine machine = base;
   machine.model = ControllerModel::kGrbl;
@@ -184,6 +191,11 @@ std::shared_ptr<const Machine> machine_with_grbl_settings(const Machine* base,
   const auto dump = gcode::SourceText::map_file(file, error);
   if (!dump) {
     problems.push_back("--grbl-settings: " + error);
+    return nullptr;
+  }
+  if (const std::string_view is = gcode::foreign_kind_of(dump->text()); !is.empty()) {
+    problems.push_back(fmt::format(
+        "--grbl-settings: {} is {}; expected what grbl answers to $$, saved as text", file, is));
     return nullptr;
   }
   auto machine =

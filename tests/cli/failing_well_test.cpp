@@ -1,0 +1,75 @@
+// What is wrong is told at once, by one line, and nothing is written.
+
+#include <gtest/gtest.h>
+
+#include "batten_process.h"
+#include "tests/support/places.h"
+
+namespace batten {
+namespace {
+
+class FailingWell : public testing::Test {
+ protected:
+  void SetUp() override { folder_.put("part.nc", wave_program()); }
+
+  void expect_refusal(const std::string& arguments, int code, const std::string& message) const {
+    const ProcessResult done = expect_exit(folder_.batten(arguments), code, {message});
+    EXPECT_FALSE(contains(done.err, "proved:")) << done.err;
+    EXPECT_FALSE(folder_.has("part.smooth.nc"));
+  }
+
+  BattenFolder folder_;
+};
+
+TEST_F(FailingWell, FilesThatAreNoProgramsAreRefusedByEveryCommand) {
+  folder_.put("a.out", std::string("\x7f"
+                                   "ELF\2\1\1\0\0",
+                                   9));
+  for (const char* command :
+       {"smooth a.out -t grbl", "smooth a.out -t heidenhain", "smooth a.out -t siemens --convert",
+        "smooth a.out -t grbl --dry-run", "inspect a.out", "verify a.out part.nc",
+        "time a.out --machine router"}) {
+    expect_refusal(command, 2, "a.out:1:1: error: not-a-program");
+  }
+  EXPECT_FALSE(folder_.has("a.smooth.out"));
+}
+
+TEST_F(FailingWell, PlacesThatCannotBeWrittenAreFoundBeforeTheWork) {
+  folder_.put("file", "");
+  for (const char* option : {"-o", "--json", "--report"}) {
+    const std::string page = option == std::string("--report") ? "/x.html" : "/x";
+    const std::string start = std::string("smooth part.nc -t grbl ") + option + " ";
+    expect_refusal(start + "none" + page, 4, "none: No such file or directory");
+    expect_refusal(start + "file" + page, 4, "file is no folder");
+  }
+  expect_refusal("smooth part.nc -t grbl -o .", 4, "it is a folder");
+}
+
+TEST_F(FailingWell, AReportIsAPage) {
+  expect_refusal("smooth part.nc -t grbl --report x.pdf", 1, "x.pdf: a page is written");
+}
+
+TEST_F(FailingWell, SettingsOfAWrongFileGiveOneError) {
+  folder_.put("other.txt", "one\ntwo\nthree\n");
+  folder_.put("a.out", std::string("\x7f"
+                                   "ELF\2\1\1\0\0",
+                                   9));
+  const std::string start = "smooth part.nc -t grbl --grbl-settings ";
+  expect_refusal(start + "other.txt", 1, "'one', expected a setting such as $110=5000.000; 2 more");
+  expect_refusal(start + "a.out", 1, "is a program for computers");
+}
+
+TEST_F(FailingWell, ABatchOfNothingSaysSo) {
+  folder_.put("docs/readme.txt", "G21\n");
+  expect_exit(folder_.batten("batch docs out -t grbl"), 0, {"no programs in it", "--suffix"});
+}
+
+TEST_F(FailingWell, ShortFormsAreWhatTheyStandFor) {
+  EXPECT_EQ(folder_.batten("-V").out, folder_.batten("--version").out);
+  EXPECT_EQ(folder_.batten("help smooth").out, folder_.batten("smooth --help").out);
+  EXPECT_EQ(folder_.batten("help").out, folder_.batten("--help").out);
+  expect_exit(folder_.batten("smooth part.nc -t linuxcnc"), 0);
+}
+
+}  // namespace
+}  // namespace batten
