@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gcode/curves/curve_format.h"
+#include "gcode/interpreter/lost_modes.h"
 #include "gcode/interpreter/motion_words.h"
 #include "gcode/interpreter/plain_text.h"
 #include "gcode/interpreter/program_flow.h"
@@ -95,6 +96,7 @@ class Interpreter {
         curves_(options.curves),
         has_plain_way_(options.short_ways && program.language == Language::kRs274),
         carry_(carry),
+        found_(found),
         diagnostics_(program, carry.told, found),
         now_(carry.state) {
     now_.calls_keep_modes = options.calls_keep_modes;
@@ -123,6 +125,7 @@ class Interpreter {
         ++i;
       }
     }
+    follow_lost_modes(program_, read_, carry_.lost, carry_.told, found_);
     carry_.any_words |= !nothing_said_yet();
     carry_.state = now_;
     carry_.unit_word_seen = read_.unit_word_seen;
@@ -478,6 +481,7 @@ class Interpreter {
   const CurveFormat* curves_;
   bool has_plain_way_;
   ControlCarry& carry_;
+  Diagnostics& found_;
   BlockDiagnostics diagnostics_;
   ControlState now_;
   SiemensVariables variables_;
@@ -528,12 +532,14 @@ Interpretation interpret_part(const Program& part, const ReadOptions& options, C
   make_all_opaque(part, read);
   found.push_back(lathe_warning(carry.lathe));
   carry.told = {};
+  carry.lost = {};
   carry.any_motion = false;  // it needs no units
   carry.reaches_out = true;
   return read;
 }
 
 void finish_interpretation(const ControlCarry& carry, Diagnostics& found) {
+  tell_lost_modes(carry.lost, found);
   carry.told.tell_rest(found);
   if (carry.unit_word_seen || !carry.any_motion) return;
   const std::string_view missing =

@@ -1,6 +1,7 @@
 // Blocks to motions in millimetres: the only place that knows inches and increments.
 #pragma once
 
+#include "gcode/interpreter/lost_modes.h"
 #include "gcode/state/diagnostic_limiter.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/motion.h"
@@ -25,6 +26,7 @@ struct ControlCarry {
   bool reaches_out = false;  // a part was not for itself (gcode/reading/part_reading.h)
   LatheWatch lathe;          // of all parts so far
   DiagnosticLimiter told;
+  LostModes lost;
 };
 
 struct CurveFormat;  // gcode/curves/curve_format.h
@@ -46,6 +48,9 @@ struct ReadOptions {
 //
 // State at the start: units as in the options; everything else as controls have it after
 // power-on (absolute, XY plane, feed per minute, compensations off), the position unknown.
+//
+// A block behind which the modes are not known, and moves are copied for that, gives the warning
+// modes-unknown.
 //
 // What most controls would refuse (two words of one group, an arc whose radii differ by more
 // than 0.0283 mm and 0.1 %) gives a warning; the block is opaque then. The only error is

@@ -38,8 +38,8 @@ constexpr const char* kCut = "G0 X0 Y0 Z5\nG1 Z0 F100\nX1\n";
 
 bool cuts_are_known(const std::string& text) {
   const tests::Interpreted it(text);
-  const Motion& last = it.read.motions.back();
-  return last.start_known && is_known(it.last_state());
+  return !it.read.motions.empty() && it.read.motions.back().start_known &&
+         is_known(it.last_state());
 }
 
 TEST(PlainText, TakesNothingAwayBeforeTheFirstMotion) {

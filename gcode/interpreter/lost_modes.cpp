@@ -1,0 +1,73 @@
+#include "gcode/interpreter/lost_modes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+#include "gcode/state/modal_state.h"
+#include "gcode/state/reason.h"
+
+namespace batten::gcode {
+namespace {
+
+constexpr std::string_view kId = "modes-unknown";
+
+// As much of a block as names it.
+std::string shown(std::string_view text) {
+  constexpr std::size_t kMost = 40;
+  text = text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
+  return text.size() <= kMost ? std::string(text) : std::string(text.substr(0, kMost)) + "..";
+}
+
+Diagnostic warning_of(const LostModes& modes) {
+  const std::string_view besides =
+      modes.by_call ? ", or --allow subprogram where it leaves them as they were" : "";
+  return {Severity::kWarning, kId, modes.where,
+          fmt::format("which modes hold behind '{}' is not known, so {} block{} with X, Y or Z {} "
+                      "copied; set the modes again after it (units, plane, G90, feed mode, "
+                      "compensations off ..){}",
+                      modes.text, modes.moves, modes.moves == 1 ? "" : "s",
+                      modes.moves == 1 ? "is" : "are", besides)};
+}
+
+bool names_place(const Program& program, const Block& block) {
+  return std::ranges::any_of(program.words_of(block), [](const Word& word) {
+    return word.letter >= 'X' && word.letter <= 'Z';
+  });
+}
+
+}  // namespace
+
+void follow_lost_modes(const Program& part, const Interpretation& read, LostModes& modes,
+                       DiagnosticLimiter& limiter, Diagnostics& found) {
+  std::uint32_t state = 0;
+  bool known = is_known(read.states[0]);
+  for (std::size_t i = 0; i < read.blocks.size(); ++i) {
+    const BlockMeaning& meaning = read.blocks[i];
+    const bool was_known = known;
+    if (meaning.state_after != state) {
+      state = meaning.state_after;
+      known = is_known(read.states[state]);
+    }
+    if (was_known && !known) {
+      const Block& block = part.blocks[i];
+      modes = {.lost = true,
+               .where = block.span,
+               .text = shown(part.source.text(block.span)),
+               .by_call = meaning.barrier == reason::kSubprogram};
+    } else if (modes.lost && known) {
+      modes.lost = false;
+      if (modes.moves > 0 && limiter.counts(kId, modes.where)) found.push_back(warning_of(modes));
+    } else if (modes.lost) {
+      modes.moves += names_place(part, part.blocks[i]) ? 1 : 0;
+    }
+  }
+}
+
+void tell_lost_modes(const LostModes& modes, Diagnostics& found) {
+  if (modes.lost && modes.moves > 0) found.push_back(warning_of(modes));
+}
+
+}  // namespace batten::gcode
