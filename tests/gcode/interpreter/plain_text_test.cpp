@@ -33,8 +33,8 @@ TEST(Title, IsWordsThatNoControlTakesForACommand) {
   }
 }
 
-constexpr const char* kModes = "G17 G21 G90 G40\n";
-constexpr const char* kCut = "G0 X0 Y0 Z5\nG1 Z0 F100\nX1\n";
+constexpr const char* kModesSaid = "G17 G21 G90 G40\n";
+constexpr const char* kFirstCut = "G0 X0 Y0 Z5\nG1 Z0 F100\nX1\n";
 
 bool cuts_are_known(const std::string& text) {
   const tests::Interpreted it(text);
@@ -44,18 +44,19 @@ bool cuts_are_known(const std::string& text) {
 
 TEST(PlainText, TakesNothingAwayBeforeTheFirstMotion) {
   for (const char* line : {"part.nc (X)", "[ROUGHING]"}) {
-    EXPECT_TRUE(cuts_are_known(std::string(kModes) + line + "\n" + kCut)) << line;
-    EXPECT_FALSE(cuts_are_known(std::string(kModes) + kCut + line + "\nX3 Y2\nX4\n")) << line;
+    EXPECT_TRUE(cuts_are_known(std::string(kModesSaid) + line + "\n" + kFirstCut)) << line;
+    EXPECT_FALSE(cuts_are_known(std::string(kModesSaid) + kFirstCut + line + "\nX3 Y2\nX4\n"))
+        << line;
   }
 }
 
 TEST(Title, TakesNothingAwayInFrontOfAllWords) {
-  const std::string program = std::string(kModes) + kCut;
+  const std::string program = std::string(kModesSaid) + kFirstCut;
   EXPECT_TRUE(cuts_are_known("%\nO1000\n(a)\nBracket left side\nsecond setup\n" + program));
   // Behind words it may be a macro's that moves the origin or sets G91.
-  EXPECT_FALSE(cuts_are_known(std::string(kModes) + "Bracket left side\n" + kCut));
+  EXPECT_FALSE(cuts_are_known(std::string(kModesSaid) + "Bracket left side\n" + kFirstCut));
   for (const char* command : {"TRANS X10 Y5", "START_PRINT", "PLANE RESET STAY", "#RTCP ON"}) {
-    EXPECT_FALSE(cuts_are_known(std::string(command) + "\nG21\n" + kCut)) << command;
+    EXPECT_FALSE(cuts_are_known(std::string(command) + "\nG21\n" + kFirstCut)) << command;
   }
 }
 
