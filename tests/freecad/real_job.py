@@ -166,7 +166,8 @@ def post_each(loader, objects):
             loader.load("batten").export(
                 objects, place + ".nc",
                 "--post %s --target %s --json %s.json %s" % (post, target, place, options))
-            loader.load("batten").export(objects, os.path.join(OUT, "old", post + ".nc"), "--post %s --target nonesuch "
+            loader.load("batten").export(objects, os.path.join(OUT, "old", post + ".nc"),
+                                         "--post %s --target nonesuch "
                                          "--or-unsmoothed" % post)
         except BaseException as error:
             with open(place + ".txt", "w") as file:
