@@ -24,8 +24,8 @@ std::string said_in(std::string_view line) {
   return said.substr(first, said.find_last_not_of(' ') + 1 - first);
 }
 
-constexpr std::string_view kFileSuffixes[] = {"NC",  "NCC", "NCP", "NGC", "CNC",  "TAP", "TXT",
-                                              "MPF", "SPF", "EIA", "MIN", "ARC",  "PIM", "ISO",
+constexpr std::string_view kFileSuffixes[] = {"NC",  "NCC", "NCP", "NGC", "CNC",  "TAP",
+                                              "TXT", "EIA", "MIN", "ARC", "PIM",  "ISO",
                                               "ANC", "FNC", "DNC", "PRG", "GCODE"};
 
 bool is_file_name(std::string_view said) {

@@ -7,6 +7,7 @@ namespace batten::gcode {
 
 // Whether a line of the RS-274 family that is no block of words is one of these, comments aside:
 //   fanuc.nc (a title)   the name of a program file: letters, digits, -, _ and a known suffix
+//                        (not mpf or spf, whose names may be calls)
 //   [ROUGHING]           in brackets as a whole, which WinCNC takes for a comment
 // False for all that a control could act on: names with values, macros, statements of other
 // languages.

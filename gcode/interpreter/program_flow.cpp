@@ -123,7 +123,13 @@ bool has_code(std::span<const Word> words, char letter, double low, double high)
 
 // A G word whose effect the beginning of a main program may not take back when it starts again: all
 // but motions, dwells, planes, units, cutter and length compensation, offsets, cycles, G90, G94.
+// And M words of calls, of mirroring and of the user, whatever they do.
 bool lasts_beyond_end(const Word& word) {
+  constexpr double kFirstOfUser = 70;
+  if (word.letter == 'M') {
+    const bool mirrors = word.value >= 21 && word.value <= 23;
+    return !word.is_number || mirrors || (word.value >= kFirstOfUser && word.value != 99);
+  }
   static constexpr double kTakenBack[] = {0,  1,  2,  3,  4,  17, 18, 19, 20, 21, 28,
                                           30, 40, 41, 42, 43, 49, 53, 54, 55, 56, 57,
                                           58, 59, 80, 81, 82, 83, 85, 90, 94, 98, 99};
@@ -167,7 +173,7 @@ class FlowFinder {
     says_more_ |= block.opacity == ParseStatus::kFlow || block.opacity == ParseStatus::kForeign ||
                   block.opacity == ParseStatus::kUnreadable;
     if (block.opacity != ParseStatus::kNone) read_text(i, block.opacity == ParseStatus::kFlow);
-    note_own_start(words);
+    note_own_start(words, block.block_delete);
     if (find_word(words, 'M') != nullptr) read_calls(i, words);
     if (find_word(words, 'G') != nullptr) read_lathe_cycle(words);
     note_call(words);
@@ -286,10 +292,10 @@ class FlowFinder {
 
   // What a program says for itself before its first cut, and no subprogram does: it depends on
   // nothing that a caller, or its own end when it starts again, could have left.
-  void note_own_start(std::span<const Word> words) {
+  void note_own_start(std::span<const Word> words, bool may_be_skipped) {
     says_more_ |= std::ranges::any_of(words, lasts_beyond_end);
     cuts_ |= has_code(words, 'G', 1, 3);
-    if (cuts_) return;
+    if (cuts_ || may_be_skipped) return;
     says_plane_ |= has_code(words, 'G', 17, 19);
     says_units_ |= has_code(words, 'G', 20, 21);
     says_distance_ |= has_code(words, 'G', 90, 90);

@@ -45,6 +45,13 @@ TEST_F(FailingWell, PlacesThatCannotBeWrittenAreFoundBeforeTheWork) {
   expect_refusal("smooth part.nc -t grbl -o .", 4, "it is a folder");
 }
 
+TEST_F(FailingWell, TheFolderOfALinkIsTheOneItLeadsTo) {
+  folder_.put("far/new.nc", "");
+  EXPECT_EQ(folder_.shell("mkdir near; ln -s ../far/new.nc near/link").exit_code, 0);
+  expect_exit(folder_.batten("smooth part.nc -t linuxcnc -o near/link --force"), 0);
+  EXPECT_NE(folder_.text_of("far/new.nc"), "");
+}
+
 TEST_F(FailingWell, AReportIsAPage) {
   expect_refusal("smooth part.nc -t grbl --report x.pdf", 1, "x.pdf: a page is written");
 }

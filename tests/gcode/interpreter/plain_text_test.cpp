@@ -11,12 +11,12 @@ namespace {
 
 TEST(PlainText, IsAFileNameOrInBrackets) {
   for (const char* line : {"part.nc", "fanuc.nc (FREECAD-FILENAME-GOES-HERE, JOB)", "wing-3_a.NGC",
-                           "[ROUGHING WITH T1]", " [ ] ", "plate.mpf ; left"}) {
+                           "[ROUGHING WITH T1]", " [ ] ", "plate.tap ; left"}) {
     EXPECT_TRUE(is_plain_text(line)) << line;
   }
-  for (const char* line :
-       {"", "X1.NC", "P100.NC", "part.exe", "part.nc X10", "part.nc part.nc", "[1] [2]",
-        "[#1=2] G91", "TRANS", "START_PRINT", "CALL PGM part.h", "a.nc", "$32=1", "run=part.nc"}) {
+  for (const char* line : {"", "X1.NC", "P100.NC", "part.exe", "part.nc X10", "part.nc part.nc",
+                           "[1] [2]", "[#1=2] G91", "TRANS", "START_PRINT", "CALL PGM part.h",
+                           "a.nc", "plate.mpf", "pocket.SPF", "$32=1", "run=part.nc"}) {
     EXPECT_FALSE(is_plain_text(line)) << line;
   }
 }

@@ -69,14 +69,18 @@ TEST(AProgramThatStartsAgain, IsNoBodyWhereItSetsItsModesItself) {
   EXPECT_TRUE(is_body(main + "/M99\nX1\nM99\n"));
   EXPECT_TRUE(is_body(main + "M99\nO2\nX1\nM30\n"));
   EXPECT_TRUE(is_body(main + "TRANS X1\nM99\n"));
-  for (const char* lasting : {"G68 X0 Y0 R30", "G51 X2", "G16", "G93", "G92 X1", "G10 L2 P1 X1",
-                              "G52 X1", "G5.1 Q2", "G66 P100", "G#1"}) {
+  for (const char* lasting :
+       {"G68 X0 Y0 R30", "G51 X2", "G16", "G93", "G92 X1", "G10 L2 P1 X1", "G52 X1", "M98 P2000",
+        "M97 P5", "M21", "M75", "M102", "M#1", "G5.1 Q2", "G66 P100", "G#1"}) {
     EXPECT_TRUE(is_body(main + lasting + "\nM99\n")) << lasting;
   }
   for (const std::string word : {"G90", "G40", "G17", "G21", "M6"}) {
     std::string without = main;
     without.replace(without.find(word), word.size(), "G94");
     EXPECT_TRUE(is_body(without + "M99\n")) << word;
+    std::string may_skip = main;
+    may_skip.insert(may_skip.rfind('\n', may_skip.find(word)) + 1, "/");
+    EXPECT_TRUE(is_body(may_skip + "M99\n")) << word << " that may be skipped";
     EXPECT_TRUE(is_body(without + word + "\nM99\n")) << word << " behind the cut";
   }
 }
