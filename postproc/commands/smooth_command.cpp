@@ -41,8 +41,10 @@ bool cannot_be_written(const std::string& file) {
   namespace fs = std::filesystem;
   if (file.empty() || file == "-") return false;
   std::error_code error;
-  const fs::path path = fs::weakly_canonical(file, error);  // a link: what it leads to is written
-  if (error) return false;
+  // Of a link, what it leads to is written.
+  const bool is_link = fs::is_symlink(file, error);
+  const fs::path path = is_link ? fs::weakly_canonical(file, error) : fs::path(file);
+  if (is_link && error) return false;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const bool is_device = fs::exists(path, error) && !fs::is_regular_file(path, error);
   std::string why;
