@@ -12,6 +12,7 @@
 #include "postproc/machine/program_time/program_time.h"
 #include "postproc/machine/program_time/program_time_blocks.h"
 #include "postproc/options/options.h"
+#include "postproc/options/own_words.h"
 #include "postproc/proof/verification.h"
 #include "postproc/runs/run_grouping.h"
 #include "postproc/stream/inspect.h"
@@ -152,6 +153,9 @@ InnerOptions inner(const Options& given) {
   }
   options.keep_corners_deg = given.keep_corners_deg;
   options.allowed = given.allow;
+  postproc::OwnWordList own_words;
+  for (const std::string& word : given.words) own_words.add(word, problems);
+  options.own_words = own_words.words();
   options.units = inner(given.units);
   options.threads = given.threads;
   if (problems.empty()) problems = postproc::problems_of(options);

@@ -100,6 +100,7 @@ class Interpreter {
         diagnostics_(program, carry.told, found),
         now_(carry.state) {
     now_.calls_keep_modes = options.calls_keep_modes;
+    now_.own_words = options.own_words.get();
     carry.is_klartext = is_klartext();
     if (is_klartext()) start_klartext(now_);
     read_.unit_word_seen = carry.unit_word_seen;
@@ -111,7 +112,8 @@ class Interpreter {
 
   Interpretation run() {
     const ProgramFlow whole_flow =
-        follow_flow(program_, now_.calls_keep_modes ? Returns::kBehindCalls : Returns::kToAnyLabel);
+        follow_flow(program_, now_.calls_keep_modes ? Returns::kBehindCalls : Returns::kToAnyLabel,
+                    now_.own_words);
     const std::vector<BlockFlow>& flow = whole_flow.blocks;
     const auto count = static_cast<std::uint32_t>(program_.blocks.size());
     for (std::uint32_t i = 0; i < count;) {
@@ -223,6 +225,10 @@ class Interpreter {
   void read_opaque(const Block& block) {
     const std::string_view text = program_.source.text(block.span);
     const bool is_flow = block.opacity == ParseStatus::kFlow;
+    if (const OwnWord* own = own_called_by(block)) {
+      apply_own(own->effect, now_);
+      return make_opaque(reason::kSubprogram);
+    }
     if (is_siemens() && is_flow) {
       if (siemens_flow_effect(text) != FlowEffect::kNothing) forget_everything(now_);
       return make_opaque(reason::kProgramFlow);
@@ -233,6 +239,18 @@ class Interpreter {
     apply_opaque(block.opacity, text, now_);
     const bool calls = is_flow && flow_effect(text) == FlowEffect::kCall;
     make_opaque(calls ? reason::kSubprogram : opacity_reason(block.opacity));
+  }
+
+  // What the user says of a line that is a call by name.
+  [[nodiscard]] const OwnWord* own_called_by(const Block& block) const {
+    if (now_.own_words == nullptr) return nullptr;
+    const std::string_view text = program_.source.text(block.span);
+    if (!is_siemens()) {
+      return block.opacity == ParseStatus::kFlow ? own_call(now_, o_word_call(text)) : nullptr;
+    }
+    const bool may_call =
+        block.opacity == ParseStatus::kForeign || block.opacity == ParseStatus::kNamedWords;
+    return may_call ? own_call(now_, siemens_call(text)) : nullptr;
   }
 
   // Before the first motion such a line changes nothing; behind it, what it is for is not known.
@@ -347,6 +365,10 @@ class Interpreter {
   void read_named(const Block& block) {
     const BlockWords words(program_.words_of(block));
     if (words.problem() != BlockWords::Problem::kNone) return refuse_words(words);
+    if (const OwnWord* own = own_called_by(block)) {
+      apply_own(own->effect, now_);
+      return make_opaque(reason::kSubprogram);
+    }
     const NamedEffect named =
         apply_names(program_.source.text(block.span), words, variables_, now_);
     if (!named.understood) {
@@ -369,6 +391,7 @@ class Interpreter {
       forget_position(now_);
     }
     apply_late_words(words, now_);
+    if (named.own != nullptr) apply_late_own(*named.own, words, now_);
     make_opaque(named.barrier);
   }
 

@@ -1,10 +1,13 @@
 // Blocks to motions in millimetres: the only place that knows inches and increments.
 #pragma once
 
+#include <memory>
+
 #include "gcode/interpreter/lost_modes.h"
 #include "gcode/state/diagnostic_limiter.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/motion.h"
+#include "gcode/state/own_words.h"
 #include "gcode/state/source_marks.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"
@@ -39,6 +42,7 @@ struct ReadOptions {
   // Subprograms and macros leave all modes as they find them (M97, M98, M198, G65, O-word calls,
   // CALL LBL, CALL PGM): behind a call only place, feed, speed and kind of motion are unknown.
   bool calls_keep_modes = false;
+  std::shared_ptr<const OwnWords> own_words = nullptr;  // what the user vouches for; nullptr: none
   bool short_ways = true;  // for plain lines (read_plain_line); they change nothing
 };
 

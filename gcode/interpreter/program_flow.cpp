@@ -144,8 +144,8 @@ bool names_flow(const Word& word) {
 
 class FlowFinder {
  public:
-  FlowFinder(const Program& program, Returns returns)
-      : program_(program), returns_(returns), flow_(program.blocks.size()) {}
+  FlowFinder(const Program& program, Returns returns, const OwnWords* own)
+      : program_(program), returns_(returns), own_(own), flow_(program.blocks.size()) {}
 
   ProgramFlow find() {
     for (std::size_t i = 0; i < program_.blocks.size(); ++i) read_block(i);
@@ -251,9 +251,17 @@ class FlowFinder {
     constexpr Label kPrograms = 10000;
     const bool calls = has_code(words, 'M', 98, 98) || has_code(words, 'M', 198, 198) ||
                        has_code(words, 'G', 65, 65) || has_code(words, 'G', 66, 66.1);
-    if (!calls) return;
+    if (!calls || surely_returns(words)) return;
     const auto program = whole_number(find_word(words, 'P'));
     called_.push_back(program ? std::optional(*program % kPrograms) : std::nullopt);
+  }
+
+  [[nodiscard]] bool surely_returns(std::span<const Word> words) const {
+    if (own_ == nullptr) return false;
+    const BlockWords sorted(words);
+    if (sorted.problem() != BlockWords::Problem::kNone) return false;
+    const OwnWord* own = own_->find(numbered_call(sorted));
+    return own != nullptr && own->effect.returns;
   }
 
   // Of a block whose words are not all listed.
@@ -352,6 +360,7 @@ class FlowFinder {
 
   const Program& program_;
   Returns returns_;
+  const OwnWords* own_;
   std::vector<BlockFlow> flow_;
   std::unordered_set<Label> jump_targets_;
   std::unordered_set<Label> programs_;        // that stand here
@@ -371,10 +380,24 @@ class FlowFinder {
 
 }  // namespace
 
-ProgramFlow follow_flow(const Program& program, Returns returns) {
+std::string o_word_call(std::string_view text) {
+  const std::string bare = bare_words(text);
+  const std::string_view keyword = o_word_keyword(bare);
+  if (!keyword.starts_with("CALL")) return {};
+  // Its arguments, if it has any, are all that stands behind it.
+  std::string_view rest = keyword.substr(std::string_view("CALL").size());
+  while (rest.starts_with('['))
+    rest.remove_prefix(std::min(closing_bracket(rest, 0) + 1, rest.size()));
+  const std::string name = bare.substr(0, bare.size() - keyword.size());
+  const bool is_plain = std::ranges::all_of(name, [](char c) { return c != '#' && c != '['; });
+  return rest.empty() && is_plain ? name + " CALL" : std::string();
+}
+
+ProgramFlow follow_flow(const Program& program, Returns returns, const OwnWords* own) {
   if (program.language == Language::kKlartext) return {find_klartext_flow(program), true};
-  if (program.language == Language::kSiemens) return {find_siemens_flow(program, returns), true};
-  return FlowFinder(program, returns).find();
+  if (program.language == Language::kSiemens)
+    return {find_siemens_flow(program, returns, own), true};
+  return FlowFinder(program, returns, own).find();
 }
 
 FlowEffect flow_effect(std::string_view text) {

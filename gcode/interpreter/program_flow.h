@@ -2,9 +2,11 @@
 // as is needed to leave such blocks alone.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "gcode/state/block_flow.h"
+#include "gcode/state/own_words.h"
 #include "gcode/text/program.h"
 
 namespace batten::gcode {
@@ -12,7 +14,12 @@ namespace batten::gcode {
 // `text` is a line of ParseStatus::kFlow.
 [[nodiscard]] FlowEffect flow_effect(std::string_view text);
 
-// A jump to a computed label makes every block with an N number a target.
-[[nodiscard]] ProgramFlow follow_flow(const Program& program, Returns returns);
+// "O<NAME> CALL", "O100 CALL" of such a line that is a call alone; empty for others.
+[[nodiscard]] std::string o_word_call(std::string_view text);
+
+// A jump to a computed label makes every block with an N number a target. `own`: calls that the
+// user knows; nullptr: none.
+[[nodiscard]] ProgramFlow follow_flow(const Program& program, Returns returns,
+                                      const OwnWords* own = nullptr);
 
 }  // namespace batten::gcode

@@ -20,7 +20,7 @@ class WordApplier {
     apply_feed();
     apply_spindle_speed();
     apply_tool_words();
-    for (const Code code : words_.m_codes()) apply_m(row_of_m(code));
+    for (const Code code : words_.m_codes()) apply_m(code);
     if (words_.has('E') && !effect_.takes_parameters) block(reason::kExtruder);
     if (words_.has_any("ABCUVW") && !effect_.takes_axes) block(reason::kOtherAxis);
     return effect_;
@@ -70,8 +70,20 @@ class WordApplier {
     if (row.is(trait::kLosesNamed)) forget_named_axes(state_, words_);
   }
 
+  // A word that the user vouches for: what it keeps is said when the block is over. Axis words
+  // beside an M word are a motion, or belong to the macro that it calls.
+  void take_own(std::string_view why, bool takes_axes) {
+    acts(why);
+    effect_.takes_axes |= takes_axes;
+    effect_.understood = false;
+  }
+
   void apply_g(Code code) {
     const CodeRow& row = row_of_g(code);
+    const bool may_be_own = row.group == CodeGroup::kUnknown || row.act == CodeAct::kCalls;
+    if (may_be_own && own_word(state_, 'G', code, words_) != nullptr) {
+      return take_own(row.act == CodeAct::kCalls ? row.why : reason::kOwnWord, true);
+    }
     apply_traits(row);
     switch (row.group) {
       case CodeGroup::kUnknown:
@@ -152,8 +164,8 @@ class WordApplier {
 
   std::optional<double> feed_of(const Word& f) const {
     const ModalState& now = state_.modal;
-    // F of a dwell or a thread is no feed. Beside a word that changes the units, LinuxCNC takes F in
-    // the units before it, grbl in those after it.
+    // F of a dwell or a thread is no feed. Beside a word that changes the units, LinuxCNC takes F
+    // in the units before it, grbl in those after it.
     const bool known = f.is_number && f.value > 0 && now.feed_mode != FeedMode::kUnknown &&
                        now.units == units_before_ && !words_.has_trait(trait::kOwnFeed);
     if (!known) return std::nullopt;
@@ -178,7 +190,11 @@ class WordApplier {
     if (tool || (words_.has_any("HD") && !effect_.takes_parameters)) block(reason::kToolChange);
   }
 
-  void apply_m(const CodeRow& row) {
+  void apply_m(Code code) {
+    const CodeRow& row = row_of_m(code);
+    if (own_word(state_, 'M', code, words_) != nullptr) {
+      return take_own(row.act == CodeAct::kCalls ? row.why : reason::kOwnWord, false);
+    }
     apply_traits(row);
     if (row.act == CodeAct::kMirrors) modal().mirror = row.value.as<TriState>();
     if (row.act == CodeAct::kTurnsToolTip) modal().tool_center_point = row.value.as<TriState>();
@@ -359,15 +375,37 @@ StateEffect apply_words(const BlockWords& words, ControlState& state) {
   return WordApplier(words, state).apply();
 }
 
+void apply_late_own(const OwnWord& own, const BlockWords& words, ControlState& state) {
+  apply_own(own.effect, state);
+  // Of G65 axis words are arguments for certain.
+  constexpr Code kMacro = 650;
+  if (!words.has_g(kMacro)) forget_named_axes(state, words);
+  if (words.has('F')) state.modal.feed.reset();
+  if (words.has('S')) state.modal.spindle_speed.reset();
+}
+
 void apply_late_words(const BlockWords& words, ControlState& state) {
+  bool own_macro = false;
+  for (const Code code : words.g_codes()) {
+    const CodeRow& row = row_of_g(code);
+    if (row.group != CodeGroup::kUnknown && row.act != CodeAct::kCalls) continue;
+    const OwnWord* own = own_word(state, 'G', code, words);
+    if (own == nullptr) continue;
+    apply_late_own(*own, words, state);
+    own_macro |= row.is(trait::kCallsAtEnd);
+  }
   for (const Code code : words.m_codes()) {
     const CodeRow& row = row_of_m(code);
+    if (const OwnWord* own = own_word(state, 'M', code, words)) {
+      apply_late_own(*own, words, state);
+      continue;
+    }
     if (row.is(trait::kUnknownBehind)) return forget_everything(state);
     if (row.is(trait::kCallsAtEnd)) forget_what_calls_change(state);
     if (row.is(trait::kLosesPlace)) forget_position(state);
   }
   if (words.has('T')) forget_position(state);
-  if (words.has_trait(trait::kCallsAtEnd)) forget_what_calls_change(state);
+  if (words.has_trait(trait::kCallsAtEnd) && !own_macro) forget_what_calls_change(state);
   if (words.has_trait(trait::kUnknownBehind)) {
     forget_everything(state);
     state.modal.modal_macro = TriState::kOn;

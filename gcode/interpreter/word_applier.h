@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "gcode/state/modal_state.h"
+#include "gcode/state/own_words.h"
 #include "gcode/state/reason.h"
 #include "gcode/text/program.h"
 
@@ -31,6 +32,10 @@ struct StateEffect {
 
 // What only happens at the end of the block, after its motion: calls, program end, tool change.
 void apply_late_words(const BlockWords& words, ControlState& state);
+
+// The same of a word that the user vouches for: what it does not keep, and what words beside it,
+// which may be its arguments, would set.
+void apply_late_own(const OwnWord& own, const BlockWords& words, ControlState& state);
 
 // Why a block that was not split into words is kept.
 [[nodiscard]] std::string_view opacity_reason(ParseStatus opacity);

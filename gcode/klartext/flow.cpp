@@ -112,6 +112,19 @@ class KlartextFlow {
 
 }  // namespace
 
+std::string klartext_call(std::string_view content) {
+  KlartextTokens tokens(content);
+  (void)tokens.next();  // CALL
+  const std::string_view pgm = tokens.next();
+  const auto begin = static_cast<std::size_t>(pgm.data() + pgm.size() - content.data());
+  std::string name = in_capitals(content.substr(begin, content.find(';', begin) - begin));
+  std::erase(name, '"');
+  while (!name.empty() && is_blank(name.back())) name.pop_back();
+  name.erase(0, name.find_first_not_of(" \t"));
+  if (name.ends_with(".H")) name.resize(name.size() - 2);
+  return name.empty() ? name : "CALL PGM " + name;
+}
+
 std::vector<BlockFlow> find_klartext_flow(const Program& program) {
   return KlartextFlow(program).find();
 }

@@ -2,6 +2,8 @@
 // and the blocks behind them.
 #pragma once
 
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "gcode/state/block_flow.h"
@@ -13,5 +15,9 @@ namespace batten::gcode {
 // blocks are a body up to LBL 0, or up to the last statement that names it, whichever comes later.
 // A label that is named by a parameter may be any.
 [[nodiscard]] std::vector<BlockFlow> find_klartext_flow(const Program& program);
+
+// "CALL PGM NAME" of the content of a statement of KlartextKind::kCallProgram, in upper case and
+// without quotes and .H: with its path where one stands there. Empty: no name is given.
+[[nodiscard]] std::string klartext_call(std::string_view content);
 
 }  // namespace batten::gcode

@@ -1,10 +1,14 @@
 #include "gcode/klartext/state.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <optional>
 
+#include "gcode/klartext/flow.h"
 #include "gcode/klartext/statement.h"
+#include "gcode/state/own_words.h"
 #include "gcode/state/reason.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/line_cursor.h"
@@ -36,6 +40,28 @@ void apply_feed(std::string_view token, std::string_view next, ModalState& modal
   if (plain && modal.units != Units::kUnknown) {
     modal.feed = *number * millimetres_per(modal.units);
   }
+}
+
+// Those that are known below, and whatever the user says of them.
+bool is_known_function(double code) {
+  static constexpr double kKnown[] = {2,   30,  89,  99,  112, 113, 114, 115,
+                                      124, 128, 129, 136, 137, 144, 145};
+  return std::ranges::find(kKnown, code) != std::end(kKnown);
+}
+
+// Of a line of M words that the user vouches for, every one of them: what they keep together.
+std::optional<OwnEffect> own_functions(std::string_view content, const ControlState& state) {
+  OwnEffect all = {.keeps_modes = true, .keeps_motion = true, .keeps_place = true};
+  KlartextTokens tokens(content);
+  for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
+    const auto code = upper(token[0]) == 'M' ? number_in(token, 1) : std::nullopt;
+    if (!code || is_known_function(*code)) return std::nullopt;
+    const OwnWord* own = own_call(state, fmt::format("M{:.0f}", *code));
+    if (own == nullptr) return std::nullopt;
+    all.keeps_motion &= own->effect.keeps_motion;
+    all.keeps_place &= own->effect.keeps_place;
+  }
+  return all;
 }
 
 void apply_function(double code, ControlState& state) {
@@ -215,7 +241,12 @@ std::string_view apply_tcpm(std::string_view content, ControlState& state) {
 }
 
 // CALL LBL, LBL, FN 9: a label that control can come to is known to program_flow.
-std::string_view apply_flow(KlartextKind kind, ControlState& state) {
+std::string_view apply_flow(KlartextKind kind, std::string_view content, ControlState& state) {
+  const bool by_name = kind == KlartextKind::kCallProgram;
+  if (const OwnWord* own = by_name ? own_call(state, klartext_call(content)) : nullptr) {
+    own->effect.keeps_modes ? apply_own(own->effect, state) : forget_klartext(state);
+    return reason::kSubprogram;
+  }
   if (kind == KlartextKind::kCallLabel || kind == KlartextKind::kCallProgram) {
     state.calls_keep_modes ? forget_what_calls_change(state) : forget_klartext(state);
     return reason::kSubprogram;
@@ -302,13 +333,17 @@ std::string_view apply_klartext(std::string_view statement, ControlState& state)
     case KlartextKind::kLabel:
     case KlartextKind::kCallLabel:
     case KlartextKind::kCallProgram:
-      return apply_flow(kind, state);
+      return apply_flow(kind, content, state);
     case KlartextKind::kUnknown:
       forget_klartext(state);
       return reason::kNotUnderstood;
     case KlartextKind::kCentre:
       return reason::kArc;
     case KlartextKind::kFunctions:
+      if (const auto own = own_functions(content, state)) {
+        apply_own(*own, state);
+        return reason::kOwnWord;
+      }
       forget_position(state);
       apply_words(content, state);
       return reason::kMiscFunction;

@@ -116,9 +116,10 @@ bool calls_program(std::string_view statement) {
 
 class FlowReader {
  public:
-  FlowReader(const Program& program, Returns returns)
+  FlowReader(const Program& program, Returns returns, const OwnWords* own)
       : program_(program),
         returns_(returns),
+        own_(own),
         flow_(program.blocks.size()),
         labels_(program.blocks.size()) {}
 
@@ -152,8 +153,14 @@ class FlowReader {
     if (named) is_subprogram_ |= ends_subprogram(plain);
     if (named || unreadable) {
       note_repeated_part(plain);
-      any_label_ |= returns_ == Returns::kToAnyLabel && calls_program(statement_in(plain));
+      any_label_ |= returns_ == Returns::kToAnyLabel && calls_program(statement_in(plain)) &&
+                    !surely_returns(text_of(block));
     }
+  }
+
+  [[nodiscard]] bool surely_returns(std::string_view line) const {
+    const OwnWord* own = own_ == nullptr ? nullptr : own_->find(siemens_call(line));
+    return own != nullptr && own->effect.returns;
   }
 
   // A block may have a number and a name.
@@ -237,6 +244,7 @@ class FlowReader {
 
   const Program& program_;
   Returns returns_;
+  const OwnWords* own_;
   std::vector<BlockFlow> flow_;
   std::vector<std::vector<LabelName>> labels_;
   std::unordered_set<LabelName> targets_;
@@ -248,8 +256,25 @@ class FlowReader {
 
 }  // namespace
 
-std::vector<BlockFlow> find_siemens_flow(const Program& program, Returns returns) {
-  return FlowReader(program, returns).run();
+std::vector<BlockFlow> find_siemens_flow(const Program& program, Returns returns,
+                                         const OwnWords* own) {
+  return FlowReader(program, returns, own).run();
+}
+
+std::string siemens_call(std::string_view line) {
+  std::string plain = plain_text(line);
+  std::ranges::replace(plain, '"', ' ');  // strings are blanks here
+  const std::string_view statement = statement_in(plain);
+  const std::string_view name = first_name(statement);
+  if (!calls_program(statement) || name == "MCALL" || name == "CALL") return {};
+  std::size_t at = after_blanks(statement, name.size());
+  if (char_at(statement, at) == '(') {
+    at = after_siemens_brackets(statement, at).value_or(at);
+  } else if (char_at(statement, at) == 'P' && is_digit(char_at(statement, at + 1))) {
+    ++at;
+    while (is_digit(char_at(statement, at))) ++at;
+  }
+  return after_blanks(statement, at) < statement.size() ? std::string() : std::string(name);
 }
 
 bool calls_siemens_program(std::string_view line) {

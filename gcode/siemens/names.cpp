@@ -167,6 +167,13 @@ class NameApplier {
       if (name.empty()) continue;
       const bool own = token.assigned && variables_.contains(name);
       const NameRow* row = own ? &kVariable : row_of(name, token.assigned);
+      const bool is_code = is_numbered(name) && name[0] == 'G';
+      if (const OwnWord* word = row == nullptr && is_code ? own_call(state_, name) : nullptr) {
+        effect_.own = word;
+        effect_.takes_axes = true;
+        block(reason::kOwnWord);
+        continue;
+      }
       if (row == nullptr) {
         effect_.understood = false;
         block(reason::kForeignWords);

@@ -8,6 +8,7 @@
 
 #include "gcode/state/block_words.h"
 #include "gcode/state/modal_state.h"
+#include "gcode/state/own_words.h"
 
 namespace batten::gcode {
 
@@ -23,7 +24,8 @@ struct NamedEffect {
   bool takes_axes = false;   // X, Y, Z belong to a name (TRANS X10), not to a motion
   bool loses_place = false;  // where the tool is after the block is not known
   bool unit_word = false;
-  std::string_view barrier;  // why the block is copied
+  const OwnWord* own = nullptr;  // a G word that the user vouches for
+  std::string_view barrier;      // why the block is copied
 };
 
 // `text` is a block of ParseStatus::kNamedWords, `words` its words of one letter. Applies what is

@@ -83,10 +83,11 @@ void forget_axis(ControlState& state, std::size_t axis) {
 void forget_position(ControlState& state) { state.position = Position{}; }
 
 void forget_everything(ControlState& state) {
-  const bool keeps = state.calls_keep_modes;
-  state = {};
-  state.modal = unknown_modal_state();
-  state.calls_keep_modes = keeps;
+  ControlState unknown;
+  unknown.modal = unknown_modal_state();
+  unknown.calls_keep_modes = state.calls_keep_modes;
+  unknown.own_words = state.own_words;
+  state = unknown;
 }
 
 void forget_what_calls_change(ControlState& state) {

@@ -18,6 +18,8 @@ namespace batten::gcode {
 // Inch to millimetre.
 inline constexpr double kMillimetresPerInch = 25.4;
 
+class OwnWords;  // gcode/state/own_words.h
+
 struct ModalState {
   MotionMode motion = MotionMode::kUnknown;
   Units units = Units::kUnknown;
@@ -100,7 +102,8 @@ struct ControlState {
   // the control at power-on is no repetition: it must stay.
   std::uint32_t set_by_word = 0;
   static_assert(kCodeGroups <= 32);
-  bool calls_keep_modes = false;  // ReadOptions
+  bool calls_keep_modes = false;        // ReadOptions
+  const OwnWords* own_words = nullptr;  // ReadOptions; they outlive the reading
 
   [[nodiscard]] bool is_set(CodeGroup group) const { return (set_by_word & bit(group)) != 0; }
   void mark_set(CodeGroup group) { set_by_word |= bit(group); }

@@ -68,6 +68,10 @@ constexpr Explanation kExplanations[] = {
     {kSpindle, "The spindle or its speed changes (S, M3, M4, M5).", kSeparate},
     {kCoolant, "The coolant changes (M7, M8, M9).", kSeparate},
     {kMiscFunction, "Another M word: when it acts depends on where its block ends.", kSeparate},
+    {kOwnWord,
+     "The block has a word that the user says something of (--word, or own-words of the profile): "
+     "what it does is done there.",
+     kCopied},
     {kStateChange, "The block changes a mode (units, plane, distance, feed, path ..).", kCopied},
     {kComment, "Comments or empty lines alone.", kCopied},
     {kChecksum, "The line has a check sum: the sender counts such lines.",

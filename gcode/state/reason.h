@@ -36,6 +36,7 @@ inline constexpr std::string_view kToolChange = "tool-change";
 inline constexpr std::string_view kSpindle = "spindle";
 inline constexpr std::string_view kCoolant = "coolant";
 inline constexpr std::string_view kMiscFunction = "misc-function";
+inline constexpr std::string_view kOwnWord = "own-word";
 inline constexpr std::string_view kStateChange = "state-change";
 inline constexpr std::string_view kComment = "comment";    // only where comments must stand alone
 inline constexpr std::string_view kChecksum = "checksum";  // N5 G1 X1*71

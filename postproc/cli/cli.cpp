@@ -30,7 +30,7 @@ void add_row(const OptionRow& row, CLI::App& command) {
   if (!row.default_value.empty()) help += fmt::format("; default: {}", row.default_value);
   CLI::Option* option =
       command.add_option(name)->description(help)->type_name(std::string(row.value));
-  if (row.kind == OptionKind::kList) {
+  if (may_be_repeated(row)) {
     option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->expected(1);
   }
 }

@@ -15,6 +15,7 @@
 #include "postproc/cli/cli_table.h"
 #include "postproc/machine/files/machine_file.h"
 #include "postproc/options/options.h"
+#include "postproc/options/own_words.h"
 #include "postproc/system/output_file.h"
 #include "postproc/text/words.h"
 
@@ -250,6 +251,16 @@ GivenTarget target_given(Arguments& in) {
   return wrong;
 }
 
+// --word, and own-words of the profile (nullptr: there is none).
+std::shared_ptr<const gcode::OwnWords> own_words_given(const TargetProfile* profile,
+                                                       Arguments& in) {
+  OwnWordList list = profile != nullptr ? profile->own_words : OwnWordList();
+  std::vector<std::string> problems;
+  for (const std::string& text : in.given.values("word")) list.add(text, problems);
+  for (const std::string& problem : problems) in.complain("--word: {}", problem);
+  return list.words();
+}
+
 // --- smooth, and what batch has of it ------------------------------------------------------------
 
 void read_target(SmoothingCommand& command, Arguments& in) {
@@ -302,6 +313,7 @@ void read_smooth_options(SmoothingCommand& command, Arguments& in) {
   }
   read_integer_into(options.threads, "threads", in);
   options.allowed = in.given.values("allow");
+  options.own_words = own_words_given(command.profile.get(), in);
   options.convert = in.given.flag("convert");
   command.force = in.given.flag("force");
   command.strict = in.given.flag("strict");
@@ -361,6 +373,7 @@ VerifyCommand verify_command(Arguments& in) {
   choose(command.tolerance_kind, "tolerance-kind", tolerance_kinds(), in);
   add_problems(problems_of_decimals(command.decimals, command.source, command.target), in);
   command.profile = std::move(target.profile);
+  command.own_words = own_words_given(command.profile.get(), in);
   command.allowed = allowed_given(in);
   choose(command.side, "side", sides(), in);
   add_problems(problems_of_side(command.side, command.tolerance_kind), in);
@@ -381,6 +394,8 @@ InspectCommand inspect_command(Arguments& in) {
   command.input = file_at(in, 0);
   read_common_into(command, in);
   add_problems(problems_of_decimals(command.decimals, command.source, nullptr), in);
+  const GivenTarget target = target_given(in);
+  command.own_words = own_words_given(target.profile.get(), in);
   command.allowed = allowed_given(in);
   check_files({"IN"}, in);
   check_report(command.json_file, in.files, in);
@@ -519,7 +534,11 @@ TimeCommand time_command(Arguments& in) {
   command.input = file_at(in, 0);
   command.profile_file = in.given.text("profile");
   read_common_into(command, in);
-  command.target = built_in_target("target", in);
+  const bool names_file = in.given.text("target").ends_with(".toml");
+  const GivenTarget target = names_file ? target_given(in) : GivenTarget();
+  command.profile = target.profile;
+  command.target = names_file ? target.control() : built_in_target("target", in);
+  command.own_words = own_words_given(command.profile.get(), in);
   add_problems(problems_of_decimals(command.decimals, command.source, command.target), in);
   const std::size_t problems_before = in.problems.size();
   command.machine = machine_given(command.target, in);
@@ -594,9 +613,12 @@ ExploreCommand explore_command(Arguments& in) {
   for (const OptionRow& row : option_rows("explore")) {
     const bool explored = row.name == "output" || row.name == "prefer";
     if (!row.in_config || explored || row.name == "threads" || !in.given.has(row.name)) continue;
-    command.options_of_smooth.push_back(fmt::format("--{}", row.name));
-    command.options_of_smooth.push_back(
-        fmt::format("{}", fmt::join(in.given.values(row.name), ",")));
+    std::vector<std::string> values = in.given.values(row.name);
+    if (row.kind != OptionKind::kTexts) values = {fmt::format("{}", fmt::join(values, ","))};
+    for (std::string& value : values) {
+      command.options_of_smooth.push_back(fmt::format("--{}", row.name));
+      command.options_of_smooth.push_back(std::move(value));
+    }
   }
   return command;
 }

@@ -82,10 +82,13 @@ std::string unknown_key(const std::string& place, std::string_view key) {
 
 void add_value(const OptionRow& row, const toml::node& node, const std::string& file, Given& given,
                Problems& problems) {
-  if (row.kind == OptionKind::kList && node.is_array()) {
+  const auto add = [&](const std::string& text) {
+    row.kind == OptionKind::kList ? given.add_list(row.name, text) : given.add(row.name, text);
+  };
+  if (may_be_repeated(row) && node.is_array()) {
     for (const toml::node& element : *node.as_array()) {
       if (const auto text = text_of(element)) {
-        given.add_list(row.name, *text);
+        add(*text);
       } else {
         problems.push_back(
             fmt::format("{}: '{}', expected a list of strings", place_of(file, element), row.name));
@@ -95,10 +98,8 @@ void add_value(const OptionRow& row, const toml::node& node, const std::string& 
   }
   const auto text = text_of(node);
   const bool fits = text && (row.kind == OptionKind::kFlag) == node.is_boolean();
-  if (fits && row.kind == OptionKind::kList) {
-    given.add_list(row.name, *text);
-  } else if (fits) {
-    given.add(row.name, *text);
+  if (fits) {
+    add(*text);
   } else {
     problems.push_back(fmt::format(
         "{}: '{}', expected {}", place_of(file, node), row.name,
@@ -108,7 +109,7 @@ void add_value(const OptionRow& row, const toml::node& node, const std::string& 
 
 std::string line_of(const OptionRow& row, const Given& given) {
   const auto values = given.values(row.name);
-  if (row.kind == OptionKind::kList) {
+  if (may_be_repeated(row)) {
     std::string list;
     for (const std::string& value : values) list += (list.empty() ? "" : ", ") + toml_quoted(value);
     return fmt::format("{} = [{}]", row.name, list);

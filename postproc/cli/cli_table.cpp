@@ -56,6 +56,10 @@ constexpr OptionRow kDecimals =
 constexpr OptionRow kAllow =
     setting("allow", kList, "REASON,..",
             "lift rules that keep runs, by their ids in the report; may be repeated");
+constexpr OptionRow kWord = setting(
+    "word", kTexts, "'WORD = EFFECT'",
+    "what a word of your own does (docs/profiles.md): 'M501 = keeps state', 'G65 P9810 = moves', "
+    "'M98 P9001 = keeps state, returns'; may be repeated");
 constexpr OptionRow kProfile =
     setting("profile", kValue, "FILE.toml",
             "the target as your machine has it (batten targets --show NAME prints one)");
@@ -105,6 +109,7 @@ std::vector<OptionRow> smooth_rows() {
       kSource,
       kDecimals,
       kAllow,
+      kWord,
       setting("convert", kFlag, "",
               "take a program for other controls if every block says the same on the target",
               "false"),
@@ -145,6 +150,7 @@ std::vector<OptionRow> verify_rows() {
           "allow", kList, "REASON,..",
           "what smooth was allowed; subprogram: calls leave all modes as they find them, in both "
           "programs"),
+      kWord,
       kJson,
       kForce,
       kQuiet,
@@ -154,8 +160,10 @@ std::vector<OptionRow> verify_rows() {
 std::vector<OptionRow> time_rows() {
   return {kMachine,
           kGrblSettings,
-          option("target", kValue, "NAME",
-                 "the control the program is written for (batten targets): what G4 P means"),
+          option("target", kValue, "NAME|FILE.toml",
+                 "the control the program is written for (batten targets): what G4 P means; or a "
+                 "profile of it"),
+          kWord,
           kUnits,
           kSource,
           kDecimals,
@@ -248,7 +256,9 @@ std::vector<CommandRow> make_command_rows() {
        "exits with 0 when proved, with 3 on a violation or without a proof."},
       {"inspect",
        "Show the runs of a program, their segments, and why the rest would be kept.",
-       {kUnits, kSource, kDecimals, kAllow, kJson, kForce, kQuiet, kLogLevel},
+       {option("target", kValue, "NAME|FILE.toml",
+               "the control, or a profile of it, whose own words are taken"),
+        kProfile, kUnits, kSource, kDecimals, kAllow, kWord, kJson, kForce, kQuiet, kLogLevel},
        {{"IN", "the program, - is standard input"}},
        "Example:\n  batten inspect part.nc --json part.json"},
       {"time",
@@ -416,7 +426,7 @@ std::string zsh_option(const OptionRow& row) {
   const std::string help = zsh_text(row.help);
   const std::string_view brief = short_form_of(row);
   if (row.kind == OptionKind::kFlag) return fmt::format("'--{}[{}]'", row.name, help);
-  const std::string_view again = row.kind == OptionKind::kList ? "*" : "";
+  const std::string_view again = may_be_repeated(row) ? "*" : "";
   std::string text = fmt::format("'{}--{}=[{}]{}'", again, row.name, help, zsh_value(row));
   if (!brief.empty()) text += fmt::format(" \\\n        '{}[{}]{}'", brief, help, zsh_value(row));
   return text;

@@ -12,7 +12,8 @@ namespace batten::postproc {
 
 enum class OptionKind {
   kValue,  // --name VALUE, once
-  kList,   // --name VALUE, as often as wanted
+  kList,   // --name VALUE, as often as wanted, or several with commas
+  kTexts,  // --name VALUE, as often as wanted; commas are part of it
   kFlag,   // --name
 };
 
@@ -36,6 +37,10 @@ struct CommandRow {
 };
 
 [[nodiscard]] const std::vector<CommandRow>& command_rows();
+
+[[nodiscard]] constexpr bool may_be_repeated(const OptionRow& row) {
+  return row.kind == OptionKind::kList || row.kind == OptionKind::kTexts;
+}
 
 // Requires that there is such a command.
 [[nodiscard]] const std::vector<OptionRow>& option_rows(std::string_view command);

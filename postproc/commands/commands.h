@@ -68,6 +68,7 @@ struct ReadingCommand {
   std::optional<gcode::Decimals> decimals;  // as SmoothOptions::decimals
   const gcode::Control* target = nullptr;   // whose curves are read; nullptr: none are
   std::vector<std::string> allowed;         // of these only `subprogram` changes what is read
+  std::shared_ptr<const gcode::OwnWords> own_words;
   std::string json_file;
   LogLevel log_level = LogLevel::kInfo;
   bool force = false;
@@ -94,6 +95,7 @@ struct TimeCommand : ReadingCommand {
   std::shared_ptr<const Machine> machine;  // required
   std::optional<geometry::Point3> start;   // mm: where the tool is before the program
   std::string profile_file;
+  std::shared_ptr<const TargetProfile> profile;  // keeps a target of a file alive
 };
 [[nodiscard]] int run(const TimeCommand& command);
 

@@ -128,7 +128,8 @@ PartReading reading_of(const gcode::SourceText& source, const ReadingCommand& co
   reading.text.dwells = dwells;
   reading.options = {.units = command.units,
                      .curves = command.target != nullptr ? command.target->curves : nullptr,
-                     .calls_keep_modes = calls_keep_modes(command.allowed)};
+                     .calls_keep_modes = calls_keep_modes(command.allowed),
+                     .own_words = command.own_words};
   return reading;
 }
 

@@ -9,6 +9,7 @@
 #include "gcode/state/reason.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
+#include "postproc/report/own_words_report.h"
 #include "postproc/runs/run_grouping.h"
 #include "postproc/stream/inspect.h"
 #include "postproc/stream/part_reader.h"
@@ -107,7 +108,8 @@ Json json_of(const InspectedSection& section) {
   return json;
 }
 
-std::string json_report(const InspectedProgram& inspected, const gcode::SourceText& source) {
+std::string json_report(const InspectedProgram& inspected, const InspectCommand& command,
+                        const gcode::SourceText& source) {
   const auto section = [](const InspectedSection& each) { return json_of(each); };
   const auto kept = [](const auto& each) -> Json {
     const auto& [reason, total] = each;
@@ -121,6 +123,7 @@ std::string json_report(const InspectedProgram& inspected, const gcode::SourceTe
       {{"batten", BATTEN_VERSION},
        {"input",
         {{"file", source.name()}, {"bytes", source.text().size()}, {"blocks", inspected.blocks}}},
+       {"words", own_words_json(command.own_words)},
        {"sections", json_list(inspected.sections, section)},
        {"kept", json_list(kept_totals(inspected.sections), kept)},
        {"diagnostics", diagnostics_json(inspected.found, source)}});
@@ -146,11 +149,12 @@ int run(const InspectCommand& command) {
   print(result.found, *source, command.log_level);
   if (command.json_file != "-") {
     const std::string text = fmt::format("{}: {} blocks\n", source->name(), result.blocks) +
-                             runs_table(result.sections) + kept_table(result.sections);
+                             runs_table(result.sections) + kept_table(result.sections) +
+                             own_words_text(command.own_words);
     if (const int code = write_result("-", text, false); code != 0) return code;
   }
-  const int code =
-      write_report(command.json_file, command.force, [&] { return json_report(result, *source); });
+  const int code = write_report(command.json_file, command.force,
+                                [&] { return json_report(result, command, *source); });
   if (code != 0) return code;
   if (!result.unit_word_seen) {
     say(source->name() +

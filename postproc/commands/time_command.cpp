@@ -73,7 +73,7 @@ int run(const TimeCommand& command) {
   const StepOptions options = {.dwell_unit = dwell_unit_of(command.target, *command.machine),
                                .start = command.start};
   const ProgramTime time = time_program(program, meaning, *command.machine, options);
-  const TimeReport report{program, *command.machine, time, found};
+  const TimeReport report{program, *command.machine, time, found, command.own_words};
   const bool standard_output_taken = command.json_file == "-" || command.profile_file == "-";
   if (!standard_output_taken) {
     if (const int code = write_result("-", time_text(report), false); code != 0) return code;

@@ -11,6 +11,7 @@
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
 #include "postproc/proof/verification.h"
+#include "postproc/report/own_words_report.h"
 #include "postproc/stream/assembly.h"
 #include "postproc/stream/part_reader.h"
 #include "postproc/stream/part_verification.h"
@@ -110,6 +111,7 @@ std::string json_report(const Verification& verification, const VerifyCommand& c
                     {"tolerance_mm", command.tolerance_mm},
                     {"tolerance_kind", name_of(command.tolerance_kind)},
                     {"side", name_of(command.side)},
+                    {"words", own_words_json(command.own_words)},
                     {"proved", verification.proved()},
                     {"deviation_mm", verification.deviation_mm},
                     {"deviation_line", verification.deviation_line},
@@ -200,6 +202,9 @@ int tell(const VerifyCommand& command, const Verification& verification, std::si
         fmt::format("  besides {} lines that the profile {} adds, whose effect on the control "
                     "is not known here\n",
                     added, command.profile->file));
+  }
+  if (verification.proved() && command.log_level >= LogLevel::kInfo) {
+    say_lines(own_words_text(command.own_words));
   }
   const int code = write_json(command, verification, of_new, new_source);
   return verification.proved() ? code : static_cast<int>(ExitCode::kNotProved);

@@ -218,6 +218,7 @@ gcode::ReadOptions read_options_of(const SmoothOptions& options) {
   reading.units = options.units;
   if (options.target != nullptr) reading.curves = options.target->curves;
   reading.calls_keep_modes = calls_keep_modes(options.allowed);
+  reading.own_words = options.own_words;
   return reading;
 }
 

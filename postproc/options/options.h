@@ -1,6 +1,7 @@
 // What the user asks for, checked, with units.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/source_kind.h"
 #include "gcode/state/modal_state.h"
+#include "gcode/state/own_words.h"
 #include "gcode/text/language.h"
 #include "geometry/basic/tolerance_kind.h"
 #include "postproc/machine/machine.h"
@@ -79,6 +81,7 @@ struct SmoothOptions {
   std::optional<Linearize> linearize;      // nothing: what serves `prefer`, see linearize_of
   std::optional<double> keep_corners_deg;  // turns above this stay corners
   std::vector<std::string> allowed;        // --allow
+  std::shared_ptr<const gcode::OwnWords> own_words;  // --word, and of a profile; nullptr: none
   bool convert = false;  // a program of another family is taken where every block can be said
   ProfileWords words;    // that a profile adds; its target is `target`
   std::string profile;   // the profile's file, for reports; empty: none

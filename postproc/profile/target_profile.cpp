@@ -24,6 +24,7 @@ using Lines = std::vector<std::string>;
 
 constexpr std::string_view kBasedOn = "based-on";
 constexpr std::string_view kWords = "words";
+constexpr std::string_view kOwnWords = "own-words";
 
 struct WordsKey {
   std::string_view name;
@@ -261,9 +262,10 @@ class ProfileReader {
     const std::size_t problems_before = problems_.size();
     find_base(root);
     if (target_ == nullptr) return nullptr;
-    TargetProfile profile = {file_, *target_, {}};
+    TargetProfile profile = {file_, *target_, {}, {}};
     for (const auto& [key, node] : root) read_top(key.str(), node, profile.adapted);
     check_together(root, profile.adapted);
+    read_own_words(root, profile);
     if (problems_.size() == problems_before) read_words(root, profile);
     if (problems_.size() != problems_before) return nullptr;
     return std::make_shared<TargetProfile>(std::move(profile));
@@ -307,7 +309,7 @@ class ProfileReader {
   }
 
   void read_top(std::string_view name, const toml::node& node, Control& control) {
-    if (name == kBasedOn || name == kWords) return;
+    if (name == kBasedOn || name == kWords || name == kOwnWords) return;
     const toml::table* section = node.as_table();
     if (section == nullptr) return read_key("", name, node, control);
     if (name.empty() || std::ranges::find(kKeys, name, &ProfileKey::section) == std::end(kKeys)) {
@@ -324,6 +326,7 @@ class ProfileReader {
       }
     }
     names.emplace_back(kWords);
+    names.emplace_back(kOwnWords);
     return listed(names);
   }
 
@@ -401,6 +404,23 @@ class ProfileReader {
     }
   }
 
+  void read_own_words(const toml::table& root, TargetProfile& profile) {
+    const toml::node* node = root.get(kOwnWords);
+    if (node == nullptr) return;
+    const toml::table* section = node->as_table();
+    if (section == nullptr) return complain(*node, kOwnWords, "a section");
+    for (const auto& [key, value] : *section) {
+      const auto effects = value.value_exact<std::string>();
+      if (!effects) {
+        complain(value, full_name(kOwnWords, key.str()), "what the word does, as a text");
+        continue;
+      }
+      Lines found;
+      profile.own_words.add(key.str(), *effects, found);
+      for (const std::string& why : found) object(value, full_name(kOwnWords, key.str()), why);
+    }
+  }
+
   void read_lines(std::string_view name, const toml::node& node, TargetProfile& profile) {
     const std::string key = full_name(kWords, name);
     const auto found = std::ranges::find(kWordsKeys, name, &WordsKey::name);
@@ -469,6 +489,10 @@ std::string profile_text(const gcode::Control& target) {
     text += fmt::format("{:<34}  # {}\n", fmt::format("{} = []", key.name), key.remark);
   }
   for (const std::string_view hint : target.smoothing_words) text += fmt::format("# {}\n", hint);
+  text += fmt::format(
+      "\n# What words of your own do, which Batten does not know; you vouch for it. Such as\n"
+      "# M501 = \"keeps state\"\n# \"G65 P9810\" = \"moves\"\n[{}]\n",
+      kOwnWords);
   return text;
 }
 

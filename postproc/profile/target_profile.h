@@ -9,6 +9,7 @@
 #include "gcode/control/control.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"
+#include "postproc/options/own_words.h"
 #include "postproc/options/profile_words.h"
 
 namespace batten::postproc {
@@ -17,6 +18,7 @@ struct TargetProfile {
   std::string file;
   gcode::Control adapted;  // the built-in one with the values of the profile
   ProfileWords words;
+  OwnWordList own_words;
 };
 
 // Adds a sentence to `problems` for everything that is wrong, each with file, line and column, what

@@ -9,6 +9,7 @@
 
 #include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
+#include "postproc/report/own_words_report.h"
 #include "postproc/text/words.h"
 
 namespace batten::postproc {
@@ -47,8 +48,8 @@ Json json_of(const SmoothOptions& options, bool strict) {
   // An option that is added does not compile here: say it below, and where the library is to have
   // it, in Options of api/include/batten/batten.h and `inner` of api/batten.cpp.
   const auto& [target, machine, tolerance_mm, tolerance_inch, tolerance_kind, side, units, source,
-               decimals, method, output, prefer, linearize, keep_corners_deg, allowed, convert,
-               words, profile, threads, quick] = options;
+               decimals, method, output, prefer, linearize, keep_corners_deg, allowed, own_words,
+               convert, words, profile, threads, quick] = options;
   Json json = {
       {"target", target->name}, {"machine", machine->name}, {"tolerance_mm", tolerance_mm}};
   if (tolerance_inch) json["tolerance_inch"] = *tolerance_inch;
@@ -62,6 +63,7 @@ Json json_of(const SmoothOptions& options, bool strict) {
   json["decimals"] = text_of(decimals);
   json["keep_corners_deg"] = keep_corners_deg ? Json(*keep_corners_deg) : Json(nullptr);
   json["allow"] = allowed;
+  json["words"] = own_words_json(own_words);
   json["strict"] = strict;
   return json;
 }
@@ -387,6 +389,7 @@ std::string summary_text(const SmoothReport& report) {
   const bool rewritten =
       std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status) > 0;
   add_proof(report, rewritten, lines);
+  lines += own_words_text(report.options.own_words);
   add_profile(report, lines);
   return lines;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "postproc/report/own_words_report.h"
 #include "postproc/text/json_values.h"
 #include "postproc/text/words.h"
 
@@ -145,6 +146,7 @@ std::string time_json(const TimeReport& report) {
   json["tools"] = json_list(time.tools, item);
   json["slowest"] = json_list(time.slowest, item);
   json["not_timed"] = json_list(time.not_timed, item);
+  json["words"] = own_words_json(report.own_words);
   json["diagnostics"] = diagnostics_json(report.diagnostics, report.program.source);
   return json_text(json);
 }
@@ -156,7 +158,7 @@ std::string time_text(const TimeReport& report) {
   add_tools(report.time, lines);
   add_slow_places(report.time, lines);
   add_not_timed(report.time, lines);
-  return lines;
+  return lines + own_words_text(report.own_words);
 }
 
 }  // namespace batten::postproc

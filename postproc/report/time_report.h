@@ -1,8 +1,10 @@
 // What the reports of `batten time` are made from.
 #pragma once
 
+#include <memory>
 #include <string>
 
+#include "gcode/state/own_words.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"
 #include "postproc/machine/machine.h"
@@ -15,6 +17,7 @@ struct TimeReport {
   const Machine& machine;
   const ProgramTime& time;
   const gcode::Diagnostics& diagnostics;
+  const std::shared_ptr<const gcode::OwnWords>& own_words;  // that the user vouches for
 };
 
 // For people:
