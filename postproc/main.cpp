@@ -54,6 +54,7 @@ int run_command_line(const std::vector<std::string>& arguments) {
     say("nothing was done; see " + line.help_hint);
     return static_cast<int>(ExitCode::kUsage);
   }
+  for (const std::string& note : line.notes) say("options " + note);
   return std::visit([](const auto& command) { return run(command); }, line.command);
 }
 

@@ -8,6 +8,7 @@
 
 #include "postproc/cli/cli_table.h"
 #include "postproc/cli/explain.h"
+#include "postproc/report/smooth_report.h"
 #include "postproc/text/words.h"
 
 namespace batten::postproc {
@@ -185,8 +186,13 @@ CommandLine read_command_line(const std::vector<std::string>& given_arguments) {
   Arguments in = arguments_of(command, *std::ranges::find(command_rows(), name, &CommandRow::name));
   line.command = any_command_of(name, in);
   line.problems = std::move(in.problems);
+  if (auto* setup = std::get_if<SetupCommand>(&line.command); setup != nullptr && setup->asks) {
+    ask_for_setup(*setup, line.problems);
+  }
   if (auto* smooth = std::get_if<SmoothCommand>(&line.command)) {
     smooth->command_line = command_line_of(arguments);
+  } else if (!in.given.flag("quiet") && !std::holds_alternative<SetupCommand>(line.command)) {
+    line.notes = texts_of_origins(in.given.origins());
   }
   return line;
 }

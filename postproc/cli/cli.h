@@ -32,26 +32,33 @@ struct PrintText {
   std::string text;
 };
 
-using Command =
-    std::variant<PrintText, SmoothCommand, ExploreCommand, VerifyCommand, InspectCommand,
-                 TimeCommand, BatchCommand, FreecadCommand, ListCommand>;
+using Command = std::variant<PrintText, SmoothCommand, SmoothFilesCommand, SetupCommand,
+                             ExploreCommand, VerifyCommand, InspectCommand, TimeCommand,
+                             BatchCommand, FreecadCommand, ListCommand>;
 
 // `name` is one of those that read, list or write programs and machines: "smooth" .. "methods".
 [[nodiscard]] Command command_of(std::string_view name, Arguments& in);
 
 [[nodiscard]] SmoothCommand smooth_command(Arguments& in);
 
+[[nodiscard]] SetupCommand setup_command(Arguments& in);
+
+// Asks on standard error for what is to be kept, and reads the answers from standard input.
+void ask_for_setup(SetupCommand& command, Problems& problems);
+
 // 'a': one word too many.
 void refuse_words_after(std::size_t expected, std::string_view what, Arguments& in);
 
 struct CommandLine {
   Command command;
-  Problems problems;      // not empty: `command` means nothing
-  std::string help_hint;  // what to call for help on it
+  Problems problems;               // not empty: `command` means nothing
+  std::string help_hint;           // what to call for help on it
+  std::vector<std::string> notes;  // which files gave options, where the command does not say it
 };
 
-// `arguments` without the program's own name. Reads the files of --config, --machine and
-// --grbl-settings and touches no other.
+// `arguments` without the program's own name. Reads files of configuration (cli_config.h), of
+// --target, --profile, --machine and --grbl-settings, the beginning of a program whose target is
+// not given, and for `setup` standard input. Writes none.
 [[nodiscard]] CommandLine read_command_line(const std::vector<std::string>& arguments);
 
 }  // namespace batten::postproc

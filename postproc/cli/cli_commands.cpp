@@ -6,12 +6,16 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
+#include <set>
+#include <span>
 
 #include "gcode/controls/built_in.h"
 #include "gcode/curves/curve_format.h"
+#include "gcode/reading/target_marks.h"
 #include "gcode/state/modal_state.h"
 #include "postproc/batch/program_tree.h"
 #include "postproc/cli/cli.h"
+#include "postproc/cli/cli_config.h"
 #include "postproc/cli/cli_table.h"
 #include "postproc/machine/files/machine_file.h"
 #include "postproc/options/options.h"
@@ -263,7 +267,32 @@ std::shared_ptr<const gcode::OwnWords> own_words_given(const TargetProfile* prof
 
 // --- smooth, and what batch has of it ------------------------------------------------------------
 
-void read_target(SmoothingCommand& command, Arguments& in) {
+// The target that the program's own text names for certain; else says which are likely.
+const gcode::Control* target_of_marks(SmoothingCommand& command, Arguments& in) {
+  constexpr std::string_view kToDo =
+      "batten targets lists all, batten setup keeps one for all programs";
+  const std::string program = file_at(in, 0);
+  std::string error;
+  const auto source = program.empty() || program == "-"
+                          ? std::nullopt
+                          : gcode::SourceText::map_file(program, error);
+  if (!source) {
+    in.complain("--target: no target given; {}", kToDo);
+    return nullptr;
+  }
+  const gcode::TargetMarks marks = gcode::target_marks(*source);
+  if (marks.target.empty()) {
+    in.complain("--target: for which control is {}? likely {}{}; {}", program,
+                fmt::join(marks.likely, " or "),
+                marks.evidence.empty() ? "" : fmt::format(" ({})", marks.evidence), kToDo);
+    return nullptr;
+  }
+  command.origins.emplace_back("target", marks.evidence);
+  return gcode::find_control(marks.target);
+}
+
+void read_target(SmoothingCommand& command, Arguments& in, bool by_marks) {
+  command.origins = in.given.origins();
   GivenTarget target = target_given(in);
   if (target.is_wrong) return;
   command.options.target = target.control();
@@ -272,9 +301,14 @@ void read_target(SmoothingCommand& command, Arguments& in) {
     command.options.profile = target.profile->file;
     command.profile = std::move(target.profile);
   }
-  if (command.options.target != nullptr) return;
-  in.complain("--target: no target given; possible: {}, or a profile NAME.toml",
-              fmt::join(target_names(), ", "));
+  if (command.options.target != nullptr || in.given.flag("print-config")) return;
+  if (by_marks) {
+    command.options.target = target_of_marks(command, in);
+  } else {
+    in.complain(
+        "--target: no target given; batten targets lists them, batten setup keeps one for all "
+        "programs");
+  }
 }
 
 // What was missing or unreadable has been said; the check of the options would say it again.
@@ -286,17 +320,15 @@ void check_options(const SmoothOptions& options, Arguments& in) {
     const bool follows =
         option == "--machine" &&
         (options.target == nullptr || in.given.has("machine") || in.given.has("grbl-settings"));
-    if (!said && !follows) in.problems.push_back(std::move(problem));
+    const bool printed_only = option == "--target" && in.given.flag("print-config");
+    if (!said && !follows && !printed_only) in.problems.push_back(std::move(problem));
   }
 }
 
 // What smooth and batch have in common, but for the progress.
-void read_smooth_options(SmoothingCommand& command, Arguments& in) {
+void read_smooth_options(SmoothingCommand& command, Arguments& in, bool by_marks) {
   SmoothOptions& options = command.options;
-  if (const auto file = in.given.value("config")) {
-    in.given.complete_from(read_config(*file, in.problems));
-  }
-  read_target(command, in);
+  read_target(command, in, by_marks);
   command.own_machine = machine_given(options.target, in);
   options.machine = command.own_machine.get();
   const auto tolerance = tolerance_in(in.given.value("tolerance"), in, options.tolerance_inch);
@@ -473,7 +505,7 @@ void check_trees(Arguments& in) {
 
 BatchCommand batch_command(Arguments& in) {
   BatchCommand command;
-  read_smooth_options(command, in);
+  read_smooth_options(command, in, false);
   check_options(command.options, in);
   command.settings = settings_text(in.given, command.own_machine.get());
   command.fail_fast = in.given.flag("fail-fast");
@@ -556,7 +588,7 @@ TimeCommand time_command(Arguments& in) {
 
 SmoothCommand smooth_command(Arguments& in) {
   SmoothCommand command;
-  read_smooth_options(command, in);
+  read_smooth_options(command, in, true);
   choose(command.progress, "progress", progress_styles(), in);
   command.log_level = log_level(in);
   // A bar is said too, but lines for LinuxCNC are not for people.
@@ -625,7 +657,48 @@ ExploreCommand explore_command(Arguments& in) {
 
 }  // namespace
 
+namespace {
+
+// Each with what is given for it alone, and everything that is wrong with any of them.
+SmoothFilesCommand smooth_files_command(Arguments& in) {
+  SmoothFilesCommand command;
+  for (const char* option : {"out", "json", "report"}) {
+    if (in.given.has(option))
+      in.complain("--{}: is for one program; {} are given", option, in.files.size());
+  }
+  if (std::ranges::count(in.files, "-") > 0)
+    in.complain("-: standard input is a program by itself");
+  if (!in.problems.empty()) return command;
+  const auto is_output_of = [](const std::string& file, const std::string& other) {
+    return is_one_file(file, default_output_path(other).string());
+  };
+  std::set<std::string> problems;
+  for (const std::string& file : in.files) {
+    if (std::ranges::any_of(in.files,
+                            [&](const std::string& each) { return is_output_of(file, each); })) {
+      command.left_out.push_back(file);
+      continue;
+    }
+    Arguments one = {in.given, {file}};
+    complete_from_configs("smooth", file, one.given, one.problems);
+    command.each.push_back(smooth_command(one));
+    problems.insert(one.problems.begin(), one.problems.end());
+    for (const SmoothCommand& each : std::span(command.each).first(command.each.size() - 1)) {
+      if (is_one_file(each.input, file)) problems.insert(fmt::format("{}: is given twice", file));
+    }
+  }
+  in.problems.assign(problems.begin(), problems.end());
+  return command;
+}
+
+}  // namespace
+
 Command command_of(std::string_view name, Arguments& in) {
+  if (name == "smooth" && in.files.size() > 1 && !in.given.has("print-config")) {
+    return smooth_files_command(in);
+  }
+  if (name == "setup") return setup_command(in);
+  complete_from_configs(name, file_at(in, 0), in.given, in.problems);
   if (name == "smooth") {
     SmoothCommand command = smooth_command(in);
     if (in.given.flag("print-config")) return PrintText{config_text(in.given)};

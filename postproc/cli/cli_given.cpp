@@ -4,6 +4,8 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 
 #include "postproc/cli/cli_table.h"
 #include "postproc/text/words.h"
@@ -11,7 +13,9 @@
 namespace batten::postproc {
 
 void Given::add(std::string_view name, std::string value) {
-  values_[std::string(name)].push_back(std::move(value));
+  Values& values = values_[std::string(name)];
+  values.texts.push_back(std::move(value));
+  values.origin = origin_;
 }
 
 void Given::add_list(std::string_view name, std::string_view values) {
@@ -32,18 +36,42 @@ bool Given::flag(std::string_view name) const { return value(name) == "true"; }
 std::optional<std::string> Given::value(std::string_view name) const {
   read_.emplace(name);
   const auto found = values_.find(name);
-  if (found == values_.end() || found->second.empty()) return std::nullopt;
-  return found->second.front();
+  if (found == values_.end() || found->second.texts.empty()) return std::nullopt;
+  return found->second.texts.front();
 }
 
 std::vector<std::string> Given::values(std::string_view name) const {
   read_.emplace(name);
   const auto found = values_.find(name);
-  return found == values_.end() ? std::vector<std::string>{} : found->second;
+  return found == values_.end() ? std::vector<std::string>{} : found->second.texts;
 }
 
-void Given::complete_from(const Given& other) {
-  for (const auto& [name, values] : other.values_) values_.try_emplace(name, values);
+void Given::complete_from(const Given& other, bool goes_together) {
+  constexpr std::array<std::string_view, 4> kTogether = {"target", "profile", "machine",
+                                                         "grbl-settings"};
+  const bool has_target = values_.contains("target") || values_.contains("profile");
+  const bool has_machine = values_.contains("machine") || values_.contains("grbl-settings");
+  for (const auto& [name, values] : other.values_) {
+    const auto* const at = std::ranges::find(kTogether, name);
+    const bool is_of_machine = at != kTogether.end() && at - kTogether.begin() > 1;
+    if (goes_together && at != kTogether.end() && (has_target || (has_machine && is_of_machine))) {
+      continue;
+    }
+    values_.try_emplace(name, values);
+  }
+}
+
+std::string Given::origin(std::string_view name) const {
+  const auto found = values_.find(name);
+  return found == values_.end() ? std::string() : found->second.origin;
+}
+
+std::vector<std::pair<std::string, std::string>> Given::origins() const {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const auto& [name, values] : values_) {
+    if (!values.origin.empty()) all.emplace_back(name, values.origin);
+  }
+  return all;
 }
 
 namespace {
@@ -80,6 +108,15 @@ std::string unknown_key(const std::string& place, std::string_view key) {
                      nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest));
 }
 
+// A name of a file is meant from the folder of the file that has it.
+std::string from_folder_of(const std::string& file, const OptionRow& row, const std::string& text) {
+  const bool may_be_name = row.value.find('|') != std::string_view::npos;
+  const bool is_file = row.value.find("FILE") != std::string_view::npos &&
+                       (!may_be_name || text.ends_with(".toml") || text.ends_with(".ini"));
+  const auto folder = std::filesystem::path(file).parent_path();
+  return is_file && !text.empty() ? (folder / text).lexically_normal().string() : text;
+}
+
 void add_value(const OptionRow& row, const toml::node& node, const std::string& file, Given& given,
                Problems& problems) {
   const auto add = [&](const std::string& text) {
@@ -99,7 +136,7 @@ void add_value(const OptionRow& row, const toml::node& node, const std::string& 
   const auto text = text_of(node);
   const bool fits = text && (row.kind == OptionKind::kFlag) == node.is_boolean();
   if (fits) {
-    add(*text);
+    add(from_folder_of(file, row, *text));
   } else {
     problems.push_back(fmt::format(
         "{}: '{}', expected {}", place_of(file, node), row.name,
@@ -128,6 +165,7 @@ std::string line_of(const OptionRow& row, const Given& given) {
 
 Given read_config(const std::string& file, Problems& problems) {
   Given given;
+  given.come_from(file);
   try {
     const toml::table table = toml::parse_file(file);
     for (const auto& [key, node] : table) {
@@ -149,7 +187,12 @@ std::string config_text(const Given& given) {
   std::string text = "# Options of batten smooth, for --config.\n";
   for (const OptionRow& row : option_rows("smooth")) {
     if (!row.in_config) continue;
-    text += fmt::format("\n# {}\n{}\n", row.help, line_of(row, given));
+    const std::string origin = given.origin(row.name);
+    text += fmt::format("\n# {}\n{}{}\n", row.help,
+                        !given.has(row.name) ? ""
+                        : origin.empty()     ? "# from the command line\n"
+                                             : fmt::format("# from {}\n", origin),
+                        line_of(row, given));
   }
   return text;
 }

@@ -60,6 +60,9 @@ constexpr OptionRow kWord = setting(
     "word", kTexts, "'WORD = EFFECT'",
     "what a word of your own does (docs/profiles.md): 'M501 = keeps state', 'G65 P9810 = moves', "
     "'M98 P9001 = keeps state, returns'; may be repeated");
+constexpr OptionRow kTarget =
+    setting("target", kValue, "NAME|FILE.toml",
+            "the control that will run the program (batten targets), or a profile of it");
 constexpr OptionRow kProfile =
     setting("profile", kValue, "FILE.toml",
             "the target as your machine has it (batten targets --show NAME prints one)");
@@ -90,8 +93,7 @@ std::string_view one_of() {
 
 std::vector<OptionRow> smooth_rows() {
   return {
-      setting("target", kValue, "NAME|FILE.toml",
-              "the control that will run the program (batten targets), or a profile of it"),
+      kTarget,
       kProfile,
       kTolerance,
       kToleranceKind,
@@ -131,6 +133,16 @@ std::vector<OptionRow> smooth_rows() {
       option("config", kValue, "FILE.toml",
              "read options from a file; the command line goes first"),
       option("print-config", kFlag, "", "print the options as such a file and do nothing else")};
+}
+
+std::vector<OptionRow> setup_rows() {
+  return {kTarget,
+          kMachine,
+          kGrblSettings,
+          kTolerance,
+          kUnits,
+          option("out", kValue, "FILE", "the file to write", "config.toml of your own"),
+          option("force", kFlag, "", "replace a file that exists already")};
 }
 
 std::vector<OptionRow> verify_rows() {
@@ -234,10 +246,13 @@ std::vector<CommandRow> make_command_rows() {
       {"smooth",
        "Bend fair curves through the short G01 moves of a program and write it again, proved.",
        smooth_rows(),
-       {{"IN", "the program, - is standard input"}},
-       "Example:\n"
+       {{"IN", "the program, or several; - is standard input"}},
+       "Examples:\n"
        "  batten smooth part.nc --target linuxcnc --tolerance 0.01\n"
-       "writes part.smooth.nc, nowhere more than 0.01 mm from part.nc."},
+       "writes part.smooth.nc, nowhere more than 0.01 mm from part.nc.\n"
+       "  batten smooth part.nc\n"
+       "takes the options of a batten.toml beside part.nc or above it, then those that batten\n"
+       "setup has kept; a target that neither names is the one that the program speaks of."},
       {"explore",
        "Show what other tolerances, forms and preferences would win, and recommend one.",
        explore_rows(),
@@ -247,6 +262,18 @@ std::vector<CommandRow> make_command_rows() {
        "  batten explore part.nc --target grbl --tolerance 0.01,0.02 --prefer time --json -\n"
        "Nothing is written. The recommended setting is smoothed and proved as smooth does it. Of\n"
        "the others smooth may keep a run that counts here, and find fewer blocks."},
+      {"setup",
+       "Keep a control, its machine, a tolerance and units for all programs of yours.",
+       setup_rows(),
+       {},
+       "Examples:\n"
+       "  batten setup\n"
+       "asks for them and writes them to ~/.config/batten/config.toml.\n"
+       "  batten setup --target grbl --grbl-settings settings.txt --tolerance 0.02\n"
+       "  batten setup --target linuxcnc --machine mill.ini -o batten.toml\n"
+       "A batten.toml counts for the programs in its folder and below it, before your own "
+       "options.\n"
+       "batten smooth part.nc --print-config shows where each value comes from."},
       {"verify",
        "Prove that a new program does what the old one did, within a tolerance.",
        verify_rows(),
@@ -575,7 +602,10 @@ constexpr std::string_view kExitStatus =
     "written.\n";
 
 constexpr std::string_view kEnvironment =
-    ".TP\nAXIS_PROGRESS_BAR\nWhen 1, progress is written as LinuxCNC's filters do it.\n";
+    ".TP\nBATTEN_CONFIG\nA file with options, as --config takes it; a batten.toml near the program "
+    "goes before it.\n.TP\nXDG_CONFIG_HOME\nThe folder with batten/config.toml, which batten setup "
+    "writes; default: ~/.config.\n.TP\nAXIS_PROGRESS_BAR\nWhen 1, progress is written as "
+    "LinuxCNC's filters do it.\n";
 
 }  // namespace
 

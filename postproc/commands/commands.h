@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gcode/reading/source_kind.h"
@@ -27,6 +28,8 @@ struct SmoothingCommand {
   ProgressStyle progress = ProgressStyle::kAuto;
   bool force = false;   // existing files may be replaced
   bool strict = false;  // a run that could not be proved is an error, not a reason to keep it
+  // What the command line did not give, and where it comes from.
+  std::vector<std::pair<std::string, std::string>> origins;
 };
 
 struct SmoothCommand : SmoothingCommand {
@@ -40,6 +43,23 @@ struct SmoothCommand : SmoothingCommand {
   bool dry_run = false;  // everything but writing the program
 };
 [[nodiscard]] int run(const SmoothCommand& command);
+
+// Several programs, one after the other, each to its own default output. The exit code is the
+// greatest of them.
+struct SmoothFilesCommand {
+  std::vector<SmoothCommand> each;
+  std::vector<std::string> left_out;  // outputs of others of them
+};
+[[nodiscard]] int run(const SmoothFilesCommand& command);
+
+// Writes a configuration file.
+struct SetupCommand {
+  std::string file;
+  std::string text;
+  bool asks = false;   // nothing was given, and the file may be written
+  bool force = false;  // an existing file is replaced
+};
+[[nodiscard]] int run(const SetupCommand& command);
 
 // All programs of a folder tree (postproc/batch/).
 struct BatchCommand : SmoothingCommand {

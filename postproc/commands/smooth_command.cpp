@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
@@ -15,6 +16,7 @@
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 #include "postproc/system/output_file.h"
+#include "postproc/text/words.h"
 
 namespace batten::postproc {
 
@@ -110,7 +112,8 @@ class SmoothWork {
                                  .options = command_.options,
                                  .result = result_,
                                  .output_file = writes ? output_ : "",
-                                 .strict = command_.strict};
+                                 .strict = command_.strict,
+                                 .origins = command_.origins};
     const bool tells = result_.understood && command_.log_level >= LogLevel::kInfo;
     if (tells) summary_ = summary_text(report);
     if (!command_.json_file.empty()) json_ = json_report(report);
@@ -223,6 +226,26 @@ int run(const SmoothCommand& command) {
     return static_cast<int>(ExitCode::kFileError);
   }
   return SmoothWork(command, output).run();
+}
+
+int run(const SmoothFilesCommand& command) {
+  int worst = 0;
+  std::size_t done = 0;
+  for (const std::string& file : command.left_out) {
+    say(file + ": left out; it is the output of another one of these programs");
+  }
+  for (const SmoothCommand& each : command.each) {
+    const int code = run(each);
+    worst = std::max(worst, code);
+    if (code == 0) ++done;
+    if (interrupted()) break;
+  }
+  const bool tells = worst != 0 || command.each.front().log_level >= LogLevel::kInfo;
+  if (tells) {
+    say(fmt::format("{}: {} done, {} not", plural(command.each.size(), "program"), done,
+                    command.each.size() - done));
+  }
+  return worst;
 }
 
 }  // namespace batten::postproc

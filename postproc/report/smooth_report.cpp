@@ -1,6 +1,7 @@
 #include "postproc/report/smooth_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -114,6 +115,12 @@ Json profile_json(const SmoothReport& report) {
   return {{"file", report.options.profile}, {"lines_added", report.result.added_lines},
           {"header", words.header},         {"footer", words.footer},
           {"before_run", words.before_run}, {"after_run", words.after_run}};
+}
+
+Json origins_json(const SmoothReport& report) {
+  Json json = Json::object();
+  for (const auto& [option, origin] : report.origins) json[option] = origin;
+  return json;
 }
 
 // Reasons beyond these are rare ones; the JSON report has them all.
@@ -257,6 +264,7 @@ Json smooth_json(const SmoothReport& report) {
   const auto item = [](const auto& each) { return json_of(each); };
   Json json = {{"batten", BATTEN_VERSION},
                {"options", json_of(report.options, report.strict)},
+               {"options_from", origins_json(report)},
                {"input",
                 {{"file", report.source.name()},
                  {"bytes", report.source.text().size()},
@@ -350,6 +358,17 @@ void add_outlook(const SmoothReport& report, std::string& lines) {
 
 }  // namespace
 
+std::vector<std::string> texts_of_origins(
+    std::span<const std::pair<std::string, std::string>> origins) {
+  std::map<std::string_view, std::vector<std::string_view>> by_origin;
+  for (const auto& [option, origin] : origins) by_origin[origin].push_back(option);
+  std::vector<std::string> texts;
+  for (const auto& [origin, options] : by_origin) {
+    texts.push_back(fmt::format("{}: {}", fmt::join(options, ", "), origin));
+  }
+  return texts;
+}
+
 std::string changes_text(std::span<const double> before, std::span<const double> after) {
   static constexpr std::string_view kChanges[][2] = {
       {"less time", "more time"},
@@ -373,6 +392,7 @@ std::string summary_text(const SmoothReport& report) {
       fmt::format("{} -> {}, for {}\n", report.source.name(),
                   report.output_file.empty() ? "nothing written" : report.output_file,
                   report.options.target->name);
+  for (const std::string& text : texts_of_origins(report.origins)) lines += titled("options", text);
   lines += titled("blocks", change(result.blocks_in, result.blocks_out));
   lines += titled("bytes", change(report.source.text().size(), result.bytes_out));
   if (result.path_before.length_mm > 0) lines += path_lines(result.path_before, result.path_after);

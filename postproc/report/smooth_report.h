@@ -4,6 +4,8 @@
 
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"
@@ -18,6 +20,9 @@ struct SmoothReport {
   const SmoothResult& result;
   std::string output_file;  // as the user knows it; empty: nothing is written
   bool strict = false;
+  // Options that the command line did not give, and where they come from: a file, or what the
+  // program says.
+  std::vector<std::pair<std::string, std::string>> origins = {};
 };
 
 // The report for programs: one JSON object, its fields always in the same order, the same bytes for
@@ -27,7 +32,8 @@ struct SmoothReport {
 //   time_before_s, time_after_s (as `batten time` predicts them), cutting_before_s,
 //   cutting_after_s, slow_share_before, slow_share_after (of the cutting time: below half of the
 //   programmed feed), path_before, path_after {length_mm, distance_mm, roughness}, proved,
-//   understood, diagnostics[], and profile where one was given
+//   understood, diagnostics[], options_from {option: file} of what the command line did not give,
+//   and profile where one was given
 //
 // Bytes of names and messages that are not UTF-8 become U+FFFD; numbers that are not finite
 // become null.
@@ -48,6 +54,10 @@ struct SmoothReport {
 //     deviation     at most 0.0098 mm, near line 120; allowed 0.0100 mm
 //     proof         the written text was read again: every rewritten run keeps the tolerance
 [[nodiscard]] std::string summary_text(const SmoothReport& report);
+
+// "machine, target: from FILE", one for each origin, of options and where they come from.
+[[nodiscard]] std::vector<std::string> texts_of_origins(
+    std::span<const std::pair<std::string, std::string>> origins);
 
 // ": 3 % less time, 84 % fewer blocks, 20 % farther from the path, 50 % smoother": what changes by
 // half a percent or more of time, blocks, distance, roughness (or the first of these), in order.

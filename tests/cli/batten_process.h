@@ -62,11 +62,12 @@ class BattenFolder {
     return std::filesystem::exists(file(name));
   }
 
-  // Any shell command in this folder; `batten` is the program under test.
+  // Any shell command in this folder; `batten` is the program under test. The home is an empty one.
   [[nodiscard]] ProcessResult shell(const std::string& command) const {
-    const std::string line = "cd '" + folder_.path().string() +
-                             "' && batten() { '" BATTEN_BINARY "' \"$@\"; }; { " + command +
-                             "\n} >.out 2>.err";
+    const std::string line =
+        "cd '" + folder_.path().string() +
+        "' && unset BATTEN_CONFIG XDG_CONFIG_HOME && export HOME=\"$PWD/.home\"" +
+        " && batten() { '" BATTEN_BINARY "' \"$@\"; }; { " + command + "\n} >.out 2>.err";
     const int status = std::system(line.c_str());
     ProcessResult result;
     result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

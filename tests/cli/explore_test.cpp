@@ -54,7 +54,7 @@ TEST(ExploreCommand, ReportsWhatIsWrongAsOtherCommandsDo) {
   for (const WrongUsage& row :
        {WrongUsage{"Tolerance", "wave.nc --target grbl --tolerance 0.01,x", "'x', expected"},
         WrongUsage{"Form", "wave.nc --target grbl --output curves", "grbl reads no curves"},
-        WrongUsage{"Target", "wave.nc", "--target: no target given"},
+        WrongUsage{"Target", "wave.nc", "--target: for which control is wave.nc?"},
         WrongUsage{"Written", "wave.nc --target grbl --json wave.nc", "wave.nc itself"},
         WrongUsage{"File", "--target grbl", "no file given"}}) {
     SCOPED_TRACE(row.name);
