@@ -141,7 +141,7 @@ TEST_F(FirstMinute, OtherCommandsTakeWhatTheyHave) {
   folder_.put("batten.toml", "target = \"linuxcnc\"\ntolerance = 0.012\nmachine = \"linuxcnc\"\n");
   expect_exit(batten("smooth part.nc"), 0);
   expect_exit(batten("verify part.nc part.smooth.nc"), 0, {"keeps 0.012 mm", "/batten.toml"});
-  expect_exit(batten("time part.nc"), 0, {"machine: "});
+  expect_exit(batten("time part.nc"), 0, {"machine", "/batten.toml"});
   expect_exit(batten("batch . out --jobs 1 --suffix nc"), 1);  // out is inside
   folder_.put("tree/a.nc", wave_program());
   expect_exit(batten("batch tree out --jobs 1"), 0, {"target", "/batten.toml"});

@@ -82,7 +82,7 @@ std::string offered(const std::string& words) {
   return " " + result.out;
 }
 
-TEST(BashCompletion, OffersTheCommands) { EXPECT_EQ(offered("batten s"), " smooth "); }
+TEST(BashCompletion, OffersTheCommands) { EXPECT_EQ(offered("batten sm"), " smooth "); }
 
 TEST(BashCompletion, OffersTheOptionsOfTheCommand) {
   EXPECT_EQ(offered("batten smooth --to"), " --tolerance --tolerance-kind ");
