@@ -94,6 +94,40 @@ Point3 point_at(const ChordPolyline& polyline, const PlaceOnChord& place) {
   return from + place.t * (to - from);
 }
 
+namespace {
+
+struct Edges {  // those of one piece
+  std::size_t first = 0;
+  std::size_t end = 0;  // after the last
+  [[nodiscard]] double count() const { return static_cast<double>(end - first); }
+};
+
+Edges edges_of(const ChordPolyline& polyline, std::size_t piece) {
+  const auto found = std::ranges::equal_range(polyline.pieces, piece);
+  const auto index = [&](auto at) {
+    return static_cast<std::size_t>(at - polyline.pieces.begin());
+  };
+  return {index(found.begin()), index(found.end())};
+}
+
+}  // namespace
+
+double piece_parameter(const ChordPolyline& polyline, const PlaceOnChord& place) {
+  const Edges edges = edges_of(polyline, polyline.pieces[place.edge]);
+  return (static_cast<double>(place.edge - edges.first) + place.t) / edges.count();
+}
+
+PlaceOnChord place_on_piece(const ChordPolyline& polyline, std::size_t piece, double parameter) {
+  const Edges edges = edges_of(polyline, piece);
+  if (edges.first == edges.end) {
+    if (edges.first < polyline.edge_count()) return {edges.first, 0};
+    return {polyline.edge_count() - 1, 1};
+  }
+  const double at = std::clamp(parameter, 0.0, 1.0) * edges.count();
+  const double whole = std::min(std::floor(at), edges.count() - 1);
+  return {edges.first + static_cast<std::size_t>(whole), at - whole};
+}
+
 double nearest_parameter(const ChordPolyline& polyline, std::size_t edge, const Point3& point,
                          double from, double to) {
   const Vector3 along = polyline.points[edge + 1] - polyline.points[edge];

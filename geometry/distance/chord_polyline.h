@@ -39,6 +39,14 @@ struct PlaceOnChord {
 
 [[nodiscard]] Point3 point_at(const ChordPolyline& polyline, const PlaceOnChord& place);
 
+// Where that is on its piece, 0 to 1 in the piece's own parameter: its chords are equal steps of
+// it.
+[[nodiscard]] double piece_parameter(const ChordPolyline& polyline, const PlaceOnChord& place);
+
+// The place of a parameter of a piece; of a piece without chords, where the next one begins.
+[[nodiscard]] PlaceOnChord place_on_piece(const ChordPolyline& polyline, std::size_t piece,
+                                          double parameter);
+
 // The t in [from, to] on the edge that is nearest to `point`.
 [[nodiscard]] double nearest_parameter(const ChordPolyline& polyline, std::size_t edge,
                                        const Point3& point, double from, double to);

@@ -17,31 +17,45 @@ bool forward(const PlaceOnChord& from, const PlaceOnChord& to) {
   return from.edge + 1 == to.edge && from.t == 1;
 }
 
-// The begin of the next edge where an edge has come to its end.
-PlaceOnChord leave_end(const PlaceOnChord& place, const ChordPolyline& polyline) {
-  if (place.t < 1 || place.edge + 1 == polyline.edge_count()) return place;
+// The begin of the next edge where an edge has come to its end; not beyond `last`.
+PlaceOnChord leave_end(const PlaceOnChord& place, const PlaceOnChord& last) {
+  if (place.t < 1 || place.edge == last.edge) return place;
   return {place.edge + 1, 0};
+}
+
+// The begin of an edge as the end of the edge before.
+PlaceOnChord as_end(const PlaceOnChord& place) {
+  if (place.t > 0 || place.edge == 0) return place;
+  return {place.edge - 1, 1};
 }
 
 }  // namespace
 
 Matching match_nearest(const ChordPolyline& a, const ChordPolyline& b) {
+  return match_nearest(a, b, {{0, 0}, {0, 0}}, {{a.edge_count() - 1, 1}, {b.edge_count() - 1, 1}});
+}
+
+Matching match_nearest(const ChordPolyline& a, const ChordPolyline& b, const MatchedPair& from,
+                       const MatchedPair& to) {
+  const MatchedPair last{as_end(to.a), as_end(to.b)};
+  MatchedPair here{as_end(from.a), as_end(from.b)};
   Matching matching;
-  matching.reserve(a.points.size() + b.points.size());
-  MatchedPair here{{0, 0}, {0, 0}};
+  matching.reserve(last.a.edge - here.a.edge + last.b.edge - here.b.edge + 2);
   matching.push_back(here);
   while (true) {
-    const PlaceOnChord on_a = leave_end(here.a, a);
-    const PlaceOnChord on_b = leave_end(here.b, b);
-    const Point3& next_a = a.points[on_a.edge + 1];
-    const Point3& next_b = b.points[on_b.edge + 1];
-    const MatchedPair to_a{{on_a.edge, 1},
-                           {on_b.edge, nearest_parameter(b, on_b.edge, next_a, on_b.t, 1)}};
-    const MatchedPair to_b{{on_a.edge, nearest_parameter(a, on_a.edge, next_b, on_a.t, 1)},
-                           {on_b.edge, 1}};
+    const PlaceOnChord on_a = leave_end(here.a, last.a);
+    const PlaceOnChord on_b = leave_end(here.b, last.b);
+    const double stop_a = on_a.edge == last.a.edge ? last.a.t : 1;
+    const double stop_b = on_b.edge == last.b.edge ? last.b.t : 1;
+    const Point3 next_a = point_at(a, {on_a.edge, stop_a});
+    const Point3 next_b = point_at(b, {on_b.edge, stop_b});
+    const MatchedPair to_a{{on_a.edge, stop_a},
+                           {on_b.edge, nearest_parameter(b, on_b.edge, next_a, on_b.t, stop_b)}};
+    const MatchedPair to_b{{on_a.edge, nearest_parameter(a, on_a.edge, next_b, on_a.t, stop_a)},
+                           {on_b.edge, stop_b}};
     // A path at its end waits there: the other one can only come to it.
-    const bool a_waits = on_a.t == 1;
-    const bool b_waits = on_b.t == 1;
+    const bool a_waits = on_a.edge == last.a.edge && on_a.t >= last.a.t;
+    const bool b_waits = on_b.edge == last.b.edge && on_b.t >= last.b.t;
     if (a_waits && b_waits) return matching;
     const double step_a = (next_a - point_at(b, to_a.b)).squaredNorm();
     const double step_b = (next_b - point_at(a, to_b.a)).squaredNorm();

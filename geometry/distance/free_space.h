@@ -30,6 +30,10 @@ using Matching = std::vector<MatchedPair>;
 // where the paths run beside each other; where one of them folds, it may be far from the best.
 [[nodiscard]] Matching match_nearest(const ChordPolyline& a, const ChordPolyline& b);
 
+// The part of such a matching between two pairs. Requires: `to` is not before `from` on either.
+[[nodiscard]] Matching match_nearest(const ChordPolyline& a, const ChordPolyline& b,
+                                     const MatchedPair& from, const MatchedPair& to);
+
 // Is it a matching? The part of the certificate that asks no distance.
 [[nodiscard]] bool goes_forward(const Matching& matching, const ChordPolyline& a,
                                 const ChordPolyline& b);

@@ -298,8 +298,8 @@ class Comparison {
   }
 
   [[nodiscard]] PlacePair places_of(const MatchedPair& pair) const {
-    return {a_.pieces[pair.a.edge], b_.pieces[pair.b.edge], point_at(a_, pair.a),
-            point_at(b_, pair.b)};
+    return {a_.pieces[pair.a.edge], b_.pieces[pair.b.edge],      point_at(a_, pair.a),
+            point_at(b_, pair.b),   piece_parameter(a_, pair.a), piece_parameter(b_, pair.b)};
   }
 
   // A way through the free space at the tolerance. Rounding may close a passage that is as narrow

@@ -62,6 +62,8 @@ struct PlacePair {
   std::size_t piece_b = 0;
   Point3 a = Point3::Zero();
   Point3 b = Point3::Zero();
+  double t_a = 0;  // where on the piece, 0 to 1 in its own parameter; of match_paths only
+  double t_b = 0;
 };
 
 struct PathMatching {

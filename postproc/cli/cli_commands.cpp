@@ -351,6 +351,21 @@ void read_smooth_options(SmoothingCommand& command, Arguments& in, bool by_marks
   command.strict = in.given.flag("strict");
 }
 
+// It would be in the way of another file, or there is none of this kind.
+void check_certificate(const std::string& file, const std::vector<std::string>& others,
+                       geometry::ToleranceKind kind, Arguments& in) {
+  if (file.empty()) return;
+  if (file == "-") in.complain("--certificate: a certificate is a file, - is none");
+  if (kind != geometry::ToleranceKind::kPath) {
+    in.complain("--certificate: it is of --tolerance-kind path, not of band");
+  }
+  for (const std::string& other : others) {
+    if (is_one_file(file, other)) {
+      in.complain("--certificate: {} is a file of this command already", file);
+    }
+  }
+}
+
 void check_outputs(const SmoothCommand& command, Arguments& in) {
   const bool to_standard_output =
       command.output == "-" || (command.output.empty() && command.input == "-");
@@ -384,6 +399,13 @@ void check_outputs(const SmoothCommand& command, Arguments& in) {
   }
   check_report(command.json_file, {command.input, output}, in);
   check_report(command.report_file, {command.input, output}, in, "report");
+  check_certificate(command.certificate_file,
+                    {command.input, output, command.json_file, command.report_file},
+                    command.options.tolerance_kind, in);
+  const bool no_file = to_standard_output || command.dry_run;
+  if (no_file && !command.certificate_file.empty()) {
+    in.complain("--certificate: it is of a file that is written, and none is");
+  }
 }
 
 // --- verify, inspect -----------------------------------------------------------------------------
@@ -418,6 +440,10 @@ VerifyCommand verify_command(Arguments& in) {
   }
   check_files({"OLD", "NEW"}, in);
   check_report(command.json_file, in.files, in);
+  std::vector<std::string> others = in.files;
+  others.push_back(command.json_file);
+  command.certificate_file = in.given.text("certificate");
+  check_certificate(command.certificate_file, others, command.tolerance_kind, in);
   return command;
 }
 
@@ -598,6 +624,7 @@ SmoothCommand smooth_command(Arguments& in) {
   command.dry_run = in.given.flag("dry-run");
   command.json_file = in.given.text("json");
   command.report_file = in.given.text("report");
+  command.certificate_file = in.given.text("certificate");
   command.output = in.given.text("out");
   command.input = file_at(in, 0);
   check_options(command.options, in);
@@ -662,7 +689,7 @@ namespace {
 // Each with what is given for it alone, and everything that is wrong with any of them.
 SmoothFilesCommand smooth_files_command(Arguments& in) {
   SmoothFilesCommand command;
-  for (const char* option : {"out", "json", "report"}) {
+  for (const char* option : {"out", "json", "report", "certificate"}) {
     if (in.given.has(option))
       in.complain("--{}: is for one program; {} are given", option, in.files.size());
   }

@@ -31,6 +31,9 @@ constexpr OptionRow setting(std::string_view name, OptionKind kind, std::string_
 
 constexpr OptionRow kJson =
     option("json", kValue, "FILE", "write the report as JSON, - is standard output");
+constexpr OptionRow kCertificate =
+    option("certificate", kValue, "FILE",
+           "write the evidence of the proof, for a checker that needs no Batten");
 constexpr OptionRow kForce = option("force", kFlag, "", "replace files that exist already");
 constexpr OptionRow kTolerance = setting(
     "tolerance", kValue, "LENGTH",
@@ -125,6 +128,7 @@ std::vector<OptionRow> smooth_rows() {
       kJson,
       option("report", kValue, "FILE.html",
              "write the report as a page for a browser: path, deviation, time by run"),
+      kCertificate,
       setting("threads", kValue, "N", "0: all cores; the result is the same for any number", "0"),
       setting("progress", kValue, "auto|on|off|linuxcnc", "how far the work is, on standard error",
               "auto"),
@@ -164,6 +168,7 @@ std::vector<OptionRow> verify_rows() {
           "programs"),
       kWord,
       kJson,
+      kCertificate,
       kForce,
       kQuiet,
       kLogLevel};
@@ -227,8 +232,9 @@ std::vector<OptionRow> explore_rows() {
   std::erase_if(rows, [](const OptionRow& row) {
     return row.kind == kFlag && row.name != "force" && row.name != "quiet";
   });
-  std::erase_if(rows,
-                [](const OptionRow& row) { return row.name == "out" || row.name == "report"; });
+  std::erase_if(rows, [](const OptionRow& row) {
+    return row.name == "out" || row.name == "report" || row.name == "certificate";
+  });
   for (OptionRow& row : rows) {
     if (row.name == "output" || row.name == "prefer") row.default_value = "each";
     if (row.name == "tolerance") {

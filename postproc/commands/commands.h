@@ -36,7 +36,8 @@ struct SmoothCommand : SmoothingCommand {
   std::string input;
   std::string output;  // not given: default_output_path(input), or standard output for "-"
   std::string json_file;
-  std::string report_file;   // the page for a browser
+  std::string report_file;  // the page for a browser
+  std::string certificate_file;
   std::string command_line;  // as it was called, for that page; may be empty
   LogLevel log_level = LogLevel::kInfo;
   bool in_place = false;
@@ -101,6 +102,7 @@ struct VerifyCommand : ReadingCommand {
   geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
   geometry::Side side = geometry::Side::kBoth;
   std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
+  std::string certificate_file;                  // of --tolerance-kind path only
 };
 [[nodiscard]] int run(const VerifyCommand& command);
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "postproc/commands/certificate_file.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
 #include "postproc/options/options.h"
@@ -72,7 +73,8 @@ class SmoothWork {
     if (interrupted()) return end_interrupted();
     const bool may_work = source_ && (command_.dry_run || !cannot_be_written(output_)) &&
                           !cannot_be_written(command_.json_file) &&
-                          !cannot_be_written(command_.report_file);
+                          !cannot_be_written(command_.report_file) &&
+                          !cannot_be_written(command_.certificate_file);
     if (!may_work) return static_cast<int>(ExitCode::kFileError);
     if (command_.dry_run) return look_only();
     // The page draws the whole path, and a short program needs no file beside the output.
@@ -191,7 +193,27 @@ class SmoothWork {
       const int report_code = file->empty() ? 0 : write_result(*file, *text, command_.force);
       if (code == 0) code = report_code;
     }
-    return code;
+    return code != 0 ? code : certify();
+  }
+
+  // Of the file that was written, as it is there now.
+  int certify() const {
+    if (command_.certificate_file.empty() || verdict_ != ExitCode::kDone) return 0;
+    const auto written = read_program(output_);
+    if (!written) return static_cast<int>(ExitCode::kFileError);
+    const SmoothOptions& options = command_.options;
+    VerifyCommand verify;
+    verify.units = options.units;
+    verify.source = options.source;
+    verify.decimals = options.decimals;
+    verify.target = options.target;
+    verify.allowed = options.allowed;
+    verify.own_words = options.own_words;
+    verify.force = command_.force;
+    verify.tolerance_mm = options.tolerance_mm;
+    verify.profile = command_.profile;
+    verify.certificate_file = command_.certificate_file;
+    return write_certificate(verify, *source_, *written);
   }
 
   [[nodiscard]] bool replaces() const { return command_.force || command_.in_place; }
@@ -222,7 +244,8 @@ int run(const SmoothCommand& command) {
   const bool replaces_program = command.force || command.in_place;
   if ((!command.dry_run && would_be_refused(output, replaces_program)) ||
       would_be_refused(command.json_file, command.force) ||
-      would_be_refused(command.report_file, command.force)) {
+      would_be_refused(command.report_file, command.force) ||
+      would_be_refused(command.certificate_file, command.force)) {
     return static_cast<int>(ExitCode::kFileError);
   }
   return SmoothWork(command, output).run();

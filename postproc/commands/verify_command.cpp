@@ -8,8 +8,10 @@
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
 #include "gcode/reading/source_kind.h"
+#include "postproc/commands/certificate_file.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
+#include "postproc/proof/certificate.h"
 #include "postproc/proof/verification.h"
 #include "postproc/report/own_words_report.h"
 #include "postproc/stream/assembly.h"
@@ -149,7 +151,8 @@ int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& sou
     say_lines(fmt::format("proved: {} and {} are the same, byte for byte\n", command.new_program,
                           command.old_program));
   }
-  if (command.json_file.empty()) return 0;
+  const int certificate = write_certificate(command, source, source);
+  if (certificate != 0 || command.json_file.empty()) return certificate;
   const PartReading reading =
       reading_of(source, command, command.source, language_of_target(command),
                  gcode::dwells_of(command.source));
@@ -183,6 +186,35 @@ void compare_points(const VerifyCommand& command, const gcode::SourceText& old_s
   }
 }
 
+// Both programs, and how each is read.
+struct BothTexts {
+  TextToVerify before;
+  gcode::SourceText compared;  // the new one, where the lines of a profile are empty
+  PartReading after;
+  AddedLines added;
+};
+
+BothTexts both_texts(const VerifyCommand& command, const gcode::SourceText& old_source,
+                     const gcode::SourceText& new_source) {
+  const auto foreign = language_before(old_source, new_source, command);
+  BothTexts both{{old_source, reading_of(old_source, command, command.source,
+                                         foreign ? foreign : language_of_target(command),
+                                         gcode::dwells_of(command.source))},
+                 new_source,
+                 {},
+                 {}};
+  if (command.profile != nullptr) {
+    both.added = without_added_lines(command, both.before, new_source);
+    both.compared = gcode::SourceText(new_source.name(), std::move(both.added.text));
+  }
+  both.after = foreign
+                   ? reading_of(both.compared, command, gcode::SourceKind::kAuto,
+                                language_of_target(command), command.target->dwell_form)
+                   : reading_of(both.compared, command, command.source,
+                                both.before.reading.text.language, both.before.reading.text.dwells);
+  return both;
+}
+
 // Says what was found, and returns the exit code. `added`: lines of a profile, which are not
 // compared.
 int tell(const VerifyCommand& command, const Verification& verification, std::size_t added,
@@ -212,6 +244,24 @@ int tell(const VerifyCommand& command, const Verification& verification, std::si
 
 }  // namespace
 
+int write_certificate(const VerifyCommand& command, const gcode::SourceText& old_source,
+                      const gcode::SourceText& new_source) {
+  if (command.certificate_file.empty()) return 0;
+  const BothTexts both = both_texts(command, old_source, new_source);
+  gcode::Diagnostics found;
+  const gcode::ReadPart before = read_whole(old_source, both.before.reading, found);
+  const gcode::ReadPart after = read_whole(both.compared, both.after, found);
+  const Certificate certificate =
+      certificate_of({&before.program, &before.meaning}, {&after.program, &after.meaning},
+                     new_source.text(), command.tolerance_mm);
+  if (!certificate.problem.empty()) {
+    say(fmt::format("{}: no certificate was written: {}", command.certificate_file,
+                    certificate.problem));
+    return static_cast<int>(ExitCode::kNotProved);
+  }
+  return write_result(command.certificate_file, certificate.text, command.force);
+}
+
 int run(const VerifyCommand& command) {
   const WatchedFile old_watched(command.old_program);
   const WatchedFile new_watched(command.new_program);
@@ -224,23 +274,11 @@ int run(const VerifyCommand& command) {
     return accept_same_bytes(command, *new_source);
   }
 
-  const auto foreign = language_before(*old_source, *new_source, command);
-  const TextToVerify before{*old_source, reading_of(*old_source, command, command.source,
-                                                    foreign ? foreign : language_of_target(command),
-                                                    gcode::dwells_of(command.source))};
-  AddedLines added;
-  gcode::SourceText compared = *new_source;
-  if (command.profile != nullptr) {
-    added = without_added_lines(command, before, *new_source);
-    compared = gcode::SourceText(new_source->name(), std::move(added.text));
-  }
-  const TextToVerify after{
-      compared,
-      foreign ? reading_of(compared, command, gcode::SourceKind::kAuto, language_of_target(command),
-                           command.target->dwell_form)
-              : reading_of(compared, command, command.source, before.reading.text.language,
-                           before.reading.text.dwells),
-      std::move(added.brackets)};
+  BothTexts both = both_texts(command, *old_source, *new_source);
+  const gcode::SourceText& compared = both.compared;
+  const TextToVerify& before = both.before;
+  AddedLines& added = both.added;
+  const TextToVerify after{compared, both.after, std::move(added.brackets)};
   auto verified = verify_texts(
       before, after, {command.tolerance_mm, command.tolerance_kind, command.side, command.target},
       interrupted);
@@ -261,7 +299,8 @@ int run(const VerifyCommand& command) {
   }
   std::ranges::move(added.violations, std::back_inserter(verification.violations));
   std::ranges::move(verified->in_brackets, std::back_inserter(verification.violations));
-  return tell(command, verification, added.lines, verified->of_new, compared);
+  const int code = tell(command, verification, added.lines, verified->of_new, compared);
+  return code != 0 ? code : write_certificate(command, *old_source, *new_source);
 }
 
 }  // namespace batten::postproc

@@ -346,4 +346,27 @@ geometry::PathComparison compare_whole_path(const StretchSide& before, const Str
   return compare({all_of(before), all_of(after)}, promise).paths;
 }
 
+std::optional<std::vector<MatchedPart>> match_stretch(const StretchSide& before,
+                                                      const StretchSide& after,
+                                                      double tolerance_mm) {
+  std::vector<Part> old_parts = parts_of_one_feed(before);
+  std::vector<Part> new_parts = parts_of_one_feed(after);
+  if (old_parts.empty() && new_parts.empty()) return std::vector<MatchedPart>{};
+  if (old_parts.empty()) old_parts.push_back(all_of(before));
+  if (new_parts.empty()) new_parts.push_back(all_of(after));
+  if (old_parts.size() != new_parts.size()) return {};
+  std::vector<MatchedPart> matched;
+  for (std::size_t i = 0; i < old_parts.size(); ++i) {
+    const Part& old_part = old_parts[i];
+    const Part& new_part = new_parts[i];
+    const bool both = old_part.size() > 0 && new_part.size() > 0;
+    if (both && !same_feed(old_part.cut(0), new_part.cut(0))) return {};
+    MatchedPart part{old_part.path(), new_part.path(), {}};
+    part.matching = geometry::match_paths(part.before, part.after, tolerance_mm);
+    if (part.matching.comparison.verdict != Verdict::kProved) return {};
+    matched.push_back(std::move(part));
+  }
+  return matched;
+}
+
 }  // namespace batten::postproc

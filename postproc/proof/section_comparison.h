@@ -71,4 +71,17 @@ struct StretchResult {
                                                           const StretchSide& after,
                                                           const Promise& promise);
 
+// The cuts of one feed, with the matching that proves them.
+struct MatchedPart {
+  geometry::Path before;
+  geometry::Path after;
+  geometry::PathMatching matching;
+};
+
+// The evidence for the strict reading, a part for each feed; none where both sides have no cuts.
+// Nothing where a part is not proved or the feeds are not the same.
+[[nodiscard]] std::optional<std::vector<MatchedPart>> match_stretch(const StretchSide& before,
+                                                                    const StretchSide& after,
+                                                                    double tolerance_mm);
+
 }  // namespace batten::postproc
