@@ -873,16 +873,16 @@ class Checker:
         if NEIGHBOURS.search(self.neighbour):
             self.refuse("a corner before a run is rounded: its moves count for that")
         old, new = self.old, self.old.copy() if self.new is self.old else self.new
-        for state in (old, new):
-            self.check_state(state)
-        start = [[0 if x is None else x for x in state.place] for state in (old, new)]
-        unnamed = [state.place for state in (old, new)]
+        before = [old.copy(), new.copy()]
+        start = [[0 if x is None else x for x in state.place] for state in before]
         old_moves, old_comments = self.moves_of(self.old_lines, self.i, run.old_count, old, False)
         new_moves, new_comments = self.moves_of(self.new_lines, self.j, run.new_count, new, True)
         if old_comments != new_comments:
             self.refuse("the comments of a run are not the same")
-        if unnamed[0] != unnamed[1] and None in unnamed[0] + unnamed[1]:
+        if before[0].place != before[1].place and None in before[0].place + before[1].place:
             self.refuse("a run begins at a place that is not known")
+        for state in before if old_moves or new_moves else []:
+            self.check_state(state)
         if bool(old_moves) != bool(new_moves):
             self.refuse("one of the programs does not move in this run")
         if (old_moves or new_moves) and not (run.old_count and run.new_count):
