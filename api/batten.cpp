@@ -156,6 +156,7 @@ InnerOptions inner(const Options& given) {
   postproc::OwnWordList own_words;
   for (const std::string& word : given.words) own_words.add(word, problems);
   options.own_words = own_words.words();
+  options.keep_expressions = given.keep_expressions;
   options.units = inner(given.units);
   options.threads = given.threads;
   if (problems.empty()) problems = postproc::problems_of(options);

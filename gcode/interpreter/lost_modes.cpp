@@ -8,18 +8,12 @@
 
 #include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
+#include "gcode/text/characters.h"
 
 namespace batten::gcode {
 namespace {
 
 constexpr std::string_view kId = "modes-unknown";
-
-// As much of a block as names it.
-std::string shown(std::string_view text) {
-  constexpr std::size_t kMost = 40;
-  text = text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
-  return text.size() <= kMost ? std::string(text) : std::string(text.substr(0, kMost)) + "..";
-}
 
 Diagnostic warning_of(const LostModes& modes) {
   const std::string_view besides =

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "gcode/klartext/parser.h"
+#include "gcode/reading/constants.h"
 #include "gcode/reading/part_reading.h"
 #include "gcode/reading/program_marks.h"
 #include "gcode/reading/source_kind.h"
@@ -136,6 +137,8 @@ class Parser {
     read_decimals(block);
     block.comment_count =
         static_cast<std::uint32_t>(program_.comments.size()) - block.first_comment;
+    carry_.assigns |= block.opacity == ParseStatus::kAssignment;
+    carry_.uses_variables |= carry_.assigns && block.opacity == ParseStatus::kExpression;
     program_.blocks.push_back(block);
     told_in_block_ = false;
   }
@@ -462,6 +465,7 @@ Program parse(const SourceText& source, const Reading& reading, Diagnostics& fou
   const bool siemens = reading.language == Language::kSiemens;
   program.dwells = siemens ? DwellForm::kSecondsF : reading.dwells;
   close_marks(program, found);
+  if (!reading.keeps_expressions) compute_constants(program);
   finish(carry, found, before);
   return program;
 }

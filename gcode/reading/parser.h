@@ -16,6 +16,7 @@ struct Reading {
   Decimals decimals = {};                  // of the RS-274 family
   Units units = Units::kUnknown;           // of a program that names none
   DwellForm dwells = DwellForm::kUnknown;  // of the RS-274 family
+  bool keeps_expressions = false;  // gcode/reading/constants.h: none becomes a number
   bool short_ways = true;  // for simple lines (gcode/rs274/plain_words.h); they change nothing
 };
 

@@ -5,7 +5,7 @@
 // (gcode::parse, gcode::interpret; gcode/interpreter/interpreter.h), and so are the diagnostics
 // behind the finish_ functions, where
 //   - no part reaches out: TextCarry::marks says so of its % lines, ControlCarry::reaches_out of
-//     jumps, loops and subprograms;
+//     jumps, loops and subprograms, TextCarry::uses_variables of variables;
 //   - no part begins within a curve that ReadOptions::curves reads;
 //   - the program is none for a lathe: ControlCarry::lathe says so at its end.
 // Places are places of the source, lines are lines of it. Indices (Motion::block and the like)
@@ -50,6 +50,8 @@ struct TextCarry {
   bool short_ways = true;                  // as Reading::short_ways
   bool words_seen = false;
   bool foreign_told = false;
+  bool assigns = false;         // a variable
+  bool uses_variables = false;  // behind that
   ToldCount unreadable;
   ToldCount unclosed;
   PercentMarkScanner marks;

@@ -16,8 +16,11 @@ constexpr Explanation kExplanations[] = {
     {kNotUnderstood,
      "The block holds words that this reader does not know, or that a control would refuse.",
      "See the warnings: they name the words."},
-    {kExpression, "A word's value is an expression or a parameter (X[#1+2], X#5).",
-     "Let the CAM system write plain numbers."},
+    {kExpression,
+     "A word's value is an expression or a parameter that is not certain here (X[#1+2], X#5).",
+     "Let the CAM system write plain numbers, or assign the variables (#1=5) in front of all "
+     "jumps, "
+     "loops and calls."},
     {kImpliedDecimals,
      "A length has no decimal point (X1000), and such a control may take it for that many least "
      "increments (1.000 mm).",

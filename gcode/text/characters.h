@@ -46,6 +46,14 @@ namespace batten::gcode {
   return bare;
 }
 
+// As much of a block as names it.
+[[nodiscard]] inline std::string shown(std::string_view block) {
+  constexpr std::size_t kMost = 40;
+  const std::size_t begin = std::min(block.find_first_not_of(" \t\r\n"), block.size());
+  block = block.substr(begin, block.find_last_not_of(" \t\r\n") + 1 - begin);
+  return block.size() <= kMost ? std::string(block) : std::string(block.substr(0, kMost)) + "..";
+}
+
 // Whatever the case of its letters.
 [[nodiscard]] constexpr bool is_same_word(std::string_view word, std::string_view upper_case) {
   return std::ranges::equal(word, upper_case, {}, upper);

@@ -22,6 +22,7 @@ struct Word {
   // A length or a feed without a decimal point, on a control for which that may matter. Where its
   // value is not known (Decimals), `is_number` is false.
   bool without_point = false;
+  bool computed = false;  // an expression whose value is certain (gcode/reading/constants.h)
   double value = 0;
   SourceSpan span;  // in its block; a centre of Klartext stands in the block of the CC
 };

@@ -346,6 +346,7 @@ void read_smooth_options(SmoothingCommand& command, Arguments& in, bool by_marks
   read_integer_into(options.threads, "threads", in);
   options.allowed = in.given.values("allow");
   options.own_words = own_words_given(command.profile.get(), in);
+  options.keep_expressions = in.given.flag("keep-expressions");
   options.convert = in.given.flag("convert");
   command.force = in.given.flag("force");
   command.strict = in.given.flag("strict");

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,7 @@
 #include "gcode/state/reason.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
+#include "postproc/report/kept_report.h"
 #include "postproc/report/own_words_report.h"
 #include "postproc/runs/run_grouping.h"
 #include "postproc/stream/inspect.h"
@@ -75,12 +77,16 @@ std::map<std::string_view, KeptTotal> kept_totals(const std::vector<InspectedSec
   return totals;
 }
 
-std::string kept_table(const std::vector<InspectedSection>& sections) {
+std::string kept_table(const InspectedProgram& inspected) {
   std::string text = "kept as it is:\n";
-  for (const auto& [reason, total] : kept_totals(sections)) {
+  for (const auto& [reason, total] : kept_totals(inspected.sections)) {
+    const auto& causes = inspected.kept.causes;
+    const auto cause = std::ranges::find(causes, reason, &KeptCause::reason);
     text += fmt::format("{:>8} {:<6} {:>6} cutting moves  {}: {}\n", total.blocks,
                         total.blocks == 1 ? "block" : "blocks", total.cutting_moves, reason,
                         text_of(reason));
+    if (cause == causes.end()) continue;
+    text += fmt::format("{:>40}{}\n", "", cause_text(inspected.kept, *cause));
   }
   return text;
 }
@@ -126,6 +132,7 @@ std::string json_report(const InspectedProgram& inspected, const InspectCommand&
        {"words", own_words_json(command.own_words)},
        {"sections", json_list(inspected.sections, section)},
        {"kept", json_list(kept_totals(inspected.sections), kept)},
+       {"cutting", kept_json(inspected.kept)},
        {"diagnostics", diagnostics_json(inspected.found, source)}});
 }
 
@@ -148,9 +155,11 @@ int run(const InspectCommand& command) {
   if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
   print(result.found, *source, command.log_level);
   if (command.json_file != "-") {
-    const std::string text = fmt::format("{}: {} blocks\n", source->name(), result.blocks) +
-                             runs_table(result.sections) + kept_table(result.sections) +
-                             own_words_text(command.own_words);
+    const std::string nothing =
+        result.kept.any_run ? "" : fmt::format(": {}", why_nothing(result.kept));
+    const std::string text =
+        fmt::format("{}: {} blocks{}\n", source->name(), result.blocks, nothing) +
+        runs_table(result.sections) + kept_table(result) + own_words_text(command.own_words);
     if (const int code = write_result("-", text, false); code != 0) return code;
   }
   const int code = write_report(command.json_file, command.force,

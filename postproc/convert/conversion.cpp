@@ -192,7 +192,8 @@ gcode::Reading reading_of(const SmoothOptions& options, gcode::Language language
   return {.language = language,
           .decimals = decimals,
           .units = options.units,
-          .dwells = gcode::dwells_of(options.source)};
+          .dwells = gcode::dwells_of(options.source),
+          .keeps_expressions = options.keep_expressions};
 }
 
 void tell_of_other_family(const gcode::Program& program, const gcode::Control& target,

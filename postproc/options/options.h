@@ -82,6 +82,7 @@ struct SmoothOptions {
   std::optional<double> keep_corners_deg;  // turns above this stay corners
   std::vector<std::string> allowed;        // --allow
   std::shared_ptr<const gcode::OwnWords> own_words;  // --word, and of a profile; nullptr: none
+  bool keep_expressions = false;  // blocks whose numbers are expressions stay as they are
   bool convert = false;  // a program of another family is taken where every block can be said
   ProfileWords words;    // that a profile adds; its target is `target`
   std::string profile;   // the profile's file, for reports; empty: none

@@ -10,6 +10,7 @@
 
 #include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
+#include "postproc/report/kept_report.h"
 #include "postproc/report/own_words_report.h"
 #include "postproc/text/words.h"
 
@@ -50,7 +51,7 @@ Json json_of(const SmoothOptions& options, bool strict) {
   // it, in Options of api/include/batten/batten.h and `inner` of api/batten.cpp.
   const auto& [target, machine, tolerance_mm, tolerance_inch, tolerance_kind, side, units, source,
                decimals, method, output, prefer, linearize, keep_corners_deg, allowed, own_words,
-               convert, words, profile, threads, quick] = options;
+               keep_expressions, convert, words, profile, threads, quick] = options;
   Json json = {
       {"target", target->name}, {"machine", machine->name}, {"tolerance_mm", tolerance_mm}};
   if (tolerance_inch) json["tolerance_inch"] = *tolerance_inch;
@@ -65,6 +66,7 @@ Json json_of(const SmoothOptions& options, bool strict) {
   json["keep_corners_deg"] = keep_corners_deg ? Json(*keep_corners_deg) : Json(nullptr);
   json["allow"] = allowed;
   json["words"] = own_words_json(own_words);
+  json["keep_expressions"] = keep_expressions;
   json["strict"] = strict;
   return json;
 }
@@ -89,6 +91,7 @@ Json json_of(const RunReport& run) {
           {"methods", json_list(run.methods, method)},
           {"form", rewritten ? name_of(run.form) : ""},
           {"blocks_in", run.blocks_in},
+          {"computed_blocks", run.computed_blocks},
           {"blocks_out", run.blocks_out},
           {"deviation_mm", run.deviation_mm},
           {"proved", run.proved},
@@ -122,9 +125,6 @@ Json origins_json(const SmoothReport& report) {
   for (const auto& [option, origin] : report.origins) json[option] = origin;
   return json;
 }
-
-// Reasons beyond these are rare ones; the JSON report has them all.
-constexpr std::size_t kMostReasons = 8;
 
 std::string change(std::size_t before, std::size_t after) {
   if (before == after) return fmt::format("{}, unchanged", before);
@@ -165,29 +165,27 @@ void add_runs(const SmoothResult& result, std::string& lines) {
     const bool of_a_lathe = std::ranges::any_of(
         result.diagnostics,
         [](const gcode::Diagnostic& each) { return each.id == gcode::reason::kLatheProgram; });
-    lines += titled("runs", of_a_lathe
-                                ? "none: the program is one for a lathe (lathe-program)"
-                                : "none found: batten inspect says of each block why it is copied");
+    lines += titled(
+        "runs", of_a_lathe ? "none: the program is one for a lathe (lathe-program)" : "none found");
+    add_causes(result.kept, lines);
     return;
   }
   const auto rewritten = static_cast<std::size_t>(
       std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status));
   lines += titled("runs",
                   fmt::format("{} rewritten, {} kept", rewritten, result.runs.size() - rewritten));
-  const auto reasons = count_reasons(result.runs);
-  for (std::size_t i = 0; i < std::min(reasons.size(), kMostReasons); ++i) {
-    const auto& [reason, runs, blocks] = reasons[i];
-    lines += titled(
-        "", fmt::format("kept: {}, {} ({}){}{}", plural(runs, "run"), plural(blocks, "block"),
-                        reason.id, reason.text.empty() ? "" : ": ", reason.text));
-    if (reason.can_be_allowed) {
-      lines += titled("", fmt::format("      --allow {} lifts this rule", reason.id));
-    }
-  }
-  if (reasons.size() > kMostReasons) {
-    lines += titled("", fmt::format("kept: {} more, see --json",
-                                    plural(reasons.size() - kMostReasons, "reason")));
-  }
+  add_causes(result.kept, lines);
+}
+
+// What can no longer be turned by variables.
+void add_expressions(const SmoothResult& result, std::string& lines) {
+  std::size_t blocks = 0;
+  for (const RunReport& run : result.runs) blocks += run.computed_blocks;
+  if (blocks == 0) return;
+  lines += titled("expressions",
+                  fmt::format("{} with expressions of variables became numbers: other values of",
+                              plural(blocks, "block")));
+  lines += titled("", "the variables no longer change them (--keep-expressions leaves them)");
 }
 
 // Which methods won where several were tried, and by how much. Nothing where none were.
@@ -281,6 +279,7 @@ Json smooth_json(const SmoothReport& report) {
                  {"description", report.options.machine->description}}},
                {"runs", json_list(result.runs, item)},
                {"reasons", json_list(count_reasons(result.runs), item)},
+               {"kept", kept_json(result.kept)},
                {"deviation_mm", result.deviation_mm},
                {"deviation_line", result.deviation_line},
                {"corner_mm", result.corner_mm},
@@ -389,14 +388,17 @@ std::string changes_text(std::span<const double> before, std::span<const double>
 std::string summary_text(const SmoothReport& report) {
   const SmoothResult& result = report.result;
   std::string lines =
-      fmt::format("{} -> {}, for {}\n", report.source.name(),
+      fmt::format("{} -> {}, for {}", report.source.name(),
                   report.output_file.empty() ? "nothing written" : report.output_file,
                   report.options.target->name);
+  const bool in_vain = result.understood && !result.kept.any_run;
+  lines += in_vain ? fmt::format(": {}\n", why_nothing(result.kept)) : "\n";
   for (const std::string& text : texts_of_origins(report.origins)) lines += titled("options", text);
   lines += titled("blocks", change(result.blocks_in, result.blocks_out));
   lines += titled("bytes", change(report.source.text().size(), result.bytes_out));
   if (result.path_before.length_mm > 0) lines += path_lines(result.path_before, result.path_after);
   add_runs(result, lines);
+  add_expressions(result, lines);
   lines += titled("time", times(result, *report.options.machine));
   if (result.program_before.cutting_s > 0) {
     lines += titled("slow", fmt::format("{:.1f} -> {:.1f} % of the cutting time is below half of "

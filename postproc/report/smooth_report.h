@@ -28,7 +28,7 @@ struct SmoothReport {
 // The report for programs: one JSON object, its fields always in the same order, the same bytes for
 // the same input and options (threads do not show).
 //
-//   batten, options, input, output, runs[], reasons[], deviation_mm, deviation_line,
+//   batten, options, input, output, runs[], reasons[], kept (report/kept_report.h), deviation_mm, deviation_line,
 //   time_before_s, time_after_s (as `batten time` predicts them), cutting_before_s,
 //   cutting_after_s, slow_share_before, slow_share_after (of the cutting time: below half of the
 //   programmed feed), path_before, path_after {length_mm, distance_mm, roughness}, proved,

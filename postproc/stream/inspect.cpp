@@ -128,9 +128,12 @@ void add_feeds(const Run& run, bool first, InspectedSection& section) {
 // The sections so far, and the lengths of the segments of the run that goes on.
 class Inspection {
  public:
+  explicit Inspection(const GroupingOptions& grouping) : grouping_(grouping) {}
+
   // The sections of the next blocks. `goes_on`: the last run so far goes on in the first of them,
   // which is a run from its first block on; their lines are those of one chain.
   void add(const gcode::ReadPart& part, const std::vector<Section>& sections, bool goes_on) {
+    causes_.add(part.program, part.meaning, sections, grouping_);
     for (const Section& section : sections) {
       const InspectedSection more = described(part, section);
       if (goes_on) {
@@ -145,13 +148,21 @@ class Inspection {
     }
   }
 
-  [[nodiscard]] std::size_t size() const { return sections_.size(); }
-  // Takes the sections after the first `size` away again. None of those that stay goes on.
-  void go_back_to(std::size_t size) {
+  // How far it is.
+  struct Mark {
+    std::size_t sections = 0;
+    CauseTally causes;
+  };
+  [[nodiscard]] Mark mark() const { return {sections_.size(), causes_}; }
+  // Takes the sections after that away again. None of those that stay goes on.
+  void go_back_to(const Mark& mark) {
     in_run_ = false;
     tally_ = {};
-    sections_.resize(size);
+    sections_.resize(mark.sections);
+    causes_ = mark.causes;
   }
+
+  [[nodiscard]] KeptCauses causes() const { return causes_.causes(); }
 
   [[nodiscard]] std::vector<InspectedSection> take() {
     end_run();
@@ -175,7 +186,9 @@ class Inspection {
     if (std::exchange(in_run_, false)) sections_.back().segments = tally_.take();
   }
 
+  const GroupingOptions& grouping_;
   std::vector<InspectedSection> sections_;
+  CauseTally causes_;
   // Of the last section, where it is a run that may go on.
   bool in_run_ = false;
   SegmentTally tally_;
@@ -236,6 +249,7 @@ class PartInspector {
                 const GroupingOptions& grouping, const InspectLimits& limits, bool as_whole)
       : reader_(source, reading, limits.parts, as_whole),
         grouping_(grouping),
+        inspection_(grouping),
         longest_(limits.longest),
         cut_from_(limits.longest) {}
 
@@ -253,8 +267,8 @@ class PartInspector {
     }
     auto found = reader_.finish();
     if (!found || !certain_) return std::nullopt;
-    return InspectedProgram{inspection_.take(), std::move(*found), reader_.blocks_read(),
-                            reader_.unit_word_seen(), reader_.is_whole()};
+    return InspectedProgram{inspection_.take(),    inspection_.causes(),     std::move(*found),
+                            reader_.blocks_read(), reader_.unit_word_seen(), reader_.is_whole()};
   }
 
  private:
@@ -300,12 +314,12 @@ class PartInspector {
   // Inspects the first blocks that are held. False: the chain of the parts so far has an arc, and
   // is read again from its begin, to be held as one.
   bool take(std::uint32_t count, bool in_chain) {
-    if (!in_chain_ && in_chain) begin_.emplace(Begin{reader_, inspection_.size()});
+    if (!in_chain_ && in_chain) begin_.emplace(Begin{reader_, inspection_.mark()});
     const gcode::ReadPart part = reader_.take(count);
     const bool goes_back = in_chain_ && Chains(part, grouping_).has_arc_from(0);
     if (goes_back) {
       reader_ = std::move(begin_->reader);
-      inspection_.go_back_to(begin_->sections);
+      inspection_.go_back_to(begin_->inspection);
       in_chain_ = false;
     } else {
       const std::vector<Section> sections = group_runs(part.program, part.meaning, grouping_);
@@ -324,13 +338,13 @@ class PartInspector {
   // Before the part that ends at the first cut of a chain.
   struct Begin {
     PartReader reader;
-    std::size_t sections = 0;
+    Inspection::Mark inspection;
   };
 
   PartReader reader_;
   const GroupingOptions& grouping_;
-  std::size_t longest_;
   Inspection inspection_;
+  std::size_t longest_;
   bool in_chain_ = false;        // what is held goes on a chain that was cut
   std::uint32_t looked_at_ = 0;  // blocks that are held after which no part ends
   std::size_t cut_from_;         // so many blocks are held before a chain is cut
@@ -342,7 +356,7 @@ class PartInspector {
 
 std::vector<InspectedSection> inspect(const gcode::ReadPart& program,
                                       const GroupingOptions& grouping) {
-  Inspection inspection;
+  Inspection inspection(grouping);
   inspection.add(program, group_runs(program.program, program.meaning, grouping), false);
   return inspection.take();
 }

@@ -10,6 +10,7 @@
 #include "gcode/reading/part_reading.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/source_text.h"
+#include "postproc/runs/kept_causes.h"
 #include "postproc/runs/run_grouping.h"
 #include "postproc/stream/part_reader.h"
 
@@ -45,6 +46,7 @@ struct InspectedSection {
 
 struct InspectedProgram {
   std::vector<InspectedSection> sections;
+  KeptCauses kept;
   gcode::Diagnostics found;
   std::size_t blocks = 0;
   bool unit_word_seen = false;

@@ -40,7 +40,7 @@ std::shared_ptr<PartOfText> PartTexts::next() {
 }
 
 bool PartTexts::needs_whole(const gcode::Program& part) const {
-  if (!now_.marks.closes_nothing() || gcode::has_error(found_)) return true;
+  if (!now_.marks.closes_nothing() || now_.uses_variables || gcode::has_error(found_)) return true;
   gcode::Diagnostics contradictions;
   gcode::tell_of_contradictions(part, kind_, contradictions);
   return !contradictions.empty();

@@ -133,6 +133,10 @@ class TranslatedSmoothing {
       each.where = mine > 0 ? read_.program.blocks[mine - 1].span : first_span();
       found_.push_back(std::move(each));
     }
+    for (KeptCause& cause : result.kept.causes) {
+      cause.first_line = source_line(cause.first_line);
+      if (cause.line > 0) cause.line = source_line(cause.line);
+    }
     for (RunReport& run : result.runs) {
       run.first_line = source_line(run.first_line);
       run.last_line = source_line(run.last_line);

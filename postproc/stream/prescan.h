@@ -56,8 +56,9 @@ struct WindowLimits {
 //
 // Only as a whole: programs for lathes, programs that are not understood or that the target takes
 // otherwise than the reader, with jumps, loops or subprograms, with words outside the % marks, with
-// words of another family, with curves that the target's reader follows, with lines of more than 1
-// MiB or without line feeds, and without any possible cut.
+// variables that are assigned and used, with words of another family, with curves that the target's
+// reader follows, with lines of more than 1 MiB or without line feeds, and without any possible
+// cut.
 //
 // Holds a bounded number of blocks. Reads text, meaning and cuts in parallel where options.threads
 // allows it. `tell` gets the share of the bytes that was seen, from one thread after the other.

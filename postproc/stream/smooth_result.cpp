@@ -127,9 +127,19 @@ class Reporter {
     r.method = chosen->method;
     r.form = chosen->form;
     r.chords_for_steps = chosen->chords_for_steps;
+    r.computed_blocks = computed_blocks(section);
     r.proved = proved_;
     r.deviation_mm = deviation_within(section);
     return r;
+  }
+
+  [[nodiscard]] std::size_t computed_blocks(const Section& section) const {
+    std::size_t count = 0;
+    for (std::uint32_t b = section.first_block; b <= section.last_block; ++b) {
+      const auto words = part_.program.words_of(part_.program.blocks[b]);
+      count += std::ranges::any_of(words, &gcode::Word::computed) ? 1 : 0;
+    }
+    return count;
   }
 
   // Sections are asked for in the order of the program.

@@ -17,6 +17,7 @@
 #include "postproc/machine/program_time/program_time.h"
 #include "postproc/machine/program_time/program_time_steps.h"
 #include "postproc/proof/verification.h"
+#include "postproc/runs/kept_causes.h"
 #include "postproc/runs/section.h"
 #include "postproc/smooth/forms/output_plan.h"
 #include "postproc/smooth/part_runs.h"
@@ -49,7 +50,8 @@ struct RunReport {
   Form form = Form::kLines;
   std::size_t blocks_in = 0;
   std::size_t blocks_out = 0;
-  double deviation_mm = 0;  // proved bound
+  std::size_t computed_blocks = 0;  // of a rewritten run: with expressions, which are numbers now
+  double deviation_mm = 0;          // proved bound
   bool proved = false;
   bool chords_for_steps = false;  // see plan_lines
   double noise_mm = 0;
@@ -86,6 +88,7 @@ struct TimeFigures {
 struct SmoothResult {
   std::string text;  // the new program, where it was not handed on as it came; or empty
   std::vector<RunReport> runs;
+  KeptCauses kept;
   gcode::Diagnostics diagnostics;
   bool understood = false;  // false: nothing may be rewritten (no units ..): exit code 2
   gcode::Units units = gcode::Units::kUnknown;

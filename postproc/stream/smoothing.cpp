@@ -56,6 +56,7 @@ class CollectedResult {
       result.deviation_mm = proof.verification.deviation_mm;
       result.deviation_line = proof.verification.deviation_line;
     }
+    causes_.add(window.causes);
     for (gcode::Diagnostic& note : window.notes_on_runs) {
       const bool noted = std::ranges::count(notes_on_runs_, note.id, &gcode::Diagnostic::id) > 0;
       if (!noted) notes_on_runs_.push_back(std::move(note));
@@ -73,6 +74,7 @@ class CollectedResult {
   SmoothResult finish() {
     notes_.tell_rest(result.diagnostics);
     std::ranges::move(notes_on_runs_, std::back_inserter(result.diagnostics));
+    result.kept = causes_.causes();
     result.understood = true;
     result.proved = proved_;
     return std::move(result);
@@ -80,6 +82,7 @@ class CollectedResult {
 
  private:
   BandNoteTally notes_;
+  CauseTally causes_;
   bool proved_ = true;
   gcode::Diagnostics notes_on_runs_;  // one of each id
 };

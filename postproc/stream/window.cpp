@@ -107,6 +107,8 @@ class WindowWork {
     }
     const std::vector<Stretch> stretches = std::exchange(done.proof.verification.stretches, {});
     done.runs = report_runs(part, runs, stretches, done.proof.proved);
+    done.causes.add(part.program, part.meaning, runs.sections, grouping_of(setting_.options),
+                    reject_reasons(runs));
     for (const RunState& work : runs.works) {
       if (!work.cut_run) done.outlook += work.outlook;
     }
@@ -116,6 +118,17 @@ class WindowWork {
     done.near = std::move(runs.near);
     if (!part.program.blocks.empty()) done.last_line = part.program.blocks.back().line;
     if (tell(1)) done.outcome = WindowOutcome::kDone;
+  }
+
+  // Of each section.
+  static std::vector<std::string_view> reject_reasons(const PartRuns& runs) {
+    std::vector<std::string_view> reasons(runs.sections.size());
+    for (const RunState& work : runs.works) {
+      if (work.chosen() != nullptr) continue;
+      reasons[work.section] =
+          work.reject_reason.empty() ? work.selection.reason : work.reject_reason;
+    }
+    return reasons;
   }
 
   [[nodiscard]] Additions additions() const {
@@ -299,8 +312,10 @@ class Prover {
   [[nodiscard]] gcode::Program read_text(const gcode::SourceText& written,
                                          gcode::Diagnostics& ignored) const {
     if (!part_.window) {
-      const gcode::Reading reading{part_.program.language, part_.program.decimals,
-                                   read_options_.units};
+      const gcode::Reading reading{.language = part_.program.language,
+                                   .decimals = part_.program.decimals,
+                                   .units = read_options_.units,
+                                   .keeps_expressions = options_.keep_expressions};
       return gcode::parse(written, reading, ignored);
     }
     gcode::TextCarry carry;

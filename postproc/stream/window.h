@@ -32,6 +32,7 @@
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"
 #include "postproc/proof/verification.h"
+#include "postproc/runs/kept_causes.h"
 #include "postproc/runs/section.h"
 #include "postproc/smooth/part_runs.h"
 #include "postproc/stream/assembly.h"
@@ -88,6 +89,7 @@ struct WindowDone {
   NewTextBefore after;
   TextBefore old_after;
   std::vector<RunReport> runs;
+  CauseTally causes;  // of what is kept
   Outlook outlook;
   std::vector<gcode::Diagnostics> notes;
   gcode::Diagnostics notes_on_runs;                        // postproc/stream/smooth_result.h

@@ -7,6 +7,11 @@ LINE = re.compile(rb"[^\r\n]*(?:\r\n|\n|\r)|[^\r\n]+")
 COMMENT = re.compile(rb"\([^)\r\n]*\)?|;[^\r\n]*")
 WORD = re.compile(rb"([A-Z])\s*([+-]?[\d.]+)")
 
+# Variables of LinuxCNC, and the numbers that they make.
+VARIABLE = re.compile(rb"#\s*(?:<[^>]*>|\d+)")
+ASSIGNED = re.compile(rb"(#\s*(?:<[^>]*>|\d+))\s*=")
+EXPRESSION = re.compile(rb"(?<=[XYZIJKRF])\s*(?:\[[^\]]*\]|[+-]?#\s*(?:<[^>]*>|\d+))", re.IGNORECASE)
+
 # Words of a line of a run: of straight moves, and those that only arcs have. New arcs have no R.
 WORDS_OF_A_RUN = set(b"NGXYZF")
 WORDS_OF_ARCS = set(b"IJKR")
@@ -115,13 +120,31 @@ def new_lines_only_move(before, after, report):
     return wrong
 
 
+def assigned_above(lines):
+    """For each line the variables that some line above it assigns, as LinuxCNC writes them."""
+    names, above = set(), []
+    for line in lines:
+        above.append(frozenset(names) if not above or above[-1] != names else above[-1])
+        names.update(re.sub(rb"\s", b"", name).upper() for name in ASSIGNED.findall(COMMENT.sub(b" ", line)))
+    return above
+
+
+def without_expressions(line, assigned):
+    """A number for each expression whose variables are all assigned above."""
+    def number(match):
+        names = {re.sub(rb"\s", b"", name).upper() for name in VARIABLE.findall(match[0])}
+        return b"0" if names <= assigned else match[0]
+    return EXPRESSION.sub(number, COMMENT.sub(b" ", line))
+
+
 def runs_only_moved(before, report):
     """Nothing that does more than move was rewritten, nothing with a fourth axis or an extruder."""
     lines = lines_of(before)
+    above = assigned_above(lines)
     wrong = []
     for run in rewritten(report):
         for number in range(run["first_line"], run["last_line"] + 1):
-            words = words_of(lines[number - 1])
+            words = words_of(without_expressions(lines[number - 1], above[number - 1]))
             letters = {letter for letter, _ in words}
             codes = {value for letter, value in words if letter == ord("G")}
             moves = letters <= WORDS_OF_A_RUN or (

@@ -57,6 +57,11 @@ inline bool may_stand_between(char c, const Block& block) {
   return is_blank(c) || sign || number_of_sign || sum || skipped;
 }
 
+// X#1, Y-[#<a>+2]: a value that variables make.
+inline bool is_expression(std::string_view word) {
+  return word.find('#') != std::string_view::npos || word.find('[') != std::string_view::npos;
+}
+
 // Words and comments lie inside their block, apart from each other. In RS-274 words are what their
 // bytes say, and an understood block has no byte that nobody answers for; in other languages words
 // have names and neighbours of many kinds.
@@ -80,7 +85,8 @@ inline std::string broken_block(const Program& program, const Block& block) {
     const bool elsewhere = program.language == Language::kKlartext &&
                            word.span.begin < word.span.end && word.span.end <= block.span.begin;
     if (!elsewhere && !own(word.span)) return "a word is not at its own place" + where;
-    if (plain && !word_is_true(word, program.source.text(word.span))) {
+    const std::string_view text = program.source.text(word.span);
+    if (plain && !(word.computed ? is_expression(text) : word_is_true(word, text))) {
       return "a word is not what its bytes say" + where;
     }
     if (!elsewhere && block.opacity == ParseStatus::kNone &&

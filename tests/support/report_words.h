@@ -48,6 +48,20 @@ inline SmoothResult five_runs() {
   stop.blocks_in = 10;
   stop.reason = gcode::reason::kExactStop;
   result.runs = {lines, short_run, arcs, other_short_run, stop};
+  result.kept.any_run = true;
+  result.kept.all = {.moves = 175, .length_mm = 100};
+  result.kept.causes.resize(2);
+  result.kept.causes[0] = {.reason = gcode::reason::kExactStop,
+                           .line = 181,
+                           .first_line = 182,
+                           .text = "G61",
+                           .times = 2,
+                           .cut = {.moves = 10, .length_mm = 20}};
+  result.kept.causes[1] = {.reason = gcode::reason::kTooShort,
+                           .first_line = 182,
+                           .text = "G1 X5",
+                           .times = 1,
+                           .cut = {.moves = 5, .length_mm = 1.5}};
   return result;
 }
 

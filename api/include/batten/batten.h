@@ -83,6 +83,7 @@ struct Options {
   std::optional<double> keep_corners_deg;
   std::vector<std::string> allow;
   std::vector<std::string> words;  // what words of your own do, as --word: "M501 = keeps state"
+  bool keep_expressions = false;  // blocks whose numbers are expressions of variables stay
   ProgramUnits units = ProgramUnits::kAsWritten;
   std::string source = "auto";
   // What X5 means on controls like FANUC: auto, explicit, implied, implied:0.0001 .. as --decimals.

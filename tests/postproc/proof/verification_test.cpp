@@ -149,7 +149,10 @@ std::vector<WrongCase> wrong_cases() {
        8},
       {"SmoothedUnderCutterCompensation", comp, replaced(comp, "X20 Y0.001\n", ""), "event-lost", 6,
        0},
-      {"LostAssignment", parameters, replaced(parameters, "#1 = 5\n", ""), "event-lost", 3, 0},
+      // X[#1] is a number no more.
+      {"LostAssignment", parameters, replaced(parameters, "#1 = 5\n", ""), "event-changed", 3, 4},
+      {"OtherAssignment", parameters, replaced(parameters, "#1 = 5", "#1 = 6"), "event-changed", 3,
+       3},
       {"OtherBlanksInAnOpaqueBlock", parameters, replaced(parameters, "#1 = 5", "#1=5"),
        "event-changed", 3, 3},
       {"OtherExpression", parameters, replaced(parameters, "X[#1]", "X[#2]"), "event-changed", 5,

@@ -46,13 +46,37 @@ const SummaryCase kSummaries[] = {
      {"part.nc -> part.smooth.nc, for linuxcnc\n",
       // 200 -> 50 blocks are 75 % less, 100 -> 10 bytes 90 %.
       "200 -> 50  (-75 %)", "100 -> 10  (-90 %)", "2 rewritten, 3 kept",
-      "kept: 1 run, 10 blocks (exact-stop): ", "kept: 2 runs, 5 blocks (too-short): ",
+      "kept: 10 moves, 20.0 % of the cutting length, since line 181 'G61' and 1 more "
+      "(exact-stop): ",
       "--allow exact-stop lifts this rule",
+      "kept: 5 moves, 1.5 % of the cutting length, first in line 182 'G1 X5' (too-short): ",
       "4.00 s -> 2.00 s  (machine linuxcnc, 2.0 times as fast)",
       "50.0 -> 12.5 % of the cutting time is below half of the programmed feed",
       "at most 0.0098 mm, near line 120; allowed 0.0100 mm", "keeps the tolerance"},
      // One method alone wins nothing.
      {"--allow too-short", "methods"}},
+    {"CausesInMoves",
+     [](SmoothResult& result) { result.kept.all.without_length = 7; },
+     // 10 of 175.
+     {"kept: 10 moves, 5.7 % of the cutting moves, since line 181"}},
+    {"OtherCauses",
+     [](SmoothResult& result) { result.kept.causes.resize(5, result.kept.causes[1]); },
+     {"kept: 10 moves, 3.0 % of the cutting length, for 2 other reasons: see --json"}},
+    {"NothingFound",
+     [](SmoothResult& result) {
+       result.runs.clear();
+       result.kept.any_run = false;
+     },
+     {"for linuxcnc: nothing to smooth: 20.0 % of the cutting length, since line 181 'G61'"}},
+    {"NothingThatCuts",
+     [](SmoothResult& result) {
+       result.runs.clear();
+       result.kept = {};
+     },
+     {"for linuxcnc: nothing to smooth: no cutting move in X, Y or Z was found\n"}},
+    {"Expressions",
+     [](SmoothResult& result) { result.runs[0].computed_blocks = 1; },
+     {"1 block with expressions of variables became numbers", "--keep-expressions"}},
     {"LongTimes",
      [](SmoothResult& result) {
        result.program_before.seconds = 7300;
@@ -136,14 +160,15 @@ TEST_F(SmoothReports, HaveTheirFieldsInAFixedOrder) {
   const Json report = json();
   EXPECT_EQ(
       keys_of(report),
-      "batten options input output machine runs reasons deviation_mm deviation_line corner_mm "
+      "batten options input output machine runs reasons kept deviation_mm deviation_line corner_mm "
       "time_before_s time_after_s cutting_before_s cutting_after_s slow_share_before "
       "slow_share_after path_before path_after proved understood diagnostics ");
   EXPECT_EQ(keys_of(report["input"]), "file bytes blocks units ");
   EXPECT_EQ(keys_of(report["output"]), "file bytes blocks target ");
   EXPECT_EQ(
       keys_of(report["runs"][0]),
-      "first_line last_line points status reason method methods form blocks_in blocks_out "
+      "first_line last_line points status reason method methods form blocks_in computed_blocks "
+      "blocks_out "
       "deviation_mm proved noise_mm max_curvature_before max_curvature_after bytes_in bytes_out "
       "path_before path_after time_before_s time_after_s ");
 }

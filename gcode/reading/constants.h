@@ -1,0 +1,26 @@
+// Variables whose values are certain: #<scale> = 1.0, and Z[#<scale>*-27.372] behind it is a
+// number.
+#pragma once
+
+#include "gcode/text/program.h"
+
+namespace batten::gcode {
+
+// Words X Y Z, I J K, R, F and S whose value is an expression become numbers (Word::is_number, with
+// Word::computed) where the control finds the same value whenever it comes to the block:
+//
+//   - each variable was assigned above, in a block that is certainly executed; no label that is
+//     jumped to, body of a loop or subprogram, call, or line that is not understood is in between;
+//   - it is a name of LinuxCNC's that is no global one (#<name>, not #<_name>) or has a number from
+//   1
+//     to 999: numbers above are windows into the control on some. Numbers are not certain behind
+//     tool changes and M words that may be a builder's: their macros may use them;
+//   - the expression has numbers, + - * /, signs and brackets alone. Values are doubles, computed
+//   in
+//     the order of the text, as LinuxCNC does.
+//
+// Word::decimals are then as many as the value needs, six at most. A block whose words are all
+// numbers is one of ParseStatus::kNone. For programs of the RS-274 family. Linear.
+void compute_constants(Program& program);
+
+}  // namespace batten::gcode
