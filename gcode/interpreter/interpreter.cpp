@@ -234,7 +234,9 @@ class Interpreter {
       return make_opaque(reason::kProgramFlow);
     }
     if (block.opacity == ParseStatus::kForeign || block.opacity == ParseStatus::kUnreadable) {
-      if (speaks_to_people(text)) return make_opaque(reason::kForeignWords);
+      if (speaks_to_people(text) || is_bounded_text(text)) {
+        return make_opaque(reason::kForeignWords);
+      }
     }
     apply_opaque(block.opacity, text, now_);
     const bool calls = is_flow && flow_effect(text) == FlowEffect::kCall;
@@ -257,6 +259,13 @@ class Interpreter {
   bool speaks_to_people(std::string_view text) {
     if (carry_.any_motion || !read_.motions.empty() || is_siemens()) return false;
     return is_plain_text(text) || (nothing_said_yet() && is_title(text));
+  }
+
+  // Whether it is known what such a line can have changed; that is forgotten.
+  bool is_bounded_text(std::string_view text) {
+    const TextEffect effect = is_siemens() ? TextEffect::kAnything : text_effect(text);
+    if (effect == TextEffect::kPlace) forget_position(now_);
+    return effect != TextEffect::kAnything;
   }
 
   // Only comments, program numbers and titles so far.
@@ -337,7 +346,12 @@ class Interpreter {
 
   void read_words(const Block& block) {
     const BlockWords words(program_.words_of(block));
-    if (words.problem() != BlockWords::Problem::kNone) return refuse_words(words);
+    if (words.problem() != BlockWords::Problem::kNone) {
+      const ControlState before = now_;
+      refuse_words(words);
+      if (const auto after = after_some_of(program_.words_of(block), before)) now_ = *after;
+      return;
+    }
     if (waits_alone(block)) {
       meaning_.kind = BlockKind::kSettings;
       meaning_.barrier = reason::kDwell;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gcode/text/characters.h"
+#include "gcode/text/number_format.h"
 
 namespace batten::gcode {
 namespace {
@@ -70,12 +71,39 @@ bool is_title_word(std::string_view word) {
          std::ranges::find(kCommandWords, word) == std::ranges::end(kCommandWords);
 }
 
+bool is_bracketed(std::string_view said) {
+  return said.starts_with('[') && said.find(']') == said.size() - 1;
+}
+
+// $110=500, $H and the like.
+TextEffect effect_of_dollar_line(std::string_view said) {
+  const std::string_view rest = said.substr(1);
+  constexpr std::string_view kReports[] = {"X", "$", "#", "G", "I"};
+  if (std::ranges::find(kReports, rest) != std::ranges::end(kReports)) return TextEffect::kNothing;
+  constexpr std::string_view kHomings[] = {"H", "HX", "HY", "HZ"};
+  if (std::ranges::find(kHomings, rest) != std::ranges::end(kHomings)) return TextEffect::kPlace;
+  const std::size_t equals = rest.find('=');
+  if (equals == 0 || equals == std::string_view::npos) return TextEffect::kAnything;
+  const bool number = std::ranges::all_of(rest.substr(0, equals), is_digit);
+  const bool value = read_number(rest.substr(equals + 1)).has_value();
+  return number && value ? TextEffect::kNothing : TextEffect::kAnything;
+}
+
 }  // namespace
+
+TextEffect text_effect(std::string_view line) {
+  const std::string said = said_in(line);
+  if (is_bracketed(said) && said.find_first_of("#=") == std::string::npos) {
+    return TextEffect::kNothing;
+  }
+  if (said.starts_with('$')) return effect_of_dollar_line(said);
+  const bool is_shown = said.starts_with("M117 ") || said.starts_with("M118 ");
+  return is_shown ? TextEffect::kPlace : TextEffect::kAnything;
+}
 
 bool is_plain_text(std::string_view line) {
   const std::string said = said_in(line);
-  const bool bracketed = said.starts_with('[') && said.find(']') == said.size() - 1;
-  return bracketed || is_file_name(said);
+  return is_bracketed(said) || is_file_name(said);
 }
 
 bool is_title(std::string_view line) {

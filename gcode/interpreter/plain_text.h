@@ -1,6 +1,7 @@
 // Lines that say something to people and that no control reads as a command.
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 namespace batten::gcode {
@@ -12,6 +13,18 @@ namespace batten::gcode {
 // False for all that a control could act on: names with values, macros, statements of other
 // languages.
 [[nodiscard]] bool is_plain_text(std::string_view line);
+
+// What a line that is no block of words can have changed, wherever it stands, on every control that
+// does not refuse it.
+enum class TextEffect : std::uint8_t { kNothing, kPlace, kAnything };
+
+//   [ROUGHING]           in brackets as a whole, without # and =: a comment of WinCNC      nothing
+//   $X $$ $# $G $I       grbl: unlocks, reports                                            nothing
+//   $110=500             grbl: a setting                                                   nothing
+//   $H $HX               grbl: homes                                                       place
+//   M117 Layer 3 of 10   printers: shown to people; the user's own on other controls       place
+// Anything for all else, which may be a macro's name or a statement of another language.
+[[nodiscard]] TextEffect text_effect(std::string_view line);
 
 // Whether the line is a title: two or more words of letters and numbers of which none is a word of
 // RS-274 (X10) or begins a command of some control. At the beginning of a program only: further

@@ -384,6 +384,63 @@ void apply_late_own(const OwnWord& own, const BlockWords& words, ControlState& s
   if (words.has('S')) state.modal.spindle_speed.reset();
 }
 
+namespace {
+
+// Whether all that the word does is to set an item of the state, to move, or to switch what is none
+// of it.
+bool sets_one_mode(const Word& word) {
+  if (!word.is_number) return false;
+  if (word.letter != 'G' && word.letter != 'M') return word.letter != ',';
+  const Code code = code_of(word);
+  if (code == kNoCode) return false;
+  const CodeRow& row = word.letter == 'G' ? row_of_g(code) : row_of_m(code);
+  if (row.is(trait::kNotUnderstood | trait::kUnknownBehind | trait::kCallsAtEnd | trait::kOldUnits |
+             trait::kExtended)) {
+    return false;
+  }
+  if (word.letter == 'M') {
+    return row.act == CodeAct::kSpindleOn || row.act == CodeAct::kSwitches ||
+           row.act == CodeAct::kStops || row.act == CodeAct::kChangesTool;
+  }
+  switch (row.group) {
+    case CodeGroup::kMotion:
+      return row.is_plain_motion() || row.act == CodeAct::kDrills;
+    case CodeGroup::kCycleEnd:
+    case CodeGroup::kPlane:
+    case CodeGroup::kDistance:
+    case CodeGroup::kArcDistance:
+    case CodeGroup::kFeedMode:
+    case CodeGroup::kUnits:
+    case CodeGroup::kCutter:
+    case CodeGroup::kWorkOffset:
+      return true;
+    case CodeGroup::kPath:
+      return row.value.as<PathMode>() != PathMode::kUnknown;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+std::optional<ControlState> after_some_of(std::span<const Word> words, const ControlState& before) {
+  ControlState after = before;
+  for (const Word& word : words) {
+    if (!sets_one_mode(word)) return std::nullopt;
+    ControlState with_it = before;
+    const BlockWords alone({&word, 1});
+    const StateEffect effect = apply_words(alone, with_it);
+    if (effect.motion != nullptr) {
+      with_it.modal.motion = effect.motion->value.as<MotionMode>();
+      with_it.other_motion = effect.motion->why;
+    }
+    after = either(after, with_it);
+    if (alone.has_group(CodeGroup::kUnits)) after.modal.feed.reset();
+  }
+  forget_position(after);
+  return after;
+}
+
 void apply_late_words(const BlockWords& words, ControlState& state) {
   bool own_macro = false;
   for (const Code code : words.g_codes()) {

@@ -2,6 +2,8 @@
 // that was not split into words may have done.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string_view>
 
 #include "gcode/state/modal_state.h"
@@ -29,6 +31,13 @@ struct StateEffect {
 //
 // Requires words.problem() == kNone. Words without number make what they set unknown.
 [[nodiscard]] StateEffect apply_words(const BlockWords& words, ControlState& state);
+
+// The state behind a block whose words exclude each other, or say a letter twice: a control refuses
+// it, or takes some of them. What any of them sets is unknown where it was something else; the
+// place is not known, nor is the feed beside units. Nothing where a word may do more than set one
+// mode, or takes others with it.
+[[nodiscard]] std::optional<ControlState> after_some_of(std::span<const Word> words,
+                                                        const ControlState& before);
 
 // What only happens at the end of the block, after its motion: calls, program end, tool change.
 void apply_late_words(const BlockWords& words, ControlState& state);

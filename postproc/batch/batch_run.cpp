@@ -17,6 +17,7 @@
 #include "gcode/text/characters.h"
 #include "postproc/batch/batch_summary.h"
 #include "postproc/batch/process_pool.h"
+#include "postproc/report/kept_report.h"
 #include "postproc/report/smooth_report.h"
 #include "postproc/stream/pipeline.h"
 #include "postproc/stream/smooth_result.h"
@@ -152,6 +153,7 @@ class Worker {
     record_.path_before = result.path_before;
     record_.path_after = result.path_after;
     record_.deviation_mm = result.deviation_mm;
+    record_.kept_for = cause_in_brief(result.kept);
   }
 
   WorkerResult write(std::string_view text, std::string_view report) {

@@ -26,6 +26,7 @@ template <typename Record, typename Take>
 void each_field(Record& record, const Take& take) {
   take("exit_code", record.exit_code);
   take("message", record.message);
+  take("kept_for", record.kept_for);
   take("input_sha256", record.input_sha256);
   take("settings_sha256", record.settings_sha256);
   take("output_sha256", record.output_sha256);
@@ -198,7 +199,7 @@ BatchTotals totals_of(std::span<const ProgramRecord> records) {
 }
 
 constexpr std::string_view kTableRow =
-    "{:<{}}  {:<14}  {:>18}  {:>22}  {:>22}  {:>16}  {:>14}  {:>12}  {:>9}\n";
+    "{:<{}}  {:<14}  {:>18}  {:>22}  {:>22}  {:>16}  {:>14}  {:>12}  {:>9}  {}\n";
 
 std::string arrow(double before, double after, int digits) {
   return fmt::format("{:.{}f} -> {:.{}f}", before, digits, after, digits);
@@ -208,9 +209,9 @@ std::string summary_table(std::span<const ProgramRecord> records) {
   std::size_t width = std::string_view("program").size();
   for (const ProgramRecord& record : records) width = std::max(width, record.program.size());
   std::string text = fmt::format(kTableRow, "program", width, "status", "blocks", "bytes", "time s",
-                                 "distance mm", "roughness", "slow %", "within mm");
+                                 "distance mm", "roughness", "slow %", "within mm", "kept for");
   const auto add_row = [&](std::string_view name, std::string_view status,
-                           const ProgramFigures& row) {
+                           const ProgramFigures& row, std::string_view kept_for) {
     const PathFigures& old = row.path_before;
     const bool tried = old.length_mm > 0;  // any run
     text += fmt::format(
@@ -220,18 +221,18 @@ std::string summary_table(std::span<const ProgramRecord> records) {
         tried ? arrow(old.distance_mm, row.path_after.distance_mm, 4) : "-",
         tried ? arrow(old.roughness, row.path_after.roughness, 3) : "-",
         arrow(100 * row.time_before.slow_share(), 100 * row.time_after.slow_share(), 1),
-        fmt::format("{:.4f}", row.deviation_mm));
+        fmt::format("{:.4f}", row.deviation_mm), kept_for.empty() ? "-" : kept_for);
   };
   for (const ProgramRecord& record : records) {
     if (is_written(record.status)) {
-      add_row(record.program, name_of(record.status), record);
+      add_row(record.program, name_of(record.status), record, record.kept_for);
     } else {
       fmt::format_to(std::back_inserter(text), "{:<{}}  {:<14}  {}\n", record.program, width,
                      name_of(record.status), record.message);
     }
   }
   const BatchTotals totals = totals_of(records);
-  add_row("all", "", totals);
+  add_row("all", "", totals, "");
   return text + counts_line(totals);
 }
 
@@ -240,16 +241,16 @@ std::string summary_csv(std::span<const ProgramRecord> records) {
       "program,status,exit_code,blocks_in,blocks_out,bytes_in,bytes_out,runs_rewritten,runs_kept,"
       "time_before_s,time_after_s,distance_before_mm,distance_after_mm,roughness_before,"
       "roughness_after,slow_share_before,slow_share_after,deviation_mm,input_sha256,"
-      "output_sha256,message\n";
+      "output_sha256,kept_for,message\n";
   for (const ProgramRecord& r : records) {
     fmt::format_to(std::back_inserter(text),
-                   "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                   "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                    csv_field(r.program), name_of(r.status), r.exit_code, r.blocks_in, r.blocks_out,
                    r.bytes_in, r.bytes_out, r.runs_rewritten, r.runs_kept, r.time_before.seconds,
                    r.time_after.seconds, r.path_before.distance_mm, r.path_after.distance_mm,
                    r.path_before.roughness, r.path_after.roughness, r.time_before.slow_share(),
                    r.time_after.slow_share(), r.deviation_mm, r.input_sha256, r.output_sha256,
-                   csv_field(r.message));
+                   csv_field(r.kept_for), csv_field(r.message));
   }
   return text;
 }

@@ -73,8 +73,9 @@ void each_figure(Figures& figures, const Take& take) {
 struct ProgramRecord : ProgramFigures {
   std::string program;  // path in the tree
   ProgramStatus status = ProgramStatus::kNotDone;
-  int exit_code = 0;    // of postproc/system/exit_code.h
-  std::string message;  // why it was not written; empty otherwise
+  int exit_code = 0;     // of postproc/system/exit_code.h
+  std::string message;   // why it was not written; empty otherwise
+  std::string kept_for;  // what keeps most cutting moves (report/kept_report.h); empty: little does
   std::string input_sha256;
   std::string settings_sha256;
   std::string output_sha256;  // empty: no program was written

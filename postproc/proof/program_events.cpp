@@ -6,6 +6,7 @@
 
 #include "gcode/state/code_table.h"
 #include "gcode/state/modal_state.h"
+#include "gcode/state/block_words.h"
 #include "gcode/state/reason.h"
 #include "gcode/text/characters.h"
 
@@ -204,13 +205,16 @@ class ProgramLister : EventLister {
     add_word(word, moves);
   }
 
-  // A block that is kept as text sets modes too. Motions are compared as such.
+  // A block that is kept as text sets modes too. Motions are compared as such. Where words exclude
+  // each other, which of them count is not known, and none that is said again repeats one.
   void remember_words(const Block& block) {
+    const gcode::BlockWords words(program_.words_of(block));
+    const bool refused = words.problem() != gcode::BlockWords::Problem::kNone;
     for (const Word& word : program_.words_of(block)) {
       if (word.letter != 'G') continue;
       const gcode::CodeRow& row = gcode::row_of_g(gcode::code_of(word));
       if (row.group != CodeGroup::kMotion) {
-        set_by_word_[static_cast<std::size_t>(row.group)] = row.code;
+        set_by_word_[static_cast<std::size_t>(row.group)] = refused ? kNotSet : row.code;
       }
     }
   }

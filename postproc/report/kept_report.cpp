@@ -46,6 +46,16 @@ std::string cause_text(const KeptCauses& kept, const KeptCause& cause) {
   return fmt::format("{}, {} ({})", share_text(kept, cause.cut), place, cause.reason);
 }
 
+std::string cause_in_brief(const KeptCauses& kept) {
+  constexpr double kWorthAColumn = 0.1;
+  if (kept.causes.empty()) return {};
+  const KeptCause& greatest = kept.causes.front();
+  const double share = kept.share(greatest.cut);
+  if (share < kWorthAColumn) return {};
+  return fmt::format("{:.0f} % {}, line {}", 100 * share, greatest.reason,
+                     greatest.line > 0 ? greatest.line : greatest.first_line);
+}
+
 std::string why_nothing(const KeptCauses& kept) {
   if (kept.all.moves == 0) return "nothing to smooth: no cutting move in X, Y or Z was found";
   if (kept.causes.empty()) return "nothing to smooth";

@@ -12,6 +12,9 @@ namespace batten::postproc {
 // the length of some is not known.
 [[nodiscard]] std::string cause_text(const KeptCauses& kept, const KeptCause& cause);
 
+// "93 % cutter-compensation, line 5": of the greatest cause; empty where none keeps a tenth.
+[[nodiscard]] std::string cause_in_brief(const KeptCauses& kept);
+
 // Why a program has no run: its greatest cause and what to do about it, or that nothing cuts.
 [[nodiscard]] std::string why_nothing(const KeptCauses& kept);
 

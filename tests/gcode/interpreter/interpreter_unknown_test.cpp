@@ -93,11 +93,72 @@ TEST(PlaceAfter, IsKnownOnTheseAxes) {
 TEST(Everything, IsUnknownAfterIt) {
   for (const char* block : {"M98 P1000", "M97 P10", "G1 X1 M98 P1", "M99", "G65 P9010", "o100 call",
                             "o1 if [#1 GT 2]", "WHILE [#1 LT 2] DO1", "O1234", "M30", "M72", "G777",
-                            "CYCLE832(0.01)", "$32=1", "G1 X", "/M98 P1", "G90 G91"}) {
+                            "CYCLE832(0.01)", "$RST=*", "G1 X", "/M98 P1",
+                            // Words that exclude each other, and one that may do anything.
+                            "G90 G91 G777", "G90 G91 M98 P1", "G90 G91 M30", "G68 G69 R10",
+                            "G43.4 G49 H1", "G51 G50 X2", "G92 G10 X1", "G0 G1 G66 P1", "G66 P1 P2",
+                            "G5 G1 P10000", "G90 G91 X#1", "G17 G18 G70 P1 Q2"}) {
     SCOPED_TRACE(block);
     const Interpreted it(std::string(kStart) + block + "\n");
     EXPECT_EQ(it.last_state(), unknown_modal_state());
   }
+}
+
+struct ExcludingRow {
+  const char* block;
+  void (*forget)(ModalState&);  // what the block can have changed
+};
+
+const ExcludingRow kExcludingRows[] = {
+    {"G90 G91 X5", [](ModalState& s) { s.distance = DistanceMode::kUnknown; }},
+    {"G17 G18", [](ModalState& s) { s.plane = Plane::kUnknown; }},
+    {"G40 G41 D1", [](ModalState& s) { s.cutter_compensation = TriState::kUnknown; }},
+    {"G61 G64", [](ModalState& s) { s.path = PathMode::kUnknown; }},
+    {"G93 G94",
+     [](ModalState& s) {
+       s.feed_mode = FeedMode::kUnknown;
+       s.feed.reset();
+     }},
+    {"G20 G21 F500",
+     [](ModalState& s) {
+       s.units = Units::kUnknown;
+       s.feed.reset();
+     }},
+    {"G0 G1 X5", [](ModalState& s) { s.motion = MotionMode::kUnknown; }},
+    {"G81 G0 X5 Z-1 R1", [](ModalState& s) { s.motion = MotionMode::kUnknown; }},
+    {"X1 X2", [](ModalState&) {}},
+    {"G1 X1 Y1 X2", [](ModalState&) {}},
+    {"F500 F600", [](ModalState& s) { s.feed.reset(); }},
+    {"M3 M5", [](ModalState&) {}},
+    // What one word would set, though the fault lies with others.
+    {"X1 X2 G91", [](ModalState& s) { s.distance = DistanceMode::kUnknown; }},
+    {"X1 X2 G20",
+     [](ModalState& s) {
+       s.units = Units::kUnknown;
+       s.feed.reset();
+     }},
+};
+
+TEST(Modes, AreUnknownAfterWordsThatExcludeEachOtherAsFarAsAnyOfThemSetsThem) {
+  for (const ExcludingRow& row : kExcludingRows) {
+    SCOPED_TRACE(row.block);
+    const Interpreted it("G21 G90 G17 G94 G40 G64\nG0 X0 Y0 Z0\nG1 F500\n" +
+                         std::string(row.block) + "\nG1 X9 Y9 Z9\n");
+    ModalState expected = it.state_after_line(3);
+    row.forget(expected);
+    EXPECT_EQ(it.state_after_line(4), expected);
+    ASSERT_TRUE(expected.distance == DistanceMode::kUnknown || it.motion_of_line(5) != nullptr);
+    if (expected.distance == DistanceMode::kUnknown) continue;
+    EXPECT_FALSE(it.motion_of_line(5)->start_known);  // refused, or moved
+  }
+}
+
+TEST(Modes, AreKnownAgainOnceSaidAgain) {
+  const Interpreted it(
+      "G21 G90 G17 G94 G40 G64\nG0 X0 Y0 Z0\nG1 F500\nG90 G91 X1\nG90\n"
+      "G1 X1 Y1 Z1\nX2\n");
+  EXPECT_TRUE(is_known(it.last_state()));
+  EXPECT_TRUE(it.motion_of_line(7)->start_known);
 }
 
 // --- calls that keep modes ---------------------------------------------------------------------

@@ -42,11 +42,60 @@ bool cuts_are_known(const std::string& text) {
          is_known(it.last_state());
 }
 
+// Behind the first motion a file name may be a call.
 TEST(PlainText, TakesNothingAwayBeforeTheFirstMotion) {
-  for (const char* line : {"part.nc (X)", "[ROUGHING]"}) {
+  for (const char* line : {"part.nc (X)", "[#1=2]"}) {
     EXPECT_TRUE(cuts_are_known(std::string(kModesSaid) + line + "\n" + kFirstCut)) << line;
     EXPECT_FALSE(cuts_are_known(std::string(kModesSaid) + kFirstCut + line + "\nX3 Y2\nX4\n"))
         << line;
+  }
+}
+
+struct EffectRow {
+  const char* line;
+  TextEffect effect;
+};
+
+const EffectRow kEffectRows[] = {
+    {"[ROUGHING]", TextEffect::kNothing},
+    {"$X", TextEffect::kNothing},
+    {"$$ (all of them)", TextEffect::kNothing},
+    {"$g", TextEffect::kNothing},
+    {"$110=500.5", TextEffect::kNothing},
+    {"$H", TextEffect::kPlace},
+    {"$hz", TextEffect::kPlace},
+    {"M117 Layer 3/10", TextEffect::kPlace},
+    // What these could be: a line that grbl runs at each start, a jog that moves, a switch of the
+    // coordinates, another channel, a macro, a setting of another language, an assignment.
+    {"$N0=G91", TextEffect::kAnything},
+    {"$J=G91 X10 F100", TextEffect::kAnything},
+    {"$RST=#", TextEffect::kAnything},
+    {"$1", TextEffect::kAnything},
+    {"$P_UIFR[1]=5", TextEffect::kAnything},
+    {"$IF V.P.A", TextEffect::kAnything},
+    {"$110=G91", TextEffect::kAnything},
+    {"[#1=2]", TextEffect::kAnything},
+    {"[ROUGHING] G91", TextEffect::kAnything},
+    {"START_PRINT", TextEffect::kAnything},
+    {"TRANS X10", TextEffect::kAnything},
+    {"M1170 x", TextEffect::kAnything},
+    {"", TextEffect::kAnything},
+};
+
+TEST(TextEffects, AreBoundedByWhatTheLineSays) {
+  for (const EffectRow& row : kEffectRows) {
+    EXPECT_EQ(text_effect(row.line), row.effect) << row.line;
+  }
+}
+
+TEST(TextEffects, LeaveModesAsTheyWereAnywhere) {
+  for (const EffectRow& row : kEffectRows) {
+    if (*row.line == '\0') continue;
+    SCOPED_TRACE(row.line);
+    const tests::Interpreted it(std::string(kModesSaid) + kFirstCut + row.line + "\nG1 X3 F200\n");
+    EXPECT_EQ(is_known(it.last_state()), row.effect != TextEffect::kAnything);
+    const bool place = row.effect == TextEffect::kNothing;
+    EXPECT_EQ(it.read.motions.back().start_known, place);
   }
 }
 

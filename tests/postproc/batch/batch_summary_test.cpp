@@ -31,6 +31,7 @@ ProgramRecord smoothed(const std::string& program) {
   record.path_before = {10, 0.005, 0.25};
   record.path_after = {10, 0.002, 0.125};
   record.deviation_mm = 0.0098;
+  record.kept_for = "40 % expression, line 7";
   return record;
 }
 
@@ -53,12 +54,14 @@ TEST(BatchRecord, ReadsBackTheSame) {
     EXPECT_EQ(again->status, record.status);
     EXPECT_EQ(again->exit_code, record.exit_code);
     EXPECT_EQ(again->deviation_mm, record.deviation_mm);
+    EXPECT_EQ(again->kept_for, record.kept_for);
   }
 }
 
 TEST(BatchRecord, SaysAllOfAProgram) {
   EXPECT_EQ(nlohmann::json::parse(record_text(smoothed("a/b.nc"))), nlohmann::json::parse(R"({
     "program": "a/b.nc", "status": "smoothed", "exit_code": 0, "message": "",
+    "kept_for": "40 % expression, line 7",
     "input_sha256": "aa", "settings_sha256": "bb", "output_sha256": "cc", "report_sha256": "dd",
     "bytes_in": 1000, "bytes_out": 400, "blocks_in": 100, "blocks_out": 30,
     "runs_rewritten": 2, "runs_kept": 1,
@@ -129,7 +132,7 @@ TEST(BatchSummary, QuotesWhatCsvNeedsQuoted) {
   const std::string csv =
       summary_csv(std::vector<ProgramRecord>{smoothed("a.nc"), refused("c.nc")});
   EXPECT_NE(csv.find("\na.nc,smoothed,0,100,30,1000,400,2,1,3.5,2.25,0.005,0.002,0.25,0.125,0.5,0."
-                     "25,0.0098,aa,cc,\n"),
+                     "25,0.0098,aa,cc,\"40 % expression, line 7\",\n"),
             std::string::npos)
       << csv;
   EXPECT_NE(csv.find("\"c.nc:1:1: error: \"\"quoted\"\", and a comma\"\n"), std::string::npos)
