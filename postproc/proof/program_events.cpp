@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "gcode/state/block_words.h"
 #include "gcode/state/code_table.h"
 #include "gcode/state/modal_state.h"
-#include "gcode/state/block_words.h"
 #include "gcode/state/reason.h"
 #include "gcode/text/characters.h"
 

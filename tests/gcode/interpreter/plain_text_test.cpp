@@ -94,6 +94,7 @@ TEST(TextEffects, LeaveModesAsTheyWereAnywhere) {
     SCOPED_TRACE(row.line);
     const tests::Interpreted it(std::string(kModesSaid) + kFirstCut + row.line + "\nG1 X3 F200\n");
     EXPECT_EQ(is_known(it.last_state()), row.effect != TextEffect::kAnything);
+    if (row.effect == TextEffect::kAnything) continue;
     const bool place = row.effect == TextEffect::kNothing;
     EXPECT_EQ(it.read.motions.back().start_known, place);
   }
