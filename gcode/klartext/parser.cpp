@@ -435,7 +435,9 @@ class KlartextParser {
   void end_last_move() {
     if (last_move_) {
       Block& move = program_.blocks[*last_move_];
-      if (move.opacity == ParseStatus::kNone) move.opacity = ParseStatus::kCornerWord;
+      const bool moves =
+          move.opacity == ParseStatus::kNone || move.opacity == ParseStatus::kExpression;
+      if (moves) move.opacity = ParseStatus::kCornerWord;
     }
     last_move_.reset();
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gcode/interpreter/program_flow.h"
+#include "gcode/siemens/block.h"
 #include "gcode/state/block_words.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/number_format.h"
@@ -20,7 +21,8 @@ namespace {
 constexpr int kLastCertain = 999;
 constexpr std::string_view kComputed = "XYZIJKRFS";
 
-// A variable as RS-274 names it: upper case, without blanks; "12" for #12, "<NAME>" for #<name>.
+// A variable in upper case, without blanks: "12" for #12, "R5", "Q5"; in <> those that no program
+// sees that is called: #<name>, what DEF REAL declares, QL5.
 using Name = std::string;
 
 bool is_numbered(const Name& name) { return name[0] != '<'; }
@@ -31,8 +33,11 @@ using Values = std::map<Name, double>;
 // Reads what stands at a position of a text, and goes behind it. Blanks are skipped.
 class Reader {
  public:
-  Reader(std::string_view text, const Values& values, const Decimals& decimals)
-      : text_(text), values_(values), decimals_(decimals) {}
+  Reader(std::string_view text, const Values& values, const Program& program)
+      : text_(text),
+        values_(values),
+        language_(program.language),
+        with_points_(program.decimals.pointless != PointlessNumbers::kUnits) {}
 
   [[nodiscard]] std::size_t at() const { return at_; }
 
@@ -47,9 +52,28 @@ class Reader {
     return true;
   }
 
-  // #12, #<name>; nothing where it is named in another way or no certain one.
+  // Whether a variable's name may begin here.
+  [[nodiscard]] bool at_name() {
+    const char c = upper(next());
+    return language_ == Language::kRs274      ? c == '#'
+           : language_ == Language::kKlartext ? c == 'Q'
+                                              : is_letter(c);
+  }
+  // Whether any value so far was that of a variable.
+  [[nodiscard]] bool uses_variable() const { return uses_variable_; }
+
+  // The variable that is named here; nothing where it is named in another way or no certain one.
   std::optional<Name> name() {
-    if (!take('#')) return std::nullopt;
+    if (!at_name()) return std::nullopt;
+    return language_ == Language::kRs274      ? name_of_rs274()
+           : language_ == Language::kKlartext ? name_of_klartext()
+                                              : name_of_siemens();
+  }
+
+ private:
+  // #12, #<name>
+  std::optional<Name> name_of_rs274() {
+    ++at_;
     Name name;
     if (next() == '<') {
       const std::size_t close = text_.find('>', at_);
@@ -64,6 +88,31 @@ class Reader {
     return std::to_string(number);
   }
 
+  // Q5, QL5. Parameters from Q100 on belong to cycles.
+  std::optional<Name> name_of_klartext() {
+    constexpr std::size_t kMostDigits = 2;
+    ++at_;
+    const bool local = upper(char_at(text_, at_)) == 'L';
+    if (local) ++at_;
+    const std::size_t begin = at_;
+    while (is_digit(char_at(text_, at_))) ++at_;
+    const std::string digits(text_.substr(begin, at_ - begin));
+    if (digits.empty() || digits.size() > kMostDigits) return std::nullopt;
+    return local ? "<QL" + digits + ">" : "Q" + digits;
+  }
+
+  // R5, or a name; functions and fields are none.
+  std::optional<Name> name_of_siemens() {
+    const std::size_t begin = at_;
+    while (is_name_character(char_at(text_, at_))) ++at_;
+    const std::string name = in_capitals(text_.substr(begin, at_ - begin));
+    if (next() == '(' || next() == '[') return std::nullopt;
+    const bool numbered =
+        name.size() > 1 && name[0] == 'R' && std::all_of(name.begin() + 1, name.end(), is_digit);
+    return numbered ? name : "<" + name + ">";
+  }
+
+ public:
   // Values joined by + - * /; nothing where it is not certain.
   std::optional<double> sum() {
     std::optional<double> left = product();
@@ -80,10 +129,10 @@ class Reader {
   std::optional<double> value(bool with_numbers) {
     const bool negative = next() == '-';
     if (negative || next() == '+') ++at_;
-    const auto found = next() == '#'   ? variable()
-                       : next() == '[' ? bracketed()
-                       : with_numbers  ? number()
-                                       : std::nullopt;
+    const auto found = at_name()             ? variable()
+                       : next() == opening() ? bracketed()
+                       : with_numbers        ? number()
+                                             : std::nullopt;
     return found && negative ? std::optional(-*found) : found;
   }
 
@@ -100,18 +149,22 @@ class Reader {
     return left;
   }
 
+  [[nodiscard]] char opening() const { return language_ == Language::kRs274 ? '[' : '('; }
+  [[nodiscard]] char closing() const { return language_ == Language::kRs274 ? ']' : ')'; }
+
   std::optional<double> variable() {
+    uses_variable_ = true;
     const auto named = name();
     const auto known = named ? values_.find(*named) : values_.end();
     return known == values_.end() ? std::nullopt : std::optional(known->second);
   }
 
   std::optional<double> bracketed() {
-    if (depth_ == kDeepest || !take('[')) return std::nullopt;
+    if (depth_ == kDeepest || !take(opening())) return std::nullopt;
     ++depth_;
     const auto inside = sum();
     --depth_;
-    return inside && take(']') ? inside : std::nullopt;
+    return inside && take(closing()) ? inside : std::nullopt;
   }
 
   std::optional<double> number() {
@@ -119,8 +172,7 @@ class Reader {
     if (!scanned) return std::nullopt;
     at_ += scanned->length;
     const ReadNumber& read = scanned->number;
-    const bool certain =
-        read.has_point || read.value == 0 || decimals_.pointless == PointlessNumbers::kUnits;
+    const bool certain = read.has_point || read.value == 0 || !with_points_;
     return certain ? std::optional(read.value) : std::nullopt;
   }
 
@@ -128,7 +180,9 @@ class Reader {
 
   std::string_view text_;
   const Values& values_;
-  const Decimals& decimals_;
+  Language language_;
+  bool with_points_;  // numbers without one are not certain
+  bool uses_variable_ = false;
   std::size_t at_ = 0;
   int depth_ = 0;
 };
@@ -193,6 +247,9 @@ class ConstantFinder {
       case ParseStatus::kAssignment:
         assign(block);
         break;
+      case ParseStatus::kNamedWords:
+        read_named(block);
+        break;
       case ParseStatus::kProgramMark:
         break;
       default:
@@ -218,9 +275,9 @@ class ConstantFinder {
   }
 
   void compute(Word& word) {
-    const std::string_view text = program_.source.text(word.span).substr(1);
-    Reader reader(text, values_, program_.decimals);
-    const auto value = reader.value(false);
+    const std::string text = expression_of(word);
+    Reader reader(text, values_, program_);
+    const auto value = program_.language == Language::kSiemens ? reader.sum() : reader.value(false);
     if (!value || reader.next() != '\0' || !(std::abs(*value) < kNumberLimit)) return;
     word.value = *value == 0 ? 0 : *value;  // no -0
     word.decimals = decimals_of(word.value);
@@ -229,52 +286,116 @@ class ConstantFinder {
     word.computed = true;
   }
 
-  // All right sides are read before any variable is set.
-  void assign(const Block& block) {
-    std::vector<std::pair<Name, std::optional<double>>> assigned;
+  // What stands behind the letter: of Siemens X=R1, CR=R1.
+  [[nodiscard]] std::string expression_of(const Word& word) const {
+    std::string_view text = program_.source.text(word.span);
+    if (program_.language != Language::kSiemens) return std::string(text.substr(1));
+    text.remove_prefix(word.letter == 'R' ? std::min<std::size_t>(2, text.size()) : 1);
+    const std::size_t equals = after_blanks(text, 0);
+    return char_at(text, equals) == '=' ? std::string(text.substr(equals + 1)) : std::string();
+  }
+
+  // The block without comments, its number and the / before it.
+  [[nodiscard]] std::string said_in(const Block& block) const {
     std::string text(program_.source.text(block.span));
     for (const Comment& comment : program_.comments_of(block)) {
       std::fill_n(text.begin() + (comment.span.begin - block.span.begin), comment.span.size(), ' ');
     }
-    const std::size_t begin = text.find('#');
-    Reader reader(
-        begin == std::string::npos ? std::string_view() : std::string_view(text).substr(begin),
-        values_, program_.decimals);
+    const bool klartext = program_.language == Language::kKlartext;
+    if (klartext) std::ranges::replace(text, ',', '.');
+    std::size_t begin = program_.language == Language::kRs274 ? text.find('#')
+                        : klartext                            ? text.find_first_of("Qq")
+                                                              : text.find_first_not_of("/ \t");
+    begin = std::min(begin, text.size());
+    if (program_.language == Language::kSiemens && upper(char_at(text, begin)) == 'N' &&
+        is_digit(char_at(text, begin + 1))) {
+      begin = std::min(text.find_first_not_of("0123456789", begin + 1), text.size());
+    }
+    return text.substr(begin);
+  }
+
+  // All right sides are read before any variable is set.
+  void assign(const Block& block) {
+    const std::string text = said_in(block);
+    Reader reader(text, values_, program_);
+    std::vector<std::pair<Name, std::optional<double>>> assigned;
     while (reader.next() != '\0') {
       const auto name = reader.name();
       if (!name && assigned.empty() && sets_another(text)) return;
       if (!name || !reader.take('=')) return values_.clear();
       assigned.emplace_back(*name, reader.sum());
-      const char next = reader.next();
-      if (next == '\0' || (assigned.back().second && next == '#')) continue;
+      if (reader.next() == '\0' || (assigned.back().second && reader.at_name())) continue;
       // The rest cannot be read: it may set others.
-      if (std::string_view(text).substr(begin + reader.at()).find('=') != std::string_view::npos) {
+      if (std::string_view(text).substr(reader.at()).find('=') != std::string_view::npos) {
         return values_.clear();
       }
       assigned.back().second.reset();
       break;
     }
-    if (assigned.empty()) return values_.clear();  // R1=5
-    const bool alone = assigned.size() == 1;
+    if (assigned.empty()) return values_.clear();  // R1=5 in a program of the RS-274 family
+    // Of several, some controls may take the new value of one for the next.
+    const bool certain = assigned.size() == 1 || !reader.uses_variable();
     for (const auto& [name, value] : assigned) {
-      values_.erase(name);
-      // Of several, some controls may take the new value of one for the next.
-      const bool known = value && !block.block_delete && std::abs(*value) < kNumberLimit;
-      if (known && (alone || !refers(text))) values_.emplace(name, *value);
+      set(name, certain && !block.block_delete ? value : std::nullopt);
     }
   }
 
+  void set(const Name& name, std::optional<double> value) {
+    values_.erase(name);
+    if (value && std::abs(*value) < kNumberLimit) values_.emplace(name, *value);
+  }
+
   // Whether its one assignment is to a global name, or a number above those that may be certain.
-  static bool sets_another(std::string_view text) {
-    if (std::ranges::count(text, '=') != 1) return false;
-    const std::string bare = without_blanks(text.substr(text.find('#')));
+  [[nodiscard]] bool sets_another(std::string_view text) const {
+    if (program_.language != Language::kRs274 || std::ranges::count(text, '=') != 1) return false;
+    const std::string bare = without_blanks(text);
     const std::size_t end = bare.find_first_not_of("0123456789", 1);
     return bare[1] == '<' || (char_at(bare, end) == '=' && end > 4 && bare[1] != '0');
   }
 
-  // Whether any right side names a variable.
-  static bool refers(std::string_view text) {
-    return std::ranges::count(text, '#') > std::ranges::count(text, '=');
+  // A block of a Siemens program with words of several letters.
+  void read_named(Block& block) {
+    // Those that set no variable and call nothing.
+    static constexpr std::string_view kSilent =
+        " D SOFT BRISK FFWON FFWOF G601 G602 G603 G641 G642 G643 G644 G645 COMPON COMPCURV COMPCAD "
+        "COMPSURF COMPOF CYCLE832 CTOL G70 G71 G700 G710 G500 TRANS ATRANS MSG STOPRE DYNNORM "
+        "DYNFINISH "
+        "DYNROUGH ";
+    const auto names = siemens_names_in(program_.source.text(), block.span);
+    if (!names.empty() && names.front().name == "DEF") return declare(block);
+    const bool silent = std::ranges::all_of(names, [](const SiemensName& each) {
+      return kSilent.find(" " + each.name + " ") != std::string_view::npos;
+    });
+    if (!silent) return set_declared(block);
+    if (!block.block_delete) compute_words(block);
+    forget_behind(block);
+  }
+
+  // DEF REAL NAME=5, OTHER=2.5
+  void declare(const Block& block) {
+    const std::string text = said_in(block);
+    Reader reader(text, values_, program_);
+    const auto def = reader.name();
+    const auto type = reader.name();
+    if (def != "<DEF>" || block.block_delete) return values_.clear();
+    if (type != "<REAL>") return;
+    do {
+      const auto name = reader.name();
+      if (!name) return values_.clear();
+      set(*name, reader.take('=') ? reader.sum() : std::nullopt);
+    } while (reader.take(','));
+    if (reader.next() != '\0') values_.clear();
+  }
+
+  // NAME=5 of a name whose value was known; anything else may set any.
+  void set_declared(const Block& block) {
+    const std::string text = said_in(block);
+    Reader reader(text, values_, program_);
+    const auto name = reader.name();
+    const bool known = name && values_.contains(*name) && reader.take('=');
+    const auto value = known ? reader.sum() : std::nullopt;
+    if (!value || reader.next() != '\0') return values_.clear();
+    set(*name, block.block_delete ? std::nullopt : value);
   }
 
   void forget_behind(const Block& block) {
@@ -311,11 +432,9 @@ bool has_block_of(const Program& program, ParseStatus status) {
 }  // namespace
 
 void compute_constants(Program& program) {
-  if (program.language != Language::kRs274) return;
-  if (!has_block_of(program, ParseStatus::kAssignment) ||
-      !has_block_of(program, ParseStatus::kExpression)) {
-    return;
-  }
+  const bool assigns =
+      has_block_of(program, ParseStatus::kAssignment) || program.language == Language::kSiemens;
+  if (!assigns || !has_block_of(program, ParseStatus::kExpression)) return;
   ConstantFinder(program).compute();
 }
 

@@ -454,7 +454,11 @@ void finish(const TextCarry& carry, Diagnostics& found, std::size_t first) {
 }  // namespace
 
 Program parse(const SourceText& source, const Reading& reading, Diagnostics& found) {
-  if (reading.language == Language::kKlartext) return parse_klartext(source, found);
+  if (reading.language == Language::kKlartext) {
+    Program klartext = parse_klartext(source, found);
+    if (!reading.keeps_expressions) compute_constants(klartext);
+    return klartext;
+  }
   const std::size_t before = found.size();
   TextCarry carry;
   if (reading.language == Language::kRs274) {

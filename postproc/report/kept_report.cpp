@@ -74,7 +74,7 @@ void add_causes(const KeptCauses& kept, std::string& lines) {
     if (reason.can_be_allowed) {
       lines += titled("", fmt::format("      --allow {} lifts this rule", reason.id));
     }
-    if (kept.share(cause.cut) >= kMuch) {
+    if (kept.share(cause.cut) >= kMuch && !reason.advice.starts_with("Nothing")) {
       lines += titled("", fmt::format("      {}", reason.advice));
     }
   }

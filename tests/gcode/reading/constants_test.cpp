@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "gcode/interpreter/interpreter.h"
@@ -127,6 +128,71 @@ TEST(Constants, AreNoneWhereTheValueIsNotCertain) {
     SCOPED_TRACE(text);
     EXPECT_FALSE(WithConstants(text).x().is_number);
   }
+}
+
+struct LanguageRow {
+  Language language;
+  const char* text;
+  std::optional<double> value;
+};
+
+constexpr auto kSinumerik = Language::kSiemens;
+constexpr auto kHeidenhain = Language::kKlartext;
+
+const LanguageRow kOtherLanguages[] = {
+    {kSinumerik, "R2=111.2\nG1 X=R2", 111.2},
+    {kSinumerik, "N5 R1=5 R2=6\nG1 X=-(R1+R2)*2", -22},
+    {kSinumerik, "DEF REAL TOP=143.35, LOW=2\nG1 X=TOP+LOW*10 Y3", 163.35},
+    {kSinumerik, "DEF REAL TOP=5\nTOP=6\nG642\nG1 X=TOP", 6},
+    {kSinumerik, "DEF REAL TOP=5\nT1 M6\nG1 X=top", 5},
+    {kSinumerik, "R2=5\nT1\nM6\nG1 X=R2", {}},
+    {kSinumerik, "R2=5\nL54\nG1 X=R2", {}},
+    {kSinumerik, "R2=5\nPOCKET(1)\nG1 X=R2", {}},
+    {kSinumerik, "DEF REAL TOP=5\nPOCKET(TOP)\nG1 X=TOP", {}},
+    {kSinumerik, "R1=5 R2=R1\nG1 X=R2", {}},
+    {kSinumerik, "R1=5\nNEXT: G1 X=R1\nR1=6\nGOTOB NEXT", {}},
+    {kSinumerik, "R1=5\nFOR R1=1 TO 5\nG1 X=R1\nENDFOR", {}},
+    {kSinumerik, "R1=5\nIF R2>5\nR1=6\nENDIF\nG1 X=R1", {}},
+    {kSinumerik, "/R1=5\nG1 X=R1", {}},
+    {kSinumerik, "R1=5\nG1 X=SIN(R1)", {}},
+    {kSinumerik, "R1=5\nG1 X=IC(R1)", {}},
+    {kSinumerik, "R1=5\nG1 X=R[1]", {}},
+    {kSinumerik, "DEF INT N=5\nG1 X=N", {}},
+    {kSinumerik, "DEF REAL A[2]\nR1=5\nG1 X=A", {}},
+    {kSinumerik, "G1 X=$P_UIFR", {}},
+    {kHeidenhain, "Q5 = +12\nL X+Q5 R0 F100", 12},
+    {kHeidenhain, "FN 0: Q5 = -1,5\nL X-Q5", 1.5},
+    {kHeidenhain, "1 Q5 = 2 * ( Q6 + 1 )\n2 L XQ5", {}},
+    {kHeidenhain, "1 Q6 = 3\n2 Q5 = 2 * ( Q6 + 1 ) ; twice\n3 L XQ5", 8},
+    {kHeidenhain, "QL5 = 7\nTOOL CALL 2 Z\nL XQL5", {}},
+    {kHeidenhain, "Q5 = 7\nCALL LBL 1\nL XQ5", {}},
+    {kHeidenhain, "Q5 = 7\nCALL PGM part.h\nL XQ5", {}},
+    {kHeidenhain, "Q5 = 7\nLBL 1\nQ5 = Q5 + 1\nL XQ5\nCALL LBL 1 REP5", {}},
+    {kHeidenhain, "Q5 = 7\nFN 9: IF +Q1 EQU +Q3 GOTO LBL 1\nQ5 = 8\nLBL 1\nL XQ5", {}},
+    {kHeidenhain, "Q113 = 7\nL XQ113", {}},
+    {kHeidenhain, "Q5 = SIN 30\nL XQ5", {}},
+    {kHeidenhain, "Q5 = 7\nQR5 = 8\nL XQR5", {}},
+    {kHeidenhain, "Q5 = 7\nCYCL CALL\nL XQ5", {}},
+};
+
+TEST(Constants, OfOtherLanguagesAreNumbersOnlyWhereTheyAreCertain) {
+  for (const LanguageRow& row : kOtherLanguages) {
+    std::string text = row.text;
+    if (row.language == kHeidenhain) text = "BEGIN PGM A MM\n" + text + "\nEND PGM A MM\n";
+    SCOPED_TRACE(text);
+    const WithConstants read(text, {.language = row.language});
+    EXPECT_EQ(read.x().is_number, row.value.has_value());
+    if (row.value) EXPECT_EQ(read.x().value, *row.value);
+  }
+}
+
+// The move stops short of the place that its number names.
+TEST(Constants, OfKlartextLeaveRoundedCornersAlone) {
+  const WithConstants read(
+      "BEGIN PGM A MM\nL X+0 Y+0 Z+0 R0 FMAX\nQ5 = 7\nL XQ5 F100\nRND R2\nL Y5\nEND PGM A MM\n",
+      {.language = kHeidenhain});
+  EXPECT_EQ(read.program.blocks[3].opacity, ParseStatus::kCornerWord);
+  EXPECT_LT(read.meaning.blocks[3].motion, 0);
 }
 
 TEST(Constants, OfAControlThatMayCountIncrementsNeedPoints) {
