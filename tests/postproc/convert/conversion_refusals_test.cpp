@@ -31,8 +31,9 @@ TEST(ConversionWays, ListTheBlocksOfKlartextThatCannotBeSaid) {
       {"Increment", "L IX+5 F500\nL X+0 Y+0 F500\n",
        "3:1: 2 L IX+5 F500 is no block of plain words"},
       {"Parameter", "Q1 = +5\nL X+Q1 F500\nL X+0 F500\n",
-       "3:1: 2 Q1 = +5 is no block of plain words\n"
-       "4:1: 3 L X+Q1 F500 is no block of plain words"},
+       "3:1: 2 Q1 = +5 is no block of plain words"},
+      {"UnknownParameter", "L X+Q1 F500\nL X+0 F500\n",
+       "3:1: 2 L X+Q1 F500 is no block of plain words"},
       {"Cycle", "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+10\nL X+0 Y+0 Z+1 FMAX\n",
        "3:1: 2 CYCL DEF 7.0 DATUM SHIFT is no block of plain words\n"
        "4:1: 3 CYCL DEF 7.1 X+10 is no block of plain words"},
@@ -98,9 +99,8 @@ TEST(ConversionWays, ListTheBlocksOfSiemensProgramsThatCannotBeSaid) {
        "5:1: MSG(\"hello\") is a word that only Siemens controls have"},
       {"Cycle", "CYCLE832(0.01,1,1)\n",
        "5:1: CYCLE832(0.01,1,1) is a word that only Siemens controls have"},
-      {"Parameter", "R1=5\nX=R1\nX0\n",
-       "5:1: R1=5 is no block of plain words\n"
-       "6:1: X=R1 is no block of plain words"},
+      {"Parameter", "R1=5\nX=R1\nX0\n", "5:1: R1=5 is no block of plain words"},
+      {"UnknownParameter", "X=R1\nX0\n", "5:1: X=R1 is no block of plain words"},
       {"Increment", "X=IC(5)\nX0\n", "5:1: X=IC(5) is no block of plain words"},
       {"Offset", "G505\nG0 X0 Y0 Z5\n", "5:1: G505 is a word that only Siemens controls have"},
       {"InchPlacesAlone", "G70\nG0 X0 Y0 Z1\n", "5:1: G70 leaves feeds in millimetres"},

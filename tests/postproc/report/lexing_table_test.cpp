@@ -157,7 +157,7 @@ TEST(LexingTable, OtherLanguages) {
                opaque("SiemensCycle", kLinuxCnc, "CYCLE832(0.01)", "foreign-words"),
                opaque("Klartext", kLinuxCnc, "L X+1 R0 FMAX", "not-understood"),
                opaque("Bang", kLinuxCnc, "!transBSpline(BreakAngle:=5)", "foreign-words"),
-               opaque("Dollar", kGrbl, "$H", "foreign-words"),
+               {"Dollar", kGrbl, "$H", "foreign-words"},
                opaque("Json", "g2core", "{\"xvm\":1000}", "foreign-words"),
                opaque("Host", "marlin", "@pause", "foreign-words"),
                opaque("Xml", kLinuxCnc, "<part>", "foreign-words"),
