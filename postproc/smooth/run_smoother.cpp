@@ -171,13 +171,18 @@ class RunSmoother {
     try_curve(Method::kFair, request);
   }
 
-  // The other methods, where there is time left to win and they may win it.
+  // The methods of corners: the quick one where it may win time, and those that search for each
+  // corner where rounding them has won some.
   void try_others() {
     if (options().side != geometry::Side::kBoth) return;
     const double corners = coarse_part(run(), options().tolerance_mm);
-    for (const Method method :
-         methods_worth_trying(corners, run().points.size(), bounds_.least_time(), best_time())) {
-      try_curve(method, curve_request(method));
+    if (!corners_are_worth_trying(corners, bounds_.least_time(), best_time())) return;
+    try_curve(Method::kGuo, curve_request(Method::kGuo));
+    for (const Method method : {Method::kOzcan, Method::kTimeOptimal}) {
+      if (searches_are_worth_trying(run().points.size(), bounds_.least_time(),
+                                    result_.facts.scale.alone, best_time())) {
+        try_curve(method, curve_request(method));
+      }
     }
   }
 

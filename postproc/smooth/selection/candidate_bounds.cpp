@@ -104,11 +104,13 @@ double coarse_part(const Run& run, double tolerance) {
   return p.size() > 2 ? static_cast<double>(coarse) / static_cast<double>(p.size() - 2) : 0;
 }
 
-std::vector<Method> methods_worth_trying(double corners, std::size_t points, double least_time,
-                                         double time) {
-  if (corners < kBounds.corners || least_time > (1 - kBounds.worth_trying) * time) return {};
-  if (points > kBounds.most_searched) return {Method::kGuo};
-  return {Method::kGuo, Method::kOzcan, Method::kTimeOptimal};
+bool corners_are_worth_trying(double corners, double least_time, double time) {
+  return corners >= kBounds.corners && least_time <= (1 - kBounds.worth_trying) * time;
+}
+
+bool searches_are_worth_trying(std::size_t points, double least_time, double before, double now) {
+  return points <= kBounds.most_searched && now <= kCost.clearly_faster * before &&
+         least_time <= (1 - kBounds.worth_trying) * now;
 }
 
 }  // namespace batten::postproc

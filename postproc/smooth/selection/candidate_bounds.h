@@ -58,10 +58,13 @@ class CandidateBounds {
 // `tolerance`: a run of a coarser one, of which only the corners could be rounded.
 [[nodiscard]] double coarse_part(const Run& run, double tolerance);
 
-// The methods beside `fair` that may win on a run, for Method::kBest. `corners` is coarse_part of
-// it, `points` how many it has, `time` (s) what its fastest form so far takes on the machine.
-// docs/algorithms/methods.md says why these.
-[[nodiscard]] std::vector<Method> methods_worth_trying(double corners, std::size_t points,
-                                                       double least_time, double time);
+// For Method::kBest: whether a method of corners may win on a run. `corners` is coarse_part of it,
+// `time` (s) what its fastest form so far takes on the machine.
+[[nodiscard]] bool corners_are_worth_trying(double corners, double least_time, double time);
+
+// The same of the methods that search for each corner by itself, which takes milliseconds: where
+// rounding has won no time, from `before` to `now`, a better rounding wins none.
+[[nodiscard]] bool searches_are_worth_trying(std::size_t points, double least_time, double before,
+                                             double now);
 
 }  // namespace batten::postproc

@@ -66,17 +66,23 @@ TEST(CoarsePart, IsTheShareOfVerticesThatLeaveTheTolerance) {
 
 // --- which methods are tried beside the first ----------------------------------------------------
 
-TEST(MethodsWorthTrying, AreNoneWhereNoTimeIsLeftToWinOrTheRunBends) {
-  EXPECT_TRUE(methods_worth_trying(1, 20, 9.9, 10).empty());
-  EXPECT_TRUE(methods_worth_trying(0.1, 20, 5, 10).empty());
-  EXPECT_EQ(methods_worth_trying(1, 20, 5, 10),
-            (std::vector{Method::kGuo, Method::kOzcan, Method::kTimeOptimal}));
+TEST(CornersAreWorthTrying, OnRunsOfCornersWhereTimeIsLeftToWin) {
+  EXPECT_TRUE(corners_are_worth_trying(1, 5, 10));
+  EXPECT_FALSE(corners_are_worth_trying(1, 9.9, 10));
+  EXPECT_FALSE(corners_are_worth_trying(0.1, 5, 10));
+}
+
+// Where the control rounds corners itself, no curve through them wins what the search costs.
+TEST(SearchesAreWorthTrying, WhereRoundingHasWonTimeAndMoreIsLeft) {
+  EXPECT_TRUE(searches_are_worth_trying(20, 5, 10, 9.8));
+  EXPECT_FALSE(searches_are_worth_trying(20, 5, 10, 9.95));
+  EXPECT_FALSE(searches_are_worth_trying(20, 9.7, 10, 9.8));
 }
 
 // A search for each corner of a program of 149 lines, three runs of some eighty corners, took 5 s:
 // found by the fuzzer of the whole pipeline, 38 s under its sanitizers.
-TEST(MethodsWorthTrying, SearchNoCornersOfARunThatHasMany) {
-  EXPECT_EQ(methods_worth_trying(1, 80, 5, 10), std::vector{Method::kGuo});
+TEST(SearchesAreWorthTrying, NotOnARunOfManyCorners) {
+  EXPECT_FALSE(searches_are_worth_trying(80, 5, 10, 9.8));
 }
 
 }  // namespace
