@@ -1,6 +1,6 @@
 // A long flat path in parts that are smoothed for themselves: where parts come so near to each
 // other that their new paths may cross, and whether they do where the old ones did not: what
-// new_crossing (tolerance_band.h) says of a path as a whole, without holding the whole. Method:
+// new_crossings (tolerance_band.h) says of a path as a whole, without holding the whole. Method:
 // docs/algorithms/tolerance_band.md.
 #pragma once
 
@@ -91,7 +91,7 @@ struct PartCrossing {
   Point2 place;
 };
 
-// As new_crossing, but wherever edges of different parts meet. `before` and `after`: the edges, in
+// As new_crossings, but wherever edges of different parts meet. `before` and `after`: the edges, in
 // order along the path, that are near to clusters of other parts.
 [[nodiscard]] std::vector<PartCrossing> new_crossings_of_parts(std::span<const PartEdge> before,
                                                                std::span<const PartEdge> after,

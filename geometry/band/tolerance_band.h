@@ -3,7 +3,7 @@
 //
 // A path in the band of another one may cross itself where the other does not, but only where the
 // band lies over itself: there two parts of the path are nearer to each other than twice the
-// tolerance, and either may move over to the other side of its neighbour. `new_crossing` looks for
+// tolerance, and either may move over to the other side of its neighbour. `new_crossings` looks for
 // that.
 #pragma once
 
@@ -59,14 +59,14 @@ struct NewCrossing {
 // Where the new path crosses, touches or runs over itself, while the old one, which it follows
 // within `tolerance` both ways and in order, does not there. Looked at are the pieces that lie in
 // planes across an axis (the one across which most of them lie), each plane for itself; arcs and
-// Bezier pieces as chords nearer to them than a hundredth of the tolerance. The first such crossing
-// along the new path, in the plane whose pieces come first.
+// Bezier pieces as chords nearer to them than a hundredth of the tolerance. In the order of their
+// first pieces, one for each two pieces.
 //
-// Nothing where there is none, and in planes where a path lies in a heap (see above): this is a
-// safeguard beside the proof of the distance, and says nothing about what runs through space.
-[[nodiscard]] std::optional<NewCrossing> new_crossing(std::span<const PathPiece> before,
-                                                      std::span<const PathPiece> after,
-                                                      double tolerance);
+// None in planes where a path lies in a heap (see above): this is a safeguard beside the proof of
+// the distance, and says nothing about what runs through space.
+[[nodiscard]] std::vector<NewCrossing> new_crossings(std::span<const PathPiece> before,
+                                                     std::span<const PathPiece> after,
+                                                     double tolerance);
 
 // The edge of the band as closed polygons: the outer ones counter-clockwise, holes clockwise. Round
 // ends and corners have corners of their own every 15 degrees, on the outside by less than a

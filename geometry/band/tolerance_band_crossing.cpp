@@ -206,14 +206,14 @@ int main_axis(const ChordPolyline& chords) {
 
 }  // namespace
 
-std::optional<NewCrossing> new_crossing(std::span<const PathPiece> before,
-                                        std::span<const PathPiece> after, double tolerance) {
+std::vector<NewCrossing> new_crossings(std::span<const PathPiece> before,
+                                       std::span<const PathPiece> after, double tolerance) {
   if (before.empty() || after.empty()) return {};
   const ChordPolyline chords = cut_into_chords(after, kChordPart * tolerance);
   const int axis = main_axis(chords);
   // Of the old path only where the new one meets itself, which is seldom.
   std::optional<Layers> then;
-  std::optional<NewCrossing> first;
+  std::map<std::pair<std::size_t, std::size_t>, NewCrossing> all;  // by pieces
   for (const auto& [height, layer] : layers_of(flat_edges(chords, axis))) {
     std::vector<Meeting> met = meetings_of(layer.edges);
     if (met.empty()) continue;
@@ -222,16 +222,18 @@ std::optional<NewCrossing> new_crossing(std::span<const PathPiece> before,
     }
     const auto old = then->find(height);
     if (old == then->end()) continue;
-    met = new_ones(std::move(met), old->second.edges, tolerance);
-    if (met.empty()) continue;
-    const auto [a, b] = met.front().edges;
-    if (first && first->first_piece <= layer.parts[a].label) continue;
-    first = NewCrossing{layer.parts[a].label, layer.parts[b].label};
-    first->place[axis] = height;
-    first->place[axis == 0 ? 1 : 0] = met.front().place.x();
-    first->place[axis == 2 ? 1 : 2] = met.front().place.y();
+    for (const Meeting& meeting : new_ones(std::move(met), old->second.edges, tolerance)) {
+      const auto [a, b] = meeting.edges;
+      NewCrossing crossing{layer.parts[a].label, layer.parts[b].label};
+      crossing.place[axis] = height;
+      crossing.place[axis == 0 ? 1 : 0] = meeting.place.x();
+      crossing.place[axis == 2 ? 1 : 2] = meeting.place.y();
+      all.try_emplace({crossing.first_piece, crossing.second_piece}, crossing);
+    }
   }
-  return first;
+  std::vector<NewCrossing> sorted;
+  for (const auto& [pieces, crossing] : all) sorted.push_back(crossing);
+  return sorted;
 }
 
 std::vector<PartEdge> flat_edges(std::span<const PathPiece> path, int axis, double tolerance,

@@ -178,23 +178,27 @@ Violation distance_violation(const PartPair& pair, const PathComparison& compari
   return {ViolationKind::kNotProved, "not-proved", old_line, new_line, 0, message};
 }
 
-// `middle`: without the pieces that are the same, which cannot be to blame.
-std::optional<Violation> crossing_violation(const PartPair& pair, const PartPair& middle,
-                                            double tolerance_mm) {
-  const auto found = geometry::new_crossing(pair.before.path(), pair.after.path(), tolerance_mm);
-  if (!found) return {};
-  const std::uint32_t line = pair.after.line(found->first_piece);
-  const std::string message = fmt::format(
-      "the new path meets itself at X{:.4f} Y{:.4f} Z{:.4f} (lines {} and {}), the old one does "
-      "not",
-      found->place.x(), found->place.y(), found->place.z(), line,
-      pair.after.line(found->second_piece));
-  return Violation{ViolationKind::kCrossing,
-                   "crosses-itself",
-                   middle.before.line_near(found->place),
-                   line,
-                   0,
-                   message};
+// `middle`: without the pieces that are the same, which cannot be to blame. One for each old line.
+std::vector<Violation> crossing_violations(const PartPair& pair, const PartPair& middle,
+                                           double tolerance_mm) {
+  std::vector<Violation> violations;
+  for (const auto& [first_piece, second_piece, place] :
+       geometry::new_crossings(pair.before.path(), pair.after.path(), tolerance_mm)) {
+    Violation violation;
+    violation.kind = ViolationKind::kCrossing;
+    violation.id = "crosses-itself";
+    violation.old_line = middle.before.line_near(place);
+    violation.new_line = pair.after.line(first_piece);
+    violation.other_new_line = pair.after.line(second_piece);
+    violation.message = fmt::format(
+        "the new path meets itself at X{:.4f} Y{:.4f} Z{:.4f} (lines {} and {}), the old one does "
+        "not",
+        place.x(), place.y(), place.z(), violation.new_line, violation.other_new_line);
+    const bool is_known =
+        std::ranges::find(violations, violation.old_line, &Violation::old_line) != violations.end();
+    if (!is_known) violations.push_back(std::move(violation));
+  }
+  return violations;
 }
 
 // On one side of the old path, as far as the tolerance: within half of it of the path that is half
@@ -308,8 +312,8 @@ class StretchComparer {
       result_.violations.push_back(std::move(*violation));
     }
     // Of the whole, for a new part may also cross one that is the same.
-    if (auto violation = crossing_violation(pair, proved, tolerance_)) {
-      result_.violations.push_back(std::move(*violation));
+    for (Violation& violation : crossing_violations(pair, proved, tolerance_)) {
+      result_.violations.push_back(std::move(violation));
     }
   }
 

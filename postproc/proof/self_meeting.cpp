@@ -13,7 +13,7 @@ namespace {
 using geometry::Point3;
 using geometry::Vector3;
 
-// As new_crossing has it.
+// As new_crossings have it.
 constexpr double kChordPart = 0.01;
 
 // A path with more chords of arcs than twice this is cut into longer ones as a whole, whose error
@@ -22,7 +22,7 @@ constexpr double kChordPart = 0.01;
 constexpr double kManyChords = 1 << 19;
 
 // mm: how far chords must be from each other so that neither they meet, nor those into which
-// new_crossing cuts the whole path.
+// new_crossings cuts the whole path.
 double least_distance(double tolerance, std::size_t bent_chords) {
   const double longer = static_cast<double>(bent_chords) / kManyChords;
   if (longer <= 1) return SelfMeeting::kApart;

@@ -1,4 +1,4 @@
-// Whether a long path may meet itself: cross, touch or run over itself. What new_crossing
+// Whether a long path may meet itself: cross, touch or run over itself. What new_crossings
 // (geometry/band/tolerance_band.h) looks for is found among such meetings only. Holds the corners
 // of the path's chords, 24 bytes each, and nothing else of it.
 #pragma once
@@ -14,7 +14,7 @@ namespace batten::postproc {
 
 class SelfMeeting {
  public:
-  // Arcs and Bezier pieces are cut into the chords that new_crossing cuts them into under this
+  // Arcs and Bezier pieces are cut into the chords that new_crossings cuts them into under this
   // tolerance (mm, > 0).
   explicit SelfMeeting(double tolerance_mm) : tolerance_(tolerance_mm) {}
 

@@ -157,13 +157,15 @@ TEST(NewCrossing, PassesThatChangeSidesAreFound) {
     over[i].y() = 0.009;
     over[44 - i].y() = 0.006;
   }
-  EXPECT_FALSE(new_crossing(path_at(old, 1), path_at(apart, 1), 0.01).has_value());
-  const auto found = new_crossing(path_at(old, 1), path_at(over, 1), 0.01);
-  ASSERT_TRUE(found.has_value());
-  EXPECT_EQ(found->first_piece, 7u);
-  EXPECT_EQ(found->second_piece, 36u);
-  EXPECT_NEAR(found->place.x(), 3.5 + 0.5 * 15 / 18, 1e-9) << "where 0.018 x = 0.015 - 0.018 x";
-  EXPECT_DOUBLE_EQ(found->place.z(), 1);
+  EXPECT_TRUE(new_crossings(path_at(old, 1), path_at(apart, 1), 0.01).empty());
+  const auto found = new_crossings(path_at(old, 1), path_at(over, 1), 0.01);
+  ASSERT_EQ(found.size(), 2u) << "over to the other side, and back";
+  EXPECT_EQ(found[0].first_piece, 7u);
+  EXPECT_EQ(found[0].second_piece, 36u);
+  EXPECT_NEAR(found[0].place.x(), 3.5 + 0.5 * 15 / 18, 1e-9) << "where 0.018 x = 0.015 - 0.018 x";
+  EXPECT_DOUBLE_EQ(found[0].place.z(), 1);
+  EXPECT_EQ(found[1].first_piece, 12u);
+  EXPECT_EQ(found[1].second_piece, 31u);
 }
 
 struct CrossingCase {
@@ -179,8 +181,8 @@ TEST_P(NewCrossings, AreFoundInEveryPlane) {
   const auto& [name, before, after, found] = GetParam();
   for (const int axis : {0, 1, 2}) {
     const Path old = path_at(before, 4, axis);
-    EXPECT_EQ(new_crossing(old, path_at(after, 4, axis), 0.01).has_value(), found);
-    EXPECT_FALSE(new_crossing(old, old, 0.01).has_value());
+    EXPECT_EQ(!new_crossings(old, path_at(after, 4, axis), 0.01).empty(), found);
+    EXPECT_TRUE(new_crossings(old, old, 0.01).empty());
   }
 }
 
@@ -221,7 +223,7 @@ TEST(NewCrossing, ACircleMayEndWhereItBegan) {
   const Point3 start(10, 0, 0);
   const Path circle{Line{{15, 0, 0}, start}, Arc{start, {-10, 0, 0}, {0, 0, 0}, {0, 0, 1}, pi},
                     Arc{{-10, 0, 0}, start, {0, 0, 0}, {0, 0, 1}, pi}, Line{start, {15, 3, 0}}};
-  EXPECT_FALSE(new_crossing(old, circle, 0.01).has_value());
+  EXPECT_TRUE(new_crossings(old, circle, 0.01).empty());
 }
 
 TEST(NewCrossing, PathsInSpaceAreNotLookedAt) {
@@ -231,8 +233,8 @@ TEST(NewCrossing, PathsInSpaceAreNotLookedAt) {
   for (const Point2& p : over) {
     rising.emplace_back(p.x(), p.y(), 0.001 * static_cast<double>(rising.size()));
   }
-  EXPECT_FALSE(new_crossing(path_at(old, 0), path_through(rising), 0.01).has_value());
-  EXPECT_FALSE(new_crossing({}, path_at(over, 0), 0.01).has_value());
+  EXPECT_TRUE(new_crossings(path_at(old, 0), path_through(rising), 0.01).empty());
+  EXPECT_TRUE(new_crossings({}, path_at(over, 0), 0.01).empty());
 }
 
 // --- outline -----------------------------------------------------------------------------------

@@ -94,7 +94,7 @@ geometry::Path cuts_of(const std::string& text) {
 }
 
 bool crosses_anew(const std::string& before, const std::string& after) {
-  return geometry::new_crossing(cuts_of(before), cuts_of(after), kCrossingTolerance).has_value();
+  return !geometry::new_crossings(cuts_of(before), cuts_of(after), kCrossingTolerance).empty();
 }
 
 std::size_t kept_for_crossing(const SmoothResult& result) {
