@@ -176,6 +176,10 @@ std::vector<double> balanced(const CurvePieces& pieces, double from, std::vector
 // Appends greedy chords, the last of them balanced.
 void append_balanced(const CurvePieces& pieces, double from, const std::vector<double>& ends,
                      const ChordOptions& options, std::vector<double>& vertices) {
+  if (!options.balanced) {
+    vertices.insert(vertices.end(), ends.begin(), ends.end());
+    return;
+  }
   const std::size_t kept = ends.size() > kChords.balanced ? ends.size() - kChords.balanced : 0;
   const double start = kept > 0 ? ends[kept - 1] : from;
   const auto cut = ends.begin() + static_cast<std::ptrdiff_t>(kept);

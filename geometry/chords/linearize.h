@@ -15,6 +15,7 @@ struct ChordOptions {
   // A chord's end is searched to this part of its length: with this one, a thousand chords lose a
   // quarter of a chord.
   double precision = 5e-4;
+  bool balanced = true;  // whether the last chord is no remainder; else about as many come sooner
 };
 
 struct ChordTuning {

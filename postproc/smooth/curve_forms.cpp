@@ -103,6 +103,7 @@ class CurveForms {
         bends_(given.bends),
         share_(given.share),
         left_(given.left),
+        around_vertices_(given.around_vertices),
         one_sided_(setting.task.options.side != geometry::Side::kBoth),
         pieces_(curve_.path.curve),
         result_(result) {}
@@ -117,7 +118,7 @@ class CurveForms {
       if (has_form(Form::kCurves)) return;
     }
     if (wanted != Form::kLines) offer_arcs();
-    if (wanted != Form::kLines && is_fair) offer_arc_splines();
+    if (wanted != Form::kLines && is_fair && around_vertices_) offer_arc_splines();
     if (wanted != Form::kArcs) offer_lines();
     make_best();
   }
@@ -135,14 +136,25 @@ class CurveForms {
 
   // In the order in which they were offered, but for those that what there is then beats.
   void make_best() {
-    const bool all = task_.scope == CandidateScope::kAll || task_.context.is_piece();
-    for (const Offer& offer : offers_) {
+    const bool all = task_.scope == CandidateScope::kAll;
+    bool few_around_vertices = false;
+    for (Offer& offer : offers_) {
+      if (offer.around_vertices && few_around_vertices) continue;
       if (!all && setting_.bounds.is_beaten(offer.form, offer.blocks, offer.distance)) {
         result_.left_out = true;
         continue;
       }
+      if (!all && offer.form == Form::kArcs && task_.memo == nullptr) {
+        offer.options.most_arcs = setting_.bounds.most_blocks(offer.form, offer.distance);
+      }
       auto candidate = made(offer);
-      if (candidate) result_.candidates.push_back(std::move(*candidate));
+      if (candidate) {
+        few_around_vertices =
+            offer.around_vertices && candidate->figures.blocks <= facts().scale.original.blocks;
+        result_.candidates.push_back(std::move(*candidate));
+      } else if (!all && offer.form == Form::kArcs) {
+        result_.left_out = true;  // there may be more arcs than these
+      }
     }
     offers_.clear();
   }
@@ -264,7 +276,8 @@ class CurveForms {
   }
 
   // Arcs in the band around the vertices themselves. Of arcs no more should come than there were:
-  // the search finds one fewer here and there in a band that is a little less wide.
+  // where they are not clearly fewer, the search finds one fewer here and there in a band that is a
+  // little less wide.
   void offer_arc_splines() {
     if (one_sided_ || !(wants_few_moves(task_.options) || !task_.run.arcs.empty())) return;
     const double whole = left_ + curve_.path.deviation;
@@ -325,6 +338,7 @@ class CurveForms {
   const CurvatureProfile& bends_;
   double share_;
   double left_;
+  bool around_vertices_;
   bool
       one_sided_;  // the run must not be cut on one side: what is written follows the curve closely
   geometry::MarkedPieces pieces_;

@@ -49,6 +49,8 @@ struct CurveOfRun {
   const CurvatureProfile& bends;
   double share = 0;  // mm, of the tolerance: the form's
   double left = 0;   // mm, what the curve leaves of the tolerance
+  // Whether arcs around the vertices are wanted, which are the same for every curve.
+  bool around_vertices = true;
 };
 
 // The candidate's method and curvature are left to who knows them. Nothing where the target cannot

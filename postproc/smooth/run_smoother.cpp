@@ -151,7 +151,9 @@ class RunSmoother {
     if (!(left > 0)) return;
     fits_ = true;
     const CurvatureProfile bends(curve.path.curve);
-    add_forms({task_, times_, bounds_, *meant_}, {curve, bends, shares_.form, left}, result_);
+    add_forms({task_, times_, bounds_, *meant_},
+              {curve, bends, shares_.form, left, !around_vertices_}, result_);
+    if (curve.method == Method::kFair) around_vertices_ = true;
   }
 
   // A curve that leaves of the vertices what their decimals do may be, and where few blocks are
@@ -207,7 +209,8 @@ class RunSmoother {
   CandidateBounds bounds_;
   std::optional<geometry::SmoothCurve> fair_;
   std::optional<MeantPath> meant_;
-  bool fits_ = false;  // a method found a curve inside the tolerance
+  bool around_vertices_ = false;  // arcs around the vertices have been looked for
+  bool fits_ = false;             // a method found a curve inside the tolerance
   SmoothedRun& result_;
 };
 
@@ -338,9 +341,15 @@ const Candidate* RunState::chosen() const {
   return &smoothed.candidates[selection.order[tried]];
 }
 
-void RunState::reject(std::string_view why) {
+void RunState::reject(std::string_view why, bool is_too_far) {
+  if (is_too_far) nearer_than = std::min(nearer_than, chosen()->figures.distance);
   ++tried;
+  skip_what_is_too_far();
   if (chosen() == nullptr) reject_reason = why;
+}
+
+void RunState::skip_what_is_too_far() {
+  while (chosen() != nullptr && chosen()->figures.distance >= nearer_than) ++tried;
 }
 
 void RunState::start_again(const Run& run, const SmoothOptions& options) {
@@ -348,7 +357,8 @@ void RunState::start_again(const Run& run, const SmoothOptions& options) {
   selection = choose(smoothed, options);
   drop_what_is_not_written();
   tried = 0;
-  reject_reason = {};
+  skip_what_is_too_far();
+  if (chosen() != nullptr) reject_reason = {};
 }
 
 void RunState::drop_what_is_not_written() {

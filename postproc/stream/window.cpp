@@ -161,17 +161,21 @@ bool same_before(const NewTextBefore& a, const NewTextBefore& b) {
 
 namespace {
 
-// Kinds of violations whose runs are rejected before others, one kind after the other.
+// Violations of a run by itself, whose place is known. Others may follow from them.
 struct Rule {
   ViolationKind kind;
   std::string_view reason;
 };
-constexpr Rule kRejectedFirst[] = {{ViolationKind::kCrossing, gcode::reason::kCrossesItself},
-                                   {ViolationKind::kSide, gcode::reason::kWrongSide},
-                                   {ViolationKind::kTarget, gcode::reason::kTargetCannot}};
+constexpr Rule kOfOneRun[] = {{ViolationKind::kCrossing, gcode::reason::kCrossesItself},
+                              {ViolationKind::kSide, gcode::reason::kWrongSide},
+                              {ViolationKind::kTarget, gcode::reason::kTargetCannot},
+                              {ViolationKind::kDistance, gcode::reason::kNotProved},
+                              {ViolationKind::kNotProved, gcode::reason::kNotProved}};
 
-bool is_rejected_first(ViolationKind kind) {
-  return std::ranges::find(kRejectedFirst, kind, &Rule::kind) != std::end(kRejectedFirst);
+// Which a form that is nearer to the path may not have.
+bool is_too_far(ViolationKind kind) {
+  return kind == ViolationKind::kCrossing || kind == ViolationKind::kDistance ||
+         kind == ViolationKind::kNotProved;
 }
 
 std::vector<std::uint32_t> blocks_at(const std::vector<std::size_t>& bytes,
@@ -359,43 +363,50 @@ class Prover {
     return found;
   }
 
-  // Returns whether any run was rejected.
+  // Returns whether any run was rejected. Those with violations of their own first, since the
+  // others may follow from them.
   bool take_back(ProvedText& round) {
-    std::map<ViolationKind, std::set<RunState*>> blamed;  // kNotProved: all other kinds, too
+    std::map<RunState*, ViolationKind> blamed;  // each run for the first of the rules that it broke
+    std::set<RunState*> others;
     for (const Violation& violation : round.verification.violations) {
       RunState* work = rewritten_run_at(violation.old_line);
-      const bool first = is_rejected_first(violation.kind);
-      const bool of_one_section = first || violation.kind == ViolationKind::kDistance ||
-                                  violation.kind == ViolationKind::kNotProved;
-      if (part_.window && (work == nullptr || !of_one_section)) {
+      const auto* rule = std::ranges::find(kOfOneRun, violation.kind, &Rule::kind);
+      const bool of_one_run = rule != std::end(kOfOneRun);
+      if (part_.window && (work == nullptr || !of_one_run)) {
         round.stands_alone = false;
         return false;
       }
-      if (work != nullptr) blamed[first ? violation.kind : ViolationKind::kNotProved].insert(work);
+      if (work == nullptr) continue;
+      if (!of_one_run) {
+        others.insert(work);
+        continue;
+      }
+      const auto [known, is_new] = blamed.try_emplace(work, violation.kind);
+      const auto* before = std::ranges::find(kOfOneRun, known->second, &Rule::kind);
+      if (!is_new && rule < before) known->second = violation.kind;
     }
-    for (const Rule& rule : kRejectedFirst) {
-      if (reject(blamed[rule.kind], rule.reason)) return true;
+    for (const auto& [work, kind] : blamed) {
+      reject(*work, std::ranges::find(kOfOneRun, kind, &Rule::kind)->reason, is_too_far(kind));
     }
-    std::set<RunState*>& rest = blamed[ViolationKind::kNotProved];
-    if (rest.empty()) {
+    if (!blamed.empty()) return true;
+    if (others.empty()) {
       // A violation that belongs to no run: believe none of them.
       for (RunState& work : runs_.works) {
-        if (work.chosen() != nullptr) rest.insert(&work);
+        if (work.chosen() != nullptr) others.insert(&work);
       }
     }
-    return reject(rest, gcode::reason::kNotProved);
+    for (RunState* work : others) reject(*work, gcode::reason::kNotProved, false);
+    return !others.empty();
   }
 
-  bool reject(const std::set<RunState*>& works, std::string_view why) {
-    for (RunState* work : works) {
-      work->reject(why);
-      if (work->chosen() == nullptr && work->smoothed.left_out) {
-        work->start_again(std::get<Run>(runs_.sections[work->section].content), options_);
-      }
-      if (work->cut_run)
-        revert_costly_pieces(runs_.cut_runs[*work->cut_run], runs_.works, options_);
+  void reject(RunState& work, std::string_view why, bool is_too_far) {
+    // What a run of this round was given back with may be blocks already.
+    if (work.chosen() == nullptr) return;
+    work.reject(why, is_too_far);
+    if (work.chosen() == nullptr && work.smoothed.left_out) {
+      work.start_again(std::get<Run>(runs_.sections[work.section].content), options_);
     }
-    return !works.empty();
+    if (work.cut_run) revert_costly_pieces(runs_.cut_runs[*work.cut_run], runs_.works, options_);
   }
 
   const ProgramPart& part_;

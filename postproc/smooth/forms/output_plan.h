@@ -53,6 +53,8 @@ struct PlanOptions {
   // and how many of them there may be; 0: any number.
   double chord_height = 0.005;
   std::size_t most_moves = 0;
+  // More arcs than this are not looked for.
+  std::size_t most_arcs = std::numeric_limits<std::size_t>::max();
   double tolerance = 0;  // mm, moves to run, where max_deviation is not to be the same everywhere
 
   bool operator==(const PlanOptions&) const = default;
@@ -68,7 +70,10 @@ struct PlanTuning {
   double coarser_again = 1.05;  // at least, where chords are still too many
   double periods = 1.1;         // block periods, with which the control just holds the feed
   // Arcs. There are few that the target refuses: too tight, too short.
-  double arc_chords = 0.1;      // kept for chords in their place
+  double arc_chords = 0.1;  // kept for chords in their place
+  // A brief search finds no more than so many times as many arcs as a thorough one: where these
+  // are more than there may be, there is none.
+  double brief_finds = 1.3;
   double spline_chords = 0.03;  // the same where they are refused after rounding only
   int newton_steps = 3;         // to the parameter of an end, from about the right one
   double reversal = 170 * geometry::kPi / 180;  // greater turns stay: see geometry::find_features

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "gcode/controls/arc_rules.h"
@@ -152,6 +153,17 @@ std::vector<PlaneAxes> flattest_first(const Run& run, std::vector<PlaneAxes> pla
   return planes;
 }
 
+constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max() / 2;
+
+// Whether a brief search shows that a longer one finds too many arcs.
+template <typename Plan>
+bool takes_too_many(const Plan& plan, const PlanOptions& options, geometry::ArcEffort wanted) {
+  if (wanted == geometry::ArcEffort::kBrief || options.most_arcs >= kAnyNumber) return false;
+  const std::optional<OutputPlan> brief = plan(geometry::ArcEffort::kBrief);
+  return brief && static_cast<double>(brief->moves.size()) >
+                      kPlans.brief_finds * static_cast<double>(options.most_arcs);
+}
+
 }  // namespace
 
 std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve& fair,
@@ -163,8 +175,13 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
     const auto flat = laid_flat(run, fair.curve, plane.normal, arc_grid(options));
     if (!flat) continue;
     flat_somewhere = true;
-    auto plan = plan_in(run, fair, *flat, nullptr, 0, fit_options(options, plane, false), options);
-    if (plan) return plan;
+    const auto with_effort = [&](geometry::ArcEffort effort) {
+      geometry::ArcFitOptions fit = fit_options(options, plane, false);
+      fit.effort = effort;
+      return plan_in(run, fair, *flat, nullptr, 0, fit, options);
+    };
+    if (takes_too_many(with_effort, options, options.arc_effort)) return std::nullopt;
+    if (auto plan = with_effort(options.arc_effort)) return plan;
   }
   if (flat_somewhere || !options.target->helices) return std::nullopt;
   // In space the planes differ much: the rows of a raster along X are arcs in G18, and in G17 they
@@ -173,7 +190,7 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
   // are chords in all but name, and plan_lines does those better.
   const double chords = bends.chords(fit_deviation(options), 0);
   std::optional<OutputPlan> best;
-  std::size_t most = motion_count(run);
+  std::size_t most = std::min(motion_count(run), options.most_arcs + 1);
   for (const PlaneAxes& plane : flattest_first(run, planes)) {
     geometry::ArcFitOptions fit = fit_options(options, plane, true);
     fit.at_most = most;
@@ -199,10 +216,11 @@ struct ArcSection {
 class ArcSplinePlanner {
  public:
   ArcSplinePlanner(const Run& run, const geometry::SmoothCurve& fair, const PlanOptions& options,
-                   const PlaneAxes& plane)
+                   const PlaneAxes& plane, geometry::ArcEffort effort)
       : run_(run),
         fair_(fair),
         options_(options),
+        effort_(effort),
         frame_(geometry::PlaneFrame::across(Vector3::Unit(plane.normal))),
         axis_(Vector3::Unit(plane.normal)),
         height_(run.points.front()[plane.normal]) {}
@@ -279,7 +297,7 @@ class ArcSplinePlanner {
     fit.min_radius = options_.target->min_radius;
     fit.max_radius = options_.target->max_radius;
     fit.grid = arc_grid(options_);
-    fit.effort = geometry::ArcEffort::kThorough;
+    fit.effort = effort_;
     const geometry::Vector2 first = points[1] - points[0];
     fit.direction = std::atan2(first.y(), first.x());
     if (section.tangent_start) fit.start_angle = angle_of(fair_.vertex_parameters[section.first]);
@@ -322,6 +340,7 @@ class ArcSplinePlanner {
   const Run& run_;
   const geometry::SmoothCurve& fair_;
   const PlanOptions& options_;
+  geometry::ArcEffort effort_;
   geometry::PlaneFrame frame_;
   Vector3 axis_;
   double height_;  // of the run along the axis
@@ -334,7 +353,12 @@ std::optional<OutputPlan> plan_arc_spline(const Run& run, const geometry::Smooth
                                           const PlanOptions& options) {
   for (const PlaneAxes& plane : arc_planes(options)) {
     if (!lies_across(run, plane.normal)) continue;
-    if (auto plan = ArcSplinePlanner(run, fair, options, plane).plan()) return plan;
+    const auto with_effort = [&](geometry::ArcEffort effort) {
+      return ArcSplinePlanner(run, fair, options, plane, effort).plan();
+    };
+    constexpr auto kEffort = geometry::ArcEffort::kThorough;
+    if (takes_too_many(with_effort, options, kEffort)) continue;
+    if (auto plan = with_effort(kEffort)) return plan;
   }
   return std::nullopt;
 }

@@ -52,9 +52,7 @@ class RunWriter {
   // G2 and G3 cannot be said again by themselves, and no block after a run needs them (section.h).
   void restore(gcode::ModalState after) {
     const std::size_t begin = writer_.text().size();
-    const bool arc = after.motion == gcode::MotionMode::kClockwise ||
-                     after.motion == gcode::MotionMode::kCounterclockwise;
-    if (arc) after.motion = gcode::MotionMode::kUnknown;
+    if (is_arc(after.motion)) after.motion = gcode::MotionMode::kUnknown;
     writer_.restore(after);
     count_from(begin);
   }
@@ -125,8 +123,10 @@ bool names_numbers(const OutputPlan& plan, double unit) {
 
 std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
                                  const gcode::Program& program, const gcode::Control& target,
-                                 const gcode::ModalState& before, const gcode::ModalState& after,
+                                 gcode::ModalState before, const gcode::ModalState& after,
                                  std::string_view line_end) {
+  // A run that ends where there was an arc does not restore it, so that one after it says its own.
+  if (is_arc(before.motion)) before.motion = gcode::MotionMode::kUnknown;
   if (!names_numbers(plan, gcode::millimetres_per(before.units))) return std::nullopt;
   const gcode::Position start{run.points.front(), {true, true, true}};
   RunWriter out(target, Writer(target, {before, start}, line_end));

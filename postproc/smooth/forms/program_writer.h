@@ -34,7 +34,7 @@ struct RunText {
 [[nodiscard]] std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
                                                const gcode::Program& program,
                                                const gcode::Control& target,
-                                               const gcode::ModalState& before,
+                                               gcode::ModalState before,
                                                const gcode::ModalState& after,
                                                std::string_view line_end);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "postproc/smooth/selection/candidate.h"
@@ -47,6 +49,22 @@ bool CandidateBounds::is_beaten(Form form, double blocks, double distance) const
   if (is_forced(form, facts, options)) return false;
   return objection_to(figures, facts.scale, options.prefer) != Objection::kNone ||
          cost_of(figures, facts.scale, options.prefer) >= cost_to_beat(so_far_, options);
+}
+
+std::size_t CandidateBounds::most_blocks(Form form, double distance) const {
+  const auto is_too_many = [&](std::size_t blocks) {
+    return is_beaten(form, static_cast<double>(blocks) / kBounds.fewer, distance);
+  };
+  std::size_t few = 0;
+  std::size_t many = std::numeric_limits<std::size_t>::max() / 2;
+  if (!is_too_many(many)) return many;
+  many = 16;
+  while (!is_too_many(many)) few = std::exchange(many, 2 * many);
+  while (many - few > 1) {
+    const std::size_t middle = (few + many) / 2;
+    (is_too_many(middle) ? many : few) = middle;
+  }
+  return few;
 }
 
 using geometry::Vector3;

@@ -41,6 +41,10 @@ class CandidateBounds {
   // meant, costs more than what there is already, or would not be written anyhow.
   [[nodiscard]] bool is_beaten(Form form, double blocks, double distance) const;
 
+  // In how many blocks such a form may come, at most, for not to be beaten: more than any run has
+  // where their number does not matter.
+  [[nodiscard]] std::size_t most_blocks(Form form, double distance) const;
+
  private:
   [[nodiscard]] Figures least(double blocks, double distance) const;
 

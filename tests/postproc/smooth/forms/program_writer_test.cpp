@@ -79,6 +79,15 @@ TEST(WriteRun, WritesMovesCommentsAndWhatTheNextBlockExpects) {
   EXPECT_EQ(out->arcs, 1U);
 }
 
+// A run before this one may have ended in other words than the arc that stood there.
+TEST(WriteRun, SaysItsOwnMotionAfterAnArc) {
+  Planned planned({0, 0, 0});
+  planned.arc({2, 0, 0}, {1, 0, 0}, Vector3::UnitZ(), -std::numbers::pi);
+  ModalState after_an_arc = cutting();
+  after_an_arc.motion = gcode::MotionMode::kClockwise;
+  EXPECT_EQ(written(planned, "linuxcnc", after_an_arc, after_an_arc)->text, "G2 X2 I1\n");
+}
+
 TEST(WriteRun, RestoresNothingThatTheNextBlockDoesNotNeed) {
   Planned planned({0, 0, 0});
   planned.arc({2, 0, 0}, {1, 0, 0}, Vector3::UnitZ(), -std::numbers::pi);
