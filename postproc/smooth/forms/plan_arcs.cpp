@@ -190,7 +190,7 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
   // are chords in all but name, and plan_lines does those better.
   const double chords = bends.chords(fit_deviation(options), 0);
   std::optional<OutputPlan> best;
-  std::size_t most = std::min(motion_count(run), options.most_arcs + 1);
+  std::size_t most = std::min(motion_count(run), std::min(options.most_arcs, kAnyNumber) + 1);
   for (const PlaneAxes& plane : flattest_first(run, planes)) {
     geometry::ArcFitOptions fit = fit_options(options, plane, true);
     fit.at_most = most;
