@@ -152,7 +152,7 @@ class CurveForms {
         few_around_vertices =
             offer.around_vertices && candidate->figures.blocks <= facts().scale.original.blocks;
         result_.candidates.push_back(std::move(*candidate));
-      } else if (!all && offer.form == Form::kArcs) {
+      } else if (offer.options.most_arcs < PlanOptions().most_arcs) {
         result_.left_out = true;  // there may be more arcs than these
       }
     }

@@ -341,15 +341,9 @@ const Candidate* RunState::chosen() const {
   return &smoothed.candidates[selection.order[tried]];
 }
 
-void RunState::reject(std::string_view why, bool is_too_far) {
-  if (is_too_far) nearer_than = std::min(nearer_than, chosen()->figures.distance);
+void RunState::reject(std::string_view why) {
   ++tried;
-  skip_what_is_too_far();
   if (chosen() == nullptr) reject_reason = why;
-}
-
-void RunState::skip_what_is_too_far() {
-  while (chosen() != nullptr && chosen()->figures.distance >= nearer_than) ++tried;
 }
 
 void RunState::start_again(const Run& run, const SmoothOptions& options) {
@@ -357,8 +351,7 @@ void RunState::start_again(const Run& run, const SmoothOptions& options) {
   selection = choose(smoothed, options);
   drop_what_is_not_written();
   tried = 0;
-  skip_what_is_too_far();
-  if (chosen() != nullptr) reject_reason = {};
+  reject_reason = {};
 }
 
 void RunState::drop_what_is_not_written() {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -27,24 +26,18 @@ struct RunState {
   SmoothedRun smoothed = {};
   Selection selection = {};
   Outlook outlook = {};
-  std::size_t tried = 0;                                         // candidates that were given up
-  std::string_view reject_reason = {};                           // why none of them is left
-  double nearer_than = std::numeric_limits<double>::infinity();  // mm, rms: what may still be taken
+  std::size_t tried = 0;                    // candidates that were given up
+  std::string_view reject_reason = {};      // why none of them is left
   std::optional<std::size_t> cut_run = {};  // set for a piece: the run it belongs to
   std::size_t first = 0;                    // vertices of that run
   std::size_t last = 0;
 
   [[nodiscard]] const Candidate* chosen() const;
-  // To its next candidate: after one that left the path too far, to one that is nearer to it.
-  void reject(std::string_view why, bool is_too_far = false);
+  void reject(std::string_view why);  // to its next candidate
   // Makes all candidates anew, also those that were left out: where none is left of the others.
-  // Those that are no nearer to the path than what was too far are given up at once.
   void start_again(const Run& run, const SmoothOptions& options);
   // Texts and moves of candidates that were not chosen take room for nothing.
   void drop_what_is_not_written();
-
- private:
-  void skip_what_is_too_far();
 };
 
 struct CutRun {  // into pieces, which follow each other in the list of works

@@ -172,12 +172,6 @@ constexpr Rule kOfOneRun[] = {{ViolationKind::kCrossing, gcode::reason::kCrosses
                               {ViolationKind::kDistance, gcode::reason::kNotProved},
                               {ViolationKind::kNotProved, gcode::reason::kNotProved}};
 
-// Which a form that is nearer to the path may not have.
-bool is_too_far(ViolationKind kind) {
-  return kind == ViolationKind::kCrossing || kind == ViolationKind::kDistance ||
-         kind == ViolationKind::kNotProved;
-}
-
 std::vector<std::uint32_t> blocks_at(const std::vector<std::size_t>& bytes,
                                      const gcode::Program& program) {
   std::vector<std::uint32_t> blocks;
@@ -386,7 +380,7 @@ class Prover {
       if (!is_new && rule < before) known->second = violation.kind;
     }
     for (const auto& [work, kind] : blamed) {
-      reject(*work, std::ranges::find(kOfOneRun, kind, &Rule::kind)->reason, is_too_far(kind));
+      reject(*work, std::ranges::find(kOfOneRun, kind, &Rule::kind)->reason);
     }
     if (!blamed.empty()) return true;
     if (others.empty()) {
@@ -395,14 +389,14 @@ class Prover {
         if (work.chosen() != nullptr) others.insert(&work);
       }
     }
-    for (RunState* work : others) reject(*work, gcode::reason::kNotProved, false);
+    for (RunState* work : others) reject(*work, gcode::reason::kNotProved);
     return !others.empty();
   }
 
-  void reject(RunState& work, std::string_view why, bool is_too_far) {
+  void reject(RunState& work, std::string_view why) {
     // What a run of this round was given back with may be blocks already.
     if (work.chosen() == nullptr) return;
-    work.reject(why, is_too_far);
+    work.reject(why);
     if (work.chosen() == nullptr && work.smoothed.left_out) {
       work.start_again(std::get<Run>(runs_.sections[work.section].content), options_);
     }

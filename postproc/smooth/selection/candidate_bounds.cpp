@@ -56,9 +56,9 @@ std::size_t CandidateBounds::most_blocks(Form form, double distance) const {
     return is_beaten(form, static_cast<double>(blocks) / kBounds.fewer, distance);
   };
   std::size_t few = 0;
-  std::size_t many = std::numeric_limits<std::size_t>::max() / 2;
-  if (!is_too_many(many)) return many;
-  many = 16;
+  constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+  if (!is_too_many(kAny)) return kAny;
+  std::size_t many = 16;
   while (!is_too_many(many)) few = std::exchange(many, 2 * many);
   while (many - few > 1) {
     const std::size_t middle = (few + many) / 2;
