@@ -13,7 +13,7 @@ constexpr double kBillion = 1e9;
 
 // Of the tolerance: errors of the chords of arcs and curves, the finer ones where the bound is that
 // near to the tolerance, and how far rounding may move a place along its piece.
-constexpr double kChordShares[] = {1e-3, 2e-5};
+constexpr double kSparseShares[] = {1e-3, 2e-5};
 constexpr double kRoundingShare = 1e-2;
 
 // Left free below the tolerance, as a share of it: above the rounding of a distance.
@@ -119,7 +119,7 @@ std::optional<std::vector<SparsePair>> thin_matching(std::span<const PathPiece> 
                                                      const PathMatching& matching,
                                                      double tolerance) {
   if (a.empty() || b.empty()) return std::vector<SparsePair>{};
-  for (const double share : kChordShares) {
+  for (const double share : kSparseShares) {
     if (auto pairs = Thinning(a, b, tolerance, share).run(matching.pairs)) return pairs;
   }
   return {};

@@ -18,7 +18,7 @@ namespace {
 
 using gcode::OwnEffect;
 
-constexpr std::string_view kForms =
+constexpr std::string_view kNamesOfOwnWords =
     "M501, G100, M98 P9001, M198 P9001, G65 P9810, o<name> call, o100 call, L54, CALL PGM name, or "
     "the name of a Siemens program or cycle";
 
@@ -153,7 +153,9 @@ void OwnWordList::add(std::string_view name, std::string_view effects,
   const std::size_t problems_before = problems.size();
   std::string known;
   const auto word = name_in(name, known);
-  if (!word) problems.push_back(fmt::format("'{}' is no word; expected one like {}", name, kForms));
+  if (!word)
+    problems.push_back(
+        fmt::format("'{}' is no word; expected one like {}", name, kNamesOfOwnWords));
   if (!known.empty()) {
     problems.push_back(known + "; only words that it does not know can be named");
   }

@@ -182,7 +182,9 @@ TEST(Constants, OfOtherLanguagesAreNumbersOnlyWhereTheyAreCertain) {
     SCOPED_TRACE(text);
     const WithConstants read(text, {.language = row.language});
     EXPECT_EQ(read.x().is_number, row.value.has_value());
-    if (row.value) EXPECT_EQ(read.x().value, *row.value);
+    if (row.value) {
+      EXPECT_EQ(read.x().value, *row.value);
+    }
   }
 }
 
