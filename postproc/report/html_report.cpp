@@ -163,7 +163,11 @@ std::string filled(std::string_view page,
 Json page_data(const SmoothReport& report, const std::string& command) {
   Json figures = smooth_json(report);
   figures["runs"] = columns_of(figures["runs"]);
-  return {{"report", std::move(figures)}, {"command", command}, {"path", path_of(report)}};
+  return {{"kind", "smooth"},
+          {"report", std::move(figures)},
+          {"command", command},
+          {"units", name_of(report.result.units)},
+          {"path", path_of(report)}};
 }
 
 std::string html_report(const SmoothReport& report, const std::string& command) {

@@ -15,8 +15,9 @@ namespace batten::postproc {
 // `command`: as it was called, for the reader; may be empty.
 [[nodiscard]] std::string html_report(const SmoothReport& report, const std::string& command);
 
-// {"report": .., "command": "", "path": ..}, as postproc/report/page/data.js reads it. `report` is
-// that of json_report, its runs as one list per field.
+// {"kind": "smooth", "report": .., "command": "", "units": "mm", "path": ..}, as
+// postproc/report/page/page.js reads it. `report` is that of json_report, its runs as one list per
+// field.
 [[nodiscard]] Json page_data(const SmoothReport& report, const std::string& command);
 
 }  // namespace batten::postproc

@@ -99,6 +99,11 @@ class Browser:
     def keys(self, text, selector="body"):
         self.send("POST", f"{self.session}/element/{self.find(selector)}/value", {"text": text})
 
+    def tab(self):
+        """The Tab key, wherever the focus is."""
+        for kind in ("rawKeyDown", "keyUp"):
+            self.devtools("Input.dispatchKeyEvent", type=kind, key="Tab", code="Tab", windowsVirtualKeyCode=9)
+
     def point(self, selector, right=0, down=0, drag=None):
         """Moves the mouse to a place from an element's middle; `drag`: and holds it for that way."""
         origin = {"element-6066-11e4-a52e-4f735466cecf": self.find(selector)}
@@ -133,6 +138,11 @@ class Browser:
     def dark(self, wanted):
         value = "dark" if wanted else "light"
         self.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": value}])
+
+    def size(self, width, height):
+        """Of the page in CSS pixels; narrower than a window can be, too."""
+        self.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height,
+                      deviceScaleFactor=1, mobile=False)
 
     def picture(self, file, whole=True):
         shot = self.devtools("Page.captureScreenshot", format="png", captureBeyondViewport=whole)

@@ -18,6 +18,8 @@ sys.path.insert(0, str(Path(__file__).parent))
 from browser import Browser, is_installed  # noqa: E402
 
 PAGE_SIZE_AT_MOST = 3_000_000
+# CSS pixels: a desk, a tablet, a telephone.
+SIZES = ((1280, 900), (800, 1000), (390, 844))
 
 
 class Failure(Exception):
@@ -31,6 +33,14 @@ def expect(truth, what):
 
 def expect_equal(found, expected, what):
     expect(found == expected, f"{what}: {found!r}, expected {expected!r}")
+
+
+# Of the page's table.
+ROWS_AT_ONCE = 50
+
+
+def is_usual(run):
+    return run["status"] == "kept" and run["reason"] in ("plunge", "too-short")
 
 
 def make_page(batten, program, options, folder):
@@ -56,9 +66,13 @@ class PageCheck:
         self.loads_nothing()
         self.shows_the_figures()
         self.lists_the_runs()
+        self.folds_the_notes()
         self.draws_the_path()
+        self.fits()
         if self.value("battenReport.path.n") > 0:
             self.controls_work()
+            self.refits_after_a_resize()
+        self.works_by_keyboard()
         self.browser.paper(self.page.with_suffix(".pdf"))
         expect_equal(self.browser.complaints(), [], "console")
 
@@ -110,13 +124,85 @@ class PageCheck:
         expect_equal("good" in verdict, good, "verdict")
 
     def lists_the_runs(self):
-        rows = self.value("document.querySelectorAll('#run-table tbody tr').length")
-        expect_equal(rows, min(100, len(self.report["runs"])), "rows of runs")
+        listed = [r for r in self.report["runs"] if not is_usual(r)]
+        expect_equal(self.rows(), min(ROWS_AT_ONCE, len(listed)), "rows of runs")
+        folded = self.value("document.querySelectorAll('#run-table tr.folded').length")
+        expect_equal(folded, int(len(listed) < len(self.report["runs"])), "rows of folded runs")
+        first = self.value("battenReport.runs.listed().map((i) => battenReport.page.rows[i].status)")
+        expect_equal(first, sorted(first, key="rewritten kept".split().index), "rewritten runs come first")
         reasons = self.value("[...document.querySelectorAll('.reason code')].map((e) => e.textContent)")
         for reason in self.report["reasons"]:
             expect(reason["id"] in reasons, f"{reason['id']} is not explained")
-        messages = self.value("document.querySelectorAll('#messages li').length")
-        expect_equal(messages, min(51, len(self.report["diagnostics"])), "messages")
+
+    def rows(self):
+        return self.value("document.querySelectorAll('#run-table tbody tr[data-run]').length")
+
+    # Errors are in sight; all others are one line until it is opened.
+    def folds_the_notes(self):
+        errors = sum(d["severity"] == "error" for d in self.report["diagnostics"])
+        others = len(self.report["diagnostics"]) - errors
+        shown = "document.querySelectorAll('#messages li').length"
+        expect_equal(self.value(shown), min(51, errors), "errors")
+        expect_equal(self.value("document.querySelectorAll('#notes').length"), int(others > 0), "lines of notes")
+        if others:
+            for word in {d["id"] for d in self.report["diagnostics"] if d["severity"] != "error"}:
+                expect(word in self.value("document.querySelector('#notes summary').textContent"), f"{word} is not counted")
+            self.browser.click("#notes summary")
+            self.browser.wait(f"{shown} === {min(51, errors) + min(51, others)}", 5)
+            self.browser.click("#notes summary")
+
+    # --- sizes --------------------------------------------------------------------------------
+
+    def fits(self):
+        """At each width, light and dark: nothing is wider than the page, figures are in their tiles, the path
+        comes first."""
+        for dark in (False, True):
+            self.browser.dark(dark)
+            for width, height in SIZES:
+                self.browser.size(width, height)
+                self.settle()
+                wide = self.value("document.documentElement.scrollWidth")
+                expect(wide <= width, f"{wide} pixels wide at {width}")
+                out = self.value("[...document.querySelectorAll('.tile .big, .tile .more, h1, #verdict, button')]"
+                                 ".filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.textContent)")
+                expect_equal(out, [], f"text that does not fit at {width}")
+                top = self.value("document.getElementById('canvas').getBoundingClientRect().top + scrollY")
+                errors = self.value("document.getElementById('messages').getBoundingClientRect().height")
+                expect(top - errors < 0.75 * height, f"the path begins {top} pixels down at {width}")
+        self.browser.dark(False)
+        self.browser.size(*SIZES[0])
+        self.settle()
+
+    def settle(self):
+        self.browser.run("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+    def refits_after_a_resize(self):
+        self.browser.keys("01")
+        for width, height in (SIZES[-1], SIZES[0]):
+            self.browser.size(width, height)
+            self.settle()
+            outside = self.value(
+                "(({toolPath: t, path, settings}) => { t.drawNow(); let out = 0; for (let i = 1; i < path.n; i++) {"
+                " if (path.step[i] < 2) continue; const [x, y] = t.screen(t.u[i], t.v[i]);"
+                " out += x < 0 || y < 0 || x > t.width || y > t.height; } return out; })(battenReport)")
+            expect_equal(outside, 0, f"places outside the picture at {width}")
+
+    def works_by_keyboard(self):
+        """Tab reaches every control, and what has the focus shows it."""
+        wanted = self.value("[...document.querySelectorAll('button, select, input, canvas[tabindex], summary, a[href]')]"
+                            ".filter((e) => !e.disabled && e.checkVisibility() && !e.closest('dialog')).length")
+        self.browser.run("document.activeElement.blur(); scrollTo(0, 0)")
+        seen = 0
+        for _ in range(wanted + 2 * ROWS_AT_ONCE):
+            self.browser.tab()
+            found = self.value("(e => e === document.body || e.dataset.seen ? '' : (e.dataset.seen = 1,"
+                               " e.matches('button, select, input, canvas, summary, a') ? 'control' : 'row') + ' '"
+                               " + (getComputedStyle(e).outlineStyle !== 'none'))(document.activeElement)")
+            if not found:
+                break
+            expect(found.endswith("true"), f"the focus cannot be seen: {found}")
+            seen += found.startswith("control")
+        expect_equal(seen, wanted, "controls that Tab reaches")
 
     # --- path ---------------------------------------------------------------------------------
 
@@ -172,15 +258,17 @@ class PageCheck:
             self.changes("chart wheel", lambda: browser.wheel("#chart-deviation", 300), "#chart-deviation")
             browser.keys("0")
         if len(self.report["runs"]) > 1:
+            if self.value("!!document.getElementById('unfold')"):
+                browser.click("#unfold")
             self.changes("a run", lambda: browser.click("#run-table tbody tr"))
             expect_equal(self.value("battenReport.runs.chosen >= 0"), True, "a run is chosen")
             browser.click("[data-runs=kept]")
             kept = sum(r["status"] == "kept" for r in self.report["runs"])
-            expect_equal(self.value("document.querySelectorAll('#run-table tbody tr').length"), min(100, kept), "kept rows")
+            expect_equal(self.rows(), min(ROWS_AT_ONCE, kept), "kept rows")
             browser.click("[data-runs=all]")
             browser.click("#run-table th:nth-child(5) button")
             times = self.value("[...document.querySelectorAll('#run-table tbody tr')]"
-                               ".map((row) => battenReport.report.runs[row.dataset.run].time_before_s)")
+                               ".map((row) => battenReport.page.rows[row.dataset.run].time_before_s)")
             expect_equal(times, sorted(times, reverse=True), "sorted by time")
             browser.keys("0")
         browser.keys("?")

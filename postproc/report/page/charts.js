@@ -98,7 +98,7 @@ class Charts {
     if (!(this.path.length > 0)) return;
     const [deviation, radius, speed] = this.canvases;
     this.colours = themeColours();
-    this.drawDeviation(deviation);
+    if (this.settings.compared) this.drawDeviation(deviation);
     this.drawRadius(radius);
     this.drawSpeed(speed);
   }
@@ -113,7 +113,7 @@ class Charts {
       x: (way) => MARGIN.left + (way - from) / (to - from) * (width - MARGIN.left - MARGIN.right),
       y: (value) => bottom - Math.min(1, Math.max(0, toShare(value))) * (bottom - MARGIN.top),
     };
-    this.drawKept(area);
+    if (this.settings.compared) this.drawKept(area);
     context.font = '11.5px system-ui, sans-serif';
     context.textAlign = 'right';
     context.textBaseline = 'middle';
@@ -286,7 +286,7 @@ class Charts {
   }
 
   drawRadius(canvas) {
-    const { path, colours } = this;
+    const { path, settings, colours } = this;
     let most = 0.1;
     for (let i = 0; i < path.n; i++) most = Math.max(most, path.bendBefore[i], path.bendAfter[i]);
     const unit = units.inch ? MM_PER_INCH : 1;
@@ -298,13 +298,13 @@ class Charts {
       if (Math.log(1 / (radius * unit)) < high) ticks.push([1 / (radius * unit), `R ${tickText(radius, radius)}`]);
     }
     const area = this.begin(canvas, (k) => (Math.log(Math.max(k, 1e-9)) - low) / (high - low), ticks);
-    this.plot(area, (i) => path.bendBefore[i], colours.old, { lineWidth: 1.1 });
+    if (settings.compared) this.plot(area, (i) => path.bendBefore[i], colours.old, { lineWidth: 1.1 });
     this.plot(area, (i) => path.bendAfter[i], colours.now);
     this.drawMark(area, [[path.bendBefore, colours.old], [path.bendAfter, colours.now]]);
   }
 
   drawSpeed(canvas) {
-    const { path, colours } = this;
+    const { path, settings, colours } = this;
     let feed = 0;
     for (let i = 0; i < path.n; i++) feed = Math.max(feed, path.feed[i]);
     const most = (path.fastest > 0 ? Math.max(path.fastest, Math.min(feed, 2 * path.fastest)) : Math.max(feed, 1e-9)) * 1.1;
@@ -314,7 +314,7 @@ class Charts {
     const area = this.begin(canvas, (v) => v / most, ticks, true);
     if (feed > 0) this.plot(area, (i) => path.feed[i], colours.soft, { lineWidth: 1, dash: [2, 4] });
     if (!(path.fastest > 0)) return;
-    this.plot(area, (i) => path.speedBefore[i], colours.old, { lineWidth: 1.1 });
+    if (settings.compared) this.plot(area, (i) => path.speedBefore[i], colours.old, { lineWidth: 1.1 });
     this.plot(area, (i) => path.speedAfter[i], colours.now);
     this.drawMark(area, [[path.speedBefore, colours.old], [path.speedAfter, colours.now]]);
   }

@@ -11,32 +11,33 @@ function bytesOf(text) {
 // Numbers may be as great as 2^53, so no bit operations on the whole.
 function unpacked(text) {
   const bytes = bytesOf(text);
-  const numbers = [];
-  for (let i = 0; i < bytes.length;) {
-    let value = 0;
-    let scale = 1;
-    let byte;
-    do {
+  const numbers = new Float64Array(bytes.length);  // a number has a byte at least
+  let count = 0;
+  for (let i = 0; i < bytes.length; count++) {
+    let byte = bytes[i++];
+    let value = byte & 127;
+    for (let scale = 128; byte & 128; scale *= 128) {
       byte = bytes[i++];
       value += (byte & 127) * scale;
-      scale *= 128;
-    } while (byte & 128);
-    numbers.push(value % 2 ? -(value + 1) / 2 : value / 2);
+    }
+    numbers[count] = value % 2 ? -(value + 1) / 2 : value / 2;
   }
-  return numbers;
+  return numbers.subarray(0, count);
 }
 
+// In place.
 function summed(numbers) {
-  let sum = 0;
-  return numbers.map((step) => (sum += step));
+  for (let i = 1; i < numbers.length; i++) numbers[i] += numbers[i - 1];
+  return numbers;
 }
 
 function unpackedRuns(text, count) {
   const runs = unpacked(text);
-  const numbers = new Array(count);
+  const numbers = new Float64Array(count);
   let at = 0;
   for (let i = 0; i + 1 < runs.length; i += 2) {
-    for (let k = 0; k < runs[i + 1]; k++) numbers[at++] = runs[i];
+    numbers.fill(runs[i], at, at + runs[i + 1]);
+    at += runs[i + 1];
   }
   return numbers;
 }
@@ -47,9 +48,17 @@ const STEP = { none: 0, rapid: 1, copied: 2, rewritten: 3 };
 // the cut (mm; rapids do not count).
 function readPath(columns) {
   const n = columns.count;
-  const scaled = (numbers, unit) => Float64Array.from(numbers, (v) => v * unit);
-  const curvature = (text) => Float32Array.from(summed(unpacked(text)), (step) =>
-    step === 0 ? 0 : columns.curvature_least * 2 ** (step / columns.curvature_steps));
+  const scaled = (numbers, unit) => {
+    for (let i = 0; i < numbers.length; i++) numbers[i] *= unit;
+    return numbers;
+  };
+  const curvature = (text) => {
+    const steps = summed(unpacked(text));
+    for (let i = 0; i < steps.length; i++) {
+      steps[i] = steps[i] === 0 ? 0 : columns.curvature_least * 2 ** (steps[i] / columns.curvature_steps);
+    }
+    return steps;
+  };
   const path = {
     n,
     x: scaled(summed(unpacked(columns.x)), columns.unit_mm),
@@ -57,15 +66,15 @@ function readPath(columns) {
     z: scaled(summed(unpacked(columns.z)), columns.unit_mm),
     dx: new Float32Array(n), dy: new Float32Array(n), dz: new Float32Array(n),
     deviation: new Float32Array(n),
-    step: Uint8Array.from(unpackedRuns(columns.step, n)),
-    oldLine: Uint32Array.from(summed(unpackedRuns(columns.old_line, n))),
-    newLine: Uint32Array.from(summed(unpackedRuns(columns.new_line, n))),
-    run: Int32Array.from(unpackedRuns(columns.run, n)),
-    feed: Float32Array.from(unpackedRuns(columns.feed, n), (v) => v * columns.feed_unit),
+    step: new Uint8Array(unpackedRuns(columns.step, n)),
+    oldLine: new Uint32Array(summed(unpackedRuns(columns.old_line, n))),
+    newLine: new Uint32Array(summed(unpackedRuns(columns.new_line, n))),
+    run: new Int32Array(unpackedRuns(columns.run, n)),
+    feed: scaled(unpackedRuns(columns.feed, n), columns.feed_unit),
     bendBefore: curvature(columns.curvature_before),
     bendAfter: curvature(columns.curvature_after),
-    speedBefore: Float32Array.from(summed(unpacked(columns.speed_before)), (v) => v * columns.speed_unit),
-    speedAfter: Float32Array.from(summed(unpacked(columns.speed_after)), (v) => v * columns.speed_unit),
+    speedBefore: scaled(summed(unpacked(columns.speed_before)), columns.speed_unit),
+    speedAfter: scaled(summed(unpacked(columns.speed_after)), columns.speed_unit),
     way: new Float64Array(n),
     length: 0, worst: -1, fastest: 0,
   };
@@ -78,11 +87,11 @@ function readPath(columns) {
       path.dz[i] = offsets[2][k] * columns.unit_mm;
       k++;
     }
-    path.deviation[i] = Math.hypot(path.dx[i], path.dy[i], path.dz[i]);
+    path.deviation[i] = Math.sqrt(path.dx[i] ** 2 + path.dy[i] ** 2 + path.dz[i] ** 2);
     if (path.worst < 0 || path.deviation[i] > path.deviation[path.worst]) path.worst = i;
     path.fastest = Math.max(path.fastest, path.speedBefore[i], path.speedAfter[i]);
     if (path.step[i] >= STEP.copied) {
-      path.length += Math.hypot(path.x[i] - path.x[i - 1], path.y[i] - path.y[i - 1], path.z[i] - path.z[i - 1]);
+      path.length += Math.sqrt((path.x[i] - path.x[i - 1]) ** 2 + (path.y[i] - path.y[i - 1]) ** 2 + (path.z[i] - path.z[i - 1]) ** 2);
     }
     path.way[i] = path.length;
   }

@@ -3,7 +3,7 @@
 #   cmake -D PAGE=<this folder> -D OUTPUT=page_files.cpp -P embed.cmake
 
 # In the order in which they build on each other.
-set(SCRIPTS data.js format.js tool_path.js charts.js runs.js summary.js page.js)
+set(SCRIPTS data.js format.js tool_path.js charts.js runs.js summary.js kinds.js page.js)
 
 # A raw string that no file of the page can end by chance; refused if one does.
 function(literal file result)

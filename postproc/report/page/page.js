@@ -3,20 +3,22 @@
 (() => {
   const started = performance.now();
   const data = JSON.parse(byId('data').textContent);
-  const report = { ...data.report, runs: rowsOf(data.report.runs) };
+  const { report } = data;
   const path = readPath(data.path);
-  const ranges = verticesOfRuns(path, report.runs.length);
+  const page = KINDS[data.kind](report, path, data.path);
+  const ranges = verticesOfRuns(path, page.rows.length);
+  const colours = page.colours.filter((name) => name !== 'speed' || path.fastest > 0);
   const settings = {
-    old: true, now: true, rapids: false, colour: 'deviation', magnify: 1, tolerance: report.options.tolerance_mm,
+    old: page.compared, now: true, rapids: false, colour: colours[0] ?? 'status', magnify: 1, tolerance: page.tolerance,
+    isRewritten: page.isRewritten, compared: page.compared,
   };
-  units.inch = report.input.units === 'inch';
+  units.inch = data.units === 'inch';
   document.documentElement.dataset.theme =
     matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
 
-  const summary = new Summary(report, path);
   const toolPath = new ToolPath(byId('canvas'), path, settings);
   const charts = new Charts(['chart-deviation', 'chart-radius', 'chart-speed'].map(byId), path, settings);
-  const runs = new Runs(report, {
+  const runs = new Runs(page, {
     head: byId('run-table').tHead.rows[0], body: byId('run-table').tBodies[0], strip: byId('strip'),
     more: byId('more-runs'), empty: byId('runs-empty'),
   });
@@ -53,7 +55,7 @@
         element('div', { className: 'ends' }, element('span', {}, deviation ? '0' : feedText(path.fastest)),
           element('span', {}, deviation ? `${lengthText(settings.tolerance)} allowed` : '0')));
     }
-    if (settings.now && settings.colour === 'status') parts.push(row(colours.now, 'rewritten'), row(colours.kept, 'kept as it was'));
+    if (settings.now && settings.colour === 'status') parts.push(row(colours.now, page.statusWords[0]), row(colours.kept, page.statusWords[1]));
     if (settings.old) parts.push(row(colours.old, 'old path'));
     if (settings.rapids) parts.push(row(colours.rapid, 'rapids', true));
     byId('legend').replaceChildren(...parts);
@@ -70,18 +72,19 @@
     const before = path.step[i] === STEP.none ? i : Math.max(0, i - 1);
     const mix = (column) => column[before] + mark.share * (column[i] - column[before]);
     const item = (name, text) => element('span', {}, `${name} `, element('b', {}, text));
-    const line = path.newLine[i] > 0 ? `${path.oldLine[i]} \u2192 ${path.newLine[i]}` : String(path.oldLine[i]);
+    const line = page.compared && path.newLine[i] > 0 ? `${path.oldLine[i]} \u2192 ${path.newLine[i]}` : String(path.oldLine[i]);
     const items = [item('line', line),
       item('at', ['x', 'y', 'z'].map((axis) => `${axis.toUpperCase()}${units.of(mix(path[axis])).toFixed(units.inch ? 4 : 3)}`).join(' '))];
-    if (path.step[i] === STEP.rapid) items.push(item('rapid', 'copied'));
+    if (path.step[i] === STEP.rapid) items.push(item('rapid', page.compared ? 'copied' : ''));
     if (path.step[i] >= STEP.copied) {
-      items.push(item('deviation', path.step[i] === STEP.rewritten ? lengthText(mix(path.deviation)) : 'none, copied'));
-      items.push(item('bend', `${radiusText(mix(path.bendBefore))} \u2192 ${radiusText(mix(path.bendAfter))}`));
-      if (path.fastest > 0) items.push(item('speed', `${feedText(mix(path.speedBefore))} \u2192 ${feedText(mix(path.speedAfter))}`));
+      const both = (before, after, text) => (page.compared ? `${text(mix(before))} \u2192 ${text(mix(after))}` : text(mix(after)));
+      if (page.compared) items.push(item('deviation', path.step[i] === STEP.rewritten ? lengthText(mix(path.deviation)) : 'none, copied'));
+      items.push(item('bend', both(path.bendBefore, path.bendAfter, radiusText)));
+      if (path.fastest > 0) items.push(item('speed', both(path.speedBefore, path.speedAfter, feedText)));
       if (path.feed[i] > 0) items.push(item('programmed', feedText(path.feed[i])));
     }
     if (path.run[i] >= 0) {
-      const run = report.runs[path.run[i]];
+      const run = page.rows[path.run[i]];
       items.push(item('run', `${linesText(run.first_line, run.last_line)}${run.status === 'kept' ? `, kept: ${run.reason}` : ''}`));
     }
     place.replaceChildren(...items);
@@ -110,7 +113,7 @@
     byId('deviation-unit').textContent = `${units.length}, of the pairs that prove it`;
     byId('radius-unit').textContent = `${units.length}, high is a tight bend`;
     byId('speed-title').textContent = path.fastest > 0 ? 'Predicted speed' : 'Programmed feed';
-    byId('speed-unit').textContent = path.fastest > 0 ? `${units.feed}, model of ${report.options.machine}` : units.feed;
+    byId('speed-unit').textContent = path.fastest > 0 ? `${units.feed}, model of ${page.machine}` : units.feed;
     byId('along-note').textContent = hasCut ? `${units.of(path.length).toFixed(units.inch ? 2 : 1)} ${units.length} of cutting moves` : '';
     const colours = themeColours();
     const entry = (colour, text, dashed) => {
@@ -119,8 +122,9 @@
       if (dashed) line.style.borderTopStyle = 'dotted';
       return element('span', {}, line, text);
     };
-    byId('along-key').replaceChildren(entry(colours.old, 'before'), entry(colours.now, 'after'), entry(colours.soft, 'programmed feed', true),
-      element('span', {}, 'grey ground: copied as it was'));
+    byId('along-key').replaceChildren(...(page.compared ? [entry(colours.old, 'before'), entry(colours.now, 'after')] : []),
+      entry(colours.soft, 'programmed feed', true), page.compared ? element('span', {}, 'grey ground: copied as it was') : '');
+    byId('chart-deviation').parentElement.hidden = !page.compared;
     byId('charts').hidden = byId('along-key').hidden = !hasCut;
     byId('along-empty').hidden = hasCut;
     byId('along-empty').textContent = 'There are no cutting moves to draw.';
@@ -129,18 +133,22 @@
   }
 
   function drawAll() {
-    summary.draw();
-    summary.drawProof(data.path);
-    summary.drawAgain(data.command);
+    byId('made-for').textContent = page.madeFor();
+    drawVerdict(page.verdict());
+    byId('tiles').replaceChildren(...page.tiles());
+    const proof = page.proof();
+    byId('proof').hidden = !proof;
+    if (proof) byId('proof-text').replaceChildren(...proof);
+    drawAgain(data.command, page.options);
     drawLegend();
     drawButtons();
     drawReadout();
     drawAlong();
-    byId('runs-note').textContent = report.runs.length ? 'Seconds are predictions of the model; each run by itself.' : '';
+    byId('runs-note').textContent = page.rows.length ? page.tableNote : '';
     runs.draw();
     runs.drawReasons(byId('reasons'), (i) => choose(i, true));
     byId('path-empty').hidden = !isEmpty;
-    byId('path-empty').textContent = report.understood ? 'This program has no moves that could be drawn.' : 'The program was not understood, so there is no path to show.';
+    byId('path-empty').textContent = page.understood ? 'This program has no moves that could be drawn.' : 'The program was not understood, so there is no path to show.';
     toolPath.draw();
   }
 
@@ -166,6 +174,7 @@
   }
 
   function toggle(layer) {
+    if (!page.compared && layer !== 'rapids') return;
     settings[layer] = !settings[layer];
     drawLegend();
     drawButtons();
@@ -309,6 +318,7 @@
   function listen() {
     document.querySelectorAll('[data-view]').forEach((b) => b.addEventListener('click', () => setView(b.dataset.view)));
     document.querySelectorAll('[data-layer]').forEach((b) => b.addEventListener('click', () => toggle(b.dataset.layer)));
+    byId('run-filters').replaceChildren(...page.filters.map(([name, text]) => element('button', { type: 'button', 'data-runs': name }, text)));
     document.querySelectorAll('[data-runs]').forEach((b) => b.addEventListener('click', () => {
       runs.filter = b.dataset.runs;
       runs.shown = RUNS_AT_ONCE;
@@ -343,7 +353,7 @@
     byId('strip').addEventListener('pointermove', (event) => {
       const box = byId('strip').getBoundingClientRect();
       const index = runs.runAtStrip(event.clientX - box.left, event.clientY - box.top);
-      const r = report.runs[index];
+      const r = page.rows[index];
       byId('strip').title = r ? `lines ${linesText(r.first_line, r.last_line)}: ${timeText(r.time_before_s)} \u2192 ${timeText(r.time_after_s)}` : '';
     });
     document.addEventListener('keydown', (event) => {
@@ -355,14 +365,12 @@
     listenToPath();
     charts.onMark = mark;
     charts.onPick = (place) => { if (place) { toolPath.centre = [toolPath.u[place.vertex], toolPath.v[place.vertex]]; mark(place); } };
-    let width = 0;
-    new ResizeObserver(() => {
-      if (width === document.body.clientWidth) return;
-      width = document.body.clientWidth;
-      toolPath.draw();
+    const resized = new ResizeObserver(() => {
+      toolPath.resize();
       charts.draw();
       runs.drawStrip();
-    }).observe(document.body);
+    });
+    for (const id of ['canvas', 'charts', 'strip']) resized.observe(byId(id));
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', (event) => setTheme(event.matches ? 'dark' : 'light'));
     listenToPrinting();
   }
@@ -389,7 +397,18 @@
   byId('key-list').replaceChildren(...KEYS.flatMap(([keys, text]) => [
     element('dt', {}, ...keys.split(' ').map((key) => (key.length === 1 ? element('kbd', {}, key) : `${key} `))), element('dd', {}, text)]));
   for (const control of document.querySelectorAll('#path .head button, #path .head select, #path .head input')) control.disabled = isEmpty;
-  if (!(path.fastest > 0)) byId('colour').querySelector('[value=speed]').remove();
+  const colourNames = { deviation: 'deviation', speed: 'predicted speed', status: page.statusWords.join(' or ') };
+  byId('colour').replaceChildren(...colours.map((name) => element('option', { value: name }, colourNames[name])));
+  for (const part of document.querySelectorAll('[data-of-two]')) part.hidden = !page.compared;
+  byId('kept').hidden = !page.filters.length;
+  byId('runs-title').textContent = page.tableTitle;
+  document.querySelector('.maker').textContent = page.maker;
+  ['input-name', 'output-name'].forEach((id, i) => {
+    byId(id).textContent = (page.names[i] ?? '').split('/').pop();
+    byId(id).title = page.names[i] ?? '';
+  });
+  document.querySelector('.arrow').hidden = page.names[1] === null;
+  drawMessages([...(page.messages ?? []), ...report.diagnostics]);
   byId('worst').disabled = isEmpty || !(path.worst >= 0 && path.deviation[path.worst] > 0);
 
   listen();
@@ -398,6 +417,6 @@
   // For tests and for the curious: how long it took, and what stands where.
   requestAnimationFrame(() => requestAnimationFrame(() => {
     document.documentElement.dataset.readyMs = String(Math.round(performance.now() - started));
-    window.battenReport = { report, path, toolPath, charts, runs, settings };
+    window.battenReport = { report, page, path, toolPath, charts, runs, settings };
   }));
 })();

@@ -26,6 +26,7 @@ class ToolPath {
     this.segments = new Float32Array(4 * (path.n + 1));
     this.levels = new Uint8Array(path.n + 1);
     this.next = new Int32Array(path.n + 1);
+    this.fitted = [0, path.n - 1];  // vertices that fill the picture; null: moved by hand
     this.marked = null;  // {vertex, share} under the mouse or on the charts
     this.chosen = null;  // [first, last] vertex of a run
     this.asked = 0;
@@ -96,10 +97,21 @@ class ToolPath {
     this.centre = [(left + right) / 2, (low + high) / 2];
     this.scale = Math.min((width - 70) / Math.max(right - left, 1e-3), (height - 70) / Math.max(high - low, 1e-3));
     this.scale = Math.max(1e-3, this.scale);
+    this.fitted = [first, last];
+    this.draw();
+  }
+
+  // Into a canvas of another size: what was fitted is fitted again, what was looked at closer keeps
+  // its middle and fills the same part of the width.
+  resize() {
+    const { width } = this.canvas.getBoundingClientRect();
+    if (this.fitted) this.fit(...this.fitted);
+    else if (this.width > 0) this.scale *= width / this.width;
     this.draw();
   }
 
   goTo(vertex, widthMm) {
+    this.fitted = null;
     const { width } = this.canvas.getBoundingClientRect();
     this.centre = [this.u[vertex], this.v[vertex]];
     this.scale = width / widthMm;
@@ -108,6 +120,7 @@ class ToolPath {
   }
 
   move(pxRight, pxDown) {
+    this.fitted = null;
     this.centre[0] -= pxRight / this.scale;
     this.centre[1] += pxDown / this.scale;
     this.draw(true);
@@ -115,6 +128,7 @@ class ToolPath {
 
   // The place under (px, py) stays where it is.
   zoom(factor, px, py) {
+    this.fitted = null;
     const { width, height } = this.canvas.getBoundingClientRect();
     const right = (px ?? width / 2) - width / 2;
     const down = (py ?? height / 2) - height / 2;
@@ -225,7 +239,7 @@ class ToolPath {
       const per = path.fastest > 0 ? (LEVELS - 1) / path.fastest : 0;
       return (i) => LEVELS - 1 - path.speedAfter[i] * per;
     }
-    return (i) => (path.step[i] === STEP.rewritten ? 0 : 1);
+    return (i) => (settings.isRewritten(i) ? 0 : 1);
   }
 
   colourOf(level) {

@@ -110,8 +110,8 @@ TEST(PageFiles, AreInTheProgramAsTheyAre) {
   EXPECT_EQ(page_template(), text_of("page.html"));
   EXPECT_EQ(page_style(), text_of("page.css"));
   const std::string script = page_script();
-  for (const char* file :
-       {"data.js", "format.js", "tool_path.js", "charts.js", "runs.js", "summary.js", "page.js"}) {
+  for (const char* file : {"data.js", "format.js", "tool_path.js", "charts.js", "runs.js",
+                           "summary.js", "kinds.js", "page.js"}) {
     const std::string text = text_of(file);
     ASSERT_FALSE(text.empty()) << file;
     EXPECT_EQ(count_of(script, text), 1U) << file;
