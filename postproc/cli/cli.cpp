@@ -189,11 +189,17 @@ CommandLine read_command_line(const std::vector<std::string>& given_arguments) {
   if (auto* setup = std::get_if<SetupCommand>(&line.command); setup != nullptr && setup->asks) {
     ask_for_setup(*setup, line.problems);
   }
-  if (auto* smooth = std::get_if<SmoothCommand>(&line.command)) {
-    smooth->command_line = command_line_of(arguments);
-  } else if (!in.given.flag("quiet") && !std::holds_alternative<SetupCommand>(line.command)) {
+  const bool smooths = std::holds_alternative<SmoothCommand>(line.command);
+  if (!smooths && !in.given.flag("quiet") && !std::holds_alternative<SetupCommand>(line.command)) {
     line.notes = texts_of_origins(in.given.origins());
   }
+  std::visit(
+      [&](auto& command) {
+        if constexpr (requires { command.page.command_line; }) {
+          command.page.command_line = command_line_of(arguments);
+        }
+      },
+      line.command);
   return line;
 }
 

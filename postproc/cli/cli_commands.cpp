@@ -149,6 +149,31 @@ void check_report(const std::string& file, const std::vector<std::string>& progr
   }
 }
 
+// --report, --open
+PageRequest page_given(Arguments& in) {
+  return {.file = in.given.text("report"), .open = in.given.flag("open"), .command_line = {}};
+}
+
+// Of a command with both.
+template <typename Command>
+void check_reports(const Command& command, const std::vector<std::string>& programs,
+                   Arguments& in) {
+  const std::string& page = command.page.file;
+  check_report(command.json_file, programs, in);
+  check_report(page, programs, in, "report");
+  const bool both_to_standard_output = page == "-" && command.json_file == "-";
+  if (both_to_standard_output || is_one_file(page, command.json_file)) {
+    in.complain("--report: {} takes the JSON report already",
+                both_to_standard_output ? "standard output" : page);
+  }
+  const bool is_page =
+      page.empty() || page == "-" || page.ends_with(".html") || page.ends_with(".htm");
+  if (!is_page) in.complain("--report: {}: a page is written, so name it .html", page);
+  if (page == "-" && command.page.open) {
+    in.complain("--open: a page on standard output cannot be shown; name a file");
+  }
+}
+
 // --quiet, --log-level
 LogLevel log_level(Arguments& in) {
   LogLevel level = LogLevel::kInfo;
@@ -177,6 +202,7 @@ void read_language_into(Reading& reading, Arguments& in) {
 
 void read_common_into(ReadingCommand& command, Arguments& in) {
   command.json_file = in.given.text("json");
+  command.page = page_given(in);
   command.force = in.given.flag("force");
   command.log_level = log_level(in);
   read_language_into(command, in);
@@ -377,31 +403,20 @@ void check_outputs(const SmoothCommand& command, Arguments& in) {
     in.complain("--in-place: standard input cannot be replaced");
   }
   for (const auto& [option, file] :
-       {std::pair("json", &command.json_file), std::pair("report", &command.report_file)}) {
+       {std::pair("json", &command.json_file), std::pair("report", &command.page.file)}) {
     if (to_standard_output && *file == "-" && !command.dry_run) {
       in.complain("--{}: standard output already takes the program", option);
     }
   }
-  const bool both_to_standard_output = command.report_file == "-" && command.json_file == "-";
-  if (both_to_standard_output || is_one_file(command.report_file, command.json_file)) {
-    in.complain("--report: {} takes the JSON report already",
-                both_to_standard_output ? "standard output" : command.report_file);
-  }
-  const bool is_page = command.report_file.empty() || command.report_file == "-" ||
-                       command.report_file.ends_with(".html") ||
-                       command.report_file.ends_with(".htm");
-  if (!is_page)
-    in.complain("--report: {}: a page is written, so name it .html", command.report_file);
   const std::string output = command.output.empty() && command.input != "-"
                                  ? default_output_path(command.input).string()
                                  : command.output;
   if (is_one_file(command.output, command.input)) {
     in.complain("--out: {} is the input itself; --in-place replaces the input", command.output);
   }
-  check_report(command.json_file, {command.input, output}, in);
-  check_report(command.report_file, {command.input, output}, in, "report");
+  check_reports(command, {command.input, output}, in);
   check_certificate(command.certificate_file,
-                    {command.input, output, command.json_file, command.report_file},
+                    {command.input, output, command.json_file, command.page.file},
                     command.options.tolerance_kind, in);
   const bool no_file = to_standard_output || command.dry_run;
   if (no_file && !command.certificate_file.empty()) {
@@ -440,7 +455,7 @@ VerifyCommand verify_command(Arguments& in) {
                 in.given.text("tolerance"));
   }
   check_files({"OLD", "NEW"}, in);
-  check_report(command.json_file, in.files, in);
+  check_reports(command, in.files, in);
   std::vector<std::string> others = in.files;
   others.push_back(command.json_file);
   command.certificate_file = in.given.text("certificate");
@@ -457,7 +472,7 @@ InspectCommand inspect_command(Arguments& in) {
   command.own_words = own_words_given(target.profile.get(), in);
   command.allowed = allowed_given(in);
   check_files({"IN"}, in);
-  check_report(command.json_file, in.files, in);
+  check_reports(command, in.files, in);
   return command;
 }
 
@@ -577,11 +592,11 @@ std::optional<geometry::Point3> start_given(Arguments& in) {
 }
 
 void check_time_outputs(const TimeCommand& command, Arguments& in) {
-  check_report(command.json_file, {command.input}, in);
-  if (command.profile_file == "-" && command.json_file == "-") {
-    in.complain("--profile: standard output already takes the JSON report");
+  check_reports(command, {command.input}, in);
+  if (command.profile_file == "-" && (command.json_file == "-" || command.page.file == "-")) {
+    in.complain("--profile: standard output already takes the report");
   }
-  for (const std::string& other : {command.input, command.json_file}) {
+  for (const std::string& other : {command.input, command.json_file, command.page.file}) {
     if (is_one_file(command.profile_file, other)) {
       in.complain("--profile: {} is another file of this command: {}", command.profile_file, other);
     }
@@ -624,7 +639,7 @@ SmoothCommand smooth_command(Arguments& in) {
   command.in_place = in.given.flag("in-place");
   command.dry_run = in.given.flag("dry-run");
   command.json_file = in.given.text("json");
-  command.report_file = in.given.text("report");
+  command.page = page_given(in);
   command.certificate_file = in.given.text("certificate");
   command.output = in.given.text("out");
   command.input = file_at(in, 0);

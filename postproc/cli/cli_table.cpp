@@ -34,6 +34,12 @@ constexpr OptionRow kJson =
 constexpr OptionRow kCertificate =
     option("certificate", kValue, "FILE",
            "write the evidence of the proof, for a checker that needs no Batten");
+constexpr OptionRow kReport =
+    option("report", kValue, "FILE.html",
+           "write the report as a page for a browser: the path first, then the figures");
+constexpr OptionRow kOpen =
+    option("open", kFlag, "",
+           "show that page in the browser; without --report it is written to a temporary folder");
 constexpr OptionRow kForce = option("force", kFlag, "", "replace files that exist already");
 constexpr OptionRow kTolerance = setting(
     "tolerance", kValue, "LENGTH",
@@ -129,8 +135,8 @@ std::vector<OptionRow> smooth_rows() {
       setting("strict", kFlag, "", "write nothing and exit 3 when a run could not be proved",
               "false"),
       kJson,
-      option("report", kValue, "FILE.html",
-             "write the report as a page for a browser: path, deviation, time by run"),
+      kReport,
+      kOpen,
       kCertificate,
       setting("threads", kValue, "N", "0: all cores; the result is the same for any number", "0"),
       setting("progress", kValue, "auto|on|off|linuxcnc", "how far the work is, on standard error",
@@ -171,6 +177,8 @@ std::vector<OptionRow> verify_rows() {
           "programs"),
       kWord,
       kJson,
+      kReport,
+      kOpen,
       kCertificate,
       kForce,
       kQuiet,
@@ -189,6 +197,8 @@ std::vector<OptionRow> time_rows() {
           kDecimals,
           option("from", kValue, "X,Y,Z", "the tool's position before the program, mm"),
           kJson,
+          kReport,
+          kOpen,
           option("profile", kValue, "FILE.csv",
                  "write position, feed, acceleration and jerk each millisecond"),
           kForce,
@@ -294,9 +304,12 @@ std::vector<CommandRow> make_command_rows() {
        "Show the runs of a program, their segments, and why the rest would be kept.",
        {option("target", kValue, "NAME|FILE.toml",
                "the control, or a profile of it, whose own words are taken"),
-        kProfile, kUnits, kSource, kDecimals, kAllow, kWord, kJson, kForce, kQuiet, kLogLevel},
+        kProfile, kUnits, kSource, kDecimals, kAllow, kWord, kJson, kReport, kOpen, kForce, kQuiet,
+        kLogLevel},
        {{"IN", "the program, - is standard input"}},
-       "Example:\n  batten inspect part.nc --json part.json"},
+       "Examples:\n"
+       "  batten inspect part.nc --json part.json\n"
+       "  batten inspect part.nc --open"},
       {"time",
        "Tell how long a machine needs for a program, and where the time goes.",
        time_rows(),

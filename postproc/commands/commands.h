@@ -20,6 +20,15 @@ namespace batten::postproc {
 
 // File names as the user gave them; "-" is standard input or output, "" is not given.
 
+// The report as a page for a browser.
+struct PageRequest {
+  std::string file;          // not given with `open`: in the folder for temporary files
+  bool open = false;         // it is shown, too
+  std::string command_line;  // as it was called, for the reader; may be empty
+
+  [[nodiscard]] bool is_wanted() const { return open || !file.empty(); }
+};
+
 // How programs are smoothed, one or all of a tree.
 struct SmoothingCommand {
   SmoothOptions options;
@@ -36,9 +45,8 @@ struct SmoothCommand : SmoothingCommand {
   std::string input;
   std::string output;  // not given: default_output_path(input), or standard output for "-"
   std::string json_file;
-  std::string report_file;  // the page for a browser
   std::string certificate_file;
-  std::string command_line;  // as it was called, for that page; may be empty
+  PageRequest page;
   LogLevel log_level = LogLevel::kInfo;
   bool in_place = false;
   bool dry_run = false;  // everything but writing the program
@@ -91,6 +99,7 @@ struct ReadingCommand {
   std::vector<std::string> allowed;         // of these only `subprogram` changes what is read
   std::shared_ptr<const gcode::OwnWords> own_words;
   std::string json_file;
+  PageRequest page;
   LogLevel log_level = LogLevel::kInfo;
   bool force = false;
 };

@@ -7,12 +7,15 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <system_error>
 #include <utility>
 
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
+#include "postproc/system/other_program.h"
 #include "postproc/system/terminal_colour.h"
 
 namespace batten::postproc {
@@ -139,6 +142,12 @@ bool changed_while_read(const WatchedFile& file) {
   return true;
 }
 
+bool can_show(const PageRequest& request) {
+  const std::string objection = request.open ? objection_to_showing() : "";
+  if (!objection.empty()) say(objection);
+  return objection.empty();
+}
+
 int end_interrupted() {
   say("interrupted; nothing was written");
   return interrupt_exit_code();
@@ -146,6 +155,27 @@ int end_interrupted() {
 
 int write_result(const std::string& name, std::string_view bytes, bool replace_existing) {
   return write({.target = name, .bytes = bytes, .replace_existing = replace_existing});
+}
+
+int write_page(const PageRequest& request, bool replace_existing, const std::string& program,
+               std::string_view page) {
+  if (!request.is_wanted()) return 0;
+  std::string file = request.file;
+  if (file.empty()) {
+    namespace fs = std::filesystem;
+    std::string folder = (fs::temp_directory_path() / "batten-XXXXXX").string();
+    if (::mkdtemp(folder.data()) == nullptr) {
+      say(folder + ": cannot be made: " + std::generic_category().message(errno));
+      return static_cast<int>(ExitCode::kFileError);
+    }
+    const std::string name = program == "-" ? "stdin" : fs::path(program).filename().string();
+    file = (fs::path(folder) / (name + ".html")).string();
+  }
+  if (const int code = write_result(file, page, replace_existing); code != 0) return code;
+  if (!request.open) return 0;
+  const std::string problem = show_file(file);
+  if (!problem.empty()) say(problem);
+  return static_cast<int>(problem.empty() ? ExitCode::kDone : ExitCode::kFileError);
 }
 
 int write(WriteRequest request) {

@@ -31,6 +31,9 @@ namespace batten::postproc {
 // is worth nothing, and this says so.
 [[nodiscard]] bool changed_while_read(const WatchedFile& file);
 
+// Asked before the work: can what is to be shown be shown? If not, says why.
+[[nodiscard]] bool can_show(const PageRequest& request);
+
 // Says that a signal ended the work before anything was written, and returns its exit code.
 [[nodiscard]] int end_interrupted();
 
@@ -44,6 +47,10 @@ template <typename Text>
 [[nodiscard]] int write_report(const std::string& name, bool replace_existing, const Text& text) {
   return name.empty() ? 0 : write_result(name, text(), replace_existing);
 }
+
+// Of a page, shown too where that is asked for. `program`: what it is about.
+[[nodiscard]] int write_page(const PageRequest& request, bool replace_existing,
+                             const std::string& program, std::string_view page);
 
 // As the request says, until a signal comes; "-" is standard output.
 [[nodiscard]] int write(WriteRequest request);

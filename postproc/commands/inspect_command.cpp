@@ -10,6 +10,7 @@
 #include "gcode/state/reason.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
+#include "postproc/report/html_report.h"
 #include "postproc/report/kept_report.h"
 #include "postproc/report/own_words_report.h"
 #include "postproc/runs/run_grouping.h"
@@ -114,8 +115,8 @@ Json json_of(const InspectedSection& section) {
   return json;
 }
 
-std::string json_report(const InspectedProgram& inspected, const InspectCommand& command,
-                        const gcode::SourceText& source) {
+Json json_of(const InspectedProgram& inspected, const InspectCommand& command,
+             const gcode::SourceText& source) {
   const auto section = [](const InspectedSection& each) { return json_of(each); };
   const auto kept = [](const auto& each) -> Json {
     const auto& [reason, total] = each;
@@ -125,20 +126,37 @@ std::string json_report(const InspectedProgram& inspected, const InspectCommand&
             {"cutting_moves", total.cutting_moves},
             {"text", text_of(reason)}};
   };
-  return json_text(
-      {{"batten", BATTEN_VERSION},
-       {"input",
-        {{"file", source.name()}, {"bytes", source.text().size()}, {"blocks", inspected.blocks}}},
-       {"words", own_words_json(command.own_words)},
-       {"sections", json_list(inspected.sections, section)},
-       {"kept", json_list(kept_totals(inspected.sections), kept)},
-       {"cutting", kept_json(inspected.kept)},
-       {"diagnostics", diagnostics_json(inspected.found, source)}});
+  return {
+      {"batten", BATTEN_VERSION},
+      {"input",
+       {{"file", source.name()}, {"bytes", source.text().size()}, {"blocks", inspected.blocks}}},
+      {"words", own_words_json(command.own_words)},
+      {"sections", json_list(inspected.sections, section)},
+      {"kept", json_list(kept_totals(inspected.sections), kept)},
+      {"cutting", kept_json(inspected.kept)},
+      {"diagnostics", diagnostics_json(inspected.found, source)}};
+}
+
+int write_inspect_page(const InspectCommand& command, const gcode::SourceText& source,
+                       const PartReading& reading, const InspectedProgram& inspected,
+                       const Json& json) {
+  if (!command.page.is_wanted()) return 0;
+  std::vector<PageLines> rows;
+  for (const InspectedSection& section : inspected.sections) {
+    if (!section.reason.empty() && section.cutting_moves == 0) continue;
+    rows.push_back({section.first_line, section.last_line});
+  }
+  gcode::Diagnostics said_before;
+  const auto [program, meaning] = read_whole(source, reading, said_before);
+  const PageOf page{"inspect", json, source.name(), command.page.command_line, rows};
+  return write_page(command.page, command.force, command.input,
+                    html_report(page, {&program, &meaning}, nullptr));
 }
 
 }  // namespace
 
 int run(const InspectCommand& command) {
+  if (!can_show(command.page)) return static_cast<int>(ExitCode::kFileError);
   const WatchedFile watched(command.input);
   const auto source = read_program(command.input);
   if (interrupted()) return end_interrupted();
@@ -154,7 +172,7 @@ int run(const InspectCommand& command) {
   const InspectedProgram result = inspect(*source, reading, grouping);
   if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
   print(result.found, *source, command.log_level);
-  if (command.json_file != "-") {
+  if (command.json_file != "-" && command.page.file != "-") {
     const std::string nothing =
         result.kept.any_run ? "" : fmt::format(": {}", why_nothing(result.kept));
     const std::string text =
@@ -162,9 +180,12 @@ int run(const InspectCommand& command) {
         runs_table(result.sections) + kept_table(result) + own_words_text(command.own_words);
     if (const int code = write_result("-", text, false); code != 0) return code;
   }
-  const int code = write_report(command.json_file, command.force,
-                                [&] { return json_report(result, command, *source); });
-  if (code != 0) return code;
+  if (!command.json_file.empty() || command.page.is_wanted()) {
+    const Json json = json_of(result, command, *source);
+    int code = write_report(command.json_file, command.force, [&] { return json_text(json); });
+    if (code == 0) code = write_inspect_page(command, *source, reading, result, json);
+    if (code != 0) return code;
+  }
   if (!result.unit_word_seen) {
     say(source->name() +
         ": no G20 or G21 says whether its numbers are inches or millimetres; say --units mm or "

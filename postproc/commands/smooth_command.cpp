@@ -73,13 +73,13 @@ class SmoothWork {
     if (interrupted()) return end_interrupted();
     const bool may_work = source_ && (command_.dry_run || !cannot_be_written(output_)) &&
                           !cannot_be_written(command_.json_file) &&
-                          !cannot_be_written(command_.report_file) &&
+                          !cannot_be_written(command_.page.file) &&
                           !cannot_be_written(command_.certificate_file);
     if (!may_work) return static_cast<int>(ExitCode::kFileError);
     if (command_.dry_run) return look_only();
     // The page draws the whole path, and a short program needs no file beside the output.
     const bool in_memory =
-        source_->text().size() < StreamLimits{}.bytes_for_windows || !command_.report_file.empty();
+        source_->text().size() < StreamLimits{}.bytes_for_windows || command_.page.is_wanted();
     if (in_memory) return write_from_memory();
     return is_seen_at_once() ? write_from_spool() : write_beside();
   }
@@ -119,7 +119,7 @@ class SmoothWork {
     const bool tells = result_.understood && command_.log_level >= LogLevel::kInfo;
     if (tells) summary_ = summary_text(report);
     if (!command_.json_file.empty()) json_ = json_report(report);
-    if (!command_.report_file.empty()) page_ = html_report(report, command_.command_line);
+    if (command_.page.is_wanted()) page_ = html_report(report, command_.page.command_line);
     return verdict_ == ExitCode::kDone;
   }
 
@@ -128,7 +128,7 @@ class SmoothWork {
 
   int look_only() {
     const ProgramSink nowhere = {[](std::string_view) { return true; }, [] { return true; }};
-    smooth(command_.report_file.empty() ? &nowhere : nullptr);
+    smooth(command_.page.is_wanted() ? nullptr : &nowhere);
     (void)tell_of_smoothing();
     return end();
   }
@@ -188,10 +188,10 @@ class SmoothWork {
   int finish(int code) const {
     say_lines(summary_);
     if (verdict_ != ExitCode::kDone) say(complaint(verdict_, command_.strict));
-    for (const auto& [file, text] :
-         {std::pair(&command_.json_file, &json_), std::pair(&command_.report_file, &page_)}) {
-      const int report_code = file->empty() ? 0 : write_result(*file, *text, command_.force);
-      if (code == 0) code = report_code;
+    const auto json = [this]() -> const std::string& { return json_; };
+    for (const int of_report : {write_report(command_.json_file, command_.force, json),
+                                write_page(command_.page, command_.force, command_.input, page_)}) {
+      if (code == 0) code = of_report;
     }
     return code != 0 ? code : certify();
   }
@@ -244,8 +244,8 @@ int run(const SmoothCommand& command) {
   const bool replaces_program = command.force || command.in_place;
   if ((!command.dry_run && would_be_refused(output, replaces_program)) ||
       would_be_refused(command.json_file, command.force) ||
-      would_be_refused(command.report_file, command.force) ||
-      would_be_refused(command.certificate_file, command.force)) {
+      would_be_refused(command.page.file, command.force) ||
+      would_be_refused(command.certificate_file, command.force) || !can_show(command.page)) {
     return static_cast<int>(ExitCode::kFileError);
   }
   return SmoothWork(command, output).run();

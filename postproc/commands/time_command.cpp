@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <vector>
 
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
@@ -10,6 +13,7 @@
 #include "postproc/machine/program_time/program_time.h"
 #include "postproc/machine/program_time/program_time_blocks.h"
 #include "postproc/machine/program_time/program_time_profile.h"
+#include "postproc/report/html_report.h"
 #include "postproc/report/time_report.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
@@ -49,9 +53,22 @@ int write_profile(const TimeCommand& command, const ProgramSteps& steps) {
   return write({.target = command.profile_file, .replace_existing = command.force, .parts = parts});
 }
 
+int write_time_page(const TimeCommand& command, const TimeReport& report,
+                    const gcode::Interpretation& meaning, const Json& json) {
+  if (!command.page.is_wanted()) return 0;
+  std::vector<PageLines> rows;
+  for (const SlowPlace& slow : report.time.slowest)
+    rows.push_back({slow.first_line, slow.last_line});
+  std::ranges::sort(rows, {}, &PageLines::first_line);
+  const PageOf page{"time", json, report.program.source.name(), command.page.command_line, rows};
+  return write_page(command.page, command.force, command.input,
+                    html_report(page, {&report.program, &meaning}, command.machine.get()));
+}
+
 }  // namespace
 
 int run(const TimeCommand& command) {
+  if (!can_show(command.page)) return static_cast<int>(ExitCode::kFileError);
   const WatchedFile watched(command.input);
   const auto source = read_program(command.input);
   if (interrupted()) return end_interrupted();
@@ -74,12 +91,17 @@ int run(const TimeCommand& command) {
                                .start = command.start};
   const ProgramTime time = time_program(program, meaning, *command.machine, options);
   const TimeReport report{program, *command.machine, time, found, command.own_words};
-  const bool standard_output_taken = command.json_file == "-" || command.profile_file == "-";
+  const bool standard_output_taken =
+      command.json_file == "-" || command.profile_file == "-" || command.page.file == "-";
   if (!standard_output_taken) {
     if (const int code = write_result("-", time_text(report), false); code != 0) return code;
   }
-  const int code =
-      write_report(command.json_file, command.force, [&] { return time_json(report); });
+  int code = 0;
+  if (!command.json_file.empty() || command.page.is_wanted()) {
+    const Json json = time_json(report);
+    code = write_report(command.json_file, command.force, [&] { return json_text(json); });
+    if (code == 0) code = write_time_page(command, report, meaning, json);
+  }
   if (code != 0) return code;
   if (!command.profile_file.empty())
     return write_profile(command, read_steps(program, meaning, options));

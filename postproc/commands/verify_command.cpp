@@ -13,6 +13,7 @@
 #include "postproc/commands/files.h"
 #include "postproc/proof/certificate.h"
 #include "postproc/proof/verification.h"
+#include "postproc/report/html_report.h"
 #include "postproc/report/own_words_report.h"
 #include "postproc/stream/assembly.h"
 #include "postproc/stream/part_reader.h"
@@ -104,24 +105,24 @@ Json json_of(const Violation& violation) {
           {"message", violation.message}};
 }
 
-std::string json_report(const Verification& verification, const VerifyCommand& command,
-                        const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
+Json json_of(const Verification& verification, const VerifyCommand& command,
+             const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
   const auto item = [](const auto& each) { return json_of(each); };
-  return json_text({{"batten", BATTEN_VERSION},
-                    {"old", command.old_program},
-                    {"new", command.new_program},
-                    {"tolerance_mm", command.tolerance_mm},
-                    {"tolerance_kind", name_of(command.tolerance_kind)},
-                    {"side", name_of(command.side)},
-                    {"words", own_words_json(command.own_words)},
-                    {"proved", verification.proved()},
-                    {"deviation_mm", verification.deviation_mm},
-                    {"deviation_line", verification.deviation_line},
-                    {"corner_mm", verification.corner_mm},
-                    {"events_compared", verification.events_compared},
-                    {"violations", json_list(verification.violations, item)},
-                    {"sections", json_list(verification.stretches, item)},
-                    {"diagnostics", diagnostics_json(of_new, new_source)}});
+  return {{"batten", BATTEN_VERSION},
+          {"old", command.old_program},
+          {"new", command.new_program},
+          {"tolerance_mm", command.tolerance_mm},
+          {"tolerance_kind", name_of(command.tolerance_kind)},
+          {"side", name_of(command.side)},
+          {"words", own_words_json(command.own_words)},
+          {"proved", verification.proved()},
+          {"deviation_mm", verification.deviation_mm},
+          {"deviation_line", verification.deviation_line},
+          {"corner_mm", verification.corner_mm},
+          {"events_compared", verification.events_compared},
+          {"violations", json_list(verification.violations, item)},
+          {"sections", json_list(verification.stretches, item)},
+          {"diagnostics", diagnostics_json(of_new, new_source)}};
 }
 
 // Moves without a unit are an error among the diagnostics: a tolerance means nothing then.
@@ -131,11 +132,34 @@ bool is_understood(const gcode::Diagnostics& found, const gcode::SourceText& sou
   return !gcode::has_error(found);
 }
 
-// 0 when written or not asked for; else says why and returns the exit code.
-int write_json(const VerifyCommand& command, const Verification& verification,
-               const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
-  return write_report(command.json_file, command.force,
-                      [&] { return json_report(verification, command, of_new, new_source); });
+Promise promise_of(const VerifyCommand& command) {
+  return {command.tolerance_mm, command.tolerance_kind, command.side, command.target};
+}
+
+// The two programs, as they were read and compared.
+struct Compared {
+  const TextToVerify& before;
+  const TextToVerify& after;
+};
+
+// JSON and page. 0 when written or not asked for; else says why and returns the exit code.
+int write_reports(const VerifyCommand& command, const Verification& verification,
+                  const gcode::Diagnostics& of_new, const Compared& texts) {
+  if (command.json_file.empty() && !command.page.is_wanted()) return 0;
+  const Json json = json_of(verification, command, of_new, texts.after.source);
+  const int code = write_report(command.json_file, command.force, [&] { return json_text(json); });
+  if (code != 0 || !command.page.is_wanted()) return code;
+  std::vector<PageLines> rows;
+  for (const Stretch& stretch : verification.stretches) {
+    rows.push_back({stretch.old_first_line, stretch.old_last_line});
+  }
+  gcode::Diagnostics said_before;
+  const gcode::ReadPart before = read_whole(texts.before.source, texts.before.reading, said_before);
+  const gcode::ReadPart after = read_whole(texts.after.source, texts.after.reading, said_before);
+  const PageOf page{"verify", json, command.new_program, command.page.command_line, rows};
+  return write_page(command.page, command.force, command.new_program,
+                    html_report(page, {&before.program, &before.meaning},
+                                {&after.program, &after.meaning}, promise_of(command)));
 }
 
 // Both are told.
@@ -152,13 +176,14 @@ int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& sou
                           command.old_program));
   }
   const int certificate = write_certificate(command, source, source);
-  if (certificate != 0 || command.json_file.empty()) return certificate;
-  const PartReading reading =
-      reading_of(source, command, command.source, language_of_target(command),
-                 gcode::dwells_of(command.source));
-  gcode::Diagnostics found = reading.of_language;
-  (void)read_whole(source, reading, found);
-  return write_json(command, {}, found, source);
+  if (certificate != 0) return certificate;
+  if (command.json_file.empty() && !command.page.is_wanted()) return 0;
+  const TextToVerify text{source,
+                          reading_of(source, command, command.source, language_of_target(command),
+                                     gcode::dwells_of(command.source))};
+  gcode::Diagnostics found = text.reading.of_language;
+  (void)read_whole(source, text.reading, found);
+  return write_reports(command, {}, found, {text, text});
 }
 
 // The new program without the lines that a profile may add; as it is where there is no profile.
@@ -218,7 +243,7 @@ BothTexts both_texts(const VerifyCommand& command, const gcode::SourceText& old_
 // Says what was found, and returns the exit code. `added`: lines of a profile, which are not
 // compared.
 int tell(const VerifyCommand& command, const Verification& verification, std::size_t added,
-         const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
+         const gcode::Diagnostics& of_new, const Compared& texts) {
   for (std::size_t i = 0; i < verification.violations.size() && i < kMostViolations; ++i) {
     say_lines(text_of(verification.violations[i], command));
   }
@@ -238,7 +263,7 @@ int tell(const VerifyCommand& command, const Verification& verification, std::si
   if (verification.proved() && command.log_level >= LogLevel::kInfo) {
     say_lines(own_words_text(command.own_words));
   }
-  const int code = write_json(command, verification, of_new, new_source);
+  const int code = write_reports(command, verification, of_new, texts);
   return verification.proved() ? code : static_cast<int>(ExitCode::kNotProved);
 }
 
@@ -263,6 +288,7 @@ int write_certificate(const VerifyCommand& command, const gcode::SourceText& old
 }
 
 int run(const VerifyCommand& command) {
+  if (!can_show(command.page)) return static_cast<int>(ExitCode::kFileError);
   const WatchedFile old_watched(command.old_program);
   const WatchedFile new_watched(command.new_program);
   const auto old_source = read_program(command.old_program);
@@ -279,9 +305,7 @@ int run(const VerifyCommand& command) {
   const TextToVerify& before = both.before;
   AddedLines& added = both.added;
   const TextToVerify after{compared, both.after, std::move(added.brackets)};
-  auto verified = verify_texts(
-      before, after, {command.tolerance_mm, command.tolerance_kind, command.side, command.target},
-      interrupted);
+  auto verified = verify_texts(before, after, promise_of(command), interrupted);
   if (!verified || interrupted()) return end_interrupted();
   if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
   if (!is_understood(verified->of_old, *old_source, command.log_level)) {
@@ -299,7 +323,7 @@ int run(const VerifyCommand& command) {
   }
   std::ranges::move(added.violations, std::back_inserter(verification.violations));
   std::ranges::move(verified->in_brackets, std::back_inserter(verification.violations));
-  const int code = tell(command, verification, added.lines, verified->of_new, compared);
+  const int code = tell(command, verification, added.lines, verified->of_new, {before, after});
   return code != 0 ? code : write_certificate(command, *old_source, *new_source);
 }
 

@@ -1,17 +1,11 @@
 #include "postproc/hosts/freecad_post.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdlib>
 #include <fstream>
 #include <system_error>
-#include <vector>
+
+#include "postproc/system/other_program.h"
 
 namespace batten::postproc {
 
@@ -67,32 +61,6 @@ std::string python_string(const std::string& text) {
   return literal + "\"";
 }
 
-// The exit status as waitpid tells it, or an error. Nothing that the program prints is kept.
-std::optional<int> run_silently(const std::vector<std::string>& words, std::string& error) {
-  std::vector<std::string> copies = words;
-  std::vector<char*> arguments;
-  arguments.reserve(copies.size() + 1);
-  for (std::string& word : copies) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t process = 0;
-  const int failure =
-      ::posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0) {
-    error = words.front() + ": cannot be started: " + std::generic_category().message(failure);
-    return std::nullopt;
-  }
-  int status = 0;
-  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
-  return status;
-}
-
 std::optional<FreecadAnswer> read_answer(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   FreecadAnswer answer;
@@ -102,17 +70,6 @@ std::optional<FreecadAnswer> read_answer(const fs::path& file) {
   }
   answer.folder = fs::path(folder).lexically_normal();
   return answer;
-}
-
-bool is_in_path(const std::string& program) {
-  const char* path = std::getenv("PATH");
-  std::string_view rest = path != nullptr ? path : "";
-  while (!rest.empty()) {
-    const std::string_view folder = rest.substr(0, rest.find(':'));
-    rest.remove_prefix(std::min(rest.size(), folder.size() + 1));
-    if (::access((fs::path(folder) / program).c_str(), X_OK) == 0) return true;
-  }
-  return false;
 }
 
 }  // namespace

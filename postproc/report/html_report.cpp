@@ -127,7 +127,9 @@ Json path_of(const SmoothReport& report) {
   const ReadProgram new_program{&after, &new_meaning};
   const Verification verification =
       verify(old_program, new_program, {options.tolerance_mm, options.tolerance_kind});
-  Json columns = path_columns(page_path(old_program, new_program, verification, result.runs,
+  std::vector<PageLines> runs;
+  for (const RunReport& run : result.runs) runs.push_back({run.first_line, run.last_line});
+  Json columns = path_columns(page_path(old_program, new_program, verification, runs,
                                         {.tolerance_mm = options.tolerance_mm,
                                          .kind = options.tolerance_kind,
                                          .machine = options.machine}));
@@ -158,6 +160,22 @@ std::string filled(std::string_view page,
   return text;
 }
 
+std::string page_of(std::string_view title, const Json& data) {
+  const std::string json = data.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return filled(page_template(), {{"@TITLE@", html_safe(title)},
+                                  {"@STYLE@", page_style()},
+                                  {"@DATA@", script_safe(json)},
+                                  {"@SCRIPT@", page_script()}});
+}
+
+std::string page_of(const PageOf& page, const ReadProgram& program, Json path) {
+  return page_of(page.title, {{"kind", page.kind},
+                              {"report", page.report},
+                              {"command", page.command},
+                              {"units", name_of(first_units(*program.interpretation))},
+                              {"path", std::move(path)}});
+}
+
 }  // namespace
 
 Json page_data(const SmoothReport& report, const std::string& command) {
@@ -171,12 +189,21 @@ Json page_data(const SmoothReport& report, const std::string& command) {
 }
 
 std::string html_report(const SmoothReport& report, const std::string& command) {
-  const Json data = page_data(report, command);
-  const std::string json = data.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return filled(page_template(), {{"@TITLE@", html_safe(report.source.name())},
-                                  {"@STYLE@", page_style()},
-                                  {"@DATA@", script_safe(json)},
-                                  {"@SCRIPT@", page_script()}});
+  return page_of(report.source.name(), page_data(report, command));
+}
+
+std::string html_report(const PageOf& page, const ReadProgram& program, const Machine* machine) {
+  const PagePathOptions options{.machine = machine};
+  return page_of(page, program, path_columns(page_path(program, program, {}, page.rows, options)));
+}
+
+std::string html_report(const PageOf& page, const ReadProgram& before, const ReadProgram& after,
+                        const Promise& promise) {
+  const Verification verification = verify(before, after, promise);
+  Json path = path_columns(page_path(before, after, verification, page.rows,
+                                     {.tolerance_mm = promise.tolerance_mm, .kind = promise.kind}));
+  path["events"] = verification.events_compared;
+  return page_of(page, before, std::move(path));
 }
 
 }  // namespace batten::postproc

@@ -78,12 +78,12 @@ std::vector<std::uint32_t> copied_motions(
 class PagePathBuilder {
  public:
   PagePathBuilder(const ReadProgram& before, const ReadProgram& after,
-                  const Verification& verification, std::span<const RunReport> runs,
+                  const Verification& verification, std::span<const PageLines> rows,
                   const PagePathOptions& options)
       : old_(before, options.machine),
         new_(after, options.machine),
         verification_(verification),
-        runs_(runs),
+        rows_(rows),
         options_(options) {
     for (const Stretch& s : verification.stretches) {
       old_stretches_.emplace_back(s.old_first_block, s.old_last_block);
@@ -248,9 +248,9 @@ class PagePathBuilder {
   }
 
   [[nodiscard]] std::int32_t run_at(std::uint32_t line) const {
-    const auto next = std::ranges::upper_bound(runs_, line, {}, &RunReport::first_line);
-    if (next == runs_.begin() || (next - 1)->last_line < line) return -1;
-    return static_cast<std::int32_t>(next - runs_.begin()) - 1;
+    const auto next = std::ranges::upper_bound(rows_, line, {}, &PageLines::first_line);
+    if (next == rows_.begin() || (next - 1)->last_line < line) return -1;
+    return static_cast<std::int32_t>(next - rows_.begin()) - 1;
   }
 
   // A chain goes on where it stands; elsewhere a new one begins.
@@ -281,7 +281,7 @@ class PagePathBuilder {
   PageSide old_;
   PageSide new_;
   const Verification& verification_;
-  std::span<const RunReport> runs_;
+  std::span<const PageLines> rows_;
   PagePathOptions options_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> old_stretches_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> new_stretches_;
@@ -433,9 +433,9 @@ double at_joint(const PathPiece& before, const PathPiece& after) {
 }  // namespace
 
 PagePath page_path(const ReadProgram& before, const ReadProgram& after,
-                   const Verification& verification, std::span<const RunReport> runs,
+                   const Verification& verification, std::span<const PageLines> rows,
                    const PagePathOptions& options) {
-  return PagePathBuilder(before, after, verification, runs, options).build();
+  return PagePathBuilder(before, after, verification, rows, options).build();
 }
 
 double fastest_of(const std::vector<PageVertex>& vertices) {

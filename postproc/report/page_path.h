@@ -18,7 +18,6 @@
 #include "postproc/machine/machine.h"
 #include "postproc/proof/program_events.h"
 #include "postproc/proof/verification.h"
-#include "postproc/stream/smooth_result.h"
 
 namespace batten::postproc {
 
@@ -36,12 +35,18 @@ struct PageVertex {
   PageStep step = PageStep::kNone;
   std::uint32_t old_line = 0;
   std::uint32_t new_line = 0;   // 0: not known
-  std::int32_t run = -1;        // index into SmoothResult::runs; -1: in none
+  std::int32_t run = -1;        // index of the page's row; -1: in none
   double feed = 0;              // mm/min, programmed; 0: none known, or a rapid
   double curvature_before = 0;  // 1/mm: of an arc, or of the circle through three neighbouring
   double curvature_after = 0;   // ends of lines, and between ends in proportion
   double speed_before = 0;      // mm/min, predicted; 0 on rapids and where nothing is predicted
   double speed_after = 0;
+};
+
+// A row of the page's table: the lines of the old program that it is about.
+struct PageLines {
+  std::uint32_t first_line = 0;
+  std::uint32_t last_line = 0;
 };
 
 struct PagePath {
@@ -71,9 +76,10 @@ struct PagePathOptions {
   const Machine* machine = nullptr;  // whose speeds are predicted; nullptr: none are
 };
 
-// `verification` is that of the same two programs. Motions whose place is not known are left out.
+// `verification` is that of the same two programs, empty where both are one program. `rows` by
+// their lines, none in another. Motions whose place is not known are left out.
 [[nodiscard]] PagePath page_path(const ReadProgram& before, const ReadProgram& after,
-                                 const Verification& verification, std::span<const RunReport> runs,
+                                 const Verification& verification, std::span<const PageLines> rows,
                                  const PagePathOptions& options);
 
 // mm/min, before or after.

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "postproc/report/own_words_report.h"
-#include "postproc/text/json_values.h"
 #include "postproc/text/words.h"
 
 namespace batten::postproc {
@@ -124,7 +123,7 @@ void add_not_timed(const ProgramTime& time, std::string& lines) {
 
 }  // namespace
 
-std::string time_json(const TimeReport& report) {
+Json time_json(const TimeReport& report) {
   const ProgramTime& time = report.time;
   Json json = {{"batten", BATTEN_VERSION},
                {"input",
@@ -148,7 +147,7 @@ std::string time_json(const TimeReport& report) {
   json["not_timed"] = json_list(time.not_timed, item);
   json["words"] = own_words_json(report.own_words);
   json["diagnostics"] = diagnostics_json(report.diagnostics, report.program.source);
-  return json_text(json);
+  return json;
 }
 
 std::string time_text(const TimeReport& report) {

@@ -9,6 +9,7 @@
 #include "gcode/text/program.h"
 #include "postproc/machine/machine.h"
 #include "postproc/machine/program_time/program_time.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 
@@ -31,6 +32,6 @@ struct TimeReport {
 [[nodiscard]] std::string time_text(const TimeReport& report);
 
 // Seconds, millimetres and mm/min; the fields are named in docs/algorithms/cycle_time.md.
-[[nodiscard]] std::string time_json(const TimeReport& report);
+[[nodiscard]] Json time_json(const TimeReport& report);
 
 }  // namespace batten::postproc

@@ -241,7 +241,7 @@ class PageCheck:
         self.changes("Plan", lambda: browser.click("[data-view=plan]"))
         self.changes("without the new path", lambda: browser.click("[data-layer=now]"))
         self.changes("with it", lambda: browser.keys("n"))
-        self.changes("wheel", lambda: browser.wheel("#canvas", -400))
+        self.changes("wheel", lambda: browser.wheel("#canvas", -100))
         self.changes("drag", lambda: browser.point("#canvas", drag=(60, 30)))
         self.changes("All", lambda: browser.click("#fit"))
         self.changes("colour", lambda: browser.keys("c"))
@@ -293,17 +293,75 @@ def cases(source, scratch):
         yield name, file, plain
 
 
+class OtherPageCheck(PageCheck):
+    """Of `verify`, `inspect` and `time`: their figures are those of --json, and nothing is shown that they have not."""
+
+    def all(self):
+        self.browser.open(self.page)
+        self.browser.wait("window.battenReport")
+        self.loads_nothing()
+        kind = self.value("JSON.parse(document.getElementById('data').textContent).kind")
+        expect_equal(self.value("JSON.parse(document.getElementById('data').textContent).report"), self.report, "report")
+        for name, shown in self.value("[...document.querySelectorAll('[data-figure]')].map((e) => [e.dataset.figure,"
+                                      " Number(e.dataset.value)])"):
+            if name in self.report and isinstance(self.report[name], (int, float)):
+                expect_equal(shown, self.report[name], name)
+        two = kind == "verify"
+        expect_equal(self.value("document.getElementById('worst').checkVisibility()"), two, "a button for the deviation")
+        expect_equal(self.value("document.getElementById('chart-deviation').checkVisibility()"), two, "a chart of the deviation")
+        self.rows_are_drawn()
+        self.fits()
+        self.refits_after_a_resize()
+        self.works_by_keyboard()
+        self.browser.keys("1234onrcu0?")
+        self.browser.keys("\ue00c")
+        expect_equal(self.browser.complaints(), [], "console")
+
+    # Each row of the table leads to its place on the path.
+    def rows_are_drawn(self):
+        rows = self.value("battenReport.page.rows.length")
+        expect_equal(self.value("new Set([...battenReport.path.run].filter((run) => run >= 0)).size"), rows, "rows on the path")
+        if rows:
+            self.browser.click("#run-table tbody tr")
+            expect_equal(self.value("battenReport.toolPath.chosen.length"), 2, "a chosen row is shown")
+
+
+def other_pages(batten, source, scratch):
+    """(name, JSON report, page)"""
+    old, new = source / "samples/butterfly/program.ngc", scratch / "new.ngc"
+    subprocess.run([batten, "smooth", old, "--target", "linuxcnc", "--tolerance", "0.015", "-o", new, "--quiet"], check=True)
+    wrong = scratch / "wrong.ngc"
+    wrong.write_text(new.read_text().replace("M3", "M4", 1))
+    for name, words in {
+            "verify": ["verify", old, new, "--tolerance", "0.015"],
+            "verify, with a violation": ["verify", old, wrong, "--tolerance", "0.015"],
+            "verify, the same bytes": ["verify", old, old],
+            "inspect": ["inspect", source / "samples/tool_changes/program.ngc"],
+            "time": ["time", old, "--machine", "linuxcnc"],
+            "time of two tools": ["time", source / "samples/tool_changes/program.ngc", "--machine", "router"]}.items():
+        page, figures = scratch / "other.html", scratch / "other.json"
+        subprocess.run([batten, *words, "--force", "--json", figures, "--report", page], capture_output=True, check=False)
+        yield name, json.loads(figures.read_text()), page
+
+
 def check_all(batten, source):
     failed = 0
+
+    def run(case, check):
+        nonlocal failed
+        try:
+            check()
+            print(f"ok      {case}", flush=True)
+        except (Failure, RuntimeError) as problem:
+            failed += 1
+            print(f"FAILED  {case}: {problem}", flush=True)
+
     with tempfile.TemporaryDirectory() as name, Browser() as browser:
         scratch = Path(name)
         for case, program, options in cases(source, scratch):
-            try:
-                PageCheck(browser, *make_page(batten, program, options, scratch)).all()
-                print(f"ok      {case}")
-            except (Failure, RuntimeError) as problem:
-                failed += 1
-                print(f"FAILED  {case}: {problem}")
+            run(case, lambda: PageCheck(browser, *make_page(batten, program, options, scratch)).all())
+        for case, report, page in other_pages(batten, source, scratch):
+            run(case, lambda: OtherPageCheck(browser, report, page).all())
     return 1 if failed else 0
 
 

@@ -150,7 +150,7 @@ function verifyPage(report, path, columns) {
     ...s, first_line: s.old_first_line, last_line: s.old_last_line, status: 'rewritten', deviation_mm: s.at_most_mm ?? Infinity }));
   const band = report.tolerance_kind === 'band';
   const found = report.violations;
-  const place = report.deviation_line > 0 ? `, near line ${report.deviation_line} of the new program` : '';
+  const place = report.deviation_line > 0 ? `, near line ${report.deviation_line} of the old program` : '';
   return {
     maker: 'Batten verify', names: [report.old, report.new],
     madeFor: () => `tolerance ${lengthText(report.tolerance_mm)}${band ? ' (band reading)' : ''}`,
@@ -245,7 +245,7 @@ function timePage(report, path) {
   const tools = report.tools.filter((t) => t.time_s > 0);
   return {
     maker: 'Batten time', names: [report.input.file, null], madeFor: () => `on machine ${report.machine}, predicted by the model of its control`,
-    verdict: () => ['plain', '', `${timeText(report.time_s)} on ${report.machine}.`,
+    verdict: () => ['plain', '\u23f1', `${timeText(report.time_s)} on ${report.machine}.`,
       report.cutting_s > 0 ? `${percent(slow)} of the cutting time is below half of the programmed feed.` : 'Nothing is cut.'],
     tiles: () => [tile('Time, predicted', [figure('time_s', report.time_s, timeText(report.time_s))], [`machine ${report.machine}`]),
       ...parts.filter(([, name]) => report[name] > 0).map(([title, name]) => tile(title, [figure(name, report[name], timeText(report[name]))],

@@ -24,7 +24,7 @@ using geometry::Vector3;
 ReadProgram read_of(const tests::Interpreted& text) { return {&text.program, &text.read}; }
 
 PagePath path_of(const std::string& before, const std::string& after, double tolerance,
-                 const std::vector<RunReport>& runs = {}, std::size_t most = 1000) {
+                 const std::vector<PageLines>& runs = {}, std::size_t most = 1000) {
   const tests::Interpreted old_text(before);
   const tests::Interpreted new_text(after);
   const Verification found = verify(read_of(old_text), read_of(new_text), Promise(tolerance));
@@ -71,7 +71,7 @@ TEST(PagePath, FollowsTheOldPathFromEndToEnd) {
 }
 
 TEST(PagePath, TellsWhichRunAPlaceBelongsTo) {
-  RunReport run;
+  PageLines run;
   run.first_line = 3;
   run.last_line = 5;
   const PagePath path = path_of(kKinked, kStraight, 0.02, {run});
