@@ -17,7 +17,9 @@
 #include "gcode/text/characters.h"
 #include "postproc/batch/batch_summary.h"
 #include "postproc/batch/process_pool.h"
+#include "postproc/report/html_report.h"
 #include "postproc/report/kept_report.h"
+#include "postproc/report/path_picture.h"
 #include "postproc/report/smooth_report.h"
 #include "postproc/stream/pipeline.h"
 #include "postproc/stream/smooth_result.h"
@@ -68,8 +70,8 @@ struct WorkerResult {
 };
 
 // A program is done when its record has the same input and settings and its files still have the
-// bytes that the record says. Otherwise it is smoothed, and written in the order report, program,
-// record.
+// bytes that the record says. Otherwise it is smoothed, and written in the order report, page,
+// program, record.
 //
 // A program in the new tree that no record explains and that is not what would be written now is
 // left as it is, without `force`. When nothing may be written, a program that an earlier batch
@@ -101,7 +103,7 @@ class Worker {
     if (const auto bytes = bytes_of(places_.record)) before_ = read_record(*bytes);
     output_sha256_ = hash_of(places_.output);
     if (is_done()) return {.record = *before_, .was_done = true};
-    for (const fs::path& place : {places_.output, places_.report, places_.record}) {
+    for (const fs::path& place : {places_.output, places_.report, places_.page, places_.record}) {
       if (leads_into(place, plan_.input_tree)) {
         return failed(place.string() + ": leads into the input tree; nothing was written");
       }
@@ -114,7 +116,9 @@ class Worker {
     return before_ && before_->input_sha256 == record_.input_sha256 &&
            before_->settings_sha256 == record_.settings_sha256 &&
            before_->output_sha256 == output_sha256_ &&
-           before_->report_sha256 == hash_of(places_.report);
+           before_->report_sha256 == hash_of(places_.report) &&
+           (!plan_.pages ||
+            (!before_->page_sha256.empty() && before_->page_sha256 == hash_of(places_.page)));
   }
 
   WorkerResult smooth(const gcode::SourceText& source) {
@@ -130,14 +134,18 @@ class Worker {
     record_.message = message_of(verdict, result, source, plan_.strict);
     take_figures(result);
     const bool writes = verdict == ExitCode::kDone;
-    const std::string report = json_report({.source = source,
-                                            .options = options,
-                                            .result = result,
-                                            .output_file = writes ? record_.program : "",
-                                            .strict = plan_.strict});
+    const SmoothReport told{.source = source,
+                            .options = options,
+                            .result = result,
+                            .output_file = writes ? record_.program : "",
+                            .strict = plan_.strict};
+    const std::string report = json_report(told);
+    const std::string page = plan_.pages ? html_report(told, "") : "";
     record_.report_sha256 = sha256(report);
+    if (plan_.pages) record_.page_sha256 = sha256(page);
     if (writes) record_.output_sha256 = sha256(result.text);
-    return write(result.text, report);
+    record_.picture = path_picture(told);
+    return write(result.text, report, page);
   }
 
   void take_figures(const SmoothResult& result) {
@@ -153,10 +161,11 @@ class Worker {
     record_.path_before = result.path_before;
     record_.path_after = result.path_after;
     record_.deviation_mm = result.deviation_mm;
+    record_.deviation_line = result.deviation_line;
     record_.kept_for = cause_in_brief(result.kept);
   }
 
-  WorkerResult write(std::string_view text, std::string_view report) {
+  WorkerResult write(std::string_view text, std::string_view report, std::string_view page) {
     const bool ours =
         !output_sha256_.empty() && before_ && before_->output_sha256 == output_sha256_;
     const bool writes = record_.exit_code == 0 && record_.output_sha256 != output_sha256_;
@@ -166,6 +175,7 @@ class Worker {
                     "--force replaces it");
     }
     const bool done = put(places_.report, report, true) &&
+                      (!plan_.pages || put(places_.page, page, true)) &&
                       (!writes || put(places_.output, text, ours || plan_.force)) &&
                       (record_.exit_code == 0 || !ours || remove_output()) &&
                       put(places_.record, record_text(record_), true);

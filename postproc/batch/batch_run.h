@@ -23,6 +23,7 @@ struct BatchPlan {
   std::string settings_sha256;  // of everything that the bytes of the result depend on
   bool strict = false;
   bool force = false;  // programs in the new tree may be replaced whoever wrote them
+  bool pages = false;  // each program's report as a page, too
 };
 
 struct BatchRequest {

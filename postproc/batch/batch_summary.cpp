@@ -31,9 +31,13 @@ void each_field(Record& record, const Take& take) {
   take("settings_sha256", record.settings_sha256);
   take("output_sha256", record.output_sha256);
   take("report_sha256", record.report_sha256);
+  take("page_sha256", record.page_sha256);
   take("runs_rewritten", record.runs_rewritten);
   take("runs_kept", record.runs_kept);
+  take("deviation_line", record.deviation_line);
   each_figure(record, take);
+  take("picture_rewritten", record.picture.rewritten);
+  take("picture_kept", record.picture.kept);
 }
 
 bool is_written(ProgramStatus status) {
@@ -175,6 +179,7 @@ ProgramPlaces places_of(const std::filesystem::path& output_tree, const std::str
   const std::filesystem::path batch = output_tree / kBatchFolder;
   return {.output = output_tree / program,
           .report = batch / "reports" / (program + ".json"),
+          .page = batch / "reports" / (program + ".html"),
           .record = batch / "manifest" / (program + ".json")};
 }
 
@@ -240,25 +245,31 @@ std::string summary_csv(std::span<const ProgramRecord> records) {
   std::string text =
       "program,status,exit_code,blocks_in,blocks_out,bytes_in,bytes_out,runs_rewritten,runs_kept,"
       "time_before_s,time_after_s,distance_before_mm,distance_after_mm,roughness_before,"
-      "roughness_after,slow_share_before,slow_share_after,deviation_mm,input_sha256,"
+      "roughness_after,slow_share_before,slow_share_after,deviation_mm,deviation_line,input_sha256,"
       "output_sha256,kept_for,message\n";
   for (const ProgramRecord& r : records) {
     fmt::format_to(std::back_inserter(text),
-                   "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                   "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                    csv_field(r.program), name_of(r.status), r.exit_code, r.blocks_in, r.blocks_out,
                    r.bytes_in, r.bytes_out, r.runs_rewritten, r.runs_kept, r.time_before.seconds,
                    r.time_after.seconds, r.path_before.distance_mm, r.path_after.distance_mm,
                    r.path_before.roughness, r.path_after.roughness, r.time_before.slow_share(),
-                   r.time_after.slow_share(), r.deviation_mm, r.input_sha256, r.output_sha256,
-                   csv_field(r.kept_for), csv_field(r.message));
+                   r.time_after.slow_share(), r.deviation_mm, r.deviation_line, r.input_sha256,
+                   r.output_sha256, csv_field(r.kept_for), csv_field(r.message));
   }
   return text;
 }
 
 std::string summary_json(std::span<const ProgramRecord> records) {
+  const auto without_picture = [](const ProgramRecord& record) {
+    Json json = json_of_record(record);
+    json.erase("picture_rewritten");
+    json.erase("picture_kept");
+    return json;
+  };
   return json_text({{"batten", BATTEN_VERSION},
                     {"totals", json_of(totals_of(records))},
-                    {"programs", json_list(records, &json_of_record)}});
+                    {"programs", json_list(records, without_picture)}});
 }
 
 std::string progress_line(const BatchCount& count) {

@@ -4,6 +4,7 @@
 //
 //   OUT/part.nc                                   the new program
 //   OUT/batten-batch/reports/part.nc.json         what `batten smooth --json` would say of it
+//   OUT/batten-batch/reports/part.nc.html         its page, where pages are wanted
 //   OUT/batten-batch/manifest/part.nc.json        the record
 //
 // The bytes of a record depend on the program and the settings only: no times, no machine, no path
@@ -19,6 +20,7 @@
 #include <string>
 #include <string_view>
 
+#include "postproc/report/path_picture.h"
 #include "postproc/stream/smooth_result.h"
 #include "postproc/text/json_values.h"
 
@@ -80,8 +82,11 @@ struct ProgramRecord : ProgramFigures {
   std::string settings_sha256;
   std::string output_sha256;  // empty: no program was written
   std::string report_sha256;
+  std::string page_sha256;  // empty: no page was written
   std::size_t runs_rewritten = 0;
   std::size_t runs_kept = 0;
+  std::uint32_t deviation_line = 0;  // of the old program, where the deviation is greatest; 0: none
+  PathPicture picture;
 };
 
 [[nodiscard]] Json json_of_record(const ProgramRecord& record);
@@ -94,6 +99,7 @@ struct ProgramRecord : ProgramFigures {
 struct ProgramPlaces {
   std::filesystem::path output;
   std::filesystem::path report;
+  std::filesystem::path page;
   std::filesystem::path record;
 };
 [[nodiscard]] ProgramPlaces places_of(const std::filesystem::path& output_tree,

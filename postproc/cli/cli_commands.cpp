@@ -551,6 +551,8 @@ BatchCommand batch_command(Arguments& in) {
   check_options(command.options, in);
   command.settings = settings_text(in.given, command.own_machine.get());
   command.fail_fast = in.given.flag("fail-fast");
+  command.pages = in.given.flag("pages");
+  command.open = in.given.flag("open");
   command.suffixes = in.given.values("suffix");
   if (command.suffixes.empty()) {
     const auto usual = default_program_suffixes();

@@ -229,6 +229,10 @@ std::vector<OptionRow> batch_rows() {
               "what is a program, in place of nc, ngc, tap, cnc, gcode, ncc, eia, iso, h, mpf, "
               "spf, arc, min, pim, anc, in either case; none: names without a suffix, all: every "
               "file; a list with commas, or repeated"),
+       option("pages", kFlag, "",
+              "write the page of each program (as smooth --report), to which "
+              "batten-batch/index.html leads"),
+       option("open", kFlag, "", "show batten-batch/index.html in the browser at the end"),
        option("fail-fast", kFlag, "",
               "stop at the first program that cannot be written; otherwise carry on"),
        option("force", kFlag, "", "replace programs in OUT_TREE that no batch wrote"),

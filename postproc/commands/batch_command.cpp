@@ -6,6 +6,7 @@
 #include <set>
 #include <system_error>
 
+#include "postproc/batch/batch_index.h"
 #include "postproc/batch/batch_run.h"
 #include "postproc/batch/batch_summary.h"
 #include "postproc/commands/commands.h"
@@ -63,27 +64,42 @@ fs::path summary_path(const fs::path& batch, const Shard& shard, std::string_vie
                       : fmt::format("summary-{}-of-{}.{}", shard.index, shard.count, suffix));
 }
 
+// "index.html", "index-2-of-8.html"
+fs::path index_path(const fs::path& batch, const Shard& shard) {
+  return batch / (shard.count == 1 ? std::string("index.html")
+                                   : fmt::format("index-{}-of-{}.html", shard.index, shard.count));
+}
+
 std::set<fs::path> all_targets(const BatchRequest& request, const fs::path& batch,
                                const Shard& shard) {
   std::set<fs::path> targets;
   for (const TreeProgram& program : request.programs) {
     const ProgramPlaces places = places_of(request.plan.output_tree, program.name);
-    targets.insert({places.output, places.report, places.record});
+    targets.insert({places.output, places.report, places.page, places.record});
   }
   for (const char* suffix : {"txt", "csv", "json"}) {
     targets.insert(summary_path(batch, shard, suffix));
   }
+  targets.insert(index_path(batch, shard));
   return targets;
 }
 
 // 0, or why a file could not be written.
-int write_summary(const std::vector<ProgramRecord>& records, const fs::path& batch,
-                  const Shard& shard) {
+int write_summary(const std::vector<ProgramRecord>& records, const BatchCommand& command,
+                  const fs::path& batch) {
+  const Shard& shard = command.shard;
   const std::string table = summary_table(records);
   int code = write_result(summary_path(batch, shard, "txt"), table, true);
   if (code == 0) code = write_result(summary_path(batch, shard, "csv"), summary_csv(records), true);
   if (code == 0) {
     code = write_result(summary_path(batch, shard, "json"), summary_json(records), true);
+  }
+  if (code == 0) {
+    std::error_code error;
+    const fs::path tree = fs::weakly_canonical(command.input_tree, error);
+    code = write_page({.file = index_path(batch, shard), .open = command.open, .command_line = {}},
+                      true, command.input_tree,
+                      batch_index(records, tree.filename().string(), command.options));
   }
   const int table_code = write_result("-", table, false);
   return code != 0 ? code : table_code;
@@ -95,7 +111,8 @@ BatchRequest request_of(const BatchCommand& command, const ProgramTree& tree) {
                    .options = command.options,
                    .settings_sha256 = sha256(command.settings),
                    .strict = command.strict,
-                   .force = command.force},
+                   .force = command.force,
+                   .pages = command.pages},
           .programs = programs_of(command.shard, tree.programs),
           .jobs = static_cast<std::size_t>(command.jobs > 0 ? command.jobs : threads_at_once(0)),
           .fail_fast = command.fail_fast};
@@ -136,13 +153,16 @@ int work_through(const BatchCommand& command, const BatchRequest& request, const
     say("interrupted; the same command goes on where it stopped");
     return interrupt_exit_code();
   }
-  const int written = write_summary(result.records, batch, command.shard);
+  const int written = write_summary(result.records, command, batch);
   return std::max(written, totals_of(result.records).exit_code);
 }
 
 }  // namespace
 
 int run(const BatchCommand& command) {
+  if (!can_show({.file = {}, .open = command.open, .command_line = {}})) {
+    return static_cast<int>(ExitCode::kFileError);
+  }
   std::error_code error;
   if (!fs::is_directory(command.input_tree, error)) {
     say(command.input_tree + ": is no folder that can be read");

@@ -78,6 +78,8 @@ struct BatchCommand : SmoothingCommand {
   std::vector<std::string> suffixes;
   int jobs = 0;  // 0: as many as there are processors
   Shard shard;
+  bool pages = false;  // a page for each program
+  bool open = false;   // the page of all is shown
   bool fail_fast = false;
 };
 [[nodiscard]] int run(const BatchCommand& command);

@@ -34,8 +34,10 @@ Files files_below(const fs::path& root) {
 }
 
 Files without_summaries(Files files) {
-  std::erase_if(files,
-                [](const auto& file) { return file.first.starts_with("batten-batch/summary"); });
+  std::erase_if(files, [](const auto& file) {
+    return file.first.starts_with("batten-batch/summary") ||
+           file.first.starts_with("batten-batch/index");
+  });
   return files;
 }
 
@@ -242,7 +244,8 @@ TEST_F(Batch, ShardsTogetherAreOneRun) {
           "--shard $i/3 & done; wait"),
       0);
   expect_same(without_summaries(files_below(file("out"))), without_summaries(expected));
-  for (const char* name : {"summary-1-of-3.txt", "summary-2-of-3.csv", "summary-3-of-3.json"}) {
+  for (const char* name :
+       {"summary-1-of-3.txt", "summary-2-of-3.csv", "summary-3-of-3.json", "index-1-of-3.html"}) {
     EXPECT_TRUE(fs::exists(file("out/batten-batch") / name)) << name;
   }
   // The closing run finds everything done and writes the summary of the whole tree.

@@ -1,6 +1,6 @@
 # Are the Debian packages as Debian's policy wants them, as far as it can be asked in seconds?
 #
-#   cmake -D BUILD=<build folder> -D SCRATCH=<folder> -P tests/package/check_packages.cmake
+#   cmake -D BUILD=<build folder> -D ROOT=<the project> -D SCRATCH=<folder> -P tests/package/check_packages.cmake
 cmake_minimum_required(VERSION 3.25)
 
 file(REMOVE_RECURSE ${SCRATCH})
@@ -52,6 +52,21 @@ must_match("${files}" "\\./usr/share/man/man1/batten\\.1\\.gz\n" "batten")
 must_match("${fields}" "Depends: [^\n]*libc6[^\n]*" "batten")
 must_match("${fields}" "Depends: [^\n]*libtbb12[^\n]*" "batten")
 must_not_match("${fields}" "Depends: [^\n]*-dev[^\n]*" "batten")
+
+# All that the README leads to, below its own folder.
+file(READ ${ROOT}/README.md readme)
+string(REGEX MATCHALL "\\]\\([^)#]+" links "${readme}")
+foreach(link IN LISTS links)
+  string(SUBSTRING "${link}" 2 -1 link)
+  if(NOT link MATCHES "^https?:")
+    string(REGEX REPLACE "/$" "" link "${link}")
+    if(NOT EXISTS ${ROOT}/${link})
+      message(FATAL_ERROR "README.md leads to ${link}, which is not there")
+    endif()
+    string(REPLACE "." "\\." pattern "${link}")
+    must_match("${files}" " \\./usr/share/doc/batten/${pattern}/?\n" "batten, for a link of the README")
+  endif()
+endforeach()
 
 read_package(libbatten-dev)
 must_match("${files}" "\\./usr/include/batten/batten\\.h\n" "libbatten-dev")

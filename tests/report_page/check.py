@@ -4,15 +4,18 @@ loaded from anywhere, figures equal to the JSON report, and controls that do wha
 
     check.py BATTEN SOURCE_DIR            all samples' pages are checked
     check.py BATTEN SOURCE_DIR --shots DIR [PROGRAM OPTION ..]    pictures of one page, to look at
+    check.py BATTEN SOURCE_DIR --programs PROGRAM .. -- OPTION ..  pages of these, with time and size
 
 Exit code 77 (skipped) where Chromium or its driver is not installed.
 """
 
 import json
+import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from urllib.parse import unquote, urlparse
 
 sys.path.insert(0, str(Path(__file__).parent))
 from browser import Browser, is_installed  # noqa: E402
@@ -58,9 +61,10 @@ class PageCheck:
         self.browser = browser
         self.report = report
         self.page = page
+        self.most_bytes = PAGE_SIZE_AT_MOST
 
     def all(self):
-        expect(self.page.stat().st_size < PAGE_SIZE_AT_MOST, f"{self.page.stat().st_size} bytes")
+        expect(self.page.stat().st_size < self.most_bytes, f"{self.page.stat().st_size} bytes")
         self.browser.open(self.page)
         self.browser.wait("window.battenReport")
         self.loads_nothing()
@@ -137,9 +141,10 @@ class PageCheck:
     def rows(self):
         return self.value("document.querySelectorAll('#run-table tbody tr[data-run]').length")
 
-    # Errors are in sight; all others are one line until it is opened.
+    # Errors are in sight, and the first lines that cost much; all others are one line until it is opened.
     def folds_the_notes(self):
         errors = sum(d["severity"] == "error" for d in self.report["diagnostics"])
+        errors += min(3, sum(d["id"] == "modes-unknown" for d in self.report["diagnostics"]))
         others = len(self.report["diagnostics"]) - errors
         shown = "document.querySelectorAll('#messages li').length"
         expect_equal(self.value(shown), min(51, errors), "errors")
@@ -344,6 +349,27 @@ def other_pages(batten, source, scratch):
         yield name, json.loads(figures.read_text()), page
 
 
+def check_index(browser, batten, scratch):
+    """The page of a batch: fits everywhere, and each link leads to a file."""
+    tree = scratch / "smooth"
+    subprocess.run([batten, "batch", scratch / "in", tree, "--target", "linuxcnc", "--pages"], capture_output=True, check=False)
+    index = tree / "batten-batch/index.html"
+    browser.open(index)
+    for dark in (False, True):
+        browser.dark(dark)
+        for width, height in SIZES:
+            browser.size(width, height)
+            wide = browser.run("return document.documentElement.scrollWidth")
+            expect(wide <= width, f"{wide} pixels wide at {width}")
+    expect_equal(browser.run("return document.querySelectorAll('li').length"), 3, "programs")
+    expect_equal(browser.run("return document.querySelectorAll('li svg path').length") > 0, True, "pictures")
+    expect_equal(browser.run("return document.querySelector('li').className"), "bad", "what was not written comes first")
+    for link in browser.run("return [...document.links].map((a) => a.href)"):
+        expect(Path(unquote(urlparse(link).path)).exists(), f"{link} leads nowhere")
+    expect_equal(browser.run("return [...document.querySelectorAll('h2 a')].length"), 3, "pages")
+    expect_equal(browser.complaints(), [], "console")
+
+
 def check_all(batten, source):
     failed = 0
 
@@ -362,6 +388,32 @@ def check_all(batten, source):
             run(case, lambda: PageCheck(browser, *make_page(batten, program, options, scratch)).all())
         for case, report, page in other_pages(batten, source, scratch):
             run(case, lambda: OtherPageCheck(browser, report, page).all())
+        (scratch / "in").mkdir()
+        for name in ("butterfly", "kept_by_rule"):
+            shutil.copy(source / "samples" / name / "program.ngc", scratch / "in" / f"{name} #1.ngc")
+        (scratch / "in/no units.ngc").write_text("G0 X0\nG1 X1 F100\n")
+        run("the page of a batch", lambda: check_index(browser, batten, scratch))
+    return 1 if failed else 0
+
+
+def check_programs(batten, programs, options):
+    """Real programs, as large as they may be: a page opens within 3 s and stays below 20 MB."""
+    failed = 0
+    for program in programs:
+        with tempfile.TemporaryDirectory() as name, Browser() as browser:
+            try:
+                report, page = make_page(batten, program, options, Path(name))
+                check = PageCheck(browser, report, page)
+                check.most_bytes = 20_000_000
+                check.all()
+                opened = browser.run("return performance.timing.loadEventEnd - performance.timing.navigationStart")
+                ready = opened + int(browser.run("return document.documentElement.dataset.readyMs"))
+                expect(ready < 3000, f"usable after {ready} ms")
+                print(f"ok      {program}: {report['input']['blocks']} blocks, page of {page.stat().st_size} bytes, "
+                      f"usable after {ready} ms", flush=True)
+            except (Failure, RuntimeError) as problem:
+                failed += 1
+                print(f"FAILED  {program}: {problem}", flush=True)
     return 1 if failed else 0
 
 
@@ -394,6 +446,9 @@ def main(arguments):
         print("skipped: needs chromium and chromedriver (apt-get install chromium chromium-driver)")
         return 77
     batten, source = arguments[0], Path(arguments[1])
+    if "--programs" in arguments:
+        words = arguments[arguments.index("--programs") + 1:]
+        return check_programs(batten, words[:words.index("--")], words[words.index("--") + 1:])
     if "--shots" in arguments:
         folder, program, *options = arguments[arguments.index("--shots") + 1:]
         shots(batten, Path(folder), program, options)

@@ -19,6 +19,10 @@ const isUsual = (r) => r.status === 'kept' && (r.reason === 'plunge' || r.reason
 const statusCell = (text) => (r) => element('span', { className: 'what' },
   element('i', { className: r.status === 'kept' ? 'dot kept' : 'dot' }), text(r));
 
+// Words of the shop's own: what they do is the user's word, not proved.
+const wordsText = (words) => words.map((w) => `${w.word} = ${w.effect}`).join('; ');
+const vouched = (words) => (words?.length ? [['You vouch for', wordsText(words)]] : []);
+
 const saidOption = (value) => (value === null ? 'not given' : Array.isArray(value) ? (value.length ? value.join(', ') : 'none') : String(value));
 const toleranceWord = (options) => ('tolerance_inch' in options ? `${options.tolerance_inch}in` : `${options.tolerance_mm}mm`);
 const again = (text) => [element('p', {}, 'To check it again:'), element('pre', {}, text)];
@@ -95,13 +99,14 @@ function smoothPage(report, path, columns) {
       ['Allowed', `${lengthText(options.tolerance_mm, 5)}, ${band ? 'in order, band reading' : 'both ways and in order'}`],
       comparedFact(columns),
     ];
+    pairs.push(...vouched(options.words));
     if (report.corner_mm > 0) pairs.splice(2, 0, ['Corners', `at most ${lengthText(report.corner_mm, 5)} from the new path`]);
     const { file } = report.output;
     return [facts(pairs), ...proofNotes(report.proved, 'The new text could not be shown to keep the tolerance; nothing was written.', columns),
       ...(file && file !== '-' ? again(`batten verify ${shellWord(report.input.file)} ${shellWord(file)} --tolerance ${toleranceWord(options)}${band ? ' --tolerance-kind band' : ''}`) : [])];
   };
 
-  const names = Object.keys(options).filter((name) => name !== 'tolerance_mm' && name !== 'tolerance_inch');
+  const names = Object.keys(options).filter((name) => !['tolerance_mm', 'tolerance_inch', 'words'].includes(name));
   return {
     maker: 'Batten smooth', names: [report.input.file, report.output.file || 'nothing written'],
     madeFor: () => `for ${report.output.target}, machine ${options.machine}, tolerance ${lengthText(options.tolerance_mm)}${band ? ' (band reading)' : ''}`,
@@ -124,7 +129,7 @@ function smoothPage(report, path, columns) {
       ['Before and after', (r) => r.time_before_s - r.time_after_s, '', bars],
     ],
     options: [['batten', report.batten], ['input', `${report.input.file}, ${thousands(report.input.bytes)} bytes`],
-      ['tolerance', toleranceWord(options)], ...names.map((name) => [name.replaceAll('_', '-'), saidOption(options[name])])],
+      ['tolerance', toleranceWord(options)], ...names.map((name) => [name.replaceAll('_', '-'), saidOption(options[name])]), ...vouched(options.words)],
   };
 }
 
@@ -168,7 +173,7 @@ function verifyPage(report, path, columns) {
     messages: found.map((v) => ({ severity: 'error', id: v.id, line: v.new_line || v.old_line, column: v.new_line ? 'new' : 'old', message: v.message })),
     proof: () => [facts([['Verdict', report.proved ? 'proved' : 'NOT PROVED'],
       ['Greatest deviation', `at most ${lengthText(report.deviation_mm, 5)}${place}`],
-      ['Allowed', `${lengthText(report.tolerance_mm, 5)}, ${band ? 'in order, band reading' : 'both ways and in order'}`], comparedFact(columns)]),
+      ['Allowed', `${lengthText(report.tolerance_mm, 5)}, ${band ? 'in order, band reading' : 'both ways and in order'}`], comparedFact(columns), ...vouched(report.words)]),
     ...proofNotes(report.proved, 'The new program could not be shown to do what the old one does.', columns)],
     rows, reasons: [], compared: true, understood: true, tolerance: report.tolerance_mm, machine: '', colours: ['deviation', 'status'],
     isRewritten: (i) => path.step[i] === STEP.rewritten, statusWords: ['changed', 'the same'],
@@ -183,7 +188,7 @@ function verifyPage(report, path, columns) {
       ['Pairs', (r) => r.certificate_size, 'number', (r) => thousands(r.certificate_size)],
     ],
     options: [['batten', report.batten], ['old', report.old], ['new', report.new], ['tolerance', lengthText(report.tolerance_mm)],
-      ['tolerance-kind', report.tolerance_kind], ['side', report.side]],
+      ['tolerance-kind', report.tolerance_kind], ['side', report.side], ...vouched(report.words)],
   };
 }
 
@@ -227,7 +232,7 @@ function inspectPage(report, path) {
       ['Longest move', of('longest_mm'), 'number', part('longest_mm', length)],
       ['Greatest turn', of('greatest_turn_deg'), 'number', part('greatest_turn_deg', (deg) => `${deg.toFixed(1)}\u00b0`)],
     ],
-    options: [['batten', report.batten], ['input', `${report.input.file}, ${thousands(report.input.bytes)} bytes`]],
+    options: [['batten', report.batten], ['input', `${report.input.file}, ${thousands(report.input.bytes)} bytes`], ...vouched(report.words)],
   };
 }
 
@@ -268,7 +273,7 @@ function timePage(report, path) {
       ['Speed', speed, 'number', (r) => feedText(speed(r))],
       ['Programmed', (r) => r.feed_mm_per_min, 'number', (r) => feedText(r.feed_mm_per_min)],
     ],
-    options: [['batten', report.batten], ['input', `${report.input.file}, ${thousands(report.input.bytes)} bytes`], ['machine', report.machine]],
+    options: [['batten', report.batten], ['input', `${report.input.file}, ${thousands(report.input.bytes)} bytes`], ['machine', report.machine], ...vouched(report.words)],
   };
 }
 

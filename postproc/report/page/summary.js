@@ -76,11 +76,17 @@ function messageList(messages) {
   return element('ul', {}, ...items);
 }
 
-// Errors in full; warnings and notes as one line with their counts, to be opened.
+// Errors in full, and the first lines behind which much is copied; other warnings and notes as one
+// line with their counts, to be opened.
+const CULPRIT = 'modes-unknown';
+const CULPRITS_AT_ONCE = 3;
+
 function drawMessages(messages) {
-  const errors = messages.filter((d) => d.severity === 'error');
-  const others = messages.filter((d) => d.severity !== 'error');
-  const parts = errors.length ? [messageList(errors)] : [];
+  const culprits = messages.filter((d) => d.id === CULPRIT).slice(0, CULPRITS_AT_ONCE);
+  const isLoud = (d) => d.severity === 'error' || culprits.includes(d);
+  const loud = messages.filter(isLoud);
+  const others = messages.filter((d) => !isLoud(d));
+  const parts = loud.length ? [messageList(loud)] : [];
   if (others.length) {
     const ids = new Map();
     for (const d of others) ids.set(d.id, (ids.get(d.id) ?? 0) + 1);

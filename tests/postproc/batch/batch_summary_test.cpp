@@ -31,6 +31,8 @@ ProgramRecord smoothed(const std::string& program) {
   record.path_before = {10, 0.005, 0.25};
   record.path_after = {10, 0.002, 0.125};
   record.deviation_mm = 0.0098;
+  record.deviation_line = 42;
+  record.picture = {.rewritten = "M6 6L90 40", .kept = "M0 0L6 6"};
   record.kept_for = "40 % expression, line 7";
   return record;
 }
@@ -63,13 +65,14 @@ TEST(BatchRecord, SaysAllOfAProgram) {
     "program": "a/b.nc", "status": "smoothed", "exit_code": 0, "message": "",
     "kept_for": "40 % expression, line 7",
     "input_sha256": "aa", "settings_sha256": "bb", "output_sha256": "cc", "report_sha256": "dd",
+    "page_sha256": "", "deviation_line": 42,
     "bytes_in": 1000, "bytes_out": 400, "blocks_in": 100, "blocks_out": 30,
     "runs_rewritten": 2, "runs_kept": 1,
     "time_before_s": 3.5, "time_after_s": 2.25, "cutting_before_s": 3, "cutting_after_s": 2,
     "slow_before_s": 1.5, "slow_after_s": 0.5,
     "length_before_mm": 10, "length_after_mm": 10, "distance_before_mm": 0.005,
     "distance_after_mm": 0.002, "roughness_before": 0.25, "roughness_after": 0.125,
-    "deviation_mm": 0.0098})"));
+    "deviation_mm": 0.0098, "picture_rewritten": "M6 6L90 40", "picture_kept": "M0 0L6 6"})"));
 }
 
 TEST(BatchRecord, OfOtherTextIsNone) {
@@ -124,6 +127,7 @@ TEST(BatchSummary, SaysTheSameInAllItsForms) {
   EXPECT_EQ(json["programs"][0]["blocks_out"], 30);
   EXPECT_EQ(json["totals"]["exit_code"], 2);
   EXPECT_EQ(json["totals"]["time_before_s"], 3.5);
+  EXPECT_FALSE(json["programs"][0].contains("picture_kept")) << "pictures are for the page";
 }
 
 // Written by hand from RFC 4180: fields with quotes, commas or line ends stand in quotes, quotes
@@ -132,7 +136,7 @@ TEST(BatchSummary, QuotesWhatCsvNeedsQuoted) {
   const std::string csv =
       summary_csv(std::vector<ProgramRecord>{smoothed("a.nc"), refused("c.nc")});
   EXPECT_NE(csv.find("\na.nc,smoothed,0,100,30,1000,400,2,1,3.5,2.25,0.005,0.002,0.25,0.125,0.5,0."
-                     "25,0.0098,aa,cc,\"40 % expression, line 7\",\n"),
+                     "25,0.0098,42,aa,cc,\"40 % expression, line 7\",\n"),
             std::string::npos)
       << csv;
   EXPECT_NE(csv.find("\"c.nc:1:1: error: \"\"quoted\"\", and a comma\"\n"), std::string::npos)
