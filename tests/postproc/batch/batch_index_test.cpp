@@ -116,7 +116,7 @@ TEST(PathPicture, StaysSmall) {
   for (int row = 0; row < 2000; ++row) {
     for (int k = 0; k < 20; ++k) {
       const int x = row % 2 == 0 ? k : 19 - k;
-      rows += "X" + std::to_string(x) + " Y" + std::to_string(row) + " Z" +
+      rows += "X" + std::to_string(100 * x) + " Y" + std::to_string(row) + " Z" +
               std::to_string((row * k) % 3) + "\n";
     }
   }
