@@ -194,9 +194,9 @@ CommandLine read_command_line(const std::vector<std::string>& given_arguments) {
     line.notes = texts_of_origins(in.given.origins());
   }
   std::visit(
-      [&](auto& command) {
-        if constexpr (requires { command.page.command_line; }) {
-          command.page.command_line = command_line_of(arguments);
+      [&](auto& asked) {
+        if constexpr (requires { asked.page.command_line; }) {
+          asked.page.command_line = command_line_of(arguments);
         }
       },
       line.command);
