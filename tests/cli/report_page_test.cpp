@@ -89,8 +89,8 @@ TEST_P(ReportPage, ReplacesNothingWithoutForce) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cli, ReportPage, testing::ValuesIn(kCommands),
-                         [](const auto& info) -> std::string {
-                           const std::string command = info.param;
+                         [](const auto& each) -> std::string {
+                           const std::string command = each.param;
                            return command.substr(0, command.find(' '));
                          });
 
