@@ -55,9 +55,10 @@ must_not_match("${fields}" "Depends: [^\n]*-dev[^\n]*" "batten")
 
 # All that the README leads to, below its own folder.
 file(READ ${ROOT}/README.md readme)
+# A list is not split within brackets, so they go first.
 string(REGEX MATCHALL "\\]\\([^)#]+" links "${readme}")
+string(REPLACE "](" "" links "${links}")
 foreach(link IN LISTS links)
-  string(SUBSTRING "${link}" 2 -1 link)
   if(NOT link MATCHES "^https?:")
     string(REGEX REPLACE "/$" "" link "${link}")
     if(NOT EXISTS ${ROOT}/${link})
