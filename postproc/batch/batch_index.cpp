@@ -69,7 +69,7 @@ std::string address(std::string_view path) {
   return text;
 }
 
-std::string seconds(double time) {
+std::string seconds_of(double time) {
   if (time < 120) return fmt::format("{:.2f} s", time);
   const auto whole = static_cast<long long>(std::llround(time));
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
@@ -90,8 +90,8 @@ std::string figures(const ProgramFigures& row, std::uint32_t line) {
   std::string text = "<dl>\n";
   const double before = row.time_before.seconds;
   const double after = row.time_after.seconds;
-  text +=
-      fact("time", fmt::format("{} → {}", seconds(before), seconds(after)), change(before, after));
+  text += fact("time", fmt::format("{} → {}", seconds_of(before), seconds_of(after)),
+               change(before, after));
   text += fact("blocks", fmt::format("{} → {}", row.blocks_in, row.blocks_out),
                change(static_cast<double>(row.blocks_in), static_cast<double>(row.blocks_out)));
   text += fact("slow", fmt::format("{:.1f} → {:.1f} %", 100 * row.time_before.slow_share(),

@@ -19,7 +19,7 @@ namespace {
 constexpr const char* kShows = "xdg-open";
 
 // A browser that was not open may keep xdg-open until it is closed.
-constexpr std::chrono::milliseconds kPatience(3000);
+constexpr std::chrono::milliseconds kLongestStart(3000);
 constexpr std::chrono::milliseconds kBetweenLooks(20);
 
 int wait_for(pid_t process, std::optional<std::chrono::milliseconds> patience) {
@@ -88,7 +88,7 @@ std::string objection_to_showing() {
 
 std::string show_file(const std::string& file) {
   std::string error;
-  const auto status = run_silently({kShows, file}, error, kPatience);
+  const auto status = run_silently({kShows, file}, error, kLongestStart);
   if (status && *status != 0) error = std::string(kShows) + " could not show it";
   if (error.empty()) return "";
   return file + ": written, but not shown: " + error + "; open it in a browser";

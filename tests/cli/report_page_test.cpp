@@ -8,7 +8,7 @@
 namespace batten {
 namespace {
 
-constexpr const char* kProgram = "G21 G90\nG0 X0 Y0 Z0\nG1 X10 F600\nX20 Y0.001\nX30 Y0\nM2\n";
+constexpr const char* kPageProgram = "G21 G90\nG0 X0 Y0 Z0\nG1 X10 F600\nX20 Y0.001\nX30 Y0\nM2\n";
 
 // Each command that has a page, on two programs of the folder.
 constexpr const char* kCommands[] = {"smooth part.nc --target linuxcnc --dry-run --quiet",
@@ -18,7 +18,7 @@ constexpr const char* kCommands[] = {"smooth part.nc --target linuxcnc --dry-run
 class ReportPage : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    folder_.put("part.nc", kProgram);
+    folder_.put("part.nc", kPageProgram);
     folder_.put("same.nc", "G21 G90\nG0 X0 Y0 Z0\nG1 X30 F600\nM2\n");
     // Stands for the browser: it writes down what it is to show.
     ASSERT_EQ(folder_
@@ -79,7 +79,7 @@ TEST_P(ReportPage, IsNoOtherFile) {
   EXPECT_EQ(run("--report part.nc").exit_code, 1);
   EXPECT_EQ(run("--report a.html --json a.html").exit_code, 1);
   EXPECT_EQ(run("--report - --open").exit_code, 1);
-  EXPECT_EQ(folder_.text_of("part.nc"), kProgram);
+  EXPECT_EQ(folder_.text_of("part.nc"), kPageProgram);
 }
 
 TEST_P(ReportPage, ReplacesNothingWithoutForce) {
