@@ -452,7 +452,8 @@ class Interpreter {
     }
     forget_increments(words);
     if (!effect.takes_parameters && words.has_any("PQLIJKR")) {
-      forget_position(now_);
+      // L54 calls a subprogram on Sinumerik.
+      words.has('L') ? forget_everything(now_) : forget_position(now_);
       return make_opaque(reason::kNotUnderstood);
     }
     const bool nothing = meaning_.barrier.empty() && !effect.feed_changed;

@@ -46,6 +46,7 @@ const BoundedRow kBoundedRows[] = {
     {"[SECOND PASS] G91", false},
     {"G777", false},
     {"M98 P1", false},
+    {"L54", false},  // a subprogram of Sinumerik
 };
 
 TEST(BoundedBlocks, LoseOnlyWhatTheyCanHaveChanged) {
