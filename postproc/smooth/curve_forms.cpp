@@ -137,9 +137,7 @@ class CurveForms {
   // In the order in which they were offered, but for those that what there is then beats.
   void make_best() {
     const bool all = task_.scope == CandidateScope::kAll;
-    bool few_around_vertices = false;
     for (Offer& offer : offers_) {
-      if (offer.around_vertices && few_around_vertices) continue;
       if (!all && setting_.bounds.is_beaten(offer.form, offer.blocks, offer.distance)) {
         result_.left_out = true;
         continue;
@@ -149,8 +147,6 @@ class CurveForms {
       }
       auto candidate = made(offer);
       if (candidate) {
-        few_around_vertices =
-            offer.around_vertices && candidate->figures.blocks <= facts().scale.original.blocks;
         result_.candidates.push_back(std::move(*candidate));
       } else if (offer.options.most_arcs < PlanOptions().most_arcs) {
         result_.left_out = true;  // there may be more arcs than these
@@ -276,8 +272,7 @@ class CurveForms {
   }
 
   // Arcs in the band around the vertices themselves. Of arcs no more should come than there were:
-  // where they are not clearly fewer, the search finds one fewer here and there in a band that is a
-  // little less wide.
+  // the search finds one fewer here and there in a band that is a little less wide.
   void offer_arc_splines() {
     if (one_sided_ || !(wants_few_moves(task_.options) || !task_.run.arcs.empty())) return;
     const double whole = left_ + curve_.path.deviation;

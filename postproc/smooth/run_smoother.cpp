@@ -152,8 +152,8 @@ class RunSmoother {
     fits_ = true;
     const CurvatureProfile bends(curve.path.curve);
     add_forms({task_, times_, bounds_, *meant_},
-              {curve, bends, shares_.form, left, !around_vertices_}, result_);
-    if (curve.method == Method::kFair) around_vertices_ = true;
+              {curve, bends, shares_.form, left, !looked_around_vertices_}, result_);
+    if (curve.method == Method::kFair) looked_around_vertices_ = true;
   }
 
   // A curve that leaves of the vertices what their decimals do may be, and where few blocks are
@@ -209,8 +209,8 @@ class RunSmoother {
   CandidateBounds bounds_;
   std::optional<geometry::SmoothCurve> fair_;
   std::optional<MeantPath> meant_;
-  bool around_vertices_ = false;  // arcs around the vertices have been looked for
-  bool fits_ = false;             // a method found a curve inside the tolerance
+  bool looked_around_vertices_ = false;  // for arcs, which are the same for every curve
+  bool fits_ = false;                    // a method found a curve inside the tolerance
   SmoothedRun& result_;
 };
 

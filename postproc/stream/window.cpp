@@ -161,7 +161,8 @@ bool same_before(const NewTextBefore& a, const NewTextBefore& b) {
 
 namespace {
 
-// Violations of a run by itself, whose place is known. Others may follow from them.
+// Violations of a run by itself, whose place is known; what a run is rejected for first comes
+// first. Other violations may follow from them.
 struct Rule {
   ViolationKind kind;
   std::string_view reason;
@@ -360,11 +361,11 @@ class Prover {
   // Returns whether any run was rejected. Those with violations of their own first, since the
   // others may follow from them.
   bool take_back(ProvedText& round) {
-    std::map<RunState*, ViolationKind> blamed;  // each run for the first of the rules that it broke
+    std::map<RunState*, const Rule*> blamed;
     std::set<RunState*> others;
     for (const Violation& violation : round.verification.violations) {
       RunState* work = rewritten_run_at(violation.old_line);
-      const auto* rule = std::ranges::find(kOfOneRun, violation.kind, &Rule::kind);
+      const Rule* rule = std::ranges::find(kOfOneRun, violation.kind, &Rule::kind);
       const bool of_one_run = rule != std::end(kOfOneRun);
       if (part_.window && (work == nullptr || !of_one_run)) {
         round.stands_alone = false;
@@ -375,13 +376,10 @@ class Prover {
         others.insert(work);
         continue;
       }
-      const auto [known, is_new] = blamed.try_emplace(work, violation.kind);
-      const auto* before = std::ranges::find(kOfOneRun, known->second, &Rule::kind);
-      if (!is_new && rule < before) known->second = violation.kind;
+      const Rule*& known = blamed.try_emplace(work, rule).first->second;
+      known = std::min(known, rule);
     }
-    for (const auto& [work, kind] : blamed) {
-      reject(*work, std::ranges::find(kOfOneRun, kind, &Rule::kind)->reason);
-    }
+    for (const auto& [work, rule] : blamed) reject(*work, rule->reason);
     if (!blamed.empty()) return true;
     if (others.empty()) {
       // A violation that belongs to no run: believe none of them.

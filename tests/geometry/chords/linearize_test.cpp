@@ -46,6 +46,21 @@ TEST(ChordVertices, AreSpreadUntilTheLastChordIsNoRemainder) {
   }
 }
 
+// What is counted before it is spread: as many chords, each as long as it may be but the last.
+TEST(ChordVertices, AreAsManyBeforeTheyAreSpread) {
+  for (const ParabolaRow& row : kParabolaRows) {
+    SCOPED_TRACE(row.name);
+    const Parabola& parabola = row.parabola;
+    const auto x = chord_vertices(parabola.curve(), parabola.from, parabola.to,
+                                  {.max_deviation = row.tolerance, .balanced = false});
+    ASSERT_EQ(x.size(), row.greedy + 1);
+    EXPECT_LE(parabola.greatest_deviation(x), row.tolerance * (1 + 1e-9));
+    for (std::size_t i = 1; i + 1 < x.size() && row.greedy <= 50; ++i) {
+      EXPECT_GE(parabola.deviation(x[i - 1], x[i]), 0.99 * row.tolerance);
+    }
+  }
+}
+
 // A stadium: two lines of 50 mm, joined by half circles of radius 5.
 BsplineCurve stadium() {
   return Drawing({0, 0, 0})

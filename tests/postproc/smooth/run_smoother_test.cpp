@@ -8,6 +8,7 @@
 
 #include "gcode/state/reason.h"
 #include "postproc/smooth/selection/selection.h"
+#include "tests/support/kinked_arcs.h"
 #include "tests/support/one_run.h"
 #include "tests/support/wavy_programs.h"
 
@@ -71,6 +72,10 @@ TEST(SmoothRun, ChoosesAmongFewerCandidatesAsAmongAll) {
   std::size_t left_out = 0;
   std::vector<std::string> programs = {circle_program(40), circle_program(1000, 4), bend_program(),
                                        wave_program()};
+  for (const double deflection : {0.002, 0.01}) {
+    programs.push_back(
+        tests::kinked_arc_program(tests::three_leaves, {.deflection = deflection, .decimals = 4}));
+  }
   for (const auto& [height, length] :
        {std::pair{0.05, 300.0}, {0.05, 6.0}, {0.5, 40.0}, {4.0, 6.0}, {4.0, 300.0}}) {
     programs.push_back(wave_program({.lines = 400, .height = height, .length = length}));
@@ -78,7 +83,7 @@ TEST(SmoothRun, ChoosesAmongFewerCandidatesAsAmongAll) {
   programs.push_back(wave_program({.height = 0.5, .length = 40, .noise = 0.003, .decimals = 4}));
   programs.push_back(wave_program({.lines = 400, .step = 0.5, .height = 5, .length = 900}));
   for (const std::string& text : programs) {
-    const bool is_quick = &text - programs.data() < 6;
+    const bool is_quick = &text - programs.data() < 8;
     for (const auto& [target, prefer] : {std::pair{"linuxcnc", Prefer::kTime},
                                          {"grbl", Prefer::kTime},
                                          {"grbl", Prefer::kSize},
