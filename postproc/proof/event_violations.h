@@ -30,9 +30,8 @@ struct Violation {
   std::string id;  // stable, all listed in docs/diagnostics.md: "distance", "event-lost" ..
   std::uint32_t old_line = 0;  // of the violation itself, as near as it is known; 0: none
   std::uint32_t new_line = 0;
-  double deviation_mm = 0;           // kDistance: at least this much
-  std::string message;               // found and expected
-  std::uint32_t other_new_line = 0;  // kCrossing: of the piece that the one of new_line meets
+  double deviation_mm = 0;  // kDistance: at least this much
+  std::string message;      // found and expected
 };
 
 // --- which event is which ------------------------------------------------------------------

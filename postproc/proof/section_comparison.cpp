@@ -189,11 +189,10 @@ std::vector<Violation> crossing_violations(const PartPair& pair, const PartPair&
     violation.id = "crosses-itself";
     violation.old_line = middle.before.line_near(place);
     violation.new_line = pair.after.line(first_piece);
-    violation.other_new_line = pair.after.line(second_piece);
     violation.message = fmt::format(
         "the new path meets itself at X{:.4f} Y{:.4f} Z{:.4f} (lines {} and {}), the old one does "
         "not",
-        place.x(), place.y(), place.z(), violation.new_line, violation.other_new_line);
+        place.x(), place.y(), place.z(), violation.new_line, pair.after.line(second_piece));
     const bool is_known =
         std::ranges::find(violations, violation.old_line, &Violation::old_line) != violations.end();
     if (!is_known) violations.push_back(std::move(violation));

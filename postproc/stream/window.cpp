@@ -269,7 +269,6 @@ class Prover {
                                            more.end());
     }
     blame_refused(program, begins, round.verification);
-    keep_unsettled_crossings(program, begins, round.verification);
     round.added_lines = added.lines;
     round.blocks = program.blocks.size();
     round.proved = round.verification.proved();
@@ -295,40 +294,16 @@ class Prover {
         gcode::ReadPart{std::move(program), std::move(meaning)});
   }
 
-  // Index of the section whose new text has the line.
-  static std::size_t section_at(std::uint32_t new_line, const gcode::Program& written,
-                                const std::vector<std::uint32_t>& begins) {
-    const auto block = std::ranges::lower_bound(written.blocks, new_line, {}, &gcode::Block::line);
-    const auto next = std::ranges::upper_bound(begins, block - written.blocks.begin());
-    return static_cast<std::size_t>(next - begins.begin()) - 1;
-  }
-
-  // Where one of two runs that cross is rejected, the other may stay: it is looked at again in the
-  // next round.
-  void keep_unsettled_crossings(const gcode::Program& written,
-                                const std::vector<std::uint32_t>& begins,
-                                Verification& verification) {
-    if (!additions_.words.empty()) return;
-    std::set<std::size_t> rejected;
-    std::erase_if(verification.violations, [&](const Violation& violation) {
-      if (violation.kind != ViolationKind::kCrossing) return false;
-      for (const std::uint32_t line : {violation.new_line, violation.other_new_line}) {
-        if (rejected.contains(section_at(line, written, begins))) return true;
-      }
-      if (const RunState* work = rewritten_run_at(violation.old_line)) {
-        rejected.insert(work->section);
-      }
-      return false;
-    });
-  }
-
   // What the target refuses is new text: it belongs to the run that it was written for.
   void blame_refused(const gcode::Program& written, const std::vector<std::uint32_t>& begins,
                      Verification& verification) const {
     if (!additions_.words.empty()) return;
     for (Violation& violation : verification.violations) {
       if (violation.kind != ViolationKind::kTarget) continue;
-      const std::size_t section = section_at(violation.new_line, written, begins);
+      const auto block =
+          std::ranges::lower_bound(written.blocks, violation.new_line, {}, &gcode::Block::line);
+      const auto next = std::ranges::upper_bound(begins, block - written.blocks.begin());
+      const auto section = static_cast<std::size_t>(next - begins.begin()) - 1;
       violation.old_line = part_.program.blocks[runs_.sections[section].first_block].line;
     }
   }
