@@ -57,6 +57,8 @@ class CollectedResult {
       result.deviation_line = proof.verification.deviation_line;
     }
     causes_.add(window.causes);
+    if (window.scale && scale_) scale_->add(*window.scale);
+    if (window.scale && !scale_) scale_ = window.scale;
     for (gcode::Diagnostic& note : window.notes_on_runs) {
       const bool noted = std::ranges::count(notes_on_runs_, note.id, &gcode::Diagnostic::id) > 0;
       if (!noted) notes_on_runs_.push_back(std::move(note));
@@ -74,6 +76,9 @@ class CollectedResult {
   SmoothResult finish() {
     notes_.tell_rest(result.diagnostics);
     std::ranges::move(notes_on_runs_, std::back_inserter(result.diagnostics));
+    // Before the others: what is said of the whole program must not be lost among them.
+    const gcode::Diagnostics of_scale = scale_ ? scale_->diagnostics() : gcode::Diagnostics();
+    result.diagnostics.insert(result.diagnostics.begin(), of_scale.begin(), of_scale.end());
     result.kept = causes_.causes();
     result.understood = true;
     result.proved = proved_;
@@ -83,6 +88,7 @@ class CollectedResult {
  private:
   BandNoteTally notes_;
   CauseTally causes_;
+  std::optional<ToleranceScale> scale_;
   bool proved_ = true;
   gcode::Diagnostics notes_on_runs_;  // one of each id
 };

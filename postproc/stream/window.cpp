@@ -96,6 +96,9 @@ class WindowWork {
       if (!setting_.survey(part, runs, tell_runs)) return;
     } else if (!smooth_runs(part, setting_.options, tell_runs, runs)) {
       return;
+    } else if (setting_.options.method != Method::kNone) {
+      done.scale.emplace(setting_.options.tolerance_mm);
+      done.scale->add(part.program, part.meaning, runs.sections);
     }
     auto proof =
         prove_text(part, setting_.options, setting_.read_options, additions(), tell_round, runs);

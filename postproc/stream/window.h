@@ -34,6 +34,7 @@
 #include "postproc/proof/verification.h"
 #include "postproc/runs/kept_causes.h"
 #include "postproc/runs/section.h"
+#include "postproc/runs/tolerance_scale.h"
 #include "postproc/smooth/part_runs.h"
 #include "postproc/stream/assembly.h"
 #include "postproc/stream/part_crossings.h"
@@ -90,6 +91,7 @@ struct WindowDone {
   TextBefore old_after;
   std::vector<RunReport> runs;
   CauseTally causes;  // of what is kept
+  std::optional<ToleranceScale> scale;  // where its runs were smoothed
   Outlook outlook;
   std::vector<gcode::Diagnostics> notes;
   gcode::Diagnostics notes_on_runs;                        // postproc/stream/smooth_result.h

@@ -66,6 +66,21 @@ TEST_F(FailingWell, SettingsOfAWrongFileGiveOneError) {
   expect_refusal(start + "a.out", 1, "is a program for computers");
 }
 
+// The wave is 24 mm long, in 120 steps of 0.22 mm.
+TEST_F(FailingWell, ATooLargeToleranceIsToldBeforeTheRest) {
+  const auto told = [&](const char* options) {
+    return folder_.batten(std::string("smooth part.nc -t linuxcnc --dry-run --json - ") + options);
+  };
+  const ProcessResult small = told("--tolerance 0.05");
+  EXPECT_FALSE(contains(small.out + small.err, "tolerance-")) << small.err;
+  const ProcessResult large = expect_exit(
+      told("--tolerance 0.25"), 0,
+      {"part.nc:4:1: warning: tolerance-large: the tolerance of 0.25 mm",
+       "warning: tolerance-above-chords: 120 of the 120 moves in runs are shorter than"});
+  EXPECT_TRUE(contains(large.out, "\"tolerance-large\"")) << large.out;
+  EXPECT_FALSE(contains(told("--tolerance 0.25 --method none").err, "tolerance-"));
+}
+
 TEST_F(FailingWell, ABatchOfNothingSaysSo) {
   folder_.put("docs/readme.txt", "G21\n");
   expect_exit(folder_.batten("batch docs out -t grbl"), 0, {"no programs in it", "--suffix"});
