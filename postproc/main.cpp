@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "postproc/cli/cli.h"
+#include "postproc/commands/answer.h"
 #include "postproc/commands/files.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
@@ -20,6 +21,14 @@
 namespace {
 
 using namespace batten::postproc;
+
+// Of end_command, where there is no memory to make it.
+constexpr const char* kNoMemoryForAnswer =
+    R"({"schema": "batten-report/1", "kind": "failure", "batten": ")" BATTEN_VERSION
+    R"(", "command": "", "meaning": "internal error",
+ "advice": "Give it more memory, or --threads 1.", "diagnostics": [],
+ "exit_code": 5, "messages": ["not enough memory for a report"]}
+)";
 
 int run(const PrintText& text) { return write_result("-", text.text, false); }
 
@@ -58,17 +67,14 @@ int run_command_line(const std::vector<std::string>& arguments) {
   return std::visit([](const auto& command) { return run(command); }, line.command);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  fill_closed_streams();
-  keep_freed_memory();
-  install_interrupt_handlers();
+// What ends it becomes an exit code and a message.
+int run_safely(const std::vector<std::string>& arguments) {
   try {
-    return run_command_line(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+    return run_command_line(arguments);
   } catch (const std::bad_alloc&) {
     // Plain text: there may be no memory for more.
     std::fputs("batten: not enough memory, nothing was written\n", stderr);
+    answer_with("not enough memory, nothing was written");
   } catch (const std::exception& error) {
     if (std::string_view(error.what()).find("pthread_create") != std::string_view::npos) {
       say("not enough memory for threads, or too many of them, nothing was written; --threads 1 "
@@ -81,4 +87,21 @@ int main(int argc, char** argv) {
     say("internal error of an unknown kind, nothing was written");
   }
   return static_cast<int>(ExitCode::kInternalError);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  fill_closed_streams();
+  keep_freed_memory();
+  install_interrupt_handlers();
+  std::vector<std::string> arguments;
+  try {
+    arguments.assign(argv + (argc > 0 ? 1 : 0), argv + argc);
+    return end_command(run_safely(arguments), arguments);
+  } catch (const std::exception&) {
+    std::fputs("batten: not enough memory for a report\n", stderr);
+    if (wants_json(arguments)) std::fputs(kNoMemoryForAnswer, stdout);
+    return static_cast<int>(ExitCode::kInternalError);
+  }
 }

@@ -139,7 +139,9 @@ class Worker {
                             .result = result,
                             .output_file = writes ? record_.program : "",
                             .strict = plan_.strict};
-    const std::string report = json_report(told);
+    std::vector<std::string> messages;
+    if (!record_.message.empty()) messages.push_back(record_.message);
+    const std::string report = ended_report(json_report(told), record_.exit_code, messages);
     const std::string page = plan_.pages ? html_report(told, "") : "";
     record_.report_sha256 = sha256(report);
     if (plan_.pages) record_.page_sha256 = sha256(page);

@@ -267,9 +267,8 @@ std::string summary_json(std::span<const ProgramRecord> records) {
     json.erase("picture_kept");
     return json;
   };
-  return json_text({{"batten", BATTEN_VERSION},
-                    {"totals", json_of(totals_of(records))},
-                    {"programs", json_list(records, without_picture)}});
+  return json_text(as_report("batch", {{"totals", json_of(totals_of(records))},
+                                       {"programs", json_list(records, without_picture)}}));
 }
 
 std::string progress_line(const BatchCount& count) {

@@ -7,8 +7,8 @@
 #include <algorithm>
 
 #include "postproc/cli/cli_table.h"
-#include "postproc/cli/explain.h"
 #include "postproc/report/smooth_report.h"
+#include "postproc/text/explain.h"
 #include "postproc/text/words.h"
 
 namespace batten::postproc {

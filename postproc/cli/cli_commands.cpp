@@ -485,6 +485,7 @@ FreecadCommand freecad_command(Arguments& in) {
   }
   return {.freecad = in.given.text("freecad"),
           .folder = in.given.text("folder"),
+          .json_file = in.given.text("json"),
           .uninstall = action == "uninstall",
           .force = in.given.flag("force")};
 }
@@ -553,6 +554,7 @@ BatchCommand batch_command(Arguments& in) {
   command.fail_fast = in.given.flag("fail-fast");
   command.pages = in.given.flag("pages");
   command.open = in.given.flag("open");
+  command.json_file = in.given.text("json");
   command.suffixes = in.given.values("suffix");
   if (command.suffixes.empty()) {
     const auto usual = default_program_suffixes();

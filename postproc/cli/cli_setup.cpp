@@ -14,6 +14,7 @@
 #include "postproc/cli/cli_table.h"
 #include "postproc/commands/files.h"
 #include "postproc/machine/machine.h"
+#include "postproc/system/output_file.h"
 #include "postproc/text/words.h"
 
 namespace batten::postproc {
@@ -111,6 +112,11 @@ SetupCommand setup_command(Arguments& in) {
   SetupCommand command;
   command.force = in.given.flag("force");
   command.file = in.given.value("out").value_or(user_config_file().string());
+  command.json_file = in.given.text("json");
+  const std::string& json = command.json_file;
+  if (!json.empty() && (json == command.file || same_file(json, command.file))) {
+    in.complain("--json: {} takes the options already", json);
+  }
   refuse_words_after(0, "word", in);
   if (command.file.empty())
     in.complain("--out: no home folder is known, so name the file to write");

@@ -8,9 +8,9 @@
 
 #include "gcode/controls/built_in.h"
 #include "gcode/state/reason.h"
-#include "postproc/cli/explain.h"
 #include "postproc/machine/machine.h"
 #include "postproc/options/options.h"
+#include "postproc/text/explain.h"
 #include "postproc/text/words.h"
 
 namespace batten::postproc {
@@ -149,13 +149,11 @@ std::vector<OptionRow> smooth_rows() {
 }
 
 std::vector<OptionRow> setup_rows() {
-  return {kTarget,
-          kMachine,
-          kGrblSettings,
-          kTolerance,
-          kUnits,
-          option("out", kValue, "FILE", "the file to write", "config.toml of your own"),
-          option("force", kFlag, "", "replace a file that exists already")};
+  return {
+      kTarget,       kMachine,
+      kGrblSettings, kTolerance,
+      kUnits,        option("out", kValue, "FILE", "the file to write", "config.toml of your own"),
+      kJson,         option("force", kFlag, "", "replace a file that exists already")};
 }
 
 std::vector<OptionRow> verify_rows() {
@@ -232,7 +230,7 @@ std::vector<OptionRow> batch_rows() {
        option("pages", kFlag, "",
               "write the page of each program (as smooth --report), to which "
               "batten-batch/index.html leads"),
-       option("open", kFlag, "", "show batten-batch/index.html in the browser at the end"),
+       option("open", kFlag, "", "show batten-batch/index.html in the browser at the end"), kJson,
        option("fail-fast", kFlag, "",
               "stop at the first program that cannot be written; otherwise carry on"),
        option("force", kFlag, "", "replace programs in OUT_TREE that no batch wrote"),
@@ -336,7 +334,7 @@ std::vector<CommandRow> make_command_rows() {
        "Put the post script for FreeCAD where FreeCAD looks for posts, or remove it.",
        {option("freecad", kValue, "PROGRAM",
                "the FreeCAD without a window that is asked; default: the one in PATH"),
-        option("folder", kValue, "DIR", "the folder of your macros; FreeCAD is not asked"),
+        option("folder", kValue, "DIR", "the folder of your macros; FreeCAD is not asked"), kJson,
         option("force", kFlag, "", "replace or remove a batten_post.py that is not ours")},
        {{"ACTION", "install or uninstall"}},
        "Example:\n"

@@ -14,6 +14,7 @@
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 #include "postproc/system/parallel_for.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 
@@ -92,7 +93,9 @@ int write_summary(const std::vector<ProgramRecord>& records, const BatchCommand&
   int code = write_result(summary_path(batch, shard, "txt"), table, true);
   if (code == 0) code = write_result(summary_path(batch, shard, "csv"), summary_csv(records), true);
   if (code == 0) {
-    code = write_result(summary_path(batch, shard, "json"), summary_json(records), true);
+    const std::string report =
+        ended_report(summary_json(records), totals_of(records).exit_code, {});
+    code = write_result(summary_path(batch, shard, "json"), report, true);
   }
   if (code == 0) {
     std::error_code error;
@@ -101,6 +104,8 @@ int write_summary(const std::vector<ProgramRecord>& records, const BatchCommand&
                       true, command.input_tree,
                       batch_index(records, tree.filename().string(), command.options));
   }
+  write_report(command.json_file, command.force, [&] { return summary_json(records); });
+  if (command.json_file == "-") return code;
   const int table_code = write_result("-", table, false);
   return code != 0 ? code : table_code;
 }

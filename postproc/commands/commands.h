@@ -65,6 +65,7 @@ struct SmoothFilesCommand {
 struct SetupCommand {
   std::string file;
   std::string text;
+  std::string json_file;
   bool asks = false;   // nothing was given, and the file may be written
   bool force = false;  // an existing file is replaced
 };
@@ -76,6 +77,7 @@ struct BatchCommand : SmoothingCommand {
   std::string input_tree;
   std::string output_tree;
   std::vector<std::string> suffixes;
+  std::string json_file;
   int jobs = 0;  // 0: as many as there are processors
   Shard shard;
   bool pages = false;  // a page for each program
@@ -136,6 +138,7 @@ struct TimeCommand : ReadingCommand {
 struct FreecadCommand {
   std::string freecad;  // the program to ask, not given: the one in PATH
   std::string folder;   // given: nobody is asked
+  std::string json_file;
   bool uninstall = false;
   bool force = false;  // a file of the post's name that is not ours is replaced, or removed
 };

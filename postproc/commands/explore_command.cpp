@@ -25,9 +25,8 @@ int run(const ExploreCommand& explore) {
   if (found.read.understood && command.json_file != "-") {
     if (const int code = write_result("-", explore_text(report), false); code != 0) return code;
   }
-  const int code =
-      write_report(command.json_file, command.force, [&] { return explore_json(report); });
-  if (code != 0 || found.read.understood) return code;
+  write_report(command.json_file, command.force, [&] { return explore_json(report); });
+  if (found.read.understood) return static_cast<int>(ExitCode::kDone);
   say(complaint(ExitCode::kNotUnderstood, false));
   return static_cast<int>(ExitCode::kNotUnderstood);
 }

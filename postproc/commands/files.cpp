@@ -89,6 +89,12 @@ std::optional<gcode::SourceText> read_standard_input() {
   }
 }
 
+int write_as_is(const WriteRequest& request) {
+  return exit_code_of(request.target == "-"
+                          ? write_request_to_descriptor(STDOUT_FILENO, "<stdout>", request)
+                          : write_file(request));
+}
+
 // The severity, the least level that it is said at, its word, and the colour of that.
 struct Remark {
   gcode::Severity severity;
@@ -157,6 +163,17 @@ int write_result(const std::string& name, std::string_view bytes, bool replace_e
   return write({.target = name, .bytes = bytes, .replace_existing = replace_existing});
 }
 
+int end_command(int code, const std::vector<std::string>& arguments) {
+  const auto answer = last_answer(code, arguments);
+  if (!answer) return code;
+  WriteRequest request{
+      .target = answer->file, .bytes = answer->text, .replace_existing = answer->replace_existing};
+  // The signal that has ended the work does not end this.
+  if (!interrupted()) request.stop = interrupted;
+  const int written = write_as_is(request);
+  return code != 0 ? code : written;
+}
+
 int write_page(const PageRequest& request, bool replace_existing, const std::string& program,
                std::string_view page) {
   if (!request.is_wanted()) return 0;
@@ -180,9 +197,7 @@ int write_page(const PageRequest& request, bool replace_existing, const std::str
 
 int write(WriteRequest request) {
   request.stop = interrupted;
-  return exit_code_of(request.target == "-"
-                          ? write_request_to_descriptor(STDOUT_FILENO, "<stdout>", request)
-                          : write_file(request));
+  return write_as_is(request);
 }
 
 int exit_code_of(const WriteResult& result) {
@@ -205,6 +220,7 @@ std::string objection_to_place_of(const WatchedFile& input) {
 }
 
 void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source, LogLevel level) {
+  answer_with(diagnostics, source);
   const bool colour = shows_colour();
   std::size_t remarks = 0;
   for (const gcode::Diagnostic& diagnostic : diagnostics) {
@@ -220,7 +236,10 @@ void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& sourc
   }
 }
 
-void say(std::string_view message) { say_lines(fmt::format("batten: {}\n", message)); }
+void say(std::string_view message) {
+  answer_with(message);
+  say_lines(fmt::format("batten: {}\n", message));
+}
 
 void say_lines(std::string_view text) { std::fputs(as_valid_utf8(text).c_str(), stderr); }
 

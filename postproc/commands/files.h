@@ -6,9 +6,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/source_text.h"
+#include "postproc/commands/answer.h"
 #include "postproc/commands/commands.h"
 #include "postproc/options/options.h"
 #include "postproc/stream/part_reader.h"
@@ -42,11 +44,16 @@ namespace batten::postproc {
 [[nodiscard]] int write_result(const std::string& name, std::string_view bytes,
                                bool replace_existing);
 
-// Of a report: its text is made only where the name is not empty.
+// Of a JSON report: its text is made only where the name is not empty, and written when the
+// command has ended (postproc/commands/answer.h).
 template <typename Text>
-[[nodiscard]] int write_report(const std::string& name, bool replace_existing, const Text& text) {
-  return name.empty() ? 0 : write_result(name, text(), replace_existing);
+void write_report(const std::string& name, bool replace_existing, const Text& text) {
+  if (!name.empty()) answer_with({name, replace_existing, text()});
 }
+
+// When a command has ended: writes what last_answer gives. Returns `code`, or why that could not be
+// written.
+[[nodiscard]] int end_command(int code, const std::vector<std::string>& arguments);
 
 // Of a page, shown too where that is asked for. `program`: what it is about.
 [[nodiscard]] int write_page(const PageRequest& request, bool replace_existing,

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "postproc/commands/commands.h"
@@ -10,6 +11,7 @@
 #include "postproc/hosts/freecad_post.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
+#include "postproc/text/json_values.h"
 
 namespace batten::postproc {
 
@@ -55,22 +57,30 @@ bool is_foreign(const fs::path& post) {
   return there.is_open() && !is_freecad_post(text);
 }
 
-int install(const fs::path& post, bool force) {
+// `became`: of the post.
+int end(const FreecadCommand& command, const fs::path& post, std::string_view became) {
+  write_report(command.json_file, command.force, [&] {
+    return json_text(as_report("freecad", {{"file", post.string()}, {"became", became}}));
+  });
+  return static_cast<int>(ExitCode::kDone);
+}
+
+int install(const fs::path& post, const FreecadCommand& command) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const int code =
-      write_result(post.string(), freecad_post_calling(program), force || !is_foreign(post));
+  const int code = write_result(post.string(), freecad_post_calling(program),
+                                command.force || !is_foreign(post));
   if (code != 0) return code;
   say_lines(fmt::format(
       "{} written; it calls {}\n"
       "In FreeCAD, choose the post \"batten\" in the output page of a job, with arguments such as\n"
       "  --target linuxcnc --tolerance 0.01 -- --no-header\n",
       post.string(), program.string()));
-  return static_cast<int>(ExitCode::kDone);
+  return end(command, post, "written");
 }
 
-int uninstall(const fs::path& post, bool force) {
-  if (!force && is_foreign(post)) {
+int uninstall(const fs::path& post, const FreecadCommand& command) {
+  if (!command.force && is_foreign(post)) {
     say(post.string() + ": is not Batten's, so it stays; --force removes it");
     return static_cast<int>(ExitCode::kFileError);
   }
@@ -81,7 +91,7 @@ int uninstall(const fs::path& post, bool force) {
     return static_cast<int>(ExitCode::kFileError);
   }
   say_lines(post.string() + (removed ? " removed\n" : " is not there; nothing to remove\n"));
-  return static_cast<int>(ExitCode::kDone);
+  return end(command, post, removed ? "removed" : "absent");
 }
 
 }  // namespace
@@ -91,7 +101,7 @@ int run(const FreecadCommand& command) {
   if (interrupted()) return end_interrupted();
   if (!folder) return static_cast<int>(ExitCode::kFileError);
   const fs::path post = *folder / kFreecadPostName;
-  return command.uninstall ? uninstall(post, command.force) : install(post, command.force);
+  return command.uninstall ? uninstall(post, command) : install(post, command);
 }
 
 }  // namespace batten::postproc

@@ -126,15 +126,15 @@ Json json_of(const InspectedProgram& inspected, const InspectCommand& command,
             {"cutting_moves", total.cutting_moves},
             {"text", text_of(reason)}};
   };
-  return {
-      {"batten", BATTEN_VERSION},
-      {"input",
-       {{"file", source.name()}, {"bytes", source.text().size()}, {"blocks", inspected.blocks}}},
-      {"words", own_words_json(command.own_words)},
-      {"sections", json_list(inspected.sections, section)},
-      {"kept", json_list(kept_totals(inspected.sections), kept)},
-      {"cutting", kept_json(inspected.kept)},
-      {"diagnostics", diagnostics_json(inspected.found, source)}};
+  return as_report(
+      "inspect",
+      {{"input",
+        {{"file", source.name()}, {"bytes", source.text().size()}, {"blocks", inspected.blocks}}},
+       {"words", own_words_json(command.own_words)},
+       {"sections", json_list(inspected.sections, section)},
+       {"kept", json_list(kept_totals(inspected.sections), kept)},
+       {"cutting", kept_json(inspected.kept)},
+       {"diagnostics", diagnostics_json(inspected.found, source)}});
 }
 
 int write_inspect_page(const InspectCommand& command, const gcode::SourceText& source,
@@ -182,8 +182,8 @@ int run(const InspectCommand& command) {
   }
   if (!command.json_file.empty() || command.page.is_wanted()) {
     const Json json = json_of(result, command, *source);
-    int code = write_report(command.json_file, command.force, [&] { return json_text(json); });
-    if (code == 0) code = write_inspect_page(command, *source, reading, result, json);
+    write_report(command.json_file, command.force, [&] { return json_text(json); });
+    const int code = write_inspect_page(command, *source, reading, result, json);
     if (code != 0) return code;
   }
   if (!result.unit_word_seen) {

@@ -12,6 +12,7 @@
 #include "postproc/machine/files/machine_file.h"
 #include "postproc/machine/machine_fields.h"
 #include "postproc/profile/target_profile.h"
+#include "postproc/system/exit_code.h"
 #include "postproc/text/json_values.h"
 
 namespace batten::postproc {
@@ -20,6 +21,7 @@ namespace {
 
 struct Listing {
   std::string text;
+  std::string_view kind;  // of the report, and the name of what it holds
   Json json = Json::array();
 };
 
@@ -35,6 +37,7 @@ std::string planes_of(const gcode::Control& target) {
 
 Listing list_targets() {
   Listing listing;
+  listing.kind = "targets";
   listing.text = fmt::format("{:<15} {:>8} {:>8} {:>5}  {:<12} {:<8} {:<12} {}\n", "target",
                              "mm places", "inch pl.", "line", "arcs in", "helices", "machine", "");
   for (const gcode::Control& target : gcode::controls()) {
@@ -57,6 +60,7 @@ Listing list_targets() {
 
 Listing list_methods() {
   Listing listing;
+  listing.kind = "methods";
   for (const auto& method : methods()) {
     listing.text += fmt::format("{:<16} {}\n", method.name, method.text);
     listing.json.push_back({{"name", method.name}, {"description", method.text}});
@@ -144,24 +148,31 @@ Json json_of(const Machine& machine) {
 }
 
 Listing listing_of(const ListCommand& command) {
+  if (command.target != nullptr) {
+    std::string profile = profile_text(*command.target);
+    Json json = {{"name", command.target->name}, {"profile", profile}};
+    return {std::move(profile), "target", std::move(json)};
+  }
   if (command.machine != nullptr) {
-    return {machine_file_text(*command.machine), json_of(*command.machine)};
+    return {machine_file_text(*command.machine), "machine", json_of(*command.machine)};
   }
   if (command.what == BuiltIn::kTargets) return list_targets();
   if (command.what == BuiltIn::kMethods) return list_methods();
   const auto item = [](const Machine& machine) { return json_of(machine); };
-  return {table_of(built_in_machines()), json_list(built_in_machines(), item)};
+  return {table_of(built_in_machines()), "machines", json_list(built_in_machines(), item)};
 }
 
 }  // namespace
 
 int run(const ListCommand& command) {
-  if (command.target != nullptr) return write_result("-", profile_text(*command.target), false);
   const Listing listing = listing_of(command);
   if (command.json_file != "-") {
     if (const int code = write_result("-", listing.text, false); code != 0) return code;
   }
-  return write_report(command.json_file, command.force, [&] { return json_text(listing.json); });
+  write_report(command.json_file, command.force, [&] {
+    return json_text(as_report(listing.kind, {{listing.kind, listing.json}}));
+  });
+  return static_cast<int>(ExitCode::kDone);
 }
 
 }  // namespace batten::postproc

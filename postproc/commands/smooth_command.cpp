@@ -188,11 +188,9 @@ class SmoothWork {
   int finish(int code) const {
     say_lines(summary_);
     if (verdict_ != ExitCode::kDone) say(complaint(verdict_, command_.strict));
-    const auto json = [this]() -> const std::string& { return json_; };
-    for (const int of_report : {write_report(command_.json_file, command_.force, json),
-                                write_page(command_.page, command_.force, command_.input, page_)}) {
-      if (code == 0) code = of_report;
-    }
+    write_report(command_.json_file, command_.force, [this] { return json_; });
+    const int of_page = write_page(command_.page, command_.force, command_.input, page_);
+    if (code == 0) code = of_page;
     return code != 0 ? code : certify();
   }
 

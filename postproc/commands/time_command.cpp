@@ -99,8 +99,8 @@ int run(const TimeCommand& command) {
   int code = 0;
   if (!command.json_file.empty() || command.page.is_wanted()) {
     const Json json = time_json(report);
-    code = write_report(command.json_file, command.force, [&] { return json_text(json); });
-    if (code == 0) code = write_time_page(command, report, meaning, json);
+    write_report(command.json_file, command.force, [&] { return json_text(json); });
+    code = write_time_page(command, report, meaning, json);
   }
   if (code != 0) return code;
   if (!command.profile_file.empty())

@@ -108,21 +108,20 @@ Json json_of(const Violation& violation) {
 Json json_of(const Verification& verification, const VerifyCommand& command,
              const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
   const auto item = [](const auto& each) { return json_of(each); };
-  return {{"batten", BATTEN_VERSION},
-          {"old", command.old_program},
-          {"new", command.new_program},
-          {"tolerance_mm", command.tolerance_mm},
-          {"tolerance_kind", name_of(command.tolerance_kind)},
-          {"side", name_of(command.side)},
-          {"words", own_words_json(command.own_words)},
-          {"proved", verification.proved()},
-          {"deviation_mm", verification.deviation_mm},
-          {"deviation_line", verification.deviation_line},
-          {"corner_mm", verification.corner_mm},
-          {"events_compared", verification.events_compared},
-          {"violations", json_list(verification.violations, item)},
-          {"sections", json_list(verification.stretches, item)},
-          {"diagnostics", diagnostics_json(of_new, new_source)}};
+  return as_report("verify", {{"old", command.old_program},
+                              {"new", command.new_program},
+                              {"tolerance_mm", command.tolerance_mm},
+                              {"tolerance_kind", name_of(command.tolerance_kind)},
+                              {"side", name_of(command.side)},
+                              {"words", own_words_json(command.own_words)},
+                              {"proved", verification.proved()},
+                              {"deviation_mm", verification.deviation_mm},
+                              {"deviation_line", verification.deviation_line},
+                              {"corner_mm", verification.corner_mm},
+                              {"events_compared", verification.events_compared},
+                              {"violations", json_list(verification.violations, item)},
+                              {"sections", json_list(verification.stretches, item)},
+                              {"diagnostics", diagnostics_json(of_new, new_source)}});
 }
 
 // Moves without a unit are an error among the diagnostics: a tolerance means nothing then.
@@ -147,8 +146,8 @@ int write_reports(const VerifyCommand& command, const Verification& verification
                   const gcode::Diagnostics& of_new, const Compared& texts) {
   if (command.json_file.empty() && !command.page.is_wanted()) return 0;
   const Json json = json_of(verification, command, of_new, texts.after.source);
-  const int code = write_report(command.json_file, command.force, [&] { return json_text(json); });
-  if (code != 0 || !command.page.is_wanted()) return code;
+  write_report(command.json_file, command.force, [&] { return json_text(json); });
+  if (!command.page.is_wanted()) return 0;
   std::vector<PageLines> rows;
   for (const Stretch& stretch : verification.stretches) {
     rows.push_back({stretch.old_first_line, stretch.old_last_line});

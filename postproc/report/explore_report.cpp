@@ -127,16 +127,15 @@ std::string explore_text(const ExploreReport& report) {
 
 std::string explore_json(const ExploreReport& report) {
   const Exploration& found = report.found;
-  return json_text(
-      {{"batten", BATTEN_VERSION},
-       {"input", {{"file", report.source.name()}, {"blocks", found.read.blocks_in}}},
-       {"understood", found.read.understood},
-       {"feeds", kExploredFeeds},
-       {"settings", json_list(found.rows, [](const auto& row) { return json_of(row); })},
-       {"recommended", found.recommended ? Json(*found.recommended) : Json(nullptr)},
-       {"recommendation", sentence_of(found)},
-       {"command", command_of(report)},
-       {"diagnostics", diagnostics_json(found.read.diagnostics, report.source)}});
+  return json_text(as_report(
+      "explore", {{"input", {{"file", report.source.name()}, {"blocks", found.read.blocks_in}}},
+                  {"understood", found.read.understood},
+                  {"feeds", kExploredFeeds},
+                  {"settings", json_list(found.rows, [](const auto& row) { return json_of(row); })},
+                  {"recommended", found.recommended ? Json(*found.recommended) : Json(nullptr)},
+                  {"recommendation", sentence_of(found)},
+                  {"command", command_of(report)},
+                  {"diagnostics", diagnostics_json(found.read.diagnostics, report.source)}}));
 }
 
 }  // namespace batten::postproc

@@ -260,8 +260,7 @@ void add_profile(const SmoothReport& report, std::string& lines) {
 Json smooth_json(const SmoothReport& report) {
   const SmoothResult& result = report.result;
   const auto item = [](const auto& each) { return json_of(each); };
-  Json json = {{"batten", BATTEN_VERSION},
-               {"options", json_of(report.options, report.strict)},
+  Json json = {{"options", json_of(report.options, report.strict)},
                {"options_from", origins_json(report)},
                {"input",
                 {{"file", report.source.name()},
@@ -295,7 +294,7 @@ Json smooth_json(const SmoothReport& report) {
                {"understood", result.understood},
                {"diagnostics", diagnostics_json(result.diagnostics, report.source)}};
   if (!report.options.profile.empty()) json["profile"] = profile_json(report);
-  return json;
+  return as_report("smooth", json);
 }
 
 std::string json_report(const SmoothReport& report) { return json_text(smooth_json(report)); }

@@ -125,8 +125,7 @@ void add_not_timed(const ProgramTime& time, std::string& lines) {
 
 Json time_json(const TimeReport& report) {
   const ProgramTime& time = report.time;
-  Json json = {{"batten", BATTEN_VERSION},
-               {"input",
+  Json json = {{"input",
                 {{"file", report.program.source.name()},
                  {"bytes", report.program.source.text().size()},
                  {"blocks", report.program.blocks.size()}}},
@@ -147,7 +146,7 @@ Json time_json(const TimeReport& report) {
   json["not_timed"] = json_list(time.not_timed, item);
   json["words"] = own_words_json(report.own_words);
   json["diagnostics"] = diagnostics_json(report.diagnostics, report.program.source);
-  return json;
+  return as_report("time", json);
 }
 
 std::string time_text(const TimeReport& report) {

@@ -3,6 +3,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/source_text.h"
@@ -21,7 +23,20 @@ template <typename Items, typename Make, typename List = Json>
   return list;
 }
 
-// [{"severity": "warning", "id": "", "line": 1, "column": 1, "message": ""}]
+// What the reports look like (docs/report.schema.json): the number goes up where a field goes, or
+// means something else.
+inline constexpr std::string_view kReportSchema = "batten-report/1";
+
+// With the first fields of every report: {"schema": "batten-report/1", "kind": "", "batten": "",
+// ..}
+[[nodiscard]] Json as_report(std::string_view kind, Json fields);
+
+// The text of a report (json_text) with its last fields, how the command ended and what it said:
+// {.., "exit_code": 0, "messages": [""]}
+[[nodiscard]] std::string ended_report(std::string text, int exit_code,
+                                       const std::vector<std::string>& messages);
+
+// [{"severity": "warning", "id": "", "line": 1, "column": 1, "message": "", "advice": ""}]
 [[nodiscard]] Json diagnostics_json(const gcode::Diagnostics& diagnostics,
                                     const gcode::SourceText& source);
 

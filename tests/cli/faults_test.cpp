@@ -275,6 +275,9 @@ TEST(Memory, ThatIsMissingIsToldAndNothingIsWritten) {
     EXPECT_TRUE(contains(result.err, "batten: ") && contains(result.err, "emory")) << result.err;
     EXPECT_FALSE(folder.has("new.nc"));
     EXPECT_FALSE(folder.has("r.json"));
+    const std::string told =
+        folder.shell("( " + script(limit + "smooth_to new.nc part.nc --json -") + "\n)").out;
+    EXPECT_TRUE(contains(told, "batten-report/1") && contains(told, "\"messages\": [")) << told;
   }
   EXPECT_GT(refused, 0);
   EXPECT_EQ(done, 1);

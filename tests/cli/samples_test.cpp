@@ -117,7 +117,8 @@ TEST_P(Sample, ComesOutAsExpectedIsAcceptedByVerifyAndStaysForASecondPassAndTwoT
 
 // What `smooth` and `time` predict of a program is one figure, for the old text and the new one.
 TEST_P(Sample, TakesTheTimeThatBattenTimePredicts) {
-  for (const Json& machine : Json::parse(folder_.batten("machines --json -").out)) {
+  const Json listed = Json::parse(folder_.batten("machines --json -").out);
+  for (const Json& machine : listed["machines"]) {
     const std::string name = " --machine " + machine["name"].get<std::string>();
     expect_exit(folder_.shell(command_ + name + " --force --json report.json"), 0);
     const Json report = Json::parse(folder_.text_of("report.json"));

@@ -158,11 +158,12 @@ std::string keys_of(const Json& json) {
 
 TEST_F(SmoothReports, HaveTheirFieldsInAFixedOrder) {
   const Json report = json();
-  EXPECT_EQ(keys_of(report),
-            "batten options options_from input output machine runs reasons kept deviation_mm "
-            "deviation_line corner_mm "
-            "time_before_s time_after_s cutting_before_s cutting_after_s slow_share_before "
-            "slow_share_after path_before path_after proved understood diagnostics ");
+  EXPECT_EQ(
+      keys_of(report),
+      "schema kind batten options options_from input output machine runs reasons kept deviation_mm "
+      "deviation_line corner_mm "
+      "time_before_s time_after_s cutting_before_s cutting_after_s slow_share_before "
+      "slow_share_after path_before path_after proved understood diagnostics ");
   EXPECT_EQ(keys_of(report["input"]), "file bytes blocks units ");
   EXPECT_EQ(keys_of(report["output"]), "file bytes blocks target ");
   EXPECT_EQ(
@@ -199,7 +200,7 @@ TEST_F(SmoothReports, SayTheFiguresOfTheResultToPrograms) {
   EXPECT_EQ(report["proved"], true);
   EXPECT_EQ(report["diagnostics"],
             Json::parse(R"([{"severity": "warning", "id": "some-id", "line": 2, "column": 4,
-                             "message": "found 1, expected 2"}])"));
+                             "message": "found 1, expected 2", "advice": ""}])"));
   const Json runs = report["runs"];
   ASSERT_EQ(runs.size(), 5u);
   const auto of_runs = [&](const char* field) {

@@ -1,4 +1,4 @@
-#include "postproc/cli/explain.h"
+#include "postproc/text/explain.h"
 
 #include <fmt/format.h>
 
@@ -55,6 +55,8 @@ struct Explained {
   bool can_be_allowed = false;
 };
 
+constexpr std::string_view kMessages = "\nMessages about a program:";
+
 // Markdown without its marks; a bracket that only names another page goes.
 std::string plain(const std::string& cell) {
   static const std::regex page(R"( \(\[[^\]]*\]\([^)]*\)\))");
@@ -80,7 +82,7 @@ void add_rows_of_page(std::vector<Explained>& all) {
       std::erase(id, ',');
       const Explained violation = {"\nViolations found by batten verify:", id,
                                    "a violation found by batten verify", cells[1], cells[2]};
-      const Explained message = {"\nMessages about a program:", id,
+      const Explained message = {kMessages, id,
                                  fmt::format("a message about a program ({})", cells[1]), cells[2],
                                  cells.back()};
       all.push_back(violations ? violation : message);
@@ -124,6 +126,13 @@ std::string explanation_of(std::string_view id) {
     }
   }
   return text;
+}
+
+std::string_view advice_on(std::string_view id) {
+  for (const Explained& each : all_explained()) {
+    if (each.id == id && each.group == kMessages) return each.advice;
+  }
+  return {};
 }
 
 std::string all_explanations() {

@@ -1,4 +1,4 @@
-#include "postproc/cli/explain.h"
+#include "postproc/text/explain.h"
 
 #include <gtest/gtest.h>
 

@@ -17,6 +17,9 @@ namespace batten::postproc {
 // Some lines of text for a terminal; empty where there is no such id.
 [[nodiscard]] std::string explanation_of(std::string_view id);
 
+// What to do about a message of this id, as one line; empty where there is no such message.
+[[nodiscard]] std::string_view advice_on(std::string_view id);
+
 // A line for each id.
 [[nodiscard]] std::string all_explanations();
 
