@@ -9,7 +9,7 @@
 namespace batten {
 namespace {
 
-struct Row {
+struct AnswerRow {
   const char* name;
   const char* arguments;
   int code;
@@ -17,7 +17,7 @@ struct Row {
   const char* says;  // among its messages, its diagnostics and what to do about them; "": nothing
 };
 
-const Row kRows[] = {
+const AnswerRow kAnswers[] = {
     {"Smooth", "smooth part.nc -t linuxcnc --dry-run", 0, "smooth", ""},
     {"SmoothUsage", "smooth part.nc -t linuxcnc --tolerance wide", 1, "failure", "--tolerance"},
     {"SmoothNotUnderstood", "smooth open.nc -t grbl", 2, "smooth", "--units"},
@@ -67,7 +67,7 @@ const Row kRows[] = {
     {"NoSuchCommand", "smoth part.nc", 1, "failure", "smooth"},
 };
 
-class JsonAnswer : public testing::TestWithParam<Row> {
+class JsonAnswer : public testing::TestWithParam<AnswerRow> {
  protected:
   JsonAnswer() {
     folder_.put("part.nc", wave_program());
@@ -85,7 +85,7 @@ class JsonAnswer : public testing::TestWithParam<Row> {
 };
 
 TEST_P(JsonAnswer, IsOneObjectThatSaysHowItEnded) {
-  const Row& row = GetParam();
+  const AnswerRow& row = GetParam();
   const ProcessResult done = folder_.batten(std::string(row.arguments) + " --json - </dev/null");
   EXPECT_EQ(done.exit_code, row.code) << done.err;
   const nlohmann::json json = nlohmann::json::parse(done.out, nullptr, false);
@@ -101,7 +101,7 @@ TEST_P(JsonAnswer, IsOneObjectThatSaysHowItEnded) {
   EXPECT_FALSE(json["advice"].get<std::string>().empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Cli, JsonAnswer, testing::ValuesIn(kRows),
+INSTANTIATE_TEST_SUITE_P(Cli, JsonAnswer, testing::ValuesIn(kAnswers),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST_F(JsonAnswer, OfAFileIsWrittenWithTheExitCode) {
