@@ -10,6 +10,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,14 @@ inline ProcessResult expect_exit(ProcessResult result, int code,
   EXPECT_EQ(result.exit_code, code);
   for (const std::string& part : said) EXPECT_TRUE(contains(result.err, part)) << part;
   return result;
+}
+
+// A JSON report is left for the test that compares all of them with docs/report.schema.json.
+inline void keep_if_report(const std::string& text) {
+  if (!text.starts_with("{\n  \"schema\": ")) return;
+  std::filesystem::create_directories(BATTEN_KEPT_REPORTS);
+  const std::string name = std::to_string(std::hash<std::string>()(text)) + ".json";
+  std::ofstream(std::filesystem::path(BATTEN_KEPT_REPORTS) / name, std::ios::binary) << text;
 }
 
 // Arguments that end a command with 1 and these words.
@@ -75,6 +85,7 @@ class BattenFolder {
     result.err = text_of(".err");
     std::filesystem::remove(file(".out"));
     std::filesystem::remove(file(".err"));
+    keep_reports(result);
     return result;
   }
 
@@ -83,6 +94,18 @@ class BattenFolder {
   }
 
  private:
+  // Those on standard output and in files of the folder.
+  void keep_reports(const ProcessResult& result) const {
+    namespace fs = std::filesystem;
+    keep_if_report(result.out);
+    std::error_code error;
+    for (fs::recursive_directory_iterator at(folder_.path(), error), end; !error && at != end;
+         at.increment(error)) {
+      if (at->path().extension() != ".json" || !at->is_regular_file(error)) continue;
+      keep_if_report(text_of_file(at->path()));
+    }
+  }
+
   ScratchFolder folder_;
 };
 
