@@ -14,6 +14,7 @@
 #include <system_error>
 #include <thread>
 
+#include "gcode/reading/dropped_words.h"
 #include "gcode/text/characters.h"
 #include "postproc/batch/batch_summary.h"
 #include "postproc/batch/process_pool.h"
@@ -108,7 +109,7 @@ class Worker {
         return failed(place.string() + ": leads into the input tree; nothing was written");
       }
     }
-    return smooth(source);
+    return smooth(gcode::without_words(source, plan_.drop, dropped_));
   }
 
  private:
@@ -138,7 +139,9 @@ class Worker {
                             .options = options,
                             .result = result,
                             .output_file = writes ? record_.program : "",
-                            .strict = plan_.strict};
+                            .strict = plan_.strict,
+                            .drop = plan_.drop,
+                            .dropped = dropped_};
     std::vector<std::string> messages;
     if (!record_.message.empty()) messages.push_back(record_.message);
     const std::string report = ended_report(json_report(told), record_.exit_code, messages);
@@ -219,6 +222,7 @@ class Worker {
 
   const BatchPlan& plan_;
   ProgramPlaces places_;
+  std::size_t dropped_ = 0;
   ProgramRecord record_;                 // what is being made
   std::optional<ProgramRecord> before_;  // what an earlier run left
   std::string output_sha256_;            // of what is in the new tree now; empty: nothing

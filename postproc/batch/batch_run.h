@@ -19,8 +19,9 @@ namespace batten::postproc {
 struct BatchPlan {
   std::filesystem::path input_tree;
   std::filesystem::path output_tree;
-  SmoothOptions options;        // its `threads` do not count: a worker has one
-  std::string settings_sha256;  // of everything that the bytes of the result depend on
+  SmoothOptions options;               // its `threads` do not count: a worker has one
+  std::string settings_sha256;         // of everything that the bytes of the result depend on
+  std::vector<std::string> drop = {};  // of SmoothingCommand
   bool strict = false;
   bool force = false;  // programs in the new tree may be replaced whoever wrote them
   bool pages = false;  // each program's report as a page, too

@@ -11,6 +11,7 @@
 
 #include "gcode/controls/built_in.h"
 #include "gcode/curves/curve_format.h"
+#include "gcode/reading/dropped_words.h"
 #include "gcode/reading/target_marks.h"
 #include "gcode/state/modal_state.h"
 #include "postproc/batch/program_tree.h"
@@ -291,6 +292,17 @@ std::shared_ptr<const gcode::OwnWords> own_words_given(const TargetProfile* prof
   return list.words();
 }
 
+// --drop
+std::vector<std::string> dropped_given(Arguments& in) {
+  std::vector<std::string> names;
+  const auto possible = gcode::droppable_words();
+  for (const std::string& name : in.given.values("drop")) {
+    names.emplace_back(gcode::droppable_name(name));
+    if (names.back().empty()) complain_of_name("drop", name, possible, in);
+  }
+  return names;
+}
+
 // --- smooth, and what batch has of it ------------------------------------------------------------
 
 // The target that the program's own text names for certain; else says which are likely.
@@ -374,6 +386,7 @@ void read_smooth_options(SmoothingCommand& command, Arguments& in, bool by_marks
   options.own_words = own_words_given(command.profile.get(), in);
   options.keep_expressions = in.given.flag("keep-expressions");
   options.convert = in.given.flag("convert");
+  command.drop = dropped_given(in);
   command.force = in.given.flag("force");
   command.strict = in.given.flag("strict");
 }
@@ -383,6 +396,9 @@ void check_certificate(const std::string& file, const std::vector<std::string>& 
                        geometry::ToleranceKind kind, Arguments& in) {
   if (file.empty()) return;
   if (file == "-") in.complain("--certificate: a certificate is a file, - is none");
+  if (in.given.has("drop")) {
+    in.complain("--certificate: it is of the program as it was, and --drop changes that");
+  }
   if (kind != geometry::ToleranceKind::kPath) {
     in.complain("--certificate: it is of --tolerance-kind path, not of band");
   }
@@ -445,6 +461,7 @@ VerifyCommand verify_command(Arguments& in) {
   command.profile = std::move(target.profile);
   command.own_words = own_words_given(command.profile.get(), in);
   command.allowed = allowed_given(in);
+  command.drop = dropped_given(in);
   choose(command.side, "side", sides(), in);
   add_problems(problems_of_side(command.side, command.tolerance_kind), in);
   std::optional<double> inch;

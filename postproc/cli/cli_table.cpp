@@ -69,6 +69,9 @@ constexpr OptionRow kWord = setting(
     "word", kTexts, "'WORD = EFFECT'",
     "what a word of your own does (docs/profiles.md): 'M501 = keeps state', 'G65 P9810 = moves', "
     "'M98 P9001 = keeps state, returns'; may be repeated");
+constexpr OptionRow kDrop = setting(
+    "drop", kList, "G64,..",
+    "words of another control that are taken out of the program first: G64, G187, G5.1, G5");
 constexpr OptionRow kTarget =
     setting("target", kValue, "NAME|FILE.toml",
             "the control that will run the program (batten targets), or a profile of it");
@@ -120,6 +123,7 @@ std::vector<OptionRow> smooth_rows() {
       kSource,
       kDecimals,
       kAllow,
+      kDrop,
       kWord,
       setting("keep-expressions", kFlag, "",
               "leave blocks alone whose numbers are expressions of variables (Z[#<scale>*5])",
@@ -173,6 +177,7 @@ std::vector<OptionRow> verify_rows() {
           "allow", kList, "REASON,..",
           "what smooth was allowed; subprogram: calls leave all modes as they find them, in both "
           "programs"),
+      kDrop,
       kWord,
       kJson,
       kReport,

@@ -115,6 +115,7 @@ BatchRequest request_of(const BatchCommand& command, const ProgramTree& tree) {
                    .output_tree = fs::path(command.output_tree).lexically_normal(),
                    .options = command.options,
                    .settings_sha256 = sha256(command.settings),
+                   .drop = command.drop,
                    .strict = command.strict,
                    .force = command.force,
                    .pages = command.pages},

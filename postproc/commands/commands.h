@@ -37,6 +37,7 @@ struct SmoothingCommand {
   ProgressStyle progress = ProgressStyle::kAuto;
   bool force = false;   // existing files may be replaced
   bool strict = false;  // a run that could not be proved is an error, not a reason to keep it
+  std::vector<std::string> drop;  // words that are taken out of the program first
   // What the command line did not give, and where it comes from.
   std::vector<std::pair<std::string, std::string>> origins;
 };
@@ -111,6 +112,7 @@ struct ReadingCommand {
 struct VerifyCommand : ReadingCommand {
   std::string old_program;
   std::string new_program;
+  std::vector<std::string> drop;  // as smooth dropped them, of the old program
   double tolerance_mm = 0.01;
   geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
   geometry::Side side = geometry::Side::kBoth;

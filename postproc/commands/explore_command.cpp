@@ -10,8 +10,12 @@ namespace batten::postproc {
 
 int run(const ExploreCommand& explore) {
   const SmoothCommand& command = explore.smooth;
+  if (!may_be_written(command.json_file, command.force)) {
+    return static_cast<int>(ExitCode::kFileError);
+  }
   const WatchedFile watched(command.input);
-  const auto source = read_program(command.input);
+  std::size_t dropped = 0;
+  const auto source = read_program(command.input, command.drop, dropped);
   if (interrupted()) return end_interrupted();
   if (!source) return static_cast<int>(ExitCode::kFileError);
 

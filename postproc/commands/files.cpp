@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "gcode/reading/dropped_words.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 #include "postproc/system/other_program.h"
@@ -140,6 +141,47 @@ PartReading reading_of(const gcode::SourceText& source, const ReadingCommand& co
                      .calls_keep_modes = calls_keep_modes(command.allowed),
                      .own_words = command.own_words};
   return reading;
+}
+
+std::optional<gcode::SourceText> read_program(const std::string& name,
+                                              const std::vector<std::string>& drop,
+                                              std::size_t& dropped) {
+  const auto source = read_program(name);
+  if (!source || drop.empty()) return source;
+  return gcode::without_words(*source, drop, dropped);
+}
+
+// A long computation should not end with "exists already" or "no such folder".
+bool may_be_written(const std::string& file, bool replace_existing) {
+  namespace fs = std::filesystem;
+  if (file.empty() || file == "-") return true;
+  std::error_code error;
+  if (!replace_existing && fs::is_regular_file(file, error)) {
+    say(file + ": exists already and was left as it is; --force replaces it");
+    return false;
+  }
+  // Of a link, what it leads to is written.
+  const bool is_link = fs::is_symlink(file, error);
+  const fs::path path = is_link ? fs::weakly_canonical(file, error) : fs::path(file);
+  if (is_link && error) return true;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const bool is_device = fs::exists(path, error) && !fs::is_regular_file(path, error);
+  std::string why;
+  if (fs::is_directory(path, error)) {
+    why = "it is a folder";
+  } else if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+    why = folder.string() + " is no folder";
+  } else if (!is_device && ::access(folder.c_str(), W_OK) != 0) {
+    why = folder.string() + ": " + std::generic_category().message(errno);
+  }
+  if (why.empty()) return true;
+  say(fmt::format("{}: cannot be written: {}; nothing was done", file, why));
+  return false;
+}
+
+bool may_write_reports(const ReadingCommand& command) {
+  return can_show(command.page) && may_be_written(command.json_file, command.force) &&
+         may_be_written(command.page.file, command.force);
 }
 
 bool changed_while_read(const WatchedFile& file) {

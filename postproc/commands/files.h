@@ -21,6 +21,20 @@ namespace batten::postproc {
 // Reads a file, or standard input to its end. On failure says why and returns nothing.
 [[nodiscard]] std::optional<gcode::SourceText> read_program(const std::string& name);
 
+// The same without the words that the user drops (--drop; gcode/reading/dropped_words.h), `dropped`
+// of them.
+[[nodiscard]] std::optional<gcode::SourceText> read_program(const std::string& name,
+                                                            const std::vector<std::string>& drop,
+                                                            std::size_t& dropped);
+
+// Asked before the work: false, and it was said why, where this output (empty: none; "-": standard
+// output) exists and may not be replaced, or cannot be written where it is to be.
+[[nodiscard]] bool may_be_written(const std::string& file, bool replace_existing);
+
+// The same of the JSON report and the page of a command that writes no program, and whether the
+// page can be shown.
+[[nodiscard]] bool may_write_reports(const ReadingCommand& command);
+
 // How a command that writes no program reads this one. `kind`: the control that it was written for;
 // `fallback`: what a text without certain marks is read in; `dwells`: what its G4 means.
 // `of_language` of the result has an error where the language is not certain.

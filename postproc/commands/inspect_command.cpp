@@ -156,7 +156,7 @@ int write_inspect_page(const InspectCommand& command, const gcode::SourceText& s
 }  // namespace
 
 int run(const InspectCommand& command) {
-  if (!can_show(command.page)) return static_cast<int>(ExitCode::kFileError);
+  if (!may_write_reports(command)) return static_cast<int>(ExitCode::kFileError);
   const WatchedFile watched(command.input);
   const auto source = read_program(command.input);
   if (interrupted()) return end_interrupted();

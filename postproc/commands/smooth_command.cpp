@@ -1,8 +1,6 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 #include <system_error>
 
@@ -30,51 +28,18 @@ std::string output_of(const SmoothCommand& command) {
   return default_output_path(command.input).string();
 }
 
-// A long computation should not end with "exists already".
-bool would_be_refused(const std::string& file, bool replace_existing) {
-  std::error_code error;
-  if (file.empty() || file == "-" || replace_existing) return false;
-  if (!std::filesystem::is_regular_file(file, error)) return false;
-  say(file + ": exists already and was left as it is; --force replaces it");
-  return true;
-}
-
-// Nor with "no such folder".
-bool cannot_be_written(const std::string& file) {
-  namespace fs = std::filesystem;
-  if (file.empty() || file == "-") return false;
-  std::error_code error;
-  // Of a link, what it leads to is written.
-  const bool is_link = fs::is_symlink(file, error);
-  const fs::path path = is_link ? fs::weakly_canonical(file, error) : fs::path(file);
-  if (is_link && error) return false;
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  const bool is_device = fs::exists(path, error) && !fs::is_regular_file(path, error);
-  std::string why;
-  if (fs::is_directory(path, error)) {
-    why = "it is a folder";
-  } else if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
-    why = folder.string() + " is no folder";
-  } else if (!is_device && ::access(folder.c_str(), W_OK) != 0) {
-    why = folder.string() + ": " + std::generic_category().message(errno);
-  }
-  if (why.empty()) return false;
-  say(fmt::format("{}: cannot be written: {}; nothing was done", file, why));
-  return true;
-}
-
 class SmoothWork {
  public:
   SmoothWork(const SmoothCommand& command, std::string output)
       : command_(command), output_(std::move(output)), watched_(command.input) {}
 
   int run() {
-    source_ = read_program(command_.input);
+    source_ = read_program(command_.input, command_.drop, dropped_);
     if (interrupted()) return end_interrupted();
-    const bool may_work = source_ && (command_.dry_run || !cannot_be_written(output_)) &&
-                          !cannot_be_written(command_.json_file) &&
-                          !cannot_be_written(command_.page.file) &&
-                          !cannot_be_written(command_.certificate_file);
+    const bool may_work = source_ && (command_.dry_run || may_be_written(output_, replaces())) &&
+                          may_be_written(command_.json_file, command_.force) &&
+                          may_be_written(command_.page.file, command_.force) &&
+                          may_be_written(command_.certificate_file, command_.force);
     if (!may_work) return static_cast<int>(ExitCode::kFileError);
     if (command_.dry_run) return look_only();
     // The page draws the whole path, and a short program needs no file beside the output.
@@ -115,7 +80,9 @@ class SmoothWork {
                                  .result = result_,
                                  .output_file = writes ? output_ : "",
                                  .strict = command_.strict,
-                                 .origins = command_.origins};
+                                 .origins = command_.origins,
+                                 .drop = command_.drop,
+                                 .dropped = dropped_};
     const bool tells = result_.understood && command_.log_level >= LogLevel::kInfo;
     if (tells) summary_ = summary_text(report);
     if (!command_.json_file.empty()) json_ = json_report(report);
@@ -226,6 +193,7 @@ class SmoothWork {
   std::string output_;
   WatchedFile watched_;
   std::optional<gcode::SourceText> source_;
+  std::size_t dropped_ = 0;
   SmoothResult result_;
   ExitCode verdict_ = ExitCode::kDone;
   std::string summary_;
@@ -238,15 +206,8 @@ class SmoothWork {
 }  // namespace
 
 int run(const SmoothCommand& command) {
-  const std::string output = output_of(command);
-  const bool replaces_program = command.force || command.in_place;
-  if ((!command.dry_run && would_be_refused(output, replaces_program)) ||
-      would_be_refused(command.json_file, command.force) ||
-      would_be_refused(command.page.file, command.force) ||
-      would_be_refused(command.certificate_file, command.force) || !can_show(command.page)) {
-    return static_cast<int>(ExitCode::kFileError);
-  }
-  return SmoothWork(command, output).run();
+  if (!can_show(command.page)) return static_cast<int>(ExitCode::kFileError);
+  return SmoothWork(command, output_of(command)).run();
 }
 
 int run(const SmoothFilesCommand& command) {

@@ -68,7 +68,9 @@ int write_time_page(const TimeCommand& command, const TimeReport& report,
 }  // namespace
 
 int run(const TimeCommand& command) {
-  if (!can_show(command.page)) return static_cast<int>(ExitCode::kFileError);
+  if (!may_write_reports(command) || !may_be_written(command.profile_file, command.force)) {
+    return static_cast<int>(ExitCode::kFileError);
+  }
   const WatchedFile watched(command.input);
   const auto source = read_program(command.input);
   if (interrupted()) return end_interrupted();

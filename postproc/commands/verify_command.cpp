@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -125,10 +126,11 @@ Json json_of(const Verification& verification, const VerifyCommand& command,
 }
 
 // Moves without a unit are an error among the diagnostics: a tolerance means nothing then.
-bool is_understood(const gcode::Diagnostics& found, const gcode::SourceText& source,
-                   LogLevel level) {
-  print(found, source, level);
-  return !gcode::has_error(found);
+int end_not_understood(const gcode::Diagnostics& of_old, const gcode::SourceText& source,
+                       LogLevel level) {
+  print(of_old, source, level);
+  say("the old program is not understood, so nothing can be proved about the new one");
+  return static_cast<int>(ExitCode::kNotUnderstood);
 }
 
 Promise promise_of(const VerifyCommand& command) {
@@ -139,13 +141,15 @@ Promise promise_of(const VerifyCommand& command) {
 struct Compared {
   const TextToVerify& before;
   const TextToVerify& after;
+  std::size_t dropped = 0;  // words of the old one
 };
 
 // JSON and page. 0 when written or not asked for; else says why and returns the exit code.
 int write_reports(const VerifyCommand& command, const Verification& verification,
                   const gcode::Diagnostics& of_new, const Compared& texts) {
   if (command.json_file.empty() && !command.page.is_wanted()) return 0;
-  const Json json = json_of(verification, command, of_new, texts.after.source);
+  Json json = json_of(verification, command, of_new, texts.after.source);
+  if (!command.drop.empty()) json["dropped"] = {{"names", command.drop}, {"words", texts.dropped}};
   write_report(command.json_file, command.force, [&] { return json_text(json); });
   if (!command.page.is_wanted()) return 0;
   std::vector<PageLines> rows;
@@ -259,6 +263,10 @@ int tell(const VerifyCommand& command, const Verification& verification, std::si
                     "is not known here\n",
                     added, command.profile->file));
   }
+  if (verification.proved() && texts.dropped > 0) {
+    say_lines(fmt::format("  but for {} that --drop takes out of the old program ({})\n",
+                          plural(texts.dropped, "word"), fmt::join(command.drop, ", ")));
+  }
   if (verification.proved() && command.log_level >= LogLevel::kInfo) {
     say_lines(own_words_text(command.own_words));
   }
@@ -287,10 +295,13 @@ int write_certificate(const VerifyCommand& command, const gcode::SourceText& old
 }
 
 int run(const VerifyCommand& command) {
-  if (!can_show(command.page)) return static_cast<int>(ExitCode::kFileError);
+  if (!may_write_reports(command) || !may_be_written(command.certificate_file, command.force)) {
+    return static_cast<int>(ExitCode::kFileError);
+  }
   const WatchedFile old_watched(command.old_program);
   const WatchedFile new_watched(command.new_program);
-  const auto old_source = read_program(command.old_program);
+  std::size_t dropped = 0;
+  const auto old_source = read_program(command.old_program, command.drop, dropped);
   const auto new_source = read_program(command.new_program);
   if (interrupted()) return end_interrupted();
   if (!old_source || !new_source) return static_cast<int>(ExitCode::kFileError);
@@ -302,16 +313,20 @@ int run(const VerifyCommand& command) {
   BothTexts both = both_texts(command, *old_source, *new_source);
   const gcode::SourceText& compared = both.compared;
   const TextToVerify& before = both.before;
+  if (gcode::has_error(before.reading.of_language)) {
+    return end_not_understood(before.reading.of_language, *old_source, command.log_level);
+  }
   AddedLines& added = both.added;
   const TextToVerify after{compared, both.after, std::move(added.brackets)};
   auto verified = verify_texts(before, after, promise_of(command), interrupted);
   if (!verified || interrupted()) return end_interrupted();
   if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
-  if (!is_understood(verified->of_old, *old_source, command.log_level)) {
-    say("the old program is not understood, so nothing can be proved about the new one");
-    return static_cast<int>(ExitCode::kNotUnderstood);
+  if (gcode::has_error(verified->of_old)) {
+    return end_not_understood(verified->of_old, *old_source, command.log_level);
   }
-  if (!is_understood(verified->of_new, compared, command.log_level)) {
+  print(verified->of_old, *old_source, command.log_level);
+  print(verified->of_new, compared, command.log_level);
+  if (gcode::has_error(verified->of_new)) {
     say("NOT PROVED: the new program is not understood, and the old one is");
     return static_cast<int>(ExitCode::kNotProved);
   }
@@ -322,7 +337,8 @@ int run(const VerifyCommand& command) {
   }
   std::ranges::move(added.violations, std::back_inserter(verification.violations));
   std::ranges::move(verified->in_brackets, std::back_inserter(verification.violations));
-  const int code = tell(command, verification, added.lines, verified->of_new, {before, after});
+  const int code =
+      tell(command, verification, added.lines, verified->of_new, {before, after, dropped});
   return code != 0 ? code : write_certificate(command, *old_source, *new_source);
 }
 

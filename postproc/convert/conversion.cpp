@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "gcode/reading/dropped_words.h"
 #include "gcode/reading/source_kind.h"
 #include "gcode/rs274/plain_words.h"
 #include "gcode/state/code_table.h"
@@ -200,10 +201,12 @@ void tell_of_other_family(const gcode::Program& program, const gcode::Control& t
                           gcode::Diagnostics& found) {
   for (const gcode::FoundMark& each : gcode::source_marks(program)) {
     if ((target.known_marks & gcode::mark(each.mark)) != 0) continue;
+    const std::string_view name = gcode::droppable_name(program.source.text(each.where));
+    const std::string to_do = name.empty() ? "--convert lists which blocks could not be said there"
+                                           : fmt::format("--drop {} takes such words out", name);
     found.push_back({gcode::Severity::kError, "other-family", each.where,
-                     fmt::format("{}: a program for other controls than target {}; --convert lists "
-                                 "which blocks could not be said there",
-                                 gcode::describe(each.mark), target.name)});
+                     fmt::format("{}: a program for other controls than target {}; {}",
+                                 gcode::describe(each.mark), target.name, to_do)});
   }
   if (const auto dwell = other_dwell(program, target)) {
     found.push_back(

@@ -294,6 +294,7 @@ Json smooth_json(const SmoothReport& report) {
                {"understood", result.understood},
                {"diagnostics", diagnostics_json(result.diagnostics, report.source)}};
   if (!report.options.profile.empty()) json["profile"] = profile_json(report);
+  if (!report.drop.empty()) json["dropped"] = {{"names", report.drop}, {"words", report.dropped}};
   return as_report("smooth", json);
 }
 
@@ -393,6 +394,11 @@ std::string summary_text(const SmoothReport& report) {
   const bool in_vain = result.understood && !result.kept.any_run;
   lines += in_vain ? fmt::format(": {}\n", why_nothing(result.kept)) : "\n";
   for (const std::string& text : texts_of_origins(report.origins)) lines += titled("options", text);
+  if (!report.drop.empty()) {
+    lines += titled("dropped",
+                    fmt::format("{} ({}); verify needs the same --drop",
+                                plural(report.dropped, "word"), fmt::join(report.drop, ", ")));
+  }
   lines += titled("blocks", change(result.blocks_in, result.blocks_out));
   lines += titled("bytes", change(report.source.text().size(), result.bytes_out));
   if (result.path_before.length_mm > 0) lines += path_lines(result.path_before, result.path_after);

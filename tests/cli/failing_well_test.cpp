@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "batten_process.h"
 #include "tests/support/places.h"
 
@@ -43,6 +45,33 @@ TEST_F(FailingWell, PlacesThatCannotBeWrittenAreFoundBeforeTheWork) {
     expect_refusal(start + "file" + page, 4, "file is no folder");
   }
   expect_refusal("smooth part.nc -t grbl -o .", 4, "it is a folder");
+}
+
+TEST_F(FailingWell, CommandsThatOnlyReadFindPlacesOfReportsBeforeTheWork) {
+  folder_.put("old.json", "{}");
+  folder_.put("file", "");
+  for (const char* command :
+       {"inspect part.nc", "verify part.nc part.nc", "explore part.nc -t grbl",
+        "time part.nc --machine router", "time part.nc --machine router --json - --profile"}) {
+    const bool profile = std::string(command).ends_with("--profile");
+    const std::string start = std::string(command) + (profile ? " " : " --json ");
+    for (const auto& [place, why] :
+         {std::pair("none/x", "none: No such file"), std::pair("file/x", "file is no folder"),
+          std::pair(".", "it is a folder"), std::pair("old.json", "exists already")}) {
+      const ProcessResult done = expect_exit(folder_.batten(start + place), 4, {why});
+      EXPECT_EQ(std::ranges::count(done.err, '\n'), 1) << done.err;
+    }
+  }
+}
+
+TEST_F(FailingWell, VerifyWithAFileThatIsNoProgramSaysThatAlone) {
+  folder_.put("a.out", std::string("\x7f"
+                                   "ELF\2\1\1\0\0",
+                                   9) +
+                           "\n)\n(\nG1.25\n\1\2\n)\n");
+  const ProcessResult done =
+      expect_exit(folder_.batten("verify a.out part.nc"), 2, {"a.out:1:1: error: not-a-program"});
+  EXPECT_EQ(std::ranges::count(done.err, '\n'), 2) << done.err;
 }
 
 TEST_F(FailingWell, TheFolderOfALinkIsTheOneItLeadsTo) {

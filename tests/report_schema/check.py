@@ -31,6 +31,7 @@ smooth part.nc -t linuxcnc --dry-run --tolerance 2 --strict
 smooth part.nc --profile mine.toml --dry-run
 smooth part.nc --config options.toml --dry-run
 smooth part.nc -t itnc530 --convert --dry-run
+smooth part.nc -t grbl --dry-run --drop G64
 smooth words.nc -t linuxcnc --dry-run --word "M501 = keeps state"
 smooth part.nc -t linuxcnc --tolerance wide
 smooth open.nc -t grbl
@@ -40,6 +41,7 @@ explore part.nc -t grbl --tolerance 0.01 --output lines
 explore open.nc -t grbl
 verify part.nc part.nc
 verify part.nc other.nc
+verify part.nc other.nc --drop G64
 verify part.nc part.nc --word "M501 = keeps state" --tolerance-kind band
 verify open.nc part.nc
 inspect part.nc
@@ -139,7 +141,7 @@ def unnoticed_damage(checked):
         for name in report:
             damaged = copy.deepcopy(report)
             del damaged[name]
-            if name not in ("profile",) and not checked.problems(damaged):
+            if name not in ("profile", "dropped") and not checked.problems(damaged):
                 yield f"{kind}: {name} is missing"
             damaged[name] = {"of": "another type"} if not isinstance(report[name], dict) else "text"
             if not checked.problems(damaged):
