@@ -6,12 +6,15 @@
 #include <utility>
 
 #include "gcode/curves/curve_format.h"
+#include "gcode/interpreter/called_programs.h"
 #include "gcode/interpreter/lost_modes.h"
 #include "gcode/interpreter/motion_words.h"
 #include "gcode/interpreter/plain_text.h"
 #include "gcode/interpreter/program_flow.h"
 #include "gcode/interpreter/word_applier.h"
+#include "gcode/klartext/flow.h"
 #include "gcode/klartext/state.h"
+#include "gcode/klartext/statement.h"
 #include "gcode/siemens/flow.h"
 #include "gcode/siemens/names.h"
 #include "gcode/state/block_words.h"
@@ -90,9 +93,12 @@ class BlockDiagnostics {
 
 class Interpreter {
  public:
+  // `depth`: of calls within each other.
   Interpreter(const Program& program, const ReadOptions& options, ControlCarry& carry,
-              Diagnostics& found)
+              Diagnostics& found, int depth = 0)
       : program_(program),
+        options_(options),
+        depth_(depth),
         curves_(options.curves),
         has_plain_way_(options.short_ways && program.language == Language::kRs274),
         carry_(carry),
@@ -111,9 +117,7 @@ class Interpreter {
   }
 
   Interpretation run() {
-    const ProgramFlow whole_flow =
-        follow_flow(program_, now_.calls_keep_modes ? Returns::kBehindCalls : Returns::kToAnyLabel,
-                    now_.own_words);
+    const ProgramFlow whole_flow = flow_of_program();
     const std::vector<BlockFlow>& flow = whole_flow.blocks;
     const auto count = static_cast<std::uint32_t>(program_.blocks.size());
     for (std::uint32_t i = 0; i < count;) {
@@ -132,11 +136,60 @@ class Interpreter {
     carry_.state = now_;
     carry_.unit_word_seen = read_.unit_word_seen;
     carry_.reaches_out |= whole_flow.reaches_out;
-    if (!carry_.any_motion && !read_.motions.empty()) {
+    // All of it is kept then, in whatever unit.
+    const bool kept_for_caller =
+        !options_.usual_caller_modes && std::ranges::any_of(flow, &BlockFlow::in_called);
+    if (!carry_.any_motion && !read_.motions.empty() && !kept_for_caller) {
       carry_.any_motion = true;
       carry_.first_motion = program_.blocks[read_.motions.front().block].span;
     }
     return std::move(read_);
+  }
+
+  // Where the modes of a caller are not known, all of a called program is a body.
+  [[nodiscard]] ProgramFlow flow_of_program() const {
+    ProgramFlow flow =
+        follow_flow(program_, now_.calls_keep_modes ? Returns::kBehindCalls : Returns::kToAnyLabel,
+                    now_.own_words, options_.subprograms.get());
+    for (BlockFlow& each : flow.blocks) {
+      each.in_body |= each.in_called && !options_.usual_caller_modes;
+    }
+    return flow;
+  }
+
+  // What is known behind a call of the program, where so much is known at the call.
+  ControlState run_called(const Subprogram& sub) {
+    const ProgramFlow whole_flow = flow_of_program();
+    const std::vector<BlockFlow>& flow = whole_flow.blocks;
+    const Units units = now_.modal.units;
+    std::optional<ControlState> behind;
+    auto end = sub.ends.begin();
+    for (std::uint32_t i = sub.begin; end != sub.ends.end();) {
+      if (i > *end) {  // a curve went on through its end
+        forget_everything(now_);
+        return now_;
+      }
+      if (i == *end) {
+        if (flow[i].jump_target) is_klartext() ? forget_klartext(now_) : forget_everything(now_);
+        behind = behind ? either(*behind, now_) : now_;
+        if (++end == sub.ends.end()) break;
+        // What follows is done only where it was skipped.
+        if (program_.blocks[i].block_delete) {
+          ++i;
+          continue;
+        }
+      }
+      if (const auto curve = curve_at(program_, i, now_, curves_, flow)) {
+        add_curve(i, *curve);
+        i += curve->blocks;
+      } else {
+        read_block(i, flow[i]);
+        ++i;
+      }
+    }
+    // INCH of a program counts for itself.
+    if (is_klartext() && behind->modal.units != units) forget_everything(*behind);
+    return *behind;
   }
 
  private:
@@ -203,6 +256,66 @@ class Interpreter {
   }
 
   void read_words_or_text(const Block& block) {
+    const std::optional<CalledProgram> call = call_of(block);
+    const ControlState before = call ? now_ : ControlState();
+    read_without_call(block);
+    if (!call) return;
+    if (const auto behind = state_behind(*call, before)) now_ = *behind;
+  }
+
+  // Of a program that was read, and that the user says nothing of.
+  [[nodiscard]] std::optional<CalledProgram> call_of(const Block& block) const {
+    if (options_.subprograms == nullptr) return std::nullopt;
+    std::optional<CalledProgram> call = called_program(program_, block);
+    const bool known = call && options_.subprograms->find(call->name) != nullptr;
+    const bool by_user = known && is_vouched_for(block);
+    return known && !by_user ? call : std::nullopt;
+  }
+
+  [[nodiscard]] bool is_vouched_for(const Block& block) const {
+    if (now_.own_words == nullptr) return false;
+    if (is_klartext()) {
+      return own_call(now_, klartext_call(program_.source.text(
+                                klartext_parts(program_.source.text(), block.span).content))) !=
+             nullptr;
+    }
+    const BlockWords words(program_.words_of(block));
+    return own_called_by(block) != nullptr || own_call(now_, numbered_call(words)) != nullptr;
+  }
+
+  // Nothing: not followed, for too much was followed already.
+  std::optional<ControlState> state_behind(const CalledProgram& call, const ControlState& before) {
+    const Subprogram& sub = *options_.subprograms->find(call.name);
+    std::optional<ControlState> once = state_behind_once(sub, before);
+    if (!once || call.is_once) return once;
+    // What is so after one time and after another is so after each.
+    std::optional<ControlState> twice = state_behind_once(sub, *once);
+    if (!twice || *twice == *once) return twice;
+    ControlState any = either(*once, *twice);
+    forget_position(any);
+    const std::optional<ControlState> again = state_behind_once(sub, any);
+    return again && either(any, *again) == any ? std::optional(any) : std::nullopt;
+  }
+
+  std::optional<ControlState> state_behind_once(const Subprogram& sub, const ControlState& before) {
+    carry_.called_blocks += sub.program.blocks.size();
+    if (depth_ >= kMostCalledWithin || carry_.called_blocks > kMostCalledBlocks) {
+      return std::nullopt;
+    }
+    ControlCarry carry(before.modal.units);
+    carry.state = before;
+    carry.any_words = true;
+    carry.any_motion = true;  // a line for people may mean anything here
+    carry.called_blocks = carry_.called_blocks;
+    Diagnostics ignored;
+    Interpreter called(sub.program, options_, carry, ignored, depth_ + 1);
+    ControlState behind = called.run_called(sub);
+    carry_.called_blocks = carry.called_blocks;
+    read_.unit_word_seen |= called.read_.unit_word_seen;
+    return behind;
+  }
+
+  void read_without_call(const Block& block) {
     switch (block.opacity) {
       case ParseStatus::kNone:
       case ParseStatus::kExpression:
@@ -331,7 +444,10 @@ class Interpreter {
       }
     }
     if (meaning_.label_referenced) block_run(reason::kReferencedLabel);
-    if (flow.in_body && meaning_.kind != BlockKind::kEmpty) block_run(reason::kLoopBody);
+    if (flow.in_body && meaning_.kind != BlockKind::kEmpty) {
+      block_run(flow.in_called && !options_.usual_caller_modes ? reason::kCallerModes
+                                                               : reason::kLoopBody);
+    }
     // Last: an arc that may stand in a run has this barrier alone.
     if (meaning_.motion >= 0 && read_.motions.back().kind == MotionKind::kArc) {
       block_run(reason::kArc);
@@ -516,6 +632,8 @@ class Interpreter {
   }
 
   const Program& program_;
+  const ReadOptions& options_;
+  int depth_;
   const CurveFormat* curves_;
   bool has_plain_way_;
   ControlCarry& carry_;

@@ -1,6 +1,7 @@
 // Blocks to motions in millimetres: the only place that knows inches and increments.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "gcode/interpreter/lost_modes.h"
@@ -9,6 +10,7 @@
 #include "gcode/state/motion.h"
 #include "gcode/state/own_words.h"
 #include "gcode/state/source_marks.h"
+#include "gcode/state/subprograms.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"
 #include "gcode/text/source_text.h"
@@ -30,7 +32,11 @@ struct ControlCarry {
   LatheWatch lathe;          // of all parts so far
   DiagnosticLimiter told;
   LostModes lost;
+  std::size_t called_blocks = 0;  // that were followed in called programs
 };
+
+inline constexpr std::size_t kMostCalledBlocks = 2'000'000;
+inline constexpr int kMostCalledWithin = 10;
 
 struct CurveFormat;  // gcode/curves/curve_format.h
 
@@ -42,13 +48,20 @@ struct ReadOptions {
   // Subprograms and macros leave all modes as they find them (M97, M98, M198, G65, O-word calls,
   // CALL LBL, CALL PGM): behind a call only place, feed, speed and kind of motion are unknown.
   bool calls_keep_modes = false;
+  // A program that others call is called under the modes of power-on. Otherwise nothing is known of
+  // what it does not set itself, and its blocks are kept.
+  bool usual_caller_modes = false;
   std::shared_ptr<const OwnWords> own_words = nullptr;  // what the user vouches for; nullptr: none
+  std::shared_ptr<const Subprograms> subprograms = nullptr;  // the files of called programs
   bool short_ways = true;  // for plain lines (read_plain_line); they change nothing
 };
 
 // Follows the program from its first block to its last, as a control would, without loops
 // and calls: blocks that would need them are opaque, and what they could have changed is
-// unknown after them.
+// unknown after them. A call of one of ReadOptions::subprograms is followed through it: what is
+// known behind it is what the called program leaves from what is known at the call. In one program
+// so many blocks are followed in called ones, and so many calls within each other, as kMostCalled..
+// say; behind further calls everything is unknown.
 //
 // State at the start: units as in the options; everything else as controls have it after
 // power-on (absolute, XY plane, feed per minute, compensations off), the position unknown.

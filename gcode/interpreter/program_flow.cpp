@@ -144,8 +144,13 @@ bool names_flow(const Word& word) {
 
 class FlowFinder {
  public:
-  FlowFinder(const Program& program, Returns returns, const OwnWords* own)
-      : program_(program), returns_(returns), own_(own), flow_(program.blocks.size()) {}
+  FlowFinder(const Program& program, Returns returns, const OwnWords* own,
+             const Subprograms* called)
+      : program_(program),
+        returns_(returns),
+        own_(own),
+        called_files_(called),
+        flow_(program.blocks.size()) {}
 
   ProgramFlow find() {
     for (std::size_t i = 0; i < program_.blocks.size(); ++i) read_block(i);
@@ -257,11 +262,14 @@ class FlowFinder {
   }
 
   [[nodiscard]] bool surely_returns(std::span<const Word> words) const {
-    if (own_ == nullptr) return false;
+    if (own_ == nullptr && called_files_ == nullptr) return false;
     const BlockWords sorted(words);
     if (sorted.problem() != BlockWords::Problem::kNone) return false;
-    const OwnWord* own = own_->find(numbered_call(sorted));
-    return own != nullptr && own->effect.returns;
+    const std::string call = numbered_call(sorted);
+    if (call.empty()) return false;
+    const OwnWord* own = own_ == nullptr ? nullptr : own_->find(call);
+    if (own != nullptr) return own->effect.returns;
+    return called_files_ != nullptr && called_files_->find(call.substr(call.find('P'))) != nullptr;
   }
 
   // Of a block whose words are not all listed.
@@ -327,7 +335,12 @@ class FlowFinder {
   // entered in a state that we do not see.
   void close_segment(std::size_t end) {
     const bool is_body = segment_is_subprogram_ && !is_main_program(end);
-    for (std::size_t i = segment_begin_; is_body && i < end; ++i) flow_[i].in_body = true;
+    const bool is_whole = segment_begin_ == 0 && end == program_.blocks.size();
+    for (std::size_t i = segment_begin_; is_body && i < end; ++i) {
+      (is_whole ? flow_[i].in_called : flow_[i].in_body) = true;
+    }
+    // M98 P1 H5 begins at N5.
+    any_label_ |= is_body && is_whole && returns_ == Returns::kToAnyLabel;
     segment_begin_ = end;
     segment_is_subprogram_ = false;
   }
@@ -361,6 +374,7 @@ class FlowFinder {
   const Program& program_;
   Returns returns_;
   const OwnWords* own_;
+  const Subprograms* called_files_;
   std::vector<BlockFlow> flow_;
   std::unordered_set<Label> jump_targets_;
   std::unordered_set<Label> programs_;        // that stand here
@@ -393,11 +407,12 @@ std::string o_word_call(std::string_view text) {
   return rest.empty() && is_plain ? name + " CALL" : std::string();
 }
 
-ProgramFlow follow_flow(const Program& program, Returns returns, const OwnWords* own) {
+ProgramFlow follow_flow(const Program& program, Returns returns, const OwnWords* own,
+                        const Subprograms* called) {
   if (program.language == Language::kKlartext) return {find_klartext_flow(program), true};
   if (program.language == Language::kSiemens)
-    return {find_siemens_flow(program, returns, own), true};
-  return FlowFinder(program, returns, own).find();
+    return {find_siemens_flow(program, returns, own, called), true};
+  return FlowFinder(program, returns, own, called).find();
 }
 
 FlowEffect flow_effect(std::string_view text) {

@@ -7,6 +7,7 @@
 
 #include "gcode/state/block_flow.h"
 #include "gcode/state/own_words.h"
+#include "gcode/state/subprograms.h"
 #include "gcode/text/program.h"
 
 namespace batten::gcode {
@@ -17,9 +18,10 @@ namespace batten::gcode {
 // "O<NAME> CALL", "O100 CALL" of such a line that is a call alone; empty for others.
 [[nodiscard]] std::string o_word_call(std::string_view text);
 
-// A jump to a computed label makes every block with an N number a target. `own`: calls that the
-// user knows; nullptr: none.
+// A jump to a computed label makes every block with an N number a target. `own`, `called`: calls
+// that the user or their files say something of; nullptr: none.
 [[nodiscard]] ProgramFlow follow_flow(const Program& program, Returns returns,
-                                      const OwnWords* own = nullptr);
+                                      const OwnWords* own = nullptr,
+                                      const Subprograms* called = nullptr);
 
 }  // namespace batten::gcode

@@ -230,8 +230,9 @@ class ConstantFinder {
   void compute() {
     for (std::size_t i = 0; i < program_.blocks.size() && !ended_; ++i) {
       const BlockFlow& flow = flow_.blocks[i];
-      if (flow.jump_target || flow.in_body) values_.clear();
-      if (!flow.in_body) read(program_.blocks[i]);
+      const bool in_body = flow.in_body || flow.in_called;
+      if (flow.jump_target || in_body) values_.clear();
+      if (!in_body) read(program_.blocks[i]);
     }
   }
 

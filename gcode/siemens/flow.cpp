@@ -116,10 +116,12 @@ bool calls_program(std::string_view statement) {
 
 class FlowReader {
  public:
-  FlowReader(const Program& program, Returns returns, const OwnWords* own)
+  FlowReader(const Program& program, Returns returns, const OwnWords* own,
+             const Subprograms* called)
       : program_(program),
         returns_(returns),
         own_(own),
+        called_(called),
         flow_(program.blocks.size()),
         labels_(program.blocks.size()) {}
 
@@ -128,7 +130,7 @@ class FlowReader {
       if (program_.blocks[i].opacity != ParseStatus::kProgramMark) read_block(i);
     }
     mark_targets();
-    for (BlockFlow& each : flow_) each.in_body |= is_subprogram_;
+    for (BlockFlow& each : flow_) each.in_called = is_subprogram_;
     return std::move(flow_);
   }
 
@@ -159,8 +161,10 @@ class FlowReader {
   }
 
   [[nodiscard]] bool surely_returns(std::string_view line) const {
-    const OwnWord* own = own_ == nullptr ? nullptr : own_->find(siemens_call(line));
-    return own != nullptr && own->effect.returns;
+    const std::string call = siemens_call(line);
+    const OwnWord* own = own_ == nullptr || call.empty() ? nullptr : own_->find(call);
+    if (own != nullptr) return own->effect.returns;
+    return called_ != nullptr && called_->find(call) != nullptr;
   }
 
   // A block may have a number and a name.
@@ -245,6 +249,7 @@ class FlowReader {
   const Program& program_;
   Returns returns_;
   const OwnWords* own_;
+  const Subprograms* called_;
   std::vector<BlockFlow> flow_;
   std::vector<std::vector<LabelName>> labels_;
   std::unordered_set<LabelName> targets_;
@@ -257,8 +262,8 @@ class FlowReader {
 }  // namespace
 
 std::vector<BlockFlow> find_siemens_flow(const Program& program, Returns returns,
-                                         const OwnWords* own) {
-  return FlowReader(program, returns, own).run();
+                                         const OwnWords* own, const Subprograms* called) {
+  return FlowReader(program, returns, own, called).run();
 }
 
 std::string siemens_call(std::string_view line) {

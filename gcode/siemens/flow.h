@@ -8,6 +8,7 @@
 
 #include "gcode/state/block_flow.h"
 #include "gcode/state/own_words.h"
+#include "gcode/state/subprograms.h"
 #include "gcode/text/program.h"
 
 namespace batten::gcode {
@@ -15,9 +16,11 @@ namespace batten::gcode {
 // One per block. A label is NAME:, N100 or :100. Where a jump goes to something computed, or to a
 // name that is no label, every label is a target; so is it with kToAnyLabel where anything is
 // called that is not known to come back behind its call. A program that ends with M17 or RET is
-// called by others: all of it is a body. `own`: calls that the user knows; nullptr: none.
+// called by others. `own`, `called`: calls that the user or their files
+// say something of; nullptr: none.
 [[nodiscard]] std::vector<BlockFlow> find_siemens_flow(const Program& program, Returns returns,
-                                                       const OwnWords* own);
+                                                       const OwnWords* own,
+                                                       const Subprograms* called);
 
 // "L54", "CONTOUR": what a line calls that is a call alone, by itself (not MCALL), once or as often
 // as P says, with arguments or without. In upper case; empty for other lines.

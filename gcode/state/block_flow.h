@@ -20,6 +20,7 @@ struct BlockFlow {
   bool label_referenced = false;  // its N number is, or may be, named elsewhere
   bool jump_target = false;       // control can come to it from another place
   bool in_body = false;           // of a loop, a subprogram, or a contour that a cycle names
+  bool in_called = false;         // the whole program is one that others call
 };
 
 struct ProgramFlow {

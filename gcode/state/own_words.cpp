@@ -8,11 +8,12 @@
 namespace batten::gcode {
 namespace {
 
-constexpr OwnEffect kAll = {.keeps_modes = true, .keeps_motion = true, .keeps_place = true};
+constexpr OwnEffect kKeepsAll = {.keeps_modes = true, .keeps_motion = true, .keeps_place = true};
 
 constexpr OwnEffectRow kOwnEffects[] = {
-    {"keeps state", "modes, kind of motion, feed, speed and position are after it as before", kAll},
-    {"ends a run", "the same, of a word that acts where it stands: a clamp, a message", kAll},
+    {"keeps state", "modes, kind of motion, feed, speed and position are after it as before",
+     kKeepsAll},
+    {"ends a run", "the same, of a word that acts where it stands: a clamp, a message", kKeepsAll},
     {"position unknown",
      "as before but for the position: something else moved the axes",
      {.keeps_modes = true, .keeps_motion = true}},

@@ -79,8 +79,10 @@ constexpr Explanation kExplanations[] = {
     {kComment, "Comments or empty lines alone.", kCopied},
     {kChecksum, "The line has a check sum: the sender counts such lines.",
      "Take numbers and sums off; the sender adds them when it sends."},
-    {kSubprogram, "A subprogram is called, or ends. Nothing is known afterwards.",
-     "Smooth the called programs as files of their own; and --allow subprogram where they leave "
+    {kSubprogram,
+     "A subprogram is called, or ends. What is known afterwards is what its file in the same "
+     "folder leaves, or what --word says of it; nothing without these.",
+     "Put its file into the same folder; or --allow subprogram where all that are called leave "
      "all modes (units, plane, G90, compensation, rotation ..) as they find them and come back "
      "behind the call: then only position and feed are unknown there, and N numbers are no "
      "targets.",
@@ -140,6 +142,16 @@ constexpr Explanation kExplanations[] = {
      "The block is inside a loop, a branch, a subprogram or a contour that a cycle uses: it can be "
      "entered in a state that is not seen here.",
      "Write the loop out, or smooth the subprogram as a program of its own."},
+    {kCallerModes,
+     "The program is one that others call (it ends with M99, M17 or RET): it runs under the modes "
+     "of "
+     "its caller, which are not known here.",
+     "--allow caller-modes where every caller calls it under the modes of power-on (G17, G90, G94, "
+     "G40, no rotation, scaling or mirroring ..), but for those that it sets itself; and --units "
+     "where it does not say them. N numbers are targets unless --allow subprogram says that "
+     "nothing "
+     "begins at them.",
+     true},
 
     {kTooShort, "Fewer motions in a row than a run needs.", "--min-points lowers the number."},
     {kNoGain, "The new form was not clearly faster, smaller, nearer to the path or smoother.",

@@ -66,6 +66,7 @@ inline constexpr std::string_view kLatheDiameter = "lathe-diameter";
 inline constexpr std::string_view kLatheProgram = "lathe-program";
 inline constexpr std::string_view kFeedUnknown = "feed-unknown";
 inline constexpr std::string_view kLoopBody = "loop-body";
+inline constexpr std::string_view kCallerModes = "caller-modes";
 
 // --- a run that was tried and went back -----------------------------------------------------
 inline constexpr std::string_view kTooShort = "too-short";  // fewer motions than --min-points

@@ -24,6 +24,7 @@
 #include "postproc/report/smooth_report.h"
 #include "postproc/stream/pipeline.h"
 #include "postproc/stream/smooth_result.h"
+#include "postproc/stream/unit_evidence.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 #include "postproc/system/output_file.h"
@@ -101,6 +102,12 @@ class Worker {
     }
     record_.input_sha256 = sha256(source.text());
     record_.bytes_in = source.text().size();
+    SmoothOptions options = plan_.options;
+    called_ = read_called_files(source, input, options);
+    // What is known of the program depends on them.
+    if (!called_.bytes.empty()) {
+      record_.settings_sha256 = sha256(plan_.settings_sha256 + called_.bytes);
+    }
     if (const auto bytes = bytes_of(places_.record)) before_ = read_record(*bytes);
     output_sha256_ = hash_of(places_.output);
     if (is_done()) return {.record = *before_, .was_done = true};
@@ -109,7 +116,7 @@ class Worker {
         return failed(place.string() + ": leads into the input tree; nothing was written");
       }
     }
-    return smooth(gcode::without_words(source, plan_.drop, dropped_));
+    return smooth(gcode::without_words(source, plan_.drop, dropped_), std::move(options));
   }
 
  private:
@@ -122,13 +129,16 @@ class Worker {
             (!before_->page_sha256.empty() && before_->page_sha256 == hash_of(places_.page)));
   }
 
-  WorkerResult smooth(const gcode::SourceText& source) {
-    SmoothOptions options = plan_.options;
+  WorkerResult smooth(const gcode::SourceText& source, SmoothOptions options) {
     options.threads = 1;
-    const SmoothResult result =
-        smooth_program(source, options, [](double) { return !interrupted(); });
+    SmoothResult result = smooth_program(source, options, [](double) { return !interrupted(); });
     if (interrupted()) return {.record = record_};
+    for (const WatchedFile& file : called_.watched) {
+      if (file.now() != FileNow::kChanged) continue;
+      return failed(file.path().string() + ": was changed while it was read; nothing was written");
+    }
 
+    (void)tell_unit_evidence(source.text(), result.diagnostics);
     const ExitCode verdict = judge(result, source.text(), plan_.strict);
     record_.status = status_of(verdict, result.text == source.text());
     record_.exit_code = static_cast<int>(verdict);
@@ -141,7 +151,8 @@ class Worker {
                             .output_file = writes ? record_.program : "",
                             .strict = plan_.strict,
                             .drop = plan_.drop,
-                            .dropped = dropped_};
+                            .dropped = dropped_,
+                            .called = called_.files};
     std::vector<std::string> messages;
     if (!record_.message.empty()) messages.push_back(record_.message);
     const std::string report = ended_report(json_report(told), record_.exit_code, messages);
@@ -223,6 +234,7 @@ class Worker {
   const BatchPlan& plan_;
   ProgramPlaces places_;
   std::size_t dropped_ = 0;
+  CalledFiles called_;
   ProgramRecord record_;                 // what is being made
   std::optional<ProgramRecord> before_;  // what an earlier run left
   std::string output_sha256_;            // of what is in the new tree now; empty: nothing

@@ -193,10 +193,15 @@ CommandLine read_command_line(const std::vector<std::string>& given_arguments) {
   if (!smooths && !in.given.flag("quiet") && !std::holds_alternative<SetupCommand>(line.command)) {
     line.notes = texts_of_origins(in.given.origins());
   }
+  const std::string again = command_line_of(arguments);
   std::visit(
-      [&](auto& asked) {
-        if constexpr (requires { asked.page.command_line; }) {
-          asked.page.command_line = command_line_of(arguments);
+      [&again](auto& read) {
+        if constexpr (requires { read.command_line; }) {
+          read.command_line = again;
+        } else if constexpr (requires { read.smooth; }) {
+          read.smooth.command_line = again;
+        } else if constexpr (requires { read.each; }) {
+          for (auto& each : read.each) each.command_line = again;
         }
       },
       line.command);

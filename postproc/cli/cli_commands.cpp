@@ -152,7 +152,7 @@ void check_report(const std::string& file, const std::vector<std::string>& progr
 
 // --report, --open
 PageRequest page_given(Arguments& in) {
-  return {.file = in.given.text("report"), .open = in.given.flag("open"), .command_line = {}};
+  return {.file = in.given.text("report"), .open = in.given.flag("open")};
 }
 
 // Of a command with both.

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -11,16 +12,55 @@
 #include "postproc/batch/batch_summary.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
+#include "postproc/stream/unit_evidence.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 #include "postproc/system/parallel_for.h"
 #include "postproc/text/json_values.h"
+#include "postproc/text/words.h"
 
 namespace batten::postproc {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+bool names_no_unit(const ProgramRecord& record) {
+  return record.status == ProgramStatus::kNotUnderstood &&
+         record.message.find(": units-missing: ") != std::string::npos;
+}
+
+// Once for all programs that name no unit.
+void tell_missing_units(const std::vector<ProgramRecord>& records, std::string_view command_line) {
+  std::size_t millimetres = 0;
+  std::size_t inches = 0;
+  std::vector<std::string_view> programs;
+  for (const ProgramRecord& record : records) {
+    if (!names_no_unit(record)) continue;
+    programs.push_back(record.program);
+    if (record.message.find(kSpeaksForMillimetres) != std::string::npos) ++millimetres;
+    if (record.message.find(kSpeaksForInches) != std::string::npos) ++inches;
+  }
+  if (programs.empty()) return;
+  constexpr std::size_t kMostNames = 3;
+  const std::size_t all = programs.size();
+  const std::string more = all > kMostNames ? ", .." : "";
+  programs.resize(std::min(all, kMostNames));
+  std::vector<std::string> speak;
+  for (const auto& [count, unit] : {std::pair(millimetres, "mm"), std::pair(inches, "inch"),
+                                    std::pair(all - millimetres - inches, "neither")}) {
+    if (count > 0) speak.push_back(fmt::format("of {} for {}", count, unit));
+  }
+  say(fmt::format(
+      "{} without G20 or G21 ({}{}): the numbers speak {}; the reports say why. --units "
+      "is for all of them{}:",
+      plural(all, "program"), fmt::join(programs, ", "), more, fmt::join(speak, ", "),
+      millimetres > 0 && inches > 0 ? ", so put those of each unit in a folder" : ""));
+  const gcode::Units likely = millimetres > 0 && inches == 0   ? gcode::Units::kMillimetre
+                              : inches > 0 && millimetres == 0 ? gcode::Units::kInch
+                                                               : gcode::Units::kUnknown;
+  say_lines(commands_with_units(command_line, likely));
+}
 
 // The progress line, and a message for each program that was not written.
 class BatchDisplay {
@@ -33,7 +73,7 @@ class BatchDisplay {
   ~BatchDisplay() { clear(); }
 
   void show(const BatchCount& count, const ProgramRecord* ended) {
-    if (ended != nullptr && ended->exit_code != 0) {
+    if (ended != nullptr && ended->exit_code != 0 && !names_no_unit(*ended)) {
       clear();
       const bool names_it = ended->message.find(ended->program) != std::string::npos;
       say(names_it ? ended->message : ended->program + ": " + ended->message);
@@ -100,8 +140,8 @@ int write_summary(const std::vector<ProgramRecord>& records, const BatchCommand&
   if (code == 0) {
     std::error_code error;
     const fs::path tree = fs::weakly_canonical(command.input_tree, error);
-    code = write_page({.file = index_path(batch, shard), .open = command.open, .command_line = {}},
-                      true, command.input_tree,
+    code = write_page({.file = index_path(batch, shard), .open = command.open}, true,
+                      command.input_tree,
                       batch_index(records, tree.filename().string(), command.options));
   }
   write_report(command.json_file, command.force, [&] { return summary_json(records); });
@@ -155,6 +195,7 @@ int work_through(const BatchCommand& command, const BatchRequest& request, const
   if (result.were_done > 0) {
     say(fmt::format("done already: {} of {} programs", result.were_done, result.records.size()));
   }
+  tell_missing_units(result.records, command.command_line);
   if (interrupted()) {
     say("interrupted; the same command goes on where it stopped");
     return interrupt_exit_code();
@@ -166,7 +207,7 @@ int work_through(const BatchCommand& command, const BatchRequest& request, const
 }  // namespace
 
 int run(const BatchCommand& command) {
-  if (!can_show({.file = {}, .open = command.open, .command_line = {}})) {
+  if (!can_show({.file = {}, .open = command.open})) {
     return static_cast<int>(ExitCode::kFileError);
   }
   std::error_code error;

@@ -22,9 +22,8 @@ namespace batten::postproc {
 
 // The report as a page for a browser.
 struct PageRequest {
-  std::string file;          // not given with `open`: in the folder for temporary files
-  bool open = false;         // it is shown, too
-  std::string command_line;  // as it was called, for the reader; may be empty
+  std::string file;   // not given with `open`: in the folder for temporary files
+  bool open = false;  // it is shown, too
 
   [[nodiscard]] bool is_wanted() const { return open || !file.empty(); }
 };
@@ -40,6 +39,7 @@ struct SmoothingCommand {
   std::vector<std::string> drop;  // words that are taken out of the program first
   // What the command line did not give, and where it comes from.
   std::vector<std::pair<std::string, std::string>> origins;
+  std::string command_line;  // as it was called; may be empty
 };
 
 struct SmoothCommand : SmoothingCommand {
@@ -101,12 +101,13 @@ struct ReadingCommand {
   gcode::SourceKind source = gcode::SourceKind::kAuto;
   std::optional<gcode::Decimals> decimals;  // as SmoothOptions::decimals
   const gcode::Control* target = nullptr;   // whose curves are read; nullptr: none are
-  std::vector<std::string> allowed;         // of these only `subprogram` changes what is read
+  std::vector<std::string> allowed;  // of these `subprogram` and `caller-modes` change what is read
   std::shared_ptr<const gcode::OwnWords> own_words;
   std::string json_file;
   PageRequest page;
   LogLevel log_level = LogLevel::kInfo;
   bool force = false;
+  std::string command_line;  // as it was called; may be empty
 };
 
 struct VerifyCommand : ReadingCommand {

@@ -20,11 +20,16 @@ int run(const ExploreCommand& explore) {
   if (!source) return static_cast<int>(ExitCode::kFileError);
 
   const Progress progress = show_progress(command.progress, source->text().size());
-  const Exploration found = explore_program(*source, explore.settings, progress);
+  std::vector<SmoothOptions> settings = explore.settings;
+  CalledFiles called;
+  if (!settings.empty()) called = read_called_files(*source, command.input, settings.front());
+  for (SmoothOptions& each : settings) each.subprograms = called.programs;
+  Exploration found = explore_program(*source, settings, progress);
   (void)progress(1);  // the progress line is gone
   if (interrupted()) return end_interrupted();
-  if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
-  print(found.read.diagnostics, *source, command.log_level);
+  if (changed_while_read(watched) || changed_while_read(called))
+    return static_cast<int>(ExitCode::kFileError);
+  print(found.read.diagnostics, *source, command.log_level, command.command_line);
   const ExploreReport report{*source, found, command.input, explore.options_of_smooth};
   if (found.read.understood && command.json_file != "-") {
     if (const int code = write_result("-", explore_text(report), false); code != 0) return code;

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "gcode/reading/dropped_words.h"
+#include "postproc/stream/unit_evidence.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 #include "postproc/system/other_program.h"
@@ -139,6 +140,7 @@ PartReading reading_of(const gcode::SourceText& source, const ReadingCommand& co
   reading.options = {.units = command.units,
                      .curves = command.target != nullptr ? command.target->curves : nullptr,
                      .calls_keep_modes = calls_keep_modes(command.allowed),
+                     .usual_caller_modes = usual_caller_modes(command.allowed),
                      .own_words = command.own_words};
   return reading;
 }
@@ -194,6 +196,12 @@ bool can_show(const PageRequest& request) {
   const std::string objection = request.open ? objection_to_showing() : "";
   if (!objection.empty()) say(objection);
   return objection.empty();
+}
+
+bool changed_while_read(const CalledFiles& called) {
+  bool changed = false;
+  for (const WatchedFile& file : called.watched) changed |= changed_while_read(file);
+  return changed;
 }
 
 int end_interrupted() {
@@ -275,6 +283,15 @@ void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& sourc
   }
   if (remarks > kMostRemarks) {
     say(fmt::format("{} more notes and warnings, see --json", remarks - kMostRemarks));
+  }
+}
+
+void print(gcode::Diagnostics& diagnostics, const gcode::SourceText& source, LogLevel level,
+           std::string_view command_line) {
+  const bool is_missing = tell_unit_evidence(source.text(), diagnostics);
+  print(std::as_const(diagnostics), source, level);
+  if (is_missing && !command_line.empty()) {
+    say_lines(commands_with_units(command_line, unit_evidence(source.text()).likely));
   }
 }
 

@@ -13,6 +13,7 @@
 #include "postproc/commands/answer.h"
 #include "postproc/commands/commands.h"
 #include "postproc/options/options.h"
+#include "postproc/stream/called_files.h"
 #include "postproc/stream/part_reader.h"
 #include "postproc/system/output_file.h"
 
@@ -42,6 +43,9 @@ namespace batten::postproc {
                                      gcode::SourceKind kind,
                                      std::optional<gcode::Language> fallback,
                                      gcode::DwellForm dwells = gcode::DwellForm::kUnknown);
+
+// Of any of these, as of a program.
+[[nodiscard]] bool changed_while_read(const CalledFiles& called);
 
 // Asked when all was read: was the file written into since it is watched? Then what was made of it
 // is worth nothing, and this says so.
@@ -86,6 +90,11 @@ void write_report(const std::string& name, bool replace_existing, const Text& te
 // and as far as `level` wants them. On a terminal with colours.
 void print(const gcode::Diagnostics& diagnostics, const gcode::SourceText& source,
            LogLevel level = LogLevel::kInfo);
+
+// The same. Where a unit is missing, the message also says for which one the numbers of the program
+// speak, and the command line follows, with --units, to be copied.
+void print(gcode::Diagnostics& diagnostics, const gcode::SourceText& source, LogLevel level,
+           std::string_view command_line);
 
 // "batten: message" on standard error.
 void say(std::string_view message);

@@ -116,7 +116,7 @@ Json json_of(const InspectedSection& section) {
 }
 
 Json json_of(const InspectedProgram& inspected, const InspectCommand& command,
-             const gcode::SourceText& source) {
+             const CalledFiles& called, const gcode::SourceText& source) {
   const auto section = [](const InspectedSection& each) { return json_of(each); };
   const auto kept = [](const auto& each) -> Json {
     const auto& [reason, total] = each;
@@ -126,7 +126,7 @@ Json json_of(const InspectedProgram& inspected, const InspectCommand& command,
             {"cutting_moves", total.cutting_moves},
             {"text", text_of(reason)}};
   };
-  return as_report(
+  Json json = as_report(
       "inspect",
       {{"input",
         {{"file", source.name()}, {"bytes", source.text().size()}, {"blocks", inspected.blocks}}},
@@ -135,6 +135,8 @@ Json json_of(const InspectedProgram& inspected, const InspectCommand& command,
        {"kept", json_list(kept_totals(inspected.sections), kept)},
        {"cutting", kept_json(inspected.kept)},
        {"diagnostics", diagnostics_json(inspected.found, source)}});
+  if (!called.files.empty()) json["called"] = called_json(called.files);
+  return json;
 }
 
 int write_inspect_page(const InspectCommand& command, const gcode::SourceText& source,
@@ -148,7 +150,7 @@ int write_inspect_page(const InspectCommand& command, const gcode::SourceText& s
   }
   gcode::Diagnostics said_before;
   const auto [program, meaning] = read_whole(source, reading, said_before);
-  const PageOf page{"inspect", json, source.name(), command.page.command_line, rows};
+  const PageOf page{"inspect", json, source.name(), command.command_line, rows};
   return write_page(command.page, command.force, command.input,
                     html_report(page, {&program, &meaning}, nullptr));
 }
@@ -162,31 +164,36 @@ int run(const InspectCommand& command) {
   if (interrupted()) return end_interrupted();
   if (!source) return static_cast<int>(ExitCode::kFileError);
 
-  const PartReading reading = reading_of(*source, command, command.source, std::nullopt);
+  PartReading reading = reading_of(*source, command, command.source, std::nullopt);
   if (gcode::has_error(reading.of_language)) {
     print(reading.of_language, *source, command.log_level);
     return static_cast<int>(ExitCode::kNotUnderstood);
   }
+  const CalledFiles called = read_called_files(*source, command.input, reading.text);
+  reading.options.subprograms = called.programs;
   GroupingOptions grouping;
   grouping.allowed.assign(command.allowed.begin(), command.allowed.end());
-  const InspectedProgram result = inspect(*source, reading, grouping);
-  if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
-  print(result.found, *source, command.log_level);
+  InspectedProgram result = inspect(*source, reading, grouping);
+  if (changed_while_read(watched) || changed_while_read(called)) {
+    return static_cast<int>(ExitCode::kFileError);
+  }
+  print(result.found, *source, command.log_level, command.command_line);
   if (command.json_file != "-" && command.page.file != "-") {
     const std::string nothing =
         result.kept.any_run ? "" : fmt::format(": {}", why_nothing(result.kept));
     const std::string text =
         fmt::format("{}: {} blocks{}\n", source->name(), result.blocks, nothing) +
-        runs_table(result.sections) + kept_table(result) + own_words_text(command.own_words);
+        runs_table(result.sections) + kept_table(result) + text_of(called.files) +
+        own_words_text(command.own_words);
     if (const int code = write_result("-", text, false); code != 0) return code;
   }
   if (!command.json_file.empty() || command.page.is_wanted()) {
-    const Json json = json_of(result, command, *source);
+    const Json json = json_of(result, command, called, *source);
     write_report(command.json_file, command.force, [&] { return json_text(json); });
     const int code = write_inspect_page(command, *source, reading, result, json);
     if (code != 0) return code;
   }
-  if (!result.unit_word_seen) {
+  if (!result.unit_word_seen && !gcode::has_error(result.found)) {
     say(source->name() +
         ": no G20 or G21 says whether its numbers are inches or millimetres; say --units mm or "
         "--units inch");

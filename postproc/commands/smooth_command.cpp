@@ -31,7 +31,10 @@ std::string output_of(const SmoothCommand& command) {
 class SmoothWork {
  public:
   SmoothWork(const SmoothCommand& command, std::string output)
-      : command_(command), output_(std::move(output)), watched_(command.input) {}
+      : command_(command),
+        options_(command.options),
+        output_(std::move(output)),
+        watched_(command.input) {}
 
   int run() {
     source_ = read_program(command_.input, command_.drop, dropped_);
@@ -41,6 +44,7 @@ class SmoothWork {
                           may_be_written(command_.page.file, command_.force) &&
                           may_be_written(command_.certificate_file, command_.force);
     if (!may_work) return static_cast<int>(ExitCode::kFileError);
+    called_ = read_called_files(*source_, command_.input, options_);
     if (command_.dry_run) return look_only();
     // The page draws the whole path, and a short program needs no file beside the output.
     const bool in_memory =
@@ -60,8 +64,8 @@ class SmoothWork {
   // Into the sink; without one the text is in the result.
   void smooth(const ProgramSink* sink = nullptr) {
     const Progress progress = show_progress(command_.progress, source_->text().size());
-    result_ = sink != nullptr ? smooth_program(*source_, command_.options, *sink, progress)
-                              : smooth_program(*source_, command_.options, progress);
+    result_ = sink != nullptr ? smooth_program(*source_, options_, *sink, progress)
+                              : smooth_program(*source_, options_, progress);
     (void)progress(1);  // the progress line is gone
   }
 
@@ -69,24 +73,26 @@ class SmoothWork {
   // False: nothing is to be written.
   bool tell_of_smoothing() {
     if (interrupted()) code_ = end_interrupted();
-    if (!code_ && changed_while_read(watched_)) code_ = static_cast<int>(ExitCode::kFileError);
+    const bool changed = !code_ && (changed_while_read(watched_) || changed_while_read(called_));
+    if (changed) code_ = static_cast<int>(ExitCode::kFileError);
     if (code_) return false;
     told_ = true;
-    print(result_.diagnostics, *source_, command_.log_level);
+    print(result_.diagnostics, *source_, command_.log_level, command_.command_line);
     verdict_ = judge(result_, source_->text(), command_.strict);
     const bool writes = verdict_ == ExitCode::kDone && !command_.dry_run;
     const SmoothReport report = {.source = *source_,
-                                 .options = command_.options,
+                                 .options = options_,
                                  .result = result_,
                                  .output_file = writes ? output_ : "",
                                  .strict = command_.strict,
                                  .origins = command_.origins,
                                  .drop = command_.drop,
-                                 .dropped = dropped_};
+                                 .dropped = dropped_,
+                                 .called = called_.files};
     const bool tells = result_.understood && command_.log_level >= LogLevel::kInfo;
     if (tells) summary_ = summary_text(report);
     if (!command_.json_file.empty()) json_ = json_report(report);
-    if (command_.page.is_wanted()) page_ = html_report(report, command_.page.command_line);
+    if (command_.page.is_wanted()) page_ = html_report(report, command_.command_line);
     return verdict_ == ExitCode::kDone;
   }
 
@@ -168,12 +174,14 @@ class SmoothWork {
     if (!written) return static_cast<int>(ExitCode::kFileError);
     const SmoothOptions& options = command_.options;
     VerifyCommand verify;
+    verify.old_program = command_.input;  // beside which called programs are
     verify.units = options.units;
     verify.source = options.source;
     verify.decimals = options.decimals;
     verify.target = options.target;
     verify.allowed = options.allowed;
     verify.own_words = options.own_words;
+    verify.old_program = command_.input;  // whose called programs are read
     verify.force = command_.force;
     verify.tolerance_mm = options.tolerance_mm;
     verify.profile = command_.profile;
@@ -190,10 +198,12 @@ class SmoothWork {
   static constexpr const char* kNotWanted = "not wanted";
 
   const SmoothCommand& command_;
+  SmoothOptions options_;  // of the command, with what the program calls
   std::string output_;
   WatchedFile watched_;
   std::optional<gcode::SourceText> source_;
   std::size_t dropped_ = 0;
+  CalledFiles called_;
   SmoothResult result_;
   ExitCode verdict_ = ExitCode::kDone;
   std::string summary_;

@@ -60,7 +60,7 @@ int write_time_page(const TimeCommand& command, const TimeReport& report,
   for (const SlowPlace& slow : report.time.slowest)
     rows.push_back({slow.first_line, slow.last_line});
   std::ranges::sort(rows, {}, &PageLines::first_line);
-  const PageOf page{"time", json, report.program.source.name(), command.page.command_line, rows};
+  const PageOf page{"time", json, report.program.source.name(), command.command_line, rows};
   return write_page(command.page, command.force, command.input,
                     html_report(page, {&report.program, &meaning}, command.machine.get()));
 }
@@ -78,21 +78,24 @@ int run(const TimeCommand& command) {
 
   const auto of_target = command.target != nullptr ? std::optional(command.target->language)
                                                    : std::optional<gcode::Language>();
-  const PartReading reading = reading_of(*source, command, command.source, of_target);
+  PartReading reading = reading_of(*source, command, command.source, of_target);
   gcode::Diagnostics found = reading.of_language;
   if (gcode::has_error(found)) {
     print(found, *source, command.log_level);
     return static_cast<int>(ExitCode::kNotUnderstood);
   }
+  const CalledFiles called = read_called_files(*source, command.input, reading.text);
+  reading.options.subprograms = called.programs;
   const auto [program, meaning] = read_whole(*source, reading, found);
-  if (changed_while_read(watched)) return static_cast<int>(ExitCode::kFileError);
-  print(found, *source, command.log_level);
+  if (changed_while_read(watched) || changed_while_read(called))
+    return static_cast<int>(ExitCode::kFileError);
+  print(found, *source, command.log_level, command.command_line);
   if (gcode::has_error(found)) return static_cast<int>(ExitCode::kNotUnderstood);
 
   const StepOptions options = {.dwell_unit = dwell_unit_of(command.target, *command.machine),
                                .start = command.start};
   const ProgramTime time = time_program(program, meaning, *command.machine, options);
-  const TimeReport report{program, *command.machine, time, found, command.own_words};
+  const TimeReport report{program, *command.machine, time, found, command.own_words, called.files};
   const bool standard_output_taken =
       command.json_file == "-" || command.profile_file == "-" || command.page.file == "-";
   if (!standard_output_taken) {

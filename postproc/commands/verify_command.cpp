@@ -5,8 +5,10 @@
 #include <array>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "gcode/interpreter/interpreter.h"
+#include "gcode/reading/foreign_file.h"
 #include "gcode/reading/parser.h"
 #include "gcode/reading/source_kind.h"
 #include "postproc/commands/certificate_file.h"
@@ -107,28 +109,31 @@ Json json_of(const Violation& violation) {
 }
 
 Json json_of(const Verification& verification, const VerifyCommand& command,
-             const gcode::Diagnostics& of_new, const gcode::SourceText& new_source) {
+             const std::vector<CalledFile>& called, const gcode::Diagnostics& of_new,
+             const gcode::SourceText& new_source) {
   const auto item = [](const auto& each) { return json_of(each); };
-  return as_report("verify", {{"old", command.old_program},
-                              {"new", command.new_program},
-                              {"tolerance_mm", command.tolerance_mm},
-                              {"tolerance_kind", name_of(command.tolerance_kind)},
-                              {"side", name_of(command.side)},
-                              {"words", own_words_json(command.own_words)},
-                              {"proved", verification.proved()},
-                              {"deviation_mm", verification.deviation_mm},
-                              {"deviation_line", verification.deviation_line},
-                              {"corner_mm", verification.corner_mm},
-                              {"events_compared", verification.events_compared},
-                              {"violations", json_list(verification.violations, item)},
-                              {"sections", json_list(verification.stretches, item)},
-                              {"diagnostics", diagnostics_json(of_new, new_source)}});
+  Json json = as_report("verify", {{"old", command.old_program},
+                                   {"new", command.new_program},
+                                   {"tolerance_mm", command.tolerance_mm},
+                                   {"tolerance_kind", name_of(command.tolerance_kind)},
+                                   {"side", name_of(command.side)},
+                                   {"words", own_words_json(command.own_words)},
+                                   {"proved", verification.proved()},
+                                   {"deviation_mm", verification.deviation_mm},
+                                   {"deviation_line", verification.deviation_line},
+                                   {"corner_mm", verification.corner_mm},
+                                   {"events_compared", verification.events_compared},
+                                   {"violations", json_list(verification.violations, item)},
+                                   {"sections", json_list(verification.stretches, item)},
+                                   {"diagnostics", diagnostics_json(of_new, new_source)}});
+  if (!called.empty()) json["called"] = called_json(called);
+  return json;
 }
 
 // Moves without a unit are an error among the diagnostics: a tolerance means nothing then.
-int end_not_understood(const gcode::Diagnostics& of_old, const gcode::SourceText& source,
-                       LogLevel level) {
-  print(of_old, source, level);
+int end_not_understood(gcode::Diagnostics& of_old, const gcode::SourceText& source,
+                       const VerifyCommand& command) {
+  print(of_old, source, command.log_level, command.command_line);
   say("the old program is not understood, so nothing can be proved about the new one");
   return static_cast<int>(ExitCode::kNotUnderstood);
 }
@@ -141,6 +146,7 @@ Promise promise_of(const VerifyCommand& command) {
 struct Compared {
   const TextToVerify& before;
   const TextToVerify& after;
+  const std::vector<CalledFile>& called;
   std::size_t dropped = 0;  // words of the old one
 };
 
@@ -148,7 +154,7 @@ struct Compared {
 int write_reports(const VerifyCommand& command, const Verification& verification,
                   const gcode::Diagnostics& of_new, const Compared& texts) {
   if (command.json_file.empty() && !command.page.is_wanted()) return 0;
-  Json json = json_of(verification, command, of_new, texts.after.source);
+  Json json = json_of(verification, command, texts.called, of_new, texts.after.source);
   if (!command.drop.empty()) json["dropped"] = {{"names", command.drop}, {"words", texts.dropped}};
   write_report(command.json_file, command.force, [&] { return json_text(json); });
   if (!command.page.is_wanted()) return 0;
@@ -159,7 +165,7 @@ int write_reports(const VerifyCommand& command, const Verification& verification
   gcode::Diagnostics said_before;
   const gcode::ReadPart before = read_whole(texts.before.source, texts.before.reading, said_before);
   const gcode::ReadPart after = read_whole(texts.after.source, texts.after.reading, said_before);
-  const PageOf page{"verify", json, command.new_program, command.page.command_line, rows};
+  const PageOf page{"verify", json, command.new_program, command.command_line, rows};
   return write_page(command.page, command.force, command.new_program,
                     html_report(page, {&before.program, &before.meaning},
                                 {&after.program, &after.meaning}, promise_of(command)));
@@ -171,9 +177,15 @@ bool either_changed(const WatchedFile& one, const WatchedFile& other) {
   return changed_while_read(other) || one_changed;
 }
 
-// The same bytes do the same on every control, in any unit, and whether they are understood here
-// or not.
+// The same bytes of a program do the same on every control, in any unit, and whether they are
+// understood here or not.
 int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& source) {
+  if (!gcode::foreign_kind_of(source.text()).empty()) {
+    gcode::Diagnostics found;
+    (void)gcode::source_language(source, command.source, std::nullopt, found);
+    print(std::as_const(found), source, command.log_level);
+    return static_cast<int>(ExitCode::kNotUnderstood);
+  }
   if (command.log_level >= LogLevel::kInfo) {
     say_lines(fmt::format("proved: {} and {} are the same, byte for byte\n", command.new_program,
                           command.old_program));
@@ -186,7 +198,7 @@ int accept_same_bytes(const VerifyCommand& command, const gcode::SourceText& sou
                                      gcode::dwells_of(command.source))};
   gcode::Diagnostics found = text.reading.of_language;
   (void)read_whole(source, text.reading, found);
-  return write_reports(command, {}, found, {text, text});
+  return write_reports(command, {}, found, {text, text, {}});
 }
 
 // The new program without the lines that a profile may add; as it is where there is no profile.
@@ -220,6 +232,7 @@ struct BothTexts {
   gcode::SourceText compared;  // the new one, where the lines of a profile are empty
   PartReading after;
   AddedLines added;
+  CalledFiles called = {};  // both call the same programs, those beside the old one
 };
 
 BothTexts both_texts(const VerifyCommand& command, const gcode::SourceText& old_source,
@@ -231,6 +244,10 @@ BothTexts both_texts(const VerifyCommand& command, const gcode::SourceText& old_
                  new_source,
                  {},
                  {}};
+  if (!foreign) {
+    both.called = read_called_files(old_source, command.old_program, both.before.reading.text);
+  }
+  both.before.reading.options.subprograms = both.called.programs;
   if (command.profile != nullptr) {
     both.added = without_added_lines(command, both.before, new_source);
     both.compared = gcode::SourceText(new_source.name(), std::move(both.added.text));
@@ -240,6 +257,7 @@ BothTexts both_texts(const VerifyCommand& command, const gcode::SourceText& old_
                                 language_of_target(command), command.target->dwell_form)
                    : reading_of(both.compared, command, command.source,
                                 both.before.reading.text.language, both.before.reading.text.dwells);
+  both.after.options.subprograms = both.called.programs;
   return both;
 }
 
@@ -268,7 +286,7 @@ int tell(const VerifyCommand& command, const Verification& verification, std::si
                           plural(texts.dropped, "word"), fmt::join(command.drop, ", ")));
   }
   if (verification.proved() && command.log_level >= LogLevel::kInfo) {
-    say_lines(own_words_text(command.own_words));
+    say_lines(text_of(texts.called) + own_words_text(command.own_words));
   }
   const int code = write_reports(command, verification, of_new, texts);
   return verification.proved() ? code : static_cast<int>(ExitCode::kNotProved);
@@ -314,18 +332,20 @@ int run(const VerifyCommand& command) {
   const gcode::SourceText& compared = both.compared;
   const TextToVerify& before = both.before;
   if (gcode::has_error(before.reading.of_language)) {
-    return end_not_understood(before.reading.of_language, *old_source, command.log_level);
+    return end_not_understood(both.before.reading.of_language, *old_source, command);
   }
   AddedLines& added = both.added;
   const TextToVerify after{compared, both.after, std::move(added.brackets)};
   auto verified = verify_texts(before, after, promise_of(command), interrupted);
   if (!verified || interrupted()) return end_interrupted();
-  if (either_changed(old_watched, new_watched)) return static_cast<int>(ExitCode::kFileError);
-  if (gcode::has_error(verified->of_old)) {
-    return end_not_understood(verified->of_old, *old_source, command.log_level);
+  if (either_changed(old_watched, new_watched) || changed_while_read(both.called)) {
+    return static_cast<int>(ExitCode::kFileError);
   }
-  print(verified->of_old, *old_source, command.log_level);
-  print(verified->of_new, compared, command.log_level);
+  if (gcode::has_error(verified->of_old)) {
+    return end_not_understood(verified->of_old, *old_source, command);
+  }
+  print(std::as_const(verified->of_old), *old_source, command.log_level);
+  print(verified->of_new, compared, command.log_level, command.command_line);
   if (gcode::has_error(verified->of_new)) {
     say("NOT PROVED: the new program is not understood, and the old one is");
     return static_cast<int>(ExitCode::kNotProved);
@@ -337,8 +357,8 @@ int run(const VerifyCommand& command) {
   }
   std::ranges::move(added.violations, std::back_inserter(verification.violations));
   std::ranges::move(verified->in_brackets, std::back_inserter(verification.violations));
-  const int code =
-      tell(command, verification, added.lines, verified->of_new, {before, after, dropped});
+  const int code = tell(command, verification, added.lines, verified->of_new,
+                        {before, after, both.called.files, dropped});
   return code != 0 ? code : write_certificate(command, *old_source, *new_source);
 }
 

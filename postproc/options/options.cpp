@@ -213,12 +213,18 @@ bool calls_keep_modes(std::span<const std::string> allowed) {
   return std::ranges::find(allowed, gcode::reason::kSubprogram) != allowed.end();
 }
 
+bool usual_caller_modes(std::span<const std::string> allowed) {
+  return std::ranges::find(allowed, gcode::reason::kCallerModes) != allowed.end();
+}
+
 gcode::ReadOptions read_options_of(const SmoothOptions& options) {
   gcode::ReadOptions reading;
   reading.units = options.units;
   if (options.target != nullptr) reading.curves = options.target->curves;
   reading.calls_keep_modes = calls_keep_modes(options.allowed);
+  reading.usual_caller_modes = usual_caller_modes(options.allowed);
   reading.own_words = options.own_words;
+  reading.subprograms = options.subprograms;
   return reading;
 }
 

@@ -82,6 +82,8 @@ struct SmoothOptions {
   std::optional<double> keep_corners_deg;  // turns above this stay corners
   std::vector<std::string> allowed;        // --allow
   std::shared_ptr<const gcode::OwnWords> own_words;  // --word, and of a profile; nullptr: none
+  std::shared_ptr<const gcode::Subprograms>
+      subprograms;                // files of called programs, as they were read
   bool keep_expressions = false;  // blocks whose numbers are expressions stay as they are
   bool convert = false;  // a program of another family is taken where every block can be said
   ProfileWords words;    // that a profile adds; its target is `target`
@@ -103,6 +105,10 @@ struct SmoothOptions {
 
 // Whether they say that what is called leaves all modes as it finds them (reason `subprogram`).
 [[nodiscard]] bool calls_keep_modes(std::span<const std::string> allowed);
+
+// Whether they say that programs that others call are called under the modes of power-on (reason
+// `caller-modes`).
+[[nodiscard]] bool usual_caller_modes(std::span<const std::string> allowed);
 
 // How programs are read under these options.
 [[nodiscard]] gcode::ReadOptions read_options_of(const SmoothOptions& options);

@@ -111,7 +111,7 @@ std::optional<Name> program_name(std::string_view name, std::string& problem) {
   return Name{std::string(name), true};
 }
 
-std::optional<Name> name_in(std::string_view text, std::string& problem) {
+std::optional<Name> word_name_in(std::string_view text, std::string& problem) {
   const std::string name = canonical(text);
   if (name.empty()) return std::nullopt;
   if (auto call = numbered_call_name(name)) return call;
@@ -152,7 +152,7 @@ void OwnWordList::add(std::string_view name, std::string_view effects,
                       std::vector<std::string>& problems) {
   const std::size_t problems_before = problems.size();
   std::string known;
-  const auto word = name_in(name, known);
+  const auto word = word_name_in(name, known);
   if (!word)
     problems.push_back(
         fmt::format("'{}' is no word; expected one like {}", name, kNamesOfOwnWords));

@@ -16,6 +16,12 @@ Json own_words_json(const std::shared_ptr<const gcode::OwnWords>& words) {
   });
 }
 
+Json called_json(const std::vector<CalledFile>& files) {
+  return json_list(files, [](const CalledFile& called) -> Json {
+    return {{"call", called.call}, {"file", called.file}, {"why_not", called.why_not}};
+  });
+}
+
 std::string own_words_text(const std::shared_ptr<const gcode::OwnWords>& words) {
   if (!words) return "";
   std::string lines;

@@ -51,7 +51,7 @@ Json json_of(const SmoothOptions& options, bool strict) {
   // it, in Options of api/include/batten/batten.h and `inner` of api/batten.cpp.
   const auto& [target, machine, tolerance_mm, tolerance_inch, tolerance_kind, side, units, source,
                decimals, method, output, prefer, linearize, keep_corners_deg, allowed, own_words,
-               keep_expressions, convert, words, profile, threads, quick] = options;
+               subprograms, keep_expressions, convert, words, profile, threads, quick] = options;
   Json json = {
       {"target", target->name}, {"machine", machine->name}, {"tolerance_mm", tolerance_mm}};
   if (tolerance_inch) json["tolerance_inch"] = *tolerance_inch;
@@ -295,6 +295,7 @@ Json smooth_json(const SmoothReport& report) {
                {"diagnostics", diagnostics_json(result.diagnostics, report.source)}};
   if (!report.options.profile.empty()) json["profile"] = profile_json(report);
   if (!report.drop.empty()) json["dropped"] = {{"names", report.drop}, {"words", report.dropped}};
+  if (!report.called.empty()) json["called"] = called_json(report.called);
   return as_report("smooth", json);
 }
 
@@ -416,6 +417,7 @@ std::string summary_text(const SmoothReport& report) {
   const bool rewritten =
       std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status) > 0;
   add_proof(report, rewritten, lines);
+  lines += text_of(report.called);
   lines += own_words_text(report.options.own_words);
   add_profile(report, lines);
   return lines;

@@ -9,6 +9,7 @@
 
 #include "gcode/text/source_text.h"
 #include "postproc/options/options.h"
+#include "postproc/stream/called_files.h"
 #include "postproc/stream/smooth_result.h"
 #include "postproc/text/json_values.h"
 
@@ -26,6 +27,7 @@ struct SmoothReport {
   // Names of words that the user dropped, and how many there were: `source` is without them.
   std::vector<std::string> drop = {};
   std::size_t dropped = 0;
+  std::vector<CalledFile> called = {};  // programs that it calls
 };
 
 // The report for programs: one JSON object, its fields always in the same order, the same bytes for
@@ -36,7 +38,7 @@ struct SmoothReport {
 //   cutting_after_s, slow_share_before, slow_share_after (of the cutting time: below half of the
 //   programmed feed), path_before, path_after {length_mm, distance_mm, roughness}, proved,
 //   understood, diagnostics[], options_from {option: file} of what the command line did not give;
-//   profile and dropped {names[], words} where these were given
+//   profile, dropped {names[], words} and called[] {call, file, why_not} where there are any
 //
 // Bytes of names and messages that are not UTF-8 become U+FFFD; numbers that are not finite
 // become null.

@@ -145,6 +145,7 @@ Json time_json(const TimeReport& report) {
   json["slowest"] = json_list(time.slowest, item);
   json["not_timed"] = json_list(time.not_timed, item);
   json["words"] = own_words_json(report.own_words);
+  if (!report.called.empty()) json["called"] = called_json(report.called);
   json["diagnostics"] = diagnostics_json(report.diagnostics, report.program.source);
   return as_report("time", json);
 }
@@ -156,6 +157,8 @@ std::string time_text(const TimeReport& report) {
   add_tools(report.time, lines);
   add_slow_places(report.time, lines);
   add_not_timed(report.time, lines);
+  lines += text_of(report.called);
+  if (!report.called.empty()) lines += titled("", "the time of what is called is not in it");
   return lines + own_words_text(report.own_words);
 }
 

@@ -3,12 +3,14 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "gcode/state/own_words.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"
 #include "postproc/machine/machine.h"
 #include "postproc/machine/program_time/program_time.h"
+#include "postproc/stream/called_files.h"
 #include "postproc/text/json_values.h"
 
 namespace batten::postproc {
@@ -19,6 +21,7 @@ struct TimeReport {
   const ProgramTime& time;
   const gcode::Diagnostics& diagnostics;
   const std::shared_ptr<const gcode::OwnWords>& own_words;  // that the user vouches for
+  const std::vector<CalledFile>& called;  // programs that it calls, whose time is not in it
 };
 
 // For people:

@@ -336,7 +336,9 @@ TEST_F(Batch, CarriesOnAndEndsWithTheWorstExitCode) {
   const ProcessResult result = expect_exit(batch("out"), 2);
   EXPECT_TRUE(contains(result.out, "not understood  a_klartext.ngc:1:1: error: foreign-language"))
       << result.out;
-  EXPECT_TRUE(contains(result.err, "without_units.ngc:1:")) << result.err;
+  EXPECT_TRUE(contains(result.err, "1 program without G20 or G21 (without_units.ngc)"))
+      << result.err;
+  EXPECT_TRUE(contains(result.out, "without_units.ngc:1:")) << result.out;
   EXPECT_TRUE(contains(result.out, "2 not understood\n")) << result.out;
   EXPECT_FALSE(fs::exists(file("out/a_klartext.ngc")));
   EXPECT_TRUE(fs::exists(file("out/batten-batch/reports/a_klartext.ngc.json")));

@@ -30,7 +30,7 @@ TEST_F(FailingWell, FilesThatAreNoProgramsAreRefusedByEveryCommand) {
   for (const char* command :
        {"smooth a.out -t grbl", "smooth a.out -t heidenhain", "smooth a.out -t siemens --convert",
         "smooth a.out -t grbl --dry-run", "inspect a.out", "verify a.out part.nc",
-        "time a.out --machine router"}) {
+        "verify a.out a.out", "time a.out --machine router"}) {
     expect_refusal(command, 2, "a.out:1:1: error: not-a-program");
   }
   EXPECT_FALSE(folder_.has("a.smooth.out"));

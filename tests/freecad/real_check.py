@@ -25,8 +25,10 @@ POSTS = {
     "comparams": "grbl", "dxf": "grbl", "opensbp": "grbl", "rml": "grbl"}
 # Its post of 0.20 writes feeds in mm/s as if they were mm/min: no path is faster.
 OPTIONS = {"heidenhain": "--prefer size"}
-REFUSED = {"fablin": "units-missing", "nccad": "units-missing"}
-LEFT_ALONE = ("philips", "comparams", "dxf", "opensbp", "rml")
+# Two name no unit; the others write no G-code.
+REFUSED = {"fablin": "units-missing", "nccad": "units-missing", "dxf": "not-a-program",
+           "opensbp": "not-a-program", "rml": "not-a-program"}
+LEFT_ALONE = ("philips", "comparams")
 wrong = []
 
 

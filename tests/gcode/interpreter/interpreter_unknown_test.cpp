@@ -77,6 +77,15 @@ const UnknownPlaceCase kPlaceAfterRows[] = {
     {"N7 if [#1 eq 1] then # 5221 = 1.", false, false, false},
     {"IF[#1EQ1]THEN#[#2]=1.", false, false, false}};
 
+// A call on Sinumerik, whose programs without marks are read like all others.
+TEST(Interpret, KnowsNothingBehindAnLThatBelongsToNoWord) {
+  const Interpreted it("G21 G90 G17\nG0 X1 Y1 Z1\nL54\nG1 X2 F9\n");
+  EXPECT_EQ(it.line(3).barrier, reason::kNotUnderstood);
+  EXPECT_FALSE(is_known(it.state_after_line(4)));
+  const Interpreted repeated("G21 G90 G17\nG0 X1 Y1 Z1\nP5\nG1 X2 F9\n");
+  EXPECT_TRUE(is_known(repeated.state_after_line(4)));
+}
+
 TEST(PlaceAfter, IsKnownOnTheseAxes) {
   for (const UnknownPlaceCase& test : kPlaceAfterRows) {
     SCOPED_TRACE(test.block);

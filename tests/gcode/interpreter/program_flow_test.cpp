@@ -55,7 +55,8 @@ bool is_body(const std::string& text) {
   Diagnostics found;
   const Program program = parse(SourceText("test.nc", text), found);
   const std::vector<BlockFlow> flow = follow_flow(program, Returns::kBehindCalls).blocks;
-  return std::ranges::any_of(flow, &BlockFlow::in_body);
+  return std::ranges::any_of(flow,
+                             [](const BlockFlow& each) { return each.in_body || each.in_called; });
 }
 
 // A program for Centroid ends so. It says for itself what the end of the round before, or a caller,
@@ -97,7 +98,7 @@ TEST(Flow, IsFound) {
     for (std::size_t i = 0; i < flow.size(); ++i) {
       if (flow[i].label_referenced) labels.push_back(i + 1);
       if (flow[i].jump_target) targets.push_back(i + 1);
-      if (flow[i].in_body) bodies.push_back(i + 1);
+      if (flow[i].in_body || flow[i].in_called) bodies.push_back(i + 1);
     }
     EXPECT_EQ(labels, test.labels);
     EXPECT_EQ(targets, test.targets);
@@ -161,6 +162,28 @@ TEST(ProgramFlow, BarriersNameTheLabelAndTheBody) {
   EXPECT_EQ(it.line(7).barrier, std::string_view());
   const Interpreted jump("G21 F9\nG0 X1\nN10 F9\nGOTO 10\n");
   EXPECT_EQ(jump.line(3).barrier, reason::kReferencedLabel);
+}
+
+// Who calls it says under which modes it runs; M98 P1 H5 begins at N5.
+TEST(ProgramFlow, ProgramsThatOthersCallAreEnteredWithTheModesOfTheirCaller) {
+  const std::string text = "O1\nG21 G90 F9\nG0 X1\nG1 X2\nX3\nN5 X4\nG1 X5\nM99\n";
+  const Interpreted unknown(text);
+  EXPECT_EQ(unknown.line(5).barrier, reason::kCallerModes);
+  const Interpreted usual(text, ReadOptions{.usual_caller_modes = true});
+  EXPECT_EQ(usual.line(5).barrier, std::string_view());
+  EXPECT_TRUE(usual.line(6).entered_from_elsewhere);
+  EXPECT_FALSE(is_known(usual.state_after_line(7)));
+  const Interpreted whole(text, ReadOptions{.calls_keep_modes = true, .usual_caller_modes = true});
+  EXPECT_FALSE(whole.line(6).entered_from_elsewhere);
+  EXPECT_TRUE(is_known(whole.state_after_line(7)));
+}
+
+// A subprogram behind a main program is called under modes that stand in the text, if anywhere.
+TEST(ProgramFlow, ProgramsBehindTheirCallerStayBodies) {
+  const Interpreted it("O1\nG21 F9\nM98 P2\nM30\nO2\nG21\nG1 X1\nM99\n",
+                       ReadOptions{.usual_caller_modes = true});
+  EXPECT_FALSE(it.line(7).barrier.empty());
+  EXPECT_NE(it.line(7).barrier, reason::kCallerModes);
 }
 
 TEST(ProgramFlow, LinesWithACheckSumAreCounted) {

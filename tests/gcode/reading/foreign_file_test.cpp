@@ -22,6 +22,28 @@ TEST(ForeignFiles, AreKnownByTheirBeginning) {
   }
 }
 
+TEST(ForeignFiles, AreKnownByLinesThatOnlyTheirLanguageHas) {
+  EXPECT_NE(foreign_kind_of("  0\r\nSECTION\r\n  2\r\nHEADER\r\n").find("DXF"), std::string::npos);
+  EXPECT_NE(foreign_kind_of("999\nFreeCAD\n0\nSECTION\n2\n").find("DXF"), std::string::npos);
+  EXPECT_EQ(foreign_kind_of("999\nG1 X1\n"), "");
+  EXPECT_NE(foreign_kind_of("'Exported\nTR,12000\nC6\nMS,20.0,5.0\nJ2,0.0000,1.0000\nM3,1.0,,-2.0\n"
+                            "CG,,5.0,5.0,1.0,0.0,T,1\n")
+                .find("ShopBot"),
+            std::string::npos);
+  EXPECT_NE(foreign_kind_of("PA;PA;\nVS10.0;\n!MC1;\nPU0,400;\nZ40,80,-20;\n").find("plotters"),
+            std::string::npos);
+}
+
+// Else programs of controls that a line here and there looks like another language would be
+// refused.
+TEST(Programs, MayHaveLinesThatLookLikeOtherLanguages) {
+  const std::string other = "MS,20.0,5.0\nM2,0.0,1.0\nM3,1.0,,-2.0\nPU;\nPD4,5;\nZ1,2,3;\n";
+  EXPECT_EQ(foreign_kind_of("G21\n" + other), "");
+  EXPECT_EQ(foreign_kind_of(other + "N10 M2\n"), "");
+  EXPECT_EQ(foreign_kind_of("MS,20.0,5.0\nM2,0.0,1.0\n"), "");
+  EXPECT_EQ(foreign_kind_of("X1,R2\nX2,C3\nX3,R4\nM2\n"), "");
+}
+
 TEST(ForeignFiles, AreBinary) {
   std::mt19937 random(5);
   for (const int bytes : {100, 1000, 100000}) {

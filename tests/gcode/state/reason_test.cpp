@@ -57,7 +57,7 @@ TEST(Reason, OnlyWhatIsSafeWhenAskedForOrSetElsewhereCanBeAllowed) {
     if (explanation.can_be_allowed) allowed.insert(explanation.id);
   }
   EXPECT_EQ(allowed, (std::set{kExactStop, kControlSmoothing, kAlreadySmoothed, kSubprogram,
-                               kWorkOffset, kToolLength, kBlankForm}));
+                               kCallerModes, kWorkOffset, kToolLength, kBlankForm}));
 }
 
 TEST(ReasonId, ReadsAsTheReasonThatItWasMadeOf) {

@@ -148,7 +148,10 @@ TEST(UnsafePrograms, ThatOthersCallAreKept) {
     std::string before = head_of(language) + wave_part(language, 0) + end + "\n";
     const SmoothResult result = smoothed(before, options_for(target));
     EXPECT_EQ(result.text, before);
-    EXPECT_EQ(reason_at(inspected(before, options_for(target)), 20), "loop-body");
+    EXPECT_EQ(reason_at(inspected(before, options_for(target)), 20), "caller-modes");
+    SmoothOptions allowed = options_for(target);
+    allowed.allowed = {"caller-modes"};
+    EXPECT_NE(smoothed(before, allowed).text, before);
   }
 }
 
