@@ -1,7 +1,9 @@
 // Programs that call others whose files stand beside them, as a user meets them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "batten_process.h"
 #include "tests/support/wavy_programs.h"
@@ -122,6 +124,84 @@ TEST_F(CalledFilesOfAUser, HaveTheirNamesOnEachControl) {
   folder_.put("part.nc", klartext + std::to_string(number) + " END PGM PART MM\n");
   folder_.put("LIFT.h", "0 BEGIN PGM LIFT MM\n1 L Z+9 R0 FMAX\n2 END PGM LIFT MM\n");
   expect_exit(smooth("--target heidenhain"), 0, {"1 rewritten", "CALL PGM LIFT: LIFT.h was read"});
+}
+
+// A variable that is assigned, then maybe a call, then a wave whose places rest on it.
+struct VariableRow {
+  const char* control;
+  const char* assigned;
+  const char* x;     // an expression in place of X's number
+  const char* call;  // of a program whose file assigns the variable again
+  const char* file;
+  const char* text;
+};
+
+// By the value of before the call the wave would be half as long.
+const VariableRow kVariables[] = {
+    {"linuxcnc", "#100=1", "[#100*{}]", "o<twice> call", "twice.ngc",
+     "o<twice> sub\n#100=2\no<twice> endsub\nM2\n"},
+    {"linuxcnc", "#1=1", "[#1*{}]", "o<twice> call", "twice.ngc",
+     "o<twice> sub\n#1=2\no<twice> endsub\nM2\n"},
+    {"haas", "#100=1.", "[#100*{}]", "M98 P1000", "O1000.nc", "O1000\n#100=2.\nM99\n"},
+    {"fanuc", "#1=1.", "[#1*{}]", "M98 P1000", "O1000.nc", "O1000\n#1=2.\nM99\n"},
+    {"haas", "#100=1.", "[#100*{}]", "G65 P1000 A2.", "O1000.nc", "O1000\n#100=#1\nM99\n"},
+    {"siemens --source siemens", "R1=1", "=R1*{}", "L54", "L54.SPF", "R1=2\nM17\n"},
+};
+
+TEST_F(CalledFilesOfAUser, MayAssignTheVariablesOfTheirCaller) {
+  for (const VariableRow& row : kVariables) {
+    SCOPED_TRACE(testing::Message() << row.control << ": " << row.call);
+    const std::string options = std::string("--target ") + row.control;
+    const bool siemens = std::string(row.call) == "L54";
+    std::string wave;
+    for (const std::string& line : postproc::wave_lines({})) {
+      const std::size_t begin = line.find('X') + 1;
+      const std::size_t end = line.find(' ', begin);
+      std::string x = row.x;
+      x.replace(x.find("{}"), 2, line.substr(begin, end - begin));
+      wave += line.substr(0, begin) + x + line.substr(end) + "\n";
+    }
+    const std::string start =
+        std::string(siemens ? "; a part\nG71 G94 G90 G17\n" : "G21 G90 G17\n") +
+        "S12000 M3\nG0 X0. Y0. Z5.\n";
+    const std::string rest = "G0 X0. Y0.\nG1 Z-1. F300.\n" + wave + "G0 Z5.\nM30\n";
+    folder_.put(row.file, row.text);
+    folder_.put("part.nc", start + row.assigned + "\n" + rest);
+    expect_exit(smooth(options), 0, {"1 rewritten"});
+    folder_.put("part.nc", start + row.assigned + "\n" + row.call + "\n" + rest);
+    expect_kept(std::string(row.file) + " was read", options);
+    // It is the variable alone that is not known.
+    folder_.put("part.nc", start + row.call + "\n" + row.assigned + "\n" + rest);
+    expect_exit(smooth(options), 0, {"1 rewritten"});
+    expect_exit(folder_.shell(std::string("rm ") + row.file), 0);
+  }
+}
+
+TEST_F(CalledFilesOfAUser, MayAssignTheParametersOfTheirCallerInKlartext) {
+  std::string wave;
+  for (std::string line : postproc::wave_lines({.lines = 100})) {
+    if (line.starts_with("G1 ")) line = line.substr(3);
+    const std::size_t end = line.find(' ');
+    line.insert(line.find('Y') + 1, line[line.find('Y') + 1] == '-' ? "" : "+");
+    const std::size_t feed = std::min(line.find(" F"), line.size());
+    line.insert(feed, " ZQ5");
+    wave += "L X+" + line.substr(1, end - 1) + line.substr(end) + "\n";
+  }
+  const auto program = [&](const std::string& before) {
+    std::string text;
+    int number = 1;
+    std::istringstream lines("L X+0 Y+0 Z+5 R0 FMAX\n" + before +
+                             "L X+0 Y+0 R0 FMAX\nL ZQ5 F300\n" + wave);
+    for (std::string line; std::getline(lines, line);) {
+      text += std::to_string(number++) + " " + line + "\n";
+    }
+    return "0 BEGIN PGM PART MM\n" + text + std::to_string(number) + " END PGM PART MM\n";
+  };
+  folder_.put("DEEP.h", "0 BEGIN PGM DEEP MM\n1 Q5 = -2\n2 END PGM DEEP MM\n");
+  folder_.put("part.nc", program("CALL PGM DEEP\nQ5 = -1\n"));
+  expect_exit(smooth("--target heidenhain"), 0, {"1 rewritten", "DEEP.h was read"});
+  folder_.put("part.nc", program("Q5 = -1\nCALL PGM DEEP\n"));
+  expect_kept("DEEP.h was read", "--target heidenhain");
 }
 
 // A batch makes a program again whose called program says something else.
