@@ -72,7 +72,7 @@ struct PagePathOptions {
   double tolerance_mm = 0.01;
   geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
   // More vertices than this are thinned further: a page must open fast.
-  std::size_t most_vertices = 400000;
+  std::size_t most_vertices = 300000;
   const Machine* machine = nullptr;  // whose speeds are predicted; nullptr: none are
 };
 

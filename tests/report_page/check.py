@@ -5,6 +5,7 @@ loaded from anywhere, figures equal to the JSON report, and controls that do wha
     check.py BATTEN SOURCE_DIR            all samples' pages are checked
     check.py BATTEN SOURCE_DIR --shots DIR [PROGRAM OPTION ..]    pictures of one page, to look at
     check.py BATTEN SOURCE_DIR --programs PROGRAM .. -- OPTION ..  pages of these, with time and size
+    check.py BATTEN SOURCE_DIR --tutorial           the pictures of docs/tutorial.md, in docs/pictures
 
 Exit code 77 (skipped) where Chromium or its driver is not installed.
 """
@@ -448,6 +449,24 @@ def shots(batten, folder, program, options):
                 browser.paper(folder / "page.pdf")
 
 
+def tutorial(batten, source):
+    """The page that the command of the tutorial writes: from its head to the charts, and at the greatest deviation."""
+    pictures = source / "docs/pictures"
+    with tempfile.TemporaryDirectory() as name, Browser() as browser:
+        scratch = Path(name)
+        (scratch / "samples").symlink_to((source / "samples").resolve())
+        subprocess.run([Path(batten).resolve(), "smooth", "samples/butterfly/program.ngc", "--target", "linuxcnc",
+                        "--tolerance", "0.015", "-o", "butterfly.ngc", "--report", "butterfly.html", "--quiet"],
+                       cwd=scratch, check=True)
+        browser.size(1100, 1440)
+        browser.open(scratch / "butterfly.html")
+        browser.wait("window.battenReport", 60)
+        browser.picture(pictures / "report.png", whole=False)
+        browser.size(1100, 720)
+        browser.keys("w]]]")
+        browser.picture(pictures / "report_worst.png", whole=False)
+
+
 def main(arguments):
     if not is_installed():
         print("skipped: needs chromium and chromedriver (apt-get install chromium chromium-driver)")
@@ -456,6 +475,9 @@ def main(arguments):
     if "--programs" in arguments:
         words = arguments[arguments.index("--programs") + 1:]
         return check_programs(batten, words[:words.index("--")], words[words.index("--") + 1:])
+    if "--tutorial" in arguments:
+        tutorial(batten, source)
+        return 0
     if "--shots" in arguments:
         folder, program, *options = arguments[arguments.index("--shots") + 1:]
         shots(batten, Path(folder), program, options)

@@ -48,12 +48,13 @@
     const colours = themeColours();
     if (settings.now && settings.colour !== 'status') {
       const stops = [0, 0.25, 0.5, 0.75, 1].map(scaleColour).join(', ');
-      const scale = element('div', { className: 'scale' });
+      const scale = element('i');
       scale.style.background = `linear-gradient(to right, ${stops})`;
       const deviation = settings.colour === 'deviation';
-      parts.push(element('b', {}, deviation ? 'Deviation, new from old' : 'Predicted speed'), scale,
-        element('div', { className: 'ends' }, element('span', {}, deviation ? '0' : feedText(path.fastest)),
-          element('span', {}, deviation ? `${lengthText(settings.tolerance)} allowed` : '0')));
+      parts.push(element('b', {}, deviation ? 'Deviation, new from old' : 'Predicted speed'),
+        element('div', { className: 'scale' }, scale,
+          element('div', { className: 'ends' }, element('span', {}, deviation ? '0' : feedText(path.fastest)),
+            element('span', {}, deviation ? `${lengthText(settings.tolerance)} allowed` : '0'))));
     }
     if (settings.now && settings.colour === 'status') parts.push(row(colours.now, page.statusWords[0]), row(colours.kept, page.statusWords[1]));
     if (settings.old) parts.push(row(colours.old, 'old path'));
