@@ -257,11 +257,13 @@ struct GivenTarget {
   }
 };
 
-GivenTarget target_given(Arguments& in) {
+// `takes_profile`: the option --profile is that of a target; of `time` it is another thing.
+GivenTarget target_given(Arguments& in, bool takes_profile = true) {
   GivenTarget wrong = {.built_in = nullptr, .profile = nullptr, .is_wrong = true};
   const auto name = in.given.value("target");
   const bool names_file = name && name->ends_with(".toml");
-  if (names_file && in.given.has("profile")) {
+  const auto profile = takes_profile ? in.given.value("profile") : std::nullopt;
+  if (names_file && profile) {
     in.complain("--profile: --target names a profile already");
     return wrong;
   }
@@ -270,7 +272,7 @@ GivenTarget target_given(Arguments& in) {
     target.built_in = built_in_target("target", in);
     if (target.built_in == nullptr) return wrong;
   }
-  const auto file = names_file ? name : in.given.value("profile");
+  const auto file = names_file ? name : profile;
   if (!file) return target;
   const std::size_t problems_before = in.problems.size();
   target.profile = read_target_profile(*file, target.built_in, in.problems);
@@ -629,10 +631,9 @@ TimeCommand time_command(Arguments& in) {
   command.input = file_at(in, 0);
   command.profile_file = in.given.text("profile");
   read_common_into(command, in);
-  const bool names_file = in.given.text("target").ends_with(".toml");
-  const GivenTarget target = names_file ? target_given(in) : GivenTarget();
+  const GivenTarget target = target_given(in, false);
   command.profile = target.profile;
-  command.target = names_file ? target.control() : built_in_target("target", in);
+  command.target = target.control();
   command.own_words = own_words_given(command.profile.get(), in);
   add_problems(problems_of_decimals(command.decimals, command.source, command.target), in);
   const std::size_t problems_before = in.problems.size();

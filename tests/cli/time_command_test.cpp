@@ -81,6 +81,15 @@ TEST_F(TimeCommandLine, WritesAProfileOfOneRowPerMillisecond) {
   EXPECT_NEAR(last, json.at("time_s").get<double>(), 0.001);
 }
 
+// --profile names the samples here, and --target a profile.
+TEST_F(TimeCommandLine, WritesAProfileForATargetOfAFile) {
+  folder_.put("mine.toml", folder_.batten("targets --show grbl").out);
+  expect_exit(time("--machine mill --target mine.toml --profile part.csv"), 0);
+  EXPECT_TRUE(folder_.text_of("part.csv").starts_with("t_s,line,"));
+  expect_exit(time("--machine mill --target grbl --profile other.csv"), 0);
+  EXPECT_EQ(folder_.text_of("other.csv"), folder_.text_of("part.csv"));
+}
+
 TEST_F(TimeCommandLine, OverwritesNothingWithoutForce) {
   folder_.put("part.csv", "mine");
   EXPECT_EQ(time("--machine mill --profile part.csv").exit_code, 4);
