@@ -1,7 +1,9 @@
 #include "geometry/arcs/arc_chain.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "geometry/basic/point.h"
@@ -46,13 +48,25 @@ void search_farthest(double from, double limit, double guess, double shortest, d
   }
 }
 
+// Of `first` of a pair of arcs, relative to the value for which both are equal.
+std::span<const double> joint_balances() {
+  constexpr int kPlaces = kChain.joint_places;
+  static const auto balances = [] {
+    std::array<double, 2 * kPlaces + 1> all;
+    for (int i = -kPlaces; i <= kPlaces; ++i) {
+      all[i + kPlaces] = std::pow(kChain.widest_joint, static_cast<double>(i) / kPlaces);
+    }
+    return all;
+  }();
+  return balances;
+}
+
 struct ArcPair {
   PlaneArc first;
   PlaneArc second;
   Vector2 tangent;      // at the joint, before rounding
   double joint_u;       // where the curve passes the joint
   double joint_height;  // of the curve there, rounded
-  double kink;          // radians at the joint, which rounding forces
   ChainNode end;
 };
 
@@ -118,6 +132,10 @@ class ArcChain {
   enum class Tangent { kCurve, kCrossing };
 
   Point3 rounded(const Point3& place) const { return rounded_to(limits_.grid, place); }
+
+  Point2 rounded_in_plane(const Point2& place) const {
+    return in_plane(rounded({place.x(), place.y(), 0}));
+  }
 
   ChainNode node_at(const ChainNode& start, double u, Tangent tangent) const {
     Point3 place = rounded(curve_.point_at(u));
@@ -235,21 +253,20 @@ class ArcChain {
     const Point2 a = in_plane(start.place);
     const Point2 b = in_plane(end.place);
     if ((b - a).norm() <= kSamePlace) return std::nullopt;
-    const auto joint = biarc_joint(a, start.angle, b, end.angle, balance);
+    const Vector2 leaving = unit_vector(start.angle);
+    const Vector2 arriving = unit_vector(end.angle);
+    const auto joint = biarc_joint(a, leaving, b, arriving, balance);
     if (!joint) return std::nullopt;
-    const Point2 middle = in_plane(rounded({joint->place.x(), joint->place.y(), 0}));
-    ArcPair pair{arc_leaving(a, start.angle, middle, limits_.max_radius),
-                 arc_arriving(middle, b, end.angle, limits_.max_radius),
+    const Point2 middle = rounded_in_plane(joint->place);
+    ArcPair pair{arc_leaving(a, leaving, middle, limits_.max_radius),
+                 arc_arriving(middle, b, arriving, limits_.max_radius),
                  joint->tangent,
                  start.u,
                  start.place.z(),
-                 0,
                  end};
     if (!allowed(pair.first) || !allowed(pair.second)) return std::nullopt;
     const double turn = pair.first.sweep + pair.second.sweep;
     if (std::abs(turn - (end.angle - start.angle)) > kChain.most_turned) return std::nullopt;
-    pair.kink =
-        std::abs(wrapped(pair.second.start_angle() - pair.first.start_angle() - pair.first.sweep));
     return pair;
   }
 
@@ -273,17 +290,30 @@ class ArcChain {
   // to a grid point, so that the two arcs meet without a kink.
   ArcPair best_pair(const ChainNode& start, const ArcPair& found) const {
     if (limits_.grid <= 0) return found;
-    constexpr int kPlaces = kChain.joint_places;
-    std::vector<ArcPair> pairs;
-    for (int i = -kPlaces; i <= kPlaces; ++i) {
-      const double balance = std::pow(kChain.widest_joint, static_cast<double>(i) / kPlaces);
-      if (const auto pair = pair_between(start, found.end, balance)) pairs.push_back(*pair);
+    struct Joint {
+      double kink;
+      double balance;
+    };
+    const Point2 a = in_plane(start.place);
+    const Point2 b = in_plane(found.end.place);
+    const Vector2 leaving = unit_vector(start.angle);
+    const Vector2 arriving = unit_vector(found.end.angle);
+    // The sine of the angle at the joint, which rounding forces.
+    const auto kink_at = [&](const Point2& middle) {
+      return std::abs(cross(mirrored(leaving, middle - a), mirrored(arriving, b - middle)));
+    };
+    const double most = kink_at(found.first.end);
+    std::vector<Joint> joints;
+    for (const double balance : joint_balances()) {
+      const auto joint = biarc_joint(a, leaving, b, arriving, balance);
+      if (!joint) continue;
+      const double kink = kink_at(rounded_in_plane(joint->place));
+      if (kink < most) joints.push_back({kink, balance});
     }
-    std::stable_sort(pairs.begin(), pairs.end(),
-                     [](const ArcPair& a, const ArcPair& b) { return a.kink < b.kink; });
-    for (ArcPair& pair : pairs) {
-      if (pair.kink >= found.kink) break;
-      if (holds(pair, start)) return pair;
+    std::ranges::stable_sort(joints, {}, &Joint::kink);
+    for (const Joint& joint : joints) {
+      auto pair = pair_between(start, found.end, joint.balance);
+      if (pair && holds(*pair, start)) return *pair;
     }
     return found;
   }
@@ -334,10 +364,11 @@ class ArcChain {
   std::optional<Step> farthest_single(const ChainNode& start, const ChainNode& end, double limit,
                                       double least, double guess) const {
     std::optional<Step> best;
+    const Vector2 leaving = unit_vector(start.angle);
     const auto single_holds = [&](double u) {
       ChainNode node = node_before(start, end, u, Tangent::kCurve);
       const PlaneArc arc =
-          arc_leaving(in_plane(start.place), start.angle, in_plane(node.place), limits_.max_radius);
+          arc_leaving(in_plane(start.place), leaving, in_plane(node.place), limits_.max_radius);
       const double length = arc.length();
       if (length <= kSamePlace ||
           std::abs(arc.sweep - (node.angle - start.angle)) > kChain.most_turned ||

@@ -78,7 +78,7 @@ class ArcFit {
     // Off the plane most curves are no helices: arcs that are more than chords would be do not
     // pay. In the plane arcs are worth more than chords, since their tangents agree.
     const std::size_t most =
-        flat_ ? std::numeric_limits<std::size_t>::max()
+        flat_ ? options_.at_most
               : std::min(sections.size() + static_cast<std::size_t>(chords_), options_.at_most);
     std::size_t left = most;
     const double from = marked_.pieces.first();
@@ -87,17 +87,21 @@ class ArcFit {
     for (std::size_t i = 0; i < sections.size(); ++i) {
       const ArcSection& section = sections[i];
       const Point3& to = stops[i + 1].place;
+      if (left == 0) return std::nullopt;
       if (section.straight) {
+        --left;
         append({Point2::Zero(), to.head<2>()}, to.z(), path);
         continue;
       }
       const ChainNode start{section.from, stops[i].place, stops[i].leaving};
       const ChainNode end{section.to, to, stops[i + 1].arriving};
-      auto pieces = flat_ ? spline_between(start, end) : std::nullopt;
+      auto pieces = flat_ ? spline_between(start, end, left) : std::nullopt;
       if (!pieces) pieces = arc_chain(curve_, limits_, start, end, left);
       if (!pieces) return std::nullopt;
       left -= pieces->size();
-      if (falls_behind((section.to - from) / length, most - left, most)) return std::nullopt;
+      if (!flat_ && falls_behind((section.to - from) / length, most - left, most)) {
+        return std::nullopt;
+      }
       for (const ChainPiece& piece : *pieces) append(piece.arc, piece.end_height, path);
     }
     return path;
@@ -174,9 +178,10 @@ class ArcFit {
   }
 
   // The fewest arcs found for one smooth section of a flat curve; nothing when the search finds
-  // no tangent chain.
+  // no tangent chain of so few.
   [[nodiscard]] std::optional<std::vector<ChainPiece>> spline_between(const ChainNode& start,
-                                                                      const ChainNode& end) const {
+                                                                      const ChainNode& end,
+                                                                      std::size_t at_most) const {
     const Path section = between(marked_.pieces, start.u, end.u);
     std::vector<Point2> points;
     const double off = kFit.chord_part * limits_.deviation;
@@ -194,6 +199,7 @@ class ArcFit {
     options.end_angle = end.angle;
     options.kinks = false;
     options.effort = options_.effort;
+    options.at_most = at_most;
     const auto spline = fit_arc_spline(points, options);
     if (!spline) return std::nullopt;
     std::vector<ChainPiece> pieces;

@@ -18,7 +18,7 @@ struct ArcFitOptions : ArcRange {
   Vector3 axis = Vector3::UnitZ();       // the arcs' axis: normal of the plane that the target runs
   bool helical = false;                  // may arcs rise along the axis (linearly in the angle)
   ArcEffort effort = ArcEffort::kQuick;  // of a flat curve
-  // Chains off the plane that take more pieces are not looked for.
+  // Chains that take more pieces are not looked for.
   std::size_t at_most = std::numeric_limits<std::size_t>::max();
 };
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "geometry/arcs/plane_band.h"
@@ -46,34 +47,40 @@ constexpr Effort kEfforts[] = {{5, 2, kBriefParts, kBriefInRange, 4},
 constexpr std::array kStarts = {0.0,   1e-4, -1e-4, 3e-4, -3e-4, 1e-3, -1e-3, 3e-3,
                                 -3e-3, 0.01, -0.01, 0.03, -0.03, 0.1,  -0.1};
 
-// No bound on the arcs.
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-
 // Where a pair of arcs meets: see biarc_joint.
 constexpr std::array kBalances = {1.0, 0.7, 1.4, 0.5, 2.0, 0.3, 3.0};
 
 constexpr ArcSplineTuning kSpline = kArcSplineTuning;
 
-struct Node {
+// A place where a chain may go on.
+struct Stop {
   BandEntry entry;
-  PlaneArc arc;  // that arrives here
-  std::ptrdiff_t before = -1;
-  bool kink = false;  // the chain turns here
+  std::ptrdiff_t before = -1;  // the node from which an arc arrives here
   std::size_t reach = 0;
   double score = 0;
 };
 
+struct Node : Stop {
+  PlaneArc arc;       // that arrives here
+  bool kink = false;  // the chain turns here
+};
+
+double angle_between(const Vector2& from, const Vector2& to) {
+  return std::atan2(cross(from, to), from.dot(to));
+}
+
 class Search {
  public:
   // Chains that cost more than `at_most` arcs are not looked for.
-  Search(std::span<const Point2> points, const ArcSplineOptions& options,
-         std::size_t at_most = kNone - 1)
+  Search(std::span<const Point2> points, const ArcSplineOptions& options, std::size_t at_most)
       : options_(options),
         effort_(kEfforts[static_cast<std::size_t>(options.effort)]),
         band_(points,
               {options.tolerance, 1 / options.min_radius, options.max_sweep, effort_.stride}),
         count_(band_.samples().size()),
-        best_arcs_(at_most + 1) {}
+        best_arcs_(at_most + 1) {
+    if (options.end_angle) end_along_ = unit_vector(*options.end_angle);
+  }
 
   std::optional<ArcSpline> run() {
     add_starts();
@@ -97,12 +104,12 @@ class Search {
     for (const std::size_t i : level) finish(i, arcs);
     // A chain that goes on from here has two arcs more at the least: no better than the best.
     if (arcs + 2 >= best_arcs_) return;
-    std::vector<Node> found;
+    std::vector<Stop> found;
     for (const std::size_t i : level) {
       spread(i, found);
       if (options_.kinks) turn_at_corner(i, arcs);
     }
-    follow(std::move(found), arcs + 1);
+    follow(found, arcs + 1);
     if (options_.kinks && levels_.size() <= arcs + 1 && !best_) turn_where_stuck(level, arcs);
   }
 
@@ -113,14 +120,14 @@ class Search {
   }
 
   // How good a place is to go on from: how far the next arc gets.
-  void judge(Node& node) const {
-    const ArcReach reach = band_.reach(node.entry);
-    node.reach = reach.end;
+  void judge(Stop& stop) const {
+    const ArcReach reach = band_.reach(stop.entry);
     const auto& samples = band_.samples();
-    node.score = samples[reach.end - 1].station;
+    stop.reach = reach.end;
+    stop.score = samples[reach.end - 1].station;
     if (reach.end < count_) {
-      const double step = samples[reach.end].station - node.score;
-      node.score += 0.5 * step * std::min(1.0, reach.margin / options_.tolerance);
+      const double step = samples[reach.end].station - stop.score;
+      stop.score += 0.5 * step * std::min(1.0, reach.margin / options_.tolerance);
     }
   }
 
@@ -128,7 +135,8 @@ class Search {
     const Point2 start = band_.samples().front().place;
     for (const double off : kStarts) {
       Node node;
-      node.entry = {start, options_.start_angle.value_or(options_.direction + off), 1};
+      const double angle = options_.start_angle.value_or(options_.direction + off);
+      node.entry = {start, unit_vector(angle), 1};
       node.arc = {start, start};  // none arrives at a start
       judge(node);
       add_to(0, node);
@@ -149,38 +157,57 @@ class Search {
             std::round(p.y() / options_.grid) * options_.grid};
   }
 
-  // The arc from a node to there.
-  [[nodiscard]] Node node_to(std::size_t from, const Point2& end, std::size_t next) const {
+  // The stop there, for the arc that leaves node `from` along its tangent: a line where that is
+  // flatter than any arc may be.
+  [[nodiscard]] Stop stop_at(std::size_t from, const Point2& end, std::size_t next) const {
     const BandEntry& entry = nodes_[from].entry;
+    const Vector2 chord = end - entry.place;
+    Stop stop;
+    stop.before = static_cast<std::ptrdiff_t>(from);
+    stop.entry = {
+        end, is_flat(entry.along, chord) ? chord.normalized() : mirrored(entry.along, chord), next};
+    return stop;
+  }
+
+  [[nodiscard]] bool is_flat(const Vector2& along, const Vector2& chord) const {
+    return 2 * options_.max_radius * std::abs(cross(along, chord)) <= chord.squaredNorm();
+  }
+
+  [[nodiscard]] Node node_of(const Stop& stop) const {
+    const BandEntry& from = nodes_[static_cast<std::size_t>(stop.before)].entry;
     Node node;
-    node.arc = arc_leaving(entry.place, entry.angle, end, options_.max_radius);
-    node.before = static_cast<std::ptrdiff_t>(from);
-    node.entry = {end, node.arc.start_angle() + node.arc.sweep, next};
+    node.Stop::operator=(stop);
+    node.arc = arc_leaving(from.place, from.along, stop.entry.place, options_.max_radius);
     return node;
+  }
+
+  [[nodiscard]] Node node_to(std::size_t from, const Point2& end, std::size_t next) const {
+    return node_of(stop_at(from, end, next));
   }
 
   // The point beside sample j on the arc of this curvature.
   static Point2 place_on(const BandEntry& entry, double curvature, const Point2& sample) {
-    const Vector2 along = unit_vector(entry.angle);
-    const Vector2 left(-along.y(), along.x());
+    const Vector2 left(-entry.along.y(), entry.along.x());
     const Vector2 way = sample - entry.place;
-    if (curvature == 0) return entry.place + way.dot(along) * along;
+    if (curvature == 0) return entry.place + way.dot(entry.along) * entry.along;
     const Point2 center = entry.place + left / curvature;
     return center + (sample - center).normalized() / std::abs(curvature);
   }
 
-  [[nodiscard]] std::optional<Node> node_on(std::size_t from, double curvature,
+  [[nodiscard]] std::optional<Stop> stop_on(std::size_t from, double curvature,
                                             std::size_t sample) const {
-    const Point2 beside = place_on(nodes_[from].entry, curvature, band_.samples()[sample].place);
-    const Node node = node_to(from, rounded(beside), sample + 1);
-    if (node.arc.length() <= 2 * options_.grid + kSamePlace) return std::nullopt;
+    const BandEntry& entry = nodes_[from].entry;
+    const Point2 end = rounded(place_on(entry, curvature, band_.samples()[sample].place));
+    const Vector2 chord = end - entry.place;
+    const double least = 2 * options_.grid + kSamePlace;
+    if (chord.squaredNorm() <= least * least) return std::nullopt;
     // A flat arc that is written as a line would make a kink of half its sweep.
-    if (node.arc.is_line() && curvature != 0) return std::nullopt;
-    return node;
+    if (curvature != 0 && is_flat(entry.along, chord)) return std::nullopt;
+    return stop_at(from, end, sample + 1);
   }
 
   // Every arc from node i that is worth a look.
-  void spread(std::size_t i, std::vector<Node>& found) const {
+  void spread(std::size_t i, std::vector<Stop>& found) const {
     const ArcFan fan = band_.fan(nodes_[i].entry);
     const auto& samples = band_.samples();
     const std::size_t next = nodes_[i].entry.next;
@@ -194,9 +221,9 @@ class Search {
       last = j;
       const CurvatureRange& range = fan[j - next];
       const auto add = [&](double curvature) {
-        if (auto node = node_on(i, curvature, j)) {
-          judge(*node);
-          found.push_back(*node);
+        if (auto stop = stop_on(i, curvature, j)) {
+          judge(*stop);
+          found.push_back(*stop);
         }
       };
       if (range.low < 0 && range.high > 0) add(0);
@@ -219,15 +246,21 @@ class Search {
   }
 
   // Keeps the best of the found ones that hold.
-  void follow(std::vector<Node> found, std::size_t arcs) {
-    std::ranges::stable_sort(found, std::greater<>(), &Node::score);
+  void follow(const std::vector<Stop>& found, std::size_t arcs) {
+    const auto is_after = [&](std::size_t a, std::size_t b) {
+      return found[a].score < found[b].score || (found[a].score == found[b].score && a > b);
+    };
+    std::vector<std::size_t> order(found.size());  // a heap, the best one first
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::make_heap(order, is_after);
     std::vector<std::pair<std::size_t, int>> of_place;  // how many were kept of a place
-    std::size_t kept = 0;
-    for (Node& node : found) {
-      if (kept == effort_.width) break;
-      const std::size_t place = node.entry.next;
+    for (std::size_t kept = 0; !order.empty() && kept < effort_.width; order.pop_back()) {
+      std::ranges::pop_heap(order, is_after);
+      const Stop& stop = found[order.back()];
+      const std::size_t place = stop.entry.next;
       auto same = std::ranges::find(of_place, place, &std::pair<std::size_t, int>::first);
       if (same != of_place.end() && same->second == effort_.of_one_place) continue;
+      Node node = node_of(stop);
       const BandEntry& from = nodes_[static_cast<std::size_t>(node.before)].entry;
       const auto passed = band_.passed(from, node.arc);
       if (!passed || *passed < from.next) continue;
@@ -254,7 +287,7 @@ class Search {
     const Point2 end = samples.back().place;
     if ((end - entry.place).norm() <= kSamePlace) return;
     if (nodes_[i].reach == count_ && finish_with_one(i, entry, end, arcs)) return;
-    if (!options_.end_angle || arcs + 2 >= best_arcs_) return;
+    if (!end_along_ || arcs + 2 >= best_arcs_) return;
     const double reached = samples[nodes_[i].reach - 1].station;
     const double left = samples.back().station - reached;
     if (left > kSpline.two_reach * (reached - samples[entry.next - 1].station)) return;
@@ -265,21 +298,19 @@ class Search {
     const Node node = node_to(i, end, count_);
     if (!allowed(node.arc)) return false;
     const double sharp = kSpline.same_turn + 2 * options_.grid / node.arc.length();
-    if (node.arc.is_line() && std::abs(wrapped(node.arc.start_angle() - entry.angle)) > sharp) {
-      return false;
-    }
-    if (options_.end_angle && std::abs(wrapped(node.entry.angle - *options_.end_angle)) > sharp) {
-      return false;
-    }
+    const auto turns = [&](const Vector2& from, const Vector2& to) {
+      return std::abs(angle_between(from, to)) > sharp;
+    };
+    if (node.arc.is_line() && turns(entry.along, end - entry.place)) return false;
+    if (end_along_ && turns(node.entry.along, *end_along_)) return false;
     if (band_.passed(entry, node.arc) != count_) return false;
     offer(node, arcs + 1);
     return true;
   }
 
   void finish_with_two(std::size_t i, const BandEntry& entry, const Point2& end, std::size_t arcs) {
-    const double angle = *options_.end_angle;
     for (const double balance : kBalances) {
-      const auto joint = biarc_joint(entry.place, entry.angle, end, angle, balance);
+      const auto joint = biarc_joint(entry.place, entry.along, end, *end_along_, balance);
       if (!joint) continue;
       const Point2 middle = rounded(joint->place);
       Node first = node_to(i, middle, 0);
@@ -288,9 +319,9 @@ class Search {
       if (!next || *next == count_) continue;
       first.entry.next = *next;
       Node second;
-      second.arc = arc_arriving(middle, end, angle, options_.max_radius);
+      second.arc = arc_arriving(middle, end, *end_along_, options_.max_radius);
       if (!allowed(second.arc) || band_.passed(first.entry, second.arc) != count_) continue;
-      second.entry = {end, angle, count_};
+      second.entry = {end, *end_along_, count_};
       second.before = static_cast<std::ptrdiff_t>(nodes_.size());
       nodes_.push_back(first);
       offer(second, arcs + 2);
@@ -313,8 +344,8 @@ class Search {
     for (std::size_t c = std::max(next, end - std::min(end, kSpline.corner_back)); c < end; ++c) {
       if (c + 1 >= count_ || std::abs(samples[c].turn) < kSpline.kink_turn) continue;
       const CurvatureRange& range = fan[c - next];
-      add_turns(node_on(i, range.middle(), c), c, arcs);
-      add_turns(node_on(i, nearest_in(range, i, c), c), c, arcs);
+      add_turns(stop_on(i, range.middle(), c), c, arcs);
+      add_turns(stop_on(i, nearest_in(range, i, c), c), c, arcs);
       return;
     }
   }
@@ -326,7 +357,7 @@ class Search {
       const std::size_t next = nodes_[i].entry.next;
       for (std::size_t j = next + fan.size(); j-- > next;) {
         if (j + 1 >= count_) continue;
-        if (add_turns(node_on(i, fan[j - next].middle(), j), j, arcs)) break;
+        if (add_turns(stop_on(i, fan[j - next].middle(), j), j, arcs)) break;
       }
     }
   }
@@ -336,23 +367,25 @@ class Search {
                                   std::size_t sample) const {
     const BandEntry& entry = nodes_[i].entry;
     const Vector2 way = band_.samples()[sample].place - entry.place;
-    const double through = 2 * cross(unit_vector(entry.angle), way) / way.squaredNorm();
+    const double through = 2 * cross(entry.along, way) / way.squaredNorm();
     const double margin = kSpline.range_margin * (range.high - range.low);
     return std::clamp(through, range.low + margin, range.high - margin);
   }
 
-  // The chain goes on from where `node` arrives in directions about that of the edge after the
-  // sample.
-  bool add_turns(std::optional<Node> node, std::size_t sample, std::size_t arcs) {
-    if (!node || !allowed(node->arc)) return false;
-    const BandEntry& from = nodes_[static_cast<std::size_t>(node->before)].entry;
-    const auto passed = band_.passed(from, node->arc);
+  // The chain goes on from the stop in directions about that of the edge after the sample.
+  bool add_turns(const std::optional<Stop>& stop, std::size_t sample, std::size_t arcs) {
+    if (!stop) return false;
+    Node node = node_of(*stop);
+    if (!allowed(node.arc)) return false;
+    const BandEntry& from = nodes_[static_cast<std::size_t>(node.before)].entry;
+    const auto passed = band_.passed(from, node.arc);
     if (!passed || *passed >= count_ || *passed <= from.next) return false;
-    node->kink = true;
+    node.kink = true;
     for (const double off : kStarts) {
-      node->entry = {node->arc.end, band_.samples()[sample + 1].edge_angle + off, *passed};
-      judge(*node);
-      add_to(arcs + 1 + kSpline.kink_costs, *node);
+      const Vector2 along = unit_vector(band_.samples()[sample + 1].edge_angle + off);
+      node.entry = {node.arc.end, along, *passed};
+      judge(node);
+      add_to(arcs + 1 + kSpline.kink_costs, node);
     }
     return true;
   }
@@ -374,6 +407,7 @@ class Search {
   const Effort& effort_;
   PlaneBand band_;
   std::size_t count_;
+  std::optional<Vector2> end_along_;
   std::vector<Node> nodes_;
   std::vector<std::vector<std::size_t>> levels_;  // nodes by the number of arcs so far
   std::size_t best_arcs_;                         // what the best chain so far costs
@@ -411,7 +445,7 @@ ArcSpline drawn_near(std::span<const Point2> points, const ArcSplineOptions& opt
 std::optional<ArcSpline> fit_arc_spline(std::span<const Point2> points,
                                         const ArcSplineOptions& options) {
   check(options);
-  auto found = Search(points, options).run();
+  auto found = Search(points, options, options.at_most).run();
   if (found && found->pieces.size() <= kSpline.few) {
     return drawn_near(points, options, std::move(*found));
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,6 +24,8 @@ struct ArcSplineOptions : ArcRange {
   std::optional<double> end_angle;    // and in which it ends. Free where there is none
   bool kinks = true;                  // whether the chain may turn where no arc fits
   ArcEffort effort = ArcEffort::kQuick;
+  // Chains that cost more arcs (a kink counts as several) are not looked for.
+  std::size_t at_most = std::numeric_limits<std::size_t>::max() / 2;
 };
 
 struct ArcSplineTuning {

@@ -77,34 +77,45 @@ double PlaneArc::length() const {
 
 double PlaneArc::start_angle() const { return angle_of(end - start) - sweep / 2; }
 
-PlaneArc arc_with_sweep(const Point2& start, const Point2& end, double sweep, double max_radius) {
+namespace {
+
+// `sine` and `cosine`, times the length of the chord: of half the sweep.
+PlaneArc arc_over(const Point2& start, const Point2& end, double sine, double cosine,
+                  double max_radius) {
   PlaneArc arc{start, end};
   const Vector2 chord = end - start;
-  const double length = chord.norm();
-  const double half_sine = std::sin(std::abs(sweep) / 2);
-  if (length <= kSamePlace || length >= 2 * max_radius * half_sine) return arc;
-  arc.sweep = sweep;
-  arc.radius = length / (2 * half_sine);
+  const double square = chord.squaredNorm();
+  if (square <= kSamePlace * kSamePlace || square >= 2 * max_radius * std::abs(sine)) return arc;
+  arc.sweep = 2 * std::atan2(sine, cosine);
+  arc.radius = square / (2 * std::abs(sine));
   // Seen from the middle of the chord the center lies across it, to the left for a
   // counter-clockwise arc of less than half a turn.
-  const Vector2 left(-chord.y() / length, chord.x() / length);
-  const double away = arc.radius * std::cos(std::abs(sweep) / 2) * (sweep > 0 ? 1 : -1);
-  arc.center = (start + end) / 2 + away * left;
+  arc.center = (start + end) / 2 + cosine / (2 * sine) * Vector2(-chord.y(), chord.x());
   return arc;
 }
 
-PlaneArc arc_leaving(const Point2& start, double angle, const Point2& end, double max_radius) {
-  return arc_with_sweep(start, end, 2 * wrapped(angle_of(end - start) - angle), max_radius);
+}  // namespace
+
+PlaneArc arc_with_sweep(const Point2& start, const Point2& end, double sweep, double max_radius) {
+  const double length = (end - start).norm();
+  return arc_over(start, end, length * std::sin(sweep / 2), length * std::cos(sweep / 2),
+                  max_radius);
 }
 
-PlaneArc arc_arriving(const Point2& start, const Point2& end, double angle, double max_radius) {
-  return arc_with_sweep(start, end, 2 * wrapped(angle - angle_of(end - start)), max_radius);
+PlaneArc arc_leaving(const Point2& start, const Vector2& along, const Point2& end,
+                     double max_radius) {
+  const Vector2 chord = end - start;
+  return arc_over(start, end, cross(along, chord), along.dot(chord), max_radius);
 }
 
-std::optional<BiarcJoint> biarc_joint(const Point2& start, double start_angle, const Point2& end,
-                                      double end_angle, double balance) {
-  const Vector2 t0 = unit_vector(start_angle);
-  const Vector2 t1 = unit_vector(end_angle);
+PlaneArc arc_arriving(const Point2& start, const Point2& end, const Vector2& along,
+                      double max_radius) {
+  const Vector2 chord = end - start;
+  return arc_over(start, end, cross(chord, along), chord.dot(along), max_radius);
+}
+
+std::optional<BiarcJoint> biarc_joint(const Point2& start, const Vector2& t0, const Point2& end,
+                                      const Vector2& t1, double balance) {
   const Vector2 v = end - start;
   const double vv = v.squaredNorm();
   const double b = v.dot(t0 + t1);

@@ -37,14 +37,20 @@ struct ArcRange {
 [[nodiscard]] PlaneArc arc_with_sweep(const Point2& start, const Point2& end, double sweep,
                                       double max_radius);
 
-// The arc that leaves `start` at the angle `angle` and ends in `end`, and the one that
-// arrives there at that angle.
-[[nodiscard]] PlaneArc arc_leaving(const Point2& start, double angle, const Point2& end,
+// The arc that leaves `start` along a unit vector and ends in `end`, and the one that arrives there
+// along it.
+[[nodiscard]] PlaneArc arc_leaving(const Point2& start, const Vector2& along, const Point2& end,
                                    double max_radius);
-[[nodiscard]] PlaneArc arc_arriving(const Point2& start, const Point2& end, double angle,
+[[nodiscard]] PlaneArc arc_arriving(const Point2& start, const Point2& end, const Vector2& along,
                                     double max_radius);
 
-// Two arcs that leave `start` and arrive at `end` at given angles can meet, with a common
+// The direction in which an arc arrives that leaves along a unit vector and has this chord; and the
+// other way round.
+[[nodiscard]] inline Vector2 mirrored(const Vector2& along, const Vector2& chord) {
+  return 2 * along.dot(chord) / chord.squaredNorm() * chord - along;
+}
+
+// Two arcs that leave `start` and arrive at `end` along given unit vectors can meet, with a common
 // tangent, on a circle of points. `first` is the length from `start` along its tangent to
 // the corner of the first arc's tangents; it and the length `second` before `end` obey
 //   v.v - 2 first v.t0 - 2 second v.t1 - 2 first second (1 - t0.t1) = 0,  v = end - start,
@@ -57,8 +63,8 @@ struct BiarcJoint {
 
 // `balance`: `first` relative to the value for which both lengths are equal. Nothing when
 // there is no such pair with both lengths positive.
-[[nodiscard]] std::optional<BiarcJoint> biarc_joint(const Point2& start, double start_angle,
-                                                    const Point2& end, double end_angle,
+[[nodiscard]] std::optional<BiarcJoint> biarc_joint(const Point2& start, const Vector2& t0,
+                                                    const Point2& end, const Vector2& t1,
                                                     double balance);
 
 // True when the part of the plane curve is proved to stay within `deviation` of the arc and

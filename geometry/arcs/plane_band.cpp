@@ -21,7 +21,7 @@ class ClosingFan {
  public:
   ClosingFan(const BandEntry& entry, const PlaneBand::Limits& limits, double steepest)
       : place_(entry.place),
-        along_(unit_vector(entry.angle)),
+        along_(entry.along),
         tolerance_(kBand.fan_part * limits.tolerance),
         range_{-limits.max_curvature, limits.max_curvature},
         steepest_(steepest) {}
@@ -34,8 +34,9 @@ class ClosingFan {
     const double beyond = x * x + y * y - tolerance_ * tolerance_;
     if (beyond <= 0) return true;  // the start itself is near enough
     if (x <= 0 || std::abs(y) > steepest_ * x) return false;
-    const double low = std::max(range_.low, 2 * (y - tolerance_) / beyond);
-    const double high = std::min(range_.high, 2 * (y + tolerance_) / beyond);
+    const double scale = 2 / beyond;
+    const double low = std::max(range_.low, scale * (y - tolerance_));
+    const double high = std::min(range_.high, scale * (y + tolerance_));
     if (low > high) return false;
     range_ = {low, high};
     squared_ = beyond;

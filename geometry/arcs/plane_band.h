@@ -39,8 +39,8 @@ struct CurvatureRange {
 // An arc starts here: at a place within the tolerance of the polyline, with this tangent.
 struct BandEntry {
   Point2 place;
-  double angle = 0;      // radians
-  std::size_t next = 1;  // first sample that lies ahead
+  Vector2 along = Vector2::UnitX();  // unit vector
+  std::size_t next = 1;              // first sample that lies ahead
 };
 
 // The arcs from one entry: element i holds the curvatures that pass every sample from the next

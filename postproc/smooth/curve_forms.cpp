@@ -279,6 +279,7 @@ class CurveForms {
     for (const double part : kFormTuning.bands) {
       PlanOptions band = plan_within(left_);
       band.max_deviation = part * whole;
+      if (wants_few_moves(task_.options)) band.arc_effort = geometry::ArcEffort::kThorough;
       offers_.push_back({Form::kArcs, 0, 0, band, true});
       if (task_.run.arcs.empty()) return;
     }

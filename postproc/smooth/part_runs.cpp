@@ -208,7 +208,7 @@ class PartSmoother {
       work.selection = choose(work.smoothed, options_);
       if (memos_ == nullptr && options_.method != Method::kNone) {
         work.outlook = outlook_of(work.smoothed, options_);
-        work.outlook.at_feeds_s = least_time(run_of(work), 0, *options_.machine);
+        work.outlook.at_feeds_s = time_at_feeds(run_of(work), *options_.machine);
       }
       work.drop_what_is_not_written();
       const std::scoped_lock lock(reporting);

@@ -75,7 +75,7 @@ class RunSmoother {
         find_meant(fair->path, meant);
         add_candidates_of(*fair);
         try_simpler(meant);
-        if (options().prefer != Prefer::kAccuracy && may_win_time()) {
+        if (options().prefer != Prefer::kAccuracy && (may_win_time() || is_none_better())) {
           try_curve(Method::kFair, curve_request(Method::kFair));
         }
         if (method == Method::kBest) try_others();
@@ -161,7 +161,7 @@ class RunSmoother {
   void try_simpler(CurveRequest request) {
     const bool few =
         wants_few_moves(options()) || (options().output == Form::kCurves && !options().quick);
-    const bool none = choose(result_, options()).order.empty() && !context().is_piece();
+    const bool none = is_none_better() && !context().is_piece();
     if (options().prefer == Prefer::kAccuracy || !(few || none)) return;
     const bool fine = result_.facts.scale.original.distance < kRun.of_rounding * rounding_;
     if (!few && (request.scatter > 0 || !fine)) return;
@@ -197,6 +197,8 @@ class RunSmoother {
     }
     return time;
   }
+
+  [[nodiscard]] bool is_none_better() const { return choose(result_, options()).order.empty(); }
 
   [[nodiscard]] bool may_win_time() const {
     return bounds_.least_time() <= kCost.clearly_faster * best_time();

@@ -48,7 +48,7 @@ struct PlanOptions {
   double max_deviation = 0.005;    // mm, moves to curve: the share of the form
   double keep_corner_angle = 3.2;  // radians: see geometry::FairOptions
   Linearize linearize = Linearize::kChord;
-  geometry::ArcEffort arc_effort = geometry::ArcEffort::kQuick;  // of plan_arcs
+  geometry::ArcEffort arc_effort = geometry::ArcEffort::kQuick;
   // Of chords by Linearize::kChord: how high they may be where there is room for as long ones (mm),
   // and how many of them there may be; 0: any number.
   double chord_height = 0.005;

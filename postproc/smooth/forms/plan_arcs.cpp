@@ -155,13 +155,18 @@ std::vector<PlaneAxes> flattest_first(const Run& run, std::vector<PlaneAxes> pla
 
 constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max() / 2;
 
-// Whether a brief search shows that a longer one finds too many arcs.
+std::size_t most_pieces(const PlanOptions& options) {
+  return std::min(options.most_arcs, kAnyNumber);
+}
+
+// Whether a brief search shows that a longer one finds too many arcs. `plan` makes one of no more
+// than so many pieces.
 template <typename Plan>
-bool takes_too_many(const Plan& plan, const PlanOptions& options, geometry::ArcEffort wanted) {
-  if (wanted == geometry::ArcEffort::kBrief || options.most_arcs >= kAnyNumber) return false;
-  const std::optional<OutputPlan> brief = plan(geometry::ArcEffort::kBrief);
-  return brief && static_cast<double>(brief->moves.size()) >
-                      kPlans.brief_finds * static_cast<double>(options.most_arcs);
+bool takes_too_many(const Plan& plan, const PlanOptions& options) {
+  if (options.arc_effort == geometry::ArcEffort::kBrief || options.most_arcs >= kAnyNumber)
+    return false;
+  const double found = std::floor(kPlans.brief_finds * static_cast<double>(options.most_arcs));
+  return !plan(geometry::ArcEffort::kBrief, static_cast<std::size_t>(found));
 }
 
 }  // namespace
@@ -175,13 +180,14 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
     const auto flat = laid_flat(run, fair.curve, plane.normal, arc_grid(options));
     if (!flat) continue;
     flat_somewhere = true;
-    const auto with_effort = [&](geometry::ArcEffort effort) {
+    const auto with_effort = [&](geometry::ArcEffort effort, std::size_t at_most) {
       geometry::ArcFitOptions fit = fit_options(options, plane, false);
       fit.effort = effort;
+      fit.at_most = at_most;
       return plan_in(run, fair, *flat, nullptr, 0, fit, options);
     };
-    if (takes_too_many(with_effort, options, options.arc_effort)) return std::nullopt;
-    if (auto plan = with_effort(options.arc_effort)) return plan;
+    if (takes_too_many(with_effort, options)) return std::nullopt;
+    if (auto plan = with_effort(options.arc_effort, most_pieces(options))) return plan;
   }
   if (flat_somewhere || !options.target->helices) return std::nullopt;
   // In space the planes differ much: the rows of a raster along X are arcs in G18, and in G17 they
@@ -353,12 +359,13 @@ std::optional<OutputPlan> plan_arc_spline(const Run& run, const geometry::Smooth
                                           const PlanOptions& options) {
   for (const PlaneAxes& plane : arc_planes(options)) {
     if (!lies_across(run, plane.normal)) continue;
-    const auto with_effort = [&](geometry::ArcEffort effort) {
-      return ArcSplinePlanner(run, fair, options, plane, effort).plan();
+    const auto with_effort = [&](geometry::ArcEffort effort, std::size_t at_most) {
+      auto plan = ArcSplinePlanner(run, fair, options, plane, effort).plan();
+      if (plan && plan->moves.size() > at_most) plan.reset();
+      return plan;
     };
-    constexpr auto kEffort = geometry::ArcEffort::kThorough;
-    if (takes_too_many(with_effort, options, kEffort)) continue;
-    if (auto plan = with_effort(kEffort)) return plan;
+    if (takes_too_many(with_effort, options)) continue;
+    if (auto plan = with_effort(options.arc_effort, most_pieces(options))) return plan;
   }
   return std::nullopt;
 }

@@ -6,16 +6,24 @@
 #include <utility>
 #include <vector>
 
+#include "postproc/machine/models/junction_speed.h"
+#include "postproc/machine/models/velocity_profile.h"
 #include "postproc/smooth/selection/candidate.h"
 #include "postproc/smooth/selection/selection.h"
 
 namespace batten::postproc {
 
 CandidateBounds::CandidateBounds(const RunTask& task, const SmoothedRun& so_far)
-    : task_(task),
-      so_far_(so_far),
-      least_time_(postproc::least_time(task.run, task.options.tolerance_mm, *task.options.machine,
-                                       task.options.tolerance_kind)) {}
+    : task_(task), so_far_(so_far), least_time_(least_time_of(LimitsOf::kDirections)) {
+  // A control that joins lines runs faster than each of them allows: then nothing is known of the
+  // directions of its moves.
+  if (least_time_ > so_far.facts.scale.alone) least_time_ = least_time_of(LimitsOf::kAnyDirection);
+}
+
+double CandidateBounds::least_time_of(LimitsOf of) const {
+  return postproc::least_time(task_.run, task_.options.tolerance_mm, *task_.options.machine,
+                              task_.options.tolerance_kind, of);
+}
 
 Figures CandidateBounds::least(double blocks, double distance) const {
   const CostScale& scale = so_far_.facts.scale;
@@ -90,19 +98,83 @@ double saved_at(const Vector3& a, const Vector3& b, double tolerance,
 
 }  // namespace
 
-double least_time(const Run& run, double tolerance, const Machine& machine,
-                  geometry::ToleranceKind kind) {
-  const auto& p = run.points;
-  double time = 0;
+namespace {
+
+// The fastest that the machine allows in a direction.
+struct PathLimits {
+  double velocity = 0;      // mm/s
+  double acceleration = 0;  // mm/s^2
+};
+
+class DirectionLimits {
+ public:
+  explicit DirectionLimits(const Machine& machine, LimitsOf of)
+      : machine_(machine),
+        velocities_(axis_velocities(machine, false)),
+        accelerations_(axis_accelerations(machine)),
+        of_(of) {}
+
+  [[nodiscard]] PathLimits along(const Vector3& direction) const {
+    const auto axes = [&](const Vector3& limits) {
+      return of_ == LimitsOf::kDirections ? limit_along(direction, limits) : limits.norm();
+    };
+    return {std::min(axes(velocities_), machine_.path_feed),
+            std::min(axes(accelerations_), machine_.path_acceleration)};
+  }
+
+ private:
+  const Machine& machine_;
+  Vector3 velocities_;
+  Vector3 accelerations_;
+  LimitsOf of_;
+};
+
+// mm/s along each edge of the run, as programmed.
+std::vector<double> edge_feeds(const Run& run) {
+  std::vector<double> feeds(run.points.size() - 1);
   std::size_t next = 0;
-  double speed = machine.max_velocity();
-  for (std::size_t i = 0; i + 1 < p.size(); ++i) {
-    while (next < run.feeds.size() && run.feeds[next].vertex <= i) {
-      speed = std::min(run.feeds[next++].feed / 60, machine.max_velocity());
-    }
-    double length = (p[i + 1] - p[i]).norm();
-    if (i > 0) length -= saved_at(p[i] - p[i - 1], p[i + 1] - p[i], tolerance, kind);
-    time += length / speed;
+  double feed = 0;
+  for (std::size_t i = 0; i < feeds.size(); ++i) {
+    while (next < run.feeds.size() && run.feeds[next].vertex <= i) feed = run.feeds[next++].feed;
+    feeds[i] = feed / kMinute;
+  }
+  return feeds;
+}
+
+}  // namespace
+
+double time_at_feeds(const Run& run, const Machine& machine) {
+  const std::vector<double> feeds = edge_feeds(run);
+  double time = 0;
+  for (std::size_t i = 0; i < feeds.size(); ++i) {
+    time += (run.points[i + 1] - run.points[i]).norm() / std::min(feeds[i], machine.max_velocity());
+  }
+  return time;
+}
+
+double least_time(const Run& run, double tolerance, const Machine& machine,
+                  geometry::ToleranceKind kind, LimitsOf of) {
+  const auto& p = run.points;
+  const std::vector<double> feeds = edge_feeds(run);
+  const DirectionLimits limits(machine, of);
+  std::vector<VelocityStretch> chain;
+  chain.reserve(feeds.size());
+  for (std::size_t i = 0; i < feeds.size(); ++i) {
+    const Vector3 edge = p[i + 1] - p[i];
+    const double length = edge.norm();
+    const double saved = i > 0 ? saved_at(p[i] - p[i - 1], edge, tolerance, kind) : 0;
+    if (!(length - saved > 0)) continue;
+    const PathLimits most = limits.along(edge / length);
+    VelocityStretch stretch;
+    stretch.length = length - saved;
+    stretch.max_velocity = std::min(feeds[i], most.velocity);
+    stretch.acceleration = most.acceleration;
+    chain.push_back(stretch);
+  }
+  const std::vector<double> speeds = joint_velocities(chain, {});
+  double time = 0;
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    time += stretch_time(chain[i], speeds[i], speeds[i + 1], {});
   }
   return time;
 }
@@ -127,8 +199,10 @@ bool corners_are_worth_trying(double corners, double least_time, double time) {
 }
 
 bool searches_are_worth_trying(std::size_t points, double least_time, double before, double now) {
+  const double left = now - least_time;
   return points <= kBounds.most_searched && now <= kCost.clearly_faster * before &&
-         least_time <= (1 - kBounds.worth_trying) * now;
+         left >= kBounds.worth_trying * now &&
+         left >= kBounds.search_costs * static_cast<double>(points);
 }
 
 }  // namespace batten::postproc

@@ -21,9 +21,13 @@ struct BoundTuning {
   double least_bytes = 8;          // of a block
   double corners = 0.5;            // part of the vertices that makes a run one of corners
   double worth_trying = 0.02;      // part of the time: the least that there must be left to win
+  double search_costs = 0.02;      // s for each vertex: less machine time is not worth a search
   std::size_t most_searched = 50;  // points: time-optimal and eight-point corners are searches each
 };
 inline constexpr BoundTuning kBounds;
+
+// Whether limits of the machine are those along the edges of a run, or the widest.
+enum class LimitsOf { kDirections, kAnyDirection };
 
 class CandidateBounds {
  public:
@@ -46,6 +50,7 @@ class CandidateBounds {
   [[nodiscard]] std::size_t most_blocks(Form form, double distance) const;
 
  private:
+  [[nodiscard]] double least_time_of(LimitsOf of) const;
   [[nodiscard]] Figures least(double blocks, double distance) const;
 
   const RunTask& task_;
@@ -53,10 +58,15 @@ class CandidateBounds {
   double least_time_;
 };
 
-// Seconds below which no form of the run comes that stays within `tolerance`: its length at its
-// feeds, less what can be saved at its vertices, when there were no accelerations to mind.
+// s: the length of the run at its feeds, when there were no accelerations to mind.
+[[nodiscard]] double time_at_feeds(const Run& run, const Machine& machine);
+
+// Seconds below which no form of the run comes that stays within `tolerance`: from rest to rest
+// over its length, less what can be saved at its vertices, at its feeds and within the limits of
+// the machine along each edge, or over all directions. Nothing brakes between the ends.
 [[nodiscard]] double least_time(const Run& run, double tolerance, const Machine& machine,
-                                geometry::ToleranceKind kind = geometry::ToleranceKind::kPath);
+                                geometry::ToleranceKind kind = geometry::ToleranceKind::kPath,
+                                LimitsOf of = LimitsOf::kDirections);
 
 // The part of the run's vertices whose chords would leave a curve through them by more than
 // `tolerance`: a run of a coarser one, of which only the corners could be rounded.
@@ -67,7 +77,8 @@ class CandidateBounds {
 [[nodiscard]] bool corners_are_worth_trying(double corners, double least_time, double time);
 
 // The same of the methods that search for each corner by itself, which takes milliseconds: where
-// rounding has won no time, from `before` to `now`, a better rounding wins none.
+// rounding has won no time, from `before` to `now`, a better rounding wins none, and of a short run
+// not enough.
 [[nodiscard]] bool searches_are_worth_trying(std::size_t points, double least_time, double before,
                                              double now);
 

@@ -36,31 +36,31 @@ TEST(PlaneArc, IsALineWhereItIsFlatterThanTheGreatestRadius) {
 }
 
 TEST(PlaneArc, LeavesAndArrivesAtTheGivenAngle) {
-  const PlaneArc leaving = arc_leaving({2, 1}, 0.3, {5, 3}, kNoLimit);
+  const PlaneArc leaving = arc_leaving({2, 1}, unit_vector(0.3), {5, 3}, kNoLimit);
   EXPECT_NEAR(angle_error(leaving.start_angle(), 0.3), 0, 1e-14);
-  const PlaneArc arriving = arc_arriving({2, 1}, {5, 3}, 0.3, kNoLimit);
+  const PlaneArc arriving = arc_arriving({2, 1}, {5, 3}, unit_vector(0.3), kNoLimit);
   EXPECT_NEAR(angle_error(arriving.start_angle() + arriving.sweep, 0.3), 0, 1e-14);
 }
 
 TEST(Biarc, AQuarterCircleIsTwoArcsOfItself) {
-  const auto joint = biarc_joint({1, 0}, pi / 2, {0, 1}, pi, 1);
+  const auto joint = biarc_joint({1, 0}, {0, 1}, {0, 1}, {-1, 0}, 1);
   ASSERT_TRUE(joint);
   EXPECT_NEAR((joint->place - Point2(std::sqrt(0.5), std::sqrt(0.5))).norm(), 0, 1e-15);
 }
 
 TEST(Biarc, ThreeQuartersOfACircleToo) {
-  const auto joint = biarc_joint({1, 0}, pi / 2, {0, -1}, 2 * pi, 1);
+  const auto joint = biarc_joint({1, 0}, {0, 1}, {0, -1}, {1, 0}, 1);
   ASSERT_TRUE(joint);
   EXPECT_NEAR((joint->place + Point2(std::sqrt(0.5), -std::sqrt(0.5))).norm(), 0, 1e-14);
 }
 
 // Parallel tangents, one step aside: two arcs of opposite turn, through the middle.
 TEST(Biarc, AStepAsideIsAnS) {
-  const auto joint = biarc_joint({0, 0}, 0, {4, 1}, 0, 1);
+  const auto joint = biarc_joint({0, 0}, {1, 0}, {4, 1}, {1, 0}, 1);
   ASSERT_TRUE(joint);
   EXPECT_NEAR((joint->place - Point2(2, 0.5)).norm(), 0, 1e-15);
-  EXPECT_GT(arc_leaving({0, 0}, 0, joint->place, kNoLimit).sweep, 0);
-  EXPECT_LT(arc_arriving(joint->place, {4, 1}, 0, kNoLimit).sweep, 0);
+  EXPECT_GT(arc_leaving({0, 0}, {1, 0}, joint->place, kNoLimit).sweep, 0);
+  EXPECT_LT(arc_arriving(joint->place, {4, 1}, {1, 0}, kNoLimit).sweep, 0);
 }
 
 TEST(Biarc, ArcsMeetWithOneTangentWhateverTheBalance) {
@@ -69,14 +69,14 @@ TEST(Biarc, ArcsMeetWithOneTangentWhateverTheBalance) {
   int pairs = 0;
   for (int i = 0; i < 1000; ++i) {
     const Point2 end(3 + uniform(random), uniform(random));
-    const double start_angle = uniform(random);
-    const double end_angle = uniform(random);
+    const Vector2 leaving = unit_vector(uniform(random));
+    const Vector2 arriving = unit_vector(uniform(random));
     const double balance = std::exp(0.3 * uniform(random));
-    const auto joint = biarc_joint({0, 0}, start_angle, end, end_angle, balance);
+    const auto joint = biarc_joint({0, 0}, leaving, end, arriving, balance);
     if (!joint) continue;
     ++pairs;
-    const PlaneArc first = arc_leaving({0, 0}, start_angle, joint->place, 1e12);
-    const PlaneArc second = arc_arriving(joint->place, end, end_angle, 1e12);
+    const PlaneArc first = arc_leaving({0, 0}, leaving, joint->place, 1e12);
+    const PlaneArc second = arc_arriving(joint->place, end, arriving, 1e12);
     EXPECT_LT(angle_error(first.start_angle() + first.sweep, second.start_angle()), 1e-9);
   }
   EXPECT_GT(pairs, 900);

@@ -44,7 +44,7 @@ TEST(PlaneBand, TheFanOnALineClosesWithTheSquareOfTheLength) {
   std::vector<Point2> points;
   for (int i = 0; i <= 100; ++i) points.push_back({0.1 * i, 0});
   const PlaneBand band(points, limits());
-  const ArcFan fan = band.fan({{0, 0}, 0, 1});
+  const ArcFan fan = band.fan({{0, 0}, {1, 0}, 1});
   ASSERT_EQ(fan.size(), band.samples().size() - 1);
   for (const std::size_t i : {49UL, fan.size() - 1}) {
     const double length = band.samples()[i + 1].station;
@@ -56,7 +56,7 @@ TEST(PlaneBand, TheFanOnALineClosesWithTheSquareOfTheLength) {
 
 TEST(PlaneBand, TheFanHoldsTheCircleThatTheVerticesLieOn) {
   const PlaneBand band(on_circle(20, 200, 2.5), limits());
-  const ArcFan fan = band.fan({{20, 0}, pi / 2, 1});
+  const ArcFan fan = band.fan({{20, 0}, {0, 1}, 1});
   ASSERT_EQ(fan.size(), band.samples().size() - 1);
   EXPECT_LT(fan.back().low, 1.0 / 20);
   EXPECT_GT(fan.back().high, 1.0 / 20);
@@ -65,7 +65,7 @@ TEST(PlaneBand, TheFanHoldsTheCircleThatTheVerticesLieOn) {
 TEST(PlaneBand, ReachEndsAtACorner) {
   const std::vector<Point2> points = {{0, 0}, {5, 0}, {5, 5}};
   const PlaneBand band(points, limits());
-  const ArcReach reach = band.reach({{0, 0}, 0, 1});
+  const ArcReach reach = band.reach({{0, 0}, {1, 0}, 1});
   ASSERT_LT(reach.end, band.samples().size());
   EXPECT_NEAR(band.samples()[reach.end].station, 5, 3 * kTolerance);
 }
@@ -84,7 +84,8 @@ TEST(PlaneBand, ReachIsTheEndOfTheFan) {
   const auto& samples = band.samples();
   for (std::size_t next = 1; next + 1 < samples.size(); next += 7) {
     for (const double off : {0.0, 0.004, -0.004}) {
-      const BandEntry entry{samples[next - 1].place, samples[next].edge_angle + off, next};
+      const BandEntry entry{samples[next - 1].place, unit_vector(samples[next].edge_angle + off),
+                            next};
       const std::size_t end = next + band.fan(entry).size();
       const std::size_t reach = band.reach(entry).end;
       EXPECT_GE(reach, end);
@@ -99,7 +100,7 @@ TEST(PlaneBand, AnArcWithinTheToleranceIsPassed) {
   const double offs[] = {0, 0.0095, -0.0090};  // the chords' sagitta is 0.0004
   for (const double off : offs) {
     const double radius = 20 + off;
-    const BandEntry entry{{radius, 0}, pi / 2, 1};
+    const BandEntry entry{{radius, 0}, {0, 1}, 1};
     EXPECT_EQ(band.passed(entry, arc_about_origin(radius, 2.5)), band.samples().size()) << off;
   }
 }
@@ -108,14 +109,14 @@ TEST(PlaneBand, AnArcBeyondTheToleranceIsNot) {
   const PlaneBand band(on_circle(20, 200, 2.5), limits());
   for (const double off : {0.0102, -0.0102}) {
     const double radius = 20 + off;
-    const BandEntry entry{{radius, 0}, pi / 2, 1};
+    const BandEntry entry{{radius, 0}, {0, 1}, 1};
     EXPECT_FALSE(band.passed(entry, arc_about_origin(radius, 2.5))) << off;
   }
 }
 
 TEST(PlaneBand, AnArcThatEndsHalfWayPassesWhatLiesBeforeIt) {
   const PlaneBand band(on_circle(20, 200, 2.5), limits());
-  const auto passed = band.passed({{20, 0}, pi / 2, 1}, arc_about_origin(20, 1.25));
+  const auto passed = band.passed({{20, 0}, {0, 1}, 1}, arc_about_origin(20, 1.25));
   ASSERT_TRUE(passed);
   EXPECT_NEAR(band.samples()[*passed].station, 25, 0.3);
 }
@@ -124,7 +125,7 @@ TEST(PlaneBand, AnArcThatEndsHalfWayPassesWhatLiesBeforeIt) {
 TEST(PlaneBand, ALineDoesNotPassAPathThatGoesBack) {
   const std::vector<Point2> points = {{0, 0}, {6, 0}, {5, 0.001}, {10, 0}};
   const PlaneBand band(points, limits());
-  EXPECT_FALSE(band.passed({{0, 0}, 0, 1}, {{0, 0}, {10, 0}}));
+  EXPECT_FALSE(band.passed({{0, 0}, {1, 0}, 1}, {{0, 0}, {10, 0}}));
 }
 
 // Half a circle over one straight edge: both ends are right, the middle is not.
@@ -132,9 +133,9 @@ TEST(PlaneBand, AnArcThatBulgesFromALongEdgeIsNotPassed) {
   const std::vector<Point2> points = {{0, 0}, {1, 0}};
   const PlaneBand band(points, limits());
   const PlaneArc arc = arc_with_sweep({0, 0}, {1, 0}, 0.2, 1e4);  // sagitta 0.025
-  EXPECT_FALSE(band.passed({{0, 0}, -0.1, 1}, arc));
+  EXPECT_FALSE(band.passed({{0, 0}, unit_vector(-0.1), 1}, arc));
   const PlaneArc flat = arc_with_sweep({0, 0}, {1, 0}, 0.06, 1e4);  // sagitta 0.0075
-  EXPECT_TRUE(band.passed({{0, 0}, -0.03, 1}, flat));
+  EXPECT_TRUE(band.passed({{0, 0}, unit_vector(-0.03), 1}, flat));
 }
 
 }  // namespace

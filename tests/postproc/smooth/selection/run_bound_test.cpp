@@ -31,21 +31,50 @@ std::vector<Point3> half_circle(int chords) {
 
 Machine machine() { return *find_machine("linuxcnc-fast"); }
 
-TEST(LeastTime, OfALineIsItsLengthAtItsFeed) {
+TEST(TimeAtFeeds, IsTheLengthAtEachFeed) {
+  postproc::Run line = run_through({{0, 0, 0}, {20, 0, 0}, {50, 0, 0}});
+  EXPECT_DOUBLE_EQ(time_at_feeds(line, machine()), 5);  // 50 mm at 10 mm/s
+  line.feeds.push_back({1, 1800});
+  EXPECT_DOUBLE_EQ(time_at_feeds(line, machine()), 2 + 1);
+}
+
+// s that are lost at the ends of a run at this speed, from rest to rest.
+double ramps(double mm_per_s, double acceleration) { return mm_per_s / acceleration; }
+
+TEST(LeastTime, OfALineIsItsLengthAtItsFeedWithTheWayUpToItAndDown) {
   const postproc::Run line = run_through({{0, 0, 0}, {20, 0, 0}, {50, 0, 0}});
-  EXPECT_DOUBLE_EQ(least_time(line, 0.01, machine()), 5);  // 50 mm at 10 mm/s
+  const double a = machine().axis(Axis::kX).acceleration;
+  EXPECT_NEAR(least_time(line, 0.01, machine()), 5 + ramps(10, a), 1e-12);
 }
 
 TEST(LeastTime, CountsEachFeedForItsMotions) {
   postproc::Run line = run_through({{0, 0, 0}, {20, 0, 0}, {50, 0, 0}});
   line.feeds.push_back({1, 1800});
-  EXPECT_DOUBLE_EQ(least_time(line, 0.01, machine()), 2 + 1);
+  const double a = machine().axis(Axis::kX).acceleration;
+  // Up to 10 mm/s, from there to 30, and down.
+  const double lost = 10 / a / 2 + (30.0 - 10) * (30 - 10) / (2 * a * 30) + 30 / a / 2;
+  EXPECT_NEAR(least_time(line, 0.01, machine()), 2 + 1 + lost, 1e-12);
 }
 
 // A chord across a right corner that passes it at 0.1 mm is 2 * 0.1 * tan(22.5 deg) shorter.
 TEST(LeastTime, LetsCornersBeCutByTheTolerance) {
   const postproc::Run corner = run_through({{0, 0, 0}, {10, 0, 0}, {10, 10, 0}});
-  EXPECT_NEAR(least_time(corner, 0.1, machine()), (20 - 0.2 * std::tan(M_PI / 8)) / 10, 1e-12);
+  const double a = machine().axis(Axis::kX).acceleration;
+  EXPECT_NEAR(least_time(corner, 0.1, machine()),
+              (20 - 0.2 * std::tan(M_PI / 8)) / 10 + ramps(10, a), 1e-12);
+}
+
+// Along the diagonal two axes share the way.
+TEST(LeastTime, KnowsHowFastTheAxesAreTogether) {
+  Machine slow = machine();
+  for (Axis axis : {Axis::kX, Axis::kY}) slow.axis(axis).velocity = 5;
+  const postproc::Run diagonal = run_through({{0, 0, 0}, {30, 30, 0}});
+  const double a = std::sqrt(2) * slow.axis(Axis::kX).acceleration;
+  const double speed = std::sqrt(2) * 5;
+  EXPECT_NEAR(least_time(diagonal, 0.01, slow), 30 / 5.0 + ramps(speed, a), 1e-12);
+  const double any =
+      least_time(diagonal, 0.01, slow, geometry::ToleranceKind::kPath, LimitsOf::kAnyDirection);
+  EXPECT_LT(any, 30 / 5.0);
 }
 
 // Teeth of 0.05 mm every millimetre: the straight line through them is within the tolerance. But
@@ -53,8 +82,9 @@ TEST(LeastTime, LetsCornersBeCutByTheTolerance) {
 TEST(LeastTime, IsNoMoreThanThatOfTheLineThroughTeeth) {
   std::vector<Point3> teeth;
   for (int i = 0; i <= 100; ++i) teeth.emplace_back(i, i % 2 == 0 ? 0.05 : -0.05, 0);
+  const double a = machine().axis(Axis::kX).acceleration;
   EXPECT_LE(least_time(run_through(teeth), 0.06, machine()),
-            10.0 + 2 * 0.5 * (std::sqrt(1.01) - 1) / 10 + 1e-9);
+            10.0 + ramps(10, a) + 2 * 0.5 * (std::sqrt(1.01) - 1) / 10 + 1e-9);
 }
 
 // Chords of length c on a circle of radius r are c^2 / 8 r away from it.
@@ -77,6 +107,7 @@ TEST(SearchesAreWorthTrying, WhereRoundingHasWonTimeAndMoreIsLeft) {
   EXPECT_TRUE(searches_are_worth_trying(20, 5, 10, 9.8));
   EXPECT_FALSE(searches_are_worth_trying(20, 5, 10, 9.95));
   EXPECT_FALSE(searches_are_worth_trying(20, 9.7, 10, 9.8));
+  EXPECT_FALSE(searches_are_worth_trying(20, 0.1, 0.5, 0.4));
 }
 
 // A search for each corner of a program of 149 lines, three runs of some eighty corners, took 5 s:
