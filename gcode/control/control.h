@@ -129,6 +129,10 @@ struct Control {
   // chords of ours.
   ArcChords chords;
 
+  // It has no modes but units, plane, distance, feed mode, tool length and work offset, no
+  // subprograms and no macros, and drops a block with any other word as a whole.
+  bool only_basic_modes = false;
+
   const CurveFormat* curves = nullptr;  // that the control reads; nullptr: none
 
   DwellUnit dwell_unit = DwellUnit::kByPoint;

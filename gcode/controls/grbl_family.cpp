@@ -45,6 +45,8 @@ std::vector<Control> grbl_family() {
   Control grbl =
       grbl_like("grbl", "grbl 1.1: arcs and helices in G17, G18, G19; lines of 79 characters",
                 kSettings, "M6 G43 H");
+  // Any word that it does not know is an error, and the block does nothing.
+  grbl.only_basic_modes = true;
   // The line buffer is 80 bytes with its terminator, filled after blanks and comments are gone.
   grbl.max_line_length = 79;
   grbl.line_count = LineCount::kWithoutBlanksAndComments;

@@ -48,6 +48,9 @@ struct ReadOptions {
   // Subprograms and macros leave all modes as they find them (M97, M98, M198, G65, O-word calls,
   // CALL LBL, CALL PGM): behind a call only place, feed, speed and kind of motion are unknown.
   bool calls_keep_modes = false;
+  // The control has no modes beside units, plane, distance and feed mode, and refuses words for
+  // others: behind a block that is not understood it has none that could be on.
+  bool only_basic_modes = false;
   // A program that others call is called under the modes of power-on. Otherwise nothing is known of
   // what it does not set itself, and its blocks are kept.
   bool usual_caller_modes = false;

@@ -17,6 +17,7 @@ struct LostModes {
   SourceSpan where;       // the block
   std::string text;       // of the block, for people
   bool by_call = false;   // of a subprogram
+  std::string missing;    // at the last of the moves: what was not set again, in words
   std::size_t moves = 0;  // blocks with X, Y or Z behind it, so far
 };
 

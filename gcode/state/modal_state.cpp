@@ -56,6 +56,17 @@ ModalState unknown_modal_state() {
   return state;
 }
 
+ModalState unknown_basic_modes(const ModalState& before) {
+  ModalState after = unknown_modal_state();
+  for (const ModalSwitch& each : kModalSwitches) {
+    const bool has_it = each.item == &ModalState::laser_power_mode;
+    if (!has_it && before.*each.item == TriState::kOff) after.*each.item = TriState::kOff;
+  }
+  if (before.path == PathMode::kBlending) after.path = before.path;
+  if (before.arc_distance == DistanceMode::kIncremental) after.arc_distance = before.arc_distance;
+  return after;
+}
+
 bool is_known(const ModalState& state) {
   ModalState asked = state;
   asked.motion = MotionMode::kLine;
@@ -84,8 +95,9 @@ void forget_position(ControlState& state) { state.position = Position{}; }
 
 void forget_everything(ControlState& state) {
   ControlState unknown;
-  unknown.modal = unknown_modal_state();
+  unknown.modal = state.only_basic_modes ? unknown_basic_modes(state.modal) : unknown_modal_state();
   unknown.calls_keep_modes = state.calls_keep_modes;
+  unknown.only_basic_modes = state.only_basic_modes;
   unknown.own_words = state.own_words;
   state = unknown;
 }

@@ -76,6 +76,10 @@ inline constexpr std::array kModalSwitches = {
 // Nothing is known: after a call, or a block that could have changed anything.
 [[nodiscard]] ModalState unknown_modal_state();
 
+// Nothing but units, plane, distance, feed mode and the kind of motion can have changed: what else
+// was as it is at power-on is so still.
+[[nodiscard]] ModalState unknown_basic_modes(const ModalState& before);
+
 // Does every item have a value? The motion mode, the feed, the spindle speed and the laser
 // mode are not asked for: a block names the first itself, the others do not bend the path.
 [[nodiscard]] bool is_known(const ModalState& state);
@@ -103,6 +107,7 @@ struct ControlState {
   std::uint32_t set_by_word = 0;
   static_assert(kCodeGroups <= 32);
   bool calls_keep_modes = false;        // ReadOptions
+  bool only_basic_modes = false;        // ReadOptions
   const OwnWords* own_words = nullptr;  // ReadOptions; they outlive the reading
 
   [[nodiscard]] bool is_set(CodeGroup group) const { return (set_by_word & bit(group)) != 0; }

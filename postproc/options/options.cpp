@@ -217,10 +217,17 @@ bool usual_caller_modes(std::span<const std::string> allowed) {
   return std::ranges::find(allowed, gcode::reason::kCallerModes) != allowed.end();
 }
 
+bool has_only_basic_modes(const gcode::Control* target, gcode::SourceKind source) {
+  const bool of_it = source == gcode::SourceKind::kAuto || source == gcode::SourceKind::kGrbl;
+  return target != nullptr && target->only_basic_modes && of_it;
+}
+
 gcode::ReadOptions read_options_of(const SmoothOptions& options) {
   gcode::ReadOptions reading;
   reading.units = options.units;
   if (options.target != nullptr) reading.curves = options.target->curves;
+  reading.only_basic_modes =
+      !options.convert && has_only_basic_modes(options.target, options.source);
   reading.calls_keep_modes = calls_keep_modes(options.allowed);
   reading.usual_caller_modes = usual_caller_modes(options.allowed);
   reading.own_words = options.own_words;

@@ -26,6 +26,7 @@ TEST(LostModes, AreToldWithTheBlockThatLostThem) {
             std::string::npos)
       << unknown;
   EXPECT_EQ(unknown.find("--allow"), std::string::npos);
+  EXPECT_NE(unknown.find("--word"), std::string::npos);
   const std::string call = lost_modes_told(std::string(kKnownModes) + "M98 P1000\nX3\n");
   EXPECT_NE(call.find("so 1 block with X, Y or Z is copied"), std::string::npos) << call;
 }
@@ -33,6 +34,19 @@ TEST(LostModes, AreToldWithTheBlockThatLostThem) {
 TEST(LostModes, AreToldOfCallsWithTheOptionThatLiftsThem) {
   const std::string call = lost_modes_told(std::string(kKnownModes) + "o100 call\nX3\nX4\n");
   EXPECT_NE(call.find("--allow subprogram"), std::string::npos) << call;
+}
+
+// What the message names is what is missing, no more and no less.
+TEST(LostModes, AreToldWithTheWordsThatWereNotSaidAgain) {
+  const std::string text = std::string(kKnownModes) + "G777\nG90 G94 G40 G49\nX3\nG17\nX4\nM30\n";
+  EXPECT_NE(lost_modes_told(text).find(
+                "not set again before the last of them: units (G20 or G21), centres of arcs "
+                "(G91.1), path mode (G64), tilted plane (G69), scaling (G50), rotation (G69), "
+                "mirroring (G50.1), polar coordinates (G15), cylindrical coordinates (G7.1 C0), "
+                "smoothing by the control (G5.1 Q0), modal macro (G67), constant surface speed "
+                "(G97), diameter mode (G8). Set these after it"),
+            std::string::npos)
+      << lost_modes_told(text);
 }
 
 TEST(LostModes, AreNotToldWhereNothingIsCopiedForThem) {

@@ -2,7 +2,9 @@
 // where the block cannot have changed what it means, or where that was said again.
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "tests/support/wavy_programs.h"
 
@@ -58,6 +60,99 @@ TEST(BoundedBlocks, LoseOnlyWhatTheyCanHaveChanged) {
     const SmoothResult result = smoothed(text, options_for("grbl"));
     EXPECT_TRUE(result.proved);
     EXPECT_EQ(rewritten_runs(result), row.smoothed_behind ? 2U : 1U);
+  }
+}
+
+// A wave, a block that is not understood, some words, and the same wave again.
+std::size_t rewritten_behind(const std::string& block, const std::vector<std::string>& words,
+                             const SmoothOptions& options, const std::string& units = "G21") {
+  const std::string wave = joined(wave_lines({}), "\n");
+  const std::string text = head(units) + "G94 G40\n" + wave + "G0 Z5\n" + block + "\n" +
+                           joined(words, "\n") + "G0 X0 Y0 Z5\nG1 Z-1 F300\n" + wave + tail();
+  return rewritten_runs(smoothed(text, options));
+}
+
+// With any one of the words left out nothing is.
+void expect_settled_by(const std::vector<std::string>& words, const SmoothOptions& options) {
+  for (const std::string block : {"G777", "START_PRINT", "M98 P1", "L54", "part.nc"}) {
+    SCOPED_TRACE(block);
+    EXPECT_EQ(rewritten_behind(block, words, options), 2U);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      SCOPED_TRACE("without " + words[i]);
+      std::vector<std::string> fewer = words;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+      EXPECT_EQ(rewritten_behind(block, fewer, options), 1U);
+    }
+  }
+}
+
+// grbl drops a block with a word that it does not know, and has no other modes than these.
+TEST(BoundedBlocks, AreSettledForGrblByItsFewModes) {
+  expect_settled_by({"G17", "G21", "G90", "G94"}, options_for("grbl"));
+}
+
+// Elsewhere the block may have mirrored or scaled what follows, or turned its plane.
+TEST(BoundedBlocks, AreNotSettledByTheModesOfGrblOnOtherControls) {
+  const std::vector<std::string> words = {"G17", "G21", "G90", "G94", "G40", "G49"};
+  for (const char* target : {"grblhal", "linuxcnc", "fanuc", "haas", "mach3", "marlin"}) {
+    SCOPED_TRACE(target);
+    EXPECT_EQ(rewritten_behind("G777", words, options_for(target)), 1U);
+  }
+}
+
+// Written for a control that has more modes: M98 may have left any of them on.
+TEST(BoundedBlocks, AreNotSettledByTheModesOfGrblInProgramsForOthers) {
+  const std::vector<std::string> words = {"G17", "G21", "G90", "G94"};
+  SmoothOptions converted = options_for("grbl");
+  converted.convert = true;
+  EXPECT_LE(rewritten_behind("M98 P1", words, converted), 1U);
+  SmoothOptions from_haas = options_for("grbl");
+  from_haas.source = gcode::SourceKind::kHaas;
+  EXPECT_EQ(rewritten_behind("M98 P1", words, from_haas), 1U);
+}
+
+// Modes of others that a program for grbl names are on from there: not those of power-on.
+TEST(BoundedBlocks, LeaveUnknownWhatAProgramForGrblHasSetOn) {
+  const std::vector<std::string> words = {"G17", "G21", "G90", "G94"};
+  for (const char* on : {"G51 X2", "G68 X0 Y0 R30", "G41 D1", "G16", "G61.1", "G90.1", "G96"}) {
+    SCOPED_TRACE(on);
+    EXPECT_LE(rewritten_behind(std::string(on) + "\nG777", words, options_for("grbl")), 1U);
+  }
+}
+
+// What the message says is enough on the controls that have all of these words.
+TEST(BoundedBlocks, AreSettledByAllWordsOnControlsThatHaveThem) {
+  const std::vector<std::string> words = {"G17",     "G21",     "G90", "G91.1", "G94",   "G64",
+                                          "G40",     "G49",     "G69", "G50",   "G50.1", "G15",
+                                          "G7.1 C0", "G5.1 Q0", "G67", "G97",   "G8"};
+  for (const char* target : {"fanuc", "mazak", "brother", "syntec", "mitsubishi"}) {
+    SCOPED_TRACE(target);
+    expect_settled_by(words, options_for(target));
+  }
+}
+
+TEST(BoundedBlocks, OfSiemensAreSettledByTheWordsOfSiemens) {
+  const std::vector<std::string> words = {"G17", "G71",        "G90",   "G94",    "G64",
+                                          "G40", "TRAFOOF",    "TRANS", "COMPOF", "MCALL",
+                                          "G97", "CYCLE800()", "DIAMOF"};
+  const std::string wave = joined(wave_lines({}), "\n");
+  const auto rewritten = [&](const std::string& block, const std::vector<std::string>& said) {
+    const std::string down = "G0 X0 Y0 Z5\nG1 Z-1 F300\n";
+    const std::string text = "; a part\nG71 G90 G17 G94\n" + down + wave + "G0 Z5\n" + block +
+                             "\n" + joined(said, "\n") + down + wave + "G0 Z5\nM30\n";
+    SmoothOptions options = options_for("siemens");
+    options.source = gcode::SourceKind::kSiemens;
+    return rewritten_runs(smoothed(text, options));
+  };
+  for (const std::string block : {"G777", "L54", "PART(1)", "PART"}) {
+    SCOPED_TRACE(block);
+    EXPECT_EQ(rewritten(block, words), 2U);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      SCOPED_TRACE("without " + words[i]);
+      std::vector<std::string> fewer = words;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+      EXPECT_EQ(rewritten(block, fewer), 1U);
+    }
   }
 }
 
