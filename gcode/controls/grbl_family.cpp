@@ -55,6 +55,7 @@ std::vector<Control> grbl_family() {
   Control grblhal =
       grbl_like("grblhal", "grblHAL: arcs and helices in G17, G18, G19; lines of 255 characters",
                 kProgramming, "");
+  grblhal.machine = "grblhal-router";
   grblhal.curves = &chopped_g5();
 
   // What it refuses was not read of it, nor of g2core.
@@ -65,6 +66,7 @@ std::vector<Control> grbl_family() {
   Control g2core = grbl_like(
       "g2core", "g2core and TinyG: arcs and helices in G17, G18, G19; lines of 250 characters",
       kSettings, "M6 G43 G49 H");
+  g2core.machine = "router-unrounded";
   // 255 bytes in one of its line buffers, fewer by the comment in others.
   g2core.max_line_length = 250;
   g2core.arc_rule = ArcRule::kTinyg;

@@ -44,6 +44,7 @@ std::vector<Control> printer_family() {
                                    "RepRapFirmware 3: arcs and helices in G17, G18, G19 where its "
                                    "own chords are fine enough",
                                    {.error = 0.005});
+  reprapfirmware.machine = "router-unrounded";
   reprapfirmware.line_count = LineCount::kWithoutComments;
   reprapfirmware.not_in_comments = "{}\"";
 
@@ -52,6 +53,7 @@ std::vector<Control> printer_family() {
       "klipper",
       "Klipper: lines; arcs in G17 where [gcode_arcs] is set up and fine enough; millimetres",
       {.longest = 1});  // [gcode_arcs] resolution
+  klipper.machine = "klipper-router";
   klipper.planes = {true, false, false};
   klipper.other_meanings = {
       {200, "refused: Klipper runs millimetres only. Post the program in millimetres"}};
@@ -60,6 +62,7 @@ std::vector<Control> printer_family() {
       "smoothieware",
       "Smoothieware: arcs and helices in G17, G18, G19 where its own chords are fine enough",
       {.error = 0.01, .turned = 5});  // mm_max_arc_error, arc_correction
+  smoothieware.machine = "router-unrounded";
   smoothieware.comments = CommentStyle::kParentheses;
   smoothieware.max_line_length = 120;  // its buffer was not read; no line of ours needs more
 

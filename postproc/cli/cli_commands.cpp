@@ -240,7 +240,7 @@ std::shared_ptr<const Machine> machine_given(const gcode::Control* target, Argum
   }
   if (!settings) return machine;
   // The settings say that the control is grbl; only who says otherwise contradicts them.
-  const bool contradicts = machine != nullptr && machine->model != ControllerModel::kGrbl;
+  const bool contradicts = machine != nullptr && !is_grbl(machine->model);
   const Machine* base = contradicts && !choice ? nullptr : machine.get();
   return machine_with_grbl_settings(base, *settings, in.problems);
 }

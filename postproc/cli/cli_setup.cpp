@@ -79,8 +79,8 @@ void ask_all(Given& kept, Problems& problems) {
   ask("Which control runs your programs? (a name of `batten targets`, or a profile NAME.toml)",
       "target", "", kept, problems);
   if (!problems.empty()) return;
-  ask("Its machine? (a name of `batten machines`, a NAME.toml, the NAME.ini of LinuxCNC, or a file "
-      "with what grbl answers to $$)",
+  ask("Its machine? (a name of `batten machines`, a NAME.toml, the NAME.ini of LinuxCNC, the "
+      "NAME.cfg of Klipper, or a file with what grbl answers to $$)",
       "machine", machine_by_default(kept), kept, problems);
   if (!problems.empty()) return;
   ask("How far may the new path be from the old one?", "tolerance", "0.01mm", kept, problems);

@@ -81,8 +81,8 @@ constexpr OptionRow kProfile =
 // Of every command that tells times.
 constexpr OptionRow kMachine =
     setting("machine", kValue, "NAME|FILE",
-            "the machine whose time counts: built in (batten machines), a NAME.toml, or the "
-            "NAME.ini of a LinuxCNC machine; default: the target's");
+            "the machine whose time counts: built in (batten machines), a NAME.toml, the NAME.ini "
+            "of a LinuxCNC machine or the NAME.cfg of one with Klipper; default: the target's");
 constexpr OptionRow kGrblSettings =
     setting("grbl-settings", kValue, "FILE", "limits from what grbl answers to $$, saved as text");
 constexpr OptionRow kQuiet =

@@ -108,9 +108,10 @@ std::string table_of(std::span<const Machine> machines) {
 // --- JSON --------------------------------------------------------------------------------------
 
 // By Quantity.
-constexpr std::array<std::string_view, 10> kSuffixes = {
-    "_mm",         "_mm_per_s",   "_mm_per_s2", "_mm_per_s3",    "_deg_per_s",
-    "_deg_per_s2", "_deg_per_s3", "_s",         "_blocks_per_s", "_bytes_per_s"};
+constexpr std::array<std::string_view, 13> kSuffixes = {
+    "_mm",         "_mm_per_s", "_mm_per_s2",    "_mm_per_s3",   "_deg_per_s", "_deg_per_s2",
+    "_deg_per_s3", "_s",        "_blocks_per_s", "_bytes_per_s", "",           "_per_mm",
+    "_per_deg"};
 
 // "block-period" and seconds: "block_period_s".
 std::string json_key(std::string_view key, Quantity quantity) {

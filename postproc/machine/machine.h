@@ -20,7 +20,10 @@ enum class ControllerModel {
   kLookAhead,  // any control: junction speed by acceleration, block rate, no jerk
   kLinuxcnc,  // one segment per servo period, half tangential acceleration on arcs, blending within
               // P
-  kGrbl,      // junction deviation, a planner of 16 blocks, trapezoids
+  kGrbl,     // junction deviation, a planner of 16 blocks, trapezoids; ends on whole steps, arcs in
+             // single precision
+  kGrblhal,  // the same, arcs in double precision
+  kKlipper,  // square corner velocity, minimum cruise ratio, arcs in chords of equal length
 };
 
 enum class Axis { kX, kY, kZ, kA, kB, kC };
@@ -34,6 +37,9 @@ struct AxisLimits {
   double acceleration = 0;    // per s^2
   double jerk = 0;            // per s^3
   double rapid_velocity = 0;  // per s, in a rapid move
+  // Of the motor, per mm or degree: the ends of moves lie on whole steps. Infinite: they lie where
+  // the program says.
+  double steps = std::numeric_limits<double>::infinity();
 
   bool operator==(const AxisLimits&) const = default;
 };
@@ -65,9 +71,12 @@ struct Machine {
   double servo_period = 0.001;  // s: how often the axes get a new position
   gcode::PathMode path_mode = gcode::PathMode::kBlending;  // until the program says G61 or G64
   double junction_deviation = 0.01;                        // mm (grbl's $11)
-  double arc_tolerance = 0.002;    // mm: arcs become chords this near to them (grbl's $12)
-  double blend_tolerance = 0.01;   // mm (LinuxCNC's G64 P when the program sets none; 0: no P)
-  double naive_cam_tolerance = 0;  // mm (LinuxCNC's G64 Q, which is P where only P is given)
+  double arc_tolerance = 0.002;       // mm: arcs become chords this near to them (grbl's $12)
+  double square_corner_velocity = 5;  // mm/s: Klipper's speed at a right angle
+  double minimum_cruise_ratio = 0.5;  // Klipper: of a move that speeds up and slows down
+  double arc_resolution = 1;          // mm: Klipper's chords of arcs ([gcode_arcs] resolution)
+  double blend_tolerance = 0.01;      // mm (LinuxCNC's G64 P when the program sets none; 0: no P)
+  double naive_cam_tolerance = 0;     // mm (LinuxCNC's G64 Q, which is P where only P is given)
 
   // What takes time beside moves.
   double tool_change_time = 0;    // s for each tool change, from the last chip to the first
@@ -88,7 +97,10 @@ struct Machine {
   bool operator==(const Machine&) const = default;
 };
 
-[[nodiscard]] std::string_view name_of(ControllerModel model);  // "look-ahead", "linuxcnc", "grbl"
+// "look-ahead", "linuxcnc", "grbl", "grblhal", "klipper"
+[[nodiscard]] std::string_view name_of(ControllerModel model);
+// Is it grbl or grblHAL, which share their settings and their planner?
+[[nodiscard]] bool is_grbl(ControllerModel model);
 [[nodiscard]] std::string_view name_of(
     gcode::PathMode mode);                          // "blend", "exact-path", "exact-stop"
 [[nodiscard]] std::string_view name_of(Axis axis);  // "x" to "c"

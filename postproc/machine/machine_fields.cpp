@@ -38,11 +38,15 @@ constexpr std::array kAngularJerks = {Unit{"deg/s3", 1}, Unit{"deg/s^3", 1},
 constexpr std::array kTimes = {Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6},
                                Unit{"min", kMinute}};
 constexpr std::array kBlockRates = {Unit{"blocks/s", 1}, Unit{"blocks/min", 1 / kMinute}};
+constexpr std::array kShares = {Unit{"share", 1}, Unit{"%", 0.01}};
+constexpr std::array kStepRates = {Unit{"steps/mm", 1}, Unit{"steps/in", 1 / kInch}};
+constexpr std::array kAngularStepRates = {Unit{"steps/deg", 1}};
 constexpr std::array kByteRates = {Unit{"bytes/s", 1}, Unit{"baud", 1 / kBitsPerByte}};
 
 constexpr Allowed kPositive;
 constexpr Allowed kOrZero{.zero = true};
 constexpr Allowed kOrInfinite{.infinite = true};
+constexpr Allowed kBelowOne{.zero = true, .one_and_more = false};
 
 constexpr std::array kMachineFields = {
     MachineField{"path-feed", Quantity::kVelocity, &Machine::path_feed, kOrInfinite,
@@ -61,6 +65,12 @@ constexpr std::array kMachineFields = {
                  "grbl's $11"},
     MachineField{"arc-tolerance", Quantity::kLength, &Machine::arc_tolerance, kPositive,
                  "arcs become chords this near to them: grbl's $12"},
+    MachineField{"square-corner-velocity", Quantity::kVelocity, &Machine::square_corner_velocity,
+                 kOrZero, "Klipper's speed at a right angle", true},
+    MachineField{"minimum-cruise-ratio", Quantity::kShare, &Machine::minimum_cruise_ratio,
+                 kBelowOne, "Klipper's, which keeps short moves from speeding up", true},
+    MachineField{"arc-resolution", Quantity::kLength, &Machine::arc_resolution, kPositive,
+                 "Klipper's chords of arcs: [gcode_arcs] resolution", true},
     MachineField{"blend-tolerance", Quantity::kLength, &Machine::blend_tolerance, kOrZero,
                  "LinuxCNC's G64 P when the program sets none; 0: no P"},
     MachineField{"naive-cam-tolerance", Quantity::kLength, &Machine::naive_cam_tolerance, kOrZero,
@@ -82,16 +92,21 @@ constexpr std::array kAxisFields = {
               kOrInfinite, "inf: no limit"},
     AxisField{"rapid-velocity", "rapid-velocity", Quantity::kVelocity, Quantity::kAngularVelocity,
               &AxisLimits::rapid_velocity, kPositive, "in a rapid move"},
+    AxisField{"steps", "steps-per-mm", Quantity::kStepRate, Quantity::kAngularStepRate,
+              &AxisLimits::steps, kOrInfinite,
+              "moves end on whole ones: grbl's $100; inf: anywhere", true},
 };
 
 bool is_within(double value, Allowed allowed) {
   if (std::isinf(value)) return allowed.infinite && value > 0;
+  if (!allowed.one_and_more && value >= 1) return false;
   return value > 0 || (value == 0 && allowed.zero);
 }
 
 std::string words_of(Allowed allowed, Quantity quantity) {
-  return fmt::format("{}{} ({})", allowed.zero ? "0 or more" : "above 0",
-                     allowed.infinite ? ", or inf" : "", units_of(quantity).front().name);
+  return fmt::format("{}{}{} ({})", allowed.zero ? "0 or more" : "above 0",
+                     allowed.infinite ? ", or inf" : "", allowed.one_and_more ? "" : ", below 1",
+                     units_of(quantity).front().name);
 }
 
 void check(double value, Allowed allowed, Quantity quantity, std::string key,
@@ -104,12 +119,19 @@ void check(double value, Allowed allowed, Quantity quantity, std::string key,
 
 // In the order of Quantity.
 std::span<const Unit> units_of(Quantity quantity) {
-  static constexpr std::array<std::span<const Unit>, 10> kUnits = {
-      kLengths,           kVelocities,
-      kAccelerations,     kJerks,
-      kAngularVelocities, kAngularAccelerations,
-      kAngularJerks,      kTimes,
-      kBlockRates,        kByteRates};
+  static constexpr std::array<std::span<const Unit>, 13> kUnits = {kLengths,
+                                                                   kVelocities,
+                                                                   kAccelerations,
+                                                                   kJerks,
+                                                                   kAngularVelocities,
+                                                                   kAngularAccelerations,
+                                                                   kAngularJerks,
+                                                                   kTimes,
+                                                                   kBlockRates,
+                                                                   kByteRates,
+                                                                   kShares,
+                                                                   kStepRates,
+                                                                   kAngularStepRates};
   return kUnits[static_cast<std::size_t>(quantity)];
 }
 
@@ -136,10 +158,10 @@ std::vector<MachineProblem> problems_of(const Machine& machine) {
   std::vector<MachineProblem> problems;
   for (const MachineField& field : machine_fields()) {
     // A corner within 0 would stop grbl at every joint; its model needs something to go by.
-    const bool stops =
-        machine.model == ControllerModel::kGrbl && field.place == &Machine::junction_deviation;
-    check(machine.*field.place, {field.allowed.zero && !stops, field.allowed.infinite},
-          field.quantity, std::string(field.key), problems);
+    const bool stops = is_grbl(machine.model) && field.place == &Machine::junction_deviation;
+    Allowed allowed = field.allowed;
+    allowed.zero = allowed.zero && !stops;
+    check(machine.*field.place, allowed, field.quantity, std::string(field.key), problems);
   }
   for (std::size_t i = 0; i < kAxes; ++i) {
     const auto axis = static_cast<Axis>(i);

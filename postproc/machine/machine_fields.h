@@ -15,8 +15,9 @@
 
 namespace batten::postproc {
 
-inline constexpr std::array kControllerModels = {ControllerModel::kLinuxcnc, ControllerModel::kGrbl,
-                                                 ControllerModel::kLookAhead};
+inline constexpr std::array kControllerModels = {
+    ControllerModel::kLinuxcnc, ControllerModel::kGrbl, ControllerModel::kGrblhal,
+    ControllerModel::kKlipper, ControllerModel::kLookAhead};
 inline constexpr std::array kPathModes = {gcode::PathMode::kBlending, gcode::PathMode::kExactPath,
                                           gcode::PathMode::kExactStop};
 
@@ -31,6 +32,9 @@ enum class Quantity {
   kTime,
   kBlockRate,
   kByteRate,
+  kShare,
+  kStepRate,
+  kAngularStepRate,
 };
 
 // A unit in which a quantity may be given, and how many of our own it is.
@@ -49,6 +53,7 @@ struct Unit {
 struct Allowed {
   bool zero = false;
   bool infinite = false;
+  bool one_and_more = true;
 };
 
 struct MachineField {
@@ -56,7 +61,8 @@ struct MachineField {
   Quantity quantity;
   double Machine::*place;
   Allowed allowed;
-  std::string_view text;  // what it is, for people
+  std::string_view text;        // what it is, for people
+  bool may_be_missing = false;  // in a file that is based on no machine
 };
 
 struct AxisField {
@@ -67,6 +73,7 @@ struct AxisField {
   double AxisLimits::*place;
   Allowed allowed;
   std::string_view text;
+  bool may_be_missing = false;  // in a file that is based on no machine
 };
 
 [[nodiscard]] std::span<const MachineField> machine_fields();

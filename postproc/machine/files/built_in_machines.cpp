@@ -74,7 +74,7 @@ Machine grbl() {
   m.name = "grbl";
   m.description = "grbl 1.1 as it comes ($110=500, $120=10): for first steps of any machine";
   m.source = "grbl 1.1, defaults.h, DEFAULTS_GENERIC";
-  m.axes = xyz({500 / kMinute, 10, Machine::kNone, 500 / kMinute});
+  m.axes = xyz({500 / kMinute, 10, Machine::kNone, 500 / kMinute, 250});
   return m;
 }
 
@@ -84,7 +84,46 @@ Machine router() {
   m.name = "router";
   m.description = "hobby router, grbl 1.1 at 115200 baud, 5000 mm/min and 400 mm/s2";
   m.source = "grbl 1.1, defaults.h: limits of DEFAULTS_SHAPEOKO_3, $11 and $12 of DEFAULTS_GENERIC";
-  m.axes = xyz({5000 * kPerMinute, 400, Machine::kNone, 5000 * kPerMinute});
+  m.axes = xyz({5000 * kPerMinute, 400, Machine::kNone, 5000 * kPerMinute, 40});
+  return m;
+}
+
+// The same for controls that plan with the ends as programmed.
+Machine unrounded_router() {
+  Machine m = router();
+  m.name = "router-unrounded";
+  m.description = "as router, for controls that plan with ends that are not rounded to steps";
+  m.source = "as router; RepRapFirmware, Smoothieware and g2core plan in millimetres";
+  for (AxisLimits& axis : m.axes) axis.steps = Machine::kNone;
+  return m;
+}
+
+// The same with Klipper, which plans along the path, and a host that reads a file.
+Machine klipper_router() {
+  Machine m = unrounded_router();
+  m.name = "klipper-router";
+  m.description = "hobby router, Klipper, 5000 mm/min and 400 mm/s2";
+  m.source =
+      "limits as router; Klipper's defaults of square_corner_velocity, minimum_cruise_ratio and "
+      "resolution; 5000 blocks/s of its host: own choice";
+  m.model = ControllerModel::kKlipper;
+  m.path_feed = m.max_velocity();
+  m.path_acceleration = m.max_acceleration();
+  m.block_period = 0.0002;
+  m.stream_rate = Machine::kNone;
+  m.look_ahead = 1000;  // it sees all that matters
+  m.servo_period = 0.001;
+  return m;
+}
+
+// The same with grblHAL, which plans more blocks.
+Machine grblhal_router() {
+  Machine m = router();
+  m.name = "grblhal-router";
+  m.description = "hobby router, grblHAL at 115200 baud, 5000 mm/min and 400 mm/s2";
+  m.source = "as router; grblHAL, config.h: 100 planner blocks ($398)";
+  m.model = ControllerModel::kGrblhal;
+  m.look_ahead = 100;
   return m;
 }
 
@@ -137,8 +176,9 @@ Machine old_mill() {
 }  // namespace
 
 std::span<const Machine> built_in_machines() {
-  static const std::array machines = {linuxcnc(), fast_linuxcnc(),   router(),  grbl(),
-                                      mill(),     high_speed_mill(), old_mill()};
+  static const std::array machines = {
+      linuxcnc(),       fast_linuxcnc(), router(), grblhal_router(),  unrounded_router(),
+      klipper_router(), grbl(),          mill(),   high_speed_mill(), old_mill()};
   return machines;
 }
 

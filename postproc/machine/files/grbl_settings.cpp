@@ -25,8 +25,12 @@ using gcode::without_blanks_before;
 
 constexpr int kJunctionDeviation = 11;
 constexpr int kArcTolerance = 12;
-constexpr int kMaxRate = 110;       // mm/min of X, then of the other axes
-constexpr int kAcceleration = 120;  // mm/s^2
+constexpr int kSteps = 100;          // per mm of X, then of the other axes
+constexpr int kMaxRate = 110;        // mm/min of X, then of the other axes
+constexpr int kAcceleration = 120;   // mm/s^2
+constexpr int kPlannerBlocks = 398;  // of grblHAL alone
+
+constexpr double kMostPlannerBlocks = 1000;  // that grblHAL takes
 
 struct Setting {
   double value = 0;
@@ -108,8 +112,8 @@ class DumpReader {
     const auto is_of_axis = [number](int first) {
       return number >= first && number < first + static_cast<int>(kAxes);
     };
-    return number == kJunctionDeviation || number == kArcTolerance || is_of_axis(kMaxRate) ||
-           is_of_axis(kAcceleration);
+    return number == kJunctionDeviation || number == kArcTolerance || number == kPlannerBlocks ||
+           is_of_axis(kSteps) || is_of_axis(kMaxRate) || is_of_axis(kAcceleration);
   }
 
   const std::string& file_;
@@ -134,7 +138,6 @@ std::optional<Machine> with_settings(const Machine& base, std::string_view dump,
   }
 
   Machine machine = base;
-  machine.model = ControllerModel::kGrbl;
   ValueOrigins origins(file);
   std::string missing;
   const auto take = [&](int number, double& place, std::initializer_list<std::string> keys,
@@ -162,8 +165,15 @@ std::optional<Machine> with_settings(const Machine& base, std::string_view dump,
       limits.velocity /= kMinute;
       limits.rapid_velocity = limits.velocity;
     }
+    take(kSteps + static_cast<int>(i), limits.steps, {table + "steps"}, false);
     take(kAcceleration + static_cast<int>(i), limits.acceleration, {table + "acceleration"},
          required);
+  }
+  if (const Setting* blocks = reader.find(kPlannerBlocks); blocks != nullptr) {
+    machine.model = ControllerModel::kGrblhal;
+    machine.look_ahead = static_cast<int>(std::clamp(blocks->value, 0.0, kMostPlannerBlocks));
+    origins.add(std::string(kLookAheadKey),
+                {fmt::format("${}", kPlannerBlocks), blocks->line, blocks->column});
   }
   if (!missing.empty()) {
     problems.push_back(fmt::format(
@@ -180,7 +190,7 @@ std::optional<Machine> with_settings(const Machine& base, std::string_view dump,
 std::shared_ptr<const Machine> machine_with_grbl_settings(const Machine* base,
                                                           const std::string& file,
                                                           std::vector<std::string>& problems) {
-  if (base != nullptr && base->model != ControllerModel::kGrbl) {
+  if (base != nullptr && !is_grbl(base->model)) {
     problems.push_back(
         fmt::format("--grbl-settings: the control of machine {} is {}, expected a machine with "
                     "grbl, such as router",

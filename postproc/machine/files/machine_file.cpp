@@ -298,10 +298,12 @@ class MachineReader {
   void require_everything() {
     std::vector<std::string> needed = {std::string(kModel), std::string(kPathMode),
                                        std::string(kLookAheadKey)};
-    for (const MachineField& field : machine_fields()) needed.emplace_back(field.key);
+    for (const MachineField& field : machine_fields()) {
+      if (!field.may_be_missing) needed.emplace_back(field.key);
+    }
     for (std::size_t i = 0; i < kAxes; ++i) {
       for (const AxisField& field : axis_fields()) {
-        needed.push_back(axis_key(static_cast<Axis>(i), field));
+        if (!field.may_be_missing) needed.push_back(axis_key(static_cast<Axis>(i), field));
       }
     }
     std::erase_if(needed, [this](const std::string& key) { return said_.contains(key); });
@@ -355,7 +357,9 @@ std::shared_ptr<const Machine> read_machine_file(const std::string& file,
 }
 
 std::string possible_machines() {
-  return list_of(built_in_names()) + ", a file NAME.toml, or the NAME.ini of a LinuxCNC machine";
+  return list_of(built_in_names()) +
+         ", a file NAME.toml, the NAME.ini of a LinuxCNC machine, or the NAME.cfg of one with "
+         "Klipper";
 }
 
 std::shared_ptr<const Machine> choose_machine(
@@ -363,6 +367,7 @@ std::shared_ptr<const Machine> choose_machine(
     const std::vector<std::filesystem::path>& being_read) {
   if (const Machine* machine = find_machine(choice)) return shared_built_in(*machine);
   if (has_suffix(choice, ".TOML")) return read_machine_file(choice, problems, being_read);
+  if (has_suffix(choice, ".CFG")) return read_printer_cfg(choice, problems);
   if (has_suffix(choice, ".INI")) return read_machine_ini(choice, problems);
   problems.push_back(fmt::format("{}: there is no machine '{}'{}; possible: {}", asked_by, choice,
                                  suggestion(choice, built_in_names()), possible_machines()));
@@ -387,7 +392,8 @@ std::string machine_file_text(const Machine& machine) {
   text += fmt::format("name = {}\n", toml_quoted(machine.name));
   text += fmt::format("description = {}\n", toml_quoted(machine.description));
   text += fmt::format("source = {}  # where the numbers come from\n", toml_quoted(machine.source));
-  text += fmt::format("model = \"{}\"  # linuxcnc, grbl or look-ahead\n", name_of(machine.model));
+  text += fmt::format("model = \"{}\"  # linuxcnc, grbl, grblhal, klipper or look-ahead\n",
+                      name_of(machine.model));
   text += fmt::format(
       "path-mode = \"{}\"  # until the program says: blend (G64), exact-path (G61) or exact-stop\n",
       name_of(machine.path_mode));

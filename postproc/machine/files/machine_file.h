@@ -12,10 +12,10 @@
 
 namespace batten::postproc {
 
-// The name of a built-in machine, a machine file (NAME.toml) or the INI of a LinuxCNC machine
-// (NAME.ini). Adds to `problems` what is wrong and returns nothing then; `asked_by` stands in
-// front of what is wrong with the choice itself ("--machine"). `being_read`: see
-// read_machine_file.
+// The name of a built-in machine, a machine file (NAME.toml), the INI of a LinuxCNC machine
+// (NAME.ini) or the configuration of one with Klipper (NAME.cfg). Adds to `problems` what is wrong
+// and returns nothing then; `asked_by` stands in front of what is wrong with the choice itself
+// ("--machine"). `being_read`: see read_machine_file.
 [[nodiscard]] std::shared_ptr<const Machine> choose_machine(
     const std::string& choice, const std::string& asked_by, std::vector<std::string>& problems,
     const std::vector<std::filesystem::path>& being_read = {});
@@ -52,6 +52,16 @@ namespace batten::postproc {
 //
 // Adds to `problems` what is wrong, with file, line and column, and returns nothing then.
 [[nodiscard]] std::shared_ptr<const Machine> read_machine_ini(const std::string& file,
+                                                              std::vector<std::string>& problems);
+
+// A machine with Klipper from its printer.cfg. Read are [printer] max_velocity, max_accel,
+// max_z_velocity, max_z_accel, square_corner_velocity, minimum_cruise_ratio (or the older
+// max_accel_to_decel), and [gcode_arcs] resolution; the first two must be there, the others have
+// Klipper's defaults. All else is as the built-in machine klipper-router has it. [include ..] is
+// not followed.
+//
+// Adds to `problems` what is wrong, with file, line and column, and returns nothing then.
+[[nodiscard]] std::shared_ptr<const Machine> read_printer_cfg(const std::string& file,
                                                               std::vector<std::string>& problems);
 
 // The text of a file that says everything: read again, it is the same machine.

@@ -21,9 +21,14 @@ void require_usable(const Machine& machine) {
   }
 }
 
-// Above any diagonal of the axes (sqrt(3)), so that it limits nothing; mm/min.
+// Klipper runs all before the first F at this; mm/min.
+constexpr double kKlipperFirstFeed = 1500;
+
+// Without a feed above any diagonal of the axes (sqrt(3)), so that it limits nothing; mm/min.
 double feed_of(const TimedPiece& p, const Machine& machine, double feed_override) {
-  if (!p.rapid && p.feed > 0) return feed_override * p.feed;
+  const bool has_rapids = machine.model != ControllerModel::kKlipper;
+  if (p.feed > 0 && !(p.rapid && has_rapids)) return feed_override * p.feed;
+  if (!has_rapids) return kKlipperFirstFeed;
   return axis_velocities(machine, p.rapid).maxCoeff() * 60 * 2;
 }
 
@@ -76,7 +81,10 @@ StretchChain stretches_of(std::span<const TimedPiece> pieces, const Machine& mac
     case ControllerModel::kLinuxcnc:
       return linuxcnc_stretches(pieces, machine, path, end, places);
     case ControllerModel::kGrbl:
+    case ControllerModel::kGrblhal:
       return grbl_stretches(pieces, machine, path, places);
+    case ControllerModel::kKlipper:
+      return klipper_stretches(pieces, machine, path, places);
     case ControllerModel::kLookAhead:
       break;
   }

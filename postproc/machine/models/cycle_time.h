@@ -16,7 +16,7 @@ namespace batten::postproc {
 struct TimedPiece {
   geometry::PathPiece piece;
   double feed = 0;     // mm/min; 0: as fast as the machine cuts
-  bool rapid = false;  // at the rapid rate; `feed` means nothing then
+  bool rapid = false;  // at the rapid rate; on Klipper at `feed`, the last one
   int bytes = 0;       // of its block, for a control that is fed by a line; 0: not known
 };
 
@@ -50,6 +50,10 @@ enum class WithPositions { kNo, kYes };
 [[nodiscard]] StretchChain grbl_stretches(std::span<const TimedPiece> pieces,
                                           const Machine& machine, gcode::PathMode path,
                                           WithPositions places);
+
+[[nodiscard]] StretchChain klipper_stretches(std::span<const TimedPiece> pieces,
+                                             const Machine& machine, gcode::PathMode path,
+                                             WithPositions places);
 
 [[nodiscard]] StretchChain linuxcnc_stretches(std::span<const TimedPiece> pieces,
                                               const Machine& machine, gcode::PathMode path,

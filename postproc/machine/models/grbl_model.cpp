@@ -1,6 +1,8 @@
-// grbl 1.1: straight blocks only, junction deviation, trapezoids, a short queue.
+// grbl 1.1 and grblHAL: straight blocks only, between ends on whole steps; junction deviation,
+// trapezoids, a queue.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -24,6 +26,36 @@ int chords_of(const geometry::Arc& arc, double tolerance) {
   return std::max(1, static_cast<int>(std::abs(arc.sweep) * radius / 2 / half_chord));
 }
 
+// The sweep of an arc as grbl computes it, in single precision: the rounded ends of a full circle
+// differ by about its last digit, and the angle between them is taken for the arc itself where it
+// is above 5e-7 and of the right sign. Nothing moves then. Only arcs whose ends nearly meet are in
+// danger. In the plane of the axes a and b.
+double sweep_in_single_precision(const geometry::Arc& arc) {
+  constexpr double kNearlyFull = 1e-3;  // radians from a full turn, or from none
+  constexpr float kLeastAngle = 5e-7F;
+  const double turn = 2 * std::numbers::pi;
+  const double size = std::abs(arc.sweep);
+  if (size > kNearlyFull && size < turn - kNearlyFull) return arc.sweep;
+  Eigen::Index along = 0;
+  if (arc.axis.cwiseAbs().maxCoeff(&along) < 1) return arc.sweep;
+  const auto from_center = [&](Eigen::Index i) {
+    const auto position = static_cast<float>(arc.start[i]);
+    const auto offset = static_cast<float>(arc.center[i] - arc.start[i]);
+    const float center = position + offset;
+    return std::pair(-offset, static_cast<float>(arc.end[i]) - center);
+  };
+  const auto [start_a, end_a] = from_center((along + 1) % 3);
+  const auto [start_b, end_b] = from_center((along + 2) % 3);
+  float angle = std::atan2(start_a * end_b - start_b * end_a, start_a * end_a + start_b * end_b);
+  const double sign = arc.axis[along];
+  if (arc.sweep * sign < 0) {
+    if (angle >= -kLeastAngle) angle -= static_cast<float>(turn);
+  } else if (angle <= kLeastAngle) {
+    angle += static_cast<float>(turn);
+  }
+  return angle * sign;
+}
+
 // A Bezier piece never reaches grbl; it is timed as the chords within the same tolerance.
 int chords_of(const geometry::PathPiece& piece, double tolerance) {
   if (const auto* arc = std::get_if<geometry::Arc>(&piece)) return chords_of(*arc, tolerance);
@@ -31,6 +63,30 @@ int chords_of(const geometry::PathPiece& piece, double tolerance) {
   const double bound = geometry::second_derivative_bound(piece);
   return std::max(1, static_cast<int>(std::ceil(std::sqrt(bound / 8 / tolerance))));
 }
+
+// Where a move ends: on whole steps of each axis, half of one away from zero.
+class StepGrid {
+ public:
+  explicit StepGrid(const Machine& machine) {
+    for (std::size_t i = 0; i < kLinearAxes; ++i) {
+      steps_[static_cast<Eigen::Index>(i)] = machine.axes[i].steps;
+      is_there_ = is_there_ || std::isfinite(machine.axes[i].steps);
+    }
+  }
+
+  [[nodiscard]] Point3 nearest(const Point3& point) const {
+    if (!is_there_) return point;
+    Point3 on_grid = point;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      if (std::isfinite(steps_[i])) on_grid[i] = std::round(point[i] * steps_[i]) / steps_[i];
+    }
+    return on_grid;
+  }
+
+ private:
+  Vector3 steps_;
+  bool is_there_ = false;
+};
 
 }  // namespace
 
@@ -41,6 +97,8 @@ StretchChain grbl_stretches(std::span<const TimedPiece> pieces, const Machine& m
   // one block less.
   chain.rules.look_ahead = std::max(1, machine.look_ahead - 1);
   const Vector3 acceleration = axis_accelerations(machine);
+  const StepGrid grid(machine);
+  const bool single_precision = machine.model == ControllerModel::kGrbl;
   std::optional<Vector3> before;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const TimedPiece& timed = pieces[i];
@@ -48,10 +106,19 @@ StretchChain grbl_stretches(std::span<const TimedPiece> pieces, const Machine& m
     const double velocity =
         std::min({timed.feed / 60, machine.path_feed, length / machine.block_period});
     const Vector3 axis_velocity = axis_velocities(machine, timed.rapid);
-    const int chords = chords_of(timed.piece, machine.arc_tolerance);
-    Point3 to = geometry::start_point(timed.piece);
+    geometry::PathPiece as_computed;
+    const auto* arc = std::get_if<geometry::Arc>(&timed.piece);
+    if (arc != nullptr && single_precision) {
+      as_computed = *arc;
+      std::get<geometry::Arc>(as_computed).sweep = sweep_in_single_precision(*arc);
+    }
+    const geometry::PathPiece& piece =
+        arc != nullptr && single_precision ? as_computed : timed.piece;
+    const int chords = chords_of(piece, machine.arc_tolerance);
+    Point3 to = grid.nearest(geometry::start_point(timed.piece));
     for (int k = 1; k <= chords; ++k) {
-      const Point3 from = std::exchange(to, geometry::point_at(timed.piece, double(k) / chords));
+      const Point3 from =
+          std::exchange(to, grid.nearest(geometry::point_at(piece, double(k) / chords)));
       const Vector3 way = to - from;
       if (way.norm() <= geometry::kSamePlace) continue;
       const Vector3 direction = way.normalized();

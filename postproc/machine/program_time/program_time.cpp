@@ -128,8 +128,10 @@ class StepTimes {
       if (chain.counts(piece)) open_[chain.steps[piece] - first_open_].seconds += part;
     };
     if (chain.counts(place.first_piece)) {
-      const double feed = open_[chain.steps[place.first_piece] - first_open_].step.feed;
-      if (feed > 0) result_.below_half_feed += motion.time_below(i, kSlowShare * feed / kMinute);
+      const ProgramStep& step = open_[chain.steps[place.first_piece] - first_open_].step;
+      const double feed = step.feed;
+      if (step.kind == StepKind::kCut && feed > 0)
+        result_.below_half_feed += motion.time_below(i, kSlowShare * feed / kMinute);
     }
     if (place.first_piece == place.last_piece) return add(place.first_piece, duration);
     if (place.is_corner) {

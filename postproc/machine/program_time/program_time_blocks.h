@@ -41,8 +41,8 @@ struct DwellTime {
 [[nodiscard]] DwellTime dwell_of(const gcode::BlockWords& words, gcode::DwellUnit unit,
                                  std::optional<double> spindle_speed);
 
-// What P means in the programs of a control; nullptr: LinuxCNC and grbl count in seconds, whatever
-// the program was written for.
+// What P means in the programs of a control; nullptr: LinuxCNC and grbl count in seconds, Klipper
+// in milliseconds, whatever the program was written for.
 [[nodiscard]] gcode::DwellUnit dwell_unit_of(const gcode::Control* target, const Machine& machine);
 
 // --- canned cycles -----------------------------------------------------------------------------

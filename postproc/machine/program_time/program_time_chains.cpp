@@ -10,9 +10,9 @@ namespace {
 
 bool is_motion(StepKind kind) { return kind == StepKind::kCut || kind == StepKind::kRapid; }
 
-// grbl runs rapids and feeds through one queue; others come to rest between the two.
+// grbl and Klipper run rapids and feeds through one queue; others come to rest between the two.
 bool rests_between_rapids_and_cuts(const Machine& machine) {
-  return machine.model != ControllerModel::kGrbl;
+  return !is_grbl(machine.model) && machine.model != ControllerModel::kKlipper;
 }
 
 }  // namespace

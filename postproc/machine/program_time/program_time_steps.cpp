@@ -395,7 +395,7 @@ class StepWork {
     if (block_meaning().barrier == reason::kLoopBody) note(reason::kLoopBody);
     ProgramStep& step = add_step(rapid ? StepKind::kRapid : StepKind::kCut);
     step.piece = placed.piece;
-    if (!rapid) step.feed = feed_along(placed.piece);
+    step.feed = rapid ? last_feed() : feed_along(placed.piece);
     move_to_end(place_, placed, words, state());
   }
 
@@ -411,6 +411,11 @@ class StepWork {
       if (!motion().axes_named[axis]) continue;
       place_.set_axis(axis, end[static_cast<Eigen::Index>(axis)], Certainty::kKnown);
     }
+  }
+
+  // mm/min, at which a control without rapids runs them; 0: not known.
+  [[nodiscard]] double last_feed() const {
+    return state().feed_mode == gcode::FeedMode::kPerMinute ? state().feed.value_or(0) : 0;
   }
 
   // mm/min; 0 where it is not known.

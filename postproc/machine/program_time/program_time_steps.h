@@ -64,7 +64,7 @@ struct ProgramStep {
   std::int32_t tool = kNoTool;  // number of the tool in the spindle
   std::uint32_t line = 0;       // of its block
   std::uint32_t bytes = 0;      // of the blocks since the step before it, its own with them
-  double feed = 0;              // kCut: mm/min; 0: not known
+  double feed = 0;              // kCut: mm/min; kRapid: the last one; 0: not known
   double seconds = 0;           // kDwell, kRotary
   geometry::PathPiece piece;    // kCut, kRapid: absolute mm
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "postproc/machine/files/machine_file.h"
 #include "postproc/machine/machine_fields.h"
@@ -151,6 +152,7 @@ TEST(MachineFile, KeepsEveryMemberThereAndBack) {
   machine.look_ahead = 3;
   double value = 1.0 / 3;
   for (const MachineField& field : machine_fields()) machine.*field.place = value *= 1.1;
+  machine.minimum_cruise_ratio = 0.7;  // below 1
   for (AxisLimits& limits : machine.axes) {
     for (const AxisField& field : axis_fields()) limits.*field.place = value *= 1.1;
   }
@@ -236,8 +238,9 @@ INSTANTIATE_TEST_SUITE_P(
                 "2:20: extra-dwell-time: -0.1, expected 0 or more (s)"},
         BadFile{"GrblWithoutJunctionDeviation", "junction-deviation = 0",
                 "2:22: junction-deviation: 0, expected above 0 (mm)"},
-        BadFile{"UnknownModel", "model = \"fanuc\"",
-                "2:9: model: \"fanuc\", expected one of linuxcnc, grbl, look-ahead"},
+        BadFile{
+            "UnknownModel", "model = \"fanuc\"",
+            "2:9: model: \"fanuc\", expected one of linuxcnc, grbl, grblhal, klipper, look-ahead"},
         BadFile{"UnknownPathMode", "path-mode = 61",
                 "2:13: path-mode: 61, expected one of blend, exact-path, exact-stop"},
         BadFile{"NameThatIsNoText", "name = 5", "2:8: name: 5, expected a text in quotes"},
@@ -245,7 +248,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "2:1: max-velocty: there is no such key, did you mean 'max-velocity'?"},
         BadFile{"SlipInAKeyOfAnAxis", "[axis.x]\nspeed = 1\n",
                 "3:1: axis.x.speed: there is no such key; possible: velocity, acceleration, jerk, "
-                "rapid-velocity"},
+                "rapid-velocity, steps"},
         BadFile{"UnknownAxis", "[axis.u]\nvelocity = 1\n",
                 "2:7: axis.u: there is no such axis; possible: x, y, z, a, b, c"},
         BadFile{"AxisThatIsNoTable", "axis.x = 5\n", "2:10: axis.x: 5, expected a table [axis.x]"},
@@ -276,9 +279,10 @@ TEST(MachineFile, SaysWhatIsWrongWithItAsAWhole) {
            BadWhole{"based-on = \"mill\"\nmax-velocity = 5 mm\n", "my.toml:2:", ""},
            BadWhole{"based-on = \"rooter\"\n",
                     "my.toml:1:12: based-on: there is no machine 'rooter', did you mean 'router'?; "
-                    "possible: linuxcnc, linuxcnc-fast, router, grbl, mill, high-speed, old-mill, "
-                    "a file NAME.toml, "
-                    "or the NAME.ini of a LinuxCNC machine\n",
+                    "possible: linuxcnc, linuxcnc-fast, router, grblhal-router, router-unrounded, "
+                    "klipper-router, grbl, mill, high-speed, old-mill, a file NAME.toml, the "
+                    "NAME.ini of a "
+                    "LinuxCNC machine, or the NAME.cfg of one with Klipper\n",
                     ""},
        }) {
     const Read result = read_toml(text);
@@ -635,9 +639,48 @@ TEST(ChooseMachine, ReadsFilesByTheirSuffix) {
   EXPECT_EQ(machine_of(read(folder, both)).tool_change_time, 8);
   EXPECT_EQ(read(folder, "ruter").problems,
             "--machine: there is no machine 'ruter', did you mean 'router'?; possible: linuxcnc, "
-            "linuxcnc-fast, router, grbl, mill, high-speed, old-mill, a file NAME.toml, or the "
-            "NAME.ini of a "
-            "LinuxCNC machine\n");
+            "linuxcnc-fast, router, grblhal-router, router-unrounded, klipper-router, grbl, mill, "
+            "high-speed, old-mill, a file NAME.toml, the NAME.ini of a LinuxCNC machine, or the "
+            "NAME.cfg of one with Klipper\n");
+}
+
+// $100 to $102; a dump without them says nothing of steps.
+TEST(MachineWithGrblSettings, HasTheStepsOfTheMotors) {
+  const ScratchFolder folder;
+  std::vector<std::string> problems;
+  const auto with = [&](const std::string& lines) {
+    return machine_with_grbl_settings(nullptr, folder.put("s.txt", dump_with(lines)), problems);
+  };
+  const auto machine = with("$100=320.000\r\n$101=400.000\r\n$102=800.000\r\n");
+  ASSERT_NE(machine, nullptr) << problems.front();
+  EXPECT_EQ(machine->axis(Axis::kX).steps, 320);
+  EXPECT_EQ(machine->axis(Axis::kY).steps, 400);
+  EXPECT_EQ(machine->axis(Axis::kZ).steps, 800);
+  EXPECT_EQ(with("")->axis(Axis::kX).steps, find_machine("grbl")->axis(Axis::kX).steps);
+  EXPECT_EQ(with("$100=0\r\n"), nullptr);
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_NE(problems.front().find("$100: 0, expected above 0"), std::string::npos);
+}
+
+// Only grblHAL has $398, the blocks that it plans ahead.
+TEST(MachineWithGrblSettings, AreThoseOfGrblhalWhereTheyHaveItsPlannerBlocks) {
+  const ScratchFolder folder;
+  std::vector<std::string> problems;
+  const auto machine =
+      machine_with_grbl_settings(nullptr, folder.put("s.txt", dump_with("$398=35\r\n")), problems);
+  ASSERT_NE(machine, nullptr) << problems.front();
+  EXPECT_EQ(machine->model, ControllerModel::kGrblhal);
+  EXPECT_EQ(machine->look_ahead, 35);
+}
+
+// A complete file that was printed before machines had steps is still one.
+TEST(MachineFile, NeedsNoStepsWithoutABase) {
+  std::string text;
+  std::istringstream lines(machine_file_text(*find_machine("mill")));
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("steps =")) text += line + "\n";
+  }
+  EXPECT_EQ(machine_of(read_toml(text)), *find_machine("mill"));
 }
 
 TEST(MachineWithGrblSettings, TakesTheRestFromItsBase) {

@@ -448,6 +448,56 @@ TEST(GrblPlanner, BrakesForTheEndOfItsSixteenBlocks) {
   EXPECT_NEAR(time_of(blocks, router()), expected, 1e-6);
 }
 
+// grbl computes lengths and directions from the whole steps of the ends: a program takes as long as
+// one whose ends lie there. With 250 steps/mm, y = 0.0021 is one step (0.004 mm), y = 0.0019 none.
+TEST(GrblPlanner, RunsBetweenEndsOnWholeSteps) {
+  Machine m = router();
+  const Machine exact = m;
+  set_xyz(m, &AxisLimits::steps, 250);
+  const auto bend_to = [](double y) {
+    return std::vector{line({0, 0, 0}, {10, 0, 0}), line({10, 0, 0}, {20, y, 0})};
+  };
+  EXPECT_EQ(time_of(bend_to(0.0019), m), time_of(bend_to(0), exact));
+  EXPECT_EQ(time_of(bend_to(-0.0019), m), time_of(bend_to(0), exact));
+  EXPECT_EQ(time_of(bend_to(0.0021), m), time_of(bend_to(0.004), exact));
+  EXPECT_EQ(time_of(bend_to(-0.0021), m), time_of(bend_to(-0.004), exact));
+  EXPECT_GT(time_of(bend_to(6), exact), time_of(bend_to(0), exact) + 1e-3);
+}
+
+// Nine moves of a tenth of a step and one of nine tenths are one step.
+TEST(GrblPlanner, MakesNoMoveOfNoStep) {
+  Machine m = router();
+  set_xyz(m, &AxisLimits::steps, 10);
+  std::vector<TimedPiece> blocks;
+  for (int i = 0; i < 10; ++i) blocks.push_back(line({0.01 * i, 0, 0}, {0.01 * (i + 1), 0, 0}));
+  EXPECT_NEAR(time_of(blocks, m), time_of({line({0, 0, 0}, {0.1, 0, 0})}, m), 1e-12);
+  EXPECT_EQ(time_of({line({0, 0, 0}, {0.04, 0.04, -0.04})}, m), 0);
+}
+
+// Of nine full circles with end = start the real grbl ran six, grblHAL all: line 21 of
+// arcs_tiny_f600, a radius of 0.02 mm, is one that grbl lost.
+TEST(GrblPlanner, LosesFullCirclesThatItsSinglePrecisionTakesForNothing) {
+  Machine m = router();
+  int lost = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Point3 at(2.3685 + 0.7731 * i, -0.5577 - 0.0013 * i, 0);
+    const TimedPiece circle{
+        geometry::Arc{at, at, at + Point3(-0.0035, -0.0197, 0), geometry::Vector3::UnitZ(), 2 * pi},
+        600};
+    m.model = ControllerModel::kGrblhal;
+    EXPECT_GT(time_of({circle}, m), 0.01);
+    m.model = ControllerModel::kGrbl;
+    if (time_of({circle}, m) == 0) ++lost;
+  }
+  EXPECT_GT(lost, 20);
+  EXPECT_LT(lost, 180);
+  // Half circles are safe.
+  const Point3 at(3, 0, 0);
+  const geometry::Arc half{at, at + Point3(0, 0.04, 0), at + Point3(0, 0.02, 0),
+                           geometry::Vector3::UnitZ(), pi};
+  EXPECT_GT(time_of({TimedPiece{half, 600}}, m), 0.01);
+}
+
 // --- what a chain keeps from one question to the next changes no answer --------------------------
 
 TEST(TimedChain, GivesTheTimesOfCuttingTime) {

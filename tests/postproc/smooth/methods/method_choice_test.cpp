@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "postproc/smooth/selection/selection.h"
+#include "tests/support/machine_limits.h"
 #include "tests/support/method_cases.h"
 #include "tests/support/wavy_programs.h"
 
@@ -29,8 +30,20 @@ std::string noisy_program() {
   return wave_program({.lines = 300, .height = 1, .length = 40, .noise = 0.008, .feed = 6000});
 }
 
+// A router with motors of 1600 steps/mm: on those of the target's machine, 40 steps/mm, the rounded
+// ends leave little to gain at a corner.
+const Machine& fine_router() {
+  static const Machine machine = [] {
+    Machine m = *find_machine("router");
+    set_xyz(m, &AxisLimits::steps, 1600);
+    return m;
+  }();
+  return machine;
+}
+
 SmoothOptions options_with(Method method, std::string_view target, double tolerance = 0.05) {
   SmoothOptions options = options_for(target);
+  if (target == "grbl") options.machine = &fine_router();
   options.method = method;
   options.tolerance_mm = tolerance;
   return options;
