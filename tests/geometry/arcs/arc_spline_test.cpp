@@ -161,6 +161,20 @@ TEST(ArcSpline, ABluntCornerIsRoundedInTheBand) {
   EXPECT_LE(spline->pieces.size(), 4U);
 }
 
+TEST(ArcSpline, OfMoreArcsThanThereMayBeIsNotLookedFor) {
+  const std::vector<Point2> points =
+      along([](double u) { return Point2(u, 5 * std::sin(u / 10)); }, 0, 100, 300);
+  ArcSplineOptions options = options_for(points);
+  const auto any = fit_arc_spline(points, options);
+  ASSERT_TRUE(any);
+  options.at_most = any->pieces.size();
+  const auto enough = fit_arc_spline(points, options);
+  ASSERT_TRUE(enough);
+  EXPECT_EQ(enough->pieces.size(), any->pieces.size());
+  options.at_most = any->pieces.size() / 2;
+  EXPECT_FALSE(fit_arc_spline(points, options));
+}
+
 // The integral of (|k'| / 124.7 e)^(1/3) over the length: docs/algorithms/arc_fit.md, step 5.
 double least_arcs(const Shape& shape, double from, double to, double tolerance) {
   constexpr int kSteps = 20000;
