@@ -144,13 +144,11 @@ constexpr Explanation kExplanations[] = {
      "Write the loop out, or smooth the subprogram as a program of its own."},
     {kCallerModes,
      "The program is one that others call (it ends with M99, M17 or RET): it runs under the modes "
-     "of "
-     "its caller, which are not known here.",
+     "of its caller, which are not known here.",
      "--allow caller-modes where every caller calls it under the modes of power-on (G17, G90, G94, "
      "G40, no rotation, scaling or mirroring ..), but for those that it sets itself; and --units "
      "where it does not say them. N numbers are targets unless --allow subprogram says that "
-     "nothing "
-     "begins at them.",
+     "nothing begins at them.",
      true},
 
     {kTooShort, "Fewer motions in a row than a run needs.", "--min-points lowers the number."},

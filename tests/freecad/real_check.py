@@ -104,9 +104,10 @@ def check_other_forms(batten, out):
     expect(blocks[1] < 0.75 * blocks[0], "a quarter fewer blocks as arcs", blocks)
     expect(seconds[1] < (1 + SAME_TIME) * seconds[0], "no more time as arcs", seconds)
     (out / "fast.nc").write_text((out / "old.nc").read_text().replace("F1500", "F6000"))
-    blocks, seconds = smoothed(batten, out, "fast.nc", "--target", "grbl")
+    blocks, seconds = smoothed(batten, out, "fast.nc", "--target", "grbl", "--machine",
+                               "router-unrounded")
     print(f"F6000, grbl: {blocks[0]} -> {blocks[1]} blocks, {seconds[0]:.2f} -> {seconds[1]:.2f} s")
-    expect(seconds[1] < 0.98 * seconds[0], "less time at a higher feed", seconds)
+    expect(seconds[1] < 0.95 * seconds[0], "less time at a higher feed", seconds)
 
 
 def check_programs(batten, out):

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <string_view>
+
 #include "tests/support/one_run.h"
 
 namespace batten::postproc {
@@ -24,6 +28,50 @@ TEST(CandidateBounds, GiveUpARunOfCoarseChords) {
   };
   EXPECT_TRUE(is_hopeless(1));
   EXPECT_FALSE(is_hopeless(0.1));
+}
+
+// The bound against every form that is made, by each model of a control. Joints are rounded by the
+// control, steps round the ends: a percent is left for both.
+TEST(CandidateBounds, NoFormIsFasterThanTheLeastTime) {
+  std::size_t forms = 0;
+  double nearest = 10;
+  for (const std::string& text : {wave_program(), wave_program({.height = 0.5, .length = 40}),
+                                  wave_program({.lines = 400, .height = 4.0, .length = 6.0}),
+                                  circle_program(40), bend_program()}) {
+    const OneRun run(text);
+    const RunContext context = run.context();
+    for (const std::string_view target : {"linuxcnc", "grbl", "grblhal", "klipper", "fanuc"}) {
+      const SmoothOptions options = options_for(target);
+      const SmoothedRun all = run.smooth(options, CandidateScope::kAll);
+      const CandidateBounds bounds({run.run(), context, options}, all);
+      const CostScale& scale = all.facts.scale;
+      for (const Candidate& form : all.candidates) {
+        const double alone =
+            scale.alone + form.figures.times.programmed - scale.original.times.programmed;
+        EXPECT_GE(alone, 0.99 * bounds.least_time()) << target << ' ' << form.method;
+        nearest = std::min(nearest, alone / bounds.least_time());
+        ++forms;
+      }
+    }
+  }
+  EXPECT_GT(forms, 100U);
+  EXPECT_LT(nearest, 1.01) << "a bound that nothing comes near to leaves nothing out";
+}
+
+// A control that joins lines may be faster than the directions of single ones allow.
+TEST(CandidateBounds, KnowNoDirectionsWhereTheRunItselfIsFasterThanThose) {
+  const OneRun run(wave_program());
+  const RunContext context = run.context();
+  const SmoothOptions options = options_for("linuxcnc");
+  const double along =
+      least_time(run.run(), options.tolerance_mm, *options.machine, options.tolerance_kind);
+  const auto least_where_it_takes = [&](double seconds) {
+    SmoothedRun so_far = run.smooth(options);
+    so_far.facts.scale.alone = seconds;
+    return CandidateBounds({run.run(), context, options}, so_far).least_time();
+  };
+  EXPECT_EQ(least_where_it_takes(1.01 * along), along);
+  EXPECT_LT(least_where_it_takes(0.99 * along), along);
 }
 
 }  // namespace
