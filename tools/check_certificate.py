@@ -84,8 +84,7 @@ def arc_chords(piece, most_error):
     radius, growth, rise = max(r0, r1), abs(r1 - r0) + 2, end[k] - start[k]
     step = min(0.3, math.sqrt(8 * float(most_error) / radius))
     count = max(2, int(angle / step) + 1)
-    first = math.atan2(ay, ax)
-    points = [start]
+    first, points = math.atan2(ay, ax), [start]
     for n in range(1, count):
         part = n / count
         about, at = first + turn * angle * part, r0 + (r1 - r0) * part
@@ -157,11 +156,8 @@ class Chords:
         self.points, self.errors, self.first = [start], [], []
         for piece in pieces:
             self.first.append(len(self.errors))
-            if piece[0] == "line":
-                self.points.append(piece[2])
-                self.errors.append(0)
-                continue
-            points, errors = (arc_chords if piece[0] == "arc" else cubic_chords)(piece, most_error)
+            chords = {"arc": arc_chords, "cubic": cubic_chords}.get(piece[0])
+            points, errors = chords(piece, most_error) if chords else (piece[1:], [0])
             self.points += points[1:]
             self.errors += errors
         if not self.errors:
@@ -260,9 +256,6 @@ class State:
         self.place, self.motion, self.feed, self.plane, self.absolute = (None, None, None), None, None, 17, True
         self.centres_absolute, self.inch, self.feed_mode = False, inch, 94
         self.off, self.pole = frozenset(KNOWN_OFF), None
-
-    def copy(self):
-        return copy.copy(self)
 
     def forget(self):
         """A line that is not known has acted."""
@@ -580,7 +573,13 @@ class Reader:
             if state.centres_absolute and OFFSETS[axis] not in offsets:
                 raise Refused("an arc without its whole centre")
             centre.append(number if state.centres_absolute else p[axis] + number)
-        return ("arc", p, q, centre, (i, j, k), turn, 0)
+        return self.arc_about(p, q, centre, (i, j, k), turn)
+
+    def arc_about(self, p, q, centre, axes, turn):
+        r, s = (math.isqrt(sum((x[n] - c) ** 2 for n, c in zip(axes, centre))) for x in (p, q))
+        if abs(r - s) * 1000 > max(r, 30 * self.scale.per_mm):
+            raise Refused("an arc whose radii at its ends differ by more than 0.03 mm and 0.1 %")
+        return ("arc", p, q, centre, axes, turn, 0)
 
     def g5(self, state, p, q, axes, offsets, others):
         if state.plane != 17 or "Z" in axes or offsets.keys() != {"I", "J"} or not {"P", "Q"} <= others.keys():
@@ -705,7 +704,7 @@ class Reader:
         if state.pole is None or None in state.pole or "DR" not in others or None in start[:2]:
             raise Refused("an arc whose centre is not known")
         turn = 1 if others["DR"] == "+" else -1
-        return [("cut", ("arc", p, q, list(state.pole), (0, 1, 2), turn, 0), state.feed)]
+        return [("cut", self.arc_about(p, q, list(state.pole), (0, 1, 2), turn), state.feed)]
 
 def blossom(points, knots, i, arguments):
     """Of the cubic on the knots from i to i + 1: its control points are those of three arguments."""
@@ -872,8 +871,8 @@ class Checker:
     def check_run(self, run):
         if NEIGHBOURS.search(self.neighbour):
             self.refuse("a corner before a run is rounded: its moves count for that")
-        old, new = self.old, self.old.copy() if self.new is self.old else self.new
-        before = [old.copy(), new.copy()]
+        old, new = self.old, copy.copy(self.old) if self.new is self.old else self.new
+        before = [copy.copy(old), copy.copy(new)]
         start = [[0 if x is None else x for x in state.place] for state in before]
         old_moves, old_comments = self.moves_of(self.old_lines, self.i, run.old_count, old, False)
         new_moves, new_comments = self.moves_of(self.new_lines, self.j, run.new_count, new, True)

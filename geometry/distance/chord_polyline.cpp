@@ -103,11 +103,12 @@ struct Edges {  // those of one piece
 };
 
 Edges edges_of(const ChordPolyline& polyline, std::size_t piece) {
-  const auto found = std::ranges::equal_range(polyline.pieces, piece);
+  // Not std::ranges::equal_range: Clang 14 cannot read what it returns.
+  const auto [first, end] = std::equal_range(polyline.pieces.begin(), polyline.pieces.end(), piece);
   const auto index = [&](auto at) {
     return static_cast<std::size_t>(at - polyline.pieces.begin());
   };
-  return {index(found.begin()), index(found.end())};
+  return {index(first), index(end)};
 }
 
 }  // namespace

@@ -170,7 +170,8 @@ std::string batch_index(std::span<const ProgramRecord> records, const std::strin
                   plural(totals.programs, "program"), fmt::join(counts, ", "), figures(totals, 0));
   std::vector<const ProgramRecord*> order;
   for (const ProgramRecord& record : records) order.push_back(&record);
-  std::ranges::stable_partition(order, [](const ProgramRecord* r) { return !has_output(*r); });
+  std::stable_partition(order.begin(), order.end(),
+                        [](const ProgramRecord* r) { return !has_output(*r); });
   for (const ProgramRecord* record : order) text += item(*record);
   return text + "</ul>\n</body>\n</html>\n";
 }

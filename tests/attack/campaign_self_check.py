@@ -1,0 +1,176 @@
+#!/usr/bin/env python3
+"""Does the oracle of the campaign find planted faults, and nothing where there is none?
+
+For each kind of program a text, and changes of it: each that does harm has to be found, by the readers
+and, for LinuxCNC's family, by LinuxCNC's own interpreter where rs274 is there; each that does none
+must not be."""
+
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import oracle  # noqa: E402
+import paths  # noqa: E402
+
+TOLERANCE = 0.01
+
+PLAIN = """G21 G17 G90 G94
+G0 X0 Y0 Z5
+G1 Z0 F200
+X1 Y0.1 F1000
+X2 Y0.3
+G2 X3 Y0.3 I0.5 J0
+G1 X4 Y0
+M8
+X5 F500
+G1 X6 Y1
+G0 Z5
+M2
+"""
+# Text, what is replaced by what, and whether it does harm.
+PLAIN_CHANGES = [
+    ("X2 Y0.3", "X2 Y0.33", True, "a place moved by three tolerances"),
+    ("X2 Y0.3", "X2 Y0.305", False, "a place moved by half a tolerance"),
+    ("X1 Y0.1 F1000", "X1 Y0.1 F1001", True, "another feed"),
+    ("X5 F500", "X5", True, "a feed lost"),
+    ("X5 F500\nG1 X6 Y1", "X5\nG1 X6 Y1 F500", True, "a feed a move later"),
+    ("X2 Y0.3\n", "", True, "a block lost"),
+    ("G1 X4 Y0\nM8", "M8\nG1 X4 Y0", True, "an M word moved"),
+    ("M8\n", "", True, "an M word lost"),
+    ("M8\n", "M9\n", True, "another M word"),
+    ("G2 X3", "G3 X3", True, "an arc turned round"),
+    ("I0.5 J0", "I0.5 J0.2", True, "an arc whose radii are not the same"),
+    ("G1 X4 Y0", "X4 Y0", True, "a motion word lost"),
+    ("X1 Y0.1 F1000", "X0.5 Y0.05 F1000\nX1 Y0.1", False, "a line in two"),
+    ("X1 Y0.1 F1000", "X1 Y0.1 F1000\nX0.5 Y0.05\nX1 Y0.1", True, "there and back"),
+    ("G0 Z5\nM2", "G1 Z5\nM2", True, "a rapid that is none any more"),
+    ("G0 Z5\nM2", "G0 X7 Z5\nM2", True, "another end of a rapid"),
+    ("G21", "G20", True, "another unit"),
+    ("G1 X6 Y1", "G91\nG1 X6 Y1", True, "a distance mode"),
+    ("G1 X6 Y1", "G1 X6 Y1 (done)", False, "a comment"),
+    ("G1 X6 Y1", "G1 G90 X6 Y1", False, "a word that changes nothing"),
+    ("M8\n", "M8\nG18\n", True, "a plane behind the last arc"),
+]
+FANUC = """%
+O1
+G21 G17 G90 G94
+G0 X0. Y0. Z0.
+G1 X1. Y0. F500.
+X2. Y0.05
+G06.2 P4 K0. X2. Y0.05 R1.
+K0. X3. Y0.1
+K0. X4. Y1.
+K0. X5. Y1.
+K1.
+K1.
+K1.
+K1.
+G1
+X6. Y1.
+M98 P7
+X7. Y1.
+X8. Y1.1
+M30
+%
+"""
+FANUC_CHANGES = [
+    ("K0. X4. Y1.", "K0. X4. Y1.2", True, "a control point moved"),
+    ("K0. X4. Y1.", "K0. X4. Y1.005", False, "a control point moved by less than the tolerance"),
+    ("K1.\nK1.\nK1.\nK1.", "K1.\nK1.\nK1.\nK2.", True, "knots that are not clamped"),
+    ("M98 P7\nX7. Y1.", "M98 P7\nX6.9 Y1.\nX7.", True, "a place behind a call, whatever it leaves"),
+    ("M98 P7", "M98 P8", True, "another call"),
+    ("X6. Y1.\nM98 P7", "M98 P7\nX6. Y1.", True, "a call a move too early"),
+]
+SIEMENS = """G71 G17 G90 G94
+G0 X0 Y0 Z0
+G1 X1 Y0 F500
+POLY PO[X]=(3,0,0) PO[Y]=(1,0.5,0.1)
+G1 X4 Y1
+CYCLE832(0.05,3,1)
+G2 X5 Y1 CR=0.7
+UNKNOWN(3)
+G1 X6 Y1
+G1 X7 Y1
+M30
+"""
+SIEMENS_CHANGES = [
+    ("PO[Y]=(1,0.5,0.1)", "PO[Y]=(1,0.7,0.1)", True, "another coefficient"),
+    ("PO[Y]=(1,0.5,0.1)", "PO[Y]=(1,0.5001,0.1)", False, "a digit of a coefficient"),
+    ("CR=0.7", "CR=0.6", True, "another radius"),
+    ("POLY PO", "PO", True, "no POLY"),
+    ("G1 X6 Y1\nG1 X7 Y1", "G1 X6.5 Y1\nG1 X7 Y1", True, "a place behind what nobody knows"),
+    ("CYCLE832(0.05,3,1)\n", "", True, "a word lost"),
+]
+KLARTEXT = """BEGIN PGM A MM
+TOOL CALL 1 Z S500
+L X+0 Y+0 Z+5 R0 FMAX
+L Z+0 F200
+L X+1 Y+0.1 F1000
+CC X+2 Y+0.1
+C X+3 Y+0.1 DR-
+SPL X+5 Y+0.1 K3X+0 K2X+0 K1X-2 K3Y+0 K2Y+0.4 K1Y-0.4
+L X+6 Y+1
+L M8
+L X+7 Y+1 F500
+L Z+5 FMAX
+L M30
+END PGM A MM
+"""
+KLARTEXT_CHANGES = [
+    ("CC X+2 Y+0.1", "CC X+2 Y+0.2", True, "a pole moved"),
+    ("DR-", "DR+", True, "an arc turned round"),
+    ("K2Y+0.4 K1Y-0.4", "K2Y+0.8 K1Y-0.8", True, "another spline"),
+    ("L X+6 Y+1\nL M8", "L M8\nL X+6 Y+1", True, "an M word moved"),
+    ("L X+7 Y+1 F500", "L X+7 Y+1 F501", True, "another feed"),
+    ("L X+6 Y+1", "L X+6 Y+1 RL", True, "compensation"),
+    ("L X+6 Y+1", "L X+6 Y+1 ; hi", False, "a comment"),
+    ("L Z+5 FMAX", "L Z+5", True, "a rapid that is none any more"),
+]
+CASES = [("linuxcnc", PLAIN, PLAIN_CHANGES), ("grbl", PLAIN, PLAIN_CHANGES), ("fanuc", FANUC, FANUC_CHANGES),
+         ("siemens", SIEMENS, SIEMENS_CHANGES), ("heidenhain", KLARTEXT, KLARTEXT_CHANGES)]
+
+
+def check_together():
+    """The distance that is decided on is that of the closed form."""
+    wrong = []
+    line = [(0.0, 0.0, 0.0), (10.0, 0.0, 0.0)]
+    tooth = [(0.0, 0.0, 0.0), (5.0, 0.3, 0.0), (10.0, 0.0, 0.0)]
+    back = [(0.0, 0.0, 0.0), (6.0, 0.0, 0.0), (4.0, 0.0, 0.0), (10.0, 0.0, 0.0)]  # 2 back: 1 apart at least
+    circle = [(0.0, 0.0, 0.0)] + paths.arc_points((0, 0, 0), (0, 0, 0), (5, 0), (0, 1, 2), 1)
+    for name, p, q, distance in (("tooth", line, tooth, 0.3), ("there and back", line, back, 1.0),
+                                 ("circle and its start", [(0.0, 0.0, 0.0)], circle, 10.0)):
+        for a, b in ((p, q), (q, p)):
+            if paths.together(a, b, distance - 0.001) or not paths.together(a, b, distance + 0.001):
+                wrong.append(f"{name}: not {distance} apart")
+    length = math.fsum(math.dist(a, b) for a, b in zip(circle, circle[1:]))
+    if abs(length - 10 * math.pi) > 0.01:
+        wrong.append(f"a circle of {length} mm")
+    return wrong
+
+
+def main():
+    wrong = check_together()
+    for control, text, changes in CASES:
+        old = oracle.OldProgram(text, control)
+        canon = oracle.Canon(text) if control in oracle.LIKE_LINUXCNC and oracle.rs274_is_there() else None
+        if canon and canon.complaint:
+            wrong.append(f"{control}: rs274: {canon.complaint}")
+        if old.harm(text, TOLERANCE):
+            wrong.append(f"{control}: the same text: {old.harm(text, TOLERANCE)}")
+        for before, after, harmful, name in changes:
+            if text.count(before) != 1:
+                raise ValueError(f"{control}: {before!r} is not once in the text")
+            new = text.replace(before, after)
+            found = {"readers": old.harm(new, TOLERANCE)}
+            if canon and "plane" not in name:  # rs274 does not tell the plane but by its arcs
+                found["rs274"] = oracle.harm_in_linuxcnc(canon, new, TOLERANCE)
+            for who, harm in found.items():
+                if bool(harm) != harmful:
+                    wrong.append(f"{control}: {name}: {who}: {harm or 'nothing found'}")
+    print("\n".join(wrong + [f"{sum(len(case[2]) for case in CASES)} planted changes, {len(wrong)} wrong"]))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,188 @@
+"""Does a new program do what the old one does? Told without any code of Batten.
+
+Both traces (readers.py, or LinuxCNC's own interpreter) must have the same events in the same order;
+between two events the cuts at each feed and the rapids follow each other alike, and each pair of paths
+can be travelled together within the tolerance (paths.together)."""
+
+import itertools
+import math
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+
+import paths
+from readers import EFFECTS, PLANES
+from readers_other import reader_for
+
+# What chords, and the digits of rs274, add to the tolerance; mm.
+SLACK, RS274_SLACK, RS274_INCH_SLACK = 0.0012, 0.0015, 0.0065
+LIKE_LINUXCNC = ("linuxcnc", "grbl", "grblhal", "mach3")
+
+
+def sections(trace, least):
+    """Neighbouring cuts of one feed as one path: (kind, feed or text, points). Those that go no
+    further than `least` are left out."""
+    joined = []
+    for kind, what, value in trace:
+        if kind == "event":
+            joined.append((kind, value, None))
+        elif kind == "cut" and joined and joined[-1][:2] == (kind, what):
+            joined[-1][2].extend(value[1:])
+        else:
+            joined.append((kind, what, list(value)))
+    kept = []
+    for section in joined:
+        if section[0] != "event" and paths.extent(section[2]) <= least:
+            continue
+        if section[0] == "cut" and kept and kept[-1][:2] == section[:2]:
+            kept[-1][2].extend(section[2])
+        else:
+            kept.append(section)
+    return kept
+
+
+def said(section):
+    if section is None:
+        return "nothing"
+    kind, what, points = section
+    if kind == "event":
+        return f"'{what}'"
+    feed = f" at {what}" if kind == "cut" else ""
+    begin, end = (", ".join(f"{x:.4f}" for x in points[n]) for n in (0, -1))
+    return f"{kind}{feed} from {begin} to {end}"
+
+
+def alike(a, b, reach):
+    if a is None or b is None or a[:2] != b[:2]:
+        return False
+    if a[0] == "rapid":
+        return math.dist(a[2][-1], b[2][-1]) <= reach and math.dist(a[2][0], b[2][0]) <= reach
+    return a[0] == "event" or paths.together(a[2], b[2], reach)
+
+
+def difference(old, new, reach):
+    """Of two traces; empty: none. A move that does not leave `reach` may be in one alone."""
+    first = ""
+    for least in (1e-6, reach / 3, reach):
+        pairs = itertools.zip_longest(sections(old, least), sections(new, least))
+        unlike = next(((a, b) for a, b in pairs if not alike(a, b, reach)), None)
+        if unlike is None:
+            return ""
+        first = first or f"{said(unlike[0])} became {said(unlike[1])}"
+    return first
+
+
+# --- the readers -------------------------------------------------------------------------------
+
+
+class OldProgram:
+    """What a program does, whatever the words do that nobody knows; read once for many new ones."""
+
+    def __init__(self, text, control, inch=None):
+        self.reader, self.inch = reader_for(control), inch
+        self.traces = {}
+        for effect in EFFECTS:
+            if effect == "nothing" or effect in reader.used_effects:
+                reader = self.reader(text, effect, inch)
+                self.traces[effect] = reader.run()
+
+    def harm(self, new, tolerance):
+        """What `new` does otherwise, by the readers; empty: nothing."""
+        for effect, trace in self.traces.items():
+            reader = self.reader(new, effect, self.inch)
+            found = difference(trace, reader.run(), tolerance + SLACK)
+            if not found and not reader.used_effects <= self.traces.keys():
+                found = "a line was added that may do something"
+            if found:
+                return f"{found}, where what is not known does: {effect}"
+        return ""
+
+
+# --- LinuxCNC's interpreter ----------------------------------------------------------------------
+
+
+class Canon:
+    """What rs274 says that a program does: a trace, what it refused, whether it was in inches, and
+    whether it has curves, which it does not tell."""
+
+    def __init__(self, text):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            (folder / "tool.tbl").write_text("".join(f"T{i} P{i} D0.2 Z0\n" for i in range(1, 60)))
+            (folder / "v.var").touch()
+            (folder / "program.ngc").write_text(text, encoding="latin-1")
+            command = ["rs274", "-g", "-n", "2", "-t", "tool.tbl", "-v", "v.var", "program.ngc"]
+            try:
+                ran = subprocess.run(command, cwd=folder, env=dict(os.environ, HOME=str(folder)), timeout=60,
+                                     capture_output=True, stdin=subprocess.DEVNULL)
+            except subprocess.TimeoutExpired:
+                self.complaint, self.trace, self.curves, self.inch = "does not end", [], False, False
+                return
+        said = [line for line in ran.stderr.decode("latin1").split("\n") if line.strip()]
+        self.complaint = "; ".join(line for line in said if line.strip() != "executing")
+        if ran.returncode and not self.complaint:
+            self.complaint = f"ended with {ran.returncode}"
+        self.trace, self.curves, self.inch = [], False, False
+        self.place, self.feed, self.plane, self.unit = (0.0, 0.0, 0.0), 0.0, 17, 1.0
+        self.switches, self.others = {}, [0.0, 0.0, 0.0]
+        for line in ran.stdout.decode("latin1").split("\n"):
+            found = re.match(r"\s*\d+\s+N\S*\s+(\w+)\((.*)\)", line)
+            if found:
+                self.follow(*found.groups())
+
+    def follow(self, name, text):
+        numbers = [float(n) for n in re.findall(r"-?\d+\.\d+", text)]
+        if name == "SET_FEED_RATE":
+            self.feed = numbers[0]
+        elif name == "SELECT_PLANE":
+            self.plane = {"XY": 17, "XZ": 18, "YZ": 19}[text.split("_")[-1]]
+        elif name == "USE_LENGTH_UNITS":
+            self.unit = 25.4 if "INCH" in text else 1.0
+            self.inch = self.inch or self.unit != 1
+        elif name in ("STRAIGHT_FEED", "STRAIGHT_TRAVERSE"):
+            self.add(name == "STRAIGHT_TRAVERSE", [tuple(x * self.unit for x in numbers[:3])], numbers[3:])
+        elif name == "ARC_FEED":
+            words = [float(word) for word in text.split(",")]
+            axes = i, j, k = PLANES[self.plane]
+            end, turns = [0.0, 0.0, 0.0], int(words[4])
+            end[i], end[j], end[k] = words[0] * self.unit, words[1] * self.unit, words[5] * self.unit
+            centre = (words[2] * self.unit, words[3] * self.unit)
+            self.add(False, paths.arc_points(self.place, end, centre, axes, 1 if turns > 0 else -1, abs(turns)), words[6:])
+        elif name == "NURBS_FEED":
+            self.curves = True
+        elif name not in ("MESSAGE", "COMMENT"):
+            value = f"{name}({text})"
+            if self.switches.get(name) != value or name in ("DWELL", "PROGRAM_STOP"):
+                self.switches[name] = value
+                self.switches.pop({"FLOOD_ON": "FLOOD_OFF", "FLOOD_OFF": "FLOOD_ON", "MIST_ON": "MIST_OFF",
+                                   "MIST_OFF": "MIST_ON"}.get(name), None)
+                self.trace.append(("event", None, value))
+
+    def add(self, rapid, points, others):
+        begin, self.place = self.place, tuple(points[-1])
+        if others != self.others:
+            self.others = others
+            self.trace.append(("event", None, f"other axes {others}"))
+        self.trace.append(("rapid", None, [begin, points[-1]]) if rapid else
+                          ("cut", (self.feed, 0), [begin, *points]))
+
+
+def rs274_is_there():
+    return shutil.which("rs274") is not None
+
+
+def harm_in_linuxcnc(old, new, tolerance):
+    """`old` is a Canon. What LinuxCNC does otherwise with the text `new`; None: it cannot tell."""
+    if old.complaint:
+        return None
+    canon = Canon(new)
+    if canon.complaint:
+        return f"LinuxCNC refuses it: {canon.complaint}"
+    if canon.curves or old.curves:
+        return None
+    slack = RS274_INCH_SLACK if canon.inch or old.inch else RS274_SLACK
+    found = difference(old.trace, canon.trace, tolerance + slack)
+    return f"LinuxCNC: {found}" if found else ""

@@ -1,0 +1,295 @@
+"""Random programs as CAM systems write them, for many controls, with everything in them that programs
+have: calls, loops, cycles, modes, words that nobody knows. Short, so that many can be tried."""
+
+import math
+
+# Lines that stand between cuts; `;` begins a new line, and where it must be more, several.
+BETWEEN = {
+    "linuxcnc": """M8|M9|M7|G64 P0.01|G61|G4 P0.5|(hi)|M3 S1000|S2000|T2 M6|G43 H1|o100 call|#1=[#1+1]|G55|G54|
+        F777|M8 F888|M199|M66 P0 L0|G91.1|G17|G18;G17|G40|G94;F400|G92 X1|G92.1|M48|M50 P1|G93;G94 F900|M62 P1|
+        M67 E0 Q1|G80|G98|M5|G81 X5 Y5 Z-5 R2|G10 L2 P1 X1|G20;G21|G91;X1;G90|G0 Z5;G1 Z0|G53 G0 Z0|G28|
+        N100 M8|/M8|G33 Z-1 K1|G5.2 X1 Y1 P1;X2 Y2;G5.3|G95 F0.1;G94 F500|o10 if [#1 EQ 0];F555;o10 endif|
+        o20 repeat [2];F600;o20 endrepeat|(MSG, hi)|G64|G91|G90|G18|G19|G20|G21|G90.1|G91.1|G41 D1|G40|G42.1 D0.1|
+        G68 X0 Y0 R30|G69|G93|G7|G8|G51|/G91|/X1|/F300|o110 call|o120 call|o130 call|o140 call|#<up>=3;G0 Z#<up>;G1 Z0|
+        X[#1+2]|G1 A5|G4 X1|G0 X3 Y4;G1|G2 X5 Y5 I1 J1|G3 X2 Y2 R8|G61.1|M1|M0|G59.1|G43.1 Z0.5;G49|G99|
+        (Batten: smoothed within 0.01 mm)|; note|M64 P2|X1 Y1 F60|G38.2 Z-1|M30|G17 G1 G40 G90 G94 F500""",
+    "fanuc": """M8|M9|G61|G64|G4 P500|(hi)|M3 S1000|S2000|T2 M6|G43 H1|M98 P100|#1=#1+1|G55|F777.|M8 F888.|M199|
+        G17|G40|G94;F400.|G92 X1.|G81 X5. Y5. Z-5. R2. F50.|G80|G91;X1.;G90|G0 Z5.;G1 Z0.|G53 Z0.|
+        G91 G28 Z0.;G90|N100|G65 P9000 A1. F5.|IF [#1 EQ 0] GOTO 100|G05.1 Q1|G41 D1|G68 X0. Y0. R30.;G69|
+        G05 P10000;G05 P0|G95 F.1;G94 F500.|G10 L2 P1 X1.|M198 P2|G66 P9000;X5.;G67|G91|G90|G18|G17|G20|G21|
+        G51 X0. Y0. P2.|G50|G68 X0. Y0. R10.|G69|G16|G15|G93|/G91|/X1.|/M8|M97 P5|G123|G2 X5. Y5. R9.|X5. Y6. ,R2.|
+        G5.1 Q2 X0. Y0.;G5.1 Q0|G187 P3|G12.1|M21|WHILE [#1 LT 3] DO1;#1=#1+1;END1|GOTO 100|N100 X5.|X#1|X1000|
+        G41.1|G43.4 H1|G49|M48|A5.|M600|G9 X1.|G52 X1.|G52 X0.|G40 G17 G90 G94 G1 F500.|M1|G98|G99""",
+    "siemens": """M8|M9|G60|G64|G642|G4 F0.5|MSG()|M3 S1000|S2000|T2 M6;D1|UP1|R1=R1+1|G55|F777|M8 F888|M199|
+        G17|G40|G94;F400|TRANS X1;TRANS|MCALL CYCLE81(10,0,2,-5);X5 Y5;MCALL|G91;X1;G90|G0 Z5;G1 Z0|
+        SUPA G0 Z0;G1|MSG("x")|LBL1:|GOTOF LBL1|FFWON|SOFT|CYCLE832(0.05,3,1)|G63 Z-5 F100;G1 F500|
+        ROT RPL=5;ROT|STOPRE|H5|G95 F0.1;G94 F500|G331 Z-1 K1;G1|COMPCAD;COMPOF|X=IC(5)|G41 D1|CALL "UP2"|
+        FGROUP(X,Y);FGROUP()|G9|G91|G90|G18|G17|G70|G71|G500|TRANS X3|ROT RPL=20|ROT|SCALE X2|MIRROR X0|TRAORI|
+        COMPCAD|COMPOF|G42|G93|N100 M8|GOTOF N100|X=R1|L123|POCKET1(1,2)|G2 X5 Y5 CR=9|RND=2 X4|$AC_TIME=1|
+        M17|G153 X1|DIAMON|G1 A5|G1 X1 Y2 F60|G17 G40 G71 G90 G94 G64 G1 F500|/G91|/X1|G450|M1|KOMMA(1)""",
+    "heidenhain": """L M8|L M9|L F777|L M8 F888|L Z+5 FMAX|L Z+0 F200|CALL LBL 1|Q1 = Q1 + 1|
+        TOOL CALL 2 Z S1000|TOOL CALL S2000 F300|CYCL DEF 7.0 DATUM SHIFT;CYCL DEF 7.1 X+1|
+        CYCL DEF 32.0 TOLERANCE;CYCL DEF 32.1 T0.05|CYCL DEF 9.0 DWELL TIME;CYCL DEF 9.1 DWELL 0.5|LBL 5|
+        FN 9: IF +Q1 EQU +2 GOTO LBL 5|L IX+1 IY+1|CYCL CALL M3|STOP M0|CC X+5 Y+5;C X+6 Y+5 DR+|
+        L M140 MB MAX|CYCL DEF 200 DRILLING Q200=2 Q201=-5 Q206=150|L X+1 RL F300|L R0|L F AUTO|L M91 Z+0|
+        M128|L M128|L M129|PLANE RESET|CYCL DEF 10.0 ROTATION;CYCL DEF 10.1 ROT+20|CYCL DEF 8.0 MIRROR;CYCL DEF 8.1 X|
+        CALL PGM X.H|L A+5|LP PR+5 PA+30|RND R2|CHF 1|CR X+5 Y+5 R+9 DR-|LBL 0|L M99|L RR X+5|/L X+1|/L F333|
+        L X+Q1|CC IX+1 IY+1|L M1|L M136|L M89|FUNCTION TCPM F TCP|APPR LT X+1 Y+1 LEN2 RL|* - part|; note""",
+}
+# Of the small controls: what they have of LinuxCNC's words, and what they do not know.
+BETWEEN["grbl"] = """M8|M9|M7|G4 P0.5|(hi)|M3 S1000|S2000|G55|G54|F777|M8 F888|G91.1|G17|G18;G17|G94;F400|G92 X1|G92.1|
+    G93;G94 F900|G80|M5|G10 L2 P1 X1|G20;G21|G91;X1;G90|G0 Z5;G1 Z0|G53 G0 Z0|G28|M0|G91|G90|G18|G19|G20|G21|G93|G40|G61|
+    G43.1 Z0.5|G49|M199|G123|$H|$X|$G|G38.2 Z-1|T1|G2 X5 Y5 I1 J1|G3 X2 Y2 R8|X1 Y1 F60|G0 X3 Y4;G1|; note|M4 S10|
+    G17 G21 G90 G94 G1 F500"""
+BETWEEN["marlin"] = """M106 S255|M107|G4 P50|; hi|M3 S100|M5|F777|G1 F888|G91|G90|G92 X1|G28|M204 P500|G0 Z5;G1 Z0 F300|
+    G1 X5 E1|M117 hello|M400|G21|G17|G123|T1|M0|G1 X1 Y1 F60|M82|M83|G92 E0|G2 X5 Y5 I1 J1"""
+LIKE = {"grblhal": "grbl", "mach3": "grbl", "haas": "fanuc", "mitsubishi": "fanuc", "hurco": "fanuc", "syntec": "fanuc",
+        "klipper": "marlin", "itnc530": "heidenhain"}
+TARGETS = ["linuxcnc"] * 4 + ["grbl", "grbl", "fanuc", "fanuc", "siemens", "siemens", "heidenhain", "heidenhain", "itnc530",
+                              "marlin", "klipper", "grblhal", "mach3", "haas", "mitsubishi", "hurco", "syntec"]
+FORMS = {"linuxcnc": ["arcs", "lines", "curves"], "fanuc": ["arcs", "lines", "curves"], "mitsubishi": ["arcs", "curves"],
+         "syntec": ["arcs", "curves"], "siemens": ["arcs", "lines", "curves"], "itnc530": ["arcs", "lines", "curves"]}
+HEADS = {
+    "linuxcnc": "G21 G17 G90 G94 G64 P0.01|G0 X0 Y0 Z5|G1 Z0 F200",
+    "fanuc": "%|O1|G21 G17 G90 G94|G0 X0. Y0. Z5.|G1 Z0. F200.",
+    "siemens": "G71 G17 G90 G94|G0 X0 Y0 Z5|G1 Z0 F200",
+    "heidenhain": "BEGIN PGM A MM|TOOL CALL 1 Z S500|L X+0 Y+0 Z+5 R0 FMAX|L Z+0 F200",
+    "grbl": "G21 G17 G90 G94|G0 X0 Y0 Z5|G1 Z0 F200",
+    "marlin": "G21|G90|G0 X0 Y0 Z5|G1 Z0 F200",
+}
+ENDS = {"linuxcnc": "G0 Z5|M2", "fanuc": "G0 Z5.|M30|%", "siemens": "G0 Z5|M30", "heidenhain": "L Z+5 FMAX|L M30|END PGM A MM",
+        "grbl": "G0 Z5|M2", "marlin": "G0 Z5|M84"}
+# Subprograms of LinuxCNC that leave something behind, and one that does not.
+SUBPROGRAMS = """o100 sub|M8|o100 endsub|o110 sub|G91|o110 endsub|o120 sub|F123|G18|o120 endsub|o130 sub|G0 X9 Y9|
+    o130 endsub|o140 sub|G20|o140 endsub""".replace("\n", "").split("|")
+
+STYLES = ("contours", "raster", "waterlines", "adaptive", "engraving", "plasma", "laser", "printer", "drilling", "finishing")
+
+
+def between(target):
+    words = " ".join(BETWEEN[LIKE.get(target, target)].split())
+    return [part.strip().split(";") if not part.strip().startswith(";") else [part.strip()] for part in words.split("|")]
+
+
+class Programs:
+    """For one target. Paths are chains of (point, feed) with rapids between; see `chains`."""
+
+    def __init__(self, target, chance):
+        self.target, self.random = target, chance
+        self.like = LIKE.get(target, target)
+        self.klartext = self.like == "heidenhain"
+        self.between = between(target)
+
+    def program(self):
+        """The text, its style."""
+        chance = self.random
+        self.inch = chance.random() < 0.12 and self.like in ("linuxcnc", "fanuc", "siemens", "grbl")
+        self.point = "." if self.like == "fanuc" else ""
+        self.decimals = chance.choice([3, 3, 4, 5]) + (1 if self.inch else 0)
+        self.every_word = chance.random() < 0.3 or self.like == "marlin"
+        self.all_axes = chance.random() < 0.2
+        self.blank = chance.choice([" ", " ", " ", ""])
+        self.zero = chance.choice(["G1", "G1", "G01"])
+        self.numbered = chance.random() < 0.25 and self.like not in ("marlin",)
+        self.noise = chance.choice([0.0, 0.0, 0.001, 0.004])
+        self.comments = chance.random() < 0.15
+        style = chance.choice(STYLES)
+        often = chance.choice([0.0, 0.02, 0.06, 0.15])
+        lines = HEADS[self.like].split("|")
+        if self.inch:
+            lines = [line.replace("G21", "G20").replace("G71", "G70") for line in lines]
+        self.last = {"X": None, "Y": None, "Z": None}
+        self.last_feed = None
+        for chain in getattr(self, style)():
+            lines += self.between_chains(style)
+            lines += self.chain_lines(chain, style, often)
+            if chance.random() < 0.5:
+                for _ in range(chance.choice([1, 1, 2])):
+                    lines += chance.choice(self.between)
+                self.last = dict.fromkeys("XYZ")
+                self.last_feed = None
+        lines += ENDS[self.like].split("|")
+        if any("call" in line for line in lines) and self.target == "linuxcnc":
+            lines = SUBPROGRAMS + lines
+        if self.numbered:
+            lines = self.with_numbers(lines)
+        return "\n".join(lines) + "\n", style
+
+    def with_numbers(self, lines):
+        if self.klartext:
+            return [f"{n} {line}" for n, line in enumerate(lines)]
+        out = []
+        for n, line in enumerate(lines):
+            plain = line[:1] in "GXYZFMSTIJK" and line[:1]
+            out.append(f"N{10 * n + 10}{self.blank}{line}" if plain else line)
+        return out
+
+    # --- text ---
+
+    def number(self, value):
+        value = value / (25.4 if self.inch else 1)
+        text = f"{value:+.{self.decimals}f}" if self.klartext else f"{value:.{self.decimals}f}"
+        return text
+
+    def words(self, place):
+        words = []
+        for letter, value in zip("XYZ", place):
+            text = letter + self.number(value)
+            if text != self.last[letter] or self.all_axes:
+                words.append(text)
+            self.last[letter] = text
+        return words
+
+    def line(self, place, feed, rapid=False):
+        chance = self.random
+        words = self.words(place)
+        if not words:
+            words = ["X" + self.number(place[0])]
+        if self.klartext:
+            text = "L " + " ".join(words)
+            if rapid:
+                return text + " FMAX"
+            return text + (f" F{feed}" if feed != self.last_feed or chance.random() < 0.02 else "")
+        if rapid:
+            return self.blank.join(["G0", *words])
+        word = self.zero if self.every_word or self.begins else ""
+        self.begins = False
+        words = ([word] if word else []) + words
+        if feed != self.last_feed or chance.random() < 0.02:
+            words.append(f"F{feed / 25.4:.1f}" if self.inch else f"F{feed}{self.point}")
+        return self.blank.join(words)
+
+    def chain_lines(self, chain, style, often):
+        chance, lines = self.random, []
+        first, *rest = chain
+        top = (first[0][0], first[0][1], first[0][2] + 4)
+        self.begins = True
+        # The height first, so that the place is known whatever was before.
+        lines.append(self.line(top, None, True))
+        lines.append(self.line(first[0], 200))
+        self.last_feed = 200
+        for place, feed in rest:
+            place = tuple(x + chance.uniform(-self.noise, self.noise) for x in place)
+            text = self.line(place, feed)
+            self.last_feed = feed
+            if style == "laser" and not self.klartext and chance.random() < 0.1:
+                text += f"{self.blank}S{chance.choice([100, 200, 250])}"
+            if style == "printer" and self.like == "marlin" and chance.random() < 0.05:
+                text += " E0.5"
+            if self.comments and chance.random() < 0.1:
+                text += " ; c" if self.klartext or self.like in ("marlin", "siemens") else " (c)"
+            if style == "finishing" and self.like in ("linuxcnc", "fanuc") and chance.random() < 0.03:
+                lines.append("#5=0." if self.like == "fanuc" else "#5=[1-1]")
+                text += " (x)"
+            lines.append(text)
+            if chance.random() < often:
+                lines += chance.choice(self.between)
+                self.last = dict.fromkeys("XYZ")
+                if chance.random() < 0.8:
+                    self.last_feed = None
+                    self.begins = True
+                if chance.random() < 0.3 and not self.klartext:
+                    lines.append({"linuxcnc": "G17 G21 G90 G94 G64 G40 G49 G69 G91.1", "grbl": "G17 G21 G90 G94",
+                                  "fanuc": "G17 G21 G90 G94 G40 G69", "marlin": "G90",
+                                  "siemens": "G17 G71 G90 G94 G64 G40 TRANS"}[self.like])
+        lines.append(self.line((rest[-1][0][0], rest[-1][0][1], 5.0) if rest else top, None, True))
+        return lines
+
+    def between_chains(self, style):
+        if style == "plasma" and not self.klartext:
+            return ["M3 S1" if self.like != "siemens" else "M3", {"siemens": "G4 F0.2"}.get(self.like, "G4 P0.2")]
+        if style == "drilling" and self.like in ("linuxcnc", "fanuc"):
+            p = self.point
+            return [f"G81 X{self.random.randrange(9)}{p} Y3{p} Z-3{p} R2{p} F100{p}", f"X9{p} Y9{p}", "G80"]
+        return []
+
+    # --- styles: chains of (place, feed) ---
+
+    def curve(self, count, step, turn, start, angle, feed, z=lambda s: 0.0):
+        """Turning by `turn` rad/mm that changes evenly to its second value."""
+        x, y = start
+        chain = [((x, y, z(0)), feed)]
+        for n in range(count):
+            angle += (turn[0] + (turn[1] - turn[0]) * n / count) * step
+            x, y = x + step * math.cos(angle), y + step * math.sin(angle)
+            chain.append(((x, y, z((n + 1) * step)), feed))
+        return chain
+
+    def contours(self):
+        chance = self.random
+        r, lobes, amplitude = chance.uniform(4, 15), chance.choice([0, 2, 3, 5]), chance.choice([0.0, 0.1, 0.2])
+        count, feed, out = chance.choice([24, 40, 70]), chance.choice([500, 1500, 3000]), []
+        for depth in range(chance.choice([1, 2])):
+            chain = []
+            for n in range(count + 1):
+                t = 2 * math.pi * n / count
+                radius = r * (1 + amplitude * math.cos(lobes * t))
+                chain.append(((radius * math.cos(t), radius * math.sin(t), -1.0 - depth), feed))
+            out.append(chain)
+        return out
+
+    def raster(self):
+        chance = self.random
+        rows, count, wave, rise = chance.choice([2, 3, 5]), chance.choice([12, 20]), chance.uniform(0.1, 0.5), chance.uniform(0.2, 1.5)
+        feed, chain = chance.choice([800, 2000]), []
+        for row in range(rows):
+            for n in range(count + 1):
+                x = (n if row % 2 == 0 else count - n) * 0.8
+                chain.append(((x, row * 0.7, rise * math.sin(wave * x + 0.3 * row)), feed))
+        if chance.random() < 0.4:
+            chain = [((y, x, z), f) for (x, y, z), f in chain]
+        return [chain]
+
+    def waterlines(self):
+        chance = self.random
+        out, r = [], chance.uniform(3, 8)
+        for level in range(chance.choice([2, 3])):
+            count = chance.choice([20, 30])
+            out.append([(((r + level) * math.cos(2 * math.pi * n / count), 0.7 * (r + level) * math.sin(2 * math.pi * n / count),
+                          -0.5 * level), 1200) for n in range(count + 1)])
+        return out
+
+    def adaptive(self):
+        chance = self.random
+        chain, x = [], 0.0
+        for loop in range(chance.choice([2, 4])):
+            for n in range(18):
+                t = 2 * math.pi * n / 18
+                feed = 2400 if n < 9 else chance.choice([2400, 900])
+                chain.append(((x + 2 * math.cos(t), 2 * math.sin(t), -1.0), feed))
+            x += 0.8
+        return [chain]
+
+    def engraving(self):
+        chance = self.random
+        return [self.curve(chance.choice([4, 9, 14]), chance.choice([0.05, 0.2, 0.4]), (chance.uniform(-2, 2), chance.uniform(-2, 2)),
+                           (3.0 * n, chance.uniform(0, 3)), chance.uniform(0, 6), 600, lambda s: -0.2) for n in range(chance.choice([2, 4]))]
+
+    def plasma(self):
+        chance = self.random
+        return [self.curve(chance.choice([12, 25]), 1.0, (chance.uniform(-0.1, 0.1), chance.uniform(-0.1, 0.1)), (30.0 * n, 0.0),
+                           chance.uniform(0, 6), 3200) for n in range(2)]
+
+    def laser(self):
+        chance = self.random
+        return [self.curve(chance.choice([15, 30]), chance.choice([0.1, 0.5]), (0.0, chance.uniform(-0.5, 0.5)), (0.0, 5.0 * n),
+                           0.0, 4000) for n in range(2)]
+
+    def printer(self):
+        chance = self.random
+        chain = []
+        for n in range(chance.choice([20, 45])):
+            t = 0.25 * n
+            chain.append((((5 + 0.05 * n) * math.cos(t), (5 + 0.05 * n) * math.sin(t), 0.2 + 0.01 * n * chance.choice([0, 1])),
+                          1800))
+        return [chain]
+
+    def drilling(self):
+        return self.contours()[:1] + self.plasma()[:1]
+
+    def finishing(self):
+        chance = self.random
+        a, b = chance.uniform(0.05, 0.3), chance.uniform(0.05, 0.3)
+        return [self.curve(chance.choice([30, 50]), chance.choice([0.3, 0.6]), (chance.uniform(-0.2, 0.2), chance.uniform(-0.2, 0.2)),
+                           (0.0, 4.0 * n), chance.uniform(0, 1), chance.choice([1000, 5000]),
+                           lambda s: math.sin(a * s) + 0.3 * math.cos(b * s)) for n in range(chance.choice([1, 2]))]
