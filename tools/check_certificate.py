@@ -247,7 +247,7 @@ class State:
     known; axes that no line has named stay None, too."""
 
     FIELDS = ("place", "motion", "feed", "plane", "absolute", "centres_absolute", "inch",
-              "feed_mode", "off", "pole")
+              "feed_mode", "off", "pole", "speed")
     __slots__ = FIELDS
 
     def __init__(self, inch):
@@ -255,7 +255,7 @@ class State:
         # counts). All but the unit as after power-on.
         self.place, self.motion, self.feed, self.plane, self.absolute = (None, None, None), None, None, 17, True
         self.centres_absolute, self.inch, self.feed_mode = False, inch, 94
-        self.off, self.pole = frozenset(KNOWN_OFF), None
+        self.off, self.pole, self.speed = frozenset(KNOWN_OFF), None, None
 
     def forget(self):
         """A line that is not known has acted."""
@@ -272,11 +272,10 @@ class State:
 def line_of(text):
     """What a line says. `words`: letter, text of the number; `silent`: nothing that acts; `title`: no code that a
     control could follow is in it."""
-    return types.SimpleNamespace(words=[], comment="", known=True, number=False, silent=False,
+    return types.SimpleNamespace(words=[], comment="", known=True, number=False, silent=False, computed="[" in text,
                                  title=TITLE.match(text) and not CODE.search(text))
 
-AXES = "XYZ"
-OFFSETS = "IJK"
+AXES, OFFSETS = "XYZ", "IJK"
 MOTIONS = {"0": 0, "1": 1, "2": 2, "3": 3}
 PLANE_AXES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}
 
@@ -320,6 +319,7 @@ NEIGHBOURS = re.compile(r"\b(RND|RNDM|CHF|CHR)\b|,\s*[RCA]", re.I)
 JUMPS = re.compile(r"\b(GOTO[FBC]?|WHILE|REPEATB?|ENDLOOP|UNTIL)\b|\bM99\s*P|\bM9[78]|G65|G66", re.I)
 OWN_COMMENT = re.compile(r"\s*(?:\d+\s+)?(?:\(Batten: smoothed within [\d.]+ (?:mm|in)\)|"
                          r";\s*Batten: smoothed within [\d.]+ (?:mm|in))\s*", re.I)
+ASSIGNMENT = re.compile(r"(?:N\d+)?#(?:\d{1,3}|<[A-Z_]+>)=[-+*/.\d#\[\]]+")  # of a parameter that is no offset
 TITLE = re.compile(r"[^#=\[\]$]*$")
 CODE = re.compile(r"(?<![A-Z0-9])[GMOT]\s*\d", re.I)
 
@@ -346,7 +346,7 @@ def read_words(text, siemens):
             line.words = [("message", "")]
     line.known = not SCRIPT.search(text)
     body = "".join(body.upper().split())
-    if body in ("", "%"):
+    if body in ("", "%") or not siemens and ASSIGNMENT.fullmatch(body):
         line.silent = line.known and not line.words
         return line
     found = list((SIEMENS_WORD if siemens else WORD).finditer(body))
@@ -424,7 +424,7 @@ class Reader:
         if not line.known:
             if not self.begun and not in_run and line.title:
                 return []
-            raise Refused("not understood")
+            raise Refused("an expression: this checker evaluates none" if line.computed else "not understood")
         codes, axes, offsets, others, feed, names = [], {}, {}, {}, None, {}
         for letter, text in line.words:
             if letter == "G" or letter == "M":
@@ -443,6 +443,8 @@ class Reader:
             else:
                 place[letter] = text
         if in_run:
+            if "S" in others and others["S"] == state.speed:  # said again
+                del others["S"]
             self.check_run_words(codes, others, names, axes or offsets or names)
         if self.nurbs is not None and (not codes or codes == ["G6.2"]):
             return self.nurbs_line(state, axes, offsets, others)
@@ -468,6 +470,7 @@ class Reader:
         if "O" in others and (self.begun or len(others) > 1) or "L" in others and self.siemens:
             raise Refused("another program")
         self.begun = True
+        state.speed = None if {"G96", "G97", "G92"} & set(codes) else others.get("S", state.speed)
         kinds = {effect[0] for effect in effects}
         if motion is not None:
             state.motion = motion
@@ -734,12 +737,6 @@ def arc_of_radius(p, q, radius, axes, turn):
 
 # --- the two programs ----------------------------------------------------------------------------
 
-class Run:
-    """Lines that differ, from 0, and the words of its pairs."""
-
-    def __init__(self, old, old_count, new, new_count):
-        self.old, self.old_count, self.new, self.new_count, self.words = old - 1, old_count, new - 1, new_count, []
-
 def read_certificate(text, tolerance):
     version, *lines = text.split("\n")
     said = re.fullmatch(r"tolerance ([\d.]+(?:e-?\d+)?) mm", lines[0]) if lines else None
@@ -751,7 +748,9 @@ def read_certificate(text, tolerance):
     for line in lines[1:]:
         header = re.fullmatch(r"run (\d+) (\d+) (\d+) (\d+)", line)
         if header:
-            runs.append(Run(*map(int, header.groups())))
+            numbers = dict(zip(("old", "old_count", "new", "new_count"), map(int, header.groups())))
+            runs.append(types.SimpleNamespace(**numbers, words=[]))
+            runs[-1].old, runs[-1].new = runs[-1].old - 1, runs[-1].new - 1  # lines from 0
         elif line and not runs:
             raise Refused("pairs before the first run of the certificate")
         elif line:

@@ -19,6 +19,7 @@ from readers_other import reader_for
 
 # What chords, and the digits of rs274, add to the tolerance; mm.
 SLACK, RS274_SLACK, RS274_INCH_SLACK = 0.0012, 0.0015, 0.0065
+SPEEDS, STARTS = ("speed ", "SET_SPINDLE_SPEED"), ("spindle ", "START_SPINDLE")
 LIKE_LINUXCNC = ("linuxcnc", "grbl", "grblhal", "mach3")
 
 
@@ -28,7 +29,11 @@ def sections(trace, least):
     joined = []
     for kind, what, value in trace:
         if kind == "event":
-            joined.append((kind, value, None))
+            # A speed beside the word that starts the spindle, in one block or two.
+            if joined and value.startswith(SPEEDS) and str(joined[-1][1]).startswith(STARTS):
+                joined.insert(-1, (kind, value, None))
+            else:
+                joined.append((kind, value, None))
         elif kind == "cut" and joined and joined[-1][:2] == (kind, what):
             joined[-1][2].extend(value[1:])
         else:

@@ -94,7 +94,7 @@ class Programs:
         self.noise = chance.choice([0.0, 0.0, 0.001, 0.004])
         self.comments = chance.random() < 0.15
         style = chance.choice(STYLES)
-        often = chance.choice([0.0, 0.02, 0.06, 0.15])
+        often = chance.choice([0.0, 0.0, 0.01, 0.04, 0.12])
         lines = HEADS[self.like].split("|")
         if self.inch:
             lines = [line.replace("G21", "G20").replace("G71", "G70") for line in lines]
@@ -103,7 +103,7 @@ class Programs:
         for chain in getattr(self, style)():
             lines += self.between_chains(style)
             lines += self.chain_lines(chain, style, often)
-            if chance.random() < 0.5:
+            if chance.random() < 0.4:
                 for _ in range(chance.choice([1, 1, 2])):
                     lines += chance.choice(self.between)
                 self.last = dict.fromkeys("XYZ")

@@ -316,6 +316,8 @@ class PlainReader(Reader):
             return True
         if code in ("G5", "G5.1"):
             return self.kind in ("linuxcnc", "marlin", "grblhal", *LIKE_FANUC)
+        if code in ("G5.2", "G5.3"):
+            return self.kind == "linuxcnc"
         if code == "G6.2":
             return self.kind in LIKE_FANUC
         return code in {"G0", "G1", "G2", "G3", "G17", "G18", "G19", "G90", "G91", "G90.1", "G91.1", "G93", "G94",
@@ -382,8 +384,11 @@ class PlainReader(Reader):
             elif not (code == "G92" and values):
                 self.act("moves")
             return True
-        elif code in ("G33", "G38.2"):
+        elif code in ("G33", "G38.2", "G5.2", "G5.3"):
             self.motion, self.cycle = code, True
+            if code == "G5.3":
+                self.event(code)
+                self.act("moves")
         elif code == "G5" and self.look_ahead is not None:
             self.look_ahead = values.get("P", 0)
             return True
