@@ -443,8 +443,7 @@ class Reader:
             else:
                 place[letter] = text
         if in_run:
-            if "S" in others and others["S"] == state.speed:  # said again
-                del others["S"]
+            others.pop("S" if others.get("S") == state.speed else "", None)  # said again
             self.check_run_words(codes, others, names, axes or offsets or names)
         if self.nurbs is not None and (not codes or codes == ["G6.2"]):
             return self.nurbs_line(state, axes, offsets, others)
@@ -595,23 +594,24 @@ class Reader:
     def nurbs_line(self, state, axes, offsets, others):
         """G06.2: order 4, weights 1, a knot in each line, four lines with a knot alone at the end."""
         points, knots = self.nurbs
-        if offsets.keys() != {"K"} or others.get("P", "4") != "4" or others.keys() - {"P", "R"} or \
-                Fraction(others.get("R", "1")) != 1 or state.inch is None or None in state.place:
+        start = [0 if x is None else x for x in state.place]  # of axes that the curve leaves alone
+        if offsets.keys() != {"K"} or others.get("P", "4") != "4" or others.keys() - {"P", "R"} or state.inch is None or \
+                Fraction(others.get("R", "1")) != 1 or any(state.place[AXES.index(letter)] is None for letter in axes):
             raise Refused("a curve that is not written as one of order 4 without weights")
         knots.append(Fraction(offsets["K"]))
         if axes:
             if len(knots) > len(points) + 1:
                 raise Refused("a curve with a control point behind its last knots")
             points.append([self.length(axes[letter], state) if letter in axes else
-                           (points[-1] if points else state.place)[n] for n, letter in enumerate(AXES)])
+                           (points[-1] if points else start)[n] for n, letter in enumerate(AXES)])
             return []
         if len(knots) < len(points) + 4:
             return []
         self.nurbs = None
-        if len(points) < 4 or points[0] != list(state.place) or sorted(knots) != knots or \
+        if len(points) < 4 or points[0] != start or sorted(knots) != knots or \
                 knots[0] != knots[3] or knots[-4] != knots[-1]:
             raise Refused("a curve that does not begin at its place, or whose knots are not clamped")
-        state.place = tuple(points[-1])
+        state.place = tuple(None if x is None else q for x, q in zip(state.place, points[-1]))
         moves = []
         for i in range(3, len(points)):
             low, high = knots[i], knots[i + 1]
@@ -844,9 +844,11 @@ class Checker:
             self.refuse(f"'{text.strip()}' is not understood, and the control remembers another "
                         f"{', '.join(sorted(fields)) or 'pole'} there")
         self.compare_copied(old_moves, new_moves)
-        # Axis words that are no moves, cycles: they may use what is not the same.
+        # Axis words that are no moves, cycles, modes: they may use what is not the same.
         named = any(letter in AXES for letter, _ in line.words) or self.old.motion == "other"
-        if not old_moves and named and fields and (fields != {"motion"} or self.old.motion != self.new.motion):
+        codes = [self.reader.codes.get(canonical(*word), ("",))[0] for word in line.words if word[0] in ("G", "M")]
+        if not old_moves and named and fields and (fields != {"motion"} or self.old.motion != self.new.motion) or \
+                fields - {"motion", "place", "feed", "speed"} and {"on", "cycle", "place", "axes"} & set(codes):
             self.refuse(f"'{text.strip()}' may depend on {', '.join(sorted(fields))}, which is not the same")
         if not self.old.differing(self.new):
             self.new = self.old

@@ -110,6 +110,8 @@ struct Control {
   LineCount line_count = LineCount::kAll;
   bool blanks = true;          // between words
   bool repeats_words = false;  // each block names its motion, each arc both axes of its plane
+  // Blocks are commands: most builds leave out one without a G, M or T word.
+  bool needs_commands = false;
   UnitWords unit_words;
   CommentStyle comments = CommentStyle::kParentheses;
   std::string_view not_in_comments;  // bytes that the control obeys there too

@@ -33,6 +33,7 @@ std::vector<Control> printer_family() {
       "marlin", "Marlin: arcs and helices in G17 where its own chords are fine enough; millimetres",
       {.longest = 1, .shortest = 0.1, .per_circle = 72, .turned = 25});
   marlin.planes = {true, false, false};
+  marlin.needs_commands = true;  // but with GCODE_MOTION_MODES
   // 96 bytes with terminator; a sender adds up to 14 for N1234567 and *123.
   marlin.max_line_length = 80;
   marlin.other_meanings = {{200,
@@ -55,6 +56,7 @@ std::vector<Control> printer_family() {
       {.longest = 1});  // [gcode_arcs] resolution
   klipper.machine = "klipper-router";
   klipper.planes = {true, false, false};
+  klipper.needs_commands = true;
   klipper.other_meanings = {
       {200, "refused: Klipper runs millimetres only. Post the program in millimetres"}};
 

@@ -6,9 +6,10 @@
 namespace batten::gcode {
 namespace {
 
+// A line that ends with a CR alone goes on behind it on some controls.
 bool is_certain(const Program& program, const Block& block, const BlockFlow& flow) {
-  return !block.block_delete && !block.has_checksum && !flow.jump_target &&
-         !flow.label_referenced && !flow.in_body &&
+  return block.opacity != ParseStatus::kUnreadable && !block.block_delete && !block.has_checksum &&
+         !flow.jump_target && !flow.label_referenced && !flow.in_body &&
          std::ranges::none_of(program.comments_of(block), [](const Comment& comment) {
            return comment.kind == CommentKind::kActive;
          });

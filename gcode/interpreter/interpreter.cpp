@@ -122,7 +122,7 @@ class Interpreter {
     const std::vector<BlockFlow>& flow = whole_flow.blocks;
     const auto count = static_cast<std::uint32_t>(program_.blocks.size());
     for (std::uint32_t i = 0; i < count;) {
-      if (has_plain_way_ && read_plain_line(program_, i, flow[i], now_, read_)) {
+      if (has_plain_way_ && has_command(i) && read_plain_line(program_, i, flow[i], now_, read_)) {
         ++i;
       } else if (const auto curve = curve_at(program_, i, now_, curves_, flow)) {
         add_curve(i, *curve);
@@ -204,7 +204,13 @@ class Interpreter {
       meaning_.entered_from_elsewhere = true;
       is_klartext() ? forget_klartext(now_) : forget_everything(now_);
     }
-    block.block_delete ? read_deletable(block) : read_words_or_text(block);
+    if (block.block_delete) {
+      read_uncertain(block, reason::kBlockDelete);
+    } else if (!has_command(index)) {
+      read_uncertain(block, reason::kNotUnderstood);
+    } else {
+      read_words_or_text(block);
+    }
     add_barriers_of_surroundings(block, flow);
     forget_motion_word();
     // No word of Siemens programs changes it: AC() and IC() say it of one number.
@@ -246,14 +252,26 @@ class Interpreter {
     now_.position.mm = read_.motions.back().piece.end();
   }
 
-  // The operator chooses whether the block is executed: what it changes is unknown afterwards.
-  void read_deletable(const Block& block) {
+  // Whether no build of the control leaves the block out for want of a command word.
+  [[nodiscard]] bool has_command(std::uint32_t index) const {
+    if (!options_.needs_commands) return true;
+    bool any = false;
+    for (const Word& word : program_.words_of(program_.blocks[index])) {
+      if (word.letter == 'G' || word.letter == 'M' || word.letter == 'T') return true;
+      any |= word.letter != 'N';
+    }
+    return !any;
+  }
+
+  // The operator, or the build of the firmware, chooses whether the block is executed: what it
+  // changes is unknown afterwards.
+  void read_uncertain(const Block& block, std::string_view why) {
     const ControlState skipped = now_;
     read_words_or_text(block);
     now_ = either(skipped, now_);
     drop_motion();
     if (meaning_.kind != BlockKind::kEmpty) meaning_.kind = BlockKind::kOpaque;
-    meaning_.barrier = reason::kBlockDelete;
+    meaning_.barrier = why;
   }
 
   void read_words_or_text(const Block& block) {

@@ -51,6 +51,9 @@ struct ReadOptions {
   // The control has no modes beside units, plane, distance and feed mode, and refuses words for
   // others: behind a block that is not understood it has none that could be on.
   bool only_basic_modes = false;
+  // Most builds of the control leave out a block without a G, M or T word: what it would change is
+  // unknown behind it.
+  bool needs_commands = false;
   // A program that others call is called under the modes of power-on. Otherwise nothing is known of
   // what it does not set itself, and its blocks are kept.
   bool usual_caller_modes = false;

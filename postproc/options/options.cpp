@@ -222,12 +222,17 @@ bool has_only_basic_modes(const gcode::Control* target, gcode::SourceKind source
   return target != nullptr && target->only_basic_modes && of_it;
 }
 
+bool needs_commands(const gcode::Control* target, gcode::SourceKind source) {
+  return target != nullptr && target->needs_commands && source == gcode::SourceKind::kAuto;
+}
+
 gcode::ReadOptions read_options_of(const SmoothOptions& options) {
   gcode::ReadOptions reading;
   reading.units = options.units;
   if (options.target != nullptr) reading.curves = options.target->curves;
   reading.only_basic_modes =
       !options.convert && has_only_basic_modes(options.target, options.source);
+  reading.needs_commands = !options.convert && needs_commands(options.target, options.source);
   reading.calls_keep_modes = calls_keep_modes(options.allowed);
   reading.usual_caller_modes = usual_caller_modes(options.allowed);
   reading.own_words = options.own_words;

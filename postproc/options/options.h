@@ -109,6 +109,9 @@ struct SmoothOptions {
 // ReadOptions::only_basic_modes of a program for this target, where it was written for no other.
 [[nodiscard]] bool has_only_basic_modes(const gcode::Control* target, gcode::SourceKind source);
 
+// ReadOptions::needs_commands, likewise.
+[[nodiscard]] bool needs_commands(const gcode::Control* target, gcode::SourceKind source);
+
 // Whether they say that programs that others call are called under the modes of power-on (reason
 // `caller-modes`).
 [[nodiscard]] bool usual_caller_modes(std::span<const std::string> allowed);

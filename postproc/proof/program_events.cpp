@@ -94,7 +94,9 @@ class ProgramLister : EventLister {
       return;
     }
     if (block.opacity != gcode::ParseStatus::kNone || block.block_delete) {
-      add_text(text_of_block(block));
+      // The same letters can be words in the other program: a CR alone divides no line there.
+      const bool unreadable = block.opacity == gcode::ParseStatus::kUnreadable;
+      add_text((unreadable ? "unreadable " : "") + text_of_block(block));
     } else {
       list_words(block, meaning);
       list_active_comments(block);

@@ -1,15 +1,21 @@
 #!/usr/bin/env python3
-"""Does the oracle of the campaign find planted faults, and nothing where there is none?
+"""Does the oracle of the campaign find planted faults, and nothing where there is none? Does the checker
+of certificates refuse what the campaign has found?
 
 For each kind of program a text, and changes of it: each that does harm has to be found, by the readers
 and, for LinuxCNC's family, by LinuxCNC's own interpreter where rs274 is there; each that does none
 must not be."""
 
+import contextlib
+import io
 import math
 import pathlib
 import sys
+import tempfile
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[1] / "tools")]
+import check_certificate  # noqa: E402
 import oracle  # noqa: E402
 import paths  # noqa: E402
 
@@ -131,6 +137,37 @@ CASES = [("linuxcnc", PLAIN, PLAIN_CHANGES), ("grbl", PLAIN, PLAIN_CHANGES), ("f
          ("siemens", SIEMENS, SIEMENS_CHANGES), ("heidenhain", KLARTEXT, KLARTEXT_CHANGES)]
 
 
+# What the campaign found: lines 5 to 7 of this became others; what stands behind them; whether it is
+# to be certified.
+CERTIFIED_HEAD = "G21 G17 G90 G94\nS100 M3\nG0 X0 Y0 Z0\nG1 Z-1 F100\n"
+CERTIFIED_RUN = "X1 Y0\nX2 Y0.001\nX3 Y0\n"
+FOUND = [
+    ("a run", CERTIFIED_RUN, "X3 Y0\n", "M5\nM2\n", True),
+    ("another plane where compensation begins", CERTIFIED_RUN, "G18 X3 Y0\n", "G42.1 D0.1\nG17 G40\nM2\n", False),
+    ("another plane that is set before it counts", CERTIFIED_RUN, "G18 X3 Y0\n", "G17\nG42.1 D0.1\nG17 G40\nM2\n", True),
+    ("an arc whose radii differ", CERTIFIED_RUN, "G2 X3 Y0 I2.5 J-30\nG1\n", "M2\n", False),
+    ("a speed that is said again", "X1 Y0\nX2 Y0.001 S100\nX3 Y0\n", "X3 Y0\n", "M2\n", True),
+    ("another speed", "X1 Y0\nX2 Y0.001 S200\nX3 Y0\n", "X3 Y0\n", "M2\n", False),
+    ("a speed that means another one", "G96\nX2 Y0.001 S100\nX3 Y0\n", "X3 Y0\n", "M2\n", False),
+]
+
+
+def check_found():
+    wrong = []
+    with tempfile.TemporaryDirectory() as folder:
+        names = [str(pathlib.Path(folder, name)) for name in ("old.nc", "new.nc", "new.cert")]
+        for name, run, new, tail, certified in FOUND:
+            proof = f"Batten certificate 1\ntolerance 0.05 mm\nrun 5 3 5 {new.count(chr(10))}\n"
+            for path, text in zip(names, (CERTIFIED_HEAD + run + tail, CERTIFIED_HEAD + new + tail, proof)):
+                pathlib.Path(path).write_text(text)
+            said = io.StringIO()
+            with contextlib.redirect_stdout(said):
+                code = check_certificate.main([*names, "--control", "linuxcnc", "--tolerance", "0.05"])
+            if (code == 0) != certified:
+                wrong.append(f"{name}: {said.getvalue()}")
+    return wrong
+
+
 def check_together():
     """The distance that is decided on is that of the closed form."""
     wrong = []
@@ -150,7 +187,7 @@ def check_together():
 
 
 def main():
-    wrong = check_together()
+    wrong = check_together() + check_found()
     for control, text, changes in CASES:
         old = oracle.OldProgram(text, control)
         canon = oracle.Canon(text) if control in oracle.LIKE_LINUXCNC and oracle.rs274_is_there() else None

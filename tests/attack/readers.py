@@ -182,10 +182,10 @@ class PlainReader(Reader):
     def comments_of(self, line):
         """The line without comments; those that act are events."""
         body = line.split(";")[0] if ";" in line else line
-        for comment in re.findall(r"\([^()]*\)", body):
+        for comment in re.findall(r"\([^)]*\)", body):
             if re.match(r"\(\s*(MSG|DEBUG|PRINT|LOG|PROBE)", comment, re.I):
                 self.event(comment)
-        return re.sub(r"\([^()]*\)", " ", body)
+        return re.sub(r"\([^)]*\)", " ", body)
 
     def follow(self, line):
         body = self.comments_of(line).upper()

@@ -120,7 +120,7 @@ class SiemensReader(PlainReader):
             if name not in self.KEEPS:
                 raise Unknown
             self.event(name + (arguments or ""))
-        if any(code[0] == "M" and code[1:] in ("17", "98", "99") for code in codes):
+        if "M98" in codes or "M99" in codes:
             raise Unknown
         self.siemens_words(values, codes, raw)
 
@@ -218,8 +218,10 @@ class KlartextReader(Reader):
         super().__init__(text, effect, inch)
         self.pole, self.begun = None, False
         self.labels = set(re.findall(r"(?:CALL|GOTO) LBL\s*(\S+)", text))
-        # A statement that goes on behind ~ is one.
-        self.lines = re.sub(r"~[ \t]*(;[^\n]*)?\r?\n", " ", text).split("\n")
+        # A statement that goes on behind ~ is one, and the coefficients below an SPL are its own.
+        text = re.sub(r"~[ \t]*(;[^\n]*)?\r?\n", " ", text)
+        self.lines = re.sub(r"(SPL [^\n;]*)\r?\n(?=[ \t]*K[123][XYZ])", r"\1 ", re.sub(
+            r"(SPL [^\n;]*)\r?\n(?=[ \t]*K[123][XYZ])", r"\1 ", text)).split("\n")
 
     def follow(self, line):
         body = re.sub(r"^\s*\d+(?=\s|$)", "", line.split(";")[0].upper()).strip()

@@ -105,11 +105,14 @@ inline std::string broken_block(const Program& program, const Block& block) {
   return "";
 }
 
-// At most one for each block, in the order of the program, beside one about the whole file.
+// At most one for each block, in the order of the program, beside one about the whole file and the
+// number of those that were not told, which stands at the first of them: what that block is told
+// for instead, it is told there too.
 inline std::string broken_diagnostics(const Program& program, const Diagnostics& found) {
   auto block = program.blocks.begin();
   for (const Diagnostic& diagnostic : found) {
     if (diagnostic.id == "sixteen-bit-text") continue;
+    if (diagnostic.message.starts_with("from here on ")) continue;
     while (block != program.blocks.end() && block->end <= diagnostic.where.begin) ++block;
     if (block == program.blocks.end() || diagnostic.where.begin < block->span.begin) {
       return "two diagnostics for one block, or one outside the program: " + diagnostic.message;

@@ -317,5 +317,24 @@ TEST(InterpreterUnknown, TextAfterTheLastMarkIsInert) {
   EXPECT_EQ(it.last_state().units, Units::kMillimetre);
 }
 
+// Klipper knows no command X4 and none F777: it leaves them out, other builds may not.
+TEST(BlocksWithoutACommand, MayBeLeftOutWhereEachBlockIsACommand) {
+  const std::string text = "G21\nG90\nG1 X1 Y1 Z0 F100\nX2\nG1 X3 Y3\nF777\nG1 X4 Y4\nG1 X5 F200\n";
+  ReadOptions options;
+  options.needs_commands = true;
+  const Interpreted commands(text, options);
+  EXPECT_EQ(commands.motion_of_line(4), nullptr);
+  EXPECT_EQ(commands.line(4).barrier, reason::kNotUnderstood);
+  ASSERT_NE(commands.motion_of_line(5), nullptr);
+  EXPECT_FALSE(commands.motion_of_line(5)->start_known);
+  EXPECT_EQ(commands.state_after_line(5).feed, 100.0);
+  EXPECT_FALSE(commands.state_after_line(7).feed);
+  EXPECT_EQ(commands.state_after_line(8).feed, 200.0);
+  const Interpreted words(text);
+  ASSERT_NE(words.motion_of_line(5), nullptr);
+  EXPECT_TRUE(words.motion_of_line(5)->start_known);
+  EXPECT_EQ(words.state_after_line(7).feed, 777.0);
+}
+
 }  // namespace
 }  // namespace batten::gcode

@@ -277,6 +277,13 @@ TEST(ParserDiagnostics, DoNotBuryTheReader) {
   EXPECT_EQ(promises::broken_by(text), "");
 }
 
+// A block that is no more told for its first fault is told for its second.
+TEST(ParserDiagnostics, TellTheNumberOfTheRestBesideWhatIsToldOfTheSameBlock) {
+  std::string text;
+  for (int i = 0; i < 52; ++i) text += "G1 X (open\n";
+  EXPECT_EQ(promises::broken_by(text), "");
+}
+
 TEST(ParserDiagnostics, StaySilentAboutGoodPrograms) {
   EXPECT_TRUE(
       parsed("%\nO1 (part)\nG21 G90\nG1 X1 F100\nX[#1]\n#1=2\nIF[1]GOTO5\n%\n").found.empty());

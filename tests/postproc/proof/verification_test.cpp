@@ -302,6 +302,10 @@ TEST(Verify, DoesNotTakeALoneReturnForALineEnd) {
   EXPECT_FALSE(verified(replaced(apart, "\nY60\n", "\rY60\n"), apart).proved());
   const std::string same = replaced(apart, "\nY60\n", "\rY60\n");
   EXPECT_TRUE(verified(same, same).proved());
+  // Where blocks are compared as texts, too.
+  const std::string beside = "G21G90\nG0X0Y0Z0\nG41D1\nG1X60F3000\nY60\nX0\nM2\n";
+  EXPECT_FALSE(verified(beside, replaced(beside, "\nY60\n", "\rY60\n")).proved());
+  EXPECT_FALSE(verified(replaced(beside, "\nY60\n", "\rY60\n"), beside).proved());
 }
 
 // LinuxCNC does not run what stands behind a NUL, grbl does.

@@ -43,6 +43,9 @@ class Curves : public testing::TestWithParam<std::string> {
 
   SmoothOptions options() const {
     SmoothOptions wanted = options_for(GetParam());
+    // Lines without a G1 of their own, as these programs have them, are none in programs for
+    // Marlin.
+    if (target().needs_commands) wanted.source = gcode::SourceKind::kNgc;
     wanted.output = Form::kCurves;
     return wanted;
   }

@@ -94,7 +94,7 @@ TEST(BoundedBlocks, AreSettledForGrblByItsFewModes) {
 // Elsewhere the block may have mirrored or scaled what follows, or turned its plane.
 TEST(BoundedBlocks, AreNotSettledByTheModesOfGrblOnOtherControls) {
   const std::vector<std::string> words = {"G17", "G21", "G90", "G94", "G40", "G49"};
-  for (const char* target : {"grblhal", "linuxcnc", "fanuc", "haas", "mach3", "marlin"}) {
+  for (const char* target : {"grblhal", "linuxcnc", "fanuc", "haas", "mach3", "reprapfirmware"}) {
     SCOPED_TRACE(target);
     EXPECT_EQ(rewritten_behind("G777", words, options_for(target)), 1U);
   }

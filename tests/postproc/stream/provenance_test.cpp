@@ -51,10 +51,14 @@ bool is_told(const SmoothResult& result) {
   });
 }
 
-// Without G21, which CODESYS has not.
+// Without G21, which CODESYS has not; each move with its G1, which Klipper needs.
 std::string program_without_units() {
   std::string text = wave_program();
-  return text.substr(text.find(' ') + 1);
+  text.erase(0, text.find(' ') + 1);
+  for (std::size_t at = 0; (at = text.find("\nX", at)) != std::string::npos;) {
+    text.insert(at + 1, "G1 ");
+  }
+  return text;
 }
 
 SmoothOptions for_target(const gcode::Control& target) {

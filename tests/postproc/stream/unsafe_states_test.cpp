@@ -36,7 +36,7 @@ Axes_Vector|siemens|G1 X31 A3=0 B3=0 C3=1|other-axis
 Axes_Numbered|siemens|G1 X1=31|other-axis
 Axes_Rotary|heidenhain|L X+31 C+30|other-axis
 Axes_Vector|heidenhain|LN X+31 Y+0 Z-1 NX+0 NY+0 NZ+1|foreign-words
-Axes_Extruder|marlin|G1 X31. E1.|extruder
+Axes_Extruder|reprapfirmware|G1 X31. E1.|extruder
 DistancesAndFeeds_Incremental|fanuc|G91|state-change|incremental-distance|G90
 DistancesAndFeeds_Incremental|siemens|G91|state-change|incremental-distance|G90
 DistancesAndFeeds_Increment|heidenhain|L IX+1|foreign-words
