@@ -25,7 +25,8 @@ class SiemensReader(PlainReader):
         self.modal_call = False
 
     def follow(self, line):
-        body = line.split(";")[0].strip()
+        # Text in parentheses is an alarm there; programs without Siemens words are read as plain ones.
+        body = re.sub(r"(?<![\w\]=])\([^()]*\)", " ", line.split(";")[0]).strip()
         upper = body.upper()
         if not upper or upper.startswith("%"):
             return
