@@ -174,7 +174,7 @@ class SiemensReader(PlainReader):
             if code in ("M0", "M1"):
                 self.event(code)
             elif code in ("M2", "M30"):
-                self.event(f"{code} {self.state()}")
+                self.event(f"{code} {self.last_state()}")
                 self.ended = True
 
     def siemens_go(self, values, raw):
@@ -330,7 +330,7 @@ class KlartextReader(Reader):
             if code in (0, 1):
                 self.event(f"M{code}")
             elif code in (2, 30):
-                self.event(f"M{code} {self.state()}")
+                self.event(f"M{code} {self.last_state()}")
                 self.ended = True
 
     def moves(self, name, values, end, feed_max, raw):
