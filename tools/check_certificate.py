@@ -266,9 +266,6 @@ class State:
     def differing(self, other):
         return [f for f in self.FIELDS if getattr(self, f) != getattr(other, f)]
 
-    def switch(self, name, is_off):
-        self.off = self.off | {name} if is_off else self.off - {name}
-
 def line_of(text):
     """What a line says. `words`: letter, text of the number; `silent`: nothing that acts; `title`: no code that a
     control could follow is in it."""
@@ -465,6 +462,8 @@ class Reader:
             else:
                 raise Refused(f"{code} is not known")
         if "POLY" in names:
+            if motion is not None:
+                raise Refused("two motion words")
             motion = "POLY"
         if "O" in others and (self.begun or len(others) > 1) or "L" in others and self.siemens:
             raise Refused("another program")
@@ -475,16 +474,14 @@ class Reader:
             state.motion = motion
         for kind, value in effects:
             if kind in ("off", "on"):
-                state.switch(value, kind == "off")
+                state.off = state.off | {value} if kind == "off" else state.off - {value}
             elif kind == "cycle":
                 state.motion = "other"
             elif kind == "motion" and motion is None:
                 state.motion = value
             elif kind in State.FIELDS and kind != "motion":
                 setattr(state, kind, value)
-        if feed is not None:
-            state.feed = feed
-        if kinds & {"feed_mode", "inch"}:
+        if feed is not None or kinds & {"feed_mode", "inch"}:
             state.feed = feed
         if kinds & {"place", "cycle"} or any(letter in others for letter in "UVW"):
             state.place = (None, None, None)
@@ -514,6 +511,8 @@ class Reader:
 
     def motion_of(self, state, axes, offsets, others, polynomials):
         motion = state.motion
+        if polynomials and motion != "POLY":
+            raise Refused("PO without POLY, which runs straight")
         if motion == "other" or motion is None and (offsets or state.absolute is None):
             state.place = (None, None, None)
             return [("unknown", None, None)] if motion is None else []
@@ -691,7 +690,7 @@ class Reader:
         if "F" in others and not rapid:
             state.feed = (Fraction(others["F"]), False) if others["F"] != "AUTO" else None
         if "R" in others:
-            state.switch("cutter compensation", others["R"] == "0")
+            state.off = state.off | {KNOWN_OFF[0]} if others["R"] == "0" else state.off - {KNOWN_OFF[0]}
         state.place = (None, None, None) if 6 in codes else state.place
         if set(codes) & {2, 30}:
             state.forget()

@@ -148,6 +148,9 @@ FOUND = [
     ("an arc whose radii differ", CERTIFIED_RUN, "G2 X3 Y0 I2.5 J-30\nG1\n", "M2\n", False),
     ("a speed that is said again", "X1 Y0\nX2 Y0.001 S100\nX3 Y0\n", "X3 Y0\n", "M2\n", True),
     ("another speed", "X1 Y0\nX2 Y0.001 S200\nX3 Y0\n", "X3 Y0\n", "M2\n", False),
+    ("siemens: a polynomial", CERTIFIED_RUN, "POLY PO[X]=(3,0,0) PO[Y]=(0,0,0)\nG1\n", "M30\n", True),
+    ("siemens: no POLY, so that it runs straight", CERTIFIED_RUN, "PO[X]=(3,0,0) PO[Y]=(0,0,0)\nG1\n", "M30\n", False),
+    ("siemens: G1 beside POLY", CERTIFIED_RUN, "G1 POLY PO[X]=(3,0,0) PO[Y]=(0,0,0)\nG1\n", "M30\n", False),
     ("a speed that means another one", "G96\nX2 Y0.001 S100\nX3 Y0\n", "X3 Y0\n", "M2\n", False),
 ]
 
@@ -158,11 +161,14 @@ def check_found():
         names = [str(pathlib.Path(folder, name)) for name in ("old.nc", "new.nc", "new.cert")]
         for name, run, new, tail, certified in FOUND:
             proof = f"Batten certificate 1\ntolerance 0.05 mm\nrun 5 3 5 {new.count(chr(10))}\n"
-            for path, text in zip(names, (CERTIFIED_HEAD + run + tail, CERTIFIED_HEAD + new + tail, proof)):
+            siemens = name.startswith("siemens")
+            head = CERTIFIED_HEAD.replace("G21", "G71") if siemens else CERTIFIED_HEAD
+            for path, text in zip(names, (head + run + tail, head + new + tail, proof)):
                 pathlib.Path(path).write_text(text)
             said = io.StringIO()
             with contextlib.redirect_stdout(said):
-                code = check_certificate.main([*names, "--control", "linuxcnc", "--tolerance", "0.05"])
+                code = check_certificate.main([*names, "--control", "siemens" if siemens else "linuxcnc",
+                                               "--tolerance", "0.05"])
             if (code == 0) != certified:
                 wrong.append(f"{name}: {said.getvalue()}")
     return wrong

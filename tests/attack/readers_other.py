@@ -238,6 +238,8 @@ class KlartextReader(Reader):
         try:
             if self.MOVES.match(body):
                 self.opaque(body, "moves")
+                if re.search(r"\bM99\b", body):  # ends the modal call
+                    self.unsafe.discard("M89")
                 if re.search(r"\bR[LR]\b", body):
                     self.unsafe.add("compensation")
             elif name == "L" and re.search(r"\bI?[ABCUVW][-+]", body):
