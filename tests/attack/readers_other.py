@@ -249,6 +249,8 @@ class KlartextReader(Reader):
                 self.inch = body.endswith("INCH") if name == "BEGIN" else self.inch
             elif name in ("L", "CC", "C", "CR", "SPL"):
                 self.move_of(name, body[len(name):], body)
+            elif re.fullmatch(r"M\d+|F(MAX|AUTO|\d+)|R[0LR]", name):  # as old controls print them
+                self.move_of("L", body, body)
             elif name == "LBL":
                 self.event(body)
                 if body.split()[1:] and body.split()[1] in self.labels:
