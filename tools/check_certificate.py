@@ -578,7 +578,7 @@ class Reader:
 
     def arc_about(self, p, q, centre, axes, turn):
         r, s = (math.isqrt(sum((x[n] - c) ** 2 for n, c in zip(axes, centre))) for x in (p, q))
-        if abs(r - s) * 1000 > (16 * self.scale.per_mm if self.klartext else max(r, 30 * self.scale.per_mm)):
+        if abs(r - s) * 1000 > (16 * self.scale.per_mm if self.klartext else max(r, 28 * self.scale.per_mm)):
             raise Refused("an arc whose radii at its ends differ by more than the control takes")
         return ("arc", p, q, centre, axes, turn, 0)
 

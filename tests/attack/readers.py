@@ -380,6 +380,8 @@ class PlainReader(Reader):
             self.offset_code = code
         elif code in self.SHIFTS:
             self.event(" ".join([code, *(t for t in raw.split() if t[0] not in "GMFST")]))
+            if code == "G49":
+                self.unsafe.discard("centre")
             named = [n for n, letter in enumerate("XYZ") if letter in values]
             if code in ("G92", "G28", "G30", "G53") and named:
                 self.used_effects.add("shift")
