@@ -131,9 +131,9 @@ struct Control {
   // chords of ours.
   ArcChords chords;
 
-  // It has no modes but units, plane, distance, feed mode, tool length and work offset, no
-  // subprograms and no macros, and drops a block with any other word as a whole.
-  bool only_basic_modes = false;
+  // Modes that nothing can turn on there: no word for them is known to it. Only what is certain: a
+  // mode that may exist under another word is not among them.
+  ModeSet lacks = 0;
 
   const CurveFormat* curves = nullptr;  // that the control reads; nullptr: none
 

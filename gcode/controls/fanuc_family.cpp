@@ -22,6 +22,8 @@ Control fanuc_like(std::string_view name, std::string_view description, const Cu
   control.known_marks = mark(SourceMark::kMacroFlow) | mark(SourceMark::kHighSpeedMode);
   control.dwell_form = DwellForm::kSecondsXOrMsP;
   control.curves = &curves;
+  // G90.1 and G91.1 are no words for the centres of arcs there, G7 and G8 none for diameters.
+  control.lacks = mode::kArcDistance + mode::kLatheDiameter;
   return control;
 }
 

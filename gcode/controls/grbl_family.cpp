@@ -6,6 +6,11 @@
 namespace batten::gcode {
 namespace {
 
+// What grbl 1.1 does not have beside units, plane, distance and feed mode: the tables of words of
+// its parser know no others. G40, G91.1 and G61 name what is always so.
+constexpr ModeSet kBeyondGrbl =
+    mode::kAll - mode::kUnits - mode::kPlane - mode::kDistance - mode::kFeedMode;
+
 Control grbl_like(std::string_view name, std::string_view description, SourceMarks marks,
                   std::string_view refused) {
   Control control;
@@ -32,6 +37,7 @@ Control grbl_like(std::string_view name, std::string_view description, SourceMar
   control.dwell_form = DwellForm::kSecondsP;
   control.known_marks = marks;
   control.refused = refused;
+  control.lacks = kBeyondGrbl;
   return control;
 }
 
@@ -45,8 +51,6 @@ std::vector<Control> grbl_family() {
   Control grbl =
       grbl_like("grbl", "grbl 1.1: arcs and helices in G17, G18, G19; lines of 79 characters",
                 kSettings, "M6 G43 H");
-  // Any word that it does not know is an error, and the block does nothing.
-  grbl.only_basic_modes = true;
   // The line buffer is 80 bytes with its terminator, filled after blanks and comments are gone.
   grbl.max_line_length = 79;
   grbl.line_count = LineCount::kWithoutBlanksAndComments;
@@ -57,6 +61,8 @@ std::vector<Control> grbl_family() {
                 kProgramming, "");
   grblhal.machine = "grblhal-router";
   grblhal.curves = &chopped_g5();
+  // G51 scales; G66, G7, G96 by how it was built.
+  grblhal.lacks -= mode::kScaling + mode::kModalMacro + mode::kSurfaceSpeed + mode::kLatheDiameter;
 
   // What it refuses was not read of it, nor of g2core.
   const Control fluidnc =
@@ -67,6 +73,7 @@ std::vector<Control> grbl_family() {
       "g2core", "g2core and TinyG: arcs and helices in G17, G18, G19; lines of 250 characters",
       kSettings, "M6 G43 G49 H");
   g2core.machine = "router-unrounded";
+  g2core.lacks -= mode::kPath + mode::kArcDistance;  // G61, G61.1, G64; G90.1
   // 255 bytes in one of its line buffers, fewer by the comment in others.
   g2core.max_line_length = 250;
   g2core.arc_rule = ArcRule::kTinyg;

@@ -43,6 +43,11 @@ std::vector<Control> linuxcnc_family() {
   control.known_marks = mark(SourceMark::kSubWords) | mark(SourceMark::kNamedParameters) |
                         mark(SourceMark::kBlendTolerance) | mark(SourceMark::kUniformNurbs);
   control.curves = &linuxcnc_g5();
+  // Coordinates turn by G10 L2 R, which is an offset and no mode of the text. A user's own remap of
+  // G68.2 or G51 is a known word when it stands in the program.
+  control.lacks = mode::kToolCenterPoint + mode::kTiltedPlane + mode::kScaling + mode::kRotation +
+                  mode::kMirror + mode::kPolar + mode::kCylindrical + mode::kControlSmoothing +
+                  mode::kModalMacro;
   return {control};
 }
 

@@ -22,6 +22,8 @@ Control machining_center(std::string_view name, std::string_view description, So
   control.has_increments = true;
   control.max_line_length = 80;  // unknown for all of them; no line of ours needs more
   control.known_marks = marks;
+  // G90.1 and G91.1 are no words for the centres of arcs there, G7 and G8 none for diameters.
+  control.lacks = mode::kArcDistance + mode::kLatheDiameter;
   control.smoothing_words = std::move(smoothing_words);
   return control;
 }

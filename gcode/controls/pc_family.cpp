@@ -13,6 +13,8 @@ Control pc(std::string_view name, std::string_view description, DecimalsByUnit d
   control.description = description;
   control.places = control.arc_ends = control.centers = decimals;
   control.max_line_length = 120;  // unknown; no line of ours needs more
+  // None of them wraps a path around a cylinder or fits its own curves by G5.1 or G131.
+  control.lacks = mode::kCylindrical + mode::kControlSmoothing;
   return control;
 }
 
@@ -22,6 +24,8 @@ Control by_radius(std::string_view name, std::string_view description) {
   Control control = pc(name, description);
   control.arc_form = ArcForm::kRadius;
   control.max_sweep_deg = 90;
+  // G51 with a negative factor mirrors: that is scaling. Diameters are a setting.
+  control.lacks += mode::kTiltedPlane + mode::kMirror + mode::kLatheDiameter;
   return control;
 }
 

@@ -20,6 +20,8 @@ Control printer(std::string_view name, std::string_view description, ArcChords c
   control.arc_rule = ArcRule::kUnchecked;
   control.chords = chords;
   control.known_marks = mark(SourceMark::kHeaterWords);
+  // None has more modes than grbl, nor a word for another feed mode, but where it is said.
+  control.lacks = mode::kAll - mode::kUnits - mode::kPlane - mode::kDistance;
   // What an ordinary build refuses or gives another meaning.
   control.refused = "G40 G43 G49 G54 G55 G56 G57 G58 G59 G80 G94 M1 M2 M3 M4 M5 M6 M8 M9 M30 S T H";
   return control;
@@ -46,6 +48,7 @@ std::vector<Control> printer_family() {
                                    "own chords are fine enough",
                                    {.error = 0.005});
   reprapfirmware.machine = "router-unrounded";
+  reprapfirmware.lacks -= mode::kRotation + mode::kFeedMode;  // G68; G93
   reprapfirmware.line_count = LineCount::kWithoutComments;
   reprapfirmware.not_in_comments = "{}\"";
 
@@ -65,6 +68,7 @@ std::vector<Control> printer_family() {
       "Smoothieware: arcs and helices in G17, G18, G19 where its own chords are fine enough",
       {.error = 0.01, .turned = 5});  // mm_max_arc_error, arc_correction
   smoothieware.machine = "router-unrounded";
+  smoothieware.lacks -= mode::kFeedMode;  // of later builds
   smoothieware.comments = CommentStyle::kParentheses;
   smoothieware.max_line_length = 120;  // its buffer was not read; no line of ours needs more
 

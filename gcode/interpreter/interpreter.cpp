@@ -106,7 +106,7 @@ class Interpreter {
         diagnostics_(program, carry.told, found),
         now_(carry.state) {
     now_.calls_keep_modes = options.calls_keep_modes;
-    now_.only_basic_modes = options.only_basic_modes;
+    now_.lacks = options.lacks;
     now_.own_words = options.own_words.get();
     carry.is_klartext = is_klartext();
     if (is_klartext()) start_klartext(now_);

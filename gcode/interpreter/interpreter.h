@@ -48,9 +48,9 @@ struct ReadOptions {
   // Subprograms and macros leave all modes as they find them (M97, M98, M198, G65, O-word calls,
   // CALL LBL, CALL PGM): behind a call only place, feed, speed and kind of motion are unknown.
   bool calls_keep_modes = false;
-  // The control has no modes beside units, plane, distance and feed mode, and refuses words for
-  // others: behind a block that is not understood it has none that could be on.
-  bool only_basic_modes = false;
+  // What the control that the program is for does not have (Control::lacks): that cannot be on
+  // behind a block that is not understood.
+  ModeSet lacks = 0;
   // Most builds of the control leave out a block without a G, M or T word: what it would change is
   // unknown behind it.
   bool needs_commands = false;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
 
@@ -116,10 +117,8 @@ class CycleEffect {
                          reason::kRotation);
       case 11:
         return apply_scaling();
-      case 26:  // a factor for each axis: 11 does not end it
-        state_.modal.scaling = TriState::kUnknown;
-        forget_position(state_);
-        return reason::kScaling;
+      case 26:
+        return apply_axis_scaling();
       case 19:
         return set_frame(state_.modal.tilted_plane, value_.empty() ? TriState::kOff : TriState::kOn,
                          reason::kTiltedPlane);
@@ -150,12 +149,29 @@ class CycleEffect {
     return why;
   }
 
+  // A factor for each axis (cycle 26) counts beside it.
   std::string_view apply_scaling() {
-    const bool by_axis = state_.modal.scaling == TriState::kUnknown;
     const std::string_view why = set_frame(
         state_.modal.scaling, says("SCL", 1) ? TriState::kOff : TriState::kOn, reason::kScaling);
-    if (by_axis) state_.modal.scaling = TriState::kUnknown;
+    if (state_.scaled_by_axis) state_.modal.scaling = TriState::kUnknown;
     return why;
+  }
+
+  // Cycle 11 does not end it, nor does it end cycle 11: with a factor of 1 for X, Y and Z cycle 11
+  // says what holds from there on.
+  std::string_view apply_axis_scaling() {
+    forget_position(state_);
+    std::array<bool, 3> is_one = {};
+    for (; minor_ == 1 && !value_.empty(); value_ = tokens_.next()) {
+      const char axis = upper(value_[0]);
+      const auto factor = value_.size() == 1 ? number_in(tokens_.peek(), 0) : number_in(value_, 1);
+      if (axis >= 'X' && axis <= 'Z' && factor == 1)
+        is_one[static_cast<std::size_t>(axis - 'X')] = true;
+    }
+    const bool ends = std::ranges::all_of(is_one, [](bool one) { return one; });
+    if (minor_ == 1) state_.scaled_by_axis = !ends;
+    state_.modal.scaling = TriState::kUnknown;
+    return reason::kScaling;
   }
 
   // `ROT+0` or `ROT +0`.
@@ -174,7 +190,9 @@ class CycleEffect {
     if (n == 220 || n == 221) {
       forget_position(state_);
       state_.modal.feed.reset();
-    } else if (!waits) {
+    } else if (waits) {
+      state_.modal.modal_macro = TriState::kOff;  // M89 calls the cycle before it no longer
+    } else {
       forget_klartext(state_);
     }
     return reason::kCannedCycle;
@@ -270,16 +288,21 @@ std::string_view apply_path(KlartextKind kind, std::string_view content, std::st
 
 }  // namespace
 
+// Increments and polar coordinates are said in each block, cylinders by cycles with an end of their
+// own; the control rounds by itself (M112, M124) within what is its own in both programs.
+constexpr ModeSet kNoModeOfKlartext = mode::kDistance + mode::kPath + mode::kPolar +
+                                      mode::kCylindrical + mode::kControlSmoothing +
+                                      mode::kSurfaceSpeed + mode::kLatheDiameter;
+
 void start_klartext(ControlState& state) { state.modal.arc_distance = DistanceMode::kAbsolute; }
 
 void forget_klartext(ControlState& state) {
   const Units units = state.modal.units;
+  state.lacks = kNoModeOfKlartext;
   forget_everything(state);
   state.modal.units = units;
-  state.modal.distance = DistanceMode::kAbsolute;
-  state.modal.path = PathMode::kBlending;
-  state.modal.lathe_diameter = TriState::kOff;
   start_klartext(state);
+  state.scaled_by_axis = true;
 }
 
 std::string_view klartext_statement_text(const Program& program, std::uint32_t first) {

@@ -18,20 +18,20 @@ namespace {
 constexpr SourceMarks kMacroB = mark(SourceMark::kMacroFlow) | mark(SourceMark::kHighSpeedMode);
 
 constexpr std::array kFamilies = {
-    SourceFamily{SourceKind::kNgc, "ngc", "LinuxCNC", Language::kRs274,
+    SourceFamily{SourceKind::kNgc, "ngc", "LinuxCNC", "linuxcnc", Language::kRs274,
                  mark(SourceMark::kSubWords) | mark(SourceMark::kNamedParameters) |
                      mark(SourceMark::kBlendTolerance) | mark(SourceMark::kUniformNurbs),
                  false, DwellForm::kSecondsP},
-    SourceFamily{SourceKind::kFanuc, "fanuc", "FANUC", Language::kRs274, kMacroB, true,
+    SourceFamily{SourceKind::kFanuc, "fanuc", "FANUC", "fanuc", Language::kRs274, kMacroB, true,
                  DwellForm::kSecondsXOrMsP},
-    SourceFamily{SourceKind::kHaas, "haas", "Haas", Language::kRs274,
+    SourceFamily{SourceKind::kHaas, "haas", "Haas", "haas", Language::kRs274,
                  kMacroB | mark(SourceMark::kHaasSmoothness), true, DwellForm::kSecondsByPoint},
-    SourceFamily{SourceKind::kGrbl, "grbl", "grbl", Language::kRs274, mark(SourceMark::kDollarLine),
-                 false, DwellForm::kSecondsP},
-    SourceFamily{SourceKind::kSiemens, "siemens", "Siemens Sinumerik", Language::kSiemens, 0, false,
-                 DwellForm::kSecondsF},
-    SourceFamily{SourceKind::kHeidenhain, "heidenhain", "Heidenhain Klartext", Language::kKlartext,
-                 0},
+    SourceFamily{SourceKind::kGrbl, "grbl", "grbl", "grbl", Language::kRs274,
+                 mark(SourceMark::kDollarLine), false, DwellForm::kSecondsP},
+    SourceFamily{SourceKind::kSiemens, "siemens", "Siemens Sinumerik", "siemens",
+                 Language::kSiemens, 0, false, DwellForm::kSecondsF},
+    SourceFamily{SourceKind::kHeidenhain, "heidenhain", "Heidenhain Klartext", "heidenhain",
+                 Language::kKlartext, 0},
 };
 
 const SourceFamily* family_of(SourceKind kind) {
@@ -48,6 +48,11 @@ std::string_view option_for(Language language) {
 }  // namespace
 
 std::span<const SourceFamily> source_families() { return kFamilies; }
+
+std::string_view control_of(SourceKind kind) {
+  const SourceFamily* family = family_of(kind);
+  return family == nullptr ? "" : family->control;
+}
 
 std::optional<Language> source_language(const SourceText& source, SourceKind kind,
                                         std::optional<Language> target, Diagnostics& found) {

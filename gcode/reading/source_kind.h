@@ -31,11 +31,15 @@ struct SourceFamily {
   SourceKind kind = SourceKind::kAuto;
   std::string_view name;      // "ngc"
   std::string_view controls;  // for people: "LinuxCNC"
+  std::string_view control;   // the built-in control's name: "linuxcnc"
   Language language = Language::kRs274;
   SourceMarks marks = 0;
   bool may_imply_decimals = false;  // X5 may be five least increments
   DwellForm dwells = DwellForm::kUnknown;
 };
+
+// The name of the built-in control that programs of this kind are for; empty for kAuto.
+[[nodiscard]] std::string_view control_of(SourceKind kind);
 
 // All kinds but kAuto.
 [[nodiscard]] std::span<const SourceFamily> source_families();

@@ -7,19 +7,21 @@
 namespace batten::gcode {
 namespace {
 
-// Calls `visit` with the items of two states and what each is where it is not known: those that
-// is_known() asks for, then the others but feeds and speeds.
+// Calls `visit` with the items of two states, what each is where it is not known, and its bit in a
+// ModeSet (the motion has none): all but feeds and speeds.
 template <typename Visit>
 void for_each_mode(ModalState& a, const ModalState& b, Visit visit) {
-  visit(a.units, b.units, Units::kUnknown);
-  visit(a.plane, b.plane, Plane::kUnknown);
-  visit(a.distance, b.distance, DistanceMode::kUnknown);
-  visit(a.arc_distance, b.arc_distance, DistanceMode::kUnknown);
-  visit(a.feed_mode, b.feed_mode, FeedMode::kUnknown);
-  visit(a.path, b.path, PathMode::kUnknown);
-  visit(a.motion, b.motion, MotionMode::kUnknown);
+  visit(a.units, b.units, Units::kUnknown, mode::kUnits);
+  visit(a.plane, b.plane, Plane::kUnknown, mode::kPlane);
+  visit(a.distance, b.distance, DistanceMode::kUnknown, mode::kDistance);
+  visit(a.arc_distance, b.arc_distance, DistanceMode::kUnknown, mode::kArcDistance);
+  visit(a.feed_mode, b.feed_mode, FeedMode::kUnknown, mode::kFeedMode);
+  visit(a.path, b.path, PathMode::kUnknown, mode::kPath);
+  visit(a.motion, b.motion, MotionMode::kUnknown, ModeSet{0});
+  ModeSet next = 1U << mode::kFirstSwitch;
   for (const ModalSwitch& each : kModalSwitches) {
-    visit(a.*each.item, b.*each.item, TriState::kUnknown);
+    visit(a.*each.item, b.*each.item, TriState::kUnknown, next);
+    next <<= 1U;
   }
 }
 
@@ -40,7 +42,7 @@ static_assert(switches_of({}) == kModalSwitches.size());
 
 ModalState either(const ModalState& a, const ModalState& b) {
   ModalState both = a;
-  for_each_mode(both, b, [](auto& item, auto other, auto unknown) {
+  for_each_mode(both, b, [](auto& item, auto other, auto unknown, ModeSet) {
     if (item != other) item = unknown;
   });
   if (a.feed != b.feed || a.feed_without_point != b.feed_without_point) both.feed.reset();
@@ -50,30 +52,20 @@ ModalState either(const ModalState& a, const ModalState& b) {
 
 }  // namespace
 
-ModalState unknown_modal_state() {
-  ModalState state;
-  for_each_mode(state, state, [](auto& item, auto, auto unknown) { item = unknown; });
+ModalState unknown_modal_state(const ModalState& before, ModeSet lacks) {
+  ModalState state;  // as at power-on
+  for_each_mode(state, before, [lacks](auto& item, auto was, auto unknown, ModeSet bit) {
+    if ((lacks & bit) == 0 || was != item) item = unknown;
+  });
   return state;
-}
-
-ModalState unknown_basic_modes(const ModalState& before) {
-  ModalState after = unknown_modal_state();
-  for (const ModalSwitch& each : kModalSwitches) {
-    const bool has_it = each.item == &ModalState::laser_power_mode;
-    if (!has_it && before.*each.item == TriState::kOff) after.*each.item = TriState::kOff;
-  }
-  if (before.path == PathMode::kBlending) after.path = before.path;
-  if (before.arc_distance == DistanceMode::kIncremental) after.arc_distance = before.arc_distance;
-  return after;
 }
 
 bool is_known(const ModalState& state) {
   ModalState asked = state;
-  asked.motion = MotionMode::kLine;
-  asked.laser_power_mode = TriState::kOff;
   bool known = true;
-  for_each_mode(asked, state,
-                [&known](auto item, auto, auto unknown) { known &= item != unknown; });
+  for_each_mode(asked, state, [&known](auto item, auto, auto unknown, ModeSet bit) {
+    known &= item != unknown || (mode::kAll & bit) == 0;
+  });
   return known;
 }
 
@@ -95,9 +87,9 @@ void forget_position(ControlState& state) { state.position = Position{}; }
 
 void forget_everything(ControlState& state) {
   ControlState unknown;
-  unknown.modal = state.only_basic_modes ? unknown_basic_modes(state.modal) : unknown_modal_state();
+  unknown.modal = unknown_modal_state(state.modal, state.lacks);
   unknown.calls_keep_modes = state.calls_keep_modes;
-  unknown.only_basic_modes = state.only_basic_modes;
+  unknown.lacks = state.lacks;
   unknown.own_words = state.own_words;
   state = unknown;
 }
@@ -130,6 +122,7 @@ ControlState either(const ControlState& a, const ControlState& b) {
   if (a.modal.units != b.modal.units) forget_position(both);
   if (a.other_motion != b.other_motion) both.other_motion = {};
   if (a.work_offset != b.work_offset) both.work_offset = 0;
+  both.scaled_by_axis = a.scaled_by_axis || b.scaled_by_axis;
   both.set_by_word = a.set_by_word & b.set_by_word;
   return both;
 }

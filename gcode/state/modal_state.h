@@ -73,12 +73,44 @@ inline constexpr std::array kModalSwitches = {
     ModalSwitch{&ModalState::laser_power_mode, "laser power mode", false, false},
 };
 
-// Nothing is known: after a call, or a block that could have changed anything.
-[[nodiscard]] ModalState unknown_modal_state();
+// Modes as a set, a bit for each.
+using ModeSet = std::uint32_t;
+namespace mode {
+inline constexpr ModeSet kUnits = 1U << 0U;
+inline constexpr ModeSet kPlane = 1U << 1U;
+inline constexpr ModeSet kDistance = 1U << 2U;
+inline constexpr ModeSet kArcDistance = 1U << 3U;
+inline constexpr ModeSet kFeedMode = 1U << 4U;
+inline constexpr ModeSet kPath = 1U << 5U;
+inline constexpr unsigned kFirstSwitch = 6;
 
-// Nothing but units, plane, distance, feed mode and the kind of motion can have changed: what else
-// was as it is at power-on is so still.
-[[nodiscard]] ModalState unknown_basic_modes(const ModalState& before);
+// Of one of kModalSwitches; of another item none.
+[[nodiscard]] constexpr ModeSet of(TriState ModalState::*item) {
+  for (std::size_t i = 0; i < kModalSwitches.size(); ++i) {
+    if (kModalSwitches[i].item == item) return 1U << (kFirstSwitch + i);
+  }
+  return 0;
+}
+inline constexpr ModeSet kCutterCompensation = of(&ModalState::cutter_compensation);
+inline constexpr ModeSet kToolCenterPoint = of(&ModalState::tool_center_point);
+inline constexpr ModeSet kTiltedPlane = of(&ModalState::tilted_plane);
+inline constexpr ModeSet kScaling = of(&ModalState::scaling);
+inline constexpr ModeSet kRotation = of(&ModalState::rotation);
+inline constexpr ModeSet kMirror = of(&ModalState::mirror);
+inline constexpr ModeSet kPolar = of(&ModalState::polar);
+inline constexpr ModeSet kCylindrical = of(&ModalState::cylindrical);
+inline constexpr ModeSet kControlSmoothing = of(&ModalState::control_smoothing);
+inline constexpr ModeSet kModalMacro = of(&ModalState::modal_macro);
+inline constexpr ModeSet kSurfaceSpeed = of(&ModalState::constant_surface_speed);
+inline constexpr ModeSet kLatheDiameter = of(&ModalState::lathe_diameter);
+// All that is_known() asks for.
+inline constexpr ModeSet kAll =
+    (1U << (kFirstSwitch + kModalSwitches.size())) - 1 - of(&ModalState::laser_power_mode);
+}  // namespace mode
+
+// Nothing is known: after a call, or a block that could have changed anything. A mode that the
+// control lacks is still off, and as it is at power-on, where it was so before.
+[[nodiscard]] ModalState unknown_modal_state(const ModalState& before = {}, ModeSet lacks = 0);
 
 // Does every item have a value? The motion mode, the feed, the spindle speed and the laser
 // mode are not asked for: a block names the first itself, the others do not bend the path.
@@ -106,8 +138,9 @@ struct ControlState {
   // the control at power-on is no repetition: it must stay.
   std::uint32_t set_by_word = 0;
   static_assert(kCodeGroups <= 32);
+  bool scaled_by_axis = false;          // Klartext: cycle 26 may hold a factor for an axis
   bool calls_keep_modes = false;        // ReadOptions
-  bool only_basic_modes = false;        // ReadOptions
+  ModeSet lacks = 0;                    // ReadOptions
   const OwnWords* own_words = nullptr;  // ReadOptions; they outlive the reading
 
   [[nodiscard]] bool is_set(CodeGroup group) const { return (set_by_word & bit(group)) != 0; }

@@ -140,7 +140,7 @@ PartReading reading_of(const gcode::SourceText& source, const ReadingCommand& co
   reading.options = {.units = command.units,
                      .curves = command.target != nullptr ? command.target->curves : nullptr,
                      .calls_keep_modes = calls_keep_modes(command.allowed),
-                     .only_basic_modes = has_only_basic_modes(command.target, kind),
+                     .lacks = modes_lacking(command.target, kind),
                      .needs_commands = needs_commands(command.target, kind),
                      .usual_caller_modes = usual_caller_modes(command.allowed),
                      .own_words = command.own_words};

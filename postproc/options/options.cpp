@@ -217,9 +217,11 @@ bool usual_caller_modes(std::span<const std::string> allowed) {
   return std::ranges::find(allowed, gcode::reason::kCallerModes) != allowed.end();
 }
 
-bool has_only_basic_modes(const gcode::Control* target, gcode::SourceKind source) {
-  const bool of_it = source == gcode::SourceKind::kAuto || source == gcode::SourceKind::kGrbl;
-  return target != nullptr && target->only_basic_modes && of_it;
+gcode::ModeSet modes_lacking(const gcode::Control* target, gcode::SourceKind source) {
+  if (target == nullptr) return 0;
+  if (source == gcode::SourceKind::kAuto) return target->lacks;
+  const auto written_for = gcode::control_of(source);
+  return written_for == target->name ? target->lacks : 0;
 }
 
 bool needs_commands(const gcode::Control* target, gcode::SourceKind source) {
@@ -230,8 +232,7 @@ gcode::ReadOptions read_options_of(const SmoothOptions& options) {
   gcode::ReadOptions reading;
   reading.units = options.units;
   if (options.target != nullptr) reading.curves = options.target->curves;
-  reading.only_basic_modes =
-      !options.convert && has_only_basic_modes(options.target, options.source);
+  if (!options.convert) reading.lacks = modes_lacking(options.target, options.source);
   reading.needs_commands = !options.convert && needs_commands(options.target, options.source);
   reading.calls_keep_modes = calls_keep_modes(options.allowed);
   reading.usual_caller_modes = usual_caller_modes(options.allowed);

@@ -106,8 +106,8 @@ struct SmoothOptions {
 // Whether they say that what is called leaves all modes as it finds them (reason `subprogram`).
 [[nodiscard]] bool calls_keep_modes(std::span<const std::string> allowed);
 
-// ReadOptions::only_basic_modes of a program for this target, where it was written for no other.
-[[nodiscard]] bool has_only_basic_modes(const gcode::Control* target, gcode::SourceKind source);
+// ReadOptions::lacks of a program for this target, where it was written for no other.
+[[nodiscard]] gcode::ModeSet modes_lacking(const gcode::Control* target, gcode::SourceKind source);
 
 // ReadOptions::needs_commands, likewise.
 [[nodiscard]] bool needs_commands(const gcode::Control* target, gcode::SourceKind source);

@@ -1,6 +1,7 @@
 #include "postproc/profile/target_profile.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <variant>
 
 #include "gcode/controls/built_in.h"
+#include "gcode/interpreter/lost_modes.h"
 #include "postproc/machine/machine.h"
 #include "postproc/text/words.h"
 
@@ -489,6 +491,8 @@ std::string profile_text(const gcode::Control& target) {
     text += fmt::format("{:<34}  # {}\n", fmt::format("{} = []", key.name), key.remark);
   }
   for (const std::string_view hint : target.smoothing_words) text += fmt::format("# {}\n", hint);
+  text += fmt::format("\n# Behind a block that is not understood all modes are said by: {}\n",
+                      fmt::join(gcode::words_of_all_modes(target), ", "));
   text += fmt::format(
       "\n# What words of your own do, which Batten does not know; you vouch for it. Such as\n"
       "# M501 = \"keeps state\"\n# \"G65 P9810\" = \"moves\"\n[{}]\n",

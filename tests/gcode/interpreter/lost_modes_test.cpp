@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "gcode/controls/built_in.h"
+#include "gcode/state/modal_state.h"
 #include "tests/support/interpreted.h"
 
 namespace batten::gcode {
@@ -47,6 +51,86 @@ TEST(LostModes, AreToldWithTheWordsThatWereNotSaidAgain) {
                 "(G97), diameter mode (G8). Set these after it"),
             std::string::npos)
       << lost_modes_told(text);
+}
+
+struct WordsRow {
+  std::vector<std::string> targets;
+  std::vector<std::string> words;  // that say all modes of these controls again
+};
+
+// Each word is one that the control has; what it lacks has none.
+const WordsRow kWordsRows[] = {
+    {{"grbl", "fluidnc", "smoothieware"}, {"G21", "G17", "G90", "G94"}},
+    {{"marlin", "klipper"}, {"G21", "G17", "G90"}},
+    {{"reprapfirmware"}, {"G21", "G17", "G90", "G94", "G69"}},
+    {{"linuxcnc"}, {"G21", "G17", "G90", "G91.1", "G94", "G64", "G40", "G97", "G8"}},
+    {{"g2core"}, {"G21", "G17", "G90", "G91.1", "G94", "G64"}},
+    {{"grblhal"}, {"G21", "G17", "G90", "G94", "G50", "G67", "G97", "G8"}},
+    {{"mach3", "mach4", "uccnc"},
+     {"G21", "G17", "G90", "G91.1", "G94", "G64", "G40", "G49", "G50", "G69", "G15", "G67", "G97"}},
+    {{"edingcnc", "planetcnc", "masso", "centroid"},
+     {"G21", "G17", "G90", "G91.1", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15", "G67",
+      "G97", "G8"}},
+    {{"fanuc", "syntec", "mitsubishi", "haas", "mazak", "okuma", "brother", "hurco", "fagor",
+      "num"},
+     {"G21", "G17", "G90", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15", "G7.1 C0",
+      "G5.1 Q0", "G67", "G97"}},
+    {{"codesys", "beckhoff"},
+     {"G21", "G17", "G90", "G91.1", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15",
+      "G7.1 C0", "G5.1 Q0", "G67", "G97", "G8"}}};
+
+bool is_known_behind(const Control& control, const std::string& block,
+                     const std::vector<std::string>& words) {
+  std::string text = std::string(kKnownModes) + block + "\n";
+  for (const std::string& word : words) text += word + "\n";
+  return is_known(tests::Interpreted(text, ReadOptions{.lacks = control.lacks}).last_state());
+}
+
+// A block may have turned on whatever the control has: with one word left out its mode is not
+// known.
+TEST(LostModes, AreKnownAgainByTheWordsOfEachControlAndNoFewer) {
+  std::size_t seen = 0;
+  for (const WordsRow& row : kWordsRows) {
+    for (const std::string& target : row.targets) {
+      const Control* control = find_control(target);
+      ASSERT_NE(control, nullptr) << target;
+      ++seen;
+      for (const std::string block : {"G777", "START_PRINT", "M98 P1", "o100 call", "G65 P9010"}) {
+        SCOPED_TRACE(target + ": " + block);
+        EXPECT_TRUE(is_known_behind(*control, block, row.words));
+        for (std::size_t i = 0; i < row.words.size(); ++i) {
+          std::vector<std::string> fewer = row.words;
+          fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+          EXPECT_FALSE(is_known_behind(*control, block, fewer)) << "without " << row.words[i];
+        }
+      }
+    }
+  }
+  const auto of_the_family = [](const Control& each) { return each.language == Language::kRs274; };
+  EXPECT_EQ(seen, static_cast<std::size_t>(std::ranges::count_if(controls(), of_the_family)));
+}
+
+// What a program turned on by a word of another control is on, whatever its own control lacks.
+TEST(LostModes, OfAnotherControlStayUnknown) {
+  const Control* mach3 = find_control("mach3");
+  ASSERT_NE(mach3, nullptr);
+  const std::vector<std::string>& words = kWordsRows[6].words;
+  ASSERT_TRUE(is_known_behind(*mach3, "G777", words));
+  for (const std::string on : {"G51.1 X0", "G7.1 C5", "G5.1 Q2", "G7"}) {
+    EXPECT_FALSE(is_known_behind(*mach3, on + "\nG777", words)) << on;
+  }
+}
+
+TEST(LostModes, OfEachControlHaveTheWordsThatAreListed) {
+  for (const Control& control : controls()) {
+    if (control.language != Language::kRs274) continue;
+    SCOPED_TRACE(control.name);
+    std::vector<std::string> words;
+    for (const std::string_view word : words_of_all_modes(control)) {
+      words.emplace_back(word.substr(word.find(" or ") == word.npos ? 0 : word.find(" or ") + 4));
+    }
+    EXPECT_TRUE(is_known_behind(control, "G777", words));
+  }
 }
 
 TEST(LostModes, AreNotToldWhereNothingIsCopiedForThem) {

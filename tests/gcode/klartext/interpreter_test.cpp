@@ -1,7 +1,10 @@
 // What Klartext programs do: motions in millimetres, and what is known after each construct.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "gcode/curves/heidenhain_spl.h"
 #include "gcode/interpreter/program_flow.h"
@@ -125,6 +128,42 @@ TEST(KlartextEffects, AreKnownOrForgotten) {
   }
 }
 
+// What a program says behind a statement that may have changed anything; the scale of each axis
+// goes before the one of all.
+const std::vector<std::string> kSafeKlartext = {
+    "TOOL CALL 5 Z S5000",
+    "M137",
+    "M129",
+    "PLANE RESET STAY",
+    "CYCL DEF 8.0 MIRROR\nCYCL DEF 8.1",
+    "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+0",
+    "CYCL DEF 26.0 SCALING\nCYCL DEF 26.1 X1 Y1 Z1 CCX+0 CCY+0 CCZ+0",
+    "CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL1",
+    "CYCL DEF 200 DRILLING ~\n  Q200=+2",
+    "L X+1 Y+1 R0 F500"};
+
+bool is_known_behind(const std::string& statement, const std::vector<std::string>& said) {
+  const KlartextProgram p = program_with("3 " + statement + "\n" +
+                                         fmt::format("{}", fmt::join(said, "\n")) + "\nL X+2\n");
+  return is_known(p.state_after(p.program.blocks.size()));
+}
+
+TEST(KlartextEffects, AreUndoneByTheWordsForEachAndNoFewer) {
+  for (const char* statement : {"CALL PGM TNC:\\A.H", "CALL LBL 5", "WHATEVER", "TCH PROBE 1.0 Q5",
+                                "CYCL DEF 419 PRESET"}) {
+    SCOPED_TRACE(statement);
+    EXPECT_TRUE(is_known_behind(statement, kSafeKlartext));
+    for (std::size_t i = 0; i < kSafeKlartext.size(); ++i) {
+      std::vector<std::string> fewer = kSafeKlartext;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+      EXPECT_FALSE(is_known_behind(statement, fewer)) << "without " << kSafeKlartext[i];
+    }
+  }
+  for (const char* on : {"M112", "M124 T0.01"}) {
+    EXPECT_FALSE(is_known_behind(fmt::format("{}\n4 WHATEVER", on), kSafeKlartext)) << on;
+  }
+}
+
 struct SwitchCase {
   std::string lines;
   TriState ModalState::*item;
@@ -150,7 +189,14 @@ const SwitchCase kKlartextSwitchesRows[] = {
     {"3 CYCL DEF 10.1 IROT+0", &ModalState::rotation, TriState::kOn},
     {"3 CYCL DEF 11.1 SCL 0.5", &ModalState::scaling, TriState::kOn},
     {"3 CYCL DEF 26.1 X0.5\n4 CYCL DEF 11.1 SCL 1", &ModalState::scaling, TriState::kUnknown},
+    {"3 CYCL DEF 26.1 X0.5\n4 CYCL DEF 26.1 X1 Y1\n5 CYCL DEF 11.1 SCL 1", &ModalState::scaling,
+     TriState::kUnknown},
+    {"3 CYCL DEF 26.1 X0.5\n4 CYCL DEF 11.1 SCL 1\n5 CYCL DEF 26.1 X1 Y1 Z1", &ModalState::scaling,
+     TriState::kUnknown},
+    {"3 CYCL DEF 26.1 X0.5\n4 CYCL DEF 26.1 X 1 Y 1 Z 1\n5 CYCL DEF 11.1 SCL 1",
+     &ModalState::scaling, TriState::kOff},
     {"3 L X+5 M89", &ModalState::modal_macro, TriState::kOn},
+    {"3 L X+5 M89\n4 CYCL DEF 200 DRILLING ~\n  Q200=+2", &ModalState::modal_macro, TriState::kOff},
     {"3 M124 T0.01", &ModalState::control_smoothing, TriState::kOn}};
 
 TEST(KlartextSwitches, AreFollowed) {
