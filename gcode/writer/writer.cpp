@@ -165,6 +165,20 @@ void Writer::copy_line(std::string_view text) {
   text_ += line_end_;
 }
 
+bool Writer::add_comment(std::string_view text) {
+  if (move_end_ != text_.size() || text_.empty()) return false;
+  const std::string_view written(text_.data(), text_.size() - line_end_.size());
+  const std::size_t begin = written.find_last_of("\r\n") + 1;  // of npos: 0
+  std::string line(written.substr(begin));
+  if (control_.blanks) line += ' ';
+  line += text;
+  if (line_length(control_, line) > control_.max_line_length) return false;
+  text_.resize(begin);
+  text_ += line;
+  text_ += line_end_;
+  return true;
+}
+
 void Writer::restore(const ModalState& expected) {
   if (expected.motion == MotionMode::kUnknown) end_curve();
   if (expected.plane != Plane::kUnknown) add_plane(expected.plane);
@@ -344,6 +358,7 @@ void Writer::add_feed(double feed) {
 
 void Writer::end_block() {
   add_lines(block_, control_.language, control_.blanks, line_end_, text_);
+  move_end_ = text_.size();
   block_ = {};
 }
 

@@ -60,6 +60,11 @@ class Writer {
   // A line of its own, copied as it is (a comment of the source).
   void copy_line(std::string_view text);
 
+  // Puts a comment of the source behind the line or arc that was written last. Returns false and
+  // writes nothing where there is none, one has a comment already, or the control's line would be
+  // too long.
+  [[nodiscard]] bool add_comment(std::string_view text);
+
   // Restores plane, motion word and feed for the next copied block, by one block at the most. What
   // `expected` does not know stays. Throws std::invalid_argument when it expects a motion word
   // other than G0 and G1 that is not active.
@@ -109,6 +114,7 @@ class Writer {
   NumberFormat feeds_;
   SpokenBlock block_;
   std::string text_;
+  std::size_t move_end_ = 0;  // of text_, where the last block ended
 };
 
 }  // namespace batten::gcode

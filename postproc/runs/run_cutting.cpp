@@ -33,7 +33,7 @@ Run part_of(const Run& run, std::size_t first, std::size_t last) {
   }
   for (const CommentAt& comment : run.comments) {
     if (comment.vertex <= first || comment.vertex > last) continue;
-    part.comments.push_back({comment.vertex - first, comment.text});
+    part.comments.push_back({comment.vertex - first, comment.text, comment.behind_words});
   }
   part.decimals = run.decimals;
   part.closed = (part.points.front() - part.points.back()).norm() <= geometry::kSamePlace;

@@ -403,7 +403,7 @@ Run RunBlocks::run_of(std::span<const std::uint32_t> blocks, double max_chord_er
   std::size_t placed = 0;  // comments whose vertex is known: that of the next block that moves
   for (std::uint32_t i = blocks.front(); i <= blocks.back(); ++i) {
     for (const gcode::Comment& comment : program_.comments_of(program_.blocks[i])) {
-      run.comments.push_back({0, comment.span});
+      run.comments.push_back({0, comment.span, blocks[next] == i});
     }
     if (blocks[next] != i) continue;
     ++next;

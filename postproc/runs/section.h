@@ -30,6 +30,7 @@ struct FeedFrom {
 struct CommentAt {
   std::size_t vertex = 0;
   gcode::SourceSpan text;
+  bool behind_words = false;  // of the block, not on a line of its own
 };
 
 // A motion of the run that is an arc. The points from `first` to `last` lie on it, at even steps of

@@ -51,7 +51,9 @@ std::vector<FeedSection> feed_sections(const Run& run, const geometry::SmoothCur
 void place_comments(const Run& run, const geometry::SmoothCurve& fair, OutputPlan& plan) {
   const double noise = same_parameter(fair.curve);
   for (std::size_t i = 0; i < run.comments.size(); ++i) {
-    const double at = fair.vertex_parameters.at(run.comments[i].vertex);
+    const CommentAt& comment = run.comments[i];
+    const std::size_t behind = comment.behind_words ? comment.vertex : comment.vertex - 1;
+    const double at = fair.vertex_parameters.at(behind);
     const auto next = std::ranges::lower_bound(plan.moves, at - noise, {}, &PlannedMove::start);
     (next == plan.moves.end() ? plan.comments_after : next->comments_before).push_back(i);
   }

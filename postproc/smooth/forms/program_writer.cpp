@@ -49,6 +49,12 @@ class RunWriter {
     return true;
   }
 
+  void copy(std::string_view comment, bool behind_words) {
+    if (behind_words && writer_.add_comment(comment)) return;
+    writer_.copy_line(comment);
+    ++result_.blocks;
+  }
+
   // G2 and G3 cannot be said again by themselves, and no block after a run needs them (section.h).
   void restore(gcode::ModalState after) {
     const std::size_t begin = writer_.text().size();
@@ -135,7 +141,7 @@ std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
 
   const auto copy_comments = [&](const std::vector<std::size_t>& comments) {
     for (const std::size_t i : comments) {
-      out.writer().copy_line(program.source.text(run.comments[i].text));
+      out.copy(program.source.text(run.comments[i].text), run.comments[i].behind_words);
     }
   };
   NumberFormat format = may_have_arcs(plan.form) ? arc_end_format(target, before.units)

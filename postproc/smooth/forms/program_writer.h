@@ -15,7 +15,7 @@ namespace batten::postproc {
 
 struct RunText {
   std::string text;        // whole lines, with line ends
-  std::size_t blocks = 0;  // lines with words, not those of comments alone
+  std::size_t blocks = 0;  // those of comments among them
   std::size_t arcs = 0;
 };
 
@@ -25,7 +25,8 @@ struct RunText {
 // `after` does not know is left unchanged.
 //
 // The run's first and last point are met exactly: the last move is printed with as many decimals as
-// the run was. Comments are copied, each on a line of its own, those inside a curve after it.
+// the run was. Comments are copied: one of a block behind the line or arc that ends there, others,
+// and those inside a curve after it, each on a line of its own.
 //
 // Nothing when a curve is planned that the target cannot say, when arcs are planned and it is not
 // known how their centres are to be given, when a line would be too long, or when the last point

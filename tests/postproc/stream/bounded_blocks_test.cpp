@@ -125,7 +125,7 @@ TEST(BoundedBlocks, LeaveUnknownWhatAProgramForGrblHasSetOn) {
 // Of the controls that share a list one is tried, from the text to the proved text.
 TEST(BoundedBlocks, AreSettledByTheWordsThatTheMessageNames) {
   for (const char* target :
-       {"grblhal", "g2core", "smoothieware", "linuxcnc", "mach3", "planetcnc", "fanuc", "haas"}) {
+       {"grblhal", "g2core", "smoothieware", "linuxcnc", "mach3", "planetcnc", "fanuc", "mazak"}) {
     SCOPED_TRACE(target);
     const gcode::Control* control = gcode::find_control(target);
     ASSERT_NE(control, nullptr);

@@ -272,13 +272,18 @@ TEST(FeedSections, NeedsAParameterForEveryPoint) {
 // Every comment is there once, before the first move that starts at or after its vertex.
 TEST(PlanLines, KeepsEveryCommentAtItsVertex) {
   Smoothed wavy = wave();
-  wavy.run.comments = {{1, {0, 1}}, {60, {1, 2}}, {60, {2, 3}}, {119, {3, 4}}, {120, {4, 5}}};
+  wavy.run.comments = {{1, {0, 1}, true},
+                       {60, {1, 2}, true},
+                       {61, {2, 3}},
+                       {119, {3, 4}, true},
+                       {120, {4, 5}, true}};
   const OutputPlan plan = Planning().lines(wavy);
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < plan.moves.size(); ++i) {
     for (const std::size_t comment : plan.moves[i].comments_before) {
       order.push_back(comment);
-      const double vertex_x = wavy.run.points[wavy.run.comments[comment].vertex].x();
+      const CommentAt& at = wavy.run.comments[comment];
+      const double vertex_x = wavy.run.points[at.vertex - (at.behind_words ? 0 : 1)].x();
       EXPECT_GE(geometry::start_point(plan.moves[i].piece).x(), vertex_x - 1e-9);
       ASSERT_GT(i, 0U);
       EXPECT_LT(geometry::start_point(plan.moves[i - 1].piece).x(), vertex_x - 1e-9);

@@ -57,9 +57,9 @@ std::optional<RunText> written(const Planned& planned, std::string_view target,
 }
 
 TEST(WriteRun, WritesMovesCommentsAndWhatTheNextBlockExpects) {
-  const gcode::Program program = program_of("X1 (first)\r\nX2 ; second\r\n");
+  const gcode::Program program = program_of("X1 (first)\r\n; second\r\nX2\r\n");
   Planned planned({0, 0, 0});
-  planned.run.comments = {{1, {3, 10}}, {2, {15, 23}}};
+  planned.run.comments = {{1, {3, 10}, true}, {2, {12, 20}}};
   planned.line({1, 0, 0});
   planned.arc({2, 0, 1}, {1, 0, 1}, Vector3::UnitY(), -std::numbers::pi / 2);
   planned.plan.moves[1].comments_before = {0};
@@ -70,13 +70,32 @@ TEST(WriteRun, WritesMovesCommentsAndWhatTheNextBlockExpects) {
                              before, cutting(), "\r\n");
   ASSERT_TRUE(out);
   EXPECT_EQ(out->text,
-            "G1 X1\r\n"
-            "(first)\r\n"
+            "G1 X1 (first)\r\n"
             "G18 G2 X2 Z1 K1\r\n"
             "; second\r\n"
             "G17 G1\r\n");
-  EXPECT_EQ(out->blocks, 3U);
+  EXPECT_EQ(out->blocks, 4U);
   EXPECT_EQ(out->arcs, 1U);
+}
+
+// One behind each block, where the control keeps that many bytes of a line; the order stays.
+TEST(WriteRun, PutsTheCommentOfABlockBehindTheBlockThatEndsThere) {
+  Planned planned({0, 0, 0});
+  planned.line({1, 0, 0});
+  planned.line({2, 0, 0});
+  planned.run.comments = {{1, {0, 3}, true}, {1, {3, 6}, true}, {2, {6, 36}, true}};
+  planned.plan.moves[1].comments_before = {0, 1};
+  planned.plan.comments_after = {2};
+  const auto text_within = [&](std::size_t bytes) {
+    gcode::Control target = *gcode::find_control("linuxcnc");
+    target.max_line_length = bytes;
+    return write_run(planned.plan, planned.run, program_of("(a)(b)(a long comment of the source)"),
+                     target, cutting(), cutting(), "\n")
+        ->text;
+  };
+  EXPECT_EQ(text_within(80), "X1 (a)\n(b)\nX2 (a long comment of the source)\n");
+  EXPECT_EQ(text_within(33), "X1 (a)\n(b)\nX2 (a long comment of the source)\n");
+  EXPECT_EQ(text_within(32), "X1 (a)\n(b)\nX2\n(a long comment of the source)\n");
 }
 
 // A run before this one may have ended in other words than the arc that stood there.
