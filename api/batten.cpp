@@ -13,6 +13,7 @@
 #include "postproc/machine/program_time/program_time_blocks.h"
 #include "postproc/options/options.h"
 #include "postproc/options/own_words.h"
+#include "postproc/options/target_on_machine.h"
 #include "postproc/proof/verification.h"
 #include "postproc/runs/run_grouping.h"
 #include "postproc/stream/inspect.h"
@@ -125,6 +126,7 @@ std::optional<gcode::Decimals> declared_decimals(std::string_view text, gcode::S
 struct InnerOptions {
   postproc::SmoothOptions options;
   std::shared_ptr<const postproc::Machine> own_machine;
+  std::shared_ptr<const gcode::Control> own_target;
 };
 
 InnerOptions inner(const Options& given) {
@@ -138,6 +140,10 @@ InnerOptions inner(const Options& given) {
     const std::string choice = own ? given.machine : options.target->machine;
     all.own_machine = postproc::choose_machine(choice, "machine", problems);
     options.machine = all.own_machine.get();
+    if (options.target != nullptr && options.machine != nullptr) {
+      all.own_target = postproc::target_on_machine(*options.target, *options.machine);
+      options.target = all.own_target.get();
+    }
   }
   options.tolerance_mm = given.tolerance_mm;
   options.tolerance_kind =

@@ -60,6 +60,17 @@ struct ArcChords {
   // Ends are turned on by the first terms of the series of sine and cosine; after so many of them
   // one is computed anew. 0: all are.
   double turned = 0;
+
+  [[nodiscard]] bool any() const { return error > 0 || longest > 0; }
+  bool operator==(const ArcChords&) const = default;
+};
+
+// How a control computes the sweep of an arc, where it is known to take small full circles for no
+// motion, and tiny arcs for a full turn.
+enum class SweepNoise : std::uint8_t {
+  kNone,             // not known to
+  kSinglePrecision,  // grbl: 32-bit numbers, from a centre in machine coordinates
+  kDoublePrecision,  // Klipper: what rounding makes of a full circle decides
 };
 
 // Which bytes of a line a control has to keep.
@@ -130,6 +141,7 @@ struct Control {
   // The control's own chords add to our deviation: an arc that they leave too far is written as
   // chords of ours.
   ArcChords chords;
+  SweepNoise sweep_noise = SweepNoise::kNone;
 
   // Modes that nothing can turn on there: no word for them is known to it. Only what is certain: a
   // mode that may exist under another word is not among them.

@@ -96,6 +96,18 @@ std::string_view sweep_complaint(const geometry::Arc& printed) {
   return {};
 }
 
+// mm: of a place on the arc or its centre.
+double rounding_in_32_bits(const geometry::Arc& arc) {
+  const double greatest = std::max({arc.start.cwiseAbs().maxCoeff(), arc.end.cwiseAbs().maxCoeff(),
+                                    arc.center.cwiseAbs().maxCoeff()});
+  return greatest * std::numeric_limits<float>::epsilon() / 2;
+}
+
+// Whether firmware of this rule computes arcs in single precision, or may on some boards.
+bool is_in_32_bits(ArcRule rule) {
+  return rule == ArcRule::kGrbl || rule == ArcRule::kTinyg || rule == ArcRule::kUnchecked;
+}
+
 // The radii agree as well as the printed digits can say, so that no control of these digits can
 // ask for more, and the sweep is no matter of rounding.
 std::string_view strictest(const geometry::Arc& printed, Units units, const Control& control) {
@@ -114,6 +126,7 @@ std::string_view unchecked(const geometry::Arc& printed, Units units, const Cont
   if (end_radii(printed).start * std::abs(printed.sweep) < kArcRules.least_length) {
     return "arc so short that it is not run";
   }
+  if (std::abs(printed.sweep) > kArcRules.greatest_sweep) return "arc of more than 350 degrees";
   return strictest(printed, units, control);
 }
 
@@ -191,7 +204,8 @@ double chord_count(const ArcChords& chords, const geometry::Arc& arc) {
     }
     count = std::min(count, geometry::length_of(arc) / length);
   }
-  return std::isinf(count) ? 0 : std::max(1.0, std::floor(count));
+  // In single precision a whole number may come out as the one below.
+  return std::isinf(count) ? 0 : std::max(1.0, std::floor((1 - kArcRules.count_noise) * count));
 }
 
 }  // namespace
@@ -206,11 +220,75 @@ double chord_error(const ArcChords& chords, const geometry::Arc& arc) {
   return radius * (1 - std::cos(turn / 2)) + std::min(count - 1, chords.turned) * shrinks;
 }
 
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+// By how much the sweep that comes from a rounded centre may be wrong (radians).
+double grbl_sweep_noise(const geometry::Arc& arc) {
+  return std::numbers::sqrt2 * rounding_in_32_bits(arc) / geometry::radius_of(arc);
+}
+
+std::string_view misread_by_grbl(const geometry::Arc& arc) {
+  const double sweep = std::abs(arc.sweep);
+  const double noise = grbl_sweep_noise(arc);
+  const double gap = std::max(0.0, kTurn - sweep);
+  if (noise - gap > kArcRules.grbl_full_turn) return "no motion";
+  return sweep - noise <= kArcRules.grbl_full_turn ? "a full turn" : "";
+}
+
+// As a decimal of nine digits is read.
+double as_printed(double mm) {
+  constexpr double kSteps = 1e9;
+  return std::round(mm * kSteps) / kSteps;
+}
+
+// The sweep by Klipper's own computation, number by number, for a plane of X and Y.
+std::string_view misread_by_klipper(const geometry::Arc& arc, const ArcChords& chords) {
+  const double r_x = -as_printed(arc.center.x() - arc.start.x());
+  const double r_y = -as_printed(arc.center.y() - arc.start.y());
+  const double x = arc.end.x() - (arc.start.x() - r_x);
+  const double y = arc.end.y() - (arc.start.y() - r_y);
+  double sweep = std::atan2(r_x * y - r_y * x, r_x * x + r_y * y);
+  if (sweep < 0) sweep += kTurn;
+  const bool clockwise = arc.sweep * arc.axis.z() < 0;
+  if (clockwise) sweep -= kTurn;
+  const bool closed = arc.start.head<2>() == arc.end.head<2>();
+  if (sweep == 0 && closed) sweep = kTurn;
+  const bool is_circle = std::abs(arc.sweep) > kArcRules.greatest_sweep;
+  if (std::abs(sweep) < std::abs(arc.sweep) - std::numbers::pi) return "no motion";
+  if (std::abs(sweep) > std::abs(arc.sweep) + std::numbers::pi) return "a full turn";
+  return is_circle && closed && chord_count(chords, arc) == 1 ? "no motion" : "";
+}
+
+}  // namespace
+
+std::string_view misreading(const Control& control, const geometry::Arc& arc) {
+  switch (control.sweep_noise) {
+    case SweepNoise::kSinglePrecision:
+      return misread_by_grbl(arc);
+    case SweepNoise::kDoublePrecision:
+      return misread_by_klipper(arc, control.chords);
+    case SweepNoise::kNone:
+      break;
+  }
+  return {};
+}
+
+double usual_chord_error(const ArcChords& chords) {
+  if (chords.longest > 0) return std::numeric_limits<double>::infinity();
+  return kArcRules.of_many_chords * chords.error;
+}
+
 std::string_view arc_refusal(const Control& control, const geometry::Arc& printed, Units units) {
   if (!is_written(printed, millimetres_per(units))) return "numbers greater than any control takes";
   const EndRadii radii = end_radii(printed);
   if (!(std::min(radii.start, radii.end) >= control.min_radius * (1 - kArcRules.same_radius))) {
     return "arc radius below the least";
+  }
+  if (is_in_32_bits(control.arc_rule) &&
+      rounding_in_32_bits(printed) > printed_step(arc_end_format(control, units), units) / 2) {
+    return "coordinates so great that 32 bits move the centre by more than printing does";
   }
   return complaint(printed, units, control);
 }

@@ -38,6 +38,9 @@ struct ArcRuleNumbers {
   // The centre is printed next to the bisector of the printed ends: the radii there differ by so
   // many steps of its last decimal at the most (gcode/text/arc_center.h).
   double steps_of_mismatch = 1.5;
+  double grbl_full_turn = 5e-7;  // radians: a sweep nearer to 0 gets a full turn
+  double count_noise = 1e-5;     // part of the number of chords, computed in single precision
+  double of_many_chords = 1.25;  // of the wished error, what arcs of ten chords and more have
 };
 inline constexpr ArcRuleNumbers kArcRules;
 
@@ -46,8 +49,17 @@ inline constexpr ArcRuleNumbers kArcRules;
 [[nodiscard]] std::string_view arc_refusal(const Control& control, const geometry::Arc& printed,
                                            Units units);
 
-// mm: how far the chords that the control makes of this arc leave it; 0: it makes none. Facts:
-// docs/controllers/grbl.md, docs/controllers/printer_family.md.
+// mm: how far the chords that the control makes of this arc leave it at most; 0: it makes none.
+// Facts: docs/controllers/grbl.md, docs/controllers/printer_family.md.
 [[nodiscard]] double chord_error(const ArcChords& chords, const geometry::Arc& arc);
+
+// What else this control may make of an arc of a source, which was written for another one or by
+// somebody who did not know: "no motion", "a full turn"; empty where it runs the arc. Arcs of our
+// own are kept far from that by arc_refusal. Facts: docs/controllers/grbl.md.
+[[nodiscard]] std::string_view misreading(const Control& control, const geometry::Arc& arc);
+
+// mm: how far they leave arcs of many chords, where that is the same for all radii; infinite where
+// it depends on the radius, 0 where there are none.
+[[nodiscard]] double usual_chord_error(const ArcChords& chords);
 
 }  // namespace batten::gcode

@@ -35,6 +35,8 @@ Control grbl_like(std::string_view name, std::string_view description, SourceMar
   control.not_in_comments = "$!~?";
   control.dwell_unit = DwellUnit::kSeconds;
   control.dwell_form = DwellForm::kSecondsP;
+  control.chords = {.error = 0.002, .turned = 12};  // $12, N_ARC_CORRECTION
+  control.sweep_noise = SweepNoise::kSinglePrecision;
   control.known_marks = marks;
   control.refused = refused;
   control.lacks = kBeyondGrbl;
@@ -60,6 +62,7 @@ std::vector<Control> grbl_family() {
       grbl_like("grblhal", "grblHAL: arcs and helices in G17, G18, G19; lines of 255 characters",
                 kProgramming, "");
   grblhal.machine = "grblhal-router";
+  grblhal.sweep_noise = SweepNoise::kNone;  // centre and sweep in double precision
   grblhal.curves = &chopped_g5();
   // G51 scales; G66, G7, G96 by how it was built.
   grblhal.lacks -= mode::kScaling + mode::kModalMacro + mode::kSurfaceSpeed + mode::kLatheDiameter;
@@ -77,6 +80,8 @@ std::vector<Control> grbl_family() {
   // 255 bytes in one of its line buffers, fewer by the comment in others.
   g2core.max_line_length = 250;
   g2core.arc_rule = ArcRule::kTinyg;
+  g2core.sweep_noise = SweepNoise::kNone;  // not read
+  g2core.chords = {.error = 0.01};         // $ct; chords of less than 10 ms do not count
   // TinyG asks for radii that agree to 0.1 %: at 0.2 mm that is 0.0002 mm, what the printed
   // offsets can say.
   g2core.min_radius = 0.2;

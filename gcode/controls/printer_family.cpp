@@ -57,6 +57,7 @@ std::vector<Control> printer_family() {
       "klipper",
       "Klipper: lines; arcs in G17 where [gcode_arcs] is set up and fine enough; millimetres",
       {.longest = 1});  // [gcode_arcs] resolution
+  klipper.sweep_noise = SweepNoise::kDoublePrecision;
   klipper.machine = "klipper-router";
   klipper.planes = {true, false, false};
   klipper.needs_commands = true;
@@ -69,6 +70,7 @@ std::vector<Control> printer_family() {
       {.error = 0.01, .turned = 5});  // mm_max_arc_error, arc_correction
   smoothieware.machine = "router-unrounded";
   smoothieware.lacks -= mode::kFeedMode;  // of later builds
+  smoothieware.sweep_noise = SweepNoise::kSinglePrecision;
   smoothieware.comments = CommentStyle::kParentheses;
   smoothieware.max_line_length = 120;  // its buffer was not read; no line of ours needs more
 

@@ -247,12 +247,16 @@ double greatest_error(const ChordPolyline& polyline) {
 class Comparison {
  public:
   Comparison(std::span<const PathPiece> a, std::span<const PathPiece> b, double tolerance,
-             double max_error)
+             double max_error, std::span<const double> beside_b)
       : a_(cut_into_chords(a, max_error)),
         b_(cut_into_chords(b, max_error)),
         tolerance_(tolerance),
         noise_(distance_noise(a_, b_)),
-        vertices_(a_.points.size() + b_.points.size()) {}
+        vertices_(a_.points.size() + b_.points.size()),
+        cut_error_(greatest_error(a_) + greatest_error(b_)) {
+    if (beside_b.empty()) return;
+    for (std::size_t i = 0; i < b_.edge_count(); ++i) b_.errors[i] += beside_b[b_.pieces[i]];
+  }
 
   PathComparison run() {
     raise_floor((a_.points.front() - b_.points.front()).norm());
@@ -268,9 +272,7 @@ class Comparison {
   }
 
   // Finer chords change nothing when no chord has an error, and when there are too many already.
-  [[nodiscard]] bool finer_is_useless() const {
-    return too_wide_ || greatest_error(a_) + greatest_error(b_) == 0;
-  }
+  [[nodiscard]] bool finer_is_useless() const { return too_wide_ || cut_error_ == 0; }
 
   // The best matching that was found: the certificate where it is proved.
   [[nodiscard]] std::vector<PlacePair> pairs() const {
@@ -399,6 +401,7 @@ class Comparison {
   double tolerance_;
   double noise_;
   std::size_t vertices_;
+  double cut_error_;  // of the chords themselves
   double at_least_ = 0;
   bool proved_ = false;
   bool too_wide_ = false;
@@ -409,9 +412,11 @@ class Comparison {
 
 // `pairs`: where the certificate is wanted, else null.
 PathComparison compare(std::span<const PathPiece> a, std::span<const PathPiece> b, double tolerance,
-                       std::vector<PlacePair>* pairs) {
+                       std::span<const double> beside_b, std::vector<PlacePair>* pairs) {
   require(tolerance > 0 && std::isfinite(tolerance), "compare_paths: tolerance", tolerance,
           "a finite number above 0");
+  require(beside_b.empty() || beside_b.size() == b.size(), "compare_paths: beside_b",
+          static_cast<double>(beside_b.size()), "a number for each piece");
   PathComparison found;
   if (a.empty() && b.empty()) {
     found.verdict = Verdict::kProved;
@@ -423,7 +428,7 @@ PathComparison compare(std::span<const PathPiece> a, std::span<const PathPiece> 
   if (a.empty()) a = waiting;
   if (b.empty()) b = waiting;
   for (const double share : kChordShares) {
-    Comparison comparison(a, b, tolerance, share * tolerance);
+    Comparison comparison(a, b, tolerance, share * tolerance, beside_b);
     found = comparison.run();
     if (pairs != nullptr) *pairs = comparison.pairs();
     if (found.verdict != Verdict::kNotProved || comparison.finer_is_useless()) break;
@@ -434,14 +439,14 @@ PathComparison compare(std::span<const PathPiece> a, std::span<const PathPiece> 
 }  // namespace
 
 PathComparison compare_paths(std::span<const PathPiece> a, std::span<const PathPiece> b,
-                             double tolerance) {
-  return compare(a, b, tolerance, nullptr);
+                             double tolerance, std::span<const double> beside_b) {
+  return compare(a, b, tolerance, beside_b, nullptr);
 }
 
 PathMatching match_paths(std::span<const PathPiece> a, std::span<const PathPiece> b,
                          double tolerance) {
   PathMatching matching;
-  matching.comparison = compare(a, b, tolerance, &matching.pairs);
+  matching.comparison = compare(a, b, tolerance, {}, &matching.pairs);
   return matching;
 }
 

@@ -52,8 +52,13 @@ struct PathComparison {
 // within about 2 % of the tolerance where the paths are proved, and never above the tolerance then;
 // it is finite always. Cost: about linear in the number of pieces where the paths stay within a few
 // pieces of each other.
+//
+// `beside_b`: mm, for each piece of `b`, how far that which is really run may be from it (empty:
+// nothing is). Then kProved holds for what is run, too, and for `a`: where the piece is passed, so
+// much less of the tolerance is left. kBroken is the exception there: kNotProved stands for both.
 [[nodiscard]] PathComparison compare_paths(std::span<const PathPiece> a,
-                                           std::span<const PathPiece> b, double tolerance);
+                                           std::span<const PathPiece> b, double tolerance,
+                                           std::span<const double> beside_b = {});
 
 // Passed together. They are on the chords of the pieces: on lines exactly, on arcs to within 0.5 %
 // of the tolerance.

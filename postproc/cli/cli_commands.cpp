@@ -21,6 +21,7 @@
 #include "postproc/machine/files/machine_file.h"
 #include "postproc/options/options.h"
 #include "postproc/options/own_words.h"
+#include "postproc/options/target_on_machine.h"
 #include "postproc/system/output_file.h"
 #include "postproc/text/words.h"
 
@@ -351,6 +352,15 @@ void read_target(SmoothingCommand& command, Arguments& in, bool by_marks) {
   }
 }
 
+// The target as the machine is set up, unless the profile says that itself. Either may be missing.
+void set_up_target(const gcode::Control*& target, std::shared_ptr<const gcode::Control>& own_target,
+                   const std::shared_ptr<const TargetProfile>& profile, const Machine* machine) {
+  if (target == nullptr || machine == nullptr) return;
+  if (profile != nullptr && profile->says_chords) return;
+  own_target = target_on_machine(*target, *machine);
+  target = own_target.get();
+}
+
 // What was missing or unreadable has been said; the check of the options would say it again.
 void check_options(const SmoothOptions& options, Arguments& in) {
   for (std::string& problem : problems_of(options)) {
@@ -371,6 +381,7 @@ void read_smooth_options(SmoothingCommand& command, Arguments& in, bool by_marks
   read_target(command, in, by_marks);
   command.own_machine = machine_given(options.target, in);
   options.machine = command.own_machine.get();
+  set_up_target(options.target, command.own_target, command.profile, options.machine);
   const auto tolerance = tolerance_in(in.given.value("tolerance"), in, options.tolerance_inch);
   options.tolerance_mm = tolerance.value_or(options.tolerance_mm);
   choose(options.tolerance_kind, "tolerance-kind", tolerance_kinds(), in);
@@ -456,11 +467,12 @@ VerifyCommand verify_command(Arguments& in) {
   command.new_program = file_at(in, 1);
   read_common_into(command, in);
   GivenTarget target = target_given(in);
-  // The one that is named goes before what the profile makes of it.
-  command.target = target.built_in != nullptr ? target.built_in : target.control();
+  command.target = target.control();
   choose(command.tolerance_kind, "tolerance-kind", tolerance_kinds(), in);
   add_problems(problems_of_decimals(command.decimals, command.source, command.target), in);
   command.profile = std::move(target.profile);
+  const auto machine = machine_given(command.target, in);
+  set_up_target(command.target, command.own_target, command.profile, machine.get());
   command.own_words = own_words_given(command.profile.get(), in);
   command.allowed = allowed_given(in);
   command.drop = dropped_given(in);
@@ -487,8 +499,10 @@ InspectCommand inspect_command(Arguments& in) {
   command.input = file_at(in, 0);
   read_common_into(command, in);
   add_problems(problems_of_decimals(command.decimals, command.source, nullptr), in);
-  const GivenTarget target = target_given(in);
-  command.own_words = own_words_given(target.profile.get(), in);
+  GivenTarget target = target_given(in);
+  command.runs_it = target.control();
+  command.profile = std::move(target.profile);
+  command.own_words = own_words_given(command.profile.get(), in);
   command.allowed = allowed_given(in);
   check_files({"IN"}, in);
   check_reports(command, in.files, in);

@@ -168,6 +168,10 @@ std::vector<OptionRow> verify_rows() {
           "target", kValue, "NAME|FILE.toml",
           "the control whose own curves (G06.2, POLY, G5 ..) are to be read in both programs, or "
           "a profile of it"),
+      setting("machine", kValue, "NAME|FILE",
+              "the machine that the new program was made for, as in smooth: its settings say how "
+              "the target cuts arcs"),
+      kGrblSettings,
       kToleranceKind,
       kSide,
       kUnits,
@@ -310,7 +314,9 @@ std::vector<CommandRow> make_command_rows() {
       {"inspect",
        "Show the runs of a program, their segments, and why the rest would be kept.",
        {option("target", kValue, "NAME|FILE.toml",
-               "the control, or a profile of it, whose own words are taken"),
+               "the control that will run it, or a profile of it, whose own words are taken: what "
+               "it may "
+               "make of small circles is noted"),
         kProfile, kUnits, kSource, kDecimals, kAllow, kWord, kJson, kReport, kOpen, kForce, kQuiet,
         kLogLevel},
        {{"IN", "the program, - is standard input"}},

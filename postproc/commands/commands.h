@@ -31,8 +31,9 @@ struct PageRequest {
 // How programs are smoothed, one or all of a tree.
 struct SmoothingCommand {
   SmoothOptions options;
-  std::shared_ptr<const Machine> own_machine;    // keeps the machine of the options alive
-  std::shared_ptr<const TargetProfile> profile;  // and a target
+  std::shared_ptr<const Machine> own_machine;        // keeps the machine of the options alive
+  std::shared_ptr<const TargetProfile> profile;      // and a target
+  std::shared_ptr<const gcode::Control> own_target;  // as the machine is set up
   ProgressStyle progress = ProgressStyle::kAuto;
   bool force = false;   // existing files may be replaced
   bool strict = false;  // a run that could not be proved is an error, not a reason to keep it
@@ -117,13 +118,16 @@ struct VerifyCommand : ReadingCommand {
   double tolerance_mm = 0.01;
   geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
   geometry::Side side = geometry::Side::kBoth;
-  std::shared_ptr<const TargetProfile> profile;  // whose words the new program may have
-  std::string certificate_file;                  // of --tolerance-kind path only
+  std::shared_ptr<const TargetProfile> profile;      // whose words the new program may have
+  std::shared_ptr<const gcode::Control> own_target;  // as a machine is set up
+  std::string certificate_file;                      // of --tolerance-kind path only
 };
 [[nodiscard]] int run(const VerifyCommand& command);
 
 struct InspectCommand : ReadingCommand {
   std::string input;
+  const gcode::Control* runs_it = nullptr;       // whose misreadings of arcs are noted
+  std::shared_ptr<const TargetProfile> profile;  // keeps it alive
 };
 [[nodiscard]] int run(const InspectCommand& command);
 

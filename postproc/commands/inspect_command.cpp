@@ -173,7 +173,7 @@ int run(const InspectCommand& command) {
   reading.options.subprograms = called.programs;
   GroupingOptions grouping;
   grouping.allowed.assign(command.allowed.begin(), command.allowed.end());
-  InspectedProgram result = inspect(*source, reading, grouping);
+  InspectedProgram result = inspect(*source, reading, grouping, {}, command.runs_it);
   if (changed_while_read(watched) || changed_while_read(called)) {
     return static_cast<int>(ExitCode::kFileError);
   }

@@ -264,9 +264,10 @@ class ProfileReader {
     const std::size_t problems_before = problems_.size();
     find_base(root);
     if (target_ == nullptr) return nullptr;
-    TargetProfile profile = {file_, *target_, {}, {}};
+    TargetProfile profile = {file_, *target_, false, {}, {}};
     for (const auto& [key, node] : root) read_top(key.str(), node, profile.adapted);
     check_together(root, profile.adapted);
+    profile.says_chords = profile.adapted.chords != target_->chords;
     read_own_words(root, profile);
     if (problems_.size() == problems_before) read_words(root, profile);
     if (problems_.size() != problems_before) return nullptr;

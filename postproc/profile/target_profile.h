@@ -17,6 +17,7 @@ namespace batten::postproc {
 struct TargetProfile {
   std::string file;
   gcode::Control adapted;  // the built-in one with the values of the profile
+  bool says_chords = false;  // how the control cuts arcs, which no machine then says
   ProfileWords words;
   OwnWordList own_words;
 };

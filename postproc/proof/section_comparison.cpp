@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
+#include <set>
 #include <string>
 #include <utility>
 
+#include "gcode/controls/arc_rules.h"
 #include "geometry/band/tolerance_band.h"
 #include "geometry/distance/band_comparison.h"
 #include "geometry/path/path.h"
@@ -200,9 +204,86 @@ std::vector<Violation> crossing_violations(const PartPair& pair, const PartPair&
   return violations;
 }
 
+using ArcNumbers = std::array<double, 10>;
+
+// Of two arcs that are read from the same text, but from starts that differ by rounding, the same.
+ArcNumbers numbers_of(const geometry::Arc& arc) {
+  constexpr double kPerMm = 1e8;
+  ArcNumbers numbers{};
+  auto next = numbers.begin();
+  for (const geometry::Point3& place : {arc.start, arc.end, arc.center}) {
+    for (const double mm : place) *next++ = std::round(kPerMm * mm);
+  }
+  *next = std::round(kPerMm * arc.sweep);
+  return numbers;
+}
+
+// What the target makes of new arcs: mm, for each piece of the new part, by how much the chords
+// that it cuts it into leave it. 0 for lines, and for arcs that the old program has, too.
+struct TargetChords {
+  std::vector<double> errors;  // none where no arc is cut
+  double greatest = 0;
+  std::size_t worst = 0;  // piece
+};
+
+TargetChords chords_of_target(const PartPair& pair, const gcode::Control* target) {
+  TargetChords found;
+  if (target == nullptr || !target->chords.any()) return found;
+  // What is said in another language has the arcs of the program, but in other parts.
+  const auto language = [](const Part& part) { return part.side->read->program->language; };
+  if (language(pair.before) != language(pair.after)) return found;
+  std::set<ArcNumbers> old_arcs;
+  for (std::size_t i = 0; i < pair.before.size(); ++i) {
+    if (const geometry::Arc* arc = pair.before.piece(i).arc()) old_arcs.insert(numbers_of(*arc));
+  }
+  std::vector<double> errors(pair.after.size(), 0);
+  for (std::size_t i = 0; i < pair.after.size(); ++i) {
+    const geometry::Arc* arc = pair.after.piece(i).arc();
+    if (arc == nullptr || old_arcs.contains(numbers_of(*arc))) continue;
+    errors[i] = gcode::chord_error(target->chords, *arc);
+    if (errors[i] <= found.greatest) continue;
+    found.greatest = errors[i];
+    found.worst = i;
+  }
+  if (found.greatest > 0) found.errors = std::move(errors);
+  return found;
+}
+
+// The path that keeps the tolerance by itself keeps it as the target runs it, too: else the arcs to
+// blame, all that alone are too coarse or the worst one.
+std::vector<Violation> chords_violations(const PartPair& pair, const TargetChords& chords,
+                                         const PathComparison& proved, const Promise& promise) {
+  const double tolerance = promise.tolerance_mm;
+  if (proved.bounds.at_most + chords.greatest <= tolerance) return {};
+  std::vector<std::size_t> to_blame;
+  for (std::size_t i = 0; i < chords.errors.size(); ++i) {
+    if (chords.errors[i] >= tolerance) to_blame.push_back(i);
+  }
+  if (to_blame.empty()) {
+    const Path before = pair.before.path();
+    const Path after = pair.after.path();
+    const PathComparison run =
+        promise.kind == geometry::ToleranceKind::kBand
+            ? geometry::compare_in_band(before, after, tolerance - chords.greatest).paths
+            : geometry::compare_paths(before, after, tolerance, chords.errors);
+    if (run.verdict == Verdict::kProved) return {};
+    to_blame = {chords.errors[run.worst_piece_b] > 0 ? run.worst_piece_b : chords.worst};
+  }
+  std::vector<Violation> violations;
+  for (const std::size_t piece : to_blame) {
+    violations.push_back(
+        {ViolationKind::kTarget, "arc-chords", pair.before.line(0), pair.after.line(piece), 0,
+         fmt::format("{} cuts this arc into chords that leave it by up to {:.6g} mm: with them the "
+                     "new path is not proved to be within {:.6g} mm of the old one",
+                     promise.target->name, chords.errors[piece], tolerance)});
+  }
+  return violations;
+}
+
 // On one side of the old path, as far as the tolerance: within half of it of the path that is half
 // of it beside the old one. docs/algorithms/one_side.md
-std::optional<Violation> side_violation(const PartPair& pair, const Promise& promise) {
+std::optional<Violation> side_violation(const PartPair& pair, const TargetChords& chords,
+                                        const Promise& promise) {
   if (promise.side == geometry::Side::kBoth) return {};
   const double half = promise.tolerance_mm / 2;
   const double over = kOverSide * promise.tolerance_mm;
@@ -216,7 +297,8 @@ std::optional<Violation> side_violation(const PartPair& pair, const Promise& pro
         0,
         "the old path has arcs outside the XY plane or curves: no side of it is known"};
   }
-  const PathComparison found = geometry::compare_paths(*beside, pair.after.path(), half + over);
+  const PathComparison found =
+      geometry::compare_paths(*beside, pair.after.path(), half + over, chords.errors);
   if (found.verdict == Verdict::kProved) return {};
   const std::string message = fmt::format(
       "the new path {} on the {} of the old one by {:.6g} mm at most",
@@ -291,8 +373,8 @@ class StretchComparer {
     if (middle.before.size() == 0 && middle.after.size() == 0) return;
     geometry::BandComparison comparison = compare(middle, promise_);
     if (comparison.paths.verdict == Verdict::kProved) {
+      look_beside_the_distance(pair, middle, comparison.paths);
       result_.stretches.push_back(stretch_of(middle, std::move(comparison)));
-      look_beside_the_distance(pair, middle);
       return;
     }
     // The same ends may be passed otherwise than together: only the whole is a refutation.
@@ -300,14 +382,19 @@ class StretchComparer {
     if (comparison.paths.verdict != Verdict::kProved) {
       result_.violations.push_back(distance_violation(pair, comparison.paths, tolerance_));
     } else {
-      look_beside_the_distance(pair, pair);
+      look_beside_the_distance(pair, pair, comparison.paths);
     }
     result_.stretches.push_back(stretch_of(pair, std::move(comparison)));
   }
 
   // What else a path that keeps the distance may do wrong. `proved`: the part that keeps it.
-  void look_beside_the_distance(const PartPair& pair, const PartPair& proved) {
-    if (auto violation = side_violation(proved, promise_)) {
+  void look_beside_the_distance(const PartPair& pair, const PartPair& proved,
+                                const PathComparison& found) {
+    const TargetChords chords = chords_of_target(proved, promise_.target);
+    for (Violation& violation : chords_violations(proved, chords, found, promise_)) {
+      result_.violations.push_back(std::move(violation));
+    }
+    if (auto violation = side_violation(proved, chords, promise_)) {
       result_.violations.push_back(std::move(*violation));
     }
     // Of the whole, for a new part may also cross one that is the same.

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "gcode/controls/arc_rules.h"
 #include "gcode/curves/curve_format.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/selection/selection.h"
@@ -201,6 +202,18 @@ class CurveForms {
 
   [[nodiscard]] double far() const { return std::min(left_, kFormTuning.far * share_); }
 
+  // Of arcs that are no farther than `deviation` from where they are looked for, where `whole` is
+  // left: some of that is for the chords that the target makes of them.
+  [[nodiscard]] PlanOptions arcs_within(double deviation, double whole) const {
+    const double for_control = std::min(kFormTuning.for_control * whole,
+                                        gcode::usual_chord_error(task_.options.target->chords));
+    PlanOptions plan = plan_within(left_);
+    plan.max_deviation = std::min(deviation, whole - for_control);
+    plan.chord_height = kPlans.balanced * plan.max_deviation;
+    plan.tolerance = left_ + curve_.path.deviation;
+    return plan;
+  }
+
   // mm, ascending: near to the curve, where that is much nearer than the tolerance allows, and far.
   // The nearest are dear, and for who asks for them alone.
   [[nodiscard]] std::vector<double> deviations() const {
@@ -236,7 +249,7 @@ class CurveForms {
     for (const double deviation : all) {
       // Were those of the next smaller deviation as near as can be, these would be the same.
       const bool farther = flat && deviation > all.front();
-      PlanOptions plan = plan_within(deviation);
+      PlanOptions plan = arcs_within(std::min(left_, deviation), left_);
       // Those are there to be near, not few.
       const bool near = deviation < all.back() && !wants_few_moves(task_.options);
       if (near) plan.arc_effort = geometry::ArcEffort::kBrief;
@@ -261,8 +274,9 @@ class CurveForms {
   [[nodiscard]] bool arcs_serve(std::size_t first, std::size_t last) const {
     const Run section = section_of(task_.run, first, last);
     const geometry::SmoothCurve fair = part_of(curve_.path, first, last);
-    const auto arcs = plan_arcs(section, fair, geometry::MarkedPieces(fair.curve),
-                                CurvatureProfile(fair.curve), plan_within(deviations().back()));
+    const auto arcs =
+        plan_arcs(section, fair, geometry::MarkedPieces(fair.curve), CurvatureProfile(fair.curve),
+                  arcs_within(std::min(left_, deviations().back()), left_));
     if (!arcs || arcs->moves.size() > last - first) return false;
     const auto time = [&](const std::vector<TimedPiece>& chain) {
       return cutting_time(chain, *task_.options.machine, task_.context.after.path);
@@ -277,8 +291,7 @@ class CurveForms {
     if (one_sided_ || !(wants_few_moves(task_.options) || !task_.run.arcs.empty())) return;
     const double whole = left_ + curve_.path.deviation;
     for (const double part : kFormTuning.bands) {
-      PlanOptions band = plan_within(left_);
-      band.max_deviation = part * whole;
+      PlanOptions band = arcs_within(part * whole, whole);
       if (wants_few_moves(task_.options)) band.arc_effort = geometry::ArcEffort::kThorough;
       offers_.push_back({Form::kArcs, 0, 0, band, true});
       if (task_.run.arcs.empty()) return;

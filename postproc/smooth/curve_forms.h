@@ -27,6 +27,7 @@ struct FormTuning {
   double bands[3] = {1, 0.97, 0.94};  // parts of the band around arcs in which few are looked for
   double of_height = 0.25;            // the rms of balanced chords by their height, at least
   double of_arcs = 0.25;              // that of arcs by their greatest deviation
+  double for_control = 0.5;  // of what the curve leaves, for the target's own chords at the most
   // Sections of long runs in space that are tried as arcs: from so many vertices on, so many at
   // these parts of the run; and so much slower they may be, which starting and stopping explain.
   std::size_t tried_from = 1500;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "geometry/basic/rounding.h"
 #include "geometry/path/path.h"
 #include "postproc/proof/program_events.h"
+#include "postproc/stream/misread_arcs.h"
 
 namespace batten::postproc {
 
@@ -246,9 +248,11 @@ class Chains {
 class PartInspector {
  public:
   PartInspector(const gcode::SourceText& source, const PartReading& reading,
-                const GroupingOptions& grouping, const InspectLimits& limits, bool as_whole)
+                const GroupingOptions& grouping, const InspectLimits& limits,
+                const gcode::Control* target, bool as_whole)
       : reader_(source, reading, limits.parts, as_whole),
         grouping_(grouping),
+        target_(target),
         inspection_(grouping),
         longest_(limits.longest),
         cut_from_(limits.longest) {}
@@ -267,6 +271,7 @@ class PartInspector {
     }
     auto found = reader_.finish();
     if (!found || !certain_) return std::nullopt;
+    std::ranges::move(misread_, std::back_inserter(*found));
     return InspectedProgram{inspection_.take(),    inspection_.causes(),     std::move(*found),
                             reader_.blocks_read(), reader_.unit_word_seen(), reader_.is_whole()};
   }
@@ -327,6 +332,9 @@ class PartInspector {
                           std::holds_alternative<Run>(sections.front().content);
       if (in_chain_ && !is_run) certain_ = false;
       inspection_.add(part, sections, in_chain_);
+      if (misread_.empty() && target_ != nullptr) {
+        misread_ = note_misread_arcs(part.program, part.meaning, *target_);
+      }
       in_chain_ = in_chain;
     }
     if (!in_chain_) begin_.reset();
@@ -343,6 +351,8 @@ class PartInspector {
 
   PartReader reader_;
   const GroupingOptions& grouping_;
+  const gcode::Control* target_;
+  gcode::Diagnostics misread_;
   Inspection inspection_;
   std::size_t longest_;
   bool in_chain_ = false;        // what is held goes on a chain that was cut
@@ -362,9 +372,10 @@ std::vector<InspectedSection> inspect(const gcode::ReadPart& program,
 }
 
 InspectedProgram inspect(const gcode::SourceText& source, const PartReading& reading,
-                         const GroupingOptions& grouping, const InspectLimits& limits) {
+                         const GroupingOptions& grouping, const InspectLimits& limits,
+                         const gcode::Control* target) {
   const auto inspected = [&](bool as_whole) {
-    return PartInspector(source, reading, grouping, limits, as_whole).run();
+    return PartInspector(source, reading, grouping, limits, target, as_whole).run();
   };
   if (reading.text.language == gcode::Language::kRs274 &&
       source.text().size() >= limits.parts.least_text) {

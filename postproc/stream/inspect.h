@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gcode/control/control.h"
 #include "gcode/reading/part_reading.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/source_text.h"
@@ -65,9 +66,11 @@ struct InspectLimits {
 // rapid follows: there no chain and no section goes on. A long chain of lines is cut between two
 // motions, with some more on both sides that go neither straight along Z nor nowhere: both parts
 // end there as runs, and count as one. A chain with arcs is held as one: which of them are intended
-// is known at its end. A program that is short or needs the whole (PartReader) is one part.
+// is known at its end. `target`: the note of note_misread_arcs is among what was found.
+// A program that is short or needs the whole (PartReader) is one part.
 [[nodiscard]] InspectedProgram inspect(const gcode::SourceText& source, const PartReading& reading,
                                        const GroupingOptions& grouping,
-                                       const InspectLimits& limits = {});
+                                       const InspectLimits& limits = {},
+                                       const gcode::Control* target = nullptr);
 
 }  // namespace batten::postproc

@@ -14,6 +14,7 @@
 #include "gcode/state/reason.h"
 #include "postproc/runs/run_cutting.h"
 #include "postproc/stream/assembly.h"
+#include "postproc/stream/misread_arcs.h"
 #include "postproc/stream/smooth_result.h"
 
 namespace batten::postproc {
@@ -117,6 +118,8 @@ class WindowWork {
     }
     for (const CutRun& cut : runs.cut_runs) done.outlook += cut.outlook;
     done.notes_on_runs = notes_on_runs(done.runs, part.program, *setting_.options.target);
+    std::ranges::move(note_misread_arcs(part.program, part.meaning, *setting_.options.target),
+                      std::back_inserter(done.notes_on_runs));
     done.notes = std::move(runs.notes);
     done.near = std::move(runs.near);
     if (!part.program.blocks.empty()) done.last_line = part.program.blocks.back().line;

@@ -57,7 +57,7 @@ class Reader:
             if self.ended:
                 break
             self.follow(line.rstrip("\r"))
-        self.event("end " + self.last_state())
+        self.event("end " + self.state())
         return self.trace
 
     # --- what happens ---
@@ -75,10 +75,6 @@ class Reader:
         return (f"plane {self.plane} absolute {self.absolute} centres {self.centres_absolute} inch {self.inch} "
                 f"feed {self.feed} {self.feed_mode} {sorted(self.unsafe)}" +
                 (f" G05 P{self.look_ahead}" if self.look_ahead else ""))
-
-    def last_state(self):
-        """Where no move follows."""
-        return re.sub(r"plane \S+ |centres \S+ ", "", self.state())
 
     def opaque(self, line, acts="anything"):
         """A line that is the same in both programs, and what it may have done."""
@@ -185,11 +181,11 @@ class PlainReader(Reader):
 
     def comments_of(self, line):
         """The line without comments; those that act are events."""
-        comments = re.findall(r"\([^)]*\)|;.*", line)
-        for comment in comments:
+        body = line.split(";")[0] if ";" in line else line
+        for comment in re.findall(r"\([^)]*\)", body):
             if re.match(r"\(\s*(MSG|DEBUG|PRINT|LOG|PROBE)", comment, re.I):
                 self.event(comment)
-        return re.sub(r"\([^)]*\)|;.*", " ", line)
+        return re.sub(r"\([^)]*\)", " ", body)
 
     def follow(self, line):
         body = self.comments_of(line).upper()
@@ -297,7 +293,7 @@ class PlainReader(Reader):
             if code in ("M0", "M1", "M60"):
                 self.event(code)
             elif code in ("M2", "M30"):
-                self.event(f"{code} {self.last_state()}")
+                self.event(f"{code} {self.state()}")
                 self.ended = True
 
     GROUPS = {"M3": "spindle", "M4": "spindle", "M5": "spindle", "M48": "overrides", "M49": "overrides",

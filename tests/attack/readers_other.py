@@ -25,8 +25,7 @@ class SiemensReader(PlainReader):
         self.modal_call = False
 
     def follow(self, line):
-        # Text in parentheses is an alarm there; programs without Siemens words are read as plain ones.
-        body = re.sub(r"(?<![\w\]=])\([^()]*\)", " ", line.split(";")[0]).strip()
+        body = line.split(";")[0].strip()
         upper = body.upper()
         if not upper or upper.startswith("%"):
             return
@@ -174,7 +173,7 @@ class SiemensReader(PlainReader):
             if code in ("M0", "M1"):
                 self.event(code)
             elif code in ("M2", "M30"):
-                self.event(f"{code} {self.last_state()}")
+                self.event(f"{code} {self.state()}")
                 self.ended = True
 
     def siemens_go(self, values, raw):
@@ -334,7 +333,7 @@ class KlartextReader(Reader):
             if code in (0, 1):
                 self.event(f"M{code}")
             elif code in (2, 30):
-                self.event(f"M{code} {self.last_state()}")
+                self.event(f"M{code} {self.state()}")
                 self.ended = True
 
     def moves(self, name, values, end, feed_max, raw):

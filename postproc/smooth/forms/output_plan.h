@@ -55,7 +55,9 @@ struct PlanOptions {
   std::size_t most_moves = 0;
   // More arcs than this are not looked for.
   std::size_t most_arcs = std::numeric_limits<std::size_t>::max();
-  double tolerance = 0;  // mm, moves to run, where max_deviation is not to be the same everywhere
+  // mm, moves to run. Of lines, where max_deviation is not to be the same everywhere; of arcs, with
+  // the chords that the target itself makes of them.
+  double tolerance = 0;
 
   bool operator==(const PlanOptions&) const = default;
 };
@@ -105,7 +107,9 @@ inline constexpr PlanTuning kPlans;
 // Arcs in a plane that the target takes arcs in and that the run lies in, the active plane first. A
 // run in space: helices and lines in the plane that needs the fewest, where the target takes
 // helices and they are fewer than the run's motions. Nothing when no plane serves. Arcs that the
-// target would refuse are chords already. Comments are placed by the length along the moves, which
+// target would refuse are chords already, and so are those that with the target's own chords would
+// be farther from the run than `tolerance`, or that these leave more than those of the arcs that
+// the run has there and than the target itself aims at. Comments are placed by the length along the moves, which
 // may be one short move off. `bends`: of the curve.
 [[nodiscard]] std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve& fair,
                                                   const geometry::MarkedPieces& pieces,

@@ -35,13 +35,6 @@ geometry::ArcPartsOptions parts_for(const geometry::Arc& arc, const gcode::Contr
   return parts;
 }
 
-// The control takes it, and its own chords are no coarser than chords of ours would be.
-bool is_taken(const geometry::Arc& arc, const PlanOptions& options) {
-  const gcode::Control& target = *options.target;
-  return gcode::arc_refusal(target, arc, options.units).empty() &&
-         gcode::chord_error(target.chords, arc) <= options.max_deviation;
-}
-
 // Planes that the target takes arcs in, the active one first.
 std::vector<PlaneAxes> arc_planes(const PlanOptions& options) {
   std::vector<PlaneAxes> planes;
@@ -59,8 +52,7 @@ double arc_grid(const PlanOptions& options) {
 }
 
 // Appends the piece; an arc in as many parts as the target needs, and chords within `deviation` of
-// those parts that it refuses or that its own chords would leave further than
-// options.max_deviation.
+// those parts that it refuses.
 void append_taken(const PathPiece& piece, double deviation, const PlanOptions& options,
                   Path& path) {
   const auto* arc = std::get_if<geometry::Arc>(&piece);
@@ -69,7 +61,7 @@ void append_taken(const PathPiece& piece, double deviation, const PlanOptions& o
     return;
   }
   for (const geometry::Arc& part : geometry::arc_parts(*arc, parts_for(*arc, *options.target))) {
-    if (is_taken(part, options)) {
+    if (gcode::arc_refusal(*options.target, part, options.units).empty()) {
       path.push_back(part);
       continue;
     }
@@ -109,6 +101,102 @@ geometry::ArcFitOptions fit_options(const PlanOptions& options, const PlaneAxes&
   return fit;
 }
 
+// Replaces arcs that the target would cut too coarsely by chords of ours.
+class OwnChords {
+ public:
+  OwnChords(const Run& run, const geometry::SmoothCurve& fair, const PlanOptions& options)
+      : run_(run), fair_(fair), options_(options), chords_(options.target->chords) {}
+
+  void put_into(OutputPlan& plan) {
+    if (!chords_.any()) return;
+    std::vector<PlannedMove> moves;
+    moves.reserve(plan.moves.size());
+    for (std::size_t i = 0; i < plan.moves.size(); ++i) {
+      PlannedMove& move = plan.moves[i];
+      const auto* arc = std::get_if<geometry::Arc>(&move.piece);
+      const double end = i + 1 < plan.moves.size() ? plan.moves[i + 1].start : fair_.curve.last();
+      const std::optional<double> height =
+          arc == nullptr ? std::nullopt : height_for(*arc, move.start, end);
+      if (!height) {
+        moves.push_back(std::move(move));
+        continue;
+      }
+      for (const PathPiece& chord : chords_for(*arc, *height)) {
+        moves.push_back({chord, move.feed, {}, move.start});
+      }
+    }
+    plan.moves = std::move(moves);
+  }
+
+ private:
+  // How high chords in place of this arc may be; nothing where it stays.
+  [[nodiscard]] std::optional<double> height_for(const geometry::Arc& arc, double start,
+                                                 double end) {
+    const auto& at = fair_.vertex_parameters;
+    while (first_ + 2 < at.size() && at[first_ + 1] <= start) ++first_;
+    std::size_t last = first_ + 1;  // of the run: the arc is between these vertices
+    while (last + 1 < at.size() && at[last] < end) ++last;
+    const double left = options_.tolerance - distance(arc, last);
+    const double error = error_of(arc);
+    if (error <= left && error <= error_before(last)) return std::nullopt;
+    return std::max(left, kPlans.spline_chords * options_.max_deviation);
+  }
+
+  // Printing may shorten it by a step at each end, which takes a chord more or less.
+  [[nodiscard]] double error_of(geometry::Arc arc) const {
+    arc.sweep *= 1 - std::min(0.5, 2 * arc_grid(options_) / geometry::length_of(arc));
+    return gcode::chord_error(chords_, arc);
+  }
+
+  // Of the arcs that the run has there, or what the target itself aims at; without any, new ones
+  // may have any.
+  [[nodiscard]] double error_before(std::size_t last) {
+    while (next_arc_ < run_.arcs.size() && run_.arcs[next_arc_].last <= first_) ++next_arc_;
+    const double usual = gcode::usual_chord_error(chords_);
+    double greatest = std::isfinite(usual) ? usual : 0;
+    std::size_t i = next_arc_;
+    for (; i < run_.arcs.size() && run_.arcs[i].first < last; ++i) {
+      greatest = std::max(greatest, gcode::chord_error(chords_, run_.arcs[i].arc));
+    }
+    return i > next_arc_ ? greatest : std::numeric_limits<double>::infinity();
+  }
+
+  // mm, about: between the arc and the run, from the vertex before it to the one behind it.
+  [[nodiscard]] double distance(const geometry::Arc& arc, std::size_t last) const {
+    double greatest = 0;
+    const double radius = geometry::radius_of(arc);
+    for (std::size_t i = first_ + 1; i < last; ++i) {
+      const Vector3 out = run_.points[i] - arc.center;
+      greatest = std::max(greatest, std::abs((out - out.dot(arc.axis) * arc.axis).norm() - radius));
+    }
+    constexpr int kParts = 4;
+    for (int k = 0; k <= kParts; ++k) {
+      const Point3 point = geometry::point_at(arc, static_cast<double>(k) / kParts);
+      double nearest = std::numeric_limits<double>::infinity();
+      for (std::size_t i = first_; i < last; ++i) {
+        nearest = std::min(nearest, distance_to_edge(point, i));
+      }
+      greatest = std::max(greatest, nearest);
+    }
+    return greatest;
+  }
+
+  [[nodiscard]] double distance_to_edge(const Point3& point, std::size_t i) const {
+    const Vector3 along = run_.points[i + 1] - run_.points[i];
+    const double length2 = along.squaredNorm();
+    const Vector3 from = point - run_.points[i];
+    const double t = length2 > 0 ? std::clamp(from.dot(along) / length2, 0.0, 1.0) : 0;
+    return (from - t * along).norm();
+  }
+
+  const Run& run_;
+  const geometry::SmoothCurve& fair_;
+  const PlanOptions& options_;
+  const gcode::ArcChords& chords_;
+  std::size_t first_ = 0;     // vertex at or before the arc
+  std::size_t next_arc_ = 0;  // of the run, that ends behind it
+};
+
 // `whole`: all of the curve in its pieces, where these are known, and about how many chords it
 // takes.
 std::optional<OutputPlan> plan_in(const Run& run, const geometry::SmoothCurve& fair,
@@ -138,6 +226,7 @@ std::optional<OutputPlan> plan_in(const Run& run, const geometry::SmoothCurve& f
       start = std::clamp(next, start, section.to);
     }
   }
+  OwnChords(run, fair, options).put_into(plan);
   place_comments(run, fair, plan);
   return plan;
 }
@@ -236,6 +325,7 @@ class ArcSplinePlanner {
     for (const ArcSection& section : sections()) {
       if (!add(section)) return std::nullopt;
     }
+    OwnChords(run_, fair_, options_).put_into(plan_);
     place_comments(run_, fair_, plan_);
     return std::move(plan_);
   }

@@ -159,6 +159,51 @@ TEST(Controls, RefuseArcsBelowTheLeastRadiusOfTheirTableAndOfAProfile) {
   }
 }
 
+// Nobody knows what becomes of them: nothing, a full turn, or an error.
+TEST(Controls, RefuseArcsOfNearlyNothing) {
+  for (const Control& each : controls()) {
+    const auto taken = [&](double radius, double sweep) {
+      return arc_refusal(each, arc_with(radius, sweep, 0), Units::kMillimetre).empty();
+    };
+    for (const double sweep : {1e-7, -1e-7, 1e-6, 9e-6}) {
+      EXPECT_FALSE(taken(10, sweep)) << each.name << ": " << sweep;
+      EXPECT_FALSE(taken(0.9 * each.max_radius, sweep)) << each.name << ": " << sweep;
+    }
+    EXPECT_FALSE(taken(0.00015, 3)) << each.name;
+    EXPECT_TRUE(taken(10, 1)) << each.name;
+    EXPECT_TRUE(taken(10, -3)) << each.name;
+  }
+}
+
+// Firmware that may take a full circle for no motion is given none, however great it is.
+TEST(Controls, RefuseFullTurnsWhereTheyMayBeNone) {
+  for (const Control& each : controls()) {
+    if (each.arc_rule != ArcRule::kGrbl && each.arc_rule != ArcRule::kUnchecked &&
+        each.arc_rule != ArcRule::kTinyg) {
+      continue;
+    }
+    for (const double sweep : {2 * std::numbers::pi, -2 * std::numbers::pi, 6.2}) {
+      EXPECT_FALSE(arc_refusal(each, arc_with(10, sweep, 0), Units::kMillimetre).empty())
+          << each.name << ": " << sweep;
+    }
+  }
+}
+
+// At 100,000 mm neighbouring 32-bit numbers are 0.0078 mm apart.
+TEST(Controls, RefuseArcsWhose32BitsAreCoarserThanTheirDigits) {
+  for (const char* name :
+       {"grbl", "fluidnc", "g2core", "marlin", "smoothieware", "reprapfirmware"}) {
+    for (const double far : {1e5, -1e5, 2e4}) {
+      Arc arc = arc_with(10, 1, 0);
+      for (Point3* place : {&arc.start, &arc.end, &arc.center}) place->x() += far;
+      EXPECT_FALSE(arc_refusal(named_control(name), arc, Units::kMillimetre).empty()) << name;
+    }
+    Arc arc = arc_with(10, 1, 0);
+    for (Point3* place : {&arc.start, &arc.end, &arc.center}) place->x() += 1000;
+    EXPECT_EQ(arc_refusal(named_control(name), arc, Units::kMillimetre), "") << name;
+  }
+}
+
 TEST(Controls, RefuseArcsOfNumbersThatNobodyWrites) {
   for (const Control& each : controls()) {
     for (const double radius : {1e9, 1e12, std::numeric_limits<double>::infinity()}) {

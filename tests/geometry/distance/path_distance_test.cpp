@@ -338,5 +338,24 @@ TEST(ComparePaths, BoundsItsCostWhereEverythingIsNearEverything) {
   EXPECT_LT(processor_seconds() - begin, 60);
 }
 
+// --- what is really run may be beside the second path ------------------------------------------
+
+TEST(ComparePaths, LeavesLessWhereWhatIsRunIsBesideThePath) {
+  const Path old_path = chain({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}, {30, 0, 0}});
+  const Path new_path = chain({{0, 0.1, 0}, {10, 0.1, 0}, {20, 0.3, 0}, {30, 0.1, 0}});
+  const auto verdict = [&](double tolerance, const std::vector<double>& beside) {
+    return compare_paths(old_path, new_path, tolerance, beside).verdict;
+  };
+  EXPECT_EQ(verdict(0.3, {}), Verdict::kProved);
+  EXPECT_EQ(verdict(0.3, {0.19, 0, 0}), Verdict::kProved);  // far from where the distance is 0.3
+  EXPECT_EQ(verdict(0.3, {0.21, 0, 0}), Verdict::kNotProved);
+  EXPECT_EQ(verdict(0.3, {0, 0.01, 0}), Verdict::kNotProved);
+  EXPECT_EQ(verdict(0.29, {0.01, 0, 0}), Verdict::kBroken);
+  EXPECT_LE(compare_paths(old_path, new_path, 0.4, std::vector<double>{0, 0.09, 0}).bounds.at_most,
+            0.4);
+  EXPECT_THROW((void)compare_paths(old_path, new_path, 0.4, std::vector<double>{0.1}),
+               std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace batten::geometry
