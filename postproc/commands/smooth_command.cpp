@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
+#include <string_view>
 #include <system_error>
 
 #include "postproc/commands/certificate_file.h"
@@ -69,9 +71,21 @@ class SmoothWork {
     (void)progress(1);  // the progress line is gone
   }
 
+  // Where a rule that the user may lift keeps much of a program that is not long: without it.
+  [[nodiscard]] std::optional<LiftedRule> smooth_without_rule() const {
+    if (!result_.understood || command_.log_level < LogLevel::kInfo) return std::nullopt;
+    if (source_->text().size() >= StreamLimits{}.bytes_for_windows) return std::nullopt;
+    const std::string_view id = rule_worth_lifting(result_);
+    if (id.empty()) return std::nullopt;
+    SmoothOptions options = options_;
+    options.allowed.emplace_back(id);
+    return LiftedRule{id, smooth_program(*source_, options, [](double) { return !interrupted(); })};
+  }
+
   // All that takes memory before anything is in its place: what ends here has written nothing.
   // False: nothing is to be written.
   bool tell_of_smoothing() {
+    const std::optional<LiftedRule> lifted = smooth_without_rule();
     if (interrupted()) code_ = end_interrupted();
     const bool changed = !code_ && (changed_while_read(watched_) || changed_while_read(called_));
     if (changed) code_ = static_cast<int>(ExitCode::kFileError);
@@ -88,7 +102,8 @@ class SmoothWork {
                                  .origins = command_.origins,
                                  .drop = command_.drop,
                                  .dropped = dropped_,
-                                 .called = called_.files};
+                                 .called = called_.files,
+                                 .lifted = lifted ? &*lifted : nullptr};
     const bool tells = result_.understood && command_.log_level >= LogLevel::kInfo;
     if (tells) summary_ = summary_text(report);
     if (!command_.json_file.empty()) json_ = json_report(report);

@@ -356,7 +356,35 @@ void add_outlook(const SmoothReport& report, std::string& lines) {
   }
 }
 
+// What a rule costs that the user may lift.
+void add_lifted(const SmoothReport& report, std::string& lines) {
+  if (report.lifted == nullptr) return;
+  const SmoothResult& now = report.result;
+  const SmoothResult& other = report.lifted->result;
+  if (!other.understood || !other.proved) return;
+  const double before[] = {now.program_after.seconds, static_cast<double>(now.blocks_out)};
+  const double after[] = {other.program_after.seconds, static_cast<double>(other.blocks_out)};
+  const std::string changes = changes_text(before, after);
+  if (after[0] > kCost.clearly_faster * before[0] && after[1] > kCost.clearly_smaller * before[1]) {
+    return;
+  }
+  lines += titled("found", fmt::format("--allow {}{}", report.lifted->id, changes));
+}
+
 }  // namespace
+
+std::string_view rule_worth_lifting(const SmoothResult& result) {
+  constexpr double kMuchKept = 0.2;
+  for (const KeptCause& cause : result.kept.causes) {
+    if (result.kept.share(cause.cut) < kMuchKept) break;
+    const auto all = gcode::reason::explanations();
+    const auto reason = std::ranges::find(all, cause.reason, &gcode::reason::Explanation::id);
+    // Tolerances would add up.
+    if (reason == all.end() || reason->id == gcode::reason::kAlreadySmoothed) continue;
+    if (reason->can_be_allowed) return reason->id;
+  }
+  return {};
+}
 
 std::vector<std::string> texts_of_origins(
     std::span<const std::pair<std::string, std::string>> origins) {
@@ -414,6 +442,7 @@ std::string summary_text(const SmoothReport& report) {
   }
   add_methods(result, lines);
   add_outlook(report, lines);
+  add_lifted(report, lines);
   const bool rewritten =
       std::ranges::count(result.runs, RunStatus::kRewritten, &RunReport::status) > 0;
   add_proof(report, rewritten, lines);

@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,16 @@
 #include "postproc/text/json_values.h"
 
 namespace batten::postproc {
+
+// What smoothing would have given had the user lifted a rule that keeps much.
+struct LiftedRule {
+  std::string_view id;
+  SmoothResult result;
+};
+
+// The rule, of those that the user may lift and has not, that keeps the greatest share of the
+// cutting moves, where that is much. Empty: none does.
+[[nodiscard]] std::string_view rule_worth_lifting(const SmoothResult& result);
 
 struct SmoothReport {
   const gcode::SourceText& source;  // its name stands for the input file
@@ -28,6 +39,7 @@ struct SmoothReport {
   std::vector<std::string> drop = {};
   std::size_t dropped = 0;
   std::vector<CalledFile> called = {};  // programs that it calls
+  const LiftedRule* lifted = nullptr;   // for the summary
 };
 
 // The report for programs: one JSON object, its fields always in the same order, the same bytes for

@@ -40,7 +40,7 @@ def read_options():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     beside = os.environ.get("BATTEN_CORPUS", HERE.parent.parent / ".." / "shared" / "corpus")
-    parser.add_argument("batten", type=pathlib.Path)
+    parser.add_argument("batten", type=lambda text: pathlib.Path(text).resolve())
     parser.add_argument("--corpus", type=pathlib.Path, default=beside)
     parser.add_argument("--targets", type=lambda text: text.split(","), default=["linuxcnc", "grbl", "fanuc", "siemens"])
     parser.add_argument("--tolerance", type=float, default=0.01)

@@ -251,7 +251,7 @@ def main():
         return text.split(",")
 
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("batten", type=pathlib.Path)
+    parser.add_argument("batten", type=lambda text: pathlib.Path(text).resolve())
     parser.add_argument("--targets", type=words, default=["linuxcnc", "grbl", "fanuc"])
     parser.add_argument("--prefer", type=words, default=["time", "accuracy", "size"])
     parser.add_argument("--chords", type=words, default=list(CHORDS))

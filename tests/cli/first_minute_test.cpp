@@ -22,6 +22,18 @@ class FirstMinute : public testing::Test {
 
 constexpr const char* kUserConfig = ".home/.config/batten/config.toml";
 
+// --- what a rule costs ---------------------------------------------------------------------------
+
+TEST_F(FirstMinute, TheSummarySaysWhatLiftingARuleWouldWin) {
+  folder_.put("exact.ngc", "G61\n" + wave_program());
+  const ProcessResult kept = batten("smooth exact.ngc --target linuxcnc");
+  expect_exit(kept, 0, {"(exact-stop)", "found         --allow exact-stop: ", "% fewer blocks"});
+  const ProcessResult lifted =
+      batten("smooth exact.ngc --target linuxcnc --allow exact-stop -o lifted.ngc");
+  expect_exit(lifted, 0, {"1 rewritten"});
+  EXPECT_EQ((kept.out + kept.err).find("1 rewritten"), std::string::npos);
+}
+
 // --- the target ----------------------------------------------------------------------------------
 
 TEST_F(FirstMinute, ProgramsOfAPostThatNamesItsControlNeedNoOption) {

@@ -134,6 +134,29 @@ const SummaryCase kSummaries[] = {
      {"the program is good", "found"}},
 };
 
+// Without the rule 1 s in place of 2 s, and 60 blocks in place of 50.
+TEST_F(SmoothReports, SayWhatLiftingARuleWouldWin) {
+  EXPECT_EQ(rule_worth_lifting(result_), gcode::reason::kExactStop);
+  LiftedRule lifted{gcode::reason::kExactStop, result_};
+  lifted.result.program_after.seconds = 1;
+  lifted.result.blocks_out = 60;
+  SmoothReport with = report();
+  with.lifted = &lifted;
+  const char* won = "found         --allow exact-stop: 50 % less time, 20 % more blocks\n";
+  EXPECT_NE(summary_text(with).find(won), std::string::npos) << summary_text(with);
+  lifted.result.program_after.seconds = 2;
+  EXPECT_EQ(summary_text(with), summary_text(report())) << "it would win nothing";
+}
+
+// Nor a rule whose lifting adds tolerances, nor one that keeps little.
+TEST_F(SmoothReports, NoRuleIsWorthLiftingThatKeepsLittle) {
+  result_.kept.causes[0].reason = gcode::reason::kAlreadySmoothed;
+  EXPECT_EQ(rule_worth_lifting(result_), "");
+  result_ = five_runs();
+  result_.kept.causes[0].cut.length_mm /= 10;
+  EXPECT_EQ(rule_worth_lifting(result_), "");
+}
+
 TEST_F(SmoothReports, SayToPeopleWhatBecameOfTheProgram) {
   for (const SummaryCase& test : kSummaries) {
     result_ = five_runs();
