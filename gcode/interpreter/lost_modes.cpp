@@ -4,13 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <string_view>
 #include <vector>
 
-#include "gcode/control/control.h"
 #include "gcode/state/modal_state.h"
+#include "gcode/state/mode_words.h"
 #include "gcode/state/reason.h"
 #include "gcode/text/characters.h"
 
@@ -19,65 +18,12 @@ namespace {
 
 constexpr std::string_view kId = "modes-unknown";
 
-// An item that is_known() asks for, and the words by which a program says that it is as runs want
-// it, in each language; empty where it has none, or never loses the item.
-struct ModeWords {
-  bool (*is_unknown)(const ModalState&);
-  std::string_view name;
-  std::string_view rs274;
-  std::string_view siemens;
-  std::string_view klartext;
-};
-template <auto kItem, auto kUnknown>
-bool is_unknown(const ModalState& state) {
-  return state.*kItem == kUnknown;
-}
-template <auto kItem>
-constexpr auto kSwitch = &is_unknown<kItem, TriState::kUnknown>;
-
-using Modal = ModalState;
-constexpr std::array kModeWords = {
-    ModeWords{&is_unknown<&Modal::units, Units::kUnknown>, "units", "G20 or G21", "G70 or G71", ""},
-    ModeWords{&is_unknown<&Modal::plane, Plane::kUnknown>, "plane", "G17", "G17",
-              "TOOL CALL with Z"},
-    ModeWords{&is_unknown<&Modal::distance, DistanceMode::kUnknown>, "distance", "G90", "G90", ""},
-    ModeWords{&is_unknown<&Modal::arc_distance, DistanceMode::kUnknown>, "centres of arcs", "G91.1",
-              "", ""},
-    ModeWords{&is_unknown<&Modal::feed_mode, FeedMode::kUnknown>, "feed mode", "G94", "G94",
-              "M137"},
-    ModeWords{&is_unknown<&Modal::path, PathMode::kUnknown>, "path mode", "G64", "G64", ""},
-    ModeWords{kSwitch<&Modal::cutter_compensation>, "cutter compensation", "G40", "G40", "R0"},
-    ModeWords{kSwitch<&Modal::tool_center_point>, "tool centre point control", "G49", "TRAFOOF",
-              "M129"},
-    ModeWords{kSwitch<&Modal::tilted_plane>, "tilted plane", "G69", "CYCLE800()", "PLANE RESET"},
-    ModeWords{kSwitch<&Modal::scaling>, "scaling", "G50", "TRANS",
-              "CYCL DEF 26.1 X1 Y1 Z1, then CYCL DEF 11.1 SCL 1"},
-    ModeWords{kSwitch<&Modal::rotation>, "rotation", "G69", "TRANS", "CYCL DEF 10.1 ROT+0"},
-    ModeWords{kSwitch<&Modal::mirror>, "mirroring", "G50.1", "TRANS", "CYCL DEF 8.1"},
-    ModeWords{kSwitch<&Modal::polar>, "polar coordinates", "G15", "TRAFOOF", ""},
-    ModeWords{kSwitch<&Modal::cylindrical>, "cylindrical coordinates", "G7.1 C0", "TRAFOOF", ""},
-    ModeWords{kSwitch<&Modal::control_smoothing>, "smoothing by the control", "G5.1 Q0", "COMPOF",
-              "M113"},
-    ModeWords{kSwitch<&Modal::modal_macro>, "modal macro", "G67", "MCALL",
-              "CYCL DEF of a cycle that waits for its call"},
-    ModeWords{kSwitch<&Modal::constant_surface_speed>, "constant surface speed", "G97", "G97", ""},
-    ModeWords{kSwitch<&Modal::lathe_diameter>, "diameter mode", "G8", "DIAMOF", ""}};
-// In the order of the bits of a ModeSet. The laser's, the last, is not asked for.
-static_assert(kModeWords.size() == mode::kFirstSwitch + kModalSwitches.size() - 1);
-static_assert(kModalSwitches.back().item == &Modal::laser_power_mode);
-
-std::string_view words_of(const ModeWords& row, Language language) {
-  return language == Language::kRs274     ? row.rs274
-         : language == Language::kSiemens ? row.siemens
-                                          : row.klartext;
-}
-
 // "plane (G17), scaling (G50)"
 std::string missing_in(const ModalState& state, Language language) {
   std::vector<std::string> missing;
-  for (const ModeWords& each : kModeWords) {
+  for (const ModeWords& each : mode_words()) {
     if (!each.is_unknown(state)) continue;
-    const std::string_view word = words_of(each, language);
+    const std::string_view word = each.in(language);
     missing.push_back(word.empty() ? std::string(each.name)
                                    : fmt::format("{} ({})", each.name, word));
   }
@@ -103,18 +49,6 @@ bool names_place(const Program& program, const Block& block) {
 }
 
 }  // namespace
-
-std::vector<std::string_view> words_of_all_modes(const Control& control) {
-  std::vector<std::string_view> words;
-  for (std::size_t i = 0; i < kModeWords.size(); ++i) {
-    if ((control.lacks & (ModeSet{1} << i)) != 0) continue;
-    std::string_view word = words_of(kModeWords[i], control.language);
-    if (i == 0 && control.unit_words.mm == "G71") word = "G70 or G71";
-    const bool is_new = !word.empty() && std::ranges::find(words, word) == words.end();
-    if (is_new) words.push_back(word);
-  }
-  return words;
-}
 
 void follow_lost_modes(const Program& part, const Interpretation& read, LostModes& modes,
                        DiagnosticLimiter& limiter, Diagnostics& found) {

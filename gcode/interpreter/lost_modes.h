@@ -3,8 +3,6 @@
 
 #include <cstddef>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "gcode/state/diagnostic_limiter.h"
 #include "gcode/state/motion.h"
@@ -12,8 +10,6 @@
 #include "gcode/text/program.h"
 
 namespace batten::gcode {
-
-struct Control;  // gcode/control/control.h
 
 // The block behind which the modes are not known, while they are not; carried from part to part.
 struct LostModes {
@@ -24,10 +20,6 @@ struct LostModes {
   std::string missing;    // at the last of the moves: what was not set again, in words
   std::size_t moves = 0;  // blocks with X, Y or Z behind it, so far
 };
-
-// The words by which a program for this control says all of its modes, where what stood before is
-// not known; "G20 or G21" where there is a choice. Each once.
-[[nodiscard]] std::vector<std::string_view> words_of_all_modes(const Control& control);
 
 // Follows the states of a part that was interpreted, and adds a warning modes-unknown for each
 // block behind which moves are copied because the modes are unknown (is_known), once the modes are

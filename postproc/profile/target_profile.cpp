@@ -11,7 +11,7 @@
 #include <variant>
 
 #include "gcode/controls/built_in.h"
-#include "gcode/interpreter/lost_modes.h"
+#include "gcode/state/mode_words.h"
 #include "postproc/machine/machine.h"
 #include "postproc/text/words.h"
 
@@ -493,7 +493,7 @@ std::string profile_text(const gcode::Control& target) {
   }
   for (const std::string_view hint : target.smoothing_words) text += fmt::format("# {}\n", hint);
   text += fmt::format("\n# Behind a block that is not understood all modes are said by: {}\n",
-                      fmt::join(gcode::words_of_all_modes(target), ", "));
+                      fmt::join(gcode::words_of_modes(target.lacks, target.language), ", "));
   text += fmt::format(
       "\n# What words of your own do, which Batten does not know; you vouch for it. Such as\n"
       "# M501 = \"keeps state\"\n# \"G65 P9810\" = \"moves\"\n[{}]\n",

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/interpreter/lost_modes.h"
+#include "gcode/state/mode_words.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
@@ -130,7 +130,7 @@ TEST(BoundedBlocks, AreSettledByTheWordsThatTheMessageNames) {
     const gcode::Control* control = gcode::find_control(target);
     ASSERT_NE(control, nullptr);
     std::vector<std::string> words;
-    for (const std::string_view word : gcode::words_of_all_modes(*control)) {
+    for (const std::string_view word : gcode::words_of_modes(control->lacks, control->language)) {
       words.emplace_back(word == "G20 or G21" ? "G21" : word);
     }
     expect_settled_by(words, options_for(target));
