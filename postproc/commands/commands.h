@@ -126,7 +126,7 @@ struct VerifyCommand : ReadingCommand {
 
 struct InspectCommand : ReadingCommand {
   std::string input;
-  const gcode::Control* runs_it = nullptr;       // whose misreadings of arcs are noted
+  const gcode::Control* runs_it = nullptr;       // as which it is read; nullptr: any
   std::shared_ptr<const TargetProfile> profile;  // keeps it alive
 };
 [[nodiscard]] int run(const InspectCommand& command);

@@ -303,8 +303,10 @@ std::string json_report(const SmoothReport& report) { return json_text(smooth_js
 
 namespace {
 
+// Nothing of what is printed as zero.
 std::string percent_text(double before, double after) {
-  const double percent = before > 0 ? 100 * (after / before - 1) : 0;
+  constexpr double kPrintedAsZero = 5e-5;
+  const double percent = before >= kPrintedAsZero ? 100 * (after / before - 1) : 0;
   return std::abs(percent) < 0.5 ? "" : fmt::format(", {:+.0f} %", percent);
 }
 

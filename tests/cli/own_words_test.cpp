@@ -9,6 +9,15 @@
 namespace batten {
 namespace {
 
+// What smooth would find: the modes that the control lacks are not asked for.
+TEST(InspectForATarget, ReadsTheProgramAsThatControl) {
+  const BattenFolder folder;
+  folder.put("part.nc", "G21 G90 G17 G94\nG0 X0 Y0 Z5\nG777\nX1 Y1\nX2 Y2\nM30\n");
+  expect_exit(folder.batten("inspect part.nc"), 0, {"mirroring (G50.1)"});
+  expect_exit(folder.batten("inspect part.nc --target grbl"), 0,
+              {"of them: units (G20 or G21), plane (G17), distance (G90), feed mode (G94). "});
+}
+
 constexpr const char* kWord = " --word 'M501 = keeps state'";
 
 // A wave behind a word that no control shares.

@@ -62,6 +62,19 @@ const SummaryCase kSummaries[] = {
     {"OtherCauses",
      [](SmoothResult& result) { result.kept.causes.resize(5, result.kept.causes[1]); },
      {"kept: 10 moves, 3.0 % of the cutting length, for 2 other reasons: see --json"}},
+    // What is printed as zero has no percent.
+    {"DistanceOfAnExactPath",
+     [](SmoothResult& result) {
+       result.path_before = {100, 4e-5, 0.1};
+       result.path_after = {100, 0.0017, 0.1};
+     },
+     {"0.0000 -> 0.0017 mm  (rms, from the path that was meant)"}},
+    {"DistanceOfARoughPath",
+     [](SmoothResult& result) {
+       result.path_before = {100, 6e-5, 0.1};
+       result.path_after = {100, 3e-5, 0.1};
+     },
+     {"0.0001 -> 0.0000 mm  (rms, from the path that was meant, -50 %)"}},
     {"NothingFound",
      [](SmoothResult& result) {
        result.runs.clear();
