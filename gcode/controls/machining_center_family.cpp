@@ -46,6 +46,7 @@ std::vector<Control> machining_center_family() {
        "manual",
        "(bare G187: back to setting 191 and 85)"});
   haas.dwell_form = DwellForm::kSecondsByPoint;
+  haas.lacks += mode::kControlSmoothing;  // G187 says how smooth, G5.1 is unknown to it
 
   const Control mazak = machining_center(
       "mazak", "Mazak EIA: arcs and helices in G17, G18, G19; decimal point always", kFanucLike,
