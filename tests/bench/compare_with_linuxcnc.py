@@ -41,7 +41,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 SKIP = 77
 MODES = ["G61", "G64", "G64 P0.01 Q0", "G64 P0.01", "G64 P0.05"]
-LIMITS = [(400, 4000), (120, 900)]  # mm/s, mm/s2
+LIMITS = [(400, 4000), (120, 900), (120, 900, 25)]  # mm/s, mm/s2, mm/s of Z where it is slower
 RECORDED_FEEDS = ["6000", "15000"]
 WITHIN, SHARE, ALL_WITHIN = 4.0, 0.9, 10.0  # per cent, share of the cases, per cent
 
@@ -73,10 +73,12 @@ def with_mode(text, mode):
 
 
 def machine_file(folder, limits):
-    name = os.path.join(folder, "machine_%g_%g.toml" % limits)
+    name = os.path.join(folder, "machine_%s.toml" % "_".join("%g" % x for x in limits))
     with open(name, "w") as f:
         f.write('based-on = "linuxcnc"\nname = "bench"\nmax-velocity = %g\nmax-acceleration = %g\n'
-                'rapid-velocity = %g\npath-feed = %g\n' % (limits + limits[:1] * 2))
+                'rapid-velocity = %g\npath-feed = %g\n' % (limits[:2] + limits[:1] * 2))
+        if limits[2:]:
+            f.write("[axis.z]\nvelocity = %g\nrapid-velocity = %g\n" % (limits[2:] * 2))
     return name
 
 
@@ -91,7 +93,7 @@ class Bench:
                 self.cache = json.load(f)
 
     def key(self, text, limits):
-        return hashlib.sha256(("%s %s %s" % (text, *limits)).encode()).hexdigest()
+        return hashlib.sha256(" ".join([text, *map(str, limits)]).encode()).hexdigest()
 
     def file_of(self, text, limits):
         name = os.path.join(self.folder, self.key(text, limits)[:24] + ".ngc")
@@ -115,7 +117,9 @@ class Bench:
         if key not in self.cache:
             r = subprocess.run([os.path.join(self.args.bench, "lcnc_time.sh"),
                                 self.file_of(text, limits), "--json", "--vmax", "%g" % limits[0],
-                                "--amax", "%g" % limits[1]], capture_output=True, text=True)
+                                "--amax", "%g" % limits[1],
+                                *(["--vz", "%g" % limits[2]] if limits[2:] else [])],
+                               capture_output=True, text=True)
             try:
                 self.cache[key] = json.loads(r.stdout)
             except ValueError:
@@ -197,11 +201,12 @@ def cell(bench, text, limits, differences, left_out, name):
 
 
 def table(bench, programs, limits, pool, differences, left_out):
-    print("\n%g mm/s and %g mm/s2 on every axis:\n" % limits)
+    slow_z = ", Z %g mm/s" % limits[2] if limits[2:] else ""
+    print("\n%g mm/s and %g mm/s2 on every axis%s:\n" % (*limits[:2], slow_z))
     print("| program | " + " | ".join(bench.args.modes) + " |")
     print("|---" * (1 + len(bench.args.modes)) + "|", flush=True)
     rows = [(name, [pool.submit(cell, bench, texts[mode], limits, differences, left_out,
-                                "%s, %s, %g mm/s" % (name, mode, limits[0]))
+                                "%s, %s, %s" % (name, mode, "/".join("%g" % x for x in limits)))
                     for mode in bench.args.modes]) for name, texts in programs]
     for name, cells in rows:
         print("| %s | %s |" % (name, " | ".join(c.result() for c in cells)), flush=True)
@@ -231,7 +236,7 @@ def main():
     p.add_argument("--smooth", action="append")
     p.add_argument("--modes", type=lambda t: t.split(";"), default=MODES,
                    help="as 'G61;G64 P0.01'")
-    p.add_argument("--limits", type=limits_of, default=LIMITS, help="as '400/4000,120/900'")
+    p.add_argument("--limits", type=limits_of, default=LIMITS, help="as '400/4000,120/900/25'")
     p.add_argument("--recorded", action="store_true")
     p.add_argument("--cache")
     p.add_argument("--jobs", type=int, default=2)

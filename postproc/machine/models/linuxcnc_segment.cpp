@@ -314,6 +314,18 @@ HalfAngle half_angle_of(double theta, bool lines, double along, double across) {
   return {sine, cosine, sine / cosine};
 }
 
+// Of the velocities that both lines allow as vectors from the corner, the chord between their
+// tips: how near it comes to the corner is the speed (mm/s) that the arc may have. What one line
+// allows is taken as no more than what puts that nearest place between the tips. `along` and
+// `across`: products of the directions.
+double velocity_on_chord(const Segment& before, const Segment& after, double along, double across) {
+  constexpr double kLeastAlong = 0.0314;  // cosine of 0.49 pi
+  const double cosine = std::max(along, kLeastAlong);
+  const double v1 = std::min(before.max_velocity, after.max_velocity / cosine);
+  const double v2 = std::min(after.max_velocity, before.max_velocity / cosine);
+  return v1 * v2 * across / (v2 * after.start_direction - v1 * before.end_direction).norm();
+}
+
 // The same arc where a side is an arc itself; the radius stays.
 bool fit_to_arcs(BlendArc& arc, const Side& before, const Side& after, double allowed) {
   const auto center = before.is_arc && after.is_arc ? center_at_arcs(before, after, arc.radius)
@@ -358,8 +370,11 @@ std::optional<BlendArc> blend_arc(const Segment& before, const Segment& after,
   const double reach =
       std::min({reach1.length, reach2.length, allowed * (1 + half.sine) / half.cosine});
   const double radius = half.tangent * reach;
-  const double feed = std::min({std::max(before.feed, after.feed), machine.path_feed,
-                                limit_across(binormal, axis_velocities(machine, false))});
+  const double in_plane_limit = limit_across(binormal, axis_velocities(machine, false));
+  const double limit =
+      lines ? std::max(in_plane_limit, velocity_on_chord(before, after, along, across))
+            : in_plane_limit;
+  const double feed = std::min(std::max(target_velocity(before), target_velocity(after)), limit);
   arc.velocity = std::min(std::sqrt(normal_acceleration * radius), feed);
 
   // The arc is as long as a parabolic blend of the same corner would be, so that long moves

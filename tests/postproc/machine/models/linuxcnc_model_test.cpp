@@ -169,6 +169,16 @@ INSTANTIATE_TEST_SUITE_P(
                     MeasuredCase{"StarBlended", star(), kG64, 0.01, 3.327}),
     [](const auto& test) { return test.param.name; });
 
+// Lines over waves of 4 mm, where Z may do 40 mm/s: 100 mm/s on the crests, 51 mm/s on the slopes.
+// The corners between them are passed as fast as the lines, not at 40 mm/s.
+TEST(LinuxcncTime, PassesCornersOfASlowAxisAsFastAsTheirLines) {
+  Program p(6000);
+  for (int i = 1; i <= 80; ++i) p.line(0.5 * i, 0, 4 * std::sin(2 * pi * i / 40));
+  Machine m = bench_machine(0.01);
+  m.axis(Axis::kZ).velocity = 40;
+  EXPECT_NEAR(cutting_time(p.chain(), m, kG64), 0.903, 0.009);  // measured
+}
+
 // Half of 4000 mm/s^2 along arcs: to 250 mm/s in .125 s and 15.625 mm, at both ends.
 // Where no motion follows, the last arc has half of that again: .25 s and 31.25 mm.
 TEST(LinuxcncTime, HalvesTheAccelerationOfTheLastMoveOfAProgram) {
