@@ -133,6 +133,7 @@ struct Control {
   bool helices = true;
   bool arc_distance_mode = false;  // G90.1, G91.1
   ArcForm arc_form = ArcForm::kCenters;
+  bool centers_follow_distance = false;  // I J K are places under G90, offsets under G91
   ArcRule arc_rule = ArcRule::kStrictest;
   double max_sweep_deg = 180;     // longer arcs are written as several
   bool single_quadrants = false;  // no arc across an axis of its plane, seen from the centre
@@ -156,6 +157,8 @@ struct Control {
   // with other marks was made for others.
   SourceMarks known_marks = 0;
   std::vector<OtherMeaning> other_meanings;
+  // G words (in tenths) that choose a zero point there; elsewhere they scale or shift.
+  std::vector<int> zero_points;
   // Words that most others of the RS-274 family take and this one refuses, as far as is known: "M6
   // G43 T", a letter alone for any number behind it.
   std::string_view refused;

@@ -1,5 +1,5 @@
 // Controls of machining centres that read ISO programs: Haas, Mazak (EIA), Okuma OSP, Brother,
-// Hurco (ISNC), Fagor, NUM. Facts: docs/controllers/machining_centers.md.
+// Hurco (ISNC), Fagor, NUM, Philips (Maho). Facts: docs/controllers/machining_centers.md.
 #include "gcode/controls/built_in.h"
 
 namespace batten::gcode {
@@ -26,6 +26,21 @@ Control machining_center(std::string_view name, std::string_view description, So
   control.lacks = mode::kArcDistance + mode::kLatheDiameter;
   control.smoothing_words = std::move(smoothing_words);
   return control;
+}
+
+// Words of Philips controls that act otherwise than the reader takes them: programs that have one
+// are refused.
+std::vector<OtherMeaning> other_words_of_philips() {
+  std::vector<OtherMeaning> words = {
+      {200, "no inch word there, whose units are G70 and G71"},
+      {210, "no millimetre word there, whose units are G70 and G71"}};
+  for (const int code : {110, 120, 130, 140, 220, 230, 250, 260, 270, 280, 290, 310, 430, 440, 500,
+                         530, 600, 610, 620, 630, 640, 720, 730, 740, 770, 780, 790, 920, 930, 980,
+                         990}) {
+    words.push_back({code, "it may repeat or call blocks, switch their geometry or move the "
+                           "coordinates there"});
+  }
+  return words;
 }
 
 // I J K are no offsets there, or not certainly: R says the same.
@@ -87,12 +102,23 @@ std::vector<Control> machining_center_family() {
       machining_center("num", "NUM: arcs by R and helices in G17, G18, G19; G70 and G71", 0);
   num.decimal_point = false;
   write_arcs_by_radius(num);
+  num.centers_follow_distance = true;
   num.refused = kLengthByD;
   num.other_meanings = {
       {200, "no inch word on NUM (polar programming), whose units are G70 and G71"},
       {210, "no millimetre word on NUM (axes of programming), whose units are G70 and G71"}};
 
-  return {haas, mazak, okuma, brother, hurco, fagor, num};
+  Control philips = machining_center(
+      "philips", "Philips 432, 532 (Maho): arcs by R and helices in G17, G18, G19; G70 and G71", 0);
+  philips.decimal_point = false;
+  philips.helices = false;
+  write_arcs_by_radius(philips);
+  philips.centers_follow_distance = true;
+  philips.zero_points = {510, 520};
+  philips.refused = "G43 G49 G64 H";
+  philips.other_meanings = other_words_of_philips();
+
+  return {haas, mazak, okuma, brother, hurco, fagor, num, philips};
 }
 
 }  // namespace batten::gcode

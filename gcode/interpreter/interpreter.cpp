@@ -107,6 +107,8 @@ class Interpreter {
         now_(carry.state) {
     now_.calls_keep_modes = options.calls_keep_modes;
     now_.lacks = options.lacks;
+    now_.centers_follow_distance = options.centers_follow_distance;
+    if (options.centers_follow_distance) now_.modal.arc_distance = now_.modal.distance;
     now_.own_words = options.own_words.get();
     carry.is_klartext = is_klartext();
     if (is_klartext()) start_klartext(now_);

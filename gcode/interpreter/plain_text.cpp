@@ -106,7 +106,16 @@ bool is_plain_text(std::string_view line) {
   return is_bracketed(said) || is_file_name(said);
 }
 
+bool is_open_number(std::string_view line) {
+  const std::string said = said_in(line);
+  if (!said.starts_with('N') && !said.starts_with('O')) return false;
+  const std::size_t open = std::min(said.find_first_not_of("0123456789", 1), said.size());
+  const std::string_view places = std::string_view(said).substr(open);
+  return places.size() > 1 && places.find_first_not_of('X') == std::string_view::npos;
+}
+
 bool is_title(std::string_view line) {
+  if (is_open_number(line)) return true;
   const std::string said = said_in(line);
   const std::vector<std::string_view> words = split(said);
   return words.size() > 1 && words[0].size() > 1 && is_letter(words[0][0]) &&

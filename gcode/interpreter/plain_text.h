@@ -26,9 +26,13 @@ enum class TextEffect : std::uint8_t { kNothing, kPlace, kAnything };
 // Anything for all else, which may be a macro's name or a statement of another language.
 [[nodiscard]] TextEffect text_effect(std::string_view line);
 
+// Whether the line is the place of the program's number, for the operator to fill in: N9XXX, as
+// FreeCAD's post for Philips controls writes it.
+[[nodiscard]] bool is_open_number(std::string_view line);
+
 // Whether the line is a title: two or more words of letters and numbers of which none is a word of
-// RS-274 (X10) or begins a command of some control. At the beginning of a program only: further
-// down it could be a macro's.
+// RS-274 (X10) or begins a command of some control; or such a place. At the beginning of a program
+// only: further down it could be a macro's.
 [[nodiscard]] bool is_title(std::string_view line);
 
 }  // namespace batten::gcode

@@ -7,6 +7,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "gcode/interpreter/plain_text.h"
 #include "gcode/klartext/flow.h"
 #include "gcode/siemens/flow.h"
 #include "gcode/text/characters.h"
@@ -275,7 +276,8 @@ class FlowFinder {
   // Of a block whose words are not all listed.
   void note_hidden_call(ParseStatus opacity, std::string_view text, std::string_view bare) {
     if (opacity == ParseStatus::kExpression || opacity == ParseStatus::kCornerWord) return;
-    const bool foreign = opacity == ParseStatus::kForeign && calls_siemens_program(text);
+    const bool foreign = opacity == ParseStatus::kForeign && calls_siemens_program(text) &&
+                         !is_open_number(text);
     if (foreign || contains(bare, "M98") || contains(bare, "G65"))
       called_.emplace_back(std::nullopt);
   }

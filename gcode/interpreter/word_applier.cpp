@@ -80,8 +80,7 @@ class WordApplier {
 
   void apply_g(Code code) {
     const CodeRow& row = row_of_g(code);
-    const bool may_be_own = row.group == CodeGroup::kUnknown || row.act == CodeAct::kCalls;
-    if (may_be_own && own_word(state_, 'G', code, words_) != nullptr) {
+    if (may_be_own_g(row) && own_word(state_, 'G', code, words_) != nullptr) {
       return take_own(row.act == CodeAct::kCalls ? row.why : reason::kOwnWord, true);
     }
     apply_traits(row);
@@ -98,7 +97,9 @@ class WordApplier {
       case CodeGroup::kPlane:
         return set(row, modal().plane);
       case CodeGroup::kDistance:
-        return set(row, modal().distance);
+        set(row, modal().distance);
+        if (state_.centers_follow_distance) modal().arc_distance = modal().distance;
+        return;
       case CodeGroup::kArcDistance:
         return set(row, modal().arc_distance);
       case CodeGroup::kFeedMode:
@@ -426,9 +427,11 @@ bool sets_one_mode(const Word& word) {
 std::optional<ControlState> after_some_of(std::span<const Word> words, const ControlState& before) {
   ControlState after = before;
   for (const Word& word : words) {
-    if (!sets_one_mode(word)) return std::nullopt;
-    ControlState with_it = before;
     const BlockWords alone({&word, 1});
+    const bool is_own =
+        word.letter == 'G' && own_word(before, 'G', code_of(word), alone) != nullptr;
+    if (is_own || !sets_one_mode(word)) return std::nullopt;
+    ControlState with_it = before;
     const StateEffect effect = apply_words(alone, with_it);
     if (effect.motion != nullptr) {
       with_it.modal.motion = effect.motion->value.as<MotionMode>();
@@ -445,7 +448,7 @@ void apply_late_words(const BlockWords& words, ControlState& state) {
   bool own_macro = false;
   for (const Code code : words.g_codes()) {
     const CodeRow& row = row_of_g(code);
-    if (row.group != CodeGroup::kUnknown && row.act != CodeAct::kCalls) continue;
+    if (!may_be_own_g(row)) continue;
     const OwnWord* own = own_word(state, 'G', code, words);
     if (own == nullptr) continue;
     apply_late_own(*own, words, state);

@@ -90,6 +90,7 @@ void forget_everything(ControlState& state) {
   unknown.modal = unknown_modal_state(state.modal, state.lacks);
   unknown.calls_keep_modes = state.calls_keep_modes;
   unknown.lacks = state.lacks;
+  unknown.centers_follow_distance = state.centers_follow_distance;
   unknown.own_words = state.own_words;
   state = unknown;
 }

@@ -141,6 +141,7 @@ struct ControlState {
   bool scaled_by_axis = false;          // Klartext: cycle 26 may hold a factor for an axis
   bool calls_keep_modes = false;        // ReadOptions
   ModeSet lacks = 0;                    // ReadOptions
+  bool centers_follow_distance = false;  // ReadOptions
   const OwnWords* own_words = nullptr;  // ReadOptions; they outlive the reading
 
   [[nodiscard]] bool is_set(CodeGroup group) const { return (set_by_word & bit(group)) != 0; }

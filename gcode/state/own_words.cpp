@@ -30,6 +30,11 @@ constexpr OwnEffectRow kOwnEffects[] = {
 
 std::span<const OwnEffectRow> own_effects() { return kOwnEffects; }
 
+bool may_choose_zero(const CodeRow& row) {
+  return row.group == CodeGroup::kScaling || row.group == CodeGroup::kWorkOffset ||
+         row.act == CodeAct::kMovesOrigin;
+}
+
 std::string numbered_call(const BlockWords& words) {
   const Word* program = words.find('P');
   constexpr double kGreatest = 99999999;

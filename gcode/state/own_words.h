@@ -1,5 +1,6 @@
-// Words that Batten does not know, with what their user vouches that they do: M501 of a builder,
-// a macro of the shop (G65 P9810), a program that is called by name.
+// Words whose effect their user vouches for: M501 of a builder, a macro of the shop (G65 P9810), a
+// program that is called by name, and words of coordinates that some controls have for something
+// else (G51 and G52 of Philips controls choose zero points).
 #pragma once
 
 #include <span>
@@ -38,6 +39,15 @@ struct OwnWord {
   std::string effects;  // as the user says them
   OwnEffect effect;
 };
+
+// A word of scales and origins that on some controls chooses a zero point: all that a user may say
+// of it is that the position is unknown behind it.
+[[nodiscard]] bool may_choose_zero(const CodeRow& row);
+
+// Whether a user may say what a G word does: that, a call, or a word that Batten does not know.
+[[nodiscard]] inline bool may_be_own_g(const CodeRow& row) {
+  return row.group == CodeGroup::kUnknown || row.act == CodeAct::kCalls || may_choose_zero(row);
+}
 
 // "G65 P9810" of a block whose one call is of a program by its number, from its beginning (no M98
 // H); empty for others.

@@ -114,7 +114,8 @@ constexpr Explanation kExplanations[] = {
     {kCylindrical, "Coordinates are on a cylinder (G7.1).",
      "Let the CAM system write Cartesian coordinates."},
     {kScaling, "Coordinates are scaled (G51): the tolerance would be too.",
-     "Let the CAM system scale the part."},
+     "Let the CAM system scale the part. Where G51 only chooses a zero point on your control: "
+     "--word 'G51 = position unknown'."},
     {kRotation, "Coordinates are rotated (G68).", "Let the CAM system turn the part."},
     {kMirror, "Coordinates are mirrored (G51.1), or may be (M21, M22).",
      "Let the CAM system mirror the part."},

@@ -138,12 +138,10 @@ PartReading reading_of(const gcode::SourceText& source, const ReadingCommand& co
   reading.text.units = command.units;
   reading.text.dwells = dwells;
   reading.options = {.units = command.units,
-                     .curves = command.target != nullptr ? command.target->curves : nullptr,
                      .calls_keep_modes = calls_keep_modes(command.allowed),
-                     .lacks = modes_lacking(command.target, kind),
-                     .needs_commands = needs_commands(command.target, kind),
                      .usual_caller_modes = usual_caller_modes(command.allowed),
                      .own_words = command.own_words};
+  read_as(command.target, kind, reading.options);
   return reading;
 }
 

@@ -169,11 +169,7 @@ int run(const InspectCommand& command) {
     print(reading.of_language, *source, command.log_level);
     return static_cast<int>(ExitCode::kNotUnderstood);
   }
-  if (command.runs_it != nullptr) {
-    reading.options.curves = command.runs_it->curves;
-    reading.options.lacks = modes_lacking(command.runs_it, command.source);
-    reading.options.needs_commands = needs_commands(command.runs_it, command.source);
-  }
+  read_as(command.runs_it, command.source, reading.options);
   const CalledFiles called = read_called_files(*source, command.input, reading.text);
   reading.options.subprograms = called.programs;
   GroupingOptions grouping;

@@ -217,27 +217,40 @@ bool usual_caller_modes(std::span<const std::string> allowed) {
   return std::ranges::find(allowed, gcode::reason::kCallerModes) != allowed.end();
 }
 
-gcode::ModeSet modes_lacking(const gcode::Control* target, gcode::SourceKind source) {
-  if (target == nullptr) return 0;
-  if (source == gcode::SourceKind::kAuto) return target->lacks;
-  const auto written_for = gcode::control_of(source);
-  return written_for == target->name ? target->lacks : 0;
-}
-
-bool needs_commands(const gcode::Control* target, gcode::SourceKind source) {
-  return target != nullptr && target->needs_commands && source == gcode::SourceKind::kAuto;
+void read_as(const gcode::Control* target, gcode::SourceKind source, gcode::ReadOptions& reading) {
+  if (target == nullptr) return;
+  reading.curves = target->curves;
+  const bool is_auto = source == gcode::SourceKind::kAuto;
+  if (is_auto || gcode::control_of(source) == target->name) reading.lacks = target->lacks;
+  if (!is_auto) return;
+  reading.needs_commands = target->needs_commands;
+  reading.centers_follow_distance = target->centers_follow_distance;
+  if (target->zero_points.empty()) return;
+  std::vector<gcode::OwnWord> words;
+  if (reading.own_words != nullptr) {
+    const auto said = reading.own_words->all();
+    words.assign(said.begin(), said.end());
+  }
+  const auto row = std::ranges::find(gcode::own_effects(), "position unknown",
+                                     &gcode::OwnEffectRow::name);
+  for (const int code : target->zero_points) {
+    words.push_back({fmt::format("G{}", code / 10), std::string(row->name), row->effect});
+  }
+  reading.own_words = std::make_shared<const gcode::OwnWords>(std::move(words));
 }
 
 gcode::ReadOptions read_options_of(const SmoothOptions& options) {
   gcode::ReadOptions reading;
   reading.units = options.units;
-  if (options.target != nullptr) reading.curves = options.target->curves;
-  if (!options.convert) reading.lacks = modes_lacking(options.target, options.source);
-  reading.needs_commands = !options.convert && needs_commands(options.target, options.source);
   reading.calls_keep_modes = calls_keep_modes(options.allowed);
   reading.usual_caller_modes = usual_caller_modes(options.allowed);
   reading.own_words = options.own_words;
   reading.subprograms = options.subprograms;
+  if (options.convert) {
+    if (options.target != nullptr) reading.curves = options.target->curves;
+  } else {
+    read_as(options.target, options.source, reading);
+  }
   return reading;
 }
 

@@ -106,11 +106,10 @@ struct SmoothOptions {
 // Whether they say that what is called leaves all modes as it finds them (reason `subprogram`).
 [[nodiscard]] bool calls_keep_modes(std::span<const std::string> allowed);
 
-// ReadOptions::lacks of a program for this target, where it was written for no other.
-[[nodiscard]] gcode::ModeSet modes_lacking(const gcode::Control* target, gcode::SourceKind source);
-
-// ReadOptions::needs_commands, likewise.
-[[nodiscard]] bool needs_commands(const gcode::Control* target, gcode::SourceKind source);
+// Sets how a program for this target is read; nullptr: one for any. What only that control has or
+// lacks counts where the program was written for no other. Its zero points are added to the own
+// words.
+void read_as(const gcode::Control* target, gcode::SourceKind source, gcode::ReadOptions& reading);
 
 // Whether they say that programs that others call are called under the modes of power-on (reason
 // `caller-modes`).

@@ -46,6 +46,7 @@ std::string without_zeros(std::string_view digits) {
 struct Name {
   std::string text;  // as gcode::OwnWords has it
   bool is_call = false;
+  bool chooses_zero = false;  // gcode::may_choose_zero
 };
 
 // M501, G05.9
@@ -60,12 +61,13 @@ std::optional<Name> code_name(std::string_view name, std::string& problem) {
   const gcode::CodeRow& row = name[0] == 'M' ? gcode::row_of_m(code) : gcode::row_of_g(code);
   const std::string text = code % 10 == 0 ? fmt::format("{}{}", name[0], code / 10)
                                           : fmt::format("{}{}.{}", name[0], code / 10, code % 10);
-  if (row.code != gcode::kNoCode) {
-    const bool calls = row.act == gcode::CodeAct::kCalls;
+  const bool calls = row.act == gcode::CodeAct::kCalls;
+  const bool chooses_zero = name[0] == 'G' && gcode::may_choose_zero(row);
+  if (row.code != gcode::kNoCode && !chooses_zero) {
     problem = fmt::format("Batten knows what {} does{}", text,
                           calls ? "; name the program, such as G65 P9810 or M98 P9001" : "");
   }
-  return Name{text};
+  return Name{text, false, chooses_zero};
 }
 
 // M98 P9001, G65 P9810
@@ -191,6 +193,12 @@ void OwnWordList::add(std::string_view name, std::string_view effects,
   if (keeps_all && loses_some) {
     problems.push_back(fmt::format(
         "{}: '{}' contradicts itself: what keeps the state keeps the position", name, effects));
+  }
+  if (word && word->chooses_zero && (!effect.keeps_motion || effect.keeps_place)) {
+    problems.push_back(fmt::format(
+        "{} moves the coordinates: all that can be said of it is 'position unknown', where it "
+        "chooses a zero point and neither scales nor turns",
+        name));
   }
   if (problems.size() != problems_before) return;
   const auto before = std::ranges::find(words_, word->text, &gcode::OwnWord::name);

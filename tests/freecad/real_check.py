@@ -21,14 +21,14 @@ POSTS = {
     "linuxcnc": "linuxcnc", "grbl": "grbl", "jtech": "grbl", "marlin": "marlin",
     "rrf": "reprapfirmware", "smoothie": "smoothieware", "mach3_mach4": "mach3", "uccnc": "uccnc",
     "KineticNCBeamicon2": "linuxcnc", "dynapath": "fanuc", "centroid": "centroid", "fanuc": "fanuc",
-    "philips": "fanuc", "heidenhain": "heidenhain", "fablin": "grbl", "nccad": "fanuc",
+    "philips": "philips", "heidenhain": "heidenhain", "fablin": "grbl", "nccad": "fanuc",
     "comparams": "grbl", "dxf": "grbl", "opensbp": "grbl", "rml": "grbl"}
 # Its post of 0.20 writes feeds in mm/s as if they were mm/min: no path is faster.
 OPTIONS = {"heidenhain": "--prefer size"}
 # Two name no unit; the others write no G-code.
 REFUSED = {"fablin": "units-missing", "nccad": "units-missing", "dxf": "not-a-program",
            "opensbp": "not-a-program", "rml": "not-a-program"}
-LEFT_ALONE = ("philips", "comparams")
+LEFT_ALONE = ("comparams",)
 wrong = []
 
 

@@ -105,8 +105,8 @@ inline constexpr PlanTuning kPlans;
                                     const PlanOptions& options);
 
 // Arcs in a plane that the target takes arcs in and that the run lies in, the active plane first. A
-// run in space: helices and lines in the plane that needs the fewest, where the target takes
-// helices and they are fewer than the run's motions. Nothing when no plane serves. Arcs that the
+// run in space: helices and lines in the plane that needs the fewest, where they are fewer than the
+// run's motions, and none is a helix where the target takes none. Nothing when no plane serves. Arcs that the
 // target would refuse are chords already, and so are those that with the target's own chords would
 // be farther from the run than `tolerance`, or that these leave more than those of the arcs that
 // the run has there and than the target itself aims at. Comments are placed by the length along the moves, which

@@ -258,6 +258,13 @@ bool takes_too_many(const Plan& plan, const PlanOptions& options) {
   return !plan(geometry::ArcEffort::kBrief, static_cast<std::size_t>(found));
 }
 
+bool has_helix(const OutputPlan& plan) {
+  return std::ranges::any_of(plan.moves, [](const auto& move) {
+    const auto* arc = std::get_if<geometry::Arc>(&move.piece);
+    return arc != nullptr && std::abs((arc->end - arc->start).dot(arc->axis)) > 0;
+  });
+}
+
 }  // namespace
 
 std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve& fair,
@@ -278,7 +285,7 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
     if (takes_too_many(with_effort, options)) return std::nullopt;
     if (auto plan = with_effort(options.arc_effort, most_pieces(options))) return plan;
   }
-  if (flat_somewhere || !options.target->helices) return std::nullopt;
+  if (flat_somewhere) return std::nullopt;
   // In space the planes differ much: the rows of a raster along X are arcs in G18, and in G17 they
   // are lines and steep little helices. The fewest moves win; the plane in which the run is
   // flattest comes first, so that the others are soon given up. More moves than the run has motions
@@ -291,6 +298,7 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
     fit.at_most = most;
     auto plan = plan_in(run, fair, fair.curve, &pieces, chords, fit, options);
     if (!plan || plan->moves.size() >= most) continue;
+    if (!options.target->helices && has_helix(*plan)) continue;  // a plunge may be all that rises
     most = plan->moves.size();
     best = std::move(plan);
   }

@@ -242,7 +242,7 @@ TEST(Klipper, RunsTenThousandArcsAsTheyAreMeant) {
 
 // R says the same whether I, J, K would be offsets or places.
 TEST(ByRadius, NamesNoCentre) {
-  for (const std::string_view name : {"mach3", "mach4", "uccnc", "hurco", "num", "codesys"}) {
+  for (const std::string_view name : {"mach3", "mach4", "uccnc", "hurco", "num", "philips", "codesys"}) {
     std::mt19937 random(23);
     const Control& control = named_control(name);
     for (int i = 0; i < 200; ++i) {

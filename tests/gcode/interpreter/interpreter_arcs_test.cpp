@@ -129,6 +129,26 @@ TEST(NotAnArc, IsOpaqueAndLosesThePlace) {
   }
 }
 
+// NUM and Philips. Read the other way the same words are another arc, or none.
+TEST(InterpreterArcs, TakesCentresForPlacesUnderG90WhereTheControlDoes) {
+  const auto centre_of = [](const std::string& arc, bool follow) {
+    const Interpreted it("G21 G0 X10 Y0 Z0\n" + arc, {.centers_follow_distance = follow});
+    const Motion* motion = it.motion_of_line(it.read.blocks.size());
+    const bool is_arc = motion != nullptr && motion->kind == MotionKind::kArc;
+    return is_arc ? std::optional(it.read.motions.back().piece.arc()->center.head<2>().eval())
+                  : std::nullopt;
+  };
+  EXPECT_EQ(centre_of("G3 X-10 I0 J0 F9", true), Eigen::Vector2d(0, 0));
+  EXPECT_FALSE(centre_of("G3 X-10 I0 J0 F9", false).has_value());
+  EXPECT_EQ(centre_of("G91\nG3 X-20 I-10 F9", true), Eigen::Vector2d(0, 0));
+  EXPECT_EQ(centre_of("G91\nG90 G3 X-10 I0 J0 F9", true), Eigen::Vector2d(0, 0));
+  const std::string modes =
+      "G21 G17 G94 G64 G40\nG49 G69\nG50\nG50.1\nG15\nG7.1 C0\nG5.1 Q0\nG67\nG97\nG8\n";
+  const std::string cut = "G0 X10 Y0 Z0\nG3 X-10 I0 J0 F9";
+  EXPECT_EQ(centre_of("G777\nG90\n" + modes + cut, true), Eigen::Vector2d(0, 0));
+  EXPECT_FALSE(centre_of("G777\n" + modes + cut, true).has_value());
+}
+
 TEST(InterpreterArcs, NeedsTheStartInItsPlane) {
   const Interpreted it("G21\nG1 Z0 Y0 F9\nG3 X10 Y0 I5\nG1 X20\n");
   EXPECT_EQ(it.line(3).kind, BlockKind::kOpaque);

@@ -75,7 +75,7 @@ const WordsRow kWordsRows[] = {
     {{"haas"},
      {"G21", "G17", "G90", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15", "G7.1 C0",
       "G67", "G97"}},
-    {{"fanuc", "syntec", "mitsubishi", "mazak", "okuma", "brother", "hurco", "fagor", "num"},
+    {{"fanuc", "syntec", "mitsubishi", "mazak", "okuma", "brother", "hurco", "fagor", "num", "philips"},
      {"G21", "G17", "G90", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15", "G7.1 C0",
       "G5.1 Q0", "G67", "G97"}},
     {{"codesys", "beckhoff"},

@@ -96,6 +96,9 @@ INSTANTIATE_TEST_SUITE_P(
                     VouchedCase{"G65 P9810 A#1", "G65 P9810"},
                     VouchedCase{"M98 P9001", "M98 P9001"}, VouchedCase{"M98 P9001 L5", "M98 P9001"},
                     VouchedCase{"M198 P12", "M198 P12"},
+                    // Zero points of a Philips control.
+                    VouchedCase{"G51", "G51"}, VouchedCase{"G52", "G52"},
+                    VouchedCase{"G55", "G55"},
                     VouchedCase{"o<probe> call", "O<PROBE> CALL"},
                     VouchedCase{"O 100 CALL [#1] [2]", "O100 CALL"}));
 
@@ -117,7 +120,10 @@ TEST_P(WordsThatLookAlike, AreAsUnknownAsBefore) {
 INSTANTIATE_TEST_SUITE_P(
     OfEachForm, WordsThatLookAlike,
     testing::Values(OtherCase{"M502", "M501"}, OtherCase{"G101", "G100"},
-                    OtherCase{"G100.1", "G100"}, OtherCase{"M501 M502", "M501"},
+                    OtherCase{"G100.1", "G100"}, OtherCase{"G51.1 X0", "G51"},
+                    OtherCase{"G52 X5", "G51", "X3\n"}, OtherCase{"G51 G68 R30", "G51"},
+                    // The operator may skip it.
+                    OtherCase{"/G51 X5", "G51", "X3\n"}, OtherCase{"M501 M502", "M501"},
                     OtherCase{"M501 G101", "M501"}, OtherCase{"G65 P19810", "G65 P9810"},
                     OtherCase{"G65 P#1", "G65 P9810"}, OtherCase{"G66 P9810", "G65 P9810"},
                     OtherCase{"M98 P9001", "G65 P9001"}, OtherCase{"M98 P59001", "M98 P9001"},

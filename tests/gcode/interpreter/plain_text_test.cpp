@@ -22,15 +22,26 @@ TEST(PlainText, IsAFileNameOrInBrackets) {
 }
 
 TEST(Title, IsWordsThatNoControlTakesForACommand) {
-  for (const char* line : {"PART NUMBER 12345", "Bracket left side", "Mold insert rev. 2 (old)"}) {
+  for (const char* line : {"PART NUMBER 12345", "Bracket left side", "Mold insert rev. 2 (old)",
+                           "N9XXX (, 2026-11-25 22:46)", "oxxxx"}) {
     EXPECT_TRUE(is_title(line)) << line;
   }
   for (const char* line : {"", "PART", "START_PRINT", "START_PRINT BED=60", "TRANS X10 Y5",
                            "ROT RPL 30", "CYCL DEF 7.0", "PLANE RESET STAY", "Call subprogram 5",
                            "MODIN O100", "#RTCP ON", "part X10", "G91 mode on", "TRANS DATUM",
-                           "10 L X5", "SET_VELOCITY_LIMIT ACCEL=500", "TOOL CALL 1 Z"}) {
+                           "10 L X5", "SET_VELOCITY_LIMIT ACCEL=500", "TOOL CALL 1 Z",
+                           "N9X", "N9 XXX", "N9XXXY", "N10X5", "NXX.5", "XXX", "M9XXX"}) {
     EXPECT_FALSE(is_title(line)) << line;
   }
+}
+
+// N10 is then no target of a call of XXX as Sinumerik would make it.
+TEST(OpenNumber, LeavesWhatIsKnownAtTheBeginning) {
+  const std::string cuts = "N1 G21 G17 G90\nN2 G0 X0 Y0 Z0\nN3 G1 X1 F100\nN4 X2\n";
+  const tests::Interpreted open("N9XXX (the number)\n" + cuts);
+  EXPECT_TRUE(is_known(open.last_state()));
+  const tests::Interpreted call("N9 PROBE\n" + cuts);
+  EXPECT_FALSE(is_known(call.last_state()));
 }
 
 constexpr const char* kModesSaid = "G17 G21 G90 G40\n";

@@ -146,5 +146,16 @@ TEST(OtherMeanings, AreAnErrorWhoeverConverts) {
       has_error_of(smoothed(wave_program({}, "G20"), options_for("klipper")), "word-means-other"));
 }
 
+// G51 and G52 choose zero points; G14 repeats blocks, whose lines may not be rewritten.
+TEST(OtherMeanings, OfZeroPointsAreReadAsTheControlDoes) {
+  const std::string zeros = wave_program({}, "G71\nG51\nG52");
+  const SmoothResult elsewhere = smoothed(zeros, options_for("fanuc"));
+  EXPECT_EQ(elsewhere.blocks_out, elsewhere.blocks_in);
+  const SmoothResult there = smoothed(zeros, options_for("philips"));
+  EXPECT_LT(there.blocks_out, there.blocks_in);
+  const std::string repeats = wave_program({}, "G71") + "G14 J2\n";
+  EXPECT_TRUE(has_error_of(smoothed(repeats, options_for("philips")), "word-means-other"));
+}
+
 }  // namespace
 }  // namespace batten::postproc

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "gcode/controls/built_in.h"
+#include "gcode/state/own_words.h"
 #include "gcode/state/reason.h"
 
 namespace batten::postproc {
@@ -23,6 +24,26 @@ bool mentions(const std::vector<std::string>& problems, std::string_view text) {
     if (problem.find(text) != std::string::npos) return true;
   }
   return false;
+}
+
+// What a control reads in its own way counts for its own programs alone.
+TEST(ReadOptions, AreThoseOfTheControlThatTheProgramWasWrittenFor) {
+  SmoothOptions options = good_options();
+  options.target = gcode::find_control("philips");
+  const gcode::ReadOptions own = read_options_of(options);
+  EXPECT_TRUE(own.centers_follow_distance);
+  ASSERT_NE(own.own_words, nullptr);
+  for (const char* zero : {"G51", "G52"}) {
+    const gcode::OwnWord* word = own.own_words->find(zero);
+    ASSERT_NE(word, nullptr) << zero;
+    EXPECT_FALSE(word->effect.keeps_place);
+  }
+  options.source = gcode::SourceKind::kFanuc;
+  EXPECT_FALSE(read_options_of(options).centers_follow_distance);
+  EXPECT_EQ(read_options_of(options).own_words, nullptr);
+  options.source = gcode::SourceKind::kAuto;
+  options.convert = true;
+  EXPECT_EQ(read_options_of(options).own_words, nullptr);
 }
 
 TEST(Options, HaveNoProblemsByDefault) { EXPECT_TRUE(problems_of(good_options()).empty()); }

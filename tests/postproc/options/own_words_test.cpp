@@ -21,13 +21,13 @@ TEST(OwnWordList, TakesEachFormByItsName) {
   for (const char* text :
        {"m0501=keeps state", "G05.4 = Ends  A Run", "\"G65 p9810\" = \"moves; position unknown\"",
         "M98P09001 = keeps state, returns", "o <Probe> call = keeps state", "o100 call = moves",
-        "L054 = returns", "call pgm probe.h = keeps state", "CLAMP_1 = keeps state"}) {
+        "G51 = position unknown", "G52 = ends a run, position unknown", "L054 = returns", "call pgm probe.h = keeps state", "CLAMP_1 = keeps state"}) {
     list.add(text, problems);
   }
   EXPECT_TRUE(problems.empty()) << problems.front();
   const auto words = list.words();
   ASSERT_NE(words, nullptr);
-  for (const char* name : {"M501", "G5.4", "G65 P9810", "M98 P9001", "O<PROBE> CALL", "O100 CALL",
+  for (const char* name : {"M501", "G5.4", "G51", "G52", "G65 P9810", "M98 P9001", "O<PROBE> CALL", "O100 CALL",
                            "L054", "CALL PGM PROBE", "CLAMP_1"}) {
     EXPECT_NE(words->find(name), nullptr) << name;
   }
@@ -62,6 +62,10 @@ INSTANTIATE_TEST_SUITE_P(
         WrongWord{"M8 = keeps state", "Batten knows what M8 does"},
         WrongWord{"G68 = keeps state", "Batten knows what G68 does"},
         WrongWord{"G92 = keeps state", "Batten knows what G92 does"},
+        WrongWord{"G51.1 = position unknown", "Batten knows what G51.1 does"},
+        WrongWord{"G51 = keeps state", "all that can be said of it is 'position unknown'"},
+        WrongWord{"G52 = moves", "all that can be said of it is 'position unknown'"},
+        WrongWord{"G54 = ends a run, position unknown; moves", "all that can be said of it"},
         WrongWord{"G65 = keeps state", "name the program, such as G65 P9810"},
         WrongWord{"TRAORI = keeps state", "Batten knows what TRAORI does"},
         WrongWord{"M501 P1 = keeps state", "'M501 P1' is no word; expected one like M501"},
