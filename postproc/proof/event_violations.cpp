@@ -3,17 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
 
+#include "gcode/state/code_table.h"
 #include "gcode/state/modal_state.h"
+#include "gcode/state/reason.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::postproc {
 namespace {
 
 using gcode::ModalState;
+namespace reason = gcode::reason;
 
 // How many events may be lost or added at one position and still be reported one by one.
 constexpr std::size_t kFurthest = 400;
@@ -35,13 +39,16 @@ bool of_two_languages(const EventAt& old, const EventAt& now) {
   return old.read.program->language != now.read.program->language;
 }
 
-// How far the ends of rapids that are the same may be apart.
-double same_end(const EventAt& old, const EventAt& now) {
+}  // namespace
+
+double same_place_at(const EventAt& old, const EventAt& now) {
   if (!of_two_languages(old, now)) return geometry::kSamePlace;
   if (now.read.program->language != gcode::Language::kRs274) return kPrintedAnew;
   const bool inch = now.state_after().units == gcode::Units::kInch;
   return inch ? kPrintedInPlainInches : kPrintedInPlainMillimetres;
 }
+
+namespace {
 
 // Do two events do the same? Rapids do when every axis that one of them names ends at the same
 // position; the axes that none names stay where the path before has left them.
@@ -50,7 +57,7 @@ bool same_event(const EventAt& old, const EventAt& now) {
   if (old.event.motion < 0 || now.event.motion < 0) return old.event.motion == now.event.motion;
   const gcode::Motion& before = old.motion();
   const gcode::Motion& after = now.motion();
-  const double allowed = same_end(old, now);
+  const double allowed = same_place_at(old, now);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     const bool named = before.axes_named[i] || after.axes_named[i];
@@ -174,6 +181,23 @@ bool moves(const EventSpan& span) {
                              [](const ProgramEvent& e) { return e.kind != EventKind::kWord; });
 }
 
+// G28, G30, G53 and nothing else that uses axis words: the axes that are named end at a place of
+// the machine's.
+bool only_goes_home(const gcode::Block& block, const ReadProgram& read) {
+  using gcode::CodeAct;
+  bool goes = false;
+  for (const gcode::Word& word : read.program->words_of(block)) {
+    if (word.letter != 'G' || !word.is_number) continue;
+    const gcode::CodeRow& row = gcode::row_of_g(gcode::code_of(word));
+    if (row.act == CodeAct::kHome || row.act == CodeAct::kMachinePlace) {
+      goes = true;
+    } else if (row.why == reason::kCoordinateChange) {
+      return false;
+    }
+  }
+  return goes;
+}
+
 bool is_one_of(const Violation& violation, std::string_view id, std::string_view other) {
   return violation.id == id || violation.id == other;
 }
@@ -182,6 +206,25 @@ bool is_one_of(const Violation& violation, std::string_view id, std::string_view
 
 EventAlignment align_events(const EventSpan& before, const EventSpan& after) {
   return Aligner(before, after).run();
+}
+
+bool hangs_on_place(const EventAt& at) {
+  if (at.event.kind != EventKind::kText) return false;
+  const gcode::Block& block = at.read.program->blocks[at.event.block];
+  const gcode::BlockMeaning& meaning = at.read.interpretation->blocks[at.event.block];
+  if (meaning.motion >= 0) return false;
+  const bool is_plain = block.opacity == gcode::ParseStatus::kNone &&
+                        meaning.kind != gcode::BlockKind::kOpaque && !block.block_delete;
+  if (!is_plain) return true;
+  if (at.event.text.starts_with('(') || at.event.text.starts_with(';')) return false;
+  const std::string_view why = meaning.barrier;
+  if (why == reason::kCoordinateChange) return !only_goes_home(block, at.read);
+  constexpr std::array kOnlySwitch = {reason::kDwell,       reason::kStateChange,
+                                      reason::kSpindle,     reason::kCoolant,
+                                      reason::kToolChange,  reason::kProgramEnd,
+                                      reason::kCannedCycle, reason::kControlSmoothing,
+                                      reason::kExactStop,   reason::kCutterCompensation};
+  return std::ranges::find(kOnlySwitch, why) == kOnlySwitch.end();
 }
 
 std::string_view different_item(const EventAt& old, const EventAt& now) {
@@ -265,6 +308,17 @@ Violation moved_event_violation(const EventAt& before, const EventAt& after, dou
   const std::string message =
       describe(before) + ": the path is the same, but it is at another position on it";
   return {ViolationKind::kEvent, "event-moved", before.line(), after.line(), moved_mm, message};
+}
+
+Violation place_violation(const EventAt& before, const EventAt& after, double off_mm) {
+  return {ViolationKind::kEvent,
+          "place-moved",
+          before.line(),
+          after.line(),
+          off_mm,
+          fmt::format("the tool is {:.6g} mm from where it stood before '{}', which may take over "
+                      "where it stands",
+                      off_mm, describe(before))};
 }
 
 Violation state_violation(std::string_view item, const EventAt& before, const EventAt& after) {

@@ -59,6 +59,15 @@ struct EventSpan {
 
 // --- does the control remember the same? ---------------------------------------------------
 
+// Whether what follows may hang on where the tool stands before the event, beyond what is compared
+// as a path: G92, G10 L20, G28.1, PRESETON, a macro, what is not understood. Moves, G28 and what
+// only switches do not.
+[[nodiscard]] bool hangs_on_place(const EventAt& at);
+
+// mm: the tool is at the same place before two events when it is no farther off: what printing the
+// numbers anew in another language makes of it, else noise.
+[[nodiscard]] double same_place_at(const EventAt& before, const EventAt& after);
+
 // What differs before a pair of events, in words ("units", "plane" ..); empty when nothing does.
 // The motion word is asked for at kText events only: other events do not depend on it, and the cuts
 // after them have their own. The feed is asked for at kText events, whatever uses it there, and
@@ -94,6 +103,9 @@ void merge_moved_events(std::vector<Violation>& violations);
 // The event is at another position of the path, at least `moved_mm` away.
 [[nodiscard]] Violation moved_event_violation(const EventAt& before, const EventAt& after,
                                               double moved_mm);
+
+// `off_mm`: how far the tool is from where it stood.
+[[nodiscard]] Violation place_violation(const EventAt& before, const EventAt& after, double off_mm);
 
 [[nodiscard]] Violation state_violation(std::string_view item, const EventAt& before,
                                         const EventAt& after);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -93,7 +94,9 @@ class Verifier {
                                             new_span(moves.from.after, moves.to.after));
       std::ranges::move(gap.violations, std::back_inserter(result_.violations));
       compare_moves(moves, gap.only_words);
-      if (moves.to != end) compare_event(moves.to);
+      if (moves.to == end) continue;
+      compare_places(moves);
+      compare_event(moves.to);
     }
     if (!aligned.complete) {
       flush_stretch();
@@ -174,6 +177,45 @@ class Verifier {
 
     [[nodiscard]] bool any() const { return !before.cuts.empty() || !after.cuts.empty(); }
   };
+
+  // What takes over where the tool stands (G92 X1) carries its distance from where it stood into
+  // all that follows, where no path shows it any more. An axis that is not known stands at 0: it is
+  // off as it was until a move names it.
+  void compare_places(const Moves& moves) {
+    const EventAt before = old_event(moves.to);
+    const EventAt after = new_event(moves.to);
+    for (const Cut& cut : moves.after.cuts) name_axes_of(cut.motion);
+    const auto old_place = end_of(moves.before);
+    const auto new_place = end_of(moves.after);
+    for (Eigen::Index i = 0; i < 3 && (old_place || new_place); ++i) {
+      const bool both = old_place && new_place;
+      const double off = both ? std::abs((*old_place)[i] - (*new_place)[i]) : 0;
+      if (!both || off > same_place_at(before, after)) {
+        place_off_[i] = std::max(off, geometry::kSamePlace);
+      } else if (named_[static_cast<std::size_t>(i)]) {
+        place_off_[i] = 0;
+      }
+    }
+    named_ = {};
+    const std::int32_t motion = new_.interpretation->blocks[after.event.block].motion;
+    if (motion >= 0) name_axes_of(static_cast<std::uint32_t>(motion));
+    if (place_off_.isZero() || !hangs_on_place(before)) return;
+    result_.violations.push_back(place_violation(before, after, place_off_.norm()));
+    place_off_.setZero();  // it is said once
+  }
+
+  void name_axes_of(std::uint32_t index) {
+    const gcode::Motion& motion = new_.interpretation->motions[index];
+    for (std::size_t i = 0; i < named_.size(); ++i) {
+      named_[i] = named_[i] || (motion.end_known && motion.axes_named[i]);
+    }
+  }
+
+  static std::optional<geometry::Point3> end_of(const StretchSide& side) {
+    if (side.cuts.empty()) return side.start;
+    const auto& motions = side.read->interpretation->motions;
+    return motions[side.cuts.back().motion].piece.end();
+  }
 
   static EventPair behind_last_of(const EventAlignment& aligned) {
     if (aligned.same.empty()) return {};
@@ -269,6 +311,8 @@ class Verifier {
   std::vector<Moves> moves_;
   Moves* last_ = nullptr;  // compared, and not in the result yet
   std::string_view last_different_item_;
+  geometry::Vector3 place_off_ = geometry::Vector3::Zero();  // mm, of the tool from where it stood
+  std::array<bool, 3> named_ = {};  // axes, since the last event that was compared
 };
 
 // --- what the target would not run -----------------------------------------------------------
